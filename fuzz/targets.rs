@@ -1,6 +1,6 @@
 //! What holds for every input: the bodies of the fuzz targets. `compiler/tests/corpus.rs` replays the corpus through them.
 
-use hrdsl_compiler::{Input, Loader, Source, compile_with};
+use hrdsl_compiler::{InputFile, ModuleLoader, ModuleText, compile_with};
 use hrdsl_source::{Diagnostic, FileId};
 
 /// Divides the input of [`checker`]: scenario, the module that it uses as a file, its tests.
@@ -40,9 +40,9 @@ pub fn parser(data: &[u8]) {
 pub fn checker(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let mut files = text.splitn(3, SEPARATOR);
-    let scenario = Input { name: "scenario.hri", text: files.next().unwrap_or_default() };
+    let scenario = InputFile { name: "scenario.hri", text: files.next().unwrap_or_default() };
     let module = OneModule(files.next().unwrap_or_default());
-    let tests: Vec<Input<'_>> = files.map(|text| Input { name: "tests.hri", text }).collect();
+    let tests: Vec<InputFile<'_>> = files.map(|text| InputFile { name: "tests.hri", text }).collect();
     let c = compile_with(scenario, &tests, &module);
     assert_eq!(c.program.is_none(), c.has_errors());
     within(&c.diagnostics, |file| c.files.get(file).map(|f| f.text.as_str()));
@@ -67,9 +67,9 @@ fn words(text: &str) -> Vec<String> {
 /// Whatever file is used, it is this one.
 struct OneModule<'a>(&'a str);
 
-impl Loader for OneModule<'_> {
-    fn load(&self, _from: &str, _path: &str) -> Result<Source, String> {
-        Ok(Source { name: "module.hri".to_owned(), text: self.0.to_owned() })
+impl ModuleLoader for OneModule<'_> {
+    fn load(&self, _from: &str, _path: &str) -> Result<ModuleText, String> {
+        Ok(ModuleText { name: "module.hri".to_owned(), text: self.0.to_owned() })
     }
 }
 

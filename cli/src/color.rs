@@ -11,7 +11,7 @@ use hrdsl_source::printable;
 
 /// What `--color` takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Choice {
+pub enum ColorArg {
     /// On a terminal, unless NO_COLOR is set; elsewhere if CLICOLOR_FORCE is set.
     #[default]
     Auto,
@@ -21,27 +21,27 @@ pub enum Choice {
     Never,
 }
 
-impl From<Choice> for clap::ColorChoice {
-    fn from(choice: Choice) -> Self {
+impl From<ColorArg> for clap::ColorChoice {
+    fn from(choice: ColorArg) -> Self {
         match choice {
-            Choice::Auto => Self::Auto,
-            Choice::Always => Self::Always,
-            Choice::Never => Self::Never,
+            ColorArg::Auto => Self::Auto,
+            ColorArg::Always => Self::Always,
+            ColorArg::Never => Self::Never,
         }
     }
 }
 
-static CHOICE: OnceLock<Choice> = OnceLock::new();
+static CHOICE: OnceLock<ColorArg> = OnceLock::new();
 
 /// Settles the choice for the whole process.
-pub fn choose(choice: Choice) {
+pub fn choose(choice: ColorArg) {
     CHOICE.get_or_init(|| choice);
 }
 
 /// What `--color` says in these arguments. Help and usage errors are printed while the arguments are still being read,
 /// and have to obey it, too.
-pub fn from_args(args: impl IntoIterator<Item = OsString>) -> Choice {
-    let mut choice = Choice::Auto;
+pub fn from_args(args: impl IntoIterator<Item = OsString>) -> ColorArg {
+    let mut choice = ColorArg::Auto;
     let mut args = args.into_iter().take_while(|arg| arg != "--");
     while let Some(arg) = args.next() {
         let arg = arg.to_string_lossy();
@@ -50,7 +50,7 @@ pub fn from_args(args: impl IntoIterator<Item = OsString>) -> Choice {
             Some(rest) => rest.strip_prefix('=').map(str::to_owned),
             None => None,
         };
-        choice = word.and_then(|w| Choice::from_str(&w, false).ok()).unwrap_or(choice);
+        choice = word.and_then(|w| ColorArg::from_str(&w, false).ok()).unwrap_or(choice);
     }
     choice
 }
@@ -73,17 +73,17 @@ fn decide(terminal: bool) -> bool {
     has(CHOICE.get().copied().unwrap_or_default(), set("NO_COLOR").is_some(), forced, terminal)
 }
 
-fn has(choice: Choice, no_color: bool, forced: bool, terminal: bool) -> bool {
+fn has(choice: ColorArg, no_color: bool, forced: bool, terminal: bool) -> bool {
     match choice {
-        Choice::Always => true,
-        Choice::Never => false,
-        Choice::Auto => !no_color && (forced || terminal),
+        ColorArg::Always => true,
+        ColorArg::Never => false,
+        ColorArg::Auto => !no_color && (forced || terminal),
     }
 }
 
 /// The few styles that are used, as SGR parameters.
 #[derive(Clone, Copy, Debug)]
-pub enum Style {
+pub enum TextStyle {
     Bold,
     Code,
     Added,
@@ -92,12 +92,12 @@ pub enum Style {
 
 /// A piece of text in a style, if colours are on. It cannot leave its style.
 #[must_use]
-pub fn paint(on: bool, style: Style, text: &str) -> String {
+pub fn paint(on: bool, style: TextStyle, text: &str) -> String {
     let sgr = match style {
-        Style::Bold => "1",
-        Style::Code => "36",
-        Style::Added => "32",
-        Style::Removed => "31",
+        TextStyle::Bold => "1",
+        TextStyle::Code => "36",
+        TextStyle::Added => "32",
+        TextStyle::Removed => "31",
     };
     let text = printable(text);
     if on && !text.is_empty() { format!("\u{1b}[{sgr}m{text}\u{1b}[0m") } else { text.into_owned() }
@@ -109,20 +109,20 @@ mod tests {
 
     #[test]
     fn the_option_is_above_the_environment_and_that_above_the_terminal() {
-        assert!(has(Choice::Always, true, false, false));
-        assert!(!has(Choice::Never, false, true, true));
-        assert!(has(Choice::Auto, false, false, true) && !has(Choice::Auto, false, false, false));
-        assert!(has(Choice::Auto, false, true, false));
-        assert!(!has(Choice::Auto, true, true, true));
+        assert!(has(ColorArg::Always, true, false, false));
+        assert!(!has(ColorArg::Never, false, true, true));
+        assert!(has(ColorArg::Auto, false, false, true) && !has(ColorArg::Auto, false, false, false));
+        assert!(has(ColorArg::Auto, false, true, false));
+        assert!(!has(ColorArg::Auto, true, true, true));
     }
 
     #[test]
     fn the_option_is_found_wherever_it_stands() {
         let from = |line: &str| from_args(line.split(' ').map(OsString::from));
-        assert_eq!(from("hrdsl --color always check a.hri"), Choice::Always);
-        assert_eq!(from("hrdsl check --color=never a.hri"), Choice::Never);
-        assert_eq!(from("hrdsl check -- --color=never"), Choice::Auto);
-        assert_eq!(from("hrdsl --color"), Choice::Auto);
-        assert_eq!(from("hrdsl --color=pink"), Choice::Auto);
+        assert_eq!(from("hrdsl --color always check a.hri"), ColorArg::Always);
+        assert_eq!(from("hrdsl check --color=never a.hri"), ColorArg::Never);
+        assert_eq!(from("hrdsl check -- --color=never"), ColorArg::Auto);
+        assert_eq!(from("hrdsl --color"), ColorArg::Auto);
+        assert_eq!(from("hrdsl --color=pink"), ColorArg::Auto);
     }
 }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Exit {
+pub enum CommandExit {
     /// All is well; there may be warnings that are not denied.
     Ok = 0,
     /// A scenario has errors, or warnings that are denied, a file is not formatted, one to import cannot be understood,
@@ -32,8 +32,8 @@ Exit codes:
   4  `prove`: something was not decided within the budget, and nothing else is wrong
   5  `sim`: interrupted; the results are those of the tests that had ended";
 
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
+impl From<CommandExit> for ExitCode {
+    fn from(exit: CommandExit) -> Self {
         ExitCode::from(exit as u8)
     }
 }

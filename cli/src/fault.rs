@@ -1,4 +1,4 @@
 //! What ends a command and is no diagnostic.
 
 /// A failure that is no diagnostic: a file, an argument.
-pub type Fault = String;
+pub type CommandFault = String;

@@ -6,13 +6,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{fault::Fault, terminal};
+use crate::{fault::CommandFault, terminal};
 
 /// Reads a text file.
 ///
 /// # Errors
 /// The file's name and what is wrong with it.
-pub fn read(path: &Path) -> Result<String, Fault> {
+pub fn read(path: &Path) -> Result<String, CommandFault> {
     let fault = |e: std::io::Error| {
         if e.kind() == std::io::ErrorKind::NotFound {
             format!("no such file: {}", terminal::shown(path))
@@ -32,7 +32,7 @@ pub fn read(path: &Path) -> Result<String, Fault> {
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn read_stdin() -> Result<String, Fault> {
+pub fn read_stdin() -> Result<String, CommandFault> {
     let mut bytes = Vec::new();
     std::io::stdin()
         .lock()
@@ -41,7 +41,7 @@ pub fn read_stdin() -> Result<String, Fault> {
     text(bytes, "standard input")
 }
 
-fn text(bytes: Vec<u8>, name: &str) -> Result<String, Fault> {
+fn text(bytes: Vec<u8>, name: &str) -> Result<String, CommandFault> {
     String::from_utf8(bytes)
         .map_err(|e| format!("{name} is not UTF-8 text (byte {})", e.utf8_error().valid_up_to()))
 }
@@ -50,7 +50,7 @@ fn text(bytes: Vec<u8>, name: &str) -> Result<String, Fault> {
 ///
 /// # Errors
 /// The file's name and what is wrong.
-pub fn write(path: &Path, text: &str) -> Result<(), Fault> {
+pub fn write(path: &Path, text: &str) -> Result<(), CommandFault> {
     let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(fault)?;
@@ -62,7 +62,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), Fault> {
 ///
 /// # Errors
 /// The file's name and what is wrong.
-pub fn replace(path: &Path, text: &str) -> Result<(), Fault> {
+pub fn replace(path: &Path, text: &str) -> Result<(), CommandFault> {
     let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
     // Of a link, what it leads to is replaced.
     let target = path.canonicalize().map_err(fault)?;
@@ -86,7 +86,7 @@ pub fn replace(path: &Path, text: &str) -> Result<(), Fault> {
 ///
 /// # Errors
 /// A number that JSON cannot hold.
-pub fn json(document: &impl serde::Serialize) -> Result<String, Fault> {
+pub fn json(document: &impl serde::Serialize) -> Result<String, CommandFault> {
     serde_json::to_string_pretty(document).map(|text| text + "\n").map_err(|e| format!("cannot print: {e}"))
 }
 

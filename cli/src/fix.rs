@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_compiler::Compilation;
-use hrdsl_source::Fix;
+use hrdsl_compiler::CompilationResult;
+use hrdsl_source::SuggestedFix;
 
-use crate::project::Project;
+use crate::project::CheckedProject;
 
 /// A fix that was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Applied {
+pub struct AppliedFix {
     /// `file:line:column`, in the text that it was applied to.
     pub place: String,
     pub title: String,
@@ -20,7 +20,7 @@ const ROUNDS: usize = 10;
 
 /// An edit of a source of the project.
 #[derive(Clone, Debug)]
-struct Change {
+struct SourceEdit {
     source: usize,
     start: usize,
     end: usize,
@@ -28,10 +28,10 @@ struct Change {
 }
 
 /// Applies what is certain to the texts in memory, until nothing more is.
-pub fn apply(project: &mut Project) -> Vec<Applied> {
+pub fn apply(project: &mut CheckedProject) -> Vec<AppliedFix> {
     let mut applied = Vec::new();
     for _ in 0..ROUNDS {
-        let mut chosen = Chosen::default();
+        let mut chosen = ChosenEdits::default();
         for unit in &project.units {
             let compilation = project.compile(unit);
             for diagnostic in &compilation.diagnostics {
@@ -39,7 +39,7 @@ pub fn apply(project: &mut Project) -> Vec<Applied> {
                 let Some(changes) = changes(project, &compilation, fix) else { continue };
                 if chosen.take(changes) {
                     let place = compilation.files.place(fix.edits[0].span);
-                    applied.push(Applied { place, title: fix.title.clone() });
+                    applied.push(AppliedFix { place, title: fix.title.clone() });
                 }
             }
         }
@@ -52,26 +52,30 @@ pub fn apply(project: &mut Project) -> Vec<Applied> {
 }
 
 /// A fix's edits as changes of the project's sources; none if one of them lies elsewhere.
-fn changes(project: &Project, compilation: &Compilation, fix: &Fix) -> Option<Vec<Change>> {
-    let change = |edit: &hrdsl_source::Edit| {
+fn changes(
+    project: &CheckedProject,
+    compilation: &CompilationResult,
+    fix: &SuggestedFix,
+) -> Option<Vec<SourceEdit>> {
+    let change = |edit: &hrdsl_source::TextEdit| {
         let source = project.source(compilation, edit.span.file)?;
         let range = edit.span.range();
         project.sources[source].text.get(range.clone())?;
-        Some(Change { source, start: range.start, end: range.end, text: edit.text.clone() })
+        Some(SourceEdit { source, start: range.start, end: range.end, text: edit.text.clone() })
     };
-    let changes: Option<Vec<Change>> = fix.edits.iter().map(change).collect();
+    let changes: Option<Vec<SourceEdit>> = fix.edits.iter().map(change).collect();
     changes.filter(|c| !c.is_empty())
 }
 
 /// Changes that do not overlap, by source and start.
 #[derive(Debug, Default)]
-struct Chosen {
-    changes: BTreeMap<(usize, usize), Change>,
+struct ChosenEdits {
+    changes: BTreeMap<(usize, usize), SourceEdit>,
 }
 
-impl Chosen {
+impl ChosenEdits {
     /// Takes all changes of a fix, or none if one of them overlaps one that was taken.
-    fn take(&mut self, changes: Vec<Change>) -> bool {
+    fn take(&mut self, changes: Vec<SourceEdit>) -> bool {
         let free = changes.iter().all(|c| self.is_free(c));
         if free {
             self.changes.extend(changes.into_iter().map(|c| ((c.source, c.start), c)));
@@ -79,18 +83,18 @@ impl Chosen {
         free
     }
 
-    fn is_free(&self, change: &Change) -> bool {
+    fn is_free(&self, change: &SourceEdit) -> bool {
         let key = (change.source, change.start);
         let before = self.changes.range(..=key).next_back().map(|(_, c)| c);
         let after = self.changes.range(key..).next().map(|(_, c)| c);
-        let clashes = |other: &Change| {
+        let clashes = |other: &SourceEdit| {
             other.source == change.source
                 && (other.start == change.start || (other.start < change.end && change.start < other.end))
         };
         !before.into_iter().chain(after).any(clashes)
     }
 
-    fn apply(self, project: &mut Project) {
+    fn apply(self, project: &mut CheckedProject) {
         // From the back, so that the places of the others stay.
         for ((source, _), change) in self.changes.into_iter().rev() {
             project.sources[source].text.replace_range(change.start..change.end, &change.text);
@@ -102,13 +106,13 @@ impl Chosen {
 mod tests {
     use super::*;
 
-    fn change(start: usize, end: usize) -> Change {
-        Change { source: 0, start, end, text: "x".to_owned() }
+    fn change(start: usize, end: usize) -> SourceEdit {
+        SourceEdit { source: 0, start, end, text: "x".to_owned() }
     }
 
     #[test]
     fn what_overlaps_is_left_for_the_next_round() {
-        let mut chosen = Chosen::default();
+        let mut chosen = ChosenEdits::default();
         assert!(chosen.take(vec![change(4, 6), change(10, 10)]));
         assert!(!chosen.take(vec![change(5, 7)]) && !chosen.take(vec![change(0, 5)]));
         assert!(!chosen.take(vec![change(3, 8)]) && !chosen.take(vec![change(10, 11)]));

@@ -6,17 +6,17 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{Compilation, Input, compile_with};
+use hrdsl_compiler::{CompilationResult, InputFile, compile_with};
 use hrdsl_ir::Program;
-use hrdsl_source::{Diagnostic, FileId, Files, printable_line};
+use hrdsl_source::{Diagnostic, FileId, SourceFiles, printable_line};
 
-use crate::{fault::Fault, files::read, reach::Disk, render, terminal};
+use crate::{fault::CommandFault, files::read, reach::DiskModules, render, terminal};
 
 /// Compiles a scenario and files of tests; a folder stands for the `.hri` files in it.
 ///
 /// # Errors
 /// A file that cannot be read.
-pub fn load(scenario: &Path, tests: &[PathBuf]) -> Result<Compilation, Fault> {
+pub fn load(scenario: &Path, tests: &[PathBuf]) -> Result<CompilationResult, CommandFault> {
     let text = read(scenario)?;
     let name = scenario.display().to_string();
     let mut files = Vec::new();
@@ -25,11 +25,11 @@ pub fn load(scenario: &Path, tests: &[PathBuf]) -> Result<Compilation, Fault> {
             files.push((file.display().to_string(), read(&file)?));
         }
     }
-    let tests: Vec<Input<'_>> = files.iter().map(|(name, text)| Input { name, text }).collect();
-    Ok(compile_with(Input { name: &name, text: &text }, &tests, &Disk::of(Some(scenario))))
+    let tests: Vec<InputFile<'_>> = files.iter().map(|(name, text)| InputFile { name, text }).collect();
+    Ok(compile_with(InputFile { name: &name, text: &text }, &tests, &DiskModules::of(Some(scenario))))
 }
 
-fn expand(path: &Path) -> Result<Vec<PathBuf>, Fault> {
+fn expand(path: &Path) -> Result<Vec<PathBuf>, CommandFault> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
@@ -47,7 +47,7 @@ fn expand(path: &Path) -> Result<Vec<PathBuf>, Fault> {
 }
 
 /// Shows the diagnostics on stderr, at most so many of each file (0: all): errors before warnings, in the order of the text.
-pub fn show(files: &Files, diagnostics: &[&Diagnostic], most: usize) {
+pub fn show(files: &SourceFiles, diagnostics: &[&Diagnostic], most: usize) {
     let mut by_file: BTreeMap<FileId, Vec<&Diagnostic>> = BTreeMap::new();
     for diagnostic in diagnostics {
         by_file.entry(diagnostic.span().file).or_default().push(diagnostic);
@@ -76,7 +76,7 @@ pub fn show(files: &Files, diagnostics: &[&Diagnostic], most: usize) {
 }
 
 /// Shows the diagnostics on stderr; gives the program, which there is if none of them is an error.
-pub fn report(compilation: &Compilation) -> Option<&Program> {
+pub fn report(compilation: &CompilationResult) -> Option<&Program> {
     let all: Vec<&Diagnostic> = compilation.diagnostics.iter().collect();
     show(&compilation.files, &all, render::SHOWN);
     let errors = all.iter().filter(|d| d.is_error()).count();
@@ -87,7 +87,7 @@ pub fn report(compilation: &Compilation) -> Option<&Program> {
 }
 
 /// Shows the errors on stderr, and how many warnings there are: who runs tests has seen them, or can.
-pub fn report_errors<'c>(scenario: &Path, compilation: &'c Compilation) -> Option<&'c Program> {
+pub fn report_errors<'c>(scenario: &Path, compilation: &'c CompilationResult) -> Option<&'c Program> {
     let (errors, warnings): (Vec<_>, Vec<_>) = compilation.diagnostics.iter().partition(|d| d.is_error());
     show(&compilation.files, &errors, render::SHOWN);
     if !errors.is_empty() {

@@ -2,7 +2,7 @@
 
 use std::{cell::RefCell, time::Duration};
 
-use hrdsl_runtime::campaign::{Hooked, Preparation};
+use hrdsl_runtime::campaign::{HookedPackage, PreparationStep};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::terminal;
@@ -12,32 +12,32 @@ const WIDTH: usize = 60;
 
 /// The console while an environment is prepared.
 #[derive(Default)]
-pub struct Installing {
+pub struct InstallProgress {
     line: RefCell<Option<ProgressBar>>,
 }
 
-impl Installing {
+impl InstallProgress {
     /// Shows a step.
-    pub fn show(&self, step: Preparation<'_>) {
+    pub fn show(&self, step: PreparationStep<'_>) {
         match step {
-            Preparation::Waiting { what } => {
+            PreparationStep::Waiting { what } => {
                 self.begin(&format!("waiting for another process, which installs {what}"));
             }
-            Preparation::Damaged { what, why } => {
+            PreparationStep::Damaged { what, why } => {
                 self.print(&format!("what was installed ({what}) is damaged: {why}"));
             }
-            Preparation::Started { what } => self.begin(&format!("installing {what}")),
-            Preparation::Working { what, doing, .. } => {
+            PreparationStep::Started { what } => self.begin(&format!("installing {what}")),
+            PreparationStep::Working { what, doing, .. } => {
                 if let Some(line) = &*self.line.borrow() {
                     let doing: String = doing.chars().take(WIDTH).collect();
                     line.set_message(format!("installing {what}: {doing}"));
                 }
             }
-            Preparation::Finished { what, elapsed } => {
+            PreparationStep::Finished { what, elapsed } => {
                 self.end();
                 self.print(&format!("installed {what} in {}", seconds(elapsed)));
             }
-            Preparation::Hooked { packages } => self.print(&hooked(packages)),
+            PreparationStep::Hooked { packages } => self.print(&hooked(packages)),
         }
     }
 
@@ -71,7 +71,7 @@ impl Installing {
 }
 
 /// The line must not stay on the screen, however the preparation ends.
-impl Drop for Installing {
+impl Drop for InstallProgress {
     fn drop(&mut self) {
         self.end();
     }
@@ -81,11 +81,11 @@ fn seconds(time: Duration) -> String {
     format!("{:.1} s", time.as_secs_f64())
 }
 
-fn hooked(packages: &[Hooked]) -> String {
+fn hooked(packages: &[HookedPackage]) -> String {
     let mut text = String::from(
         "warning: tests do not find these packages of the interpreter, which are installed as editable by a hook:\n",
     );
-    for Hooked { package, folder } in packages {
+    for HookedPackage { package, folder } in packages {
         let line = match folder {
             Some(folder) => format!("  {package}: put its folder into requirements.txt: {folder}\n"),
             None => format!("  {package}: put its folder into requirements.txt\n"),
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn what_a_hook_would_find_is_told_with_its_folder() {
-        let package = |package: &str, folder: Option<&str>| Hooked {
+        let package = |package: &str, folder: Option<&str>| HookedPackage {
             package: package.to_owned(),
             folder: folder.map(str::to_owned),
         };

@@ -26,7 +26,7 @@ use std::{path::PathBuf, process::ExitCode};
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use crate::exit::Exit;
+use crate::exit::CommandExit;
 
 /// Test the code of robots that work with people.
 ///
@@ -34,35 +34,35 @@ use crate::exit::Exit;
 /// and what it runs against (world, system under test).
 #[derive(Parser)]
 #[command(name = "hrdsl", version, max_term_width = 100, after_help = exit::HELP, subcommand_required = true)]
-struct Cli {
+struct CommandLine {
     /// When to use colours.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t)]
-    color: color::Choice,
+    color: color::ColorArg,
     /// Let the files below this folder be named by others (`use "…"`, `include`), besides those of the project; may be given
     /// several times.
     #[arg(long, global = true, value_name = "DIR")]
     allow_path: Vec<PathBuf>,
     #[command(subcommand)]
-    command: Command,
+    command: TopLevelCommand,
 }
 
 #[derive(Subcommand)]
-enum Command {
-    Check(commands::check::Args),
-    Completions(commands::completions::Args),
-    Emit(commands::emit::Args),
-    Explain(commands::explain::Args),
-    Export(commands::export::Args),
-    Fmt(commands::fmt::Args),
-    Gen(commands::generate::Args),
-    Import(commands::import::Args),
-    Inspect(commands::inspect::Args),
-    Judge(commands::judge::Args),
-    Man(commands::man::Args),
-    New(commands::new::Args),
-    Prove(commands::prove::Args),
-    Report(commands::report::Args),
-    Sim(commands::sim::Args),
+enum TopLevelCommand {
+    Check(commands::check::CheckArgs),
+    Completions(commands::completions::CompletionsArgs),
+    Emit(commands::emit::EmitArgs),
+    Explain(commands::explain::ExplainArgs),
+    Export(commands::export::ExportArgs),
+    Fmt(commands::fmt::FmtArgs),
+    Gen(commands::generate::GenerateArgs),
+    Import(commands::import::ImportArgs),
+    Inspect(commands::inspect::InspectArgs),
+    Judge(commands::judge::JudgeArgs),
+    Man(commands::man::ManArgs),
+    New(commands::new::NewArgs),
+    Prove(commands::prove::ProveArgs),
+    Report(commands::report::ReportArgs),
+    Sim(commands::sim::SimArgs),
 }
 
 fn main() -> ExitCode {
@@ -71,31 +71,31 @@ fn main() -> ExitCode {
         return hrdsl_runtime::campaign::supervise(&args.collect::<Vec<_>>());
     }
     let choice = color::from_args(std::env::args_os());
-    let matches = Cli::command().color(choice.into()).get_matches();
-    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
+    let matches = CommandLine::command().color(choice.into()).get_matches();
+    let cli = CommandLine::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
     color::choose(cli.color);
     let allowed = reach::allow(&cli.allow_path);
     let result = allowed.and_then(|()| match cli.command {
-        Command::Check(args) => commands::check::run(&args),
-        Command::Completions(args) => commands::completions::run(&args, Cli::command()),
-        Command::Emit(args) => commands::emit::run(&args),
-        Command::Explain(args) => commands::explain::run(&args),
-        Command::Export(args) => commands::export::run(&args),
-        Command::Fmt(args) => commands::fmt::run(&args),
-        Command::Gen(args) => commands::generate::run(&args),
-        Command::Import(args) => commands::import::run(&args),
-        Command::Inspect(args) => commands::inspect::run(&args),
-        Command::Judge(args) => commands::judge::run(&args),
-        Command::Man(args) => commands::man::run(&args, Cli::command()),
-        Command::New(args) => commands::new::run(&args),
-        Command::Prove(args) => commands::prove::run(&args),
-        Command::Report(args) => commands::report::run(&args),
-        Command::Sim(args) => commands::sim::run(&args),
+        TopLevelCommand::Check(args) => commands::check::run(&args),
+        TopLevelCommand::Completions(args) => commands::completions::run(&args, CommandLine::command()),
+        TopLevelCommand::Emit(args) => commands::emit::run(&args),
+        TopLevelCommand::Explain(args) => commands::explain::run(&args),
+        TopLevelCommand::Export(args) => commands::export::run(&args),
+        TopLevelCommand::Fmt(args) => commands::fmt::run(&args),
+        TopLevelCommand::Gen(args) => commands::generate::run(&args),
+        TopLevelCommand::Import(args) => commands::import::run(&args),
+        TopLevelCommand::Inspect(args) => commands::inspect::run(&args),
+        TopLevelCommand::Judge(args) => commands::judge::run(&args),
+        TopLevelCommand::Man(args) => commands::man::run(&args, CommandLine::command()),
+        TopLevelCommand::New(args) => commands::new::run(&args),
+        TopLevelCommand::Prove(args) => commands::prove::run(&args),
+        TopLevelCommand::Report(args) => commands::report::run(&args),
+        TopLevelCommand::Sim(args) => commands::sim::run(&args),
     });
     result
         .unwrap_or_else(|fault| {
             terminal::say_line(format_args!("error: {fault}"));
-            Exit::Usage
+            CommandExit::Usage
         })
         .into()
 }

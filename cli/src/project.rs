@@ -6,11 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{Compilation, Input, ast, compile_with, parse};
+use hrdsl_compiler::{CompilationResult, InputFile, ast, compile_with, parse};
 use hrdsl_ir::Program;
 use hrdsl_source::FileId;
 
-use crate::{fault::Fault, files, reach::Disk, results_folder, terminal};
+use crate::{fault::CommandFault, files, reach::DiskModules, results_folder, terminal};
 
 /// Folders that hold no scenarios of one's own.
 const SKIPPED: [&str; 3] = ["target", "node_modules", "hrdsl-out"];
@@ -18,7 +18,7 @@ const SKIPPED: [&str; 3] = ["target", "node_modules", "hrdsl-out"];
 /// What the text of a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum SourceKind {
     /// A scenario of its own.
     Scenario,
     /// Tests in the vocabulary of a scenario.
@@ -30,45 +30,45 @@ pub enum Kind {
 /// What a file is, by what it holds. A file of tests may begin with the line `scenario NAME` of its scenario; a scenario
 /// without any declaration has nothing that tests could speak of.
 #[must_use]
-pub fn kind_of(file: &ast::File) -> Kind {
-    let is_test = |item: &ast::Item| matches!(item.kind, ast::ItemKind::Test(_));
-    let is_unread = |item: &ast::Item| matches!(item.kind, ast::ItemKind::Error);
+pub fn kind_of(file: &ast::FileSyntax) -> SourceKind {
+    let is_test = |item: &ast::ItemSyntax| matches!(item.kind, ast::ItemSyntaxKind::Test(_));
+    let is_unread = |item: &ast::ItemSyntax| matches!(item.kind, ast::ItemSyntaxKind::Error);
     if file.items.iter().any(is_test) && file.items.iter().all(|item| is_test(item) || is_unread(item)) {
-        Kind::Tests
+        SourceKind::Tests
     } else if file.scenario.is_some() {
-        Kind::Scenario
+        SourceKind::Scenario
     } else {
-        Kind::Module
+        SourceKind::Module
     }
 }
 
 /// One text.
 #[derive(Clone, Debug)]
-pub struct Source {
+pub struct ProjectSource {
     /// `None`: standard input.
     pub path: Option<PathBuf>,
     /// As it is shown.
     pub name: String,
     pub text: String,
-    pub kind: Kind,
+    pub kind: SourceKind,
     /// Given on the command line by itself, not found in a folder.
     named: bool,
 }
 
 /// What is compiled together: a scenario (or module) and the files of tests that belong to it, by index in the sources.
 #[derive(Clone, Debug)]
-pub struct Unit {
+pub struct CompilationUnit {
     pub head: usize,
     pub tests: Vec<usize>,
 }
 
 /// What became of a unit.
-pub struct Checked {
-    pub unit: Unit,
-    pub compilation: Compilation,
+pub struct CheckedUnit {
+    pub unit: CompilationUnit,
+    pub compilation: CompilationResult,
 }
 
-impl Checked {
+impl CheckedUnit {
     /// The program, if there is neither an error nor a denied warning.
     #[must_use]
     pub fn program(&self) -> Option<&Program> {
@@ -78,23 +78,23 @@ impl Checked {
 
 /// All that is checked.
 #[derive(Clone, Debug)]
-pub struct Project {
-    pub sources: Vec<Source>,
-    pub units: Vec<Unit>,
+pub struct CheckedProject {
+    pub sources: Vec<ProjectSource>,
+    pub units: Vec<CompilationUnit>,
 }
 
-impl Project {
+impl CheckedProject {
     /// Finds and reads the files; `-` is standard input, and a folder stands for all `.hri` files in and below it.
     ///
     /// # Errors
     /// A file that cannot be read, a folder without scenarios, tests whose scenario is not among the files.
-    pub fn open(paths: &[PathBuf]) -> Result<Self, Fault> {
+    pub fn open(paths: &[PathBuf]) -> Result<Self, CommandFault> {
         let mut sources = Vec::new();
         let mut seen: Vec<PathBuf> = Vec::new();
         for path in paths {
             if path.as_os_str() == "-" {
-                if sources.iter().all(|s: &Source| s.path.is_some()) {
-                    sources.push(Source::new(None, files::read_stdin()?, true));
+                if sources.iter().all(|s: &ProjectSource| s.path.is_some()) {
+                    sources.push(ProjectSource::new(None, files::read_stdin()?, true));
                 }
                 continue;
             }
@@ -111,7 +111,7 @@ impl Project {
                     Some(_) => sources.iter_mut().filter(|s| s.is_at(&place)).for_each(|s| s.named = true),
                     None => {
                         seen.push(place);
-                        sources.push(Source::new(Some(file), text, !folder));
+                        sources.push(ProjectSource::new(Some(file), text, !folder));
                     }
                 }
             }
@@ -122,22 +122,22 @@ impl Project {
 
     /// Compiles one unit.
     #[must_use]
-    pub fn compile(&self, unit: &Unit) -> Compilation {
-        let input = |i: usize| Input { name: &self.sources[i].name, text: &self.sources[i].text };
-        let tests: Vec<Input<'_>> = unit.tests.iter().map(|i| input(*i)).collect();
-        let disk = Disk::of(self.sources[unit.head].path.as_deref());
+    pub fn compile(&self, unit: &CompilationUnit) -> CompilationResult {
+        let input = |i: usize| InputFile { name: &self.sources[i].name, text: &self.sources[i].text };
+        let tests: Vec<InputFile<'_>> = unit.tests.iter().map(|i| input(*i)).collect();
+        let disk = DiskModules::of(self.sources[unit.head].path.as_deref());
         compile_with(input(unit.head), &tests, &disk)
     }
 
     /// The source that is this file of a compilation; `None` for the modules that come with hrdsl.
     #[must_use]
-    pub fn source(&self, compilation: &Compilation, file: FileId) -> Option<usize> {
+    pub fn source(&self, compilation: &CompilationResult, file: FileId) -> Option<usize> {
         let name = &compilation.files.get(file)?.name;
         self.sources.iter().position(|s| s.name == *name)
     }
 }
 
-impl Source {
+impl ProjectSource {
     fn new(path: Option<PathBuf>, text: String, named: bool) -> Self {
         let name = path.as_ref().map_or("<stdin>".to_owned(), |p| p.display().to_string());
         let kind = kind_of(&parse(FileId(0), &text).0);
@@ -160,7 +160,7 @@ impl Source {
 }
 
 /// All `.hri` files in and below a folder, in order. Hidden folders, build folders and links to folders are left out.
-pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
+pub fn walk(root: &Path) -> Result<Vec<PathBuf>, CommandFault> {
     let mut files = Vec::new();
     let mut folders = vec![root.to_owned()];
     let mut written = BTreeSet::new();
@@ -190,17 +190,18 @@ pub fn walk(root: &Path) -> Result<Vec<PathBuf>, Fault> {
     Ok(files)
 }
 
-fn units(sources: &[Source]) -> Result<Vec<Unit>, Fault> {
-    let head =
-        |(i, s): (usize, &Source)| (s.kind != Kind::Tests).then(|| Unit { head: i, tests: Vec::new() });
-    let mut units: Vec<Unit> = sources.iter().enumerate().filter_map(head).collect();
+fn units(sources: &[ProjectSource]) -> Result<Vec<CompilationUnit>, CommandFault> {
+    let head = |(i, s): (usize, &ProjectSource)| {
+        (s.kind != SourceKind::Tests).then(|| CompilationUnit { head: i, tests: Vec::new() })
+    };
+    let mut units: Vec<CompilationUnit> = sources.iter().enumerate().filter_map(head).collect();
     let scenarios: Vec<(usize, PathBuf)> = sources
         .iter()
         .enumerate()
-        .filter(|(_, s)| s.kind == Kind::Scenario)
+        .filter(|(_, s)| s.kind == SourceKind::Scenario)
         .map(|(i, s)| (i, s.folder()))
         .collect();
-    for (i, source) in sources.iter().enumerate().filter(|(_, s)| s.kind == Kind::Tests) {
+    for (i, source) in sources.iter().enumerate().filter(|(_, s)| s.kind == SourceKind::Tests) {
         let owner = owner(source, sources, &scenarios)?;
         units.iter_mut().filter(|u| u.head == owner).for_each(|u| u.tests.push(i));
     }
@@ -208,7 +209,11 @@ fn units(sources: &[Source]) -> Result<Vec<Unit>, Fault> {
 }
 
 /// The scenario that tests belong to: the only one that was named, otherwise the nearest in the folders above.
-fn owner(tests: &Source, sources: &[Source], scenarios: &[(usize, PathBuf)]) -> Result<usize, Fault> {
+fn owner(
+    tests: &ProjectSource,
+    sources: &[ProjectSource],
+    scenarios: &[(usize, PathBuf)],
+) -> Result<usize, CommandFault> {
     let named: Vec<usize> = scenarios.iter().map(|s| s.0).filter(|i| sources[*i].named).collect();
     if let [only] = named[..] {
         return Ok(only);

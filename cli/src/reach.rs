@@ -7,10 +7,10 @@ use std::{
     sync::OnceLock,
 };
 
-use hrdsl_compiler::{Loader, Source};
+use hrdsl_compiler::{ModuleLoader, ModuleText};
 
 use crate::{
-    fault::Fault,
+    fault::CommandFault,
     files::{folder as folder_of, read},
     terminal::shown,
 };
@@ -21,7 +21,7 @@ static ALLOWED: OnceLock<Vec<PathBuf>> = OnceLock::new();
 ///
 /// # Errors
 /// A folder that is not there.
-pub fn allow(folders: &[PathBuf]) -> Result<(), Fault> {
+pub fn allow(folders: &[PathBuf]) -> Result<(), CommandFault> {
     let whole = |folder: &PathBuf| match folder.canonicalize() {
         Ok(whole) if whole.is_dir() => Ok(whole),
         Ok(_) | Err(_) => Err(format!("--allow-path: there is no folder {}", shown(folder))),
@@ -33,13 +33,13 @@ pub fn allow(folders: &[PathBuf]) -> Result<(), Fault> {
 
 /// The folders whose files a text may name.
 #[derive(Clone, Debug)]
-pub struct Reach {
+pub struct FileReach {
     folders: Vec<PathBuf>,
     /// How the names of such files end, of which a text is read.
     endings: &'static [&'static str],
 }
 
-impl Reach {
+impl FileReach {
     /// Of a file that was named on the command line, or of standard input.
     #[must_use]
     pub fn of(file: Option<&Path>, endings: &'static [&'static str]) -> Self {
@@ -79,25 +79,25 @@ impl Reach {
 }
 
 /// The files that `use "…"` names, relative to the file that uses them.
-pub struct Disk {
-    reach: Reach,
+pub struct DiskModules {
+    reach: FileReach,
     /// That of the file; `None`: standard input has none.
     folder: Option<PathBuf>,
 }
 
-impl Disk {
+impl DiskModules {
     /// For a file that was named on the command line, or for standard input.
     #[must_use]
     pub fn of(file: Option<&Path>) -> Self {
         let folder = file.and_then(Path::parent).map(Path::to_path_buf);
-        Self { reach: Reach::of(file, &["hri"]), folder }
+        Self { reach: FileReach::of(file, &["hri"]), folder }
     }
 }
 
-impl Loader for Disk {
-    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+impl ModuleLoader for DiskModules {
+    fn load(&self, from: &str, path: &str) -> Result<ModuleText, String> {
         let (file, text) = self.reach.read(from, path)?;
-        Ok(Source { name: file.display().to_string(), text })
+        Ok(ModuleText { name: file.display().to_string(), text })
     }
 
     fn is_file(&self, path: &str) -> Option<bool> {

@@ -10,7 +10,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use crate::{fault::Fault, files, terminal::shown};
+use crate::{fault::CommandFault, files, terminal::shown};
 
 /// Lists what hrdsl wrote, one path a line, after a line that says what it is. `check` skips what it lists.
 pub const MARKER: &str = ".hrdsl-results";
@@ -51,7 +51,7 @@ impl ResultsFolder {
     ///
     /// # Errors
     /// Who else is writing, or why the folder cannot be written.
-    pub fn beside(dir: &Path) -> Result<Self, Fault> {
+    pub fn beside(dir: &Path) -> Result<Self, CommandFault> {
         refuse_link(dir)?;
         let is_new = !dir.exists();
         fs::create_dir_all(dir).map_err(|e| format!("cannot make {}: {e}", shown(dir)))?;
@@ -64,7 +64,7 @@ impl ResultsFolder {
     ///
     /// # Errors
     /// What would be lost or overwritten, who else is writing, or why the folder cannot be written.
-    pub fn open(dir: &Path, names: &[&str]) -> Result<Self, Fault> {
+    pub fn open(dir: &Path, names: &[&str]) -> Result<Self, CommandFault> {
         let folder = Self::beside(dir)?;
         for name in names {
             folder.refuse_foreign(Path::new(name))?;
@@ -79,7 +79,7 @@ impl ResultsFolder {
     ///
     /// # Errors
     /// A file that is somebody else's, or that cannot be written.
-    pub fn write(&mut self, name: &Path, text: &str) -> Result<PathBuf, Fault> {
+    pub fn write(&mut self, name: &Path, text: &str) -> Result<PathBuf, CommandFault> {
         self.refuse_foreign(name)?;
         if !self.listed.iter().any(|l| l == name) {
             self.listed.push(name.to_owned());
@@ -96,7 +96,7 @@ impl ResultsFolder {
     ///
     /// # Errors
     /// A file that cannot be removed.
-    pub fn clear(&mut self, below: &Path) -> Result<(), Fault> {
+    pub fn clear(&mut self, below: &Path) -> Result<(), CommandFault> {
         let (old, rest): (Vec<PathBuf>, Vec<PathBuf>) =
             std::mem::take(&mut self.listed).into_iter().partition(|l| l.starts_with(below));
         self.listed = rest;
@@ -117,7 +117,7 @@ impl ResultsFolder {
     ///
     /// # Errors
     /// A file that cannot be moved or removed.
-    pub fn publish(mut self, last: &[&str]) -> Result<(), Fault> {
+    pub fn publish(mut self, last: &[&str]) -> Result<(), CommandFault> {
         let staging = self.staging();
         let new = files_below(&staging)?;
         let old = std::mem::take(&mut self.listed);
@@ -146,7 +146,7 @@ impl ResultsFolder {
         Ok(())
     }
 
-    fn write_marker<'p>(&mut self, paths: impl Iterator<Item = &'p PathBuf>) -> Result<(), Fault> {
+    fn write_marker<'p>(&mut self, paths: impl Iterator<Item = &'p PathBuf>) -> Result<(), CommandFault> {
         let mut text = format!("{FIRST_LINE}\n");
         for path in paths {
             text.push_str(&path.to_string_lossy());
@@ -162,7 +162,7 @@ impl ResultsFolder {
     }
 
     /// Removes a listed file, and the folders that are empty then.
-    fn remove(&self, path: &Path) -> Result<(), Fault> {
+    fn remove(&self, path: &Path) -> Result<(), CommandFault> {
         let file = self.dir.join(path);
         match fs::remove_file(&file) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
@@ -180,7 +180,7 @@ impl ResultsFolder {
     }
 
     /// Refuses to write where something lies that is not listed.
-    fn refuse_foreign(&self, path: &Path) -> Result<(), Fault> {
+    fn refuse_foreign(&self, path: &Path) -> Result<(), CommandFault> {
         let full = self.dir.join(path);
         refuse_link(&full)?;
         let Ok(kind) = fs::symlink_metadata(&full) else { return Ok(()) };
@@ -201,7 +201,7 @@ impl ResultsFolder {
         Ok(())
     }
 
-    fn clear_staging(&self) -> Result<(), Fault> {
+    fn clear_staging(&self) -> Result<(), CommandFault> {
         match fs::remove_dir_all(self.staging()) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
                 Err(format!("cannot clear {}: {e}", shown(&self.staging())))
@@ -224,7 +224,7 @@ impl Drop for ResultsFolder {
     }
 }
 
-fn refuse_link(path: &Path) -> Result<(), Fault> {
+fn refuse_link(path: &Path) -> Result<(), CommandFault> {
     if path.is_symlink() {
         return Err(format!(
             "{} is a symbolic link, and results are not written through links; name the folder itself with -o",
@@ -235,7 +235,7 @@ fn refuse_link(path: &Path) -> Result<(), Fault> {
 }
 
 /// The marker, locked, and what it lists.
-fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), Fault> {
+fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), CommandFault> {
     let path = dir.join(MARKER);
     refuse_link(&path)?;
     let fault = |e: std::io::Error| format!("cannot write {}: {e}", shown(&path));
@@ -263,13 +263,13 @@ fn open_marker(dir: &Path) -> Result<(File, Vec<PathBuf>), Fault> {
 ///
 /// # Errors
 /// A folder that cannot be read.
-pub fn files_below(root: &Path) -> Result<Vec<PathBuf>, Fault> {
+pub fn files_below(root: &Path) -> Result<Vec<PathBuf>, CommandFault> {
     let mut found = Vec::new();
     collect(root, Path::new(""), &mut found)?;
     Ok(found)
 }
 
-fn collect(root: &Path, below: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
+fn collect(root: &Path, below: &Path, found: &mut Vec<PathBuf>) -> Result<(), CommandFault> {
     let folder = root.join(below);
     let fault = |e: std::io::Error| format!("cannot read {}: {e}", shown(&folder));
     let mut entries = fs::read_dir(&folder).map_err(fault)?.collect::<Result<Vec<_>, _>>().map_err(fault)?;

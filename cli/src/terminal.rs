@@ -10,13 +10,13 @@ use std::{
 
 use hrdsl_source::{printable, printable_line};
 
-use crate::{color, fault::Fault};
+use crate::{color, fault::CommandFault};
 
 /// Prints for people, on stdout. That nobody reads on is the reader's choice, and no fault.
 ///
 /// # Errors
 /// What is wrong with stdout.
-pub fn print(text: &str) -> Result<(), Fault> {
+pub fn print(text: &str) -> Result<(), CommandFault> {
     exactly(&passed(text, color::stdout_has()))
 }
 
@@ -24,11 +24,11 @@ pub fn print(text: &str) -> Result<(), Fault> {
 ///
 /// # Errors
 /// What is wrong with stdout.
-pub fn print_data(text: &str) -> Result<(), Fault> {
+pub fn print_data(text: &str) -> Result<(), CommandFault> {
     exactly(&if io::stdout().is_terminal() { printable(text) } else { Cow::Borrowed(text) })
 }
 
-fn exactly(text: &str) -> Result<(), Fault> {
+fn exactly(text: &str) -> Result<(), CommandFault> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),

@@ -3,7 +3,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_source::FileId;
 
 mod large;
@@ -42,14 +42,14 @@ fn whole(bencher: Bencher<'_, '_>) {
     let text = large::scenario(LINES);
     bencher
         .counter(lines(&text))
-        .bench(|| compile(Input { name: "line.hri", text: divan::black_box(&text) }, &[]));
+        .bench(|| compile(InputFile { name: "line.hri", text: divan::black_box(&text) }, &[]));
 }
 
 /// One declaration of it checked again alone: what an editor waits for after each key.
 #[divan::bench(sample_count = 10)]
 fn recheck_one_declaration(bencher: Bencher<'_, '_>) {
     let text = large::scenario(LINES);
-    let compiled = compile(Input { name: "large", text: &text }, &[]);
+    let compiled = compile(InputFile { name: "large", text: &text }, &[]);
     let span = compiled.ast[0].items[compiled.ast[0].items.len() / 2].span;
     bencher.bench(|| {
         let again =

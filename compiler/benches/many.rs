@@ -1,7 +1,7 @@
 //! How long texts with 20,000 of one thing are compiled, and how much memory that takes.
 
 use divan::{AllocProfiler, Bencher, counter::BytesCount};
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 
 #[path = "many/mod.rs"]
 mod many;
@@ -24,5 +24,5 @@ fn of(bencher: Bencher<'_, '_>, name: &str) {
     let text = many::SHAPES.iter().find(|s| s.0 == name).map(|s| s.1(MANY)).unwrap_or_default();
     bencher
         .counter(BytesCount::new(text.len()))
-        .bench(|| compile(Input { name: "many.hri", text: divan::black_box(&text) }, &[]));
+        .bench(|| compile(InputFile { name: "many.hri", text: divan::black_box(&text) }, &[]));
 }

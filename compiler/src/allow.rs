@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use hrdsl_source::{Diagnostic, DiagnosticCode, REGISTRY, Span};
 use hrdsl_syntax::ast::{
-    AgentMemberKind, Allow, AutomatonMemberKind, CrossMemberKind, File, Item, ItemKind, WorldMember,
-    WorldMemberKind,
+    AgentMemberKind, AllowSyntax, AutomatonMemberKind, CrossMemberKind, FileSyntax, ItemSyntax,
+    ItemSyntaxKind, WorldMember, WorldMemberKind,
 };
 
 /// One `allow` line and what it stands before.
-struct Allowance<'a> {
-    allow: &'a Allow,
+struct LintAllowance<'a> {
+    allow: &'a AllowSyntax,
     /// The line itself.
     span: Span,
     /// `None`: nothing follows it.
@@ -18,15 +18,15 @@ struct Allowance<'a> {
 }
 
 /// Takes the allowed warnings away, and says which allowances are for nothing.
-pub(crate) fn apply(ast: &[File], diagnostics: &mut Vec<Diagnostic>) {
-    let allowances: Vec<Allowance<'_>> = ast.iter().flat_map(allowances).collect();
+pub(crate) fn apply(ast: &[FileSyntax], diagnostics: &mut Vec<Diagnostic>) {
+    let allowances: Vec<LintAllowance<'_>> = ast.iter().flat_map(allowances).collect();
     if allowances.is_empty() {
         return;
     }
     let broken = diagnostics.iter().any(Diagnostic::is_error);
     let mut used = vec![false; allowances.len()];
     let mut on_error = used.clone();
-    let targets = Targets::of(&allowances);
+    let targets = AllowanceIndex::of(&allowances);
     diagnostics.retain(|d| {
         let mut allowed = false;
         targets.each(&d.code.to_string(), d.span(), &mut |i| {
@@ -41,31 +41,31 @@ pub(crate) fn apply(ast: &[File], diagnostics: &mut Vec<Diagnostic>) {
 }
 
 /// The allowances of each code by what they stand before.
-struct Targets<'a> {
-    by_code: BTreeMap<&'a str, Vec<Target>>,
+struct AllowanceIndex<'a> {
+    by_code: BTreeMap<&'a str, Vec<AllowanceTarget>>,
 }
 
 /// What some allowances stand before, and the one around it, which has a smaller number.
-struct Target {
+struct AllowanceTarget {
     span: Span,
     allowances: Vec<usize>,
     around: Option<usize>,
 }
 
-impl<'a> Targets<'a> {
-    fn of(all: &[Allowance<'a>]) -> Self {
+impl<'a> AllowanceIndex<'a> {
+    fn of(all: &[LintAllowance<'a>]) -> Self {
         let mut order: Vec<(Span, usize)> =
             all.iter().enumerate().filter_map(|(i, a)| Some((a.target?, i))).collect();
         // What is around others comes before them.
         order.sort_by_key(|(span, i)| (span.file, span.start, std::cmp::Reverse(span.end), *i));
-        let mut by_code: BTreeMap<&str, Vec<Target>> = BTreeMap::new();
+        let mut by_code: BTreeMap<&str, Vec<AllowanceTarget>> = BTreeMap::new();
         for (span, i) in order {
             let targets = by_code.entry(&all[i].allow.code.text).or_default();
             match targets.last_mut().filter(|last| last.span == span) {
                 Some(same) => same.allowances.push(i),
                 None => {
                     let around = around(targets, targets.len().checked_sub(1), span);
-                    targets.push(Target { span, allowances: vec![i], around });
+                    targets.push(AllowanceTarget { span, allowances: vec![i], around });
                 }
             }
         }
@@ -85,7 +85,7 @@ impl<'a> Targets<'a> {
 }
 
 /// The innermost target around a span, from this one outwards.
-fn around(targets: &[Target], mut at: Option<usize>, span: Span) -> Option<usize> {
+fn around(targets: &[AllowanceTarget], mut at: Option<usize>, span: Span) -> Option<usize> {
     let is_around = |t: Span| t.file == span.file && t.start <= span.start && span.end <= t.end;
     while let Some(target) = at.map(|at| &targets[at]).filter(|t| !is_around(t.span)) {
         at = target.around;
@@ -94,7 +94,7 @@ fn around(targets: &[Target], mut at: Option<usize>, span: Span) -> Option<usize
 }
 
 /// What is wrong with an allowance itself.
-fn judge(allowance: &Allowance<'_>, used: bool, broken: bool, on_error: bool) -> Option<Diagnostic> {
+fn judge(allowance: &LintAllowance<'_>, used: bool, broken: bool, on_error: bool) -> Option<Diagnostic> {
     let allow = allowance.allow;
     let code = &allow.code;
     if !REGISTRY.iter().any(|info| info.code.to_string() == code.text) {
@@ -134,78 +134,81 @@ fn judge(allowance: &Allowance<'_>, used: bool, broken: bool, on_error: bool) ->
     })
 }
 
-fn allowances(file: &File) -> Vec<Allowance<'_>> {
+fn allowances(file: &FileSyntax) -> Vec<LintAllowance<'_>> {
     let mut all = Vec::new();
     let items = file.items.iter();
-    pair(items.map(|i| (if let ItemKind::Allow(a) = &i.kind { Some(a) } else { None }, i.span)), &mut all);
+    pair(
+        items.map(|i| (if let ItemSyntaxKind::Allow(a) = &i.kind { Some(a) } else { None }, i.span)),
+        &mut all,
+    );
     for item in &file.items {
         members(item, &mut all);
     }
     all
 }
 
-fn members<'a>(item: &'a Item, all: &mut Vec<Allowance<'a>>) {
-    fn of_world<'a>(members: &'a [WorldMember], all: &mut Vec<Allowance<'a>>) {
+fn members<'a>(item: &'a ItemSyntax, all: &mut Vec<LintAllowance<'a>>) {
+    fn of_world<'a>(members: &'a [WorldMember], all: &mut Vec<LintAllowance<'a>>) {
         let one = |m: &'a WorldMember| {
             (if let WorldMemberKind::Allow(a) = &m.kind { Some(a) } else { None }, m.span)
         };
         pair(members.iter().map(one), all);
     }
     match &item.kind {
-        ItemKind::Agent(agent) => pair(
+        ItemSyntaxKind::Agent(agent) => pair(
             agent
                 .members
                 .iter()
                 .map(|m| (if let AgentMemberKind::Allow(a) = &m.kind { Some(a) } else { None }, m.span)),
             all,
         ),
-        ItemKind::Automaton(automaton) => pair(
+        ItemSyntaxKind::Automaton(automaton) => pair(
             automaton
                 .members
                 .iter()
                 .map(|m| (if let AutomatonMemberKind::Allow(a) = &m.kind { Some(a) } else { None }, m.span)),
             all,
         ),
-        ItemKind::Cross(cross) => pair(
+        ItemSyntaxKind::Cross(cross) => pair(
             cross
                 .members
                 .iter()
                 .map(|m| (if let CrossMemberKind::Allow(a) = &m.kind { Some(a) } else { None }, m.span)),
             all,
         ),
-        ItemKind::Part(part) => of_world(&part.members, all),
-        ItemKind::World(world) => of_world(&world.members, all),
-        ItemKind::Use(_)
-        | ItemKind::Allow(_)
-        | ItemKind::Enum { .. }
-        | ItemKind::Record { .. }
-        | ItemKind::Actor { .. }
-        | ItemKind::Const { .. }
-        | ItemKind::Event(_)
-        | ItemKind::Stimulus(_)
-        | ItemKind::Var(_)
-        | ItemKind::Channel(_)
-        | ItemKind::Function(_)
-        | ItemKind::Query(_)
-        | ItemKind::Network { .. }
-        | ItemKind::Require(_)
-        | ItemKind::Assume(_)
-        | ItemKind::Cover(_)
-        | ItemKind::Suite(_)
-        | ItemKind::Device(_)
-        | ItemKind::System(_)
-        | ItemKind::Test(_)
-        | ItemKind::Instance(_)
-        | ItemKind::Error => {}
+        ItemSyntaxKind::Part(part) => of_world(&part.members, all),
+        ItemSyntaxKind::World(world) => of_world(&world.members, all),
+        ItemSyntaxKind::Use(_)
+        | ItemSyntaxKind::Allow(_)
+        | ItemSyntaxKind::Enum { .. }
+        | ItemSyntaxKind::Record { .. }
+        | ItemSyntaxKind::Actor { .. }
+        | ItemSyntaxKind::Const { .. }
+        | ItemSyntaxKind::Event(_)
+        | ItemSyntaxKind::Stimulus(_)
+        | ItemSyntaxKind::Var(_)
+        | ItemSyntaxKind::Channel(_)
+        | ItemSyntaxKind::Function(_)
+        | ItemSyntaxKind::Query(_)
+        | ItemSyntaxKind::Network { .. }
+        | ItemSyntaxKind::Require(_)
+        | ItemSyntaxKind::Assume(_)
+        | ItemSyntaxKind::Cover(_)
+        | ItemSyntaxKind::Suite(_)
+        | ItemSyntaxKind::Device(_)
+        | ItemSyntaxKind::System(_)
+        | ItemSyntaxKind::Test(_)
+        | ItemSyntaxKind::Instance(_)
+        | ItemSyntaxKind::Error => {}
     }
 }
 
 /// Each allowance stands for the next thing that is none.
-fn pair<'a>(list: impl Iterator<Item = (Option<&'a Allow>, Span)>, all: &mut Vec<Allowance<'a>>) {
+fn pair<'a>(list: impl Iterator<Item = (Option<&'a AllowSyntax>, Span)>, all: &mut Vec<LintAllowance<'a>>) {
     let first = all.len();
     for (allow, target) in list {
         match allow {
-            Some(allow) => all.push(Allowance { allow, span: target, target: None }),
+            Some(allow) => all.push(LintAllowance { allow, span: target, target: None }),
             None => {
                 let waiting = all[first..].iter_mut().rev().take_while(|a| a.target.is_none());
                 waiting.for_each(|a| a.target = Some(target));

@@ -1,14 +1,16 @@
 //! HR0803: files that a scenario names, and that are not there.
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
-use hrdsl_syntax::ast::{File, ItemKind, SystemMemberKind as Member};
+use hrdsl_syntax::ast::{FileSyntax, ItemSyntaxKind, SystemMemberKind as Member};
 
-use crate::Loader;
+use crate::ModuleLoader;
 
 /// The files whose coverage is to be measured, and that are no files beside the scenario.
-pub(crate) fn missing(file: &File, loader: &dyn Loader) -> Vec<Diagnostic> {
-    let systems =
-        file.items.iter().filter_map(|i| if let ItemKind::System(s) = &i.kind { Some(s) } else { None });
+pub(crate) fn missing(file: &FileSyntax, loader: &dyn ModuleLoader) -> Vec<Diagnostic> {
+    let systems = file
+        .items
+        .iter()
+        .filter_map(|i| if let ItemSyntaxKind::System(s) = &i.kind { Some(s) } else { None });
     let named = systems.flat_map(|s| &s.members).filter_map(|m| match &m.kind {
         Member::Coverage(files) => Some(files),
         Member::Run(_)

@@ -1,4 +1,4 @@
-//! The compiler: `.hri` text to [`Program`]. It is pure: text comes in as [`Input`]s, nothing touches files or clocks.
+//! The compiler: `.hri` text to [`Program`]. It is pure: text comes in as [`InputFile`]s, nothing touches files or clocks.
 //!
 //! # Steps
 //! 1. [`hrdsl_syntax::parse`]: text → AST, of the scenario and the files of tests
@@ -23,24 +23,24 @@ use hrdsl_model::Scenario;
 use hrdsl_source::{Diagnostic, FileId, SourceFiles};
 pub use hrdsl_syntax::{MAX_BYTES, ast, format, parse, token};
 
-pub use modules::{Loader, NoFiles, Source};
-pub use recheck::{Recheck, recheck};
+pub use modules::{LibraryOnlyLoader, ModuleLoader, ModuleText};
+pub use recheck::{RecheckResult, recheck};
 
 /// A file: its name as it is to be shown, and its text.
 #[derive(Clone, Copy, Debug)]
-pub struct Input<'a> {
+pub struct InputFile<'a> {
     pub name: &'a str,
     pub text: &'a str,
 }
 
 /// What became of a scenario and its tests.
 #[derive(Clone, Debug)]
-pub struct Compilation {
+pub struct CompilationResult {
     /// The scenario or module (always [`FileId`] 0), the files of tests, then the modules that are used, and the library's
     /// devices.
     pub files: SourceFiles,
     /// By [`FileId`].
-    pub ast: Vec<ast::File>,
+    pub ast: Vec<ast::FileSyntax>,
     /// Which of them are modules, in the order in which their declarations come.
     pub modules: Vec<usize>,
     /// As far as it could be resolved; `None` if the scenario is no text that can be looked at.
@@ -51,7 +51,7 @@ pub struct Compilation {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-impl Compilation {
+impl CompilationResult {
     /// Whether something is wrong with the text.
     #[must_use]
     pub fn has_errors(&self) -> bool {
@@ -67,20 +67,26 @@ impl Compilation {
     /// How many declarations the first file has.
     #[must_use]
     pub fn declarations(&self) -> usize {
-        let declares = |i: &&ast::Item| !matches!(i.kind, ast::ItemKind::Use(_) | ast::ItemKind::Allow(_));
+        let declares = |i: &&ast::ItemSyntax| {
+            !matches!(i.kind, ast::ItemSyntaxKind::Use(_) | ast::ItemSyntaxKind::Allow(_))
+        };
         self.ast[0].items.iter().filter(declares).count()
     }
 }
 
 /// Compiles a scenario with the tests that belong to it; it can use modules of the library.
 #[must_use]
-pub fn compile(scenario: Input<'_>, tests: &[Input<'_>]) -> Compilation {
-    compile_with(scenario, tests, &NoFiles)
+pub fn compile(scenario: InputFile<'_>, tests: &[InputFile<'_>]) -> CompilationResult {
+    compile_with(scenario, tests, &LibraryOnlyLoader)
 }
 
 /// Compiles a scenario, or a module by itself; `loader` reads the files that it uses.
 #[must_use]
-pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loader) -> Compilation {
+pub fn compile_with(
+    scenario: InputFile<'_>,
+    tests: &[InputFile<'_>],
+    loader: &dyn ModuleLoader,
+) -> CompilationResult {
     let mut files = SourceFiles::default();
     let mut diagnostics = Vec::new();
     let mut ast = Vec::new();
@@ -94,12 +100,12 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     modules::load(&mut files, &mut ast, &mut diagnostics, loader);
     let devices = modules::load_devices(&mut files, &mut ast);
 
-    let tests: Vec<&ast::File> = ast[1..first_module].iter().collect();
+    let tests: Vec<&ast::FileSyntax> = ast[1..first_module].iter().collect();
     // The library's devices come first: what a scenario adds to them is what is there twice.
     let devices = devices.filter(|at| *at >= first_module);
     let others = (first_module..ast.len()).filter(|at| Some(*at) != devices);
     let modules: Vec<usize> = devices.into_iter().chain(others).collect();
-    let used: Vec<&ast::File> = modules.iter().map(|at| &ast[*at]).collect();
+    let used: Vec<&ast::FileSyntax> = modules.iter().map(|at| &ast[*at]).collect();
     let alone = modules::is_module(&ast[0]);
     if !alone {
         diagnostics.extend(unnamed(&ast[0], &diagnostics));
@@ -116,11 +122,11 @@ pub fn compile_with(scenario: Input<'_>, tests: &[Input<'_>], loader: &dyn Loade
     diagnostics.sort_by_key(|d| (d.span(), d.code));
 
     let program = (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));
-    Compilation { files, ast, modules, scenario: Some(resolved), program, diagnostics }
+    CompilationResult { files, ast, modules, scenario: Some(resolved), program, diagnostics }
 }
 
 /// A scenario without its `scenario` line. If something could not be read, that may have been it.
-fn unnamed(file: &ast::File, so_far: &[Diagnostic]) -> Option<Diagnostic> {
+fn unnamed(file: &ast::FileSyntax, so_far: &[Diagnostic]) -> Option<Diagnostic> {
     let unread = so_far.iter().any(|d| d.span().file == FileId(0) && d.is_error());
     (file.scenario.is_none() && !unread).then(|| {
         let span = hrdsl_source::Span::new(FileId(0), 0, 0);

@@ -1,26 +1,26 @@
 //! `use`: the modules that a scenario needs, from the library and from files, each once, in the order of their first use.
 
 use hrdsl_source::{Diagnostic, DiagnosticCode, SourceFiles, Span};
-use hrdsl_syntax::ast::{self, ItemKind, Module};
+use hrdsl_syntax::ast::{self, ItemSyntaxKind, ModuleSyntax};
 
 /// The most modules that one scenario uses, its modules' modules included.
 const MAX_MODULES: usize = 1000;
 
 /// The text of a file that `use "…"` names.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Source {
+pub struct ModuleText {
     /// As it is to be shown; two of the same name are one module.
     pub name: String,
     pub text: String,
 }
 
 /// Reads the files that are used; the compiler itself touches none.
-pub trait Loader {
+pub trait ModuleLoader {
     /// The file that `path` means in the file called `from`.
     ///
     /// # Errors
     /// Why it cannot be read, as the end of a sentence: "there is no such file".
-    fn load(&self, from: &str, path: &str) -> Result<Source, String>;
+    fn load(&self, from: &str, path: &str) -> Result<ModuleText, String>;
 
     /// Whether `path` is a file, from the scenario's folder; `None`: nobody knows.
     fn is_file(&self, _path: &str) -> Option<bool> {
@@ -29,10 +29,10 @@ pub trait Loader {
 }
 
 /// Where there are no files: only modules of the library can be used.
-pub struct NoFiles;
+pub struct LibraryOnlyLoader;
 
-impl Loader for NoFiles {
-    fn load(&self, _from: &str, _path: &str) -> Result<Source, String> {
+impl ModuleLoader for LibraryOnlyLoader {
+    fn load(&self, _from: &str, _path: &str) -> Result<ModuleText, String> {
         Err("there are no files here".to_owned())
     }
 }
@@ -40,9 +40,9 @@ impl Loader for NoFiles {
 /// Adds the modules used by the files so far, and by modules.
 pub fn load(
     files: &mut SourceFiles,
-    ast: &mut Vec<ast::File>,
+    ast: &mut Vec<ast::FileSyntax>,
     diagnostics: &mut Vec<Diagnostic>,
-    loader: &dyn Loader,
+    loader: &dyn ModuleLoader,
 ) {
     let mut known: Vec<String> = files.iter().map(|(_, f)| f.name.clone()).collect();
     let first = ast.len();
@@ -79,7 +79,7 @@ pub fn load(
 }
 
 /// Adds the library's devices, which every scenario has, unless they are there; gives the module's place.
-pub fn load_devices(files: &mut SourceFiles, ast: &mut Vec<ast::File>) -> Option<usize> {
+pub fn load_devices(files: &mut SourceFiles, ast: &mut Vec<ast::FileSyntax>) -> Option<usize> {
     let text = hrdsl_stdlib::module(hrdsl_stdlib::DEVICES)?;
     let known = files.iter().position(|(_, file)| file.name == hrdsl_stdlib::DEVICES || file.text == text);
     known.or_else(|| {
@@ -91,47 +91,47 @@ pub fn load_devices(files: &mut SourceFiles, ast: &mut Vec<ast::File>) -> Option
 
 /// Whether a file that stands alone is a module: it has no name, and nothing that only a scenario has.
 #[must_use]
-pub fn is_module(file: &ast::File) -> bool {
+pub fn is_module(file: &ast::FileSyntax) -> bool {
     let of_scenario =
-        |item: &ast::Item| only_in_scenario(&item.kind).is_some() || item.kind == ItemKind::Error;
+        |item: &ast::ItemSyntax| only_in_scenario(&item.kind).is_some() || item.kind == ItemSyntaxKind::Error;
     file.scenario.is_none() && !file.items.is_empty() && !file.items.iter().any(of_scenario)
 }
 
 /// What only a scenario can have.
-fn only_in_scenario(kind: &ItemKind) -> Option<&'static str> {
+fn only_in_scenario(kind: &ItemSyntaxKind) -> Option<&'static str> {
     match kind {
-        ItemKind::World(_) => Some("a `world`"),
-        ItemKind::System(_) => Some("a `system`"),
-        ItemKind::Suite(_) => Some("a `suite`"),
-        ItemKind::Test(_) => Some("a `test`"),
-        ItemKind::Use(_)
-        | ItemKind::Allow(_)
-        | ItemKind::Enum { .. }
-        | ItemKind::Record { .. }
-        | ItemKind::Actor { .. }
-        | ItemKind::Const { .. }
-        | ItemKind::Event(_)
-        | ItemKind::Stimulus(_)
-        | ItemKind::Agent(_)
-        | ItemKind::Var(_)
-        | ItemKind::Automaton(_)
-        | ItemKind::Channel(_)
-        | ItemKind::Function(_)
-        | ItemKind::Query(_)
-        | ItemKind::Network { .. }
-        | ItemKind::Require(_)
-        | ItemKind::Assume(_)
-        | ItemKind::Cover(_)
-        | ItemKind::Cross(_)
-        | ItemKind::Part(_)
-        | ItemKind::Device(_)
-        | ItemKind::Instance(_)
-        | ItemKind::Error => None,
+        ItemSyntaxKind::World(_) => Some("a `world`"),
+        ItemSyntaxKind::System(_) => Some("a `system`"),
+        ItemSyntaxKind::Suite(_) => Some("a `suite`"),
+        ItemSyntaxKind::Test(_) => Some("a `test`"),
+        ItemSyntaxKind::Use(_)
+        | ItemSyntaxKind::Allow(_)
+        | ItemSyntaxKind::Enum { .. }
+        | ItemSyntaxKind::Record { .. }
+        | ItemSyntaxKind::Actor { .. }
+        | ItemSyntaxKind::Const { .. }
+        | ItemSyntaxKind::Event(_)
+        | ItemSyntaxKind::Stimulus(_)
+        | ItemSyntaxKind::Agent(_)
+        | ItemSyntaxKind::Var(_)
+        | ItemSyntaxKind::Automaton(_)
+        | ItemSyntaxKind::Channel(_)
+        | ItemSyntaxKind::Function(_)
+        | ItemSyntaxKind::Query(_)
+        | ItemSyntaxKind::Network { .. }
+        | ItemSyntaxKind::Require(_)
+        | ItemSyntaxKind::Assume(_)
+        | ItemSyntaxKind::Cover(_)
+        | ItemSyntaxKind::Cross(_)
+        | ItemSyntaxKind::Part(_)
+        | ItemSyntaxKind::Device(_)
+        | ItemSyntaxKind::Instance(_)
+        | ItemSyntaxKind::Error => None,
     }
 }
 
 /// HR0106
-fn misplaced(module: &ast::File) -> Vec<Diagnostic> {
+fn misplaced(module: &ast::FileSyntax) -> Vec<Diagnostic> {
     let line = module.scenario.iter().map(|name| (name.span, "a `scenario` line"));
     let items = module.items.iter().filter_map(|i| Some((i.span, only_in_scenario(&i.kind)?)));
     let error = |(span, what): (Span, &str)| {
@@ -146,16 +146,16 @@ fn misplaced(module: &ast::File) -> Vec<Diagnostic> {
     line.chain(items).map(error).collect()
 }
 
-fn find(used: &Module, from: &str, loader: &dyn Loader) -> Result<Source, Diagnostic> {
+fn find(used: &ModuleSyntax, from: &str, loader: &dyn ModuleLoader) -> Result<ModuleText, Diagnostic> {
     match used {
-        Module::Library(path) => {
+        ModuleSyntax::Library(path) => {
             let name = path.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
             match hrdsl_stdlib::module(&name) {
-                Some(text) => Ok(Source { name, text: text.to_owned() }),
+                Some(text) => Ok(ModuleText { name, text: text.to_owned() }),
                 None => Err(unknown(&name, path)),
             }
         }
-        Module::File(path) => loader.load(from, &path.text).map_err(|why| {
+        ModuleSyntax::File(path) => loader.load(from, &path.text).map_err(|why| {
             let message = format!("cannot use `{}`: {why}", path.text);
             Diagnostic::error(DiagnosticCode::UNKNOWN_MODULE, path.span, message)
                 .help("the path is relative to the file that uses it")
@@ -163,20 +163,21 @@ fn find(used: &Module, from: &str, loader: &dyn Loader) -> Result<Source, Diagno
     }
 }
 
-fn uses(file: &ast::File) -> Vec<Module> {
-    let used = |i: &ast::Item| if let ItemKind::Use(used) = &i.kind { Some(used.clone()) } else { None };
+fn uses(file: &ast::FileSyntax) -> Vec<ModuleSyntax> {
+    let used =
+        |i: &ast::ItemSyntax| if let ItemSyntaxKind::Use(used) = &i.kind { Some(used.clone()) } else { None };
     file.items.iter().filter_map(used).collect()
 }
 
-fn span_of(used: &Module) -> Span {
+fn span_of(used: &ModuleSyntax) -> Span {
     match used {
-        Module::Library(path) => path.span,
-        Module::File(path) => path.span,
+        ModuleSyntax::Library(path) => path.span,
+        ModuleSyntax::File(path) => path.span,
     }
 }
 
 /// HR0106
-fn not_a_module(used: &Module) -> Diagnostic {
+fn not_a_module(used: &ModuleSyntax) -> Diagnostic {
     Diagnostic::error(
         DiagnosticCode::MODULE_ITEM,
         span_of(used),
@@ -186,7 +187,7 @@ fn not_a_module(used: &Module) -> Diagnostic {
 }
 
 /// HR0104, at the first name that differs from those of the nearest module.
-fn unknown(name: &str, path: &ast::Path) -> Diagnostic {
+fn unknown(name: &str, path: &ast::PathSyntax) -> Diagnostic {
     let names: Vec<&str> = hrdsl_stdlib::MODULES.iter().map(|m| m.0).collect();
     let near = hrdsl_model::nearest(name, names.iter().copied());
     let parts = near.unwrap_or_default().split('.').map(Some).chain(std::iter::repeat(None));

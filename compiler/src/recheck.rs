@@ -2,13 +2,13 @@
 
 use hrdsl_model::{DefinedType, Resolutions};
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
-use hrdsl_syntax::ast::{self, ItemKind};
+use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
-use crate::Compilation;
+use crate::CompilationResult;
 
 /// What is to be said of a declaration with other text.
 #[derive(Clone, Debug)]
-pub struct Recheck {
+pub struct RecheckResult {
     /// Errors, and warnings that need no look at the whole scenario. Places are those in the first file with the new text in
     /// place of the old.
     pub diagnostics: Vec<Diagnostic>,
@@ -21,7 +21,7 @@ pub struct Recheck {
 ///
 /// Everything else is as it was compiled; of the other declarations no more is looked at than their names.
 #[must_use]
-pub fn recheck(compilation: &Compilation, at: usize, text: &str) -> Option<Recheck> {
+pub fn recheck(compilation: &CompilationResult, at: usize, text: &str) -> Option<RecheckResult> {
     let scenario = compilation.ast.first()?;
     let index = scenario.items.iter().position(|item| item.span.range().contains(&at))?;
     let old = &scenario.items[index];
@@ -32,51 +32,54 @@ pub fn recheck(compilation: &Compilation, at: usize, text: &str) -> Option<Reche
     if read.scenario.is_some() || [old, item].iter().any(|i| is_of_the_whole(&i.kind)) {
         return None;
     }
-    let modules: Vec<&ast::File> =
+    let modules: Vec<&ast::FileSyntax> =
         compilation.modules.iter().filter_map(|m| compilation.ast.get(*m)).collect();
     let missing = compilation.diagnostics.iter().any(|d| d.code == DiagnosticCode::UNKNOWN_MODULE);
     diagnostics.extend(hrdsl_model::resolve_alone(scenario, (index, item), &modules, missing));
     let same_names = declares(&files, old) == declares(&files, item);
-    let moved = Moved { alone: file, old: old.span, len: text.len() };
+    let moved = SpanShift { alone: file, old: old.span, len: text.len() };
     diagnostics.iter_mut().for_each(|d| moved.diagnostic(d));
     diagnostics.sort_by_key(|d| (d.span(), d.code));
-    Some(Recheck { diagnostics, same_names })
+    Some(RecheckResult { diagnostics, same_names })
 }
 
-fn is_of_the_whole(kind: &ItemKind) -> bool {
-    matches!(kind, ItemKind::Use(_) | ItemKind::Allow(_))
+fn is_of_the_whole(kind: &ItemSyntaxKind) -> bool {
+    matches!(kind, ItemSyntaxKind::Use(_) | ItemSyntaxKind::Allow(_))
 }
 
 /// What the rest of a scenario sees of a declaration. Of some all is seen: the value of a constant, the parts of the world.
-fn declares(files: &hrdsl_source::SourceFiles, item: &ast::Item) -> Vec<(&'static str, String, String)> {
+fn declares(
+    files: &hrdsl_source::SourceFiles,
+    item: &ast::ItemSyntax,
+) -> Vec<(&'static str, String, String)> {
     let whole = match &item.kind {
-        ItemKind::Agent(_)
-        | ItemKind::Automaton(_)
-        | ItemKind::Stimulus(_)
-        | ItemKind::Require(_)
-        | ItemKind::Assume(_)
-        | ItemKind::Query(_)
-        | ItemKind::Suite(_)
-        | ItemKind::System(_)
-        | ItemKind::Test(_) => String::new(),
-        ItemKind::Use(_)
-        | ItemKind::Allow(_)
-        | ItemKind::Enum { .. }
-        | ItemKind::Record { .. }
-        | ItemKind::Actor { .. }
-        | ItemKind::Const { .. }
-        | ItemKind::Event(_)
-        | ItemKind::Var(_)
-        | ItemKind::Channel(_)
-        | ItemKind::Function(_)
-        | ItemKind::Network { .. }
-        | ItemKind::Cover(_)
-        | ItemKind::Cross(_)
-        | ItemKind::Part(_)
-        | ItemKind::Device(_)
-        | ItemKind::World(_)
-        | ItemKind::Instance(_)
-        | ItemKind::Error => files.text(item.span).to_owned(),
+        ItemSyntaxKind::Agent(_)
+        | ItemSyntaxKind::Automaton(_)
+        | ItemSyntaxKind::Stimulus(_)
+        | ItemSyntaxKind::Require(_)
+        | ItemSyntaxKind::Assume(_)
+        | ItemSyntaxKind::Query(_)
+        | ItemSyntaxKind::Suite(_)
+        | ItemSyntaxKind::System(_)
+        | ItemSyntaxKind::Test(_) => String::new(),
+        ItemSyntaxKind::Use(_)
+        | ItemSyntaxKind::Allow(_)
+        | ItemSyntaxKind::Enum { .. }
+        | ItemSyntaxKind::Record { .. }
+        | ItemSyntaxKind::Actor { .. }
+        | ItemSyntaxKind::Const { .. }
+        | ItemSyntaxKind::Event(_)
+        | ItemSyntaxKind::Var(_)
+        | ItemSyntaxKind::Channel(_)
+        | ItemSyntaxKind::Function(_)
+        | ItemSyntaxKind::Network { .. }
+        | ItemSyntaxKind::Cover(_)
+        | ItemSyntaxKind::Cross(_)
+        | ItemSyntaxKind::Part(_)
+        | ItemSyntaxKind::Device(_)
+        | ItemSyntaxKind::World(_)
+        | ItemSyntaxKind::Instance(_)
+        | ItemSyntaxKind::Error => files.text(item.span).to_owned(),
     };
     let names = Resolutions::of_declaration(item);
     let ty = |ty: &DefinedType| match ty {
@@ -89,7 +92,7 @@ fn declares(files: &hrdsl_source::SourceFiles, item: &ast::Item) -> Vec<(&'stati
 }
 
 /// How places change when the text of a declaration does.
-struct Moved {
+struct SpanShift {
     /// The file that held the new text alone.
     alone: FileId,
     old: Span,
@@ -97,7 +100,7 @@ struct Moved {
     len: usize,
 }
 
-impl Moved {
+impl SpanShift {
     fn diagnostic(&self, of: &mut Diagnostic) {
         of.labels.iter_mut().for_each(|label| label.span = self.span(label.span));
         let edits = of.fixes.iter_mut().flat_map(|fix| &mut fix.edits);

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, SourceFiles, Span};
 use hrdsl_syntax::{
-    ast::{File, Item, ItemKind},
+    ast::{FileSyntax, ItemSyntax, ItemSyntaxKind},
     words,
 };
 
 /// How often each word stands in the files. An automaton's own names mean nothing in another one: words are also counted in
 /// each automaton, and in what is none.
-struct Spoken<'f> {
+struct WordFrequencies<'f> {
     all: BTreeMap<&'f str, usize>,
     /// By automaton of the first file; `None`: elsewhere.
     within: BTreeMap<(Option<usize>, &'f str), usize>,
@@ -19,13 +19,13 @@ struct Spoken<'f> {
 }
 
 /// Fixes that take a declaration away stay certain only if its name stands nowhere else.
-pub(crate) fn doubt(files: &SourceFiles, ast: &[File], diagnostics: &mut [Diagnostic]) {
+pub(crate) fn doubt(files: &SourceFiles, ast: &[FileSyntax], diagnostics: &mut [Diagnostic]) {
     let is_sure = |d: &&mut Diagnostic| d.code == DiagnosticCode::UNUSED && d.fixes.iter().any(|f| f.certain);
     let mut unused = diagnostics.iter_mut().filter(is_sure).peekable();
     if unused.peek().is_none() {
         return;
     }
-    let spoken = Spoken::of(files, ast);
+    let spoken = WordFrequencies::of(files, ast);
     for diagnostic in unused {
         let at = diagnostic.span();
         let name = files.text(at);
@@ -35,9 +35,9 @@ pub(crate) fn doubt(files: &SourceFiles, ast: &[File], diagnostics: &mut [Diagno
     }
 }
 
-impl<'f> Spoken<'f> {
-    fn of(files: &'f SourceFiles, ast: &[File]) -> Self {
-        let is_automaton = |i: &&Item| matches!(i.kind, ItemKind::Automaton(_));
+impl<'f> WordFrequencies<'f> {
+    fn of(files: &'f SourceFiles, ast: &[FileSyntax]) -> Self {
+        let is_automaton = |i: &&ItemSyntax| matches!(i.kind, ItemSyntaxKind::Automaton(_));
         let automata = ast[0].items.iter().filter(is_automaton).map(|i| i.span).collect();
         let mut spoken = Self { all: BTreeMap::new(), within: BTreeMap::new(), automata };
         // The library's devices name nothing of a scenario.

@@ -8,8 +8,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{Compilation, Input, compile};
-use hrdsl_source::Fix;
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
+use hrdsl_source::SuggestedFix;
 
 #[path = "fixing/mod.rs"]
 mod fixing;
@@ -21,8 +21,8 @@ fn fixtures(folder: &Path, all: &mut Vec<PathBuf>) {
     }
 }
 
-fn one(text: &str) -> Compilation {
-    compile(Input { name: "fixture.hri", text }, &[])
+fn one(text: &str) -> CompilationResult {
+    compile(InputFile { name: "fixture.hri", text }, &[])
 }
 
 #[test]
@@ -48,7 +48,9 @@ fn unused(text: &str) -> BTreeMap<String, Option<bool>> {
     let (wrong, _) = fixing::faults(text, &one);
     assert!(wrong.is_empty(), "{wrong:?}");
     let found = c.diagnostics.iter().filter(|d| d.code.to_string() == "HR0107");
-    found.map(|d| (c.files.text(d.span()).to_owned(), d.fixes.first().map(|f: &Fix| f.certain))).collect()
+    found
+        .map(|d| (c.files.text(d.span()).to_owned(), d.fixes.first().map(|f: &SuggestedFix| f.certain)))
+        .collect()
 }
 
 const QUERIES: &str = "scenario queries

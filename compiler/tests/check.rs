@@ -10,8 +10,8 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use hrdsl_compiler::{Compilation, Input, Loader, Source, compile, compile_with};
-use hrdsl_source::Fix;
+use hrdsl_compiler::{CompilationResult, InputFile, ModuleLoader, ModuleText, compile, compile_with};
+use hrdsl_source::SuggestedFix;
 
 #[derive(Clone, Debug, PartialEq)]
 struct Expected {
@@ -27,12 +27,12 @@ struct Expected {
 /// The files beside the fixtures.
 struct Beside<'a>(&'a Path);
 
-impl Loader for Beside<'_> {
-    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+impl ModuleLoader for Beside<'_> {
+    fn load(&self, from: &str, path: &str) -> Result<ModuleText, String> {
         let folder = Path::new(from).parent().unwrap_or(Path::new(""));
         let name = folder.join(path);
         let text = fs::read_to_string(self.0.join(&name)).map_err(|_| "there is no such file".to_owned())?;
-        Ok(Source { name: name.to_string_lossy().into_owned(), text })
+        Ok(ModuleText { name: name.to_string_lossy().into_owned(), text })
     }
 }
 
@@ -58,7 +58,7 @@ fn expectations(file: u16, text: &str) -> Vec<Expected> {
 }
 
 /// What is wrong between what was expected and what was said.
-fn faults(c: &Compilation, mut expected: Vec<Expected>) -> Vec<String> {
+fn faults(c: &CompilationResult, mut expected: Vec<Expected>) -> Vec<String> {
     let mut faults = Vec::new();
     for d in &c.diagnostics {
         let (line, text) = (c.files.position(d.span()).line, c.files.text(d.span()));
@@ -105,7 +105,7 @@ fn every_lint_says_what_it_should_and_nothing_else() {
     let mut wrong = Vec::new();
     for (path, text) in &all {
         let name = path.trim_start_matches(&*folder.to_string_lossy());
-        let c = compile(Input { name, text }, &[]);
+        let c = compile(InputFile { name, text }, &[]);
         wrong.extend(faults(&c, expectations(0, text)));
     }
     assert!(all.len() >= 8, "the fixtures are not found");
@@ -127,9 +127,9 @@ fn every_fixture_gives_what_it_says() {
     let mut all = Vec::new();
     for (name, text) in fixtures.iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
         let tests_name = name.replace(".hri", ".tests.hri");
-        let tests: Vec<Input<'_>> =
-            fixtures.get(&tests_name).map(|text| Input { name: &tests_name, text }).into_iter().collect();
-        let c = compile_with(Input { name, text }, &tests, &Beside(&folder));
+        let tests: Vec<InputFile<'_>> =
+            fixtures.get(&tests_name).map(|text| InputFile { name: &tests_name, text }).into_iter().collect();
+        let c = compile_with(InputFile { name, text }, &tests, &Beside(&folder));
         let expected = c.files.iter().flat_map(|(id, file)| expectations(id.0, &file.text)).collect();
         all.extend(faults(&c, expected));
         // What the checker could not make sense of has a diagnostic.
@@ -149,7 +149,7 @@ fn every_fixture_gives_what_it_says() {
 }
 
 /// The text with a change made.
-fn changed(text: &str, fix: &Fix) -> String {
+fn changed(text: &str, fix: &SuggestedFix) -> String {
     let mut text = text.to_owned();
     for edit in fix.edits.iter().rev() {
         text.replace_range(edit.span.range(), &edit.text);
@@ -165,13 +165,14 @@ fn certain_fixes_mend() {
     fixtures(&folder, &mut all);
     let mut tried = 0;
     for (name, text) in all.iter().filter(|(n, _)| !n.ends_with(".tests.hri")) {
-        let compiled = |text: &str| compile(Input { name, text }, &[]);
+        let compiled = |text: &str| compile(InputFile { name, text }, &[]);
         let before = compiled(text);
-        let errors = |c: &Compilation| c.diagnostics.iter().filter(|d| d.is_error()).count();
+        let errors = |c: &CompilationResult| c.diagnostics.iter().filter(|d| d.is_error()).count();
         for d in &before.diagnostics {
             for fix in d.fixes.iter().filter(|f| f.certain) {
                 let after = compiled(&changed(text, fix));
-                let said = |c: &Compilation| c.diagnostics.iter().filter(|e| e.message == d.message).count();
+                let said =
+                    |c: &CompilationResult| c.diagnostics.iter().filter(|e| e.message == d.message).count();
                 let place = before.files.place(d.span());
                 assert!(errors(&after) <= errors(&before), "{place}: `{}` breaks the text", fix.title);
                 assert!(said(&after) < said(&before), "{place}: `{}` does not fix it", fix.title);

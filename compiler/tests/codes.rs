@@ -5,7 +5,7 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use hrdsl_compiler::{Input, Loader, Source, compile_with};
+use hrdsl_compiler::{InputFile, ModuleLoader, ModuleText, compile_with};
 use hrdsl_source::REGISTRY;
 
 /// The fenced blocks: what follows the fence, and the text.
@@ -25,11 +25,11 @@ fn blocks(page: &str) -> Vec<(String, String)> {
 struct Example {
     info: String,
     text: String,
-    files: Vec<Source>,
+    files: Vec<ModuleText>,
 }
 
-impl Loader for Example {
-    fn load(&self, _from: &str, path: &str) -> Result<Source, String> {
+impl ModuleLoader for Example {
+    fn load(&self, _from: &str, path: &str) -> Result<ModuleText, String> {
         self.files.iter().find(|f| f.name == path).cloned().ok_or("there is no such file".to_owned())
     }
 
@@ -43,7 +43,7 @@ fn examples(page: &str) -> Vec<Example> {
     let (mut examples, mut files) = (Vec::new(), Vec::new());
     for (info, text) in blocks(page) {
         match info.strip_prefix("hri,file=") {
-            Some(name) => files.push(Source { name: name.to_owned(), text }),
+            Some(name) => files.push(ModuleText { name: name.to_owned(), text }),
             None => examples.push(Example { info, text, files: std::mem::take(&mut files) }),
         }
     }
@@ -52,7 +52,7 @@ fn examples(page: &str) -> Vec<Example> {
 
 /// The codes of a text's diagnostics, and whether it compiles.
 fn said(example: &Example) -> (BTreeSet<String>, bool) {
-    let c = compile_with(Input { name: "page.hri", text: &example.text }, &[], example);
+    let c = compile_with(InputFile { name: "page.hri", text: &example.text }, &[], example);
     (c.diagnostics.iter().map(|d| d.code.to_string()).collect(), c.program.is_some())
 }
 

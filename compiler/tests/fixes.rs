@@ -4,11 +4,11 @@
 
 use std::{fs, path::Path};
 
-use hrdsl_compiler::{Compilation, Input, compile};
-use hrdsl_source::{Code, Diagnostic, Fix};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
+use hrdsl_source::{Diagnostic, DiagnosticCode, SuggestedFix};
 
-fn one(text: &str) -> Compilation {
-    compile(Input { name: "a.hri", text }, &[])
+fn one(text: &str) -> CompilationResult {
+    compile(InputFile { name: "a.hri", text }, &[])
 }
 
 /// ``replace `a` by `b` ``
@@ -16,7 +16,7 @@ fn words(title: &str) -> Option<(&str, &str)> {
     title.strip_prefix("replace `")?.strip_suffix('`')?.split_once("` by `")
 }
 
-fn fixes(compilation: &Compilation) -> Vec<(&Diagnostic, &Fix)> {
+fn fixes(compilation: &CompilationResult) -> Vec<(&Diagnostic, &SuggestedFix)> {
     compilation.diagnostics.iter().flat_map(|d| d.fixes.iter().map(move |f| (d, f))).collect()
 }
 
@@ -39,7 +39,7 @@ fn a_replacement_stands_for_what_it_names() {
             assert_eq!(compilation.files.text(edit.span), from, "{} {}", diagnostic.code, fix.title);
             assert_eq!(edit.text.trim(), to);
         }
-        for d in compilation.diagnostics.iter().filter(|d| d.code == Code::UNKNOWN_NAME) {
+        for d in compilation.diagnostics.iter().filter(|d| d.code == DiagnosticCode::UNKNOWN_NAME) {
             // A small variable can be replaced where the capital one is known.
             let capital = |h: &str| h.starts_with("variables of agents begin") && h.ends_with('`');
             let near = d.help.as_ref().is_some_and(|h| h.starts_with("did you mean") || capital(h));

@@ -1,11 +1,11 @@
 //! Functions of automata from the text to what they do: compiled, lowered and executed by the interpreter of the program form.
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{
     Expr, Program, Value,
-    exec::{Functions, Memory, View, fit},
-    expr::{EvalError, Index, Place},
-    ta::{AutomatonId, FunctionId, Statement, Update, Var},
+    exec::{FunctionTable, MemoryView, VariableMemory, fit},
+    expr::{ArrayIndex, EvalError, Lvalue},
+    ta::{AutomatonId, AutomatonVar, EdgeAssignment, FunctionId, FunctionStatement},
 };
 use proptest::prelude::*;
 
@@ -61,7 +61,7 @@ automaton Two = Twin(2)
 ";
 
 fn program() -> Program {
-    let c = compile(Input { name: "functions.hri", text: TEXT }, &[]);
+    let c = compile(InputFile { name: "functions.hri", text: TEXT }, &[]);
     let errors: Vec<_> = c.diagnostics.iter().filter(|d| d.is_error()).collect();
     assert!(errors.is_empty(), "{errors:#?}");
     c.program.unwrap()
@@ -69,19 +69,19 @@ fn program() -> Program {
 
 /// The shared variables, then those of one automaton.
 struct Ram {
-    vars: Vec<Var>,
+    vars: Vec<AutomatonVar>,
     values: Vec<i64>,
 }
 
 impl Ram {
     fn of(p: &Program, automaton: usize) -> Self {
-        let vars: Vec<Var> = p.shared.iter().chain(&p.automata[automaton].vars).cloned().collect();
+        let vars: Vec<AutomatonVar> = p.shared.iter().chain(&p.automata[automaton].vars).cloned().collect();
         let values = vars.iter().map(|v| v.init).collect();
         Self { vars, values }
     }
 }
 
-impl Memory for Ram {
+impl VariableMemory for Ram {
     fn read(&self, slot: u16) -> Option<Value> {
         self.vars.get(usize::from(slot))?.value(self.values[usize::from(slot)])
     }
@@ -102,13 +102,13 @@ fn ints(args: &[i64]) -> Vec<Expr> {
 }
 
 fn call(p: &Program, ram: &mut Ram, name: &str, args: &[i64]) -> Result<(), EvalError> {
-    let (functions, base) = (Functions::new(p), u16::try_from(ram.vars.len()).unwrap());
-    View::open(&functions, ram, base, &[]).call(id(p, name), &ints(args))
+    let (functions, base) = (FunctionTable::new(p), u16::try_from(ram.vars.len()).unwrap());
+    MemoryView::open(&functions, ram, base, &[]).call(id(p, name), &ints(args))
 }
 
 fn value(p: &Program, ram: &mut Ram, name: &str, args: &[i64]) -> Result<Value, EvalError> {
-    let (functions, base) = (Functions::new(p), u16::try_from(ram.vars.len()).unwrap());
-    View::open(&functions, ram, base, &[]).eval(&Expr::Apply(id(p, name), ints(args)))
+    let (functions, base) = (FunctionTable::new(p), u16::try_from(ram.vars.len()).unwrap());
+    MemoryView::open(&functions, ram, base, &[]).eval(&Expr::Apply(id(p, name), ints(args)))
 }
 
 #[test]
@@ -161,10 +161,12 @@ fn purity_and_owners_are_known() {
     assert_eq!(owners, [0, 0, 1, 2].map(|a| Some(AutomatonId(a))));
     for (automaton, left) in [(1, 2), (2, 3)] {
         let mut ram = Ram::of(&p, automaton);
-        let functions = Functions::new(&p);
-        let Update::Call { function, args } = &p.automata[automaton].edges[0].updates[0] else { panic!() };
+        let functions = FunctionTable::new(&p);
+        let EdgeAssignment::Call { function, args } = &p.automata[automaton].edges[0].updates[0] else {
+            panic!()
+        };
         let base = u16::try_from(ram.vars.len()).unwrap();
-        View::open(&functions, &mut ram, base, &[]).call(*function, args).unwrap();
+        MemoryView::open(&functions, &mut ram, base, &[]).call(*function, args).unwrap();
         assert_eq!(ram.values.last(), Some(&left));
     }
 }
@@ -175,23 +177,26 @@ fn edges_index_at_run_time() {
     let edge = &p.automata[0].edges[0];
     let shared = u16::try_from(p.shared.len()).unwrap();
     let (mine, i, k) = (shared, shared + 2, shared + 3);
-    let index = |at: u16, count: u16, stride: u16| Index { at: Expr::Var(at), count, stride };
+    let index = |at: u16, count: u16, stride: u16| ArrayIndex { at: Expr::Var(at), count, stride };
     let Some(Expr::Binary(_, own, element)) = &edge.guard else { panic!("{:?}", edge.guard) };
     assert_eq!(**own, Expr::Apply(id(&p, "own"), vec![Expr::Var(i)]));
-    let q = Place { slot: 0, indices: vec![index(k, 5, 1)] };
+    let q = Lvalue { slot: 0, indices: vec![index(k, 5, 1)] };
     assert_eq!(**element, Expr::Element(Box::new(q)));
     let grid = u16::try_from(p.shared.iter().position(|v| v.name == "grid[0][0]").unwrap()).unwrap();
-    let [Update::Call { .. }, Update::Assign { place, .. }, Update::Assign { place: last, .. }] =
-        edge.updates.as_slice()
+    let [
+        EdgeAssignment::Call { .. },
+        EdgeAssignment::Assign { place, .. },
+        EdgeAssignment::Assign { place: last, .. },
+    ] = edge.updates.as_slice()
     else {
         panic!("{:?}", edge.updates)
     };
-    assert_eq!(*place, Place { slot: grid, indices: vec![index(i, 2, 3), index(k, 3, 1)] });
-    let at = Expr::Element(Box::new(Place { slot: mine, indices: vec![index(i, 2, 1)] }));
-    assert_eq!(*last, Place { slot: 0, indices: vec![Index { at, count: 5, stride: 1 }] });
+    assert_eq!(*place, Lvalue { slot: grid, indices: vec![index(i, 2, 3), index(k, 3, 1)] });
+    let at = Expr::Element(Box::new(Lvalue { slot: mine, indices: vec![index(i, 2, 1)] }));
+    assert_eq!(*last, Lvalue { slot: 0, indices: vec![ArrayIndex { at, count: 5, stride: 1 }] });
     // A loop's variable is a local with the range of its ends.
     let sort = &p.functions[usize::from(id(&p, "sort").0)];
-    assert!(matches!(sort.body[0], Statement::For { slot, .. } if slot == shared));
+    assert!(matches!(sort.body[0], FunctionStatement::For { slot, .. } if slot == shared));
     let ranges: Vec<(i64, i64)> = sort.locals.iter().map(|v| (v.lo, v.hi)).collect();
     assert_eq!(ranges, [(0, 3), (0, 3), (0, 9)]);
 }

@@ -1,7 +1,7 @@
 //! Many of one thing cost in proportion to their number: four times as many, at most five times the work. What is counted is
 //! memory that is asked for, which is the same in every run; the times of the same texts are in the bench `many`.
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
 
 #[path = "../benches/many/mod.rs"]
 mod many;
@@ -9,8 +9,8 @@ mod many;
 /// Small texts pay for what is there once, such as the library's names.
 const FEW: usize = 500;
 
-fn compiled(text: &str) -> Compilation {
-    compile(Input { name: "many.hri", text }, &[])
+fn compiled(text: &str) -> CompilationResult {
+    compile(InputFile { name: "many.hri", text }, &[])
 }
 
 /// How many times memory is asked for, and how many bytes in all.

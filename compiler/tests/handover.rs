@@ -1,14 +1,14 @@
 //! The reference scenario.
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
 
 const SCENARIO: &str = include_str!("../../examples/handover/scenario.hri");
 
-fn compiled(text: &str) -> Compilation {
-    compile(Input { name: "scenario.hri", text }, &[])
+fn compiled(text: &str) -> CompilationResult {
+    compile(InputFile { name: "scenario.hri", text }, &[])
 }
 
-fn listing(c: &Compilation) -> String {
+fn listing(c: &CompilationResult) -> String {
     let line = |d: &hrdsl_source::Diagnostic| {
         let (place, text) = (c.files.place(d.span()), c.files.text(d.span()));
         format!("{place}: {} {} [{text}] help: {}\n", d.code, d.message, d.help.as_deref().unwrap_or("-"))
@@ -38,12 +38,12 @@ fn its_program_means_what_it_says() {
     let person = p.automata.iter().find(|a| a.name == "Person").unwrap();
     let asks = person.locations.iter().position(|l| l.name == "idle.asked~1").unwrap();
     let sent = |e: &&hrdsl_ir::ta::Edge| match &e.sync {
-        hrdsl_ir::ta::Sync::Send { event, .. } => p.event(*event).name.clone(),
-        hrdsl_ir::ta::Sync::Offer { .. }
-        | hrdsl_ir::ta::Sync::Accept { .. }
-        | hrdsl_ir::ta::Sync::Join { .. }
-        | hrdsl_ir::ta::Sync::Internal
-        | hrdsl_ir::ta::Sync::Receive { .. } => String::new(),
+        hrdsl_ir::ta::SyncLabel::Send { event, .. } => p.event(*event).name.clone(),
+        hrdsl_ir::ta::SyncLabel::Offer { .. }
+        | hrdsl_ir::ta::SyncLabel::Accept { .. }
+        | hrdsl_ir::ta::SyncLabel::Join { .. }
+        | hrdsl_ir::ta::SyncLabel::Internal
+        | hrdsl_ir::ta::SyncLabel::Receive { .. } => String::new(),
     };
     let into = person.edges.iter().find(|e| usize::from(e.to.0) == asks).unwrap();
     let out = person.edges.iter().find(|e| usize::from(e.from.0) == asks).unwrap();

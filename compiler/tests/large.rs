@@ -1,6 +1,6 @@
 //! The scenario that the bench compiles is well formed: no errors, no warnings, and a Program.
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 
 #[path = "../benches/large/mod.rs"]
 mod large;
@@ -9,7 +9,7 @@ mod large;
 fn the_generated_scenario_is_well_formed() {
     let text = large::scenario(2_000);
     assert!(text.lines().count() >= 2_000);
-    let c = compile(Input { name: "line.hri", text: &text }, &[]);
+    let c = compile(InputFile { name: "line.hri", text: &text }, &[]);
     let said: Vec<String> = c
         .diagnostics
         .iter()

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
 
 fn codes(text: &str) -> Vec<String> {
     let mut codes: Vec<String> = compiled(text).diagnostics.iter().map(|d| d.code.to_string()).collect();
@@ -10,8 +10,8 @@ fn codes(text: &str) -> Vec<String> {
     codes
 }
 
-fn compiled(text: &str) -> Compilation {
-    compile(Input { name: "scenario.hri", text }, &[])
+fn compiled(text: &str) -> CompilationResult {
+    compile(InputFile { name: "scenario.hri", text }, &[])
 }
 
 fn too_much(text: &str) {

@@ -7,8 +7,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{Compilation, Input, compile};
-use hrdsl_source::{Diagnostic, Fix};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
+use hrdsl_source::{Diagnostic, SuggestedFix};
 
 fn fixtures(folder: &Path, all: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
@@ -18,14 +18,14 @@ fn fixtures(folder: &Path, all: &mut Vec<PathBuf>) {
 }
 
 /// How often the same is said of the same text: a fix may uncover something of the same kind behind it.
-fn said(c: &Compilation, of: &Diagnostic, text: &str) -> usize {
+fn said(c: &CompilationResult, of: &Diagnostic, text: &str) -> usize {
     let same = |d: &&Diagnostic| {
         (d.code, d.message.as_str(), c.files.text(d.span())) == (of.code, of.message.as_str(), text)
     };
     c.diagnostics.iter().filter(same).count()
 }
 
-fn fixed(text: &str, fix: &Fix) -> String {
+fn fixed(text: &str, fix: &SuggestedFix) -> String {
     let mut text = text.to_owned();
     for edit in fix.edits.iter().rev() {
         text.replace_range(edit.span.range(), &edit.text);
@@ -41,10 +41,10 @@ fn every_fix_mends_what_it_is_offered_for() {
     let mut fixes = 0;
     for path in paths {
         let text = fs::read_to_string(&path).unwrap();
-        let before = compile(Input { name: "fixture.hri", text: &text }, &[]);
+        let before = compile(InputFile { name: "fixture.hri", text: &text }, &[]);
         for d in &before.diagnostics {
             for fix in &d.fixes {
-                let after = compile(Input { name: "fixture.hri", text: &fixed(&text, fix) }, &[]);
+                let after = compile(InputFile { name: "fixture.hri", text: &fixed(&text, fix) }, &[]);
                 let what = format!("{}: {}: {}", path.display(), d.code, fix.title);
                 assert!(after.has_errors() <= before.has_errors(), "{what}: {:?}", after.diagnostics);
                 let of = before.files.text(d.span());

@@ -1,26 +1,28 @@
 //! What small scenarios become, concern by concern.
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{
     ActorId, ArgPattern, EventId, EventPattern, Expr, List, Program, Span, Symbol, Type, Unit, Value,
     bdi::{
-        Annotation, Assertion, BeliefId, ContentId, Context, Control, Fact, GoalId, Internal, Literal,
-        Performative, Step, StepKind, Subject, Term, TriggerOn,
+        AgentTerm, Assertion, BeliefAnnotation, BeliefId, BeliefLiteral, ContentId, ControlAct, GoalId,
+        InitialFact, InternalAct, MessageSubject, Performative, PlanContext, PlanStep, PlanStepKind,
+        TriggerOn,
     },
-    coverage::{Condition, CrossId, PointId},
+    coverage::{BinCondition, CoverpointId, CrossId},
     event::StimulusStep,
-    expr::{BinaryOp, Function, UnaryOp},
+    expr::{BinaryOp, NumberFunction, UnaryOp},
     list::ListFunction,
-    monitor::{Effect, On},
-    suite::{ChoiceKind, Explore, Method, ModelGoal, SearchGoal},
+    monitor::{MonitorEffect, MonitorTrigger},
+    suite::{ChoiceKind, ExploreMode, ModelGoal, SearchGoal, SuiteMethod},
     ta::{
-        AutomatonId, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, LocationKind, NetworkId,
-        Party, ReceiveArg, Sync, Time, TimeTerm, Update,
+        AutomatonId, ChannelId, ChannelKind, ChannelParticipant, ClockConstraint, ClockId, ClockOp,
+        EdgeAssignment, LocationKind, NetworkId, ReceiveArg, SyncLabel, TimeSum, TimeTerm,
     },
     test::TestStep,
     value::SECOND,
     world::{
-        Axis, BodyId, BodyRef, CurrentId, GripperId, RuleOn, Shape, SignalId, Term as Measure, WorldAction,
+        Axis, BodyId, BodyRef, BodyShape, CurrentId, GripperId, RuleTrigger, SignalId, SignalTerm as Measure,
+        WorldAction,
     },
 };
 
@@ -28,7 +30,7 @@ const ACTORS: &str = "actor person : environment\nactor robot : system\n";
 
 fn program(text: &str) -> Program {
     let text = format!("scenario small\n{ACTORS}{text}");
-    let c = compile(Input { name: "small.hri", text: &text }, &[]);
+    let c = compile(InputFile { name: "small.hri", text: &text }, &[]);
     let errors = c.diagnostics.iter().filter(|d| d.is_error());
     let said: Vec<String> = errors.map(|d| format!("{} {}", c.files.place(d.span()), d.message)).collect();
     assert_eq!(said, Vec::<String>::new());
@@ -106,41 +108,46 @@ fn agents_number_variables_in_the_order_of_their_places() {
     let a = &p.agents[0];
     assert_eq!(
         a.initial_beliefs,
-        [Fact { belief: BeliefId(0), args: vec![Value::Int(0)], annotations: vec![] }]
+        [InitialFact { belief: BeliefId(0), args: vec![Value::Int(0)], annotations: vec![] }]
     );
     assert_eq!(a.initial_goals, [(GoalId(0), vec![Value::Int(3)])]);
     let go = &a.plans[0];
     assert_eq!((go.label.as_str(), go.trigger.on), ("go#1", TriggerOn::GoalAdded(GoalId(0))));
     assert_eq!(go.vars, ["L", "N", "M"]);
-    assert_eq!(go.trigger.args, [Term::Var(0)]);
+    assert_eq!(go.trigger.args, [AgentTerm::Var(0)]);
     let literal =
-        |b, args| Literal { origin: Span::default(), belief: BeliefId(b), args, annotations: vec![] };
-    let belief = |b, arg| Context::Belief(literal(b, vec![arg]));
-    let away = Context::Belief(literal(2, vec![]));
-    let either = Context::Or(vec![belief(1, Term::Var(0)), belief(1, Term::Expr(Expr::int(3)))]);
-    let less = Context::Test(op(BinaryOp::Lt, Expr::Var(1), Expr::Var(0)));
+        |b, args| BeliefLiteral { origin: Span::default(), belief: BeliefId(b), args, annotations: vec![] };
+    let belief = |b, arg| PlanContext::Belief(literal(b, vec![arg]));
+    let away = PlanContext::Belief(literal(2, vec![]));
+    let either =
+        PlanContext::Or(vec![belief(1, AgentTerm::Var(0)), belief(1, AgentTerm::Expr(Expr::int(3)))]);
+    let less = PlanContext::Test(op(BinaryOp::Lt, Expr::Var(1), Expr::Var(0)));
     assert_eq!(
         go.context,
-        Context::And(vec![belief(0, Term::Var(1)), Context::Not(Box::new(away)), either, less])
+        PlanContext::And(vec![belief(0, AgentTerm::Var(1)), PlanContext::Not(Box::new(away)), either, less])
     );
-    let steps: Vec<&StepKind> = go.body.iter().map(|s| &s.kind).collect();
+    let steps: Vec<&PlanStepKind> = go.body.iter().map(|s| &s.kind).collect();
     let sum = op(BinaryOp::Add, Expr::Var(1), Expr::Var(0));
-    assert_eq!(steps[0], &StepKind::Do { event: EventId(1), args: vec![sum] });
-    assert_eq!(steps[1], &StepKind::Achieve { goal: GoalId(0), args: vec![Expr::Var(1)], within: None });
-    assert_eq!(steps[2], &StepKind::Query(literal(1, vec![Term::Var(2)])));
-    assert_eq!(steps[3], &StepKind::Remove(literal(0, vec![Term::Any])));
+    assert_eq!(steps[0], &PlanStepKind::Do { event: EventId(1), args: vec![sum] });
+    assert_eq!(steps[1], &PlanStepKind::Achieve { goal: GoalId(0), args: vec![Expr::Var(1)], within: None });
+    assert_eq!(steps[2], &PlanStepKind::Query(literal(1, vec![AgentTerm::Var(2)])));
+    assert_eq!(steps[3], &PlanStepKind::Remove(literal(0, vec![AgentTerm::Any])));
     assert_eq!(
         steps[4],
-        &StepKind::Replace(Assertion { belief: BeliefId(0), args: vec![Expr::Var(2)], annotations: vec![] })
+        &PlanStepKind::Replace(Assertion {
+            belief: BeliefId(0),
+            args: vec![Expr::Var(2)],
+            annotations: vec![]
+        })
     );
     let no = &a.plans[1];
     assert_eq!((no.label.as_str(), no.trigger.on), ("no", TriggerOn::GoalFailed(GoalId(0))));
     let events = vec![pattern(0, &[TRUE]), pattern(0, &[ArgPattern::Any])];
-    assert_eq!(no.body[0].kind, StepKind::Await { events, within: Some(Expr::float(2.0)) });
-    assert_eq!(no.body[1].kind, StepKind::Wait { seconds: Expr::float(0.5) });
-    assert_eq!(no.body[2].kind, StepKind::Spawn { goal: GoalId(0), args: vec![Expr::int(1)] });
+    assert_eq!(no.body[0].kind, PlanStepKind::Await { events, within: Some(Expr::float(2.0)) });
+    assert_eq!(no.body[1].kind, PlanStepKind::Wait { seconds: Expr::float(0.5) });
+    assert_eq!(no.body[2].kind, PlanStepKind::Spawn { goal: GoalId(0), args: vec![Expr::int(1)] });
     assert_eq!(a.plans[2].trigger.on, TriggerOn::Perceived(EventId(0)));
-    assert_eq!(a.plans[2].context, Context::Test(Expr::Var(0)));
+    assert_eq!(a.plans[2].context, PlanContext::Test(Expr::Var(0)));
 }
 
 /// The agents of a scenario with these members of the first, beside one that takes messages.
@@ -152,13 +159,13 @@ fn agents(members: &str) -> Program {
 }
 
 /// The steps of the plan for `+!go`.
-fn steps(body: &str) -> Vec<StepKind> {
+fn steps(body: &str) -> Vec<PlanStepKind> {
     let p = agents(&format!("  plan +!go {{ {body} }}\n  plan +!sub(_) {{ }}\n  plan -!go {{ }}"));
     p.agents[0].plans[0].body.iter().map(|s| s.kind.clone()).collect()
 }
 
-fn held(args: Vec<Term>) -> Literal {
-    Literal { origin: Span::default(), belief: BeliefId(0), args, annotations: vec![] }
+fn held(args: Vec<AgentTerm>) -> BeliefLiteral {
+    BeliefLiteral { origin: Span::default(), belief: BeliefId(0), args, annotations: vec![] }
 }
 
 fn symbol(name: &str) -> Expr {
@@ -178,23 +185,31 @@ fn beliefs_have_annotations_negations_percepts_and_rules() {
     assert_eq!((a.beliefs[1].percept, a.beliefs[0].percept), (Some(EventId(0)), None));
     assert_eq!(a.beliefs[3].annotations, a.beliefs[0].annotations);
     assert_eq!(a.beliefs[0].annotations[0].name, "sure");
-    let fact =
-        |belief, n, annotations| Fact { belief: BeliefId(belief), args: vec![Value::Int(n)], annotations };
+    let fact = |belief, n, annotations| InitialFact {
+        belief: BeliefId(belief),
+        args: vec![Value::Int(n)],
+        annotations,
+    };
     let sourced = vec![
-        (Annotation::Source, Value::Symbol(Symbol::intern("R"))),
-        (Annotation::Declared(0), Value::Int(4)),
+        (BeliefAnnotation::Source, Value::Symbol(Symbol::intern("R"))),
+        (BeliefAnnotation::Declared(0), Value::Int(4)),
     ];
     assert_eq!(a.initial_beliefs, [fact(0, 1, vec![]), fact(3, 2, vec![]), fact(0, 3, sourced)]);
     let rule = &a.rules[0];
     assert_eq!(
         (rule.belief, &rule.args, &rule.vars[..]),
-        (BeliefId(2), &vec![Term::Var(0)], &["N".into(), "S".into()][..])
+        (BeliefId(2), &vec![AgentTerm::Var(0)], &["N".into(), "S".into()][..])
     );
-    let sure =
-        Literal { annotations: vec![(Annotation::Declared(0), Term::Var(1))], ..held(vec![Term::Var(0)]) };
-    let more = Context::Test(op(BinaryOp::Gt, Expr::Var(1), Expr::int(2)));
-    assert_eq!(rule.body, Context::And(vec![Context::Belief(sure), more]));
-    assert_eq!((&a.rules[1].args, &a.rules[1].body), (&vec![Term::Expr(Expr::int(7))], &Context::True));
+    let sure = BeliefLiteral {
+        annotations: vec![(BeliefAnnotation::Declared(0), AgentTerm::Var(1))],
+        ..held(vec![AgentTerm::Var(0)])
+    };
+    let more = PlanContext::Test(op(BinaryOp::Gt, Expr::Var(1), Expr::int(2)));
+    assert_eq!(rule.body, PlanContext::And(vec![PlanContext::Belief(sure), more]));
+    assert_eq!(
+        (&a.rules[1].args, &a.rules[1].body),
+        (&vec![AgentTerm::Expr(Expr::int(7))], &PlanContext::True)
+    );
     let Some(params) = &a.goals[0].params else { panic!() };
     assert_eq!((a.goals[0].arity, params[0].ty), (2, Type::Int { lo: 0, hi: 9 }));
     let Type::Enum(agent) = params[1].ty else { panic!() };
@@ -203,28 +218,29 @@ fn beliefs_have_annotations_negations_percepts_and_rules() {
     assert_eq!((a.goals[1].arity, &a.goals[1].params), (0, &None));
     let give = &a.plans[0];
     assert!(give.atomic && !a.plans[1].atomic);
-    assert_eq!(give.trigger.annotations, [(Annotation::Source, Term::Var(1))]);
+    assert_eq!(give.trigger.annotations, [(BeliefAnnotation::Source, AgentTerm::Var(1))]);
     // `R` is the agent.
-    assert_eq!(give.trigger.args, [Term::Var(0), Term::Expr(symbol("R"))]);
+    assert_eq!(give.trigger.args, [AgentTerm::Var(0), AgentTerm::Expr(symbol("R"))]);
     assert_eq!(a.plans[1].trigger.on, TriggerOn::TestFailed(BeliefId(2)));
 }
 
 #[test]
 fn blocks_keep_their_steps() {
-    let any = || Context::Belief(held(vec![Term::Any]));
-    let print = |n: i64| Step { kind: StepKind::Print { args: vec![Expr::int(n)] }, origin: Span::default() };
+    let any = || PlanContext::Belief(held(vec![AgentTerm::Any]));
+    let print =
+        |n: i64| PlanStep { kind: PlanStepKind::Print { args: vec![Expr::int(n)] }, origin: Span::default() };
     let got = steps(
         "if b(_) { .print(1) } else if b(_) { .print(2) } while b(_) { .print(3) } for b(_) { .print(4) }\n\
          fork { .print(5) } and { .print(6) }; fork { .print(7) } or { }",
     );
-    let inner = StepKind::If { condition: any(), then: vec![print(2)], otherwise: vec![] };
-    let inner = Step { kind: inner, origin: Span::default() };
+    let inner = PlanStepKind::If { condition: any(), then: vec![print(2)], otherwise: vec![] };
+    let inner = PlanStep { kind: inner, origin: Span::default() };
     let want = vec![
-        StepKind::If { condition: any(), then: vec![print(1)], otherwise: vec![inner] },
-        StepKind::While { condition: any(), body: vec![print(3)] },
-        StepKind::For { condition: any(), body: vec![print(4)] },
-        StepKind::Fork { branches: vec![vec![print(5)], vec![print(6)]], all: true },
-        StepKind::Fork { branches: vec![vec![print(7)], vec![]], all: false },
+        PlanStepKind::If { condition: any(), then: vec![print(1)], otherwise: vec![inner] },
+        PlanStepKind::While { condition: any(), body: vec![print(3)] },
+        PlanStepKind::For { condition: any(), body: vec![print(4)] },
+        PlanStepKind::Fork { branches: vec![vec![print(5)], vec![print(6)]], all: true },
+        PlanStepKind::Fork { branches: vec![vec![print(7)], vec![]], all: false },
     ];
     assert_eq!(got, want);
 }
@@ -236,29 +252,37 @@ fn formulas_match_lists_and_ask() {
          .setof(M, b(M), K); .member(E0, K); .nth(0, [1], E)",
     );
     let list = Expr::Const(Value::List(List::of(&[Value::Int(1), Value::Int(2), Value::Int(3)])));
-    let pattern = Term::List(vec![Term::Var(0), Term::Any], Some(Box::new(Term::Var(1))));
-    let absent = Context::Not(Box::new(Context::Belief(held(vec![Term::Var(2)]))));
+    let pattern = AgentTerm::List(vec![AgentTerm::Var(0), AgentTerm::Any], Some(Box::new(AgentTerm::Var(1))));
+    let absent = PlanContext::Not(Box::new(PlanContext::Belief(held(vec![AgentTerm::Var(2)]))));
     let sum = op(BinaryOp::Add, Expr::Var(0), Expr::int(1));
-    let first = vec![Context::Unify(pattern, list), Context::Unify(Term::Var(2), sum), absent];
-    assert_eq!(got[0], StepKind::Test(Context::And(first)));
-    let asks = |i: Internal| StepKind::Test(Context::Internal(Box::new(i), Span::default()));
-    let formula = |arg| Context::Belief(held(vec![arg]));
-    assert_eq!(got[1], asks(Internal::Count { formula: formula(Term::Any), out: Term::Var(3) }));
+    let first = vec![PlanContext::Unify(pattern, list), PlanContext::Unify(AgentTerm::Var(2), sum), absent];
+    assert_eq!(got[0], PlanStepKind::Test(PlanContext::And(first)));
+    let asks = |i: InternalAct| PlanStepKind::Test(PlanContext::Internal(Box::new(i), Span::default()));
+    let formula = |arg| PlanContext::Belief(held(vec![arg]));
+    assert_eq!(got[1], asks(InternalAct::Count { formula: formula(AgentTerm::Any), out: AgentTerm::Var(3) }));
     let template = Expr::List(vec![Expr::Var(4), Expr::Var(3)], None);
-    let all = Internal::FindAll { template, formula: formula(Term::Var(4)), set: false, out: Term::Var(5) };
+    let all = InternalAct::FindAll {
+        template,
+        formula: formula(AgentTerm::Var(4)),
+        set: false,
+        out: AgentTerm::Var(5),
+    };
     assert_eq!(got[2], asks(all));
     // The variable of the formula is open again.
-    let set = Internal::FindAll {
+    let set = InternalAct::FindAll {
         template: Expr::Var(4),
-        formula: formula(Term::Var(4)),
+        formula: formula(AgentTerm::Var(4)),
         set: true,
-        out: Term::Var(6),
+        out: AgentTerm::Var(6),
     };
     assert_eq!(got[3], asks(set));
-    assert_eq!(got[4], asks(Internal::Member { element: Term::Var(7), list: Expr::Var(6) }));
+    assert_eq!(got[4], asks(InternalAct::Member { element: AgentTerm::Var(7), list: Expr::Var(6) }));
     let one = Expr::Const(Value::List(List::of(&[Value::Int(1)])));
-    let nth =
-        Internal::Apply { function: ListFunction::Nth, args: vec![Expr::int(0), one], out: Term::Var(8) };
+    let nth = InternalAct::Apply {
+        function: ListFunction::Nth,
+        args: vec![Expr::int(0), one],
+        out: AgentTerm::Var(8),
+    };
     assert_eq!(got[5], asks(nth));
 }
 
@@ -270,40 +294,40 @@ fn messages_are_about_what_each_agent_has() {
     );
     let names: Vec<&str> = p.contents.iter().map(|c| c.name.as_str()).collect();
     assert_eq!(names, ["b", "help", "c", "~b"]);
-    let belief = |id| Some(Subject::Belief(BeliefId(id)));
+    let belief = |id| Some(MessageSubject::Belief(BeliefId(id)));
     assert_eq!(p.contents[0].of, [belief(0), belief(0)]);
-    assert_eq!(p.contents[1].of, [None, Some(Subject::Goal(GoalId(0)))]);
+    assert_eq!(p.contents[1].of, [None, Some(MessageSubject::Goal(GoalId(0)))]);
     assert_eq!(p.contents[2].of, [None, belief(1)]);
     assert_eq!(p.contents[3].of, [belief(1), belief(2)]);
-    let body: Vec<&StepKind> = p.agents[0].plans[0].body.iter().map(|s| &s.kind).collect();
+    let body: Vec<&PlanStepKind> = p.agents[0].plans[0].body.iter().map(|s| &s.kind).collect();
     let to = || Some(symbol("R"));
-    let send = |to, performative, content, arg| StepKind::Send {
+    let send = |to, performative, content, arg| PlanStepKind::Send {
         to,
         performative,
         content: ContentId(content),
         args: vec![arg],
     };
-    let one = || Term::Expr(Expr::int(1));
+    let one = || AgentTerm::Expr(Expr::int(1));
     assert_eq!(body[0], &send(to(), Performative::Tell, 0, one()));
-    assert_eq!(body[1], &send(to(), Performative::Untell, 0, Term::Any));
-    assert_eq!(body[2], &send(None, Performative::Achieve, 1, Term::Expr(Expr::int(2))));
-    let ask = StepKind::Ask {
+    assert_eq!(body[1], &send(to(), Performative::Untell, 0, AgentTerm::Any));
+    assert_eq!(body[2], &send(None, Performative::Achieve, 1, AgentTerm::Expr(Expr::int(2))));
+    let ask = PlanStepKind::Ask {
         to: symbol("R"),
         content: ContentId(0),
-        args: vec![Term::Var(0)],
+        args: vec![AgentTerm::Var(0)],
         within: Some(Expr::float(5.0)),
     };
     assert_eq!(body[3], &ask);
-    let all = StepKind::AskAll {
+    let all = PlanStepKind::AskAll {
         to: symbol("R"),
         template: Expr::Var(1),
         content: ContentId(2),
-        args: vec![Term::Var(1), Term::Any],
-        out: Term::Var(2),
+        args: vec![AgentTerm::Var(1), AgentTerm::Any],
+        out: AgentTerm::Var(2),
         within: None,
     };
     assert_eq!(body[4], &all);
-    assert_eq!(body[5], &send(to(), Performative::Tell, 3, Term::Expr(Expr::Var(0))));
+    assert_eq!(body[5], &send(to(), Performative::Tell, 3, AgentTerm::Expr(Expr::Var(0))));
 }
 
 #[test]
@@ -313,24 +337,27 @@ fn goals_are_bounded_dropped_and_suspended() {
          .fail_goal(go); .abolish(b(_)); +b(1)[sure(9)]; -b(_)[source(_)]; .fail",
     );
     let within = Some(Expr::float(2.0));
-    assert_eq!(got[0], StepKind::Achieve { goal: GoalId(1), args: vec![Expr::int(1)], within });
-    let control = |what, goal| StepKind::Control { what, goal };
+    assert_eq!(got[0], PlanStepKind::Achieve { goal: GoalId(1), args: vec![Expr::int(1)], within });
+    let control = |what, goal| PlanStepKind::Control { what, goal };
     let sub = |arg| Some((GoalId(1), vec![arg]));
-    assert_eq!(got[1], control(Control::DropIntention, sub(Term::Any)));
-    assert_eq!(got[2], control(Control::DropDesire, sub(Term::Any)));
-    assert_eq!(got[3], control(Control::DropEvent, None));
-    assert_eq!(got[4], control(Control::Suspend, None));
-    assert_eq!(got[5], control(Control::Resume, sub(Term::Expr(Expr::int(2)))));
-    assert_eq!(got[6], control(Control::FailGoal, Some((GoalId(0), vec![]))));
-    assert_eq!(got[7], StepKind::Abolish(held(vec![Term::Any])));
-    let annotations = vec![(Annotation::Declared(0), Expr::int(9))];
+    assert_eq!(got[1], control(ControlAct::DropIntention, sub(AgentTerm::Any)));
+    assert_eq!(got[2], control(ControlAct::DropDesire, sub(AgentTerm::Any)));
+    assert_eq!(got[3], control(ControlAct::DropEvent, None));
+    assert_eq!(got[4], control(ControlAct::Suspend, None));
+    assert_eq!(got[5], control(ControlAct::Resume, sub(AgentTerm::Expr(Expr::int(2)))));
+    assert_eq!(got[6], control(ControlAct::FailGoal, Some((GoalId(0), vec![]))));
+    assert_eq!(got[7], PlanStepKind::Abolish(held(vec![AgentTerm::Any])));
+    let annotations = vec![(BeliefAnnotation::Declared(0), Expr::int(9))];
     assert_eq!(
         got[8],
-        StepKind::Add(Assertion { belief: BeliefId(0), args: vec![Expr::int(1)], annotations })
+        PlanStepKind::Add(Assertion { belief: BeliefId(0), args: vec![Expr::int(1)], annotations })
     );
-    let any = vec![(Annotation::Source, Term::Any)];
-    assert_eq!(got[9], StepKind::Remove(Literal { annotations: any, ..held(vec![Term::Any]) }));
-    assert_eq!(got[10], StepKind::Fail);
+    let any = vec![(BeliefAnnotation::Source, AgentTerm::Any)];
+    assert_eq!(
+        got[9],
+        PlanStepKind::Remove(BeliefLiteral { annotations: any, ..held(vec![AgentTerm::Any]) })
+    );
+    assert_eq!(got[10], PlanStepKind::Fail);
 }
 
 #[test]
@@ -341,15 +368,17 @@ fn suites_by_agents_reach_and_stop() {
          suite s by agents A { explore wise(3)\n stop after 20\n minimise\n reach each plan\n reach each context\n reach each edge\n\
            reach each message\n reach each path\n reach each bin of x }\nsuite t by agents A { explore pairwise }\nsuite u by agents A { explore learn }",
     );
-    let Method::Agents { explore, stop_after, goals, minimise, .. } = &p.suites[0].method else { panic!() };
-    assert_eq!((*explore, *stop_after, *minimise), (Explore::Wise(3), Some(20), true));
+    let SuiteMethod::Agents { explore, stop_after, goals, minimise, .. } = &p.suites[0].method else {
+        panic!()
+    };
+    assert_eq!((*explore, *stop_after, *minimise), (ExploreMode::Wise(3), Some(20), true));
     use ModelGoal::{Bins, Contexts, Edges, Messages, Paths, Plans};
     assert_eq!(goals[..], [Plans, Contexts, Edges, Messages, Paths, Bins(CrossId(0))]);
     let explore = |i: usize| match &p.suites[i].method {
-        Method::Agents { explore, .. } => *explore,
-        Method::Search { .. } | Method::Random { .. } => panic!(),
+        SuiteMethod::Agents { explore, .. } => *explore,
+        SuiteMethod::Search { .. } | SuiteMethod::Random { .. } => panic!(),
     };
-    assert_eq!((explore(1), explore(2)), (Explore::Wise(2), Explore::Learn));
+    assert_eq!((explore(1), explore(2)), (ExploreMode::Wise(2), ExploreMode::Learn));
 }
 
 #[test]
@@ -377,28 +406,28 @@ fn automata_count_slots_from_shared_to_binders() {
     assert_eq!((e.selects[0].lo, e.selects[0].hi, e.selects[0].is_bool), (0, 5, false));
     assert_eq!(
         e.sync,
-        Sync::Receive { event: EventId(0), args: vec![ReceiveArg::Bind, ReceiveArg::Match(TRUE)] }
+        SyncLabel::Receive { event: EventId(0), args: vec![ReceiveArg::Bind, ReceiveArg::Match(TRUE)] }
     );
     let sum = op(BinaryOp::Add, Expr::Var(4), Expr::Var(3));
-    assert_eq!(e.updates[0], Update::Assign { place: hrdsl_ir::expr::Place::slot(2), value: sum });
+    assert_eq!(e.updates[0], EdgeAssignment::Assign { place: hrdsl_ir::expr::Lvalue::slot(2), value: sum });
     assert_eq!(
         e.updates[1],
-        Update::Assign { place: hrdsl_ir::expr::Place::slot(0), value: Expr::bool(false) }
+        EdgeAssignment::Assign { place: hrdsl_ir::expr::Lvalue::slot(0), value: Expr::bool(false) }
     );
-    assert!(matches!(e.updates[2], Update::Reset { clock, .. } if clock.0 == 0));
+    assert!(matches!(e.updates[2], EdgeAssignment::Reset { clock, .. } if clock.0 == 0));
     // A variable in `on` is compared.
     let e = &a.edges[1];
     let any = ReceiveArg::Match(ArgPattern::Any);
-    assert_eq!(e.sync, Sync::Receive { event: EventId(0), args: vec![ReceiveArg::Bind, any] });
+    assert_eq!(e.sync, SyncLabel::Receive { event: EventId(0), args: vec![ReceiveArg::Bind, any] });
     assert_eq!(e.guard, Some(op(BinaryOp::Eq, Expr::Var(3), Expr::Var(2))));
     assert_eq!(
         e.updates,
-        [Update::Assign {
-            place: hrdsl_ir::expr::Place::slot(2),
+        [EdgeAssignment::Assign {
+            place: hrdsl_ir::expr::Lvalue::slot(2),
             value: op(BinaryOp::Sub, Expr::Var(2), Expr::int(1))
         }]
     );
-    let send = Sync::Send { event: EventId(0), args: vec![Expr::int(2), Expr::bool(false)] };
+    let send = SyncLabel::Send { event: EventId(0), args: vec![Expr::int(2), Expr::bool(false)] };
     assert_eq!(p.automata[1].edges[0].sync, send);
     assert_eq!(p.networks[0].automata.len(), 2);
 }
@@ -420,12 +449,12 @@ fn what_a_stimulus_emits_follows_through_committed_locations() {
     let edge = |i: usize| {
         let e = &a.edges[i];
         let event = match &e.sync {
-            Sync::Send { event, .. } => p.event(*event).name.as_str(),
-            Sync::Offer { .. }
-            | Sync::Accept { .. }
-            | Sync::Join { .. }
-            | Sync::Internal
-            | Sync::Receive { .. } => "-",
+            SyncLabel::Send { event, .. } => p.event(*event).name.as_str(),
+            SyncLabel::Offer { .. }
+            | SyncLabel::Accept { .. }
+            | SyncLabel::Join { .. }
+            | SyncLabel::Internal
+            | SyncLabel::Receive { .. } => "-",
         };
         (e.from.0, event, e.to.0, e.clock_guard.len(), e.updates.len())
     };
@@ -442,15 +471,15 @@ fn what_a_stimulus_emits_follows_through_committed_locations() {
     assert_eq!([edge(10), edge(11)], [(7, "f", 0, 0, 1), (7, "-", 0, 0, 1)]);
     assert_eq!(
         a.edges[8].updates[0],
-        Update::Assign { place: hrdsl_ir::expr::Place::slot(1), value: Expr::Var(2) }
+        EdgeAssignment::Assign { place: hrdsl_ir::expr::Lvalue::slot(1), value: Expr::Var(2) }
     );
     assert_eq!(a.edges[10].guard, Some(Expr::Var(1)));
     assert_eq!(a.edges[11].guard, Some(not(Expr::Var(1))));
     assert_eq!(
         a.edges[10].updates,
-        [Update::Assign { place: hrdsl_ir::expr::Place::slot(1), value: Expr::bool(false) }]
+        [EdgeAssignment::Assign { place: hrdsl_ir::expr::Lvalue::slot(1), value: Expr::bool(false) }]
     );
-    let sent = Sync::Send { event: EventId(1), args: vec![Expr::Var(1), Expr::int(2)] };
+    let sent = SyncLabel::Send { event: EventId(1), args: vec![Expr::Var(1), Expr::int(2)] };
     assert_eq!(a.edges[10].sync, sent);
 }
 
@@ -479,7 +508,7 @@ fn worlds_have_their_parts_in_place() {
     assert_eq!((palm.name.as_str(), palm.position), ("robot.palm", [0.0, 1.0, 1.0]));
     let quarter = std::f64::consts::FRAC_PI_2;
     assert_eq!(palm.rotation, [0.0, quarter, quarter]);
-    assert_eq!(palm.shape, Shape::Box { size: [0.01, 0.02, 0.03] });
+    assert_eq!(palm.shape, BodyShape::Box { size: [0.01, 0.02, 0.03] });
     let j = &w.joints[0];
     assert_eq!((j.name.as_str(), j.anchor, j.axis), ("robot.j", [-1.0, 1.0, 1.0], [-1.0, 0.0, 0.0]));
     assert_eq!((j.lo, j.hi, w.arms[0].max_speed), (-quarter, quarter, 1.0));
@@ -491,7 +520,7 @@ fn worlds_have_their_parts_in_place() {
     let near = &p.signals[0];
     assert_eq!(near.terms, [Measure::Distance(palm, drink), Measure::Coordinate(drink, Axis::Z)]);
     let close = op(BinaryOp::Lt, Expr::Var(0), Expr::float(0.05));
-    let low = op(BinaryOp::Lt, Expr::Call(Function::Abs, vec![Expr::Var(1)]), Expr::float(1.0));
+    let low = op(BinaryOp::Lt, Expr::Call(NumberFunction::Abs, vec![Expr::Var(1)]), Expr::float(1.0));
     assert_eq!(near.value, op(BinaryOp::And, close, low));
     // An earlier signal is put in.
     assert_eq!(p.signals[1].terms.len(), 3);
@@ -503,7 +532,7 @@ fn worlds_have_their_parts_in_place() {
     let ranged = op(BinaryOp::Lt, Expr::Var(0), Expr::float(2.0));
     assert_eq!(rule.guard, Some(op(BinaryOp::And, ranged, Expr::Var(1))));
     assert_eq!(rule.args, [Expr::Var(2), Expr::Var(3)]);
-    let RuleOn::Commanded { device, command } = w.rules[1].on else { panic!("{:?}", w.rules[1].on) };
+    let RuleTrigger::Commanded { device, command } = w.rules[1].on else { panic!("{:?}", w.rules[1].on) };
     assert_eq!(
         (w.device(device).name.as_str(), w.command(device, command).name.as_str()),
         ("robot.grip", "close")
@@ -526,13 +555,13 @@ fn worlds_have_their_parts_in_place() {
 }
 
 /// `(from, to, on, guard, effects)` of each edge; events by name.
-fn edges(p: &Program, monitor: usize) -> Vec<(u16, u16, String, bool, Vec<Effect>)> {
-    let on = |on: &On| match on {
-        On::Event(patterns) => {
+fn edges(p: &Program, monitor: usize) -> Vec<(u16, u16, String, bool, Vec<MonitorEffect>)> {
+    let on = |on: &MonitorTrigger| match on {
+        MonitorTrigger::Event(patterns) => {
             patterns.iter().map(|e| p.event(e.event).name.clone()).collect::<Vec<_>>().join("|")
         }
-        On::Sample => "sample".to_owned(),
-        On::Deadline => "deadline".to_owned(),
+        MonitorTrigger::Sample => "sample".to_owned(),
+        MonitorTrigger::Deadline => "deadline".to_owned(),
     };
     p.monitors[monitor]
         .edges
@@ -544,7 +573,7 @@ fn edges(p: &Program, monitor: usize) -> Vec<(u16, u16, String, bool, Vec<Effect
 #[test]
 #[expect(clippy::too_many_lines, reason = "a flat list of expectations")]
 fn patterns_become_monitors() {
-    use Effect::{Discharge, Fail, ResetClock, Trigger};
+    use MonitorEffect::{Discharge, Fail, ResetClock, Trigger};
     let p = program(&format!(
         "{WORLD}event t(ok: bool) from robot\nevent r from robot\n\
          require A functional \"title\" after t(_):\n  (r or read) within 10 s\nrequire B functional t(true) causes r\n\
@@ -554,8 +583,9 @@ fn patterns_become_monitors() {
          require H safety never r while not (cup.z > 5 cm || 3 m <= high)\n\
          assume at most 4 t within 300 s"
     ));
-    let e =
-        |from, to, on: &str, guard, effects: &[Effect]| (from, to, on.to_owned(), guard, effects.to_vec());
+    let e = |from, to, on: &str, guard, effects: &[MonitorEffect]| {
+        (from, to, on.to_owned(), guard, effects.to_vec())
+    };
     let a = &p.monitors[0];
     assert_eq!((a.title.as_str(), a.text.as_str()), ("title", "after t(_): (r or read) within 10 s"));
     assert_eq!((a.states[1].pending, a.states[1].deadline), (true, Some(10 * SECOND)));
@@ -569,7 +599,7 @@ fn patterns_become_monitors() {
         ]
     );
     assert_eq!((edges(&p, 1).len(), p.monitors[1].states[1].deadline), (3, None));
-    assert_eq!(p.monitors[1].edges[0].on, On::Event(vec![pattern(3, &[TRUE])]));
+    assert_eq!(p.monitors[1].edges[0].on, MonitorTrigger::Event(vec![pattern(3, &[TRUE])]));
     assert_eq!(
         edges(&p, 2),
         [
@@ -614,7 +644,7 @@ fn patterns_become_monitors() {
     assert_eq!(h.signals, [SignalId(2)], "`cup.z` is just what the signal `high` measures");
     let above = op(BinaryOp::Sub, Expr::Var(0), Expr::float(0.05));
     let far = op(BinaryOp::Sub, Expr::Var(0), Expr::float(3.0));
-    assert_eq!(h.margin.as_ref().unwrap().value, Expr::Call(Function::Max, vec![above, far]));
+    assert_eq!(h.margin.as_ref().unwrap().value, Expr::Call(NumberFunction::Max, vec![above, far]));
     let assumed = &p.assumptions[0];
     assert_eq!((assumed.at_most, assumed.within), (4, Some(300 * SECOND)));
     assert_eq!(assumed.text, "assume at most 4 t within 300 s");
@@ -638,22 +668,29 @@ fn coverage_suites_and_tests() {
     assert_eq!(c.count, [pattern(1, &[TRUE]), pattern(0, &[])]);
     let bins: Vec<(i64, Option<i64>)> = c.bins.iter().map(|b| (b.lo, b.hi)).collect();
     assert_eq!(bins, [(0, Some(0)), (1, Some(3)), (4, None)]);
-    let at = |bin| Condition::In { point: PointId(0), bin };
+    let at = |bin| BinCondition::In { point: CoverpointId(0), bin };
     let x = &p.coverage.crosses[0];
-    let some = Condition::And(vec![Condition::Not(Box::new(at(0))), Condition::Or(vec![at(1), at(2)])]);
+    let some =
+        BinCondition::And(vec![BinCondition::Not(Box::new(at(0))), BinCondition::Or(vec![at(1), at(2)])]);
     assert_eq!((&x.bins[0].when, x.ignore.as_slice()), (&some, &[at(2)][..]));
 
-    let Method::Agents { players, choose, explore, stop_after, goals, minimise } = &p.suites[0].method else {
+    let SuiteMethod::Agents { players, choose, explore, stop_after, goals, minimise } = &p.suites[0].method
+    else {
         panic!()
     };
     assert_eq!((*stop_after, goals.as_slice(), *minimise), (None, &[][..], false));
-    assert_eq!((players.len(), *explore), (2, Explore::Random));
+    assert_eq!((players.len(), *explore), (2, ExploreMode::Random));
     assert_eq!((choose[0].how, choose[1].how), (ChoiceKind::OnePer(1), ChoiceKind::Any));
     let held = |holds| {
-        let args = vec![Term::Var(0), Term::Expr(Expr::Const(Value::Bool(holds)))];
-        Context::Belief(Literal { origin: Span::default(), belief: BeliefId(0), args, annotations: vec![] })
+        let args = vec![AgentTerm::Var(0), AgentTerm::Expr(Expr::Const(Value::Bool(holds)))];
+        PlanContext::Belief(BeliefLiteral {
+            origin: Span::default(),
+            belief: BeliefId(0),
+            args,
+            annotations: vec![],
+        })
     };
-    let only_true = Context::And(vec![held(true), Context::Not(Box::new(held(false)))]);
+    let only_true = PlanContext::And(vec![held(true), PlanContext::Not(Box::new(held(false)))]);
     let condition = choose[1].condition.as_ref().unwrap();
     assert_eq!((&condition.context, condition.vars.as_slice()), (&only_true, &["N".to_owned()][..]));
     assert_eq!(choose[0].condition, None);
@@ -661,12 +698,12 @@ fn coverage_suites_and_tests() {
         (p.suites[0].tests, p.suites[0].horizon, p.suites[0].patience),
         (100, 300 * SECOND, 60 * SECOND)
     );
-    let Method::Search { network: NetworkId(0), goals, .. } = &p.suites[1].method else { panic!() };
+    let SuiteMethod::Search { network: NetworkId(0), goals, .. } = &p.suites[1].method else { panic!() };
     assert_eq!(goals[..], [SearchGoal::Bins(CrossId(0)), SearchGoal::Locations, SearchGoal::Edges]);
     assert_eq!(p.suites[1].tests, 7);
     assert_eq!(
         p.suites[2].method,
-        Method::Random {
+        SuiteMethod::Random {
             stimuli: vec![EventId(2)],
             awaits: vec![pattern(1, &[ArgPattern::Any])],
             length_lo: 2,
@@ -716,7 +753,7 @@ fn constants_fold_as_the_run_time_evaluates() {
                 };
                 let with = |x: &str| {
                     let text = format!("scenario fold\n{ACTORS}{}", stimulus(x));
-                    let c = compile(Input { name: "fold.hri", text: &text }, &[]);
+                    let c = compile(InputFile { name: "fold.hri", text: &text }, &[]);
                     let steps = c.program?.events[0].stimulus.clone()?.steps;
                     let e = match steps.into_iter().next()? {
                         StimulusStep::Hold { seconds } => seconds,
@@ -817,12 +854,12 @@ fn symbols_fold_as_the_run_time_evaluates() {
 }
 
 /// `nanos + factor · value`
-fn time(seconds: i64, terms: &[(i64, Expr)]) -> Time {
+fn time(seconds: i64, terms: &[(i64, Expr)]) -> TimeSum {
     let term = |(factor, value): &(i64, Expr)| TimeTerm { factor: factor * SECOND, value: value.clone() };
-    Time { nanos: seconds * SECOND, terms: terms.iter().map(term).collect() }
+    TimeSum { nanos: seconds * SECOND, terms: terms.iter().map(term).collect() }
 }
 
-fn constraint(clock: u16, minus: Option<u16>, op: ClockOp, bound: Time) -> ClockConstraint {
+fn constraint(clock: u16, minus: Option<u16>, op: ClockOp, bound: TimeSum) -> ClockConstraint {
     ClockConstraint { clock: ClockId(clock), minus: minus.map(ClockId), op, bound }
 }
 
@@ -837,7 +874,7 @@ fn channels_are_offered_accepted_and_joined() {
          network net = A | B",
     );
     let channels: Vec<_> = p.channels.iter().map(|c| (c.name.as_str(), c.urgent, c.kind.clone())).collect();
-    let party = |automaton, optional| Party { automaton: AutomatonId(automaton), optional };
+    let party = |automaton, optional| ChannelParticipant { automaton: AutomatonId(automaton), optional };
     assert_eq!(
         channels,
         [
@@ -859,20 +896,26 @@ fn channels_are_offered_accepted_and_joined() {
     let take = ChannelId(0);
     let e = &p.automata[0].edges;
     // n 0, v 1, s 2, the first argument 3, w 4
-    assert_eq!(e[0].sync, Sync::Accept { channel: take, args: vec![bind, bind] });
+    assert_eq!(e[0].sync, SyncLabel::Accept { channel: take, args: vec![bind, bind] });
     let first = op(BinaryOp::Eq, Expr::Var(3), op(BinaryOp::Add, Expr::Var(1), Expr::int(1)));
     let left = op(BinaryOp::Eq, Expr::Var(4), symbol("left"));
     assert_eq!(e[0].guard, Some(op(BinaryOp::And, first, left)));
-    assert_eq!(e[1].sync, Sync::Offer { channel: take, args: vec![Expr::Var(0), symbol("right")] });
-    assert_eq!(e[2].sync, Sync::Join { channel: ChannelId(3) });
-    assert_eq!(e[3].sync, Sync::Accept { channel: ChannelId(2), args: vec![any, any] });
-    assert_eq!(e[4].sync, Sync::Accept { channel: ChannelId(2), args: vec![bind, ReceiveArg::Match(TRUE)] });
-    assert_eq!(e[5].sync, Sync::Accept { channel: ChannelId(1), args: vec![] });
+    assert_eq!(e[1].sync, SyncLabel::Offer { channel: take, args: vec![Expr::Var(0), symbol("right")] });
+    assert_eq!(e[2].sync, SyncLabel::Join { channel: ChannelId(3) });
+    assert_eq!(e[3].sync, SyncLabel::Accept { channel: ChannelId(2), args: vec![any, any] });
+    assert_eq!(
+        e[4].sync,
+        SyncLabel::Accept { channel: ChannelId(2), args: vec![bind, ReceiveArg::Match(TRUE)] }
+    );
+    assert_eq!(e[5].sync, SyncLabel::Accept { channel: ChannelId(1), args: vec![] });
     let e = &p.automata[1].edges;
-    assert_eq!(e[0].sync, Sync::Offer { channel: ChannelId(2), args: vec![Expr::Var(0), Expr::bool(false)] });
+    assert_eq!(
+        e[0].sync,
+        SyncLabel::Offer { channel: ChannelId(2), args: vec![Expr::Var(0), Expr::bool(false)] }
+    );
     let right = ReceiveArg::Match(ArgPattern::Is(Value::Symbol(Symbol::intern("right"))));
     let three = ReceiveArg::Match(ArgPattern::Is(Value::Int(3)));
-    assert_eq!(e[2].sync, Sync::Accept { channel: take, args: vec![three, right] });
+    assert_eq!(e[2].sync, SyncLabel::Accept { channel: take, args: vec![three, right] });
 }
 
 #[test]
@@ -919,8 +962,11 @@ fn clocks_are_shared_compared_and_set() {
         ]
     );
     assert_eq!(e.guard, Some(op(BinaryOp::Gt, v.clone(), Expr::int(0))));
-    let set =
-        |clock, from: Option<u16>, to| Update::Reset { clock: ClockId(clock), from: from.map(ClockId), to };
+    let set = |clock, from: Option<u16>, to| EdgeAssignment::Reset {
+        clock: ClockId(clock),
+        from: from.map(ClockId),
+        to,
+    };
     let half = TimeTerm { factor: -SECOND / 2, value: v.clone() };
     assert_eq!(
         e.updates,
@@ -928,10 +974,10 @@ fn clocks_are_shared_compared_and_set() {
             set(3, None, time(3, &[])),
             set(4, None, time(0, &[(1, n.clone())])),
             set(3, Some(4), time(0, &[])),
-            set(1, Some(0), Time { nanos: 2 * SECOND, terms: vec![half] }),
+            set(1, Some(0), TimeSum { nanos: 2 * SECOND, terms: vec![half] }),
             set(3, Some(3), time(1, &[])),
             set(4, Some(4), time(-2, &[])),
-            Update::zero(ClockId(3)),
+            EdgeAssignment::zero(ClockId(3)),
         ]
     );
     let product = op(BinaryOp::Mul, n.clone(), v);

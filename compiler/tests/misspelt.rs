@@ -1,9 +1,9 @@
 //! No misspelt name goes unnoticed: every name of the reference scenario, at every place, is misspelt in two ways, and each
 //! time the compiler must point at the very place and offer the right name.
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
 use hrdsl_source::Diagnostic;
-use hrdsl_syntax::token::{Class, KEYWORDS};
+use hrdsl_syntax::token::{KEYWORDS, KeywordClass};
 
 const SCENARIO: &str = include_str!("../../examples/handover/scenario.hri");
 
@@ -85,7 +85,7 @@ fn is_name(tokens: &[Token], i: usize) -> bool {
     let neighbour = |i: Option<usize>| i.and_then(|i| tokens.get(i)).map_or("", |t| t.text.as_str());
     let (before, after) = (neighbour(i.checked_sub(1)), neighbour(Some(i + 1)));
     let called = after == "(" && !["at", "count", "tool"].contains(&word);
-    let soft = KEYWORDS.iter().any(|k| k.word == word && k.class == Class::Soft);
+    let soft = KEYWORDS.iter().any(|k| k.word == word && k.class == KeywordClass::Soft);
     soft && after != "each"
         && (called
             || ["->", "=", ".", ":", ",", ")"].contains(&after)
@@ -189,8 +189,8 @@ fn misspellings(name: &str) -> Vec<String> {
     all
 }
 
-fn compiled(text: &str) -> Compilation {
-    compile(Input { name: "scenario.hri", text }, &[])
+fn compiled(text: &str) -> CompilationResult {
+    compile(InputFile { name: "scenario.hri", text }, &[])
 }
 
 fn offers(d: &Diagnostic, name: &str) -> bool {

@@ -4,8 +4,8 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use hrdsl_compiler::{Compilation, Input, compile, recheck};
-use hrdsl_source::{Code, FileId, Severity, Span};
+use hrdsl_compiler::{CompilationResult, InputFile, compile, recheck};
+use hrdsl_source::{DiagnosticCode, FileId, Severity, Span};
 
 /// The examples, and the fixtures of the checker with their hundreds of errors.
 fn scenarios() -> Vec<(String, String)> {
@@ -23,15 +23,15 @@ fn scenarios() -> Vec<(String, String)> {
     all
 }
 
-type Said = BTreeSet<(Span, Code, Severity, String)>;
+type Said = BTreeSet<(Span, DiagnosticCode, Severity, String)>;
 
 /// What is said of the whole, in one place of it: that there is no world or no name, and what `allow` allows.
-fn is_of_the_whole(name: &str, code: Code) -> bool {
-    code == Code::MISSING_DECLARATION || name.ends_with("allow_wrong.hri")
+fn is_of_the_whole(name: &str, code: DiagnosticCode) -> bool {
+    code == DiagnosticCode::MISSING_DECLARATION || name.ends_with("allow_wrong.hri")
 }
 
 /// What a whole check says of one declaration: its errors.
-fn of_declaration(c: &Compilation, whole: Span) -> Said {
+fn of_declaration(c: &CompilationResult, whole: Span) -> Said {
     let inside = |span: Span| span.file == whole.file && whole.start <= span.start && span.end <= whole.end;
     let errors = c.diagnostics.iter().filter(|d| d.is_error() && inside(d.span()));
     errors.map(|d| (d.span(), d.code, d.severity, d.message.clone())).collect()
@@ -41,7 +41,7 @@ fn of_declaration(c: &Compilation, whole: Span) -> Said {
 fn of_the_same_text_the_same_is_said() {
     let (mut declarations, mut errors, mut wrong) = (0, 0, Vec::new());
     for (name, text) in scenarios() {
-        let c = compile(Input { name: &name, text: &text }, &[]);
+        let c = compile(InputFile { name: &name, text: &text }, &[]);
         for item in &c.ast[0].items {
             let span = item.span;
             let Some(again) = recheck(&c, span.start as usize, &text[span.range()]) else { continue };
@@ -53,7 +53,7 @@ fn of_the_same_text_the_same_is_said() {
                 .map(|d| (d.span(), d.code, d.severity, d.message.clone()))
                 .collect();
             let expected = of_declaration(&c, span);
-            let differs = |(_, code, ..): &&(_, Code, _, _)| !is_of_the_whole(&name, *code);
+            let differs = |(_, code, ..): &&(_, DiagnosticCode, _, _)| !is_of_the_whole(&name, *code);
             let alone: Vec<_> = said.difference(&expected).filter(differs).collect();
             let whole: Vec<_> = expected.difference(&said).filter(differs).collect();
             if !alone.is_empty() || !whole.is_empty() {
@@ -74,7 +74,7 @@ require R1 functional \"who asks is served\" asked causes done within 3 s\n";
 
 #[test]
 fn new_text_is_checked_where_it_stands() {
-    let c = compile(Input { name: "small", text: TEXT }, &[]);
+    let c = compile(InputFile { name: "small", text: TEXT }, &[]);
     assert!(!c.has_errors(), "{:?}", c.diagnostics);
     let at = TEXT.find("agent").unwrap();
     let new = "agent Human plays person {\n  belief hungry\n\n\n  plan +!go when hungry { asekd(3) }\n  goal !go\n}";
@@ -89,17 +89,17 @@ fn new_text_is_checked_where_it_stands() {
 
 #[test]
 fn places_in_later_declarations_move_along() {
-    let c = compile(Input { name: "small", text: TEXT }, &[]);
+    let c = compile(InputFile { name: "small", text: TEXT }, &[]);
     let at = TEXT.find("event asked").unwrap();
     let new = "event        done from person";
     let again = recheck(&c, at, new).unwrap();
     assert!(!again.same_names);
     let edited = TEXT.replacen("event asked(n: int) from person", new, 1);
-    let whole = compile(Input { name: "small", text: &edited }, &[]);
+    let whole = compile(InputFile { name: "small", text: &edited }, &[]);
     // The whole check says it of the later one of the two.
     let twice = |c: &[hrdsl_source::Diagnostic]| -> BTreeSet<Span> {
         c.iter()
-            .filter(|d| d.code == Code::DUPLICATE_NAME)
+            .filter(|d| d.code == DiagnosticCode::DUPLICATE_NAME)
             .flat_map(|d| d.labels.iter().map(|l| l.span))
             .collect()
     };
@@ -110,7 +110,7 @@ fn places_in_later_declarations_move_along() {
 
 #[test]
 fn what_is_no_declaration_is_not_checked() {
-    let c = compile(Input { name: "small", text: TEXT }, &[]);
+    let c = compile(InputFile { name: "small", text: TEXT }, &[]);
     let at = TEXT.find("event done").unwrap();
     for text in ["", "// gone", "event a from person event b from person", "scenario other"] {
         assert!(recheck(&c, at, text).is_none(), "{text}");

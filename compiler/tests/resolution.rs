@@ -4,8 +4,8 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use hrdsl_compiler::{Compilation, Input, compile};
-use hrdsl_model::{DefinedType, Definition, INTERNAL_ACTIONS, UNITS, type_named};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
+use hrdsl_model::{DefinedType, INTERNAL_ACTIONS, NameDefinition, UNITS, type_named};
 use hrdsl_source::FileId;
 use hrdsl_syntax::token::KEYWORDS;
 
@@ -23,14 +23,14 @@ fn examples() -> Vec<(String, String)> {
     found
 }
 
-fn compiled(name: &str, text: &str) -> Compilation {
-    let c = compile(Input { name, text }, &[]);
+fn compiled(name: &str, text: &str) -> CompilationResult {
+    let c = compile(InputFile { name, text }, &[]);
     assert!(c.program.is_some(), "{name}: {:?}", c.diagnostics);
     c
 }
 
 /// What a word of the first file means.
-fn meanings(c: &Compilation, at: usize) -> Vec<Definition> {
+fn meanings(c: &CompilationResult, at: usize) -> Vec<NameDefinition> {
     c.scenario.as_ref().unwrap().names.at(FileId(0), at).cloned().collect()
 }
 
@@ -108,7 +108,7 @@ fn nth(word: &str, n: usize) -> usize {
 #[test]
 fn a_use_has_its_definition_and_that_its_type_and_documentation() {
     let c = compiled("small.hri", SMALL);
-    let one = |at: usize| -> Definition {
+    let one = |at: usize| -> NameDefinition {
         let all = meanings(&c, at);
         assert_eq!(all.len(), 1, "{all:?}");
         all[0].clone()

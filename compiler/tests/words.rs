@@ -1,9 +1,9 @@
 //! Keywords are names wherever they cannot be meant as keywords: each that is not reserved, as the name of each thing, declared and
 //! used, checked without errors, formatted, and checked again.
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_syntax::format;
-use hrdsl_syntax::token::{Class, KEYWORDS};
+use hrdsl_syntax::token::{KEYWORDS, KeywordClass};
 
 const PEOPLE: &str =
     "scenario words\n\nactor cook : environment\nactor robot : system\n\nevent ready from robot to cook\n";
@@ -175,7 +175,7 @@ const KINDS: &[(&str, &str)] = &[
 ];
 
 fn errors(text: &str) -> Vec<String> {
-    let c = compile(Input { name: "words.hri", text }, &[]);
+    let c = compile(InputFile { name: "words.hri", text }, &[]);
     let errors = c.diagnostics.iter().filter(|d| d.is_error());
     errors.map(|d| format!("{} {} {}", c.files.place(d.span()), c.files.text(d.span()), d.message)).collect()
 }
@@ -183,7 +183,7 @@ fn errors(text: &str) -> Vec<String> {
 #[test]
 fn every_keyword_is_a_name_of_everything() {
     let mut wrong = Vec::new();
-    for word in KEYWORDS.iter().filter(|k| k.class != Class::Reserved).map(|k| k.word) {
+    for word in KEYWORDS.iter().filter(|k| k.class != KeywordClass::Reserved).map(|k| k.word) {
         for (kind, body) in KINDS {
             // What follows `wait` and `seed` in parentheses is a time, and a number.
             if kind.starts_with("stimulus with") && ["wait", "seed"].contains(&word) {

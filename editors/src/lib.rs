@@ -9,7 +9,7 @@ pub mod words;
 
 /// A file that is made here.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Generated {
+pub struct GeneratedFile {
     /// Where it is committed, from the `editors` folder.
     pub path: &'static str,
     pub text: String,
@@ -19,7 +19,7 @@ pub struct Generated {
 ///
 /// # Errors
 /// A template that cannot be filled: says what is wrong with it.
-pub fn generated() -> Result<Vec<Generated>, String> {
+pub fn generated() -> Result<Vec<GeneratedFile>, String> {
     textmate()
 }
 
@@ -27,13 +27,13 @@ pub fn generated() -> Result<Vec<Generated>, String> {
 ///
 /// # Errors
 /// A template that cannot be filled: says what is wrong with it.
-pub fn textmate() -> Result<Vec<Generated>, String> {
+pub fn textmate() -> Result<Vec<GeneratedFile>, String> {
     let template = include_str!("../templates/hrdsl.tmLanguage.template");
     Ok(vec![
-        Generated {
+        GeneratedFile {
             path: "vscode/syntaxes/hrdsl.tmLanguage.json",
             text: template::fill(template, &words::list)?,
         },
-        Generated { path: "vscode/test/keywords.json", text: words::registry() },
+        GeneratedFile { path: "vscode/test/keywords.json", text: words::registry() },
     ])
 }

@@ -16,16 +16,16 @@ pub(crate) fn fill(
         let (name, value) = line.split_once(" = ").ok_or_else(|| format!("not a definition: `{line}`"))?;
         defined.insert(name.trim(), value.trim());
     }
-    let filler = Filler { defined, list };
+    let filler = TemplateFiller { defined, list };
     filler.expand(body, 0, &json_escaped)
 }
 
-struct Filler<'t> {
+struct TemplateFiller<'t> {
     defined: BTreeMap<&'t str, &'t str>,
     list: &'t dyn Fn(&str) -> Option<Vec<&'static str>>,
 }
 
-impl Filler<'_> {
+impl TemplateFiller<'_> {
     /// Replaces every `{{name}}`, and passes what comes in its place through `escape`.
     fn expand(&self, text: &str, depth: usize, escape: &dyn Fn(&str) -> String) -> Result<String, String> {
         if depth > DEPTH {

@@ -1,7 +1,7 @@
 //! The words of the language, as templates name them.
 
 use hrdsl_model::{UNITS, type_names};
-use hrdsl_syntax::token::{Class, KEYWORDS, Keyword};
+use hrdsl_syntax::token::{KEYWORDS, Keyword, KeywordClass};
 
 /// The words of a list: `heads`, `hard`, `soft`, `soft:PLACE`, `units` or `types`. `None`: there is no such list.
 #[must_use]
@@ -9,15 +9,15 @@ pub fn list(name: &str) -> Option<Vec<&'static str>> {
     let words =
         |keep: &dyn Fn(&Keyword) -> bool| KEYWORDS.iter().filter(|k| keep(k)).map(|k| k.word).collect();
     match name {
-        "heads" => Some(words(&|k| k.class == Class::Head)),
-        "hard" => Some(words(&|k| matches!(k.class, Class::Hard | Class::Reserved))),
-        "soft" => Some(words(&|k| k.class == Class::Soft)),
+        "heads" => Some(words(&|k| k.class == KeywordClass::Head)),
+        "hard" => Some(words(&|k| matches!(k.class, KeywordClass::Hard | KeywordClass::Reserved))),
+        "soft" => Some(words(&|k| k.class == KeywordClass::Soft)),
         "units" => Some(base_units()),
         // A shared clock is declared as a variable is.
         "types" => Some(type_names().chain(["clock"]).collect()),
         other => {
             let place = other.strip_prefix("soft:")?;
-            let found: Vec<_> = words(&|k| k.class == Class::Soft && places(k).any(|p| p == place));
+            let found: Vec<_> = words(&|k| k.class == KeywordClass::Soft && places(k).any(|p| p == place));
             (!found.is_empty()).then_some(found)
         }
     }
@@ -41,9 +41,9 @@ fn base_units() -> Vec<&'static str> {
 pub(crate) fn registry() -> String {
     let row = |k: &Keyword| {
         let class = match k.class {
-            Class::Head => "head",
-            Class::Hard | Class::Reserved => "hard",
-            Class::Soft => "soft",
+            KeywordClass::Head => "head",
+            KeywordClass::Hard | KeywordClass::Reserved => "hard",
+            KeywordClass::Soft => "soft",
         };
         format!("  {{ \"word\": \"{}\", \"class\": \"{class}\", \"place\": \"{}\" }}", k.word, k.place)
     };

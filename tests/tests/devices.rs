@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_harness::{
-    CommandRequest, Harness, Player, SystemAnswer, SystemArgument, SystemPlayer, SystemRequest, WorldStage,
+    ActorPlayer, CommandRequest, HarnessLoop, SystemAnswer, SystemArgument, SystemPlayer, SystemRequest,
+    WorldStage,
     doubles::{ToldStep, ToldSystem},
 };
 use hrdsl_ir::{
@@ -40,7 +41,7 @@ system robot { run "python3 robot.py" }
 "#;
 
 fn program() -> Program {
-    let c = compile(Input { name: "bench.hri", text: SCENARIO }, &[]);
+    let c = compile(InputFile { name: "bench.hri", text: SCENARIO }, &[]);
     c.program.unwrap_or_else(|| panic!("{:#?}", c.diagnostics))
 }
 
@@ -61,10 +62,10 @@ fn run(steps: Vec<ToldStep>) -> (Vec<(Nanos, u64, SystemAnswer)>, Vec<String>) {
     let system = ToldSystem::new(steps);
     let answers = system.answers.clone();
     let robot = program.actor_named("robot").unwrap();
-    let players: Vec<Box<dyn Player + '_>> = vec![Box::new(SystemPlayer::new(&program, robot, system))];
+    let players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(SystemPlayer::new(&program, robot, system))];
     let world = SimWorld::new(&program).unwrap().unwrap();
     let stage = WorldStage::new(&program, Box::new(world));
-    let run = Harness::new(&program, players, Some(stage), 60 * SECOND).run();
+    let run = HarnessLoop::new(&program, players, Some(stage), 60 * SECOND).run();
     let event = |step: &hrdsl_trace::TraceStep| match &step.what {
         hrdsl_trace::TraceStepKind::Event { event, .. } => Some(program.event(*event).name.clone()),
         _ => None,

@@ -2,21 +2,21 @@
 
 use std::fs;
 
-use hrdsl_compiler::{Input, compile};
-use hrdsl_ir::{Program, suite::Method};
+use hrdsl_compiler::{InputFile, compile};
+use hrdsl_ir::{Program, suite::SuiteMethod};
 use hrdsl_runtime::testgen::{GenerateOptions, generate_with};
 
 fn program(example: &str) -> Program {
     let path = format!("{}/../examples/{example}/scenario.hri", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(path).unwrap();
-    compile(Input { name: "scenario.hri", text: &text }, &[]).program.unwrap()
+    compile(InputFile { name: "scenario.hri", text: &text }, &[]).program.unwrap()
 }
 
 /// How many tests a covering array of pairs gives, without more at random, and how many of them are needed for all bins
 /// and plans that they reach.
 fn pairwise(example: &str, bins: usize) -> (usize, usize) {
     let program = program(example);
-    let suite = program.suites.iter().find(|s| matches!(s.method, Method::Agents { .. })).unwrap();
+    let suite = program.suites.iter().find(|s| matches!(s.method, SuiteMethod::Agents { .. })).unwrap();
     let options = GenerateOptions { count: Some(1), ..GenerateOptions::default() };
     let whole = generate_with(&program, suite, options).unwrap();
     let options = GenerateOptions { minimise: Some(true), count: Some(1000), ..options };

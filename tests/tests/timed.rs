@@ -14,7 +14,7 @@ mod page;
 
 use std::{collections::BTreeSet, fs};
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::Program;
 
 use page::{Block, pages, root, shown, split};
@@ -71,7 +71,7 @@ fn checked(block: &Block) -> Vec<String> {
 }
 
 fn compiled(text: &str) -> Result<Program, String> {
-    let compilation = compile(Input { name: "network.hri", text }, &[]);
+    let compilation = compile(InputFile { name: "network.hri", text }, &[]);
     let errors = compilation.diagnostics.iter().filter(|d| d.is_error());
     let said: Vec<String> =
         errors.map(|d| format!("{} {}: {}", compilation.files.place(d.span()), d.code, d.message)).collect();

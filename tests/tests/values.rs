@@ -1,7 +1,7 @@
 //! What records, arrays, vectors and enumerations mean when they run: compared with arrays, structures and f64 of Rust.
 
-use hrdsl_bdi::{AgentAction, Society};
-use hrdsl_compiler::{Input, compile};
+use hrdsl_bdi::{AgentAction, AgentSociety};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{
     Program, Symbol, Value,
     bdi::AgentId,
@@ -18,8 +18,9 @@ const ACTORS: &str = "actor person : environment\nactor robot : system\n";
 
 fn program(text: &str, tests: &[&str]) -> Program {
     let text = format!("scenario small\n{ACTORS}{text}");
-    let tests: Vec<Input<'_>> = tests.iter().map(|text| Input { name: "t.tests.hri", text }).collect();
-    let c = compile(Input { name: "small.hri", text: &text }, &tests);
+    let tests: Vec<InputFile<'_>> =
+        tests.iter().map(|text| InputFile { name: "t.tests.hri", text }).collect();
+    let c = compile(InputFile { name: "small.hri", text: &text }, &tests);
     let errors = c.diagnostics.iter().filter(|d| d.is_error());
     let said: Vec<String> = errors.map(|d| format!("{} {}", c.files.place(d.span()), d.message)).collect();
     assert_eq!(said, Vec::<String>::new(), "{text}");
@@ -279,9 +280,9 @@ fn cell(col: i64, row: i64) -> [Value; 2] {
 #[test]
 fn an_agent_matches_keeps_and_says_records() {
     let p = program(AGENT, &[]);
-    let mut society = Society::new(&p, &[(AgentId(0), Vec::new())], 0);
+    let mut society = AgentSociety::new(&p, &[(AgentId(0), Vec::new())], 0);
     let mut done: Vec<(String, Vec<Value>)> = Vec::new();
-    let step = |society: &mut Society<'_>, done: &mut Vec<(String, Vec<Value>)>, now: i64| loop {
+    let step = |society: &mut AgentSociety<'_>, done: &mut Vec<(String, Vec<Value>)>, now: i64| loop {
         let mut out: Vec<(usize, AgentAction)> = Vec::new();
         society.run(now, &mut out);
         if out.is_empty() {

@@ -3,14 +3,14 @@
 use std::{collections::BTreeSet, path::PathBuf};
 
 use clap::ValueEnum;
-use hrdsl_source::{Code, Diagnostic, REGISTRY, Severity, printable_line};
+use hrdsl_source::{Diagnostic, DiagnosticCode, REGISTRY, Severity, printable_line};
 
 use crate::{
     color,
-    exit::Exit,
-    fault::Fault,
+    exit::CommandExit,
+    fault::CommandFault,
     files, fix, input,
-    project::{Checked, Project},
+    project::{CheckedProject, CheckedUnit},
     render, terminal,
 };
 
@@ -25,16 +25,16 @@ Examples:
   hrdsl check scenario.hri --fix
   hrdsl check --format sarif . > hrdsl.sarif
   hrdsl check - < scenario.hri")]
-pub struct Args {
+pub struct CheckArgs {
     /// Scenarios, files of tests, folders to search for `.hri` files; `-` is standard input.
     #[arg(required = true, value_name = "PATH")]
     paths: Vec<PathBuf>,
     /// How to say what was found.
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    format: CheckFormat,
     /// Make warnings errors: all (`warnings`), or those of a code (`HR0403`); may be given several times.
     #[arg(long, value_name = "WHAT", value_parser = denied)]
-    deny: Vec<Deny>,
+    deny: Vec<DeniedFindings>,
     /// The most findings of a file that are shown to people; 0: all of them.
     #[arg(long, value_name = "N", default_value_t = render::SHOWN)]
     max_findings: usize,
@@ -47,7 +47,7 @@ pub struct Args {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum CheckFormat {
     /// Text with pieces of source, on stderr.
     #[default]
     Human,
@@ -58,44 +58,44 @@ enum Format {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Deny {
+enum DeniedFindings {
     Warnings,
-    Code(Code),
+    Code(DiagnosticCode),
 }
 
-fn denied(text: &str) -> Result<Deny, String> {
+fn denied(text: &str) -> Result<DeniedFindings, String> {
     if text == "warnings" {
-        return Ok(Deny::Warnings);
+        return Ok(DeniedFindings::Warnings);
     }
     let found = REGISTRY.iter().find(|i| i.code.to_string().eq_ignore_ascii_case(text));
     found
-        .map(|i| Deny::Code(i.code))
+        .map(|i| DeniedFindings::Code(i.code))
         .ok_or_else(|| "it is `warnings` or a code such as `HR0403`; `hrdsl explain` lists them".to_owned())
 }
 
 /// # Errors
 /// A file that cannot be read or written, or tests without a scenario.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
-    let mut project = Project::open(&args.paths)?;
+pub fn run(args: &CheckArgs) -> Result<CommandExit, CommandFault> {
+    let mut project = CheckedProject::open(&args.paths)?;
     if args.fix {
         apply_fixes(&mut project)?;
     }
     let checked = check(&project, &args.deny);
     match args.format {
-        Format::Human => {
+        CheckFormat::Human => {
             show(&checked, args.max_findings);
             let text = if args.diff { difference(&project) } else { summary(&project, &checked) };
             terminal::print(&text)?;
         }
-        Format::Json => terminal::print_data(&render::json(&project, &checked)?)?,
-        Format::Sarif => terminal::print_data(&render::sarif(&project, &checked)?)?,
+        CheckFormat::Json => terminal::print_data(&render::json(&project, &checked)?)?,
+        CheckFormat::Sarif => terminal::print_data(&render::sarif(&project, &checked)?)?,
     }
     let failed = checked.iter().any(|c| c.program().is_none());
-    Ok(if failed { Exit::Errors } else { Exit::Ok })
+    Ok(if failed { CommandExit::Errors } else { CommandExit::Ok })
 }
 
 /// Compiles every unit. What is said of a module that several units use is said once.
-fn check(project: &Project, deny: &[Deny]) -> Vec<Checked> {
+fn check(project: &CheckedProject, deny: &[DeniedFindings]) -> Vec<CheckedUnit> {
     let mut seen = BTreeSet::new();
     let mut checked = Vec::new();
     for unit in &project.units {
@@ -108,16 +108,16 @@ fn check(project: &Project, deny: &[Deny]) -> Vec<Checked> {
             let name = files.get(d.span().file).map_or(String::new(), |f| f.name.clone());
             seen.insert((name, d.span().start, d.span().end, d.code, d.message.clone()))
         });
-        checked.push(Checked { unit: unit.clone(), compilation });
+        checked.push(CheckedUnit { unit: unit.clone(), compilation });
     }
     checked
 }
 
 /// A denied warning is an error.
-fn promote(diagnostic: &mut Diagnostic, deny: Deny) {
+fn promote(diagnostic: &mut Diagnostic, deny: DeniedFindings) {
     let meant = match deny {
-        Deny::Warnings => true,
-        Deny::Code(code) => diagnostic.code == code,
+        DeniedFindings::Warnings => true,
+        DeniedFindings::Code(code) => diagnostic.code == code,
     };
     if meant {
         diagnostic.severity = Severity::Error;
@@ -125,7 +125,7 @@ fn promote(diagnostic: &mut Diagnostic, deny: Deny) {
 }
 
 /// Fixes the files, and says how on stderr.
-fn apply_fixes(project: &mut Project) -> Result<(), Fault> {
+fn apply_fixes(project: &mut CheckedProject) -> Result<(), CommandFault> {
     if project.sources.iter().any(|s| s.path.is_none()) {
         return Err("`--fix` cannot change standard input; `--diff` shows the changes".to_owned());
     }
@@ -154,7 +154,7 @@ fn apply_fixes(project: &mut Project) -> Result<(), Fault> {
     Ok(())
 }
 
-fn difference(project: &Project) -> String {
+fn difference(project: &CheckedProject) -> String {
     let mut fixed = project.clone();
     fix::apply(&mut fixed);
     let pairs = project.sources.iter().zip(&fixed.sources);
@@ -162,9 +162,9 @@ fn difference(project: &Project) -> String {
 }
 
 /// What was found, on stderr: of each file so much.
-fn show(checked: &[Checked], most: usize) {
+fn show(checked: &[CheckedUnit], most: usize) {
     let (mut errors, mut warnings) = (0, 0);
-    for Checked { compilation, .. } in checked {
+    for CheckedUnit { compilation, .. } in checked {
         let all: Vec<&Diagnostic> = compilation.diagnostics.iter().collect();
         input::show(&compilation.files, &all, most);
         let wrong = all.iter().filter(|d| d.is_error()).count();
@@ -176,8 +176,8 @@ fn show(checked: &[Checked], most: usize) {
 }
 
 /// A line for each scenario that is well formed.
-fn summary(project: &Project, checked: &[Checked]) -> String {
-    let line = |c: &Checked| {
+fn summary(project: &CheckedProject, checked: &[CheckedUnit]) -> String {
+    let line = |c: &CheckedUnit| {
         let program = c.program()?;
         let name = printable_line(&project.sources[c.unit.head].name);
         if c.compilation.is_module() {

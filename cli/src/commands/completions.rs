@@ -2,7 +2,7 @@
 
 use clap_complete::{Shell, generate};
 
-use crate::{exit::Exit, fault::Fault, terminal};
+use crate::{exit::CommandExit, fault::CommandFault, terminal};
 
 /// Print a shell's completions of hrdsl's commands and options.
 #[derive(clap::Args)]
@@ -11,16 +11,16 @@ Examples:
   hrdsl completions bash > ~/.local/share/bash-completion/completions/hrdsl
   hrdsl completions zsh > ~/.zfunc/_hrdsl
   hrdsl completions fish > ~/.config/fish/completions/hrdsl.fish")]
-pub struct Args {
+pub struct CompletionsArgs {
     /// The shell.
     shell: Shell,
 }
 
 /// # Errors
 /// What is wrong with stdout.
-pub fn run(args: &Args, mut command: clap::Command) -> Result<Exit, Fault> {
+pub fn run(args: &CompletionsArgs, mut command: clap::Command) -> Result<CommandExit, CommandFault> {
     let mut script = Vec::new();
     generate(args.shell, &mut command, "hrdsl", &mut script);
     terminal::print_data(&String::from_utf8_lossy(&script))?;
-    Ok(Exit::Ok)
+    Ok(CommandExit::Ok)
 }

@@ -3,25 +3,25 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use hrdsl_compiler::Compilation;
+use hrdsl_compiler::CompilationResult;
 use serde::Serialize;
 
-use crate::{exit::Exit, fault::Fault, input, terminal};
+use crate::{exit::CommandExit, fault::CommandFault, input, terminal};
 
 /// Print what the compiler makes of a scenario, at any stage, as JSON.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  hrdsl emit ast scenario.hri\n  hrdsl emit ta scenario.hri | jq '.automata[0].locations'"
 )]
-pub struct Args {
+pub struct EmitArgs {
     /// Which stop.
-    stage: Product,
+    stage: EmitStage,
     /// The scenario.
     file: PathBuf,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Product {
+enum EmitStage {
     /// What was written, before any name is looked up.
     Ast,
     /// What was meant: names resolved, expressions typed.
@@ -40,54 +40,54 @@ enum Product {
 
 /// # Errors
 /// A file that cannot be read.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &EmitArgs) -> Result<CommandExit, CommandFault> {
     let compilation = input::load(&args.file, &[])?;
     let has_errors = input::report(&compilation).is_none();
-    let Some(text) = emit(args.stage, &compilation) else { return Ok(Exit::Errors) };
+    let Some(text) = emit(args.stage, &compilation) else { return Ok(CommandExit::Errors) };
     terminal::print_data(&(text? + "\n"))?;
-    Ok(if has_errors { Exit::Errors } else { Exit::Ok })
+    Ok(if has_errors { CommandExit::Errors } else { CommandExit::Ok })
 }
 
 /// `None` if the scenario's errors keep it from getting that far.
-fn emit(stage: Product, compilation: &Compilation) -> Option<Result<String, Fault>> {
+fn emit(stage: EmitStage, compilation: &CompilationResult) -> Option<Result<String, CommandFault>> {
     #[derive(Serialize)]
-    struct Ta<'a> {
-        shared: &'a [hrdsl_ir::ta::Var],
+    struct EmittedAutomata<'a> {
+        shared: &'a [hrdsl_ir::ta::AutomatonVar],
         automata: &'a [hrdsl_ir::ta::Automaton],
         networks: &'a [hrdsl_ir::ta::Network],
     }
     #[derive(Serialize)]
-    struct Monitors<'a> {
+    struct EmittedMonitors<'a> {
         monitors: &'a [hrdsl_ir::monitor::Monitor],
         assumptions: &'a [hrdsl_ir::monitor::Assumption],
     }
     #[derive(Serialize)]
-    struct World<'a> {
+    struct EmittedWorld<'a> {
         world: &'a Option<hrdsl_ir::world::World>,
         signals: &'a [hrdsl_ir::world::Signal],
-        system: &'a Option<hrdsl_ir::system::System>,
+        system: &'a Option<hrdsl_ir::system::SystemUnderTest>,
     }
     let program = compilation.program.as_ref();
     match stage {
-        Product::Ast => Some(json(&compilation.ast)),
-        Product::Scenario => Some(json(compilation.scenario.as_ref()?)),
-        Product::Bdi => Some(json(&program?.agents)),
-        Product::Ta => {
+        EmitStage::Ast => Some(json(&compilation.ast)),
+        EmitStage::Scenario => Some(json(compilation.scenario.as_ref()?)),
+        EmitStage::Bdi => Some(json(&program?.agents)),
+        EmitStage::Ta => {
             let p = program?;
-            Some(json(&Ta { shared: &p.shared, automata: &p.automata, networks: &p.networks }))
+            Some(json(&EmittedAutomata { shared: &p.shared, automata: &p.automata, networks: &p.networks }))
         }
-        Product::Monitors => {
+        EmitStage::Monitors => {
             let p = program?;
-            Some(json(&Monitors { monitors: &p.monitors, assumptions: &p.assumptions }))
+            Some(json(&EmittedMonitors { monitors: &p.monitors, assumptions: &p.assumptions }))
         }
-        Product::Coverage => Some(json(&program?.coverage)),
-        Product::World => {
+        EmitStage::Coverage => Some(json(&program?.coverage)),
+        EmitStage::World => {
             let p = program?;
-            Some(json(&World { world: &p.world, signals: &p.signals, system: &p.system }))
+            Some(json(&EmittedWorld { world: &p.world, signals: &p.signals, system: &p.system }))
         }
     }
 }
 
-fn json<T: Serialize>(value: &T) -> Result<String, Fault> {
+fn json<T: Serialize>(value: &T) -> Result<String, CommandFault> {
     serde_json::to_string_pretty(value).map_err(|e| format!("cannot print: {e}"))
 }

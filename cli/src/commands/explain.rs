@@ -1,13 +1,13 @@
 //! `hrdsl explain`: the page of a diagnostic code.
 
 use hrdsl_compiler::pages;
-use hrdsl_source::{Code, CodeInfo, GROUPS, REGISTRY};
+use hrdsl_source::{CodeInfo, DiagnosticCode, GROUPS, REGISTRY};
 use serde::Serialize;
 
 use crate::{
-    color::{self, Style, paint},
-    exit::Exit,
-    fault::Fault,
+    color::{self, TextStyle, paint},
+    exit::CommandExit,
+    fault::CommandFault,
     files, render, terminal,
 };
 
@@ -18,7 +18,7 @@ Examples:
   hrdsl explain HR0101
   hrdsl explain
   hrdsl explain HR0101 --json | jq -r .text")]
-pub struct Args {
+pub struct ExplainArgs {
     /// The code: `HR0101`, or `101`.
     code: Option<String>,
     /// Print JSON: the page's `code`, `title`, `group`, `page` and `text`, or a list of all but the texts.
@@ -27,7 +27,7 @@ pub struct Args {
 }
 
 #[derive(Serialize)]
-struct Entry {
+struct ExplainedCode {
     code: String,
     title: &'static str,
     group: &'static str,
@@ -36,7 +36,7 @@ struct Entry {
     text: Option<&'static str>,
 }
 
-impl Entry {
+impl ExplainedCode {
     fn of(info: &CodeInfo, text: Option<&'static str>) -> Self {
         let code = info.code;
         Self { code: code.to_string(), title: info.title, group: code.group(), page: pages::path(code), text }
@@ -45,19 +45,25 @@ impl Entry {
 
 /// # Errors
 /// A code that does not exist.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &ExplainArgs) -> Result<CommandExit, CommandFault> {
     let colour = color::stdout_has();
     let text = match (&args.code, args.json) {
         (None, false) => list(colour),
-        (None, true) => files::json(&REGISTRY.iter().map(|info| Entry::of(info, None)).collect::<Vec<_>>())?,
+        (None, true) => {
+            files::json(&REGISTRY.iter().map(|info| ExplainedCode::of(info, None)).collect::<Vec<_>>())?
+        }
         (Some(code), as_json) => {
             let info = find(code)?;
             let page = pages::page(info.code).ok_or_else(|| format!("{} has no page", info.code))?;
-            if as_json { files::json(&Entry::of(info, Some(page)))? } else { render::page(page, colour) }
+            if as_json {
+                files::json(&ExplainedCode::of(info, Some(page)))?
+            } else {
+                render::page(page, colour)
+            }
         }
     };
     terminal::print(&text)?;
-    Ok(Exit::Ok)
+    Ok(CommandExit::Ok)
 }
 
 /// All codes with their titles, by hundreds.
@@ -65,9 +71,9 @@ fn list(colour: bool) -> String {
     let mut out = String::new();
     for (hundred, about) in GROUPS {
         let heading = format!("HR{hundred:02}xx: {about}");
-        out += &format!("{}\n", paint(colour, Style::Bold, &heading));
+        out += &format!("{}\n", paint(colour, TextStyle::Bold, &heading));
         for info in REGISTRY.iter().filter(|i| i.code.0 / 100 == *hundred) {
-            out += &format!("  {}  {}\n", paint(colour, Style::Code, &info.code.to_string()), info.title);
+            out += &format!("  {}  {}\n", paint(colour, TextStyle::Code, &info.code.to_string()), info.title);
         }
         out.push('\n');
     }
@@ -75,7 +81,7 @@ fn list(colour: bool) -> String {
 }
 
 /// The code that is meant: with or without `HR`, in any case, with or without its zeros.
-fn find(text: &str) -> Result<&'static CodeInfo, Fault> {
+fn find(text: &str) -> Result<&'static CodeInfo, CommandFault> {
     let start = text.get(..2).filter(|s| s.eq_ignore_ascii_case("HR")).map_or(0, str::len);
     let digits = &text[start..];
     let number = digits.parse::<u16>().ok().filter(|_| digits.bytes().all(|b| b.is_ascii_digit()));
@@ -84,7 +90,7 @@ fn find(text: &str) -> Result<&'static CodeInfo, Fault> {
             "no code is called `{text}`; a code is HR and four digits, and `hrdsl explain` lists them all"
         ));
     };
-    Code(number).info().ok_or_else(|| {
+    DiagnosticCode(number).info().ok_or_else(|| {
         let near: Vec<String> = nearest(number).iter().map(|i| format!("{} ({})", i.code, i.title)).collect();
         format!("no code is called `{text}`; near it are {}", near.join(", "))
     })
@@ -106,7 +112,7 @@ mod tests {
     #[test]
     fn codes_are_found_as_people_write_them() {
         for text in ["HR0101", "hr0101", "101", "0101", "HR101"] {
-            assert_eq!(find(text).unwrap().code, Code(101), "{text}");
+            assert_eq!(find(text).unwrap().code, DiagnosticCode(101), "{text}");
         }
         for text in ["", "HR", "H", "HR01O1", "ü1", "+101", "99999", "-1"] {
             assert!(find(text).is_err(), "{text}");

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use hrdsl_compiler::Compilation;
-use hrdsl_interop::{Obstacle, picture, tchecker, uppaal};
+use hrdsl_compiler::CompilationResult;
+use hrdsl_interop::{ExportObstacle, picture, tchecker, uppaal};
 use hrdsl_ir::{Program, ta::Network};
 
-use crate::{exit::Exit, fault::Fault, files, input, terminal};
+use crate::{exit::CommandExit, fault::CommandFault, files, input, terminal};
 
 /// Write a network of automata as a file of another tool.
 ///
@@ -19,35 +19,35 @@ Examples:
   hrdsl export uppaal gate.hri --network crossing --queries gate.q > gate.xml
   hrdsl export tchecker gate.hri -o gate.txt
   hrdsl export dot gate.hri | dot -Tsvg > gate.svg")]
-pub struct Args {
+pub struct ExportArgs {
     #[command(subcommand)]
-    to: Tool,
+    to: ExportFormat,
 }
 
 #[derive(Subcommand)]
-enum Tool {
-    Uppaal(Uppaal),
+enum ExportFormat {
+    Uppaal(UppaalExportArgs),
     /// To TChecker's text format; each location gets the label `AUTOMATON_LOCATION`.
     #[command(after_help = "\
 Examples:
   hrdsl export tchecker gate.hri -o gate.txt
   hrdsl export tchecker gate.hri | tck-reach -a covreach -l Train_cross")]
-    Tchecker(Plain),
+    Tchecker(PlainExportArgs),
     /// As a picture for Graphviz: the automata with their locations and edges.
     #[command(after_help = "\
 Examples:
   hrdsl export dot gate.hri | dot -Tsvg > gate.svg")]
-    Dot(Plain),
+    Dot(PlainExportArgs),
     /// As a Mermaid state diagram, which many Markdown viewers draw.
     #[command(after_help = "\
 Examples:
   hrdsl export mermaid gate.hri -o gate.mmd")]
-    Mermaid(Plain),
+    Mermaid(PlainExportArgs),
 }
 
 /// Of which scenario, and where to.
 #[derive(clap::Args)]
-struct Plain {
+struct PlainExportArgs {
     /// The scenario.
     #[arg(value_name = "FILE.hri")]
     file: PathBuf,
@@ -65,7 +65,7 @@ struct Plain {
 Examples:
   hrdsl export uppaal gate.hri -o gate.xml
   hrdsl export uppaal gate.hri --network crossing --queries gate.q > gate.xml")]
-struct Uppaal {
+struct UppaalExportArgs {
     /// The scenario.
     #[arg(value_name = "FILE.hri")]
     file: PathBuf,
@@ -82,43 +82,47 @@ struct Uppaal {
 
 /// # Errors
 /// A file that cannot be read or written, a network that is not there.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &ExportArgs) -> Result<CommandExit, CommandFault> {
     match &args.to {
-        Tool::Uppaal(args) => to_uppaal(args),
-        Tool::Tchecker(args) => plain(args, tchecker::export),
-        Tool::Dot(args) => plain(args, |program, network| Ok(picture::dot(program, network))),
-        Tool::Mermaid(args) => plain(args, |program, network| Ok(picture::mermaid(program, network))),
+        ExportFormat::Uppaal(args) => to_uppaal(args),
+        ExportFormat::Tchecker(args) => plain(args, tchecker::export),
+        ExportFormat::Dot(args) => plain(args, |program, network| Ok(picture::dot(program, network))),
+        ExportFormat::Mermaid(args) => plain(args, |program, network| Ok(picture::mermaid(program, network))),
     }
 }
 
 fn plain(
-    args: &Plain,
-    export: impl Fn(&Program, &Network) -> Result<String, Vec<Obstacle>>,
-) -> Result<Exit, Fault> {
+    args: &PlainExportArgs,
+    export: impl Fn(&Program, &Network) -> Result<String, Vec<ExportObstacle>>,
+) -> Result<CommandExit, CommandFault> {
     let compilation = input::load(&args.file, &[])?;
-    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report_errors(&args.file, &compilation) else {
+        return Ok(CommandExit::Errors);
+    };
     let index = network(program, args.network.as_deref(), &args.file.display().to_string())?;
     match export(program, &program.networks[index]) {
         Ok(text) => {
             write(args.out.as_deref(), &text)?;
-            Ok(Exit::Ok)
+            Ok(CommandExit::Ok)
         }
         Err(obstacles) => Ok(refused(&args.file, &compilation, &obstacles)),
     }
 }
 
-fn refused(file: &Path, compilation: &Compilation, obstacles: &[Obstacle]) -> Exit {
+fn refused(file: &Path, compilation: &CompilationResult, obstacles: &[ExportObstacle]) -> CommandExit {
     said(compilation, obstacles, "error");
     terminal::say_line(format_args!(
         "{} cannot be exported: change the scenario, or export another network",
         terminal::shown(file)
     ));
-    Exit::Errors
+    CommandExit::Errors
 }
 
-fn to_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
+fn to_uppaal(args: &UppaalExportArgs) -> Result<CommandExit, CommandFault> {
     let compilation = input::load(&args.file, &[])?;
-    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report_errors(&args.file, &compilation) else {
+        return Ok(CommandExit::Errors);
+    };
     let network = network(program, args.network.as_deref(), &args.file.display().to_string())?;
     match uppaal::export(program, network) {
         Ok(exported) => {
@@ -127,20 +131,20 @@ fn to_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
                 files::write(path, &exported.queries)?;
             }
             write(args.out.as_deref(), &exported.text)?;
-            Ok(Exit::Ok)
+            Ok(CommandExit::Ok)
         }
         Err(faults) => Ok(refused(&args.file, &compilation, &faults)),
     }
 }
 
-fn said(compilation: &Compilation, all: &[Obstacle], word: &str) {
-    for Obstacle { origin, message } in all {
+fn said(compilation: &CompilationResult, all: &[ExportObstacle], word: &str) {
+    for ExportObstacle { origin, message } in all {
         terminal::say_line(format_args!("{}: {word}: {message}", compilation.files.place(*origin)));
     }
 }
 
 /// To the file, or to stdout.
-fn write(out: Option<&Path>, text: &str) -> Result<(), Fault> {
+fn write(out: Option<&Path>, text: &str) -> Result<(), CommandFault> {
     match out {
         Some(path) => files::write(path, text),
         None => terminal::print_data(text),
@@ -148,7 +152,7 @@ fn write(out: Option<&Path>, text: &str) -> Result<(), Fault> {
 }
 
 /// The index of the network of this name, or of the only one.
-pub fn network(program: &Program, name: Option<&str>, file: &str) -> Result<usize, Fault> {
+pub fn network(program: &Program, name: Option<&str>, file: &str) -> Result<usize, CommandFault> {
     let names: Vec<String> = program.networks.iter().map(|n| format!("`{}`", n.name)).collect();
     let known = names.join(", ");
     match name {

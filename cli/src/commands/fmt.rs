@@ -6,9 +6,9 @@ use std::{
 };
 
 use hrdsl_compiler::format;
-use hrdsl_source::{Diagnostic, Files, printable_line};
+use hrdsl_source::{Diagnostic, SourceFiles, printable_line};
 
-use crate::{color, exit::Exit, fault::Fault, files, project, render, terminal};
+use crate::{color, exit::CommandExit, fault::CommandFault, files, project, render, terminal};
 
 /// The text on stdin, among the paths.
 const STDIN: &str = "-";
@@ -20,7 +20,7 @@ const STDIN: &str = "-";
 #[command(
     after_help = "Examples:\n  hrdsl fmt\n  hrdsl fmt scenario.hri tests/\n  hrdsl fmt --check .\n  hrdsl fmt --diff scenario.hri\n  hrdsl fmt - < scenario.hri"
 )]
-pub struct Args {
+pub struct FmtArgs {
     /// Files, folders (all `.hri` files in them), or `-` for stdin to stdout.
     #[arg(value_name = "PATH", default_value = ".")]
     paths: Vec<PathBuf>,
@@ -34,7 +34,7 @@ pub struct Args {
 
 /// How many files came out how.
 #[derive(Default)]
-struct Tally {
+struct FormatTally {
     changed: usize,
     unchanged: usize,
     /// With faults in their syntax.
@@ -45,8 +45,8 @@ struct Tally {
 
 /// # Errors
 /// A path that is not there, a folder that cannot be read.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
-    let mut tally = Tally::default();
+pub fn run(args: &FmtArgs) -> Result<CommandExit, CommandFault> {
+    let mut tally = FormatTally::default();
     let mut paths = Vec::new();
     for path in &args.paths {
         if path.as_os_str() == STDIN {
@@ -69,18 +69,18 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     Ok(exit(args, &tally))
 }
 
-fn exit(args: &Args, tally: &Tally) -> Exit {
+fn exit(args: &FmtArgs, tally: &FormatTally) -> CommandExit {
     if tally.failed > 0 {
-        Exit::Usage
+        CommandExit::Usage
     } else if tally.faulty > 0 || (args.check && tally.changed > 0) {
-        Exit::Errors
+        CommandExit::Errors
     } else {
-        Exit::Ok
+        CommandExit::Ok
     }
 }
 
 /// `3 files reformatted, 4 left unchanged`
-fn summary(tally: &Tally, dry: bool) -> String {
+fn summary(tally: &FormatTally, dry: bool) -> String {
     let files = |n: usize| format!("{n} file{}", if n == 1 { "" } else { "s" });
     let done = if dry { "would be reformatted" } else { "reformatted" };
     let mut text = format!("{} {done}, {} left unchanged", files(tally.changed), tally.unchanged);
@@ -95,7 +95,7 @@ fn summary(tally: &Tally, dry: bool) -> String {
 
 // ── Texts ──
 
-fn stdin(args: &Args, tally: &mut Tally) -> Result<(), Fault> {
+fn stdin(args: &FmtArgs, tally: &mut FormatTally) -> Result<(), CommandFault> {
     let text = files::read_stdin()?;
     let Some(formatted) = formatted("<stdin>", &text, tally) else { return Ok(()) };
     if args.check || args.diff {
@@ -105,7 +105,7 @@ fn stdin(args: &Args, tally: &mut Tally) -> Result<(), Fault> {
     }
 }
 
-fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
+fn file(args: &FmtArgs, path: &Path, tally: &mut FormatTally) -> Result<(), CommandFault> {
     let text = files::read(path)?;
     let name = path.display().to_string();
     let Some(formatted) = formatted(&name, &text, tally) else { return Ok(()) };
@@ -126,7 +126,7 @@ fn file(args: &Args, path: &Path, tally: &mut Tally) -> Result<(), Fault> {
 }
 
 /// The text in style, counted; of one with faults, its diagnostics are shown.
-fn formatted(name: &str, text: &str, tally: &mut Tally) -> Option<String> {
+fn formatted(name: &str, text: &str, tally: &mut FormatTally) -> Option<String> {
     match format(text) {
         Ok(formatted) => {
             if formatted == text {
@@ -145,7 +145,7 @@ fn formatted(name: &str, text: &str, tally: &mut Tally) -> Option<String> {
 }
 
 fn report(name: &str, text: &str, diagnostics: &[Diagnostic]) {
-    let mut files = Files::default();
+    let mut files = SourceFiles::default();
     files.add(name, text);
     for diagnostic in diagnostics {
         terminal::say(render::diagnostic(&files, diagnostic));
@@ -153,7 +153,7 @@ fn report(name: &str, text: &str, diagnostics: &[Diagnostic]) {
 }
 
 /// What would change: the name, or the difference.
-fn show(args: &Args, name: &str, text: &str, formatted: &str) -> Result<(), Fault> {
+fn show(args: &FmtArgs, name: &str, text: &str, formatted: &str) -> Result<(), CommandFault> {
     if text == formatted {
         return Ok(());
     }
@@ -166,7 +166,7 @@ fn show(args: &Args, name: &str, text: &str, formatted: &str) -> Result<(), Faul
 // ── Files ──
 
 /// The `.hri` files of a folder and the folders in it; any other path is a file by itself.
-fn expand(path: &Path, found: &mut Vec<PathBuf>) -> Result<(), Fault> {
+fn expand(path: &Path, found: &mut Vec<PathBuf>) -> Result<(), CommandFault> {
     if !path.is_dir() {
         found.push(path.to_owned());
         return Ok(());

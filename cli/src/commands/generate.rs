@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::Compilation;
+use hrdsl_compiler::CompilationResult;
 use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
     prove::ProofOptions,
@@ -21,18 +21,18 @@ use hrdsl_source::printable;
 use serde::Serialize;
 
 use super::inspect::{
-    Chosen, json_lines,
-    reasoning::{End, Picked, ending, reasoning},
+    InspectedRun, json_lines,
+    reasoning::{ModelRunEnd, ReasoningFilter, ending, reasoning},
 };
-use super::search_options::{Way, When, Witness};
-use crate::{exit::Exit, fault::Fault, files, input, results_folder::ResultsFolder, terminal};
+use super::search_options::{DelayArg, SearchOrderArg, WitnessArg};
+use crate::{exit::CommandExit, fault::CommandFault, files, input, results_folder::ResultsFolder, terminal};
 
 /// Generate tests from a scenario's suites and write them as readable `.hri`.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  hrdsl gen scenario.hri\n  hrdsl gen scenario.hri --suite bdi_tests -n 20 --seed 7 -o tests\n  hrdsl gen scenario.hri --suite bdi_tests --minimise --explain\n  hrdsl gen scenario.hri --suite bdi_tests --trace\n  hrdsl gen scenario.hri --suite ta_tests --witness fastest --delays latest"
 )]
-pub struct Args {
+pub struct GenerateArgs {
     /// The scenario.
     file: PathBuf,
     /// Only this suite; may be given several times.
@@ -58,13 +58,13 @@ pub struct Args {
     trace: bool,
     /// Of suites by search, which run shows that a goal is reached, instead of what the suite says.
     #[arg(long, value_enum)]
-    witness: Option<Witness>,
+    witness: Option<WitnessArg>,
     /// Of suites by search, when the transitions of these runs happen, instead of what the suite says.
     #[arg(long, value_enum)]
-    delays: Option<When>,
+    delays: Option<DelayArg>,
     /// Of suites by search, in which order states are looked at [default: what the witness needs].
     #[arg(long, value_enum)]
-    order: Option<Way>,
+    order: Option<SearchOrderArg>,
     /// Of suites by search, threads that search at once.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
@@ -75,9 +75,11 @@ pub struct Args {
 
 /// # Errors
 /// A file, a suite that does not exist, or a model that cannot be run.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &GenerateArgs) -> Result<CommandExit, CommandFault> {
     let compilation = input::load(&args.file, &[])?;
-    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report_errors(&args.file, &compilation) else {
+        return Ok(CommandExit::Errors);
+    };
     let minimise = args.minimise.then_some(true);
     let chosen = chosen(program, &args.suite)?;
     let mut folder = ResultsFolder::beside(&args.out)?;
@@ -103,7 +105,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
             vec![]
         };
         if args.json {
-            suites.push(Made::of(&generated, &path, &traces));
+            suites.push(MadeSuite::of(&generated, &path, &traces));
             continue;
         }
         let mut text = format!("{}  written to {}\n", describe(&generated), terminal::shown(&path));
@@ -116,22 +118,22 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         terminal::print(&printable(&text))?;
     }
     if args.json {
-        let document = Document { format: "hrdsl-gen", version: 2, suites };
+        let document = GenerateDocument { format: "hrdsl-gen", version: 2, suites };
         terminal::print_data(&files::json(&document)?)?;
     }
-    Ok(Exit::Ok)
+    Ok(CommandExit::Ok)
 }
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Document {
+struct GenerateDocument {
     format: &'static str,
     version: u32,
-    suites: Vec<Made>,
+    suites: Vec<MadeSuite>,
 }
 
 #[derive(Serialize)]
-struct Made {
+struct MadeSuite {
     suite: String,
     method: &'static str,
     file: String,
@@ -156,7 +158,7 @@ struct MadeTest {
     trace: Option<String>,
 }
 
-impl Made {
+impl MadeSuite {
     fn of(generated: &GeneratedSuite, path: &Path, traces: &[PathBuf]) -> Self {
         let test = |(at, test): (usize, &hrdsl_ir::test::Test)| MadeTest {
             name: test.name.clone(),
@@ -185,13 +187,13 @@ fn traces_of(suite: &str) -> PathBuf {
 /// Writes how the agents reasoned in the run that each test came from; gives the files, one for each test of a suite by
 /// agents. Tests of one belief set share their run.
 fn trace(
-    args: &Args,
-    compilation: &Compilation,
+    args: &GenerateArgs,
+    compilation: &CompilationResult,
     program: &Program,
     suite: &Suite,
     generated: &GeneratedSuite,
     to: &mut ResultsFolder,
-) -> Result<Vec<PathBuf>, Fault> {
+) -> Result<Vec<PathBuf>, CommandFault> {
     let folder = traces_of(&suite.name);
     // An earlier generation may have had more tests.
     to.clear(&folder)?;
@@ -200,7 +202,7 @@ fn trace(
     let mut paths = Vec::new();
     for (number, origin) in (1..).zip(&generated.origins) {
         let name = format!("{}.t{number:03}", suite.name);
-        let Some(chosen) = Chosen::of_test(suite, &name, origin, args.seed) else { continue };
+        let Some(chosen) = InspectedRun::of_test(suite, &name, origin, args.seed) else { continue };
         let text = match runs.entry(origin.number) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
@@ -216,12 +218,16 @@ fn trace(
 }
 
 /// The log of a run: for a person with how it ended, or as lines of JSON.
-fn traced(inspection: &ModelInspection, json: bool, place: &dyn Fn(Span) -> String) -> Result<String, Fault> {
-    let picked = Picked { all: true, ..Picked::default() };
+fn traced(
+    inspection: &ModelInspection,
+    json: bool,
+    place: &dyn Fn(Span) -> String,
+) -> Result<String, CommandFault> {
+    let picked = ReasoningFilter { all: true, ..ReasoningFilter::default() };
     if json {
         return json_lines(inspection, &picked, place);
     }
-    let end = ending(&End::of(inspection, &picked), false);
+    let end = ending(&ModelRunEnd::of(inspection, &picked), false);
     Ok(reasoning(inspection, &picked, false, place) + &end)
 }
 
@@ -229,7 +235,7 @@ fn traced(inspection: &ModelInspection, json: bool, place: &dyn Fn(Span) -> Stri
 ///
 /// # Errors
 /// A name that is no suite's.
-pub fn chosen<'p>(program: &'p Program, names: &[String]) -> Result<Vec<&'p Suite>, Fault> {
+pub fn chosen<'p>(program: &'p Program, names: &[String]) -> Result<Vec<&'p Suite>, CommandFault> {
     for name in names {
         if program.suites.iter().all(|s| s.name != *name) {
             let known: Vec<&str> = program.suites.iter().map(|s| s.name.as_str()).collect();
@@ -248,7 +254,7 @@ pub fn chosen<'p>(program: &'p Program, names: &[String]) -> Result<Vec<&'p Suit
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn save(folder: &Path, program: &Program, generated: &GeneratedSuite) -> Result<PathBuf, Fault> {
+pub fn save(folder: &Path, program: &Program, generated: &GeneratedSuite) -> Result<PathBuf, CommandFault> {
     let path = folder.join(file_of(generated));
     files::write(&path, &write(program, &generated.tests))?;
     Ok(path)

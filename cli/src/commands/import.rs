@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use hrdsl_interop::{
-    Imported, Loader, Note, Severity, Source, SyntaxError,
-    agentspeak::{self, Options},
+    ForeignLoader, ForeignSource, ImportNote, ImportedScenario, NoteSeverity, SyntaxError,
+    agentspeak::{self, AgentSpeakOptions},
     tchecker, uppaal,
 };
 use serde::Serialize;
 
-use crate::{exit::Exit, fault::Fault, files, reach::Reach, terminal};
+use crate::{exit::CommandExit, fault::CommandFault, files, reach::FileReach, terminal};
 
 /// Make a scenario from the programs of another tool.
 ///
@@ -23,16 +23,16 @@ Examples:
   hrdsl import agentspeak house.mas2j --strict --json | jq .notes
   hrdsl import uppaal gate.xml gate.q -o gate.hri
   hrdsl import tchecker fischer.txt -o fischer.hri")]
-pub struct Args {
+pub struct ImportArgs {
     #[command(subcommand)]
-    from: From,
+    from: ImportFormat,
 }
 
 #[derive(Subcommand)]
-enum From {
+enum ImportFormat {
     Agentspeak(AgentSpeak),
-    Uppaal(Uppaal),
-    Tchecker(Tchecker),
+    Uppaal(UppaalImportArgs),
+    Tchecker(TcheckerImportArgs),
 }
 
 /// From Jason's AgentSpeak: agents with their beliefs, rules, goals and plans.
@@ -49,7 +49,7 @@ struct AgentSpeak {
     #[arg(long, value_name = "SCENARIO")]
     name: Option<String>,
     #[command(flatten)]
-    to: To,
+    to: ImportOutputArgs,
 }
 
 /// From UPPAAL: templates, declarations and queries; each process becomes an automaton.
@@ -62,7 +62,7 @@ Examples:
   hrdsl import uppaal gate.xml -o gate.hri
   hrdsl import uppaal gate.xml gate.q -o gate.hri
   hrdsl import uppaal gate.xml --strict --json | jq .notes")]
-struct Uppaal {
+struct UppaalImportArgs {
     /// The model, in UPPAAL's XML (`.xml`).
     #[arg(value_name = "MODEL.xml")]
     model: PathBuf,
@@ -73,7 +73,7 @@ struct Uppaal {
     #[arg(long, value_name = "SCENARIO")]
     name: Option<String>,
     #[command(flatten)]
-    to: To,
+    to: ImportOutputArgs,
 }
 
 /// From TChecker's text format: each process becomes an automaton, each synchronisation a multi-way channel, each label a query.
@@ -84,7 +84,7 @@ struct Uppaal {
 Examples:
   hrdsl import tchecker fischer.txt -o fischer.hri
   hrdsl import tchecker csmacd.tck --name csma_cd > csma_cd.hri")]
-struct Tchecker {
+struct TcheckerImportArgs {
     /// The system.
     #[arg(value_name = "FILE")]
     file: PathBuf,
@@ -92,12 +92,12 @@ struct Tchecker {
     #[arg(long, value_name = "SCENARIO")]
     name: Option<String>,
     #[command(flatten)]
-    to: To,
+    to: ImportOutputArgs,
 }
 
 /// Where what is imported goes.
 #[derive(clap::Args)]
-struct To {
+struct ImportOutputArgs {
     /// The file to write; otherwise the scenario goes to stdout.
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -110,29 +110,29 @@ struct To {
 }
 
 /// Files that programs and projects name, relative to them.
-struct Disk(Reach);
+struct DiskPrograms(FileReach);
 
-impl Loader for Disk {
-    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+impl ForeignLoader for DiskPrograms {
+    fn load(&self, from: &str, path: &str) -> Result<ForeignSource, String> {
         let (file, text) = self.0.read(from, path)?;
-        Ok(Source { text, name: file.display().to_string() })
+        Ok(ForeignSource { text, name: file.display().to_string() })
     }
 }
 
 /// # Errors
 /// A file that cannot be read or written.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &ImportArgs) -> Result<CommandExit, CommandFault> {
     match &args.from {
-        From::Agentspeak(args) => from_agentspeak(args),
-        From::Uppaal(args) => from_uppaal(args),
-        From::Tchecker(args) => {
-            let options = tchecker::Options { name: args.name.clone() };
+        ImportFormat::Agentspeak(args) => from_agentspeak(args),
+        ImportFormat::Uppaal(args) => from_uppaal(args),
+        ImportFormat::Tchecker(args) => {
+            let options = tchecker::TcheckerOptions { name: args.name.clone() };
             finished(&args.to, tchecker::import(&source(&args.file)?, &options))
         }
     }
 }
 
-fn from_agentspeak(args: &AgentSpeak) -> Result<Exit, Fault> {
+fn from_agentspeak(args: &AgentSpeak) -> Result<CommandExit, CommandFault> {
     let mut files = Vec::new();
     for path in &args.files {
         if !path.extension().is_some_and(|e| e == "asl" || e == "mas2j") {
@@ -145,13 +145,13 @@ fn from_agentspeak(args: &AgentSpeak) -> Result<Exit, Fault> {
     }
     let imported = agentspeak::import(
         &files,
-        &Disk(Reach::of(args.files.first().map(PathBuf::as_path), &["asl"])),
-        &Options { name: args.name.clone() },
+        &DiskPrograms(FileReach::of(args.files.first().map(PathBuf::as_path), &["asl"])),
+        &AgentSpeakOptions { name: args.name.clone() },
     );
     finished(&args.to, imported)
 }
 
-fn from_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
+fn from_uppaal(args: &UppaalImportArgs) -> Result<CommandExit, CommandFault> {
     if args.model.extension().is_some_and(|e| e == "q") {
         return Err(format!(
             "{} is a file of queries: name the model (.xml) before it",
@@ -160,73 +160,76 @@ fn from_uppaal(args: &Uppaal) -> Result<Exit, Fault> {
     }
     let model = source(&args.model)?;
     let queries = args.queries.as_deref().map(source).transpose()?;
-    let options = uppaal::Options { name: args.name.clone() };
+    let options = uppaal::UppaalOptions { name: args.name.clone() };
     finished(&args.to, uppaal::import(&model, queries.as_ref(), &options))
 }
 
-fn source(path: &Path) -> Result<Source, Fault> {
-    Ok(Source { name: path.display().to_string(), text: files::read(path)? })
+fn source(path: &Path) -> Result<ForeignSource, CommandFault> {
+    Ok(ForeignSource { name: path.display().to_string(), text: files::read(path)? })
 }
 
-fn finished(to: &To, imported: Result<Imported, Vec<SyntaxError>>) -> Result<Exit, Fault> {
+fn finished(
+    to: &ImportOutputArgs,
+    imported: Result<ImportedScenario, Vec<SyntaxError>>,
+) -> Result<CommandExit, CommandFault> {
     match imported {
         Ok(imported) => imported_to(to, &imported),
         Err(errors) => {
             if to.json {
-                print(&Document {
-                    errors: errors.iter().map(Row::of_error).collect(),
-                    ..Document::default()
+                print(&ImportDocument {
+                    errors: errors.iter().map(ImportNoteRow::of_error).collect(),
+                    ..ImportDocument::default()
                 })?;
             }
             errors.iter().for_each(|e| terminal::say_line(format_args!("error: {e}")));
-            Ok(Exit::Errors)
+            Ok(CommandExit::Errors)
         }
     }
 }
 
-fn imported_to(args: &To, imported: &Imported) -> Result<Exit, Fault> {
+fn imported_to(args: &ImportOutputArgs, imported: &ImportedScenario) -> Result<CommandExit, CommandFault> {
     if let Some(path) = &args.out {
         files::write(path, &imported.text)?;
     }
     if args.json {
         let text = args.out.is_none().then_some(imported.text.as_str());
-        let notes = imported.notes.iter().map(Row::of_note).collect();
-        print(&Document { text, notes, ..Document::default() })?;
+        let notes = imported.notes.iter().map(ImportNoteRow::of_note).collect();
+        print(&ImportDocument { text, notes, ..ImportDocument::default() })?;
     } else {
         if args.out.is_none() {
             terminal::print_data(&imported.text)?;
         }
         imported.notes.iter().for_each(terminal::say_line);
     }
-    let left_out = imported.notes.iter().filter(|n| n.severity == Severity::LeftOut).count();
+    let left_out = imported.notes.iter().filter(|n| n.severity == NoteSeverity::LeftOut).count();
     if left_out > 0 {
         terminal::say_line(format_args!("{left_out} left out"));
     }
-    Ok(if args.strict && left_out > 0 { Exit::Errors } else { Exit::Ok })
+    Ok(if args.strict && left_out > 0 { CommandExit::Errors } else { CommandExit::Ok })
 }
 
-fn print(document: &Document<'_>) -> Result<(), Fault> {
+fn print(document: &ImportDocument<'_>) -> Result<(), CommandFault> {
     terminal::print_data(&files::json(document)?)
 }
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct ImportDocument<'a> {
     format: &'static str,
     version: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
     text: Option<&'a str>,
-    notes: Vec<Row<'a>>,
-    errors: Vec<Row<'a>>,
+    notes: Vec<ImportNoteRow<'a>>,
+    errors: Vec<ImportNoteRow<'a>>,
 }
 
-impl Default for Document<'_> {
+impl Default for ImportDocument<'_> {
     fn default() -> Self {
         Self { format: "hrdsl-import", version: 1, text: None, notes: Vec::new(), errors: Vec::new() }
     }
 }
 
 #[derive(Serialize)]
-struct Row<'a> {
+struct ImportNoteRow<'a> {
     file: &'a str,
     line: u32,
     column: u32,
@@ -235,9 +238,9 @@ struct Row<'a> {
     help: Option<&'a str>,
 }
 
-impl<'a> Row<'a> {
-    fn of_note(note: &'a Note) -> Self {
-        let Note { file, line, column, severity, message, help } = note;
+impl<'a> ImportNoteRow<'a> {
+    fn of_note(note: &'a ImportNote) -> Self {
+        let ImportNote { file, line, column, severity, message, help } = note;
         let (line, column) = (*line, *column);
         Self { file, line, column, severity: severity.word(), message, help: help.as_deref() }
     }

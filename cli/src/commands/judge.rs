@@ -12,12 +12,14 @@ use hrdsl_runtime::{
     campaign::{CampaignOutcome, FinishedTest, tally},
     judge::{JudgedRecording, judge_recording},
     report,
-    results::{BinName, BinResult, RequirementResult, Results, RunEnd, TestName, TestResult, VerdictResult},
+    results::{
+        BinName, BinResult, CampaignResults, RequirementResult, RunEnd, TestName, TestResult, VerdictResult,
+    },
 };
 use serde::Serialize;
 
 use super::report::WIDTH;
-use crate::{color, exit::Exit, fault::Fault, files, input, results_folder, terminal};
+use crate::{color, exit::CommandExit, fault::CommandFault, files, input, results_folder, terminal};
 
 /// Judge recordings: verdicts and bins as a campaign gives them, without running anything.
 ///
@@ -26,7 +28,7 @@ use crate::{color, exit::Exit, fault::Fault, files, input, results_folder, termi
 #[command(
     after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json"
 )]
-pub struct Args {
+pub struct JudgeArgs {
     /// The scenario.
     file: PathBuf,
     /// Recordings, or folders with recordings (`.jsonl`) in them.
@@ -67,9 +69,11 @@ struct JudgedTest<'a> {
 
 /// # Errors
 /// A file that cannot be read, or a scenario that has nothing to judge.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
     let compilation = input::load(&args.file, &[])?;
-    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report_errors(&args.file, &compilation) else {
+        return Ok(CommandExit::Errors);
+    };
     let mut tests = Vec::new();
     let mut refused = 0_usize;
     for path in paths(&args.recordings)? {
@@ -90,16 +94,16 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         terminal::print(&report::summary_of_recordings(&results, WIDTH, color::stdout_has()))?;
     }
     Ok(if refused > 0 {
-        Exit::Usage
+        CommandExit::Usage
     } else if results.is_clean() || args.exit_zero {
-        Exit::Ok
+        CommandExit::Ok
     } else {
-        Exit::Findings
+        CommandExit::Findings
     })
 }
 
 /// The recordings: files as they are given, of a folder those in and below it, in order.
-fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
+fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFault> {
     let mut all = Vec::new();
     for path in given {
         if path.is_dir() {
@@ -119,7 +123,7 @@ fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, Fault> {
 }
 
 /// What a recording shows, as the result of its test.
-fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, Fault> {
+fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, CommandFault> {
     let file = File::open(path).map_err(|e| e.to_string())?;
     let judged = judge_recording(program, BufReader::new(file), changed).map_err(|e| e.to_string())?;
     let duration = judged.duration();
@@ -146,7 +150,7 @@ fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, F
     })
 }
 
-fn json(results: &Results) -> Result<String, Fault> {
+fn json(results: &CampaignResults) -> Result<String, CommandFault> {
     fn test(t: &TestResult) -> JudgedTest<'_> {
         let TestResult { name, seed, ended, error, duration, judgement, .. } = t;
         JudgedTest {

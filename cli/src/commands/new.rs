@@ -6,9 +6,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::token::{Class, KEYWORDS};
+use hrdsl_compiler::token::{KEYWORDS, KeywordClass};
 
-use crate::{exit::Exit, fault::Fault, terminal};
+use crate::{exit::CommandExit, fault::CommandFault, terminal};
 
 /// Begin a project: a scenario, a robot program, a README.
 ///
@@ -18,7 +18,7 @@ use crate::{exit::Exit, fault::Fault, terminal};
 Examples:
   hrdsl new greeter
   hrdsl new greeter --dir ~/robots")]
-pub struct Args {
+pub struct NewArgs {
     /// The project's name, and that of its folder and scenario: letters, digits and `_`.
     name: String,
     /// The folder in which the project's folder is made.
@@ -38,7 +38,7 @@ const PLACEHOLDER: &str = "{{name}}";
 
 /// # Errors
 /// A name that is no name, files that are there already, or cannot be written.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &NewArgs) -> Result<CommandExit, CommandFault> {
     let name = &args.name;
     check(name)?;
     let here = args.dir.as_os_str() == ".";
@@ -58,20 +58,20 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     terminal::print(&format!(
         "made {shown}: scenario.hri, robot.py, README.md, .gitignore\n\nGo on with\n  hrdsl check {shown}\n  hrdsl gen {shown}/scenario.hri -o {shown}/tests\n  hrdsl sim {shown}/scenario.hri\n"
     ))?;
-    Ok(Exit::Ok)
+    Ok(CommandExit::Ok)
 }
 
 /// Whether a scenario can be called that.
-fn check(name: &str) -> Result<(), Fault> {
+fn check(name: &str) -> Result<(), CommandFault> {
     if let Some(keyword) = KEYWORDS.iter().find(|k| k.word == name) {
         match keyword.class {
-            Class::Reserved => {
+            KeywordClass::Reserved => {
                 return Err(format!(
                     "`{name}` is a keyword of the language ({}) and cannot be a name; `{name}_` can",
                     keyword.place
                 ));
             }
-            Class::Head | Class::Hard | Class::Soft => {}
+            KeywordClass::Head | KeywordClass::Hard | KeywordClass::Soft => {}
         }
     }
     let fits = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -90,7 +90,7 @@ fn check(name: &str) -> Result<(), Fault> {
 }
 
 /// Writes a file that must not be there.
-fn create(path: &Path, text: &str) -> Result<(), Fault> {
+fn create(path: &Path, text: &str) -> Result<(), CommandFault> {
     let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(fault)?;

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use hrdsl_runtime::{report, results::Results};
+use hrdsl_runtime::{report, results::CampaignResults};
 
-use crate::{color, exit::Exit, fault::Fault, files, results_folder::ResultsFolder, terminal};
+use crate::{color, exit::CommandExit, fault::CommandFault, files, results_folder::ResultsFolder, terminal};
 
 /// Make the reports of a campaign again from its results, and print the summary.
 ///
@@ -13,7 +13,7 @@ use crate::{color, exit::Exit, fault::Fault, files, results_folder::ResultsFolde
 #[command(
     after_help = "Examples:\n  hrdsl report hrdsl-out/handover\n  hrdsl report hrdsl-out/handover -o public\n  hrdsl report hrdsl-out/handover --print junit > junit.xml\n  hrdsl report --schema"
 )]
-pub struct Args {
+pub struct ReportArgs {
     /// The folder of the results, or a results.json.
     #[arg(required_unless_present = "schema")]
     results: Option<PathBuf>,
@@ -22,14 +22,14 @@ pub struct Args {
     out: Option<PathBuf>,
     /// Print one report to standard output, and write nothing.
     #[arg(long, value_enum, value_name = "REPORT")]
-    print: Option<Printed>,
+    print: Option<ReportFormat>,
     /// Print the JSON Schema of results.json.
     #[arg(long, exclusive = true)]
     schema: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Printed {
+enum ReportFormat {
     /// What `sim` prints at its end.
     Summary,
     /// The page.
@@ -43,18 +43,21 @@ pub const WIDTH: usize = 100;
 
 /// # Errors
 /// Results that cannot be read, or a folder that cannot be written.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &ReportArgs) -> Result<CommandExit, CommandFault> {
     let Some(given) = &args.results else {
-        terminal::print_data(&Results::schema().map_err(|e| e.to_string())?)?;
-        return Ok(Exit::Ok);
+        terminal::print_data(&CampaignResults::schema().map_err(|e| e.to_string())?)?;
+        return Ok(CommandExit::Ok);
     };
     let path = if given.is_dir() { given.join("results.json") } else { given.clone() };
     let text = files::read(&path)?;
-    let results = Results::from_json(&text).map_err(|e| format!("{}: {e}", terminal::shown(&path)))?;
+    let results =
+        CampaignResults::from_json(&text).map_err(|e| format!("{}: {e}", terminal::shown(&path)))?;
     match args.print {
-        Some(Printed::Summary) => terminal::print(&report::summary(&results, WIDTH, color::stdout_has()))?,
-        Some(Printed::Html) => terminal::print_data(&report::html(&results))?,
-        Some(Printed::Junit) => terminal::print_data(&report::junit(&results))?,
+        Some(ReportFormat::Summary) => {
+            terminal::print(&report::summary(&results, WIDTH, color::stdout_has()))?
+        }
+        Some(ReportFormat::Html) => terminal::print_data(&report::html(&results))?,
+        Some(ReportFormat::Junit) => terminal::print_data(&report::junit(&results))?,
         None => {
             let beside = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
             let out = args.out.as_deref().unwrap_or(beside);
@@ -63,11 +66,11 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
             terminal::print(&format!("{summary}report: {}\n", terminal::shown(&page)))?;
         }
     }
-    Ok(Exit::Ok)
+    Ok(CommandExit::Ok)
 }
 
 /// Writes the reports; gives the path of the page.
-fn write(results: &Results, to: &Path) -> Result<PathBuf, Fault> {
+fn write(results: &CampaignResults, to: &Path) -> Result<PathBuf, CommandFault> {
     let mut folder = ResultsFolder::beside(to)?;
     folder.write(Path::new("junit.xml"), &report::junit(results))?;
     folder.write(Path::new("report.html"), &report::html(results))

@@ -1,12 +1,12 @@
 //! How networks are searched: the words that `prove` and `gen` take.
 
 use clap::ValueEnum;
-use hrdsl_ir::suite::{Delays, WitnessKind};
+use hrdsl_ir::suite::{DelayChoice, WitnessKind};
 use hrdsl_runtime::prove::SearchOrder;
 
 /// What `--witness` takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Witness {
+pub enum WitnessArg {
     /// The first that is found.
     Any,
     /// As few transitions as any.
@@ -15,19 +15,19 @@ pub enum Witness {
     Fastest,
 }
 
-impl From<Witness> for WitnessKind {
-    fn from(kind: Witness) -> Self {
+impl From<WitnessArg> for WitnessKind {
+    fn from(kind: WitnessArg) -> Self {
         match kind {
-            Witness::Any => Self::Any,
-            Witness::Shortest => Self::Shortest,
-            Witness::Fastest => Self::Fastest,
+            WitnessArg::Any => Self::Any,
+            WitnessArg::Shortest => Self::Shortest,
+            WitnessArg::Fastest => Self::Fastest,
         }
     }
 }
 
 /// What `--delays` takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum When {
+pub enum DelayArg {
     /// As early as possible.
     Earliest,
     /// As late as possible.
@@ -36,19 +36,19 @@ pub enum When {
     Sampled,
 }
 
-impl From<When> for Delays {
-    fn from(when: When) -> Self {
+impl From<DelayArg> for DelayChoice {
+    fn from(when: DelayArg) -> Self {
         match when {
-            When::Earliest => Self::Earliest,
-            When::Latest => Self::Latest,
-            When::Sampled => Self::Sampled,
+            DelayArg::Earliest => Self::Earliest,
+            DelayArg::Latest => Self::Latest,
+            DelayArg::Sampled => Self::Sampled,
         }
     }
 }
 
 /// What `--order` takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Way {
+pub enum SearchOrderArg {
     /// First all states near the start.
     Breadth,
     /// First what follows the latest state.
@@ -59,13 +59,13 @@ pub enum Way {
     Topological,
 }
 
-impl From<Way> for SearchOrder {
-    fn from(way: Way) -> Self {
+impl From<SearchOrderArg> for SearchOrder {
+    fn from(way: SearchOrderArg) -> Self {
         match way {
-            Way::Breadth => Self::Breadth,
-            Way::Depth => Self::Depth,
-            Way::Random => Self::RandomDepth,
-            Way::Topological => Self::Topological,
+            SearchOrderArg::Breadth => Self::Breadth,
+            SearchOrderArg::Depth => Self::Depth,
+            SearchOrderArg::Random => Self::RandomDepth,
+            SearchOrderArg::Topological => Self::Topological,
         }
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use hrdsl_source::printable_line;
 use similar::TextDiff;
 
-use crate::color::{Style, paint};
+use crate::color::{TextStyle, paint};
 
 /// The difference of two texts of one file; empty if there is none.
 #[must_use]
@@ -18,9 +18,9 @@ pub fn unified(name: &str, before: &str, after: &str, colour: bool) -> String {
         let (text, end) = line.strip_suffix('\n').map_or((line, ""), |text| (text, "\n"));
         let text = &*printable_line(text.strip_suffix('\r').unwrap_or(text));
         let style = match text.as_bytes().first() {
-            Some(b'+') => Some(Style::Added),
-            Some(b'-') => Some(Style::Removed),
-            Some(b'@') => Some(Style::Code),
+            Some(b'+') => Some(TextStyle::Added),
+            Some(b'-') => Some(TextStyle::Removed),
+            Some(b'@') => Some(TextStyle::Code),
             _ => None,
         };
         let shown = style.map_or_else(|| text.to_owned(), |style| paint(colour, style, text));

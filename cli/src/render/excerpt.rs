@@ -3,7 +3,7 @@
 
 use std::{collections::BTreeSet, ops::Range};
 
-use hrdsl_source::{Label, SourceFile, Span, printable_char, printable_line};
+use hrdsl_source::{SourceFile, Span, SpanLabel, printable_char, printable_line};
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 /// Labels that are shown, at most; what is said of more is in the message and in JSON.
@@ -18,34 +18,34 @@ const LEFT_OUT: &str = " … ";
 
 /// A piece of a file, with labels in it.
 #[derive(Debug, Default)]
-pub struct Excerpt {
+pub struct SourceExcerpt {
     name: String,
     text: String,
-    lines: Vec<Line>,
+    lines: Vec<ExcerptLine>,
     /// The label's place in the file and here, and its column in the file, from 0.
     labels: Vec<(Span, Range<usize>, usize)>,
 }
 
 /// A line of the excerpt.
 #[derive(Debug)]
-struct Line {
+struct ExcerptLine {
     /// In the file, from 0.
     number: usize,
     /// Here, with its end.
     range: Range<usize>,
-    pieces: Vec<Piece>,
+    pieces: Vec<ExcerptPiece>,
 }
 
 /// Bytes of the file, and where they begin here. One character stands for one, of whatever length.
 #[derive(Debug)]
-struct Piece {
+struct ExcerptPiece {
     source: Range<usize>,
     start: usize,
 }
 
-impl Excerpt {
+impl SourceExcerpt {
     /// The lines of these labels, which are of this file.
-    pub fn new<'l>(file: &SourceFile, labels: impl Iterator<Item = &'l Label>) -> Self {
+    pub fn new<'l>(file: &SourceFile, labels: impl Iterator<Item = &'l SpanLabel>) -> Self {
         let spans: Vec<Span> = labels.take(LABELS).map(|l| short(file, l.span)).collect();
         let mut numbers = BTreeSet::new();
         for span in &spans {
@@ -80,14 +80,14 @@ impl Excerpt {
             if source.start > line.start {
                 self.text += LEFT_OUT;
             }
-            pieces.push(Piece { source: source.clone(), start: self.text.len() });
+            pieces.push(ExcerptPiece { source: source.clone(), start: self.text.len() });
             self.text.extend(file.text[source].chars().map(shown));
         }
         if pieces.last().is_some_and(|p| p.source.end < line.end) {
             self.text += LEFT_OUT;
         }
         self.text.push('\n');
-        self.lines.push(Line { number, range: start..self.text.len(), pieces });
+        self.lines.push(ExcerptLine { number, range: start..self.text.len(), pieces });
     }
 
     /// Where a byte of the file is, here; of what is left out, where that is said.
@@ -163,7 +163,7 @@ fn around(text: &str, byte: usize) -> Range<usize> {
     start..end
 }
 
-impl SourceCode for Excerpt {
+impl SourceCode for SourceExcerpt {
     /// The lines of a span with those around them, as far as they follow one another in the file.
     fn read_span<'s>(
         &'s self,

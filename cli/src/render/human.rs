@@ -2,35 +2,35 @@
 
 use std::fmt;
 
-use hrdsl_source::{Diagnostic, Files, Label, Severity, printable};
+use hrdsl_source::{Diagnostic, Severity, SourceFiles, SpanLabel, printable};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
 
-use super::excerpt::Excerpt;
+use super::excerpt::SourceExcerpt;
 
 /// Findings of a file that are shown unless somebody asks for more: nobody reads on.
 pub const SHOWN: usize = 50;
 
 /// One diagnostic as miette wants it.
-struct Shown<'a> {
+struct MietteDiagnostic<'a> {
     diagnostic: &'a Diagnostic,
-    source: Excerpt,
+    source: SourceExcerpt,
 }
 
-impl fmt::Debug for Shown<'_> {
+impl fmt::Debug for MietteDiagnostic<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.diagnostic.fmt(f)
     }
 }
 
-impl fmt::Display for Shown<'_> {
+impl fmt::Display for MietteDiagnostic<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&clean(&self.diagnostic.message))
     }
 }
 
-impl std::error::Error for Shown<'_> {}
+impl std::error::Error for MietteDiagnostic<'_> {}
 
-impl miette::Diagnostic for Shown<'_> {
+impl miette::Diagnostic for MietteDiagnostic<'_> {
     fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         Some(Box::new(self.diagnostic.code))
     }
@@ -66,7 +66,7 @@ impl miette::Diagnostic for Shown<'_> {
 }
 
 /// The labels in the file of the first one: only one file is shown.
-fn own_labels(diagnostic: &Diagnostic) -> impl Iterator<Item = &Label> {
+fn own_labels(diagnostic: &Diagnostic) -> impl Iterator<Item = &SpanLabel> {
     let file = diagnostic.span().file;
     diagnostic.labels.iter().filter(move |l| l.span.file == file)
 }
@@ -87,15 +87,15 @@ fn clean(text: &str) -> String {
 
 /// A diagnostic with its piece of source.
 #[must_use]
-pub fn diagnostic(files: &Files, diagnostic: &Diagnostic) -> String {
+pub fn diagnostic(files: &SourceFiles, diagnostic: &Diagnostic) -> String {
     let theme = if crate::color::stderr_has() {
         GraphicalTheme::unicode()
     } else {
         GraphicalTheme::unicode_nocolor()
     };
     let file = files.get(diagnostic.span().file);
-    let source = file.map(|file| Excerpt::new(file, own_labels(diagnostic))).unwrap_or_default();
-    let shown = Shown { diagnostic, source };
+    let source = file.map(|file| SourceExcerpt::new(file, own_labels(diagnostic))).unwrap_or_default();
+    let shown = MietteDiagnostic { diagnostic, source };
     let mut out = String::new();
     let handler = GraphicalReportHandler::new_themed(theme).with_width(100).with_links(false);
     if handler.render_report(&mut out, &shown).is_err() {

@@ -1,81 +1,81 @@
 //! `--format json`: one document, whose schema is in `spec/cli.md`.
 
 use hrdsl_compiler::pages;
-use hrdsl_source::{Diagnostic, Edit, Files, Severity, Span};
+use hrdsl_source::{Diagnostic, Severity, SourceFiles, Span, TextEdit};
 use serde::Serialize;
 
 use crate::{
-    fault::Fault,
-    project::{Checked, Kind, Project},
+    fault::CommandFault,
+    project::{CheckedProject, CheckedUnit, SourceKind},
 };
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct DiagnosticsDocument<'a> {
     format: &'static str,
     version: u32,
-    files: Vec<File<'a>>,
-    diagnostics: Vec<Shown<'a>>,
-    summary: Summary,
+    files: Vec<JsonFile<'a>>,
+    diagnostics: Vec<JsonDiagnostic<'a>>,
+    summary: FindingCounts,
 }
 
 #[derive(Serialize)]
-struct File<'a> {
+struct JsonFile<'a> {
     path: &'a str,
-    kind: Kind,
+    kind: SourceKind,
     /// The scenario or module that it was compiled with.
     with: &'a str,
 }
 
 #[derive(Serialize)]
-struct Shown<'a> {
+struct JsonDiagnostic<'a> {
     code: String,
     title: &'static str,
     severity: Severity,
     message: &'a str,
-    labels: Vec<Label<'a>>,
+    labels: Vec<JsonLabel<'a>>,
     help: Option<&'a str>,
-    fixes: Vec<Fix<'a>>,
+    fixes: Vec<JsonFix<'a>>,
     page: String,
 }
 
 #[derive(Serialize)]
-struct Label<'a> {
+struct JsonLabel<'a> {
     primary: bool,
     text: &'a str,
     #[serde(flatten)]
-    place: Place<'a>,
+    place: JsonPlace<'a>,
 }
 
 #[derive(Serialize)]
-struct Place<'a> {
+struct JsonPlace<'a> {
     file: &'a str,
-    start: Point,
-    end: Point,
+    start: JsonPoint,
+    end: JsonPoint,
 }
 
 #[derive(Serialize)]
-struct Point {
+struct JsonPoint {
     line: u32,
     column: u32,
     byte: u32,
 }
 
 #[derive(Serialize)]
-struct Fix<'a> {
+struct JsonFix<'a> {
     title: &'a str,
     certain: bool,
-    edits: Vec<Change<'a>>,
+    edits: Vec<JsonEdit<'a>>,
 }
 
 #[derive(Serialize)]
-struct Change<'a> {
+struct JsonEdit<'a> {
     #[serde(flatten)]
-    place: Place<'a>,
+    place: JsonPlace<'a>,
     text: &'a str,
 }
 
 #[derive(Serialize)]
-struct Summary {
+struct FindingCounts {
     errors: usize,
     warnings: usize,
 }
@@ -84,10 +84,10 @@ struct Summary {
 ///
 /// # Errors
 /// None that is known: the document holds nothing that JSON cannot say.
-pub fn document(project: &Project, checked: &[Checked]) -> Result<String, Fault> {
+pub fn document(project: &CheckedProject, checked: &[CheckedUnit]) -> Result<String, CommandFault> {
     let file = |i: usize, head: usize| {
         let source = &project.sources[i];
-        File { path: &source.name, kind: source.kind, with: &project.sources[head].name }
+        JsonFile { path: &source.name, kind: source.kind, with: &project.sources[head].name }
     };
     let files = checked
         .iter()
@@ -95,29 +95,29 @@ pub fn document(project: &Project, checked: &[Checked]) -> Result<String, Fault>
     let said =
         || checked.iter().flat_map(|c| c.compilation.diagnostics.iter().map(|d| (&c.compilation.files, d)));
     let errors = said().filter(|(_, d)| d.is_error()).count();
-    let document = Document {
+    let document = DiagnosticsDocument {
         format: "hrdsl-check",
         version: 1,
         files: files.collect(),
         diagnostics: said().map(|(files, d)| shown(files, d)).collect(),
-        summary: Summary { errors, warnings: said().count() - errors },
+        summary: FindingCounts { errors, warnings: said().count() - errors },
     };
     crate::files::json(&document)
 }
 
-fn shown<'a>(files: &'a Files, diagnostic: &'a Diagnostic) -> Shown<'a> {
-    let label = |(i, label): (usize, &'a hrdsl_source::Label)| Label {
+fn shown<'a>(files: &'a SourceFiles, diagnostic: &'a Diagnostic) -> JsonDiagnostic<'a> {
+    let label = |(i, label): (usize, &'a hrdsl_source::SpanLabel)| JsonLabel {
         primary: i == 0,
         text: &label.text,
         place: place(files, label.span),
     };
-    let edit = |edit: &'a Edit| Change { place: place(files, edit.span), text: &edit.text };
-    let fix = |fix: &'a hrdsl_source::Fix| Fix {
+    let edit = |edit: &'a TextEdit| JsonEdit { place: place(files, edit.span), text: &edit.text };
+    let fix = |fix: &'a hrdsl_source::SuggestedFix| JsonFix {
         title: &fix.title,
         certain: fix.certain,
         edits: fix.edits.iter().map(edit).collect(),
     };
-    Shown {
+    JsonDiagnostic {
         code: diagnostic.code.to_string(),
         title: diagnostic.code.info().map_or("", |i| i.title),
         severity: diagnostic.severity,
@@ -129,14 +129,14 @@ fn shown<'a>(files: &'a Files, diagnostic: &'a Diagnostic) -> Shown<'a> {
     }
 }
 
-fn place(files: &Files, span: Span) -> Place<'_> {
+fn place(files: &SourceFiles, span: Span) -> JsonPlace<'_> {
     let file = files.get(span.file);
     let point = |byte: u32| {
         let (line, column) = file.map_or((1, 1), |f| {
             let position = f.position(byte);
             (position.line, position.column)
         });
-        Point { line, column, byte }
+        JsonPoint { line, column, byte }
     };
-    Place { file: file.map_or("?", |f| &f.name), start: point(span.start), end: point(span.end) }
+    JsonPlace { file: file.map_or("?", |f| &f.name), start: point(span.start), end: point(span.end) }
 }

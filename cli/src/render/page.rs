@@ -1,6 +1,6 @@
 //! A page of Markdown for the terminal: headings bold, paragraphs wrapped, code indented.
 
-use crate::color::{Style, paint};
+use crate::color::{TextStyle, paint};
 
 const WIDTH: usize = 80;
 const INDENT: &str = "    ";
@@ -18,10 +18,10 @@ pub fn terminal(markdown: &str, colour: bool) -> String {
             code = !code;
         } else if code {
             let indent = if line.is_empty() { "" } else { INDENT };
-            out += &format!("{indent}{}\n", paint(colour, Style::Code, line));
+            out += &format!("{indent}{}\n", paint(colour, TextStyle::Code, line));
         } else if let Some(heading) = heading(line) {
             flush(&mut out, &mut paragraph, colour);
-            out += &format!("{}\n", paint(colour, Style::Bold, heading));
+            out += &format!("{}\n", paint(colour, TextStyle::Bold, heading));
         } else if line.trim().is_empty() {
             flush(&mut out, &mut paragraph, colour);
             out.push('\n');
@@ -75,7 +75,7 @@ fn inline(word: &str, code: &mut bool, colour: bool) -> String {
         if i > 0 {
             *code = !*code;
         }
-        out += &if *code { paint(true, Style::Code, part) } else { part.to_owned() };
+        out += &if *code { paint(true, TextStyle::Code, part) } else { part.to_owned() };
     }
     out
 }

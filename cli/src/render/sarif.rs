@@ -1,19 +1,19 @@
 //! `--format sarif`: SARIF 2.1.0, which code hosts and editors show beside the text.
 
 use hrdsl_compiler::pages;
-use hrdsl_source::{Diagnostic, Files, Fix, REGISTRY, Severity, Span};
+use hrdsl_source::{Diagnostic, REGISTRY, Severity, SourceFiles, Span, SuggestedFix};
 use serde_json::{Value, json};
 
 use crate::{
-    fault::Fault,
-    project::{Checked, Project},
+    fault::CommandFault,
+    project::{CheckedProject, CheckedUnit},
 };
 
 /// The log of a whole check.
 ///
 /// # Errors
 /// None that is known: the log holds nothing that JSON cannot say.
-pub fn document(project: &Project, checked: &[Checked]) -> Result<String, Fault> {
+pub fn document(project: &CheckedProject, checked: &[CheckedUnit]) -> Result<String, CommandFault> {
     let results = checked
         .iter()
         .flat_map(|c| c.compilation.diagnostics.iter().map(|d| result(&c.compilation.files, d)));
@@ -54,7 +54,7 @@ fn rules() -> Vec<Value> {
     REGISTRY.iter().map(rule).collect()
 }
 
-fn result(files: &Files, diagnostic: &Diagnostic) -> Value {
+fn result(files: &SourceFiles, diagnostic: &Diagnostic) -> Value {
     let mut message = diagnostic.message.clone();
     if let Some(help) = &diagnostic.help {
         message += &format!(" ({help})");
@@ -86,7 +86,7 @@ fn result(files: &Files, diagnostic: &Diagnostic) -> Value {
     result
 }
 
-fn location(files: &Files, span: Span, text: &str) -> Value {
+fn location(files: &SourceFiles, span: Span, text: &str) -> Value {
     let mut location = json!({ "physicalLocation": { "artifactLocation": artifact(files, span), "region": region(files, span) } });
     if !text.is_empty() {
         location["message"] = json!({ "text": text });
@@ -95,7 +95,7 @@ fn location(files: &Files, span: Span, text: &str) -> Value {
 }
 
 /// The edits of a fix, those of each file together.
-fn fix(files: &Files, fix: &Fix) -> Value {
+fn fix(files: &SourceFiles, fix: &SuggestedFix) -> Value {
     let mut changes: Vec<Value> = Vec::new();
     let mut last = None;
     for edit in &fix.edits {
@@ -120,12 +120,12 @@ fn fix(files: &Files, fix: &Fix) -> Value {
     })
 }
 
-fn artifact(files: &Files, span: Span) -> Value {
+fn artifact(files: &SourceFiles, span: Span) -> Value {
     json!({ "uri": files.get(span.file).map_or_else(|| "unknown".to_owned(), |f| uri(&f.name)) })
 }
 
 /// Lines and columns from 1; the end is the place after the last character.
-fn region(files: &Files, span: Span) -> Value {
+fn region(files: &SourceFiles, span: Span) -> Value {
     let Some(file) = files.get(span.file) else { return json!({ "startLine": 1 }) };
     let (start, end) = (file.position(span.start), file.position(span.end));
     json!({

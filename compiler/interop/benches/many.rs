@@ -1,7 +1,7 @@
 //! How long programs of other tools with many of one thing are imported, or refused, and how much memory that takes.
 
 use divan::{AllocProfiler, Bencher, counter::BytesCount};
-use hrdsl_interop::{Loader, Source, agentspeak, uppaal};
+use hrdsl_interop::{ForeignLoader, ForeignSource, agentspeak, uppaal};
 
 #[global_allocator]
 static ALLOC: AllocProfiler = AllocProfiler::system();
@@ -13,8 +13,8 @@ fn main() {
 /// Nothing is included.
 struct Nothing;
 
-impl Loader for Nothing {
-    fn load(&self, _: &str, path: &str) -> Result<Source, String> {
+impl ForeignLoader for Nothing {
+    fn load(&self, _: &str, path: &str) -> Result<ForeignSource, String> {
         Err(format!("there is no {path}"))
     }
 }
@@ -26,9 +26,10 @@ fn plans(count: usize) -> String {
 /// As many plans as are imported, and more than that, which are refused.
 #[divan::bench(args = [500, 2_000, 10_000], sample_count = 3, sample_size = 1)]
 fn plans_of_agentspeak(bencher: Bencher<'_, '_>, count: usize) {
-    let files = [Source { name: "bob.asl".to_owned(), text: plans(count) }];
+    let files = [ForeignSource { name: "bob.asl".to_owned(), text: plans(count) }];
     bencher.counter(BytesCount::new(files[0].text.len())).bench(|| {
-        agentspeak::import(divan::black_box(&files), &Nothing, &agentspeak::Options::default()).is_ok()
+        agentspeak::import(divan::black_box(&files), &Nothing, &agentspeak::AgentSpeakOptions::default())
+            .is_ok()
     });
 }
 
@@ -42,9 +43,10 @@ fn models_that_are_refused(bencher: Bencher<'_, '_>, which: &str) {
         let attributes: String = (0..200_000).map(|n| format!(" a{n}=\"\"")).collect();
         format!("<nta{attributes}></nta>")
     };
-    let model = Source { name: "model.xml".to_owned(), text };
+    let model = ForeignSource { name: "model.xml".to_owned(), text };
     bencher.counter(BytesCount::new(model.text.len())).bench(|| {
-        let refused = uppaal::import(divan::black_box(&model), None, &uppaal::Options::default()).is_err();
+        let refused =
+            uppaal::import(divan::black_box(&model), None, &uppaal::UppaalOptions::default()).is_err();
         assert!(refused);
     });
 }

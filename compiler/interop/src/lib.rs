@@ -1,4 +1,4 @@
-//! Models that go to and fro between hrdsl and other tools, one folder for each tool. It is pure: files come from a [`Loader`].
+//! Models that go to and fro between hrdsl and other tools, one folder for each tool. It is pure: files come from a [`ForeignLoader`].
 //!
 //! - [`agentspeak`]: Jason's `.asl` and `.mas2j` to scenarios
 //! - [`uppaal`]: UPPAAL's models in XML and their queries, to scenarios and from networks
@@ -6,8 +6,8 @@
 //! - [`picture`]: networks in Graphviz's DOT and as Mermaid's state diagrams
 //! - `exchange`: what they share: sources, notes and obstacles, names, times
 //!
-//! No tool knows another. What a scenario cannot say is left out, with a comment at its place and a [`Note`]; what keeps a
-//! network from another tool is an [`Obstacle`]; nothing is left out silently.
+//! No tool knows another. What a scenario cannot say is left out, with a comment at its place and a [`ImportNote`]; what keeps a
+//! network from another tool is an [`ExportObstacle`]; nothing is left out silently.
 
 pub mod agentspeak;
 mod exchange;
@@ -16,7 +16,7 @@ pub mod tchecker;
 pub mod uppaal;
 
 pub use exchange::{
-    note::{Imported, Note, Severity, SyntaxError},
-    obstacle::Obstacle,
-    source::{Loader, MAX_BYTES, NoFiles, Source},
+    note::{ImportNote, ImportedScenario, NoteSeverity, SyntaxError},
+    obstacle::ExportObstacle,
+    source::{ForeignLoader, ForeignSource, MAX_BYTES, NoForeignFiles},
 };

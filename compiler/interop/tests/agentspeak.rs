@@ -9,8 +9,8 @@ use std::{
 };
 
 use hrdsl_interop::{
-    Imported, Loader, NoFiles, Severity, Source, SyntaxError,
-    agentspeak::{Options, import},
+    ForeignLoader, ForeignSource, ImportedScenario, NoForeignFiles, NoteSeverity, SyntaxError,
+    agentspeak::{AgentSpeakOptions, import},
 };
 use hrdsl_source::FileId;
 
@@ -21,28 +21,28 @@ fn root() -> PathBuf {
 /// The files of the folder of programs.
 struct Disk;
 
-impl Loader for Disk {
-    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+impl ForeignLoader for Disk {
+    fn load(&self, from: &str, path: &str) -> Result<ForeignSource, String> {
         let folder = Path::new(from).parent().unwrap();
         let name = folder.join(path).display().to_string();
         let text = fs::read_to_string(root().join(&name)).map_err(|_| format!("there is no file {name}"))?;
-        Ok(Source { name, text })
+        Ok(ForeignSource { name, text })
     }
 }
 
-fn from_files(names: &[&str]) -> Result<Imported, Vec<SyntaxError>> {
+fn from_files(names: &[&str]) -> Result<ImportedScenario, Vec<SyntaxError>> {
     let source =
-        |n: &&str| Source { name: (*n).to_owned(), text: fs::read_to_string(root().join(n)).unwrap() };
-    let files: Vec<Source> = names.iter().map(source).collect();
-    import(&files, &Disk, &Options::default())
+        |n: &&str| ForeignSource { name: (*n).to_owned(), text: fs::read_to_string(root().join(n)).unwrap() };
+    let files: Vec<ForeignSource> = names.iter().map(source).collect();
+    import(&files, &Disk, &AgentSpeakOptions::default())
 }
 
-fn from_text(text: &str) -> Imported {
-    let files = [Source { name: "bob.asl".to_owned(), text: text.to_owned() }];
-    import(&files, &NoFiles, &Options::default()).unwrap_or_else(|e| panic!("{e:?}"))
+fn from_text(text: &str) -> ImportedScenario {
+    let files = [ForeignSource { name: "bob.asl".to_owned(), text: text.to_owned() }];
+    import(&files, &NoForeignFiles, &AgentSpeakOptions::default()).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
-fn report(result: &Result<Imported, Vec<SyntaxError>>) -> String {
+fn report(result: &Result<ImportedScenario, Vec<SyntaxError>>) -> String {
     match result {
         Ok(imported) => imported.notes.iter().map(|n| format!("{n}\n")).collect(),
         Err(errors) => errors.iter().map(|e| format!("{e}\n")).collect(),
@@ -93,7 +93,7 @@ fn programs_become_scenarios() {
         is_readable(&imported.text, &name);
         compare(&format!("{name}.hri"), &imported.text);
         let comments = imported.text.matches("// not carried over: ").count();
-        let left_out = imported.notes.iter().filter(|n| n.severity == Severity::LeftOut).count();
+        let left_out = imported.notes.iter().filter(|n| n.severity == NoteSeverity::LeftOut).count();
         assert!(comments >= left_out, "{name}: {left_out} are left out, and {comments} comments say so");
     }
 }
@@ -120,8 +120,8 @@ fn any_text_is_an_error_or_a_scenario() {
             for length in [1, 2, 9, 60] {
                 let end = places.get(n + length).copied().unwrap_or(text.len());
                 let cut = format!("{}{}", &text[..*start], &text[end..]);
-                let files = [Source { name: "bob.asl".to_owned(), text: cut }];
-                if let Ok(imported) = import(&files, &NoFiles, &Options::default()) {
+                let files = [ForeignSource { name: "bob.asl".to_owned(), text: cut }];
+                if let Ok(imported) = import(&files, &NoForeignFiles, &AgentSpeakOptions::default()) {
                     is_readable(&imported.text, name);
                 }
             }
@@ -138,13 +138,13 @@ fn deep_texts_are_refused() {
         format!("b({}1).", "-".repeat(100_000)),
         format!("+!g <- {}x.", "x |&| ".repeat(100_000)),
     ] {
-        let files = [Source { name: "bob.asl".to_owned(), text }];
-        let errors = import(&files, &NoFiles, &Options::default()).unwrap_err();
+        let files = [ForeignSource { name: "bob.asl".to_owned(), text }];
+        let errors = import(&files, &NoForeignFiles, &AgentSpeakOptions::default()).unwrap_err();
         assert!(errors[0].message.contains("too deep"), "{errors:?}");
     }
 }
 
-fn messages(imported: &Imported, severity: Severity) -> Vec<&str> {
+fn messages(imported: &ImportedScenario, severity: NoteSeverity) -> Vec<&str> {
     imported.notes.iter().filter(|n| n.severity == severity).map(|n| n.message.as_str()).collect()
 }
 
@@ -171,7 +171,7 @@ fn types_come_from_where_values_meet() {
 fn what_does_not_fit_is_left_out_alone() {
     let imported = from_text("b(1).\nb(x).\n!g.\n+!g : b(N) & N > 0 <- +b(\"t\"); .print(N).\n");
     assert_eq!(
-        messages(&imported, Severity::LeftOut),
+        messages(&imported, NoteSeverity::LeftOut),
         ["a number meets an atom (`x`)", "a number meets a string"]
     );
     assert!(imported.text.contains(".print(N)") && imported.text.contains("belief b(n: int) = b(1)"));
@@ -183,32 +183,32 @@ fn what_does_not_fit_is_left_out_alone() {
 fn a_rule_needs_what_it_reads_first() {
     let imported = from_text("r(X, Y) :- Y = X * 2.\n!g.\n+!g <- ?r(2, A); ?r(B, 4); .print(A).\n");
     assert!(imported.text.contains("?r(2, A);"), "{}", imported.text);
-    assert_eq!(messages(&imported, Severity::LeftOut), ["`B` has no value here"]);
+    assert_eq!(messages(&imported, NoteSeverity::LeftOut), ["`B` has no value here"]);
 }
 
 #[test]
 fn a_misspelt_belief_has_a_nearest_name() {
     let imported = from_text("battery(5).\n!g.\n+!g : batery(N) <- .print(N).\n");
-    let warnings = messages(&imported, Severity::Warning);
+    let warnings = messages(&imported, NoteSeverity::Warning);
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].ends_with("did you mean `battery`?"), "{warnings:?}");
-    assert_eq!(messages(&from_text("b. !g. +!g : b <- -b."), Severity::Warning), Vec::<&str>::new());
+    assert_eq!(messages(&from_text("b. !g. +!g : b <- -b."), NoteSeverity::Warning), Vec::<&str>::new());
 }
 
 #[test]
 fn agents_of_a_number_have_numbers() {
-    let files = [Source {
+    let files = [ForeignSource {
         name: "m.mas2j".to_owned(),
         text: "MAS m { agents: w work.asl [goals=\"go(2)\"] #2; }".to_owned(),
     }];
     struct One;
-    impl Loader for One {
-        fn load(&self, _: &str, path: &str) -> Result<Source, String> {
+    impl ForeignLoader for One {
+        fn load(&self, _: &str, path: &str) -> Result<ForeignSource, String> {
             let text = "+!go(N) <- dig(N); .send(w2, tell, done(N)).\n+done(_).".to_owned();
-            Ok(Source { name: path.to_owned(), text })
+            Ok(ForeignSource { name: path.to_owned(), text })
         }
     }
-    let text = import(&files, &One, &Options::default()).unwrap().text;
+    let text = import(&files, &One, &AgentSpeakOptions::default()).unwrap().text;
     for piece in [
         "agent w1 plays w1 {",
         "agent w2 plays w2 {",

@@ -3,10 +3,10 @@
 
 use std::{fs, path::Path};
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_interop::{
-    NoFiles, Source,
-    agentspeak::{Options, import},
+    ForeignSource, NoForeignFiles,
+    agentspeak::{AgentSpeakOptions, import},
 };
 
 #[test]
@@ -20,7 +20,7 @@ fn expected_texts_compile() {
     for path in names {
         let text = fs::read_to_string(&path).unwrap();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let compilation = compile(Input { name: &name, text: &text }, &[]);
+        let compilation = compile(InputFile { name: &name, text: &text }, &[]);
         let wrong = compilation.diagnostics.iter().filter(|d| d.is_error());
         errors.extend(
             wrong.map(|d| format!("{}: {} {}", compilation.files.place(d.span()), d.code, d.message)),
@@ -43,9 +43,11 @@ fn what_is_left_of_programs_compiles() {
             for length in [1, 8, 40] {
                 let end = places.get(n + length).copied().unwrap_or(text.len());
                 let text = format!("{}{}", &text[..*start], &text[end..]);
-                let files = [Source { name: "bob.asl".to_owned(), text }];
-                let Ok(imported) = import(&files, &NoFiles, &Options::default()) else { continue };
-                let compilation = compile(Input { name, text: &imported.text }, &[]);
+                let files = [ForeignSource { name: "bob.asl".to_owned(), text }];
+                let Ok(imported) = import(&files, &NoForeignFiles, &AgentSpeakOptions::default()) else {
+                    continue;
+                };
+                let compilation = compile(InputFile { name, text: &imported.text }, &[]);
                 compiled += 1;
                 let wrong = compilation.diagnostics.iter().filter(|d| d.is_error());
                 errors.extend(wrong.map(|d| {

@@ -1,14 +1,14 @@
 //! Networks in TChecker's format: what becomes of every construct, that it can be read again, and what has no counterpart.
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_interop::{
-    Source,
+    ForeignSource,
     tchecker::{self, export},
 };
 use hrdsl_ir::Program;
 
 fn program(text: &str) -> Program {
-    let compilation = compile(Input { name: "model.hri", text }, &[]);
+    let compilation = compile(InputFile { name: "model.hri", text }, &[]);
     let wrong: Vec<String> = compilation
         .diagnostics
         .iter()
@@ -77,8 +77,8 @@ fn every_construct_is_exported() {
 #[test]
 fn what_is_exported_can_be_read_again() {
     let text = exported(&NETWORK.replace("committed ", "")).unwrap();
-    let source = Source { name: "table.txt".to_owned(), text };
-    let imported = tchecker::import(&source, &tchecker::Options::default()).unwrap();
+    let source = ForeignSource { name: "table.txt".to_owned(), text };
+    let imported = tchecker::import(&source, &tchecker::TcheckerOptions::default()).unwrap();
     let again = program(&imported.text);
     // The automata with their locations; all else is told by the answers to queries.
     let locations = |p: &Program| -> Vec<usize> { p.automata.iter().map(|a| a.locations.len()).collect() };

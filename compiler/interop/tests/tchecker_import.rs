@@ -4,14 +4,17 @@
 
 use std::{fs, path::Path};
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_interop::{
-    Imported, Source, SyntaxError,
-    tchecker::{Options, import},
+    ForeignSource, ImportedScenario, SyntaxError,
+    tchecker::{TcheckerOptions, import},
 };
 
-fn of(text: &str) -> Result<Imported, Vec<SyntaxError>> {
-    import(&Source { name: "model.txt".to_owned(), text: text.to_owned() }, &Options::default())
+fn of(text: &str) -> Result<ImportedScenario, Vec<SyntaxError>> {
+    import(
+        &ForeignSource { name: "model.txt".to_owned(), text: text.to_owned() },
+        &TcheckerOptions::default(),
+    )
 }
 
 fn fixture(name: &str) -> String {
@@ -21,12 +24,12 @@ fn fixture(name: &str) -> String {
 
 /// The errors of the scenario.
 fn errors(text: &str) -> Vec<String> {
-    let compilation = compile(Input { name: "model.hri", text }, &[]);
+    let compilation = compile(InputFile { name: "model.hri", text }, &[]);
     let wrong = compilation.diagnostics.iter().filter(|d| d.is_error());
     wrong.map(|d| format!("{}: {} {}", compilation.files.place(d.span()), d.code, d.message)).collect()
 }
 
-fn shown(imported: &Imported) -> String {
+fn shown(imported: &ImportedScenario) -> String {
     let notes: Vec<String> = imported.notes.iter().map(ToString::to_string).collect();
     format!("{}\n----\n{}", imported.text, notes.join("\n"))
 }

@@ -1,14 +1,14 @@
 //! Networks as UPPAAL's models: what becomes of each construct, that they can be read again, and what is refused.
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_interop::{
-    Source,
-    uppaal::{self, Exported, export},
+    ForeignSource,
+    uppaal::{self, UppaalDocument, export},
 };
 use hrdsl_ir::Program;
 
 fn program(text: &str) -> Program {
-    let compilation = compile(Input { name: "model.hri", text }, &[]);
+    let compilation = compile(InputFile { name: "model.hri", text }, &[]);
     let wrong: Vec<String> = compilation
         .diagnostics
         .iter()
@@ -19,13 +19,13 @@ fn program(text: &str) -> Program {
     compilation.program.expect("there are no errors")
 }
 
-fn exported(text: &str) -> Exported {
+fn exported(text: &str) -> UppaalDocument {
     export(&program(text), 0).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
-fn again(exported: &Exported) -> String {
-    let source = Source { name: "again.xml".to_owned(), text: exported.text.clone() };
-    uppaal::import(&source, None, &uppaal::Options::default())
+fn again(exported: &UppaalDocument) -> String {
+    let source = ForeignSource { name: "again.xml".to_owned(), text: exported.text.clone() };
+    uppaal::import(&source, None, &uppaal::UppaalOptions::default())
         .unwrap_or_else(|e| panic!("{e:?}\n{}", exported.text))
         .text
 }

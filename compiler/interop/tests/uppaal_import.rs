@@ -8,10 +8,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_interop::{
-    Imported, Severity, Source, SyntaxError,
-    uppaal::{Options, import},
+    ForeignSource, ImportedScenario, NoteSeverity, SyntaxError,
+    uppaal::{UppaalOptions, import},
 };
 use hrdsl_source::FileId;
 
@@ -19,12 +19,12 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/uppaal")
 }
 
-fn file(name: &str) -> Source {
-    Source { name: name.to_owned(), text: fs::read_to_string(root().join(name)).unwrap() }
+fn file(name: &str) -> ForeignSource {
+    ForeignSource { name: name.to_owned(), text: fs::read_to_string(root().join(name)).unwrap() }
 }
 
-fn handover() -> Imported {
-    import(&file("handover.xml"), Some(&file("handover.q")), &Options::default()).unwrap()
+fn handover() -> ImportedScenario {
+    import(&file("handover.xml"), Some(&file("handover.q")), &UppaalOptions::default()).unwrap()
 }
 
 /// A model of one template `P` with two locations, `a` and `b`.
@@ -47,10 +47,10 @@ fn model(global: &str, parameters: &str, local: &str, labels: &[(&str, &str)], s
     )
 }
 
-fn from_text(text: &str, queries: &str) -> Result<Imported, Vec<SyntaxError>> {
-    let model = Source { name: "m.xml".to_owned(), text: text.to_owned() };
-    let queries = Source { name: "m.q".to_owned(), text: queries.to_owned() };
-    import(&model, Some(&queries), &Options::default())
+fn from_text(text: &str, queries: &str) -> Result<ImportedScenario, Vec<SyntaxError>> {
+    let model = ForeignSource { name: "m.xml".to_owned(), text: text.to_owned() };
+    let queries = ForeignSource { name: "m.q".to_owned(), text: queries.to_owned() };
+    import(&model, Some(&queries), &UppaalOptions::default())
 }
 
 fn edges(global: &str, local: &str, labels: &[(&str, &str)]) -> String {
@@ -70,7 +70,7 @@ fn is_readable(text: &str) {
 }
 
 fn compiles(text: &str) {
-    let compilation = compile(Input { name: "m.hri", text }, &[]);
+    let compilation = compile(InputFile { name: "m.hri", text }, &[]);
     let wrong: Vec<String> = compilation
         .diagnostics
         .iter()
@@ -89,7 +89,7 @@ fn handover_becomes_the_expected_scenario() {
         fs::write(&path, &imported.text).unwrap();
     }
     assert_eq!(imported.text, fs::read_to_string(path).unwrap_or_default());
-    let left_out: Vec<_> = imported.notes.iter().filter(|n| n.severity == Severity::LeftOut).collect();
+    let left_out: Vec<_> = imported.notes.iter().filter(|n| n.severity == NoteSeverity::LeftOut).collect();
     assert_eq!(left_out.len(), 1);
     assert!(left_out[0].message.contains("`Pr`"), "{}", left_out[0].message);
     assert_eq!((left_out[0].file.as_str(), left_out[0].column), ("handover.q", 1));
@@ -284,7 +284,7 @@ fn queries_that_cannot_be_asked_are_left_out() {
     assert!(imported.text.contains("A<> not P.a && n == 0"), "{}", imported.text);
     assert!(imported.text.contains("sup { P.a }: x, n"), "{}", imported.text);
     let left_out: Vec<u32> =
-        imported.notes.iter().filter(|n| n.severity == Severity::LeftOut).map(|n| n.line).collect();
+        imported.notes.iter().filter(|n| n.severity == NoteSeverity::LeftOut).map(|n| n.line).collect();
     assert_eq!(left_out, [2, 3, 9, 10]);
     compiles(&imported.text);
 }

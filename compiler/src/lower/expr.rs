@@ -7,17 +7,17 @@ use hrdsl_ir::{
 use hrdsl_model::{self as model, SignalTerm, TypedExprKind, VariableRef};
 
 /// Where a value that is not constant comes from.
-pub(crate) enum Source {
+pub(crate) enum LeafSource {
     Leaf(VariableRef),
     Term(SignalTerm, model::TypedExpr),
 }
 
 /// Lowers an expression; `read` gives what stands for a name or a measurement.
-pub(crate) fn expr(e: &model::TypedExpr, read: &mut dyn FnMut(Source) -> Expr) -> Expr {
+pub(crate) fn expr(e: &model::TypedExpr, read: &mut dyn FnMut(LeafSource) -> Expr) -> Expr {
     match &e.kind {
         TypedExprKind::Const(v) => Expr::Const(*v),
-        TypedExprKind::Leaf(leaf) => read(Source::Leaf(*leaf)),
-        TypedExprKind::Term(term) => read(Source::Term(*term, e.clone())),
+        TypedExprKind::Leaf(leaf) => read(LeafSource::Leaf(*leaf)),
+        TypedExprKind::Term(term) => read(LeafSource::Term(*term, e.clone())),
         TypedExprKind::Unary(op, a) => Expr::Unary(*op, Box::new(expr(a, read))),
         TypedExprKind::Binary(op, a, b) => {
             let a = expr(a, read);
@@ -35,7 +35,7 @@ pub(crate) fn expr(e: &model::TypedExpr, read: &mut dyn FnMut(Source) -> Expr) -
         }
         TypedExprKind::Element(of) => {
             // INVARIANT: only automata and functions choose elements at run time, and their leaves are variables.
-            let slot = if let Expr::Var(slot) = read(Source::Leaf(of.slot)) { slot } else { u16::MAX };
+            let slot = if let Expr::Var(slot) = read(LeafSource::Leaf(of.slot)) { slot } else { u16::MAX };
             let index = |i: &model::TypedIndex| ArrayIndex {
                 at: expr(&i.at, read),
                 count: i.count,
@@ -55,9 +55,9 @@ pub(crate) fn expr(e: &model::TypedExpr, read: &mut dyn FnMut(Source) -> Expr) -
 /// An expression over the locals alone: of a stimulus or a plan.
 pub(crate) fn local(e: &model::TypedExpr) -> Expr {
     expr(e, &mut |source| match source {
-        Source::Leaf(VariableRef::Local(i)) => Expr::Var(i),
+        LeafSource::Leaf(VariableRef::Local(i)) => Expr::Var(i),
         // INVARIANT: the checker lets nothing else into such an expression.
-        Source::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
-        | Source::Term(..) => Expr::bool(false),
+        LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
+        | LeafSource::Term(..) => Expr::bool(false),
     })
 }

@@ -16,7 +16,7 @@ use expr::local;
 /// Lowers a scenario without errors. `files` gives the text of requirements.
 #[must_use]
 pub fn lower(scenario: &Scenario, files: &SourceFiles) -> Program {
-    let mut signals = world::Signals::declared(scenario);
+    let mut signals = world::SignalTable::declared(scenario);
     let world = scenario.world.as_ref().map(|w| world::world(w, &scenario.device_kinds, &mut signals));
     let monitors = scenario.requirements.iter().map(|r| monitor::monitor(r, files, &mut signals)).collect();
     let automata: Vec<_> = scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect();

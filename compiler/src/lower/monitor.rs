@@ -13,12 +13,12 @@ use hrdsl_model::{self as model, InferredType, RequirementPattern, TypedExprKind
 use hrdsl_source::SourceFiles;
 use hrdsl_syntax::ast;
 
-use super::world::{Reader, Signals};
+use super::world::{SignalReader, SignalTable};
 use MonitorEffect::{Discharge, Fail, ResetClock, Trigger};
 
 /// The part of a monitor that its pattern decides.
 #[derive(Default)]
-struct Machine {
+struct PatternMachine {
     states: Vec<MonitorState>,
     edges: Vec<MonitorEdge>,
     signals: Vec<SignalId>,
@@ -28,7 +28,7 @@ struct Machine {
 pub(crate) fn monitor(
     r: &model::TypedRequirement,
     files: &SourceFiles,
-    signals: &mut Signals<'_>,
+    signals: &mut SignalTable<'_>,
 ) -> Monitor {
     let machine = match &r.pattern {
         RequirementPattern::Causes { trigger, response, within } => {
@@ -85,7 +85,7 @@ fn edge(
 }
 
 /// While an answer is due, an event that is both answer and trigger answers.
-fn causes(trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Option<Nanos>) -> Machine {
+fn causes(trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Option<Nanos>) -> PatternMachine {
     let mut edges = vec![
         edge(0, 1, MonitorTrigger::Event(trigger.clone()), None, &[Trigger, ResetClock]),
         edge(1, 0, MonitorTrigger::Event(response), None, &[Discharge]),
@@ -95,10 +95,14 @@ fn causes(trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Optio
         edges.push(edge(1, 0, MonitorTrigger::Deadline, None, &[Fail]));
     }
     let states = vec![state("idle", false, None), state("pending", true, within)];
-    Machine { states, edges, ..Machine::default() }
+    PatternMachine { states, edges, ..PatternMachine::default() }
 }
 
-fn forbids(trigger: Vec<EventPattern>, forbidden: Vec<EventPattern>, until: Vec<EventPattern>) -> Machine {
+fn forbids(
+    trigger: Vec<EventPattern>,
+    forbidden: Vec<EventPattern>,
+    until: Vec<EventPattern>,
+) -> PatternMachine {
     let edges = vec![
         edge(0, 1, MonitorTrigger::Event(trigger.clone()), None, &[Trigger]),
         edge(1, 1, MonitorTrigger::Event(forbidden), None, &[Fail]),
@@ -106,23 +110,23 @@ fn forbids(trigger: Vec<EventPattern>, forbidden: Vec<EventPattern>, until: Vec<
         edge(1, 1, MonitorTrigger::Event(trigger), None, &[Trigger]),
     ];
     let states = vec![state("idle", false, None), state("armed", false, None)];
-    Machine { states, edges, ..Machine::default() }
+    PatternMachine { states, edges, ..PatternMachine::default() }
 }
 
 /// The margin is that of the negated condition, at the events.
 fn never(
     events: Vec<EventPattern>,
     condition: Option<&model::TypedExpr>,
-    signals: &mut Signals<'_>,
-) -> Machine {
-    let mut reader = Reader::new(signals);
+    signals: &mut SignalTable<'_>,
+) -> PatternMachine {
+    let mut reader = SignalReader::new(signals);
     let guard = condition.map(|c| reader.expr(c));
     let margin = condition.and_then(|c| margin(c, false, &mut reader));
     let mut edges = vec![edge(0, 0, MonitorTrigger::Event(events.clone()), guard, &[Trigger, Fail])];
     if condition.is_some() {
         edges.push(edge(0, 0, MonitorTrigger::Event(events.clone()), None, &[Trigger, Discharge]));
     }
-    Machine {
+    PatternMachine {
         states: vec![state("watch", false, None)],
         edges,
         signals: reader.read(),
@@ -131,8 +135,8 @@ fn never(
 }
 
 /// The first sample triggers; each time the condition ceases to hold is one failure.
-fn globally(condition: &model::TypedExpr, signals: &mut Signals<'_>) -> Machine {
-    let mut reader = Reader::new(signals);
+fn globally(condition: &model::TypedExpr, signals: &mut SignalTable<'_>) -> PatternMachine {
+    let mut reader = SignalReader::new(signals);
     let holds = reader.expr(condition);
     let broken = not(holds.clone());
     let margin = margin(condition, true, &mut reader);
@@ -144,7 +148,7 @@ fn globally(condition: &model::TypedExpr, signals: &mut Signals<'_>) -> Machine 
     ];
     let states =
         vec![state("unseen", false, None), state("seen", false, None), state("violated", false, None)];
-    Machine {
+    PatternMachine {
         states,
         edges,
         signals: reader.read(),
@@ -159,7 +163,7 @@ fn not(e: Expr) -> Expr {
 /// The robustness of a condition (of its negation, if not `positive`): `a < c` has c − a, a conjunction the least of its
 /// parts, a disjunction the greatest (Fainekos and Pappas, 2009). `None` if some part is not a comparison of numbers, or
 /// the parts' units differ.
-fn margin(e: &model::TypedExpr, positive: bool, reader: &mut Reader<'_, '_>) -> Option<(Expr, Unit)> {
+fn margin(e: &model::TypedExpr, positive: bool, reader: &mut SignalReader<'_, '_>) -> Option<(Expr, Unit)> {
     match &e.kind {
         TypedExprKind::Unary(ast::UnaryOp::Not, a) => margin(a, !positive, reader),
         TypedExprKind::Binary(op @ (BinaryOp::And | BinaryOp::Or), a, b) => {

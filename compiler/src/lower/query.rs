@@ -8,7 +8,7 @@ use hrdsl_model::{self as model, Scenario, VariableRef};
 use hrdsl_source::SourceFiles;
 
 use super::{
-    expr::{self, Source},
+    expr::{self, LeafSource},
     monitor::one_line,
 };
 
@@ -26,7 +26,7 @@ pub(crate) fn query(
         own.extend((0..slot(scenario.automata[at].vars.len())).map(|v| next + v));
         next += slot(automata[at].vars.len());
     }
-    let slots = Slots { own };
+    let slots = QueryVariableSlots { own };
     Query {
         name: q.name.clone(),
         title: q.title.clone(),
@@ -42,16 +42,16 @@ fn slot(n: usize) -> u16 {
 }
 
 /// The network's slot of each variable of the automata as they were written.
-struct Slots {
+struct QueryVariableSlots {
     own: Vec<u16>,
 }
 
-impl lowering::VariableSlots<model::TypedExpr, VariableRef> for Slots {
+impl lowering::VariableSlots<model::TypedExpr, VariableRef> for QueryVariableSlots {
     fn expr(&self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| match source {
-            Source::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
+            LeafSource::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
             // INVARIANT: the checker lets no measurement into a query.
-            Source::Term(..) => Expr::bool(false),
+            LeafSource::Term(..) => Expr::bool(false),
         })
     }
 

@@ -11,12 +11,12 @@ use hrdsl_ir::{
 };
 use hrdsl_model::{self as model, TypedStimulusStep, VariableRef};
 
-use super::expr::{self, Source};
+use super::expr::{self, LeafSource};
 
 pub(crate) fn automaton(a: &model::TypedAutomaton, scenario: &model::Scenario) -> Automaton {
     let shared = count(scenario.shared.len());
     // Nothing is bound in a location.
-    let slots = Slots { shared, own: count(a.vars.len()) };
+    let slots = EdgeVariableSlots { shared, own: count(a.vars.len()) };
     let mut lowered = Automaton {
         name: a.name.clone(),
         actor: a.actor,
@@ -27,8 +27,9 @@ pub(crate) fn automaton(a: &model::TypedAutomaton, scenario: &model::Scenario) -
         edges: Vec::new(),
         origin: a.origin,
     };
-    let plans: Vec<Option<Chain>> = a.edges.iter().map(|e| chain(e, a, scenario, &mut lowered)).collect();
-    let slots = Slots { shared, own: count(lowered.vars.len()) };
+    let plans: Vec<Option<EmissionChain>> =
+        a.edges.iter().map(|e| chain(e, a, scenario, &mut lowered)).collect();
+    let slots = EdgeVariableSlots { shared, own: count(lowered.vars.len()) };
     for (edge, plan) in a.edges.iter().zip(plans) {
         let first = edge.lower(&slots);
         match plan {
@@ -46,7 +47,7 @@ pub(crate) fn function(
     automata: &[Automaton],
 ) -> AutomatonFunction {
     let own = f.owner.and_then(|a| automata.get(usize::from(a.0))).map_or(0, |a| count(a.vars.len()));
-    let slots = Slots { shared: count(scenario.shared.len()), own };
+    let slots = EdgeVariableSlots { shared: count(scenario.shared.len()), own };
     AutomatonFunction {
         name: f.name.clone(),
         owner: f.owner,
@@ -66,7 +67,7 @@ fn count(n: usize) -> u16 {
 // ── what a stimulus emits ──
 
 /// An event that a stimulus emits, if the conditions around it hold.
-struct Emission<'a> {
+struct ConditionalEmission<'a> {
     /// Each with whether it must hold.
     conditions: Vec<(&'a model::TypedExpr, bool)>,
     event: EventId,
@@ -74,16 +75,16 @@ struct Emission<'a> {
 }
 
 /// The events that follow the stimulus of an edge, each on an edge of its own.
-struct Chain<'a> {
-    emissions: Vec<Emission<'a>>,
+struct EmissionChain<'a> {
+    emissions: Vec<ConditionalEmission<'a>>,
     /// What stands for each parameter of the stimulus after the first edge.
-    args: Vec<After>,
+    args: Vec<RetainedArgument>,
     /// The part of the generated locations' names before their number.
     stem: String,
 }
 
 /// An argument of the stimulus, when the stimulus has been sent.
-enum After {
+enum RetainedArgument {
     Const(hrdsl_ir::Value),
     /// A generated variable of the automaton keeps it; by its place among the own variables.
     Kept(u16),
@@ -96,7 +97,7 @@ fn chain<'a>(
     a: &model::TypedAutomaton,
     scenario: &'a model::Scenario,
     lowered: &mut Automaton,
-) -> Option<Chain<'a>> {
+) -> Option<EmissionChain<'a>> {
     let model::TypedSync::Send { event, args } = &edge.sync else { return None };
     let event = &scenario.events[usize::from(event.0)];
     let mut emissions = Vec::new();
@@ -109,28 +110,28 @@ fn chain<'a>(
     let mut after = Vec::new();
     for (i, (arg, param)) in args.iter().zip(&event.params).enumerate() {
         after.push(match arg.constant() {
-            Some(v) => After::Const(v),
+            Some(v) => RetainedArgument::Const(v),
             None if emissions.iter().any(|e| e.reads(count(i))) => {
                 let kept = format!("{stem}{}.{}", lowered.vars.len(), param.name);
                 // INVARIANT: what an automaton sends and does not know beforehand is of a finite type.
                 lowered.vars.extend(AutomatonVar::of_type(&kept, param.ty));
-                After::Kept(count(lowered.vars.len() - 1))
+                RetainedArgument::Kept(count(lowered.vars.len() - 1))
             }
-            None => After::Unused,
+            None => RetainedArgument::Unused,
         });
     }
-    Some(Chain { emissions, args: after, stem })
+    Some(EmissionChain { emissions, args: after, stem })
 }
 
 fn collect<'a>(
     steps: &'a [TypedStimulusStep],
     conditions: &mut Vec<(&'a model::TypedExpr, bool)>,
-    emissions: &mut Vec<Emission<'a>>,
+    emissions: &mut Vec<ConditionalEmission<'a>>,
 ) {
     for step in steps {
         match step {
             TypedStimulusStep::Emit { event, args } => {
-                emissions.push(Emission { conditions: conditions.clone(), event: *event, args });
+                emissions.push(ConditionalEmission { conditions: conditions.clone(), event: *event, args });
             }
             TypedStimulusStep::If { condition, then, otherwise } => {
                 for (steps, holds) in [(then, true), (otherwise, false)] {
@@ -144,7 +145,7 @@ fn collect<'a>(
     }
 }
 
-impl Emission<'_> {
+impl ConditionalEmission<'_> {
     fn reads(&self, param: u16) -> bool {
         let mut found = false;
         for e in self.args.iter().chain(self.conditions.iter().map(|(c, _)| *c)) {
@@ -157,17 +158,17 @@ impl Emission<'_> {
 // ── edges ──
 
 /// Where variables are found: `Expr::Var` counts shared, own, then the edge's binders.
-struct Slots {
+struct EdgeVariableSlots {
     shared: u16,
     own: u16,
 }
 
-impl lowering::VariableSlots<model::TypedExpr, VariableRef> for Slots {
+impl lowering::VariableSlots<model::TypedExpr, VariableRef> for EdgeVariableSlots {
     fn expr(&self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| match source {
-            Source::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
+            LeafSource::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
             // INVARIANT: automata measure nothing.
-            Source::Term(..) => Expr::bool(false),
+            LeafSource::Term(..) => Expr::bool(false),
         })
     }
 
@@ -182,22 +183,22 @@ impl lowering::VariableSlots<model::TypedExpr, VariableRef> for Slots {
     }
 }
 
-impl Slots {
+impl EdgeVariableSlots {
     /// An expression of the stimulus, after its edge.
-    fn after(&self, e: &model::TypedExpr, args: &[After]) -> Expr {
+    fn after(&self, e: &model::TypedExpr, args: &[RetainedArgument]) -> Expr {
         expr::expr(e, &mut |source| match source {
-            Source::Leaf(VariableRef::Local(i)) => match args.get(usize::from(i)) {
-                Some(After::Const(v)) => Expr::Const(*v),
-                Some(After::Kept(own)) => Expr::Var(self.slot(&VariableRef::Own(*own))),
-                Some(After::Unused) | None => Expr::bool(false),
+            LeafSource::Leaf(VariableRef::Local(i)) => match args.get(usize::from(i)) {
+                Some(RetainedArgument::Const(v)) => Expr::Const(*v),
+                Some(RetainedArgument::Kept(own)) => Expr::Var(self.slot(&VariableRef::Own(*own))),
+                Some(RetainedArgument::Unused) | None => Expr::bool(false),
             },
-            Source::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
-            | Source::Term(..) => Expr::bool(false),
+            LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
+            | LeafSource::Term(..) => Expr::bool(false),
         })
     }
 
     /// The condition of an emission: `Ok` if it is known already.
-    fn condition(&self, emission: &Emission<'_>, args: &[After]) -> Result<bool, Expr> {
+    fn condition(&self, emission: &ConditionalEmission<'_>, args: &[RetainedArgument]) -> Result<bool, Expr> {
         let mut left: Option<Expr> = None;
         for (condition, holds) in &emission.conditions {
             let e = self.after(condition, args);
@@ -217,8 +218,8 @@ impl Slots {
     }
 
     /// The stimulus on the first edge, with its updates; then each event on an edge between committed locations.
-    fn expand(&self, mut first: Edge, chain: &Chain<'_>, lowered: &mut Automaton) {
-        let emissions: Vec<(&Emission<'_>, Option<Expr>)> = chain
+    fn expand(&self, mut first: Edge, chain: &EmissionChain<'_>, lowered: &mut Automaton) {
+        let emissions: Vec<(&ConditionalEmission<'_>, Option<Expr>)> = chain
             .emissions
             .iter()
             .filter_map(|e| match self.condition(e, &chain.args) {
@@ -261,30 +262,30 @@ impl Slots {
     }
 
     /// Keeps the stimulus's arguments for what it emits, before the updates change what they are made of.
-    fn keep(&self, first: &mut Edge, chain: &Chain<'_>) {
+    fn keep(&self, first: &mut Edge, chain: &EmissionChain<'_>) {
         let SyncLabel::Send { args, .. } = &first.sync else { return };
         let kept: Vec<EdgeAssignment> = args
             .iter()
             .zip(&chain.args)
             .filter_map(|(arg, after)| match after {
-                After::Kept(own) => Some(EdgeAssignment::Assign {
+                RetainedArgument::Kept(own) => Some(EdgeAssignment::Assign {
                     place: Lvalue::slot(self.slot(&VariableRef::Own(*own))),
                     value: arg.clone(),
                 }),
-                After::Const(_) | After::Unused => None,
+                RetainedArgument::Const(_) | RetainedArgument::Unused => None,
             })
             .collect();
         first.updates.splice(0..0, kept);
     }
 
     /// Sets the kept arguments back, so that they do not multiply the states.
-    fn forget(&self, chain: &Chain<'_>, lowered: &Automaton) -> Vec<EdgeAssignment> {
+    fn forget(&self, chain: &EmissionChain<'_>, lowered: &Automaton) -> Vec<EdgeAssignment> {
         let back = |own: u16| {
             let var = &lowered.vars[usize::from(own)];
             let value = Expr::Const(var.value(var.init).unwrap_or(hrdsl_ir::Value::Int(var.init)));
             EdgeAssignment::Assign { place: Lvalue::slot(self.slot(&VariableRef::Own(own))), value }
         };
-        let kept = |a: &After| if let After::Kept(own) = a { Some(*own) } else { None };
+        let kept = |a: &RetainedArgument| if let RetainedArgument::Kept(own) = a { Some(*own) } else { None };
         chain.args.iter().filter_map(kept).map(back).collect()
     }
 }

@@ -11,9 +11,9 @@ use hrdsl_ir::{
 };
 use hrdsl_model::{self as model, VariableRef, world as from};
 
-use super::expr::{self, Source};
+use super::expr::{self, LeafSource};
 
-pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Signals<'_>) -> World {
+pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut SignalTable<'_>) -> World {
     let graspable: Vec<BodyId> =
         (0..).zip(&w.bodies).filter(|(_, b)| b.graspable).map(|(i, _)| BodyId(i)).collect();
     let gripper = |g: &from::TypedGripper| Gripper {
@@ -94,8 +94,8 @@ fn joint(j: &from::TypedJoint) -> Joint {
     }
 }
 
-fn rule(r: &from::TypedWorldRule, arms: usize, signals: &mut Signals<'_>) -> WorldRule {
-    let mut reader = Reader { signals, read: Vec::new(), recorded: false };
+fn rule(r: &from::TypedWorldRule, arms: usize, signals: &mut SignalTable<'_>) -> WorldRule {
+    let mut reader = SignalReader { signals, read: Vec::new(), recorded: false };
     let guard = r.guard.as_ref().map(|g| reader.expr(g));
     let args = r.args.iter().map(|a| reader.expr(a)).collect();
     WorldRule {
@@ -153,12 +153,12 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
 }
 
 /// All signals: those declared, with their ids, then one for each other term that a requirement or rule reads.
-pub(crate) struct Signals<'a> {
+pub(crate) struct SignalTable<'a> {
     list: Vec<Signal>,
     world: Option<&'a from::TypedWorld>,
 }
 
-impl<'a> Signals<'a> {
+impl<'a> SignalTable<'a> {
     pub fn declared(scenario: &'a model::Scenario) -> Self {
         let declared = scenario.world.as_ref().map_or(&[][..], |w| w.signals.as_slice());
         let signal = |s: &from::TypedSignal| {
@@ -198,43 +198,43 @@ impl<'a> Signals<'a> {
 /// An expression over primitive terms; an earlier signal stands for its own expression.
 fn measured(e: &model::TypedExpr, declared: &[from::TypedSignal], terms: &mut Vec<SignalTerm>) -> Expr {
     expr::expr(e, &mut |source| match source {
-        Source::Term(t, _) => {
+        LeafSource::Term(t, _) => {
             let at = terms.iter().position(|known| *known == t).unwrap_or_else(|| {
                 terms.push(t);
                 terms.len() - 1
             });
             Expr::Var(u16::try_from(at).unwrap_or(u16::MAX))
         }
-        Source::Leaf(VariableRef::Signal(id)) => {
+        LeafSource::Leaf(VariableRef::Signal(id)) => {
             measured(&declared[usize::from(id.0)].value, declared, terms)
         }
         // INVARIANT: signals have no other variables.
-        Source::Leaf(VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_)) => {
+        LeafSource::Leaf(VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_)) => {
             Expr::bool(false)
         }
     })
 }
 
 /// Collects the signals that a requirement or rule reads: `Expr::Var(i)` is the i-th.
-pub(crate) struct Reader<'s, 'a> {
-    signals: &'s mut Signals<'a>,
+pub(crate) struct SignalReader<'s, 'a> {
+    signals: &'s mut SignalTable<'a>,
     read: Vec<SignalId>,
     recorded: bool,
 }
 
-impl<'s, 'a> Reader<'s, 'a> {
+impl<'s, 'a> SignalReader<'s, 'a> {
     /// For a requirement: what it reads is recorded.
-    pub fn new(signals: &'s mut Signals<'a>) -> Self {
+    pub fn new(signals: &'s mut SignalTable<'a>) -> Self {
         Self { signals, read: Vec::new(), recorded: true }
     }
 
     pub fn expr(&mut self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| {
             let at = match source {
-                Source::Term(t, e) => self.signals.of_term(t, e.span),
-                Source::Leaf(VariableRef::Signal(id)) => usize::from(id.0),
+                LeafSource::Term(t, e) => self.signals.of_term(t, e.span),
+                LeafSource::Leaf(VariableRef::Signal(id)) => usize::from(id.0),
                 // INVARIANT: requirements and rules have no other variables.
-                Source::Leaf(VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_)) => {
+                LeafSource::Leaf(VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_)) => {
                     return Expr::bool(false);
                 }
             };

@@ -9,97 +9,97 @@ use serde::Serialize;
 
 /// An identifier where it was written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Name {
+pub struct NameSyntax {
     pub text: String,
     pub span: Span,
 }
 
 /// `a.b.c`
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Path {
+pub struct PathSyntax {
     /// At least one.
-    pub names: Vec<Name>,
+    pub names: Vec<NameSyntax>,
     pub span: Span,
 }
 
 /// A string literal, without its quotes and with escapes resolved.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Text {
+pub struct TextSyntax {
     pub text: String,
     pub span: Span,
 }
 
 /// One file: a scenario, a stdlib module (no `scenario` line), or a file of tests.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct File {
-    pub scenario: Option<Name>,
-    pub items: Vec<Item>,
+pub struct FileSyntax {
+    pub scenario: Option<NameSyntax>,
+    pub items: Vec<ItemSyntax>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Item {
+pub struct ItemSyntax {
     /// The `///` lines before it, joined by newlines.
     pub doc: String,
-    pub kind: ItemKind,
+    pub kind: ItemSyntaxKind,
     pub span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ItemKind {
+pub enum ItemSyntaxKind {
     /// `use std.person`, `use "people.hri"`
-    Use(Module),
+    Use(ModuleSyntax),
     /// `allow HR0107 "why"`: the next declaration may be so
-    Allow(Allow),
+    Allow(AllowSyntax),
     /// `enum Order { feed, clean }`
     Enum {
-        name: Name,
-        values: Vec<Name>,
+        name: NameSyntax,
+        values: Vec<NameSyntax>,
     },
     /// `record Pose { x: length, y: length }`
     Record {
-        name: Name,
-        fields: Vec<Param>,
+        name: NameSyntax,
+        fields: Vec<ParamSyntax>,
     },
     /// `actor person : environment`
     Actor {
-        name: Name,
-        role: Name,
+        name: NameSyntax,
+        role: NameSyntax,
     },
     /// `const LEGS = 4`
     Const {
-        name: Name,
-        value: Expr,
+        name: NameSyntax,
+        value: ExprSyntax,
     },
-    Event(Event),
-    Stimulus(Stimulus),
-    Agent(Agent),
+    Event(EventSyntax),
+    Stimulus(StimulusSyntax),
+    Agent(AgentSyntax),
     /// `var away: bool = false`: shared by all automata
-    Var(Var),
-    Automaton(Automaton),
+    Var(VarSyntax),
+    Automaton(AutomatonSyntax),
     /// `channel take(fork: 0..4), free : urgent`
-    Channel(Channel),
+    Channel(ChannelSyntax),
     /// `fn front() -> 0..5 { return queue[0] }`
-    Function(Function),
+    Function(FunctionSyntax),
     /// `query live of table = Person.asked --> Person.shown`
-    Query(Query),
+    Query(QuerySyntax),
     /// `network table = Person | Robot`
     Network {
-        name: Name,
-        automata: Vec<Name>,
+        name: NameSyntax,
+        automata: Vec<NameSyntax>,
     },
-    Require(Require),
-    Assume(Assume),
-    Cover(Cover),
-    Cross(Cross),
-    Suite(Suite),
-    Part(Part),
-    Device(Device),
-    World(World),
-    System(System),
-    Test(Test),
+    Require(RequireSyntax),
+    Assume(AssumeSyntax),
+    Cover(CoverSyntax),
+    Cross(CrossSyntax),
+    Suite(SuiteSyntax),
+    Part(PartSyntax),
+    Device(DeviceSyntax),
+    World(WorldSyntax),
+    System(SystemSyntax),
+    Test(TestSyntax),
     /// `agent Human = Visitor(10 s)`: a template with its arguments
-    Instance(Instance),
+    Instance(InstanceSyntax),
     /// Could not be read; the diagnostic has been made.
     Error,
 }
@@ -107,24 +107,24 @@ pub enum ItemKind {
 /// What `use` names.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Module {
+pub enum ModuleSyntax {
     /// A module of the library.
-    Library(Path),
+    Library(PathSyntax),
     /// A file, relative to the one that uses it.
-    File(Text),
+    File(TextSyntax),
 }
 
 /// `allow HR0107 "why"`
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Allow {
-    pub code: Name,
-    pub reason: Text,
+pub struct AllowSyntax {
+    pub code: NameSyntax,
+    pub reason: TextSyntax,
 }
 
 /// What a template makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Sort {
+pub enum TemplateSyntaxKind {
     Agent,
     Automaton,
     Require,
@@ -134,11 +134,11 @@ pub enum Sort {
 
 /// `agent Human = Visitor(10 s)`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Instance {
-    pub sort: Sort,
-    pub name: Name,
-    pub of: Name,
-    pub args: Vec<Expr>,
+pub struct InstanceSyntax {
+    pub sort: TemplateSyntaxKind,
+    pub name: NameSyntax,
+    pub of: NameSyntax,
+    pub args: Vec<ExprSyntax>,
     /// The template's name with the arguments.
     pub span: Span,
 }
@@ -149,10 +149,10 @@ pub struct Instance {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TypeExpr {
-    Named(Name),
-    Range(Expr, Expr),
+    Named(NameSyntax),
+    Range(ExprSyntax, ExprSyntax),
     /// `bool[4]`
-    Array(Box<TypeExpr>, Expr),
+    Array(Box<TypeExpr>, ExprSyntax),
     /// `[0..4]`: a list
     List(Box<TypeExpr>),
     /// Could not be read.
@@ -161,85 +161,85 @@ pub enum TypeExpr {
 
 /// `name: type`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Param {
-    pub name: Name,
+pub struct ParamSyntax {
+    pub name: NameSyntax,
     pub ty: TypeExpr,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Expr {
-    pub kind: ExprKind,
+pub struct ExprSyntax {
+    pub kind: ExprSyntaxKind,
     pub span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ExprKind {
+pub enum ExprSyntaxKind {
     Bool(bool),
     Int(i64),
     Float(f64),
     /// `10 cm`: the number as written and the unit, not yet looked up.
     Quantity {
         number: f64,
-        unit: Name,
+        unit: NameSyntax,
     },
     /// `_`
     Any,
     /// A constant, variable, parameter, belief without arguments, or `person.hand.x`.
-    Path(Path),
+    Path(PathSyntax),
     /// `wants(M)`, `distance(person.hand, robot.palm)`, `abs(x)`
     Call {
-        callee: Path,
-        args: Vec<Expr>,
+        callee: PathSyntax,
+        args: Vec<ExprSyntax>,
     },
     /// `a[i]`
     Index {
-        of: Box<Expr>,
-        index: Box<Expr>,
+        of: Box<ExprSyntax>,
+        index: Box<ExprSyntax>,
     },
     /// `a[i].x`
     Field {
-        of: Box<Expr>,
-        name: Name,
+        of: Box<ExprSyntax>,
+        name: NameSyntax,
     },
     /// `not a` / `!a`, `-a`
     Unary {
         op: UnaryOp,
-        operand: Box<Expr>,
+        operand: Box<ExprSyntax>,
     },
     Binary {
         op: BinaryOp,
-        left: Box<Expr>,
-        right: Box<Expr>,
+        left: Box<ExprSyntax>,
+        right: Box<ExprSyntax>,
     },
     /// `if c { a } else { b }`
     If {
-        condition: Box<Expr>,
-        then: Box<Expr>,
-        otherwise: Box<Expr>,
+        condition: Box<ExprSyntax>,
+        then: Box<ExprSyntax>,
+        otherwise: Box<ExprSyntax>,
     },
     /// `(a, b, c)`: a vector; always two or more
-    Tuple(Vec<Expr>),
+    Tuple(Vec<ExprSyntax>),
     /// `"leg"`
     Text(String),
     /// `[a, b | rest]`
     List {
-        items: Vec<Expr>,
-        rest: Option<Box<Expr>>,
+        items: Vec<ExprSyntax>,
+        rest: Option<Box<ExprSyntax>>,
     },
     /// `~b(X)`
-    Strong(Box<Expr>),
+    Strong(Box<ExprSyntax>),
     /// `b(X)[source(S), sure(9)]`. A single annotation of a name without arguments is an `Index`.
     Annotated {
-        of: Box<Expr>,
-        annotations: Vec<Expr>,
+        of: Box<ExprSyntax>,
+        annotations: Vec<ExprSyntax>,
     },
     /// `.count(b(_), N)`
-    Internal(Call),
+    Internal(CallSyntax),
     /// `X = e`
     Unify {
-        left: Box<Expr>,
-        right: Box<Expr>,
+        left: Box<ExprSyntax>,
+        right: Box<ExprSyntax>,
     },
     /// Could not be read.
     Error,
@@ -247,28 +247,28 @@ pub enum ExprKind {
 
 /// `name` or `name(args)`: an event, stimulus, belief or goal with arguments.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Call {
-    pub name: Name,
+pub struct CallSyntax {
+    pub name: NameSyntax,
     /// `None`: no parentheses were written.
-    pub args: Option<Vec<Expr>>,
+    pub args: Option<Vec<ExprSyntax>>,
     pub span: Span,
 }
 
 /// A belief as it is matched or made: `~near(X)[source(S)]`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Literal {
+pub struct LiteralSyntax {
     /// `~`: strong negation
     pub negated: bool,
-    pub call: Call,
-    pub annotations: Vec<Expr>,
+    pub call: CallSyntax,
+    pub annotations: Vec<ExprSyntax>,
     pub span: Span,
 }
 
 /// `lo .. hi` or `lo ..`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Range {
-    pub lo: Expr,
-    pub hi: Option<Expr>,
+pub struct RangeSyntax {
+    pub lo: ExprSyntax,
+    pub hi: Option<ExprSyntax>,
     pub span: Span,
 }
 
@@ -276,30 +276,30 @@ pub struct Range {
 
 /// `event asked, sensed(gaze: bool) from sensors to robot, person`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Event {
+pub struct EventSyntax {
     pub names: Vec<EventName>,
-    pub from: Name,
-    pub to: Vec<Name>,
+    pub from: NameSyntax,
+    pub to: Vec<NameSyntax>,
 }
 
 /// One of the events of a line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EventName {
-    pub name: Name,
-    pub params: Vec<Param>,
+    pub name: NameSyntax,
+    pub params: Vec<ParamSyntax>,
 }
 
 /// `stimulus look(ok: bool) by person { … }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Stimulus {
-    pub name: Name,
-    pub params: Vec<Param>,
-    pub by: Name,
-    pub body: Vec<StimulusStep>,
+pub struct StimulusSyntax {
+    pub name: NameSyntax,
+    pub params: Vec<ParamSyntax>,
+    pub by: NameSyntax,
+    pub body: Vec<StimulusStepSyntax>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StimulusStep {
+pub struct StimulusStepSyntax {
     pub kind: StimulusStepKind,
     pub span: Span,
 }
@@ -309,22 +309,22 @@ pub struct StimulusStep {
 pub enum StimulusStepKind {
     /// `sample offset in a .. b`, or `in if ok { a .. b } else { c .. d }`
     Sample {
-        name: Name,
+        name: NameSyntax,
         range: SampleRange,
     },
     /// `emit leg_request`
-    Emit(Call),
+    Emit(CallSyntax),
     /// `hold 5 s`
-    Hold(Expr),
+    Hold(ExprSyntax),
     /// `person.hand.move_to(leg + (dx, dy, dz), 1 s)`: the last name of the path is the action
     Act {
-        path: Path,
-        args: Vec<Expr>,
+        path: PathSyntax,
+        args: Vec<ExprSyntax>,
     },
     If {
-        condition: Expr,
-        then: Vec<StimulusStep>,
-        otherwise: Vec<StimulusStep>,
+        condition: ExprSyntax,
+        then: Vec<StimulusStepSyntax>,
+        otherwise: Vec<StimulusStepSyntax>,
     },
     Error,
 }
@@ -332,19 +332,19 @@ pub enum StimulusStepKind {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SampleRange {
-    Plain(Range),
-    If { condition: Expr, then: Box<SampleRange>, otherwise: Box<SampleRange> },
+    Plain(RangeSyntax),
+    If { condition: ExprSyntax, then: Box<SampleRange>, otherwise: Box<SampleRange> },
 }
 
 // ── Agents ──
 
 /// `agent Human plays person { … }`; with parameters, a template
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Agent {
-    pub name: Name,
+pub struct AgentSyntax {
+    pub name: NameSyntax,
     /// `Some`: a template.
-    pub params: Option<Vec<Param>>,
-    pub plays: Name,
+    pub params: Option<Vec<ParamSyntax>>,
+    pub plays: NameSyntax,
     pub members: Vec<AgentMember>,
 }
 
@@ -361,56 +361,56 @@ pub enum AgentMemberKind {
     /// `belief had(legs: 0..LEGS) [sure: 0..9] on counted = had(0)`: its annotations; the event whose arguments it holds;
     /// the initial beliefs, if any, separated by commas
     Belief {
-        name: Name,
-        params: Vec<Param>,
-        annotations: Vec<Param>,
-        on: Option<Name>,
-        initial: Vec<Literal>,
+        name: NameSyntax,
+        params: Vec<ParamSyntax>,
+        annotations: Vec<ParamSyntax>,
+        on: Option<NameSyntax>,
+        initial: Vec<LiteralSyntax>,
     },
     /// `rule near(X) when at(X, D) && D < 3 m`
     Rule {
-        head: Literal,
-        body: Option<Expr>,
+        head: LiteralSyntax,
+        body: Option<ExprSyntax>,
     },
     /// `goal deliver(leg: 1..4)`: the types of its arguments
     GoalType {
-        name: Name,
-        params: Vec<Param>,
+        name: NameSyntax,
+        params: Vec<ParamSyntax>,
     },
     /// `goal !table`: adopted at the start
-    Goal(Call),
-    Plan(Plan),
-    Allow(Allow),
+    Goal(CallSyntax),
+    Plan(PlanSyntax),
+    Allow(AllowSyntax),
     Error,
 }
 
 /// `plan @label +!table when context { body }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Plan {
-    pub label: Option<Label>,
-    pub trigger: Trigger,
-    pub context: Option<Expr>,
-    pub body: Vec<Step>,
+pub struct PlanSyntax {
+    pub label: Option<LabelSyntax>,
+    pub trigger: TriggerSyntax,
+    pub context: Option<ExprSyntax>,
+    pub body: Vec<StepSyntax>,
 }
 
 /// `@label`, `@label[atomic]`
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Label {
-    pub name: Name,
+pub struct LabelSyntax {
+    pub name: NameSyntax,
     /// What is in the brackets: `atomic`, or a mistake.
-    pub atomic: Option<Name>,
+    pub atomic: Option<NameSyntax>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Trigger {
-    pub kind: TriggerKind,
-    pub literal: Literal,
+pub struct TriggerSyntax {
+    pub kind: TriggerSyntaxKind,
+    pub literal: LiteralSyntax,
     pub span: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum TriggerKind {
+pub enum TriggerSyntaxKind {
     /// `+b`
     Added,
     /// `-b`
@@ -429,67 +429,67 @@ pub enum TriggerKind {
 
 /// One formula of a plan's body; they are separated by `;`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Step {
-    pub kind: StepKind,
+pub struct StepSyntax {
+    pub kind: StepSyntaxKind,
     pub span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum StepKind {
+pub enum StepSyntaxKind {
     /// a stimulus or event of the agent's actor
-    Do(Call),
+    Do(CallSyntax),
     /// `!g within 10 s`
     Achieve {
-        call: Call,
-        within: Option<Expr>,
+        call: CallSyntax,
+        within: Option<ExprSyntax>,
     },
     /// `!!g`
-    Spawn(Call),
+    Spawn(CallSyntax),
     /// `?b`
-    Query(Literal),
+    Query(LiteralSyntax),
     /// `?(F)`
-    Test(Expr),
+    Test(ExprSyntax),
     /// `X = e`
     Unify {
-        left: Expr,
-        right: Expr,
+        left: ExprSyntax,
+        right: ExprSyntax,
     },
     /// `+b`
-    Add(Literal),
+    Add(LiteralSyntax),
     /// `-b`
-    Remove(Literal),
+    Remove(LiteralSyntax),
     /// `-+b`
-    Replace(Literal),
+    Replace(LiteralSyntax),
     /// `await a | b within 10 s`
     Await {
-        events: Vec<Call>,
-        within: Option<Expr>,
+        events: Vec<CallSyntax>,
+        within: Option<ExprSyntax>,
     },
     /// `wait 10 s`
-    Wait(Expr),
+    Wait(ExprSyntax),
     /// `.send(A, tell, b(X))`
-    Internal(Call),
+    Internal(CallSyntax),
     /// `if F { … } else { … }`
     If {
-        condition: Expr,
-        then: Vec<Step>,
-        otherwise: Vec<Step>,
+        condition: ExprSyntax,
+        then: Vec<StepSyntax>,
+        otherwise: Vec<StepSyntax>,
     },
     /// `while F { … }`
     While {
-        condition: Expr,
-        body: Vec<Step>,
+        condition: ExprSyntax,
+        body: Vec<StepSyntax>,
     },
     /// `for F { … }`
     For {
-        condition: Expr,
-        body: Vec<Step>,
+        condition: ExprSyntax,
+        body: Vec<StepSyntax>,
     },
     /// `fork { … } and { … }`, or with `or`: two branches at least
     Fork {
         all: bool,
-        branches: Vec<Vec<Step>>,
+        branches: Vec<Vec<StepSyntax>>,
     },
     Error,
 }
@@ -498,20 +498,20 @@ pub enum StepKind {
 
 /// `var left: 0..LEGS = 0`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Var {
-    pub name: Name,
+pub struct VarSyntax {
+    pub name: NameSyntax,
     pub ty: TypeExpr,
     /// Without: `false`, or the range's value nearest to 0.
-    pub init: Option<Expr>,
+    pub init: Option<ExprSyntax>,
 }
 
 /// `automaton Person plays person { … }`; with parameters, a template
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Automaton {
-    pub name: Name,
-    pub params: Option<Vec<Param>>,
+pub struct AutomatonSyntax {
+    pub name: NameSyntax,
+    pub params: Option<Vec<ParamSyntax>>,
     /// `None`: it knows no events, only channels.
-    pub plays: Option<Name>,
+    pub plays: Option<NameSyntax>,
     pub members: Vec<AutomatonMember>,
 }
 
@@ -526,31 +526,31 @@ pub struct AutomatonMember {
 #[serde(rename_all = "snake_case")]
 pub enum AutomatonMemberKind {
     /// `clock x, y`
-    Clock(Vec<Name>),
-    Var(Var),
+    Clock(Vec<NameSyntax>),
+    Var(VarSyntax),
     /// `init committed location start { invariant x <= 3 s }`
     Location {
         init: bool,
         kind: LocationKind,
-        name: Name,
-        invariant: Option<Expr>,
+        name: NameSyntax,
+        invariant: Option<ExprSyntax>,
     },
-    Edge(Edge),
+    Edge(EdgeSyntax),
     /// A function that knows the automaton's variables.
-    Function(Function),
-    Allow(Allow),
+    Function(FunctionSyntax),
+    Allow(AllowSyntax),
     Error,
 }
 
 /// `a -> b select n: 0..4 when x >= 3 s && n > 0 on e(p) do left = n; x = 0`; each part may be absent, the order is free for
 /// `select`, `when`, `on`; `do` comes last.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Edge {
-    pub from: Name,
-    pub to: Name,
-    pub selects: Vec<Param>,
-    pub guard: Option<Expr>,
-    pub on: Option<Call>,
+pub struct EdgeSyntax {
+    pub from: NameSyntax,
+    pub to: NameSyntax,
+    pub selects: Vec<ParamSyntax>,
+    pub guard: Option<ExprSyntax>,
+    pub on: Option<CallSyntax>,
     pub actions: Vec<EdgeAction>,
 }
 
@@ -564,140 +564,140 @@ pub struct EdgeAction {
 #[serde(rename_all = "snake_case")]
 pub enum EdgeActionKind {
     /// An event or stimulus of the automaton's actor, or a channel; at most one for an edge. Or an update function.
-    Send(Call),
+    Send(CallSyntax),
     /// `left = left - 1`, `x = 0` (a clock), `left -= 1`, `seen[i].ok = true`
-    Assign { target: Name, access: Vec<Access>, op: Option<BinaryOp>, value: Expr },
+    Assign { target: NameSyntax, access: Vec<AccessSyntax>, op: Option<BinaryOp>, value: ExprSyntax },
 }
 
 /// A step into a variable that has parts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Access {
+pub enum AccessSyntax {
     /// `[i]`
-    Index(Expr),
+    Index(ExprSyntax),
     /// `.x`
-    Field(Name),
+    Field(NameSyntax),
 }
 
 /// `channel take(fork: 0..4), free : urgent broadcast`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Channel {
+pub struct ChannelSyntax {
     pub names: Vec<EventName>,
     pub urgent: bool,
-    pub kind: ChannelKind,
+    pub kind: ChannelSyntaxKind,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ChannelKind {
+pub enum ChannelSyntaxKind {
     HandShake,
     /// `: broadcast`
     Broadcast,
     /// `: joint P | Q | R?`
-    Joint(Vec<Party>),
+    Joint(Vec<PartySyntax>),
 }
 
 /// An automaton that has a part in a multi-way channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Party {
-    pub automaton: Name,
+pub struct PartySyntax {
+    pub automaton: NameSyntax,
     /// `?`: takes part if it can
     pub optional: bool,
 }
 
 /// `fn front() -> 0..5 { return queue[0] }`; without a result, an update function
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Function {
-    pub name: Name,
-    pub params: Vec<Param>,
+pub struct FunctionSyntax {
+    pub name: NameSyntax,
+    pub params: Vec<ParamSyntax>,
     pub result: Option<TypeExpr>,
-    pub body: Vec<Statement>,
+    pub body: Vec<StatementSyntax>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Statement {
-    pub kind: StatementKind,
+pub struct StatementSyntax {
+    pub kind: StatementSyntaxKind,
     pub span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum StatementKind {
+pub enum StatementSyntaxKind {
     /// `var i: 0..5 = 0`
-    Var(Var),
+    Var(VarSyntax),
     /// `queue[len] = e`
     Assign {
-        target: Name,
-        access: Vec<Access>,
+        target: NameSyntax,
+        access: Vec<AccessSyntax>,
         op: Option<BinaryOp>,
-        value: Expr,
+        value: ExprSyntax,
     },
     /// An update function.
-    Call(Call),
+    Call(CallSyntax),
     If {
-        condition: Expr,
-        then: Vec<Statement>,
-        otherwise: Vec<Statement>,
+        condition: ExprSyntax,
+        then: Vec<StatementSyntax>,
+        otherwise: Vec<StatementSyntax>,
     },
     While {
-        condition: Expr,
-        body: Vec<Statement>,
+        condition: ExprSyntax,
+        body: Vec<StatementSyntax>,
     },
     /// `for i in 0..5 { … }`: both ends included
     For {
-        name: Name,
-        range: Range,
-        body: Vec<Statement>,
+        name: NameSyntax,
+        range: RangeSyntax,
+        body: Vec<StatementSyntax>,
     },
-    Return(Option<Expr>),
+    Return(Option<ExprSyntax>),
     Error,
 }
 
 /// `query live "title" of table = formula`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Query {
-    pub name: Name,
-    pub title: Option<Text>,
-    pub network: Name,
-    pub ask: Ask,
+pub struct QuerySyntax {
+    pub name: NameSyntax,
+    pub title: Option<TextSyntax>,
+    pub network: NameSyntax,
+    pub ask: FormulaSyntax,
     /// Of the formula.
     pub span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Ask {
+pub enum FormulaSyntax {
     /// `E<> f`
-    Possibly(Expr),
+    Possibly(ExprSyntax),
     /// `A[] f`
-    Invariantly(Expr),
+    Invariantly(ExprSyntax),
     /// `E[] f`
-    PotentiallyAlways(Expr),
+    PotentiallyAlways(ExprSyntax),
     /// `A<> f`
-    Eventually(Expr),
+    Eventually(ExprSyntax),
     /// `f --> g`
-    LeadsTo(Expr, Expr),
+    LeadsTo(ExprSyntax, ExprSyntax),
     /// `sup{f}: x, n`
-    Sup { when: Option<Expr>, of: Vec<Expr> },
+    Sup { when: Option<ExprSyntax>, of: Vec<ExprSyntax> },
     /// `inf{f}: x, n`
-    Inf { when: Option<Expr>, of: Vec<Expr> },
+    Inf { when: Option<ExprSyntax>, of: Vec<ExprSyntax> },
 }
 
 // ── Requirements ──
 
 /// `require R1 functional "title" pattern`; with parameters, a template
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Require {
-    pub name: Name,
-    pub params: Option<Vec<Param>>,
+pub struct RequireSyntax {
+    pub name: NameSyntax,
+    pub params: Option<Vec<ParamSyntax>>,
     /// `safety` or `functional`
-    pub kind: Name,
-    pub title: Option<Text>,
-    pub pattern: Pattern,
+    pub kind: NameSyntax,
+    pub title: Option<TextSyntax>,
+    pub pattern: PatternSyntax,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Pattern {
+pub struct PatternSyntax {
     pub kind: PatternKind,
     pub span: Span,
 }
@@ -707,53 +707,53 @@ pub struct Pattern {
 pub enum PatternKind {
     /// `after T: R within D` and `T causes R within D` (they mean the same)
     Causes {
-        trigger: Vec<Call>,
-        response: Vec<Call>,
-        within: Option<Expr>,
+        trigger: Vec<CallSyntax>,
+        response: Vec<CallSyntax>,
+        within: Option<ExprSyntax>,
     },
     /// `T forbids E until U`
     Forbids {
-        trigger: Vec<Call>,
-        forbidden: Vec<Call>,
-        until: Vec<Call>,
+        trigger: Vec<CallSyntax>,
+        forbidden: Vec<CallSyntax>,
+        until: Vec<CallSyntax>,
     },
     /// `never E while P`
     NeverWhile {
-        events: Vec<Call>,
-        condition: Option<Expr>,
+        events: Vec<CallSyntax>,
+        condition: Option<ExprSyntax>,
     },
     /// `globally P`
-    Globally(Expr),
+    Globally(ExprSyntax),
     Error,
 }
 
 /// `assume at most 4 leg_request within 300 s`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Assume {
-    pub at_most: Expr,
-    pub events: Vec<Call>,
-    pub within: Option<Expr>,
+pub struct AssumeSyntax {
+    pub at_most: ExprSyntax,
+    pub events: Vec<CallSyntax>,
+    pub within: Option<ExprSyntax>,
 }
 
 // ── Coverage ──
 
 /// `cover legs = count(leg_request) bins none = 0, four = 4..`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Cover {
-    pub name: Name,
+pub struct CoverSyntax {
+    pub name: NameSyntax,
     /// `Some`: a template.
-    pub params: Option<Vec<Param>>,
-    pub count: Vec<Call>,
-    pub bins: Vec<Bin>,
+    pub params: Option<Vec<ParamSyntax>>,
+    pub count: Vec<CallSyntax>,
+    pub bins: Vec<BinSyntax>,
 }
 
 /// `one = 1`, `few = 1..3`, `many = 4..`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Bin {
-    pub name: Name,
-    pub lo: Expr,
+pub struct BinSyntax {
+    pub name: NameSyntax,
+    pub lo: ExprSyntax,
     /// `None`: the same as `lo` if `open` is not set.
-    pub hi: Option<Expr>,
+    pub hi: Option<ExprSyntax>,
     /// `4..`
     pub open: bool,
     pub span: Span,
@@ -761,11 +761,11 @@ pub struct Bin {
 
 /// `cross c = a * b { bin "…" when a.x && b.y  ignore when … }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Cross {
-    pub name: Name,
+pub struct CrossSyntax {
+    pub name: NameSyntax,
     /// `Some`: a template.
-    pub params: Option<Vec<Param>>,
-    pub points: Vec<Name>,
+    pub params: Option<Vec<ParamSyntax>>,
+    pub points: Vec<NameSyntax>,
     pub members: Vec<CrossMember>,
 }
 
@@ -778,9 +778,9 @@ pub struct CrossMember {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CrossMemberKind {
-    Bin { name: Text, when: Expr },
-    Ignore { when: Expr },
-    Allow(Allow),
+    Bin { name: TextSyntax, when: ExprSyntax },
+    Ignore { when: ExprSyntax },
+    Allow(AllowSyntax),
     Error,
 }
 
@@ -788,18 +788,18 @@ pub enum CrossMemberKind {
 
 /// `suite s by agents A, B { … }`, `by search of n { … }`, `by random { … }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Suite {
-    pub name: Name,
-    pub method: Method,
+pub struct SuiteSyntax {
+    pub name: NameSyntax,
+    pub method: MethodSyntax,
     pub members: Vec<SuiteMember>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Method {
+pub enum MethodSyntax {
     /// agents and automata that play the actors
-    Agents(Vec<Name>),
-    Search(Name),
+    Agents(Vec<NameSyntax>),
+    Search(NameSyntax),
     Random,
 }
 
@@ -815,57 +815,57 @@ pub enum SuiteMemberKind {
     /// `choose one b of A`, `choose any b of A`, `choose one b of A per p`; `where F`, which A's beliefs must answer
     Choose {
         any: bool,
-        belief: Name,
-        agent: Name,
-        per: Option<Name>,
-        condition: Option<Expr>,
+        belief: NameSyntax,
+        agent: NameSyntax,
+        per: Option<NameSyntax>,
+        condition: Option<ExprSyntax>,
     },
     /// `explore pairwise`, `explore wise(3)`
-    Explore(Call),
+    Explore(CallSyntax),
     /// `stop after 20`: when so many belief sets in a row added nothing
-    StopAfter(Expr),
+    StopAfter(ExprSyntax),
     /// `minimise`: only the tests that are needed for what all of them reach
     Minimise,
     /// `reach each plan`, `context`, `message`, `path`
-    ReachEach(Name),
+    ReachEach(NameSyntax),
     /// `tests 160`
-    Tests(Expr),
+    Tests(ExprSyntax),
     /// `horizon 300 s`: a model run ends at this virtual time
-    Horizon(Expr),
+    Horizon(ExprSyntax),
     /// `patience 60 s`: the bound of an await that the model gives none
-    Patience(Expr),
+    Patience(ExprSyntax),
     /// `reach each bin of c`
-    ReachBins(Name),
+    ReachBins(NameSyntax),
     /// `reach each location`
     ReachLocations,
     /// `reach each edge`
     ReachEdges,
     /// `reach violation of R1, R2`, `reach trigger of R1`
     ReachOf {
-        what: Name,
-        names: Vec<Name>,
+        what: NameSyntax,
+        names: Vec<NameSyntax>,
     },
     /// `reach query q`
-    ReachQueries(Vec<Name>),
+    ReachQueries(Vec<NameSyntax>),
     /// `witness shortest`
-    Witness(Name),
+    Witness(NameSyntax),
     /// `delays earliest`
-    Delays(Name),
+    Delays(NameSyntax),
     /// `stimuli a, b`
-    Stimuli(Vec<Name>),
+    Stimuli(Vec<NameSyntax>),
     /// `await a`: a wait for an event, drawn like a stimulus
-    Await(Vec<Call>),
+    Await(Vec<CallSyntax>),
     /// `length 5..20`
-    Length(Range),
+    Length(RangeSyntax),
     /// `pause 0 s .. 10 s`
-    Pause(Range),
+    Pause(RangeSyntax),
     Error,
 }
 
 /// `test bdi_tests.t017 { … }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Test {
-    pub name: Path,
+pub struct TestSyntax {
+    pub name: PathSyntax,
     pub members: Vec<TestMember>,
 }
 
@@ -879,25 +879,25 @@ pub struct TestMember {
 #[serde(rename_all = "snake_case")]
 pub enum TestMemberKind {
     /// `seed 17`
-    Seed(Expr),
+    Seed(ExprSyntax),
     /// `method agents`
-    Method(Name),
+    Method(NameSyntax),
     /// `because "wants(2)"`
-    Because(Text),
+    Because(TextSyntax),
     /// `predicts "human_robot.2 legs, bored"`
-    Predicts(Text),
+    Predicts(TextSyntax),
     /// `look(true) with offset = 15 cm, distance = 55 cm`
     Do {
-        call: Call,
-        with: Vec<(Name, Expr)>,
+        call: CallSyntax,
+        with: Vec<(NameSyntax, ExprSyntax)>,
     },
     /// `await a | b within 30 s`
     Await {
-        events: Vec<Call>,
-        within: Expr,
+        events: Vec<CallSyntax>,
+        within: ExprSyntax,
     },
     /// `wait 10 s`
-    Wait(Expr),
+    Wait(ExprSyntax),
     Error,
 }
 
@@ -905,15 +905,15 @@ pub enum TestMemberKind {
 
 /// `part bert2 { … }`: a reusable piece of world, in its own coordinates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Part {
-    pub name: Name,
-    pub params: Option<Vec<Param>>,
+pub struct PartSyntax {
+    pub name: NameSyntax,
+    pub params: Option<Vec<ParamSyntax>>,
     pub members: Vec<WorldMember>,
 }
 
 /// `world { … }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct World {
+pub struct WorldSyntax {
     pub members: Vec<WorldMember>,
 }
 
@@ -928,102 +928,102 @@ pub struct WorldMember {
 #[serde(rename_all = "snake_case")]
 pub enum WorldMemberKind {
     /// `step 10 ms`
-    Step(Expr),
+    Step(ExprSyntax),
     /// `sample 50 ms`
-    Sample(Expr),
+    Sample(ExprSyntax),
     /// `gravity (0, 0, -9.81)`: m/s², bare numbers
-    Gravity(Expr),
+    Gravity(ExprSyntax),
     /// `part robot = bert2 at (0 m, 0 m, 0 m)`; turned about z by `rotated (0 deg, 0 deg, 90 deg)`
     Part {
-        name: Name,
-        of: Name,
-        args: Option<Vec<Expr>>,
-        at: Expr,
-        rotated: Option<Expr>,
+        name: NameSyntax,
+        of: NameSyntax,
+        args: Option<Vec<ExprSyntax>>,
+        at: ExprSyntax,
+        rotated: Option<ExprSyntax>,
     },
-    Body(Body),
+    Body(BodySyntax),
     /// `joint j: parent -> child at (…) axis (0, 0, 1) limits -60 deg .. 60 deg`
     Joint {
-        name: Name,
-        parent: Name,
-        child: Name,
-        at: Expr,
-        axis: Expr,
-        limits: Range,
+        name: NameSyntax,
+        parent: NameSyntax,
+        child: NameSyntax,
+        at: ExprSyntax,
+        axis: ExprSyntax,
+        limits: RangeSyntax,
     },
     /// `arm a: j1, j2 tip palm tool (8 cm, 0 m, 0 m) speed 0.2 rad/s`
     Arm {
-        name: Name,
-        joints: Vec<Name>,
-        tip: Name,
-        tool: Expr,
-        speed: Expr,
+        name: NameSyntax,
+        joints: Vec<NameSyntax>,
+        tip: NameSyntax,
+        tool: ExprSyntax,
+        speed: ExprSyntax,
     },
     /// `gripper g: palm tool (8 cm, 0 m, 0 m) reach 4 cm delay 500 ms`
     Gripper {
-        name: Name,
-        palm: Name,
-        tool: Expr,
-        reach: Expr,
-        delay: Expr,
+        name: NameSyntax,
+        palm: NameSyntax,
+        tool: ExprSyntax,
+        reach: ExprSyntax,
+        delay: ExprSyntax,
     },
     /// `current leg in leg1, leg2 by robot.grip`
     Current {
-        name: Name,
-        of: Vec<Path>,
-        by: Path,
+        name: NameSyntax,
+        of: Vec<PathSyntax>,
+        by: PathSyntax,
     },
     /// `signal gaze: bool to robot = …`
     Signal {
-        name: Name,
+        name: NameSyntax,
         ty: TypeExpr,
-        to: Vec<Name>,
-        value: Expr,
+        to: Vec<NameSyntax>,
+        value: ExprSyntax,
     },
-    Rule(Rule),
-    Allow(Allow),
+    Rule(RuleSyntax),
+    Allow(AllowSyntax),
     Error,
 }
 
 /// `body palm: dynamic box(4 cm, 8 cm, 8 cm) at (…) rotated (…) mass 0.4 kg ghost graspable`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Body {
-    pub name: Name,
+pub struct BodySyntax {
+    pub name: NameSyntax,
     /// `fixed`, `dynamic`, `kinematic`
-    pub motion: Name,
+    pub motion: NameSyntax,
     /// `box`, `sphere`, `capsule`, `cylinder`
-    pub shape: Name,
-    pub sizes: Vec<Expr>,
-    pub at: Expr,
-    pub rotated: Option<Expr>,
-    pub mass: Option<Expr>,
+    pub shape: NameSyntax,
+    pub sizes: Vec<ExprSyntax>,
+    pub at: ExprSyntax,
+    pub rotated: Option<ExprSyntax>,
+    pub mass: Option<ExprSyntax>,
     pub ghost: bool,
     pub graspable: bool,
 }
 
 /// `on e(args) when c emit f(args)`, `on close robot.grip emit f`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Rule {
-    pub on: RuleOn,
-    pub when: Option<Expr>,
-    pub emit: Call,
+pub struct RuleSyntax {
+    pub on: RuleTriggerSyntax,
+    pub when: Option<ExprSyntax>,
+    pub emit: CallSyntax,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RuleOn {
-    Event(Call),
+pub enum RuleTriggerSyntax {
+    Event(CallSyntax),
     /// The system told a device to do this.
     Commanded {
-        command: Name,
-        device: Path,
+        command: NameSyntax,
+        device: PathSyntax,
     },
 }
 
 /// `device gripper { … }`: what all devices of a kind can be told
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Device {
-    pub kind: Name,
+pub struct DeviceSyntax {
+    pub kind: NameSyntax,
     pub members: Vec<DeviceMember>,
 }
 
@@ -1037,39 +1037,39 @@ pub struct DeviceMember {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DeviceMemberKind {
-    Command(DeviceCommand),
+    Command(DeviceCommandSyntax),
     Error,
 }
 
 /// `command close do close_fingers expect holds else "the gripper closed on nothing"`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DeviceCommand {
-    pub name: Name,
-    pub params: Vec<CommandParam>,
-    pub primitive: Name,
-    pub expect: Option<Expectation>,
+pub struct DeviceCommandSyntax {
+    pub name: NameSyntax,
+    pub params: Vec<CommandParamSyntax>,
+    pub primitive: NameSyntax,
+    pub expect: Option<ExpectationSyntax>,
 }
 
 /// `speed: angular_speed?`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CommandParam {
-    pub param: Param,
+pub struct CommandParamSyntax {
+    pub param: ParamSyntax,
     /// `?`: may be left out
     pub optional: bool,
 }
 
 /// `expect not holds else "the gripper still holds something"`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Expectation {
+pub struct ExpectationSyntax {
     pub negated: bool,
-    pub measure: Name,
-    pub otherwise: Text,
+    pub measure: NameSyntax,
+    pub otherwise: TextSyntax,
 }
 
 /// `system robot { run "python3 robot.py" … }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct System {
-    pub actor: Name,
+pub struct SystemSyntax {
+    pub actor: NameSyntax,
     pub members: Vec<SystemMember>,
 }
 
@@ -1083,23 +1083,23 @@ pub struct SystemMember {
 #[serde(rename_all = "snake_case")]
 pub enum SystemMemberKind {
     /// `run "python3 robot.py"`
-    Run(Text),
+    Run(TextSyntax),
     /// `coverage "robot.py", "fsm.py"`
-    Coverage(Vec<Text>),
+    Coverage(Vec<TextSyntax>),
     /// `limit 300 s`: simulated time
-    Limit(Expr),
+    Limit(ExprSyntax),
     /// `budget 10 s`: processor time, or sleep, for one request
-    Budget(Expr),
+    Budget(ExprSyntax),
     /// `cpu 5 min`: processor time for a test
-    Cpu(Expr),
+    Cpu(ExprSyntax),
     /// `wall 1 h`: wall time for a test
-    Wall(Expr),
+    Wall(ExprSyntax),
     /// `memory 2 GB`: for each process
-    Memory(Expr),
+    Memory(ExprSyntax),
     /// `output 10 MB`: for a test
-    Output(Expr),
+    Output(ExprSyntax),
     /// `env ROBOT_NAME, ROS_DOMAIN_ID`: variables of the environment that are handed on
-    Env(Vec<Name>),
+    Env(Vec<NameSyntax>),
     /// `online`: it uses the machine's network
     Online,
     Error,

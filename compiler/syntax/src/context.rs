@@ -3,20 +3,22 @@
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use crate::ast::{
-    Access, AgentMember, AutomatonMember, AutomatonMemberKind, Bin, BinaryOp, Body, Call, Channel,
-    ChannelKind, CrossMember, DeviceMember, Edge, EdgeAction, EventName, Expr, ExprKind, Instance, ItemKind,
-    Literal, Name, Param, Party, Path, Range, Sort, Statement, Step, StepKind, StimulusStep, SuiteMember,
-    SystemMember, TestMember, Text, TypeExpr, UnaryOp, WorldMember,
+    AccessSyntax, AgentMember, AutomatonMember, AutomatonMemberKind, BinSyntax, BinaryOp, BodySyntax,
+    CallSyntax, ChannelSyntax, ChannelSyntaxKind, CrossMember, DeviceMember, EdgeAction, EdgeSyntax,
+    EventName, ExprSyntax, ExprSyntaxKind, InstanceSyntax, ItemSyntaxKind, LiteralSyntax, NameSyntax,
+    ParamSyntax, PartySyntax, PathSyntax, RangeSyntax, StatementSyntax, StepSyntax, StepSyntaxKind,
+    StimulusStepSyntax, SuiteMember, SystemMember, TemplateSyntaxKind, TestMember, TextSyntax, TypeExpr,
+    UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 
 /// What one run of the parser gives.
-pub(crate) enum Unit {
-    Item(ItemKind),
-    StimulusStep(StimulusStep),
+pub(crate) enum ParsedUnit {
+    Item(ItemSyntaxKind),
+    StimulusStepSyntax(StimulusStepSyntax),
     AgentMember(AgentMember),
-    Step(Step),
-    Statement(Statement),
+    Step(StepSyntax),
+    Statement(StatementSyntax),
     AutomatonMember(AutomatonMember),
     CrossMember(CrossMember),
     SuiteMember(SuiteMember),
@@ -27,15 +29,15 @@ pub(crate) enum Unit {
 }
 
 /// What a symbol of the grammar leaves in a list: large nodes are boxed until then.
-pub(crate) trait Node {
-    type Out;
-    fn out(self) -> Self::Out;
+pub(crate) trait GrammarNode {
+    type NodeOutput;
+    fn out(self) -> Self::NodeOutput;
 }
 
-pub(crate) type Out<T> = <T as Node>::Out;
+pub(crate) type NodeOutput<T> = <T as GrammarNode>::NodeOutput;
 
-impl<T> Node for Box<T> {
-    type Out = T;
+impl<T> GrammarNode for Box<T> {
+    type NodeOutput = T;
 
     fn out(self) -> T {
         *self
@@ -44,8 +46,8 @@ impl<T> Node for Box<T> {
 
 macro_rules! small {
     ($($node:ty),*) => {$(
-        impl Node for $node {
-            type Out = Self;
+        impl GrammarNode for $node {
+            type NodeOutput = Self;
 
             fn out(self) -> Self {
                 self
@@ -54,25 +56,25 @@ macro_rules! small {
     )*};
 }
 
-small!(Name, Path, Text, Call, Literal, Expr, Access, Party);
+small!(NameSyntax, PathSyntax, TextSyntax, CallSyntax, LiteralSyntax, ExprSyntax, AccessSyntax, PartySyntax);
 
 /// One of the parts of an edge that may come in any order.
 pub(crate) enum EdgePart {
-    Select(Vec<Param>),
-    When(Expr, Span),
-    On(Call, Span),
+    Select(Vec<ParamSyntax>),
+    When(ExprSyntax, Span),
+    On(CallSyntax, Span),
 }
 
 /// One of the properties of a body that may come in any order.
 pub(crate) enum BodyPart {
-    Rotated(Expr, Span),
-    Mass(Expr, Span),
+    Rotated(ExprSyntax, Span),
+    Mass(ExprSyntax, Span),
     Ghost(Span),
     Graspable(Span),
 }
 
 /// One file, while it is parsed.
-pub(crate) struct Context<'t> {
+pub(crate) struct ParseContext<'t> {
     pub file: FileId,
     pub text: &'t str,
     /// By the start of the token that they stand before, in order.
@@ -80,7 +82,7 @@ pub(crate) struct Context<'t> {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-impl<'t> Context<'t> {
+impl<'t> ParseContext<'t> {
     pub(crate) fn span(&self, start: u32, end: u32) -> Span {
         Span { file: self.file, start, end: end.max(start) }
     }
@@ -106,26 +108,26 @@ impl<'t> Context<'t> {
         }
     }
 
-    pub(crate) fn name(&self, token: Lexeme) -> Name {
-        Name { text: self.text_of(token).to_owned(), span: self.span_of(token) }
+    pub(crate) fn name(&self, token: Lexeme) -> NameSyntax {
+        NameSyntax { text: self.text_of(token).to_owned(), span: self.span_of(token) }
     }
 
-    pub(crate) fn path(&self, names: Vec<Name>) -> Path {
+    pub(crate) fn path(&self, names: Vec<NameSyntax>) -> PathSyntax {
         let span = match names.as_slice() {
             [] => self.span(0, 0),
             [only] => only.span,
             [first, .., last] => first.span.to(last.span),
         };
-        Path { names, span }
+        PathSyntax { names, span }
     }
 
     /// A string without its quotes, escapes resolved; of an unknown escape the character stays.
-    pub(crate) fn string(&self, token: Lexeme) -> Text {
+    pub(crate) fn string(&self, token: Lexeme) -> TextSyntax {
         let raw = self.text_of(token);
         let inner = raw.strip_prefix('"').unwrap_or(raw);
         let span = self.span_of(token);
         if !inner.contains('\\') {
-            return Text { text: inner.strip_suffix('"').unwrap_or(inner).to_owned(), span };
+            return TextSyntax { text: inner.strip_suffix('"').unwrap_or(inner).to_owned(), span };
         }
         let mut text = String::with_capacity(inner.len());
         let mut chars = inner.chars();
@@ -140,115 +142,141 @@ impl<'t> Context<'t> {
                 other => text.push(other),
             }
         }
-        Text { text, span }
+        TextSyntax { text, span }
     }
 
-    pub(crate) fn call(&self, name: Name, args: Option<Vec<Expr>>, end: u32) -> Call {
+    pub(crate) fn call(&self, name: NameSyntax, args: Option<Vec<ExprSyntax>>, end: u32) -> CallSyntax {
         let span = self.span(name.span.start, end);
-        Call { name, args, span }
+        CallSyntax { name, args, span }
     }
 
-    pub(crate) fn range(&self, lo: Expr, hi: Expr) -> Range {
+    pub(crate) fn range(&self, lo: ExprSyntax, hi: ExprSyntax) -> RangeSyntax {
         let span = lo.span.to(hi.span);
-        Range { lo, hi: Some(hi), span }
+        RangeSyntax { lo, hi: Some(hi), span }
     }
 
     // ── Expressions ──
 
-    pub(crate) fn leaf(&self, token: Lexeme, kind: ExprKind) -> Expr {
-        Expr { kind, span: self.span_of(token) }
+    pub(crate) fn leaf(&self, token: Lexeme, kind: ExprSyntaxKind) -> ExprSyntax {
+        ExprSyntax { kind, span: self.span_of(token) }
     }
 
-    pub(crate) fn int(&self, token: Lexeme) -> Expr {
+    pub(crate) fn int(&self, token: Lexeme) -> ExprSyntax {
         // The lexer has checked that it fits.
-        self.leaf(token, self.text_of(token).parse().map_or(ExprKind::Error, ExprKind::Int))
+        self.leaf(token, self.text_of(token).parse().map_or(ExprSyntaxKind::Error, ExprSyntaxKind::Int))
     }
 
-    pub(crate) fn float(&self, token: Lexeme) -> Expr {
-        self.leaf(token, self.text_of(token).parse().map_or(ExprKind::Error, ExprKind::Float))
+    pub(crate) fn float(&self, token: Lexeme) -> ExprSyntax {
+        self.leaf(token, self.text_of(token).parse().map_or(ExprSyntaxKind::Error, ExprSyntaxKind::Float))
     }
 
-    pub(crate) fn quantity(&self, token: Lexeme) -> Expr {
+    pub(crate) fn quantity(&self, token: Lexeme) -> ExprSyntax {
         let number = self.slice(token.start, token.unit).trim_end();
-        let unit = Name {
+        let unit = NameSyntax {
             text: self.slice(token.unit, token.end).to_owned(),
             span: self.span(token.unit, token.end),
         };
-        self.leaf(token, number.parse().map_or(ExprKind::Error, |number| ExprKind::Quantity { number, unit }))
+        self.leaf(
+            token,
+            number.parse().map_or(ExprSyntaxKind::Error, |number| ExprSyntaxKind::Quantity { number, unit }),
+        )
     }
 
-    pub(crate) fn path_expr(&self, path: Path) -> Expr {
+    pub(crate) fn path_expr(&self, path: PathSyntax) -> ExprSyntax {
         let span = path.span;
-        Expr { kind: ExprKind::Path(path), span }
+        ExprSyntax { kind: ExprSyntaxKind::Path(path), span }
     }
 
-    pub(crate) fn call_expr(&self, callee: Path, args: Vec<Expr>, end: u32) -> Expr {
+    pub(crate) fn call_expr(&self, callee: PathSyntax, args: Vec<ExprSyntax>, end: u32) -> ExprSyntax {
         let span = self.span(callee.span.start, end);
-        Expr { kind: ExprKind::Call { callee, args }, span }
+        ExprSyntax { kind: ExprSyntaxKind::Call { callee, args }, span }
     }
 
-    pub(crate) fn index(&self, of: Expr, index: Expr, end: u32) -> Expr {
+    pub(crate) fn index(&self, of: ExprSyntax, index: ExprSyntax, end: u32) -> ExprSyntax {
         let span = self.span(of.span.start, end);
-        Expr { kind: ExprKind::Index { of: Box::new(of), index: Box::new(index) }, span }
+        ExprSyntax { kind: ExprSyntaxKind::Index { of: Box::new(of), index: Box::new(index) }, span }
     }
 
-    pub(crate) fn annotated(&self, of: Expr, annotations: Vec<Expr>, end: u32) -> Expr {
+    pub(crate) fn annotated(&self, of: ExprSyntax, annotations: Vec<ExprSyntax>, end: u32) -> ExprSyntax {
         let span = self.span(of.span.start, end);
-        Expr { kind: ExprKind::Annotated { of: Box::new(of), annotations }, span }
+        ExprSyntax { kind: ExprSyntaxKind::Annotated { of: Box::new(of), annotations }, span }
     }
 
-    pub(crate) fn list(&self, start: u32, items: Vec<Expr>, rest: Option<Expr>, end: u32) -> Expr {
-        let kind = ExprKind::List { items, rest: rest.map(Box::new) };
-        Expr { kind, span: self.span(start, end) }
+    pub(crate) fn list(
+        &self,
+        start: u32,
+        items: Vec<ExprSyntax>,
+        rest: Option<ExprSyntax>,
+        end: u32,
+    ) -> ExprSyntax {
+        let kind = ExprSyntaxKind::List { items, rest: rest.map(Box::new) };
+        ExprSyntax { kind, span: self.span(start, end) }
     }
 
     /// The dot belongs to the call's span.
-    pub(crate) fn internal(&self, start: u32, name: Name, args: Option<Vec<Expr>>, end: u32) -> Call {
-        Call { name, args, span: self.span(start, end) }
+    pub(crate) fn internal(
+        &self,
+        start: u32,
+        name: NameSyntax,
+        args: Option<Vec<ExprSyntax>>,
+        end: u32,
+    ) -> CallSyntax {
+        CallSyntax { name, args, span: self.span(start, end) }
     }
 
-    pub(crate) fn internal_expr(&self, start: u32, name: Name, args: Option<Vec<Expr>>, end: u32) -> Expr {
+    pub(crate) fn internal_expr(
+        &self,
+        start: u32,
+        name: NameSyntax,
+        args: Option<Vec<ExprSyntax>>,
+        end: u32,
+    ) -> ExprSyntax {
         let call = self.internal(start, name, args, end);
-        Expr { span: call.span, kind: ExprKind::Internal(call) }
+        ExprSyntax { span: call.span, kind: ExprSyntaxKind::Internal(call) }
     }
 
-    pub(crate) fn strong(&self, start: u32, of: Expr) -> Expr {
+    pub(crate) fn strong(&self, start: u32, of: ExprSyntax) -> ExprSyntax {
         let span = self.span(start, of.span.end);
-        Expr { kind: ExprKind::Strong(Box::new(of)), span }
+        ExprSyntax { kind: ExprSyntaxKind::Strong(Box::new(of)), span }
     }
 
-    pub(crate) fn unify(&self, left: Expr, right: Expr) -> Expr {
+    pub(crate) fn unify(&self, left: ExprSyntax, right: ExprSyntax) -> ExprSyntax {
         let span = left.span.to(right.span);
-        Expr { kind: ExprKind::Unify { left: Box::new(left), right: Box::new(right) }, span }
+        ExprSyntax { kind: ExprSyntaxKind::Unify { left: Box::new(left), right: Box::new(right) }, span }
     }
 
-    pub(crate) fn name_expr(&self, name: Name) -> Expr {
+    pub(crate) fn name_expr(&self, name: NameSyntax) -> ExprSyntax {
         self.path_expr(self.path(vec![name]))
     }
 
-    pub(crate) fn fork(&self, first: Vec<Step>, mut rest: Vec<Vec<Step>>, all: bool) -> StepKind {
+    pub(crate) fn fork(
+        &self,
+        first: Vec<StepSyntax>,
+        mut rest: Vec<Vec<StepSyntax>>,
+        all: bool,
+    ) -> StepSyntaxKind {
         rest.insert(0, first);
-        StepKind::Fork { all, branches: rest }
+        StepSyntaxKind::Fork { all, branches: rest }
     }
 
-    pub(crate) fn field(&self, of: Expr, name: Name) -> Expr {
+    pub(crate) fn field(&self, of: ExprSyntax, name: NameSyntax) -> ExprSyntax {
         let span = of.span.to(name.span);
-        Expr { kind: ExprKind::Field { of: Box::new(of), name }, span }
+        ExprSyntax { kind: ExprSyntaxKind::Field { of: Box::new(of), name }, span }
     }
 
     /// A type that was read as an expression: `bool`, `bool[4]`.
-    pub(crate) fn type_of(&mut self, expr: Expr) -> TypeExpr {
+    pub(crate) fn type_of(&mut self, expr: ExprSyntax) -> TypeExpr {
         match expr.kind {
-            ExprKind::Path(mut path) if path.names.len() == 1 => match path.names.pop() {
+            ExprSyntaxKind::Path(mut path) if path.names.len() == 1 => match path.names.pop() {
                 Some(name) => TypeExpr::Named(name),
                 None => TypeExpr::Error,
             },
-            ExprKind::Index { of, index } => TypeExpr::Array(Box::new(self.type_of(*of)), *index),
-            ExprKind::List { mut items, rest: None } if items.len() == 1 => match items.pop() {
+            ExprSyntaxKind::Index { of, index } => TypeExpr::Array(Box::new(self.type_of(*of)), *index),
+            ExprSyntaxKind::List { mut items, rest: None } if items.len() == 1 => match items.pop() {
                 Some(item) => TypeExpr::List(Box::new(self.type_of(item))),
                 None => TypeExpr::Error,
             },
-            ExprKind::Error => TypeExpr::Error,
+            ExprSyntaxKind::Error => TypeExpr::Error,
             _ => {
                 self.diagnostics.push(Diagnostic::error(DiagnosticCode::SYNTAX, expr.span, "expected a type").help(
                     "a type is a name such as `bool` or `length`, a range `0..4`, an array `bool[4]`, or a list `[0..4]`",
@@ -258,56 +286,82 @@ impl<'t> Context<'t> {
         }
     }
 
-    pub(crate) fn instance(&self, sort: Sort, name: Name, of: Name, args: Vec<Expr>, end: u32) -> ItemKind {
+    pub(crate) fn instance(
+        &self,
+        sort: TemplateSyntaxKind,
+        name: NameSyntax,
+        of: NameSyntax,
+        args: Vec<ExprSyntax>,
+        end: u32,
+    ) -> ItemSyntaxKind {
         let span = self.span(of.span.start, end);
-        ItemKind::Instance(Instance { sort, name, of, args, span })
+        ItemSyntaxKind::Instance(InstanceSyntax { sort, name, of, args, span })
     }
 
     /// `(e)`: the parentheses are in the span and leave no other trace.
-    pub(crate) fn group(&self, start: u32, expr: Expr, end: u32) -> Expr {
-        Expr { span: self.span(start, end), ..expr }
+    pub(crate) fn group(&self, start: u32, expr: ExprSyntax, end: u32) -> ExprSyntax {
+        ExprSyntax { span: self.span(start, end), ..expr }
     }
 
-    pub(crate) fn tuple(&self, start: u32, first: Expr, mut rest: Vec<Expr>, end: u32) -> Expr {
+    pub(crate) fn tuple(
+        &self,
+        start: u32,
+        first: ExprSyntax,
+        mut rest: Vec<ExprSyntax>,
+        end: u32,
+    ) -> ExprSyntax {
         rest.insert(0, first);
-        Expr { kind: ExprKind::Tuple(rest), span: self.span(start, end) }
+        ExprSyntax { kind: ExprSyntaxKind::Tuple(rest), span: self.span(start, end) }
     }
 
-    pub(crate) fn unary(&self, op: UnaryOp, start: u32, operand: Expr) -> Expr {
+    pub(crate) fn unary(&self, op: UnaryOp, start: u32, operand: ExprSyntax) -> ExprSyntax {
         let span = self.span(start, operand.span.end);
-        Expr { kind: ExprKind::Unary { op, operand: Box::new(operand) }, span }
+        ExprSyntax { kind: ExprSyntaxKind::Unary { op, operand: Box::new(operand) }, span }
     }
 
-    pub(crate) fn binary(&self, op: BinaryOp, left: Expr, right: Expr) -> Expr {
+    pub(crate) fn binary(&self, op: BinaryOp, left: ExprSyntax, right: ExprSyntax) -> ExprSyntax {
         let span = left.span.to(right.span);
-        Expr { kind: ExprKind::Binary { op, left: Box::new(left), right: Box::new(right) }, span }
+        ExprSyntax { kind: ExprSyntaxKind::Binary { op, left: Box::new(left), right: Box::new(right) }, span }
     }
 
     /// `not left or right`
-    pub(crate) fn imply(&self, left: Expr, right: Expr) -> Expr {
+    pub(crate) fn imply(&self, left: ExprSyntax, right: ExprSyntax) -> ExprSyntax {
         let span = left.span;
-        let left = Expr { kind: ExprKind::Unary { op: UnaryOp::Not, operand: Box::new(left) }, span };
+        let left =
+            ExprSyntax { kind: ExprSyntaxKind::Unary { op: UnaryOp::Not, operand: Box::new(left) }, span };
         self.binary(BinaryOp::Or, left, right)
     }
 
-    pub(crate) fn channel(&self, names: Vec<EventName>, kind: Option<(bool, ChannelKind)>) -> Channel {
-        let (urgent, kind) = kind.unwrap_or((false, ChannelKind::HandShake));
-        Channel { names, urgent, kind }
+    pub(crate) fn channel(
+        &self,
+        names: Vec<EventName>,
+        kind: Option<(bool, ChannelSyntaxKind)>,
+    ) -> ChannelSyntax {
+        let (urgent, kind) = kind.unwrap_or((false, ChannelSyntaxKind::HandShake));
+        ChannelSyntax { names, urgent, kind }
     }
 
-    pub(crate) fn choice(&self, start: u32, condition: Expr, then: Expr, otherwise: Expr, end: u32) -> Expr {
-        let kind = ExprKind::If {
+    pub(crate) fn choice(
+        &self,
+        start: u32,
+        condition: ExprSyntax,
+        then: ExprSyntax,
+        otherwise: ExprSyntax,
+        end: u32,
+    ) -> ExprSyntax {
+        let kind = ExprSyntaxKind::If {
             condition: Box::new(condition),
             then: Box::new(then),
             otherwise: Box::new(otherwise),
         };
-        Expr { kind, span: self.span(start, end) }
+        ExprSyntax { kind, span: self.span(start, end) }
     }
 
     // ── Nodes whose parts come in any order ──
 
-    pub(crate) fn edge(&mut self, from: Name, to: Name, parts: Vec<EdgePart>) -> Edge {
-        let mut edge = Edge { from, to, selects: Vec::new(), guard: None, on: None, actions: Vec::new() };
+    pub(crate) fn edge(&mut self, from: NameSyntax, to: NameSyntax, parts: Vec<EdgePart>) -> EdgeSyntax {
+        let mut edge =
+            EdgeSyntax { from, to, selects: Vec::new(), guard: None, on: None, actions: Vec::new() };
         for part in parts {
             match part {
                 EdgePart::Select(mut params) => edge.selects.append(&mut params),
@@ -325,26 +379,26 @@ impl<'t> Context<'t> {
     }
 
     /// An edge with actions ends with the last of them; the semicolons after it are not part of it.
-    pub(crate) fn do_edge(&self, start: u32, edge: Edge, actions: Vec<EdgeAction>) -> AutomatonMember {
+    pub(crate) fn do_edge(&self, start: u32, edge: EdgeSyntax, actions: Vec<EdgeAction>) -> AutomatonMember {
         let end = actions.last().map_or(start, |action| action.span.end);
         AutomatonMember {
             doc: self.doc(start),
-            kind: AutomatonMemberKind::Edge(Edge { actions, ..edge }),
+            kind: AutomatonMemberKind::Edge(EdgeSyntax { actions, ..edge }),
             span: self.span(start, end),
         }
     }
 
     pub(crate) fn body(
         &mut self,
-        name: Name,
-        motion: Name,
-        shape: Name,
-        sizes: Vec<Expr>,
-        at: Expr,
+        name: NameSyntax,
+        motion: NameSyntax,
+        shape: NameSyntax,
+        sizes: Vec<ExprSyntax>,
+        at: ExprSyntax,
         parts: Vec<BodyPart>,
-    ) -> Body {
+    ) -> BodySyntax {
         let (rotated, mass, ghost, graspable) = (None, None, false, false);
-        let mut body = Body { name, motion, shape, sizes, at, rotated, mass, ghost, graspable };
+        let mut body = BodySyntax { name, motion, shape, sizes, at, rotated, mass, ghost, graspable };
         for part in parts {
             match part {
                 BodyPart::Rotated(expr, span) => {
@@ -378,8 +432,15 @@ impl<'t> Context<'t> {
         }
     }
 
-    pub(crate) fn bin(&self, name: Name, lo: Expr, hi: Option<Expr>, open: bool, end: u32) -> Bin {
+    pub(crate) fn bin(
+        &self,
+        name: NameSyntax,
+        lo: ExprSyntax,
+        hi: Option<ExprSyntax>,
+        open: bool,
+        end: u32,
+    ) -> BinSyntax {
         let span = self.span(name.span.start, end);
-        Bin { name, lo, hi, open, span }
+        BinSyntax { name, lo, hi, open, span }
     }
 }

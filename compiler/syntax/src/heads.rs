@@ -1,76 +1,83 @@
 //! Keywords that start declarations and can be names: which of the two one is, by the tokens around it.
 
-use crate::token::{Kind, Lexeme};
+use crate::token::{Lexeme, TokenKind};
 
 /// Whether the tokens after the keyword at `at` are those of its declaration.
 pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
     let kind = |n: usize| tokens.get(at + n).map(|t| t.kind);
     let (Some(head), Some(next)) = (kind(0), kind(1)) else { return false };
-    let after = |kinds: &[Kind]| next.can_be_name() && kind(2).is_some_and(|k| kinds.contains(&k));
+    let after = |kinds: &[TokenKind]| next.can_be_name() && kind(2).is_some_and(|k| kinds.contains(&k));
     match head {
-        Kind::Use => next == Kind::Str || after(&[Kind::Dot]),
-        Kind::Actor | Kind::Var => after(&[Kind::Colon]),
-        Kind::Const | Kind::Network => after(&[Kind::Assign]),
-        Kind::Event => after(&[Kind::FromWord, Kind::Comma, Kind::LParen]),
-        Kind::Stimulus => after(&[Kind::By, Kind::LParen]),
-        Kind::Agent => after(&[Kind::Plays, Kind::LParen, Kind::Assign]),
-        Kind::Automaton => after(&[Kind::LBrace, Kind::Plays, Kind::LParen, Kind::Assign]),
-        Kind::Fn => after(&[Kind::LParen]),
-        Kind::Query => after(&[Kind::Of, Kind::Str]),
-        Kind::Require => {
-            after(&[Kind::LParen, Kind::Assign])
+        TokenKind::Use => next == TokenKind::Str || after(&[TokenKind::Dot]),
+        TokenKind::Actor | TokenKind::Var => after(&[TokenKind::Colon]),
+        TokenKind::Const | TokenKind::Network => after(&[TokenKind::Assign]),
+        TokenKind::Event => after(&[TokenKind::FromWord, TokenKind::Comma, TokenKind::LParen]),
+        TokenKind::Stimulus => after(&[TokenKind::By, TokenKind::LParen]),
+        TokenKind::Agent => after(&[TokenKind::Plays, TokenKind::LParen, TokenKind::Assign]),
+        TokenKind::Automaton => {
+            after(&[TokenKind::LBrace, TokenKind::Plays, TokenKind::LParen, TokenKind::Assign])
+        }
+        TokenKind::Fn => after(&[TokenKind::LParen]),
+        TokenKind::Query => after(&[TokenKind::Of, TokenKind::Str]),
+        TokenKind::Require => {
+            after(&[TokenKind::LParen, TokenKind::Assign])
                 || ((tokens[at].first || !goes_on(next))
                     && next.can_be_name()
-                    && kind(2).is_some_and(Kind::can_be_name)
+                    && kind(2).is_some_and(TokenKind::can_be_name)
                     && starts_pattern(kind(3)))
         }
-        Kind::Assume => next == Kind::At && kind(2) == Some(Kind::Most),
-        Kind::Cover | Kind::Cross => after(&[Kind::Assign, Kind::LParen]),
-        Kind::Suite => after(&[Kind::By]),
-        Kind::Part => after(&[Kind::LBrace, Kind::LParen, Kind::Assign]),
-        Kind::World => next == Kind::LBrace,
-        Kind::System | Kind::Device | Kind::Enum | Kind::Record => after(&[Kind::LBrace]),
-        Kind::Test => after(&[Kind::LBrace, Kind::Dot]),
-        Kind::Allow => after(&[Kind::Str]),
-        Kind::Channel => {
-            after(&[Kind::Comma, Kind::Colon, Kind::LParen])
+        TokenKind::Assume => next == TokenKind::At && kind(2) == Some(TokenKind::Most),
+        TokenKind::Cover | TokenKind::Cross => after(&[TokenKind::Assign, TokenKind::LParen]),
+        TokenKind::Suite => after(&[TokenKind::By]),
+        TokenKind::Part => after(&[TokenKind::LBrace, TokenKind::LParen, TokenKind::Assign]),
+        TokenKind::World => next == TokenKind::LBrace,
+        TokenKind::System | TokenKind::Device | TokenKind::Enum | TokenKind::Record => {
+            after(&[TokenKind::LBrace])
+        }
+        TokenKind::Test => after(&[TokenKind::LBrace, TokenKind::Dot]),
+        TokenKind::Allow => after(&[TokenKind::Str]),
+        TokenKind::Channel => {
+            after(&[TokenKind::Comma, TokenKind::Colon, TokenKind::LParen])
                 || (next.can_be_name() && tokens.get(at + 2).is_none_or(|t| t.first))
         }
-        Kind::Scenario => tokens[at].first && next.can_be_name() && !tokens[at + 1].first,
+        TokenKind::Scenario => tokens[at].first && next.can_be_name() && !tokens[at + 1].first,
         _ => false,
     }
 }
 
 /// What follows an event in a requirement.
-fn goes_on(kind: Kind) -> bool {
-    matches!(kind, Kind::Causes | Kind::Forbids | Kind::Until | Kind::Within | Kind::While)
+fn goes_on(kind: TokenKind) -> bool {
+    matches!(
+        kind,
+        TokenKind::Causes | TokenKind::Forbids | TokenKind::Until | TokenKind::Within | TokenKind::While
+    )
 }
 
 /// What follows the kind of a requirement.
-fn starts_pattern(kind: Option<Kind>) -> bool {
-    kind.is_some_and(|k| k.can_be_name() || matches!(k, Kind::Str | Kind::LParen))
+fn starts_pattern(kind: Option<TokenKind>) -> bool {
+    kind.is_some_and(|k| k.can_be_name() || matches!(k, TokenKind::Str | TokenKind::LParen))
 }
 
 /// Words that a name follows, at the level of declarations.
-pub(crate) fn wants_a_name(kind: Kind) -> bool {
+pub(crate) fn wants_a_name(kind: TokenKind) -> bool {
     kind.continues()
         || matches!(
             kind,
-            Kind::FromWord
-                | Kind::To
-                | Kind::By
-                | Kind::Plays
-                | Kind::Of
-                | Kind::Agents
-                | Kind::After
-                | Kind::Never
-                | Kind::Globally
-                | Kind::While
-                | Kind::Causes
-                | Kind::Forbids
-                | Kind::Until
-                | Kind::Within
-                | Kind::Most
-                | Kind::Bins
+            TokenKind::FromWord
+                | TokenKind::To
+                | TokenKind::By
+                | TokenKind::Plays
+                | TokenKind::Of
+                | TokenKind::Agents
+                | TokenKind::After
+                | TokenKind::Never
+                | TokenKind::Globally
+                | TokenKind::While
+                | TokenKind::Causes
+                | TokenKind::Forbids
+                | TokenKind::Until
+                | TokenKind::Within
+                | TokenKind::Most
+                | TokenKind::Bins
         )
 }

@@ -3,11 +3,11 @@
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 use logos::Logos;
 
-use crate::token::{Class, Kind, Lexeme};
+use crate::token::{KeywordClass, Lexeme, TokenKind};
 use crate::words;
 
 /// The tokens of a file, and what was found on the way.
-pub(crate) struct Lexed {
+pub(crate) struct LexedFile {
     pub tokens: Vec<Lexeme>,
     /// Doc comments, by the start of the token that they stand before, in order.
     pub docs: Vec<(u32, String)>,
@@ -15,8 +15,8 @@ pub(crate) struct Lexed {
 }
 
 /// Reads a text; what it cannot read becomes an error token and a diagnostic.
-pub(crate) fn lex(file: FileId, text: &str) -> Lexed {
-    let mut scan = Scan {
+pub(crate) fn lex(file: FileId, text: &str) -> LexedFile {
+    let mut scan = LexemeScanner {
         file,
         text,
         raw: Vec::with_capacity(text.len() / 5 + 8),
@@ -26,16 +26,21 @@ pub(crate) fn lex(file: FileId, text: &str) -> Lexed {
         diagnostics: Vec::new(),
     };
     scan.run();
-    let Scan { raw, docs, mut diagnostics, .. } = scan;
-    let mut tokens =
-        Join { file, text, raw: &raw, out: Vec::with_capacity(raw.len()), diagnostics: &mut diagnostics }
-            .run();
+    let LexemeScanner { raw, docs, mut diagnostics, .. } = scan;
+    let mut tokens = LexemeJoiner {
+        file,
+        text,
+        raw: &raw,
+        out: Vec::with_capacity(raw.len()),
+        diagnostics: &mut diagnostics,
+    }
+    .run();
     words::names(&mut tokens);
-    Lexed { tokens, docs, diagnostics }
+    LexedFile { tokens, docs, diagnostics }
 }
 
 /// First pass: the tokens as logos sees them.
-struct Scan<'t> {
+struct LexemeScanner<'t> {
     file: FileId,
     text: &'t str,
     raw: Vec<Lexeme>,
@@ -45,26 +50,26 @@ struct Scan<'t> {
     diagnostics: Vec<Diagnostic>,
 }
 
-impl Scan<'_> {
+impl LexemeScanner<'_> {
     fn run(&mut self) {
         let text = self.text;
         let bom = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
-        let mut lexer = Kind::lexer(text);
+        let mut lexer = TokenKind::lexer(text);
         lexer.bump(bom);
         while let Some(result) = lexer.next() {
             let span = lexer.span();
             match result {
-                Ok(Kind::Newline) => self.first = true,
-                Ok(Kind::Comment) => self.comment(&text[span]),
-                Ok(Kind::OpenStr) => {
+                Ok(TokenKind::Newline) => self.first = true,
+                Ok(TokenKind::Comment) => self.comment(&text[span]),
+                Ok(TokenKind::OpenStr) => {
                     self.unterminated(&text[span.clone()], span.start);
-                    self.push(Kind::Str, span.start, span.end);
+                    self.push(TokenKind::Str, span.start, span.end);
                 }
-                Ok(Kind::Str) => {
+                Ok(TokenKind::Str) => {
                     if text[span.clone()].contains('\\') {
                         self.escapes(&text[span.clone()], span.start);
                     }
-                    self.push(Kind::Str, span.start, span.end);
+                    self.push(TokenKind::Str, span.start, span.end);
                 }
                 Ok(kind) => self.push(kind, span.start, span.end),
                 Err(()) => {
@@ -75,7 +80,7 @@ impl Scan<'_> {
         }
     }
 
-    fn push(&mut self, kind: Kind, start: usize, end: usize) {
+    fn push(&mut self, kind: TokenKind, start: usize, end: usize) {
         let (start, end) = (start as u32, end as u32);
         if let Some(doc) = self.doc.take() {
             self.docs.push((start, doc));
@@ -169,7 +174,7 @@ impl Scan<'_> {
             diagnostic = diagnostic.fix(title, span, text, certain);
         }
         self.diagnostics.push(diagnostic);
-        self.push(Kind::Error, start, end);
+        self.push(TokenKind::Error, start, end);
         end
     }
 
@@ -211,7 +216,7 @@ impl Scan<'_> {
             )
             .help("names are made of the letters a to z and A to Z, digits and `_`"),
         );
-        self.push(Kind::Error, start, end);
+        self.push(TokenKind::Error, start, end);
         end
     }
 }
@@ -258,7 +263,7 @@ fn replacement(c: char) -> Option<(&'static str, bool)> {
 }
 
 /// Second pass: numbers take their units; words take the role that their neighbours give them.
-struct Join<'t> {
+struct LexemeJoiner<'t> {
     file: FileId,
     text: &'t str,
     raw: &'t [Lexeme],
@@ -266,15 +271,15 @@ struct Join<'t> {
     diagnostics: &'t mut Vec<Diagnostic>,
 }
 
-impl Join<'_> {
+impl LexemeJoiner<'_> {
     fn run(mut self) -> Vec<Lexeme> {
         let mut i = 0;
         while i < self.raw.len() {
             let token = self.raw[i];
             let taken = match token.kind {
-                Kind::Int | Kind::Float => self.number(i),
-                Kind::Dot if self.starts_internal(i) => {
-                    self.out.push(Lexeme { kind: Kind::Internal, ..token });
+                TokenKind::Int | TokenKind::Float => self.number(i),
+                TokenKind::Dot if self.starts_internal(i) => {
+                    self.out.push(Lexeme { kind: TokenKind::Internal, ..token });
                     1
                 }
                 kind if kind.is_word() => {
@@ -291,7 +296,7 @@ impl Join<'_> {
         self.out
     }
 
-    fn kind(&self, i: usize) -> Option<Kind> {
+    fn kind(&self, i: usize) -> Option<TokenKind> {
         self.raw.get(i).map(|t| t.kind)
     }
 
@@ -302,26 +307,27 @@ impl Join<'_> {
         let dot = self.raw[i];
         let named = self.raw.get(i + 1).is_some_and(|t| t.start == dot.end && t.kind.is_word());
         let part = self.out.last().is_some_and(|before| match before.kind {
-            Kind::RBrace => false,
+            TokenKind::RBrace => false,
             // Words that an expression may follow.
-            Kind::While | Kind::For | Kind::Where => before.end == dot.start,
+            TokenKind::While | TokenKind::For | TokenKind::Where => before.end == dot.start,
             kind => kind.ends_operand() || (kind.can_be_name() && before.end == dot.start),
         });
         named && !part
     }
 
     /// The kind of a word: a name before `->` is an origin, and after a dot every word is a name.
-    fn word(&self, i: usize) -> Kind {
+    fn word(&self, i: usize) -> TokenKind {
         let kind = self.raw[i].kind;
-        if kind.can_be_name() && self.kind(i + 1) == Some(Kind::Arrow) {
-            return Kind::From;
+        if kind.can_be_name() && self.kind(i + 1) == Some(TokenKind::Arrow) {
+            return TokenKind::From;
         }
-        let hard = matches!(kind.class(), Some(Class::Head | Class::Hard | Class::Reserved));
+        let hard =
+            matches!(kind.class(), Some(KeywordClass::Head | KeywordClass::Hard | KeywordClass::Reserved));
         if hard
             && !self.raw[i].first
-            && self.out.last().is_some_and(|t| matches!(t.kind, Kind::Dot | Kind::Internal))
+            && self.out.last().is_some_and(|t| matches!(t.kind, TokenKind::Dot | TokenKind::Internal))
         {
-            return Kind::Ident;
+            return TokenKind::Ident;
         }
         kind
     }
@@ -333,27 +339,27 @@ impl Join<'_> {
         let taken = self.unit(i);
         if taken > 0 {
             token = Lexeme {
-                kind: Kind::Quantity,
+                kind: TokenKind::Quantity,
                 end: self.raw[i + taken].end,
                 unit: self.raw[i + 1].start,
                 ..number
             };
         }
         let digits = &self.text[number.start as usize..number.end as usize];
-        let fits = if token.kind == Kind::Int {
+        let fits = if token.kind == TokenKind::Int {
             digits.len() < 19 || digits.parse::<i64>().is_ok()
         } else {
             digits.parse::<f64>().is_ok_and(f64::is_finite)
         };
         if !fits {
             let span = Span::new(self.file, number.start as usize, number.end as usize);
-            let message = if token.kind == Kind::Int {
+            let message = if token.kind == TokenKind::Int {
                 "the number is larger than 9223372036854775807"
             } else {
                 "the number is too large to be represented"
             };
             self.diagnostics.push(Diagnostic::error(DiagnosticCode::BAD_NUMBER, span, message));
-            token.kind = Kind::Error;
+            token.kind = TokenKind::Error;
         }
         self.out.push(token);
         taken + 1
@@ -365,7 +371,7 @@ impl Join<'_> {
         if taken > 0
             && let (Some(last), Some(caret)) = (self.raw.get(i + taken), self.raw.get(i + taken + 1))
             && let Some(power) = self.raw.get(i + taken + 2)
-            && (caret.kind, power.kind) == (Kind::Caret, Kind::Int)
+            && (caret.kind, power.kind) == (TokenKind::Caret, TokenKind::Int)
             && (last.end, caret.end) == (caret.start, power.start)
         {
             return taken + 2;
@@ -376,18 +382,18 @@ impl Join<'_> {
     fn plain_unit(&self, i: usize) -> usize {
         let Some(unit) = self.raw.get(i + 1).filter(|t| !t.first) else { return 0 };
         let after = self.raw.get(i + 2).filter(|t| !t.first);
-        if unit.kind == Kind::Percent {
+        if unit.kind == TokenKind::Percent {
             // `50 %` is a quantity, `7 % 2` a remainder.
             return usize::from(!after.is_some_and(|t| t.kind.starts_operand()));
         }
-        if unit.kind != Kind::Ident || self.counts_events() {
+        if unit.kind != TokenKind::Ident || self.counts_events() {
             return 0;
         }
         if let Some(slash) = after
-            && slash.kind == Kind::Slash
+            && slash.kind == TokenKind::Slash
             && slash.start == unit.end
             && let Some(per) = self.raw.get(i + 3)
-            && per.kind == Kind::Ident
+            && per.kind == TokenKind::Ident
             && per.start == slash.end
         {
             return 3;
@@ -395,13 +401,13 @@ impl Join<'_> {
         let is_name = after.is_some_and(|t| {
             matches!(
                 t.kind,
-                Kind::LParen
-                    | Kind::Arrow
-                    | Kind::Assign
-                    | Kind::PlusAssign
-                    | Kind::MinusAssign
-                    | Kind::Colon
-                    | Kind::Dot
+                TokenKind::LParen
+                    | TokenKind::Arrow
+                    | TokenKind::Assign
+                    | TokenKind::PlusAssign
+                    | TokenKind::MinusAssign
+                    | TokenKind::Colon
+                    | TokenKind::Dot
             )
         });
         usize::from(!is_name)
@@ -409,6 +415,6 @@ impl Join<'_> {
 
     /// In `at most 4 leg_request` the word after the number is an event.
     fn counts_events(&self) -> bool {
-        matches!(self.out.as_slice(), [.., at, most] if at.kind == Kind::At && most.kind == Kind::Most)
+        matches!(self.out.as_slice(), [.., at, most] if at.kind == TokenKind::At && most.kind == TokenKind::Most)
     }
 }

@@ -7,7 +7,7 @@ use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use crate::heads::{has_its_rest, wants_a_name};
 use crate::report::{found, nearest};
-use crate::token::{Class, KEYWORDS, Kind, Lexeme};
+use crate::token::{KEYWORDS, KeywordClass, Lexeme, TokenKind};
 
 /// Brackets within brackets, in one declaration.
 pub const MAX_NESTING: usize = 128;
@@ -17,7 +17,7 @@ pub const MAX_HEIGHT: u32 = 512;
 
 /// What a run of tokens is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sort {
+pub(crate) enum ChunkKind {
     /// A declaration; starts with its keyword.
     Item,
     /// Text outside every declaration, or nested beyond the limit: reported, not to be read.
@@ -26,16 +26,16 @@ pub(crate) enum Sort {
 
 /// The tokens of one declaration.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Chunk {
-    pub sort: Sort,
+pub(crate) struct DeclarationChunk {
+    pub sort: ChunkKind,
     pub start: usize,
     pub end: usize,
 }
 
 /// The tokens of a file, braces balanced, and its declarations.
-pub(crate) struct Outline {
+pub(crate) struct FileOutline {
     pub tokens: Vec<Lexeme>,
-    pub chunks: Vec<Chunk>,
+    pub chunks: Vec<DeclarationChunk>,
 }
 
 /// Splits the tokens of a file into declarations.
@@ -44,8 +44,8 @@ pub(crate) fn outline(
     text: &str,
     tokens: &[Lexeme],
     diagnostics: &mut Vec<Diagnostic>,
-) -> Outline {
-    let mut splitter = Splitter {
+) -> FileOutline {
+    let mut splitter = DeclarationSplitter {
         file,
         text,
         input: tokens,
@@ -61,20 +61,20 @@ pub(crate) fn outline(
     }
     splitter.close_braces(0, None);
     splitter.finish();
-    Outline { tokens: splitter.out, chunks: splitter.chunks }
+    FileOutline { tokens: splitter.out, chunks: splitter.chunks }
 }
 
 /// A declaration that has begun.
 #[derive(Clone, Copy)]
-struct Current {
-    sort: Sort,
-    head: Kind,
+struct OpenChunk {
+    sort: ChunkKind,
+    head: TokenKind,
     start: usize,
 }
 
 /// An open bracket, and the heights of the expressions in it. The first is the declaration itself.
 #[derive(Clone, Copy, Default)]
-struct Bracket {
+struct OpenBracket {
     brace: bool,
     /// Where it is in the output.
     at: usize,
@@ -88,7 +88,7 @@ struct Bracket {
     element: bool,
 }
 
-impl Bracket {
+impl OpenBracket {
     fn end_of_expression(&mut self) {
         self.highest = self.highest.max(self.operators + self.child);
         self.operators = 0;
@@ -96,39 +96,39 @@ impl Bracket {
     }
 }
 
-struct Splitter<'t> {
+struct DeclarationSplitter<'t> {
     file: FileId,
     text: &'t str,
     input: &'t [Lexeme],
     out: Vec<Lexeme>,
-    chunks: Vec<Chunk>,
+    chunks: Vec<DeclarationChunk>,
     diagnostics: &'t mut Vec<Diagnostic>,
     /// `None`: between two declarations.
-    current: Option<Current>,
-    brackets: Vec<Bracket>,
+    current: Option<OpenChunk>,
+    brackets: Vec<OpenBracket>,
     /// How many of the brackets are braces.
     braces: usize,
 }
 
-impl Splitter<'_> {
+impl DeclarationSplitter<'_> {
     fn token(&mut self, i: usize) {
         let mut token = self.input[i];
         if self.starts_item(i) {
             self.close_braces(0, Some(token));
-            self.begin(Sort::Item, token);
+            self.begin(ChunkKind::Item, token);
         } else if self.braces >= 2 && self.starts_member(i) {
             self.close_braces(1, Some(token));
         } else if self.braces == 0 {
             match self.outside(i) {
-                Outside::Skip => return,
-                Outside::Keep => {}
-                Outside::Head(kind) => {
+                OutsideTokenRole::Skip => return,
+                OutsideTokenRole::Keep => {}
+                OutsideTokenRole::Head(kind) => {
                     token.kind = kind;
-                    self.begin(Sort::Item, token);
+                    self.begin(ChunkKind::Item, token);
                 }
-                Outside::Stray => {
+                OutsideTokenRole::Stray => {
                     self.stray(token);
-                    self.begin(Sort::Unread, token);
+                    self.begin(ChunkKind::Unread, token);
                 }
             }
         }
@@ -137,26 +137,26 @@ impl Splitter<'_> {
         self.bracket(token);
     }
 
-    fn begin(&mut self, sort: Sort, token: Lexeme) {
+    fn begin(&mut self, sort: ChunkKind, token: Lexeme) {
         self.finish();
-        self.current = Some(Current { sort, head: token.kind, start: self.out.len() });
-        self.brackets.push(Bracket::default());
+        self.current = Some(OpenChunk { sort, head: token.kind, start: self.out.len() });
+        self.brackets.push(OpenBracket::default());
     }
 
     /// Ends the current declaration.
     fn finish(&mut self) {
-        if let Some(Current { sort, start, .. }) = self.current.take() {
-            self.chunks.push(Chunk { sort, start, end: self.out.len() });
+        if let Some(OpenChunk { sort, start, .. }) = self.current.take() {
+            self.chunks.push(DeclarationChunk { sort, start, end: self.out.len() });
         }
         self.brackets.clear();
         self.braces = 0;
     }
 
-    fn kind(&self, i: usize) -> Option<Kind> {
+    fn kind(&self, i: usize) -> Option<TokenKind> {
         self.input.get(i).map(|t| t.kind)
     }
 
-    fn before(&self, i: usize) -> Option<Kind> {
+    fn before(&self, i: usize) -> Option<TokenKind> {
         i.checked_sub(1).and_then(|i| self.kind(i))
     }
 
@@ -169,7 +169,7 @@ impl Splitter<'_> {
             return false;
         }
         let Some(before) = self.before(i) else { return true };
-        if matches!(before, Kind::Colon | Kind::Dot) {
+        if matches!(before, TokenKind::Colon | TokenKind::Dot) {
             return false;
         }
         let rest = has_its_rest(self.input, i);
@@ -180,103 +180,116 @@ impl Splitter<'_> {
         let named = self
             .input
             .get(i + 1)
-            .is_some_and(|next| next.kind.is_word() && next.kind != Kind::With && !next.first);
+            .is_some_and(|next| next.kind.is_word() && next.kind != TokenKind::With && !next.first);
         let belongs = match token.kind {
-            Kind::Var => self
-                .current
-                .is_some_and(|c| c.sort == Sort::Unread || matches!(c.head, Kind::Automaton | Kind::Fn)),
-            Kind::Fn => self.current.is_some_and(|c| c.sort == Sort::Unread || c.head == Kind::Automaton),
-            Kind::Part => self.kind(i + 2) == Some(Kind::Assign),
-            Kind::Allow => true,
+            TokenKind::Var => self.current.is_some_and(|c| {
+                c.sort == ChunkKind::Unread || matches!(c.head, TokenKind::Automaton | TokenKind::Fn)
+            }),
+            TokenKind::Fn => {
+                self.current.is_some_and(|c| c.sort == ChunkKind::Unread || c.head == TokenKind::Automaton)
+            }
+            TokenKind::Part => self.kind(i + 2) == Some(TokenKind::Assign),
+            TokenKind::Allow => true,
             _ => false,
         };
         token.first && (rest || named) && !before.continues() && !belongs
     }
 
     /// Whether the current declaration, of which no brace is open, ends before the head keyword at `i`.
-    fn ends_before(&self, i: usize, before: Kind, rest: bool) -> bool {
+    fn ends_before(&self, i: usize, before: TokenKind, rest: bool) -> bool {
         let token = self.input[i];
         if self.brackets.len() > 1 && before.continues() {
             return false;
         }
         // In `at most 4 test` the word after the number is an event.
-        let counted = i.checked_sub(2).is_some_and(|i| self.input[i].kind == Kind::Most);
+        let counted = i.checked_sub(2).is_some_and(|i| self.input[i].kind == TokenKind::Most);
         let named = self.current.is_some_and(|c| c.start + 1 == self.out.len());
         if named || counted {
             return rest && token.first;
         }
         if wants_a_name(before) {
             // On the same line it is one after the name that ends the declaration before.
-            let after_name = before.starts_call() && before != token.kind && token.kind != Kind::World;
+            let after_name = before.starts_call() && before != token.kind && token.kind != TokenKind::World;
             return rest && (token.first || after_name);
         }
         let head = before.is_head() && before != token.kind;
-        token.first || before == Kind::Semi || (before.ends_operand() || head) && rest
+        token.first || before == TokenKind::Semi || (before.ends_operand() || head) && rest
     }
 
     /// A member that cannot be inside another one: the brace of the one before is missing.
     fn starts_member(&self, i: usize) -> bool {
         let token = self.input[i];
-        if !token.first || self.before(i).is_some_and(Kind::continues) {
+        if !token.first || self.before(i).is_some_and(TokenKind::continues) {
             return false;
         }
         let next = self.kind(i + 1);
         match (self.current.map(|c| c.head), token.kind) {
-            (Some(Kind::Agent), Kind::Plan) => {
-                matches!(next, Some(Kind::Plus | Kind::Minus | Kind::On | Kind::At_))
+            (Some(TokenKind::Agent), TokenKind::Plan) => {
+                matches!(next, Some(TokenKind::Plus | TokenKind::Minus | TokenKind::On | TokenKind::At_))
             }
-            (Some(Kind::Agent), Kind::Goal) => next.is_some_and(|k| k == Kind::Bang || k.can_be_name()),
-            (Some(Kind::Agent), Kind::Belief) => next.is_some_and(Kind::can_be_name),
-            (Some(Kind::Agent), Kind::Rule) => next.is_some_and(|k| k == Kind::Tilde || k.can_be_name()),
-            (Some(Kind::Automaton), Kind::From) => true,
-            (Some(Kind::Automaton), Kind::Location | Kind::Init | Kind::Committed | Kind::Urgent) => {
-                next.is_some_and(Kind::can_be_name)
+            (Some(TokenKind::Agent), TokenKind::Goal) => {
+                next.is_some_and(|k| k == TokenKind::Bang || k.can_be_name())
             }
+            (Some(TokenKind::Agent), TokenKind::Belief) => next.is_some_and(TokenKind::can_be_name),
+            (Some(TokenKind::Agent), TokenKind::Rule) => {
+                next.is_some_and(|k| k == TokenKind::Tilde || k.can_be_name())
+            }
+            (Some(TokenKind::Automaton), TokenKind::From) => true,
+            (
+                Some(TokenKind::Automaton),
+                TokenKind::Location | TokenKind::Init | TokenKind::Committed | TokenKind::Urgent,
+            ) => next.is_some_and(TokenKind::can_be_name),
             (_, _) => false,
         }
     }
 
     /// What a token is that no brace holds and that is no head keyword.
-    fn outside(&mut self, i: usize) -> Outside {
+    fn outside(&mut self, i: usize) -> OutsideTokenRole {
         let token = self.input[i];
         match self.current {
             None => match token.kind {
-                Kind::Semi => Outside::Skip,
-                Kind::RBrace => {
+                TokenKind::Semi => OutsideTokenRole::Skip,
+                TokenKind::RBrace => {
                     let span = self.span(token);
                     self.diagnostics.push(
                         Diagnostic::error(DiagnosticCode::SYNTAX, span, "this `}` closes nothing")
                             .help("take it away, or look for a `{` that is missing before it")
                             .fix("take the `}` away", span, "", false),
                     );
-                    Outside::Skip
+                    OutsideTokenRole::Skip
                 }
-                _ => self.misspelt(i).map_or(Outside::Stray, Outside::Head),
+                _ => self.misspelt(i).map_or(OutsideTokenRole::Stray, OutsideTokenRole::Head),
             },
             Some(current) => {
-                if token.kind == Kind::Semi && current.sort == Sort::Item && self.brackets.len() <= 1 {
+                if token.kind == TokenKind::Semi
+                    && current.sort == ChunkKind::Item
+                    && self.brackets.len() <= 1
+                {
                     self.finish();
-                    return Outside::Skip;
+                    return OutsideTokenRole::Skip;
                 }
-                let ended = self.before(i).is_some_and(Kind::ends_operand);
-                let named = self.kind(i + 1) == Some(Kind::Ident);
-                if token.first && ended && named && current.head != Kind::Assume {
-                    return self.misspelt(i).map_or(Outside::Keep, Outside::Head);
+                let ended = self.before(i).is_some_and(TokenKind::ends_operand);
+                let named = self.kind(i + 1) == Some(TokenKind::Ident);
+                if token.first && ended && named && current.head != TokenKind::Assume {
+                    return self.misspelt(i).map_or(OutsideTokenRole::Keep, OutsideTokenRole::Head);
                 }
-                Outside::Keep
+                OutsideTokenRole::Keep
             }
         }
     }
 
     /// A word that is nearly a head keyword and has the look of one: it is read as that keyword.
-    fn misspelt(&mut self, i: usize) -> Option<Kind> {
+    fn misspelt(&mut self, i: usize) -> Option<TokenKind> {
         let token = self.input[i];
         let next = self.input.get(i + 1)?;
-        if token.kind != Kind::Ident || next.first || !(next.kind.is_word() || next.kind == Kind::LBrace) {
+        if token.kind != TokenKind::Ident
+            || next.first
+            || !(next.kind.is_word() || next.kind == TokenKind::LBrace)
+        {
             return None;
         }
         let word = &self.text[token.start as usize..token.end as usize];
-        let heads = KEYWORDS.iter().filter(|k| k.class == Class::Head);
+        let heads = KEYWORDS.iter().filter(|k| k.class == KeywordClass::Head);
         let near = nearest(word, heads.clone().map(|k| k.word))?;
         let kind = heads.into_iter().find(|k| k.word == near)?.kind;
         let span = self.span(token);
@@ -294,7 +307,7 @@ impl Splitter<'_> {
     }
 
     fn stray(&mut self, token: Lexeme) {
-        if token.kind == Kind::Error {
+        if token.kind == TokenKind::Error {
             return;
         }
         let what = found(token, self.text);
@@ -311,20 +324,20 @@ impl Splitter<'_> {
 
     fn bracket(&mut self, token: Lexeme) {
         match token.kind {
-            Kind::LBrace | Kind::LParen | Kind::LBracket => {
-                let brace = token.kind == Kind::LBrace;
+            TokenKind::LBrace | TokenKind::LParen | TokenKind::LBracket => {
+                let brace = token.kind == TokenKind::LBrace;
                 self.braces += usize::from(brace);
-                self.brackets.push(Bracket { brace, at: self.out.len() - 1, ..Bracket::default() });
+                self.brackets.push(OpenBracket { brace, at: self.out.len() - 1, ..OpenBracket::default() });
                 if self.brackets.len() > MAX_NESTING + 1 {
                     self.too_deep(token, &format!("brackets are nested more than {MAX_NESTING} levels deep"));
                 }
             }
-            Kind::RParen | Kind::RBracket
+            TokenKind::RParen | TokenKind::RBracket
                 if self.brackets.len() > 1 && self.brackets.last().is_some_and(|b| !b.brace) =>
             {
                 self.pop(token);
             }
-            Kind::RBrace => self.close(token),
+            TokenKind::RBrace => self.close(token),
             _ => {}
         }
     }
@@ -339,7 +352,7 @@ impl Splitter<'_> {
         }
         self.pop(token);
         self.braces -= 1;
-        let block = self.current.is_some_and(|c| c.sort == Sort::Item && c.head.has_block());
+        let block = self.current.is_some_and(|c| c.sort == ChunkKind::Item && c.head.has_block());
         if self.braces == 0 && block {
             self.finish();
         }
@@ -350,7 +363,7 @@ impl Splitter<'_> {
         let height = inner.highest.max(inner.operators + inner.child) + 1;
         if let Some(outer) = self.brackets.last_mut() {
             outer.child = outer.child.max(height);
-            outer.element = token.kind == Kind::RBracket;
+            outer.element = token.kind == TokenKind::RBracket;
         }
         self.limit(token);
     }
@@ -373,7 +386,7 @@ impl Splitter<'_> {
         }
         self.diagnostics.push(diagnostic.help("put `}` where the block ends"));
         while self.braces > keep {
-            let brace = Lexeme::synthetic(Kind::RBrace, end);
+            let brace = Lexeme::synthetic(TokenKind::RBrace, end);
             self.out.push(brace);
             self.close(brace);
         }
@@ -383,22 +396,22 @@ impl Splitter<'_> {
 
     /// Counts the operators that wait for each other; where an operand follows an operand, a new expression starts.
     fn measure(&mut self, token: Lexeme, i: usize) {
-        let after_operand = self.before(i).is_some_and(Kind::ends_operand);
+        let after_operand = self.before(i).is_some_and(TokenKind::ends_operand);
         let Some(top) = self.brackets.last_mut() else { return };
         top.element = match token.kind {
-            Kind::Dot => top.element,
+            TokenKind::Dot => top.element,
             kind => top.element && kind.can_be_name(),
         };
         // `a[0][0].x` is as high as it has indices and names after them.
         let part = match token.kind {
-            Kind::LBracket => after_operand || self.before(i).is_some_and(Kind::can_be_name),
-            Kind::Dot => top.element,
+            TokenKind::LBracket => after_operand || self.before(i).is_some_and(TokenKind::can_be_name),
+            TokenKind::Dot => top.element,
             _ => false,
         };
         // `if` after a block or operand, and the words between the branches of a fork, are no operators of what is before.
         let step = match token.kind {
-            Kind::If => after_operand,
-            Kind::And | Kind::Or => self.kind(i + 1) == Some(Kind::LBrace),
+            TokenKind::If => after_operand,
+            TokenKind::And | TokenKind::Or => self.kind(i + 1) == Some(TokenKind::LBrace),
             _ => false,
         };
         let Some(top) = self.brackets.last_mut() else { return };
@@ -411,11 +424,20 @@ impl Splitter<'_> {
             return;
         }
         let boundary = match token.kind {
-            Kind::Comma | Kind::Semi | Kind::Colon | Kind::Pipe | Kind::Assign | Kind::From => true,
-            Kind::True | Kind::False | Kind::Else | Kind::LParen | Kind::LBracket => false,
+            TokenKind::Comma
+            | TokenKind::Semi
+            | TokenKind::Colon
+            | TokenKind::Pipe
+            | TokenKind::Assign
+            | TokenKind::From => true,
+            TokenKind::True
+            | TokenKind::False
+            | TokenKind::Else
+            | TokenKind::LParen
+            | TokenKind::LBracket => false,
             // Where an operand is missing, a word is one.
             kind => {
-                let word = matches!(kind.class(), Some(Class::Head | Class::Hard));
+                let word = matches!(kind.class(), Some(KeywordClass::Head | KeywordClass::Hard));
                 after_operand && (word || kind.starts_operand())
             }
         };
@@ -434,9 +456,9 @@ impl Splitter<'_> {
     fn too_deep(&mut self, token: Lexeme, message: &str) {
         let span = self.span(token);
         if let Some(current) = &mut self.current
-            && current.sort == Sort::Item
+            && current.sort == ChunkKind::Item
         {
-            current.sort = Sort::Unread;
+            current.sort = ChunkKind::Unread;
             self.diagnostics.push(
                 Diagnostic::error(DiagnosticCode::TOO_DEEP, span, message)
                     .help("name parts of it with `const`, or divide it into several declarations"),
@@ -445,13 +467,13 @@ impl Splitter<'_> {
     }
 }
 
-enum Outside {
+enum OutsideTokenRole {
     /// Belongs to nothing.
     Skip,
     /// Belongs to the current declaration.
     Keep,
     /// Starts a declaration: a misspelt keyword.
-    Head(Kind),
+    Head(TokenKind),
     /// Starts text that no declaration holds.
     Stray,
 }

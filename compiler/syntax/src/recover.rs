@@ -12,35 +12,35 @@ use hrdsl_source::Span;
 
 use crate::ast::{
     AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, CrossMember, CrossMemberKind,
-    DeviceMember, DeviceMemberKind, Expr, ExprKind, ItemKind, Plan, StimulusStep, StimulusStepKind,
-    SuiteMember, SuiteMemberKind, SystemMember, SystemMemberKind, TestMember, TestMemberKind, WorldMember,
-    WorldMemberKind,
+    DeviceMember, DeviceMemberKind, ExprSyntax, ExprSyntaxKind, ItemSyntaxKind, PlanSyntax, StimulusStepKind,
+    StimulusStepSyntax, SuiteMember, SuiteMemberKind, SystemMember, SystemMemberKind, TestMember,
+    TestMemberKind, WorldMember, WorldMemberKind,
 };
-use crate::context::{Context, Unit};
-use crate::report::{Fault, report};
+use crate::context::{ParseContext, ParsedUnit};
+use crate::report::{ParseFault, report};
 use crate::run::run;
-use crate::token::{Kind, Lexeme};
+use crate::token::{Lexeme, TokenKind};
 
-pub(crate) struct Recovery<'a, 't> {
-    pub cx: &'a mut Context<'t>,
+pub(crate) struct RecoveringParser<'a, 't> {
+    pub cx: &'a mut ParseContext<'t>,
     /// All tokens of the file.
     pub tokens: &'a [Lexeme],
 }
 
 /// What the members of a block are.
-trait Member: Sized {
-    const START: Kind;
-    fn of(unit: Unit) -> Option<Self>;
+trait BlockMember: Sized {
+    const START: TokenKind;
+    fn of(unit: ParsedUnit) -> Option<Self>;
     fn broken(doc: String, span: Span) -> Self;
     /// A token that starts a member of this sort.
-    fn starts(kind: Kind) -> bool;
+    fn starts(kind: TokenKind) -> bool;
 }
 
-impl Recovery<'_, '_> {
+impl RecoveringParser<'_, '_> {
     /// Reads what can be read of a declaration; there is a diagnostic afterwards.
-    pub(crate) fn item(&mut self, range: Range<usize>, fault: &Fault) -> ItemKind {
+    pub(crate) fn item(&mut self, range: Range<usize>, fault: &ParseFault) -> ItemSyntaxKind {
         let said = self.cx.diagnostics.len();
-        let erroneous = self.tokens[range.clone()].iter().any(|t| t.kind == Kind::Error);
+        let erroneous = self.tokens[range.clone()].iter().any(|t| t.kind == TokenKind::Error);
         let kind = match self.block(&range) {
             Some((open, close)) => self.with_block(range.start, open, close),
             None => {
@@ -54,7 +54,7 @@ impl Recovery<'_, '_> {
         kind
     }
 
-    fn report(&mut self, fault: &Fault, range: Range<usize>) {
+    fn report(&mut self, fault: &ParseFault, range: Range<usize>) {
         let next = self.tokens.get(range.end).copied();
         report(self.cx, fault, &self.tokens[range], next);
     }
@@ -63,7 +63,7 @@ impl Recovery<'_, '_> {
     fn span(&self, range: &Range<usize>) -> Span {
         let mut run = &self.tokens[range.clone()];
         while let [rest @ .., last] = run
-            && last.kind == Kind::Semi
+            && last.kind == TokenKind::Semi
         {
             run = rest;
         }
@@ -78,47 +78,47 @@ impl Recovery<'_, '_> {
         if !self.tokens[range.start].kind.has_block() {
             return None;
         }
-        let open = range.clone().find(|i| self.tokens[*i].kind == Kind::LBrace)?;
+        let open = range.clone().find(|i| self.tokens[*i].kind == TokenKind::LBrace)?;
         let close = range.end - 1;
-        (self.tokens[close].kind == Kind::RBrace && close > open).then_some((open, close))
+        (self.tokens[close].kind == TokenKind::RBrace && close > open).then_some((open, close))
     }
 
-    fn with_block(&mut self, start: usize, open: usize, close: usize) -> ItemKind {
+    fn with_block(&mut self, start: usize, open: usize, close: usize) -> ItemSyntaxKind {
         let shell = self.shell(start, &[(open, close)]);
         let mut kind = match run(self.cx, None, &shell) {
-            Ok(Unit::Item(kind)) => kind,
-            Ok(_) => ItemKind::Error,
+            Ok(ParsedUnit::Item(kind)) => kind,
+            Ok(_) => ItemSyntaxKind::Error,
             Err(fault) => {
                 report(self.cx, &fault, &shell, None);
-                ItemKind::Error
+                ItemSyntaxKind::Error
             }
         };
         let block = open + 1..close;
         // INVARIANT: a header that could not be read still has its members looked at, for their faults.
         match (&mut kind, self.tokens[start].kind) {
-            (ItemKind::Stimulus(item), _) => item.body = self.members(block),
-            (ItemKind::Agent(item), _) => item.members = self.members(block),
-            (ItemKind::Automaton(item), _) => item.members = self.members(block),
-            (ItemKind::Cross(item), _) => item.members = self.members(block),
-            (ItemKind::Suite(item), _) => item.members = self.members(block),
-            (ItemKind::Test(item), _) => item.members = self.members(block),
-            (ItemKind::Part(item), _) => item.members = self.members(block),
-            (ItemKind::Device(item), _) => item.members = self.members(block),
-            (ItemKind::World(item), _) => item.members = self.members(block),
-            (ItemKind::System(item), _) => item.members = self.members(block),
-            (ItemKind::Function(item), _) => item.body = self.statements(block),
+            (ItemSyntaxKind::Stimulus(item), _) => item.body = self.members(block),
+            (ItemSyntaxKind::Agent(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::Automaton(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::Cross(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::Suite(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::Test(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::Part(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::Device(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::World(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::System(item), _) => item.members = self.members(block),
+            (ItemSyntaxKind::Function(item), _) => item.body = self.statements(block),
             // Of a list with a fault nothing is kept: its names would be said to be unknown.
-            (ItemKind::Enum { .. } | ItemKind::Record { .. }, _) => kind = ItemKind::Error,
-            (_, Kind::Stimulus) => drop(self.members::<StimulusStep>(block)),
-            (_, Kind::Fn) => drop(self.statements(block)),
-            (_, Kind::Agent) => drop(self.members::<AgentMember>(block)),
-            (_, Kind::Automaton) => drop(self.members::<AutomatonMember>(block)),
-            (_, Kind::Cross) => drop(self.members::<CrossMember>(block)),
-            (_, Kind::Suite) => drop(self.members::<SuiteMember>(block)),
-            (_, Kind::Test) => drop(self.members::<TestMember>(block)),
-            (_, Kind::Part | Kind::World) => drop(self.members::<WorldMember>(block)),
-            (_, Kind::Device) => drop(self.members::<DeviceMember>(block)),
-            (_, Kind::System) => drop(self.members::<SystemMember>(block)),
+            (ItemSyntaxKind::Enum { .. } | ItemSyntaxKind::Record { .. }, _) => kind = ItemSyntaxKind::Error,
+            (_, TokenKind::Stimulus) => drop(self.members::<StimulusStepSyntax>(block)),
+            (_, TokenKind::Fn) => drop(self.statements(block)),
+            (_, TokenKind::Agent) => drop(self.members::<AgentMember>(block)),
+            (_, TokenKind::Automaton) => drop(self.members::<AutomatonMember>(block)),
+            (_, TokenKind::Cross) => drop(self.members::<CrossMember>(block)),
+            (_, TokenKind::Suite) => drop(self.members::<SuiteMember>(block)),
+            (_, TokenKind::Test) => drop(self.members::<TestMember>(block)),
+            (_, TokenKind::Part | TokenKind::World) => drop(self.members::<WorldMember>(block)),
+            (_, TokenKind::Device) => drop(self.members::<DeviceMember>(block)),
+            (_, TokenKind::System) => drop(self.members::<SystemMember>(block)),
             (_, _) => {}
         }
         kind
@@ -138,9 +138,9 @@ impl Recovery<'_, '_> {
 
     /// Keeps what is complete before the fault, and the name of a constant or requirement whose rest is broken: other
     /// declarations use them.
-    fn without_block(&mut self, range: &Range<usize>, fault: &Fault) -> ItemKind {
+    fn without_block(&mut self, range: &Range<usize>, fault: &ParseFault) -> ItemSyntaxKind {
         if fault.complete()
-            && let Ok(Unit::Item(kind)) =
+            && let Ok(ParsedUnit::Item(kind)) =
                 run(self.cx, None, &self.tokens[range.start..range.start + fault.at])
         {
             return kind;
@@ -148,38 +148,40 @@ impl Recovery<'_, '_> {
         let text = &self.tokens[range.clone()];
         match text {
             [head, name, assign, ..]
-                if head.kind == Kind::Const && name.kind.can_be_name() && assign.kind == Kind::Assign =>
+                if head.kind == TokenKind::Const
+                    && name.kind.can_be_name()
+                    && assign.kind == TokenKind::Assign =>
             {
                 let span = self.span(&(range.start + 3..range.end));
-                let value = Expr { kind: ExprKind::Error, span };
-                ItemKind::Const { name: self.cx.name(*name), value }
+                let value = ExprSyntax { kind: ExprSyntaxKind::Error, span };
+                ItemSyntaxKind::Const { name: self.cx.name(*name), value }
             }
             [head, name, kind, rest @ ..]
-                if head.kind == Kind::Require && name.kind.can_be_name() && kind.kind.can_be_name() =>
+                if head.kind == TokenKind::Require && name.kind.can_be_name() && kind.kind.can_be_name() =>
             {
-                let header = 3 + usize::from(rest.first().is_some_and(|t| t.kind == Kind::Str));
+                let header = 3 + usize::from(rest.first().is_some_and(|t| t.kind == TokenKind::Str));
                 if fault.at < header {
-                    return ItemKind::Error;
+                    return ItemSyntaxKind::Error;
                 }
                 let mut shell = text[..header].to_vec();
                 let span = self.span(&(range.start + header..range.end));
-                shell.push(Lexeme { end: span.end, ..Lexeme::synthetic(Kind::Error, span.start) });
+                shell.push(Lexeme { end: span.end, ..Lexeme::synthetic(TokenKind::Error, span.start) });
                 match run(self.cx, None, &shell) {
-                    Ok(Unit::Item(kind)) => kind,
-                    Ok(_) | Err(_) => ItemKind::Error,
+                    Ok(ParsedUnit::Item(kind)) => kind,
+                    Ok(_) | Err(_) => ItemSyntaxKind::Error,
                 }
             }
-            _ => ItemKind::Error,
+            _ => ItemSyntaxKind::Error,
         }
     }
 
     // ── Members ──
 
-    fn members<M: Member>(&mut self, block: Range<usize>) -> Vec<M> {
+    fn members<M: BlockMember>(&mut self, block: Range<usize>) -> Vec<M> {
         let mut members = Vec::new();
         let mut at = block.start;
         while at < block.end {
-            if self.tokens[at].kind == Kind::Semi {
+            if self.tokens[at].kind == TokenKind::Semi {
                 at += 1;
                 continue;
             }
@@ -195,9 +197,15 @@ impl Recovery<'_, '_> {
     }
 
     /// Takes the member at `at`, which more text follows, and gives where the next one starts.
-    fn part<M: Member>(&mut self, at: usize, end: usize, mut fault: Fault, members: &mut Vec<M>) -> usize {
+    fn part<M: BlockMember>(
+        &mut self,
+        at: usize,
+        end: usize,
+        mut fault: ParseFault,
+        members: &mut Vec<M>,
+    ) -> usize {
         let stop = at + fault.at;
-        let member = M::START == Kind::StartAgentMember && stop > at && stop < end && fault.complete();
+        let member = M::START == TokenKind::StartAgentMember && stop > at && stop < end && fault.complete();
         if member
             && self.is_full_stop(stop)
             && let Ok(unit) = run(self.cx, Some(M::START), &self.tokens[at..stop])
@@ -228,28 +236,28 @@ impl Recovery<'_, '_> {
     }
 
     /// After a complete member: a new one, or what was meant to be one.
-    fn can_start<M: Member>(&self, at: usize) -> bool {
-        self.tokens[at - 1].kind == Kind::Semi
-            || self.tokens.get(at).is_some_and(|t| t.first || t.kind == Kind::Semi || M::starts(t.kind))
+    fn can_start<M: BlockMember>(&self, at: usize) -> bool {
+        self.tokens[at - 1].kind == TokenKind::Semi
+            || self.tokens.get(at).is_some_and(|t| t.first || t.kind == TokenKind::Semi || M::starts(t.kind))
     }
 
     /// Where the next member starts after a broken one that starts at `at` and stops to fit at `stop`.
-    fn resume<M: Member>(&self, at: usize, stop: usize, end: usize) -> usize {
+    fn resume<M: BlockMember>(&self, at: usize, stop: usize, end: usize) -> usize {
         let mut depth = 0_usize;
         for i in at..end {
             let token = self.tokens[i];
             if i > at && i >= stop && depth == 0 && M::starts(token.kind) {
                 let before = self.tokens[i - 1].kind;
-                let keyword = !matches!(token.kind, Kind::Ident) && before != Kind::RBrace;
+                let keyword = !matches!(token.kind, TokenKind::Ident) && before != TokenKind::RBrace;
                 let fresh = token.first && !before.continues();
                 let apart = keyword && before.ends_operand() && before.class().is_none();
-                if before == Kind::Semi || before == Kind::RBrace || fresh || apart {
+                if before == TokenKind::Semi || before == TokenKind::RBrace || fresh || apart {
                     return i;
                 }
             }
             match token.kind {
-                Kind::LBrace => depth += 1,
-                Kind::RBrace => depth = depth.saturating_sub(1),
+                TokenKind::LBrace => depth += 1,
+                TokenKind::RBrace => depth = depth.saturating_sub(1),
                 _ => {}
             }
         }
@@ -257,12 +265,12 @@ impl Recovery<'_, '_> {
     }
 
     /// A member that does not fit: of plans and conditions the blocks are read, of others nothing.
-    fn broken<M: Member>(&mut self, range: Range<usize>, end: usize, fault: &Fault) -> M {
+    fn broken<M: BlockMember>(&mut self, range: Range<usize>, end: usize, fault: &ParseFault) -> M {
         let said = self.cx.diagnostics.len();
         let unit = match self.tokens[range.start].kind {
-            Kind::Plan if M::START == Kind::StartAgentMember => self.plan(&range),
-            Kind::Fn if M::START == Kind::StartAutomatonMember => self.function(&range),
-            Kind::If if M::START == Kind::StartStimulusStep => self.condition(&range),
+            TokenKind::Plan if M::START == TokenKind::StartAgentMember => self.plan(&range),
+            TokenKind::Fn if M::START == TokenKind::StartAutomatonMember => self.function(&range),
+            TokenKind::If if M::START == TokenKind::StartStimulusStep => self.condition(&range),
             _ => None,
         };
         if self.cx.diagnostics.len() == said {
@@ -275,14 +283,19 @@ impl Recovery<'_, '_> {
         })
     }
 
-    fn report_member<M: Member>(&mut self, fault: &Fault, range: &Range<usize>, next: Option<Lexeme>) {
+    fn report_member<M: BlockMember>(
+        &mut self,
+        fault: &ParseFault,
+        range: &Range<usize>,
+        next: Option<Lexeme>,
+    ) {
         let said = self.cx.diagnostics.len();
         report(self.cx, fault, &self.tokens[range.clone()], next);
         let helpless = self.cx.diagnostics.get(said).is_some_and(|d| d.help.is_none());
         let at = (range.start + fault.at).min(range.end);
-        let acts = self.tokens[range.start..at].iter().any(|t| t.kind == Kind::Do);
+        let acts = self.tokens[range.start..at].iter().any(|t| t.kind == TokenKind::Do);
         let name = self.tokens.get(at).is_some_and(|t| t.kind.can_be_name());
-        if M::START == Kind::StartAutomatonMember && acts && name && helpless {
+        if M::START == TokenKind::StartAutomatonMember && acts && name && helpless {
             self.cx.diagnostics[said].help = Some("put `;` between two actions of an edge".to_owned());
         }
     }
@@ -294,13 +307,13 @@ impl Recovery<'_, '_> {
         let mut open = range.start;
         for i in range.clone() {
             match self.tokens[i].kind {
-                Kind::LBrace => {
+                TokenKind::LBrace => {
                     if depth == 0 {
                         open = i;
                     }
                     depth += 1;
                 }
-                Kind::RBrace if depth > 0 => {
+                TokenKind::RBrace if depth > 0 => {
                     depth -= 1;
                     if depth == 0 {
                         pairs.push((open, i));
@@ -313,10 +326,10 @@ impl Recovery<'_, '_> {
     }
 
     /// A plan whose header or body is broken.
-    fn plan(&mut self, range: &Range<usize>) -> Option<Unit> {
+    fn plan(&mut self, range: &Range<usize>) -> Option<ParsedUnit> {
         let (open, close) = self.pairs(range).pop()?;
         let shell = self.shell(range.start, &[(open, close)]);
-        let unit = run(self.cx, Some(Kind::StartAgentMember), &shell);
+        let unit = run(self.cx, Some(TokenKind::StartAgentMember), &shell);
         let unit = match unit {
             Ok(unit) => Some(unit),
             Err(fault) => {
@@ -326,41 +339,42 @@ impl Recovery<'_, '_> {
         };
         let body = self.steps(open + 1..close);
         match unit {
-            Some(Unit::AgentMember(AgentMember { doc, kind: AgentMemberKind::Plan(plan), .. })) => {
-                let kind = AgentMemberKind::Plan(Plan { body, ..plan });
+            Some(ParsedUnit::AgentMember(AgentMember { doc, kind: AgentMemberKind::Plan(plan), .. })) => {
+                let kind = AgentMemberKind::Plan(PlanSyntax { body, ..plan });
                 let span = self.span(&(range.start..close + 1));
-                Some(Unit::AgentMember(AgentMember { doc, kind, span }))
+                Some(ParsedUnit::AgentMember(AgentMember { doc, kind, span }))
             }
             _ => None,
         }
     }
 
     /// `if c { … } else { … }` in a stimulus.
-    fn condition(&mut self, range: &Range<usize>) -> Option<Unit> {
+    fn condition(&mut self, range: &Range<usize>) -> Option<ParsedUnit> {
         let pairs = self.pairs(range);
         let last = *pairs.last()?;
         // The condition may have braces itself: the blocks are the last pair, and with `else` the last two.
-        let both = pairs.len() >= 2 && self.tokens[last.0 - 1].kind == Kind::Else;
+        let both = pairs.len() >= 2 && self.tokens[last.0 - 1].kind == TokenKind::Else;
         let blocks = if both { &pairs[pairs.len() - 2..] } else { &pairs[pairs.len() - 1..] };
         let shell = self.shell(range.start, blocks);
-        let unit = match run(self.cx, Some(Kind::StartStimulusStep), &shell) {
+        let unit = match run(self.cx, Some(TokenKind::StartStimulusStep), &shell) {
             Ok(unit) => Some(unit),
             Err(fault) => {
                 report(self.cx, &fault, &shell, None);
                 None
             }
         };
-        let mut bodies: Vec<Vec<StimulusStep>> =
+        let mut bodies: Vec<Vec<StimulusStepSyntax>> =
             blocks.iter().map(|(open, close)| self.members(open + 1..*close)).collect();
         let second = if both { bodies.pop().unwrap_or_default() } else { Vec::new() };
         let first = bodies.pop().unwrap_or_default();
         match unit {
-            Some(Unit::StimulusStep(StimulusStep {
-                kind: StimulusStepKind::If { condition, .. }, ..
+            Some(ParsedUnit::StimulusStepSyntax(StimulusStepSyntax {
+                kind: StimulusStepKind::If { condition, .. },
+                ..
             })) => {
                 let kind = StimulusStepKind::If { condition, then: first, otherwise: second };
                 let span = self.span(&(range.start..last.1 + 1));
-                Some(Unit::StimulusStep(StimulusStep { kind, span }))
+                Some(ParsedUnit::StimulusStepSyntax(StimulusStepSyntax { kind, span }))
             }
             _ => None,
         }
@@ -369,26 +383,26 @@ impl Recovery<'_, '_> {
 
 macro_rules! members {
     ($($member:ident $kinds:ident $start:ident [$($doc:ident)?] $($names:ident)? : $($kind:ident)|*;)*) => {$(
-        impl Member for $member {
-            const START: Kind = Kind::$start;
+        impl BlockMember for $member {
+            const START: TokenKind = TokenKind::$start;
 
-            fn of(unit: Unit) -> Option<Self> {
-                if let Unit::$member(member) = unit { Some(member) } else { None }
+            fn of(unit: ParsedUnit) -> Option<Self> {
+                if let ParsedUnit::$member(member) = unit { Some(member) } else { None }
             }
 
             fn broken(_doc: String, span: Span) -> Self {
                 Self { $($doc: _doc,)? kind: $kinds::Error, span }
             }
 
-            fn starts(kind: Kind) -> bool {
-                matches!(kind, $(Kind::$kind)|*) $(|| kind.$names())?
+            fn starts(kind: TokenKind) -> bool {
+                matches!(kind, $(TokenKind::$kind)|*) $(|| kind.$names())?
             }
         }
     )*};
 }
 
 members! {
-    StimulusStep StimulusStepKind StartStimulusStep [] starts_call: Emit | If;
+    StimulusStepSyntax StimulusStepKind StartStimulusStep [] starts_call: Emit | If;
     AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Rule | Goal | Plan | Allow;
     AutomatonMember AutomatonMemberKind StartAutomatonMember [doc]:
         Clock | Var | Fn | Init | Committed | Urgent | Location | From | Allow;

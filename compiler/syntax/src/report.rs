@@ -2,23 +2,23 @@
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 
-use crate::context::Context;
-use crate::token::{Class, KEYWORDS, Keyword, Kind, Lexeme};
+use crate::context::ParseContext;
+use crate::token::{KEYWORDS, Keyword, KeywordClass, Lexeme, TokenKind};
 
 /// Where a run stopped fitting the grammar.
 #[derive(Clone, Debug)]
-pub(crate) struct Fault {
+pub(crate) struct ParseFault {
     /// What was being read.
     pub of: &'static str,
     /// Its first token: the keyword of a declaration, or the synthetic token before a member.
-    pub within: Option<Kind>,
+    pub within: Option<TokenKind>,
     /// The index of the token; that of the end, if it was the end that did not fit.
     pub at: usize,
     /// The terminals that would have fitted, as the grammar calls them.
     pub expected: Vec<String>,
 }
 
-impl Fault {
+impl ParseFault {
     /// The run could have ended here: what is before is complete.
     pub(crate) fn complete(&self) -> bool {
         self.has("END")
@@ -30,10 +30,10 @@ impl Fault {
 }
 
 /// The diagnostic of a fault in these tokens, which `next` follows; none if the lexer has made it.
-pub(crate) fn report(cx: &mut Context<'_>, fault: &Fault, tokens: &[Lexeme], next: Option<Lexeme>) {
+pub(crate) fn report(cx: &mut ParseContext<'_>, fault: &ParseFault, tokens: &[Lexeme], next: Option<Lexeme>) {
     let token = tokens.get(fault.at).copied().or(next);
     let before = fault.at.checked_sub(1).and_then(|i| tokens.get(i)).copied();
-    if [token, before].iter().flatten().any(|t| t.kind == Kind::Error) {
+    if [token, before].iter().flatten().any(|t| t.kind == TokenKind::Error) {
         return;
     }
     let end = tokens.last().map_or(0, |t| t.end);
@@ -63,8 +63,8 @@ pub(crate) fn report(cx: &mut Context<'_>, fault: &Fault, tokens: &[Lexeme], nex
 /// A token as a message names it.
 pub(crate) fn found(token: Lexeme, text: &str) -> String {
     match token.kind {
-        Kind::Str => "a text".to_owned(),
-        Kind::RBrace => "`}`".to_owned(),
+        TokenKind::Str => "a text".to_owned(),
+        TokenKind::RBrace => "`}`".to_owned(),
         _ => format!("`{}`", text.get(token.start as usize..token.end as usize).unwrap_or("")),
     }
 }
@@ -86,9 +86,9 @@ const OPERATORS: &[&str] =
 
 /// Terminals that together mean one thing to a person. The first that fits is taken. Where a name fits, nearly all keywords
 /// do; a step that starts with a name is told by what it cannot start with.
-struct Group {
+struct TerminalGroup {
     /// In one of these.
-    within: &'static [Kind],
+    within: &'static [TokenKind],
     /// All of these are expected,
     if_all: &'static [&'static str],
     /// and none of these.
@@ -105,8 +105,8 @@ const EXPRESSION: &[&str] = &[
     "_", "if", "ERROR", ".",
 ];
 
-const GROUPS: &[Group] = &[
-    Group {
+const GROUPS: &[TerminalGroup] = &[
+    TerminalGroup {
         within: &[],
         if_all: &["-+", "await"],
         if_none: &[],
@@ -114,23 +114,23 @@ const GROUPS: &[Group] = &[
         covers: &["!", "!!", "?", "+", "-", "-+", "await", "wait", "if", "while", "for", "fork", "INTERNAL"],
         says: &["a step such as `!goal` or `await`"],
     },
-    Group {
-        within: &[Kind::Stimulus, Kind::StartStimulusStep],
+    TerminalGroup {
+        within: &[TokenKind::Stimulus, TokenKind::StartStimulusStep],
         if_all: &["emit", "hold", "sample"],
         if_none: &["INT"],
         names: true,
         covers: &["emit", "hold", "sample", "if"],
         says: &["a step such as `emit` or `hold`"],
     },
-    Group {
-        within: &[Kind::Test, Kind::StartTestMember],
+    TerminalGroup {
+        within: &[TokenKind::Test, TokenKind::StartTestMember],
         if_all: &["seed", "because", "await"],
         if_none: &["INT"],
         names: true,
         covers: &["seed", "method", "because", "predicts", "await", "wait"],
         says: &["a step such as `await` or `wait`"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["gravity", "joint"],
         if_none: &["IDENT"],
@@ -141,7 +141,7 @@ const GROUPS: &[Group] = &[
         ],
         says: &["a member of the world such as `body` or `signal`"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["explore", "horizon"],
         if_none: &["IDENT"],
@@ -152,7 +152,7 @@ const GROUPS: &[Group] = &[
         ],
         says: &["a line such as `choose` or `tests`"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["each", "query", "IDENT"],
         if_none: &["imply"],
@@ -160,7 +160,7 @@ const GROUPS: &[Group] = &[
         covers: &["each", "query"],
         says: &["`each`", "`query`", "a name"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["ORIGIN", "clock"],
         if_none: &["IDENT"],
@@ -168,7 +168,7 @@ const GROUPS: &[Group] = &[
         covers: &["ORIGIN", "clock", "var", "fn", "init", "urgent", "committed", "location", "allow"],
         says: &["`location`", "`clock`", "`var`", "an edge such as `a -> b`"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["after", "never", "ERROR", "("],
         if_none: &["-"],
@@ -176,7 +176,7 @@ const GROUPS: &[Group] = &[
         covers: &["ERROR", "(", "after", "never", "globally"],
         says: &["a pattern such as `after` or `globally`"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["+", "-", "on"],
         if_none: &["*"],
@@ -184,7 +184,7 @@ const GROUPS: &[Group] = &[
         covers: &["+", "-", "on"],
         says: &["a trigger such as `+!goal` or `on event`"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["INT", "-", "not"],
         if_none: &[],
@@ -192,7 +192,7 @@ const GROUPS: &[Group] = &[
         covers: EXPRESSION,
         says: &["an expression"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["INT", "-", "("],
         if_none: &[],
@@ -200,7 +200,7 @@ const GROUPS: &[Group] = &[
         covers: EXPRESSION,
         says: &["a value"],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["+", "*", "."],
         if_none: &[],
@@ -208,8 +208,15 @@ const GROUPS: &[Group] = &[
         covers: &[".", "(", "["],
         says: &[],
     },
-    Group { within: &[], if_all: &["+", "*", "["], if_none: &[], names: false, covers: &["["], says: &[] },
-    Group {
+    TerminalGroup {
+        within: &[],
+        if_all: &["+", "*", "["],
+        if_none: &[],
+        names: false,
+        covers: &["["],
+        says: &[],
+    },
+    TerminalGroup {
         within: &[],
         if_all: &["=", "+=", "["],
         if_none: &[],
@@ -217,11 +224,25 @@ const GROUPS: &[Group] = &[
         covers: &[".", "["],
         says: &[],
     },
-    Group { within: &[], if_all: &["when", "["], if_none: &[], names: false, covers: &["(", "["], says: &[] },
+    TerminalGroup {
+        within: &[],
+        if_all: &["when", "["],
+        if_none: &[],
+        names: false,
+        covers: &["(", "["],
+        says: &[],
+    },
     // A path may go on where a step may start.
-    Group { within: &[], if_all: &["IDENT", "."], if_none: &[], names: false, covers: &["."], says: &[] },
+    TerminalGroup {
+        within: &[],
+        if_all: &["IDENT", "."],
+        if_none: &[],
+        names: false,
+        covers: &["."],
+        says: &[],
+    },
     // Fits before every member, and is never what was meant.
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["allow", "plan"],
         if_none: &["IDENT"],
@@ -229,7 +250,7 @@ const GROUPS: &[Group] = &[
         covers: &["allow"],
         says: &[],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["allow", "clock"],
         if_none: &["IDENT"],
@@ -237,7 +258,7 @@ const GROUPS: &[Group] = &[
         covers: &["allow"],
         says: &[],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["allow", "ORIGIN"],
         if_none: &["IDENT"],
@@ -245,7 +266,7 @@ const GROUPS: &[Group] = &[
         covers: &["allow"],
         says: &[],
     },
-    Group {
+    TerminalGroup {
         within: &[],
         if_all: &["allow", "bin"],
         if_none: &["IDENT"],
@@ -256,7 +277,7 @@ const GROUPS: &[Group] = &[
 ];
 
 /// The words for what would have fitted, where the token that did not is the first of its line or not.
-fn describe(fault: &Fault, first: bool) -> Vec<String> {
+fn describe(fault: &ParseFault, first: bool) -> Vec<String> {
     let mut left: Vec<&str> = fault.expected.iter().map(|e| e.trim_matches('"')).collect();
     let mut said = Vec::new();
     for group in GROUPS {
@@ -292,10 +313,10 @@ fn describe(fault: &Fault, first: bool) -> Vec<String> {
 }
 
 fn is_name(terminal: &str) -> bool {
-    terminal == "IDENT" || keyword(terminal).is_some_and(|class| class != Class::Reserved)
+    terminal == "IDENT" || keyword(terminal).is_some_and(|class| class != KeywordClass::Reserved)
 }
 
-fn keyword(word: &str) -> Option<Class> {
+fn keyword(word: &str) -> Option<KeywordClass> {
     KEYWORDS.iter().find(|k| k.word == word).map(|k| k.class)
 }
 
@@ -314,16 +335,16 @@ fn terminal(name: &str) -> Option<String> {
 // ── What to type ──
 
 /// The parenthesis that should have been closed where the fault is.
-fn unclosed(fault: &Fault, tokens: &[Lexeme]) -> Option<Lexeme> {
+fn unclosed(fault: &ParseFault, tokens: &[Lexeme]) -> Option<Lexeme> {
     if !fault.has(")") {
         return None;
     }
     let mut depth = 0_usize;
     for token in tokens[..fault.at.min(tokens.len())].iter().rev() {
         match token.kind {
-            Kind::RParen => depth += 1,
-            Kind::LParen if depth == 0 => return Some(*token),
-            Kind::LParen => depth -= 1,
+            TokenKind::RParen => depth += 1,
+            TokenKind::LParen if depth == 0 => return Some(*token),
+            TokenKind::LParen => depth -= 1,
             _ => {}
         }
     }
@@ -331,34 +352,40 @@ fn unclosed(fault: &Fault, tokens: &[Lexeme]) -> Option<Lexeme> {
 }
 
 /// The expected keyword that a word was meant to be.
-fn keyword_near<'f>(cx: &Context<'_>, fault: &'f Fault, token: Lexeme) -> Option<&'f str> {
+fn keyword_near<'f>(cx: &ParseContext<'_>, fault: &'f ParseFault, token: Lexeme) -> Option<&'f str> {
     let keywords = fault.expected.iter().map(|e| e.trim_matches('"')).filter(|e| keyword(e).is_some());
-    let meant = token.kind.is_word() && !matches!(token.kind.class(), Some(Class::Hard | Class::Reserved));
+    let meant = token.kind.is_word()
+        && !matches!(token.kind.class(), Some(KeywordClass::Hard | KeywordClass::Reserved));
     // Where a name fits, every keyword is one.
     (meant && !fault.has("IDENT")).then(|| nearest(cx.text_of(token), keywords))?
 }
 
 /// The keyword, if no name can be like it.
 fn reserved(word: &str) -> Option<&'static Keyword> {
-    KEYWORDS.iter().find(|k| k.word == word && k.class == Class::Reserved)
+    KEYWORDS.iter().find(|k| k.word == word && k.class == KeywordClass::Reserved)
 }
 
-fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lexeme) -> Option<String> {
+fn help(
+    cx: &ParseContext<'_>,
+    fault: &ParseFault,
+    around: [Option<Lexeme>; 2],
+    token: Lexeme,
+) -> Option<String> {
     let word = cx.text_of(token);
     let [before, after] = around.map(|t| t.map(|t| t.kind));
     let named = matches!(
         after,
         Some(
-            Kind::Colon
-                | Kind::Assign
-                | Kind::LParen
-                | Kind::RParen
-                | Kind::Comma
-                | Kind::Semi
-                | Kind::Arrow
-                | Kind::FromWord
-                | Kind::Plays
-                | Kind::By
+            TokenKind::Colon
+                | TokenKind::Assign
+                | TokenKind::LParen
+                | TokenKind::RParen
+                | TokenKind::Comma
+                | TokenKind::Semi
+                | TokenKind::Arrow
+                | TokenKind::FromWord
+                | TokenKind::Plays
+                | TokenKind::By
         )
     );
     // Where an expression is expected, the word may have been meant as the operator that it is.
@@ -372,76 +399,94 @@ fn help(cx: &Context<'_>, fault: &Fault, around: [Option<Lexeme>; 2], token: Lex
         ));
     }
     let text = match token.kind {
-        Kind::Eq if fault.has("=") => "to set a value, write `=`",
-        Kind::Assign | Kind::Eq | Kind::Ne | Kind::Lt | Kind::Le | Kind::Gt | Kind::Ge if fault.has("&&") => {
+        TokenKind::Eq if fault.has("=") => "to set a value, write `=`",
+        TokenKind::Assign
+        | TokenKind::Eq
+        | TokenKind::Ne
+        | TokenKind::Lt
+        | TokenKind::Le
+        | TokenKind::Gt
+        | TokenKind::Ge
+            if fault.has("&&") =>
+        {
             "comparisons cannot be chained: write `a < b && b < c`"
         }
         // The expression before may have been taken for complete.
-        Kind::Pipe if fault.has("||") || fault.has("{") || fault.complete() && fault.expected.len() == 1 => {
+        TokenKind::Pipe
+            if fault.has("||") || fault.has("{") || fault.complete() && fault.expected.len() == 1 =>
+        {
             "in expressions `or` is written `||` or `or`"
         }
-        Kind::Pipe if fault.has("or") => "lists of events in requirements are written with `or`",
-        Kind::Pipe if before.is_some_and(Kind::ends_operand) && !fault.has("|") => {
+        TokenKind::Pipe if fault.has("or") => "lists of events in requirements are written with `or`",
+        TokenKind::Pipe if before.is_some_and(TokenKind::ends_operand) && !fault.has("|") => {
             "in expressions `or` is written `||` or `or`"
         }
-        Kind::Or | Kind::OrOr if fault.has("|") => "alternatives are written with `|` here",
+        TokenKind::Or | TokenKind::OrOr if fault.has("|") => "alternatives are written with `|` here",
         kind if kind.is_word() && fault.has("STRING") && !fault.has("IDENT") => {
             "texts are written between `\"` and `\"`"
         }
-        Kind::Dot if fault.has("INTERNAL") && after.is_some_and(Kind::is_word) => {
+        TokenKind::Dot if fault.has("INTERNAL") && after.is_some_and(TokenKind::is_word) => {
             "an internal action is written `.print`: with a blank before its dot, and none after it"
         }
-        Kind::Dot if fault.has("INT") => "write a digit before the point, as in `0.5`",
-        Kind::Dot if matches!(before, Some(Kind::Int)) => "write a digit after the point, as in `1.0`",
-        Kind::DotDot if matches!(before, Some(Kind::Int | Kind::Quantity)) && !fault.has("IDENT") => {
+        TokenKind::Dot if fault.has("INT") => "write a digit before the point, as in `0.5`",
+        TokenKind::Dot if matches!(before, Some(TokenKind::Int)) => {
+            "write a digit after the point, as in `1.0`"
+        }
+        TokenKind::DotDot
+            if matches!(before, Some(TokenKind::Int | TokenKind::Quantity)) && !fault.has("IDENT") =>
+        {
             "a range does not fit here"
         }
-        Kind::Arrow if fault.has("IDENT") => "an edge is written `a -> b`, and both are names",
+        TokenKind::Arrow if fault.has("IDENT") => "an edge is written `a -> b`, and both are names",
         _ => return None,
     };
     Some(text.to_owned())
 }
 
 /// What to write for what AgentSpeak writes in another way, and for what is easily mixed up in agents.
-fn agentspeak(fault: &Fault, tokens: &[Lexeme]) -> Option<String> {
+fn agentspeak(fault: &ParseFault, tokens: &[Lexeme]) -> Option<String> {
     let at = fault.at.min(tokens.len());
-    let rest: Vec<Kind> = tokens[at..].iter().take(2).map(|t| t.kind).collect();
-    let start: Vec<Kind> = tokens.iter().take(2).map(|t| t.kind).collect();
+    let rest: Vec<TokenKind> = tokens[at..].iter().take(2).map(|t| t.kind).collect();
+    let start: Vec<TokenKind> = tokens.iter().take(2).map(|t| t.kind).collect();
     let member = fault.has("belief") && fault.has("plan") && !fault.has("IDENT");
     let text = match (rest.as_slice(), start.as_slice()) {
-        ([Kind::Bang, ..], _) if member => "a goal that is adopted at the start is written `goal !g`",
-        ([Kind::Plus | Kind::Minus | Kind::At_, ..], _) if member => {
+        ([TokenKind::Bang, ..], _) if member => "a goal that is adopted at the start is written `goal !g`",
+        ([TokenKind::Plus | TokenKind::Minus | TokenKind::At_, ..], _) if member => {
             "a plan is written `plan +!g when context { steps }`"
         }
         ([name, ..], _) if member && name.is_name() => {
             "a belief is declared by `belief b(x: type)`, with `= b(1)` if it is held at the start; a rule is `rule b(X) when …`"
         }
-        ([Kind::Colon, Kind::Minus], _) if fault.has("when") => "`:-` is written `when`",
-        ([Kind::Colon, ..], _) if fault.has("when") => "the context of a plan is written `when …`",
-        ([Kind::Lt, Kind::Minus], _) if fault.has("{") => {
+        ([TokenKind::Colon, TokenKind::Minus], _) if fault.has("when") => "`:-` is written `when`",
+        ([TokenKind::Colon, ..], _) if fault.has("when") => "the context of a plan is written `when …`",
+        ([TokenKind::Lt, TokenKind::Minus], _) if fault.has("{") => {
             "the body of a plan is written `{ … }`, without `<-`"
         }
-        (_, [Kind::Plan, ..]) if fault.has("{") && has_left_arrow(&tokens[..at]) => {
+        (_, [TokenKind::Plan, ..]) if fault.has("{") && has_left_arrow(&tokens[..at]) => {
             "the body of a plan is written `{ … }`, without `<-`"
         }
-        (_, [Kind::Goal, Kind::Bang]) if rest.first() == Some(&Kind::Colon) => {
+        (_, [TokenKind::Goal, TokenKind::Bang]) if rest.first() == Some(&TokenKind::Colon) => {
             "`goal g(x: type)`, without `!`, declares the types of a goal; `goal !g(1)` adopts it at the start"
         }
-        (_, [Kind::Goal, name]) if name.is_name() && fault.has("IDENT") => {
+        (_, [TokenKind::Goal, name]) if name.is_name() && fault.has("IDENT") => {
             "`goal g(x: type)` declares the types of a goal; `goal !g(1)` adopts it at the start"
         }
-        ([Kind::LBracket, ..], [Kind::Bang | Kind::BangBang, ..]) => {
+        ([TokenKind::LBracket, ..], [TokenKind::Bang | TokenKind::BangBang, ..]) => {
             "a goal is adopted without annotations; the triggers of plans have them"
         }
-        ([Kind::And | Kind::Or, Kind::LBrace], [Kind::Fork, ..]) => {
+        ([TokenKind::And | TokenKind::Or, TokenKind::LBrace], [TokenKind::Fork, ..]) => {
             "a fork has `and` between all of its branches, or `or` between all"
         }
-        ([Kind::Eq | Kind::Ne | Kind::Lt | Kind::Le | Kind::Gt | Kind::Ge, ..], _)
-            if fault.of == "step" && fault.has("=") =>
-        {
+        (
+            [
+                TokenKind::Eq | TokenKind::Ne | TokenKind::Lt | TokenKind::Le | TokenKind::Gt | TokenKind::Ge,
+                ..,
+            ],
+            _,
+        ) if fault.of == "step" && fault.has("=") => {
             "a step binds or compares by `X = e`; other conditions are asked by `?(…)`"
         }
-        ([Kind::Else, ..], _) if fault.of == "step" => {
+        ([TokenKind::Else, ..], _) if fault.of == "step" => {
             "`else` follows the block of an `if`, and a `{` follows it"
         }
         _ => return None,
@@ -451,7 +496,9 @@ fn agentspeak(fault: &Fault, tokens: &[Lexeme]) -> Option<String> {
 
 /// `<-`, which is read as two tokens.
 fn has_left_arrow(tokens: &[Lexeme]) -> bool {
-    tokens.windows(2).any(|w| (w[0].kind, w[1].kind) == (Kind::Lt, Kind::Minus) && w[0].end == w[1].start)
+    tokens
+        .windows(2)
+        .any(|w| (w[0].kind, w[1].kind) == (TokenKind::Lt, TokenKind::Minus) && w[0].end == w[1].start)
 }
 
 /// The word that differs from `word` by a slip of the fingers, if there is one.

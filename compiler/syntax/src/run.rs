@@ -4,13 +4,17 @@ use std::cell::Cell;
 
 use lalrpop_util::ParseError;
 
-use crate::context::{Context, Unit};
+use crate::context::{ParseContext, ParsedUnit};
 use crate::grammar::UnitParser;
-use crate::report::Fault;
-use crate::token::{Kind, Lexeme};
+use crate::report::ParseFault;
+use crate::token::{Lexeme, TokenKind};
 
 /// Reads one run of tokens as what `start` says: `None` a declaration. Of a run that does not fit, no diagnostics stay.
-pub(crate) fn run(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) -> Result<Unit, Fault> {
+pub(crate) fn run(
+    cx: &mut ParseContext<'_>,
+    start: Option<TokenKind>,
+    tokens: &[Lexeme],
+) -> Result<ParsedUnit, ParseFault> {
     let said = cx.diagnostics.len();
     let fault = match attempt(cx, start, tokens) {
         Ok(unit) => return Ok(unit),
@@ -22,28 +26,37 @@ pub(crate) fn run(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) 
 }
 
 /// In `stimulus by cook` the keyword was taken for the name that is missing before it: it is still expected after itself.
-fn forgotten(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme], fault: &Fault) -> Option<Fault> {
+fn forgotten(
+    cx: &mut ParseContext<'_>,
+    start: Option<TokenKind>,
+    tokens: &[Lexeme],
+    fault: &ParseFault,
+) -> Option<ParseFault> {
     let at = fault.at.checked_sub(1)?;
     let word = tokens.get(at).filter(|t| t.kind.class().is_some())?;
     if !fault.has(cx.text_of(*word)) {
         return None;
     }
     let mut named = tokens[..=fault.at.min(tokens.len() - 1)].to_vec();
-    named[at].kind = Kind::Ident;
+    named[at].kind = TokenKind::Ident;
     let same = attempt(cx, start, &named).err()?;
     let before = attempt(cx, start, &tokens[..at]).err()?;
     let name = same.at == fault.at && same.expected == fault.expected;
     (name && before.at == at && before.has("IDENT")).then_some(before)
 }
 
-fn attempt(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) -> Result<Unit, Fault> {
+fn attempt(
+    cx: &mut ParseContext<'_>,
+    start: Option<TokenKind>,
+    tokens: &[Lexeme],
+) -> Result<ParsedUnit, ParseFault> {
     let (from, to) = (tokens.first().map_or(0, |t| t.start), tokens.last().map_or(0, |t| t.end));
     let taken = Cell::new(0_usize);
     let stream = start
         .map(|kind| Lexeme::synthetic(kind, from))
         .into_iter()
         .chain(tokens.iter().copied())
-        .chain(std::iter::once(Lexeme::synthetic(Kind::End, to)))
+        .chain(std::iter::once(Lexeme::synthetic(TokenKind::End, to)))
         .map(|t| {
             taken.set(taken.get() + 1);
             (t.start, t, t.end)
@@ -63,9 +76,9 @@ fn attempt(cx: &mut Context<'_>, start: Option<Kind>, tokens: &[Lexeme]) -> Resu
     };
     let of = match start {
         None => "declaration",
-        Some(Kind::StartStep | Kind::StartStimulusStep) => "step",
-        Some(Kind::StartStatement) => "statement",
+        Some(TokenKind::StartStep | TokenKind::StartStimulusStep) => "step",
+        Some(TokenKind::StartStatement) => "statement",
         Some(_) => "member",
     };
-    Err(Fault { of, within: start.or_else(|| tokens.first().map(|t| t.kind)), at, expected })
+    Err(ParseFault { of, within: start.or_else(|| tokens.first().map(|t| t.kind)), at, expected })
 }

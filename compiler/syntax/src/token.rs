@@ -4,7 +4,7 @@ use logos::Logos;
 
 /// What a keyword reserves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
+pub enum KeywordClass {
     /// Starts a declaration; a name where none can start.
     Head,
     /// Holds the text together, and a name where it cannot be meant. Where a declaration is broken it is taken for the keyword.
@@ -19,10 +19,10 @@ pub enum Class {
 #[derive(Clone, Copy, Debug)]
 pub struct Keyword {
     pub word: &'static str,
-    pub class: Class,
+    pub class: KeywordClass,
     /// The construct that it belongs to, as the specification's table shows it.
     pub place: &'static str,
-    pub(crate) kind: Kind,
+    pub(crate) kind: TokenKind,
 }
 
 macro_rules! tokens {
@@ -30,7 +30,7 @@ macro_rules! tokens {
         /// The kind of a token.
         #[derive(Logos, Clone, Copy, Debug, PartialEq, Eq)]
         #[logos(skip r"[ \t\r]+")]
-        pub(crate) enum Kind {
+        pub(crate) enum TokenKind {
             $(#[token($word)] $kind,)*
 
             #[token("_", priority = 9)] Any,
@@ -113,14 +113,14 @@ macro_rules! tokens {
 
         /// All keywords, by where they belong.
         pub const KEYWORDS: &[Keyword] = &[
-            $(Keyword { word: $word, class: Class::$class, place: $place, kind: Kind::$kind }),*
+            $(Keyword { word: $word, class: KeywordClass::$class, place: $place, kind: TokenKind::$kind }),*
         ];
 
-        impl Kind {
+        impl TokenKind {
             /// What a keyword reserves; `None` for every other token.
-            pub(crate) fn class(self) -> Option<Class> {
+            pub(crate) fn class(self) -> Option<KeywordClass> {
                 match self {
-                    $(Self::$kind => Some(Class::$class),)*
+                    $(Self::$kind => Some(KeywordClass::$class),)*
                     _ => None,
                 }
             }
@@ -269,10 +269,10 @@ tokens! {
     Online "online" Soft "system",
 }
 
-impl Kind {
+impl TokenKind {
     /// Starts a declaration.
     pub(crate) fn is_head(self) -> bool {
-        self.class() == Some(Class::Head)
+        self.class() == Some(KeywordClass::Head)
     }
 
     /// Starts a declaration that ends with its closing brace.
@@ -297,12 +297,12 @@ impl Kind {
 
     /// Looks like a name: an identifier or a soft keyword.
     pub(crate) fn is_name(self) -> bool {
-        self == Self::Ident || self.class() == Some(Class::Soft)
+        self == Self::Ident || self.class() == Some(KeywordClass::Soft)
     }
 
     /// Can be a name somewhere: every word that is not reserved.
     pub(crate) fn can_be_name(self) -> bool {
-        self.is_word() && self.class() != Some(Class::Reserved)
+        self.is_word() && self.class() != Some(KeywordClass::Reserved)
     }
 
     /// May be the first token of a step that names what is done. Words that hold the text together are hardly meant so.
@@ -407,7 +407,7 @@ impl Kind {
 /// One token where it was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Lexeme {
-    pub kind: Kind,
+    pub kind: TokenKind,
     /// The first of its line.
     pub first: bool,
     pub start: u32,
@@ -418,7 +418,7 @@ pub(crate) struct Lexeme {
 
 impl Lexeme {
     /// A token without text, made by the driver.
-    pub(crate) fn synthetic(kind: Kind, at: u32) -> Self {
+    pub(crate) fn synthetic(kind: TokenKind, at: u32) -> Self {
         Self { kind, first: false, start: at, end: at, unit: at }
     }
 }

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use hrdsl_source::FileId;
 use hrdsl_syntax::parse;
-use hrdsl_syntax::token::{Class, KEYWORDS};
+use hrdsl_syntax::token::{KEYWORDS, KeywordClass};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -35,9 +35,9 @@ fn keywords_json() -> String {
         .iter()
         .map(|k| {
             let class = match k.class {
-                Class::Head => "head",
-                Class::Hard | Class::Reserved => "hard",
-                Class::Soft => "soft",
+                KeywordClass::Head => "head",
+                KeywordClass::Hard | KeywordClass::Reserved => "hard",
+                KeywordClass::Soft => "soft",
             };
             format!("  {{ \"word\": \"{}\", \"class\": \"{class}\", \"place\": \"{}\" }}", k.word, k.place)
         })
@@ -51,9 +51,9 @@ fn keywords_h() -> String {
     );
     for keyword in KEYWORDS {
         let class = match keyword.class {
-            Class::Head => "HEAD",
-            Class::Hard | Class::Reserved => "HARD",
-            Class::Soft => "SOFT",
+            KeywordClass::Head => "HEAD",
+            KeywordClass::Hard | KeywordClass::Reserved => "HARD",
+            KeywordClass::Soft => "SOFT",
         };
         let _ = writeln!(text, "{class}({0}, \"{0}\")", keyword.word);
     }
@@ -125,7 +125,7 @@ fn soft_names() -> Vec<String> {
         .expect("the text of soft_keywords_are_names")
         .replace("{{", "{")
         .replace("}}", "}");
-    let soft = KEYWORDS.iter().filter(|k| k.class == Class::Soft);
+    let soft = KEYWORDS.iter().filter(|k| k.class == KeywordClass::Soft);
     soft.map(|k| pattern.replace("{word}", k.word)).collect()
 }
 

@@ -2,9 +2,9 @@
 //! by a test of the documents) use all of them.
 
 use hrdsl_source::FileId;
-use hrdsl_syntax::ast::{ExprKind, ItemKind};
+use hrdsl_syntax::ast::{ExprSyntaxKind, ItemSyntaxKind};
 use hrdsl_syntax::parse;
-use hrdsl_syntax::token::{Class, KEYWORDS};
+use hrdsl_syntax::token::{KEYWORDS, KeywordClass};
 
 const GRAMMAR: &str = include_str!("../src/grammar.lalrpop");
 const SPEC: &str = include_str!("../../../spec/grammar.md");
@@ -22,7 +22,9 @@ fn the_grammar_uses_every_keyword() {
 /// `if` is one where no condition can follow (`compiler/tests/words.rs`).
 #[test]
 fn keywords_are_names() {
-    for word in KEYWORDS.iter().filter(|k| k.class != Class::Reserved && k.word != "if").map(|k| k.word) {
+    for word in
+        KEYWORDS.iter().filter(|k| k.class != KeywordClass::Reserved && k.word != "if").map(|k| k.word)
+    {
         let text = format!(
             "actor {word} : {word}
              const {word} = {word}
@@ -56,7 +58,7 @@ fn keywords_are_names() {
 
 #[test]
 fn reserved_words_are_not() {
-    for keyword in KEYWORDS.iter().filter(|k| k.class == Class::Reserved) {
+    for keyword in KEYWORDS.iter().filter(|k| k.class == KeywordClass::Reserved) {
         let (_, diagnostics) = parse(FileId(0), &format!("event {} from a", keyword.word));
         assert!(!diagnostics.is_empty(), "{}", keyword.word);
         let (_, diagnostics) = parse(FileId(0), &format!("const a = b.{}", keyword.word));
@@ -69,8 +71,8 @@ fn reserved_words_are_not() {
 fn keywords_are_not_units() {
     for keyword in KEYWORDS {
         let (file, _) = parse(FileId(0), &format!("const a = 5 {} ", keyword.word));
-        let ItemKind::Const { value, .. } = &file.items[0].kind else { panic!("{}", keyword.word) };
-        assert!(!matches!(value.kind, ExprKind::Quantity { .. }), "{}", keyword.word);
+        let ItemSyntaxKind::Const { value, .. } = &file.items[0].kind else { panic!("{}", keyword.word) };
+        assert!(!matches!(value.kind, ExprSyntaxKind::Quantity { .. }), "{}", keyword.word);
     }
 }
 

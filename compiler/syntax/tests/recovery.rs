@@ -2,41 +2,41 @@
 
 use hrdsl_source::FileId;
 use hrdsl_syntax::ast::{
-    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, DeviceMemberKind, ExprKind, File, Function,
-    ItemKind, PatternKind, Statement, StatementKind, Step, StepKind, StimulusStepKind, SuiteMemberKind,
-    TestMemberKind, WorldMemberKind,
+    AgentMemberKind, AgentSyntax, AutomatonMemberKind, AutomatonSyntax, DeviceMemberKind, ExprSyntaxKind,
+    FileSyntax, FunctionSyntax, ItemSyntaxKind, PatternKind, StatementSyntax, StatementSyntaxKind,
+    StepSyntax, StepSyntaxKind, StimulusStepKind, SuiteMemberKind, TestMemberKind, WorldMemberKind,
 };
 use hrdsl_syntax::parse;
 
 const SCENARIO: &str = include_str!("../../../examples/handover/scenario.hri");
 
 /// The scenario with one replacement, and how many diagnostics it has.
-fn with(from: &str, to: &str) -> (File, usize) {
+fn with(from: &str, to: &str) -> (FileSyntax, usize) {
     assert!(SCENARIO.contains(from), "{from}");
     let (file, diagnostics) = parse(FileId(0), &SCENARIO.replacen(from, to, 1));
     assert!(!diagnostics.is_empty());
     (file, diagnostics.len())
 }
 
-fn errors(file: &File) -> usize {
-    file.items.iter().filter(|i| i.kind == ItemKind::Error).count()
+fn errors(file: &FileSyntax) -> usize {
+    file.items.iter().filter(|i| i.kind == ItemSyntaxKind::Error).count()
 }
 
-fn whole() -> File {
+fn whole() -> FileSyntax {
     parse(FileId(0), SCENARIO).0
 }
 
-fn agent<'f>(file: &'f File, name: &str) -> &'f Agent {
+fn agent<'f>(file: &'f FileSyntax, name: &str) -> &'f AgentSyntax {
     let found = file.items.iter().find_map(|i| match &i.kind {
-        ItemKind::Agent(a) if a.name.text == name => Some(a),
+        ItemSyntaxKind::Agent(a) if a.name.text == name => Some(a),
         _ => None,
     });
     found.expect("the agent is there")
 }
 
-fn automaton<'f>(file: &'f File, name: &str) -> &'f Automaton {
+fn automaton<'f>(file: &'f FileSyntax, name: &str) -> &'f AutomatonSyntax {
     let found = file.items.iter().find_map(|i| match &i.kind {
-        ItemKind::Automaton(a) if a.name.text == name => Some(a),
+        ItemSyntaxKind::Automaton(a) if a.name.text == name => Some(a),
         _ => None,
     });
     found.expect("the automaton is there")
@@ -64,37 +64,39 @@ fn a_broken_step_costs_that_step() {
             | AgentMemberKind::Error => None,
         })
         .collect();
-    let broken: Vec<_> = bodies.iter().filter(|b| b.iter().any(|s| s.kind == StepKind::Error)).collect();
+    let broken: Vec<_> =
+        bodies.iter().filter(|b| b.iter().any(|s| s.kind == StepSyntaxKind::Error)).collect();
     assert_eq!(broken.len(), 1);
     assert_eq!(broken[0].len(), 5, "the four other steps are there");
 }
 
 /// The steps of the plan of a text with one agent, a word for each: what is in blocks in brackets.
 fn steps(text: &str) -> (String, usize) {
-    fn all(steps: &[Step]) -> String {
+    fn all(steps: &[StepSyntax]) -> String {
         steps.iter().map(|s| one(&s.kind)).collect::<Vec<_>>().join(" ")
     }
-    fn one(kind: &StepKind) -> String {
+    fn one(kind: &StepSyntaxKind) -> String {
         match kind {
-            StepKind::Do(call) | StepKind::Achieve { call, .. } | StepKind::Spawn(call) => {
+            StepSyntaxKind::Do(call) | StepSyntaxKind::Achieve { call, .. } | StepSyntaxKind::Spawn(call) => {
                 call.name.text.clone()
             }
-            StepKind::Internal(call) => format!(".{}", call.name.text),
-            StepKind::Query(l) | StepKind::Add(l) | StepKind::Remove(l) | StepKind::Replace(l) => {
-                l.call.name.text.clone()
-            }
-            StepKind::Test(_) => "test".to_owned(),
-            StepKind::Unify { .. } => "unify".to_owned(),
-            StepKind::Await { .. } => "await".to_owned(),
-            StepKind::Wait(_) => "wait".to_owned(),
-            StepKind::If { then, otherwise, .. } => format!("if[{}][{}]", all(then), all(otherwise)),
-            StepKind::While { body, .. } => format!("while[{}]", all(body)),
-            StepKind::For { body, .. } => format!("for[{}]", all(body)),
-            StepKind::Fork { all: and, branches } => {
+            StepSyntaxKind::Internal(call) => format!(".{}", call.name.text),
+            StepSyntaxKind::Query(l)
+            | StepSyntaxKind::Add(l)
+            | StepSyntaxKind::Remove(l)
+            | StepSyntaxKind::Replace(l) => l.call.name.text.clone(),
+            StepSyntaxKind::Test(_) => "test".to_owned(),
+            StepSyntaxKind::Unify { .. } => "unify".to_owned(),
+            StepSyntaxKind::Await { .. } => "await".to_owned(),
+            StepSyntaxKind::Wait(_) => "wait".to_owned(),
+            StepSyntaxKind::If { then, otherwise, .. } => format!("if[{}][{}]", all(then), all(otherwise)),
+            StepSyntaxKind::While { body, .. } => format!("while[{}]", all(body)),
+            StepSyntaxKind::For { body, .. } => format!("for[{}]", all(body)),
+            StepSyntaxKind::Fork { all: and, branches } => {
                 let branches: String = branches.iter().map(|b| format!("[{}]", all(b))).collect();
                 format!("{}{branches}", if *and { "and" } else { "or" })
             }
-            StepKind::Error => "-".to_owned(),
+            StepSyntaxKind::Error => "-".to_owned(),
         }
     }
     let text = format!("agent A plays p {{ plan +!a {{ {text} }} }}");
@@ -180,7 +182,7 @@ fn new_members_are_found_after_broken_ones() {
         })
         .collect();
     assert_eq!(kinds, ["-", "rule", "-", "rule", "-", "type", "plan", "rule", "type"], "{diagnostics:#?}");
-    let ItemKind::Suite(suite) = &file.items[1].kind else { panic!("a suite") };
+    let ItemSyntaxKind::Suite(suite) = &file.items[1].kind else { panic!("a suite") };
     let broken = suite.members.iter().filter(|m| m.kind == SuiteMemberKind::Error).count();
     assert_eq!((suite.members.len(), broken), (5, 2), "{diagnostics:#?}");
 }
@@ -192,7 +194,7 @@ fn a_missing_semicolon_costs_nothing() {
         "look(G) reach(X); grip(P) say_ready; !settle }",
     );
     assert_eq!(n, 2);
-    let names = |a: &Agent| format!("{a:?}").matches("Step {").count();
+    let names = |a: &AgentSyntax| format!("{a:?}").matches("Step {").count();
     assert_eq!(names(agent(&file, "Human")), names(agent(&whole(), "Human")));
 }
 
@@ -244,12 +246,14 @@ fn a_misspelt_keyword_is_understood() {
 #[test]
 fn names_survive_their_broken_values() {
     let (file, _) = with("const LEGS     = 4", "const LEGS = 4 +");
-    assert!(file.items.iter().any(|i| matches!(&i.kind,
-        ItemKind::Const { name, value } if name.text == "LEGS" && value.kind == ExprKind::Error)));
+    assert!(
+        file.items.iter().any(|i| matches!(&i.kind,
+        ItemSyntaxKind::Const { name, value } if name.text == "LEGS" && value.kind == ExprSyntaxKind::Error))
+    );
     let (file, _) =
         with("sensed(true, true, true) causes released", "sensed(true, true, true) cause released");
     assert!(file.items.iter().any(|i| matches!(&i.kind,
-        ItemKind::Require(r) if r.name.text == "R2" && r.title.is_some() && r.pattern.kind == PatternKind::Error)));
+        ItemSyntaxKind::Require(r) if r.name.text == "R2" && r.title.is_some() && r.pattern.kind == PatternKind::Error)));
 }
 
 #[test]
@@ -281,24 +285,24 @@ device arm { command a; command b(to: length[3] do x
     assert_eq!(file.items.len(), 7);
     for item in &file.items {
         match &item.kind {
-            ItemKind::Stimulus(s) => {
+            ItemSyntaxKind::Stimulus(s) => {
                 assert_eq!(s.body.len(), 5);
                 assert!(s.body[1].kind == StimulusStepKind::Error, "hold");
                 assert!(matches!(&s.body[3].kind,
                     StimulusStepKind::If { then, otherwise, .. } if then.len() == 2 && otherwise.len() == 1));
             }
-            ItemKind::Cross(c) => assert_eq!(c.members.len(), 4),
-            ItemKind::Suite(s) => assert_eq!(s.members.len(), 4),
-            ItemKind::Test(t) => {
+            ItemSyntaxKind::Cross(c) => assert_eq!(c.members.len(), 4),
+            ItemSyntaxKind::Suite(s) => assert_eq!(s.members.len(), 4),
+            ItemSyntaxKind::Test(t) => {
                 assert_eq!(t.members.len(), 5);
                 assert_eq!(t.members.iter().filter(|m| m.kind == TestMemberKind::Error).count(), 2);
             }
-            ItemKind::World(w) => {
+            ItemSyntaxKind::World(w) => {
                 assert_eq!(w.members.len(), 5);
                 assert!(matches!(w.members[4].kind, WorldMemberKind::Sample(_)));
             }
-            ItemKind::System(s) => assert_eq!(s.members.len(), 2),
-            ItemKind::Device(d) => {
+            ItemSyntaxKind::System(s) => assert_eq!(s.members.len(), 2),
+            ItemSyntaxKind::Device(d) => {
                 let broken = d.members.iter().map(|m| m.kind == DeviceMemberKind::Error);
                 assert_eq!(broken.collect::<Vec<_>>(), [true, true, true, false]);
             }
@@ -308,12 +312,12 @@ device arm { command a; command b(to: length[3] do x
 }
 
 /// The functions of a file and of its automata.
-fn functions(file: &File) -> Vec<&Function> {
+fn functions(file: &FileSyntax) -> Vec<&FunctionSyntax> {
     let mut found = Vec::new();
     for item in &file.items {
         match &item.kind {
-            ItemKind::Function(f) => found.push(f),
-            ItemKind::Automaton(a) => found.extend(a.members.iter().filter_map(|m| match &m.kind {
+            ItemSyntaxKind::Function(f) => found.push(f),
+            ItemSyntaxKind::Automaton(a) => found.extend(a.members.iter().filter_map(|m| match &m.kind {
                 AutomatonMemberKind::Function(f) => Some(f),
                 _ => None,
             })),
@@ -324,19 +328,19 @@ fn functions(file: &File) -> Vec<&Function> {
 }
 
 /// The statements, those in blocks too, and how many of them could not be read.
-fn statements(of: &[Statement]) -> (usize, usize) {
-    let inner = |parts: &[&[Statement]]| {
+fn statements(of: &[StatementSyntax]) -> (usize, usize) {
+    let inner = |parts: &[&[StatementSyntax]]| {
         parts.iter().map(|p| statements(p)).fold((1, 0), |(n, bad), (m, b)| (n + m, bad + b))
     };
     of.iter().fold((0, 0), |(n, bad), s| {
         let (m, b) = match &s.kind {
-            StatementKind::If { then, otherwise, .. } => inner(&[then, otherwise]),
-            StatementKind::While { body, .. } | StatementKind::For { body, .. } => inner(&[body]),
-            StatementKind::Error => (1, 1),
-            StatementKind::Var(_)
-            | StatementKind::Assign { .. }
-            | StatementKind::Call(_)
-            | StatementKind::Return(_) => (1, 0),
+            StatementSyntaxKind::If { then, otherwise, .. } => inner(&[then, otherwise]),
+            StatementSyntaxKind::While { body, .. } | StatementSyntaxKind::For { body, .. } => inner(&[body]),
+            StatementSyntaxKind::Error => (1, 1),
+            StatementSyntaxKind::Var(_)
+            | StatementSyntaxKind::Assign { .. }
+            | StatementSyntaxKind::Call(_)
+            | StatementSyntaxKind::Return(_) => (1, 0),
         };
         (n + m, bad + b)
     })

@@ -1,7 +1,7 @@
 //! Whatever the text: no panic, spans inside the text, and every `Error` node has its diagnostic.
 
 use hrdsl_source::{Diagnostic, FileId};
-use hrdsl_syntax::ast::File;
+use hrdsl_syntax::ast::FileSyntax;
 use hrdsl_syntax::parse;
 use proptest::prelude::*;
 
@@ -9,7 +9,7 @@ const SCENARIO: &str =
     concat!(include_str!("../../../examples/handover/scenario.hri"), include_str!("texts/agents.hri"));
 
 /// Parses, and checks what holds for every text.
-fn check(text: &str) -> (File, Vec<Diagnostic>) {
+fn check(text: &str) -> (FileSyntax, Vec<Diagnostic>) {
     let (file, diagnostics) = parse(FileId(0), text);
     for label in diagnostics.iter().flat_map(|d| &d.labels) {
         assert!(text.get(label.span.range()).is_some(), "span {:?} of {text:?}", label.span);

@@ -1,10 +1,10 @@
 //! Applying certain fixes, each by itself.
 
-use hrdsl_compiler::Compilation;
-use hrdsl_source::{Diagnostic, FileId, Fix};
+use hrdsl_compiler::CompilationResult;
+use hrdsl_source::{Diagnostic, FileId, SuggestedFix};
 
 /// The text with a fix of it, if the fix is of this file alone.
-fn fixed(text: &str, fix: &Fix) -> Option<String> {
+fn fixed(text: &str, fix: &SuggestedFix) -> Option<String> {
     let mut text = text.to_owned();
     for edit in fix.edits.iter().rev() {
         (edit.span.file == FileId(0)).then(|| text.replace_range(edit.span.range(), &edit.text))?;
@@ -13,19 +13,19 @@ fn fixed(text: &str, fix: &Fix) -> Option<String> {
 }
 
 /// How often the same is said of the same text: the fix of one finding may uncover another of its kind.
-fn said(c: &Compilation, of: &Diagnostic, text: &str) -> usize {
+fn said(c: &CompilationResult, of: &Diagnostic, text: &str) -> usize {
     let same = |d: &&Diagnostic| {
         (d.code, d.message.as_str(), c.files.text(d.span())) == (of.code, of.message.as_str(), text)
     };
     c.diagnostics.iter().filter(same).count()
 }
 
-fn errors(c: &Compilation) -> Vec<String> {
+fn errors(c: &CompilationResult) -> Vec<String> {
     c.diagnostics.iter().filter(|d| d.is_error()).map(|d| format!("{} {}", d.code, d.message)).collect()
 }
 
 /// Errors that were not there before.
-fn new_errors(before: &Compilation, after: &Compilation) -> Vec<String> {
+fn new_errors(before: &CompilationResult, after: &CompilationResult) -> Vec<String> {
     let mut old = errors(before);
     let is_new = |e: &String| match old.iter().position(|o| o == e) {
         Some(at) => {
@@ -38,7 +38,7 @@ fn new_errors(before: &Compilation, after: &Compilation) -> Vec<String> {
 }
 
 /// What is wrong with the certain fixes of a text, and how many there are.
-pub fn faults(text: &str, compile: &dyn Fn(&str) -> Compilation) -> (Vec<String>, usize) {
+pub fn faults(text: &str, compile: &dyn Fn(&str) -> CompilationResult) -> (Vec<String>, usize) {
     let before = compile(text);
     let (mut faults, mut tried) = (Vec::new(), 0);
     for d in &before.diagnostics {

@@ -3,7 +3,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use hrdsl_bdi::{RunStatus, Society};
+use hrdsl_bdi::{AgentSociety, RunStatus};
 use hrdsl_ir::Program;
 
 #[allow(dead_code, reason = "what tests alone use")]
@@ -14,8 +14,8 @@ fn main() {
     divan::main();
 }
 
-fn run(program: &Program) -> Society<'_> {
-    let mut society = Society::new(program, &programs::all(program), 0);
+fn run(program: &Program) -> AgentSociety<'_> {
+    let mut society = AgentSociety::new(program, &programs::all(program), 0);
     society.set_cycle_limit(u64::MAX);
     society.run(0, &mut Vec::new());
     assert_eq!(society.status(), RunStatus::Idle);

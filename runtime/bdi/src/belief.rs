@@ -9,10 +9,10 @@ use rustc_hash::FxHashMap;
 use smallvec::{SmallVec, smallvec};
 
 /// Ground arguments.
-pub(crate) type Ground = SmallVec<[Value; 4]>;
+pub(crate) type GroundArguments = SmallVec<[Value; 4]>;
 
 /// What is said about a fact.
-pub type Annotations = SmallVec<[(BeliefAnnotation, Value); 1]>;
+pub type FactAnnotations = SmallVec<[(BeliefAnnotation, Value); 1]>;
 
 /// From this many rows on, those with a given first argument are found through a table.
 const INDEXED: usize = 32;
@@ -27,7 +27,7 @@ pub(crate) struct FactTable {
     held: usize,
     values: Vec<Value>,
     /// By row; a dead one has none.
-    annotations: Vec<Annotations>,
+    annotations: Vec<FactAnnotations>,
     /// The rows before this one are dead.
     start: usize,
     /// Rows by [`hash`] of the first argument, upwards, dead ones too; made when there are many.
@@ -48,11 +48,11 @@ fn hash(value: Value) -> u64 {
 }
 
 /// The annotations without those that are written again.
-fn distinct(all: Annotations) -> Annotations {
+fn distinct(all: FactAnnotations) -> FactAnnotations {
     if all.len() < 2 {
         return all;
     }
-    let mut each = Annotations::new();
+    let mut each = FactAnnotations::new();
     for (what, value) in all {
         if !each.iter().any(|(w, v)| *w == what && same(*v, value)) {
             each.push((what, value));
@@ -69,7 +69,7 @@ pub(crate) enum FactWithdrawal {
     /// The fact has other sources.
     Source,
     /// It was the last, and the fact left, with these annotations.
-    Fact(Annotations),
+    Fact(FactAnnotations),
 }
 
 /// Goes through live rows, upwards.
@@ -86,7 +86,7 @@ impl FactTable {
         &self.values[index * self.arity..(index + 1) * self.arity]
     }
 
-    pub fn annotations(&self, index: usize) -> &Annotations {
+    pub fn annotations(&self, index: usize) -> &FactAnnotations {
         &self.annotations[index]
     }
 
@@ -150,7 +150,7 @@ impl FactTable {
     }
 
     /// Adds the fact as the youngest, or its annotations to the fact that is held; gives the annotations that are new.
-    pub fn insert(&mut self, fact: &[Value], annotations: Annotations) -> Annotations {
+    pub fn insert(&mut self, fact: &[Value], annotations: FactAnnotations) -> FactAnnotations {
         let Some(row) = self.position(fact) else {
             let annotations = distinct(annotations);
             if self.annotations.len() > 2 * self.live + INDEXED {
@@ -169,7 +169,7 @@ impl FactTable {
             return annotations;
         };
         let held = &mut self.annotations[row];
-        let mut new = Annotations::new();
+        let mut new = FactAnnotations::new();
         for (what, value) in annotations {
             if !held.iter().any(|(w, v)| *w == what && same(*v, value)) {
                 held.push((what, value));
@@ -199,7 +199,7 @@ impl FactTable {
     }
 
     /// Takes the fact out; gives the annotations that it had.
-    pub fn remove(&mut self, row: usize) -> Annotations {
+    pub fn remove(&mut self, row: usize) -> FactAnnotations {
         let had = std::mem::take(&mut self.annotations[row]);
         self.live -= 1;
         self.held -= had.len();
@@ -262,12 +262,17 @@ impl BeliefBase {
     }
 
     /// See [`FactTable::insert`].
-    pub fn insert(&mut self, belief: BeliefId, fact: &[Value], annotations: Annotations) -> Annotations {
+    pub fn insert(
+        &mut self,
+        belief: BeliefId,
+        fact: &[Value],
+        annotations: FactAnnotations,
+    ) -> FactAnnotations {
         self.change(belief, |rows| rows.insert(fact, annotations))
     }
 
     /// See [`FactTable::remove`].
-    pub fn remove(&mut self, belief: BeliefId, row: usize) -> Annotations {
+    pub fn remove(&mut self, belief: BeliefId, row: usize) -> FactAnnotations {
         self.change(belief, |rows| rows.remove(row))
     }
 
@@ -317,17 +322,17 @@ pub(crate) fn picked(mut choice_no: usize, held: usize, terms: usize) -> SmallVe
 }
 
 /// `[source(self)]`
-pub(crate) fn own() -> Annotations {
+pub(crate) fn own() -> FactAnnotations {
     from(Value::Symbol(source_self()))
 }
 
 /// `[source(S)]`
-pub(crate) fn from(source: Value) -> Annotations {
+pub(crate) fn from(source: Value) -> FactAnnotations {
     smallvec![(BeliefAnnotation::Source, source)]
 }
 
 /// With `source(self)`, if no source is among them.
-pub(crate) fn sourced(mut annotations: Annotations) -> Annotations {
+pub(crate) fn sourced(mut annotations: FactAnnotations) -> FactAnnotations {
     if !annotations.iter().any(|(what, _)| *what == BeliefAnnotation::Source) {
         annotations.push((BeliefAnnotation::Source, Value::Symbol(source_self())));
     }
@@ -336,7 +341,7 @@ pub(crate) fn sourced(mut annotations: Annotations) -> Annotations {
 
 /// The arguments as the parameters' types have them, an integer made a float where one is due; `None` if their number,
 /// a type or a range is wrong.
-pub(crate) fn typed(params: &[Parameter], mut args: Ground) -> Option<Ground> {
+pub(crate) fn typed(params: &[Parameter], mut args: GroundArguments) -> Option<GroundArguments> {
     if params.len() != args.len() {
         return None;
     }
@@ -374,7 +379,7 @@ mod tests {
         rows.iter().map(|r| rows.row(r).iter().filter_map(|v| v.as_int()).collect()).collect()
     }
 
-    fn told(by: &str) -> Annotations {
+    fn told(by: &str) -> FactAnnotations {
         from(Value::Symbol(Symbol::intern(by)))
     }
 
@@ -417,17 +422,17 @@ mod tests {
             Parameter { name: "a".into(), ty: Type::Float(Unit::Metre) },
             Parameter { name: "b".into(), ty: Type::Int { lo: 0, hi: 4 } },
         ];
-        let args = |a, b| Ground::from_slice(&[a, b]);
+        let args = |a, b| GroundArguments::from_slice(&[a, b]);
         assert_eq!(
             typed(&params, args(Value::Int(2), Value::Int(4))),
             Some(args(Value::Float(2.0), Value::Int(4)))
         );
         assert_eq!(typed(&params, args(Value::Int(2), Value::Int(5))), None);
         assert_eq!(typed(&params, args(Value::Bool(true), Value::Int(1))), None);
-        assert_eq!(typed(&params, Ground::from_slice(&[Value::Int(1)])), None);
+        assert_eq!(typed(&params, GroundArguments::from_slice(&[Value::Int(1)])), None);
         let hand = Type::Enum(Enumeration::intern("Hand", &["left", "right"]));
         let params = [Parameter { name: "hand".into(), ty: hand }];
-        let arg = |name| Ground::from_slice(&[Value::Symbol(Symbol::intern(name))]);
+        let arg = |name| GroundArguments::from_slice(&[Value::Symbol(Symbol::intern(name))]);
         assert_eq!(typed(&params, arg("left")), Some(arg("left")));
         assert_eq!(typed(&params, arg("middle")), None);
     }

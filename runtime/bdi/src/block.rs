@@ -10,7 +10,7 @@ use crate::{
     intention::{IntentionState, LoopFrame},
     log::{FailureCause, StepOutcome},
     step::{StepFlow, StepLocation},
-    unify::Slot,
+    unify::VariableSlot,
 };
 
 impl<'p> AgentMachine<'p> {
@@ -44,7 +44,7 @@ impl<'p> AgentMachine<'p> {
         holds
     }
 
-    pub fn enter_loop(&mut self, place: u32, variables: &[u16], answers: Vec<Slot>) {
+    pub fn enter_loop(&mut self, place: u32, variables: &[u16], answers: Vec<VariableSlot>) {
         let intention = self.mind.pool.at(place);
         let open = variables.iter().copied().filter(|v| intention.vars()[usize::from(*v)].is_none());
         let open: SmallVec<[u16; 4]> = open.collect();
@@ -103,7 +103,7 @@ impl<'p> AgentMachine<'p> {
         &mut self,
         condition: &'p PlanContext,
         open: &[u16],
-    ) -> Result<(usize, Vec<Slot>), FailureCause> {
+    ) -> Result<(usize, Vec<VariableSlot>), FailureCause> {
         let mut answers = Vec::new();
         let mut count = 0;
         let mut found = self.solver.solve(&self.mind, &mut self.dice, condition)?;

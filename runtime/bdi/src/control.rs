@@ -9,7 +9,7 @@ use crate::{
     log::{FailureCause, LogItem},
     mind::agree,
     step::StepFlow,
-    unify::{Slot, known},
+    unify::{VariableSlot, known},
 };
 
 impl AgentMachine<'_> {
@@ -25,7 +25,7 @@ impl AgentMachine<'_> {
             Some((goal, args)) => {
                 let slots = self.mind.pool.see(place).vars();
                 crate::unify::well_bound(args, slots)?;
-                let args: Vec<Slot> = args.iter().map(|t| known(t, slots)).collect();
+                let args: Vec<VariableSlot> = args.iter().map(|t| known(t, slots)).collect();
                 self.acting = Some(place);
                 self.control_goal(what, *goal, &args);
                 self.acting = None;
@@ -68,7 +68,7 @@ impl AgentMachine<'_> {
         }
     }
 
-    pub fn control_goal(&mut self, what: ControlAct, goal: GoalId, args: &[Slot]) {
+    pub fn control_goal(&mut self, what: ControlAct, goal: GoalId, args: &[VariableSlot]) {
         let is_this = |e: &QueuedEvent| e.on == TriggerOn::GoalAdded(goal) && agree(&e.args, args);
         match what {
             ControlAct::DropEvent => return self.drop_events(&is_this),

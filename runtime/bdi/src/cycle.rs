@@ -12,10 +12,10 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    belief::{Annotations, FactWithdrawal, Ground, from, sourced, typed},
+    belief::{FactAnnotations, FactWithdrawal, GroundArguments, from, sourced, typed},
     check::{self, MalformedAgentError},
     dice::AgentRng,
-    event::{ActionToken, AgentAction, Args, IncomingItem, OutgoingMail, QueuedEvent, SpeechAct},
+    event::{ActionToken, AgentAction, EventArguments, IncomingItem, OutgoingMail, QueuedEvent, SpeechAct},
     holding::HoldingKind,
     intention::{IntentionState, IntentionTimer, NO_PLAN},
     log::{FailureCause, LogDetail, LogEntry, LogItem, ReasoningLog},
@@ -134,9 +134,9 @@ impl<'p> AgentMachine<'p> {
         let Some(agent) = self.mind.agent else { return };
         for fact in agent.initial_beliefs.iter().chain(chosen) {
             let declared = agent.beliefs.get(usize::from(fact.belief.0));
-            match declared.and_then(|b| typed(&b.params, Ground::from_slice(&fact.args))) {
+            match declared.and_then(|b| typed(&b.params, GroundArguments::from_slice(&fact.args))) {
                 Some(args) => {
-                    let annotations = sourced(Annotations::from_slice(&fact.annotations));
+                    let annotations = sourced(FactAnnotations::from_slice(&fact.annotations));
                     self.believe(fact.belief, &args, annotations);
                 }
                 None => self.enter(0, LogItem::Refused { belief: fact.belief, args: fact.args.clone() }),
@@ -151,7 +151,7 @@ impl<'p> AgentMachine<'p> {
     // ── From outside ──
 
     pub fn perceive(&mut self, event: EventId, args: &[Value]) {
-        self.inbox.push_back(IncomingItem::Perceived { event, args: Ground::from_slice(args) });
+        self.inbox.push_back(IncomingItem::Perceived { event, args: GroundArguments::from_slice(args) });
     }
 
     pub fn receive(&mut self, from: u16, speech: SpeechAct) {
@@ -420,15 +420,15 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// Posts an event that matters only if a plan is relevant to it.
-    pub fn announce(&mut self, on: TriggerOn, args: &[Value], annotations: Option<Annotations>) {
+    pub fn announce(&mut self, on: TriggerOn, args: &[Value], annotations: Option<FactAnnotations>) {
         if !self.mind.library.relevant(on).is_empty() {
-            let args: Args = args.iter().map(|v| Some(*v)).collect();
+            let args: EventArguments = args.iter().map(|v| Some(*v)).collect();
             self.post(QueuedEvent::new(on, args).annotated(annotations.unwrap_or_default()));
         }
     }
 
     /// Adds a belief.
-    pub fn believe(&mut self, belief: BeliefId, args: &[Value], annotations: Annotations) {
+    pub fn believe(&mut self, belief: BeliefId, args: &[Value], annotations: FactAnnotations) {
         let new = self.mind.beliefs.insert(belief, args, annotations);
         if new.is_empty() {
             return;
@@ -439,19 +439,19 @@ impl<'p> AgentMachine<'p> {
 
     /// A belief leaves the base.
     pub fn remove(&mut self, belief: BeliefId, row: usize) {
-        let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
+        let fact = GroundArguments::from_slice(self.mind.beliefs.of(belief).row(row));
         let had = self.mind.beliefs.remove(belief, row);
         self.left(belief, &fact, had);
     }
 
-    fn left(&mut self, belief: BeliefId, args: &[Value], had: Annotations) {
+    fn left(&mut self, belief: BeliefId, args: &[Value], had: FactAnnotations) {
         self.entry(0, || LogItem::Left { belief, args: args.to_vec() });
         self.announce(TriggerOn::BeliefRemoved(belief), args, Some(had));
     }
 
     /// Takes a source away from a fact, if it has it.
     pub fn take(&mut self, belief: BeliefId, row: usize, source: Value) {
-        let fact = Ground::from_slice(self.mind.beliefs.of(belief).row(row));
+        let fact = GroundArguments::from_slice(self.mind.beliefs.of(belief).row(row));
         match self.mind.beliefs.withdraw(belief, row, source) {
             FactWithdrawal::Nothing => {}
             FactWithdrawal::Source => {

@@ -7,15 +7,15 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    belief::Annotations,
+    belief::FactAnnotations,
     code::PlanOp,
     cycle::AgentMachine,
-    event::Args,
+    event::EventArguments,
     log::{ApplicabilityVerdict, FailureCause, IntentionFailure, LogEntry, LogItem, StepOutcome},
     mind::MentalState,
     query::BeliefQueryError,
     show::{FormulaPrinter, call, performative, slot},
-    unify::{Slot, Trail, unify_all},
+    unify::{BindingTrail, VariableSlot, unify_all},
 };
 
 impl<'p> AgentMachine<'p> {
@@ -90,7 +90,7 @@ impl LogNames<'_, '_> {
                 format!("hears {verb} {what} from {}", self.peer(*from))
             }
             LogItem::Answered { from, content, all, answers } => {
-                let one = |a: &Args| call(self.content(*content), a.iter().map(slot));
+                let one = |a: &EventArguments| call(self.content(*content), a.iter().map(slot));
                 let each: Option<Vec<String>> = answers.as_ref().map(|a| a.iter().map(one).collect());
                 let what = match each {
                     None => "nothing".to_owned(),
@@ -126,7 +126,7 @@ impl LogNames<'_, '_> {
         self.mind.me.peers.agents.get(usize::from(place)).map_or("?", |(name, _)| name.name())
     }
 
-    pub(crate) fn on(&self, on: TriggerOn, args: &Args) -> String {
+    pub(crate) fn on(&self, on: TriggerOn, args: &EventArguments) -> String {
         let (sign, name) = match on {
             TriggerOn::BeliefAdded(b) => ("+", self.belief(b)),
             TriggerOn::BeliefRemoved(b) => ("-", self.belief(b)),
@@ -142,14 +142,14 @@ impl LogNames<'_, '_> {
     }
 
     /// ` (N = 0, M = 2)`: the variables that have a value.
-    fn bound(&self, plan: u16, vars: &[Slot]) -> String {
+    fn bound(&self, plan: u16, vars: &[VariableSlot]) -> String {
         let Some(plan) = self.agent.plans.get(usize::from(plan)) else { return String::new() };
         let bound = plan.vars.iter().zip(vars).filter_map(|(name, v)| Some(format!("{name} = {}", (*v)?)));
         let bound: Vec<String> = bound.collect();
         if bound.is_empty() { String::new() } else { format!(" ({})", bound.join(", ")) }
     }
 
-    fn annotations(&self, belief: BeliefId, all: &Annotations) -> String {
+    fn annotations(&self, belief: BeliefId, all: &FactAnnotations) -> String {
         let declared = self.agent.beliefs.get(usize::from(belief.0)).map_or(&[][..], |b| &b.annotations);
         let one = |(what, value): &(BeliefAnnotation, Value)| match what {
             BeliefAnnotation::Source => format!("source({value})"),
@@ -162,16 +162,21 @@ impl LogNames<'_, '_> {
     }
 
     /// A fact with its annotations.
-    pub(crate) fn fact(&self, belief: BeliefId, args: &Args, annotations: &Annotations) -> String {
+    pub(crate) fn fact(
+        &self,
+        belief: BeliefId,
+        args: &EventArguments,
+        annotations: &FactAnnotations,
+    ) -> String {
         call(self.belief(belief), args.iter().map(slot)) + &self.annotations(belief, annotations)
     }
 
     /// The step on a line of a plan, with the variables as they are.
-    pub(crate) fn line(&self, plan: u16, line: u16, vars: &[Slot]) -> String {
+    pub(crate) fn line(&self, plan: u16, line: u16, vars: &[VariableSlot]) -> String {
         self.step(plan, line, vars, StepOutcome::Done)
     }
 
-    fn verdict(&self, plan: u16, args: &Args, verdict: ApplicabilityVerdict) -> String {
+    fn verdict(&self, plan: u16, args: &EventArguments, verdict: ApplicabilityVerdict) -> String {
         let label = self.plan(plan);
         match verdict {
             ApplicabilityVerdict::Unlike => format!("{label} is for other arguments"),
@@ -185,8 +190,13 @@ impl LogNames<'_, '_> {
                 let context = parts.unwrap_or(&plan.context);
                 // What the event says is known; what the parts before found is not, and need not be the same each time.
                 let mut slots = vec![None; plan.vars.len()];
-                let likes =
-                    unify_all(&plan.trigger.args, args.iter().copied(), 0, &mut slots, &mut Trail::default());
+                let likes = unify_all(
+                    &plan.trigger.args,
+                    args.iter().copied(),
+                    0,
+                    &mut slots,
+                    &mut BindingTrail::default(),
+                );
                 if !matches!(likes, Ok(true)) {
                     slots.fill(None);
                 }
@@ -229,7 +239,7 @@ impl LogNames<'_, '_> {
         format!("`{}` has no value", name.map_or("?", |n| n))
     }
 
-    fn step(&self, plan: u16, line: u16, vars: &[Slot], outcome: StepOutcome) -> String {
+    fn step(&self, plan: u16, line: u16, vars: &[VariableSlot], outcome: StepOutcome) -> String {
         let code = self.mind.library.code(plan);
         let names = &self.agent.plans[usize::from(plan)].vars;
         let show = FormulaPrinter { program: self.program, agent: self.agent, names, slots: vars };

@@ -6,10 +6,10 @@ use hrdsl_ir::{
 };
 use smallvec::SmallVec;
 
-use crate::belief::{Annotations, Ground};
+use crate::belief::{FactAnnotations, GroundArguments};
 
 /// The arguments of an event; `None` is an argument that a test goal leaves open.
-pub type Args = SmallVec<[Option<Value>; 2]>;
+pub type EventArguments = SmallVec<[Option<Value>; 2]>;
 
 /// Names one action of one agent until it is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -46,24 +46,24 @@ pub(crate) struct QueuedEvent {
     pub of: Option<u32>,
     /// Of a goal: the other agent that asked for it.
     pub told: Option<Symbol>,
-    pub args: Args,
+    pub args: EventArguments,
     pub more: Option<Box<EventExtras>>,
 }
 
 /// What few events have.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EventExtras {
-    annotations: Annotations,
+    annotations: FactAnnotations,
     reply: Option<ReplyAddress>,
 }
 
 impl QueuedEvent {
-    pub fn new(on: TriggerOn, args: Args) -> Self {
+    pub fn new(on: TriggerOn, args: EventArguments) -> Self {
         Self { on, by: None, of: None, told: None, args, more: None }
     }
 
     #[must_use]
-    pub fn annotated(mut self, annotations: Annotations) -> Self {
+    pub fn annotated(mut self, annotations: FactAnnotations) -> Self {
         if !annotations.is_empty() {
             self.more.get_or_insert_default().annotations = annotations;
         }
@@ -78,7 +78,7 @@ impl QueuedEvent {
     }
 
     /// Of a belief that was added those that are new, of one that left those it had.
-    pub fn annotations(&self) -> Option<&Annotations> {
+    pub fn annotations(&self) -> Option<&FactAnnotations> {
         self.more.as_ref().map(|m| &m.annotations).filter(|a| !a.is_empty())
     }
 
@@ -100,11 +100,11 @@ pub(crate) struct ReplyAddress {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SpeechAct {
     /// Any performative that needs no answer waited for.
-    Say { performative: Performative, content: ContentId, args: Args },
+    Say { performative: Performative, content: ContentId, args: EventArguments },
     /// `.ask`, `.ask_all`: the asker waits for the answer to its question of this number.
-    Ask { question: u64, content: ContentId, args: Args, all: bool },
+    Ask { question: u64, content: ContentId, args: EventArguments, all: bool },
     /// The answers to a question: one, or of `.ask_all` any number; `None` if there is no answer.
-    Answer { question: u64, content: ContentId, all: bool, answers: Option<Vec<Args>> },
+    Answer { question: u64, content: ContentId, all: bool, answers: Option<Vec<EventArguments>> },
 }
 
 /// A message on its way.
@@ -118,6 +118,6 @@ pub(crate) struct OutgoingMail {
 /// What waits to be taken in.
 #[derive(Clone, Debug)]
 pub(crate) enum IncomingItem {
-    Perceived { event: EventId, args: Ground },
+    Perceived { event: EventId, args: GroundArguments },
     Heard { from: u16, speech: SpeechAct },
 }

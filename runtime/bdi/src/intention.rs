@@ -3,7 +3,7 @@
 use hrdsl_ir::{EventPattern, Nanos, Symbol};
 use smallvec::SmallVec;
 
-use crate::{event::ReplyAddress, unify::Slot};
+use crate::{event::ReplyAddress, unify::VariableSlot};
 
 /// A plan that is being executed. Its trigger's arguments and its variables lie next to each other on the
 /// intention's stack of slots.
@@ -76,7 +76,7 @@ pub(crate) struct LoopFrame {
     /// The variables that are open again each time.
     pub open: SmallVec<[u16; 4]>,
     /// Of `for`: their values, answer by answer, and how many answers were used.
-    pub answers: Vec<Slot>,
+    pub answers: Vec<VariableSlot>,
     pub used: usize,
 }
 
@@ -89,7 +89,7 @@ pub(crate) struct Intention<'p> {
     /// How many of its plans are atomic.
     pub atomic: u32,
     pub frames: Vec<PlanFrame>,
-    pub slots: Vec<Slot>,
+    pub slots: Vec<VariableSlot>,
     pub loops: Vec<LoopFrame>,
     pub deadlines: Vec<GoalDeadline>,
     /// Of a branch: the intention that forked.
@@ -102,7 +102,7 @@ pub(crate) struct Intention<'p> {
 impl Intention<'_> {
     /// Puts a plan on top.
     #[inline]
-    fn push(&mut self, plan: u16, next: u16, args: &[Slot], vars: &[Slot]) {
+    fn push(&mut self, plan: u16, next: u16, args: &[VariableSlot], vars: &[VariableSlot]) {
         let start = self.slots.len() as u32;
         let vars_at = start + args.len() as u32;
         let below = self.frames.last();
@@ -146,17 +146,17 @@ impl Intention<'_> {
     }
 
     /// The arguments of a frame's trigger.
-    pub fn args(&self, frame: PlanFrame) -> &[Slot] {
+    pub fn args(&self, frame: PlanFrame) -> &[VariableSlot] {
         &self.slots[frame.args as usize..frame.vars as usize]
     }
 
     /// The top plan's variables.
-    pub fn vars(&self) -> &[Slot] {
+    pub fn vars(&self) -> &[VariableSlot] {
         let start = self.frames.last().map_or(self.slots.len(), |f| f.vars as usize);
         &self.slots[start..]
     }
 
-    pub fn vars_mut(&mut self) -> &mut [Slot] {
+    pub fn vars_mut(&mut self) -> &mut [VariableSlot] {
         let start = self.frames.last().map_or(self.slots.len(), |f| f.vars as usize);
         &mut self.slots[start..]
     }
@@ -223,7 +223,7 @@ impl<'p> IntentionPool<'p> {
 
     /// Puts a plan on top of an intention.
     #[inline]
-    pub fn push(&mut self, place: u32, plan: u16, next: u16, args: &[Slot], vars: &[Slot]) {
+    pub fn push(&mut self, place: u32, plan: u16, next: u16, args: &[VariableSlot], vars: &[VariableSlot]) {
         self.plans += 1;
         self.values += args.len() + vars.len();
         self.at(place).push(plan, next, args, vars);

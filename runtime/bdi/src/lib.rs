@@ -8,10 +8,10 @@
 //! # Steps
 //!
 //! 1. [`choose::factors`] and [`choose::explore`] choose the sets of beliefs that agents start with;
-//! 2. [`Society::new`] makes the running agents from their programs and the chosen beliefs;
-//! 3. [`Society::perceive`] and [`Society::stimulus_done`] tell them what happened;
-//! 4. [`Society::run`] lets them reason, in rounds, until all wait, and says what they do;
-//! 5. [`Society::log`] says why, [`Society::measured`] what that took of the programs, and [`coverage`] what it leaves out.
+//! 2. [`AgentSociety::new`] makes the running agents from their programs and the chosen beliefs;
+//! 3. [`AgentSociety::perceive`] and [`AgentSociety::stimulus_done`] tell them what happened;
+//! 4. [`AgentSociety::run`] lets them reason, in rounds, until all wait, and says what they do;
+//! 5. [`AgentSociety::log`] says why, [`AgentSociety::measured`] what that took of the programs, and [`coverage`] what it leaves out.
 //!
 //! # The engine, by the way of an event
 //!
@@ -51,10 +51,10 @@ mod state;
 mod step;
 mod unify;
 
-pub use belief::Annotations;
+pub use belief::FactAnnotations;
 pub use check::MalformedAgentError;
 pub use cycle::{CYCLE_LIMIT, RunStatus};
-pub use event::{ActionToken, AgentAction, Args};
+pub use event::{ActionToken, AgentAction, EventArguments};
 pub use holding::HoldingKind;
 pub use log::{
     ApplicabilityVerdict, FailureCause, IntentionFailure, LogDetail, LogEntry, LogItem, PlanIndex,
@@ -62,5 +62,5 @@ pub use log::{
 };
 pub use measure::AgentCounts;
 pub use query::BeliefQueryError;
-pub use society::Society;
+pub use society::AgentSociety;
 pub use standing::IntentionSummary;

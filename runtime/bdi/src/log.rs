@@ -8,7 +8,10 @@ use hrdsl_ir::{
     expr::EvalError,
 };
 
-use crate::{belief::Annotations, event::Args, holding::HoldingKind, query::BeliefQueryError, unify::Slot};
+use crate::{
+    belief::FactAnnotations, event::EventArguments, holding::HoldingKind, query::BeliefQueryError,
+    unify::VariableSlot,
+};
 
 /// Index into the agent's plan library.
 pub type PlanIndex = u16;
@@ -44,22 +47,22 @@ pub enum LogItem {
     /// A plan was selected; `fresh`: it began an intention.
     Selected {
         on: TriggerOn,
-        args: Args,
+        args: EventArguments,
         plan: PlanIndex,
-        vars: Vec<Slot>,
+        vars: Vec<VariableSlot>,
         fresh: bool,
     },
     /// A plan was tried.
     Tried {
         on: TriggerOn,
-        args: Args,
+        args: EventArguments,
         plan: PlanIndex,
         verdict: ApplicabilityVerdict,
     },
     /// An event for which no plan was selected.
     Unhandled {
         on: TriggerOn,
-        args: Args,
+        args: EventArguments,
         origin: Span,
     },
     /// A plan could not be tried.
@@ -77,7 +80,7 @@ pub enum LogItem {
     Step {
         plan: PlanIndex,
         line: u16,
-        vars: Vec<Slot>,
+        vars: Vec<VariableSlot>,
         outcome: StepOutcome,
     },
     Failed(IntentionFailure),
@@ -89,7 +92,7 @@ pub enum LogItem {
     Added {
         belief: BeliefId,
         args: Vec<Value>,
-        annotations: Annotations,
+        annotations: FactAnnotations,
     },
     Left {
         belief: BeliefId,
@@ -105,7 +108,7 @@ pub enum LogItem {
     StillHeld {
         belief: BeliefId,
         args: Vec<Value>,
-        meant: Slot,
+        meant: VariableSlot,
         from: Vec<Value>,
     },
     /// A fact that does not fit its declaration was left out.
@@ -121,20 +124,20 @@ pub enum LogItem {
         from: u16,
         performative: Performative,
         content: ContentId,
-        args: Args,
+        args: EventArguments,
     },
     /// A question of another agent that waits for the answer.
     Asked {
         from: u16,
         content: ContentId,
-        args: Args,
+        args: EventArguments,
         all: bool,
     },
     Answered {
         from: u16,
         content: ContentId,
         all: bool,
-        answers: Option<Vec<Args>>,
+        answers: Option<Vec<EventArguments>>,
     },
     Printed(String),
     /// At one instant the state repeats.
@@ -202,7 +205,7 @@ pub enum ApplicabilityVerdict {
 pub struct IntentionFailure {
     /// What the plan that was being executed was selected for.
     pub on: TriggerOn,
-    pub args: Args,
+    pub args: EventArguments,
     pub plan: PlanIndex,
     pub cause: FailureCause,
     /// The step that failed, or the plan.
@@ -287,7 +290,7 @@ pub(crate) struct ReasoningLog {
 }
 
 /// The sources among annotations.
-pub(crate) fn sources(annotations: &Annotations) -> Vec<Value> {
+pub(crate) fn sources(annotations: &FactAnnotations) -> Vec<Value> {
     let sources = annotations.iter().filter(|(what, _)| *what == BeliefAnnotation::Source);
     sources.map(|(_, value)| *value).collect()
 }

@@ -13,16 +13,16 @@ use hrdsl_ir::{
 use smallvec::{SmallVec, smallvec};
 
 use crate::{
-    belief::{Ground, from as told_by, typed},
+    belief::{GroundArguments, from as told_by, typed},
     code::PlanOp,
     cycle::AgentMachine,
-    event::{Args, OutgoingMail, QueuedEvent, ReplyAddress, SpeechAct},
+    event::{EventArguments, OutgoingMail, QueuedEvent, ReplyAddress, SpeechAct},
     intention::IntentionState,
     log::{FailureCause, LogDetail, LogItem, sources},
     mind::agree,
     query::{BeliefQueryError, QuerySolver},
     step::{StepFlow, StepLocation},
-    unify::{Slot, Trail, eval, known, unify, unify_all},
+    unify::{BindingTrail, VariableSlot, eval, known, unify, unify_all},
 };
 
 /// Whether the performative is about a goal.
@@ -117,10 +117,10 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// The values that are known; all must be, if it is `closed`.
-    fn content(&self, place: u32, terms: &[AgentTerm], closed: bool) -> Result<Args, FailureCause> {
+    fn content(&self, place: u32, terms: &[AgentTerm], closed: bool) -> Result<EventArguments, FailureCause> {
         let slots = self.mind.pool.see(place).vars();
         crate::unify::well_bound(terms, slots)?;
-        let mut args = Args::new();
+        let mut args = EventArguments::new();
         for term in terms {
             let value = if closed && let AgentTerm::Expr(expr) = term {
                 Some(eval(expr, slots)?)
@@ -137,7 +137,12 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// The values, as the receiver declares them.
-    fn fitting(&self, content: ContentId, to: u16, args: &Args) -> Result<Args, FailureCause> {
+    fn fitting(
+        &self,
+        content: ContentId,
+        to: u16,
+        args: &EventArguments,
+    ) -> Result<EventArguments, FailureCause> {
         let (_, id) = self.mind.me.peers.agents[usize::from(to)];
         let agent = &self.mind.program.agents[usize::from(id.0)];
         let params = match self.subject(content, to) {
@@ -146,7 +151,7 @@ impl<'p> AgentMachine<'p> {
             None => None,
         };
         let Some(params) = params else { return Ok(args.clone()) };
-        let ground: Ground = args.iter().copied().flatten().collect();
+        let ground: GroundArguments = args.iter().copied().flatten().collect();
         let typed = typed(params, ground).ok_or(FailureCause::OutOfRange)?;
         Ok(typed.into_iter().map(Some).collect())
     }
@@ -200,13 +205,13 @@ impl<'p> AgentMachine<'p> {
         }
     }
 
-    fn obey(&mut self, from: u16, performative: Performative, content: ContentId, args: Args) {
+    fn obey(&mut self, from: u16, performative: Performative, content: ContentId, args: EventArguments) {
         let me = from == self.mind.me.place;
         let name = Value::Symbol(if me { source_self() } else { self.name_of(from) });
         match performative {
             Performative::Tell => {
                 let Some(belief) = self.belief(content) else { return };
-                let ground: Ground = args.iter().copied().flatten().collect();
+                let ground: GroundArguments = args.iter().copied().flatten().collect();
                 match self.declared(belief, ground.clone()) {
                     Some(args) => self.believe(belief, &args, told_by(name)),
                     None => self.enter(0, LogItem::Refused { belief, args: ground.into_vec() }),
@@ -233,11 +238,11 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// The first fact that matches and has the source loses it.
-    fn untell(&mut self, belief: BeliefId, args: &Args, source: Value) {
+    fn untell(&mut self, belief: BeliefId, args: &EventArguments, source: Value) {
         let mut kept = None;
         for row in self.mind.beliefs.of(belief).iter().collect::<Vec<_>>() {
             let rows = self.mind.beliefs.of(belief);
-            let values: Vec<Slot> = rows.row(row).iter().map(|v| Some(*v)).collect();
+            let values: Vec<VariableSlot> = rows.row(row).iter().map(|v| Some(*v)).collect();
             if !agree(&values, args) {
                 continue;
             }
@@ -258,7 +263,7 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// Answers a question from what is believed; a single answer also by the plans for the test goal.
-    fn reply(&mut self, to: u16, content: ContentId, args: Args, question: Option<u64>, all: bool) {
+    fn reply(&mut self, to: u16, content: ContentId, args: EventArguments, question: Option<u64>, all: bool) {
         let reply = ReplyAddress { to, content, question };
         let Some(belief) = self.belief(content) else { return self.answer_nothing(reply) };
         let found = match self.answers_to(belief, &args, all) {
@@ -280,7 +285,7 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// Tells who asked, if the answer suits its belief.
-    fn tell_back(&mut self, reply: ReplyAddress, args: &Args) {
+    fn tell_back(&mut self, reply: ReplyAddress, args: &EventArguments) {
         let ReplyAddress { to, content, .. } = reply;
         if let (Some(MessageSubject::Belief(_)), Ok(args)) =
             (self.subject(content, to), self.fitting(content, to, args))
@@ -291,7 +296,7 @@ impl<'p> AgentMachine<'p> {
 
     /// The plan for a test goal that another agent asked for has this answer; what it left open, the belief base is
     /// asked.
-    pub fn answer(&mut self, reply: ReplyAddress, answer: &Args) -> Result<(), FailureCause> {
+    pub fn answer(&mut self, reply: ReplyAddress, answer: &EventArguments) -> Result<(), FailureCause> {
         let mut whole = answer.clone();
         if answer.iter().any(Option::is_none) {
             let belief = self.belief(reply.content).ok_or(FailureCause::NoAnswer)?;
@@ -312,9 +317,9 @@ impl<'p> AgentMachine<'p> {
     fn answers_to(
         &mut self,
         belief: BeliefId,
-        args: &Args,
+        args: &EventArguments,
         all: bool,
-    ) -> Result<Vec<Args>, BeliefQueryError> {
+    ) -> Result<Vec<EventArguments>, BeliefQueryError> {
         let terms = (0..args.len() as u16).map(AgentTerm::Var).collect();
         let literal = BeliefLiteral { belief, args: terms, annotations: Vec::new(), origin: Span::default() };
         let mut solver = QuerySolver::default();
@@ -322,14 +327,14 @@ impl<'p> AgentMachine<'p> {
         let mut found = Vec::new();
         let mut more = solver.answer(&self.mind, &mut self.dice, &literal)?;
         while more {
-            found.push(Args::from_slice(&solver.slots[..args.len()]));
+            found.push(EventArguments::from_slice(&solver.slots[..args.len()]));
             more = all && solver.again(&self.mind, &mut self.dice)?;
         }
         Ok(found)
     }
 
     /// The answer to a question comes.
-    fn learn(&mut self, question: u64, answers: Option<&[Args]>) {
+    fn learn(&mut self, question: u64, answers: Option<&[EventArguments]>) {
         let asks = |state: IntentionState| matches!(state, IntentionState::Asking { question: q, .. } if q == question);
         let Some(place) = self.mind.pool.iter().find(|(_, i)| asks(i.state)).map(|(p, _)| p) else { return };
         self.detach(place);
@@ -339,7 +344,7 @@ impl<'p> AgentMachine<'p> {
         }
     }
 
-    fn take_answers(&mut self, place: u32, answers: &[Args]) -> Result<(), FailureCause> {
+    fn take_answers(&mut self, place: u32, answers: &[EventArguments]) -> Result<(), FailureCause> {
         let Some(top) = self.mind.pool.see(place).frames.last().copied() else { return Ok(()) };
         let line = self.mind.library.code(top.plan).get(usize::from(top.at));
         let Some(PlanOp::Plain(step)) = line.map(|l| &l.op) else { return Ok(()) };
@@ -347,18 +352,18 @@ impl<'p> AgentMachine<'p> {
         let fits = if let PlanStepKind::Ask { args, .. } = step {
             let answer = answers.first().ok_or(FailureCause::NoAnswer)?;
             let vars = self.mind.pool.at(place).vars_mut();
-            unify_all(args, answer.iter().copied(), 0, vars, &mut Trail::new())?
+            unify_all(args, answer.iter().copied(), 0, vars, &mut BindingTrail::new())?
         } else if let PlanStepKind::AskAll { template, args, out, .. } = step {
             let vars = self.mind.pool.see(place).vars();
             let mut all = Vec::new();
             for answer in answers {
                 let mut own = vars.to_vec();
-                if unify_all(args, answer.iter().copied(), 0, &mut own, &mut Trail::new())? {
+                if unify_all(args, answer.iter().copied(), 0, &mut own, &mut BindingTrail::new())? {
                     all.push(eval(template, &own)?);
                 }
             }
             let vars = self.mind.pool.at(place).vars_mut();
-            unify(out, Value::List(List::of(&all)), 0, vars, &mut Trail::new())?
+            unify(out, Value::List(List::of(&all)), 0, vars, &mut BindingTrail::new())?
         } else {
             // INVARIANT: only these two ask.
             true

@@ -14,7 +14,7 @@ use crate::{
     event::QueuedEvent,
     intention::{Intention, IntentionPool, PlanFrame},
     plan::PlanLibrary,
-    unify::Slot,
+    unify::VariableSlot,
 };
 
 /// The agents of a run.
@@ -79,8 +79,8 @@ pub(crate) struct MentalState<'p> {
 }
 
 /// Whether the arguments are these, as far as these are known.
-pub(crate) fn agree(args: &[Slot], wanted: &[Slot]) -> bool {
-    let agrees = |(a, w): (&Slot, &Slot)| match (a, w) {
+pub(crate) fn agree(args: &[VariableSlot], wanted: &[VariableSlot]) -> bool {
+    let agrees = |(a, w): (&VariableSlot, &VariableSlot)| match (a, w) {
         (Some(a), Some(w)) => same(*a, *w),
         (_, None) => true,
         (None, Some(_)) => false,
@@ -114,14 +114,14 @@ impl MentalState<'_> {
     }
 
     /// The lowest frame of the intention with such a goal.
-    pub fn frame_of(&self, intention: &Intention, goal: GoalId, args: &[Slot]) -> Option<usize> {
+    pub fn frame_of(&self, intention: &Intention, goal: GoalId, args: &[VariableSlot]) -> Option<usize> {
         let is_it = |f: &PlanFrame| self.is_of(f, goal) && agree(intention.args(*f), args);
         intention.frames.iter().position(is_it)
     }
 
     /// Calls `f` with the arguments of each such goal: by intention, in their order, from the lowest frame on; then, if it
     /// is desired, of those that wait for a plan.
-    pub fn each_had(&self, attitude: GoalAttitude, goal: GoalId, f: &mut dyn FnMut(&[Slot])) {
+    pub fn each_had(&self, attitude: GoalAttitude, goal: GoalId, f: &mut dyn FnMut(&[VariableSlot])) {
         for place in self.pool.in_order() {
             let intention = self.pool.see(place);
             if attitude == GoalAttitude::Suspended && !intention.suspended {

@@ -15,10 +15,10 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    belief::{Annotations, FactCursor, picked},
+    belief::{FactAnnotations, FactCursor, picked},
     dice::AgentRng,
     mind::MentalState,
-    unify::{Slot, Trail, eval, known, undo, unify, unify_all, well_bound},
+    unify::{BindingTrail, VariableSlot, eval, known, undo, unify, unify_all, well_bound},
 };
 
 /// Rules that may call each other.
@@ -121,13 +121,13 @@ struct ChoicePoint<'p> {
 #[derive(Debug, Default)]
 pub(crate) struct QuerySolver<'p> {
     /// Before a query: the variables of its formula. After it: the same, with what the answer binds, then those of rules.
-    pub slots: Vec<Slot>,
-    pub trail: Trail,
+    pub slots: Vec<VariableSlot>,
+    pub trail: BindingTrail,
     conts: Vec<(SolverContinuation<'p>, FormulaPosition)>,
     choices: Vec<ChoicePoint<'p>>,
     collected: Vec<Value>,
     /// The arguments of goals that are had.
-    had: Vec<Slot>,
+    had: Vec<VariableSlot>,
     steps: u64,
     /// The parts of the formula, if it is a conjunction, and the last of them that was begun.
     parts: &'p [PlanContext],
@@ -144,7 +144,7 @@ impl<'p> QuerySolver<'p> {
     }
 
     /// Begins with these variables.
-    pub fn with(&mut self, slots: &[Slot]) {
+    pub fn with(&mut self, slots: &[VariableSlot]) {
         self.slots.clear();
         self.slots.extend_from_slice(slots);
         self.trail.clear();
@@ -387,7 +387,7 @@ impl<'p> QuerySolver<'p> {
     fn annotated(
         &mut self,
         literal: &BeliefLiteral,
-        of: &Annotations,
+        of: &FactAnnotations,
         choice_no: usize,
         at: FormulaPosition,
     ) -> Result<bool, EvalError> {

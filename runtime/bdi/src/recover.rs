@@ -5,11 +5,11 @@ use hrdsl_ir::bdi::{BeliefLiteral, PlanStepKind, TriggerOn};
 use crate::{
     code::{PlanOp, settle},
     cycle::AgentMachine,
-    event::{Args, QueuedEvent, ReplyAddress, SpeechAct},
+    event::{EventArguments, QueuedEvent, ReplyAddress, SpeechAct},
     intention::{IntentionState, PlanFrame},
     log::{FailureCause, IntentionFailure, LogItem},
     step::answers,
-    unify::{Trail, known, unify_all},
+    unify::{BindingTrail, known, unify_all},
 };
 
 impl<'p> AgentMachine<'p> {
@@ -139,7 +139,7 @@ impl<'p> AgentMachine<'p> {
 
     /// Gives a test goal's answers to the query that asked, or to the agent. What the plan left open, the belief base is
     /// asked again.
-    fn give(&mut self, place: u32, answers: &Args) -> Result<(), FailureCause> {
+    fn give(&mut self, place: u32, answers: &EventArguments) -> Result<(), FailureCause> {
         let intention = self.mind.pool.see(place);
         let Some(asker) = intention.frames.last().copied() else {
             if let Some(reply) = intention.reply {
@@ -150,7 +150,7 @@ impl<'p> AgentMachine<'p> {
         };
         let Some(literal) = self.asked_by(asker) else { return Ok(()) };
         let vars = self.mind.pool.at(place).vars_mut();
-        if !unify_all(&literal.args, answers.iter().copied(), 0, vars, &mut Trail::new())? {
+        if !unify_all(&literal.args, answers.iter().copied(), 0, vars, &mut BindingTrail::new())? {
             return Err(FailureCause::NoAnswer);
         }
         let open =
@@ -225,7 +225,7 @@ impl<'p> AgentMachine<'p> {
         while let Some(top) = self.mind.pool.see(place).frames.last().copied() {
             let on = failed(self.mind.library.plan(top.plan).trigger.on).filter(|_| !top.branch);
             let selected = on.filter(|on| !self.mind.library.relevant(*on).is_empty()).and_then(|on| {
-                let args = Args::from_slice(self.mind.pool.see(place).args(top));
+                let args = EventArguments::from_slice(self.mind.pool.see(place).args(top));
                 let event = QueuedEvent { of: Some(place), told: top.told, ..QueuedEvent::new(on, args) };
                 self.select(&event, Some(place)).map(|plan| (plan, event))
             });
@@ -256,7 +256,7 @@ impl<'p> AgentMachine<'p> {
         let plan = self.mind.library.plan(top.plan);
         let origin =
             self.mind.library.code(top.plan).get(usize::from(top.at)).map_or(plan.origin, |l| l.origin);
-        let args = Args::from_slice(intention.args(top));
+        let args = EventArguments::from_slice(intention.args(top));
         IntentionFailure { on: plan.trigger.on, args, plan: top.plan, cause, origin }
     }
 

@@ -7,12 +7,12 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    belief::{Annotations, from, own, picked},
+    belief::{FactAnnotations, from, own, picked},
     cycle::AgentMachine,
     event::QueuedEvent,
     log::{ApplicabilityVerdict, LogDetail, LogItem},
     query::{BeliefQueryError, QuerySolver},
-    unify::{Slot, eval, unify, unify_all, well_bound},
+    unify::{VariableSlot, eval, unify, unify_all, well_bound},
 };
 
 impl<'p> AgentMachine<'p> {
@@ -117,13 +117,13 @@ impl<'p> AgentMachine<'p> {
     /// Each way in which the trigger's annotations match the event's is tried, the last changing fastest.
     fn attempt_annotated(&mut self, plan: &'p Plan, event: &QueuedEvent) -> ApplicabilityVerdict {
         let is_goal = matches!(event.on, TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_));
-        let held: Annotations = match event.annotations() {
+        let held: FactAnnotations = match event.annotations() {
             Some(held) => held.clone(),
             None if is_goal => event.told.map_or_else(own, |who| from(Value::Symbol(who))),
-            None => Annotations::new(),
+            None => FactAnnotations::new(),
         };
         let terms = &plan.trigger.annotations;
-        let before: Vec<Slot> = self.solver.slots.clone();
+        let before: Vec<VariableSlot> = self.solver.slots.clone();
         let mut verdict = ApplicabilityVerdict::Unlike;
         'matches: for match_no in 0..held.len().saturating_pow(terms.len() as u32) {
             self.solver.with(&before);

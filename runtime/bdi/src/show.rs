@@ -13,7 +13,7 @@ use hrdsl_ir::{
     value::seconds,
 };
 
-use crate::unify::{Slot, eval, known};
+use crate::unify::{VariableSlot, eval, known};
 
 /// A name with its arguments, as in the language: `shows(1, true)`; a name alone without arguments.
 pub(crate) fn call<T: Display>(name: &str, args: impl IntoIterator<Item = T>) -> String {
@@ -28,7 +28,7 @@ pub fn time(time: Nanos) -> String {
 }
 
 /// `_` for what has no value.
-pub(crate) fn slot(slot: &Slot) -> String {
+pub(crate) fn slot(slot: &VariableSlot) -> String {
     slot.map_or_else(|| "_".to_owned(), |v| v.to_string())
 }
 
@@ -58,7 +58,7 @@ pub(crate) struct FormulaPrinter<'a> {
     pub program: &'a Program,
     pub agent: &'a Agent,
     pub names: &'a [String],
-    pub slots: &'a [Slot],
+    pub slots: &'a [VariableSlot],
 }
 
 /// A formula as it is written in the language.

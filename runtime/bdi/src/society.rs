@@ -28,7 +28,7 @@ use crate::{
 /// [`settle`](Self::settle) at the same time, and does what the agents do, until they do nothing; at
 /// [`wake_of`](Self::wake_of) an agent it also calls [`expire`](Self::expire). Times never go back.
 #[derive(Debug)]
-pub struct Society<'p> {
+pub struct AgentSociety<'p> {
     machines: Vec<AgentMachine<'p>>,
     actors: Vec<Option<ActorId>>,
     now: Nanos,
@@ -46,7 +46,7 @@ pub struct Society<'p> {
     senders: Vec<u16>,
 }
 
-impl<'p> Society<'p> {
+impl<'p> AgentSociety<'p> {
     /// The agents at time 0, each with its initial beliefs and the facts chosen for it. `seed` is that of `.random`.
     #[must_use]
     pub fn new(program: &'p Program, agents: &[(AgentId, Vec<InitialFact>)], seed: u64) -> Self {
@@ -414,7 +414,7 @@ impl<'p> Society<'p> {
     }
 }
 
-impl FingerprintedState for Society<'_> {
+impl FingerprintedState for AgentSociety<'_> {
     fn fingerprint(&self) -> u64 {
         let each = self.machines.iter().map(FingerprintedState::fingerprint);
         let inboxes = self.machines.iter().map(|m| m.inbox.front().map_or(0, crate::state::letter));

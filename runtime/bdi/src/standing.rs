@@ -4,9 +4,9 @@ use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use crate::{
-    belief::Annotations,
+    belief::FactAnnotations,
     cycle::AgentMachine,
-    event::{Args, QueuedEvent},
+    event::{EventArguments, QueuedEvent},
     intention::{Intention, IntentionState, IntentionTimer, NO_LINE},
     log::{LogEntry, LogItem},
     show::{self, call},
@@ -97,8 +97,8 @@ impl AgentMachine<'_> {
     pub fn believed(&self) -> Vec<String> {
         let Some(names) = self.names() else { return Vec::new() };
         let text = |fact: hrdsl_ir::bdi::InitialFact| {
-            let args: Args = fact.args.iter().map(|v| Some(*v)).collect();
-            names.fact(fact.belief, &args, &Annotations::from_slice(&fact.annotations))
+            let args: EventArguments = fact.args.iter().map(|v| Some(*v)).collect();
+            names.fact(fact.belief, &args, &FactAnnotations::from_slice(&fact.annotations))
         };
         self.mind.beliefs.facts().map(text).collect()
     }

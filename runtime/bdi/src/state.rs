@@ -3,23 +3,23 @@
 use hrdsl_ir::{Value, bdi::BeliefAnnotation};
 
 use crate::{
-    belief::Annotations,
+    belief::FactAnnotations,
     cycle::AgentMachine,
     event::{IncomingItem, QueuedEvent, SpeechAct},
     intention::{Intention, IntentionState, IntentionTimer},
     repeat::FingerprintedState,
-    unify::Slot,
+    unify::VariableSlot,
 };
 
 fn mix(a: u64, b: u64) -> u64 {
     (a.rotate_left(5) ^ b).wrapping_mul(0x517c_c1b7_2722_0a95)
 }
 
-fn number(slot: Slot) -> u64 {
+fn number(slot: VariableSlot) -> u64 {
     slot.map_or(7, |v| mix(u64::from(v.key().0), v.key().1))
 }
 
-fn hash(slots: &[Slot]) -> u64 {
+fn hash(slots: &[VariableSlot]) -> u64 {
     slots.iter().fold(slots.len() as u64, |h, s| mix(h, number(*s)))
 }
 
@@ -114,19 +114,19 @@ fn value(out: &mut Vec<u64>, v: Value) {
     out.extend([u64::from(kind), content]);
 }
 
-fn slot(out: &mut Vec<u64>, slot: Slot) {
+fn slot(out: &mut Vec<u64>, slot: VariableSlot) {
     match slot {
         Some(v) => value(out, v),
         None => out.extend([99, 0]),
     }
 }
 
-fn slots(out: &mut Vec<u64>, all: &[Slot]) {
+fn slots(out: &mut Vec<u64>, all: &[VariableSlot]) {
     out.push(all.len() as u64);
     all.iter().for_each(|s| slot(out, *s));
 }
 
-fn annotations(out: &mut Vec<u64>, all: &Annotations) {
+fn annotations(out: &mut Vec<u64>, all: &FactAnnotations) {
     out.push(all.len() as u64);
     for (what, v) in all {
         out.push(match what {

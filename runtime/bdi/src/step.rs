@@ -1,14 +1,14 @@
 //! Execution of one step of a plan's body.
 
 use crate::{
-    belief::{Annotations, Ground, sourced, typed},
+    belief::{FactAnnotations, GroundArguments, sourced, typed},
     code::{PlanOp, settle},
     cycle::AgentMachine,
-    event::{ActionToken, AgentAction, Args, QueuedEvent},
+    event::{ActionToken, AgentAction, EventArguments, QueuedEvent},
     intention::{GoalDeadline, IntentionState, IntentionTimer},
     log::{FailureCause, LogItem, StepOutcome, sources},
     mind::MentalState,
-    unify::{Slot, Trail, eval, known, undo, unify, unify_all, well_bound},
+    unify::{BindingTrail, VariableSlot, eval, known, undo, unify, unify_all, well_bound},
 };
 use hrdsl_ir::{
     EventId, EventPattern, Expr, Nanos, Value,
@@ -30,7 +30,7 @@ pub(crate) enum StepFlow {
 
 fn values<C: Default + Extend<T>, T>(
     exprs: &[Expr],
-    slots: &[Slot],
+    slots: &[VariableSlot],
     of: impl Fn(Value) -> T,
 ) -> Result<C, FailureCause> {
     let mut all = C::default();
@@ -232,7 +232,7 @@ impl<'p> AgentMachine<'p> {
         let event = QueuedEvent {
             of,
             by: Some((here.plan, here.site)),
-            ..QueuedEvent::new(TriggerOn::GoalAdded(goal), Args::new())
+            ..QueuedEvent::new(TriggerOn::GoalAdded(goal), EventArguments::new())
         };
         events.push_back(event);
         let slots = pool.see(here.place).vars();
@@ -262,7 +262,7 @@ impl<'p> AgentMachine<'p> {
         of: Option<u32>,
     ) -> Result<QueuedEvent, FailureCause> {
         let slots = self.mind.pool.see(here.place).vars();
-        let mut event = QueuedEvent::new(TriggerOn::GoalAdded(goal), Args::new());
+        let mut event = QueuedEvent::new(TriggerOn::GoalAdded(goal), EventArguments::new());
         (event.of, event.by) = (of, Some((here.plan, here.site)));
         for expr in args {
             event.args.push(Some(eval(expr, slots)?));
@@ -276,7 +276,7 @@ impl<'p> AgentMachine<'p> {
         Ok(event)
     }
 
-    fn act(&mut self, place: u32, event: EventId, args: Ground) -> Result<(), FailureCause> {
+    fn act(&mut self, place: u32, event: EventId, args: GroundArguments) -> Result<(), FailureCause> {
         let args = typed(&self.mind.program.event(event).params, args).ok_or(FailureCause::OutOfRange)?;
         // Only the low half: a token need only differ from the intention's earlier ones.
         let serial = self.next_serial() as u32;
@@ -290,22 +290,26 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// The arguments, as the belief's declaration has them.
-    pub fn declared(&self, belief: BeliefId, args: Ground) -> Option<Ground> {
+    pub fn declared(&self, belief: BeliefId, args: GroundArguments) -> Option<GroundArguments> {
         let declared = self.mind.agent.and_then(|a| a.beliefs.get(usize::from(belief.0)));
         declared.and_then(|b| typed(&b.params, args))
     }
 
-    fn asserted(&self, place: u32, assertion: &Assertion) -> Result<(Ground, Annotations), FailureCause> {
+    fn asserted(
+        &self,
+        place: u32,
+        assertion: &Assertion,
+    ) -> Result<(GroundArguments, FactAnnotations), FailureCause> {
         let slots = self.mind.pool.see(place).vars();
         let args = values(&assertion.args, slots, |v| v)?;
         let args = self.declared(assertion.belief, args).ok_or(FailureCause::OutOfRange)?;
-        let mut annotations = Annotations::new();
+        let mut annotations = FactAnnotations::new();
         let declared = self.mind.agent.map(|a| &a.beliefs[usize::from(assertion.belief.0)].annotations);
         for (what, value) in &assertion.annotations {
             let mut value = eval(value, slots)?;
             if let BeliefAnnotation::Declared(at) = what {
                 let param = declared.and_then(|d| d.get(usize::from(*at))).ok_or(FailureCause::OutOfRange)?;
-                let one = typed(std::slice::from_ref(param), Ground::from_slice(&[value]));
+                let one = typed(std::slice::from_ref(param), GroundArguments::from_slice(&[value]));
                 value = one.ok_or(FailureCause::OutOfRange)?[0];
             }
             annotations.push((*what, value));
@@ -328,7 +332,7 @@ impl<'p> AgentMachine<'p> {
         }
         // A term that computes with a variable which this literal binds is compared with the answer.
         let slots = self.mind.pool.see(place).vars();
-        let asked: Args = literal.args.iter().map(|term| known(term, slots)).collect();
+        let asked: EventArguments = literal.args.iter().map(|term| known(term, slots)).collect();
         let by = Some((here.plan, here.site));
         self.post(QueuedEvent { of: Some(place), by, ..QueuedEvent::new(on, asked) });
         Ok(StepFlow::Suspended)
@@ -480,9 +484,9 @@ impl<'p> AgentMachine<'p> {
 /// Whether each term matches one of the annotations, in some way; what that binds is on the trail.
 pub(crate) fn annotated(
     terms: &[&(BeliefAnnotation, AgentTerm)],
-    held: &Annotations,
-    slots: &mut [Slot],
-    trail: &mut Trail,
+    held: &FactAnnotations,
+    slots: &mut [VariableSlot],
+    trail: &mut BindingTrail,
 ) -> Result<bool, EvalError> {
     let Some(((what, term), rest)) = terms.split_first() else { return Ok(true) };
     for (_, value) in held.iter().filter(|(w, _)| w == what) {
@@ -506,8 +510,12 @@ fn plain(value: Value) -> String {
 }
 
 /// The slots that the terms of a test goal's plan stand for at its end, for the query that asked.
-pub(crate) fn answers(trigger: &[AgentTerm], asked: &[Slot], slots: &[Slot]) -> Args {
-    let answer = |(term, asked): (&AgentTerm, &Slot)| match term {
+pub(crate) fn answers(
+    trigger: &[AgentTerm],
+    asked: &[VariableSlot],
+    slots: &[VariableSlot],
+) -> EventArguments {
+    let answer = |(term, asked): (&AgentTerm, &VariableSlot)| match term {
         AgentTerm::Any => *asked,
         AgentTerm::Var(_) | AgentTerm::Expr(_) | AgentTerm::List(..) => known(term, slots).or(*asked),
     };

@@ -8,13 +8,13 @@ use hrdsl_ir::{
 };
 
 /// A variable: its value, once bound.
-pub(crate) type Slot = Option<Value>;
+pub(crate) type VariableSlot = Option<Value>;
 
 /// The variables bound since a choice, by their place on the stack of slots, so that backtracking can open them again.
-pub(crate) type Trail = Vec<u32>;
+pub(crate) type BindingTrail = Vec<u32>;
 
 /// The expression's value in these variables.
-pub(crate) fn eval(expr: &Expr, slots: &[Slot]) -> Result<Value, EvalError> {
+pub(crate) fn eval(expr: &Expr, slots: &[VariableSlot]) -> Result<Value, EvalError> {
     match expr {
         Expr::Const(value) => Ok(*value),
         Expr::Var(i) => slots.get(usize::from(*i)).copied().flatten().ok_or(EvalError::Unbound(*i)),
@@ -30,7 +30,7 @@ pub(crate) fn eval(expr: &Expr, slots: &[Slot]) -> Result<Value, EvalError> {
 
 /// The whole number that a constant or a variable is.
 #[inline]
-fn whole(expr: &Expr, slots: &[Slot]) -> Option<i64> {
+fn whole(expr: &Expr, slots: &[VariableSlot]) -> Option<i64> {
     if let Expr::Const(Value::Int(n)) = expr {
         Some(*n)
     } else if let Expr::Var(i) = expr
@@ -43,7 +43,7 @@ fn whole(expr: &Expr, slots: &[Slot]) -> Option<i64> {
 }
 
 /// The commonest operations are done at once: this is where most of an agent's time goes.
-fn operate(op: BinaryOp, a: &Expr, b: &Expr, slots: &[Slot]) -> Result<Value, EvalError> {
+fn operate(op: BinaryOp, a: &Expr, b: &Expr, slots: &[VariableSlot]) -> Result<Value, EvalError> {
     if let (Some(a), Some(b)) = (whole(a, slots), whole(b, slots)) {
         return match op {
             BinaryOp::Add => a.checked_add(b).map(Value::Int).ok_or(EvalError::Overflow),
@@ -68,7 +68,7 @@ fn operate(op: BinaryOp, a: &Expr, b: &Expr, slots: &[Slot]) -> Result<Value, Ev
 }
 
 /// Opens all variables bound since the trail was this long.
-pub(crate) fn undo(slots: &mut [Slot], trail: &mut Trail, mark: usize) {
+pub(crate) fn undo(slots: &mut [VariableSlot], trail: &mut BindingTrail, mark: usize) {
     for var in trail.drain(mark..) {
         slots[var as usize] = None;
     }
@@ -79,8 +79,8 @@ pub(crate) fn unify(
     term: &AgentTerm,
     value: Value,
     base: usize,
-    slots: &mut [Slot],
-    trail: &mut Trail,
+    slots: &mut [VariableSlot],
+    trail: &mut BindingTrail,
 ) -> Result<bool, EvalError> {
     match term {
         AgentTerm::Any => Ok(true),
@@ -117,10 +117,10 @@ pub(crate) fn unify(
 /// nothing is bound.
 pub(crate) fn unify_all(
     terms: &[AgentTerm],
-    values: impl ExactSizeIterator<Item = Slot>,
+    values: impl ExactSizeIterator<Item = VariableSlot>,
     base: usize,
-    slots: &mut [Slot],
-    trail: &mut Trail,
+    slots: &mut [VariableSlot],
+    trail: &mut BindingTrail,
 ) -> Result<bool, EvalError> {
     if terms.len() != values.len() {
         return Ok(false);
@@ -138,7 +138,7 @@ pub(crate) fn unify_all(
 }
 
 /// The value of a term, if all its variables have one: `None` for `_` and what is open.
-pub(crate) fn known(term: &AgentTerm, slots: &[Slot]) -> Slot {
+pub(crate) fn known(term: &AgentTerm, slots: &[VariableSlot]) -> VariableSlot {
     match term {
         AgentTerm::Any => None,
         AgentTerm::Var(var) => slots[usize::from(*var)],
@@ -156,7 +156,7 @@ pub(crate) fn known(term: &AgentTerm, slots: &[Slot]) -> Slot {
 
 /// Refuses a literal that computes with a variable which is neither bound nor bound by an earlier term of the literal:
 /// such a fault must not depend on whether the belief base happens to reach it.
-pub(crate) fn well_bound(terms: &[AgentTerm], slots: &[Slot]) -> Result<(), EvalError> {
+pub(crate) fn well_bound(terms: &[AgentTerm], slots: &[VariableSlot]) -> Result<(), EvalError> {
     for (at, term) in terms.iter().enumerate() {
         let AgentTerm::Expr(expr) = term else { continue };
         let mut fault = None;
@@ -217,7 +217,7 @@ mod tests {
     }
 
     /// The meaning of a match, without a trail: a substitution is extended or there is none.
-    fn matches(term: &AgentTerm, value: Value, mut theta: Vec<Slot>) -> Option<Vec<Slot>> {
+    fn matches(term: &AgentTerm, value: Value, mut theta: Vec<VariableSlot>) -> Option<Vec<VariableSlot>> {
         match term {
             AgentTerm::Any => Some(theta),
             AgentTerm::Var(v) => match theta[usize::from(*v)] {
@@ -251,7 +251,7 @@ mod tests {
             bound in prop::collection::vec(prop::option::of(value()), 3),
         ) {
             let expected = terms.iter().zip(&values).try_fold(bound.clone(), |theta, (t, v)| matches(t, *v, theta));
-            let (mut slots, mut trail) = (bound.clone(), Trail::new());
+            let (mut slots, mut trail) = (bound.clone(), BindingTrail::new());
             let n = terms.len();
             let given = values[..n].iter().map(|v| Some(*v));
             let found = unify_all(&terms, given, 0, &mut slots, &mut trail).unwrap();
@@ -263,9 +263,9 @@ mod tests {
 
         #[test]
         fn what_is_known_matches_itself(t in term(), bound in prop::collection::vec(value(), 3)) {
-            let mut slots: Vec<Slot> = bound.into_iter().map(Some).collect();
+            let mut slots: Vec<VariableSlot> = bound.into_iter().map(Some).collect();
             if let Some(v) = known(&t, &slots) {
-                prop_assert!(unify(&t, v, 0, &mut slots, &mut Trail::new()).unwrap());
+                prop_assert!(unify(&t, v, 0, &mut slots, &mut BindingTrail::new()).unwrap());
             }
         }
 

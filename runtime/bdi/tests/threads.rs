@@ -1,6 +1,6 @@
 //! What agents do does not depend on the threads that they reason on.
 
-use hrdsl_bdi::{ActionToken, LogDetail, RunStatus, Society, show};
+use hrdsl_bdi::{ActionToken, AgentSociety, LogDetail, RunStatus, show};
 use hrdsl_ir::{Nanos, Program, value::SECOND};
 use proptest::prelude::*;
 use rayon::ThreadPoolBuilder;
@@ -14,7 +14,7 @@ mod random;
 /// Runs a society for a minute: each action takes half a second and is then perceived by all others. The log, and what
 /// everybody believes in the end.
 fn played(program: &Program, parallel: bool) -> String {
-    let mut society = Society::with_detail(program, &programs::all(program), 7, LogDetail::Reasons);
+    let mut society = AgentSociety::with_detail(program, &programs::all(program), 7, LogDetail::Reasons);
     society.set_parallel(parallel);
     society.set_cycle_limit(3000);
     society.measure();

@@ -14,17 +14,20 @@ use std::{
 };
 
 use hrdsl_harness::{
-    Harness, HarnessError, HarnessRun, Player, RunTermination, ScriptPlayer, SystemFault, SystemFaultKind,
-    SystemPlayer, WorldStage,
+    ActorPlayer, HarnessError, HarnessLoop, HarnessRun, RunTermination, ScriptPlayer, SystemFault,
+    SystemFaultKind, SystemPlayer, WorldStage,
 };
 use hrdsl_ir::{Program, system::SystemUnderTest, test::Test, value::seconds};
 use hrdsl_judge::TraceJudge;
-use hrdsl_results::{CoverageRatios, Judgement, OutputSummary, RunEnd, RunMark, TestName, TestResult};
+use hrdsl_results::{CoverageRatios, OutputSummary, RunEnd, RunMark, TestName, TestResult, TraceJudgement};
 use hrdsl_sim::SimWorld;
-use hrdsl_sut::{Answer, FileCoverage, Finished, Launch, LockStep, Needs, Process, Reply, SutError};
 pub use hrdsl_sut::{
-    Cells, Hooked, Output, Preparation, ProgramLimits, PythonEnv, StopFlag,
-    cell::{Isolation, Supervisor, supervise},
+    CapturedOutput, CellSettings, HookedPackage, PreparationStep, ProgramLimits, PythonEnv, StopFlag,
+    cell::{CellIsolation, SupervisorCommand, supervise},
+};
+use hrdsl_sut::{
+    EnvironmentNeeds, FileCoverage, FinishedProcess, HarnessReply, LaunchSpec, LockStep, ReplyAnswer,
+    SutError, SutProcess,
 };
 use hrdsl_trace::{
     Trace,
@@ -44,12 +47,12 @@ const LAST_LINES: usize = 20;
 
 /// What a campaign runs with.
 #[derive(Clone)]
-pub struct Campaign<'a> {
+pub struct CampaignSetup<'a> {
     pub program: &'a Program,
     /// The scenario's folder: where the program under test is started.
     pub dir: PathBuf,
     pub env: PythonEnv,
-    pub cells: Cells,
+    pub cells: CellSettings,
     pub limits: ProgramLimits,
     /// Variables that the program gets besides the default ones.
     pub variables: Vec<(OsString, OsString)>,
@@ -68,7 +71,7 @@ pub struct FinishedRun<'a> {
     pub result: &'a TestResult,
     /// JSON Lines.
     pub recording: &'a str,
-    pub output: &'a Output,
+    pub output: &'a CapturedOutput,
 }
 
 /// A finished test, with the code of the system under test that it executed.
@@ -91,7 +94,7 @@ pub struct CampaignOutcome {
 struct TestAttempt {
     finished: FinishedTest,
     recording: String,
-    output: Output,
+    output: CapturedOutput,
     fault: Option<SystemFaultKind>,
 }
 
@@ -104,15 +107,15 @@ pub fn prepare(
     run: &[String],
     dir: &Path,
     cache: &Path,
-    listen: &dyn Fn(Preparation<'_>),
+    listen: &dyn Fn(PreparationStep<'_>),
 ) -> Result<PythonEnv, SutError> {
     let list = dir.join("requirements.txt");
     let requirements = list.exists().then_some(list.as_path());
     let python = PythonEnv::interpreter_of(run);
-    PythonEnv::prepare(&Needs { python, dir, requirements, cache }, listen)
+    PythonEnv::prepare(&EnvironmentNeeds { python, dir, requirements, cache }, listen)
 }
 
-impl Campaign<'_> {
+impl CampaignSetup<'_> {
     /// Runs the tests. `on_done` is called for each as it ends, in any order, one at a time; what it gives is why the test
     /// cannot count, which is then its error.
     ///
@@ -220,31 +223,31 @@ impl Campaign<'_> {
         TestAttempt { finished, recording, output, fault }
     }
 
-    fn execute(&self, system: &SystemUnderTest, test: &Test) -> (HarnessRun, Option<Finished>) {
+    fn execute(&self, system: &SystemUnderTest, test: &Test) -> (HarnessRun, Option<FinishedProcess>) {
         let failed =
             |fault| (HarnessRun { trace: Trace::default(), ended: RunTermination::Fault(fault) }, None);
         let stage = match SimWorld::new(self.program) {
             Ok(world) => world.map(|world| WorldStage::new(self.program, Box::new(world))),
             Err(why) => return failed(HarnessError::World(why.to_string())),
         };
-        let mut process = match Process::spawn(&self.launch(system, test)) {
+        let mut process = match SutProcess::spawn(&self.launch(system, test)) {
             Ok(process) => process,
             Err(error) => return failed(HarnessError::System(SystemFault::from(error))),
         };
-        let players: Vec<Box<dyn Player + '_>> = vec![
+        let players: Vec<Box<dyn ActorPlayer + '_>> = vec![
             Box::new(ScriptPlayer::new(self.program, test)),
             Box::new(SystemPlayer::new(self.program, system.actor, LockStep::new(&mut process))),
         ];
-        let run = Harness::new(self.program, players, stage, system.limit).run();
+        let run = HarnessLoop::new(self.program, players, stage, system.limit).run();
         if !matches!(run.ended, RunTermination::Fault(_)) {
             // It may have ended by itself: then nobody reads this.
-            let _ = process.reply(&Reply { time: run.trace.end, answer: Answer::Stop });
+            let _ = process.reply(&HarnessReply { time: run.trace.end, answer: ReplyAnswer::Stop });
         }
         (run, Some(process.finish(GRACE)))
     }
 
-    fn launch(&self, system: &SystemUnderTest, test: &Test) -> Launch {
-        Launch {
+    fn launch(&self, system: &SystemUnderTest, test: &Test) -> LaunchSpec {
+        LaunchSpec {
             command: system.run.clone(),
             dir: self.dir.clone(),
             seed: test.seed,
@@ -268,8 +271,8 @@ fn test_result(
     program: &Program,
     test: &Test,
     run: &HarnessRun,
-    (ending, judgement): (RecordingEnd, Judgement),
-    finished: Option<Finished>,
+    (ending, judgement): (RecordingEnd, TraceJudgement),
+    finished: Option<FinishedProcess>,
 ) -> FinishedTest {
     let (output, others, executed) = finished
         .map_or_else(Default::default, |f| (summary(&f.output), f.others, f.coverage.unwrap_or_default()));
@@ -292,14 +295,14 @@ fn test_result(
     FinishedTest { result, executed }
 }
 
-fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> Judgement {
+fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> TraceJudgement {
     let mut judge = TraceJudge::new(program);
     trace.replay(&mut judge);
     judge.finish(ended)
 }
 
 /// How a run ended; that a file of its program could not be kept breaks it off, too.
-fn ending(run: &HarnessRun, finished: Option<&Finished>) -> RecordingEnd {
+fn ending(run: &HarnessRun, finished: Option<&FinishedProcess>) -> RecordingEnd {
     let broke_off = |error| RecordingEnd { kind: RunEnd::Error, error: Some(error) };
     let kind = match &run.ended {
         RunTermination::Fault(fault) => return broke_off(fault.to_string()),
@@ -312,7 +315,7 @@ fn ending(run: &HarnessRun, finished: Option<&Finished>) -> RecordingEnd {
     }
 }
 
-fn summary(output: &Output) -> OutputSummary {
+fn summary(output: &CapturedOutput) -> OutputSummary {
     OutputSummary {
         stdout_bytes: output.stdout.bytes,
         stderr_bytes: output.stderr.bytes,

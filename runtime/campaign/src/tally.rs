@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_ir::{Program, coverage::BinName, monitor::Monitor};
 use hrdsl_results::{
-    BinResult, CodeFile, CoverageRatios, FORMAT, GoalName, GoalStatus, RequirementResult, Results,
+    BinResult, CampaignResults, CodeFile, CoverageRatios, FORMAT, GoalName, GoalStatus, RequirementResult,
     SmallestMargin, SuiteInfo, SuiteName, TestMethod, VERSION, VerdictOutcome, VerdictTally,
 };
 
@@ -22,11 +22,11 @@ pub fn tally(
     outcome: CampaignOutcome,
     sources: &BTreeMap<String, String>,
     rerun: String,
-) -> Results {
+) -> CampaignResults {
     let CampaignOutcome { tests, planned, interrupted } = outcome;
     let suites = suites(generated, &tests);
-    let place: Places<'_> = suites.iter().enumerate().map(|(i, s)| (&s.name, i)).collect();
-    Results {
+    let place: SuiteOrder<'_> = suites.iter().enumerate().map(|(i, s)| (&s.name, i)).collect();
+    CampaignResults {
         format: FORMAT.to_owned(),
         version: VERSION,
         hrdsl: env!("CARGO_PKG_VERSION").to_owned(),
@@ -44,9 +44,9 @@ pub fn tally(
 }
 
 /// Where each suite stands.
-type Places<'a> = BTreeMap<&'a SuiteName, usize>;
+type SuiteOrder<'a> = BTreeMap<&'a SuiteName, usize>;
 
-fn requirements(program: &Program, tests: &[FinishedTest], place: &Places<'_>) -> Vec<RequirementResult> {
+fn requirements(program: &Program, tests: &[FinishedTest], place: &SuiteOrder<'_>) -> Vec<RequirementResult> {
     let empty = |m: &Monitor| RequirementResult {
         name: m.name.as_str().into(),
         kind: m.kind,
@@ -109,13 +109,13 @@ fn count(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
 }
 
-type Lines<'a> = BTreeSet<(&'a str, u32)>;
-type Branches<'a> = BTreeSet<(&'a str, (u32, i32))>;
+type LineSet<'a> = BTreeSet<(&'a str, u32)>;
+type BranchSet<'a> = BTreeSet<(&'a str, (u32, i32))>;
 
 /// What the tests executed together, and the percentage of lines after each.
 fn accumulate(tests: &[&FinishedTest]) -> (CoverageRatios, Vec<f64>) {
-    let (mut all, mut hit): (Lines<'_>, Lines<'_>) = Default::default();
-    let (mut branches, mut taken): (Branches<'_>, Branches<'_>) = Default::default();
+    let (mut all, mut hit): (LineSet<'_>, LineSet<'_>) = Default::default();
+    let (mut branches, mut taken): (BranchSet<'_>, BranchSet<'_>) = Default::default();
     for file in tests.iter().flat_map(|t| &t.executed) {
         all.extend(file.statements.iter().map(|l| (file.file.as_str(), *l)));
         branches.extend(file.branches.iter().map(|b| (file.file.as_str(), *b)));
@@ -142,7 +142,7 @@ fn bins(
     program: &Program,
     generated: &[GeneratedSuite],
     tests: &[FinishedTest],
-    place: &Places<'_>,
+    place: &SuiteOrder<'_>,
 ) -> Vec<BinResult> {
     let mut out = Vec::new();
     for cross in &program.coverage.crosses {
@@ -181,7 +181,7 @@ fn unreachable(generated: &[GeneratedSuite], bin: &BinName) -> Option<String> {
     goals.find(|g| g.goal == name && g.status == GoalStatus::Unreachable).map(|g| g.reason.clone())
 }
 
-fn code(tests: &[FinishedTest], sources: &BTreeMap<String, String>, place: &Places<'_>) -> Vec<CodeFile> {
+fn code(tests: &[FinishedTest], sources: &BTreeMap<String, String>, place: &SuiteOrder<'_>) -> Vec<CodeFile> {
     let names: BTreeSet<&str> = tests.iter().flat_map(|t| &t.executed).map(|f| f.file.as_str()).collect();
     let file = |name: &&str| {
         let mut lines: BTreeMap<u32, Vec<u32>> = BTreeMap::new();

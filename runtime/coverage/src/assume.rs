@@ -9,7 +9,7 @@ use hrdsl_ir::{EventId, Nanos, Program, Value, monitor::Assumption};
 /// `assume at most N e within D` is violated by N + 1 such events of which the first and the last are at most D apart:
 /// like a requirement's deadline, the window includes its very end. Without `within` the whole test is the window.
 #[derive(Clone, Debug)]
-pub struct Assumptions {
+pub struct AssumptionChecker {
     watches: Vec<AssumptionWatch>,
 }
 
@@ -20,7 +20,7 @@ struct AssumptionWatch {
     latest: VecDeque<Nanos>,
 }
 
-impl Assumptions {
+impl AssumptionChecker {
     /// All assumptions of the program, at the start of a test.
     #[must_use]
     pub fn new(program: &Program) -> Self {

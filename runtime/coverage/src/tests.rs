@@ -10,7 +10,7 @@ use hrdsl_trace::{Trace, TraceObserver, TraceStep, TraceStepKind};
 use proptest::prelude::*;
 
 use crate::{
-    CoverageCollector, CoverageMismatchError, MergedCoverage, TestCoverage, assume::Assumptions,
+    CoverageCollector, CoverageMismatchError, MergedCoverage, TestCoverage, assume::AssumptionChecker,
     hits_from_numbers,
 };
 
@@ -178,7 +178,7 @@ fn at_most(n: u32, within: Option<Nanos>) -> Assumption {
 
 #[test]
 fn a_window_includes_its_very_end() {
-    let mut assumptions = Assumptions::new(&program(declared(), vec![at_most(2, Some(10))]));
+    let mut assumptions = AssumptionChecker::new(&program(declared(), vec![at_most(2, Some(10))]));
     assert_eq!(assumptions.admit(0, EventId(ASK), &[]), Ok(()));
     assert_eq!(assumptions.admit(4, EventId(ASK), &[]), Ok(()));
     assert_eq!(assumptions.admit(10, EventId(ASK), &[]), Err(0));
@@ -193,12 +193,12 @@ fn a_window_includes_its_very_end() {
 #[test]
 fn the_first_assumption_violated_is_named() {
     let all = [at_most(3, None), at_most(1, Some(5)), at_most(0, Some(0))];
-    let mut assumptions = Assumptions::new(&program(declared(), all[..2].to_vec()));
+    let mut assumptions = AssumptionChecker::new(&program(declared(), all[..2].to_vec()));
     for time in [0, 6, 12] {
         assert_eq!(assumptions.admit(time, EventId(ASK), &[]), Ok(()));
     }
     assert_eq!(assumptions.admit(13, EventId(ASK), &[]), Err(0));
-    let mut never = Assumptions::new(&program(declared(), all[2..].to_vec()));
+    let mut never = AssumptionChecker::new(&program(declared(), all[2..].to_vec()));
     assert_eq!(never.admit(0, EventId(ASK), &[]), Err(0));
 }
 
@@ -256,7 +256,7 @@ proptest! {
         };
         let kept = times.iter().all(|t| inside(*t) <= n as usize);
         let events: Vec<_> = times.iter().map(|t| (*t, EventId(ASK), Vec::new())).collect();
-        prop_assert_eq!(Assumptions::allows(&program(declared(), vec![at_most(n, within)]), &events), kept);
+        prop_assert_eq!(AssumptionChecker::allows(&program(declared(), vec![at_most(n, within)]), &events), kept);
         let mut collector = CoverageCollector::new(&program(declared(), Vec::new()));
         events.iter().enumerate().for_each(|(i, e)| collector.step(i, &ask(e.0)));
         prop_assert_eq!(collector.finish().numbers[0] as usize, times.len());

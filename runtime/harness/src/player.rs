@@ -17,7 +17,7 @@ pub struct PlayerContext<'a, 'p> {
 }
 
 /// Anything that plays actors.
-pub trait Player {
+pub trait ActorPlayer {
     /// The actors it plays; it hears what any of them hears.
     fn actors(&self) -> &[ActorId];
     /// The run begins, or the time it asked for has come.

@@ -8,7 +8,7 @@ use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 use crate::{
     clock::{TimeSource, VirtualClock},
     message::PlayerMessage,
-    player::{HarnessError, Player, PlayerContext, is_perceived},
+    player::{ActorPlayer, HarnessError, PlayerContext, is_perceived},
     stage::WorldStage,
 };
 
@@ -32,9 +32,9 @@ pub struct HarnessRun {
 }
 
 /// The loop's state.
-pub struct Harness<'p> {
+pub struct HarnessLoop<'p> {
     program: &'p Program,
-    players: Vec<Box<dyn Player + 'p>>,
+    players: Vec<Box<dyn ActorPlayer + 'p>>,
     stage: Option<WorldStage<'p>>,
     clock: Box<dyn TimeSource + 'p>,
     limit: Nanos,
@@ -47,13 +47,13 @@ pub struct Harness<'p> {
     delivery: u64,
 }
 
-impl<'p> Harness<'p> {
+impl<'p> HarnessLoop<'p> {
     /// Players are asked in a fixed order: the system's first, so that what it does at an instant is known to those whose
     /// wait for it ends at the same instant; then in the order given. The run ends at `limit` at the latest.
     #[must_use]
     pub fn new(
         program: &'p Program,
-        mut players: Vec<Box<dyn Player + 'p>>,
+        mut players: Vec<Box<dyn ActorPlayer + 'p>>,
         stage: Option<WorldStage<'p>>,
         limit: Nanos,
     ) -> Self {
@@ -148,7 +148,7 @@ impl<'p> Harness<'p> {
     fn ask(
         &mut self,
         index: usize,
-        act: impl FnOnce(&mut dyn Player, &mut PlayerContext<'_, 'p>) -> Result<(), HarnessError>,
+        act: impl FnOnce(&mut dyn ActorPlayer, &mut PlayerContext<'_, 'p>) -> Result<(), HarnessError>,
     ) -> Result<(), HarnessError> {
         let mut out = Vec::new();
         let mut cx = PlayerContext {

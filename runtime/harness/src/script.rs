@@ -8,8 +8,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::{
-    player::{HarnessError, Player, PlayerContext},
-    stimulus::{Performance, draw_samples},
+    player::{ActorPlayer, HarnessError, PlayerContext},
+    stimulus::{StimulusPerformance, draw_samples},
 };
 
 pub struct ScriptPlayer<'p> {
@@ -26,7 +26,7 @@ pub struct ScriptPlayer<'p> {
 
 enum ScriptState {
     Ready,
-    Performing(Performance),
+    Performing(StimulusPerformance),
     Awaiting { until: Nanos },
     Waiting { until: Nanos },
     Finished,
@@ -49,7 +49,7 @@ impl<'p> ScriptPlayer<'p> {
                 } else {
                     samples.clone()
                 };
-                ScriptState::Performing(Performance::begin(self.program, *event, args, &drawn, cx)?)
+                ScriptState::Performing(StimulusPerformance::begin(self.program, *event, args, &drawn, cx)?)
             }
             TestStep::Await { within, .. } => ScriptState::Awaiting { until: cx.now + within },
             TestStep::Wait { time } => ScriptState::Waiting { until: cx.now + time },
@@ -101,7 +101,7 @@ impl<'p> ScriptPlayer<'p> {
     }
 }
 
-impl Player for ScriptPlayer<'_> {
+impl ActorPlayer for ScriptPlayer<'_> {
     fn actors(&self) -> &[ActorId] {
         &self.actors
     }

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// A stimulus under way.
-pub struct Performance {
+pub struct StimulusPerformance {
     steps: VecDeque<StimulusPrimitive>,
     vars: Vec<Value>,
     /// It holds until then.
@@ -105,7 +105,7 @@ fn primitive(
     })
 }
 
-impl Performance {
+impl StimulusPerformance {
     /// Begins a stimulus: it is recorded as an event, then its first steps run.
     ///
     /// # Errors

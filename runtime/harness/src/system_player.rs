@@ -12,7 +12,7 @@ use crate::{
     argument::SystemArgument,
     command::NotBegun,
     message::PlayerMessage,
-    player::{HarnessError, Player, PlayerContext, is_perceived},
+    player::{ActorPlayer, HarnessError, PlayerContext, is_perceived},
     stage::WorldStage,
     system::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemFaultKind, SystemRequest},
     world::CommandId,
@@ -281,7 +281,7 @@ fn argument(event: &str, param: &Parameter, given: Option<&SystemArgument>) -> R
     })
 }
 
-impl<S: SystemActor> Player for SystemPlayer<'_, S> {
+impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
     fn actors(&self) -> &[ActorId] {
         &self.actors
     }

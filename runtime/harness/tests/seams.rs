@@ -3,8 +3,8 @@
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
 use hrdsl_harness::{
-    CommandRequest, Harness, HarnessError, HarnessRun, Player, RunTermination, ScriptPlayer, SystemAnswer,
-    SystemArgument, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
+    ActorPlayer, CommandRequest, HarnessError, HarnessLoop, HarnessRun, RunTermination, ScriptPlayer,
+    SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
     doubles::{ToldClock, ToldCommand, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{
@@ -178,12 +178,12 @@ fn run(
     clock: Option<ToldClock>,
 ) -> (Vec<String>, HarnessRun) {
     let (program, test) = (program(), test(steps));
-    let players: Vec<Box<dyn Player + '_>> = vec![
+    let players: Vec<Box<dyn ActorPlayer + '_>> = vec![
         Box::new(ScriptPlayer::new(&program, &test)),
         Box::new(SystemPlayer::new(&program, ROBOT, system)),
     ];
     let stage = world.map(|world| WorldStage::new(&program, Box::new(world)));
-    let mut harness = Harness::new(&program, players, stage, 60 * SECOND);
+    let mut harness = HarnessLoop::new(&program, players, stage, 60 * SECOND);
     if let Some(clock) = clock {
         harness = harness.with_clock(Box::new(clock));
     }

@@ -6,7 +6,7 @@
 //! # Steps
 //! 1. [`TraceJudge::new`] readies the requirements' monitors and the coverpoints;
 //! 2. the trace is shown to it, step by step ([`TraceObserver`]), in memory that does not grow with the trace;
-//! 3. [`TraceJudge::finish`] gives the [`Judgement`].
+//! 3. [`TraceJudge::finish`] gives the [`TraceJudgement`].
 //!
 //! [`judge_recording`] does all three with a recording, which it reads in one pass.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
@@ -16,7 +16,7 @@ mod recording;
 use hrdsl_coverage::CoverageCollector;
 use hrdsl_ir::{Nanos, Program, value::seconds};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict, SeenStep};
-use hrdsl_results::{FirstFailure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
+use hrdsl_results::{FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult, WitnessStep};
 use hrdsl_trace::{RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
 
 pub use recording::{JudgeError, JudgedRecording, judge_recording};
@@ -37,9 +37,9 @@ impl<'p> TraceJudge<'p> {
 
     /// The judgement on a run that ended like this. A run that broke off can show a violation, but nothing else.
     #[must_use]
-    pub fn finish(self, ended: RunEnd) -> Judgement {
+    pub fn finish(self, ended: RunEnd) -> TraceJudgement {
         let verdicts = self.checker.verdicts();
-        let mut judgement = Judgement {
+        let mut judgement = TraceJudgement {
             verdicts: verdicts.iter().map(|v| verdict_result(self.program, v)).collect(),
             bins: self.collector.finish().cross_names(&self.program.coverage),
         };

@@ -3,10 +3,10 @@
 use std::io::BufRead;
 
 use hrdsl_ir::{Program, value::seconds};
-use hrdsl_results::Judgement;
+use hrdsl_results::TraceJudgement;
 use hrdsl_trace::{
     RunEnd,
-    parse::{ReadError, Recording, RecordingSummary},
+    parse::{OpenRecording, ReadError, RecordingSummary},
     record::RecordingHeader,
     vocabulary,
 };
@@ -18,7 +18,7 @@ use crate::TraceJudge;
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedRecording {
     pub recorded: RecordingSummary,
-    pub judgement: Judgement,
+    pub judgement: TraceJudgement,
 }
 
 impl JudgedRecording {
@@ -58,7 +58,7 @@ pub fn judge_recording(
     source: impl BufRead,
     changed: bool,
 ) -> Result<JudgedRecording, JudgeError> {
-    let recording = Recording::open(source)?;
+    let recording = OpenRecording::open(source)?;
     if !changed {
         is_of(program, recording.header())?;
     }

@@ -21,7 +21,7 @@ pub(crate) struct TraceMoment {
 
 /// What is due since a trigger.
 #[derive(Clone, Debug)]
-struct Obligation {
+struct TriggerObligation {
     time: Nanos,
     /// The step that triggered it; a deadline has none.
     step: Option<SeenStep>,
@@ -44,7 +44,7 @@ pub(crate) struct MonitorMachine {
     /// The time of the latest deadline, and how many fired at that very time.
     burst: (Nanos, usize),
     /// The trigger that has been neither discharged nor left by a failure.
-    obligation: Option<Obligation>,
+    obligation: Option<TriggerObligation>,
     triggered: u32,
     discharged: u32,
     failures: u32,
@@ -268,7 +268,7 @@ impl MonitorMachine {
 }
 
 /// What is due from a moment on, with the step that it is due to.
-fn obligation(cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) -> Obligation {
+fn obligation(cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) -> TriggerObligation {
     let step = at.step.and_then(|index| match cause {
         EdgeCause::Event(event, args) => {
             let what = TraceStepKind::Event { event, args: args.to_vec() };
@@ -277,5 +277,5 @@ fn obligation(cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) ->
         EdgeCause::Sample => signals.of_step(index),
         EdgeCause::Deadline => None,
     });
-    Obligation { time: at.time, step }
+    TriggerObligation { time: at.time, step }
 }

@@ -38,9 +38,9 @@ pub(super) fn receptions(
 }
 
 /// What a pattern wants of the arguments: which, and what each must be.
-type Wanted = Vec<(usize, Value)>;
+type RequiredArguments = Vec<(usize, Value)>;
 
-fn wanted(pattern: &EventPattern) -> Wanted {
+fn wanted(pattern: &EventPattern) -> RequiredArguments {
     let numbered = pattern.args.iter().enumerate();
     numbered
         .filter_map(|(i, a)| match a {
@@ -58,9 +58,10 @@ fn of_event(
     out: &mut Vec<ReceptionHalf>,
 ) -> Result<(), String> {
     let params = &program.event(event).params;
-    let of_rule =
-        |r: &&[EventPattern]| -> Vec<Wanted> { r.iter().filter(|p| p.event == event).map(wanted).collect() };
-    let conditions: Vec<Vec<Wanted>> = rules.iter().map(of_rule).collect();
+    let of_rule = |r: &&[EventPattern]| -> Vec<RequiredArguments> {
+        r.iter().filter(|p| p.event == event).map(wanted).collect()
+    };
+    let conditions: Vec<Vec<RequiredArguments>> = rules.iter().map(of_rule).collect();
     let mut told: Vec<usize> = conditions.iter().flatten().flatten().map(|(i, _)| *i).collect();
     told.sort_unstable();
     told.dedup();
@@ -68,7 +69,7 @@ fn of_event(
         Type::Bool | Type::Int { .. } | Type::Enum(_) => true,
         Type::Float(_) | Type::Text | Type::List(_) => false,
     };
-    let named: Vec<(usize, &Vec<Wanted>)> =
+    let named: Vec<(usize, &Vec<RequiredArguments>)> =
         conditions.iter().enumerate().filter(|(_, c)| !c.is_empty()).collect();
     // A single pattern needs no condition.
     if let [(rule, alternatives)] = named.as_slice()

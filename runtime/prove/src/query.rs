@@ -5,7 +5,7 @@ use hrdsl_ir::{
     ta::{Network, Query, QueryFormula, QueryKind},
 };
 use hrdsl_ta::{
-    Extremum, ExtremumLimit, ExtremumValue, GoalOutcome, QueryAnswer, QueryOptions, QueryVerdict,
+    ExtremumLimit, ExtremumValue, GoalOutcome, MeasureExtremum, QueryAnswer, QueryOptions, QueryVerdict,
     ReachabilityGoal, SearchError,
 };
 
@@ -245,7 +245,7 @@ fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAns
 }
 
 /// `5 s`, `less than 5 s`, `no bound`
-fn bound(extremum: &Extremum) -> String {
+fn bound(extremum: &MeasureExtremum) -> String {
     let text = |q: &ExtremumValue| match q {
         ExtremumValue::Nanos(t) => format!("{} s", decimal(*t)),
         ExtremumValue::Number(n) => n.to_string(),

@@ -1,6 +1,6 @@
 //! Runs that a search gives.
 
-use hrdsl_coverage::assume::Assumptions;
+use hrdsl_coverage::assume::AssumptionChecker;
 use hrdsl_ir::{Nanos, Program};
 use hrdsl_ta::{WitnessRun, WitnessTrace};
 use hrdsl_trace::TraceStepKind;
@@ -34,5 +34,5 @@ pub(crate) fn keeps_assumptions(program: &Program, witness: &WitnessRun) -> bool
             TraceStepKind::Sample { .. } => None,
         })
         .collect();
-    Assumptions::allows(program, &events)
+    AssumptionChecker::allows(program, &events)
 }

@@ -1,7 +1,7 @@
 //! Observers against what they stand for: random monitors against the monitor itself, and windows of assumptions against
 //! the check of assumptions, on models that can do one thing only.
 
-use hrdsl_coverage::assume::Assumptions;
+use hrdsl_coverage::assume::AssumptionChecker;
 use hrdsl_ir::{
     Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Expr, Nanos, Parameter, Program, Role, Span,
     Type, Value,
@@ -241,7 +241,7 @@ fn a_window_lets_happen_what_the_assumption_allows() {
             origin: Span::default(),
         });
         let last = QueryFormula::At { automaton: 0, location: LocationId(script.len() as u16) };
-        let allows = Assumptions::allows(&program, &script);
+        let allows = AssumptionChecker::allows(&program, &script);
         let observed = ObservedNetwork::new(&program, &network);
         assert_eq!(is_reached(&program, &observed, &last), allows, "seed {seed}: {script:?} {program:#?}");
         (allowed, forbidden) = (allowed + u32::from(allows), forbidden + u32::from(!allows));

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use hrdsl_results::{
-    BinResult, CoverageRatios, FirstFailure, GoalStatus, RequirementKind, RequirementResult, Results,
+    BinResult, CampaignResults, CoverageRatios, FirstFailure, GoalStatus, RequirementKind, RequirementResult,
     TestName, TestResult, VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
@@ -109,7 +109,7 @@ pub fn standing(requirement: &RequirementResult) -> Outcome {
 
 /// What is known about a bin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bin {
+pub enum BinStatus {
     Hit,
     /// No test hit it, and nothing says that none could.
     Missed,
@@ -119,39 +119,39 @@ pub enum Bin {
     Refuted,
 }
 
-impl Bin {
+impl BinStatus {
     pub fn of(bin: &BinResult) -> Self {
         let is_hit = bin.hits.iter().any(|n| *n > 0);
         match (is_hit, bin.unreachable.is_some()) {
-            (true, false) => Bin::Hit,
-            (false, false) => Bin::Missed,
-            (false, true) => Bin::Unreachable,
-            (true, true) => Bin::Refuted,
+            (true, false) => BinStatus::Hit,
+            (false, false) => BinStatus::Missed,
+            (false, true) => BinStatus::Unreachable,
+            (true, true) => BinStatus::Refuted,
         }
     }
 
     pub fn symbol(self) -> &'static str {
         match self {
-            Bin::Hit => "✓",
-            Bin::Missed => "○",
-            Bin::Unreachable => "⊘",
-            Bin::Refuted => "!",
+            BinStatus::Hit => "✓",
+            BinStatus::Missed => "○",
+            BinStatus::Unreachable => "⊘",
+            BinStatus::Refuted => "!",
         }
     }
 }
 
 /// Whether the model of a suite predicted anything: without that, a prediction of 0 means nothing.
-pub fn predicts(results: &Results, suite: usize) -> bool {
+pub fn predicts(results: &CampaignResults, suite: usize) -> bool {
     results.bins.iter().any(|b| b.predicted.get(suite).is_some_and(|n| *n > 0))
 }
 
 /// How many of the bins each suite hit.
-pub fn bins_hit(results: &Results, suite: usize) -> usize {
+pub fn bins_hit(results: &CampaignResults, suite: usize) -> usize {
     results.bins.iter().filter(|b| b.hits.get(suite).is_some_and(|n| *n > 0)).count()
 }
 
 /// Lines and branches of all files.
-pub fn code(results: &Results) -> CoverageRatios {
+pub fn code(results: &CampaignResults) -> CoverageRatios {
     results.code.iter().fold(CoverageRatios::default(), |sum, f| CoverageRatios {
         lines: sum.lines + f.ratios.lines,
         lines_total: sum.lines_total + f.ratios.lines_total,
@@ -175,8 +175,11 @@ fn failed<'a>(test: &'a TestResult, requirement: &str) -> Option<&'a VerdictResu
     test.judgement.verdicts.iter().find(|v| v.requirement == *requirement && v.outcome == Outcome::Fail)
 }
 
-/// The tests that violate a requirement, in order, each with its place in [`Results::tests`].
-pub fn failing<'a>(results: &'a Results, requirement: &RequirementResult) -> Vec<(usize, &'a TestResult)> {
+/// The tests that violate a requirement, in order, each with its place in [`CampaignResults::tests`].
+pub fn failing<'a>(
+    results: &'a CampaignResults,
+    requirement: &RequirementResult,
+) -> Vec<(usize, &'a TestResult)> {
     results.tests.iter().enumerate().filter(|(_, t)| violates(t, &requirement.name)).collect()
 }
 
@@ -209,17 +212,17 @@ pub fn in_short(verdict: &VerdictResult, failure: &FirstFailure) -> String {
 }
 
 /// A test's name within its scenario.
-pub fn short<'a>(results: &Results, name: &'a TestName) -> &'a str {
+pub fn short<'a>(results: &CampaignResults, name: &'a TestName) -> &'a str {
     name.within(&results.scenario)
 }
 
 /// The first place of each test's name.
-pub fn places(results: &Results) -> BTreeMap<&TestName, usize> {
+pub fn places(results: &CampaignResults) -> BTreeMap<&TestName, usize> {
     results.tests.iter().enumerate().rev().map(|(i, t)| (&t.name, i)).collect()
 }
 
 /// What the campaign leaves unsaid, in sentences: undecided requirements, missed bins, inconclusive goals, missed code, errors.
-pub fn gaps(results: &Results) -> Vec<String> {
+pub fn gaps(results: &CampaignResults) -> Vec<String> {
     let mut gaps = Vec::new();
     errors(results, &mut gaps);
     undecided(results, &mut gaps);
@@ -258,7 +261,7 @@ pub fn gaps(results: &Results) -> Vec<String> {
     gaps
 }
 
-fn errors(results: &Results, gaps: &mut Vec<String>) {
+fn errors(results: &CampaignResults, gaps: &mut Vec<String>) {
     let broken = results.tests.iter().filter(|t| t.error.is_some()).count();
     if broken > 0 {
         gaps.push(format!(
@@ -268,7 +271,7 @@ fn errors(results: &Results, gaps: &mut Vec<String>) {
     }
 }
 
-fn undecided(results: &Results, gaps: &mut Vec<String>) {
+fn undecided(results: &CampaignResults, gaps: &mut Vec<String>) {
     let checked = |t: &VerdictTally| t.pass + t.fail > 0;
     let never: Vec<String> = results
         .requirements
@@ -291,11 +294,11 @@ fn undecided(results: &Results, gaps: &mut Vec<String>) {
     }
 }
 
-fn missed_bins(results: &Results, gaps: &mut Vec<String>) {
-    let named = |state: Bin| -> Vec<String> {
-        results.bins.iter().filter(|b| Bin::of(b) == state).map(|b| format!("“{}”", b.bin)).collect()
+fn missed_bins(results: &CampaignResults, gaps: &mut Vec<String>) {
+    let named = |state: BinStatus| -> Vec<String> {
+        results.bins.iter().filter(|b| BinStatus::of(b) == state).map(|b| format!("“{}”", b.bin)).collect()
     };
-    let missed = named(Bin::Missed);
+    let missed = named(BinStatus::Missed);
     if !missed.is_empty() {
         gaps.push(format!(
             "{} of {} bins were hit by no test: {}.",
@@ -304,7 +307,7 @@ fn missed_bins(results: &Results, gaps: &mut Vec<String>) {
             text::enumeration(&missed)
         ));
     }
-    let refuted = named(Bin::Refuted);
+    let refuted = named(BinStatus::Refuted);
     if !refuted.is_empty() {
         gaps.push(format!(
             "The model cannot reach {}, yet tests did: the model does not match what was tested.",

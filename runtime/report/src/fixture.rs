@@ -1,11 +1,11 @@
 //! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
 
 use hrdsl_results::{
-    AgentCoverage, BinName, BinResult, CodeFile, CoverItemKind, CoverageRatios, FORMAT, FirstFailure,
-    GoalReport, GoalStatus, Judgement, KindCoverage, ModelCoverage, OutputSummary, RequirementKind,
-    RequirementResult, Results, RunEnd, RunMark, SmallestMargin, SuiteExplanation, SuiteInfo,
-    TestExplanation, TestMethod, TestResult, UncoveredGoal, UnreachedItem, VERSION,
-    VerdictOutcome as Outcome, VerdictResult, VerdictTally, WitnessStep,
+    AgentCoverage, BinName, BinResult, CampaignResults, CodeFile, CoverItemKind, CoverageRatios, FORMAT,
+    FirstFailure, GoalReport, GoalStatus, KindCoverage, ModelCoverage, OutputSummary, RequirementKind,
+    RequirementResult, RunEnd, RunMark, SmallestMargin, SuiteExplanation, SuiteInfo, TestExplanation,
+    TestMethod, TestResult, TraceJudgement, UncoveredGoal, UnreachedItem, VERSION, VerdictOutcome as Outcome,
+    VerdictResult, VerdictTally, WitnessStep,
 };
 
 const SUITES: [(&str, TestMethod); 3] = [
@@ -134,22 +134,23 @@ const BRANCHES: [(u32, i32); 12] = [
 ];
 
 /// A test with what it executed.
-struct Made {
+struct TestFixture {
     result: TestResult,
-    executed: Executed,
+    executed: ExecutedCode,
 }
 
 /// Executed lines and branches.
-struct Executed {
+struct ExecutedCode {
     lines: Vec<u32>,
     branches: Vec<(u32, i32)>,
 }
 
 /// A campaign with this many tests in each suite.
-pub fn campaign(per_suite: usize) -> Results {
-    let tests: Vec<Made> = (0..SUITES.len()).flat_map(|s| (0..per_suite).map(move |i| test(s, i))).collect();
+pub fn campaign(per_suite: usize) -> CampaignResults {
+    let tests: Vec<TestFixture> =
+        (0..SUITES.len()).flat_map(|s| (0..per_suite).map(move |i| test(s, i))).collect();
     let of = |s: usize| tests.iter().filter(move |t| t.result.suite == SUITES[s].0);
-    Results {
+    CampaignResults {
         format: FORMAT.into(),
         version: VERSION,
         hrdsl: "0.1.0".into(),
@@ -175,7 +176,7 @@ fn mix(suite: usize, test: usize, salt: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-fn test(s: usize, i: usize) -> Made {
+fn test(s: usize, i: usize) -> TestFixture {
     let (suite, method) = SUITES[s];
     let number = i + 1;
     let error = (i % 11 == 6 && s != 1).then(|| {
@@ -194,7 +195,7 @@ fn test(s: usize, i: usize) -> Made {
         seed: number as u64,
         ended: if error.is_some() { RunEnd::Error } else { [RunEnd::Quiescent, RunEnd::Limit][i % 2] },
         duration: if error.is_some() { 141.3 } else { 60.0 + (mix(s, i, 3) % 24000) as f64 / 100.0 },
-        judgement: Judgement {
+        judgement: TraceJudgement {
             verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
             bins,
         },
@@ -213,7 +214,7 @@ fn test(s: usize, i: usize) -> Made {
         },
         error,
     };
-    Made { result, executed }
+    TestFixture { result, executed }
 }
 
 fn bin_name(b: usize) -> BinName {
@@ -327,7 +328,7 @@ fn failure(r: usize, time: f64) -> FirstFailure {
 }
 
 /// What a test executes: the longer it runs, the more; only agents and search get to the rare lines.
-fn executed(s: usize, i: usize) -> Executed {
+fn executed(s: usize, i: usize) -> ExecutedCode {
     let is_executed = |line: &u32| match line {
         20 | 21 => false,
         34 => i % 11 == 6 && s != 1,
@@ -342,10 +343,10 @@ fn executed(s: usize, i: usize) -> Executed {
         lines.contains(from) && (*to < 0 || lines.contains(&u32::try_from(*to).unwrap_or(0))) && *from != 18
             || (*from, *to) == (18, 19)
     };
-    Executed { branches: BRANCHES.iter().copied().filter(taken).collect(), lines }
+    ExecutedCode { branches: BRANCHES.iter().copied().filter(taken).collect(), lines }
 }
 
-fn ratios(executed: &Executed) -> CoverageRatios {
+fn ratios(executed: &ExecutedCode) -> CoverageRatios {
     CoverageRatios {
         lines: executed.lines.len() as u32,
         lines_total: STATEMENTS.len() as u32,
@@ -355,16 +356,16 @@ fn ratios(executed: &Executed) -> CoverageRatios {
 }
 
 /// What several tests execute together.
-fn together(tests: &[&Made]) -> Executed {
+fn together(tests: &[&TestFixture]) -> ExecutedCode {
     let line = |line: &u32| tests.iter().any(|t| t.executed.lines.contains(line));
     let branch = |branch: &(u32, i32)| tests.iter().any(|t| t.executed.branches.contains(branch));
-    Executed {
+    ExecutedCode {
         lines: STATEMENTS.iter().copied().filter(line).collect(),
         branches: BRANCHES.iter().copied().filter(branch).collect(),
     }
 }
 
-fn requirement(r: usize, tests: &[Made]) -> RequirementResult {
+fn requirement(r: usize, tests: &[TestFixture]) -> RequirementResult {
     let (name, kind, title, text) = REQUIREMENTS[r];
     let mut tally = vec![VerdictTally::default(); SUITES.len()];
     let mut failing = Vec::new();
@@ -393,7 +394,7 @@ fn requirement(r: usize, tests: &[Made]) -> RequirementResult {
     }
 }
 
-fn suite(s: usize, tests: &[&Made]) -> SuiteInfo {
+fn suite(s: usize, tests: &[&TestFixture]) -> SuiteInfo {
     let (name, method) = SUITES[s];
     let line_percent = |n: usize| ratios(&together(&tests[..n])).line_percent();
     let goal = |goal: String, status: GoalStatus, reason: &str| GoalReport {
@@ -486,7 +487,7 @@ pub(crate) fn model() -> (ModelCoverage, SuiteExplanation) {
     (ModelCoverage { runs: 2, goals_reached: 3, goals: 5, agents: vec![human] }, explanation)
 }
 
-fn bin(bin: &str, tests: &[Made]) -> BinResult {
+fn bin(bin: &str, tests: &[TestFixture]) -> BinResult {
     let name = BinName::new("human_robot", bin);
     let tests: Vec<&TestResult> = tests.iter().map(|t| &t.result).collect();
     let number = |has: &dyn Fn(&TestResult) -> bool| -> Vec<u32> {
@@ -509,9 +510,9 @@ fn bin(bin: &str, tests: &[Made]) -> BinResult {
     }
 }
 
-fn code(tests: &[Made]) -> CodeFile {
+fn code(tests: &[TestFixture]) -> CodeFile {
     let all = together(&tests.iter().collect::<Vec<_>>());
-    let executed_by = |line: u32, is_of: &dyn Fn(&Made) -> bool| {
+    let executed_by = |line: u32, is_of: &dyn Fn(&TestFixture) -> bool| {
         tests.iter().filter(|t| is_of(t) && t.executed.lines.contains(&line)).count() as u32
     };
     let suites = |line: &u32| {

@@ -10,23 +10,23 @@ mod tests_list;
 mod violations;
 
 use hrdsl_results::{
-    BinResult, GoalReport, GoalStatus, RequirementResult, Results, SuiteInfo, TestName,
+    BinResult, CampaignResults, GoalReport, GoalStatus, RequirementResult, SuiteInfo, TestName,
     VerdictOutcome as Outcome, VerdictTally,
 };
 use minijinja::{AutoEscape, Environment, Output, State, Value, escape_formatter};
 use serde::Serialize;
 
-use pieces::{Link, Ratio, branches_of, lines_of};
+use pieces::{ShownRatio, TestLink, branches_of, lines_of};
 
 use crate::{
-    facts::{self, Bin, ShownOutcome},
+    facts::{self, BinStatus, ShownOutcome},
     text,
 };
 
 /// The results as one page.
 #[must_use]
-pub fn html(results: &Results) -> String {
-    let page = Page::of(results);
+pub fn html(results: &CampaignResults) -> String {
+    let page = ReportPage::of(results);
     let environment = match environment() {
         Ok(environment) => environment,
         Err(e) => return broken(&e),
@@ -69,37 +69,37 @@ fn broken(error: &minijinja::Error) -> String {
 
 /// What the page says.
 #[derive(Serialize)]
-struct Page {
+struct ReportPage {
     scenario: String,
     version: String,
     seed: u64,
-    conclusion: Vec<Part>,
-    facts: Vec<Fact>,
+    conclusion: Vec<StyledText>,
+    facts: Vec<HeadlineFigure>,
     gaps: Vec<String>,
-    suites: Vec<Suite>,
+    suites: Vec<SuiteSummary>,
     has_code: bool,
-    columns: Vec<Column>,
-    requirements: Vec<Row>,
-    violations: Vec<violations::Violated>,
+    columns: Vec<RequirementColumn>,
+    requirements: Vec<RequirementRow>,
+    violations: Vec<violations::ViolatedRequirement>,
     bins: Vec<BinGroup>,
     bins_hit: Vec<usize>,
     bins_total: usize,
-    goals: Vec<Goals>,
-    models: Vec<model::Model>,
-    code: Option<code::Code>,
-    list: tests_list::List,
+    goals: Vec<SuiteGoals>,
+    models: Vec<model::AgentSuiteSection>,
+    code: Option<code::CodeSection>,
+    list: tests_list::TestList,
 }
 
 /// A piece of a sentence with a style class.
 #[derive(Serialize)]
-struct Part {
+struct StyledText {
     class: &'static str,
     text: String,
 }
 
 /// A number of the heading.
 #[derive(Serialize)]
-struct Fact {
+struct HeadlineFigure {
     class: &'static str,
     value: String,
     of: String,
@@ -107,7 +107,7 @@ struct Fact {
 }
 
 #[derive(Serialize)]
-struct Suite {
+struct SuiteSummary {
     name: String,
     method: &'static str,
     abstract_tests: String,
@@ -116,14 +116,14 @@ struct Suite {
     errors: u32,
     simulated: String,
     bins: usize,
-    lines: Ratio,
-    branches: Ratio,
+    lines: ShownRatio,
+    branches: ShownRatio,
     notes: Vec<String>,
 }
 
 /// A column of the requirement table.
 #[derive(Serialize)]
-struct Column {
+struct RequirementColumn {
     class: char,
     short: &'static str,
     word: &'static str,
@@ -131,7 +131,7 @@ struct Column {
 
 /// A row of the requirement table.
 #[derive(Serialize)]
-struct Row {
+struct RequirementRow {
     class: char,
     symbol: &'static str,
     name: String,
@@ -150,7 +150,7 @@ struct Row {
 struct WorstMargin {
     value: String,
     is_negative: bool,
-    test: Link,
+    test: TestLink,
 }
 
 #[derive(Serialize)]
@@ -168,7 +168,7 @@ struct BinRow {
     /// For each suite.
     cells: Vec<BinCell>,
     total: u32,
-    first: Option<Link>,
+    first: Option<TestLink>,
     reason: String,
 }
 
@@ -182,30 +182,30 @@ struct BinCell {
 
 /// The goals of a suite by search.
 #[derive(Serialize)]
-struct Goals {
+struct SuiteGoals {
     suite: String,
-    reached: Vec<Goal>,
-    unreachable: Vec<Goal>,
-    inconclusive: Vec<Goal>,
+    reached: Vec<GoalRow>,
+    unreachable: Vec<GoalRow>,
+    inconclusive: Vec<GoalRow>,
     total: usize,
 }
 
 #[derive(Serialize)]
-struct Goal {
+struct GoalRow {
     goal: String,
     reason: String,
 }
 
-impl Page {
-    fn of(results: &Results) -> Self {
+impl ReportPage {
+    fn of(results: &CampaignResults) -> Self {
         let places = facts::places(results);
-        let link = |name: &TestName| Link {
+        let link = |name: &TestName| TestLink {
             name: facts::short(results, name).to_owned(),
             place: places.get(name).map(|place| place + 1),
         };
-        let column = |o: Outcome| Column { class: o.letter(), short: o.short(), word: o.word() };
+        let column = |o: Outcome| RequirementColumn { class: o.letter(), short: o.short(), word: o.word() };
         let suites = 0..results.suites.len();
-        Page {
+        ReportPage {
             scenario: results.scenario.clone(),
             version: results.hrdsl.clone(),
             seed: results.seed,
@@ -229,13 +229,13 @@ impl Page {
 }
 
 /// What an assessor asks first: which requirements are violated, which held, and about which nothing is known.
-fn conclusion(results: &Results) -> Vec<Part> {
+fn conclusion(results: &CampaignResults) -> Vec<StyledText> {
     let named = |outcome: Outcome| -> Vec<String> {
         let such = results.requirements.iter().filter(|r| facts::standing(r) == outcome);
         such.map(|r| r.name.to_string()).collect()
     };
     let mut parts = Vec::new();
-    let mut say = |class: &'static str, text: String| parts.push(Part { class, text });
+    let mut say = |class: &'static str, text: String| parts.push(StyledText { class, text });
     if results.interrupted {
         let missing = results.planned.saturating_sub(results.tests.len());
         say(
@@ -269,7 +269,7 @@ fn conclusion(results: &Results) -> Vec<Part> {
     parts
 }
 
-fn heading(results: &Results) -> Vec<Fact> {
+fn heading(results: &CampaignResults) -> Vec<HeadlineFigure> {
     let failing = results.tests.iter().filter(|t| t.has_failed()).count();
     let broken = results.tests.iter().filter(|t| t.error.is_some()).count();
     let violated = results.requirements.iter().filter(|r| facts::standing(r) == Outcome::Fail).count();
@@ -277,7 +277,7 @@ fn heading(results: &Results) -> Vec<Fact> {
     let simulated: f64 = results.tests.iter().map(|t| t.duration).sum();
     let code = facts::code(results);
     let alarm = |number: usize, class: &'static str| if number > 0 { class } else { "" };
-    let fact = |class, value: String, of: String, label| Fact { class, value, of, label };
+    let fact = |class, value: String, of: String, label| HeadlineFigure { class, value, of, label };
     let mut facts = vec![
         fact("", results.tests.len().to_string(), String::new(), "tests"),
         fact(alarm(failing, "f"), failing.to_string(), String::new(), "tests with violations"),
@@ -304,10 +304,10 @@ fn heading(results: &Results) -> Vec<Fact> {
     facts
 }
 
-fn suite(results: &Results, index: usize) -> Suite {
+fn suite(results: &CampaignResults, index: usize) -> SuiteSummary {
     let info: &SuiteInfo = &results.suites[index];
     let tests = || results.tests.iter().filter(|t| t.suite == info.name);
-    Suite {
+    SuiteSummary {
         name: info.name.to_string(),
         method: info.method.word(),
         abstract_tests: info.abstract_tests.map(|n| n.to_string()).unwrap_or_else(|| "–".to_owned()),
@@ -322,7 +322,7 @@ fn suite(results: &Results, index: usize) -> Suite {
     }
 }
 
-fn rows(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Row> {
+fn rows(results: &CampaignResults, link: &dyn Fn(&TestName) -> TestLink) -> Vec<RequirementRow> {
     let mut section = 0;
     let row = |requirement: &RequirementResult| {
         let standing = facts::standing(requirement);
@@ -333,7 +333,7 @@ fn rows(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Row> {
             let tally = requirement.tally.get(s).copied().unwrap_or_default();
             Outcome::ALL.iter().map(|o| tally.of(*o)).collect()
         });
-        Row {
+        RequirementRow {
             class: standing.letter(),
             symbol: standing.symbol(),
             name: requirement.name.to_string(),
@@ -369,7 +369,7 @@ fn in_words(standing: Outcome, total: &VerdictTally) -> String {
 }
 
 /// The bins by the cross product that they belong to, in order.
-fn bin_groups(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<BinGroup> {
+fn bin_groups(results: &CampaignResults, link: &dyn Fn(&TestName) -> TestLink) -> Vec<BinGroup> {
     let mut groups: Vec<BinGroup> = Vec::new();
     for bin in &results.bins {
         let row = bin_row(results, bin, link);
@@ -381,13 +381,13 @@ fn bin_groups(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<BinGro
     groups
 }
 
-fn bin_row(results: &Results, bin: &BinResult, link: &dyn Fn(&TestName) -> Link) -> BinRow {
-    let state = Bin::of(bin);
+fn bin_row(results: &CampaignResults, bin: &BinResult, link: &dyn Fn(&TestName) -> TestLink) -> BinRow {
+    let state = BinStatus::of(bin);
     let (class, words) = match state {
-        Bin::Hit => ("p", "hit"),
-        Bin::Missed => ("o", "not hit"),
-        Bin::Unreachable => ("n", "unreachable in the model"),
-        Bin::Refuted => ("f", "hit, although unreachable in the model"),
+        BinStatus::Hit => ("p", "hit"),
+        BinStatus::Missed => ("o", "not hit"),
+        BinStatus::Unreachable => ("n", "unreachable in the model"),
+        BinStatus::Refuted => ("f", "hit, although unreachable in the model"),
     };
     let cell = |s: usize| {
         let hits = bin.hits.get(s).copied().unwrap_or(0);
@@ -395,7 +395,7 @@ fn bin_row(results: &Results, bin: &BinResult, link: &dyn Fn(&TestName) -> Link)
         BinCell {
             hits,
             predicted: facts::predicts(results, s).then_some(predicted),
-            is_gap: hits == 0 && state != Bin::Unreachable,
+            is_gap: hits == 0 && state != BinStatus::Unreachable,
         }
     };
     BinRow {
@@ -410,12 +410,12 @@ fn bin_row(results: &Results, bin: &BinResult, link: &dyn Fn(&TestName) -> Link)
     }
 }
 
-fn goals(suite: &SuiteInfo) -> Goals {
-    let with = |status: GoalStatus| -> Vec<Goal> {
-        let goal = |g: &GoalReport| Goal { goal: g.goal.to_string(), reason: g.reason.clone() };
+fn goals(suite: &SuiteInfo) -> SuiteGoals {
+    let with = |status: GoalStatus| -> Vec<GoalRow> {
+        let goal = |g: &GoalReport| GoalRow { goal: g.goal.to_string(), reason: g.reason.clone() };
         suite.goals.iter().filter(|g| g.status == status).map(goal).collect()
     };
-    Goals {
+    SuiteGoals {
         suite: suite.name.to_string(),
         reached: with(GoalStatus::Reached),
         unreachable: with(GoalStatus::Unreachable),

@@ -5,7 +5,7 @@
 
 use std::{fmt::Write as _, time::Duration};
 
-use hrdsl_results::{Results, TestResult, VerdictResult};
+use hrdsl_results::{CampaignResults, TestResult, VerdictResult};
 use quick_junit::{NonSuccessKind, Property, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::{
@@ -18,7 +18,7 @@ const COUNTEREXAMPLE: usize = 20;
 
 /// The results as JUnit XML.
 #[must_use]
-pub fn junit(results: &Results) -> String {
+pub fn junit(results: &CampaignResults) -> String {
     let mut report = Report::new(text::line(&results.scenario));
     report.set_time(simulated(results.tests.iter()));
     for suite in suites(results) {
@@ -32,7 +32,7 @@ pub fn junit(results: &Results) -> String {
 }
 
 /// The names of all suites: the declared ones, then others that tests belong to.
-fn suites(results: &Results) -> Vec<&str> {
+fn suites(results: &CampaignResults) -> Vec<&str> {
     let mut names: Vec<&str> = results.suites.iter().map(|s| s.name.as_str()).collect();
     for test in &results.tests {
         if !names.contains(&test.suite.as_str()) {
@@ -47,7 +47,7 @@ fn simulated<'a>(tests: impl Iterator<Item = &'a TestResult>) -> Duration {
     Duration::try_from_secs_f64(seconds).unwrap_or_default()
 }
 
-fn test_suite(results: &Results, name: &str) -> TestSuite {
+fn test_suite(results: &CampaignResults, name: &str) -> TestSuite {
     let tests = || results.tests.iter().filter(|t| t.suite == name);
     let mut suite = TestSuite::new(text::line(name));
     suite.set_time(simulated(tests()));
@@ -90,7 +90,7 @@ fn test_suite(results: &Results, name: &str) -> TestSuite {
     suite
 }
 
-fn test_case(results: &Results, test: &TestResult) -> TestCase {
+fn test_case(results: &CampaignResults, test: &TestResult) -> TestCase {
     let mut case = TestCase::new(text::line(facts::short(results, &test.name)), status(results, test));
     case.set_classname(format!("{}.{}", text::line(&results.scenario), text::line(&test.suite)));
     case.set_time(simulated([test].into_iter()));
@@ -113,7 +113,7 @@ fn test_case(results: &Results, test: &TestResult) -> TestCase {
     case
 }
 
-fn status(results: &Results, test: &TestResult) -> TestCaseStatus {
+fn status(results: &CampaignResults, test: &TestResult) -> TestCaseStatus {
     let violated: Vec<String> = results
         .requirements
         .iter()
@@ -140,7 +140,7 @@ fn status(results: &Results, test: &TestResult) -> TestCaseStatus {
 }
 
 /// Every violated requirement with its time and counterexample.
-fn violations(results: &Results, test: &TestResult) -> String {
+fn violations(results: &CampaignResults, test: &TestResult) -> String {
     let mut out = String::new();
     for requirement in &results.requirements {
         if !facts::violates(test, &requirement.name) {
@@ -182,7 +182,7 @@ fn steps(test: &TestResult) -> String {
 }
 
 /// How to run it again.
-fn again(results: &Results, test: &TestResult) -> String {
+fn again(results: &CampaignResults, test: &TestResult) -> String {
     let Some(command) = results.rerun_of(test) else { return String::new() };
     format!("to run it again, in the folder of the results:\n  {}\n", text::line(&command))
 }

@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use hrdsl_results::{
-    BinResult, CoverItemKind, CoverageRatios, RequirementResult, Results, RunMark, SuiteInfo, TestResult,
-    VerdictOutcome as Outcome,
+    BinResult, CampaignResults, CoverItemKind, CoverageRatios, RequirementResult, RunMark, SuiteInfo,
+    TestResult, VerdictOutcome as Outcome,
 };
 
 use crate::{
-    facts::{self, Bin, ShownOutcome},
+    facts::{self, BinStatus, ShownOutcome},
     model, text,
 };
 
@@ -22,8 +22,8 @@ const GOALS: usize = 5;
 
 /// The results on at most `width` columns, with ANSI colours if `color`.
 #[must_use]
-pub fn summary(results: &Results, width: usize, color: bool) -> String {
-    let mut page = Page { out: String::new(), width: width.max(40), color };
+pub fn summary(results: &CampaignResults, width: usize, color: bool) -> String {
+    let mut page = TerminalPage { out: String::new(), width: width.max(40), color };
     header(&mut page, results);
     requirements(&mut page, results);
     violations(&mut page, results);
@@ -37,10 +37,13 @@ pub fn summary(results: &Results, width: usize, color: bool) -> String {
 
 /// The verdicts and bins of recordings, as [`summary`] shows those of a campaign.
 #[must_use]
-pub fn summary_of_recordings(results: &Results, width: usize, color: bool) -> String {
-    let mut page = Page { out: String::new(), width: width.max(40), color };
+pub fn summary_of_recordings(results: &CampaignResults, width: usize, color: bool) -> String {
+    let mut page = TerminalPage { out: String::new(), width: width.max(40), color };
     let scenario = text::line(&results.scenario);
-    page.line(&[Cell(scenario, Style::Bold), Cell("   judged from recordings".into(), Style::Dim)]);
+    page.line(&[
+        StyledSpan(scenario, TerminalStyle::Bold),
+        StyledSpan("   judged from recordings".into(), TerminalStyle::Dim),
+    ]);
     totals(&mut page, results, "recording");
     requirements(&mut page, results);
     violations(&mut page, results);
@@ -51,7 +54,7 @@ pub fn summary_of_recordings(results: &Results, width: usize, color: bool) -> St
 
 /// Colours; each comes with a symbol or word that says the same.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Style {
+enum TerminalStyle {
     Plain,
     Bold,
     Dim,
@@ -60,56 +63,56 @@ enum Style {
     Warn,
 }
 
-impl Style {
+impl TerminalStyle {
     fn code(self) -> &'static str {
         match self {
-            Style::Plain => "",
-            Style::Bold => "1",
-            Style::Dim => "2",
-            Style::Good => "36",
-            Style::Bad => "1;31",
-            Style::Warn => "33",
+            TerminalStyle::Plain => "",
+            TerminalStyle::Bold => "1",
+            TerminalStyle::Dim => "2",
+            TerminalStyle::Good => "36",
+            TerminalStyle::Bad => "1;31",
+            TerminalStyle::Warn => "33",
         }
     }
 
     fn of(outcome: Outcome) -> Self {
         match outcome {
-            Outcome::Pass => Style::Good,
-            Outcome::Fail => Style::Bad,
-            Outcome::Vacuous => Style::Dim,
-            Outcome::Inconclusive | Outcome::Error => Style::Warn,
+            Outcome::Pass => TerminalStyle::Good,
+            Outcome::Fail => TerminalStyle::Bad,
+            Outcome::Vacuous => TerminalStyle::Dim,
+            Outcome::Inconclusive | Outcome::Error => TerminalStyle::Warn,
         }
     }
 }
 
 /// A piece of a line. Its text is clean.
-struct Cell(String, Style);
+struct StyledSpan(String, TerminalStyle);
 
-fn left(text: &str, width: usize, style: Style) -> Cell {
+fn left(text: &str, width: usize, style: TerminalStyle) -> StyledSpan {
     let text = text::cut(text, width);
-    Cell(format!("{text:<width$}"), style)
+    StyledSpan(format!("{text:<width$}"), style)
 }
 
-fn right(text: &str, width: usize, style: Style) -> Cell {
+fn right(text: &str, width: usize, style: TerminalStyle) -> StyledSpan {
     let text = text::cut(text, width);
-    Cell(format!("{text:>width$}"), style)
+    StyledSpan(format!("{text:>width$}"), style)
 }
 
-struct Page {
+struct TerminalPage {
     out: String,
     width: usize,
     color: bool,
 }
 
-impl Page {
-    fn line(&mut self, cells: &[Cell]) {
+impl TerminalPage {
+    fn line(&mut self, cells: &[StyledSpan]) {
         let used = cells.iter().rposition(|c| !c.0.trim_end().is_empty()).map_or(0, |last| last + 1);
         let mut room = self.width;
-        for (i, Cell(text, style)) in cells[..used].iter().enumerate() {
+        for (i, StyledSpan(text, style)) in cells[..used].iter().enumerate() {
             let text = text::cut(text, room);
             room -= text.chars().count();
             let text = if i + 1 == used { text.trim_end() } else { &text };
-            if self.color && *style != Style::Plain && !text.trim().is_empty() {
+            if self.color && *style != TerminalStyle::Plain && !text.trim().is_empty() {
                 let _ = write!(self.out, "\u{1b}[{}m{text}\u{1b}[0m", style.code());
             } else {
                 self.out.push_str(text);
@@ -119,12 +122,12 @@ impl Page {
     }
 
     /// The command that runs a test again, whole: it is there to be copied.
-    fn command(&mut self, results: &Results, test: &TestResult) {
+    fn command(&mut self, results: &CampaignResults, test: &TestResult) {
         if let Some(command) = results.rerun_of(test) {
             let command = format!("  {}", text::line(&command));
             let all = command.chars().count();
             let width = std::mem::replace(&mut self.width, all);
-            self.line(&[Cell(command, Style::Dim)]);
+            self.line(&[StyledSpan(command, TerminalStyle::Dim)]);
             self.width = width;
         }
     }
@@ -139,35 +142,41 @@ impl Page {
     }
 }
 
-fn header(page: &mut Page, results: &Results) {
+fn header(page: &mut TerminalPage, results: &CampaignResults) {
     let scenario = text::line(&results.scenario);
     let about = format!("   seed {}   hrdsl {}", results.seed, text::line(&results.hrdsl));
-    page.line(&[Cell(scenario, Style::Bold), Cell(about, Style::Dim)]);
+    page.line(&[StyledSpan(scenario, TerminalStyle::Bold), StyledSpan(about, TerminalStyle::Dim)]);
     totals(page, results, "test");
     if results.interrupted {
         let missing = results.planned.saturating_sub(results.tests.len());
         let what =
             format!("interrupted: {missing} of {} had not ended", text::count(results.planned, "test"));
-        page.line(&[Cell(what, Style::Warn)]);
+        page.line(&[StyledSpan(what, TerminalStyle::Warn)]);
     }
 }
 
-fn totals(page: &mut Page, results: &Results, what: &str) {
+fn totals(page: &mut TerminalPage, results: &CampaignResults, what: &str) {
     let failing = results.tests.iter().filter(|t| t.has_failed()).count();
     let broken = results.tests.iter().filter(|t| t.error.is_some()).count();
     let simulated: f64 = results.tests.iter().map(|t| t.duration).sum();
     page.line(&[
-        Cell(text::count(results.tests.len(), what), Style::Plain),
-        Cell(", ".into(), Style::Plain),
-        Cell(format!("{failing} with violations"), if failing > 0 { Style::Bad } else { Style::Good }),
-        Cell(", ".into(), Style::Plain),
-        Cell(text::count(broken, "error"), if broken > 0 { Style::Warn } else { Style::Good }),
-        Cell(format!(", {} simulated", text::stretch(simulated)), Style::Plain),
+        StyledSpan(text::count(results.tests.len(), what), TerminalStyle::Plain),
+        StyledSpan(", ".into(), TerminalStyle::Plain),
+        StyledSpan(
+            format!("{failing} with violations"),
+            if failing > 0 { TerminalStyle::Bad } else { TerminalStyle::Good },
+        ),
+        StyledSpan(", ".into(), TerminalStyle::Plain),
+        StyledSpan(
+            text::count(broken, "error"),
+            if broken > 0 { TerminalStyle::Warn } else { TerminalStyle::Good },
+        ),
+        StyledSpan(format!(", {} simulated", text::stretch(simulated)), TerminalStyle::Plain),
     ]);
 }
 
 /// The outcomes with a column: the first three always, the others if there are any.
-fn columns(results: &Results) -> Vec<(Outcome, usize)> {
+fn columns(results: &CampaignResults) -> Vec<(Outcome, usize)> {
     let most =
         |o: Outcome| results.requirements.iter().flat_map(|r| &r.tally).map(|t| t.of(o)).max().unwrap_or(0);
     Outcome::ALL
@@ -178,7 +187,7 @@ fn columns(results: &Results) -> Vec<(Outcome, usize)> {
         .collect()
 }
 
-fn requirements(page: &mut Page, results: &Results) {
+fn requirements(page: &mut TerminalPage, results: &CampaignResults) {
     if results.requirements.is_empty() {
         return;
     }
@@ -192,13 +201,13 @@ fn requirements(page: &mut Page, results: &Results) {
     for suites in all.chunks(page.fit(group)) {
         let label = page.label(suites.len(), group);
         page.out.push('\n');
-        let mut names = vec![left("Requirements", label, Style::Bold)];
-        let mut heads = vec![left("", label, Style::Plain)];
+        let mut names = vec![left("Requirements", label, TerminalStyle::Bold)];
+        let mut heads = vec![left("", label, TerminalStyle::Plain)];
         for suite in suites {
             let name = text::cut(&text::line(&results.suites[*suite].name), group - 1);
-            names.push(right(&name, group, Style::Bold));
-            heads.push(Cell(" ".repeat(gap), Style::Plain));
-            heads.extend(columns.iter().map(|(o, w)| right(o.short(), *w, Style::Dim)));
+            names.push(right(&name, group, TerminalStyle::Bold));
+            heads.push(StyledSpan(" ".repeat(gap), TerminalStyle::Plain));
+            heads.extend(columns.iter().map(|(o, w)| right(o.short(), *w, TerminalStyle::Dim)));
         }
         page.line(&names);
         page.line(&heads);
@@ -210,7 +219,7 @@ fn requirements(page: &mut Page, results: &Results) {
 }
 
 /// What the heads of the columns stand for, on as few lines as fit.
-fn legend(page: &mut Page, columns: &[(Outcome, usize)]) {
+fn legend(page: &mut TerminalPage, columns: &[(Outcome, usize)]) {
     let mut line = String::new();
     for (outcome, _) in columns {
         let mut part = format!("{} {}", outcome.short(), outcome.word());
@@ -220,17 +229,17 @@ fn legend(page: &mut Page, columns: &[(Outcome, usize)]) {
         if line.is_empty() {
             line = format!("  {part}");
         } else if line.chars().count() + 3 + part.chars().count() > page.width {
-            page.line(&[Cell(line, Style::Dim)]);
+            page.line(&[StyledSpan(line, TerminalStyle::Dim)]);
             line = format!("  {part}");
         } else {
             line += &format!(" · {part}");
         }
     }
-    page.line(&[Cell(line, Style::Dim)]);
+    page.line(&[StyledSpan(line, TerminalStyle::Dim)]);
 }
 
 fn requirement_line(
-    page: &mut Page,
+    page: &mut TerminalPage,
     requirement: &RequirementResult,
     suites: &[usize],
     (columns, gap): (&[(Outcome, usize)], usize),
@@ -240,17 +249,18 @@ fn requirement_line(
     let name = format!("{} {}", standing.symbol(), text::line(&requirement.name));
     let room = label.saturating_sub(name.chars().count());
     let title = format!(" {}", text::line(&requirement.title));
-    let mut cells = vec![Cell(name, Style::of(standing)), left(&title, room, Style::Plain)];
+    let mut cells =
+        vec![StyledSpan(name, TerminalStyle::of(standing)), left(&title, room, TerminalStyle::Plain)];
     for suite in suites {
         let tally = requirement.tally.get(*suite).copied().unwrap_or_default();
-        cells.push(Cell(" ".repeat(gap), Style::Plain));
+        cells.push(StyledSpan(" ".repeat(gap), TerminalStyle::Plain));
         for (outcome, width) in columns {
             let number = tally.of(*outcome);
             let marked = matches!(outcome, Outcome::Fail | Outcome::Inconclusive | Outcome::Error);
             let style = match number {
-                0 => Style::Dim,
-                _ if marked => Style::of(*outcome),
-                _ => Style::Plain,
+                0 => TerminalStyle::Dim,
+                _ if marked => TerminalStyle::of(*outcome),
+                _ => TerminalStyle::Plain,
             };
             cells.push(right(&if number == 0 { "·".to_owned() } else { number.to_string() }, *width, style));
         }
@@ -258,7 +268,7 @@ fn requirement_line(
     page.line(&cells);
 }
 
-fn violations(page: &mut Page, results: &Results) {
+fn violations(page: &mut TerminalPage, results: &CampaignResults) {
     let violated: Vec<(&RequirementResult, Vec<(usize, &TestResult)>)> = results
         .requirements
         .iter()
@@ -269,7 +279,10 @@ fn violations(page: &mut Page, results: &Results) {
         return;
     }
     page.out.push('\n');
-    page.line(&[Cell("Violations".into(), Style::Bold), Cell("  the first of each".into(), Style::Dim)]);
+    page.line(&[
+        StyledSpan("Violations".into(), TerminalStyle::Bold),
+        StyledSpan("  the first of each".into(), TerminalStyle::Dim),
+    ]);
     let width = |texts: Vec<String>| texts.iter().map(|t| t.chars().count()).max().unwrap_or(0);
     let names = width(violated.iter().map(|(r, _)| text::line(&r.name)).collect());
     let test_of = |tests: &[(usize, &TestResult)]| text::line(facts::short(results, &tests[0].1.name));
@@ -285,19 +298,19 @@ fn violations(page: &mut Page, results: &Results) {
         };
         let used = name.chars().count() + 9 + 2 + tests_width + 2 + others.chars().count();
         page.line(&[
-            Cell(name, Style::Bad),
-            right(&time, 9, Style::Plain),
-            Cell("  ".into(), Style::Plain),
-            left(&test_of(tests), tests_width, Style::Plain),
-            Cell("  ".into(), Style::Plain),
-            left(&what, page.width.saturating_sub(used), Style::Plain),
-            Cell(others, Style::Dim),
+            StyledSpan(name, TerminalStyle::Bad),
+            right(&time, 9, TerminalStyle::Plain),
+            StyledSpan("  ".into(), TerminalStyle::Plain),
+            left(&test_of(tests), tests_width, TerminalStyle::Plain),
+            StyledSpan("  ".into(), TerminalStyle::Plain),
+            left(&what, page.width.saturating_sub(used), TerminalStyle::Plain),
+            StyledSpan(others, TerminalStyle::Dim),
         ]);
         page.command(results, tests[0].1);
     }
 }
 
-fn bins(page: &mut Page, results: &Results) {
+fn bins(page: &mut TerminalPage, results: &CampaignResults) {
     if results.bins.is_empty() {
         return;
     }
@@ -308,7 +321,7 @@ fn bins(page: &mut Page, results: &Results) {
     let shown: Vec<&BinResult> = if results.bins.len() <= BINS {
         results.bins.iter().collect()
     } else {
-        results.bins.iter().filter(|b| Bin::of(b) != Bin::Hit).take(BINS).collect()
+        results.bins.iter().filter(|b| BinStatus::of(b) != BinStatus::Hit).take(BINS).collect()
     };
     let all: Vec<usize> = (0..results.suites.len()).collect();
     let is_predicted = all.iter().any(|suite| facts::predicts(results, *suite));
@@ -316,18 +329,20 @@ fn bins(page: &mut Page, results: &Results) {
     for suites in all.chunks(page.fit(column)) {
         let label = page.label(suites.len(), column);
         page.out.push('\n');
-        let mut names =
-            vec![Cell("Bins".into(), Style::Bold), left(what, label.saturating_sub(4), Style::Dim)];
-        let name = |i: &usize| right(&text::line(&results.suites[*i].name), column, Style::Bold);
+        let mut names = vec![
+            StyledSpan("Bins".into(), TerminalStyle::Bold),
+            left(what, label.saturating_sub(4), TerminalStyle::Dim),
+        ];
+        let name = |i: &usize| right(&text::line(&results.suites[*i].name), column, TerminalStyle::Bold);
         names.extend(suites.iter().map(name));
         page.line(&names);
         for bin in &shown {
             bin_line(page, results, bin, suites, (label, column), is_one);
         }
-        let mut totals = vec![left(&format!("  hit, of {}", results.bins.len()), label, Style::Dim)];
+        let mut totals = vec![left(&format!("  hit, of {}", results.bins.len()), label, TerminalStyle::Dim)];
         let total = |i: &usize| {
             let hit = facts::bins_hit(results, *i);
-            right(&format!("{hit}{:w$}", "", w = prediction(results, *i)), column, Style::Dim)
+            right(&format!("{hit}{:w$}", "", w = prediction(results, *i)), column, TerminalStyle::Dim)
         };
         totals.extend(suites.iter().map(total));
         page.line(&totals);
@@ -335,31 +350,34 @@ fn bins(page: &mut Page, results: &Results) {
 }
 
 /// The width of a suite's predictions with their slash; 0 if it has none.
-fn prediction(results: &Results, suite: usize) -> usize {
+fn prediction(results: &CampaignResults, suite: usize) -> usize {
     let most = results.bins.iter().filter_map(|b| b.predicted.get(suite)).max().copied().unwrap_or(0);
     if most == 0 { 0 } else { most.to_string().len() + 1 }
 }
 
 fn bin_line(
-    page: &mut Page,
-    results: &Results,
+    page: &mut TerminalPage,
+    results: &CampaignResults,
     bin: &BinResult,
     suites: &[usize],
     (label, column): (usize, usize),
     is_one_cross: bool,
 ) {
-    let state = Bin::of(bin);
+    let state = BinStatus::of(bin);
     let (style, note) = match state {
-        Bin::Hit => (Style::Good, ""),
-        Bin::Missed => (Style::Warn, "  not hit"),
-        Bin::Unreachable => (Style::Dim, "  unreachable in the model"),
-        Bin::Refuted => (Style::Bad, "  hit, yet unreachable in the model"),
+        BinStatus::Hit => (TerminalStyle::Good, ""),
+        BinStatus::Missed => (TerminalStyle::Warn, "  not hit"),
+        BinStatus::Unreachable => (TerminalStyle::Dim, "  unreachable in the model"),
+        BinStatus::Refuted => (TerminalStyle::Bad, "  hit, yet unreachable in the model"),
     };
     let name = text::line(if is_one_cross { &bin.bin } else { bin.name.as_str() });
     let name = text::cut(&name, label.saturating_sub(3 + note.chars().count()).max(12));
     let rest = label.saturating_sub(2 + name.chars().count());
-    let mut cells =
-        vec![Cell(format!("{} ", state.symbol()), style), Cell(name, Style::Plain), left(note, rest, style)];
+    let mut cells = vec![
+        StyledSpan(format!("{} ", state.symbol()), style),
+        StyledSpan(name, TerminalStyle::Plain),
+        left(note, rest, style),
+    ];
     for suite in suites {
         let hits = bin.hits.get(*suite).copied().unwrap_or(0);
         let predicted = bin.predicted.get(*suite).copied().unwrap_or(0);
@@ -368,9 +386,9 @@ fn bin_line(
         let digits = prediction(results, *suite);
         let text = if digits == 0 { number } else { format!("{number}{shown:<digits$}") };
         let style = match (hits, predicted) {
-            (0, 0) => Style::Dim,
-            (0, _) => Style::Warn,
-            _ => Style::Plain,
+            (0, 0) => TerminalStyle::Dim,
+            (0, _) => TerminalStyle::Warn,
+            _ => TerminalStyle::Plain,
         };
         cells.push(right(&text, column, style));
     }
@@ -378,27 +396,36 @@ fn bin_line(
 }
 
 /// What the agents' runs reached of their programs: a line for each agent, then the goals that were not reached.
-fn models(page: &mut Page, results: &Results) {
+fn models(page: &mut TerminalPage, results: &CampaignResults) {
     const COLUMN: usize = 9;
     for suite in &results.suites {
         let Some(coverage) = &suite.model else { continue };
         page.out.push('\n');
         let goals = format!("  {}/{} goals reached", coverage.goals_reached, coverage.goals);
         page.line(&[
-            Cell(format!("Model of {}", text::line(&suite.name)), Style::Bold),
-            Cell(goals, if coverage.goals_reached < coverage.goals { Style::Warn } else { Style::Good }),
+            StyledSpan(format!("Model of {}", text::line(&suite.name)), TerminalStyle::Bold),
+            StyledSpan(
+                goals,
+                if coverage.goals_reached < coverage.goals {
+                    TerminalStyle::Warn
+                } else {
+                    TerminalStyle::Good
+                },
+            ),
         ]);
         let kinds = model::kinds(coverage);
         for kinds in kinds.chunks(page.fit(COLUMN)) {
             let label = page.label(kinds.len(), COLUMN).min(LABEL + 10);
-            let mut heads = vec![left("", label, Style::Plain)];
-            heads.extend(kinds.iter().map(|k| right(model::short(*k), COLUMN, Style::Dim)));
+            let mut heads = vec![left("", label, TerminalStyle::Plain)];
+            heads.extend(kinds.iter().map(|k| right(model::short(*k), COLUMN, TerminalStyle::Dim)));
             page.line(&heads);
             for agent in &coverage.agents {
-                let mut cells = vec![left(&format!("  {}", text::line(&agent.agent)), label, Style::Plain)];
+                let mut cells =
+                    vec![left(&format!("  {}", text::line(&agent.agent)), label, TerminalStyle::Plain)];
                 let cell = |kind: &CoverItemKind| {
                     let tally = model::of(agent, *kind);
-                    let style = if tally.reached < tally.all { Style::Warn } else { Style::Plain };
+                    let style =
+                        if tally.reached < tally.all { TerminalStyle::Warn } else { TerminalStyle::Plain };
                     right(&model::ratio(tally), COLUMN, style)
                 };
                 cells.extend(kinds.iter().map(cell));
@@ -409,21 +436,21 @@ fn models(page: &mut Page, results: &Results) {
     }
 }
 
-fn uncovered(page: &mut Page, suite: &SuiteInfo) {
+fn uncovered(page: &mut TerminalPage, suite: &SuiteInfo) {
     let all = suite.explanation.as_ref().map(|e| e.uncovered.as_slice()).unwrap_or_default();
     for goal in all.iter().take(GOALS) {
         page.line(&[
-            Cell("○ ".into(), Style::Warn),
-            Cell(text::line(&goal.goal), Style::Plain),
-            Cell(format!("  {}", text::line(&goal.reason)), Style::Dim),
+            StyledSpan("○ ".into(), TerminalStyle::Warn),
+            StyledSpan(text::line(&goal.goal), TerminalStyle::Plain),
+            StyledSpan(format!("  {}", text::line(&goal.reason)), TerminalStyle::Dim),
         ]);
     }
     if all.len() > GOALS {
-        page.line(&[Cell(format!("  and {} more", all.len() - GOALS), Style::Dim)]);
+        page.line(&[StyledSpan(format!("  and {} more", all.len() - GOALS), TerminalStyle::Dim)]);
     }
 }
 
-fn code(page: &mut Page, results: &Results) {
+fn code(page: &mut TerminalPage, results: &CampaignResults) {
     let all = facts::code(results);
     if all.lines_total == 0 {
         return;
@@ -436,17 +463,17 @@ fn code(page: &mut Page, results: &Results) {
     let column = ((page.width - 10) / entries.len().max(1)).clamp(17, 19);
     for entries in entries.chunks(((page.width - 10) / column).max(1)) {
         page.out.push('\n');
-        let mut names = vec![left("Code", 10, Style::Bold)];
-        names.extend(entries.iter().map(|(name, _)| right(name, column, Style::Bold)));
+        let mut names = vec![left("Code", 10, TerminalStyle::Bold)];
+        names.extend(entries.iter().map(|(name, _)| right(name, column, TerminalStyle::Bold)));
         page.line(&names);
         let ratio = |part: u32, whole: u32, percent: f64| {
-            right(&format!("{part}/{whole}  {percent:>5.1} %"), column, Style::Plain)
+            right(&format!("{part}/{whole}  {percent:>5.1} %"), column, TerminalStyle::Plain)
         };
-        let mut lines = vec![left("  lines", 10, Style::Plain)];
+        let mut lines = vec![left("  lines", 10, TerminalStyle::Plain)];
         lines.extend(entries.iter().map(|(_, c)| ratio(c.lines, c.lines_total, c.line_percent())));
         page.line(&lines);
         if all.branches_total > 0 {
-            let mut branches = vec![left("  branches", 10, Style::Plain)];
+            let mut branches = vec![left("  branches", 10, TerminalStyle::Plain)];
             branches
                 .extend(entries.iter().map(|(_, c)| ratio(c.branches, c.branches_total, c.branch_percent())));
             page.line(&branches);
@@ -454,35 +481,41 @@ fn code(page: &mut Page, results: &Results) {
     }
 }
 
-fn errors(page: &mut Page, results: &Results) {
+fn errors(page: &mut TerminalPage, results: &CampaignResults) {
     let broken: Vec<(&TestResult, &str)> =
         results.tests.iter().filter_map(|t| t.error.as_deref().map(|e| (t, e))).collect();
     if broken.is_empty() {
         return;
     }
     page.out.push('\n');
-    page.line(&[Cell("Errors".into(), Style::Bold), Cell("  tests that broke off".into(), Style::Dim)]);
+    page.line(&[
+        StyledSpan("Errors".into(), TerminalStyle::Bold),
+        StyledSpan("  tests that broke off".into(), TerminalStyle::Dim),
+    ]);
     for (test, error) in broken.iter().take(ERRORS) {
         let name = text::line(facts::short(results, &test.name));
         let clean = text::clean(error);
         let first = clean.lines().find(|l| !l.trim().is_empty()).map(text::line).unwrap_or_default();
         page.line(&[
-            Cell("! ".into(), Style::Warn),
-            Cell(format!("{}  ", text::cut(&name, page.width / 3)), Style::Plain),
-            Cell(first, Style::Plain),
+            StyledSpan("! ".into(), TerminalStyle::Warn),
+            StyledSpan(format!("{}  ", text::cut(&name, page.width / 3)), TerminalStyle::Plain),
+            StyledSpan(first, TerminalStyle::Plain),
         ]);
         if let Some(last) = text::clean(&test.output.stderr_end).lines().rfind(|l| !l.trim().is_empty()) {
-            page.line(&[Cell(format!("  its last line on stderr: {}", text::line(last)), Style::Dim)]);
+            page.line(&[StyledSpan(
+                format!("  its last line on stderr: {}", text::line(last)),
+                TerminalStyle::Dim,
+            )]);
         }
         page.command(results, test);
     }
     if broken.len() > ERRORS {
-        page.line(&[Cell(format!("  and {} more", broken.len() - ERRORS), Style::Dim)]);
+        page.line(&[StyledSpan(format!("  and {} more", broken.len() - ERRORS), TerminalStyle::Dim)]);
     }
 }
 
 /// What must be known about some runs to trust them.
-fn marks(page: &mut Page, results: &Results) {
+fn marks(page: &mut TerminalPage, results: &CampaignResults) {
     for mark in [RunMark::DependsOnLoad, RunMark::OtherProcesses] {
         let marked: Vec<&TestResult> = results.tests.iter().filter(|t| t.marks.contains(&mark)).collect();
         if let Some(first) = marked.first() {
@@ -493,8 +526,8 @@ fn marks(page: &mut Page, results: &Results) {
                 text::count(marked.len(), "test"),
                 if marked.len() > 1 { ", …" } else { "" }
             );
-            page.line(&[Cell("! ".into(), Style::Warn), Cell(who, Style::Plain)]);
-            page.line(&[Cell(format!("  {}", mark.sentence()), Style::Plain)]);
+            page.line(&[StyledSpan("! ".into(), TerminalStyle::Warn), StyledSpan(who, TerminalStyle::Plain)]);
+            page.line(&[StyledSpan(format!("  {}", mark.sentence()), TerminalStyle::Plain)]);
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::names::RequirementName;
 
 /// What a trace says about the requirements, and what it covers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Judgement {
+pub struct TraceJudgement {
     /// One for each requirement, in order.
     pub verdicts: Vec<VerdictResult>,
     /// The cross-product bins that were hit, in order.
@@ -81,7 +81,7 @@ pub struct WitnessStep {
     pub text: String,
 }
 
-impl Judgement {
+impl TraceJudgement {
     /// Whether any requirement was violated.
     #[must_use]
     pub fn has_failed(&self) -> bool {

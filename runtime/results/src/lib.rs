@@ -5,8 +5,8 @@
 //! bytes. `spec/results.schema.json` is its schema, and `spec/results.md` says what its fields mean.
 //!
 //! # Map
-//! - [`Results`] is the file `results.json`; [`Results::to_json`] writes it, [`Results::from_json`] reads it back.
-//! - [`TestResult`] is one test: how its run ended, and the [`Judgement`] on it.
+//! - [`CampaignResults`] is the file `results.json`; [`CampaignResults::to_json`] writes it, [`CampaignResults::from_json`] reads it back.
+//! - [`TestResult`] is one test: how its run ended, and the [`TraceJudgement`] on it.
 //! - [`RequirementResult`], [`BinResult`], [`SuiteInfo`] and [`CodeFile`] add up the tests.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
@@ -25,7 +25,7 @@ use thiserror::Error;
 pub use code::{CodeFile, CoverageRatios};
 pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::CoverItemKind, test::TestMethod};
 pub use hrdsl_trace::RunEnd;
-pub use judgement::{FirstFailure, Judgement, VerdictOutcome, VerdictResult, WitnessStep};
+pub use judgement::{FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult, WitnessStep};
 pub use names::{GoalName, RequirementName, SuiteName, TestName};
 pub use suite::{
     AgentCoverage, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteExplanation, SuiteInfo,
@@ -42,7 +42,7 @@ pub const VERSION: u32 = 2;
 
 /// A whole campaign.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Results {
+pub struct CampaignResults {
     /// `hrdsl-results`
     pub format: String,
     /// The version of the format, 2.
@@ -88,7 +88,7 @@ struct ResultsPreamble {
     version: u32,
 }
 
-impl Results {
+impl CampaignResults {
     /// The results as `results.json` has them.
     ///
     /// # Errors
@@ -122,7 +122,7 @@ impl Results {
     /// # Errors
     /// None that is known: what is written is this crate's own.
     pub fn schema() -> Result<String, ResultsError> {
-        Ok(serde_json::to_string_pretty(&schemars::schema_for!(Results))? + "\n")
+        Ok(serde_json::to_string_pretty(&schemars::schema_for!(CampaignResults))? + "\n")
     }
 
     /// Whether no test violated a requirement, and none broke off.
@@ -145,8 +145,8 @@ impl Results {
 mod tests {
     use super::*;
 
-    fn some() -> Results {
-        Results {
+    fn some() -> CampaignResults {
+        CampaignResults {
             format: FORMAT.into(),
             version: VERSION,
             hrdsl: "0.1.0".into(),
@@ -166,12 +166,12 @@ mod tests {
     #[test]
     fn what_is_written_reads_back() {
         let text = some().to_json().unwrap();
-        assert_eq!(Results::from_json(&text).unwrap(), some());
+        assert_eq!(CampaignResults::from_json(&text).unwrap(), some());
     }
 
     #[test]
     fn something_else_is_refused_with_a_reason() {
-        let refusal = |text: &str| Results::from_json(text).unwrap_err().to_string();
+        let refusal = |text: &str| CampaignResults::from_json(text).unwrap_err().to_string();
         assert!(refusal("nothing").starts_with("these are not the results of a campaign: "));
         assert!(refusal("{}").contains("`format`"));
         assert!(refusal(r#"{"format":"hrdsl-run","version":1}"#).contains("`format`"));

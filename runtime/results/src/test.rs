@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     code::CoverageRatios,
-    judgement::Judgement,
+    judgement::TraceJudgement,
     names::{SuiteName, TestName},
     schema,
 };
@@ -30,7 +30,7 @@ pub struct TestResult {
     /// Simulated seconds.
     pub duration: f64,
     #[serde(flatten)]
-    pub judgement: Judgement,
+    pub judgement: TraceJudgement,
     /// The bins that the model predicted.
     #[schemars(with = "Vec<String>")]
     pub predicted: Vec<BinName>,

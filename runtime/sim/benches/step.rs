@@ -6,7 +6,7 @@ mod common;
 use common::{ARM, LEGS, OFFER, REST, STEP, move_to, named, number, run, settle, table, truth};
 use divan::Bencher;
 use hrdsl_ir::world::{BodyRef, SignalId, SignalTerm};
-use hrdsl_sim::{MotorCommand, Sim};
+use hrdsl_sim::{MotorCommand, WorldSimulation};
 
 fn main() {
     divan::main();
@@ -17,7 +17,7 @@ fn main() {
 fn ten_steps_moving(bencher: Bencher) {
     bencher
         .with_inputs(|| {
-            let mut sim = Sim::new(&table(), &[]).expect("the world");
+            let mut sim = WorldSimulation::new(&table(), &[]).expect("the world");
             sim.command(move_to(OFFER)).expect("in reach");
             sim.advance(2_000_000_000);
             sim
@@ -30,7 +30,7 @@ fn ten_steps_moving(bencher: Bencher) {
 fn ten_steps_standing(bencher: Bencher) {
     bencher
         .with_inputs(|| {
-            let mut sim = Sim::new(&table(), &[]).expect("the world");
+            let mut sim = WorldSimulation::new(&table(), &[]).expect("the world");
             settle(&mut sim);
             sim.command(MotorCommand::OpenFingers { gripper: common::GRIP }).expect("a gripper");
             sim
@@ -41,7 +41,7 @@ fn ten_steps_standing(bencher: Bencher) {
 /// A minute at rest.
 #[divan::bench]
 fn a_minute_at_rest(bencher: Bencher) {
-    let mut sim = Sim::new(&table(), &[]).expect("the world");
+    let mut sim = WorldSimulation::new(&table(), &[]).expect("the world");
     settle(&mut sim);
     bencher.bench_local(|| sim.advance(sim.now() + 60_000_000_000));
 }
@@ -49,7 +49,7 @@ fn a_minute_at_rest(bencher: Bencher) {
 /// A whole hand-over: fetch, lift, offer, back.
 #[divan::bench(sample_count = 10)]
 fn hand_over(bencher: Bencher) {
-    bencher.with_inputs(|| Sim::new(&table(), &[]).expect("the world")).bench_local_refs(|sim| {
+    bencher.with_inputs(|| WorldSimulation::new(&table(), &[]).expect("the world")).bench_local_refs(|sim| {
         common::offer(sim);
         run(sim, MotorCommand::OpenFingers { gripper: common::GRIP });
         run(sim, move_to(REST));
@@ -58,7 +58,7 @@ fn hand_over(bencher: Bencher) {
 
 #[divan::bench]
 fn plan_a_motion(bencher: Bencher) {
-    let mut sim = Sim::new(&table(), &[]).expect("the world");
+    let mut sim = WorldSimulation::new(&table(), &[]).expect("the world");
     settle(&mut sim);
     bencher.bench_local(|| sim.command(move_to(LEGS[3])));
 }
@@ -66,7 +66,7 @@ fn plan_a_motion(bencher: Bencher) {
 #[divan::bench]
 fn build_the_world(bencher: Bencher) {
     let world = table();
-    bencher.bench_local(|| Sim::new(&world, &[]));
+    bencher.bench_local(|| WorldSimulation::new(&world, &[]));
 }
 
 #[divan::bench(args = ["distance", "visible", "joint speed"])]
@@ -78,6 +78,6 @@ fn read_a_signal(bencher: Bencher, what: &str) {
         "visible" => truth(what, SignalTerm::Visible(head, leg)),
         _ => number(what, SignalTerm::JointSpeed(ARM)),
     };
-    let sim = Sim::new(&world, &[signal]).expect("the world");
+    let sim = WorldSimulation::new(&world, &[signal]).expect("the world");
     bencher.bench_local(|| sim.read(SignalId(0)));
 }

@@ -9,7 +9,7 @@ use hrdsl_harness::CommandId;
 use crate::{
     error::{CommandError, SimError},
     kinematics::{KinematicChain, KinematicLink},
-    math::{V3, v3},
+    math::{SpaceVector, v3},
     physics::{PhysicsAdapter, bad, index},
     profile::{MotionProfile, brake_time, braking},
 };
@@ -27,7 +27,7 @@ pub(crate) struct ArmControl {
     pub name: String,
     joints: Vec<JointId>,
     tip: BodyId,
-    tool: V3,
+    tool: SpaceVector,
     base: BodyId,
     max_speed: f64,
     chain: KinematicChain,
@@ -51,7 +51,7 @@ struct ArmMotion {
 }
 
 enum ArmGoal {
-    Place(V3),
+    Place(SpaceVector),
     Joints,
 }
 
@@ -251,7 +251,7 @@ impl ArmControl {
         self.joints.iter().fold(0.0, |m, id| m.max(physics.joint_speed(usize::from(id.0)).abs()))
     }
 
-    pub fn tool_at(&self, physics: &PhysicsAdapter) -> V3 {
+    pub fn tool_at(&self, physics: &PhysicsAdapter) -> SpaceVector {
         physics.pose(self.tip).point(self.tool)
     }
 }

@@ -13,7 +13,7 @@ use hrdsl_harness::CommandId;
 
 use crate::{
     error::{CommandError, SimError},
-    math::{V3, v3},
+    math::{SpaceVector, v3},
     physics::{PhysicsAdapter, bad, index},
 };
 
@@ -23,7 +23,7 @@ const SLACK: f64 = 0.05;
 pub(crate) struct GripperHand {
     pub name: String,
     palm: BodyId,
-    tool: V3,
+    tool: SpaceVector,
     reach: f64,
     delay: Nanos,
     holds: Vec<BodyId>,
@@ -42,7 +42,7 @@ enum GripPhase {
     Opening { until: Nanos, id: Option<CommandId> },
 }
 
-type Finished = Vec<(CommandId, Result<(), CommandError>)>;
+type FinishedCommands = Vec<(CommandId, Result<(), CommandError>)>;
 
 impl GripperHand {
     fn new(gripper: &Gripper, world: &World, physics: &PhysicsAdapter) -> Result<GripperHand, SimError> {
@@ -153,7 +153,7 @@ impl HandSet {
     }
 
     /// What the hands do at the end of a step, in the order of the grippers.
-    pub fn update(&mut self, now: Nanos, physics: &mut PhysicsAdapter, finished: &mut Finished) {
+    pub fn update(&mut self, now: Nanos, physics: &mut PhysicsAdapter, finished: &mut FinishedCommands) {
         for i in 0..self.hands.len() {
             match self.hands[i].phase {
                 GripPhase::Closing { until, id } if now >= until => {

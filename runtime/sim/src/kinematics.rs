@@ -7,13 +7,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::math::{BodyFrame, Quat, V3, about};
+use crate::math::{BodyFrame, RotationQuat, SpaceVector, about};
 
 /// A joint as the planner sees it, in the world at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KinematicLink {
-    pub anchor: V3,
-    pub axis: V3,
+    pub anchor: SpaceVector,
+    pub axis: SpaceVector,
     pub lo: f64,
     pub hi: f64,
 }
@@ -23,7 +23,7 @@ pub(crate) struct KinematicLink {
 pub(crate) struct KinematicChain {
     pub links: Vec<KinematicLink>,
     /// The tool point in the world at the start.
-    pub tool: V3,
+    pub tool: SpaceVector,
 }
 
 /// A posture that brings the tool to a place, or the nearest one found.
@@ -36,10 +36,10 @@ pub(crate) struct ArmPosture {
 
 /// Where the tool is in a posture, and what each joint's motion does to it.
 struct ForwardKinematics {
-    tool: V3,
-    up: V3,
+    tool: SpaceVector,
+    up: SpaceVector,
     /// Axis and anchor of each joint.
-    joints: Vec<(V3, V3)>,
+    joints: Vec<(SpaceVector, SpaceVector)>,
 }
 
 /// Good enough: far below what the physics can keep.
@@ -52,7 +52,7 @@ const RESTARTS: u32 = 12;
 
 impl KinematicChain {
     fn forward(&self, q: &[f64]) -> ForwardKinematics {
-        let mut frame = BodyFrame::new(V3::zeros(), Quat::identity());
+        let mut frame = BodyFrame::new(SpaceVector::zeros(), RotationQuat::identity());
         let mut joints = Vec::with_capacity(q.len());
         for (link, angle) in self.links.iter().zip(q) {
             let anchor = frame.point(link.anchor);
@@ -60,12 +60,12 @@ impl KinematicChain {
             let turn = frame.turn * about(link.axis, *angle);
             frame = BodyFrame::new(anchor - turn * link.anchor, turn);
         }
-        ForwardKinematics { tool: frame.point(self.tool), up: frame.turn * V3::z(), joints }
+        ForwardKinematics { tool: frame.point(self.tool), up: frame.turn * SpaceVector::z(), joints }
     }
 
     /// The tool point, in the world if the base is where it was at the start.
     #[cfg_attr(not(test), allow(dead_code))]
-    pub fn tool_at(&self, q: &[f64]) -> V3 {
+    pub fn tool_at(&self, q: &[f64]) -> SpaceVector {
         self.forward(q).tool
     }
 
@@ -74,7 +74,7 @@ impl KinematicChain {
     /// Tried in order: from the present posture; then, if that does not arrive, from the middle of the limits and a fixed
     /// sequence of postures, of which the one with the shortest way is taken; then, if none arrives, from these postures
     /// whatever becomes of the palm.
-    pub fn plan(&self, from: &[f64], target: V3) -> ArmPosture {
+    pub fn plan(&self, from: &[f64], target: SpaceVector) -> ArmPosture {
         let first = self.descend(from, from, target);
         if first.error <= CONVERGED {
             return first;
@@ -125,7 +125,7 @@ impl KinematicChain {
             .collect()
     }
 
-    fn descend(&self, seed: &[f64], near: &[f64], target: V3) -> ArmPosture {
+    fn descend(&self, seed: &[f64], near: &[f64], target: SpaceVector) -> ArmPosture {
         let wish: Vec<f64> = near.iter().map(|q| q / 1.2).collect();
         let mut q = self.within(seed);
         for _ in 0..160 {
@@ -135,7 +135,7 @@ impl KinematicChain {
     }
 
     /// Goes on to the target from a posture within the limits, in so many steps, whatever becomes of the palm.
-    fn approach(&self, mut q: Vec<f64>, steps: u32, target: V3) -> ArmPosture {
+    fn approach(&self, mut q: Vec<f64>, steps: u32, target: SpaceVector) -> ArmPosture {
         for _ in 0..steps {
             if (target - self.forward(&q).tool).norm() < CONVERGED / 10.0 {
                 break;
@@ -163,7 +163,7 @@ impl KinematicChain {
     }
 
     /// One step towards the target; with a wish also upright, and in the null space towards it.
-    fn iterate(&self, q: &mut [f64], wish: Option<&[f64]>, target: V3) {
+    fn iterate(&self, q: &mut [f64], wish: Option<&[f64]>, target: SpaceVector) {
         let now = self.forward(q);
         let (mut jacobian, error) = task(&now, target, wish.is_some());
         // A joint that the step would push beyond its limit takes no part in the step.
@@ -192,7 +192,7 @@ impl KinematicChain {
 }
 
 /// The Jacobian and the remaining distance: of the place, and if asked of the tilt.
-fn task(now: &ForwardKinematics, target: V3, upright: bool) -> (DMatrix<f64>, DVector<f64>) {
+fn task(now: &ForwardKinematics, target: SpaceVector, upright: bool) -> (DMatrix<f64>, DVector<f64>) {
     let rows = if upright { 5 } else { 3 };
     let mut jacobian = DMatrix::zeros(rows, now.joints.len());
     let mut step = target - now.tool;
@@ -265,10 +265,15 @@ mod tests {
 
     /// Shoulder yaw, shoulder pitch, elbow pitch; two links of 0.4 m, stretched along x.
     fn three() -> KinematicChain {
-        let link = |x: f64, axis| KinematicLink { anchor: V3::new(x, 0.0, 1.0), axis, lo: -2.5, hi: 2.5 };
+        let link =
+            |x: f64, axis| KinematicLink { anchor: SpaceVector::new(x, 0.0, 1.0), axis, lo: -2.5, hi: 2.5 };
         KinematicChain {
-            links: vec![link(0.0, V3::z()), link(0.0, V3::y()), link(0.4, V3::y())],
-            tool: V3::new(0.8, 0.0, 1.0),
+            links: vec![
+                link(0.0, SpaceVector::z()),
+                link(0.0, SpaceVector::y()),
+                link(0.4, SpaceVector::y()),
+            ],
+            tool: SpaceVector::new(0.8, 0.0, 1.0),
         }
     }
 
@@ -276,7 +281,7 @@ mod tests {
     fn the_jacobian_is_the_derivative() {
         let chain = three();
         let q = [0.3, -0.5, 0.9];
-        let (j, _) = task(&chain.forward(&q), V3::zeros(), true);
+        let (j, _) = task(&chain.forward(&q), SpaceVector::zeros(), true);
         for i in 0..3 {
             let h = 1e-6;
             let mut more = q;
@@ -293,7 +298,7 @@ mod tests {
 
     #[test]
     fn what_is_out_of_reach_gives_the_nearest() {
-        let found = three().plan(&[0.0, 0.3, 0.3], V3::new(2.0, 0.0, 1.0));
+        let found = three().plan(&[0.0, 0.3, 0.3], SpaceVector::new(2.0, 0.0, 1.0));
         assert!(!KinematicChain::arrives(&found));
         assert!((found.error - 1.2).abs() < 0.01, "{}", found.error);
     }

@@ -1,10 +1,10 @@
 //! The physics world: bodies, arms, hands and sensors from data, stepped in simulated time.
 //!
 //! # Steps
-//! 1. [`Sim::new`] builds the world of a scenario.
-//! 2. Environment actors change it by [`Sim::act`], the system actor by [`Sim::command`].
-//! 3. [`Sim::advance`] brings it to a time: in physics steps while anything moves, at once while everything rests.
-//! 4. [`Sim::read`] gives a signal's value, [`Sim::finished`] the commands that have ended.
+//! 1. [`WorldSimulation::new`] builds the world of a scenario.
+//! 2. Environment actors change it by [`WorldSimulation::act`], the system actor by [`WorldSimulation::command`].
+//! 3. [`WorldSimulation::advance`] brings it to a time: in physics steps while anything moves, at once while everything rests.
+//! 4. [`WorldSimulation::read`] gives a signal's value, [`WorldSimulation::finished`] the commands that have ended.
 //!
 //! [`SimWorld`] is such a world for the harness.
 //!
@@ -43,7 +43,7 @@ pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
 use hand::HandSet;
 pub use hrdsl_harness::CommandId;
-use math::{BodyFrame, V3, arr};
+use math::{BodyFrame, SpaceVector, arr};
 use mover::KinematicPath;
 use physics::{PhysicsAdapter, bad, index};
 use sense::SensorView;
@@ -53,7 +53,7 @@ pub use world::SimWorld;
 const REST_AFTER: Nanos = 300_000_000;
 
 /// A running world.
-pub struct Sim {
+pub struct WorldSimulation {
     world: World,
     signals: Vec<Signal>,
     physics: PhysicsAdapter,
@@ -71,14 +71,14 @@ pub struct Sim {
     finished: Vec<(CommandId, Result<(), CommandError>)>,
 }
 
-type Vars<'a> = &'a dyn Fn(u16) -> Option<Value>;
+type VariableLookup<'a> = &'a dyn Fn(u16) -> Option<Value>;
 
-impl Sim {
+impl WorldSimulation {
     /// Builds the world, at time 0.
     ///
     /// # Errors
     /// If the data refer to what does not exist, an arm's joints do not form a chain, or a measure is not positive.
-    pub fn new(world: &World, signals: &[Signal]) -> Result<Sim, SimError> {
+    pub fn new(world: &World, signals: &[Signal]) -> Result<WorldSimulation, SimError> {
         if world.step <= 0 {
             return Err(SimError::BadNumber { what: "the physics step".into() });
         }
@@ -92,7 +92,7 @@ impl Sim {
         let arms = world.arms.iter().map(|a| ArmControl::new(a, world, &physics));
         let arms = arms.collect::<Result<Vec<_>, _>>()?;
         let hands = HandSet::new(world, &physics)?;
-        Ok(Sim {
+        Ok(WorldSimulation {
             paths: vec![None; world.bodies.len()],
             world: world.clone(),
             signals: signals.to_vec(),
@@ -205,7 +205,7 @@ impl Sim {
     ///
     /// # Errors
     /// If an expression has no finite value, or the body is not kinematic, or what is named does not exist.
-    pub fn act(&mut self, action: &WorldAction, var: Vars<'_>) -> Result<(), SimError> {
+    pub fn act(&mut self, action: &WorldAction, var: VariableLookup<'_>) -> Result<(), SimError> {
         match action {
             WorldAction::Move { body, to, over } => {
                 let from = self.kinematic(*body)?;
@@ -257,8 +257,8 @@ impl Sim {
         self.paths[index(body)] = Some(KinematicPath::new(from, to, self.now, over));
     }
 
-    fn place(&self, point: &WorldPoint, var: Vars<'_>) -> Result<V3, SimError> {
-        let mut offset = V3::zeros();
+    fn place(&self, point: &WorldPoint, var: VariableLookup<'_>) -> Result<SpaceVector, SimError> {
+        let mut offset = SpaceVector::zeros();
         for (i, expr) in point.offset.iter().enumerate() {
             offset[i] = number(expr, var, "a place")?;
         }
@@ -388,7 +388,7 @@ fn no_gripper(gripper: GripperId) -> SimError {
     bad("an action".into(), "gripper", usize::from(gripper.0))
 }
 
-fn number(expr: &Expr, var: Vars<'_>, what: &str) -> Result<f64, SimError> {
+fn number(expr: &Expr, var: VariableLookup<'_>, what: &str) -> Result<f64, SimError> {
     let value = expr.eval(var).map_err(|error| SimError::Eval { what: what.into(), error })?;
     match value.as_f64() {
         Some(x) if x.is_finite() => Ok(x),

@@ -3,7 +3,7 @@
 use hrdsl_ir::Nanos;
 use hrdsl_ir::value::{nanos, seconds};
 
-use crate::math::{BodyFrame, Quat, V3, about, angle_between, wrap};
+use crate::math::{BodyFrame, RotationQuat, SpaceVector, about, angle_between, wrap};
 use crate::profile::smooth;
 
 /// How long a look takes.
@@ -32,10 +32,11 @@ impl KinematicPath {
         let part = smooth(seconds(now - self.start) / seconds(self.end - self.start));
         let between = self.from.turn.inverse() * self.to.turn;
         // The shorter way round: q and -q are the same rotation.
-        let (w, v) = (between.w, V3::new(between.i, between.j, between.k));
+        let (w, v) = (between.w, SpaceVector::new(between.i, between.j, between.k));
         let (w, v) = if w < 0.0 { (-w, -v) } else { (w, v) };
         let angle = 2.0 * libm::atan2(v.norm(), w);
-        let turn = if v.norm() < 1e-12 { Quat::identity() } else { about(v.normalize(), angle * part) };
+        let turn =
+            if v.norm() < 1e-12 { RotationQuat::identity() } else { about(v.normalize(), angle * part) };
         BodyFrame::new(self.from.at + (self.to.at - self.from.at) * part, self.from.turn * turn)
     }
 
@@ -52,43 +53,43 @@ impl KinematicPath {
 /// exact. It turns its x axis to the target, then about the vertical, to its left, until the angle is the one asked for.
 pub(crate) fn look(
     now: &BodyFrame,
-    facing: V3,
-    target: V3,
+    facing: SpaceVector,
+    target: SpaceVector,
     offset: f64,
     distance: f64,
     angle: f64,
 ) -> BodyFrame {
     let here = now.at - target;
-    let level = |v: V3| V3::new(v.x, v.y, 0.0);
-    let line = [level(facing), level(here), V3::x()].into_iter().find(|v| v.norm() > 1e-6);
-    let line = line.unwrap_or_else(V3::x).normalize();
+    let level = |v: SpaceVector| SpaceVector::new(v.x, v.y, 0.0);
+    let line = [level(facing), level(here), SpaceVector::x()].into_iter().find(|v| v.norm() > 1e-6);
+    let line = line.unwrap_or_else(SpaceVector::x).normalize();
     let line = if here.dot(&line) < 0.0 { -line } else { line };
-    let left = V3::z().cross(&line);
+    let left = SpaceVector::z().cross(&line);
     let offset = offset.clamp(-distance, distance);
     let rest = distance * distance - offset * offset;
     let height = here.z.clamp(0.0, LOOK_HEIGHT).min(rest.sqrt());
     let away = (rest - height * height).max(0.0).sqrt();
-    let at = target + line * away + left * offset + V3::z() * height;
+    let at = target + line * away + left * offset + SpaceVector::z() * height;
     BodyFrame::new(at, face(target - at, angle))
 }
 
 /// A rotation without roll, whose x axis is at `angle` from `sight`, to its left.
-fn face(sight: V3, angle: f64) -> Quat {
+fn face(sight: SpaceVector, angle: f64) -> RotationQuat {
     if sight.norm() < 1e-9 {
-        return Quat::identity();
+        return RotationQuat::identity();
     }
-    let level = V3::new(sight.x, sight.y, 0.0).norm();
+    let level = SpaceVector::new(sight.x, sight.y, 0.0).norm();
     let elevation = libm::atan2(sight.z, level);
     let heading = libm::atan2(sight.y, sight.x);
     let (se, ce) = (libm::sin(elevation), libm::cos(elevation));
     // Turning by t about the vertical: cos angle = sin² e + cos² e cos t.
     let cos = ((libm::cos(angle) - se * se) / (ce * ce).max(1e-12)).clamp(-1.0, 1.0);
     let yaw = wrap(heading + libm::acos(cos));
-    about(V3::z(), yaw) * about(V3::y(), -elevation)
+    about(SpaceVector::z(), yaw) * about(SpaceVector::y(), -elevation)
 }
 
 /// What `angle(a, b)` measures.
-pub(crate) fn sight_angle(a: &BodyFrame, b: V3) -> f64 {
+pub(crate) fn sight_angle(a: &BodyFrame, b: SpaceVector) -> f64 {
     angle_between(&a.x_axis(), &(b - a.at))
 }
 
@@ -104,9 +105,9 @@ mod tests {
             offset in -0.4f64..0.4, distance in 0.5f64..0.8, angle in 0.0f64..1.5,
             x in 0.7f64..1.5, y in -0.5f64..0.5, z in 0.5f64..1.6,
         ) {
-            let head = BodyFrame::new(V3::new(x, y, z), from_rpy([0.0, 0.0, 2.8]));
-            let target = V3::new(0.48, 0.17, 0.705);
-            let there = look(&head, -V3::x(), target, offset, distance, angle);
+            let head = BodyFrame::new(SpaceVector::new(x, y, z), from_rpy([0.0, 0.0, 2.8]));
+            let target = SpaceVector::new(0.48, 0.17, 0.705);
+            let there = look(&head, -SpaceVector::x(), target, offset, distance, angle);
             let offset_there = there.at - target;
             prop_assert!((offset_there.norm() - distance).abs() < 1e-9);
             prop_assert!((offset_there.y - offset).abs() < 1e-9, "left of the line is +y here");
@@ -117,18 +118,18 @@ mod tests {
 
     #[test]
     fn a_way_ends_where_it_should() {
-        let a = BodyFrame::new(V3::zeros(), Quat::identity());
-        let b = BodyFrame::new(V3::new(1.0, 0.0, 2.0), from_rpy([0.0, 0.0, 3.0]));
+        let a = BodyFrame::new(SpaceVector::zeros(), RotationQuat::identity());
+        let b = BodyFrame::new(SpaceVector::new(1.0, 0.0, 2.0), from_rpy([0.0, 0.0, 3.0]));
         let path = KinematicPath::new(a, b, 10, 1.0);
         assert!((path.at(10).at - a.at).norm() < 1e-12);
-        assert!((path.at(10 + 500_000_000).at - V3::new(0.5, 0.0, 1.0)).norm() < 1e-9);
+        assert!((path.at(10 + 500_000_000).at - SpaceVector::new(0.5, 0.0, 1.0)).norm() < 1e-9);
         assert_eq!(path.at(10 + 1_000_000_000), b);
         assert!(path.is_over(1_000_000_010) && !path.is_over(1_000_000_009));
     }
 
     #[test]
     fn a_way_without_time_is_over_at_once() {
-        let a = BodyFrame::new(V3::zeros(), Quat::identity());
+        let a = BodyFrame::new(SpaceVector::zeros(), RotationQuat::identity());
         let path = KinematicPath::new(a, a, 5, -1.0);
         assert!(path.is_over(5) && path.at(5) == a);
     }

@@ -9,7 +9,7 @@ use rapier3d::prelude::*;
 
 use crate::{
     error::SimError,
-    math::{BodyFrame, Quat, V3, from_pose, from_rpy, from_vector, to_pose, to_vector, v3},
+    math::{BodyFrame, RotationQuat, SpaceVector, from_pose, from_rpy, from_vector, to_pose, to_vector, v3},
 };
 
 /// What a body may touch. The arm does not touch itself, nor the people; a palm does not touch what hands can hold, so
@@ -95,10 +95,10 @@ struct HingeJoint {
     parent: RigidBodyHandle,
     child: RigidBodyHandle,
     /// At the start, in the world.
-    axis: V3,
+    axis: SpaceVector,
     /// Of the child relative to the parent, at the start.
-    parent_start: Quat,
-    child_start: Quat,
+    parent_start: RotationQuat,
+    child_start: RotationQuat,
     /// What the motor aims at: angle and speed.
     aim: Option<(f32, f32)>,
 }
@@ -233,7 +233,7 @@ impl PhysicsAdapter {
     }
 
     /// From a point to the body's surface; 0 within.
-    pub fn distance_to_point(&self, body: BodyId, point: V3) -> f64 {
+    pub fn distance_to_point(&self, body: BodyId, point: SpaceVector) -> f64 {
         f64::from(self.shape(body).distance_to_point(&to_pose(&self.pose(body)), to_vector(point), true))
     }
 
@@ -246,10 +246,12 @@ impl PhysicsAdapter {
         let from = self.pose(a).at;
         let there = self.pose(b);
         let third = there.turn * (half_length(self.parts[index(b)].shape) / 3.0);
-        [V3::zeros(), third, -third].iter().any(|offset| self.line_reaches(a, from, b, there.at + offset))
+        [SpaceVector::zeros(), third, -third]
+            .iter()
+            .any(|offset| self.line_reaches(a, from, b, there.at + offset))
     }
 
-    fn line_reaches(&self, a: BodyId, from: V3, b: BodyId, to: V3) -> bool {
+    fn line_reaches(&self, a: BodyId, from: SpaceVector, b: BodyId, to: SpaceVector) -> bool {
         let ray = Ray::new(to_vector(from), to_vector(to - from));
         let Some(hit) = self.cast(b, &ray, 1.0) else { return false };
         let own = self.root(a);
@@ -490,27 +492,27 @@ fn shape_of(body: &Body) -> Result<SharedShape, SimError> {
 const SQRT_HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
 /// From the centre to an end, along the longest axis.
-fn half_length(shape: BodyShape) -> V3 {
+fn half_length(shape: BodyShape) -> SpaceVector {
     match shape {
         BodyShape::Box { size: [x, y, z] } => {
             if x >= y && x >= z {
-                V3::x() * (x / 2.0)
+                SpaceVector::x() * (x / 2.0)
             } else if y >= z {
-                V3::y() * (y / 2.0)
+                SpaceVector::y() * (y / 2.0)
             } else {
-                V3::z() * (z / 2.0)
+                SpaceVector::z() * (z / 2.0)
             }
         }
-        BodyShape::Sphere { radius } => V3::z() * radius,
-        BodyShape::Capsule { radius, length } => V3::z() * (length / 2.0 + radius),
-        BodyShape::Cylinder { length, .. } => V3::z() * (length / 2.0),
+        BodyShape::Sphere { radius } => SpaceVector::z() * radius,
+        BodyShape::Capsule { radius, length } => SpaceVector::z() * (length / 2.0 + radius),
+        BodyShape::Cylinder { length, .. } => SpaceVector::z() * (length / 2.0),
     }
 }
 
 /// A rotation that takes the x axis to the given unit vector.
-fn x_to(axis: &V3) -> Quat {
-    let turn = V3::x().cross(axis);
-    let angle = crate::math::angle_between(&V3::x(), axis);
-    let about = if turn.norm() < 1e-9 { V3::z() } else { turn.normalize() };
+fn x_to(axis: &SpaceVector) -> RotationQuat {
+    let turn = SpaceVector::x().cross(axis);
+    let angle = crate::math::angle_between(&SpaceVector::x(), axis);
+    let about = if turn.norm() < 1e-9 { SpaceVector::z() } else { turn.normalize() };
     crate::math::about(about, angle)
 }

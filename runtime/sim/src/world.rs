@@ -10,16 +10,16 @@ use hrdsl_ir::{
     world::{SignalId, SignalTerm, WorldAction},
 };
 
-use crate::{Sim, command::MotorCommand, error::SimError};
+use crate::{WorldSimulation, command::MotorCommand, error::SimError};
 
-/// A [`Sim`] behind the seam.
+/// A [`WorldSimulation`] behind the seam.
 pub struct SimWorld {
-    sim: Sim,
+    sim: WorldSimulation,
     /// Of commands under way: what must be measured at their end.
-    expected: BTreeMap<CommandId, Expected>,
+    expected: BTreeMap<CommandId, CommandExpectation>,
 }
 
-struct Expected {
+struct CommandExpectation {
     term: SignalTerm,
     value: Value,
     otherwise: String,
@@ -32,7 +32,7 @@ impl SimWorld {
     /// Why the world cannot be built.
     pub fn new(program: &Program) -> Result<Option<Self>, SimError> {
         let Some(world) = &program.world else { return Ok(None) };
-        let sim = Sim::new(world, &program.signals)?;
+        let sim = WorldSimulation::new(world, &program.signals)?;
         Ok(Some(Self { sim, expected: BTreeMap::new() }))
     }
 }
@@ -81,7 +81,7 @@ impl WorldBackend for SimWorld {
             && let Some(term) = expect.measure.of(body)
         {
             let (value, otherwise) = (Value::Bool(expect.is), expect.otherwise.clone());
-            self.expected.insert(id, Expected { term, value, otherwise });
+            self.expected.insert(id, CommandExpectation { term, value, otherwise });
         }
         Ok(id)
     }

@@ -3,7 +3,7 @@
 mod common;
 use common::*;
 use hrdsl_ir::world::*;
-use hrdsl_sim::{CommandError, MotorCommand, Sim};
+use hrdsl_sim::{CommandError, MotorCommand, WorldSimulation};
 use proptest::prelude::*;
 
 fn speeds() -> Vec<Signal> {
@@ -23,7 +23,7 @@ fn tour() -> Vec<Vec3> {
 #[test]
 fn reaches_all_places_within_the_limit_of_speed() {
     let world = table();
-    let mut sim = Sim::new(&world, &speeds()).unwrap();
+    let mut sim = WorldSimulation::new(&world, &speeds()).unwrap();
     let (mut fastest, mut moved): (f64, f64) = (0.0, 0.0);
     let mut before = sim.joint_positions(ARM);
     for target in tour() {
@@ -51,7 +51,7 @@ fn the_physics_step_may_be_finer_or_coarser() {
     for step in [2_000_000, 5_000_000, 20_000_000] {
         let mut world = table();
         world.step = step;
-        let mut sim = Sim::new(&world, &speeds()).unwrap();
+        let mut sim = WorldSimulation::new(&world, &speeds()).unwrap();
         for target in [LEGS[0], OFFER] {
             let id = sim.command(move_to(target)).unwrap();
             let mut fastest: f64 = 0.0;
@@ -66,7 +66,7 @@ fn the_physics_step_may_be_finer_or_coarser() {
 #[test]
 fn what_is_out_of_reach_is_refused_with_the_distance() {
     let world = table();
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     match sim.command(move_to([3.0, 0.0, 1.0])) {
         Err(CommandError::Unreachable { distance }) => assert!((1.7..2.3).contains(&distance), "{distance}"),
         other => panic!("{other:?}"),
@@ -77,7 +77,7 @@ fn what_is_out_of_reach_is_refused_with_the_distance() {
 #[test]
 fn joints_go_where_they_are_told_together() {
     let world = table();
-    let mut sim = Sim::new(&world, &speeds()).unwrap();
+    let mut sim = WorldSimulation::new(&world, &speeds()).unwrap();
     let mut goal = vec![0.0; 9];
     goal[0] = 0.5;
     goal[3] = 0.25;
@@ -97,7 +97,7 @@ fn joints_go_where_they_are_told_together() {
 #[test]
 fn wrong_commands_are_refused() {
     let world = table();
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     let joints = |positions: Vec<f64>| MotorCommand::ReachJoints { arm: ARM, positions, max_speed: None };
     assert_eq!(
         sim.command(joints(vec![0.0; 3])),
@@ -124,7 +124,7 @@ fn wrong_commands_are_refused() {
 #[test]
 fn a_later_command_replaces_an_earlier_without_a_jerk() {
     let world = table();
-    let mut sim = Sim::new(&world, &speeds()).unwrap();
+    let mut sim = WorldSimulation::new(&world, &speeds()).unwrap();
     let first = sim.command(move_to(OFFER)).unwrap();
     sim.advance(2 * SECOND);
     let second = sim.command(move_to(LEGS[0])).unwrap();
@@ -145,7 +145,7 @@ fn what_is_in_the_way_makes_the_command_fail_with_the_distance() {
     let mut world = table();
     let wall = body("wall", BodyMotion::Fixed, cuboid(0.05, 1.0, 0.8), [0.56, 0.2, 0.7], 1.0);
     world.bodies.push(wall);
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     let id = sim.command(move_to([0.7, 0.1, 0.75])).unwrap();
     let (_, result) = wait(&mut sim, id, |_| {});
     match result {
@@ -162,7 +162,7 @@ proptest! {
             (0.25f64..0.55, -0.4f64..0.4, 0.75f64..1.0, 200_000_000i64..8_000_000_000), 1..8),
     ) {
         let world = table();
-        let mut sim = Sim::new(&world, &speeds()).unwrap();
+        let mut sim = WorldSimulation::new(&world, &speeds()).unwrap();
         offer(&mut sim);
         for (x, y, z, time) in places {
             match sim.command(move_to([x, y, z])) {

@@ -5,11 +5,11 @@ use common::*;
 use hrdsl_ir::Expr;
 use hrdsl_ir::Nanos;
 use hrdsl_ir::world::*;
-use hrdsl_sim::{MotorCommand, Sim};
+use hrdsl_sim::{MotorCommand, WorldSimulation};
 use proptest::prelude::*;
 
 /// Everything that can be seen of a world, to the bit.
-fn bits(sim: &Sim, world: &World) -> Vec<u64> {
+fn bits(sim: &WorldSimulation, world: &World) -> Vec<u64> {
     let mut bits = Vec::new();
     for i in 0..world.bodies.len() {
         let (p, q) = sim.pose(BodyId(i as u16)).unwrap();
@@ -24,12 +24,12 @@ fn bits(sim: &Sim, world: &World) -> Vec<u64> {
 /// Runs a fixed script, advancing to each of its times in pieces of the given lengths; what is seen after each part.
 fn script(pieces: &[Nanos]) -> Vec<Vec<u64>> {
     let world = table();
-    let mut sim = Sim::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
     let hand = named(&world, "person.hand");
     let reach = WorldAction::Move { body: hand, to: at(None, [0.5, 0.1, 0.7]), over: Expr::float(1.5) };
     let mut seen = Vec::new();
     let mut pieces = pieces.iter().cycle();
-    let mut until = |sim: &mut Sim, time: Nanos| {
+    let mut until = |sim: &mut WorldSimulation, time: Nanos| {
         while sim.now() < time {
             let piece = pieces.next().copied().unwrap_or(time);
             sim.advance((sim.now() + piece).min(time));
@@ -67,7 +67,7 @@ proptest! {
 #[test]
 fn the_world_comes_to_rest_and_wakes() {
     let world = table();
-    let mut sim = Sim::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
     assert_eq!(sim.next_wake(), Some(STEP));
     settle(&mut sim);
     assert!(sim.now() < 2 * SECOND, "legs that stand need little time: {}", sim.now());
@@ -88,7 +88,7 @@ fn the_world_comes_to_rest_and_wakes() {
 #[test]
 fn rest_waits_for_what_is_under_way() {
     let world = table();
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     settle(&mut sim);
     let id = sim.command(MotorCommand::CloseFingers { gripper: GRIP }).unwrap();
     let (time, result) = wait(&mut sim, id, |_| {});
@@ -112,7 +112,7 @@ fn what_falls_where_there_is_no_floor_does_not_fall_for_ever() {
     world.bodies[at].position = [2.0, 2.0, 0.5];
     let floor = named(&world, "floor").0 as usize;
     world.bodies[floor].ghost = true;
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     settle(&mut sim);
     assert!(sim.now() < 5 * SECOND);
     assert!(sim.pose(BodyId(at as u16)).unwrap().0[2] < -19.0);

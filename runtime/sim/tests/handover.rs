@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Expr, Type};
-use hrdsl_sim::{CommandError, MotorCommand, Sim, SimError};
+use hrdsl_sim::{CommandError, MotorCommand, SimError, WorldSimulation};
 
 const LEG: BodyRef = BodyRef::Current(CurrentId(0));
 
@@ -12,7 +12,7 @@ fn leg(world: &World, n: usize) -> BodyId {
     named(world, &format!("leg{n}"))
 }
 
-fn place(sim: &Sim, body: BodyId) -> Vec3 {
+fn place(sim: &WorldSimulation, body: BodyId) -> Vec3 {
     sim.pose(body).unwrap().0
 }
 
@@ -24,7 +24,7 @@ fn reach_for(world: &World, of: BodyRef, offset: Vec3) -> WorldAction {
 #[test]
 fn a_leg_is_fetched_and_held_out_and_nothing_else_moves() {
     let world = table();
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     offer(&mut sim);
     settle(&mut sim);
     assert_eq!(sim.holding(GRIP), Some(leg(&world, 1)));
@@ -44,7 +44,7 @@ fn four_legs_go_over_to_the_person() {
     let world = table();
     let signals =
         [truth("robot", SignalTerm::Holds(GRIP, LEG)), truth("person", SignalTerm::Holds(GRASP, LEG))];
-    let mut sim = Sim::new(&world, &signals).unwrap();
+    let mut sim = WorldSimulation::new(&world, &signals).unwrap();
     for n in 1..=4 {
         let [x, y, z] = LEGS[n - 1];
         run(&mut sim, move_to([x, y, z]));
@@ -75,7 +75,7 @@ fn four_legs_go_over_to_the_person() {
 #[test]
 fn a_leg_is_thrown_away() {
     let world = table();
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     offer(&mut sim);
     run(&mut sim, move_to(DISCARD));
     run(&mut sim, MotorCommand::OpenFingers { gripper: GRIP });
@@ -89,7 +89,7 @@ fn a_leg_is_thrown_away() {
 #[test]
 fn the_two_may_hold_at_once_without_a_fight() {
     let world = table();
-    let mut sim = Sim::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[number("speed", SignalTerm::JointSpeed(ARM))]).unwrap();
     offer(&mut sim);
     sim.act(&reach_for(&world, LEG, [0.05, -0.1, -0.05]), &none).unwrap();
     sim.act(&WorldAction::Grasp { gripper: GRASP }, &none).unwrap();
@@ -111,7 +111,7 @@ fn the_two_may_hold_at_once_without_a_fight() {
 #[test]
 fn a_grasp_waits_for_what_comes() {
     let world = table();
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     sim.act(&WorldAction::Grasp { gripper: GRASP }, &none).unwrap();
     settle(&mut sim);
     assert_eq!(sim.holding(GRASP), None);
@@ -123,7 +123,7 @@ fn a_grasp_waits_for_what_comes() {
 #[test]
 fn a_gripper_that_closes_on_nothing_holds_nothing_afterwards() {
     let world = table();
-    let mut sim = Sim::new(&world, &[truth("any", SignalTerm::HoldsAny(GRIP))]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[truth("any", SignalTerm::HoldsAny(GRIP))]).unwrap();
     let time = run(&mut sim, MotorCommand::CloseFingers { gripper: GRIP });
     assert!((0.5..0.55).contains(&time), "{time}");
     assert!(!boolean(&sim, 0));
@@ -135,8 +135,8 @@ fn a_gripper_that_closes_on_nothing_holds_nothing_afterwards() {
 fn the_current_leg_is_the_held_or_the_next_or_the_last() {
     let world = table();
     let x = SignalTerm::Coordinate(LEG, Axis::Y);
-    let mut sim = Sim::new(&world, &[number("y", x)]).unwrap();
-    let y = |sim: &Sim| float(sim, 0);
+    let mut sim = WorldSimulation::new(&world, &[number("y", x)]).unwrap();
+    let y = |sim: &WorldSimulation| float(sim, 0);
     assert!((y(&sim) - LEGS[0][1]).abs() < 1e-3);
     offer(&mut sim);
     assert!((y(&sim) - OFFER[1]).abs() < 0.01, "the held one");
@@ -147,7 +147,7 @@ fn the_current_leg_is_the_held_or_the_next_or_the_last() {
 #[test]
 fn opening_while_closing_replaces_it() {
     let world = table();
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     let close = sim.command(MotorCommand::CloseFingers { gripper: GRIP }).unwrap();
     sim.advance(SECOND / 4);
     let open = sim.command(MotorCommand::OpenFingers { gripper: GRIP }).unwrap();
@@ -158,7 +158,7 @@ fn opening_while_closing_replaces_it() {
 #[test]
 fn actions_that_cannot_be_are_refused() {
     let world = table();
-    let mut sim = Sim::new(&world, &[]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     let leg1 = leg(&world, 1);
     let action = WorldAction::Move { body: leg1, to: at(None, REST), over: Expr::float(1.0) };
     assert_eq!(sim.act(&action, &none), Err(SimError::NotKinematic { body: "leg1".into() }));
@@ -174,7 +174,7 @@ fn a_world_that_makes_no_sense_is_refused() {
     let refuse = |change: &dyn Fn(&mut World)| {
         let mut world = table();
         change(&mut world);
-        Sim::new(&world, &[]).err().map(|e| e.to_string()).unwrap_or_default()
+        WorldSimulation::new(&world, &[]).err().map(|e| e.to_string()).unwrap_or_default()
     };
     assert!(refuse(&|w| w.step = 0).contains("physics step"));
     assert!(refuse(&|w| w.bodies[3].mass = -1.0).contains("mass of body `robot.waist"));
@@ -190,6 +190,6 @@ fn a_world_that_makes_no_sense_is_refused() {
     assert!(refuse(&|w| w.grippers[0].holds.push(BodyId(1))).contains("cannot hold `stand`"));
     assert!(refuse(&|w| w.currents[0].of.clear()).contains("current"));
     let signal = signal("far", Type::Bool, vec![SignalTerm::HoldsAny(GripperId(4))], Expr::Var(0));
-    let error = Sim::new(&table(), &[signal]).err().unwrap();
+    let error = WorldSimulation::new(&table(), &[signal]).err().unwrap();
     assert_eq!(error.to_string(), "signal `far` refers to gripper 4, which does not exist");
 }

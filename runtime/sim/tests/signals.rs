@@ -5,7 +5,7 @@ use common::*;
 use hrdsl_ir::expr::{BinaryOp, NumberFunction};
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Enumeration, Expr, Span, Symbol, Type, Value};
-use hrdsl_sim::{MotorCommand, Sim};
+use hrdsl_sim::{MotorCommand, WorldSimulation};
 
 const LEG: BodyRef = BodyRef::Current(CurrentId(0));
 
@@ -67,7 +67,7 @@ fn gaze_pressure_and_location_follow_the_person() {
     let (h, p) = (BodyRef::Body(head), BodyRef::Body(hand));
     let angle = number("angle", SignalTerm::Angle(h, LEG));
     let range = number("range", SignalTerm::Range(h, LEG));
-    let mut sim = Sim::new(&world, &[gaze(h), pressure(), location(p), angle, range]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[gaze(h), pressure(), location(p), angle, range]).unwrap();
     offer(&mut sim);
     assert_eq!([0, 1, 2].map(|i| boolean(&sim, i)), [false; 3]);
     let good =
@@ -82,7 +82,7 @@ fn gaze_pressure_and_location_follow_the_person() {
             assert!((float(&sim, 4) - distance).abs() < 1e-3, "{}", float(&sim, 4));
         }
     }
-    let reach = |sim: &mut Sim, offset: Vec3| {
+    let reach = |sim: &mut WorldSimulation, offset: Vec3| {
         let action = WorldAction::Move { body: hand, to: at(Some(LEG), offset), over: Expr::float(1.0) };
         sim.act(&action, &none).unwrap();
         sim.advance(sim.now() + 2 * SECOND);
@@ -128,7 +128,7 @@ const BOX: BodyRef = BodyRef::Body(BodyId(1));
 #[test]
 fn a_line_of_sight_is_broken_by_bodies_but_not_by_ghosts() {
     let seen = |world: &World| {
-        let sim = Sim::new(world, &[truth("visible", SignalTerm::Visible(EYE, BOX))]).unwrap();
+        let sim = WorldSimulation::new(world, &[truth("visible", SignalTerm::Visible(EYE, BOX))]).unwrap();
         boolean(&sim, 0)
     };
     assert!(seen(&scene(None, false)));
@@ -147,7 +147,7 @@ fn distance_is_between_surfaces_and_range_between_centres() {
         number("angle", SignalTerm::Angle(EYE, BOX)),
         number("speed", SignalTerm::Speed(EYE)),
     ];
-    let mut sim = Sim::new(&world, &signals).unwrap();
+    let mut sim = WorldSimulation::new(&world, &signals).unwrap();
     for (i, expected) in [1.85, 2.0, 1.0, 0.0, 0.0].into_iter().enumerate() {
         assert!((float(&sim, i as u16) - expected).abs() < 1e-5, "{i}: {}", float(&sim, i as u16));
     }
@@ -178,7 +178,7 @@ fn every_shape_has_distances_and_is_seen() {
             number("distance", SignalTerm::Distance(EYE, BOX)),
             truth("visible", SignalTerm::Visible(EYE, BOX)),
         ];
-        let sim = Sim::new(&world, &signals).unwrap();
+        let sim = WorldSimulation::new(&world, &signals).unwrap();
         assert!((float(&sim, 0) - near).abs() < 1e-4, "{shape:?}: {}", float(&sim, 0));
         assert!(boolean(&sim, 1), "{shape:?}");
     }
@@ -186,7 +186,7 @@ fn every_shape_has_distances_and_is_seen() {
     let mut world = scene(None, false);
     world.bodies[1].shape = BodyShape::Cylinder { radius: 0.1, length: 1.0 };
     world.bodies[1].position = [0.0, 0.0, 2.0];
-    let sim = Sim::new(&world, &[number("distance", SignalTerm::Distance(EYE, BOX))]).unwrap();
+    let sim = WorldSimulation::new(&world, &[number("distance", SignalTerm::Distance(EYE, BOX))]).unwrap();
     assert!((float(&sim, 0) - 0.4).abs() < 1e-4, "{}", float(&sim, 0));
 }
 
@@ -196,7 +196,7 @@ fn the_hand_near_the_closing_gripper_is_seen() {
     let hand = named(&world, "person.hand");
     let palm = named(&world, "robot.palm");
     let near = number("near", SignalTerm::Distance(BodyRef::Body(hand), BodyRef::Body(palm)));
-    let mut sim = Sim::new(&world, &[near]).unwrap();
+    let mut sim = WorldSimulation::new(&world, &[near]).unwrap();
     run(&mut sim, move_to(LEGS[0]));
     assert!(float(&sim, 0) > 0.3);
     let of = Some(BodyRef::Body(palm));
@@ -226,7 +226,7 @@ fn an_expression_without_a_value_reads_as_not_a_number_or_false_or_the_first_sym
     let choice = |yes: Expr| Expr::If(Box::new(yes), name("fast"), name("slow"));
     let symbol = signal("s", pace, Vec::new(), choice(le(zero, 1.0)));
     let known = signal("k", pace, Vec::new(), choice(Expr::bool(true)));
-    let sim = Sim::new(&world, &[number, truth, symbol, known]).unwrap();
+    let sim = WorldSimulation::new(&world, &[number, truth, symbol, known]).unwrap();
     assert!(float(&sim, 0).is_nan());
     assert!(!boolean(&sim, 1));
     assert_eq!(sim.read(SignalId(2)).to_string(), "slow");

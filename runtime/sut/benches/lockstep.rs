@@ -6,27 +6,28 @@ use std::{
 };
 
 use hrdsl_sut::{
-    Answer, Cells, Launch, Needs, Process, ProgramLimits, PythonEnv, Reply, Request, StopFlag,
-    cell::Supervisor, pin_to_free_core,
+    CellSettings, EnvironmentNeeds, HarnessReply, LaunchSpec, ProgramLimits, ProgramRequest, PythonEnv,
+    ReplyAnswer, StopFlag, SutProcess, cell::SupervisorCommand, pin_to_free_core,
 };
 
 fn main() {
     divan::main();
 }
 
-fn launch(script: &str, coverage: bool) -> Launch {
+fn launch(script: &str, coverage: bool) -> LaunchSpec {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let cache = root.join("../../target/hrdsl-sut-cache");
-    let needs = Needs { python: "python3", dir: Path::new("."), requirements: None, cache: &cache };
+    let needs =
+        EnvironmentNeeds { python: "python3", dir: Path::new("."), requirements: None, cache: &cache };
     let env = PythonEnv::prepare(&needs, &|_| {}).expect("Python 3 and a way to install coverage.py");
-    Launch {
+    LaunchSpec {
         command: vec!["python3".into(), script.into()],
         dir: root.join("tests/programs"),
         seed: 1,
         coverage: if coverage { vec![script.into()] } else { Vec::new() },
         env,
         variables: Vec::new(),
-        cells: Cells::probe(Supervisor::program(env!("CARGO_BIN_EXE_hrdsl-cell")), &root, None)
+        cells: CellSettings::probe(SupervisorCommand::program(env!("CARGO_BIN_EXE_hrdsl-cell")), &root, None)
             .expect("a cell"),
         limits: ProgramLimits::default(),
         output_kept: 1 << 16,
@@ -35,9 +36,9 @@ fn launch(script: &str, coverage: bool) -> Launch {
     }
 }
 
-fn answer(process: &mut Process) -> Request {
+fn answer(process: &mut SutProcess) -> ProgramRequest {
     let request = process.next().expect("a request");
-    process.reply(&Reply { time: 0, answer: Answer::Ok }).expect("a reply");
+    process.reply(&HarnessReply { time: 0, answer: ReplyAnswer::Ok }).expect("a reply");
     request
 }
 
@@ -48,7 +49,7 @@ fn thousand_round_trips(bencher: divan::Bencher, pinned: bool) {
     if pinned {
         let _pinned = pin_to_free_core().expect("a core");
     }
-    let mut process = Process::spawn(&launch("ask_forever.py", false)).expect("a process");
+    let mut process = SutProcess::spawn(&launch("ask_forever.py", false)).expect("a process");
     answer(&mut process);
     bencher.counter(divan::counter::ItemsCount::new(1000_u32)).bench_local(|| {
         for _ in 0..1000 {
@@ -62,8 +63,8 @@ fn thousand_round_trips(bencher: divan::Bencher, pinned: bool) {
 fn start_to_finish(bencher: divan::Bencher, coverage: bool) {
     let launch = launch("hello.py", coverage);
     bencher.bench_local(|| {
-        let mut process = Process::spawn(&launch).expect("a process");
-        while answer(&mut process) != Request::Done {}
+        let mut process = SutProcess::spawn(&launch).expect("a process");
+        while answer(&mut process) != ProgramRequest::Done {}
         process.finish(Duration::from_secs(10))
     });
 }

@@ -4,7 +4,7 @@ use std::{fmt, io};
 
 use thiserror::Error;
 
-use crate::{exit::Exit, limits::Overrun, output::Output};
+use crate::{exit::ProgramExit, limits::LimitOverrun, output::CapturedOutput};
 
 /// Why there is no further request, or no process at all. Those about a running program carry its last output.
 #[derive(Debug, Error)]
@@ -19,30 +19,30 @@ pub enum SutError {
     /// The program ended although the test had not.
     #[error("the program ended ({exit}) before the test was over{}{output}", silence(*spoke))]
     Exited {
-        exit: Exit,
+        exit: ProgramExit,
         /// Whether it had ever made a request.
         spoke: bool,
-        output: Box<Output>,
+        output: Box<CapturedOutput>,
     },
     /// The program went over one of its limits while it was to `what`.
-    #[error("{}{}{output}", Sentence(*overrun, what), silence(*spoke))]
+    #[error("{}{}{output}", OverrunSentence(*overrun, what), silence(*spoke))]
     Overrun {
         what: &'static str,
-        overrun: Overrun,
+        overrun: LimitOverrun,
         /// Whether it had ever made a request.
         spoke: bool,
-        output: Box<Output>,
+        output: Box<CapturedOutput>,
     },
     /// The campaign is to end.
     #[error("the run was interrupted")]
-    Stopped { output: Box<Output> },
+    Stopped { output: Box<CapturedOutput> },
     /// The program wrote something that is no request.
     #[error("the program wrote rubbish to the harness: {why}: {line:?}{output}")]
     Rubbish {
         /// The beginning of the line.
         line: String,
         why: String,
-        output: Box<Output>,
+        output: Box<CapturedOutput>,
     },
     /// What the program needs could not be installed.
     #[error("cannot prepare the Python environment: {what}\n{detail}")]
@@ -64,7 +64,7 @@ impl SutError {
 
     /// The program's last output, for the errors that have one.
     #[must_use]
-    pub fn output(&self) -> Option<&Output> {
+    pub fn output(&self) -> Option<&CapturedOutput> {
         match self {
             SutError::Exited { output, .. }
             | SutError::Overrun { output, .. }
@@ -76,9 +76,9 @@ impl SutError {
 }
 
 /// What went over a limit, as a sentence.
-struct Sentence<'a>(Overrun, &'a str);
+struct OverrunSentence<'a>(LimitOverrun, &'a str);
 
-impl fmt::Display for Sentence<'_> {
+impl fmt::Display for OverrunSentence<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.describe(self.1, f)
     }

@@ -6,7 +6,7 @@ use std::{
 };
 
 use crate::{
-    cell::{cells::Cells, message::CellOrder},
+    cell::{cells::CellSettings, message::CellOrder},
     environment::{PythonEnv, word::is_python},
     error::SutError,
     limits::{ProgramLimits, StopFlag},
@@ -14,7 +14,7 @@ use crate::{
 
 /// All that determines a run of the program under test.
 #[derive(Clone, Debug)]
-pub struct Launch {
+pub struct LaunchSpec {
     /// The command's words. If the first is `python`, `python3` or `python3.x`, the script runs through the SDK's
     /// runner: with simulated time, seeded chance and coverage.
     pub command: Vec<String>,
@@ -27,7 +27,7 @@ pub struct Launch {
     pub env: PythonEnv,
     /// Variables of the environment that the program gets besides the [default](DEFAULT_VARIABLES), with their values.
     pub variables: Vec<(OsString, OsString)>,
-    pub cells: Cells,
+    pub cells: CellSettings,
     pub limits: ProgramLimits,
     /// How many bytes of each output stream are kept.
     pub output_kept: usize,
@@ -41,13 +41,13 @@ pub struct Launch {
 pub const DEFAULT_VARIABLES: [&str; 2] = ["PATH", "LD_LIBRARY_PATH"];
 
 /// A command with the variables that belong to it.
-struct Start {
+struct StartCommand {
     command: Vec<OsString>,
     env: Vec<(OsString, OsString)>,
 }
 
 /// How a command is started.
-enum Kind<'a> {
+enum CommandKind<'a> {
     /// The interpreter's flags, and the script or `-m module` with its arguments.
     Script {
         flags: &'a [String],
@@ -58,7 +58,7 @@ enum Kind<'a> {
     Other,
 }
 
-impl Launch {
+impl LaunchSpec {
     /// The order for a cell in which the program runs. `descriptors` are the variables that tell the numbers of those that
     /// go with it.
     pub(crate) fn order(&self, descriptors: Vec<String>) -> Result<CellOrder, SutError> {
@@ -74,9 +74,9 @@ impl Launch {
             return Err(absent("program", "an empty command".to_owned()));
         };
         let mut start = match self.kind(word) {
-            Kind::Script { flags, script } => self.script(word, flags, script)?,
-            Kind::Interpreter => self.plain(self.interpreter(word)?.into_os_string()),
-            Kind::Other => self.plain(self.program(word, &dir)),
+            CommandKind::Script { flags, script } => self.script(word, flags, script)?,
+            CommandKind::Interpreter => self.plain(self.interpreter(word)?.into_os_string()),
+            CommandKind::Other => self.plain(self.program(word, &dir)),
         };
         start.env.splice(0..0, self.variables());
         Ok(CellOrder {
@@ -107,25 +107,25 @@ impl Launch {
         given.chain(fixed).chain(self.variables.iter().cloned()).collect()
     }
 
-    fn kind(&self, word: &str) -> Kind<'_> {
+    fn kind(&self, word: &str) -> CommandKind<'_> {
         if !is_python(word) {
-            return Kind::Other;
+            return CommandKind::Other;
         }
         let words = &self.command[1..];
         let mut at = 0;
         while let Some(flag) = words.get(at) {
             match flag.as_str() {
-                "-m" => return Kind::Script { flags: &words[..at], script: &words[at..] },
-                "-c" | "-" => return Kind::Interpreter,
+                "-m" => return CommandKind::Script { flags: &words[..at], script: &words[at..] },
+                "-c" | "-" => return CommandKind::Interpreter,
                 "-W" | "-X" => at += 2,
                 flag if flag.starts_with('-') => at += 1,
-                _ => return Kind::Script { flags: &words[..at], script: &words[at..] },
+                _ => return CommandKind::Script { flags: &words[..at], script: &words[at..] },
             }
         }
-        Kind::Interpreter
+        CommandKind::Interpreter
     }
 
-    fn script(&self, word: &str, flags: &[String], script: &[String]) -> Result<Start, SutError> {
+    fn script(&self, word: &str, flags: &[String], script: &[String]) -> Result<StartCommand, SutError> {
         let file = self.dir.join(&script[0]);
         if script[0] != "-m" && !file.is_file() {
             return Err(absent("script", file.display().to_string()));
@@ -144,15 +144,15 @@ impl Launch {
             ("HRDSL_COVERAGE_PACKAGE", env.coverage.clone().into_os_string()),
             ("HRDSL_COVERAGE_CACHE", env.analyses.clone().into_os_string()),
         ];
-        Ok(Start { command, env: variables.map(|(name, value)| (name.into(), value)).into() })
+        Ok(StartCommand { command, env: variables.map(|(name, value)| (name.into(), value)).into() })
     }
 
     /// A command that is started as it is; any Python below it finds the SDK.
-    fn plain(&self, program: OsString) -> Start {
+    fn plain(&self, program: OsString) -> StartCommand {
         let words = self.command[1..].iter().map(OsString::from);
         let folders = [self.env.sdk.clone().into_os_string()].into_iter();
         let path = join(folders.chain(self.env.path.first().map(OsString::from)));
-        Start {
+        StartCommand {
             command: [program].into_iter().chain(words).collect(),
             env: vec![("PYTHONPATH".into(), path)],
         }

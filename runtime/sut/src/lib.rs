@@ -3,11 +3,11 @@
 //! # Steps
 //!
 //! 1. [`PythonEnv::prepare`] installs, once, what robot code in Python needs: the SDK, coverage.py, its requirements.
-//! 2. [`Cells::probe`] finds out how the machine can keep the programs of several tests apart.
-//! 3. [`Process::spawn`] starts the program of a [`Launch`] in a [`cell`] of its own, with its output captured in bounded
-//!    memory. [`Process::next`] waits for the program's [`Request`], within the [`ProgramLimits`].
-//! 4. [`Process::reply`] answers it with a [`Reply`], which carries the simulated time.
-//! 5. [`Process::finish`] ends the program and gives its exit, output and code coverage ([`FileCoverage`]).
+//! 2. [`CellSettings::probe`] finds out how the machine can keep the programs of several tests apart.
+//! 3. [`SutProcess::spawn`] starts the program of a [`LaunchSpec`] in a [`cell`] of its own, with its output captured in bounded
+//!    memory. [`SutProcess::next`] waits for the program's [`ProgramRequest`], within the [`ProgramLimits`].
+//! 4. [`SutProcess::reply`] answers it with a [`HarnessReply`], which carries the simulated time.
+//! 5. [`SutProcess::finish`] ends the program and gives its exit, output and code coverage ([`FileCoverage`]).
 //!
 //! [`LockStep`] is such a process as the harness's system.
 //!
@@ -30,14 +30,14 @@ mod process;
 mod protocol;
 
 pub use affinity::{PinnedCore, pin_to_free_core};
-pub use cell::Cells;
+pub use cell::CellSettings;
 pub use coverage::FileCoverage;
-pub use environment::{Hooked, Needs, Preparation, PythonEnv};
+pub use environment::{EnvironmentNeeds, HookedPackage, PreparationStep, PythonEnv};
 pub use error::SutError;
-pub use exit::Exit;
-pub use launch::{DEFAULT_VARIABLES, Launch};
-pub use limits::{Overrun, ProgramLimits, StopFlag};
+pub use exit::ProgramExit;
+pub use launch::{DEFAULT_VARIABLES, LaunchSpec};
+pub use limits::{LimitOverrun, ProgramLimits, StopFlag};
 pub use lock_step::LockStep;
-pub use output::{Captured, Output};
-pub use process::{Finished, Process};
-pub use protocol::{Answer, Arg, PROTOCOL_VERSION, Reply, Request};
+pub use output::{CapturedOutput, CapturedStream};
+pub use process::{FinishedProcess, SutProcess};
+pub use protocol::{HarnessReply, PROTOCOL_VERSION, ProgramRequest, ProtocolArgument, ReplyAnswer};

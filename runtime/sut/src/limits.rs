@@ -38,7 +38,7 @@ impl Default for ProgramLimits {
 
 /// Which limit a program went over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Overrun {
+pub enum LimitOverrun {
     Budget(Duration),
     /// It slept where simulated time does not reach, for so much wall time.
     Asleep(Duration),
@@ -47,13 +47,13 @@ pub enum Overrun {
     Output(u64),
 }
 
-impl Overrun {
+impl LimitOverrun {
     /// Whether another run, on a machine that does nothing else, might come to another end.
     #[must_use]
     pub fn is_of_wall_time(self) -> bool {
         match self {
-            Overrun::Asleep(_) | Overrun::Wall(_) => true,
-            Overrun::Budget(_) | Overrun::Cpu(_) | Overrun::Output(_) => false,
+            LimitOverrun::Asleep(_) | LimitOverrun::Wall(_) => true,
+            LimitOverrun::Budget(_) | LimitOverrun::Cpu(_) | LimitOverrun::Output(_) => false,
         }
     }
 
@@ -61,30 +61,30 @@ impl Overrun {
     pub(crate) fn describe(self, what: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let seconds = |t: Duration| format!("{} s", t.as_secs_f64());
         match self {
-            Overrun::Budget(t) => {
+            LimitOverrun::Budget(t) => {
                 write!(
                     f,
                     "the program did not {what} within {} of processor time (`budget` in `system`)",
                     seconds(t)
                 )
             }
-            Overrun::Asleep(t) => write!(
+            LimitOverrun::Asleep(t) => write!(
                 f,
                 "the program did not {what}: it slept for {} of wall time, where simulated time does not pass (a lock, a \
                  socket, a timeout inside C code; `budget` in `system`)",
                 seconds(t)
             ),
-            Overrun::Cpu(t) => {
+            LimitOverrun::Cpu(t) => {
                 write!(
                     f,
                     "the program used more than {} of processor time in this test (`cpu` in `system`)",
                     seconds(t)
                 )
             }
-            Overrun::Wall(t) => {
+            LimitOverrun::Wall(t) => {
                 write!(f, "the test took more than {} of wall time (`wall` in `system`)", seconds(t))
             }
-            Overrun::Output(bytes) => {
+            LimitOverrun::Output(bytes) => {
                 write!(f, "the program wrote more than {bytes} bytes of output (`output` in `system`)")
             }
         }

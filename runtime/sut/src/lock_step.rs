@@ -8,20 +8,20 @@ use hrdsl_ir::{Nanos, value::nanos};
 
 use crate::{
     error::SutError,
-    process::Process,
-    protocol::{Answer, Arg, Reply, Request},
+    process::SutProcess,
+    protocol::{HarnessReply, ProgramRequest, ProtocolArgument, ReplyAnswer},
 };
 
-/// A running [`Process`] behind the seam.
+/// A running [`SutProcess`] behind the seam.
 pub struct LockStep<'r> {
-    process: &'r mut Process,
+    process: &'r mut SutProcess,
     /// Whether it waits for an answer.
     waits: bool,
 }
 
 impl<'r> LockStep<'r> {
     #[must_use]
-    pub fn new(process: &'r mut Process) -> Self {
+    pub fn new(process: &'r mut SutProcess) -> Self {
         Self { process, waits: false }
     }
 }
@@ -39,46 +39,46 @@ impl SystemActor for LockStep<'_> {
 
     fn answer(&mut self, _: RequestTicket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault> {
         self.waits = false;
-        Ok(self.process.reply(&Reply { time: now, answer: said(answer) })?)
+        Ok(self.process.reply(&HarnessReply { time: now, answer: said(answer) })?)
     }
 }
 
-fn meant(request: Request) -> SystemRequest {
-    let arguments = |args: std::collections::BTreeMap<String, Arg>| {
+fn meant(request: ProgramRequest) -> SystemRequest {
+    let arguments = |args: std::collections::BTreeMap<String, ProtocolArgument>| {
         args.into_iter().map(|(name, arg)| (name, argument(arg))).collect()
     };
     match request {
-        Request::Hello { .. } | Request::Now => SystemRequest::Now,
-        Request::Emit { event, args } => SystemRequest::Emit { event, args: arguments(args) },
-        Request::Sleep { seconds } => SystemRequest::Sleep { time: nanos(seconds) },
-        Request::WaitFor { events, timeout } => {
+        ProgramRequest::Hello { .. } | ProgramRequest::Now => SystemRequest::Now,
+        ProgramRequest::Emit { event, args } => SystemRequest::Emit { event, args: arguments(args) },
+        ProgramRequest::Sleep { seconds } => SystemRequest::Sleep { time: nanos(seconds) },
+        ProgramRequest::WaitFor { events, timeout } => {
             SystemRequest::WaitFor { events, timeout: timeout.map(nanos) }
         }
-        Request::Drop { events } => SystemRequest::Drop { events },
-        Request::Read { signal } => SystemRequest::Read { signal },
-        Request::Act { on, command, args, wait: _ } => {
+        ProgramRequest::Drop { events } => SystemRequest::Drop { events },
+        ProgramRequest::Read { signal } => SystemRequest::Read { signal },
+        ProgramRequest::Act { on, command, args, wait: _ } => {
             SystemRequest::Command(CommandRequest { device: on, command, args: arguments(args) })
         }
-        Request::Done => SystemRequest::Done,
+        ProgramRequest::Done => SystemRequest::Done,
     }
 }
 
-fn argument(arg: Arg) -> SystemArgument {
+fn argument(arg: ProtocolArgument) -> SystemArgument {
     match arg {
-        Arg::Text(text) => SystemArgument::Text(text),
-        Arg::Numbers(numbers) => SystemArgument::Numbers(numbers),
-        Arg::Scalar(value) => SystemArgument::Scalar(value),
+        ProtocolArgument::Text(text) => SystemArgument::Text(text),
+        ProtocolArgument::Numbers(numbers) => SystemArgument::Numbers(numbers),
+        ProtocolArgument::Scalar(value) => SystemArgument::Scalar(value),
     }
 }
 
-fn said(answer: SystemAnswer) -> Answer {
+fn said(answer: SystemAnswer) -> ReplyAnswer {
     match answer {
-        SystemAnswer::Ok => Answer::Ok,
-        SystemAnswer::Event { name, args, time } => Answer::Event { name, args, time },
-        SystemAnswer::TimedOut => Answer::TimedOut,
-        SystemAnswer::Value(value) => Answer::Value(value),
-        SystemAnswer::Ended(how) => Answer::Acted(how),
-        SystemAnswer::Refused { error, help } => Answer::Error { error, help },
+        SystemAnswer::Ok => ReplyAnswer::Ok,
+        SystemAnswer::Event { name, args, time } => ReplyAnswer::Event { name, args, time },
+        SystemAnswer::TimedOut => ReplyAnswer::TimedOut,
+        SystemAnswer::Value(value) => ReplyAnswer::Value(value),
+        SystemAnswer::Ended(how) => ReplyAnswer::Acted(how),
+        SystemAnswer::Refused { error, help } => ReplyAnswer::Error { error, help },
     }
 }
 

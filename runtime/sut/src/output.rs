@@ -4,7 +4,7 @@ use std::{collections::VecDeque, ffi::OsString, fmt};
 
 /// What a program wrote to one of its streams.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Captured {
+pub struct CapturedStream {
     /// The first bytes, as text; bytes that are not UTF-8 are replaced.
     pub head: String,
     /// The last bytes after `head`, as text.
@@ -15,7 +15,7 @@ pub struct Captured {
     pub dropped: u64,
 }
 
-impl Captured {
+impl CapturedStream {
     /// The text, with a note where some is missing.
     #[must_use]
     pub fn text(&self) -> String {
@@ -37,12 +37,12 @@ impl Captured {
 
 /// What a program wrote to both of its streams.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Output {
-    pub stdout: Captured,
-    pub stderr: Captured,
+pub struct CapturedOutput {
+    pub stdout: CapturedStream,
+    pub stderr: CapturedStream,
 }
 
-impl fmt::Display for Output {
+impl fmt::Display for CapturedOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (name, stream) in [("stderr", &self.stderr), ("stdout", &self.stdout)] {
             if stream.bytes > 0 {
@@ -59,14 +59,14 @@ fn indent(text: &str) -> String {
 
 /// Collects a stream of any length within `limit` bytes: the first half of the limit is the head, the rest a ring.
 #[derive(Debug)]
-pub(crate) struct Capture {
+pub(crate) struct StreamCapture {
     limit: usize,
     head: Vec<u8>,
     tail: VecDeque<u8>,
     bytes: u64,
 }
 
-impl Capture {
+impl StreamCapture {
     pub(crate) fn new(limit: usize) -> Self {
         Self { limit, head: Vec::new(), tail: VecDeque::new(), bytes: 0 }
     }
@@ -89,16 +89,16 @@ impl Capture {
     }
 
     /// What was collected, with the beginnings of paths put back to what they stand for.
-    pub(crate) fn captured(&self, moved: &[(OsString, OsString)]) -> Captured {
+    pub(crate) fn captured(&self, moved: &[(OsString, OsString)]) -> CapturedStream {
         let kept = self.head.len() + self.tail.len();
         let tail: Vec<u8> = self.tail.iter().copied().collect();
         if kept as u64 == self.bytes {
             // Nothing is missing: a character that lies across the halves stays whole.
             let all = [self.head.as_slice(), &tail].concat();
             let head = put_back(lossy(&all), moved);
-            return Captured { head, tail: String::new(), bytes: self.bytes, dropped: 0 };
+            return CapturedStream { head, tail: String::new(), bytes: self.bytes, dropped: 0 };
         }
-        Captured {
+        CapturedStream {
             head: put_back(lossy(&self.head), moved),
             tail: put_back(lossy(&tail), moved),
             bytes: self.bytes,
@@ -119,8 +119,8 @@ fn lossy(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    fn capture(limit: usize, chunks: &[&[u8]]) -> Captured {
-        let mut c = Capture::new(limit);
+    fn capture(limit: usize, chunks: &[&[u8]]) -> CapturedStream {
+        let mut c = StreamCapture::new(limit);
         for chunk in chunks {
             c.push(chunk);
         }
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn memory_is_bounded_whatever_the_chunks() {
-        let mut c = Capture::new(100);
+        let mut c = StreamCapture::new(100);
         for n in 0..1000_usize {
             c.push(&vec![b'x'; n * 7 % 301]);
             assert!(c.head.len() <= 50 && c.tail.len() <= 50);

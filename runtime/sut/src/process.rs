@@ -25,12 +25,12 @@ use crate::{
     },
     coverage::{self, FileCoverage},
     error::SutError,
-    exit::Exit,
-    launch::Launch,
-    limits::{Overrun, ProgramLimits, StopFlag},
-    output::{Capture, Output},
-    patience::{LOOK, Patience},
-    protocol::{self, Answer, Line, Reply, Request},
+    exit::ProgramExit,
+    launch::LaunchSpec,
+    limits::{LimitOverrun, ProgramLimits, StopFlag},
+    output::{CapturedOutput, StreamCapture},
+    patience::{LOOK, WaitBudget},
+    protocol::{self, HarnessReply, ProgramRequest, ProtocolLine, ReplyAnswer},
 };
 
 /// A request longer than this is rubbish.
@@ -44,14 +44,14 @@ const LAST_WORDS: Duration = Duration::from_millis(500);
 
 /// A program under test, running. Dropping it kills it and whatever it started.
 #[derive(Debug)]
-pub struct Process {
+pub struct SutProcess {
     cell: CellHandle,
     /// `None` once every writer has closed it.
     requests: Option<OwnedFd>,
     /// `None` once the program was told to finish.
     replies: Option<OwnedFd>,
-    stdout: Stream,
-    stderr: Stream,
+    stdout: ProcessStream,
+    stderr: ProcessStream,
     /// Bytes from the program that are not yet read as requests.
     inbox: Vec<u8>,
     /// How many bytes of the inbox are known to have no line end.
@@ -72,16 +72,16 @@ pub struct Process {
 }
 
 #[derive(Debug)]
-struct Stream {
+struct ProcessStream {
     fd: Option<OwnedFd>,
-    capture: Capture,
+    capture: StreamCapture,
 }
 
 /// What is left of a program that has ended.
 #[derive(Clone, Debug)]
-pub struct Finished {
-    pub exit: Exit,
-    pub output: Output,
+pub struct FinishedProcess {
+    pub exit: ProgramExit,
+    pub output: CapturedOutput,
     /// `None` if it was not asked for, or the program was killed before it could be written.
     pub coverage: Option<Vec<FileCoverage>>,
     /// Whether it ever started another process.
@@ -92,25 +92,25 @@ pub struct Finished {
 
 /// What a turn of the poll loop waits for, besides output and the program's end.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum For {
+enum PollTarget {
     Request,
     RoomToReply,
     End,
 }
 
 /// What a turn of the poll loop found.
-enum Found {
+enum PollOutcome {
     Something,
     Ended,
 }
 
-impl Process {
+impl SutProcess {
     /// Starts the program of a launch in a cell.
     ///
     /// # Errors
     /// [`SutError::Absent`] if something to run does not exist; [`SutError::Environment`] if the command asks for an
     /// interpreter that was not prepared; [`SutError::Io`] if the system refuses pipes, a cell or a process.
-    pub fn spawn(launch: &Launch) -> Result<Self, SutError> {
+    pub fn spawn(launch: &LaunchSpec) -> Result<Self, SutError> {
         let io = || SutError::io("cannot make pipes");
         let (requests, its_requests, its_replies, replies) = pipes_for_child().map_err(io())?;
         let mut descriptors = vec![its_requests.as_fd(), its_replies.as_fd()];
@@ -123,8 +123,8 @@ impl Process {
         }
         let order = launch.order(names.into_iter().map(str::to_owned).collect())?;
         let mut cell = CellHandle::start(&launch.cells.supervisor, &order, &descriptors)?;
-        let stdout = Stream::new(cell.stdout.take(), launch.output_kept);
-        let stderr = Stream::new(cell.stderr.take(), launch.output_kept);
+        let stdout = ProcessStream::new(cell.stdout.take(), launch.output_kept);
+        let stderr = ProcessStream::new(cell.stderr.take(), launch.output_kept);
         Ok(Self {
             cell,
             requests: Some(requests),
@@ -150,43 +150,44 @@ impl Process {
     /// kind, wrong types, another protocol version) are refused here, and the wait goes on.
     ///
     /// # Errors
-    /// [`SutError::Exited`], [`SutError::Overrun`], [`SutError::Rubbish`], [`SutError::Stopped`]; [`SutError::Io`] if the
+    /// [`SutError::Exited`], [`SutError::LimitOverrun`], [`SutError::Rubbish`], [`SutError::Stopped`]; [`SutError::Io`] if the
     /// system fails. After an error, [`finish`](Self::finish) is the only sensible call.
     #[allow(
         clippy::should_implement_trait,
         reason = "no iterator: each request must be answered before the next"
     )]
-    pub fn next(&mut self) -> Result<Request, SutError> {
-        let mut patience = Patience::new(self.limits.budget);
+    pub fn next(&mut self) -> Result<ProgramRequest, SutError> {
+        let mut patience = WaitBudget::new(self.limits.budget);
         let mut refused = 0_usize;
         loop {
             if let Some(line) = self.take_line()? {
                 match protocol::parse(&line) {
-                    Line::Request(request) => {
+                    ProtocolLine::Request(request) => {
                         self.spoke = true;
                         return Ok(request);
                     }
-                    Line::Rubbish(why) => return Err(self.rubbish(&line, why)),
-                    Line::Refused(error) => {
+                    ProtocolLine::Rubbish(why) => return Err(self.rubbish(&line, why)),
+                    ProtocolLine::Refused(error) => {
                         self.spoke = true;
                         refused += 1;
                         if refused > MOST_REFUSED {
                             let why = format!("{MOST_REFUSED} requests were refused, the last since {error}");
                             return Err(self.rubbish(&line, why));
                         }
-                        let answer = Answer::Error { error, help: Some("see spec/protocol.md".to_owned()) };
-                        self.reply(&Reply { time: self.time, answer })?;
+                        let answer =
+                            ReplyAnswer::Error { error, help: Some("see spec/protocol.md".to_owned()) };
+                        self.reply(&HarnessReply { time: self.time, answer })?;
                         // It has asked: the wait for its next request begins.
-                        patience = Patience::new(self.limits.budget);
+                        patience = WaitBudget::new(self.limits.budget);
                         continue;
                     }
                 }
             }
-            match self.turn(For::Request, &mut patience)? {
-                Found::Something => {}
+            match self.turn(PollTarget::Request, &mut patience)? {
+                PollOutcome::Something => {}
                 // What it wrote before it ended comes first.
-                Found::Ended if self.inbox.contains(&b'\n') => {}
-                Found::Ended => return Err(self.exited()),
+                PollOutcome::Ended if self.inbox.contains(&b'\n') => {}
+                PollOutcome::Ended => return Err(self.exited()),
             }
         }
     }
@@ -194,23 +195,23 @@ impl Process {
     /// Answers the request. That the program has ended meanwhile is for [`next`](Self::next) to say.
     ///
     /// # Errors
-    /// [`SutError::Overrun`] if the program does not read its replies; [`SutError::Io`] if the system fails.
-    pub fn reply(&mut self, reply: &Reply) -> Result<(), SutError> {
+    /// [`SutError::LimitOverrun`] if the program does not read its replies; [`SutError::Io`] if the system fails.
+    pub fn reply(&mut self, reply: &HarnessReply) -> Result<(), SutError> {
         self.time = reply.time;
         self.outbox.clear();
         serde_json::to_writer(&mut self.outbox, reply)
             .map_err(|e| SutError::io("cannot write a reply")(io::Error::other(e)))?;
         self.outbox.push(b'\n');
         let mut sent = 0;
-        let mut patience = Patience::new(self.limits.budget);
+        let mut patience = WaitBudget::new(self.limits.budget);
         while sent < self.outbox.len() {
             let Some(fd) = &self.replies else { return Ok(()) };
             match rustix::io::write(fd, &self.outbox[sent..]) {
                 Ok(n) => sent += n,
                 Err(Errno::INTR) => {}
-                Err(Errno::AGAIN) => match self.turn(For::RoomToReply, &mut patience)? {
-                    Found::Something => {}
-                    Found::Ended => return Ok(()),
+                Err(Errno::AGAIN) => match self.turn(PollTarget::RoomToReply, &mut patience)? {
+                    PollOutcome::Something => {}
+                    PollOutcome::Ended => return Ok(()),
                 },
                 Err(Errno::PIPE) => {
                     self.replies = None;
@@ -225,7 +226,7 @@ impl Process {
     /// Ends the program: it gets `grace` (of processor time or sleep) to end by itself, unless it has had its time already,
     /// then half a second to write its coverage on SIGTERM, then it is killed. Whatever it started is killed in any case.
     #[must_use]
-    pub fn finish(mut self, grace: Duration) -> Finished {
+    pub fn finish(mut self, grace: Duration) -> FinishedProcess {
         // A program that still waits for a reply learns that there is none.
         self.replies = None;
         let mut killed = false;
@@ -240,31 +241,34 @@ impl Process {
         }
         self.drain();
         let ending = self.cell.ending().cloned();
-        let exit = ending.as_ref().filter(|_| !killed).map_or(Exit::Killed, |e| e.exit);
+        let exit = ending.as_ref().filter(|_| !killed).map_or(ProgramExit::Killed, |e| e.exit);
         let coverage = self.coverage.take().and_then(|(file, names)| coverage::read(file, &names));
         let (others, kept) = ending.map_or((false, None), |e| (e.others, e.kept));
-        Finished { exit, output: self.output(), coverage, others, kept }
+        FinishedProcess { exit, output: self.output(), coverage, others, kept }
     }
 
     /// What the program has written to its output so far, with the paths of the project.
     #[must_use]
-    pub fn output(&self) -> Output {
+    pub fn output(&self) -> CapturedOutput {
         let moved = &self.cell.moved;
-        Output { stdout: self.stdout.capture.captured(moved), stderr: self.stderr.capture.captured(moved) }
+        CapturedOutput {
+            stdout: self.stdout.capture.captured(moved),
+            stderr: self.stderr.capture.captured(moved),
+        }
     }
 
     // ── errors ──
 
     fn exited(&mut self) -> SutError {
-        let exit = self.cell.ending().map_or(Exit::Killed, |e| e.exit);
+        let exit = self.cell.ending().map_or(ProgramExit::Killed, |e| e.exit);
         SutError::Exited { exit, spoke: self.spoke, output: Box::new(self.output()) }
     }
 
-    fn overrun(&self, what: For, overrun: Overrun) -> SutError {
+    fn overrun(&self, what: PollTarget, overrun: LimitOverrun) -> SutError {
         let what = match what {
-            For::Request => "make a request",
-            For::RoomToReply => "read its replies",
-            For::End => "end",
+            PollTarget::Request => "make a request",
+            PollTarget::RoomToReply => "read its replies",
+            PollTarget::End => "end",
         };
         SutError::Overrun { what, overrun, spoke: self.spoke, output: Box::new(self.output()) }
     }
@@ -297,7 +301,7 @@ impl Process {
     }
 
     /// Waits once, for a look's time at most; reads whatever there is, and watches the limits.
-    fn turn(&mut self, what: For, patience: &mut Patience) -> Result<Found, SutError> {
+    fn turn(&mut self, what: PollTarget, patience: &mut WaitBudget) -> Result<PollOutcome, SutError> {
         let ready = self.poll(what).map_err(|e| SutError::io("cannot wait for the program")(e.into()))?;
         if ready.stdout {
             self.stdout.read(&mut self.chunk);
@@ -314,7 +318,7 @@ impl Process {
         if self.cell.ending().is_some() || self.cell.is_lost() {
             // Nobody is left who could write.
             self.drain();
-            return Ok(Found::Ended);
+            return Ok(PollOutcome::Ended);
         }
         match self.watch(what, patience) {
             Some(overrun) => {
@@ -322,20 +326,22 @@ impl Process {
                 Err(self.overrun(what, overrun))
             }
             None if self.stop.is_set() => Err(SutError::Stopped { output: Box::new(self.output()) }),
-            None => Ok(Found::Something),
+            None => Ok(PollOutcome::Something),
         }
     }
 
     /// Which limit the program has gone over, if any.
-    fn watch(&mut self, what: For, patience: &mut Patience) -> Option<Overrun> {
+    fn watch(&mut self, what: PollTarget, patience: &mut WaitBudget) -> Option<LimitOverrun> {
         let limits = self.limits;
         // Output is not counted against a program that is over.
-        if what != For::End && self.stdout.capture.bytes() + self.stderr.capture.bytes() > limits.output {
-            return Some(Overrun::Output(limits.output));
+        if what != PollTarget::End
+            && self.stdout.capture.bytes() + self.stderr.capture.bytes() > limits.output
+        {
+            return Some(LimitOverrun::Output(limits.output));
         }
         if let Some(usage) = self.cell.take_usage() {
             if usage.cpu > limits.cpu {
-                return Some(Overrun::Cpu(limits.cpu));
+                return Some(LimitOverrun::Cpu(limits.cpu));
             }
             if let Some(overrun) = patience.look(usage) {
                 return Some(overrun);
@@ -345,24 +351,29 @@ impl Process {
             self.asked = Instant::now();
             self.cell.ask(CellRequest::Usage);
         }
-        (self.begun.elapsed() > limits.wall).then_some(Overrun::Wall(limits.wall))
+        (self.begun.elapsed() > limits.wall).then_some(LimitOverrun::Wall(limits.wall))
     }
 
-    fn poll(&self, what: For) -> Result<Ready, Errno> {
+    fn poll(&self, what: PollTarget) -> Result<StreamReadiness, Errno> {
         let look = Timespec { tv_sec: 0, tv_nsec: LOOK.subsec_nanos().into() };
         let mut fds: [Option<(BorrowedFd<'_>, PollFlags)>; 5] = [
             self.requests.as_ref().map(|fd| (fd.as_fd(), PollFlags::IN)),
             self.stdout.fd.as_ref().map(|fd| (fd.as_fd(), PollFlags::IN)),
             self.stderr.fd.as_ref().map(|fd| (fd.as_fd(), PollFlags::IN)),
             self.cell.control().map(|fd| (fd, PollFlags::IN)),
-            self.replies.as_ref().filter(|_| what == For::RoomToReply).map(|fd| (fd.as_fd(), PollFlags::OUT)),
+            self.replies
+                .as_ref()
+                .filter(|_| what == PollTarget::RoomToReply)
+                .map(|fd| (fd.as_fd(), PollFlags::OUT)),
         ];
-        if self.inbox.len() > LONGEST_LINE && what != For::Request {
+        if self.inbox.len() > LONGEST_LINE && what != PollTarget::Request {
             // Nobody takes lines now; the program waits.
             fds[0] = None;
         }
         // A fixed array, since `poll` takes no holes: places without a descriptor repeat the first, for nothing.
-        let Some(spare) = fds.iter().flatten().next().map(|(fd, _)| *fd) else { return Ok(Ready::default()) };
+        let Some(spare) = fds.iter().flatten().next().map(|(fd, _)| *fd) else {
+            return Ok(StreamReadiness::default());
+        };
         let mut polled = fds.map(|fd| match fd {
             Some((fd, flags)) => PollFd::from_borrowed_fd(fd, flags),
             None => PollFd::from_borrowed_fd(spare, PollFlags::empty()),
@@ -372,7 +383,7 @@ impl Process {
             Err(e) => return Err(e),
         }
         let is = |k: usize| fds[k].is_some() && !polled[k].revents().is_empty();
-        Ok(Ready { requests: is(0), stdout: is(1), stderr: is(2), control: is(3) })
+        Ok(StreamReadiness { requests: is(0), stdout: is(1), stderr: is(2), control: is(3) })
     }
 
     fn read_requests(&mut self) {
@@ -398,12 +409,12 @@ impl Process {
 
     /// Whether the program ended within its time.
     fn wait_for_end(&mut self, time: Duration) -> bool {
-        let mut patience = Patience::new(time);
+        let mut patience = WaitBudget::new(time);
         while self.cell.ending().is_none() && !self.cell.is_lost() {
             self.inbox.clear();
             self.scanned = 0;
-            match self.turn(For::End, &mut patience) {
-                Ok(Found::Something | Found::Ended) => {}
+            match self.turn(PollTarget::End, &mut patience) {
+                Ok(PollOutcome::Something | PollOutcome::Ended) => {}
                 Err(_) => return false,
             }
         }
@@ -412,17 +423,17 @@ impl Process {
 }
 
 #[derive(Default)]
-struct Ready {
+struct StreamReadiness {
     requests: bool,
     stdout: bool,
     stderr: bool,
     control: bool,
 }
 
-impl Stream {
+impl ProcessStream {
     fn new(fd: Option<OwnedFd>, limit: usize) -> Self {
         let fd = fd.filter(|fd| unblock(fd).is_ok());
-        Self { fd, capture: Capture::new(limit) }
+        Self { fd, capture: StreamCapture::new(limit) }
     }
 
     /// Reads once; whether there may be more.

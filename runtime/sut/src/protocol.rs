@@ -12,7 +12,7 @@ pub const PROTOCOL_VERSION: u32 = 1;
 /// refuses others).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "request", rename_all = "snake_case")]
-pub enum Request {
+pub enum ProgramRequest {
     /// The first request; may come again with another name.
     Hello { version: u32, name: String },
     /// What time is it?
@@ -21,7 +21,7 @@ pub enum Request {
     Emit {
         event: String,
         #[serde(default)]
-        args: BTreeMap<String, Arg>,
+        args: BTreeMap<String, ProtocolArgument>,
     },
     /// Let simulated time pass.
     Sleep { seconds: f64 },
@@ -44,7 +44,7 @@ pub enum Request {
         #[serde(rename = "do")]
         command: String,
         #[serde(default)]
-        args: BTreeMap<String, Arg>,
+        args: BTreeMap<String, ProtocolArgument>,
         /// Whether the reply comes when the command has ended; version 1 always waits.
         #[serde(default = "yes")]
         wait: bool,
@@ -60,7 +60,7 @@ fn yes() -> bool {
 /// An argument of an event or a command, as the program wrote it: what it means, its declaration tells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Arg {
+pub enum ProtocolArgument {
     /// The name of a value of an enumeration, perhaps. First, so that no text becomes a symbol before it is known to be
     /// one: symbols are kept for ever.
     Text(String),
@@ -69,50 +69,50 @@ pub enum Arg {
     Scalar(Value),
 }
 
-impl fmt::Display for Arg {
+impl fmt::Display for ProtocolArgument {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Arg::Text(text) => write!(f, "{text:?}"),
-            Arg::Scalar(value) => write!(f, "{value}"),
-            Arg::Numbers(numbers) => write!(f, "{numbers:?}"),
+            ProtocolArgument::Text(text) => write!(f, "{text:?}"),
+            ProtocolArgument::Scalar(value) => write!(f, "{value}"),
+            ProtocolArgument::Numbers(numbers) => write!(f, "{numbers:?}"),
         }
     }
 }
 
-impl Request {
+impl ProgramRequest {
     /// Why the request makes no sense whatever the scenario, if it does not.
     pub(crate) fn fault(&self) -> Option<String> {
         let bad = |s: f64| (!s.is_finite() || s < 0.0).then(|| format!("{s} is no duration"));
         match self {
-            Request::Hello { version, .. } => (*version != PROTOCOL_VERSION)
+            ProgramRequest::Hello { version, .. } => (*version != PROTOCOL_VERSION)
                 .then(|| format!("protocol version {version} is not spoken here, only {PROTOCOL_VERSION}")),
-            Request::Sleep { seconds } => bad(*seconds),
-            Request::WaitFor { events, .. } if events.is_empty() => {
+            ProgramRequest::Sleep { seconds } => bad(*seconds),
+            ProgramRequest::WaitFor { events, .. } if events.is_empty() => {
                 Some("wait_for without events".to_owned())
             }
-            Request::WaitFor { timeout, .. } => timeout.and_then(bad),
-            Request::Act { wait: false, .. } => Some("version 1 has no act without wait".to_owned()),
-            Request::Now
-            | Request::Emit { .. }
-            | Request::Drop { .. }
-            | Request::Read { .. }
-            | Request::Act { .. }
-            | Request::Done => None,
+            ProgramRequest::WaitFor { timeout, .. } => timeout.and_then(bad),
+            ProgramRequest::Act { wait: false, .. } => Some("version 1 has no act without wait".to_owned()),
+            ProgramRequest::Now
+            | ProgramRequest::Emit { .. }
+            | ProgramRequest::Drop { .. }
+            | ProgramRequest::Read { .. }
+            | ProgramRequest::Act { .. }
+            | ProgramRequest::Done => None,
         }
     }
 }
 
 /// What the harness answers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reply {
+pub struct HarnessReply {
     /// Simulated time.
     pub time: Nanos,
-    pub answer: Answer,
+    pub answer: ReplyAnswer,
 }
 
 /// The part of a reply that depends on the request.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer {
+pub enum ReplyAnswer {
     /// To hello, now, emit, sleep, drop, done.
     Ok,
     /// To wait_for: the event that came, and when it happened.
@@ -133,10 +133,10 @@ pub enum Answer {
     Stop,
 }
 
-impl Serialize for Reply {
+impl Serialize for HarnessReply {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
-        struct Happened<'a> {
+        struct EventOccurrence<'a> {
             name: &'a str,
             args: &'a BTreeMap<String, Value>,
             time: Nanos,
@@ -144,24 +144,24 @@ impl Serialize for Reply {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("t", &self.time)?;
         match &self.answer {
-            Answer::Ok => {}
-            Answer::Event { name, args, time } => {
-                map.serialize_entry("event", &Happened { name, args, time: *time })?;
+            ReplyAnswer::Ok => {}
+            ReplyAnswer::Event { name, args, time } => {
+                map.serialize_entry("event", &EventOccurrence { name, args, time: *time })?;
             }
-            Answer::TimedOut => map.serialize_entry("event", &None::<()>)?,
-            Answer::Value(value) => map.serialize_entry("value", value)?,
-            Answer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
-            Answer::Acted(Err(error)) => {
+            ReplyAnswer::TimedOut => map.serialize_entry("event", &None::<()>)?,
+            ReplyAnswer::Value(value) => map.serialize_entry("value", value)?,
+            ReplyAnswer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
+            ReplyAnswer::Acted(Err(error)) => {
                 map.serialize_entry("ok", &false)?;
                 map.serialize_entry("error", error)?;
             }
-            Answer::Error { error, help } => {
+            ReplyAnswer::Error { error, help } => {
                 map.serialize_entry("error", error)?;
                 if let Some(help) = help {
                     map.serialize_entry("help", help)?;
                 }
             }
-            Answer::Stop => map.serialize_entry("stop", &true)?,
+            ReplyAnswer::Stop => map.serialize_entry("stop", &true)?,
         }
         map.end()
     }
@@ -169,26 +169,28 @@ impl Serialize for Reply {
 
 /// What a line from the program is.
 #[derive(Debug)]
-pub(crate) enum Line {
-    Request(Request),
+pub(crate) enum ProtocolLine {
+    Request(ProgramRequest),
     /// JSON, but not a request that this version knows: the program is told so.
     Refused(String),
     /// No JSON object with a `request`: whoever wrote it does not speak the protocol.
     Rubbish(String),
 }
 
-pub(crate) fn parse(line: &[u8]) -> Line {
-    let why = match serde_json::from_slice::<Request>(line) {
+pub(crate) fn parse(line: &[u8]) -> ProtocolLine {
+    let why = match serde_json::from_slice::<ProgramRequest>(line) {
         Ok(request) => match request.fault() {
-            None => return Line::Request(request),
-            Some(fault) => return Line::Refused(fault),
+            None => return ProtocolLine::Request(request),
+            Some(fault) => return ProtocolLine::Refused(fault),
         },
         Err(why) => why.to_string(),
     };
     match serde_json::from_slice::<serde_json::Value>(line) {
-        Ok(value) if value.get("request").is_some_and(serde_json::Value::is_string) => Line::Refused(why),
-        Ok(_) => Line::Rubbish("no request".to_owned()),
-        Err(_) => Line::Rubbish(why),
+        Ok(value) if value.get("request").is_some_and(serde_json::Value::is_string) => {
+            ProtocolLine::Refused(why)
+        }
+        Ok(_) => ProtocolLine::Rubbish("no request".to_owned()),
+        Err(_) => ProtocolLine::Rubbish(why),
     }
 }
 
@@ -198,68 +200,74 @@ mod tests {
 
     use super::*;
 
-    fn request(line: &str) -> Request {
+    fn request(line: &str) -> ProgramRequest {
         match parse(line.as_bytes()) {
-            Line::Request(request) => request,
+            ProtocolLine::Request(request) => request,
             other => panic!("{line}: {other:?}"),
         }
     }
 
     #[test]
     fn every_request_of_the_specification_is_understood() {
-        assert_eq!(request(r#"{"request":"now"}"#), Request::Now);
-        assert_eq!(request(r#"{"request":"sleep","seconds":2}"#), Request::Sleep { seconds: 2.0 });
+        assert_eq!(request(r#"{"request":"now"}"#), ProgramRequest::Now);
+        assert_eq!(request(r#"{"request":"sleep","seconds":2}"#), ProgramRequest::Sleep { seconds: 2.0 });
         assert_eq!(
             request(r#"{"request":"wait_for","events":["a","b"]}"#),
-            Request::WaitFor { events: vec!["a".into(), "b".into()], timeout: None }
+            ProgramRequest::WaitFor { events: vec!["a".into(), "b".into()], timeout: None }
         );
         assert_eq!(
             request(r#"{"request":"emit","event":"decided","args":{"ready":true,"n":3,"x":1.5}}"#),
-            Request::Emit {
+            ProgramRequest::Emit {
                 event: "decided".into(),
                 args: BTreeMap::from([
-                    ("n".into(), Arg::Scalar(Value::Int(3))),
-                    ("ready".into(), Arg::Scalar(Value::Bool(true))),
-                    ("x".into(), Arg::Scalar(Value::Float(1.5))),
+                    ("n".into(), ProtocolArgument::Scalar(Value::Int(3))),
+                    ("ready".into(), ProtocolArgument::Scalar(Value::Bool(true))),
+                    ("x".into(), ProtocolArgument::Scalar(Value::Float(1.5))),
                 ])
             }
         );
-        let Request::Act { on, command, args, wait } = request(
+        let ProgramRequest::Act { on, command, args, wait } = request(
             r#"{"request":"act","on":"robot.arm","do":"move_to","args":{"to":[0,1,2.5],"speed":0.2}}"#,
         ) else {
             panic!()
         };
         assert_eq!((on.as_str(), command.as_str(), wait), ("robot.arm", "move_to", true));
-        assert_eq!(args["to"], Arg::Numbers(vec![0.0, 1.0, 2.5]));
-        assert_eq!(args["speed"], Arg::Scalar(Value::Float(0.2)));
+        assert_eq!(args["to"], ProtocolArgument::Numbers(vec![0.0, 1.0, 2.5]));
+        assert_eq!(args["speed"], ProtocolArgument::Scalar(Value::Float(0.2)));
     }
 
     #[test]
     fn symbols_go_there_and_back_as_text() {
-        let Request::Emit { args, .. } =
+        let ProgramRequest::Emit { args, .. } =
             request(r#"{"request":"emit","event":"paced","args":{"pace":"fast","odd":"\u00e4 \"b\""}}"#)
         else {
             panic!()
         };
-        assert_eq!(args["pace"], Arg::Text("fast".into()));
-        assert_eq!(args["odd"], Arg::Text("ä \"b\"".into()));
+        assert_eq!(args["pace"], ProtocolArgument::Text("fast".into()));
+        assert_eq!(args["odd"], ProtocolArgument::Text("ä \"b\"".into()));
         let symbol = Value::Symbol(Symbol::intern("fast"));
-        let wire = |answer| serde_json::to_string(&Reply { time: 5, answer }).unwrap();
-        assert_eq!(wire(Answer::Value(symbol)), r#"{"t":5,"value":"fast"}"#);
-        let event =
-            Answer::Event { name: "paced".into(), args: BTreeMap::from([("pace".into(), symbol)]), time: 4 };
+        let wire = |answer| serde_json::to_string(&HarnessReply { time: 5, answer }).unwrap();
+        assert_eq!(wire(ReplyAnswer::Value(symbol)), r#"{"t":5,"value":"fast"}"#);
+        let event = ReplyAnswer::Event {
+            name: "paced".into(),
+            args: BTreeMap::from([("pace".into(), symbol)]),
+            time: 4,
+        };
         assert_eq!(wire(event), r#"{"t":5,"event":{"name":"paced","args":{"pace":"fast"},"time":4}}"#);
         // What is written as a value is read as the argument of the same name.
         let text = serde_json::to_string(&symbol).unwrap();
-        assert_eq!(serde_json::from_str::<Arg>(&text).unwrap(), Arg::Text("fast".into()));
+        assert_eq!(
+            serde_json::from_str::<ProtocolArgument>(&text).unwrap(),
+            ProtocolArgument::Text("fast".into())
+        );
     }
 
     #[test]
     fn arguments_are_shown_as_they_were_written() {
-        let shown = |arg: Arg| arg.to_string();
-        assert_eq!(shown(Arg::Text("fast".into())), "\"fast\"");
-        assert_eq!(shown(Arg::Scalar(Value::Int(3))), "3");
-        assert_eq!(shown(Arg::Numbers(vec![1.0, 2.5])), "[1.0, 2.5]");
+        let shown = |arg: ProtocolArgument| arg.to_string();
+        assert_eq!(shown(ProtocolArgument::Text("fast".into())), "\"fast\"");
+        assert_eq!(shown(ProtocolArgument::Scalar(Value::Int(3))), "3");
+        assert_eq!(shown(ProtocolArgument::Numbers(vec![1.0, 2.5])), "[1.0, 2.5]");
     }
 
     #[test]
@@ -281,28 +289,28 @@ mod tests {
             ("\u{fffd}{", false),
         ] {
             match parse(line.as_bytes()) {
-                Line::Refused(why) => assert!(refused, "{line}: {why}"),
-                Line::Rubbish(why) => assert!(!refused, "{line}: {why}"),
-                Line::Request(request) => panic!("{line}: {request:?}"),
+                ProtocolLine::Refused(why) => assert!(refused, "{line}: {why}"),
+                ProtocolLine::Rubbish(why) => assert!(!refused, "{line}: {why}"),
+                ProtocolLine::Request(request) => panic!("{line}: {request:?}"),
             }
         }
     }
 
     #[test]
     fn replies_are_written_as_specified() {
-        let wire = |answer| serde_json::to_string(&Reply { time: 5, answer }).unwrap();
-        assert_eq!(wire(Answer::Ok), r#"{"t":5}"#);
-        assert_eq!(wire(Answer::TimedOut), r#"{"t":5,"event":null}"#);
-        assert_eq!(wire(Answer::Value(Value::Bool(true))), r#"{"t":5,"value":true}"#);
-        assert_eq!(wire(Answer::Acted(Ok(()))), r#"{"t":5,"ok":true}"#);
-        assert_eq!(wire(Answer::Acted(Err("far".into()))), r#"{"t":5,"ok":false,"error":"far"}"#);
-        assert_eq!(wire(Answer::Stop), r#"{"t":5,"stop":true}"#);
+        let wire = |answer| serde_json::to_string(&HarnessReply { time: 5, answer }).unwrap();
+        assert_eq!(wire(ReplyAnswer::Ok), r#"{"t":5}"#);
+        assert_eq!(wire(ReplyAnswer::TimedOut), r#"{"t":5,"event":null}"#);
+        assert_eq!(wire(ReplyAnswer::Value(Value::Bool(true))), r#"{"t":5,"value":true}"#);
+        assert_eq!(wire(ReplyAnswer::Acted(Ok(()))), r#"{"t":5,"ok":true}"#);
+        assert_eq!(wire(ReplyAnswer::Acted(Err("far".into()))), r#"{"t":5,"ok":false,"error":"far"}"#);
+        assert_eq!(wire(ReplyAnswer::Stop), r#"{"t":5,"stop":true}"#);
         assert_eq!(
-            wire(Answer::Error { error: "no".into(), help: Some("yes".into()) }),
+            wire(ReplyAnswer::Error { error: "no".into(), help: Some("yes".into()) }),
             r#"{"t":5,"error":"no","help":"yes"}"#
         );
         assert_eq!(
-            wire(Answer::Event {
+            wire(ReplyAnswer::Event {
                 name: "go".into(),
                 args: BTreeMap::from([("far".into(), Value::Float(2.0))]),
                 time: 4

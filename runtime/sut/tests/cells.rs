@@ -10,12 +10,15 @@ use std::{
 };
 
 use common::{GRACE, cells, launch, reply, run};
-use hrdsl_sut::{Answer, Exit, Launch, Overrun, Process, Request, SutError, cell::Isolation};
+use hrdsl_sut::{
+    LaunchSpec, LimitOverrun, ProgramExit, ProgramRequest, ReplyAnswer, SutError, SutProcess,
+    cell::CellIsolation,
+};
 
-const BOTH: [Isolation; 2] = [Isolation::Namespaces, Isolation::Copies];
+const BOTH: [CellIsolation; 2] = [CellIsolation::Namespaces, CellIsolation::Copies];
 
 /// A launch of a program in a copy of the programs' folder, which it may do with what it likes.
-fn launch_in(folder: &Path, isolation: Isolation, words: &[&str]) -> Launch {
+fn launch_in(folder: &Path, isolation: CellIsolation, words: &[&str]) -> LaunchSpec {
     for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs")).unwrap() {
         let entry = entry.unwrap();
         if entry.file_type().unwrap().is_file() {
@@ -46,7 +49,7 @@ fn what_a_program_writes_is_its_own() {
         assert_eq!(lines[0][0], format!("[1, 1, 1, 1] {paths}"));
         assert!(lines.iter().all(|l| l[1].ends_with(" False False")), "{first}");
         assert_eq!(tree(&launch.dir), before, "and changes nothing");
-        if isolation == Isolation::Namespaces {
+        if isolation == CellIsolation::Namespaces {
             assert_eq!(first, second, "every test finds the same");
             assert_eq!(lines[0][1], "2 False False", "the same process number, too");
             assert!(!file.exists());
@@ -66,7 +69,7 @@ fn files_are_kept_on_request() {
         launch.keep = Some(kept.path().join("t1"));
         let finished = run(&launch).1;
         let mut expected: Vec<String> = Vec::new();
-        if isolation == Isolation::Namespaces {
+        if isolation == CellIsolation::Namespaces {
             expected.push(format!("elsewhere{}", file.display()));
         }
         expected.extend(
@@ -84,17 +87,17 @@ fn nothing_outlives_a_cell() {
         let place = tempfile::tempdir().unwrap();
         let mark = format!("hrdsl-mark-{}-{isolation:?}-{end}", std::process::id());
         let launch = launch_in(place.path(), isolation, &["python3", "leaves.py", &mark]);
-        let mut process = Process::spawn(&launch).unwrap();
-        assert!(matches!(process.next().unwrap(), Request::Hello { .. }));
-        reply(&mut process, 0, Answer::Ok);
-        assert!(matches!(process.next().unwrap(), Request::Emit { .. }));
+        let mut process = SutProcess::spawn(&launch).unwrap();
+        assert!(matches!(process.next().unwrap(), ProgramRequest::Hello { .. }));
+        reply(&mut process, 0, ReplyAnswer::Ok);
+        assert!(matches!(process.next().unwrap(), ProgramRequest::Emit { .. }));
         // One that is just becoming another program has no command line for a moment.
         until(|| marked(&mark).len() == 4, "the program and three that it started");
-        reply(&mut process, 0, Answer::Ok);
+        reply(&mut process, 0, ReplyAnswer::Ok);
         if end {
             let finished = process.finish(GRACE);
             assert!(finished.others);
-            assert_eq!(finished.exit, Exit::Code(0), "{}", finished.output);
+            assert_eq!(finished.exit, ProgramExit::Code(0), "{}", finished.output);
         } else {
             drop(process);
         }
@@ -109,14 +112,14 @@ fn a_program_does_not_escape_by_its_supervisor() {
         let mark = format!("hrdsl-mark-{}-{signal}", std::process::id());
         fs::write(place.path().join(&mark), "").unwrap();
         let words = ["python3", "reaches.py", "parent", &mark, signal];
-        let mut launch = launch_in(place.path(), Isolation::Copies, &words);
+        let mut launch = launch_in(place.path(), CellIsolation::Copies, &words);
         launch.limits.budget = Duration::from_secs(1);
-        let mut process = Process::spawn(&launch).unwrap();
-        assert!(matches!(process.next().unwrap(), Request::Hello { .. }));
-        reply(&mut process, 0, Answer::Ok);
+        let mut process = SutProcess::spawn(&launch).unwrap();
+        assert!(matches!(process.next().unwrap(), ProgramRequest::Hello { .. }));
+        reply(&mut process, 0, ReplyAnswer::Ok);
         let error = process.next().unwrap_err();
         // One that is stopped goes on at once, and watches the budget.
-        let stopped = matches!(error, SutError::Overrun { overrun: Overrun::Budget(_), .. });
+        let stopped = matches!(error, SutError::Overrun { overrun: LimitOverrun::Budget(_), .. });
         assert!(
             matches!(error, SutError::Exited { .. }) || signal == "SIGSTOP" && stopped,
             "{signal}: {error}"
@@ -130,7 +133,7 @@ fn a_program_does_not_escape_by_its_supervisor() {
 #[test]
 fn nothing_beyond_the_cell_is_within_reach() {
     let place = tempfile::tempdir().unwrap();
-    let launch = launch_in(place.path(), Isolation::Namespaces, &["python3", "reaches.py", "beyond"]);
+    let launch = launch_in(place.path(), CellIsolation::Namespaces, &["python3", "reaches.py", "beyond"]);
     assert_eq!(run(&launch).1.output.stdout.text(), "[False, False, False, False]\n");
 }
 
@@ -142,7 +145,7 @@ fn nothing_outlives_the_harness() {
         let mut harness = Command::new(std::env::current_exe().unwrap())
             .args(["--exact", "a_harness_that_will_be_killed", "--ignored", "--nocapture"])
             .env("HRDSL_MARK", &mark)
-            .env("HRDSL_COPIES", if isolation == Isolation::Copies { "1" } else { "0" })
+            .env("HRDSL_COPIES", if isolation == CellIsolation::Copies { "1" } else { "0" })
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
@@ -160,43 +163,43 @@ fn nothing_outlives_the_harness() {
 fn a_harness_that_will_be_killed() {
     let Ok(mark) = std::env::var("HRDSL_MARK") else { return };
     let copies = std::env::var("HRDSL_COPIES").as_deref() == Ok("1");
-    let isolation = if copies { Isolation::Copies } else { Isolation::Namespaces };
+    let isolation = if copies { CellIsolation::Copies } else { CellIsolation::Namespaces };
     let place = tempfile::tempdir().unwrap();
     fs::write(place.path().join(&mark), "").unwrap();
     let launch = launch_in(place.path(), isolation, &["python3", "leaves.py", &mark]);
-    let mut process = Process::spawn(&launch).unwrap();
+    let mut process = SutProcess::spawn(&launch).unwrap();
     let _ = process.next();
-    reply(&mut process, 0, Answer::Ok);
+    reply(&mut process, 0, ReplyAnswer::Ok);
     let _ = process.next();
     std::thread::sleep(Duration::from_secs(1000));
 }
 
 #[test]
 fn limits_are_of_what_the_program_uses() {
-    let overrun = |what: &str, change: &dyn Fn(&mut Launch)| {
+    let overrun = |what: &str, change: &dyn Fn(&mut LaunchSpec)| {
         let mut launch = launch(&["python3", "uses.py", what]);
         change(&mut launch);
-        let mut process = Process::spawn(&launch).unwrap();
+        let mut process = SutProcess::spawn(&launch).unwrap();
         let mut time = 0;
         let error = loop {
             match process.next() {
-                Ok(Request::Sleep { seconds }) => time += hrdsl_ir::value::nanos(seconds),
+                Ok(ProgramRequest::Sleep { seconds }) => time += hrdsl_ir::value::nanos(seconds),
                 Ok(_) => {}
                 Err(error) => break error,
             }
-            reply(&mut process, time, Answer::Ok);
+            reply(&mut process, time, ReplyAnswer::Ok);
         };
         let _ = process.finish(Duration::ZERO);
         let SutError::Overrun { overrun, .. } = error else { panic!("{error}") };
         overrun
     };
     let short = Duration::from_millis(500);
-    let budget = |launch: &mut Launch| launch.limits.budget = short;
-    assert_eq!(overrun("cpu", &budget), Overrun::Budget(short));
-    assert_eq!(overrun("sleep", &budget), Overrun::Asleep(short));
-    assert_eq!(overrun("cpu-between-requests", &|l| l.limits.cpu = short), Overrun::Cpu(short));
-    assert_eq!(overrun("sleep", &|l| l.limits.wall = short), Overrun::Wall(short));
-    assert_eq!(overrun("output", &|l| l.limits.output = 1 << 20), Overrun::Output(1 << 20));
+    let budget = |launch: &mut LaunchSpec| launch.limits.budget = short;
+    assert_eq!(overrun("cpu", &budget), LimitOverrun::Budget(short));
+    assert_eq!(overrun("sleep", &budget), LimitOverrun::Asleep(short));
+    assert_eq!(overrun("cpu-between-requests", &|l| l.limits.cpu = short), LimitOverrun::Cpu(short));
+    assert_eq!(overrun("sleep", &|l| l.limits.wall = short), LimitOverrun::Wall(short));
+    assert_eq!(overrun("output", &|l| l.limits.output = 1 << 20), LimitOverrun::Output(1 << 20));
 }
 
 #[test]
@@ -236,8 +239,8 @@ fn other_processes_are_noticed_and_secrets_are_not_handed_on() {
 
 #[test]
 fn what_cannot_be_kept_apart_is_said() {
-    assert_eq!(cells(Some(Isolation::Namespaces)).gaps, Vec::<String>::new());
-    let gaps = cells(Some(Isolation::Copies)).gaps;
+    assert_eq!(cells(Some(CellIsolation::Namespaces)).gaps, Vec::<String>::new());
+    let gaps = cells(Some(CellIsolation::Copies)).gaps;
     assert!(gaps.iter().any(|g| g.contains("absolute paths elsewhere")), "{gaps:?}");
 }
 

@@ -12,7 +12,9 @@ use std::{
 };
 
 use common::{launch, run};
-use hrdsl_sut::{Hooked, Needs, Preparation, Process, PythonEnv, Request, SutError};
+use hrdsl_sut::{
+    EnvironmentNeeds, HookedPackage, PreparationStep, ProgramRequest, PythonEnv, SutError, SutProcess,
+};
 use tempfile::TempDir;
 
 /// A build backend inside the project, so that nothing is downloaded. As setuptools does, it builds in `build/lib`,
@@ -82,11 +84,15 @@ impl Project {
         fs::write(self.at(name), text).unwrap();
     }
 
-    fn prepare_with(&self, python: &str, listen: &dyn Fn(Preparation<'_>)) -> Result<PythonEnv, SutError> {
+    fn prepare_with(
+        &self,
+        python: &str,
+        listen: &dyn Fn(PreparationStep<'_>),
+    ) -> Result<PythonEnv, SutError> {
         let list = self.at("requirements.txt");
         let requirements = list.exists().then_some(list.as_path());
         PythonEnv::prepare(
-            &Needs { python, dir: self.folder.path(), requirements, cache: &self.cache },
+            &EnvironmentNeeds { python, dir: self.folder.path(), requirements, cache: &self.cache },
             listen,
         )
     }
@@ -95,7 +101,7 @@ impl Project {
     fn prepare(&self) -> (PythonEnv, Vec<String>) {
         let installed = RefCell::new(Vec::new());
         let env = self.prepare_with("python3", &|step| {
-            if let Preparation::Started { what } = step {
+            if let PreparationStep::Started { what } = step {
                 installed.borrow_mut().push(what.to_owned());
             }
         });
@@ -108,7 +114,7 @@ impl Project {
         launch.env = env;
         launch.dir = self.folder.path().to_owned();
         let (requests, finished) = run(&launch);
-        assert_eq!(requests.last(), Some(&Request::Done), "{}", finished.output);
+        assert_eq!(requests.last(), Some(&ProgramRequest::Done), "{}", finished.output);
         finished.output.stdout.text()
     }
 
@@ -318,11 +324,14 @@ fn pip_is_heard_while_it_works() {
     let project = Project::with_library("heard");
     project.write("requirements.txt", "./mylib");
     let steps = RefCell::new(Vec::new());
-    let listen = |step: Preparation<'_>| steps.borrow_mut().push(format!("{step:?}"));
+    let listen = |step: PreparationStep<'_>| steps.borrow_mut().push(format!("{step:?}"));
     project.prepare_with("python3", &listen).unwrap();
     let steps: Vec<String> =
         steps.into_inner().into_iter().filter(|step| step.contains("\"mylib\"")).collect();
-    assert!(steps[0].starts_with("Started") && steps.last().unwrap().starts_with("Finished"), "{steps:#?}");
+    assert!(
+        steps[0].starts_with("Started") && steps.last().unwrap().starts_with("FinishedProcess"),
+        "{steps:#?}"
+    );
     let folder = project.at("mylib").display().to_string();
     let names = |step: &String| step.starts_with("Working") && step.contains(&folder);
     assert!(steps.iter().any(names), "the folder that the user knows, not the copy: {steps:#?}");
@@ -355,7 +364,7 @@ fn a_list_that_does_not_exist_is_named() {
     let project = Project::new();
     let list = project.at("none/requirements.txt");
     let dir = project.folder.path();
-    let needs = Needs { python: "python3", dir, requirements: Some(&list), cache: &project.cache };
+    let needs = EnvironmentNeeds { python: "python3", dir, requirements: Some(&list), cache: &project.cache };
     let error = PythonEnv::prepare(&needs, &|_| {}).unwrap_err();
     let is_named =
         matches!(&error, SutError::Absent { looked_for, .. } if *looked_for == list.display().to_string());
@@ -428,13 +437,13 @@ fn an_editable_package_behind_a_hook_is_told() {
     let hook = "import __editable___my_lib_1_0_finder; __editable___my_lib_1_0_finder.install()\n";
     fs::write(site.join("__editable__.my_lib-1.0.pth"), hook).unwrap();
     let told = RefCell::new(Vec::new());
-    let listen = |step: Preparation<'_>| {
-        if let Preparation::Hooked { packages } = step {
+    let listen = |step: PreparationStep<'_>| {
+        if let PreparationStep::Hooked { packages } = step {
             told.borrow_mut().extend(packages.to_vec());
         }
     };
     project.prepare_with(".venv/bin/python", &listen).unwrap();
-    let expected = Hooked { package: "my_lib".into(), folder: Some(folder) };
+    let expected = HookedPackage { package: "my_lib".into(), folder: Some(folder) };
     assert_eq!(told.take(), [expected]);
     // Once it is required, there is nothing to tell.
     project.write("requirements.txt", "-e './code of it'");
@@ -483,7 +492,7 @@ fn a_module_that_is_not_found_is_followed_by_advice() {
         project.write("robot.py", robot);
         let mut launch = launch(&["python3", "robot.py"]);
         launch.dir = project.folder.path().to_owned();
-        let mut process = Process::spawn(&launch).unwrap();
+        let mut process = SutProcess::spawn(&launch).unwrap();
         let error = process.next().unwrap_err();
         let stderr = error.output().unwrap().stderr.text();
         assert!(stderr.lines().last().unwrap().starts_with(last), "{robot}: {stderr}");

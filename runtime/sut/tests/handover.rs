@@ -6,7 +6,9 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use common::{GRACE, launch, reply};
 use hrdsl_ir::{Nanos, Value, value::nanos, value::seconds};
-use hrdsl_sut::{Answer, Arg, Exit, Finished, Launch, Process, Request};
+use hrdsl_sut::{
+    FinishedProcess, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer, SutProcess,
+};
 
 /// What the person does with one leg.
 #[derive(Clone, Copy, PartialEq)]
@@ -28,7 +30,7 @@ struct Harness {
     /// Events to come, and those that came, in order of time.
     queue: Vec<(Nanos, &'static str)>,
     mailbox: Vec<(Nanos, &'static str)>,
-    emitted: Vec<(Nanos, String, BTreeMap<String, Arg>)>,
+    emitted: Vec<(Nanos, String, BTreeMap<String, ProtocolArgument>)>,
 }
 
 impl Harness {
@@ -82,7 +84,7 @@ impl Harness {
         }
     }
 
-    fn wait_for(&mut self, events: &[String], timeout: Option<f64>) -> Answer {
+    fn wait_for(&mut self, events: &[String], timeout: Option<f64>) -> ReplyAnswer {
         let until = self.time + timeout.map_or(nanos(300.0), nanos);
         loop {
             if let Some(at) = self.mailbox.iter().position(|(_, name)| events.iter().any(|e| e == name)) {
@@ -91,52 +93,52 @@ impl Harness {
                     [("gaze", self.leg() != Person::LooksAway), ("pressure", self.holds), ("location", true)];
                 let args = readings.iter().filter(|_| name == "sensed");
                 let args = args.map(|&(k, v)| (k.to_owned(), Value::Bool(v))).collect();
-                return Answer::Event { name: name.to_owned(), args, time };
+                return ReplyAnswer::Event { name: name.to_owned(), args, time };
             }
             match self.queue.first() {
                 Some(&(next, _)) if next <= until => self.pass(next),
                 _ => {
                     self.pass(until);
-                    return Answer::TimedOut;
+                    return ReplyAnswer::TimedOut;
                 }
             }
         }
     }
 
-    fn answer(&mut self, request: Request) -> Answer {
+    fn answer(&mut self, request: ProgramRequest) -> ReplyAnswer {
         match request {
-            Request::Hello { .. } | Request::Now | Request::Done => Answer::Ok,
-            Request::Sleep { seconds } => {
+            ProgramRequest::Hello { .. } | ProgramRequest::Now | ProgramRequest::Done => ReplyAnswer::Ok,
+            ProgramRequest::Sleep { seconds } => {
                 self.pass(self.time + nanos(seconds));
-                Answer::Ok
+                ReplyAnswer::Ok
             }
-            Request::Emit { event, args } => {
+            ProgramRequest::Emit { event, args } => {
                 self.emitted(&event);
                 self.emitted.push((self.time, event, args));
-                Answer::Ok
+                ReplyAnswer::Ok
             }
-            Request::WaitFor { events, timeout } => self.wait_for(&events, timeout),
-            Request::Drop { events } => {
+            ProgramRequest::WaitFor { events, timeout } => self.wait_for(&events, timeout),
+            ProgramRequest::Drop { events } => {
                 self.mailbox.retain(|(_, name)| !events.iter().any(|e| e == name));
-                Answer::Ok
+                ReplyAnswer::Ok
             }
-            Request::Read { signal } => {
+            ProgramRequest::Read { signal } => {
                 assert_eq!(signal, "pressure");
-                Answer::Value(Value::Bool(self.holds))
+                ReplyAnswer::Value(Value::Bool(self.holds))
             }
-            Request::Act { on, .. } => {
+            ProgramRequest::Act { on, .. } => {
                 self.pass(self.time + nanos(1.5));
                 let fails = on == "robot.arm" && !self.arm_works;
-                Answer::Acted(if fails { Err("the planner finds no way".into()) } else { Ok(()) })
+                ReplyAnswer::Acted(if fails { Err("the planner finds no way".into()) } else { Ok(()) })
             }
         }
     }
 
-    fn run(&mut self, launch: &Launch) -> Finished {
-        let mut process = Process::spawn(launch).unwrap();
+    fn run(&mut self, launch: &LaunchSpec) -> FinishedProcess {
+        let mut process = SutProcess::spawn(launch).unwrap();
         loop {
             let request = process.next().unwrap();
-            let done = request == Request::Done;
+            let done = request == ProgramRequest::Done;
             let answer = self.answer(request);
             reply(&mut process, self.time, answer);
             if done {
@@ -150,9 +152,9 @@ impl Harness {
     }
 }
 
-fn robot(seed: u64) -> Launch {
+fn robot(seed: u64) -> LaunchSpec {
     let dir = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../examples/handover");
-    Launch {
+    LaunchSpec {
         dir,
         seed,
         coverage: vec!["robot.py".into(), "fsm.py".into()],
@@ -165,14 +167,14 @@ fn four_legs_to_four_people() {
     let mut harness =
         Harness::new(&[Person::TakesIt, Person::LooksAway, Person::LetsGo, Person::SaysNothing]);
     let finished = harness.run(&robot(3));
-    assert_eq!(finished.exit, Exit::Code(0), "{}", finished.output);
+    assert_eq!(finished.exit, ProgramExit::Code(0), "{}", finished.output);
     let order: Vec<&str> = harness.emitted.iter().map(|(_, name, _)| name.as_str()).collect();
     let leg = |end| ["handover_offered", "sense", "decided", end];
     let expected = [leg("released"), leg("discarded"), leg("released")].concat();
     assert_eq!(order, [expected, vec!["handover_offered", "timed_out", "discarded"]].concat());
-    let ready: Vec<Arg> =
+    let ready: Vec<ProtocolArgument> =
         harness.emitted.iter().filter_map(|(.., args)| args.get("ready").cloned()).collect();
-    assert_eq!(ready, [true, false, true].map(|b| Arg::Scalar(Value::Bool(b))));
+    assert_eq!(ready, [true, false, true].map(|b| ProtocolArgument::Scalar(Value::Bool(b))));
 
     let late: Vec<f64> = harness
         .times("decided")
@@ -212,7 +214,7 @@ fn an_arm_that_fails_ends_the_work() {
     let mut harness = Harness::new(&[Person::TakesIt]);
     harness.arm_works = false;
     let finished = harness.run(&robot(1));
-    assert_eq!(finished.exit, Exit::Code(0));
+    assert_eq!(finished.exit, ProgramExit::Code(0));
     let text = finished.output.stdout.text();
     assert!(text.contains("attempt 3 to rest failed: the planner finds no way"), "{text}");
     assert!(harness.emitted.is_empty());

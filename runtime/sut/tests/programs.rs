@@ -6,56 +6,65 @@ use std::{collections::BTreeMap, time::Duration};
 
 use common::{GRACE, environment, launch, reply, run};
 use hrdsl_ir::{Symbol, Value};
-use hrdsl_sut::{Answer, Arg, Exit, FileCoverage, Process, Reply, Request, SutError};
+use hrdsl_sut::{
+    FileCoverage, HarnessReply, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer, SutError,
+    SutProcess,
+};
 
-fn hello(process: &mut Process) {
-    assert!(matches!(process.next().unwrap(), Request::Hello { version: 1, .. }));
-    reply(process, 0, Answer::Ok);
+fn hello(process: &mut SutProcess) {
+    assert!(matches!(process.next().unwrap(), ProgramRequest::Hello { version: 1, .. }));
+    reply(process, 0, ReplyAnswer::Ok);
 }
 
 #[test]
 fn a_good_program_is_answered() {
-    let mut process = Process::spawn(&launch(&["python3", "-u", "good.py", "one", "-m"])).unwrap();
-    let event = |name: &str, args: &[(&str, bool)], time| Answer::Event {
+    let mut process = SutProcess::spawn(&launch(&["python3", "-u", "good.py", "one", "-m"])).unwrap();
+    let event = |name: &str, args: &[(&str, bool)], time| ReplyAnswer::Event {
         name: name.into(),
         args: args.iter().map(|&(k, v)| (k.to_owned(), Value::Bool(v))).collect(),
         time,
     };
     let answers = [
-        Answer::Ok,
-        Answer::Ok,
-        Answer::Ok,
-        Answer::Ok,
-        Answer::TimedOut,
+        ReplyAnswer::Ok,
+        ReplyAnswer::Ok,
+        ReplyAnswer::Ok,
+        ReplyAnswer::Ok,
+        ReplyAnswer::TimedOut,
         event("a", &[], 1_250_000_000),
         event("sensed", &[("gaze", true)], 2_000_000_000),
-        Answer::Ok,
-        Answer::Value(Value::Bool(false)),
-        Answer::Value(Value::Float(1.25)),
-        Answer::Value(Value::Symbol(Symbol::intern("slow"))),
-        Answer::Acted(Ok(())),
-        Answer::Acted(Err("joint 2 is at its limit".into())),
-        Answer::Acted(Ok(())),
-        Answer::Acted(Ok(())),
-        Answer::Ok,
+        ReplyAnswer::Ok,
+        ReplyAnswer::Value(Value::Bool(false)),
+        ReplyAnswer::Value(Value::Float(1.25)),
+        ReplyAnswer::Value(Value::Symbol(Symbol::intern("slow"))),
+        ReplyAnswer::Acted(Ok(())),
+        ReplyAnswer::Acted(Err("joint 2 is at its limit".into())),
+        ReplyAnswer::Acted(Ok(())),
+        ReplyAnswer::Acted(Ok(())),
+        ReplyAnswer::Ok,
     ];
     let mut requests = Vec::new();
     for answer in answers {
         requests.push(process.next().unwrap());
         reply(&mut process, 500_000_000, answer);
     }
-    assert_eq!(requests[0], Request::Hello { version: 1, name: "good".into() });
-    assert_eq!(requests[2], Request::Sleep { seconds: 1.5 });
+    assert_eq!(requests[0], ProgramRequest::Hello { version: 1, name: "good".into() });
+    assert_eq!(requests[2], ProgramRequest::Sleep { seconds: 1.5 });
     let args = [("ready", Value::Bool(true)), ("n", Value::Int(3)), ("x", Value::Float(0.5))];
-    let mut args: BTreeMap<_, _> = args.into_iter().map(|(k, v)| (k.to_owned(), Arg::Scalar(v))).collect();
-    args.insert("pace".into(), Arg::Text("fast".into()));
-    assert_eq!(requests[3], Request::Emit { event: "decided".into(), args });
-    assert_eq!(requests[4], Request::WaitFor { events: vec!["a".into(), "b".into()], timeout: Some(2.0) });
-    assert_eq!(requests[5], Request::WaitFor { events: vec!["a".into()], timeout: None });
-    assert!(matches!(&requests[12], Request::Act { command, wait: true, .. } if command == "move_joints"));
-    assert_eq!(requests.last(), Some(&Request::Done));
+    let mut args: BTreeMap<_, _> =
+        args.into_iter().map(|(k, v)| (k.to_owned(), ProtocolArgument::Scalar(v))).collect();
+    args.insert("pace".into(), ProtocolArgument::Text("fast".into()));
+    assert_eq!(requests[3], ProgramRequest::Emit { event: "decided".into(), args });
+    assert_eq!(
+        requests[4],
+        ProgramRequest::WaitFor { events: vec!["a".into(), "b".into()], timeout: Some(2.0) }
+    );
+    assert_eq!(requests[5], ProgramRequest::WaitFor { events: vec!["a".into()], timeout: None });
+    assert!(
+        matches!(&requests[12], ProgramRequest::Act { command, wait: true, .. } if command == "move_joints")
+    );
+    assert_eq!(requests.last(), Some(&ProgramRequest::Done));
     let finished = process.finish(GRACE);
-    assert_eq!(finished.exit, Exit::Code(0), "{}", finished.output);
+    assert_eq!(finished.exit, ProgramExit::Code(0), "{}", finished.output);
     let expected = "seed 17 args ['one', '-m']\nnow 0.5\nfirst None\nsecond Event(a() at 1.250 s)\n\
         third sensed True {'gaze': True} 2.0\nread False 1.25 slow\nmove True False joint 2 is at its limit\n\
         grip True True\n";
@@ -71,7 +80,7 @@ fn what_is_absent_is_named() {
         (vec!["./no-such-file"], "no-such-file"),
         (vec![], "empty"),
     ] {
-        let error = Process::spawn(&launch(&words)).unwrap_err();
+        let error = SutProcess::spawn(&launch(&words)).unwrap_err();
         assert!(
             matches!(&error, SutError::Absent { looked_for, .. } if looked_for.contains(name)),
             "{error}"
@@ -79,27 +88,27 @@ fn what_is_absent_is_named() {
     }
     let mut lost = launch(&["python3", "good.py"]);
     lost.dir = "/no/such/folder".into();
-    assert!(Process::spawn(&lost).unwrap_err().to_string().contains("/no/such/folder"));
-    let error = Process::spawn(&launch(&["python3.2", "good.py"])).unwrap_err();
+    assert!(SutProcess::spawn(&lost).unwrap_err().to_string().contains("/no/such/folder"));
+    let error = SutProcess::spawn(&launch(&["python3.2", "good.py"])).unwrap_err();
     assert!(error.to_string().contains("`python3.2`"), "{error}");
 }
 
 #[test]
 fn one_that_exits_is_reported_with_its_output() {
-    let mut process = Process::spawn(&launch(&["python3", "exits.py"])).unwrap();
+    let mut process = SutProcess::spawn(&launch(&["python3", "exits.py"])).unwrap();
     let error = process.next().unwrap_err();
     let SutError::Exited { exit, output, .. } = &error else { panic!("{error}") };
-    assert_eq!((*exit, output.stdout.text().as_str()), (Exit::Code(3), "going\n"));
+    assert_eq!((*exit, output.stdout.text().as_str()), (ProgramExit::Code(3), "going\n"));
     assert!(error.to_string().contains("exit code 3") && error.to_string().contains("  going"), "{error}");
-    assert_eq!(process.finish(GRACE).exit, Exit::Code(3));
+    assert_eq!(process.finish(GRACE).exit, ProgramExit::Code(3));
 }
 
 #[test]
 fn an_uncaught_exception_leaves_its_own_traceback() {
-    let mut process = Process::spawn(&launch(&["python3", "raises.py"])).unwrap();
+    let mut process = SutProcess::spawn(&launch(&["python3", "raises.py"])).unwrap();
     hello(&mut process);
     let error = process.next().unwrap_err();
-    assert!(matches!(error, SutError::Exited { exit: Exit::Code(1), .. }), "{error}");
+    assert!(matches!(error, SutError::Exited { exit: ProgramExit::Code(1), .. }), "{error}");
     let text = error.output().unwrap().stderr.text();
     assert!(text.starts_with("Traceback") && text.ends_with("ValueError: a wheel came off\n"), "{text}");
     assert!(text.contains("raises.py\", line 10, in <module>") && !text.contains("runner.py"), "{text}");
@@ -109,22 +118,22 @@ fn an_uncaught_exception_leaves_its_own_traceback() {
 fn one_that_hangs_is_given_up_and_its_coverage_kept() {
     let mut hanging = launch(&["python3", "hangs.py"]);
     hanging.coverage = vec!["hangs.py".into()];
-    let mut process = Process::spawn(&hanging).unwrap();
+    let mut process = SutProcess::spawn(&hanging).unwrap();
     hello(&mut process);
     drop(process);
     hanging.limits.budget = Duration::from_millis(300);
-    let mut process = Process::spawn(&hanging).unwrap();
+    let mut process = SutProcess::spawn(&hanging).unwrap();
     let mut error = None;
     while error.is_none() {
         // Under load even the start may take longer than this budget, which is the same finding.
         match process.next() {
-            Ok(_) => reply(&mut process, 0, Answer::Ok),
+            Ok(_) => reply(&mut process, 0, ReplyAnswer::Ok),
             Err(e) => error = Some(e),
         }
     }
     assert!(matches!(error, Some(SutError::Overrun { .. })), "{error:?}");
     let finished = process.finish(Duration::from_millis(10));
-    assert_eq!(finished.exit, Exit::Killed);
+    assert_eq!(finished.exit, ProgramExit::Killed);
 }
 
 #[test]
@@ -138,23 +147,23 @@ fn one_that_hangs_is_terminated_with_its_coverage() {
         run(&first)
     };
     assert_eq!(finished.coverage.unwrap()[0].executed, Vec::<u32>::new(), "it was never imported");
-    let mut process = Process::spawn(&hanging).unwrap();
+    let mut process = SutProcess::spawn(&hanging).unwrap();
     hello(&mut process);
     let finished = process.finish(Duration::from_millis(300));
-    assert_eq!(finished.exit, Exit::Killed);
+    assert_eq!(finished.exit, ProgramExit::Killed);
     let coverage = finished.coverage.expect("written on SIGTERM");
     assert!(coverage[0].executed.contains(&1), "{coverage:?}");
 }
 
 #[test]
 fn rubbish_is_told_from_requests() {
-    let mut process = Process::spawn(&launch(&["sh", "-c", "exec python3 rubbish.py short"])).unwrap();
+    let mut process = SutProcess::spawn(&launch(&["sh", "-c", "exec python3 rubbish.py short"])).unwrap();
     let error = process.next().unwrap_err();
     assert!(
         matches!(&error, SutError::Rubbish { line, .. } if line == "Traceback: this is no request"),
         "{error}"
     );
-    let mut process = Process::spawn(&launch(&["sh", "-c", "exec python3 rubbish.py endless"])).unwrap();
+    let mut process = SutProcess::spawn(&launch(&["sh", "-c", "exec python3 rubbish.py endless"])).unwrap();
     let error = process.next().unwrap_err();
     assert!(matches!(&error, SutError::Rubbish { line, .. } if line.len() == 200), "{error}");
     assert!(error.to_string().contains("longer than 1048576 bytes"), "{error}");
@@ -174,29 +183,29 @@ fn a_flood_of_output_is_kept_in_bounds() {
 fn one_that_reads_no_reply_does_not_block_the_harness() {
     let mut deaf = launch(&["sh", "-c", "exec python3 deaf.py"]);
     deaf.limits.budget = Duration::from_millis(500);
-    let mut process = Process::spawn(&deaf).unwrap();
+    let mut process = SutProcess::spawn(&deaf).unwrap();
     let error = loop {
         let request = match process.next() {
             Ok(request) => request,
             Err(e) => break e,
         };
-        assert_eq!(request, Request::Now);
-        if let Err(e) = process.reply(&Reply { time: 0, answer: Answer::Ok }) {
+        assert_eq!(request, ProgramRequest::Now);
+        if let Err(e) = process.reply(&HarnessReply { time: 0, answer: ReplyAnswer::Ok }) {
             break e;
         }
     };
     assert!(matches!(error, SutError::Overrun { .. }), "{error}");
-    assert_eq!(process.finish(Duration::ZERO).exit, Exit::Killed);
+    assert_eq!(process.finish(Duration::ZERO).exit, ProgramExit::Killed);
 }
 
 #[test]
 fn a_child_left_behind_does_not_hide_the_end() {
-    let mut process = Process::spawn(&launch(&["python3", "forks.py"])).unwrap();
+    let mut process = SutProcess::spawn(&launch(&["python3", "forks.py"])).unwrap();
     hello(&mut process);
-    assert!(matches!(process.next().unwrap(), Request::Emit { .. }));
-    reply(&mut process, 0, Answer::Ok);
+    assert!(matches!(process.next().unwrap(), ProgramRequest::Emit { .. }));
+    reply(&mut process, 0, ReplyAnswer::Ok);
     let error = process.next().unwrap_err();
-    assert!(matches!(error, SutError::Exited { exit: Exit::Code(7), .. }), "{error}");
+    assert!(matches!(error, SutError::Exited { exit: ProgramExit::Code(7), .. }), "{error}");
     assert!(process.finish(GRACE).others);
 }
 
@@ -279,9 +288,9 @@ fn coverage_is_written_after_an_exception_too() {
     let mut launch = launch(&["python3", "covered.py"]);
     launch.coverage = vec!["covered.py".into()];
     launch.seed = 101;
-    let mut process = Process::spawn(&launch).unwrap();
+    let mut process = SutProcess::spawn(&launch).unwrap();
     hello(&mut process);
-    assert!(matches!(process.next().unwrap_err(), SutError::Exited { exit: Exit::Code(1), .. }));
+    assert!(matches!(process.next().unwrap_err(), SutError::Exited { exit: ProgramExit::Code(1), .. }));
     let coverage = process.finish(GRACE).coverage.expect("coverage");
     assert!(coverage[0].executed.ends_with(&[33, 34, 35]), "{coverage:?}");
     assert!(coverage[0].executed_branches.contains(&(9, 10)), "{coverage:?}");
@@ -292,14 +301,14 @@ fn a_stop_ends_the_program_in_order() {
     let mut launch = launch(&["python3", "stopped.py"]);
     launch.coverage = vec!["stopped.py".into()];
     for by_reply in [true, false] {
-        let mut process = Process::spawn(&launch).unwrap();
+        let mut process = SutProcess::spawn(&launch).unwrap();
         hello(&mut process);
-        assert!(matches!(process.next().unwrap(), Request::WaitFor { timeout: None, .. }));
+        assert!(matches!(process.next().unwrap(), ProgramRequest::WaitFor { timeout: None, .. }));
         if by_reply {
-            reply(&mut process, 7, Answer::Stop);
+            reply(&mut process, 7, ReplyAnswer::Stop);
         }
         let finished = process.finish(GRACE);
-        assert_eq!(finished.exit, Exit::Code(0), "{}", finished.output);
+        assert_eq!(finished.exit, ProgramExit::Code(0), "{}", finished.output);
         let why = if by_reply { "the test is over" } else { "the harness has gone" };
         assert_eq!(finished.output.stdout.text(), format!("stopped: {why}\ncleaning up\n"));
         assert_eq!(finished.output.stderr.text(), "");
@@ -309,13 +318,16 @@ fn a_stop_ends_the_program_in_order() {
 
 #[test]
 fn what_is_refused_is_an_exception_in_the_program() {
-    let mut process = Process::spawn(&launch(&["python3", "refused.py"])).unwrap();
+    let mut process = SutProcess::spawn(&launch(&["python3", "refused.py"])).unwrap();
     hello(&mut process);
-    assert!(matches!(process.next().unwrap(), Request::Emit { .. }));
+    assert!(matches!(process.next().unwrap(), ProgramRequest::Emit { .. }));
     let help = Some("did you mean leg_request?".to_owned());
-    reply(&mut process, 0, Answer::Error { error: "no event leg_reqest".into(), help });
-    assert!(matches!(process.next().unwrap(), Request::Read { .. }), "the malformed ones never come up here");
-    reply(&mut process, 0, Answer::Error { error: "no signal nothing".into(), help: None });
+    reply(&mut process, 0, ReplyAnswer::Error { error: "no event leg_reqest".into(), help });
+    assert!(
+        matches!(process.next().unwrap(), ProgramRequest::Read { .. }),
+        "the malformed ones never come up here"
+    );
+    reply(&mut process, 0, ReplyAnswer::Error { error: "no signal nothing".into(), help: None });
     let error = process.next().unwrap_err();
     let output = error.output().unwrap();
     let text = output.stdout.text();
@@ -333,12 +345,12 @@ fn what_is_refused_is_an_exception_in_the_program() {
 fn one_that_ignores_every_signal_is_killed() {
     let mut launch = launch(&["python3", "stubborn.py"]);
     launch.coverage = vec!["stubborn.py".into()];
-    let mut process = Process::spawn(&launch).unwrap();
+    let mut process = SutProcess::spawn(&launch).unwrap();
     hello(&mut process);
-    assert_eq!(process.next().unwrap(), Request::Now);
-    reply(&mut process, 0, Answer::Ok);
+    assert_eq!(process.next().unwrap(), ProgramRequest::Now);
+    reply(&mut process, 0, ReplyAnswer::Ok);
     let finished = process.finish(Duration::from_millis(50));
-    assert_eq!((finished.exit, finished.coverage), (Exit::Killed, None));
+    assert_eq!((finished.exit, finished.coverage), (ProgramExit::Killed, None));
 }
 
 #[test]
@@ -347,7 +359,7 @@ fn other_programs_and_modules_speak_the_protocol_too() {
     assert_eq!(requests.len(), 2, "hello and, at exit, done");
     assert_eq!(finished.output.stdout.text(), "before\n");
     let (requests, finished) = run(&launch(&["python3", "-m", "hello"]));
-    assert_eq!((requests.len(), finished.exit), (2, Exit::Code(0)));
+    assert_eq!((requests.len(), finished.exit), (2, ProgramExit::Code(0)));
     let by_hand =
         r#"printf '{"request":"done"}\n' >&$HRDSL_REQUEST_FD; read -r line <&$HRDSL_REPLY_FD; echo "$line""#;
     let (requests, finished) = run(&launch(&["bash", "-c", by_hand]));
@@ -360,7 +372,7 @@ fn the_sdks_own_tests_pass() {
     tests.dir = tests.dir.join("../../../../sdk/python/tests");
     let (_, finished) = run(&tests);
     let text = finished.output.stderr.text();
-    assert!(finished.exit == Exit::Code(0) && text.ends_with("OK\n"), "{text}");
+    assert!(finished.exit == ProgramExit::Code(0) && text.ends_with("OK\n"), "{text}");
 }
 
 #[test]
@@ -381,6 +393,6 @@ fn requirements_are_installed_and_found() {
     launch.env = environment(Some(&list));
     launch.dir = dir.path().to_owned();
     let (requests, finished) = run(&launch);
-    assert_eq!(requests.last(), Some(&Request::Done));
+    assert_eq!(requests.last(), Some(&ProgramRequest::Done));
     assert_eq!(finished.output.stdout.text(), "from the wheel\n", "{}", finished.output);
 }

@@ -46,7 +46,7 @@ mod zone;
 
 pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, SHORTEST, answer, answers};
 pub use decide::explore::{check, explore};
-pub use decide::extremum::{Extremum, ExtremumLimit, ExtremumValue, RAISES};
+pub use decide::extremum::{ExtremumLimit, ExtremumValue, MeasureExtremum, RAISES};
 pub use decide::fastest::{fastest, shortest};
 pub use network::code::SyncMedium;
 pub use network::error::{EdgeName, ModelError};
@@ -54,8 +54,8 @@ pub use network::model::{CompiledNetwork, ObservationOptions, slot_names};
 pub use network::query::{
     self, EventCounter, EventLimit, GoalKind, ReachabilityGoal, SearchBudget, StateFormula, clock_names,
 };
-pub use network::semantics::{AutomatonMove, Binders};
-pub use search::options::{SearchOptions, SearchOrder, Subsumption};
+pub use network::semantics::{AutomatonMove, BinderValues};
+pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
 pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport};
 pub use witness::build::retimed;
 pub use witness::error::SearchError;
@@ -63,6 +63,6 @@ pub use witness::player::VirtualTimePlayer;
 pub use witness::run::{RunEnding, WitnessRun, WitnessRunStep};
 pub use witness::schedule::{DAWDLE, ScheduleOptions};
 pub use witness::trace::{TransitionMedium, TransitionParticipant, WitnessTrace, WitnessTransition};
-pub use zone::extrapolation::Abstraction;
+pub use zone::extrapolation::ExtrapolationAbstraction;
 pub use zone::federation::Federation;
 pub use zone::{dbm, federation};

@@ -7,7 +7,7 @@ use common::families;
 use hrdsl_ir::{Program, ta::LocationId};
 use hrdsl_ta::{
     CompiledNetwork, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal, SearchOptions, SearchOrder,
-    SearchReport, StateFormula, Subsumption, explore,
+    SearchReport, StateFormula, SubsumptionRelation, explore,
 };
 
 fn search(p: &Program, goals: &[ReachabilityGoal], options: &SearchOptions) -> SearchReport {
@@ -31,7 +31,7 @@ fn fischer() {
 
 #[test]
 fn fischer_without_inclusion() {
-    let options = SearchOptions { subsumption: Subsumption::Equality, ..SearchOptions::reference() };
+    let options = SearchOptions { subsumption: SubsumptionRelation::Equality, ..SearchOptions::reference() };
     assert_eq!(search(&families::fischer(8), &[], &options).states_visited, 122_184);
 }
 
@@ -115,7 +115,11 @@ fn options() -> Vec<SearchOptions> {
         [SearchOrder::Breadth, SearchOrder::Depth, SearchOrder::RandomDepth, SearchOrder::Topological]
     {
         for keep_committed in [false, true] {
-            for subsumption in [Subsumption::Simulation, Subsumption::Inclusion, Subsumption::Equality] {
+            for subsumption in [
+                SubsumptionRelation::Simulation,
+                SubsumptionRelation::Inclusion,
+                SubsumptionRelation::Equality,
+            ] {
                 all.push(SearchOptions {
                     order,
                     keep_committed,
@@ -166,7 +170,8 @@ fn threads_change_nothing() {
 #[test]
 fn simulation_stores_no_more_than_inclusion() {
     for p in [families::fischer(5), families::csma_cd(5), families::fddi(4), families::critical_region(2)] {
-        let options = SearchOptions { subsumption: Subsumption::Simulation, ..SearchOptions::reference() };
+        let options =
+            SearchOptions { subsumption: SubsumptionRelation::Simulation, ..SearchOptions::reference() };
         assert!(search(&p, &[], &options).states_stored <= stored(&p));
     }
 }

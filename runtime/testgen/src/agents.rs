@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::{
     concrete, extract,
-    goals::{AgentGoals, Reached, agents},
+    goals::{AgentGoals, ReachedGoals, agents},
     harvest::{AbstractTest, AbstractTests, AgentFindings, TestOrigin},
     model,
     model_run::{LogDetail, ModelRun, ModelRunOptions, model_run},
@@ -198,9 +198,9 @@ struct AgentRunTally {
     /// How many of the last ones brought nothing new.
     idle: u32,
     tests: Vec<AbstractTest>,
-    reached: Reached,
+    reached: ReachedGoals,
     /// What only runs reached that break an assumption.
-    broken: Reached,
+    broken: ReachedGoals,
     left_out: usize,
     measured: Vec<(AgentId, AgentCounts)>,
     seen: BTreeSet<Vec<i64>>,
@@ -216,8 +216,8 @@ impl AgentRunTally {
             sets: 0,
             idle: 0,
             tests: Vec::new(),
-            reached: Reached::new(),
-            broken: Reached::new(),
+            reached: ReachedGoals::new(),
+            broken: ReachedGoals::new(),
             left_out: 0,
             measured: measured.collect(),
             seen: BTreeSet::new(),

@@ -10,7 +10,7 @@ const ORIGINS: usize = 3;
 
 /// The different tests, in the order in which each first came.
 pub fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
-    let mut seen: IndexMap<Identity, AbstractTest> = IndexMap::new();
+    let mut seen: IndexMap<TestIdentity, AbstractTest> = IndexMap::new();
     for test in tests {
         match seen.entry(identity(&test.steps)) {
             indexmap::map::Entry::Vacant(slot) => {
@@ -39,14 +39,14 @@ pub fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
 }
 
 /// A number for each thing that makes a test what it is.
-type Identity = Vec<(u8, u64)>;
+type TestIdentity = Vec<(u8, u64)>;
 
 /// Equal for equal steps alone: the kind of each step, and how many parts a list of parts has, come before the parts.
-fn identity(steps: &[TestStep]) -> Identity {
+fn identity(steps: &[TestStep]) -> TestIdentity {
     const KIND: u8 = u8::MAX;
-    let mut parts = Identity::new();
+    let mut parts = TestIdentity::new();
     let count = |n: usize| (KIND, n as u64);
-    let values = |parts: &mut Identity, values: &[Value]| {
+    let values = |parts: &mut TestIdentity, values: &[Value]| {
         parts.push(count(values.len()));
         parts.extend(values.iter().map(|v| v.key()));
     };

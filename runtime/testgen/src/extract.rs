@@ -195,7 +195,7 @@ pub fn keeps_assumptions(program: &Program, trace: &Trace) -> bool {
         TraceStepKind::Sample { .. } => None,
     });
     let events: Vec<_> = events.collect();
-    hrdsl_coverage::assume::Assumptions::allows(program, &events)
+    hrdsl_coverage::assume::AssumptionChecker::allows(program, &events)
 }
 
 #[cfg(test)]

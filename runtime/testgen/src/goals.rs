@@ -32,7 +32,7 @@ pub struct AgentGoals {
 }
 
 /// The goals that were reached, by their places.
-pub type Reached = BTreeSet<usize>;
+pub type ReachedGoals = BTreeSet<usize>;
 
 /// The agents among the players.
 pub fn agents<'p>(program: &'p Program, players: &[PlayerRef]) -> Vec<(AgentId, &'p Agent)> {
@@ -67,7 +67,7 @@ impl AgentGoals {
 
     /// The goals that a run reached.
     #[must_use]
-    pub fn reached(&self, measured: &[(AgentId, AgentCounts)], coverage: &TestCoverage) -> Reached {
+    pub fn reached(&self, measured: &[(AgentId, AgentCounts)], coverage: &TestCoverage) -> ReachedGoals {
         let is_reached = |goal: &AgentGoal| match goal {
             AgentGoal::Item(agent, item) => {
                 measured.iter().any(|(a, counts)| a == agent && item.is_reached(counts))

@@ -13,7 +13,7 @@ pub struct AbstractTest {
     pub because: Vec<String>,
     pub predicts: Vec<BinName>,
     /// Which of the suite's goals the run reached.
-    pub reaches: goals::Reached,
+    pub reaches: goals::ReachedGoals,
     /// Of a suite by agents: the first run that it came from.
     pub origin: Option<TestOrigin>,
 }

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use crate::{goals::Reached, harvest::AbstractTest};
+use crate::{goals::ReachedGoals, harvest::AbstractTest};
 
 /// Which tests to keep, in their order, so that together they reach what all of them do: first that which reaches most
 /// that is not reached yet (the first of several), again and again; then, in the order in which they were taken, those go
 /// that reach nothing which no other of them does. If no test reaches anything all stay.
 #[must_use]
 pub fn minimised(tests: &[AbstractTest]) -> Vec<usize> {
-    let mut open: Reached = tests.iter().flat_map(|t| t.reaches.iter().copied()).collect();
+    let mut open: ReachedGoals = tests.iter().flat_map(|t| t.reaches.iter().copied()).collect();
     if open.is_empty() {
         return (0..tests.len()).collect();
     }

@@ -9,7 +9,7 @@ use hrdsl_ir::{
 use hrdsl_results::{AgentCoverage, GoalName, KindCoverage, TestExplanation, UnreachedItem};
 
 use crate::{
-    goals::{Reached, agents},
+    goals::{ReachedGoals, agents},
     harvest::AbstractTest,
 };
 
@@ -55,7 +55,7 @@ pub fn explained(
     for goal in tests.iter().flat_map(|t| &t.reaches) {
         how_many[*goal] += 1;
     }
-    let mut seen = Reached::new();
+    let mut seen = ReachedGoals::new();
     let mut explained = Vec::new();
     for (index, test) in tests.iter().enumerate() {
         let named = |which: &dyn Fn(usize) -> bool| -> Vec<GoalName> {

@@ -1,6 +1,6 @@
 //! The baseline: stimuli, awaits and pauses drawn at random (Section "Baseline: Pseudorandom Test Generation").
 
-use hrdsl_coverage::assume::Assumptions;
+use hrdsl_coverage::assume::AssumptionChecker;
 use hrdsl_ir::{
     EventId, Expr, Nanos, Program, Type, Value,
     event::StimulusStep,
@@ -37,8 +37,12 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
     let mut harvest = AbstractTests::default();
     for _ in 0..count {
         let length = rng.random_range(*length_lo..=*length_hi.max(length_lo));
-        let mut draw =
-            RandomSequence { program, assumptions: Assumptions::new(program), steps: Vec::new(), time: 0 };
+        let mut draw = RandomSequence {
+            program,
+            assumptions: AssumptionChecker::new(program),
+            steps: Vec::new(),
+            time: 0,
+        };
         for _ in 0..length {
             let pause = if pause_lo < pause_hi { rng.random_range(*pause_lo..=*pause_hi) } else { *pause_lo };
             // Tenths of a second: a person's pauses, readable in the test's text.
@@ -58,7 +62,7 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
 /// A sequence under construction. Its times are lower bounds: that is what an assumption's window must be judged by.
 struct RandomSequence<'p> {
     program: &'p Program,
-    assumptions: Assumptions,
+    assumptions: AssumptionChecker,
     steps: Vec<TestStep>,
     time: Nanos,
 }

@@ -1,4 +1,4 @@
-//! Reads a recording back, with its names resolved against a program: step by step ([`Recording`]), or as a whole trace
+//! Reads a recording back, with its names resolved against a program: step by step ([`OpenRecording`]), or as a whole trace
 //! ([`parse`]).
 //!
 //! Recordings come from other programs, too: whatever is wrong with one is said with the number of its line.
@@ -58,7 +58,7 @@ pub struct ParseError {
 /// The first line that is wrong, and why.
 pub fn parse(program: &Program, text: &str) -> Result<(RecordingSummary, Trace), ParseError> {
     let mut trace = Trace::default();
-    match Recording::open(text.as_bytes()).and_then(|r| r.replay(program, &mut trace)) {
+    match OpenRecording::open(text.as_bytes()).and_then(|r| r.replay(program, &mut trace)) {
         Ok(recorded) => Ok((recorded, trace)),
         Err(ReadError::Parse(error)) => Err(error),
         // Nothing goes wrong with reading from memory.
@@ -70,12 +70,12 @@ pub fn parse(program: &Program, text: &str) -> Result<(RecordingSummary, Trace),
 
 /// A recording of which the header was read.
 #[derive(Debug)]
-pub struct Recording<R> {
+pub struct OpenRecording<R> {
     lines: RecordingLines<R>,
     header: RecordingHeader,
 }
 
-impl<R: BufRead> Recording<R> {
+impl<R: BufRead> OpenRecording<R> {
     /// Reads the header.
     ///
     /// # Errors

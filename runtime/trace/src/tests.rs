@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 use crate::{
     RunEnd, Trace, TraceStep, TraceStepKind, decimal,
-    parse::{LineProblem, Recording, RecordingSummary, parse},
+    parse::{LineProblem, OpenRecording, RecordingSummary, parse},
     print,
     record::{self, RecordingEnd, RecordingHeader},
     vocabulary,
@@ -215,7 +215,7 @@ fn the_last_line_says_how_the_run_ended() {
 fn a_line_that_is_no_text_is_named() {
     let read = |bytes: &[u8]| {
         let mut trace = Trace::default();
-        let recording = Recording::open(bytes).and_then(|r| r.replay(&program(), &mut trace));
+        let recording = OpenRecording::open(bytes).and_then(|r| r.replay(&program(), &mut trace));
         recording.unwrap_err().to_string()
     };
     let text = [HEADER.as_bytes(), b"\n\n{\"t\":\xff}\n"].concat();

@@ -128,7 +128,7 @@ class Query:
         elif form == "unify":
             yield from self.one(of[0], evaluate(of[1], theta, called), theta, called)
         else:
-            yield from self.internal(of, theta, depth, called)
+            yield from self.internal(of[0], theta, depth, called)
 
     def conjunction(self, parts, theta, depth, called):
         if not parts:

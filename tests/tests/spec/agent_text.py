@@ -149,7 +149,7 @@ class Here:
             return self.expression(of, "logical" if inner else None)
         if form == "unify":
             return f"{self.term(of[0])} = {self.value(of[1])}"
-        return self.internal(of)
+        return self.internal(of[0])
 
     def internal(self, action):
         form, of = form_of(action)

@@ -11,11 +11,11 @@ use hrdsl_bdi::{
     CYCLE_LIMIT, LogDetail,
     choose::{BeliefSet, explore, factors},
 };
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{
     Program, Span, Value,
     bdi::AgentId,
-    suite::{Method, PlayerRef},
+    suite::{PlayerRef, SuiteMethod},
     value::SECOND,
 };
 use hrdsl_runtime::{
@@ -125,11 +125,11 @@ pub fn difference(ours: &str, theirs: &str) -> Option<String> {
 
 /// How many events happened in the runs of one scenario.
 fn compared(name: &str, text: &str) -> usize {
-    let compilation = compile(Input { name, text }, &[]);
+    let compilation = compile(InputFile { name, text }, &[]);
     let said: Vec<_> = compilation.diagnostics.iter().filter(|d| d.is_error()).collect();
     let program = compilation.program.unwrap_or_else(|| panic!("{name}: {said:#?}"));
     let suite = &program.suites[0];
-    let Method::Agents { choose, explore: how, .. } = &suite.method else { panic!("{suite:?}") };
+    let SuiteMethod::Agents { choose, explore: how, .. } = &suite.method else { panic!("{suite:?}") };
     let sets = explore(&factors(&program, choose).unwrap(), *how, suite.tests, 0).sets;
     let casts: [&[u16]; 5] = [&[0, 1, 2], &[2, 1, 0], &[1, 0], &[0, 2], &[0]];
     let runs: Vec<Cast> = casts.into_iter().map(<[u16]>::to_vec).cycle().zip(sets).collect();

@@ -8,7 +8,7 @@
 use std::{collections::BTreeSet, fs, path::Path};
 
 use hrdsl_bdi::{CYCLE_LIMIT, choose::BeliefSet};
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 
 use crate::{
     agents::{Cast, by_the_pages, difference, printed},
@@ -85,7 +85,7 @@ fn head(block: &Block) -> String {
 
 /// The log, if the reference has the same.
 fn run(block: &Block) -> Result<String, String> {
-    let compilation = compile(Input { name: "program.hri", text: &block.text }, &[]);
+    let compilation = compile(InputFile { name: "program.hri", text: &block.text }, &[]);
     let errors = compilation.diagnostics.iter().filter(|d| d.is_error());
     let said: Vec<_> =
         errors.map(|d| format!("{} {}: {}", compilation.files.place(d.span()), d.code, d.message)).collect();

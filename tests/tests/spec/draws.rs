@@ -7,11 +7,11 @@ use std::{
 };
 
 use hrdsl_bdi::choose::{BeliefExplorer, BeliefFactor, BeliefSet, FactorAlternative, explore};
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{
     Value,
-    bdi::{AgentId, BeliefId, Fact},
-    suite::Explore,
+    bdi::{AgentId, BeliefId, InitialFact},
+    suite::ExploreMode,
     test::TestStep,
 };
 use hrdsl_runtime::testgen::generate;
@@ -30,7 +30,7 @@ const SCENARIO: &str = "scenario draws
 
 /// What hrdsl draws, a line for each number.
 fn drawn(seed: u64) -> (String, Vec<u64>) {
-    let compilation = compile(Input { name: "draws", text: SCENARIO }, &[]);
+    let compilation = compile(InputFile { name: "draws", text: SCENARIO }, &[]);
     let program = compilation.program.expect("the scenario compiles");
     let generated = generate(&program, &program.suites[0], None, seed).unwrap();
     let (mut lines, mut seeds) = (String::new(), Vec::new());
@@ -125,7 +125,7 @@ for row in fill([], sizes, tests, chance): print(*row)
         for (tests, seed) in [(3, 0), (40, 5), (1000, 1)] {
             let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
             let mut expected = String::new();
-            for how in [Explore::Wise(2), Explore::Random] {
+            for how in [ExploreMode::Wise(2), ExploreMode::Random] {
                 for set in explore(&factors, how, tests, seed).sets {
                     let row: Vec<String> = set.facts.iter().map(|(_, f)| f.args[0].to_string()).collect();
                     let _ = writeln!(expected, "{}", row.join(" "));
@@ -148,7 +148,7 @@ for row in wise(strength, sizes, Generator(seed)): print(*row)
     for sizes in spaces {
         for (strength, seed) in [(2u8, 4), (3, 0), (3, 9), (4, 1), (6, 2)] {
             let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
-            let sets = explore(&factors, Explore::Wise(strength), 0, seed).sets;
+            let sets = explore(&factors, ExploreMode::Wise(strength), 0, seed).sets;
             let expected: String = sets.iter().map(|s| row(s) + "\n").collect();
             let args = [format!("{sizes:?}"), strength.to_string(), seed.to_string()];
             compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
@@ -167,7 +167,7 @@ for row in learn(sizes, tests, Generator(seed), lambda row: sum(row) % 3): print
     for sizes in spaces {
         for (tests, seed) in [(10, 0), (200, 3)] {
             let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
-            let mut explorer = BeliefExplorer::new(&factors, Explore::Learn, tests, seed);
+            let mut explorer = BeliefExplorer::new(&factors, ExploreMode::Learn, tests, seed);
             let mut expected = String::new();
             loop {
                 let batch = explorer.next_batch();
@@ -195,7 +195,8 @@ fn row(set: &BeliefSet) -> String {
 
 /// A dimension whose alternatives are numbers.
 fn factor(size: u32) -> BeliefFactor {
-    let fact = |n: u32| Fact { belief: BeliefId(0), args: vec![Value::Int(n.into())], annotations: vec![] };
+    let fact =
+        |n: u32| InitialFact { belief: BeliefId(0), args: vec![Value::Int(n.into())], annotations: vec![] };
     let alternative = |n| FactorAlternative { facts: vec![fact(n)], text: n.to_string() };
     BeliefFactor {
         agent: AgentId(0),

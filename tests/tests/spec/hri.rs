@@ -12,7 +12,7 @@
 //!
 //! After it may stand `fails=HRnnnn` or `warns=HRnnnn`, each perhaps with `="text"`: the text at the place of the fault.
 
-use hrdsl_compiler::{Compilation, Input, Loader, Source, compile_with};
+use hrdsl_compiler::{CompilationResult, InputFile, ModuleLoader, ModuleText, compile_with};
 
 use crate::fixing;
 use crate::page::{Block, read, split};
@@ -61,10 +61,10 @@ fn rule(info: &str) -> Result<Rule, String> {
     Ok(rule)
 }
 
-struct Modules(Vec<Source>);
+struct Modules(Vec<ModuleText>);
 
-impl Loader for Modules {
-    fn load(&self, _from: &str, path: &str) -> Result<Source, String> {
+impl ModuleLoader for Modules {
+    fn load(&self, _from: &str, path: &str) -> Result<ModuleText, String> {
         self.0.iter().find(|f| f.name == path).cloned().ok_or("there is no such file".to_owned())
     }
 
@@ -95,7 +95,7 @@ pub fn faults(page: &str, blocks: &[Block]) -> (Vec<String>, usize) {
             }
         };
         if let Some(file) = rule.file {
-            files.push(Source { name: file, text: block.text.clone() });
+            files.push(ModuleText { name: file, text: block.text.clone() });
             continue;
         }
         let text = match rule.form {
@@ -111,14 +111,14 @@ pub fn faults(page: &str, blocks: &[Block]) -> (Vec<String>, usize) {
             }
         };
         let modules = Modules(std::mem::take(&mut files));
-        let compilation = compile_with(Input { name: &name, text: &text }, &[], &modules);
+        let compilation = compile_with(InputFile { name: &name, text: &text }, &[], &modules);
         compiled += 1;
         faults.extend(fault(&compilation, rule.expect.as_ref(), &text).map(|f| format!("{name}: {f}")));
-        let again = |text: &str| compile_with(Input { name: &name, text }, &[], &modules);
+        let again = |text: &str| compile_with(InputFile { name: &name, text }, &[], &modules);
         faults.extend(fixing::faults(&text, &again).0);
     }
     if !grown.is_empty() {
-        let whole = compile_with(Input { name: page, text: &grown }, &[], &Modules(files));
+        let whole = compile_with(InputFile { name: page, text: &grown }, &[], &Modules(files));
         if !whole.diagnostics.is_empty() {
             faults.push(format!("{page}: the blocks together{}", listed(&whole)));
         }
@@ -127,7 +127,11 @@ pub fn faults(page: &str, blocks: &[Block]) -> (Vec<String>, usize) {
 }
 
 /// What is wrong with a compilation, given what is to be.
-fn fault(c: &Compilation, expect: Option<&(String, bool, Option<String>)>, text: &str) -> Option<String> {
+fn fault(
+    c: &CompilationResult,
+    expect: Option<&(String, bool, Option<String>)>,
+    text: &str,
+) -> Option<String> {
     let compiles = c.program.is_some() && !c.diagnostics.iter().any(|d| d.is_error());
     let Some((code, is_error, at)) = expect else {
         return (!compiles).then(|| format!("does not compile{}", listed(c)));
@@ -155,7 +159,7 @@ fn fault(c: &Compilation, expect: Option<&(String, bool, Option<String>)>, text:
 }
 
 /// The diagnostics, by place in the block.
-fn listed(compilation: &Compilation) -> String {
+fn listed(compilation: &CompilationResult) -> String {
     let mut lines = String::new();
     for d in &compilation.diagnostics {
         let place = compilation.files.place(d.span());

@@ -6,7 +6,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{EventId, Program, Type, Value, value::SECOND, world::SignalId};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict, Violation};
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
@@ -90,7 +90,7 @@ fn in_words(verdict: &MonitorVerdict) -> Json {
 
 #[test]
 fn the_reference_gives_the_same_verdicts() {
-    let compilation = compile(Input { name: "monitors.hri", text: SCENARIO }, &[]);
+    let compilation = compile(InputFile { name: "monitors.hri", text: SCENARIO }, &[]);
     let said: Vec<_> = compilation.diagnostics.iter().filter(|d| d.is_error()).collect();
     let program = compilation.program.unwrap_or_else(|| panic!("{said:#?}"));
     let mut chance = Chance(1);

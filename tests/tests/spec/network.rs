@@ -7,7 +7,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-use hrdsl_compiler::{Input, compile};
+use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::Program;
 use hrdsl_runtime::{results::GoalStatus, testgen::generate};
 
@@ -38,7 +38,7 @@ fn the_reference_reaches_the_same_goals_over_channels() {
 
 /// The goals that both reach, and those that neither does.
 fn compared(name: &str, text: &str) -> (BTreeSet<String>, BTreeSet<String>) {
-    let compilation = compile(Input { name, text }, &[]);
+    let compilation = compile(InputFile { name, text }, &[]);
     let said: Vec<_> = compilation.diagnostics.iter().filter(|d| d.is_error()).collect();
     let program = compilation.program.unwrap_or_else(|| panic!("{said:#?}"));
     let generated = generate(&program, &program.suites[0], None, 0).unwrap();

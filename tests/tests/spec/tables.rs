@@ -3,12 +3,12 @@
 
 use std::{env, fmt::Write, fs};
 
-use hrdsl_compiler::token::{Class, KEYWORDS};
+use hrdsl_compiler::token::{KEYWORDS, KeywordClass};
 use hrdsl_ir::{
     Type,
     device::{CommandType, DevicePrimitive, NumberCount},
 };
-use hrdsl_model::{Dim, UNITS, type_named, type_names};
+use hrdsl_model::{Dimension, UNITS, type_named, type_names};
 use hrdsl_source::{GROUPS, REGISTRY};
 
 use crate::page::{pages, read, root};
@@ -36,7 +36,7 @@ fn same(page: &str, old: &str, new: &str) {
 }
 
 /// The name of a dimension's type.
-fn type_of(dim: Dim) -> &'static str {
+fn type_of(dim: Dimension) -> &'static str {
     let mut names = type_names().filter(|n| *n != "float");
     names.find(|n| type_named(n) == Some(Type::Float(dim.unit()))).expect("each unit is of a named dimension")
 }
@@ -75,8 +75,8 @@ fn the_keywords() {
     let mut table = String::from("| keyword | reserved | where |\n|---|---|---|\n");
     for keyword in KEYWORDS {
         let reserved = match keyword.class {
-            Class::Reserved => "always",
-            Class::Head | Class::Hard | Class::Soft => "in its place",
+            KeywordClass::Reserved => "always",
+            KeywordClass::Head | KeywordClass::Hard | KeywordClass::Soft => "in its place",
         };
         let _ = writeln!(table, "| `{}` | {reserved} | {} |", keyword.word, keyword.place);
     }

@@ -1,8 +1,11 @@
 //! What a module says of itself: the comment at its head, and the doc comments of its declarations.
 
 use hrdsl_compiler::{
-    Compilation, Input,
-    ast::{DeviceMemberKind, Instance, ItemKind, Sort, World, WorldMemberKind as Member},
+    CompilationResult, InputFile,
+    ast::{
+        DeviceMemberKind, InstanceSyntax, ItemSyntaxKind, TemplateSyntaxKind, WorldMemberKind as Member,
+        WorldSyntax,
+    },
     compile,
 };
 
@@ -16,7 +19,7 @@ pub struct Module {
     /// The scenario at the head.
     pub frame: String,
     pub declarations: Vec<Declaration>,
-    pub compilation: Compilation,
+    pub compilation: CompilationResult,
 }
 
 pub struct Declaration {
@@ -46,17 +49,17 @@ fn module(path: &'static str, text: &str) -> Module {
     let head = head.join("\n");
     let frame = blocks(&head).into_iter().next().unwrap_or_default();
     let about = head.split("```").next().unwrap_or_default().trim().to_owned();
-    let compilation = compile(Input { name: path, text }, &[]);
+    let compilation = compile(InputFile { name: path, text }, &[]);
     let files = &compilation.files;
-    let declaration = |item: &hrdsl_compiler::ast::Item| {
+    let declaration = |item: &hrdsl_compiler::ast::ItemSyntax| {
         let whole = files.text(item.span);
         let (name, sort, members) = match &item.kind {
-            ItemKind::Part(part) => (part.name.text.clone(), Some(Sorted::Part), &part.members[..]),
-            ItemKind::Require(require) => {
+            ItemSyntaxKind::Part(part) => (part.name.text.clone(), Some(Sorted::Part), &part.members[..]),
+            ItemSyntaxKind::Require(require) => {
                 (require.name.text.clone(), require.params.as_ref().map(|_| Sorted::Require), &[][..])
             }
-            ItemKind::Const { name, .. } => (name.text.clone(), None, &[][..]),
-            ItemKind::Device(device) => {
+            ItemSyntaxKind::Const { name, .. } => (name.text.clone(), None, &[][..]),
+            ItemSyntaxKind::Device(device) => {
                 let commands = device.members.iter().filter_map(|m| match &m.kind {
                     DeviceMemberKind::Command(command) => {
                         let (from, to) = (command.name.span.start, m.span.end);
@@ -69,7 +72,7 @@ fn module(path: &'static str, text: &str) -> Module {
                 let (name, doc, members) = (device.kind.text.clone(), item.doc.clone(), commands.collect());
                 return Some(Declaration { name, sort: None, text, doc, members });
             }
-            ItemKind::Use(_) => return None,
+            ItemSyntaxKind::Use(_) => return None,
             other => panic!("{path}: the page does not know how to show {other:?}"),
         };
         let members = members.iter().filter_map(|m| member(&m.kind).map(|(s, n)| (s, n, m.doc.clone())));
@@ -127,17 +130,19 @@ impl Module {
 }
 
 /// What a scenario makes instances of.
-pub fn instantiated(c: &Compilation) -> Vec<(Sorted, String)> {
+pub fn instantiated(c: &CompilationResult) -> Vec<(Sorted, String)> {
     let mut all = Vec::new();
     for item in &c.ast[0].items {
         match &item.kind {
-            ItemKind::Instance(Instance { sort: Sort::Require, of, .. }) => {
+            ItemSyntaxKind::Instance(InstanceSyntax { sort: TemplateSyntaxKind::Require, of, .. }) => {
                 all.push((Sorted::Require, of.text.clone()))
             }
-            ItemKind::World(World { members }) => all.extend(members.iter().filter_map(|m| match &m.kind {
-                Member::Part { of, .. } => Some((Sorted::Part, of.text.clone())),
-                _ => None,
-            })),
+            ItemSyntaxKind::World(WorldSyntax { members }) => {
+                all.extend(members.iter().filter_map(|m| match &m.kind {
+                    Member::Part { of, .. } => Some((Sorted::Part, of.text.clone())),
+                    _ => None,
+                }))
+            }
             _ => {}
         }
     }

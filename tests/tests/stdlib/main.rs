@@ -7,16 +7,16 @@ mod requirements;
 
 use std::{fs, path::Path};
 
-use hrdsl_compiler::{Compilation, Input, compile};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
 use hrdsl_ir::{
     Expr, Program, Value,
-    world::{BodyRef, Point, SignalId, WorldAction},
+    world::{BodyRef, SignalId, WorldAction, WorldPoint},
 };
-use hrdsl_sim::{MotorCommand, Sim};
+use hrdsl_sim::{MotorCommand, WorldSimulation};
 use library::{Sorted, blocks, instantiated, modules};
 
 /// Everything that was said, by place.
-fn listed(c: &Compilation) -> Vec<String> {
+fn listed(c: &CompilationResult) -> Vec<String> {
     c.diagnostics.iter().map(|d| format!("{} {} {}", c.files.place(d.span()), d.code, d.message)).collect()
 }
 
@@ -25,7 +25,7 @@ fn program(module: &str, at: usize) -> Program {
     let all = modules();
     let module = all.iter().find(|m| m.path == module).unwrap();
     let text = module.examples().swap_remove(at);
-    compile(Input { name: "example.hri", text: &text }, &[]).program.unwrap()
+    compile(InputFile { name: "example.hri", text: &text }, &[]).program.unwrap()
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn every_example_compiles_and_every_template_has_an_instance() {
         let mut made = Vec::new();
         for text in module.examples() {
             executed += 1;
-            let c = compile(Input { name: "example.hri", text: &text }, &[]);
+            let c = compile(InputFile { name: "example.hri", text: &text }, &[]);
             let said = listed(&c);
             assert!(said.is_empty(), "an example of {}:\n{}\n{text}", module.path, said.join("\n"));
             assert!(c.program.is_some());
@@ -90,8 +90,8 @@ fn every_world_stands() {
         for at in 0..module.examples().len() {
             let program = program(module.path, at);
             let world = program.world.as_ref().unwrap();
-            let mut sim =
-                Sim::new(world, &program.signals).unwrap_or_else(|e| panic!("{}: {e}", module.path));
+            let mut sim = WorldSimulation::new(world, &program.signals)
+                .unwrap_or_else(|e| panic!("{}: {e}", module.path));
             sim.advance(2_000_000_000);
             for body in &world.bodies {
                 let (at, _) = sim.pose(sim.body_named(&body.name).unwrap()).unwrap();
@@ -110,7 +110,7 @@ fn arms_reach_what_is_in_front_of_them() {
         ("std.robots.mobile", [[0.6, -0.1, 0.7], [0.5, -0.4, 0.5]]),
     ] {
         let program = program(module, 0);
-        let mut sim = Sim::new(program.world.as_ref().unwrap(), &program.signals).unwrap();
+        let mut sim = WorldSimulation::new(program.world.as_ref().unwrap(), &program.signals).unwrap();
         let arm = sim.arm_named("robot.arm").unwrap();
         for target in places {
             let id = sim.command(MotorCommand::ReachPoint { arm, target, max_speed: None }).unwrap();
@@ -132,14 +132,14 @@ fn arms_reach_what_is_in_front_of_them() {
 #[test]
 fn sensors_say_what_is_so() {
     let program = program("std.sensors", 0);
-    let mut sim = Sim::new(program.world.as_ref().unwrap(), &program.signals).unwrap();
-    let read = |sim: &Sim, name: &str| {
+    let mut sim = WorldSimulation::new(program.world.as_ref().unwrap(), &program.signals).unwrap();
+    let read = |sim: &WorldSimulation, name: &str| {
         let at = program.signals.iter().position(|s| s.name == name).unwrap_or_else(|| panic!("no `{name}`"));
         sim.read(SignalId(u16::try_from(at).unwrap()))
     };
-    let send = |sim: &mut Sim, body: &str, to: [f64; 3]| {
+    let send = |sim: &mut WorldSimulation, body: &str, to: [f64; 3]| {
         let body = sim.body_named(body).unwrap();
-        let to = Point { of: None, offset: to.map(Expr::float) };
+        let to = WorldPoint { of: None, offset: to.map(Expr::float) };
         sim.act(&WorldAction::Move { body, to, over: Expr::float(1.0) }, &|_| None).unwrap();
         sim.advance(sim.now() + 2_000_000_000);
     };

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Program,
-    ta::{Ask, Formula, Query},
+    ta::{Query, QueryFormula, QueryKind},
     value::SECOND,
 };
 
@@ -25,12 +25,12 @@ pub fn by_regions(p: &Program, query: &Query) -> String {
         return "fault".to_owned();
     }
     let answer = match &query.ask {
-        Ask::Possibly(f) => graph.possibly(f),
-        Ask::Invariantly(f) => graph.possibly(&Formula::Not(Box::new(f.clone()))).map(|b| !b),
-        Ask::PotentiallyAlways(f) => graph.always(f),
-        Ask::Eventually(f) => graph.eventually(f),
-        Ask::LeadsTo(f, g) => graph.leads_to(f, g),
-        Ask::Sup { .. } | Ask::Inf { .. } => Err("no answer to this here".to_owned()),
+        QueryKind::Possibly(f) => graph.possibly(f),
+        QueryKind::Invariantly(f) => graph.possibly(&QueryFormula::Not(Box::new(f.clone()))).map(|b| !b),
+        QueryKind::PotentiallyAlways(f) => graph.always(f),
+        QueryKind::Eventually(f) => graph.eventually(f),
+        QueryKind::LeadsTo(f, g) => graph.leads_to(f, g),
+        QueryKind::Sup { .. } | QueryKind::Inf { .. } => Err("no answer to this here".to_owned()),
     };
     match answer {
         Ok(true) => "holds".to_owned(),
@@ -52,24 +52,25 @@ pub fn by_search(p: &Program, query: &Query) -> String {
     }
 }
 
-fn each_clock(ask: &Ask, f: &mut dyn FnMut(&hrdsl_ir::ta::ClockConstraint)) {
+fn each_clock(ask: &QueryKind, f: &mut dyn FnMut(&hrdsl_ir::ta::ClockConstraint)) {
     match ask {
-        Ask::Possibly(a) | Ask::Invariantly(a) | Ask::PotentiallyAlways(a) | Ask::Eventually(a) => {
-            clocks(a, f)
-        }
-        Ask::LeadsTo(a, b) => {
+        QueryKind::Possibly(a)
+        | QueryKind::Invariantly(a)
+        | QueryKind::PotentiallyAlways(a)
+        | QueryKind::Eventually(a) => clocks(a, f),
+        QueryKind::LeadsTo(a, b) => {
             clocks(a, f);
             clocks(b, f);
         }
-        Ask::Sup { when, .. } | Ask::Inf { when, .. } => clocks(when, f),
+        QueryKind::Sup { when, .. } | QueryKind::Inf { when, .. } => clocks(when, f),
     }
 }
 
-fn clocks(formula: &Formula, f: &mut dyn FnMut(&hrdsl_ir::ta::ClockConstraint)) {
+fn clocks(formula: &QueryFormula, f: &mut dyn FnMut(&hrdsl_ir::ta::ClockConstraint)) {
     match formula {
-        Formula::Clock(c) => f(c),
-        Formula::Not(a) => clocks(a, f),
-        Formula::And(all) | Formula::Or(all) => all.iter().for_each(|a| clocks(a, f)),
-        Formula::At { .. } | Formula::Data(_) | Formula::Deadlock => {}
+        QueryFormula::Clock(c) => f(c),
+        QueryFormula::Not(a) => clocks(a, f),
+        QueryFormula::And(all) | QueryFormula::Or(all) => all.iter().for_each(|a| clocks(a, f)),
+        QueryFormula::At { .. } | QueryFormula::Data(_) | QueryFormula::Deadlock => {}
     }
 }

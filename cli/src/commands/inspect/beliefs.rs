@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use hrdsl_compiler::{Compilation, Input, Loader, Source, ast, compile_with};
+use hrdsl_compiler::{CompilationResult, InputFile, ModuleLoader, ModuleText, ast, compile_with};
 use hrdsl_ir::{
     Program,
-    bdi::{Agent, AgentId, BeliefId, Fact},
+    bdi::{Agent, AgentId, BeliefId, InitialFact},
 };
 
-use crate::{fault::Fault, files, reach::Disk};
+use crate::{fault::CommandFault, files, reach::DiskModules};
 
 /// One of the beliefs, and whose it is.
-struct Given<'a> {
+struct GivenBelief<'a> {
     /// As written, without the agent's name.
     text: &'a str,
     /// Without `~`.
@@ -25,21 +25,21 @@ struct Given<'a> {
 /// What is no belief, or none of these agents', or does not fit its declaration.
 pub fn facts(
     scenario: &Path,
-    compilation: &Compilation,
+    compilation: &CompilationResult,
     program: &Program,
     agents: &[AgentId],
     text: &str,
-) -> Result<Vec<(AgentId, Fact)>, Fault> {
+) -> Result<Vec<(AgentId, InitialFact)>, CommandFault> {
     let given = split(text)?
         .into_iter()
         .map(|piece| owned(program, agents, piece))
-        .collect::<Result<Vec<Given<'_>>, Fault>>()?;
+        .collect::<Result<Vec<GivenBelief<'_>>, CommandFault>>()?;
     // One by one: each is the last that its belief is declared to hold.
     given.iter().map(|g| Ok((g.agent, fact(scenario, compilation, program, g)?))).collect()
 }
 
 /// The pieces between commas that are in no parentheses.
-fn split(text: &str) -> Result<Vec<&str>, Fault> {
+fn split(text: &str) -> Result<Vec<&str>, CommandFault> {
     let fault =
         |what: &str| Err(format!("--beliefs: {what} in `{text}`; write it like `wants(2), shows(1, true)`"));
     let (mut pieces, mut depth, mut start, mut quoted) = (Vec::new(), 0usize, 0, false);
@@ -68,7 +68,7 @@ fn split(text: &str) -> Result<Vec<&str>, Fault> {
     Ok(pieces)
 }
 
-fn owned<'a>(program: &Program, agents: &[AgentId], piece: &'a str) -> Result<Given<'a>, Fault> {
+fn owned<'a>(program: &Program, agents: &[AgentId], piece: &'a str) -> Result<GivenBelief<'a>, CommandFault> {
     let head = piece.find(['(', '[']).unwrap_or(piece.len());
     let (owner, text) = match piece[..head].split_once('.') {
         Some((owner, _)) => (Some(owner.trim()), piece[owner.len() + 1..].trim()),
@@ -88,7 +88,7 @@ fn owned<'a>(program: &Program, agents: &[AgentId], piece: &'a str) -> Result<Gi
     };
     let owners: Vec<AgentId> = agents.iter().filter(declares).copied().collect();
     match owners.as_slice() {
-        [one] => Ok(Given { text, name, agent: *one }),
+        [one] => Ok(GivenBelief { text, name, agent: *one }),
         [] => {
             let theirs = agents.iter().filter(|id| owner.is_none_or(|o| agent(id).name == o));
             let known = theirs
@@ -105,10 +105,10 @@ fn owned<'a>(program: &Program, agents: &[AgentId], piece: &'a str) -> Result<Gi
 
 fn fact(
     scenario: &Path,
-    compilation: &Compilation,
+    compilation: &CompilationResult,
     program: &Program,
-    given: &Given<'_>,
-) -> Result<Fact, Fault> {
+    given: &GivenBelief<'_>,
+) -> Result<InitialFact, CommandFault> {
     let agent = &program.agents[usize::from(given.agent.0)];
     let undeclared = || format!("--beliefs: `{}` is declared where nothing can be added to it", given.name);
     let declared = agent.beliefs.iter().find(|b| b.name == given.name).ok_or_else(undeclared)?;
@@ -117,12 +117,12 @@ fn fact(
     let mark = if has_some { "," } else { " =" };
     // What ends with nothing, like `belief away`, ends where the next word begins.
     let text = format!("{}{mark} {} {}", &file.text[..end], given.text, &file.text[end..]);
-    let disk = Disk::of(Some(scenario));
-    let changed = Changed { disk, name: &file.name, text: &text };
+    let disk = DiskModules::of(Some(scenario));
+    let changed = FileOverlay { disk, name: &file.name, text: &text };
     let name = scenario.display().to_string();
     let own = files::read(scenario)?;
     let head = if file.name == name { &text } else { &own };
-    let compiled = compile_with(Input { name: &name, text: head }, &[], &changed);
+    let compiled = compile_with(InputFile { name: &name, text: head }, &[], &changed);
     let Some(changed) = &compiled.program else {
         let first = compiled.diagnostics.iter().find(|d| d.is_error());
         let help = first.and_then(|d| d.help.as_deref()).map_or_else(String::new, |h| format!(" ({h})"));
@@ -131,20 +131,24 @@ fn fact(
     };
     let there = &changed.agents[usize::from(given.agent.0)];
     let name_of = |agent: &'_ Agent, id: BeliefId| agent.beliefs[usize::from(id.0)].name.clone();
-    let of_it = |f: &&Fact| name_of(there, f.belief).trim_start_matches('~') == given.name;
+    let of_it = |f: &&InitialFact| name_of(there, f.belief).trim_start_matches('~') == given.name;
     let fact = there.initial_beliefs.iter().rfind(of_it).ok_or_else(undeclared)?;
     let name = name_of(there, fact.belief);
     let here = agent.beliefs.iter().position(|b| b.name == name);
     let here = here.and_then(|at| u16::try_from(at).ok());
     let belief = here.ok_or_else(|| format!("--beliefs: nothing in the scenario is about `{name}`"))?;
-    Ok(Fact { belief: BeliefId(belief), ..fact.clone() })
+    Ok(InitialFact { belief: BeliefId(belief), ..fact.clone() })
 }
 
 /// Where a belief's declaration ends, and whether it says what is believed at the start.
-fn declaration(compilation: &Compilation, wanted: &str, origin: hrdsl_source::Span) -> Option<(usize, bool)> {
+fn declaration(
+    compilation: &CompilationResult,
+    wanted: &str,
+    origin: hrdsl_source::Span,
+) -> Option<(usize, bool)> {
     let file = compilation.ast.get(usize::from(origin.file.0))?;
     let agents = file.items.iter().filter_map(|item| {
-        let ast::ItemKind::Agent(agent) = &item.kind else { return None };
+        let ast::ItemSyntaxKind::Agent(agent) = &item.kind else { return None };
         Some(agent)
     });
     agents.flat_map(|a| &a.members).find_map(|member| {
@@ -155,17 +159,17 @@ fn declaration(compilation: &Compilation, wanted: &str, origin: hrdsl_source::Sp
 }
 
 /// The files on disk, one of them changed.
-struct Changed<'a> {
-    disk: Disk,
+struct FileOverlay<'a> {
+    disk: DiskModules,
     name: &'a str,
     text: &'a str,
 }
 
-impl Loader for Changed<'_> {
-    fn load(&self, from: &str, path: &str) -> Result<Source, String> {
+impl ModuleLoader for FileOverlay<'_> {
+    fn load(&self, from: &str, path: &str) -> Result<ModuleText, String> {
         let source = self.disk.load(from, path)?;
         let is_it = source.name == self.name;
-        Ok(if is_it { Source { text: self.text.to_owned(), ..source } } else { source })
+        Ok(if is_it { ModuleText { text: self.text.to_owned(), ..source } } else { source })
     }
 
     fn is_file(&self, path: &str) -> Option<bool> {

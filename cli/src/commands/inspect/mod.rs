@@ -5,11 +5,11 @@ pub mod reasoning;
 
 use std::path::PathBuf;
 
-use hrdsl_compiler::Compilation;
+use hrdsl_compiler::CompilationResult;
 use hrdsl_ir::{
     Nanos, Program, Span,
-    bdi::{AgentId, Fact},
-    suite::{Method, PlayerRef, Suite},
+    bdi::{AgentId, InitialFact},
+    suite::{PlayerRef, Suite, SuiteMethod},
     value::nanos,
 };
 use hrdsl_runtime::testgen::{
@@ -20,8 +20,8 @@ use hrdsl_runtime::testgen::{
 use hrdsl_source::printable_line;
 use serde::Serialize;
 
-use self::reasoning::{End, Picked, ending, reasoning};
-use crate::{color, exit::Exit, fault::Fault, input, terminal};
+use self::reasoning::{ModelRunEnd, ReasoningFilter, ending, reasoning};
+use crate::{color, exit::CommandExit, fault::CommandFault, input, terminal};
 
 /// Show how the agents of a suite reason: what they take up, which plans they try and why, what they do.
 ///
@@ -34,7 +34,7 @@ Examples:
   hrdsl inspect scenario.hri bdi_tests.t017 --agent Human --until '20 s'
   hrdsl inspect scenario.hri --beliefs 'wants(2), shows(1, true, false, true)' --end
   hrdsl inspect scenario.hri bdi_tests --json | jq -r 'select(.kind == \"failed\") | .text'")]
-pub struct Args {
+pub struct InspectArgs {
     /// The scenario.
     file: PathBuf,
     /// A suite by agents (`bdi_tests`), or a test that was generated from it (`bdi_tests.t017`).
@@ -103,11 +103,13 @@ fn time(text: &str) -> Result<Nanos, String> {
 
 /// # Errors
 /// A file, a suite, test, agent or belief that does not exist.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &InspectArgs) -> Result<CommandExit, CommandFault> {
     let compilation = input::load(&args.file, &[])?;
-    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report_errors(&args.file, &compilation) else {
+        return Ok(CommandExit::Errors);
+    };
     let chosen = choose(args, &compilation, program)?;
-    let picked = Picked {
+    let picked = ReasoningFilter {
         agent: args.agent.as_deref(),
         from: args.from.unwrap_or(0),
         until: args.until.unwrap_or(Nanos::MAX),
@@ -121,7 +123,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
     }
     let detail = if args.steps { LogDetail::Steps } else { LogDetail::Reasons };
     let inspection = chosen.inspect(program, detail);
-    let end = End::of(&inspection, &picked);
+    let end = ModelRunEnd::of(&inspection, &picked);
     let place = |span: Span| compilation.files.place(span);
     match (args.json, args.end) {
         (true, true) => terminal::print_data(&(json(&end)? + "\n"))?,
@@ -133,26 +135,26 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
             terminal::print(&text)?;
         }
     }
-    Ok(if end.is_regular() { Exit::Ok } else { Exit::Errors })
+    Ok(if end.is_regular() { CommandExit::Ok } else { CommandExit::Errors })
 }
 
 /// A run of a suite's agents.
-pub struct Chosen<'p> {
+pub struct InspectedRun<'p> {
     suite: &'p Suite,
     players: &'p [PlayerRef],
     /// `belief set 3`, `test bdi_tests.t017, belief set 3`
     which: String,
-    facts: Vec<(AgentId, Fact)>,
+    facts: Vec<(AgentId, InitialFact)>,
     /// The facts, as they are written.
     text: Vec<String>,
     seed: u64,
 }
 
-impl<'p> Chosen<'p> {
+impl<'p> InspectedRun<'p> {
     /// The run that a generated test came from; `None` if the suite is not by agents.
     #[must_use]
     pub fn of_test(suite: &'p Suite, test: &str, origin: &TestOrigin, seed: u64) -> Option<Self> {
-        let Method::Agents { players, .. } = &suite.method else { return None };
+        let SuiteMethod::Agents { players, .. } = &suite.method else { return None };
         Some(Self {
             suite,
             players,
@@ -183,7 +185,7 @@ impl<'p> Chosen<'p> {
         let players: Vec<String> = self.players.iter().map(name).collect();
         let what = format!("{}, suite {}, {}", program.name, self.suite.name, self.which);
         let beliefs = if self.text.is_empty() { "nothing chosen".to_owned() } else { self.text.join(", ") };
-        let bold = color::paint(color, color::Style::Bold, &what);
+        let bold = color::paint(color, color::TextStyle::Bold, &what);
         format!("{bold}\n  beliefs: {}\n  players: {}\n", printable_line(&beliefs), players.join(", "))
     }
 
@@ -195,7 +197,11 @@ impl<'p> Chosen<'p> {
     }
 }
 
-fn choose<'p>(args: &Args, compilation: &Compilation, program: &'p Program) -> Result<Chosen<'p>, Fault> {
+fn choose<'p>(
+    args: &InspectArgs,
+    compilation: &CompilationResult,
+    program: &'p Program,
+) -> Result<InspectedRun<'p>, CommandFault> {
     let what = args.test.as_deref().or(args.what.as_deref());
     if let Some(test) = what.and_then(|name| test_of(program, name)) {
         if args.set.is_some() || args.beliefs.is_some() {
@@ -207,7 +213,7 @@ fn choose<'p>(args: &Args, compilation: &Compilation, program: &'p Program) -> R
         return Err(format!("no test `{test}`: write it like `SUITE.t001`; {}", listed(args, program)));
     }
     let suite = the_suite(args, program, what)?;
-    let Method::Agents { players, .. } = &suite.method else {
+    let SuiteMethod::Agents { players, .. } = &suite.method else {
         return Err(format!("suite `{}` is not by agents; {}", suite.name, listed(args, program)));
     };
     if let Some(text) = &args.beliefs {
@@ -220,16 +226,20 @@ fn choose<'p>(args: &Args, compilation: &Compilation, program: &'p Program) -> R
             .collect();
         let facts = beliefs::facts(&args.file, compilation, program, &agents, text)?;
         let (which, text) = ("beliefs by hand".to_owned(), vec![text.trim().to_owned()]);
-        return Ok(Chosen { suite, players, which, facts, text, seed: seed_of(args.seed, 1) });
+        return Ok(InspectedRun { suite, players, which, facts, text, seed: seed_of(args.seed, 1) });
     }
     let number = args.set.unwrap_or(1);
     let set = testgen::belief_set(program, suite, args.count, args.seed, number)?;
     let (which, seed) = (format!("belief set {number}"), seed_of(args.seed, number));
-    Ok(Chosen { suite, players, which, facts: set.facts, text: set.text, seed })
+    Ok(InspectedRun { suite, players, which, facts: set.facts, text: set.text, seed })
 }
 
 /// The suite by agents of this name, or the only one.
-fn the_suite<'p>(args: &Args, program: &'p Program, name: Option<&str>) -> Result<&'p Suite, Fault> {
+fn the_suite<'p>(
+    args: &InspectArgs,
+    program: &'p Program,
+    name: Option<&str>,
+) -> Result<&'p Suite, CommandFault> {
     if let Some(name) = name {
         let found = program.suites.iter().find(|s| s.name == name);
         return found.ok_or_else(|| format!("no suite or test `{name}`; {}", listed(args, program)));
@@ -241,11 +251,11 @@ fn the_suite<'p>(args: &Args, program: &'p Program, name: Option<&str>) -> Resul
 }
 
 fn by_agents(program: &Program) -> Vec<&Suite> {
-    program.suites.iter().filter(|s| matches!(s.method, Method::Agents { .. })).collect()
+    program.suites.iter().filter(|s| matches!(s.method, SuiteMethod::Agents { .. })).collect()
 }
 
 /// The suites by agents with their sets, and what to type.
-fn listed(args: &Args, program: &Program) -> String {
+fn listed(args: &InspectArgs, program: &Program) -> String {
     let suites = by_agents(program);
     let Some(first) = suites.first() else { return "the scenario has no suite by agents".to_owned() };
     let mut out = "the suites by agents are:\n".to_owned();
@@ -268,10 +278,10 @@ fn test_of<'p>(program: &'p Program, name: &str) -> Option<(&'p Suite, usize)> {
 }
 
 fn of_test<'p>(
-    args: &Args,
+    args: &InspectArgs,
     program: &Program,
     (suite, number): (&'p Suite, usize),
-) -> Result<Chosen<'p>, Fault> {
+) -> Result<InspectedRun<'p>, CommandFault> {
     let minimise = args.minimise.then_some(true);
     let generated = generate_with(
         program,
@@ -280,13 +290,13 @@ fn of_test<'p>(
     )?;
     let name = format!("{}.t{number:03}", suite.name);
     let origin = generated.origins.get(number - 1);
-    let chosen = origin.and_then(|origin| Chosen::of_test(suite, &name, origin, args.seed));
+    let chosen = origin.and_then(|origin| InspectedRun::of_test(suite, &name, origin, args.seed));
     chosen.ok_or_else(|| format!("no test `{name}`: the suite has {}", generated.tests.len()))
 }
 
 /// A line of the log, with its place as people count.
 #[derive(Serialize)]
-struct Line<'a> {
+struct LocatedLogLine<'a> {
     #[serde(flatten)]
     line: &'a LogLine,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -299,18 +309,18 @@ struct Line<'a> {
 /// What cannot be written as JSON.
 pub fn json_lines(
     inspection: &ModelInspection,
-    picked: &Picked<'_>,
+    picked: &ReasoningFilter<'_>,
     place: &dyn Fn(Span) -> String,
-) -> Result<String, Fault> {
+) -> Result<String, CommandFault> {
     let mut out = String::new();
     for line in inspection.run.log.iter().filter(|l| picked.has(l)) {
-        out += &json(&Line { line, place: line.origin.map(place) })?;
+        out += &json(&LocatedLogLine { line, place: line.origin.map(place) })?;
         out.push('\n');
     }
     Ok(out)
 }
 
-fn json(value: &impl Serialize) -> Result<String, Fault> {
+fn json(value: &impl Serialize) -> Result<String, CommandFault> {
     serde_json::to_string(value).map_err(|e| format!("cannot print: {e}"))
 }
 

@@ -18,7 +18,7 @@ const LAST: usize = 10;
 
 /// What of a run is shown.
 #[derive(Clone, Copy, Debug)]
-pub struct Picked<'a> {
+pub struct ReasoningFilter<'a> {
     /// Only this agent.
     pub agent: Option<&'a str>,
     /// What happens before is left out.
@@ -29,13 +29,13 @@ pub struct Picked<'a> {
     pub all: bool,
 }
 
-impl Default for Picked<'_> {
+impl Default for ReasoningFilter<'_> {
     fn default() -> Self {
         Self { agent: None, from: 0, until: Nanos::MAX, all: false }
     }
 }
 
-impl Picked<'_> {
+impl ReasoningFilter<'_> {
     fn has_agent(&self, name: &str) -> bool {
         self.agent.is_none_or(|a| a == name)
     }
@@ -49,7 +49,7 @@ impl Picked<'_> {
 
 /// How a model run ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct End {
+pub struct ModelRunEnd {
     /// In nanoseconds.
     pub time: Nanos,
     /// `quiescent`, `horizon`, `livelock`, `cycle bound`, `holding bound` or `fault`.
@@ -69,10 +69,10 @@ pub struct AgentEnd {
     pub beliefs: Vec<String>,
 }
 
-impl End {
+impl ModelRunEnd {
     /// How a run ended for the agents that are shown.
     #[must_use]
-    pub fn of(inspection: &ModelInspection, picked: &Picked<'_>) -> Self {
+    pub fn of(inspection: &ModelInspection, picked: &ReasoningFilter<'_>) -> Self {
         let (how, why) = match (&inspection.run.ended, inspection.status) {
             (RunTermination::Quiescent, _) => {
                 ("quiescent", "nobody waits for anything that can still come".to_owned())
@@ -117,7 +117,7 @@ fn reason(fault: &HarnessError) -> String {
 }
 
 #[derive(Clone, Copy)]
-enum Style {
+enum ReasoningStyle {
     Plain,
     Bold,
     Dim,
@@ -126,24 +126,24 @@ enum Style {
     Bad,
 }
 
-struct Page<'a> {
+struct ReasoningPage<'a> {
     out: String,
     color: bool,
     place: &'a dyn Fn(Span) -> String,
 }
 
-impl Page<'_> {
+impl ReasoningPage<'_> {
     /// `start` is blank, or a number.
-    fn line(&mut self, start: &str, pieces: &[(Style, &str)]) {
+    fn line(&mut self, start: &str, pieces: &[(ReasoningStyle, &str)]) {
         self.out.push_str(start);
         for (style, piece) in pieces.iter().filter(|(_, piece)| !piece.is_empty()) {
             let sgr = match style {
-                Style::Plain => "",
-                Style::Bold => "1",
-                Style::Dim => "2",
-                Style::Event => "36",
-                Style::Chosen => "32",
-                Style::Bad => "1;31",
+                ReasoningStyle::Plain => "",
+                ReasoningStyle::Bold => "1",
+                ReasoningStyle::Dim => "2",
+                ReasoningStyle::Event => "36",
+                ReasoningStyle::Chosen => "32",
+                ReasoningStyle::Bad => "1;31",
             };
             let piece = text::line(piece);
             if self.color && !sgr.is_empty() {
@@ -162,8 +162,9 @@ impl Page<'_> {
         let plans = standing.plans.join(" > ");
         let held = if standing.suspended { ", suspended" } else { "" };
         let rest = format!("{plans}: {}{held}", standing.waits);
-        let who = if who.is_empty() { vec![] } else { vec![(Style::Dim, who)] };
-        let pieces = [(Style::Dim, number.as_str()), (Style::Dim, rest.trim_start_matches(": "))];
+        let who = if who.is_empty() { vec![] } else { vec![(ReasoningStyle::Dim, who)] };
+        let pieces =
+            [(ReasoningStyle::Dim, number.as_str()), (ReasoningStyle::Dim, rest.trim_start_matches(": "))];
         self.line(start, &[&who[..], &pieces].concat());
     }
 }
@@ -173,18 +174,18 @@ impl Page<'_> {
 #[must_use]
 pub fn reasoning(
     inspection: &ModelInspection,
-    picked: &Picked<'_>,
+    picked: &ReasoningFilter<'_>,
     color: bool,
     place: &dyn Fn(Span) -> String,
 ) -> String {
-    let mut page = Page { out: String::new(), color, place };
+    let mut page = ReasoningPage { out: String::new(), color, place };
     let lines: Vec<&LogLine> = inspection.run.log.iter().filter(|l| picked.has(l)).collect();
     for instant in lines.chunk_by(|a, b| a.time == b.time) {
         let time = instant[0].time;
-        page.line("", &[(Style::Bold, &show::time(time))]);
+        page.line("", &[(ReasoningStyle::Bold, &show::time(time))]);
         for agent in instant.chunk_by(|a, b| (a.round, &a.agent) == (b.round, &b.agent)) {
             let round = format!("round {}", agent[0].round);
-            page.line("  ", &[(Style::Bold, &agent[0].agent), (Style::Dim, &round)]);
+            page.line("  ", &[(ReasoningStyle::Bold, &agent[0].agent), (ReasoningStyle::Dim, &round)]);
             let cycles: Vec<&[&LogLine]> = agent.chunk_by(|a, b| a.cycle == b.cycle).collect();
             if picked.all || cycles.len() <= MANY {
                 turn(&mut page, agent);
@@ -194,7 +195,7 @@ pub fn reasoning(
             let (middle, last) = rest.split_at(rest.len() - LAST);
             turn(&mut page, &first.concat());
             let left_out = format!("… {} cycles (--all shows them)", middle.len());
-            page.line("       ", &[(Style::Dim, &left_out)]);
+            page.line("       ", &[(ReasoningStyle::Dim, &left_out)]);
             turn(&mut page, &last.concat());
         }
         still_to_do(&mut page, inspection, picked, time);
@@ -204,7 +205,7 @@ pub fn reasoning(
 }
 
 /// What an agent did in a round, cycle by cycle.
-fn turn(page: &mut Page<'_>, lines: &[&LogLine]) {
+fn turn(page: &mut ReasoningPage<'_>, lines: &[&LogLine]) {
     let mut under: Option<(u64, u32, &str)> = None;
     let mut cycle = None;
     for (at, line) in lines.iter().enumerate() {
@@ -219,7 +220,7 @@ fn turn(page: &mut Page<'_>, lines: &[&LogLine]) {
         let here = (line.cycle, number, event);
         if under != Some(here) {
             let number = if number == 0 { String::new() } else { format!("#{number} ") };
-            page.line(&gutter, &[(Style::Event, &format!("{number}{event}"))]);
+            page.line(&gutter, &[(ReasoningStyle::Event, &format!("{number}{event}"))]);
             under = Some(here);
         }
         // That a plan is applicable is plain if it is chosen then.
@@ -232,17 +233,17 @@ fn turn(page: &mut Page<'_>, lines: &[&LogLine]) {
 }
 
 /// A plan of an event, or that there is none.
-fn considered(page: &mut Page<'_>, line: &LogLine, event: &str) {
+fn considered(page: &mut ReasoningPage<'_>, line: &LogLine, event: &str) {
     let said = line.text.find(event).map_or(line.text.as_str(), |at| &line.text[at + event.len()..]);
     let said = said.trim_start_matches([':', ' ']);
     let style = match line.kind {
-        "selected" => Style::Chosen,
-        "unhandled" => Style::Bad,
-        _ => Style::Dim,
+        "selected" => ReasoningStyle::Chosen,
+        "unhandled" => ReasoningStyle::Bad,
+        _ => ReasoningStyle::Dim,
     };
     let place = line.origin.filter(|_| line.kind == "unhandled").map(|o| (page.place)(o));
     let at = place.map_or_else(String::new, |p| format!("({p})"));
-    page.line("         ", &[(style, said), (Style::Dim, &at)]);
+    page.line("         ", &[(style, said), (ReasoningStyle::Dim, &at)]);
 }
 
 /// Whether the text begins with the intention's number: the entry is not about a new one.
@@ -250,23 +251,28 @@ fn has_number(line: &LogLine) -> bool {
     line.text.starts_with('#')
 }
 
-fn plain(page: &mut Page<'_>, gutter: &str, line: &LogLine) {
+fn plain(page: &mut ReasoningPage<'_>, gutter: &str, line: &LogLine) {
     let style = match line.kind {
-        "failed" | "fault" | "warning" | "livelock" | "cycle_bound" => Style::Bad,
-        "finished" | "dropped" => Style::Dim,
-        "perceived" | "heard" => Style::Event,
-        _ => Style::Plain,
+        "failed" | "fault" | "warning" | "livelock" | "cycle_bound" => ReasoningStyle::Bad,
+        "finished" | "dropped" => ReasoningStyle::Dim,
+        "perceived" | "heard" => ReasoningStyle::Event,
+        _ => ReasoningStyle::Plain,
     };
     let place = line.origin.map_or_else(String::new, |o| format!("({})", (page.place)(o)));
-    page.line(gutter, &[(style, &line.text), (Style::Dim, &place)]);
+    page.line(gutter, &[(style, &line.text), (ReasoningStyle::Dim, &place)]);
 }
 
-fn still_to_do(page: &mut Page<'_>, inspection: &ModelInspection, picked: &Picked<'_>, time: Nanos) {
+fn still_to_do(
+    page: &mut ReasoningPage<'_>,
+    inspection: &ModelInspection,
+    picked: &ReasoningFilter<'_>,
+    time: Nanos,
+) {
     let Ok(at) = inspection.snapshots.binary_search_by_key(&time, |s| s.time) else { return };
     let each = inspection.agents.iter().zip(&inspection.snapshots[at].agents);
     let mut each = each.filter(|(name, all)| picked.has_agent(name) && !all.is_empty()).peekable();
     if each.peek().is_some() {
-        page.line("  ", &[(Style::Dim, "still to do")]);
+        page.line("  ", &[(ReasoningStyle::Dim, "still to do")]);
     }
     for (name, all) in each {
         all.iter().for_each(|standing| page.standing("       ", name, standing));
@@ -275,24 +281,27 @@ fn still_to_do(page: &mut Page<'_>, inspection: &ModelInspection, picked: &Picke
 
 /// How a run ended: why, what is still waited for, and what is believed.
 #[must_use]
-pub fn ending(end: &End, color: bool) -> String {
-    let mut page = Page { out: String::new(), color, place: &|_| String::new() };
-    let style = if end.is_regular() { Style::Chosen } else { Style::Bad };
+pub fn ending(end: &ModelRunEnd, color: bool) -> String {
+    let mut page = ReasoningPage { out: String::new(), color, place: &|_| String::new() };
+    let style = if end.is_regular() { ReasoningStyle::Chosen } else { ReasoningStyle::Bad };
     let time = format!("the end, at {}:", show::time(end.time));
-    page.line("", &[(Style::Bold, &time), (style, end.how), (Style::Dim, &format!("({})", end.why))]);
+    page.line(
+        "",
+        &[(ReasoningStyle::Bold, &time), (style, end.how), (ReasoningStyle::Dim, &format!("({})", end.why))],
+    );
     if end.left_out > 0 {
         let left_out = format!("{} entries of the log are left out, the last ones", end.left_out);
-        page.line("  ", &[(Style::Bad, &left_out)]);
+        page.line("  ", &[(ReasoningStyle::Bad, &left_out)]);
     }
     for agent in &end.agents {
-        page.line("  ", &[(Style::Bold, &agent.agent)]);
+        page.line("  ", &[(ReasoningStyle::Bold, &agent.agent)]);
         if agent.intentions.is_empty() {
-            page.line("    ", &[(Style::Dim, "intends nothing")]);
+            page.line("    ", &[(ReasoningStyle::Dim, "intends nothing")]);
         }
         agent.intentions.iter().for_each(|standing| page.standing("    ", "", standing));
         let what = if agent.beliefs.is_empty() { "believes nothing" } else { "believes" };
-        page.line("    ", &[(Style::Dim, what)]);
-        agent.beliefs.iter().for_each(|belief| page.line("      ", &[(Style::Plain, belief)]));
+        page.line("    ", &[(ReasoningStyle::Dim, what)]);
+        agent.beliefs.iter().for_each(|belief| page.line("      ", &[(ReasoningStyle::Plain, belief)]));
     }
     page.out
 }

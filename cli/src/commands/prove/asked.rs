@@ -1,27 +1,28 @@
 //! What is to be decided: names on the command line, and queries that the scenario does not have.
 
-use hrdsl_compiler::{Compilation, Input, ast, compile_with};
+use hrdsl_compiler::{CompilationResult, InputFile, ast, compile_with};
 use hrdsl_ir::{Program, ta::Network};
 
-use super::{Args, Job, What};
-use crate::{fault::Fault, files, reach::Disk};
+use super::{ProofJob, ProofTarget, ProveArgs};
+use crate::{fault::CommandFault, files, reach::DiskModules};
 
 /// A scenario with the queries of the command line.
-pub struct Asked {
-    pub compilation: Compilation,
+pub struct QueriedScenario {
+    pub compilation: CompilationResult,
     /// The names of the queries that were added.
     added: Vec<String>,
 }
 
-impl Asked {
+impl QueriedScenario {
     /// Compiles the scenario with `--ask`ed queries at its end, so that what is wrong with them is said of them.
     ///
     /// # Errors
     /// A file that cannot be read, or no network to ask.
-    pub fn load(args: &Args) -> Result<Self, Fault> {
+    pub fn load(args: &ProveArgs) -> Result<Self, CommandFault> {
         let mut text = files::read(&args.file)?;
         let name = args.file.display().to_string();
-        let plain = compile_with(Input { name: &name, text: &text }, &[], &Disk::of(Some(&args.file)));
+        let plain =
+            compile_with(InputFile { name: &name, text: &text }, &[], &DiskModules::of(Some(&args.file)));
         if args.ask.is_empty() {
             return Ok(Self { compilation: plain, added: Vec::new() });
         }
@@ -40,7 +41,8 @@ impl Asked {
             }
         }
         text.push('\n');
-        let compilation = compile_with(Input { name: &name, text: &text }, &[], &Disk::of(Some(&args.file)));
+        let compilation =
+            compile_with(InputFile { name: &name, text: &text }, &[], &DiskModules::of(Some(&args.file)));
         Ok(Self { compilation, added })
     }
 
@@ -48,7 +50,7 @@ impl Asked {
     ///
     /// # Errors
     /// A name that does not exist.
-    pub fn jobs(&self, args: &Args, program: &Program) -> Result<Vec<Job>, Fault> {
+    pub fn jobs(&self, args: &ProveArgs, program: &Program) -> Result<Vec<ProofJob>, CommandFault> {
         known("requirement", &args.requirement, program.monitors.iter().map(|m| m.name.as_str()))?;
         known("query", &args.query, program.queries.iter().map(|q| q.name.as_str()))?;
         let some = !args.requirement.is_empty() || !args.query.is_empty() || !args.ask.is_empty();
@@ -56,7 +58,7 @@ impl Asked {
         for (network, _) in chosen(args, program)? {
             for (monitor, m) in program.monitors.iter().enumerate() {
                 if args.requirement.contains(&m.name) || !some {
-                    jobs.push(Job { network, what: What::Requirement(monitor) });
+                    jobs.push(ProofJob { network, what: ProofTarget::Requirement(monitor) });
                 }
             }
             let wanted = |(_, q): &(usize, &hrdsl_ir::ta::Query)| {
@@ -66,7 +68,7 @@ impl Asked {
             let queries: Vec<usize> =
                 program.queries.iter().enumerate().filter(wanted).map(|(query, _)| query).collect();
             if !queries.is_empty() {
-                jobs.push(Job { network, what: What::Queries(queries) });
+                jobs.push(ProofJob { network, what: ProofTarget::Queries(queries) });
             }
         }
         Ok(jobs)
@@ -78,7 +80,7 @@ fn one_line(ask: &str) -> String {
     ask.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn chosen<'p>(args: &Args, program: &'p Program) -> Result<Vec<(usize, &'p Network)>, Fault> {
+fn chosen<'p>(args: &ProveArgs, program: &'p Program) -> Result<Vec<(usize, &'p Network)>, CommandFault> {
     known("network", &args.network, program.networks.iter().map(|n| n.name.as_str()))?;
     let all = program.networks.iter().enumerate();
     let chosen: Vec<_> =
@@ -90,7 +92,7 @@ fn chosen<'p>(args: &Args, program: &'p Program) -> Result<Vec<(usize, &'p Netwo
 }
 
 /// The networks that `--ask` is about.
-fn asked_networks(args: &Args, program: &Program) -> Result<Vec<String>, Fault> {
+fn asked_networks(args: &ProveArgs, program: &Program) -> Result<Vec<String>, CommandFault> {
     let chosen = chosen(args, program)?;
     if args.network.is_empty() && chosen.len() > 1 {
         let names: Vec<&str> = chosen.iter().map(|(_, n)| n.name.as_str()).collect();
@@ -100,14 +102,15 @@ fn asked_networks(args: &Args, program: &Program) -> Result<Vec<String>, Fault> 
 }
 
 /// The names of the queries that there are.
-fn names(compilation: &Compilation) -> Vec<String> {
+fn names(compilation: &CompilationResult) -> Vec<String> {
     let items = compilation.ast.iter().flat_map(|f| &f.items);
-    let query =
-        |i: &ast::Item| if let ast::ItemKind::Query(q) = &i.kind { Some(q.name.text.clone()) } else { None };
+    let query = |i: &ast::ItemSyntax| {
+        if let ast::ItemSyntaxKind::Query(q) = &i.kind { Some(q.name.text.clone()) } else { None }
+    };
     items.filter_map(query).collect()
 }
 
-fn known<'n>(what: &str, wanted: &[String], all: impl Iterator<Item = &'n str>) -> Result<(), Fault> {
+fn known<'n>(what: &str, wanted: &[String], all: impl Iterator<Item = &'n str>) -> Result<(), CommandFault> {
     let all: Vec<&str> = all.collect();
     for name in wanted {
         if !all.contains(&name.as_str()) {

@@ -22,10 +22,10 @@ use hrdsl_runtime::prove::{
 use hrdsl_source::{printable, printable_line};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::search_options::{Way, When, Witness};
-use crate::{exit::Exit, fault::Fault, files, input, terminal};
-use asked::Asked;
-use table::Row;
+use super::search_options::{DelayArg, SearchOrderArg, WitnessArg};
+use crate::{exit::CommandExit, fault::CommandFault, files, input, terminal};
+use asked::QueriedScenario;
+use table::ProofRow;
 
 /// Search the networks of a scenario: can they violate a requirement, and what do the queries answer?
 ///
@@ -38,7 +38,7 @@ Examples:
   hrdsl prove scenario.hri --ask 'E<> Robot.grasped and t > 5 s' --witness fastest --trace
   hrdsl prove scenario.hri --ask 'A[] not deadlock' --threads 2 --timeout 60s
   hrdsl prove scenario.hri --query live --mermaid live.mmd")]
-pub struct Args {
+pub struct ProveArgs {
     /// The scenario.
     file: PathBuf,
     /// Only this network; may be given several times.
@@ -54,7 +54,7 @@ pub struct Args {
     #[arg(long, value_name = "QUERY")]
     ask: Vec<String>,
     #[command(flatten)]
-    options: How,
+    options: ProveSearchArgs,
     /// Stop after this time, like `60s` or `500ms`: what is not decided then is inconclusive.
     #[arg(long, value_name = "T", value_parser = crate::quantity::time)]
     timeout: Option<Duration>,
@@ -74,16 +74,16 @@ pub struct Args {
 
 /// How networks are searched: for `prove`.
 #[derive(clap::Args)]
-pub struct How {
+pub struct ProveSearchArgs {
     /// Which run shows what is found [default: shortest; with --order, any].
     #[arg(long, value_enum)]
-    witness: Option<Witness>,
+    witness: Option<WitnessArg>,
     /// When its transitions happen.
-    #[arg(long, value_enum, default_value_t = When::Earliest)]
-    delays: When,
+    #[arg(long, value_enum, default_value_t = DelayArg::Earliest)]
+    delays: DelayArg,
     /// In which order states are looked at [default: what the witness needs].
     #[arg(long, value_enum)]
-    order: Option<Way>,
+    order: Option<SearchOrderArg>,
     /// Give each automaton a time of its own, where that serves: often fewer states if automata share little.
     #[arg(long)]
     local_time: bool,
@@ -104,9 +104,9 @@ pub struct How {
     budget_memory: Option<u64>,
 }
 
-impl How {
+impl ProveSearchArgs {
     fn settings(&self) -> ProofOptions {
-        let usual = if self.order.is_some() { Witness::Any } else { Witness::Shortest };
+        let usual = if self.order.is_some() { WitnessArg::Any } else { WitnessArg::Shortest };
         let mut settings = ProofOptions {
             witness: self.witness.unwrap_or(usual).into(),
             delays: self.delays.into(),
@@ -129,9 +129,11 @@ impl How {
 
 /// # Errors
 /// A file, a name that does not exist, or an engine that contradicts itself.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
-    let asked = Asked::load(args)?;
-    let Some(program) = input::report_errors(&args.file, &asked.compilation) else { return Ok(Exit::Errors) };
+pub fn run(args: &ProveArgs) -> Result<CommandExit, CommandFault> {
+    let asked = QueriedScenario::load(args)?;
+    let Some(program) = input::report_errors(&args.file, &asked.compilation) else {
+        return Ok(CommandExit::Errors);
+    };
     let jobs = asked.jobs(args, program)?;
     if jobs.is_empty() {
         return Err(
@@ -140,7 +142,7 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         );
     }
     let settings = args.options.settings();
-    let clock = Clock::start(args.timeout);
+    let clock = ProofClock::start(args.timeout);
     let shared = Arc::new(program.clone());
     let mut rows = Vec::new();
     for job in &jobs {
@@ -157,30 +159,30 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
 }
 
 /// Something to decide.
-pub struct Job {
+pub struct ProofJob {
     /// Index into the program's networks.
     pub network: usize,
-    pub what: What,
+    pub what: ProofTarget,
 }
 
 /// By their places in the program.
-pub enum What {
+pub enum ProofTarget {
     Requirement(usize),
     /// All of one network: what one exploration can decide is decided by one.
     Queries(Vec<usize>),
 }
 
-impl Job {
+impl ProofJob {
     fn rows(
         &self,
         program: &Arc<Program>,
         settings: &ProofOptions,
-        clock: &Clock,
-    ) -> Result<Vec<Row>, Fault> {
+        clock: &ProofClock,
+    ) -> Result<Vec<ProofRow>, CommandFault> {
         let started = now();
         let (of, settings, network) = (Arc::clone(program), *settings, self.network);
         let mut rows = match &self.what {
-            What::Requirement(monitor) => {
+            ProofTarget::Requirement(monitor) => {
                 let monitor = *monitor;
                 let work = move |watch: &SearchWatch| {
                     prove::prove(&of, &of.networks[network], monitor, &settings, watch)
@@ -192,9 +194,9 @@ impl Job {
                     note: None,
                 };
                 let proof = clock.watched(&program.monitors[monitor].name, work)?;
-                vec![Row::of_proof(program, &proof.unwrap_or_else(late))]
+                vec![ProofRow::of_proof(program, &proof.unwrap_or_else(late))]
             }
-            What::Queries(queries) => {
+            ProofTarget::Queries(queries) => {
                 let asked = queries.clone();
                 let work = move |watch: &SearchWatch| prove::answers(&of, &asked, &settings, watch);
                 let late = |query: &usize| QueryResult {
@@ -210,7 +212,7 @@ impl Job {
                 };
                 let answers = clock.watched(&label, work)?;
                 let answers = answers.unwrap_or_else(|| queries.iter().map(late).collect());
-                answers.iter().map(|a| Row::of_answer(program, a)).collect()
+                answers.iter().map(|a| ProofRow::of_answer(program, a)).collect()
             }
         };
         for row in &mut rows {
@@ -229,7 +231,7 @@ fn now() -> Instant {
 }
 
 /// Time, and a line on the terminal for long work.
-struct Clock {
+struct ProofClock {
     until: Option<Instant>,
     bar: ProgressBar,
 }
@@ -237,7 +239,7 @@ struct Clock {
 /// How long a search is waited for that was told to stop. Not all of them listen.
 const GRACE: Duration = Duration::from_millis(500);
 
-impl Clock {
+impl ProofClock {
     fn start(timeout: Option<Duration>) -> Self {
         let bar = ProgressBar::new_spinner();
         if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
@@ -251,8 +253,8 @@ impl Clock {
     fn watched<T: Send + 'static>(
         &self,
         name: &str,
-        work: impl FnOnce(&SearchWatch) -> Result<T, Fault> + Send + 'static,
-    ) -> Result<Option<T>, Fault> {
+        work: impl FnOnce(&SearchWatch) -> Result<T, CommandFault> + Send + 'static,
+    ) -> Result<Option<T>, CommandFault> {
         if self.until.is_some_and(|until| now() >= until) {
             return Ok(None);
         }
@@ -300,7 +302,7 @@ impl Clock {
 const STACK: usize = 64 << 20;
 
 /// The first run that shows something, as a diagram.
-fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {
+fn write_run(args: &ProveArgs, rows: &[ProofRow]) -> Result<(), CommandFault> {
     let trace = rows.iter().find_map(|r| r.trace.as_ref());
     for (path, text) in [
         (&args.mermaid, trace.map(hrdsl_runtime::prove::WitnessTrace::mermaid)),
@@ -321,7 +323,10 @@ fn write_run(args: &Args, rows: &[Row]) -> Result<(), Fault> {
 }
 
 /// The worst of all.
-fn verdict(rows: &[Row]) -> Exit {
-    let worst = |exit: Exit| rows.iter().any(|r| r.exit() == exit).then_some(exit);
-    worst(Exit::Errors).or(worst(Exit::Findings)).or(worst(Exit::Inconclusive)).unwrap_or(Exit::Ok)
+fn verdict(rows: &[ProofRow]) -> CommandExit {
+    let worst = |exit: CommandExit| rows.iter().any(|r| r.exit() == exit).then_some(exit);
+    worst(CommandExit::Errors)
+        .or(worst(CommandExit::Findings))
+        .or(worst(CommandExit::Inconclusive))
+        .unwrap_or(CommandExit::Ok)
 }

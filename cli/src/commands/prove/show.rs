@@ -4,13 +4,13 @@ use hrdsl_ir::Program;
 use hrdsl_runtime::prove::WitnessTrace;
 use serde::Serialize;
 
-use super::table::{Kind, Row, Verdict};
-use crate::fault::Fault;
+use super::table::{ProofRow, PropertyKind, PropertyVerdict};
+use crate::fault::CommandFault;
 
 /// A table for each network: name, verdict, what it says, what it took; below it the bounds, and the runs if wanted.
 #[must_use]
-pub fn human(rows: &[Row], trace: bool) -> String {
-    let wide = |f: &dyn Fn(&Row) -> usize| rows.iter().map(f).max().unwrap_or(0);
+pub fn human(rows: &[ProofRow], trace: bool) -> String {
+    let wide = |f: &dyn Fn(&ProofRow) -> usize| rows.iter().map(f).max().unwrap_or(0);
     let (name, verdict) = (wide(&|r| r.name.chars().count()), wide(&|r| r.verdict.words().len()));
     let mut out = String::new();
     let mut network = None;
@@ -50,24 +50,24 @@ fn seconds(t: f64) -> String {
 }
 
 /// `3 hold, 1 violated, 1 inconclusive`
-fn summary(rows: &[Row]) -> String {
-    let count = |v: Verdict| rows.iter().filter(|r| r.verdict == v).count();
+fn summary(rows: &[ProofRow]) -> String {
+    let count = |v: PropertyVerdict| rows.iter().filter(|r| r.verdict == v).count();
     let kinds = [
-        (Verdict::Holds, "hold"),
-        (Verdict::Violated, "violated"),
-        (Verdict::Satisfied, "satisfied"),
-        (Verdict::NotSatisfied, "not satisfied"),
-        (Verdict::Answered, "answered"),
-        (Verdict::NotOnTheModel, "not on the model"),
-        (Verdict::Fault, "with a fault of the model"),
-        (Verdict::Inconclusive, "inconclusive"),
+        (PropertyVerdict::Holds, "hold"),
+        (PropertyVerdict::Violated, "violated"),
+        (PropertyVerdict::Satisfied, "satisfied"),
+        (PropertyVerdict::NotSatisfied, "not satisfied"),
+        (PropertyVerdict::Answered, "answered"),
+        (PropertyVerdict::NotOnTheModel, "not on the model"),
+        (PropertyVerdict::Fault, "with a fault of the model"),
+        (PropertyVerdict::Inconclusive, "inconclusive"),
     ];
     let parts = kinds.iter().map(|(v, words)| (count(*v), words)).filter(|(n, _)| *n > 0);
     parts.map(|(n, words)| format!("{n} {words}")).collect::<Vec<_>>().join(", ")
 }
 
 #[derive(Serialize)]
-struct Document<'r> {
+struct ProofDocument<'r> {
     format: &'static str,
     version: u32,
     scenario: &'r str,
@@ -101,7 +101,7 @@ struct RowJson<'r> {
 ///
 /// # Errors
 /// What cannot be printed.
-pub fn json(program: &Program, rows: &[Row]) -> Result<String, Fault> {
+pub fn json(program: &Program, rows: &[ProofRow]) -> Result<String, CommandFault> {
     let mut networks: Vec<NetworkRows<'_>> = Vec::new();
     for row in rows {
         if networks.last().is_none_or(|n| n.network != row.network) {
@@ -109,15 +109,15 @@ pub fn json(program: &Program, rows: &[Row]) -> Result<String, Fault> {
         }
         let Some(last) = networks.last_mut() else { continue };
         match row.kind {
-            Kind::Requirement => last.requirements.push(of(row)),
-            Kind::Query => last.queries.push(of(row)),
+            PropertyKind::Requirement => last.requirements.push(of(row)),
+            PropertyKind::Query => last.queries.push(of(row)),
         }
     }
-    let document = Document { format: "hrdsl-prove", version: 2, scenario: &program.name, networks };
+    let document = ProofDocument { format: "hrdsl-prove", version: 2, scenario: &program.name, networks };
     crate::files::json(&document)
 }
 
-fn of(row: &Row) -> RowJson<'_> {
+fn of(row: &ProofRow) -> RowJson<'_> {
     RowJson {
         name: &row.name,
         title: &row.title,

@@ -7,17 +7,17 @@ use hrdsl_runtime::prove::{
     ObservedRun, ProofStatus, QueryFinding, QueryResult, RequirementProof, WitnessTrace,
 };
 
-use crate::exit::Exit;
+use crate::exit::CommandExit;
 
 /// One requirement or query.
-pub struct Row {
+pub struct ProofRow {
     pub network: String,
-    pub kind: Kind,
+    pub kind: PropertyKind,
     pub name: String,
     /// Its title, or else its text.
     pub title: String,
     pub text: String,
-    pub verdict: Verdict,
+    pub verdict: PropertyVerdict,
     /// What else there is to say.
     pub remark: Option<String>,
     /// For a `sup` or `inf`: of each measure.
@@ -29,13 +29,13 @@ pub struct Row {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum PropertyKind {
     Requirement,
     Query,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum PropertyVerdict {
     Holds,
     Violated,
     Satisfied,
@@ -47,17 +47,17 @@ pub enum Verdict {
     Fault,
 }
 
-impl Verdict {
+impl PropertyVerdict {
     pub fn words(self) -> &'static str {
         match self {
-            Verdict::Holds => "holds",
-            Verdict::Violated => "violated",
-            Verdict::Satisfied => "satisfied",
-            Verdict::NotSatisfied => "not satisfied",
-            Verdict::Answered => "answered",
-            Verdict::Inconclusive => "inconclusive",
-            Verdict::NotOnTheModel => "not on the model",
-            Verdict::Fault => "fault of the model",
+            PropertyVerdict::Holds => "holds",
+            PropertyVerdict::Violated => "violated",
+            PropertyVerdict::Satisfied => "satisfied",
+            PropertyVerdict::NotSatisfied => "not satisfied",
+            PropertyVerdict::Answered => "answered",
+            PropertyVerdict::Inconclusive => "inconclusive",
+            PropertyVerdict::NotOnTheModel => "not on the model",
+            PropertyVerdict::Fault => "fault of the model",
         }
     }
 
@@ -67,32 +67,35 @@ impl Verdict {
     }
 }
 
-impl Row {
+impl ProofRow {
     /// What the row alone makes the command end with.
-    pub fn exit(&self) -> Exit {
+    pub fn exit(&self) -> CommandExit {
         match self.verdict {
-            Verdict::Holds | Verdict::Satisfied | Verdict::Answered | Verdict::NotOnTheModel => Exit::Ok,
-            Verdict::Violated | Verdict::NotSatisfied => Exit::Findings,
-            Verdict::Inconclusive => Exit::Inconclusive,
-            Verdict::Fault => Exit::Errors,
+            PropertyVerdict::Holds
+            | PropertyVerdict::Satisfied
+            | PropertyVerdict::Answered
+            | PropertyVerdict::NotOnTheModel => CommandExit::Ok,
+            PropertyVerdict::Violated | PropertyVerdict::NotSatisfied => CommandExit::Findings,
+            PropertyVerdict::Inconclusive => CommandExit::Inconclusive,
+            PropertyVerdict::Fault => CommandExit::Errors,
         }
     }
 
     pub fn of_proof(program: &Program, proof: &RequirementProof) -> Self {
         let monitor = &program.monitors[proof.monitor];
         let (verdict, remark, run) = match &proof.status {
-            ProofStatus::Violated(run) => (Verdict::Violated, None, Some(run.as_ref())),
+            ProofStatus::Violated(run) => (PropertyVerdict::Violated, None, Some(run.as_ref())),
             ProofStatus::Holds { triggered } => {
-                (Verdict::Holds, untriggered(*triggered, proof.note.as_deref()), None)
+                (PropertyVerdict::Holds, untriggered(*triggered, proof.note.as_deref()), None)
             }
-            ProofStatus::Inconclusive(why) => (Verdict::Inconclusive, Some(why.clone()), None),
-            ProofStatus::NotOnTheModel(why) => (Verdict::NotOnTheModel, Some(why.clone()), None),
-            ProofStatus::Fault { what, run } => (Verdict::Fault, Some(what.clone()), run.as_deref()),
+            ProofStatus::Inconclusive(why) => (PropertyVerdict::Inconclusive, Some(why.clone()), None),
+            ProofStatus::NotOnTheModel(why) => (PropertyVerdict::NotOnTheModel, Some(why.clone()), None),
+            ProofStatus::Fault { what, run } => (PropertyVerdict::Fault, Some(what.clone()), run.as_deref()),
         };
         let trace = run.map(ObservedRun::named_trace);
         Self {
             network: String::new(),
-            kind: Kind::Requirement,
+            kind: PropertyKind::Requirement,
             name: monitor.name.clone(),
             title: monitor.title.clone(),
             text: monitor.text.clone(),
@@ -108,11 +111,11 @@ impl Row {
     pub fn of_answer(program: &Program, answer: &QueryResult) -> Self {
         let query = &program.queries[answer.query];
         let (verdict, remark) = match &answer.found {
-            QueryFinding::Satisfied => (Verdict::Satisfied, None),
-            QueryFinding::NotSatisfied => (Verdict::NotSatisfied, None),
-            QueryFinding::Bounds(_) => (Verdict::Answered, None),
-            QueryFinding::Inconclusive(why) => (Verdict::Inconclusive, Some(why.clone())),
-            QueryFinding::Fault(what) => (Verdict::Fault, Some(what.clone())),
+            QueryFinding::Satisfied => (PropertyVerdict::Satisfied, None),
+            QueryFinding::NotSatisfied => (PropertyVerdict::NotSatisfied, None),
+            QueryFinding::Bounds(_) => (PropertyVerdict::Answered, None),
+            QueryFinding::Inconclusive(why) => (PropertyVerdict::Inconclusive, Some(why.clone())),
+            QueryFinding::Fault(what) => (PropertyVerdict::Fault, Some(what.clone())),
         };
         let bounds = match &answer.found {
             QueryFinding::Bounds(bounds) => bounds.clone(),
@@ -126,7 +129,7 @@ impl Row {
             remark.into_iter().chain(answer.notes.iter().cloned()).chain(trace.as_ref().map(shape)).collect();
         Self {
             network: String::new(),
-            kind: Kind::Query,
+            kind: PropertyKind::Query,
             name: query.name.clone(),
             title: query.title.clone(),
             text: query.text.clone(),

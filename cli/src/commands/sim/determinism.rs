@@ -8,16 +8,16 @@ use std::{
 };
 
 use hrdsl_ir::test::Test;
-use hrdsl_runtime::campaign::Campaign;
+use hrdsl_runtime::campaign::CampaignSetup;
 
 use super::run::{output_text, progress_bar, recording};
-use crate::{fault::Fault, files};
+use crate::{fault::CommandFault, files};
 
 /// Differences that are listed, at most.
 const LISTED: usize = 20;
 
 /// What the second run made different.
-pub struct Differences {
+pub struct RunDifferences {
     /// How many tests differ.
     pub tests: usize,
     /// For people.
@@ -25,13 +25,17 @@ pub struct Differences {
 }
 
 /// Runs the tests once more, in the opposite order, and compares their recordings and output with those below a folder.
-pub fn compare(campaign: &Campaign<'_>, tests: &[Test], first: &Path) -> Result<Differences, Fault> {
+pub fn compare(
+    campaign: &CampaignSetup<'_>,
+    tests: &[Test],
+    first: &Path,
+) -> Result<RunDifferences, CommandFault> {
     let backwards: Vec<Test> = tests.iter().rev().cloned().collect();
     let bar = progress_bar(tests.len());
     bar.set_message("again, to compare");
     let found: Mutex<BTreeMap<usize, (String, String)>> = Mutex::default();
     // The second run keeps no files: those of the first are the results.
-    let again = Campaign { keep: None, ..campaign.clone() };
+    let again = CampaignSetup { keep: None, ..campaign.clone() };
     let outcome = again.run(&backwards, |done| {
         let stem = done.result.name.file_stem();
         let before = files::read(&recording(first, &stem))?;
@@ -75,7 +79,7 @@ pub fn compare(campaign: &Campaign<'_>, tests: &[Test], first: &Path) -> Result<
     if !found.is_empty() {
         text.push_str("  (spec/randomness.md lists what is repeatable and what is not)\n");
     }
-    Ok(Differences { tests: found.len(), text })
+    Ok(RunDifferences { tests: found.len(), text })
 }
 
 /// The first event in which two recordings differ.

@@ -10,18 +10,21 @@ use std::{
     time::{Duration, Instant},
 };
 
-use hrdsl_ir::{Nanos, Program, system::System, test::Test};
+use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
-    campaign::{Campaign, Cells, Isolation, ProgramLimits, StopFlag, Supervisor, prepare, tally},
+    campaign::{
+        CampaignSetup, CellIsolation, CellSettings, ProgramLimits, StopFlag, SupervisorCommand, prepare,
+        tally,
+    },
     report,
-    results::Results,
+    results::CampaignResults,
     testgen::{GeneratedSuite, generate},
 };
 use serde::Serialize;
 
 use super::generate::{chosen, describe, save};
 use crate::{
-    color, exit::Exit, fault::Fault, files, input, installing::Installing, quantity,
+    color, exit::CommandExit, fault::CommandFault, files, input, installing::InstallProgress, quantity,
     results_folder::ResultsFolder, terminal,
 };
 
@@ -41,7 +44,7 @@ pub const SUPERVISE: &str = "supervise-cell";
 #[command(
     after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --check-determinism"
 )]
-pub struct Args {
+pub struct SimArgs {
     /// The scenario.
     file: PathBuf,
     /// Files or folders of tests; without, the scenario's suites are generated.
@@ -105,9 +108,11 @@ enum IsolationArg {
 /// # Errors
 /// A file, a suite or test that does not exist, a folder whose files would be lost, a model that cannot be run, or what the
 /// code needs cannot be installed.
-pub fn run(args: &Args) -> Result<Exit, Fault> {
+pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let compilation = input::load(&args.file, &args.tests)?;
-    let Some(program) = input::report_errors(&args.file, &compilation) else { return Ok(Exit::Errors) };
+    let Some(program) = input::report_errors(&args.file, &compilation) else {
+        return Ok(CommandExit::Errors);
+    };
     let system =
         program.system.as_ref().ok_or("the scenario has no `system` block: there is nothing to run")?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
@@ -138,31 +143,31 @@ pub fn run(args: &Args) -> Result<Exit, Fault> {
         terminal::print(&differences.text)?;
     }
     Ok(if interrupted {
-        Exit::Interrupted
+        CommandExit::Interrupted
     } else if !repeatable || !(results.is_clean() || args.exit_zero) {
-        Exit::Findings
+        CommandExit::Findings
     } else {
-        Exit::Ok
+        CommandExit::Ok
     })
 }
 
 /// Installs what the code needs, and finds out how its tests can be kept apart.
 fn prepared<'p>(
-    args: &Args,
+    args: &SimArgs,
     program: &'p Program,
-    system: &System,
+    system: &SystemUnderTest,
     out: &Path,
     folder: &ResultsFolder,
-) -> Result<Campaign<'p>, Fault> {
+) -> Result<CampaignSetup<'p>, CommandFault> {
     let dir = files::folder(&args.file);
-    let console = Installing::default();
+    let console = InstallProgress::default();
     let env = prepare(&system.run, &dir, &cache()?, &|step| console.show(step)).map_err(|e| e.to_string())?;
     let wanted = args.isolation.map(|how| match how {
-        IsolationArg::Namespaces => Isolation::Namespaces,
-        IsolationArg::Copies => Isolation::Copies,
+        IsolationArg::Namespaces => CellIsolation::Namespaces,
+        IsolationArg::Copies => CellIsolation::Copies,
     });
-    let mut cells =
-        Cells::probe(Supervisor::this_program(SUPERVISE), &dir, wanted).map_err(|e| e.to_string())?;
+    let mut cells = CellSettings::probe(SupervisorCommand::this_program(SUPERVISE), &dir, wanted)
+        .map_err(|e| e.to_string())?;
     cells.hidden = hidden(&dir, out, folder);
     cells.terminal = args.debug;
     cells.network = system.online;
@@ -172,7 +177,7 @@ fn prepared<'p>(
     for complaint in env.analyse(&dir, &system.coverage).map_err(|e| e.to_string())? {
         terminal::say_line(format_args!("warning: {}", complaint.trim_start_matches("hrdsl: ")));
     }
-    Ok(Campaign {
+    Ok(CampaignSetup {
         program,
         dir,
         env,
@@ -200,7 +205,7 @@ fn hidden(project: &Path, out: &Path, folder: &ResultsFolder) -> Vec<PathBuf> {
 }
 
 /// What the program finds in its environment besides what every program does.
-fn variables(args: &Args, system: &System) -> Vec<(OsString, OsString)> {
+fn variables(args: &SimArgs, system: &SystemUnderTest) -> Vec<(OsString, OsString)> {
     let given = |name: &String| Some((name.into(), std::env::var_os(name)?));
     let mut variables: Vec<_> = system.env.iter().filter_map(given).collect();
     if args.debug {
@@ -210,7 +215,7 @@ fn variables(args: &Args, system: &System) -> Vec<(OsString, OsString)> {
     variables
 }
 
-fn limits(args: &Args, system: &System) -> ProgramLimits {
+fn limits(args: &SimArgs, system: &SystemUnderTest) -> ProgramLimits {
     let default = ProgramLimits::default();
     if args.debug {
         // Whoever debugs takes the time that it takes.
@@ -229,7 +234,7 @@ fn limits(args: &Args, system: &System) -> ProgramLimits {
 
 /// Set by an interrupt or a request to terminate; at the second, the program ends at once. While somebody debugs,
 /// interrupts are for the debugger.
-fn stop_flag(debug: bool) -> Result<StopFlag, Fault> {
+fn stop_flag(debug: bool) -> Result<StopFlag, CommandFault> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
     let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
@@ -239,20 +244,27 @@ fn stop_flag(debug: bool) -> Result<StopFlag, Fault> {
             .map_err(|e| format!("cannot listen for interrupts: {e}"))?;
     }
     for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|s| !debug || *s != SIGINT) {
-        let registered =
-            signal_hook::flag::register_conditional_shutdown(signal, Exit::Interrupted as i32, flag.clone())
-                .and_then(|_| signal_hook::flag::register(signal, flag.clone()));
+        let registered = signal_hook::flag::register_conditional_shutdown(
+            signal,
+            CommandExit::Interrupted as i32,
+            flag.clone(),
+        )
+        .and_then(|_| signal_hook::flag::register(signal, flag.clone()));
         registered.map_err(|e| format!("cannot listen for interrupts: {e}"))?;
     }
     Ok(StopFlag::from_shared(flag))
 }
 
-fn absolute(path: PathBuf) -> Result<PathBuf, Fault> {
+fn absolute(path: PathBuf) -> Result<PathBuf, CommandFault> {
     std::path::absolute(&path).map_err(|e| format!("cannot find {}: {e}", terminal::shown(&path)))
 }
 
 /// Generates the suites, unless tests were given.
-fn generate_suites(args: &Args, program: &Program, to: &Path) -> Result<Vec<GeneratedSuite>, Fault> {
+fn generate_suites(
+    args: &SimArgs,
+    program: &Program,
+    to: &Path,
+) -> Result<Vec<GeneratedSuite>, CommandFault> {
     if !args.tests.is_empty() {
         return Ok(Vec::new());
     }
@@ -273,7 +285,11 @@ fn generate_suites(args: &Args, program: &Program, to: &Path) -> Result<Vec<Gene
 }
 
 /// The tests to run, in order.
-fn selected(args: &Args, program: &Program, generated: &[GeneratedSuite]) -> Result<Vec<Test>, Fault> {
+fn selected(
+    args: &SimArgs,
+    program: &Program,
+    generated: &[GeneratedSuite],
+) -> Result<Vec<Test>, CommandFault> {
     let mut tests: Vec<Test> = if args.tests.is_empty() {
         generated.iter().flat_map(|g| g.tests.clone()).collect()
     } else {
@@ -315,7 +331,7 @@ fn cores() -> usize {
 }
 
 /// Where Python packages are kept: `$HRDSL_CACHE`, else the user's cache folder.
-fn cache() -> Result<PathBuf, Fault> {
+fn cache() -> Result<PathBuf, CommandFault> {
     let var = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
     var("HRDSL_CACHE")
         .or_else(|| var("XDG_CACHE_HOME").map(|c| c.join("hrdsl")))
@@ -325,7 +341,7 @@ fn cache() -> Result<PathBuf, Fault> {
 
 /// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
 /// wherever both lie.
-fn rerun(args: &Args, out: &Path) -> String {
+fn rerun(args: &SimArgs, out: &Path) -> String {
     let mut words = vec!["hrdsl sim".to_owned(), quoted(&relative(&args.file, out))];
     if args.tests.is_empty() {
         words.push("tests".to_owned());
@@ -363,14 +379,18 @@ struct RunInfo<'a> {
     hrdsl: &'static str,
     /// The version of the interpreter, and where it is.
     python: String,
-    isolation: Isolation,
+    isolation: CellIsolation,
     /// What could not be kept apart.
     gaps: &'a [String],
     system: String,
 }
 
 /// Writes the reports, and puts all results in their places.
-fn publish(results: &Results, campaign: &Campaign<'_>, folder: ResultsFolder) -> Result<(), Fault> {
+fn publish(
+    results: &CampaignResults,
+    campaign: &CampaignSetup<'_>,
+    folder: ResultsFolder,
+) -> Result<(), CommandFault> {
     let to = folder.staging();
     let info = RunInfo {
         format: "hrdsl-run",
@@ -389,11 +409,16 @@ fn publish(results: &Results, campaign: &Campaign<'_>, folder: ResultsFolder) ->
 }
 
 /// Prints the summary. Wall time is said here and nowhere else, since it differs between equal runs.
-fn summarise(results: &Results, campaign: &Campaign<'_>, out: &Path, wall: Duration) -> Result<(), Fault> {
+fn summarise(
+    results: &CampaignResults,
+    campaign: &CampaignSetup<'_>,
+    out: &Path,
+    wall: Duration,
+) -> Result<(), CommandFault> {
     let summary = report::summary(results, super::report::WIDTH, color::stdout_has());
     let how = match campaign.cells.isolation {
-        Isolation::Namespaces => "in namespaces",
-        Isolation::Copies => "in copies of the folder",
+        CellIsolation::Namespaces => "in namespaces",
+        CellIsolation::Copies => "in copies of the folder",
     };
     let ran = format!(
         "ran {how} with Python {}, {} at once, in {:.1} s of wall time\n",

@@ -7,14 +7,14 @@ use std::{
 };
 
 use hrdsl_ir::test::Test;
-use hrdsl_runtime::campaign::{Campaign, CampaignOutcome, FinishedRun, Output};
+use hrdsl_runtime::campaign::{CampaignOutcome, CampaignSetup, CapturedOutput, FinishedRun};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{fault::Fault, files};
+use crate::{fault::CommandFault, files};
 
 /// What has come in so far.
 #[derive(Default)]
-struct Progress {
+struct CampaignProgress {
     violating: u32,
     errors: u32,
 }
@@ -31,13 +31,13 @@ pub fn progress_bar(tests: usize) -> ProgressBar {
 
 /// Runs the tests, and writes their recordings and output below a folder. `quiet`: the terminal is somebody else's.
 pub fn execute(
-    campaign: &Campaign<'_>,
+    campaign: &CampaignSetup<'_>,
     tests: &[Test],
     to: &Path,
     quiet: bool,
-) -> Result<CampaignOutcome, Fault> {
+) -> Result<CampaignOutcome, CommandFault> {
     let bar = if quiet { ProgressBar::hidden() } else { progress_bar(tests.len()) };
-    let progress = Mutex::new(Progress::default());
+    let progress = Mutex::new(CampaignProgress::default());
     let outcome = campaign.run(tests, |done| {
         let written = write(&done, to);
         let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
@@ -56,7 +56,7 @@ pub fn recording(to: &Path, stem: &str) -> std::path::PathBuf {
     to.join("traces").join(format!("{stem}.jsonl"))
 }
 
-fn write(done: &FinishedRun<'_>, to: &Path) -> Result<(), Fault> {
+fn write(done: &FinishedRun<'_>, to: &Path) -> Result<(), CommandFault> {
     let stem = done.result.name.file_stem();
     files::write(&recording(to, &stem), done.recording)?;
     let text = output_text(done.output);
@@ -67,7 +67,7 @@ fn write(done: &FinishedRun<'_>, to: &Path) -> Result<(), Fault> {
 }
 
 /// What a program wrote, with headings between the streams.
-pub fn output_text(output: &Output) -> String {
+pub fn output_text(output: &CapturedOutput) -> String {
     let mut text = String::new();
     for (name, stream) in [("stdout", &output.stdout), ("stderr", &output.stderr)] {
         if stream.bytes > 0 {

@@ -4,42 +4,42 @@ use hrdsl_source::Span;
 
 /// A program: a `.asl` file with all that it includes.
 #[derive(Clone, Debug, Default)]
-pub struct Program {
+pub struct AgentSpeakProgram {
     /// In the order of the text, those of included files at the place of the directive.
-    pub items: Vec<Item>,
+    pub items: Vec<AgentSpeakItem>,
 }
 
 #[derive(Clone, Debug)]
-pub struct Item {
-    pub kind: ItemKind,
+pub struct AgentSpeakItem {
+    pub kind: AgentSpeakItemKind,
     pub span: Span,
 }
 
 #[derive(Clone, Debug)]
-pub enum ItemKind {
-    Belief(Literal),
+pub enum AgentSpeakItemKind {
+    Belief(AgentSpeakLiteral),
     Rule {
-        head: Literal,
-        body: Term,
+        head: AgentSpeakLiteral,
+        body: AgentSpeakTerm,
     },
-    Goal(Term),
-    Plan(Plan),
+    Goal(AgentSpeakTerm),
+    Plan(AgentSpeakPlan),
     /// A directive that means nothing here, with what is to be said of it.
     Skipped(String),
 }
 
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct AgentSpeakPlan {
     pub label: Option<String>,
     /// Those of the label: `atomic`, …
-    pub annotations: Vec<Term>,
-    pub trigger: Trigger,
-    pub context: Option<Term>,
-    pub body: Vec<Step>,
+    pub annotations: Vec<AgentSpeakTerm>,
+    pub trigger: AgentSpeakTrigger,
+    pub context: Option<AgentSpeakTerm>,
+    pub body: Vec<AgentSpeakStep>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum TriggerKind {
+pub enum AgentSpeakTriggerKind {
     Added,
     Removed,
     Achieve,
@@ -50,7 +50,7 @@ pub enum TriggerKind {
     State,
 }
 
-impl TriggerKind {
+impl AgentSpeakTriggerKind {
     /// As it is written.
     pub fn sign(self) -> &'static str {
         match self {
@@ -74,24 +74,24 @@ impl TriggerKind {
 }
 
 #[derive(Clone, Debug)]
-pub struct Trigger {
-    pub kind: TriggerKind,
+pub struct AgentSpeakTrigger {
+    pub kind: AgentSpeakTriggerKind,
     /// A literal, or a variable for one.
-    pub of: Term,
+    pub of: AgentSpeakTerm,
 }
 
 #[derive(Clone, Debug)]
-pub struct Literal {
+pub struct AgentSpeakLiteral {
     pub negated: bool,
     pub functor: String,
-    pub args: Vec<Term>,
-    pub annotations: Vec<Term>,
+    pub args: Vec<AgentSpeakTerm>,
+    pub annotations: Vec<AgentSpeakTerm>,
     pub span: Span,
 }
 
-impl Literal {
+impl AgentSpeakLiteral {
     /// The name and the number of arguments.
-    pub fn key(&self) -> Key {
+    pub fn key(&self) -> PredicateIndicator {
         (self.functor.clone(), self.args.len())
     }
 
@@ -102,10 +102,10 @@ impl Literal {
 }
 
 /// A name and a number of arguments.
-pub type Key = (String, usize);
+pub type PredicateIndicator = (String, usize);
 
 #[derive(Clone, Debug)]
-pub struct Term {
+pub struct AgentSpeakTerm {
     pub kind: TermKind,
     pub span: Span,
 }
@@ -120,31 +120,31 @@ pub enum TermKind {
     Any,
     Var {
         name: String,
-        annotations: Vec<Term>,
+        annotations: Vec<AgentSpeakTerm>,
     },
     /// An atom, structure, belief, action.
-    Literal(Literal),
+    Literal(AgentSpeakLiteral),
     List {
-        items: Vec<Term>,
-        rest: Option<Box<Term>>,
+        items: Vec<AgentSpeakTerm>,
+        rest: Option<Box<AgentSpeakTerm>>,
     },
-    Not(Box<Term>),
-    Neg(Box<Term>),
+    Not(Box<AgentSpeakTerm>),
+    Neg(Box<AgentSpeakTerm>),
     Binary {
-        op: Op,
-        left: Box<Term>,
-        right: Box<Term>,
+        op: AgentSpeakOperator,
+        left: Box<AgentSpeakTerm>,
+        right: Box<AgentSpeakTerm>,
     },
     /// `{ … }` as an argument.
-    Body(Vec<Step>),
+    Body(Vec<AgentSpeakStep>),
     /// `{ +!g }` as an argument.
-    Trigger(Box<Trigger>),
+    Trigger(Box<AgentSpeakTrigger>),
     /// `{ +!g : c <- b }` as an argument.
     Plan,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Op {
+pub enum AgentSpeakOperator {
     Or,
     And,
     Less,
@@ -166,7 +166,7 @@ pub enum Op {
     Pow,
 }
 
-impl Op {
+impl AgentSpeakOperator {
     /// Whether it compares two terms.
     pub fn is_relation(self) -> bool {
         match self {
@@ -198,14 +198,14 @@ impl Op {
 }
 
 #[derive(Clone, Debug)]
-pub struct Step {
-    pub kind: StepKind,
+pub struct AgentSpeakStep {
+    pub kind: AgentSpeakStepKind,
     pub span: Span,
 }
 
 /// Where `+b` puts the belief, and who handles the event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Adding {
+pub enum BeliefAddition {
     Plain,
     /// `+<b`
     First,
@@ -216,64 +216,66 @@ pub enum Adding {
 }
 
 #[derive(Clone, Debug)]
-pub enum StepKind {
-    Achieve(Term),
-    Spawn(Term),
-    Query(Term),
-    Add(Term, Adding),
-    Remove(Term),
-    Replace(Term),
+pub enum AgentSpeakStepKind {
+    Achieve(AgentSpeakTerm),
+    Spawn(AgentSpeakTerm),
+    Query(AgentSpeakTerm),
+    Add(AgentSpeakTerm, BeliefAddition),
+    Remove(AgentSpeakTerm),
+    Replace(AgentSpeakTerm),
     /// An action of the environment, or an internal one.
-    Action(Literal),
+    Action(AgentSpeakLiteral),
     /// A relation, `true`, or another formula.
-    Formula(Term),
+    Formula(AgentSpeakTerm),
     If {
-        condition: Term,
-        then: Vec<Step>,
-        otherwise: Vec<Step>,
+        condition: AgentSpeakTerm,
+        then: Vec<AgentSpeakStep>,
+        otherwise: Vec<AgentSpeakStep>,
     },
     While {
-        condition: Term,
-        body: Vec<Step>,
+        condition: AgentSpeakTerm,
+        body: Vec<AgentSpeakStep>,
     },
     For {
-        condition: Term,
-        body: Vec<Step>,
+        condition: AgentSpeakTerm,
+        body: Vec<AgentSpeakStep>,
     },
     Fork {
-        branches: Vec<Vec<Step>>,
+        branches: Vec<Vec<AgentSpeakStep>>,
         all: bool,
     },
-    Block(Vec<Step>),
+    Block(Vec<AgentSpeakStep>),
 }
 
 /// Calls `f` with each step, those within blocks too, in the order of the text.
-pub fn each_step<'a>(steps: &'a [Step], f: &mut dyn FnMut(&'a Step)) {
+pub fn each_step<'a>(steps: &'a [AgentSpeakStep], f: &mut dyn FnMut(&'a AgentSpeakStep)) {
     for step in steps {
         f(step);
         match &step.kind {
-            StepKind::If { then, otherwise, .. } => {
+            AgentSpeakStepKind::If { then, otherwise, .. } => {
                 each_step(then, f);
                 each_step(otherwise, f);
             }
-            StepKind::While { body, .. } | StepKind::For { body, .. } | StepKind::Block(body) => {
+            AgentSpeakStepKind::While { body, .. }
+            | AgentSpeakStepKind::For { body, .. }
+            | AgentSpeakStepKind::Block(body) => {
                 each_step(body, f);
             }
-            StepKind::Fork { branches, .. } => branches.iter().for_each(|b| each_step(b, f)),
-            StepKind::Achieve(_)
-            | StepKind::Spawn(_)
-            | StepKind::Query(_)
-            | StepKind::Add(..)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Action(_)
-            | StepKind::Formula(_) => {}
+            AgentSpeakStepKind::Fork { branches, .. } => branches.iter().for_each(|b| each_step(b, f)),
+            AgentSpeakStepKind::Achieve(_)
+            | AgentSpeakStepKind::Spawn(_)
+            | AgentSpeakStepKind::Query(_)
+            | AgentSpeakStepKind::Add(..)
+            | AgentSpeakStepKind::Remove(_)
+            | AgentSpeakStepKind::Replace(_)
+            | AgentSpeakStepKind::Action(_)
+            | AgentSpeakStepKind::Formula(_) => {}
         }
     }
 }
 
 /// Calls `f` with a term and all within it, but not with what is in the bodies of plans.
-pub fn each_term<'a>(term: &'a Term, f: &mut dyn FnMut(&'a Term)) {
+pub fn each_term<'a>(term: &'a AgentSpeakTerm, f: &mut dyn FnMut(&'a AgentSpeakTerm)) {
     f(term);
     match &term.kind {
         TermKind::Literal(l) => each_in_literal(l, f),
@@ -301,6 +303,6 @@ pub fn each_term<'a>(term: &'a Term, f: &mut dyn FnMut(&'a Term)) {
 }
 
 /// Calls `f` with the terms within a literal.
-pub fn each_in_literal<'a>(literal: &'a Literal, f: &mut dyn FnMut(&'a Term)) {
+pub fn each_in_literal<'a>(literal: &'a AgentSpeakLiteral, f: &mut dyn FnMut(&'a AgentSpeakTerm)) {
     literal.args.iter().chain(&literal.annotations).for_each(|t| each_term(t, f));
 }

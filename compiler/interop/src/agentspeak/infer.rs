@@ -5,25 +5,29 @@ use hrdsl_source::Span;
 use indexmap::IndexMap;
 
 use super::{
-    ast::{Item, ItemKind, Key, Literal, Op, Plan, Step, StepKind, Term, TermKind, TriggerKind},
+    ast::{
+        AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakPlan,
+        AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm, AgentSpeakTriggerKind, PredicateIndicator,
+        TermKind,
+    },
     internal,
-    system::System,
-    term::{Reason, literal, valued},
-    types::{Ty, TyId, Types},
+    system::AgentSpeakSystem,
+    term::{OmissionReason, literal, valued},
+    types::{AgentSpeakType, TyId, UnificationTable},
 };
 
 /// The types of a system, and what is left out: the place of a fact, rule, plan or step, and why.
 #[derive(Debug, Default)]
-pub struct Inferred {
-    pub types: Types,
-    pub left_out: IndexMap<Span, Reason>,
+pub struct InferenceOutcome {
+    pub types: UnificationTable,
+    pub left_out: IndexMap<Span, OmissionReason>,
 }
 
 /// Infers the types of all programs.
-pub fn infer(system: &System) -> Inferred {
-    let mut types = Types::default();
+pub fn infer(system: &AgentSpeakSystem) -> InferenceOutcome {
+    let mut types = UnificationTable::default();
     types.agents = system.agents.iter().map(|a| a.name.clone()).collect();
-    let mut walk = Walk { types, left_out: IndexMap::new(), vars: IndexMap::new() };
+    let mut walk = TypeInferrer { types, left_out: IndexMap::new(), vars: IndexMap::new() };
     // Facts say most surely what a belief is about, then rules.
     for rank in 0..3 {
         for agent in &system.agents {
@@ -42,19 +46,19 @@ pub fn infer(system: &System) -> Inferred {
         // What is open to the end concerns no declared place, or else it is said where it is written.
         walk.left_out.entry(Span::default()).or_insert(clash);
     }
-    Inferred { types: walk.types, left_out: walk.left_out }
+    InferenceOutcome { types: walk.types, left_out: walk.left_out }
 }
 
-pub struct Walk {
-    pub types: Types,
-    left_out: IndexMap<Span, Reason>,
+pub struct TypeInferrer {
+    pub types: UnificationTable,
+    left_out: IndexMap<Span, OmissionReason>,
     /// The variables of the present clause.
     vars: IndexMap<String, TyId>,
 }
 
-impl Walk {
+impl TypeInferrer {
     /// Tries something; if it does not fit, all is as before, and the place is left out.
-    fn attempt(&mut self, span: Span, what: impl FnOnce(&mut Self) -> Result<(), Reason>) -> bool {
+    fn attempt(&mut self, span: Span, what: impl FnOnce(&mut Self) -> Result<(), OmissionReason>) -> bool {
         let (before, vars) = (self.types.mark(), self.vars.len());
         let result = what(self).and_then(|()| self.types.settle_concats(false));
         let Err(reason) = result else { return true };
@@ -64,39 +68,42 @@ impl Walk {
         false
     }
 
-    fn alone(&mut self, span: Span, what: impl FnOnce(&mut Self) -> Result<(), Reason>) {
+    fn alone(&mut self, span: Span, what: impl FnOnce(&mut Self) -> Result<(), OmissionReason>) {
         self.vars.clear();
         self.attempt(span, what);
     }
 
-    fn item(&mut self, item: &Item, rank: usize) {
+    fn item(&mut self, item: &AgentSpeakItem, rank: usize) {
         match (&item.kind, rank) {
-            (ItemKind::Belief(b), 0) => self.alone(item.span, |w| w.belief(b)),
-            (ItemKind::Rule { head, body }, 1) => self.alone(item.span, |w| {
+            (AgentSpeakItemKind::Belief(b), 0) => self.alone(item.span, |w| w.belief(b)),
+            (AgentSpeakItemKind::Rule { head, body }, 1) => self.alone(item.span, |w| {
                 w.belief(head)?;
                 w.formula(body)
             }),
-            (ItemKind::Goal(goal), 2) => self.alone(item.span, |w| w.goal(literal(goal)?)),
-            (ItemKind::Plan(plan), 2) => self.plan(plan, item.span),
+            (AgentSpeakItemKind::Goal(goal), 2) => self.alone(item.span, |w| w.goal(literal(goal)?)),
+            (AgentSpeakItemKind::Plan(plan), 2) => self.plan(plan, item.span),
             (
-                ItemKind::Belief(_)
-                | ItemKind::Rule { .. }
-                | ItemKind::Goal(_)
-                | ItemKind::Plan(_)
-                | ItemKind::Skipped(_),
+                AgentSpeakItemKind::Belief(_)
+                | AgentSpeakItemKind::Rule { .. }
+                | AgentSpeakItemKind::Goal(_)
+                | AgentSpeakItemKind::Plan(_)
+                | AgentSpeakItemKind::Skipped(_),
                 _,
             ) => {}
         }
     }
 
-    fn plan(&mut self, plan: &Plan, span: Span) {
+    fn plan(&mut self, plan: &AgentSpeakPlan, span: Span) {
         self.vars.clear();
         let fits = self.attempt(span, |w| {
             let of = literal(&plan.trigger.of).map_err(|_| "the trigger is a variable".to_owned())?;
             match plan.trigger.kind {
-                TriggerKind::State => return Err("hrdsl has no events `^!`".to_owned()),
-                TriggerKind::Achieve | TriggerKind::Failed => w.goal(of)?,
-                TriggerKind::Added | TriggerKind::Removed | TriggerKind::Test | TriggerKind::TestFailed => {
+                AgentSpeakTriggerKind::State => return Err("hrdsl has no events `^!`".to_owned()),
+                AgentSpeakTriggerKind::Achieve | AgentSpeakTriggerKind::Failed => w.goal(of)?,
+                AgentSpeakTriggerKind::Added
+                | AgentSpeakTriggerKind::Removed
+                | AgentSpeakTriggerKind::Test
+                | AgentSpeakTriggerKind::TestFailed => {
                     w.belief(of)?;
                 }
             }
@@ -107,7 +114,7 @@ impl Walk {
         }
     }
 
-    fn steps(&mut self, steps: &[Step]) {
+    fn steps(&mut self, steps: &[AgentSpeakStep]) {
         for step in steps {
             if self.attempt(step.span, |w| w.step(step)) {
                 self.within(step);
@@ -116,66 +123,68 @@ impl Walk {
     }
 
     /// The steps within a step.
-    fn within(&mut self, step: &Step) {
+    fn within(&mut self, step: &AgentSpeakStep) {
         match &step.kind {
-            StepKind::If { then, otherwise, .. } => {
+            AgentSpeakStepKind::If { then, otherwise, .. } => {
                 self.steps(then);
                 self.steps(otherwise);
             }
-            StepKind::While { body, .. } | StepKind::For { body, .. } | StepKind::Block(body) => {
-                self.steps(body)
-            }
-            StepKind::Fork { branches, .. } => branches.iter().for_each(|b| self.steps(b)),
-            StepKind::Action(action) if action.functor == ".fork" => {
+            AgentSpeakStepKind::While { body, .. }
+            | AgentSpeakStepKind::For { body, .. }
+            | AgentSpeakStepKind::Block(body) => self.steps(body),
+            AgentSpeakStepKind::Fork { branches, .. } => branches.iter().for_each(|b| self.steps(b)),
+            AgentSpeakStepKind::Action(action) if action.functor == ".fork" => {
                 for arg in &action.args {
                     if let TermKind::Body(body) = &arg.kind {
                         self.steps(body);
                     }
                 }
             }
-            StepKind::Achieve(_)
-            | StepKind::Spawn(_)
-            | StepKind::Query(_)
-            | StepKind::Add(..)
-            | StepKind::Remove(_)
-            | StepKind::Replace(_)
-            | StepKind::Action(_)
-            | StepKind::Formula(_) => {}
+            AgentSpeakStepKind::Achieve(_)
+            | AgentSpeakStepKind::Spawn(_)
+            | AgentSpeakStepKind::Query(_)
+            | AgentSpeakStepKind::Add(..)
+            | AgentSpeakStepKind::Remove(_)
+            | AgentSpeakStepKind::Replace(_)
+            | AgentSpeakStepKind::Action(_)
+            | AgentSpeakStepKind::Formula(_) => {}
         }
     }
 
-    fn step(&mut self, step: &Step) -> Result<(), Reason> {
+    fn step(&mut self, step: &AgentSpeakStep) -> Result<(), OmissionReason> {
         match &step.kind {
-            StepKind::Achieve(of) | StepKind::Spawn(of) => self.goal(literal(of)?),
-            StepKind::Query(of) | StepKind::Formula(of) => self.formula(of),
-            StepKind::Add(of, _) | StepKind::Remove(of) | StepKind::Replace(of) => self.belief_or_var(of),
-            StepKind::Action(action) if action.is_internal() => internal::infer(self, action),
-            StepKind::Action(action) => {
+            AgentSpeakStepKind::Achieve(of) | AgentSpeakStepKind::Spawn(of) => self.goal(literal(of)?),
+            AgentSpeakStepKind::Query(of) | AgentSpeakStepKind::Formula(of) => self.formula(of),
+            AgentSpeakStepKind::Add(of, _)
+            | AgentSpeakStepKind::Remove(of)
+            | AgentSpeakStepKind::Replace(of) => self.belief_or_var(of),
+            AgentSpeakStepKind::Action(action) if action.is_internal() => internal::infer(self, action),
+            AgentSpeakStepKind::Action(action) => {
                 if action.negated {
                     return Err("an action cannot be negated".to_owned());
                 }
                 let places = self.types.action(&action.key());
                 self.args(&action.args, &places)
             }
-            StepKind::If { condition, .. }
-            | StepKind::While { condition, .. }
-            | StepKind::For { condition, .. } => self.formula(condition),
-            StepKind::Fork { .. } | StepKind::Block(_) => Ok(()),
+            AgentSpeakStepKind::If { condition, .. }
+            | AgentSpeakStepKind::While { condition, .. }
+            | AgentSpeakStepKind::For { condition, .. } => self.formula(condition),
+            AgentSpeakStepKind::Fork { .. } | AgentSpeakStepKind::Block(_) => Ok(()),
         }
     }
 
     /// `+X`: a variable that holds a structure stands for the belief of that name.
-    fn belief_or_var(&mut self, of: &Term) -> Result<(), Reason> {
+    fn belief_or_var(&mut self, of: &AgentSpeakTerm) -> Result<(), OmissionReason> {
         let TermKind::Var { .. } = &of.kind else { return self.belief(literal(of)?) };
         let id = self.term(of)?;
-        let Ty::Struct(functor, args) = self.types.get(id).clone() else {
+        let AgentSpeakType::Struct(functor, args) = self.types.get(id).clone() else {
             return Err("which belief this is about is known only when it runs".to_owned());
         };
         let places = self.types.belief(&(functor, args.len()));
         args.into_iter().zip(places).try_for_each(|(a, p)| self.types.unify(a, p))
     }
 
-    pub fn belief(&mut self, of: &Literal) -> Result<(), Reason> {
+    pub fn belief(&mut self, of: &AgentSpeakLiteral) -> Result<(), OmissionReason> {
         if of.is_internal() {
             return Err(format!("`{}` is no belief", of.functor));
         }
@@ -185,7 +194,7 @@ impl Walk {
         self.annotations(of, Some(&key))
     }
 
-    pub fn goal(&mut self, of: &Literal) -> Result<(), Reason> {
+    pub fn goal(&mut self, of: &AgentSpeakLiteral) -> Result<(), OmissionReason> {
         if of.negated || of.is_internal() {
             return Err("this is no goal that a scenario can have".to_owned());
         }
@@ -195,7 +204,11 @@ impl Walk {
     }
 
     /// Only annotations with one value have a type; others are dropped where they are written.
-    fn annotations(&mut self, of: &Literal, belief: Option<&Key>) -> Result<(), Reason> {
+    fn annotations(
+        &mut self,
+        of: &AgentSpeakLiteral,
+        belief: Option<&PredicateIndicator>,
+    ) -> Result<(), OmissionReason> {
         for annotation in &of.annotations {
             let Some((name, value)) = valued(annotation) else { continue };
             if belief.is_none() && name != "source" {
@@ -209,7 +222,7 @@ impl Walk {
         Ok(())
     }
 
-    pub fn args(&mut self, args: &[Term], places: &[TyId]) -> Result<(), Reason> {
+    pub fn args(&mut self, args: &[AgentSpeakTerm], places: &[TyId]) -> Result<(), OmissionReason> {
         for (arg, place) in args.iter().zip(places) {
             let id = self.term(arg)?;
             self.types.unify(*place, id)?;
@@ -217,21 +230,27 @@ impl Walk {
         Ok(())
     }
 
-    pub fn formula(&mut self, of: &Term) -> Result<(), Reason> {
+    pub fn formula(&mut self, of: &AgentSpeakTerm) -> Result<(), OmissionReason> {
         match &of.kind {
             TermKind::Bool(_) => Ok(()),
             TermKind::Literal(l) if l.is_internal() => internal::infer(self, l),
             TermKind::Literal(l) => self.belief(l),
             TermKind::Not(inner) => self.formula(inner),
-            TermKind::Binary { op: Op::And | Op::Or, left, right } => {
+            TermKind::Binary { op: AgentSpeakOperator::And | AgentSpeakOperator::Or, left, right } => {
                 self.formula(left)?;
                 self.formula(right)
             }
-            TermKind::Binary { op: Op::Univ, .. } => Err("hrdsl has no `=..`".to_owned()),
+            TermKind::Binary { op: AgentSpeakOperator::Univ, .. } => Err("hrdsl has no `=..`".to_owned()),
             TermKind::Binary { op, left, right } if op.is_relation() => {
                 let (l, r) = (self.term(left)?, self.term(right)?);
                 self.types.unify(l, r)?;
-                if matches!(op, Op::Less | Op::LessEqual | Op::Greater | Op::GreaterEqual) {
+                if matches!(
+                    op,
+                    AgentSpeakOperator::Less
+                        | AgentSpeakOperator::LessEqual
+                        | AgentSpeakOperator::Greater
+                        | AgentSpeakOperator::GreaterEqual
+                ) {
                     let number = self.types.number(false);
                     self.types.unify(l, number)?;
                 }
@@ -252,12 +271,12 @@ impl Walk {
     }
 
     /// The class of a term.
-    pub fn term(&mut self, of: &Term) -> Result<TyId, Reason> {
+    pub fn term(&mut self, of: &AgentSpeakTerm) -> Result<TyId, OmissionReason> {
         let id = match &of.kind {
             TermKind::Int(_) => self.types.number(false),
             TermKind::Float(_) => self.types.number(true),
-            TermKind::Text(_) => self.types.add(Ty::Text),
-            TermKind::Bool(_) => self.types.add(Ty::Bool),
+            TermKind::Text(_) => self.types.add(AgentSpeakType::Text),
+            TermKind::Bool(_) => self.types.add(AgentSpeakType::Bool),
             TermKind::Any => self.types.fresh(),
             TermKind::Var { name, annotations } => {
                 if !annotations.is_empty() {
@@ -279,7 +298,7 @@ impl Walk {
                     let id = self.term(item)?;
                     self.types.unify(element, id)?;
                 }
-                let list = self.types.add(Ty::List(element));
+                let list = self.types.add(AgentSpeakType::List(element));
                 if let Some(rest) = rest {
                     let id = self.term(rest)?;
                     self.types.unify(list, id)?;
@@ -293,11 +312,12 @@ impl Walk {
                 id
             }
             TermKind::Binary { op, left, right } if op.is_arithmetic() => {
-                let number = self.types.number(*op == Op::Div);
+                let number = self.types.number(*op == AgentSpeakOperator::Div);
                 for side in [left, right] {
                     let id = self.term(side)?;
                     // What is divided may be whole, and the result is none.
-                    let expected = if *op == Op::Div { self.types.number(false) } else { number };
+                    let expected =
+                        if *op == AgentSpeakOperator::Div { self.types.number(false) } else { number };
                     self.types.unify(expected, id)?;
                 }
                 number
@@ -313,7 +333,7 @@ impl Walk {
         Ok(id)
     }
 
-    fn structure(&mut self, of: &Literal) -> Result<TyId, Reason> {
+    fn structure(&mut self, of: &AgentSpeakLiteral) -> Result<TyId, OmissionReason> {
         if of.negated || !of.annotations.is_empty() {
             return Err("a literal with `~` or annotations is no value".to_owned());
         }
@@ -322,9 +342,9 @@ impl Walk {
         }
         if of.args.is_empty() {
             let names = [of.functor.clone()].into_iter().collect();
-            return Ok(self.types.add(Ty::Atoms { names, agent: false }));
+            return Ok(self.types.add(AgentSpeakType::Atoms { names, agent: false }));
         }
         let args = of.args.iter().map(|a| self.term(a)).collect::<Result<Vec<_>, _>>()?;
-        Ok(self.types.add(Ty::Struct(of.functor.clone(), args)))
+        Ok(self.types.add(AgentSpeakType::Struct(of.functor.clone(), args)))
     }
 }

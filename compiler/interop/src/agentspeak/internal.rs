@@ -1,19 +1,19 @@
 //! The internal actions: what their arguments must be. How they are written is in `write::internal`.
 
 use super::{
-    ast::{Literal, Term, TermKind},
-    infer::Walk,
-    term::{Message, Reason, atom, literal, message, performative},
-    types::{Ty, TyId},
+    ast::{AgentSpeakLiteral, AgentSpeakTerm, TermKind},
+    infer::TypeInferrer,
+    term::{AgentSpeakMessage, OmissionReason, atom, literal, message, performative},
+    types::{AgentSpeakType, TyId},
 };
 
 /// The types of an internal action's arguments.
 #[expect(clippy::too_many_lines, reason = "a flat match")]
-pub fn infer(walk: &mut Walk, of: &Literal) -> Result<(), Reason> {
+pub fn infer(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result<(), OmissionReason> {
     if of.negated {
         return Err("an internal action cannot be negated".to_owned());
     }
-    let number = |walk: &mut Walk, t: &Term| {
+    let number = |walk: &mut TypeInferrer, t: &AgentSpeakTerm| {
         let number = walk.types.number(false);
         same(walk, t, number)
     };
@@ -23,7 +23,7 @@ pub fn infer(walk: &mut Walk, of: &Literal) -> Result<(), Reason> {
         (".findall" | ".setof", [template, formula, list]) => {
             let of = walk.term(template)?;
             walk.formula(formula)?;
-            let expected = walk.types.add(Ty::List(of));
+            let expected = walk.types.add(AgentSpeakType::List(of));
             same(walk, list, expected)
         }
         (".count", [formula, n]) => {
@@ -55,7 +55,7 @@ pub fn infer(walk: &mut Walk, of: &Literal) -> Result<(), Reason> {
         (".union" | ".intersection" | ".difference", [a, b, c]) => lists(walk, &[a, b, c]),
         (".delete", [element, a, b]) => {
             let id = walk.term(element)?;
-            if matches!(walk.types.get(id), Ty::Number { .. }) {
+            if matches!(walk.types.get(id), AgentSpeakType::Number { .. }) {
                 return Err("with a number `.delete` takes away what is at that place".to_owned());
             }
             in_list(walk, element, a)?;
@@ -64,7 +64,7 @@ pub fn infer(walk: &mut Walk, of: &Literal) -> Result<(), Reason> {
         (".empty", [list]) => walk.term(list).map(|_| ()),
         (".term2string", [value, text]) => {
             walk.term(value)?;
-            let expected = walk.types.add(Ty::Text);
+            let expected = walk.types.add(AgentSpeakType::Text);
             same(walk, text, expected)
         }
         (".random", [x]) => {
@@ -78,7 +78,7 @@ pub fn infer(walk: &mut Walk, of: &Literal) -> Result<(), Reason> {
         }
         (".all_names", [list]) => {
             let agent = walk.types.agent();
-            let expected = walk.types.add(Ty::List(agent));
+            let expected = walk.types.add(AgentSpeakType::List(agent));
             same(walk, list, expected)
         }
         (".wait", args) => waited(walk, args),
@@ -104,7 +104,7 @@ pub fn infer(walk: &mut Walk, of: &Literal) -> Result<(), Reason> {
 }
 
 /// Functions in expressions.
-pub fn infer_function(walk: &mut Walk, of: &Literal) -> Result<TyId, Reason> {
+pub fn infer_function(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result<TyId, OmissionReason> {
     match (of.functor.as_str(), of.args.as_slice()) {
         ("math.abs", [_]) | ("math.min" | "math.max", [_, _]) => {
             let number = walk.types.number(false);
@@ -115,32 +115,36 @@ pub fn infer_function(walk: &mut Walk, of: &Literal) -> Result<TyId, Reason> {
     }
 }
 
-fn same(walk: &mut Walk, of: &Term, expected: TyId) -> Result<(), Reason> {
+fn same(walk: &mut TypeInferrer, of: &AgentSpeakTerm, expected: TyId) -> Result<(), OmissionReason> {
     let id = walk.term(of)?;
     walk.types.unify(expected, id)
 }
 
-fn in_list(walk: &mut Walk, element: &Term, list: &Term) -> Result<(), Reason> {
+fn in_list(
+    walk: &mut TypeInferrer,
+    element: &AgentSpeakTerm,
+    list: &AgentSpeakTerm,
+) -> Result<(), OmissionReason> {
     let of = walk.term(element)?;
-    let expected = walk.types.add(Ty::List(of));
+    let expected = walk.types.add(AgentSpeakType::List(of));
     same(walk, list, expected)
 }
 
-fn lists(walk: &mut Walk, all: &[&Term]) -> Result<(), Reason> {
+fn lists(walk: &mut TypeInferrer, all: &[&AgentSpeakTerm]) -> Result<(), OmissionReason> {
     let of = walk.types.fresh();
-    let expected = walk.types.add(Ty::List(of));
+    let expected = walk.types.add(AgentSpeakType::List(of));
     all.iter().try_for_each(|t| same(walk, t, expected))
 }
 
 /// What is printed has any type; atoms and structures are printed as text.
-fn printed(walk: &mut Walk, of: &Term) -> Result<(), Reason> {
+fn printed(walk: &mut TypeInferrer, of: &AgentSpeakTerm) -> Result<(), OmissionReason> {
     match &of.kind {
         TermKind::Literal(l) if !l.is_internal() => l.args.iter().try_for_each(|a| printed(walk, a)),
         _ => walk.term(of).map(|_| ()),
     }
 }
 
-fn sent(walk: &mut Walk, message: &Message<'_>) -> Result<(), Reason> {
+fn sent(walk: &mut TypeInferrer, message: &AgentSpeakMessage<'_>) -> Result<(), OmissionReason> {
     if let Some(to) = message.to {
         match atom(to) {
             Some(name) if !walk.types.is_agent(name) => return Err(format!("no agent is called `{name}`")),
@@ -148,8 +152,8 @@ fn sent(walk: &mut Walk, message: &Message<'_>) -> Result<(), Reason> {
             _ => {
                 let id = walk.term(to)?;
                 let mut expected = walk.types.agent();
-                if matches!(walk.types.get(id), Ty::List(_)) {
-                    expected = walk.types.add(Ty::List(expected));
+                if matches!(walk.types.get(id), AgentSpeakType::List(_)) {
+                    expected = walk.types.add(AgentSpeakType::List(expected));
                 }
                 walk.types.unify(id, expected)?;
             }
@@ -172,36 +176,43 @@ fn sent(walk: &mut Walk, message: &Message<'_>) -> Result<(), Reason> {
 }
 
 /// The answer is the literal, with values; or a list of such.
-fn answered(walk: &mut Walk, performative: &str, content: &Literal, answer: &Term) -> Result<(), Reason> {
+fn answered(
+    walk: &mut TypeInferrer,
+    performative: &str,
+    content: &AgentSpeakLiteral,
+    answer: &AgentSpeakTerm,
+) -> Result<(), OmissionReason> {
     let places = walk.types.belief(&content.key());
     let one = if places.is_empty() {
         let names = [content.functor.clone()].into_iter().collect();
-        walk.types.add(Ty::Atoms { names, agent: false })
+        walk.types.add(AgentSpeakType::Atoms { names, agent: false })
     } else {
-        walk.types.add(Ty::Struct(content.functor.clone(), places))
+        walk.types.add(AgentSpeakType::Struct(content.functor.clone(), places))
     };
     if performative == "askAll" {
-        let expected = walk.types.add(Ty::List(one));
+        let expected = walk.types.add(AgentSpeakType::List(one));
         return same(walk, answer, expected);
     }
     match &answer.kind {
         TermKind::Literal(l) => {
             // Who answered is no part of the value.
-            let plain = Literal { annotations: Vec::new(), ..l.clone() };
-            same(walk, &Term { kind: TermKind::Literal(plain), span: answer.span }, one)
+            let plain = AgentSpeakLiteral { annotations: Vec::new(), ..l.clone() };
+            same(walk, &AgentSpeakTerm { kind: TermKind::Literal(plain), span: answer.span }, one)
         }
         _ => same(walk, answer, one),
     }
 }
 
-fn waited(walk: &mut Walk, args: &[Term]) -> Result<(), Reason> {
+fn waited(walk: &mut TypeInferrer, args: &[AgentSpeakTerm]) -> Result<(), OmissionReason> {
     let Some((what, rest)) = args.split_first() else { return Err("`.wait` has no argument".to_owned()) };
     for time in rest {
         let number = walk.types.number(false);
         same(walk, time, number)?;
     }
     match &what.kind {
-        TermKind::Trigger(t) if t.kind == super::ast::TriggerKind::Added => walk.belief(literal(&t.of)?),
+        TermKind::Trigger(t) if t.kind == super::ast::AgentSpeakTriggerKind::Added => {
+            walk.belief(literal(&t.of)?)
+        }
         TermKind::Trigger(_) | TermKind::Text(_) => {
             Err("hrdsl cannot wait for this; it waits for a time, a belief or an event".to_owned())
         }

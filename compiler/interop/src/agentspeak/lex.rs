@@ -4,7 +4,7 @@ use hrdsl_source::{FileId, Span};
 
 /// What a token is.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Tok {
+pub enum AgentSpeakTokenKind {
     /// `beer`, `.send`, `math.abs`, `'any text'`
     Atom(String),
     /// `X`, `_X`
@@ -22,8 +22,8 @@ pub enum Tok {
 }
 
 #[derive(Clone, Debug)]
-pub struct Token {
-    pub tok: Tok,
+pub struct AgentSpeakToken {
+    pub tok: AgentSpeakTokenKind,
     pub span: Span,
 }
 
@@ -36,31 +36,31 @@ const MARKS: &[&str] = &[
 const WORDS: &[&str] = &["not", "true", "false", "if", "elif", "else", "while", "for", "div", "mod"];
 
 /// The tokens of a text, the last one `End`; and the places where it is no text of the language, with what is wrong.
-pub fn lex(file: FileId, text: &str) -> (Vec<Token>, Vec<(Span, String)>) {
+pub fn lex(file: FileId, text: &str) -> (Vec<AgentSpeakToken>, Vec<(Span, String)>) {
     lex_from(file, text, 0)
 }
 
 /// The tokens from a place on.
-pub fn lex_from(file: FileId, text: &str, at: usize) -> (Vec<Token>, Vec<(Span, String)>) {
-    let mut lexer = Lexer { file, text, at, tokens: Vec::new(), faults: Vec::new() };
+pub fn lex_from(file: FileId, text: &str, at: usize) -> (Vec<AgentSpeakToken>, Vec<(Span, String)>) {
+    let mut lexer = AgentSpeakLexer { file, text, at, tokens: Vec::new(), faults: Vec::new() };
     while lexer.at < text.len() {
         lexer.next();
     }
-    lexer.push(Tok::End, text.len());
+    lexer.push(AgentSpeakTokenKind::End, text.len());
     (lexer.tokens, lexer.faults)
 }
 
-struct Lexer<'t> {
+struct AgentSpeakLexer<'t> {
     file: FileId,
     text: &'t str,
     at: usize,
-    tokens: Vec<Token>,
+    tokens: Vec<AgentSpeakToken>,
     faults: Vec<(Span, String)>,
 }
 
-impl Lexer<'_> {
-    fn push(&mut self, tok: Tok, start: usize) {
-        self.tokens.push(Token { tok, span: Span::new(self.file, start, self.at) });
+impl AgentSpeakLexer<'_> {
+    fn push(&mut self, tok: AgentSpeakTokenKind, start: usize) {
+        self.tokens.push(AgentSpeakToken { tok, span: Span::new(self.file, start, self.at) });
     }
 
     fn fault(&mut self, start: usize, message: impl Into<String>) {
@@ -94,12 +94,15 @@ impl Lexer<'_> {
             self.quoted(c);
         } else if c == '_' || c.is_uppercase() {
             let name = self.run(is_word).to_owned();
-            self.push(if name == "_" { Tok::Any } else { Tok::Var(name) }, start);
+            self.push(
+                if name == "_" { AgentSpeakTokenKind::Any } else { AgentSpeakTokenKind::Var(name) },
+                start,
+            );
         } else if c.is_alphabetic() || (c == '.' && second.is_some_and(char::is_alphabetic)) {
             self.atom();
         } else if let Some(mark) = MARKS.iter().find(|m| self.rest().starts_with(**m)) {
             self.at += mark.len();
-            self.push(Tok::Mark(mark), start);
+            self.push(AgentSpeakTokenKind::Mark(mark), start);
         } else {
             self.at += c.len_utf8();
             self.fault(start, format!("the character `{c}` means nothing here"));
@@ -137,9 +140,14 @@ impl Lexer<'_> {
         }
         let text = &self.text[start..self.at];
         let int = if float { None } else { text.parse().ok() };
-        let tok = int.map_or_else(|| text.parse().map(Tok::Float).ok(), |n| Some(Tok::Int(n)));
+        let tok = int.map_or_else(
+            || text.parse().map(AgentSpeakTokenKind::Float).ok(),
+            |n| Some(AgentSpeakTokenKind::Int(n)),
+        );
         match tok {
-            Some(Tok::Float(x)) if !x.is_finite() => self.fault(start, "the number is too large"),
+            Some(AgentSpeakTokenKind::Float(x)) if !x.is_finite() => {
+                self.fault(start, "the number is too large")
+            }
             Some(tok) => self.push(tok, start),
             None => self.fault(start, "the number cannot be read"),
         }
@@ -176,7 +184,10 @@ impl Lexer<'_> {
             };
             self.at += taken;
         }
-        self.push(if quote == '"' { Tok::Text(text) } else { Tok::Atom(text) }, start);
+        self.push(
+            if quote == '"' { AgentSpeakTokenKind::Text(text) } else { AgentSpeakTokenKind::Atom(text) },
+            start,
+        );
     }
 
     /// A dot belongs to the name if a letter or digit follows.
@@ -194,8 +205,8 @@ impl Lexer<'_> {
         }
         let text = &self.text[start..self.at];
         let tok = match WORDS.iter().find(|w| **w == text) {
-            Some(word) => Tok::Word(word),
-            None => Tok::Atom(text.to_owned()),
+            Some(word) => AgentSpeakTokenKind::Word(word),
+            None => AgentSpeakTokenKind::Atom(text.to_owned()),
         };
         self.push(tok, start);
     }
@@ -209,7 +220,7 @@ fn is_word(c: char) -> bool {
 mod tests {
     use super::*;
 
-    fn toks(text: &str) -> Vec<Tok> {
+    fn toks(text: &str) -> Vec<AgentSpeakTokenKind> {
         let (tokens, faults) = lex(FileId(0), text);
         assert_eq!(faults, Vec::new());
         tokens.into_iter().map(|t| t.tok).collect()
@@ -217,17 +228,35 @@ mod tests {
 
     #[test]
     fn a_dot_is_part_of_a_name_a_number_or_the_end() {
-        let atom = |t: &str| Tok::Atom(t.to_owned());
-        let dot = Tok::Mark(".");
+        let atom = |t: &str| AgentSpeakTokenKind::Atom(t.to_owned());
+        let dot = AgentSpeakTokenKind::Mark(".");
         assert_eq!(
             toks("b(1).\n.send"),
-            [atom("b"), Tok::Mark("("), Tok::Int(1), Tok::Mark(")"), dot.clone(), atom(".send"), Tok::End]
+            [
+                atom("b"),
+                AgentSpeakTokenKind::Mark("("),
+                AgentSpeakTokenKind::Int(1),
+                AgentSpeakTokenKind::Mark(")"),
+                dot.clone(),
+                atom(".send"),
+                AgentSpeakTokenKind::End
+            ]
         );
         assert_eq!(
             toks("math.abs 1.5. x."),
-            [atom("math.abs"), Tok::Float(1.5), dot.clone(), atom("x"), dot.clone(), Tok::End]
+            [
+                atom("math.abs"),
+                AgentSpeakTokenKind::Float(1.5),
+                dot.clone(),
+                atom("x"),
+                dot.clone(),
+                AgentSpeakTokenKind::End
+            ]
         );
-        assert_eq!(toks("2e3 3."), [Tok::Float(2000.0), Tok::Int(3), dot, Tok::End]);
+        assert_eq!(
+            toks("2e3 3."),
+            [AgentSpeakTokenKind::Float(2000.0), AgentSpeakTokenKind::Int(3), dot, AgentSpeakTokenKind::End]
+        );
     }
 
     #[test]
@@ -235,7 +264,14 @@ mod tests {
         let marks = toks("|&| ||| \\== =.. <- <= !! ** _ _X X");
         let kinds: Vec<String> = marks.iter().map(|t| format!("{t:?}")).collect();
         assert_eq!(kinds.len(), 12);
-        assert_eq!(marks[8..11], [Tok::Any, Tok::Var("_X".to_owned()), Tok::Var("X".to_owned())]);
+        assert_eq!(
+            marks[8..11],
+            [
+                AgentSpeakTokenKind::Any,
+                AgentSpeakTokenKind::Var("_X".to_owned()),
+                AgentSpeakTokenKind::Var("X".to_owned())
+            ]
+        );
     }
 
     #[test]

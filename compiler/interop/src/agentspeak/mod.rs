@@ -28,19 +28,19 @@ mod write;
 use hrdsl_source::{SourceFiles, Span};
 
 use self::{
-    names::Names,
+    names::AgentSpeakNames,
     parse::place,
-    survey::{Survey, survey},
-    types::{Ty, Types},
+    survey::{PredicateSurvey, survey},
+    types::{AgentSpeakType, UnificationTable},
 };
 use crate::exchange::{
-    note::{Imported, Note, Severity, SyntaxError},
-    source::{Loader, Source},
+    note::{ImportNote, ImportedScenario, NoteSeverity, SyntaxError},
+    source::{ForeignLoader, ForeignSource},
 };
 
 /// How to import.
 #[derive(Clone, Debug, Default)]
-pub struct Options {
+pub struct AgentSpeakOptions {
     /// The scenario's name; otherwise that of the project, or of the first file.
     pub name: Option<String>,
 }
@@ -50,30 +50,35 @@ pub struct Options {
 /// # Errors
 /// What cannot be read, and what was expected there.
 pub fn import(
-    files: &[Source],
-    loader: &dyn Loader,
-    options: &Options,
-) -> Result<Imported, Vec<SyntaxError>> {
+    files: &[ForeignSource],
+    loader: &dyn ForeignLoader,
+    options: &AgentSpeakOptions,
+) -> Result<ImportedScenario, Vec<SyntaxError>> {
     let system = read::read(files, loader, options.name.as_deref())?;
-    let mut surveys: Vec<Survey> = system.programs.iter().map(survey).collect();
+    let mut surveys: Vec<PredicateSurvey> = system.programs.iter().map(survey).collect();
     for agent in &system.agents {
         for belief in &agent.beliefs {
-            surveys[agent.program].belief(belief, survey::What::Initial);
+            surveys[agent.program].belief(belief, survey::OccurrenceKind::Initial);
         }
         for goal in &agent.goals {
-            surveys[agent.program].goal(goal, survey::What::Adopted);
+            surveys[agent.program].goal(goal, survey::OccurrenceKind::Adopted);
         }
     }
     let inferred = infer::infer(&system);
-    let names = Names::new(&system, &inferred.types, &surveys);
-    let writer = write::Writer { system: &system, inferred: &inferred, names: &names, surveys: &surveys };
+    let names = AgentSpeakNames::new(&system, &inferred.types, &surveys);
+    let writer = write::AgentSpeakTranslator {
+        system: &system,
+        inferred: &inferred,
+        names: &names,
+        surveys: &surveys,
+    };
     let written = writer.write();
-    let mut report = Report { files: &system.files, notes: Vec::new() };
+    let mut report = NoteCollector { files: &system.files, notes: Vec::new() };
     for (span, reason) in &written.left_out {
-        report.note(*span, Severity::LeftOut, reason.clone(), None);
+        report.note(*span, NoteSeverity::LeftOut, reason.clone(), None);
     }
     for (span, remark) in system.skipped.iter().chain(&written.remarks) {
-        report.note(*span, Severity::Warning, remark.clone(), None);
+        report.note(*span, NoteSeverity::Warning, remark.clone(), None);
     }
     for (span, severity, message, help) in quirks::quirks(&system, &surveys) {
         report.note(span, severity, message, help);
@@ -84,22 +89,22 @@ pub fn import(
     notes.sort();
     notes.dedup();
     let text = hrdsl_syntax::format(&written.text).unwrap_or(written.text);
-    Ok(Imported { text, notes })
+    Ok(ImportedScenario { text, notes })
 }
 
-struct Report<'a> {
+struct NoteCollector<'a> {
     files: &'a SourceFiles,
-    notes: Vec<Note>,
+    notes: Vec<ImportNote>,
 }
 
-impl Report<'_> {
-    fn note(&mut self, span: Span, severity: Severity, message: String, help: Option<String>) {
+impl NoteCollector<'_> {
+    fn note(&mut self, span: Span, severity: NoteSeverity, message: String, help: Option<String>) {
         let (file, line, column) = place(self.files, span);
-        self.notes.push(Note { file, line, column, severity, message, help });
+        self.notes.push(ImportNote { file, line, column, severity, message, help });
     }
 
     /// What has another name.
-    fn names(&mut self, names: &Names, types: &Types, surveys: &[Survey]) {
+    fn names(&mut self, names: &AgentSpeakNames, types: &UnificationTable, surveys: &[PredicateSurvey]) {
         let mut renamed = Vec::new();
         for (key, name) in &names.beliefs {
             let found = surveys.iter().flat_map(|s| &s.beliefs).find(|m| m.key == *key);
@@ -124,28 +129,28 @@ impl Report<'_> {
             if old != new
                 && let Some(span) = span
             {
-                self.note(span, Severity::Info, format!("the {what} `{old}` is called `{new}`"), None);
+                self.note(span, NoteSeverity::Info, format!("the {what} `{old}` is called `{new}`"), None);
             }
         }
     }
 
     /// Of what type nothing is known.
-    fn types(&mut self, types: &Types, surveys: &[Survey]) {
+    fn types(&mut self, types: &UnificationTable, surveys: &[PredicateSurvey]) {
         let beliefs = types.beliefs.iter().map(|t| (t, false));
         for ((key, places), goal) in beliefs.chain(types.goals.iter().map(|t| (t, true))) {
-            let find = |s: &Survey| {
+            let find = |s: &PredicateSurvey| {
                 let mentions = if goal { &s.goals } else { &s.beliefs };
                 mentions.iter().find(|m| m.key == *key).map(|m| m.span)
             };
             let Some(span) = surveys.iter().find_map(find) else { continue };
             for (i, place) in places.iter().enumerate() {
-                if types.leaves(*place).iter().any(|l| *types.get(l.of) == Ty::Unknown) {
+                if types.leaves(*place).iter().any(|l| *types.get(l.of) == AgentSpeakType::Unknown) {
                     let message = format!(
                         "nothing says of what type argument {} of `{}` is: `int` is assumed",
                         i + 1,
                         key.0
                     );
-                    self.note(span, Severity::Info, message, None);
+                    self.note(span, NoteSeverity::Info, message, None);
                 }
             }
         }

@@ -1,15 +1,15 @@
 //! Names: what a scenario does not take as a name, or would take for something else, gets another one.
 
-use hrdsl_syntax::token::{Class, KEYWORDS};
+use hrdsl_syntax::token::{KEYWORDS, KeywordClass};
 use indexmap::{IndexMap, IndexSet};
 
 pub(crate) use crate::exchange::name::unused;
 
 use super::{
-    ast::Key,
-    survey::{Mention, Sort, Survey, What},
-    system::System,
-    types::{Leaf, Ty, TyId, Types},
+    ast::PredicateIndicator,
+    survey::{OccurrenceKind, PredicateKind, PredicateOccurrence, PredicateSurvey},
+    system::AgentSpeakSystem,
+    types::{AgentSpeakType, ListLeafType, TyId, UnificationTable},
 };
 
 /// Words with a meaning of their own where a name of an agent's program may stand.
@@ -20,7 +20,7 @@ const TAKEN: &[&str] = &[
 
 /// An enumeration: the atoms of a class.
 #[derive(Debug)]
-pub struct Enumeration {
+pub struct AtomEnumeration {
     pub name: String,
     /// As they are in the program, and as they are written.
     pub values: IndexMap<String, String>,
@@ -28,13 +28,13 @@ pub struct Enumeration {
 
 /// What everything is called in the scenario.
 #[derive(Debug, Default)]
-pub struct Names {
-    pub beliefs: IndexMap<Key, String>,
-    pub goals: IndexMap<Key, String>,
+pub struct AgentSpeakNames {
+    pub beliefs: IndexMap<PredicateIndicator, String>,
+    pub goals: IndexMap<PredicateIndicator, String>,
     /// By agent.
-    pub actions: IndexMap<(String, Key), String>,
+    pub actions: IndexMap<(String, PredicateIndicator), String>,
     pub agents: IndexMap<String, String>,
-    pub enums: Vec<Enumeration>,
+    pub enums: Vec<AtomEnumeration>,
     /// Which enumeration the values of a class are of, by its root.
     of: IndexMap<TyId, usize>,
     /// Values that are written with their enumeration.
@@ -49,7 +49,7 @@ fn clean(name: &str) -> String {
 /// The same, and no keyword.
 pub fn ident(name: &str) -> String {
     let mut out = clean(name);
-    let reserved = KEYWORDS.iter().any(|k| k.word == out && k.class != Class::Soft);
+    let reserved = KEYWORDS.iter().any(|k| k.word == out && k.class != KeywordClass::Soft);
     if reserved || TAKEN.contains(&out.as_str()) {
         out.push('_');
     }
@@ -81,9 +81,9 @@ pub fn parameter(name: &str) -> String {
     ident(&out)
 }
 
-fn called<'k>(keys: impl Iterator<Item = &'k Key>) -> IndexMap<Key, String> {
+fn called<'k>(keys: impl Iterator<Item = &'k PredicateIndicator>) -> IndexMap<PredicateIndicator, String> {
     let (mut used, mut names) = (IndexSet::new(), IndexMap::new());
-    let mut functors: IndexMap<&str, Key> = IndexMap::new();
+    let mut functors: IndexMap<&str, PredicateIndicator> = IndexMap::new();
     for key in keys {
         // The same name with another number of arguments is another belief or goal.
         let first = functors.entry(&key.0).or_insert_with(|| key.clone()) == key;
@@ -95,16 +95,17 @@ fn called<'k>(keys: impl Iterator<Item = &'k Key>) -> IndexMap<Key, String> {
     names
 }
 
-impl Names {
-    pub fn new(system: &System, types: &Types, surveys: &[Survey]) -> Self {
+impl AgentSpeakNames {
+    pub fn new(system: &AgentSpeakSystem, types: &UnificationTable, surveys: &[PredicateSurvey]) -> Self {
         let mut names = Self {
             beliefs: called(types.beliefs.keys()),
             goals: called(types.goals.keys()),
             ..Self::default()
         };
         // What is sent is a belief or a goal by its name alone.
-        let is_sent = |key: &Key| {
-            let sent = |m: &Mention| m.key == *key && matches!(m.what, What::Sent { .. });
+        let is_sent = |key: &PredicateIndicator| {
+            let sent =
+                |m: &PredicateOccurrence| m.key == *key && matches!(m.what, OccurrenceKind::Sent { .. });
             surveys.iter().any(|s| s.goals.iter().any(sent))
         };
         let beliefs: IndexSet<String> = names.beliefs.values().cloned().collect();
@@ -126,7 +127,12 @@ impl Names {
     }
 
     /// A stimulus is one actor's: an action that several agents do is several stimuli.
-    fn name_actions(&mut self, system: &System, types: &Types, surveys: &[Survey]) {
+    fn name_actions(
+        &mut self,
+        system: &AgentSpeakSystem,
+        types: &UnificationTable,
+        surveys: &[PredicateSurvey],
+    ) {
         let plain = called(types.actions.keys());
         let mut used: IndexSet<String> = IndexSet::new();
         for (key, name) in &plain {
@@ -150,11 +156,11 @@ impl Names {
     }
 
     /// Classes that share an atom share an enumeration, so that an atom is one value wherever that is possible.
-    fn name_enums(&mut self, types: &Types, surveys: &[Survey]) {
+    fn name_enums(&mut self, types: &UnificationTable, surveys: &[PredicateSurvey]) {
         let mut groups: Vec<(IndexSet<String>, Vec<TyId>, IndexSet<String>)> = Vec::new();
         for (hint, place) in places(types, surveys) {
-            for Leaf { of, .. } in types.leaves(place) {
-                let Ty::Atoms { names, .. } = types.get(of) else { continue };
+            for ListLeafType { of, .. } in types.leaves(place) {
+                let AgentSpeakType::Atoms { names, .. } = types.get(of) else { continue };
                 if types.is_of_agents(of) {
                     continue;
                 }
@@ -189,13 +195,13 @@ impl Names {
                 values.insert(atom, value);
             }
             self.of.extend(roots.into_iter().map(|r| (r, self.enums.len())));
-            self.enums.push(Enumeration { name, values });
+            self.enums.push(AtomEnumeration { name, values });
         }
         self.ambiguous = self.agents.values().cloned().collect();
     }
 
     /// An atom of a class.
-    pub fn atom(&self, types: &Types, id: TyId, atom: &str) -> String {
+    pub fn atom(&self, types: &UnificationTable, id: TyId, atom: &str) -> String {
         match self.of.get(&types.root(id)).map(|i| &self.enums[*i]) {
             None => self.agents.get(atom).cloned().unwrap_or_else(|| atom.to_owned()),
             Some(of) => {
@@ -206,15 +212,18 @@ impl Names {
     }
 
     /// How a type is written.
-    pub fn type_of(&self, types: &Types, leaf: Leaf) -> String {
+    pub fn type_of(&self, types: &UnificationTable, leaf: ListLeafType) -> String {
         let of = match types.get(leaf.of) {
-            Ty::Number { float: true } => "float".to_owned(),
-            Ty::Text => "string".to_owned(),
-            Ty::Bool => "bool".to_owned(),
-            Ty::Atoms { .. } => {
+            AgentSpeakType::Number { float: true } => "float".to_owned(),
+            AgentSpeakType::Text => "string".to_owned(),
+            AgentSpeakType::Bool => "bool".to_owned(),
+            AgentSpeakType::Atoms { .. } => {
                 self.of.get(&leaf.of).map_or_else(|| "agent".to_owned(), |i| self.enums[*i].name.clone())
             }
-            Ty::Number { float: false } | Ty::Unknown | Ty::List(_) | Ty::Struct(..) => "int".to_owned(),
+            AgentSpeakType::Number { float: false }
+            | AgentSpeakType::Unknown
+            | AgentSpeakType::List(_)
+            | AgentSpeakType::Struct(..) => "int".to_owned(),
         };
         format!("{}{of}{}", "[".repeat(leaf.lists), "]".repeat(leaf.lists))
     }
@@ -227,11 +236,13 @@ impl Names {
 }
 
 /// All places where values can be, with what they may be called by: a variable there, or what they are in.
-fn places(types: &Types, surveys: &[Survey]) -> Vec<(String, TyId)> {
+fn places(types: &UnificationTable, surveys: &[PredicateSurvey]) -> Vec<(String, TyId)> {
     let mut all = Vec::new();
-    for (sort, of) in
-        [(Sort::Belief, &types.beliefs), (Sort::Goal, &types.goals), (Sort::Action, &types.actions)]
-    {
+    for (sort, of) in [
+        (PredicateKind::Belief, &types.beliefs),
+        (PredicateKind::Goal, &types.goals),
+        (PredicateKind::Action, &types.actions),
+    ] {
         for (key, args) in of {
             for (i, place) in args.iter().enumerate() {
                 let hint = surveys.iter().find_map(|s| s.hints.get(&(sort, key.clone()))?.get(i)?.clone());

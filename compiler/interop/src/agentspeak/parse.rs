@@ -6,12 +6,15 @@ mod term;
 use hrdsl_source::{FileId, SourceFiles, Span};
 
 use super::{
-    ast::{Item, ItemKind, Literal, Plan, Program, Term, TermKind, Trigger, TriggerKind},
-    lex::{Tok, Token, lex, lex_from},
+    ast::{
+        AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakPlan, AgentSpeakProgram,
+        AgentSpeakTerm, AgentSpeakTrigger, AgentSpeakTriggerKind, TermKind,
+    },
+    lex::{AgentSpeakToken, AgentSpeakTokenKind, lex, lex_from},
 };
 use crate::exchange::{
     note::SyntaxError,
-    source::{Loader, MAX_BYTES},
+    source::{ForeignLoader, MAX_BYTES},
 };
 
 /// How deep terms, blocks and includes may be nested.
@@ -19,17 +22,17 @@ const MAX_DEPTH: usize = 200;
 
 /// What does not fit, and where.
 #[derive(Debug)]
-pub struct Fault {
+pub struct AgentSpeakFault {
     pub span: Span,
     pub message: String,
 }
 
-pub type Parsed<T> = Result<T, Fault>;
+pub type AgentSpeakParseResult<T> = Result<T, AgentSpeakFault>;
 
 /// Where files come from, and what was wrong with them.
-pub struct Reader<'l> {
+pub struct AgentSpeakReader<'l> {
     pub files: SourceFiles,
-    pub loader: &'l dyn Loader,
+    pub loader: &'l dyn ForeignLoader,
     pub errors: Vec<SyntaxError>,
     /// The names of the files that are being read, the outermost first.
     open: Vec<String>,
@@ -37,8 +40,8 @@ pub struct Reader<'l> {
     bytes: usize,
 }
 
-impl<'l> Reader<'l> {
-    pub fn new(loader: &'l dyn Loader) -> Self {
+impl<'l> AgentSpeakReader<'l> {
+    pub fn new(loader: &'l dyn ForeignLoader) -> Self {
         Self { files: SourceFiles::default(), loader, errors: Vec::new(), open: Vec::new(), bytes: 0 }
     }
 
@@ -49,20 +52,20 @@ impl<'l> Reader<'l> {
     }
 
     /// Reads a program, with the files that it includes.
-    pub fn program(&mut self, name: &str, text: &str) -> Program {
-        let mut program = Program::default();
+    pub fn program(&mut self, name: &str, text: &str) -> AgentSpeakProgram {
+        let mut program = AgentSpeakProgram::default();
         self.read(name, text, &mut program);
         program
     }
 
-    fn read(&mut self, name: &str, text: &str, program: &mut Program) {
+    fn read(&mut self, name: &str, text: &str, program: &mut AgentSpeakProgram) {
         self.open.push(name.to_owned());
         let mut parser = self.parser(name, text);
         loop {
             match parser.item() {
                 Ok(None) => break,
-                Ok(Some(Entry::Item(item))) => program.items.push(*item),
-                Ok(Some(Entry::Include(path, span))) => self.include(name, &path, span, program),
+                Ok(Some(AgentSpeakEntry::Item(item))) => program.items.push(*item),
+                Ok(Some(AgentSpeakEntry::Include(path, span))) => self.include(name, &path, span, program),
                 Err(fault) => {
                     self.error(fault.span, fault.message);
                     parser.skip();
@@ -73,31 +76,31 @@ impl<'l> Reader<'l> {
     }
 
     /// A parser of a text that becomes one of the files.
-    fn parser(&mut self, name: &str, text: &str) -> Parser {
+    fn parser(&mut self, name: &str, text: &str) -> AgentSpeakParser {
         self.bytes += text.len();
         let file = self.files.add(name, text);
         let (tokens, faults) = lex(file, text);
         for (span, message) in faults {
             self.error(span, message);
         }
-        Parser { file, tokens, at: 0, depth: 0 }
+        AgentSpeakParser { file, tokens, at: 0, depth: 0 }
     }
 
     /// A parser of a piece of a file.
-    pub fn piece(&mut self, span: Span) -> Parser {
+    pub fn piece(&mut self, span: Span) -> AgentSpeakParser {
         let text = self.files.get(span.file).map(|f| f.text.clone()).unwrap_or_default();
         let text = text.get(..span.end as usize).unwrap_or_default();
         let (tokens, faults) = lex_from(span.file, text, span.start as usize);
         for (span, message) in faults {
             self.error(span, message);
         }
-        Parser { file: span.file, tokens, at: 0, depth: 0 }
+        AgentSpeakParser { file: span.file, tokens, at: 0, depth: 0 }
     }
 
-    fn include(&mut self, from: &str, path: &str, span: Span, program: &mut Program) {
+    fn include(&mut self, from: &str, path: &str, span: Span, program: &mut AgentSpeakProgram) {
         if path.starts_with('$') {
             let message = format!("`{path}` comes with Jason or JaCaMo, and is not read");
-            program.items.push(Item { kind: ItemKind::Skipped(message), span });
+            program.items.push(AgentSpeakItem { kind: AgentSpeakItemKind::Skipped(message), span });
             return;
         }
         match self.loader.load(from, path) {
@@ -123,25 +126,25 @@ pub fn place(files: &SourceFiles, span: Span) -> (String, u32, u32) {
     (files.get(span.file).map(|f| f.name.clone()).unwrap_or_default(), at.line, at.column)
 }
 
-enum Entry {
-    Item(Box<Item>),
+enum AgentSpeakEntry {
+    Item(Box<AgentSpeakItem>),
     Include(String, Span),
 }
 
-pub struct Parser {
+pub struct AgentSpeakParser {
     file: FileId,
-    tokens: Vec<Token>,
+    tokens: Vec<AgentSpeakToken>,
     at: usize,
     depth: usize,
 }
 
-impl Parser {
-    fn peek(&self) -> &Tok {
+impl AgentSpeakParser {
+    fn peek(&self) -> &AgentSpeakTokenKind {
         self.peek_at(0)
     }
 
-    fn peek_at(&self, ahead: usize) -> &Tok {
-        self.tokens.get(self.at + ahead).map_or(&Tok::End, |t| &t.tok)
+    fn peek_at(&self, ahead: usize) -> &AgentSpeakTokenKind {
+        self.tokens.get(self.at + ahead).map_or(&AgentSpeakTokenKind::End, |t| &t.tok)
     }
 
     fn here(&self) -> Span {
@@ -154,18 +157,18 @@ impl Parser {
         Span::new(self.file, from.start as usize, end as usize)
     }
 
-    fn advance(&mut self) -> Tok {
+    fn advance(&mut self) -> AgentSpeakTokenKind {
         let tok = self.peek().clone();
         self.at = (self.at + 1).min(self.tokens.len() - 1);
         tok
     }
 
     fn is(&self, mark: &str) -> bool {
-        matches!(self.peek(), Tok::Mark(m) if *m == mark)
+        matches!(self.peek(), AgentSpeakTokenKind::Mark(m) if *m == mark)
     }
 
     fn is_word(&self, word: &str) -> bool {
-        matches!(self.peek(), Tok::Word(w) if *w == word)
+        matches!(self.peek(), AgentSpeakTokenKind::Word(w) if *w == word)
     }
 
     fn take(&mut self, mark: &str) -> bool {
@@ -176,27 +179,30 @@ impl Parser {
         found
     }
 
-    fn expect(&mut self, mark: &str, after: &str) -> Parsed<()> {
+    fn expect(&mut self, mark: &str, after: &str) -> AgentSpeakParseResult<()> {
         if self.take(mark) { Ok(()) } else { Err(self.expected(&format!("`{mark}` {after}"))) }
     }
 
-    fn expected(&self, what: &str) -> Fault {
+    fn expected(&self, what: &str) -> AgentSpeakFault {
         let found = match self.peek() {
-            Tok::Atom(t) | Tok::Var(t) => format!("`{t}`"),
-            Tok::Any => "`_`".to_owned(),
-            Tok::Int(n) => format!("`{n}`"),
-            Tok::Float(x) => format!("`{x}`"),
-            Tok::Text(t) => format!("{t:?}"),
-            Tok::Word(w) | Tok::Mark(w) => format!("`{w}`"),
-            Tok::End => "the end of the file".to_owned(),
+            AgentSpeakTokenKind::Atom(t) | AgentSpeakTokenKind::Var(t) => format!("`{t}`"),
+            AgentSpeakTokenKind::Any => "`_`".to_owned(),
+            AgentSpeakTokenKind::Int(n) => format!("`{n}`"),
+            AgentSpeakTokenKind::Float(x) => format!("`{x}`"),
+            AgentSpeakTokenKind::Text(t) => format!("{t:?}"),
+            AgentSpeakTokenKind::Word(w) | AgentSpeakTokenKind::Mark(w) => format!("`{w}`"),
+            AgentSpeakTokenKind::End => "the end of the file".to_owned(),
         };
-        Fault { span: self.here(), message: format!("expected {what}, found {found}") }
+        AgentSpeakFault { span: self.here(), message: format!("expected {what}, found {found}") }
     }
 
     /// Reads something one level further in.
-    fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+    fn deeper<T>(
+        &mut self,
+        read: impl FnOnce(&mut Self) -> AgentSpeakParseResult<T>,
+    ) -> AgentSpeakParseResult<T> {
         if self.depth >= MAX_DEPTH {
-            return Err(Fault { span: self.here(), message: "this is nested too deep".to_owned() });
+            return Err(AgentSpeakFault { span: self.here(), message: "this is nested too deep".to_owned() });
         }
         self.depth += 1;
         let result = read(self);
@@ -207,55 +213,55 @@ impl Parser {
     /// Goes on after the next full stop.
     fn skip(&mut self) {
         self.depth = 0;
-        while *self.peek() != Tok::End {
-            if self.advance() == Tok::Mark(".") {
+        while *self.peek() != AgentSpeakTokenKind::End {
+            if self.advance() == AgentSpeakTokenKind::Mark(".") {
                 break;
             }
         }
     }
 
-    fn item(&mut self) -> Parsed<Option<Entry>> {
+    fn item(&mut self) -> AgentSpeakParseResult<Option<AgentSpeakEntry>> {
         let start = self.here();
         let kind = match self.peek() {
-            Tok::End => return Ok(None),
-            Tok::Mark("{") => return self.directive(start).map(Some),
-            Tok::Mark("!") => {
+            AgentSpeakTokenKind::End => return Ok(None),
+            AgentSpeakTokenKind::Mark("{") => return self.directive(start).map(Some),
+            AgentSpeakTokenKind::Mark("!") => {
                 self.advance();
                 let goal = self.literal_or_var("after `!`")?;
                 self.expect(".", "after the goal")?;
-                ItemKind::Goal(goal)
+                AgentSpeakItemKind::Goal(goal)
             }
-            Tok::Mark("@" | "+" | "-" | "^") => {
+            AgentSpeakTokenKind::Mark("@" | "+" | "-" | "^") => {
                 let plan = self.plan()?;
                 self.expect(".", "at the end of the plan")?;
-                ItemKind::Plan(plan)
+                AgentSpeakItemKind::Plan(plan)
             }
             _ => {
                 let head = self.literal("a belief, a rule, a goal or a plan")?;
                 let body = if self.take(":-") { Some(self.formula()?) } else { None };
                 self.expect(".", if body.is_some() { "at the end of the rule" } else { "after the belief" })?;
                 match body {
-                    Some(body) => ItemKind::Rule { head, body },
-                    None => ItemKind::Belief(head),
+                    Some(body) => AgentSpeakItemKind::Rule { head, body },
+                    None => AgentSpeakItemKind::Belief(head),
                 }
             }
         };
-        Ok(Some(Entry::Item(Box::new(Item { kind, span: self.since(start) }))))
+        Ok(Some(AgentSpeakEntry::Item(Box::new(AgentSpeakItem { kind, span: self.since(start) }))))
     }
 
-    fn directive(&mut self, start: Span) -> Parsed<Entry> {
+    fn directive(&mut self, start: Span) -> AgentSpeakParseResult<AgentSpeakEntry> {
         self.advance();
-        let begins = matches!(self.peek(), Tok::Atom(a) if a == "begin");
-        if begins && *self.peek_at(1) != Tok::Mark("}") {
+        let begins = matches!(self.peek(), AgentSpeakTokenKind::Atom(a) if a == "begin");
+        if begins && *self.peek_at(1) != AgentSpeakTokenKind::Mark("}") {
             self.advance();
         }
         let directive = self.literal("a directive")?;
         self.expect("}", "after the directive")?;
         let span = self.since(start);
         if directive.functor == "include"
-            && let Some(Term { kind: TermKind::Text(path), .. }) = directive.args.first()
+            && let Some(AgentSpeakTerm { kind: TermKind::Text(path), .. }) = directive.args.first()
         {
-            return Ok(Entry::Include(path.clone(), span));
+            return Ok(AgentSpeakEntry::Include(path.clone(), span));
         }
         let name = &directive.functor;
         let message = match (name.as_str(), begins) {
@@ -265,16 +271,19 @@ impl Parser {
             ),
             (_, false) => format!("the directive `{name}` is not carried out"),
         };
-        Ok(Entry::Item(Box::new(Item { kind: ItemKind::Skipped(message), span })))
+        Ok(AgentSpeakEntry::Item(Box::new(AgentSpeakItem {
+            kind: AgentSpeakItemKind::Skipped(message),
+            span,
+        })))
     }
 
-    fn plan(&mut self) -> Parsed<Plan> {
+    fn plan(&mut self) -> AgentSpeakParseResult<AgentSpeakPlan> {
         let (mut label, mut annotations) = (None, Vec::new());
         if self.take("@") {
             if self.is("[") {
                 annotations = self.annotations()?;
             } else {
-                let named: Literal = self.literal("a label after `@`")?;
+                let named: AgentSpeakLiteral = self.literal("a label after `@`")?;
                 label = Some(named.functor);
                 annotations = named.annotations;
             }
@@ -282,40 +291,40 @@ impl Parser {
         let trigger = self.trigger()?;
         let context = if self.take(":") { Some(self.formula()?) } else { None };
         let body = if self.take("<-") { self.body()? } else { Vec::new() };
-        Ok(Plan { label, annotations, trigger, context, body })
+        Ok(AgentSpeakPlan { label, annotations, trigger, context, body })
     }
 
-    fn trigger(&mut self) -> Parsed<Trigger> {
+    fn trigger(&mut self) -> AgentSpeakParseResult<AgentSpeakTrigger> {
         let sign = self.advance();
         let mark = match self.peek() {
-            Tok::Mark(mark @ ("!" | "?")) => Some(*mark),
+            AgentSpeakTokenKind::Mark(mark @ ("!" | "?")) => Some(*mark),
             _ => None,
         };
         if mark.is_some() {
             self.advance();
         }
         let kind = match (&sign, mark) {
-            (Tok::Mark("+"), None) => TriggerKind::Added,
-            (Tok::Mark("-"), None) => TriggerKind::Removed,
-            (Tok::Mark("+"), Some("!")) => TriggerKind::Achieve,
-            (Tok::Mark("-"), Some("!")) => TriggerKind::Failed,
-            (Tok::Mark("+"), Some(_)) => TriggerKind::Test,
-            (Tok::Mark("-"), Some(_)) => TriggerKind::TestFailed,
-            (Tok::Mark("^"), Some(_)) => TriggerKind::State,
+            (AgentSpeakTokenKind::Mark("+"), None) => AgentSpeakTriggerKind::Added,
+            (AgentSpeakTokenKind::Mark("-"), None) => AgentSpeakTriggerKind::Removed,
+            (AgentSpeakTokenKind::Mark("+"), Some("!")) => AgentSpeakTriggerKind::Achieve,
+            (AgentSpeakTokenKind::Mark("-"), Some("!")) => AgentSpeakTriggerKind::Failed,
+            (AgentSpeakTokenKind::Mark("+"), Some(_)) => AgentSpeakTriggerKind::Test,
+            (AgentSpeakTokenKind::Mark("-"), Some(_)) => AgentSpeakTriggerKind::TestFailed,
+            (AgentSpeakTokenKind::Mark("^"), Some(_)) => AgentSpeakTriggerKind::State,
             _ => {
                 self.at = self.at.saturating_sub(1 + usize::from(mark.is_some()));
                 return Err(self.expected("a trigger (`+`, `-`, `+!`, `-!`, `+?`, `-?`)"));
             }
         };
-        Ok(Trigger { kind, of: self.literal_or_var("in the trigger")? })
+        Ok(AgentSpeakTrigger { kind, of: self.literal_or_var("in the trigger")? })
     }
 
     /// `b1(x), b2` of a project file's options.
-    pub fn literals(&mut self) -> Parsed<Vec<Literal>> {
+    pub fn literals(&mut self) -> AgentSpeakParseResult<Vec<AgentSpeakLiteral>> {
         let mut all = Vec::new();
-        while *self.peek() != Tok::End {
+        while *self.peek() != AgentSpeakTokenKind::End {
             all.push(self.literal("a belief or goal")?);
-            if !self.take(",") && *self.peek() != Tok::End {
+            if !self.take(",") && *self.peek() != AgentSpeakTokenKind::End {
                 return Err(self.expected("`,`"));
             }
         }

@@ -2,13 +2,13 @@
 
 use hrdsl_source::{FileId, Span};
 
-use super::parse::Fault;
+use super::parse::AgentSpeakFault;
 
 /// A system of agents.
 #[derive(Debug, Default)]
-pub struct Project {
+pub struct JasonProject {
     pub name: String,
-    pub agents: Vec<Entry>,
+    pub agents: Vec<JasonProjectAgent>,
     /// `aslSourcePath`
     pub paths: Vec<String>,
     /// What was skipped.
@@ -17,7 +17,7 @@ pub struct Project {
 
 /// `name file.asl [beliefs="…", goals="…"] #3;`
 #[derive(Debug)]
-pub struct Entry {
+pub struct JasonProjectAgent {
     pub name: String,
     pub file: String,
     pub count: usize,
@@ -31,7 +31,7 @@ pub struct Entry {
 const MAX_COUNT: usize = 1000;
 
 #[derive(Clone, Debug, PartialEq)]
-enum Tok {
+enum JasonProjectToken {
     Word(String),
     Text(String),
     Mark(char),
@@ -42,13 +42,14 @@ enum Tok {
 ///
 /// # Errors
 /// Where the text is no project, and what was expected.
-pub fn project(file: FileId, text: &str) -> Result<Project, Fault> {
-    let mut scan = Scan { tokens: tokens(file, text)?, at: 0, project: Project::default() };
+pub fn project(file: FileId, text: &str) -> Result<JasonProject, AgentSpeakFault> {
+    let mut scan =
+        JasonProjectParser { tokens: tokens(file, text)?, at: 0, project: JasonProject::default() };
     scan.project()?;
     Ok(scan.project)
 }
 
-fn tokens(file: FileId, text: &str) -> Result<Vec<(Tok, Span)>, Fault> {
+fn tokens(file: FileId, text: &str) -> Result<Vec<(JasonProjectToken, Span)>, AgentSpeakFault> {
     let mut all = Vec::new();
     let mut at = 0;
     let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '/' | '\\' | '$' | '-');
@@ -62,7 +63,7 @@ fn tokens(file: FileId, text: &str) -> Result<Vec<(Tok, Span)>, Fault> {
             at += rest.find('\n').unwrap_or(rest.len());
         } else if rest.starts_with("/*") {
             let Some(end) = rest.find("*/") else {
-                return Err(Fault {
+                return Err(AgentSpeakFault {
                     span: span(text.len()),
                     message: "the comment has no end; expected `*/`".to_owned(),
                 });
@@ -76,22 +77,22 @@ fn tokens(file: FileId, text: &str) -> Result<Vec<(Tok, Span)>, Fault> {
                 ends
             });
             let Some(end) = end else {
-                return Err(Fault {
+                return Err(AgentSpeakFault {
                     span: span(text.len()),
                     message: "the text has no end; expected `\"`".to_owned(),
                 });
             };
             at += end + 2;
-            all.push((Tok::Text(rest[1..=end].replace("\\\"", "\"")), span(at)));
+            all.push((JasonProjectToken::Text(rest[1..=end].replace("\\\"", "\"")), span(at)));
         } else if is_word(c) {
             at += rest.find(|c| !is_word(c)).unwrap_or(rest.len());
-            all.push((Tok::Word(text[start..at].to_owned()), span(at)));
+            all.push((JasonProjectToken::Word(text[start..at].to_owned()), span(at)));
         } else {
             at += c.len_utf8();
-            all.push((Tok::Mark(c), span(at)));
+            all.push((JasonProjectToken::Mark(c), span(at)));
         }
     }
-    all.push((Tok::End, Span::new(file, text.len(), text.len())));
+    all.push((JasonProjectToken::End, Span::new(file, text.len(), text.len())));
     Ok(all)
 }
 
@@ -100,14 +101,14 @@ fn inner(span: Span) -> Span {
     Span::new(span.file, span.start as usize + 1, (span.end as usize).saturating_sub(1))
 }
 
-struct Scan {
-    tokens: Vec<(Tok, Span)>,
+struct JasonProjectParser {
+    tokens: Vec<(JasonProjectToken, Span)>,
     at: usize,
-    project: Project,
+    project: JasonProject,
 }
 
-impl Scan {
-    fn peek(&self) -> &Tok {
+impl JasonProjectParser {
+    fn peek(&self) -> &JasonProjectToken {
         &self.tokens[self.at].0
     }
 
@@ -115,49 +116,52 @@ impl Scan {
         self.tokens[self.at].1
     }
 
-    fn advance(&mut self) -> Tok {
+    fn advance(&mut self) -> JasonProjectToken {
         let tok = self.peek().clone();
         self.at = (self.at + 1).min(self.tokens.len() - 1);
         tok
     }
 
     fn take(&mut self, mark: char) -> bool {
-        let found = *self.peek() == Tok::Mark(mark);
+        let found = *self.peek() == JasonProjectToken::Mark(mark);
         if found {
             self.advance();
         }
         found
     }
 
-    fn expected(&self, what: &str) -> Fault {
+    fn expected(&self, what: &str) -> AgentSpeakFault {
         let found = match self.peek() {
-            Tok::Word(w) => format!("`{w}`"),
-            Tok::Text(t) => format!("{t:?}"),
-            Tok::Mark(c) => format!("`{c}`"),
-            Tok::End => "the end of the file".to_owned(),
+            JasonProjectToken::Word(w) => format!("`{w}`"),
+            JasonProjectToken::Text(t) => format!("{t:?}"),
+            JasonProjectToken::Mark(c) => format!("`{c}`"),
+            JasonProjectToken::End => "the end of the file".to_owned(),
         };
-        Fault { span: self.here(), message: format!("expected {what}, found {found}") }
+        AgentSpeakFault { span: self.here(), message: format!("expected {what}, found {found}") }
     }
 
-    fn word(&mut self, what: &str) -> Result<String, Fault> {
+    fn word(&mut self, what: &str) -> Result<String, AgentSpeakFault> {
         match self.peek().clone() {
-            Tok::Word(w) => {
+            JasonProjectToken::Word(w) => {
                 self.advance();
                 Ok(w)
             }
-            Tok::Text(_) | Tok::Mark(_) | Tok::End => Err(self.expected(what)),
+            JasonProjectToken::Text(_) | JasonProjectToken::Mark(_) | JasonProjectToken::End => {
+                Err(self.expected(what))
+            }
         }
     }
 
     /// `name :` begins a section; so does the brace at the end end one.
     fn section_begins(&self) -> bool {
         let next = self.tokens.get(self.at + 1).map(|t| &t.0);
-        matches!(self.peek(), Tok::Mark('}') | Tok::End)
-            || (matches!(self.peek(), Tok::Word(_)) && next == Some(&Tok::Mark(':')))
+        matches!(self.peek(), JasonProjectToken::Mark('}') | JasonProjectToken::End)
+            || (matches!(self.peek(), JasonProjectToken::Word(_))
+                && next == Some(&JasonProjectToken::Mark(':')))
     }
 
-    fn project(&mut self) -> Result<(), Fault> {
-        if !matches!(self.peek(), Tok::Word(w) if w.eq_ignore_ascii_case("mas")) {
+    fn project(&mut self) -> Result<(), AgentSpeakFault> {
+        if !matches!(self.peek(), JasonProjectToken::Word(w) if w.eq_ignore_ascii_case("mas")) {
             return Err(self.expected("`MAS`"));
         }
         self.advance();
@@ -168,20 +172,23 @@ impl Scan {
         loop {
             let start = self.here();
             match self.peek().clone() {
-                Tok::Mark('}') => return Ok(()),
-                Tok::Word(name) if self.section_begins() => {
+                JasonProjectToken::Mark('}') => return Ok(()),
+                JasonProjectToken::Word(name) if self.section_begins() => {
                     self.advance();
                     self.advance();
                     self.section(&name, start)?;
                 }
-                Tok::Word(_) | Tok::Text(_) | Tok::Mark(_) | Tok::End => {
+                JasonProjectToken::Word(_)
+                | JasonProjectToken::Text(_)
+                | JasonProjectToken::Mark(_)
+                | JasonProjectToken::End => {
                     return Err(self.expected("a section such as `agents:`, or `}`"));
                 }
             }
         }
     }
 
-    fn section(&mut self, name: &str, start: Span) -> Result<(), Fault> {
+    fn section(&mut self, name: &str, start: Span) -> Result<(), AgentSpeakFault> {
         if name == "agents" {
             while !self.section_begins() {
                 self.agent()?;
@@ -190,13 +197,13 @@ impl Scan {
         }
         let mut depth = 0_usize;
         let mut said = Vec::new();
-        while *self.peek() != Tok::End && (depth > 0 || !self.section_begins()) {
+        while *self.peek() != JasonProjectToken::End && (depth > 0 || !self.section_begins()) {
             match self.advance() {
-                Tok::Mark('{' | '(' | '[') => depth += 1,
-                Tok::Mark('}' | ')' | ']') => depth = depth.saturating_sub(1),
-                Tok::Text(text) if name == "aslSourcePath" => self.project.paths.push(text),
-                Tok::Word(word) => said.push(word),
-                Tok::Text(_) | Tok::Mark(_) | Tok::End => {}
+                JasonProjectToken::Mark('{' | '(' | '[') => depth += 1,
+                JasonProjectToken::Mark('}' | ')' | ']') => depth = depth.saturating_sub(1),
+                JasonProjectToken::Text(text) if name == "aslSourcePath" => self.project.paths.push(text),
+                JasonProjectToken::Word(word) => said.push(word),
+                JasonProjectToken::Text(_) | JasonProjectToken::Mark(_) | JasonProjectToken::End => {}
             }
         }
         match name {
@@ -213,30 +220,36 @@ impl Scan {
         Ok(())
     }
 
-    fn agent(&mut self) -> Result<(), Fault> {
+    fn agent(&mut self) -> Result<(), AgentSpeakFault> {
         let start = self.here();
         let name = self.word("an agent's name")?;
-        let mut entry =
-            Entry { file: format!("{name}.asl"), name, count: 1, beliefs: None, goals: None, span: start };
+        let mut entry = JasonProjectAgent {
+            file: format!("{name}.asl"),
+            name,
+            count: 1,
+            beliefs: None,
+            goals: None,
+            span: start,
+        };
         while !self.take(';') {
             let here = self.here();
             match self.advance() {
-                Tok::Word(file) if file.ends_with(".asl") => entry.file = file,
-                Tok::Text(file) if file.ends_with(".asl") => entry.file = file,
-                Tok::Mark('[') => self.options(&mut entry)?,
-                Tok::Mark('#') => {
+                JasonProjectToken::Word(file) if file.ends_with(".asl") => entry.file = file,
+                JasonProjectToken::Text(file) if file.ends_with(".asl") => entry.file = file,
+                JasonProjectToken::Mark('[') => self.options(&mut entry)?,
+                JasonProjectToken::Mark('#') => {
                     let count = self.word("the number of agents after `#`")?;
                     let number = count.parse().ok().filter(|n| (1..=MAX_COUNT).contains(n));
-                    entry.count = number.ok_or_else(|| Fault {
+                    entry.count = number.ok_or_else(|| AgentSpeakFault {
                         span: here,
                         message: format!(
                             "expected a number of agents from 1 to {MAX_COUNT}, found `{count}`"
                         ),
                     })?;
                 }
-                Tok::Word(word) => {
+                JasonProjectToken::Word(word) => {
                     // `agentArchClass X`, `at "host"`
-                    if !matches!(self.peek(), Tok::Mark(_) | Tok::End) {
+                    if !matches!(self.peek(), JasonProjectToken::Mark(_) | JasonProjectToken::End) {
                         self.advance();
                     }
                     self.project
@@ -244,7 +257,7 @@ impl Scan {
                         .push((here, format!("`{word}` of the agent `{}` is skipped", entry.name)));
                     self.arguments();
                 }
-                Tok::Text(_) | Tok::Mark(_) | Tok::End => {
+                JasonProjectToken::Text(_) | JasonProjectToken::Mark(_) | JasonProjectToken::End => {
                     self.at = self.at.saturating_sub(1);
                     return Err(self.expected("`;` after the agent"));
                 }
@@ -258,25 +271,28 @@ impl Scan {
     fn arguments(&mut self) {
         if self.take('(') {
             let mut depth = 1;
-            while depth > 0 && *self.peek() != Tok::End {
+            while depth > 0 && *self.peek() != JasonProjectToken::End {
                 match self.advance() {
-                    Tok::Mark('(') => depth += 1,
-                    Tok::Mark(')') => depth -= 1,
-                    Tok::Word(_) | Tok::Text(_) | Tok::Mark(_) | Tok::End => {}
+                    JasonProjectToken::Mark('(') => depth += 1,
+                    JasonProjectToken::Mark(')') => depth -= 1,
+                    JasonProjectToken::Word(_)
+                    | JasonProjectToken::Text(_)
+                    | JasonProjectToken::Mark(_)
+                    | JasonProjectToken::End => {}
                 }
             }
         }
     }
 
-    fn options(&mut self, entry: &mut Entry) -> Result<(), Fault> {
+    fn options(&mut self, entry: &mut JasonProjectAgent) -> Result<(), AgentSpeakFault> {
         while !self.take(']') {
             let start = self.here();
             let name = self.word("an option, or `]`")?;
             let value =
                 if self.take('=') { Some((self.advance(), self.tokens[self.at - 1].1)) } else { None };
             match (name.as_str(), value) {
-                ("beliefs", Some((Tok::Text(_), span))) => entry.beliefs = Some(inner(span)),
-                ("goals", Some((Tok::Text(_), span))) => entry.goals = Some(inner(span)),
+                ("beliefs", Some((JasonProjectToken::Text(_), span))) => entry.beliefs = Some(inner(span)),
+                ("goals", Some((JasonProjectToken::Text(_), span))) => entry.goals = Some(inner(span)),
                 (_, _) => {
                     self.project.skipped.push((
                         start,
@@ -285,7 +301,7 @@ impl Scan {
                 }
             }
             self.arguments();
-            if !self.take(',') && *self.peek() != Tok::Mark(']') {
+            if !self.take(',') && *self.peek() != JasonProjectToken::Mark(']') {
                 return Err(self.expected("`,` or `]`"));
             }
         }

@@ -4,21 +4,24 @@ use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
 use super::{
-    ast::{Adding, ItemKind, Key, Plan, Program, TermKind, TriggerKind},
-    survey::{Mention, Survey, What},
-    system::{Entry, System},
+    ast::{
+        AgentSpeakItemKind, AgentSpeakPlan, AgentSpeakProgram, AgentSpeakTriggerKind, BeliefAddition,
+        PredicateIndicator, TermKind,
+    },
+    survey::{OccurrenceKind, PredicateOccurrence, PredicateSurvey},
+    system::{AgentSpeakAgent, AgentSpeakSystem},
     term::literal,
 };
-use crate::exchange::note::Severity;
+use crate::exchange::note::NoteSeverity;
 
 /// A finding: its place, how much it matters, what is so, and what to do.
-pub type Quirk = (Span, Severity, String, Option<String>);
+pub type AgentSpeakQuirk = (Span, NoteSeverity, String, Option<String>);
 
 /// The findings of a system.
-pub fn quirks(system: &System, surveys: &[Survey]) -> Vec<Quirk> {
+pub fn quirks(system: &AgentSpeakSystem, surveys: &[PredicateSurvey]) -> Vec<AgentSpeakQuirk> {
     let mut all = Vec::new();
     for agent in &system.agents {
-        let look = Look::new(system, surveys, agent);
+        let look = AgentQuirkCheck::new(system, surveys, agent);
         look.unknown_beliefs(&mut all);
         look.unwanted_goals(&mut all);
         look.changes(&mut all);
@@ -32,30 +35,39 @@ pub fn quirks(system: &System, surveys: &[Survey]) -> Vec<Quirk> {
 }
 
 /// What one agent does and gets.
-struct Look<'a> {
-    agent: &'a Entry,
-    survey: &'a Survey,
+struct AgentQuirkCheck<'a> {
+    agent: &'a AgentSpeakAgent,
+    survey: &'a PredicateSurvey,
     /// Beliefs that it adds itself, that others tell it, both by name and sign.
-    own: IndexSet<(Key, bool)>,
-    told: IndexSet<(Key, bool)>,
-    goals: IndexSet<Key>,
+    own: IndexSet<(PredicateIndicator, bool)>,
+    told: IndexSet<(PredicateIndicator, bool)>,
+    goals: IndexSet<PredicateIndicator>,
 }
 
-impl<'a> Look<'a> {
-    fn new(system: &'a System, surveys: &'a [Survey], agent: &'a Entry) -> Self {
+impl<'a> AgentQuirkCheck<'a> {
+    fn new(system: &'a AgentSpeakSystem, surveys: &'a [PredicateSurvey], agent: &'a AgentSpeakAgent) -> Self {
         let survey = &surveys[agent.program];
-        let adds =
-            |m: &&Mention| matches!(m.what, What::Initial | What::Rule | What::Added(_) | What::Replaced);
-        let named = |m: &Mention| (m.key.clone(), m.negated);
+        let adds = |m: &&PredicateOccurrence| {
+            matches!(
+                m.what,
+                OccurrenceKind::Initial
+                    | OccurrenceKind::Rule
+                    | OccurrenceKind::Added(_)
+                    | OccurrenceKind::Replaced
+            )
+        };
+        let named = |m: &PredicateOccurrence| (m.key.clone(), m.negated);
         let mut own: IndexSet<_> = survey.beliefs.iter().filter(adds).map(named).collect();
         own.extend(agent.beliefs.iter().map(|b| (b.key(), b.negated)));
         let mut told = IndexSet::new();
-        let mut goals: IndexSet<Key> = agent.goals.iter().map(super::ast::Literal::key).collect();
-        goals.extend(survey.goals.iter().filter(|m| m.what == What::Adopted).map(|m| m.key.clone()));
+        let mut goals: IndexSet<PredicateIndicator> =
+            agent.goals.iter().map(super::ast::AgentSpeakLiteral::key).collect();
+        goals
+            .extend(survey.goals.iter().filter(|m| m.what == OccurrenceKind::Adopted).map(|m| m.key.clone()));
         for other in &system.agents {
             let sends = &surveys[other.program];
             for m in sends.beliefs.iter().chain(&sends.goals) {
-                let What::Sent { to, goal, told: says } = &m.what else { continue };
+                let OccurrenceKind::Sent { to, goal, told: says } = &m.what else { continue };
                 let arrives =
                     to.as_ref().map_or(other.name != agent.name, |t| *t == agent.name || t == "self");
                 if *goal && arrives {
@@ -68,19 +80,20 @@ impl<'a> Look<'a> {
         Self { agent, survey, own, told, goals }
     }
 
-    fn unknown_beliefs(&self, all: &mut Vec<Quirk>) {
+    fn unknown_beliefs(&self, all: &mut Vec<AgentSpeakQuirk>) {
         let mut said = IndexSet::new();
         for m in &self.survey.beliefs {
             let asks = matches!(
                 m.what,
-                What::Tested(_) | What::Waited | What::Trigger(TriggerKind::Added | TriggerKind::Removed)
+                OccurrenceKind::Tested(_)
+                    | OccurrenceKind::Waited
+                    | OccurrenceKind::Trigger(AgentSpeakTriggerKind::Added | AgentSpeakTriggerKind::Removed)
             );
             let name = (m.key.clone(), m.negated);
-            let answered = self
-                .survey
-                .beliefs
-                .iter()
-                .any(|o| o.key == m.key && o.what == What::Trigger(TriggerKind::Test));
+            let answered =
+                self.survey.beliefs.iter().any(|o| {
+                    o.key == m.key && o.what == OccurrenceKind::Trigger(AgentSpeakTriggerKind::Test)
+                });
             if !asks
                 || answered
                 || self.own.contains(&name)
@@ -90,7 +103,7 @@ impl<'a> Look<'a> {
                 continue;
             }
             let (functor, args) = &m.key;
-            let waits = if m.what == What::Waited {
+            let waits = if m.what == OccurrenceKind::Waited {
                 "this waits for a belief that nobody adds or sends: "
             } else {
                 ""
@@ -101,15 +114,19 @@ impl<'a> Look<'a> {
             let places = if *args > 0 { "(…)" } else { "" };
             all.push((
                 m.span,
-                Severity::Warning,
+                NoteSeverity::Warning,
                 format!("{waits}nobody adds `{sign}{functor}` to `{}`: a percept of the environment, or misspelt{near}", self.agent.name),
                 Some(format!("declare `belief {functor}{places} on EVENT`, if an event tells the agent")),
             ));
         }
     }
 
-    fn unwanted_goals(&self, all: &mut Vec<Quirk>) {
-        let planned = self.survey.goals.iter().filter(|m| m.what == What::Trigger(TriggerKind::Achieve));
+    fn unwanted_goals(&self, all: &mut Vec<AgentSpeakQuirk>) {
+        let planned = self
+            .survey
+            .goals
+            .iter()
+            .filter(|m| m.what == OccurrenceKind::Trigger(AgentSpeakTriggerKind::Achieve));
         for m in planned.filter(|m| !self.goals.contains(&m.key)) {
             let near = nearest(&m.key.0, self.goals.iter().map(|k| k.0.as_str()));
             let other = self.goals.iter().find(|k| k.0 == m.key.0);
@@ -121,14 +138,14 @@ impl<'a> Look<'a> {
                 "nobody adopts the goal `{}` of `{}`, so this plan never runs",
                 m.key.0, self.agent.name
             );
-            all.push((m.span, Severity::Warning, message, help));
+            all.push((m.span, NoteSeverity::Warning, message, help));
         }
     }
 
     /// Steps that change beliefs and do it otherwise.
     #[expect(clippy::too_many_lines, reason = "a flat match")]
-    fn changes(&self, all: &mut Vec<Quirk>) {
-        let count = |m: &Mention, what: &What| {
+    fn changes(&self, all: &mut Vec<AgentSpeakQuirk>) {
+        let count = |m: &PredicateOccurrence, what: &OccurrenceKind| {
             self.survey
                 .beliefs
                 .iter()
@@ -139,9 +156,9 @@ impl<'a> Look<'a> {
         for m in &self.survey.beliefs {
             let name = (m.key.clone(), m.negated);
             let functor = &m.key.0;
-            let handled = count(m, &What::Trigger(TriggerKind::Added)) > 0;
+            let handled = count(m, &OccurrenceKind::Trigger(AgentSpeakTriggerKind::Added)) > 0;
             match &m.what {
-                What::Removed(false) if !self.own.contains(&name) => {
+                OccurrenceKind::Removed(false) if !self.own.contains(&name) => {
                     let who = if self.told.contains(&name) {
                         "is told by others"
                     } else {
@@ -149,80 +166,82 @@ impl<'a> Look<'a> {
                     };
                     all.push((
                         m.span,
-                        Severity::Warning,
+                        NoteSeverity::Warning,
                         format!("`-{functor}` takes away what the agent believes itself; `{functor}` {who}, and stays"),
                         Some(format!("write `-{functor}(…)[source(_)]`")),
                     ));
                 }
-                What::Replaced
-                    if count(m, &What::Initial) > 1
-                        || count(m, &What::Added(Adding::Plain)) > 0
+                OccurrenceKind::Replaced
+                    if count(m, &OccurrenceKind::Initial) > 1
+                        || count(m, &OccurrenceKind::Added(BeliefAddition::Plain)) > 0
                         || self.told.contains(&name) =>
                 {
                     let message = format!(
                         "`{functor}` may have several facts: in Jason `-+{functor}` takes away one of them, in hrdsl all"
                     );
-                    all.push((m.span, Severity::Warning, message, None));
+                    all.push((m.span, NoteSeverity::Warning, message, None));
                 }
-                What::Added(Adding::NewFocus) => {
+                OccurrenceKind::Added(BeliefAddition::NewFocus) => {
                     let message = format!(
                         "`++{functor}` becomes `+{functor}`: in hrdsl its event has an intention of its own"
                     );
-                    all.push((m.span, Severity::Info, message, None));
+                    all.push((m.span, NoteSeverity::Info, message, None));
                 }
-                What::Added(Adding::First) => {
+                OccurrenceKind::Added(BeliefAddition::First) => {
                     let message = format!(
                         "`+<{functor}` becomes `+{functor}`: in hrdsl the youngest fact is asked last"
                     );
-                    all.push((m.span, Severity::Warning, message, None));
+                    all.push((m.span, NoteSeverity::Warning, message, None));
                 }
-                What::Added(Adding::Plain | Adding::Last) | What::Replaced
+                OccurrenceKind::Added(BeliefAddition::Plain | BeliefAddition::Last)
+                | OccurrenceKind::Replaced
                     if handled && said.insert(name.clone()) =>
                 {
                     let message = format!(
                         "in hrdsl the plan for `+{functor}` has an intention of its own: the step after this one does not wait for it"
                     );
-                    all.push((m.span, Severity::Info, message, None));
+                    all.push((m.span, NoteSeverity::Info, message, None));
                 }
-                What::Initial
-                | What::Rule
-                | What::Added(_)
-                | What::Replaced
-                | What::Removed(_)
-                | What::Tested(_)
-                | What::Waited
-                | What::Trigger(_)
-                | What::Adopted
-                | What::Sent { .. } => {}
+                OccurrenceKind::Initial
+                | OccurrenceKind::Rule
+                | OccurrenceKind::Added(_)
+                | OccurrenceKind::Replaced
+                | OccurrenceKind::Removed(_)
+                | OccurrenceKind::Tested(_)
+                | OccurrenceKind::Waited
+                | OccurrenceKind::Trigger(_)
+                | OccurrenceKind::Adopted
+                | OccurrenceKind::Sent { .. } => {}
             }
         }
     }
 
     /// Facts are asked in another order.
-    fn many_facts(&self, all: &mut Vec<Quirk>) {
+    fn many_facts(&self, all: &mut Vec<AgentSpeakQuirk>) {
         let mut said = IndexSet::new();
-        for m in self.survey.beliefs.iter().filter(|m| m.what == What::Tested(true) && m.key.1 > 0) {
-            let same = |o: &&Mention| o.key == m.key && o.negated == m.negated;
+        for m in self.survey.beliefs.iter().filter(|m| m.what == OccurrenceKind::Tested(true) && m.key.1 > 0)
+        {
+            let same = |o: &&PredicateOccurrence| o.key == m.key && o.negated == m.negated;
             let facts = self.survey.beliefs.iter().filter(same);
-            let many = facts.clone().filter(|o| o.what == What::Initial).count() > 1
-                || facts.clone().any(|o| matches!(o.what, What::Added(_)))
+            let many = facts.clone().filter(|o| o.what == OccurrenceKind::Initial).count() > 1
+                || facts.clone().any(|o| matches!(o.what, OccurrenceKind::Added(_)))
                 || self.told.contains(&(m.key.clone(), m.negated));
             if many && said.insert(m.key.clone()) {
                 let message = format!(
                     "if there are several facts of `{}`, Jason takes the newest, hrdsl the oldest",
                     m.key.0
                 );
-                all.push((m.span, Severity::Info, message, None));
+                all.push((m.span, NoteSeverity::Info, message, None));
             }
         }
     }
 }
 
 /// A plan after one that always fits.
-fn shadowed(system: &System, program: &Program, all: &mut Vec<Quirk>) {
-    let mut first: IndexMap<(TriggerKind, Key, bool), Span> = IndexMap::new();
+fn shadowed(system: &AgentSpeakSystem, program: &AgentSpeakProgram, all: &mut Vec<AgentSpeakQuirk>) {
+    let mut first: IndexMap<(AgentSpeakTriggerKind, PredicateIndicator, bool), Span> = IndexMap::new();
     for item in &program.items {
-        let ItemKind::Plan(plan) = &item.kind else { continue };
+        let AgentSpeakItemKind::Plan(plan) = &item.kind else { continue };
         let Ok(of) = literal(&plan.trigger.of) else { continue };
         let key = (plan.trigger.kind, of.key(), of.negated);
         if let Some(before) = first.get(&key) {
@@ -230,14 +249,14 @@ fn shadowed(system: &System, program: &Program, all: &mut Vec<Quirk>) {
             let message = format!(
                 "this plan is never selected: the one in line {line} has the same trigger, and always fits"
             );
-            all.push((item.span, Severity::Warning, message, None));
+            all.push((item.span, NoteSeverity::Warning, message, None));
         } else if always(plan) {
             first.insert(key, item.span);
         }
     }
 }
 
-fn always(plan: &Plan) -> bool {
+fn always(plan: &AgentSpeakPlan) -> bool {
     let Ok(of) = literal(&plan.trigger.of) else { return false };
     let mut seen = IndexSet::new();
     let free = of.args.iter().all(|a| match &a.kind {
@@ -249,12 +268,16 @@ fn always(plan: &Plan) -> bool {
     free && open && of.annotations.is_empty()
 }
 
-fn several_goals(program: &Program, all: &mut Vec<Quirk>) {
-    let goals: Vec<Span> =
-        program.items.iter().filter(|i| matches!(i.kind, ItemKind::Goal(_))).map(|i| i.span).collect();
+fn several_goals(program: &AgentSpeakProgram, all: &mut Vec<AgentSpeakQuirk>) {
+    let goals: Vec<Span> = program
+        .items
+        .iter()
+        .filter(|i| matches!(i.kind, AgentSpeakItemKind::Goal(_)))
+        .map(|i| i.span)
+        .collect();
     if let [_, second, ..] = goals.as_slice() {
         let message = "several initial goals: hrdsl adopts them in this order, after all events of initial beliefs, and their plans take turns step by step";
-        all.push((*second, Severity::Info, message.to_owned(), None));
+        all.push((*second, NoteSeverity::Info, message.to_owned(), None));
     }
 }
 

@@ -3,23 +3,27 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{Literal, Program},
-    parse::Reader,
+    ast::{AgentSpeakLiteral, AgentSpeakProgram},
+    parse::AgentSpeakReader,
     project,
-    system::{Entry, System},
+    system::{AgentSpeakAgent, AgentSpeakSystem},
 };
 use crate::exchange::{
     note::SyntaxError,
-    source::{Loader, Source, too_large},
+    source::{ForeignLoader, ForeignSource, too_large},
 };
 
 /// The agents of programs and projects.
 ///
 /// # Errors
 /// What cannot be read.
-pub fn read(files: &[Source], loader: &dyn Loader, name: Option<&str>) -> Result<System, Vec<SyntaxError>> {
-    let mut reader = Reader::new(loader);
-    let mut system = System::default();
+pub fn read(
+    files: &[ForeignSource],
+    loader: &dyn ForeignLoader,
+    name: Option<&str>,
+) -> Result<AgentSpeakSystem, Vec<SyntaxError>> {
+    let mut reader = AgentSpeakReader::new(loader);
+    let mut system = AgentSpeakSystem::default();
     let mut named = name.map(str::to_owned);
     reader.errors.extend(files.iter().filter_map(too_large));
     for file in files.iter().filter(|f| too_large(f).is_none()) {
@@ -46,14 +50,20 @@ pub fn read(files: &[Source], loader: &dyn Loader, name: Option<&str>) -> Result
     if errors.is_empty() { Ok(system) } else { Err(errors) }
 }
 
-fn add(system: &mut System, program: Program, name: String, beliefs: Vec<Literal>, goals: Vec<Literal>) {
+fn add(
+    system: &mut AgentSpeakSystem,
+    program: AgentSpeakProgram,
+    name: String,
+    beliefs: Vec<AgentSpeakLiteral>,
+    goals: Vec<AgentSpeakLiteral>,
+) {
     system.programs.push(program);
     let program = system.programs.len() - 1;
-    push(system, Entry { name, program, beliefs, goals });
+    push(system, AgentSpeakAgent { name, program, beliefs, goals });
 }
 
 /// Two agents never have the same name.
-fn push(system: &mut System, mut entry: Entry) {
+fn push(system: &mut AgentSpeakSystem, mut entry: AgentSpeakAgent) {
     while system.agents.iter().any(|a| a.name == entry.name) {
         entry.name.push('_');
     }
@@ -66,7 +76,7 @@ const MAX_ITEMS: usize = 3_000;
 const MAX_AGENTS: usize = 500;
 
 /// What is wrong with the number of things to import, if anything.
-fn too_many(files: &[Source], system: &System) -> Option<SyntaxError> {
+fn too_many(files: &[ForeignSource], system: &AgentSpeakSystem) -> Option<SyntaxError> {
     let items: usize = system.programs.iter().map(|p| p.items.len()).sum();
     let message = if items > MAX_ITEMS {
         format!(
@@ -87,7 +97,11 @@ fn stem(name: &str) -> &str {
     file.rsplit_once('.').map_or(file, |(stem, _)| stem)
 }
 
-fn read_project(reader: &mut Reader<'_>, file: &Source, system: &mut System) -> Option<String> {
+fn read_project(
+    reader: &mut AgentSpeakReader<'_>,
+    file: &ForeignSource,
+    system: &mut AgentSpeakSystem,
+) -> Option<String> {
     let id = reader.files.add(&file.name, &file.text);
     let project = match project::project(id, &file.text) {
         Ok(project) => project,
@@ -110,14 +124,20 @@ fn read_project(reader: &mut Reader<'_>, file: &Source, system: &mut System) -> 
         let program = system.programs.len() - 1;
         for n in (1..=entry.count).take(MAX_AGENTS + 1) {
             let name = format!("{}{n}", entry.name);
-            push(system, Entry { name, program, beliefs: beliefs.clone(), goals: goals.clone() });
+            push(system, AgentSpeakAgent { name, program, beliefs: beliefs.clone(), goals: goals.clone() });
         }
     }
     Some(project.name)
 }
 
 /// The program of an agent, in the first folder that has it.
-fn load(reader: &mut Reader<'_>, from: &Source, paths: &[String], file: &str, span: Span) -> Option<Source> {
+fn load(
+    reader: &mut AgentSpeakReader<'_>,
+    from: &ForeignSource,
+    paths: &[String],
+    file: &str,
+    span: Span,
+) -> Option<ForeignSource> {
     let folders = paths.iter().map(|p| format!("{}/{file}", p.trim_end_matches('/')));
     let mut first = None;
     for path in folders.chain([file.to_owned(), format!("src/agt/{file}"), format!("src/asl/{file}")]) {
@@ -133,7 +153,7 @@ fn load(reader: &mut Reader<'_>, from: &Source, paths: &[String], file: &str, sp
 }
 
 /// Beliefs or goals in the options of a project.
-fn given(reader: &mut Reader<'_>, place: Option<Span>) -> Vec<Literal> {
+fn given(reader: &mut AgentSpeakReader<'_>, place: Option<Span>) -> Vec<AgentSpeakLiteral> {
     let Some(place) = place else { return Vec::new() };
     let mut parser = reader.piece(place);
     match parser.literals() {

@@ -5,21 +5,22 @@ use indexmap::IndexMap;
 
 use super::{
     ast::{
-        Adding, ItemKind, Key, Literal, Op, Plan, Program, Step, StepKind, Term, TermKind, TriggerKind,
-        each_step, each_term,
+        AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakPlan, AgentSpeakProgram,
+        AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm, AgentSpeakTriggerKind, BeliefAddition,
+        PredicateIndicator, TermKind, each_step, each_term,
     },
     term::{atom, message, performative},
 };
 
 /// What is done.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum What {
+pub enum OccurrenceKind {
     /// Held at the start.
     Initial,
     /// The head of a rule.
     Rule,
     /// `+b`, with where it puts it.
-    Added(Adding),
+    Added(BeliefAddition),
     /// `-+b`
     Replaced,
     /// `-b`; `true`: with a source.
@@ -29,7 +30,7 @@ pub enum What {
     /// `.wait`
     Waited,
     /// The trigger of a plan.
-    Trigger(TriggerKind),
+    Trigger(AgentSpeakTriggerKind),
     /// A goal that is adopted.
     Adopted,
     /// Told, asked to be achieved; to one that is known, or to anybody.
@@ -38,16 +39,16 @@ pub enum What {
 
 /// One place.
 #[derive(Clone, Debug)]
-pub struct Mention {
-    pub key: Key,
+pub struct PredicateOccurrence {
+    pub key: PredicateIndicator,
     pub negated: bool,
-    pub what: What,
+    pub what: OccurrenceKind,
     pub span: Span,
 }
 
-/// What declarations are about: a column of [`Survey::hints`].
+/// What declarations are about: a column of [`PredicateSurvey::hints`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Sort {
+pub enum PredicateKind {
     Belief,
     Goal,
     Action,
@@ -55,41 +56,41 @@ pub enum Sort {
 
 /// All places of a program, in the order of the text.
 #[derive(Clone, Debug, Default)]
-pub struct Survey {
-    pub beliefs: Vec<Mention>,
-    pub goals: Vec<Mention>,
+pub struct PredicateSurvey {
+    pub beliefs: Vec<PredicateOccurrence>,
+    pub goals: Vec<PredicateOccurrence>,
     /// The actions of the environment, with the first place of each.
-    pub actions: IndexMap<Key, Span>,
+    pub actions: IndexMap<PredicateIndicator, Span>,
     /// What the arguments of beliefs, goals and actions are called: the first variable at each place.
-    pub hints: IndexMap<(Sort, Key), Vec<Option<String>>>,
+    pub hints: IndexMap<(PredicateKind, PredicateIndicator), Vec<Option<String>>>,
 }
 
 /// Looks at a program.
-pub fn survey(program: &Program) -> Survey {
-    let mut survey = Survey::default();
+pub fn survey(program: &AgentSpeakProgram) -> PredicateSurvey {
+    let mut survey = PredicateSurvey::default();
     for item in &program.items {
         match &item.kind {
-            ItemKind::Belief(b) => survey.belief(b, What::Initial),
-            ItemKind::Rule { head, body } => {
-                survey.belief(head, What::Rule);
+            AgentSpeakItemKind::Belief(b) => survey.belief(b, OccurrenceKind::Initial),
+            AgentSpeakItemKind::Rule { head, body } => {
+                survey.belief(head, OccurrenceKind::Rule);
                 survey.formula(body, false);
             }
-            ItemKind::Goal(goal) => survey.goal_term(goal, What::Adopted),
-            ItemKind::Plan(plan) => survey.plan(plan),
-            ItemKind::Skipped(_) => {}
+            AgentSpeakItemKind::Goal(goal) => survey.goal_term(goal, OccurrenceKind::Adopted),
+            AgentSpeakItemKind::Plan(plan) => survey.plan(plan),
+            AgentSpeakItemKind::Skipped(_) => {}
         }
     }
     survey
 }
 
-impl Survey {
-    pub fn belief(&mut self, of: &Literal, what: What) {
+impl PredicateSurvey {
+    pub fn belief(&mut self, of: &AgentSpeakLiteral, what: OccurrenceKind) {
         let (key, negated, span) = (of.key(), of.negated, of.span);
-        self.hint(Sort::Belief, of);
-        self.beliefs.push(Mention { key, negated, what, span });
+        self.hint(PredicateKind::Belief, of);
+        self.beliefs.push(PredicateOccurrence { key, negated, what, span });
     }
 
-    fn hint(&mut self, sort: Sort, of: &Literal) {
+    fn hint(&mut self, sort: PredicateKind, of: &AgentSpeakLiteral) {
         let hints = self.hints.entry((sort, of.key())).or_insert_with(|| vec![None; of.args.len()]);
         for (hint, arg) in hints.iter_mut().zip(&of.args) {
             if let (None, TermKind::Var { name, .. }) = (&hint, &arg.kind) {
@@ -98,29 +99,29 @@ impl Survey {
         }
     }
 
-    pub fn goal(&mut self, of: &Literal, what: What) {
-        self.hint(Sort::Goal, of);
-        self.goals.push(Mention { key: of.key(), negated: false, what, span: of.span });
+    pub fn goal(&mut self, of: &AgentSpeakLiteral, what: OccurrenceKind) {
+        self.hint(PredicateKind::Goal, of);
+        self.goals.push(PredicateOccurrence { key: of.key(), negated: false, what, span: of.span });
     }
 
-    fn goal_term(&mut self, of: &Term, what: What) {
+    fn goal_term(&mut self, of: &AgentSpeakTerm, what: OccurrenceKind) {
         if let TermKind::Literal(l) = &of.kind {
             self.goal(l, what);
         }
     }
 
-    fn belief_term(&mut self, of: &Term, what: What) {
+    fn belief_term(&mut self, of: &AgentSpeakTerm, what: OccurrenceKind) {
         if let TermKind::Literal(l) = &of.kind {
             self.belief(l, what);
         }
     }
 
-    fn plan(&mut self, plan: &Plan) {
+    fn plan(&mut self, plan: &AgentSpeakPlan) {
         let kind = plan.trigger.kind;
         if kind.is_goal() {
-            self.goal_term(&plan.trigger.of, What::Trigger(kind));
+            self.goal_term(&plan.trigger.of, OccurrenceKind::Trigger(kind));
         } else {
-            self.belief_term(&plan.trigger.of, What::Trigger(kind));
+            self.belief_term(&plan.trigger.of, OccurrenceKind::Trigger(kind));
         }
         if let Some(context) = &plan.context {
             self.formula(context, false);
@@ -128,31 +129,33 @@ impl Survey {
         each_step(&plan.body, &mut |step| self.step(step));
     }
 
-    fn step(&mut self, step: &Step) {
+    fn step(&mut self, step: &AgentSpeakStep) {
         match &step.kind {
-            StepKind::Achieve(t) | StepKind::Spawn(t) => self.goal_term(t, What::Adopted),
-            StepKind::Query(t) | StepKind::Formula(t) => self.formula(t, false),
-            StepKind::Add(t, adding) => self.belief_term(t, What::Added(*adding)),
-            StepKind::Remove(t) => {
-                let with_source = matches!(&t.kind, TermKind::Literal(l) if !l.annotations.is_empty());
-                self.belief_term(t, What::Removed(with_source));
+            AgentSpeakStepKind::Achieve(t) | AgentSpeakStepKind::Spawn(t) => {
+                self.goal_term(t, OccurrenceKind::Adopted)
             }
-            StepKind::Replace(t) => self.belief_term(t, What::Replaced),
-            StepKind::Action(action) if action.is_internal() => self.internal(action),
-            StepKind::Action(action) => {
-                self.hint(Sort::Action, action);
+            AgentSpeakStepKind::Query(t) | AgentSpeakStepKind::Formula(t) => self.formula(t, false),
+            AgentSpeakStepKind::Add(t, adding) => self.belief_term(t, OccurrenceKind::Added(*adding)),
+            AgentSpeakStepKind::Remove(t) => {
+                let with_source = matches!(&t.kind, TermKind::Literal(l) if !l.annotations.is_empty());
+                self.belief_term(t, OccurrenceKind::Removed(with_source));
+            }
+            AgentSpeakStepKind::Replace(t) => self.belief_term(t, OccurrenceKind::Replaced),
+            AgentSpeakStepKind::Action(action) if action.is_internal() => self.internal(action),
+            AgentSpeakStepKind::Action(action) => {
+                self.hint(PredicateKind::Action, action);
                 self.actions.entry(action.key()).or_insert(action.span);
             }
-            StepKind::If { condition, .. }
-            | StepKind::While { condition, .. }
-            | StepKind::For { condition, .. } => {
+            AgentSpeakStepKind::If { condition, .. }
+            | AgentSpeakStepKind::While { condition, .. }
+            | AgentSpeakStepKind::For { condition, .. } => {
                 self.formula(condition, false);
             }
-            StepKind::Fork { .. } | StepKind::Block(_) => {}
+            AgentSpeakStepKind::Fork { .. } | AgentSpeakStepKind::Block(_) => {}
         }
     }
 
-    fn formula(&mut self, of: &Term, waits: bool) {
+    fn formula(&mut self, of: &AgentSpeakTerm, waits: bool) {
         match &of.kind {
             TermKind::Literal(l) if l.is_internal() => self.internal(l),
             TermKind::Literal(l) => {
@@ -160,14 +163,14 @@ impl Survey {
                 l.args
                     .iter()
                     .for_each(|a| each_term(a, &mut |t| open |= matches!(t.kind, TermKind::Var { .. })));
-                self.belief(l, if waits { What::Waited } else { What::Tested(open) });
+                self.belief(l, if waits { OccurrenceKind::Waited } else { OccurrenceKind::Tested(open) });
             }
             TermKind::Not(inner) => self.formula(inner, waits),
-            TermKind::Binary { op: Op::And | Op::Or, left, right } => {
+            TermKind::Binary { op: AgentSpeakOperator::And | AgentSpeakOperator::Or, left, right } => {
                 self.formula(left, waits);
                 self.formula(right, waits);
             }
-            TermKind::Trigger(t) if waits => self.belief_term(&t.of, What::Waited),
+            TermKind::Trigger(t) if waits => self.belief_term(&t.of, OccurrenceKind::Waited),
             TermKind::Trigger(_)
             | TermKind::Binary { .. }
             | TermKind::Int(_)
@@ -183,14 +186,14 @@ impl Survey {
         }
     }
 
-    fn internal(&mut self, of: &Literal) {
+    fn internal(&mut self, of: &AgentSpeakLiteral) {
         match (of.functor.as_str(), of.args.as_slice()) {
             (".send" | ".broadcast", _) => {
                 let Ok(message) = message(of) else { return };
                 let goal = performative(message.performative) == Some(true);
                 let told = matches!(message.performative, "tell" | "achieve");
                 let to = message.to.and_then(atom).map(str::to_owned);
-                let what = What::Sent { to, goal, told };
+                let what = OccurrenceKind::Sent { to, goal, told };
                 if goal {
                     self.goal_term(message.content, what)
                 } else {
@@ -201,7 +204,7 @@ impl Survey {
                 self.formula(formula, false)
             }
             (".wait", [what, ..]) => self.formula(what, true),
-            (".abolish", [belief]) => self.belief_term(belief, What::Removed(true)),
+            (".abolish", [belief]) => self.belief_term(belief, OccurrenceKind::Removed(true)),
             (".fork", args) => {
                 for arg in args {
                     if let TermKind::Body(body) = &arg.kind {

@@ -3,32 +3,32 @@
 use hrdsl_source::{SourceFiles, Span};
 
 use super::{
-    ast::{Literal, Program},
+    ast::{AgentSpeakLiteral, AgentSpeakProgram},
     parse::place,
 };
 
 /// One agent of the system.
 #[derive(Debug)]
-pub(crate) struct Entry {
+pub(crate) struct AgentSpeakAgent {
     pub name: String,
-    /// Index into [`System::programs`].
+    /// Index into [`AgentSpeakSystem::programs`].
     pub program: usize,
     /// What the project gives it besides its program.
-    pub beliefs: Vec<Literal>,
-    pub goals: Vec<Literal>,
+    pub beliefs: Vec<AgentSpeakLiteral>,
+    pub goals: Vec<AgentSpeakLiteral>,
 }
 
 /// All agents and their programs.
 #[derive(Debug, Default)]
-pub(crate) struct System {
+pub(crate) struct AgentSpeakSystem {
     pub name: String,
     pub files: SourceFiles,
-    pub programs: Vec<Program>,
-    pub agents: Vec<Entry>,
+    pub programs: Vec<AgentSpeakProgram>,
+    pub agents: Vec<AgentSpeakAgent>,
     pub skipped: Vec<(Span, String)>,
 }
 
-impl System {
+impl AgentSpeakSystem {
     /// The comment at the place of something that is left out, with its text.
     pub fn comment(&self, span: Span, reason: &str) -> String {
         let (file, line, _) = place(&self.files, span);

@@ -1,12 +1,12 @@
 //! What a term is: a literal, an atom, an annotation with a value, a message.
 
-use super::ast::{Literal, Term, TermKind};
+use super::ast::{AgentSpeakLiteral, AgentSpeakTerm, TermKind};
 
 /// Why something cannot be carried over.
-pub type Reason = String;
+pub type OmissionReason = String;
 
 /// The literal that a term is.
-pub fn literal(of: &Term) -> Result<&Literal, Reason> {
+pub fn literal(of: &AgentSpeakTerm) -> Result<&AgentSpeakLiteral, OmissionReason> {
     match &of.kind {
         TermKind::Literal(l) => Ok(l),
         TermKind::Int(_)
@@ -26,7 +26,7 @@ pub fn literal(of: &Term) -> Result<&Literal, Reason> {
 }
 
 /// `name(value)` of an annotation.
-pub fn valued(annotation: &Term) -> Option<(&str, &Term)> {
+pub fn valued(annotation: &AgentSpeakTerm) -> Option<(&str, &AgentSpeakTerm)> {
     match &annotation.kind {
         TermKind::Literal(l) if !l.is_internal() && !l.negated => match l.args.as_slice() {
             [value] => Some((&l.functor, value)),
@@ -46,7 +46,7 @@ pub fn performative(name: &str) -> Option<bool> {
 }
 
 /// The atom that a term is; a string counts as one.
-pub fn atom(of: &Term) -> Option<&str> {
+pub fn atom(of: &AgentSpeakTerm) -> Option<&str> {
     match &of.kind {
         TermKind::Literal(l) if l.args.is_empty() && !l.negated => Some(&l.functor),
         TermKind::Text(text) => Some(text),
@@ -55,17 +55,17 @@ pub fn atom(of: &Term) -> Option<&str> {
 }
 
 /// What one or more agents are told.
-pub struct Message<'a> {
+pub struct AgentSpeakMessage<'a> {
     /// `None`: all others.
-    pub to: Option<&'a Term>,
+    pub to: Option<&'a AgentSpeakTerm>,
     pub performative: &'a str,
-    pub content: &'a Term,
+    pub content: &'a AgentSpeakTerm,
     /// The answer, the time to wait for it in milliseconds.
-    pub rest: &'a [Term],
+    pub rest: &'a [AgentSpeakTerm],
 }
 
 /// The message that `.send` or `.broadcast` sends.
-pub fn message(of: &Literal) -> Result<Message<'_>, Reason> {
+pub fn message(of: &AgentSpeakLiteral) -> Result<AgentSpeakMessage<'_>, OmissionReason> {
     let parts = match (of.functor.as_str(), of.args.as_slice()) {
         (".send", [to, performative, content, rest @ ..]) => Some((Some(to), performative, content, rest)),
         (".broadcast", [performative, content]) => Some((None, performative, content, [].as_slice())),
@@ -80,5 +80,5 @@ pub fn message(of: &Literal) -> Result<Message<'_>, Reason> {
     if !rest.is_empty() && !matches!(name, "askOne" | "askAll") {
         return Err(format!("a message of the sort `{name}` has no answer"));
     }
-    Ok(Message { to, performative: name, content, rest })
+    Ok(AgentSpeakMessage { to, performative: name, content, rest })
 }

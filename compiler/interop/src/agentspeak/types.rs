@@ -3,14 +3,14 @@
 use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
-use super::ast::Key;
+use super::ast::PredicateIndicator;
 
 /// A class of places; an index.
 pub type TyId = usize;
 
 /// What is known of a class.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Ty {
+pub enum AgentSpeakType {
     Unknown,
     Number {
         float: bool,
@@ -27,26 +27,26 @@ pub enum Ty {
 }
 
 #[derive(Clone, Debug)]
-enum Node {
+enum UnificationNode {
     Same(TyId),
-    Root(Ty),
+    Root(AgentSpeakType),
 }
 
 /// Why two classes cannot be one.
-pub type Clash = String;
+pub type TypeClash = String;
 
 /// The classes of all places of a system.
 #[derive(Clone, Debug, Default)]
-pub struct Types {
-    nodes: Vec<Node>,
+pub struct UnificationTable {
+    nodes: Vec<UnificationNode>,
     /// What was changed since the last mark: a class and what it was.
-    changed: Vec<(TyId, Node)>,
+    changed: Vec<(TyId, UnificationNode)>,
     /// The arguments of beliefs, goals and actions of the environment.
-    pub beliefs: IndexMap<Key, Vec<TyId>>,
-    pub goals: IndexMap<Key, Vec<TyId>>,
-    pub actions: IndexMap<Key, Vec<TyId>>,
+    pub beliefs: IndexMap<PredicateIndicator, Vec<TyId>>,
+    pub goals: IndexMap<PredicateIndicator, Vec<TyId>>,
+    pub actions: IndexMap<PredicateIndicator, Vec<TyId>>,
     /// The values of annotations.
-    pub annotations: IndexMap<(Key, String), TyId>,
+    pub annotations: IndexMap<(PredicateIndicator, String), TyId>,
     /// Every term that was looked at.
     pub terms: IndexMap<Span, TyId>,
     /// The agents of the system.
@@ -56,15 +56,15 @@ pub struct Types {
 }
 
 /// A state to go back to: how much there was of everything.
-pub struct Mark {
+pub struct UnificationSnapshot {
     nodes: usize,
     places: [usize; 5],
     concats: Vec<(Vec<TyId>, TyId)>,
 }
 
-impl Types {
+impl UnificationTable {
     /// Remembers how things are. What was marked before is forgotten.
-    pub fn mark(&mut self) -> Mark {
+    pub fn mark(&mut self) -> UnificationSnapshot {
         self.changed.clear();
         let places = [
             self.beliefs.len(),
@@ -73,11 +73,11 @@ impl Types {
             self.annotations.len(),
             self.terms.len(),
         ];
-        Mark { nodes: self.nodes.len(), places, concats: self.concats.clone() }
+        UnificationSnapshot { nodes: self.nodes.len(), places, concats: self.concats.clone() }
     }
 
     /// Goes back to how things were at the last mark.
-    pub fn back(&mut self, mark: Mark) {
+    pub fn back(&mut self, mark: UnificationSnapshot) {
         while let Some((id, node)) = self.changed.pop() {
             self.nodes[id] = node;
         }
@@ -91,45 +91,45 @@ impl Types {
         self.concats = mark.concats;
     }
 
-    fn set(&mut self, id: TyId, node: Node) {
+    fn set(&mut self, id: TyId, node: UnificationNode) {
         let before = std::mem::replace(&mut self.nodes[id], node);
         self.changed.push((id, before));
     }
 
-    pub fn add(&mut self, ty: Ty) -> TyId {
-        self.nodes.push(Node::Root(ty));
+    pub fn add(&mut self, ty: AgentSpeakType) -> TyId {
+        self.nodes.push(UnificationNode::Root(ty));
         self.nodes.len() - 1
     }
 
     pub fn fresh(&mut self) -> TyId {
-        self.add(Ty::Unknown)
+        self.add(AgentSpeakType::Unknown)
     }
 
     pub fn number(&mut self, float: bool) -> TyId {
-        self.add(Ty::Number { float })
+        self.add(AgentSpeakType::Number { float })
     }
 
     /// The name of an agent.
     pub fn agent(&mut self) -> TyId {
-        self.add(Ty::Atoms { names: IndexSet::new(), agent: true })
+        self.add(AgentSpeakType::Atoms { names: IndexSet::new(), agent: true })
     }
 
     pub fn root(&self, mut id: TyId) -> TyId {
-        while let Node::Same(next) = self.nodes[id] {
+        while let UnificationNode::Same(next) = self.nodes[id] {
             id = next;
         }
         id
     }
 
-    pub fn get(&self, id: TyId) -> &Ty {
+    pub fn get(&self, id: TyId) -> &AgentSpeakType {
         match &self.nodes[self.root(id)] {
-            Node::Root(ty) => ty,
-            Node::Same(_) => &Ty::Unknown,
+            UnificationNode::Root(ty) => ty,
+            UnificationNode::Same(_) => &AgentSpeakType::Unknown,
         }
     }
 
     /// The places of the arguments of a belief.
-    pub fn belief(&mut self, key: &Key) -> Vec<TyId> {
+    pub fn belief(&mut self, key: &PredicateIndicator) -> Vec<TyId> {
         if let Some(found) = self.beliefs.get(key) {
             return found.clone();
         }
@@ -138,7 +138,7 @@ impl Types {
         args
     }
 
-    pub fn goal(&mut self, key: &Key) -> Vec<TyId> {
+    pub fn goal(&mut self, key: &PredicateIndicator) -> Vec<TyId> {
         if let Some(found) = self.goals.get(key) {
             return found.clone();
         }
@@ -147,7 +147,7 @@ impl Types {
         args
     }
 
-    pub fn action(&mut self, key: &Key) -> Vec<TyId> {
+    pub fn action(&mut self, key: &PredicateIndicator) -> Vec<TyId> {
         if let Some(found) = self.actions.get(key) {
             return found.clone();
         }
@@ -157,7 +157,7 @@ impl Types {
     }
 
     /// The value of an annotation of a belief.
-    pub fn annotation(&mut self, key: &Key, name: &str) -> TyId {
+    pub fn annotation(&mut self, key: &PredicateIndicator, name: &str) -> TyId {
         if name == "source" {
             return self.agent();
         }
@@ -171,7 +171,7 @@ impl Types {
     }
 
     /// Remembers of which class a term is.
-    pub fn record(&mut self, span: Span, id: TyId) -> Result<(), Clash> {
+    pub fn record(&mut self, span: Span, id: TyId) -> Result<(), TypeClash> {
         match self.terms.get(&span) {
             Some(known) => self.unify(*known, id),
             None => {
@@ -182,7 +182,7 @@ impl Types {
     }
 
     /// Makes two classes one.
-    pub fn unify(&mut self, a: TyId, b: TyId) -> Result<(), Clash> {
+    pub fn unify(&mut self, a: TyId, b: TyId) -> Result<(), TypeClash> {
         let (a, b) = (self.root(a), self.root(b));
         if a == b {
             return Ok(());
@@ -190,43 +190,54 @@ impl Types {
         let (left, right) = (self.get(a).clone(), self.get(b).clone());
         let clash = format!("{} meets {}", self.describe(a), self.describe(b));
         let (ty, pairs) = match (left, right) {
-            (Ty::Unknown, ty) | (ty, Ty::Unknown) => (ty, Vec::new()),
-            (Ty::Number { float: x }, Ty::Number { float: y }) => (Ty::Number { float: x || y }, Vec::new()),
-            (Ty::Text, Ty::Text) => (Ty::Text, Vec::new()),
-            (Ty::Bool, Ty::Bool) => (Ty::Bool, Vec::new()),
-            (Ty::Atoms { names, agent: x }, Ty::Atoms { names: more, agent: y }) => {
+            (AgentSpeakType::Unknown, ty) | (ty, AgentSpeakType::Unknown) => (ty, Vec::new()),
+            (AgentSpeakType::Number { float: x }, AgentSpeakType::Number { float: y }) => {
+                (AgentSpeakType::Number { float: x || y }, Vec::new())
+            }
+            (AgentSpeakType::Text, AgentSpeakType::Text) => (AgentSpeakType::Text, Vec::new()),
+            (AgentSpeakType::Bool, AgentSpeakType::Bool) => (AgentSpeakType::Bool, Vec::new()),
+            (AgentSpeakType::Atoms { names, agent: x }, AgentSpeakType::Atoms { names: more, agent: y }) => {
                 let all: IndexSet<String> = names.union(&more).cloned().collect();
                 let agent = x || y;
                 if let Some(other) = all.iter().find(|n| agent && !self.is_agent(n)) {
                     return Err(format!("no agent is called `{other}`"));
                 }
-                (Ty::Atoms { names: all, agent }, Vec::new())
+                (AgentSpeakType::Atoms { names: all, agent }, Vec::new())
             }
-            (Ty::List(x), Ty::List(y)) => (Ty::List(x), vec![(x, y)]),
-            (Ty::Struct(f, x), Ty::Struct(g, y)) if f == g && x.len() == y.len() => {
+            (AgentSpeakType::List(x), AgentSpeakType::List(y)) => (AgentSpeakType::List(x), vec![(x, y)]),
+            (AgentSpeakType::Struct(f, x), AgentSpeakType::Struct(g, y)) if f == g && x.len() == y.len() => {
                 let pairs = x.iter().copied().zip(y).collect();
-                (Ty::Struct(f, x), pairs)
+                (AgentSpeakType::Struct(f, x), pairs)
             }
             (
-                Ty::Number { .. } | Ty::Text | Ty::Bool | Ty::Atoms { .. } | Ty::List(_) | Ty::Struct(..),
+                AgentSpeakType::Number { .. }
+                | AgentSpeakType::Text
+                | AgentSpeakType::Bool
+                | AgentSpeakType::Atoms { .. }
+                | AgentSpeakType::List(_)
+                | AgentSpeakType::Struct(..),
                 _,
             ) => return Err(clash),
         };
         if self.contains(&ty, a) || self.contains(&ty, b) {
             return Err("a value would contain itself".to_owned());
         }
-        self.set(a, Node::Root(ty));
-        self.set(b, Node::Same(a));
+        self.set(a, UnificationNode::Root(ty));
+        self.set(b, UnificationNode::Same(a));
         pairs.into_iter().try_for_each(|(x, y)| self.unify(x, y))
     }
 
     /// Whether a class is within a type.
-    fn contains(&self, ty: &Ty, id: TyId) -> bool {
+    fn contains(&self, ty: &AgentSpeakType, id: TyId) -> bool {
         let within = |inner: &TyId| self.root(*inner) == id || self.contains(self.get(*inner), id);
         match ty {
-            Ty::List(of) => within(of),
-            Ty::Struct(_, args) => args.iter().any(within),
-            Ty::Unknown | Ty::Number { .. } | Ty::Text | Ty::Bool | Ty::Atoms { .. } => false,
+            AgentSpeakType::List(of) => within(of),
+            AgentSpeakType::Struct(_, args) => args.iter().any(within),
+            AgentSpeakType::Unknown
+            | AgentSpeakType::Number { .. }
+            | AgentSpeakType::Text
+            | AgentSpeakType::Bool
+            | AgentSpeakType::Atoms { .. } => false,
         }
     }
 
@@ -237,65 +248,80 @@ impl Types {
     /// Whether the values of a class are agents' names.
     pub fn is_of_agents(&self, id: TyId) -> bool {
         match self.get(id) {
-            Ty::Atoms { names, agent } => *agent || names.iter().all(|n| self.is_agent(n)),
-            Ty::Unknown | Ty::Number { .. } | Ty::Text | Ty::Bool | Ty::List(_) | Ty::Struct(..) => false,
+            AgentSpeakType::Atoms { names, agent } => *agent || names.iter().all(|n| self.is_agent(n)),
+            AgentSpeakType::Unknown
+            | AgentSpeakType::Number { .. }
+            | AgentSpeakType::Text
+            | AgentSpeakType::Bool
+            | AgentSpeakType::List(_)
+            | AgentSpeakType::Struct(..) => false,
         }
     }
 
     /// In a few words, for people.
     pub fn describe(&self, id: TyId) -> String {
         match self.get(id) {
-            Ty::Unknown => "anything".to_owned(),
-            Ty::Number { .. } => "a number".to_owned(),
-            Ty::Text => "a string".to_owned(),
-            Ty::Bool => "a truth value".to_owned(),
-            Ty::Atoms { names, .. } => match names.first() {
+            AgentSpeakType::Unknown => "anything".to_owned(),
+            AgentSpeakType::Number { .. } => "a number".to_owned(),
+            AgentSpeakType::Text => "a string".to_owned(),
+            AgentSpeakType::Bool => "a truth value".to_owned(),
+            AgentSpeakType::Atoms { names, .. } => match names.first() {
                 Some(first) => format!("an atom (`{first}`)"),
                 None => "the name of an agent".to_owned(),
             },
-            Ty::List(_) => "a list".to_owned(),
-            Ty::Struct(functor, args) => format!("a structure (`{functor}/{}`)", args.len()),
+            AgentSpeakType::List(_) => "a list".to_owned(),
+            AgentSpeakType::Struct(functor, args) => format!("a structure (`{functor}/{}`)", args.len()),
         }
     }
 
     /// The single values of which a value of the class consists: those of a structure one by one; a list of structures is
     /// as many lists.
-    pub fn leaves(&self, id: TyId) -> Vec<Leaf> {
+    pub fn leaves(&self, id: TyId) -> Vec<ListLeafType> {
         match self.get(id) {
-            Ty::Struct(_, args) => args.iter().flat_map(|a| self.leaves(*a)).collect(),
-            Ty::List(of) => {
-                self.leaves(*of).into_iter().map(|l| Leaf { lists: l.lists + 1, of: l.of }).collect()
+            AgentSpeakType::Struct(_, args) => args.iter().flat_map(|a| self.leaves(*a)).collect(),
+            AgentSpeakType::List(of) => {
+                self.leaves(*of).into_iter().map(|l| ListLeafType { lists: l.lists + 1, of: l.of }).collect()
             }
-            Ty::Unknown | Ty::Number { .. } | Ty::Text | Ty::Bool | Ty::Atoms { .. } => {
-                vec![Leaf { lists: 0, of: self.root(id) }]
+            AgentSpeakType::Unknown
+            | AgentSpeakType::Number { .. }
+            | AgentSpeakType::Text
+            | AgentSpeakType::Bool
+            | AgentSpeakType::Atoms { .. } => {
+                vec![ListLeafType { lists: 0, of: self.root(id) }]
             }
         }
     }
 
     /// Whether only agents know such a value: events and stimuli have no strings and lists.
-    pub fn is_for_agents(&self, leaf: Leaf) -> bool {
-        leaf.lists > 0 || *self.get(leaf.of) == Ty::Text
+    pub fn is_for_agents(&self, leaf: ListLeafType) -> bool {
+        leaf.lists > 0 || *self.get(leaf.of) == AgentSpeakType::Text
     }
 
     /// Whether values of the class are taken apart.
     pub fn is_compound(&self, id: TyId) -> bool {
         match self.get(id) {
-            Ty::Struct(..) => true,
-            Ty::List(of) => self.is_compound(*of),
-            Ty::Unknown | Ty::Number { .. } | Ty::Text | Ty::Bool | Ty::Atoms { .. } => false,
+            AgentSpeakType::Struct(..) => true,
+            AgentSpeakType::List(of) => self.is_compound(*of),
+            AgentSpeakType::Unknown
+            | AgentSpeakType::Number { .. }
+            | AgentSpeakType::Text
+            | AgentSpeakType::Bool
+            | AgentSpeakType::Atoms { .. } => false,
         }
     }
 
     /// Decides what is still open of `.concat`: strings if one part is a string, otherwise lists.
-    pub fn settle_concats(&mut self, finally: bool) -> Result<(), Clash> {
+    pub fn settle_concats(&mut self, finally: bool) -> Result<(), TypeClash> {
         for (args, result) in std::mem::take(&mut self.concats) {
-            let any = |t: &Self, is: fn(&Ty) -> bool| args.iter().chain([&result]).any(|a| is(t.get(*a)));
-            if any(self, |t| *t == Ty::Text) {
-                let text = self.add(Ty::Text);
+            let any = |t: &Self, is: fn(&AgentSpeakType) -> bool| {
+                args.iter().chain([&result]).any(|a| is(t.get(*a)))
+            };
+            if any(self, |t| *t == AgentSpeakType::Text) {
+                let text = self.add(AgentSpeakType::Text);
                 self.unify(result, text)?;
-            } else if finally || any(self, |t| matches!(t, Ty::List(_))) {
+            } else if finally || any(self, |t| matches!(t, AgentSpeakType::List(_))) {
                 let of = self.fresh();
-                let list = self.add(Ty::List(of));
+                let list = self.add(AgentSpeakType::List(of));
                 args.iter().chain([&result]).try_for_each(|a| self.unify(*a, list))?;
             } else {
                 self.concats.push((args, result));
@@ -307,7 +333,7 @@ impl Types {
 
 /// A single value, or lists of lists of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Leaf {
+pub struct ListLeafType {
     pub lists: usize,
     pub of: TyId,
 }
@@ -318,7 +344,7 @@ mod tests {
 
     #[test]
     fn what_is_taken_back_never_was() {
-        let mut types = Types::default();
+        let mut types = UnificationTable::default();
         let place = types.belief(&("b".to_owned(), 1))[0];
         let int = types.number(false);
         types.unify(place, int).unwrap();
@@ -326,25 +352,25 @@ mod tests {
         let float = types.number(true);
         types.unify(place, float).unwrap();
         types.belief(&("c".to_owned(), 2));
-        assert_eq!(*types.get(int), Ty::Number { float: true });
+        assert_eq!(*types.get(int), AgentSpeakType::Number { float: true });
         types.back(mark);
-        assert_eq!((types.get(place), types.beliefs.len()), (&Ty::Number { float: false }, 1));
+        assert_eq!((types.get(place), types.beliefs.len()), (&AgentSpeakType::Number { float: false }, 1));
     }
 
     #[test]
     fn a_value_does_not_contain_itself() {
-        let mut types = Types::default();
+        let mut types = UnificationTable::default();
         let x = types.fresh();
-        let list = types.add(Ty::List(x));
+        let list = types.add(AgentSpeakType::List(x));
         assert!(types.unify(x, list).is_err());
     }
 
     #[test]
     fn a_list_of_structures_is_as_many_lists() {
-        let mut types = Types::default();
-        let (a, b) = (types.number(false), types.add(Ty::Text));
-        let pair = types.add(Ty::Struct("pair".to_owned(), vec![a, b]));
-        let list = types.add(Ty::List(pair));
-        assert_eq!(types.leaves(list), [Leaf { lists: 1, of: a }, Leaf { lists: 1, of: b }]);
+        let mut types = UnificationTable::default();
+        let (a, b) = (types.number(false), types.add(AgentSpeakType::Text));
+        let pair = types.add(AgentSpeakType::Struct("pair".to_owned(), vec![a, b]));
+        let list = types.add(AgentSpeakType::List(pair));
+        assert_eq!(types.leaves(list), [ListLeafType { lists: 1, of: a }, ListLeafType { lists: 1, of: b }]);
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// How much a note matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
+pub enum NoteSeverity {
     /// Good to know: a new name, an assumption.
     Info,
     /// It may behave differently, or looks like a mistake of the program.
@@ -13,7 +13,7 @@ pub enum Severity {
     LeftOut,
 }
 
-impl Severity {
+impl NoteSeverity {
     /// As it is written in reports.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -27,17 +27,17 @@ impl Severity {
 
 /// One row of the report. Lines and columns count from 1, columns in characters.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Note {
+pub struct ImportNote {
     pub file: String,
     pub line: u32,
     pub column: u32,
-    pub severity: Severity,
+    pub severity: NoteSeverity,
     pub message: String,
     /// What to do about it.
     pub help: Option<String>,
 }
 
-impl fmt::Display for Note {
+impl fmt::Display for ImportNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { file, line, column, severity, message, help } = self;
         write!(f, "{file}:{line}:{column}: {}: {message}", severity.word())?;
@@ -47,11 +47,11 @@ impl fmt::Display for Note {
 
 /// A scenario, and the report.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Imported {
+pub struct ImportedScenario {
     /// The `.hri` text.
     pub text: String,
     /// By file, then by place.
-    pub notes: Vec<Note>,
+    pub notes: Vec<ImportNote>,
 }
 
 /// A file that is not what it should be.

@@ -4,7 +4,7 @@ use hrdsl_ir::Span;
 
 /// What keeps a network from being exported.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Obstacle {
+pub struct ExportObstacle {
     pub message: String,
     /// Where it is written.
     pub origin: Span,

@@ -6,7 +6,7 @@ use super::note::SyntaxError;
 pub const MAX_BYTES: usize = 8 << 20;
 
 /// What is wrong with the size of a file, if anything.
-pub(crate) fn too_large(source: &Source) -> Option<SyntaxError> {
+pub(crate) fn too_large(source: &ForeignSource) -> Option<SyntaxError> {
     (source.text.len() > MAX_BYTES).then(|| SyntaxError {
         file: source.name.clone(),
         line: 1,
@@ -17,26 +17,26 @@ pub(crate) fn too_large(source: &Source) -> Option<SyntaxError> {
 
 /// A file: its name as it is to be shown, and its text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Source {
+pub struct ForeignSource {
     pub name: String,
     pub text: String,
 }
 
 /// Reads the files that others name: the programs of a project, what a program includes.
-pub trait Loader {
+pub trait ForeignLoader {
     /// The file `path`, as it is written in the file `from`.
     ///
     /// # Errors
     /// What is wrong with it.
-    fn load(&self, from: &str, path: &str) -> Result<Source, String>;
+    fn load(&self, from: &str, path: &str) -> Result<ForeignSource, String>;
 }
 
 /// There are no other files.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct NoFiles;
+pub struct NoForeignFiles;
 
-impl Loader for NoFiles {
-    fn load(&self, _: &str, path: &str) -> Result<Source, String> {
+impl ForeignLoader for NoForeignFiles {
+    fn load(&self, _: &str, path: &str) -> Result<ForeignSource, String> {
         Err(format!("there is no file `{path}`"))
     }
 }

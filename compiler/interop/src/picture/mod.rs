@@ -9,7 +9,7 @@ use hrdsl_ir::{
     ta::{Automaton, Edge, LocationKind, Network},
 };
 
-use self::show::Show;
+use self::show::AutomatonPrinter;
 
 /// The network in DOT: a cluster for each automaton. Committed locations are marked `C`, urgent ones `U`.
 #[must_use]
@@ -20,7 +20,7 @@ pub fn dot(program: &Program, network: &Network) -> String {
     for (i, automaton) in members(program, network) {
         let _ =
             writeln!(out, "  subgraph cluster_{i} {{\n    label = {}", quoted(&title(program, automaton)));
-        let show = Show::of(program, automaton);
+        let show = AutomatonPrinter::of(program, automaton);
         let _ = writeln!(out, "    n{i}_start [shape = point]");
         for (l, location) in automaton.locations.iter().enumerate() {
             let label = lines(location_lines(&show, l, automaton));
@@ -43,7 +43,7 @@ pub fn dot(program: &Program, network: &Network) -> String {
 pub fn mermaid(program: &Program, network: &Network) -> String {
     let mut out = String::from("stateDiagram-v2\n");
     for (i, automaton) in members(program, network) {
-        let show = Show::of(program, automaton);
+        let show = AutomatonPrinter::of(program, automaton);
         let _ = writeln!(out, "  state \"{}\" as a{i} {{", escaped(&title(program, automaton)));
         for l in 0..automaton.locations.len() {
             let text = location_lines(&show, l, automaton).join("<br>");
@@ -69,7 +69,7 @@ fn title(program: &Program, automaton: &Automaton) -> String {
     format!("{}{plays}", automaton.name)
 }
 
-fn location_lines(show: &Show<'_>, l: usize, automaton: &Automaton) -> Vec<String> {
+fn location_lines(show: &AutomatonPrinter<'_>, l: usize, automaton: &Automaton) -> Vec<String> {
     let location = &automaton.locations[l];
     let mark = match location.kind {
         LocationKind::Normal => "",
@@ -86,7 +86,7 @@ fn location_lines(show: &Show<'_>, l: usize, automaton: &Automaton) -> Vec<Strin
 }
 
 /// Select, guard, synchronisation, updates: each on a line of its own.
-fn edge_lines(show: &Show<'_>, edge: &Edge) -> Vec<String> {
+fn edge_lines(show: &AutomatonPrinter<'_>, edge: &Edge) -> Vec<String> {
     let show = show.edge(edge);
     let mut lines = Vec::new();
     for s in &edge.selects {

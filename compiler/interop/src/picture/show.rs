@@ -12,14 +12,14 @@ use hrdsl_ir::{
 use crate::exchange::time::seconds;
 
 /// Shows what an automaton's expressions mean.
-pub(crate) struct Show<'p> {
+pub(crate) struct AutomatonPrinter<'p> {
     pub program: &'p Program,
     pub automaton: &'p Automaton,
     /// The names that an edge binds, in the order of its binders.
     pub binders: Vec<String>,
 }
 
-impl<'p> Show<'p> {
+impl<'p> AutomatonPrinter<'p> {
     pub fn of(program: &'p Program, automaton: &'p Automaton) -> Self {
         Self { program, automaton, binders: Vec::new() }
     }

@@ -4,4 +4,4 @@ mod export;
 mod import;
 
 pub use export::export;
-pub use import::{Options, import};
+pub use import::{TcheckerOptions, import};

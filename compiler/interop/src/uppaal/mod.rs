@@ -3,5 +3,5 @@
 mod export;
 mod import;
 
-pub use export::{Exported, export};
-pub use import::{Options, import};
+pub use export::{UppaalDocument, export};
+pub use import::{UppaalOptions, import};

@@ -1,7 +1,7 @@
 //! The checker: the scenario so far, the states of the phases, and what all of them ask.
 
 use hrdsl_source::{Diagnostic, Enumeration, Span};
-use hrdsl_syntax::ast::{self, ItemKind, Name};
+use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax};
 
 use super::{
     state::{
@@ -54,7 +54,7 @@ pub(crate) struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     pub(super) fn new(source: CheckedSource<'a>) -> Self {
-        let exists = source.items.iter().any(|i| matches!(i.kind, ItemKind::World(_)));
+        let exists = source.items.iter().any(|i| matches!(i.kind, ItemSyntaxKind::World(_)));
         Self {
             s: Scenario { names: Resolutions::of_items(&source.items), ..Scenario::default() },
             issues: IssueList::default(),
@@ -87,21 +87,21 @@ impl<'a> Checker<'a> {
     }
 
     /// A name means what is declared there.
-    pub(super) fn refer(&mut self, name: &Name, place: Option<Span>) {
+    pub(super) fn refer(&mut self, name: &NameSyntax, place: Option<Span>) {
         if let Some(place) = place {
             self.s.names.refer(name.span, place);
         }
     }
 
     /// A name is that of a part of the declaration whose name stands there: a field, a parameter.
-    pub(super) fn refer_within(&mut self, name: &Name, place: Span, noun: &str) {
+    pub(super) fn refer_within(&mut self, name: &NameSyntax, place: Span, noun: &str) {
         let whole = self.s.names.defined_at(place).map(|definition| definition.whole);
         let part = whole.and_then(|whole| self.s.names.named_in(whole, noun, &name.text));
         self.refer(name, part);
     }
 
     /// A variable that is declared where it first stands.
-    pub(super) fn define_here(&mut self, name: &Name, ty: InferredType) {
+    pub(super) fn define_here(&mut self, name: &NameSyntax, ty: InferredType) {
         let inferred = |ty: InferredType| DefinedType::Inferred(ty.to_string());
         self.s.names.define(NameDefinition {
             noun: "variable",
@@ -118,14 +118,14 @@ impl<'a> Checker<'a> {
     }
 
     /// All items' kinds, with the spans of the items. Independent of `self`, so that it can be walked while checking.
-    pub(super) fn each_item(&self) -> impl Iterator<Item = (&'a ItemKind, Span)> + use<'a> {
-        let items: Vec<&'a ast::Item> = self.source.items.clone();
+    pub(super) fn each_item(&self) -> impl Iterator<Item = (&'a ItemSyntaxKind, Span)> + use<'a> {
+        let items: Vec<&'a ast::ItemSyntax> = self.source.items.clone();
         items.into_iter().map(|i| (&i.kind, i.span))
     }
 
     // ── names that are visible everywhere ──
 
-    pub(super) fn actor(&mut self, name: &Name) -> Option<ActorId> {
+    pub(super) fn actor(&mut self, name: &NameSyntax) -> Option<ActorId> {
         match self.given(&name.text) {
             Some(TemplateArgument::Actor(id)) => {
                 let id = *id;
@@ -158,7 +158,7 @@ impl<'a> Checker<'a> {
     }
 
     /// An event, a stimulus, or either.
-    pub(super) fn event(&mut self, noun: Noun, name: &Name, local: Option<Noun>) -> Option<EventId> {
+    pub(super) fn event(&mut self, noun: Noun, name: &NameSyntax, local: Option<Noun>) -> Option<EventId> {
         match self.given(&name.text) {
             Some(TemplateArgument::Events(patterns)) => {
                 if let [only] = patterns.as_slice()
@@ -201,7 +201,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A coverage point.
-    pub(super) fn point_named(&mut self, name: &Name) -> Option<CoverpointId> {
+    pub(super) fn point_named(&mut self, name: &NameSyntax) -> Option<CoverpointId> {
         match self.given(&name.text) {
             Some(TemplateArgument::Point(id)) => {
                 let id = *id;
@@ -231,7 +231,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Says that `name` is no `noun`; `local` is what else it is in the place's own scope.
-    pub(super) fn unknown(&mut self, noun: Noun, name: &Name, names: &[String], local: Option<Noun>) {
+    pub(super) fn unknown(&mut self, noun: Noun, name: &NameSyntax, names: &[String], local: Option<Noun>) {
         if self.templates.broken_instances.contains(&name.text) {
             return;
         }
@@ -300,7 +300,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A word that is one of a fixed list.
-    pub(super) fn choice(&mut self, noun: Noun, name: &Name, words: &[&str]) -> Option<usize> {
+    pub(super) fn choice(&mut self, noun: Noun, name: &NameSyntax, words: &[&str]) -> Option<usize> {
         let found = words.iter().position(|w| *w == name.text);
         if found.is_none() {
             self.report(unknown(noun, &name.text, name.span, words.iter().copied()));

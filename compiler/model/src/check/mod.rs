@@ -12,7 +12,7 @@ mod vocabulary;
 mod world;
 
 use hrdsl_source::Diagnostic;
-use hrdsl_syntax::ast::{self, ItemKind};
+use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
 use crate::Scenario;
 use checker::Checker;
@@ -37,9 +37,9 @@ pub(crate) use vocabulary::layout::type_span;
 /// 6. [`Checker::tests`]
 #[must_use]
 pub fn resolve(
-    scenario: &ast::File,
-    modules: &[&ast::File],
-    tests: &[&ast::File],
+    scenario: &ast::FileSyntax,
+    modules: &[&ast::FileSyntax],
+    tests: &[&ast::FileSyntax],
 ) -> (Scenario, Vec<Diagnostic>) {
     resolve_part(scenario, modules, tests, false)
 }
@@ -47,9 +47,9 @@ pub fn resolve(
 /// The same, where some module may be `missing`: nothing is said about parts that it may have.
 #[must_use]
 pub fn resolve_part(
-    scenario: &ast::File,
-    modules: &[&ast::File],
-    tests: &[&ast::File],
+    scenario: &ast::FileSyntax,
+    modules: &[&ast::FileSyntax],
+    tests: &[&ast::FileSyntax],
     missing: bool,
 ) -> (Scenario, Vec<Diagnostic>) {
     let items = scenario.items.iter().collect();
@@ -61,12 +61,12 @@ pub fn resolve_part(
 /// only one of its file, `alone`; of the others no more is looked at than it can speak of.
 #[must_use]
 pub fn resolve_alone(
-    scenario: &ast::File,
-    (index, declaration): (usize, &ast::Item),
-    modules: &[&ast::File],
+    scenario: &ast::FileSyntax,
+    (index, declaration): (usize, &ast::ItemSyntax),
+    modules: &[&ast::FileSyntax],
     missing: bool,
 ) -> Vec<Diagnostic> {
-    let mut items: Vec<&ast::Item> = scenario.items.iter().collect();
+    let mut items: Vec<&ast::ItemSyntax> = scenario.items.iter().collect();
     let Some(place) = items.get_mut(index) else { return Vec::new() };
     *place = declaration;
     let file = declaration.span.file;
@@ -78,8 +78,12 @@ pub fn resolve_alone(
 }
 
 /// What is checked: what modules share, then the scenario's own items.
-fn source<'a>(own: Vec<&'a ast::Item>, modules: &[&'a ast::File], missing: bool) -> CheckedSource<'a> {
-    let mut items: Vec<&ast::Item> =
+fn source<'a>(
+    own: Vec<&'a ast::ItemSyntax>,
+    modules: &[&'a ast::FileSyntax],
+    missing: bool,
+) -> CheckedSource<'a> {
+    let mut items: Vec<&ast::ItemSyntax> =
         modules.iter().flat_map(|m| &m.items).filter(|i| shared(&i.kind)).collect();
     let from_modules = items.len();
     items.extend(own);
@@ -98,8 +102,8 @@ type PhaseCheck<'a> = fn(&mut Checker<'a>);
 
 fn phases<'a>(
     source: CheckedSource<'a>,
-    name: Option<&ast::Name>,
-    tests: &[&ast::File],
+    name: Option<&ast::NameSyntax>,
+    tests: &[&ast::FileSyntax],
 ) -> (Scenario, Vec<Diagnostic>) {
     let mut checker = Checker::new(source);
     checker.s.name = name.map_or_else(String::new, |n| n.text.clone());
@@ -128,6 +132,12 @@ fn phases<'a>(
 }
 
 /// What a module shares. Anything else in it has a diagnostic, and is not the scenario's.
-fn shared(kind: &ItemKind) -> bool {
-    !matches!(kind, ItemKind::World(_) | ItemKind::System(_) | ItemKind::Suite(_) | ItemKind::Test(_))
+fn shared(kind: &ItemSyntaxKind) -> bool {
+    !matches!(
+        kind,
+        ItemSyntaxKind::World(_)
+            | ItemSyntaxKind::System(_)
+            | ItemSyntaxKind::Suite(_)
+            | ItemSyntaxKind::Test(_)
+    )
 }

@@ -3,7 +3,7 @@
 
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
-    self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemKind, SuiteMemberKind,
+    self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemSyntaxKind, SuiteMemberKind,
 };
 
 use crate::check::{checker::Checker, state::names::DeclaredPlayer, vocabulary::template::template};
@@ -14,57 +14,57 @@ impl Checker<'_> {
     pub(in crate::check) fn places(&mut self) {
         for (item, span) in self.each_item() {
             match item {
-                ItemKind::Event(event) => {
+                ItemSyntaxKind::Event(event) => {
                     self.s.places.events.extend(event.names.iter().map(|one| one.name.span));
                 }
-                ItemKind::Stimulus(stimulus) => self.s.places.events.push(stimulus.name.span),
-                ItemKind::Var(var) => {
+                ItemSyntaxKind::Stimulus(stimulus) => self.s.places.events.push(stimulus.name.span),
+                ItemSyntaxKind::Var(var) => {
                     let name = var.name.text.as_str();
                     let parts = self.s.shared.iter().filter(|v| whole_name(&v.name) == name).count();
                     let place = VarPlace { name: var.name.span, whole: span };
                     self.s.places.shared.extend(std::iter::repeat_n(place, parts));
                 }
-                ItemKind::Network { name, .. } => self.s.places.networks.push(name.span),
-                ItemKind::Suite(suite) => self.s.places.awaits.push(awaits(suite)),
-                ItemKind::Const { name, .. } => {
+                ItemSyntaxKind::Network { name, .. } => self.s.places.networks.push(name.span),
+                ItemSyntaxKind::Suite(suite) => self.s.places.awaits.push(awaits(suite)),
+                ItemSyntaxKind::Const { name, .. } => {
                     let used = self.s.names.is_used(name.span);
                     self.declared("the constant", name, span, used);
                 }
-                ItemKind::Enum { name, .. } => {
+                ItemSyntaxKind::Enum { name, .. } => {
                     let used = self.s.names.is_used(name.span);
                     self.declared("the enumeration", name, span, used);
                 }
-                ItemKind::Record { name, .. } => {
+                ItemSyntaxKind::Record { name, .. } => {
                     let used = self.s.names.is_used(name.span);
                     self.declared("the record", name, span, used);
                 }
-                ItemKind::Part(part) => {
+                ItemSyntaxKind::Part(part) => {
                     let used = self.s.names.is_used(part.name.span);
                     self.declared("the part", &part.name, span, used);
                 }
-                ItemKind::Agent(_)
-                | ItemKind::Automaton(_)
-                | ItemKind::Require(_)
-                | ItemKind::Cover(_)
-                | ItemKind::Cross(_) => {
+                ItemSyntaxKind::Agent(_)
+                | ItemSyntaxKind::Automaton(_)
+                | ItemSyntaxKind::Require(_)
+                | ItemSyntaxKind::Cover(_)
+                | ItemSyntaxKind::Cross(_) => {
                     if let Some((_, template)) = template(item) {
                         let used = self.s.names.is_used(template.name.span);
                         self.declared("the template", template.name, span, used);
                     }
                 }
-                ItemKind::Use(_)
-                | ItemKind::Allow(_)
-                | ItemKind::Channel(_)
-                | ItemKind::Function(_)
-                | ItemKind::Query(_)
-                | ItemKind::Instance(_)
-                | ItemKind::Actor { .. }
-                | ItemKind::Assume(_)
-                | ItemKind::Device(_)
-                | ItemKind::World(_)
-                | ItemKind::System(_)
-                | ItemKind::Test(_)
-                | ItemKind::Error => {}
+                ItemSyntaxKind::Use(_)
+                | ItemSyntaxKind::Allow(_)
+                | ItemSyntaxKind::Channel(_)
+                | ItemSyntaxKind::Function(_)
+                | ItemSyntaxKind::Query(_)
+                | ItemSyntaxKind::Instance(_)
+                | ItemSyntaxKind::Actor { .. }
+                | ItemSyntaxKind::Assume(_)
+                | ItemSyntaxKind::Device(_)
+                | ItemSyntaxKind::World(_)
+                | ItemSyntaxKind::System(_)
+                | ItemSyntaxKind::Test(_)
+                | ItemSyntaxKind::Error => {}
             }
         }
         for (name, span) in std::mem::take(&mut self.shared.functions.declared).into_values() {
@@ -81,7 +81,7 @@ impl Checker<'_> {
         self.s.places.signals = signals.entries().filter_map(|(_, id)| signals.span(id)).collect();
     }
 
-    fn declared(&mut self, noun: &'static str, name: &ast::Name, span: Span, used: bool) {
+    fn declared(&mut self, noun: &'static str, name: &ast::NameSyntax, span: Span, used: bool) {
         let (text, place) = (name.text.clone(), name.span);
         self.s.declared.push(NamedSpan { noun, name: text, place, span, used });
     }
@@ -94,7 +94,7 @@ impl<T> DeclaredPlayer<'_, T> {
     }
 }
 
-fn agent_places(agent: &ast::Agent, name: Span) -> AgentPlaces {
+fn agent_places(agent: &ast::AgentSyntax, name: Span) -> AgentPlaces {
     let mut places = AgentPlaces { name, ..AgentPlaces::default() };
     for member in &agent.members {
         match &member.kind {
@@ -110,7 +110,7 @@ fn agent_places(agent: &ast::Agent, name: Span) -> AgentPlaces {
     places
 }
 
-fn automaton_places(automaton: &ast::Automaton, of: &TypedAutomaton, name: Span) -> AutomatonPlaces {
+fn automaton_places(automaton: &ast::AutomatonSyntax, of: &TypedAutomaton, name: Span) -> AutomatonPlaces {
     let mut places = AutomatonPlaces { name, ..AutomatonPlaces::default() };
     for member in &automaton.members {
         match &member.kind {
@@ -133,7 +133,7 @@ fn whole_name(part: &str) -> &str {
     part.split(['.', '[']).next().unwrap_or(part)
 }
 
-fn awaits(suite: &ast::Suite) -> Vec<Span> {
+fn awaits(suite: &ast::SuiteSyntax) -> Vec<Span> {
     let mut spans = Vec::new();
     for member in &suite.members {
         if let SuiteMemberKind::Await(events) = &member.kind {

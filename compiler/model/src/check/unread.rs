@@ -1,53 +1,53 @@
 //! What could not be read may have declared the name that is missed: one bad declaration costs that one alone.
 
 use hrdsl_syntax::ast::{
-    Agent, AgentMemberKind, Automaton, AutomatonMemberKind, DeviceMemberKind, ItemKind, WorldMember,
-    WorldMemberKind,
+    AgentMemberKind, AgentSyntax, AutomatonMemberKind, AutomatonSyntax, DeviceMemberKind, ItemSyntaxKind,
+    WorldMember, WorldMemberKind,
 };
 
 use crate::noun::Noun;
 
 /// Whether a declaration, or a member of a world or part, could not be read.
-pub(in crate::check) fn in_item(item: &ItemKind) -> bool {
+pub(in crate::check) fn in_item(item: &ItemSyntaxKind) -> bool {
     let broken = |members: &[WorldMember]| members.iter().any(|m| matches!(m.kind, WorldMemberKind::Error));
     match item {
-        ItemKind::Error => true,
-        ItemKind::World(world) => broken(&world.members),
-        ItemKind::Part(part) => broken(&part.members),
-        ItemKind::Device(device) => device.members.iter().any(|m| m.kind == DeviceMemberKind::Error),
-        ItemKind::Use(_)
-        | ItemKind::Allow(_)
-        | ItemKind::Enum { .. }
-        | ItemKind::Record { .. }
-        | ItemKind::Instance(_)
-        | ItemKind::Actor { .. }
-        | ItemKind::Const { .. }
-        | ItemKind::Event(_)
-        | ItemKind::Stimulus(_)
-        | ItemKind::Agent(_)
-        | ItemKind::Var(_)
-        | ItemKind::Automaton(_)
-        | ItemKind::Channel(_)
-        | ItemKind::Function(_)
-        | ItemKind::Query(_)
-        | ItemKind::Network { .. }
-        | ItemKind::Require(_)
-        | ItemKind::Assume(_)
-        | ItemKind::Cover(_)
-        | ItemKind::Cross(_)
-        | ItemKind::Suite(_)
-        | ItemKind::System(_)
-        | ItemKind::Test(_) => false,
+        ItemSyntaxKind::Error => true,
+        ItemSyntaxKind::World(world) => broken(&world.members),
+        ItemSyntaxKind::Part(part) => broken(&part.members),
+        ItemSyntaxKind::Device(device) => device.members.iter().any(|m| m.kind == DeviceMemberKind::Error),
+        ItemSyntaxKind::Use(_)
+        | ItemSyntaxKind::Allow(_)
+        | ItemSyntaxKind::Enum { .. }
+        | ItemSyntaxKind::Record { .. }
+        | ItemSyntaxKind::Instance(_)
+        | ItemSyntaxKind::Actor { .. }
+        | ItemSyntaxKind::Const { .. }
+        | ItemSyntaxKind::Event(_)
+        | ItemSyntaxKind::Stimulus(_)
+        | ItemSyntaxKind::Agent(_)
+        | ItemSyntaxKind::Var(_)
+        | ItemSyntaxKind::Automaton(_)
+        | ItemSyntaxKind::Channel(_)
+        | ItemSyntaxKind::Function(_)
+        | ItemSyntaxKind::Query(_)
+        | ItemSyntaxKind::Network { .. }
+        | ItemSyntaxKind::Require(_)
+        | ItemSyntaxKind::Assume(_)
+        | ItemSyntaxKind::Cover(_)
+        | ItemSyntaxKind::Cross(_)
+        | ItemSyntaxKind::Suite(_)
+        | ItemSyntaxKind::System(_)
+        | ItemSyntaxKind::Test(_) => false,
     }
 }
 
 /// Whether a member of an agent could not be read.
-pub(in crate::check) fn in_agent(agent: &Agent) -> bool {
+pub(in crate::check) fn in_agent(agent: &AgentSyntax) -> bool {
     agent.members.iter().any(|m| matches!(m.kind, AgentMemberKind::Error))
 }
 
 /// Whether a member of an automaton could not be read.
-pub(in crate::check) fn in_automaton(automaton: &Automaton) -> bool {
+pub(in crate::check) fn in_automaton(automaton: &AutomatonSyntax) -> bool {
     automaton.members.iter().any(|m| matches!(m.kind, AutomatonMemberKind::Error))
 }
 

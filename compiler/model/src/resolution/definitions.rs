@@ -4,15 +4,15 @@ use std::collections::BTreeSet;
 
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
-    self, AgentMemberKind as AgentMember, AutomatonMemberKind as AutomatonMember, DeviceMemberKind, ItemKind,
-    Name, StatementKind, StimulusStepKind, TypeExpr, WorldMemberKind,
+    self, AgentMemberKind as AgentMember, AutomatonMemberKind as AutomatonMember, DeviceMemberKind,
+    ItemSyntaxKind, NameSyntax, StatementSyntaxKind, StimulusStepKind, TypeExpr, WorldMemberKind,
 };
 
 use super::{DefinedType, NameDefinition};
 use crate::check::type_span;
 
 /// The definitions of these items and of all in them.
-pub(super) fn of_items(items: &[&ast::Item]) -> Vec<NameDefinition> {
+pub(super) fn of_items(items: &[&ast::ItemSyntax]) -> Vec<NameDefinition> {
     let mut reader = DefinitionReader { found: Vec::new(), whole: Span::default(), doc: String::new() };
     for item in items {
         reader.whole = item.span;
@@ -30,17 +30,17 @@ struct DefinitionReader {
 }
 
 impl DefinitionReader {
-    fn define(&mut self, noun: &'static str, name: &Name) {
+    fn define(&mut self, noun: &'static str, name: &NameSyntax) {
         self.typed(noun, name, DefinedType::None);
     }
 
-    fn typed(&mut self, noun: &'static str, name: &Name, ty: DefinedType) {
+    fn typed(&mut self, noun: &'static str, name: &NameSyntax, ty: DefinedType) {
         let (text, doc) = (name.text.clone(), self.doc.clone());
         self.found.push(NameDefinition { noun, name: text, place: name.span, whole: self.whole, ty, doc });
     }
 
     /// Those of a declaration have its documentation no more.
-    fn params(&mut self, noun: &'static str, params: &[ast::Param]) {
+    fn params(&mut self, noun: &'static str, params: &[ast::ParamSyntax]) {
         let doc = std::mem::take(&mut self.doc);
         for param in params {
             self.typed(noun, &param.name, written(&param.ty));
@@ -48,82 +48,82 @@ impl DefinitionReader {
         self.doc = doc;
     }
 
-    fn template(&mut self, params: Option<&Vec<ast::Param>>) {
+    fn template(&mut self, params: Option<&Vec<ast::ParamSyntax>>) {
         self.params("parameter", params.map_or(&[], Vec::as_slice));
     }
 
     #[expect(clippy::too_many_lines, reason = "a flat match")]
-    fn item(&mut self, kind: &ItemKind) {
+    fn item(&mut self, kind: &ItemSyntaxKind) {
         match kind {
-            ItemKind::Enum { name, values } => {
+            ItemSyntaxKind::Enum { name, values } => {
                 self.define("enumeration", name);
                 values.iter().for_each(|value| self.define("value", value));
             }
-            ItemKind::Record { name, fields } => {
+            ItemSyntaxKind::Record { name, fields } => {
                 self.define("record", name);
                 self.params("field", fields);
             }
-            ItemKind::Actor { name, .. } => self.define("actor", name),
-            ItemKind::Const { name, .. } => self.define("constant", name),
-            ItemKind::Event(event) => {
+            ItemSyntaxKind::Actor { name, .. } => self.define("actor", name),
+            ItemSyntaxKind::Const { name, .. } => self.define("constant", name),
+            ItemSyntaxKind::Event(event) => {
                 for one in &event.names {
                     self.define("event", &one.name);
                     self.params("parameter", &one.params);
                 }
             }
-            ItemKind::Stimulus(stimulus) => {
+            ItemSyntaxKind::Stimulus(stimulus) => {
                 self.define("stimulus", &stimulus.name);
                 self.params("parameter", &stimulus.params);
                 self.samples(&stimulus.body);
             }
-            ItemKind::Agent(agent) => self.agent(agent),
-            ItemKind::Var(var) => self.typed("variable", &var.name, written(&var.ty)),
-            ItemKind::Automaton(automaton) => self.automaton(automaton),
-            ItemKind::Channel(channel) => {
+            ItemSyntaxKind::Agent(agent) => self.agent(agent),
+            ItemSyntaxKind::Var(var) => self.typed("variable", &var.name, written(&var.ty)),
+            ItemSyntaxKind::Automaton(automaton) => self.automaton(automaton),
+            ItemSyntaxKind::Channel(channel) => {
                 for one in &channel.names {
                     self.define("channel", &one.name);
                     self.params("parameter", &one.params);
                 }
             }
-            ItemKind::Function(function) => self.function(function),
-            ItemKind::Query(query) => self.define("query", &query.name),
-            ItemKind::Network { name, .. } => self.define("network", name),
-            ItemKind::Require(require) => {
+            ItemSyntaxKind::Function(function) => self.function(function),
+            ItemSyntaxKind::Query(query) => self.define("query", &query.name),
+            ItemSyntaxKind::Network { name, .. } => self.define("network", name),
+            ItemSyntaxKind::Require(require) => {
                 self.define("requirement", &require.name);
                 self.template(require.params.as_ref());
             }
-            ItemKind::Cover(cover) => {
+            ItemSyntaxKind::Cover(cover) => {
                 self.define("coverpoint", &cover.name);
                 self.template(cover.params.as_ref());
                 cover.bins.iter().for_each(|bin| self.define("bin", &bin.name));
             }
-            ItemKind::Cross(cross) => {
+            ItemSyntaxKind::Cross(cross) => {
                 self.define("cross product", &cross.name);
                 self.template(cross.params.as_ref());
             }
-            ItemKind::Suite(suite) => self.define("suite", &suite.name),
-            ItemKind::Part(part) => {
+            ItemSyntaxKind::Suite(suite) => self.define("suite", &suite.name),
+            ItemSyntaxKind::Part(part) => {
                 self.define("part", &part.name);
                 self.template(part.params.as_ref());
                 self.world(&part.members);
             }
-            ItemKind::World(world) => self.world(&world.members),
-            ItemKind::Device(device) => self.device(device),
-            ItemKind::Test(test) => {
+            ItemSyntaxKind::World(world) => self.world(&world.members),
+            ItemSyntaxKind::Device(device) => self.device(device),
+            ItemSyntaxKind::Test(test) => {
                 if let Some(last) = test.name.names.last() {
                     self.define("test", last);
                 }
             }
-            ItemKind::Instance(instance) => self.define(sort(instance.sort), &instance.name),
-            ItemKind::Use(_)
-            | ItemKind::Allow(_)
-            | ItemKind::Assume(_)
-            | ItemKind::System(_)
-            | ItemKind::Error => {}
+            ItemSyntaxKind::Instance(instance) => self.define(sort(instance.sort), &instance.name),
+            ItemSyntaxKind::Use(_)
+            | ItemSyntaxKind::Allow(_)
+            | ItemSyntaxKind::Assume(_)
+            | ItemSyntaxKind::System(_)
+            | ItemSyntaxKind::Error => {}
         }
     }
 
-    fn samples(&mut self, steps: &[ast::StimulusStep]) {
+    fn samples(&mut self, steps: &[ast::StimulusStepSyntax]) {
         for step in steps {
             match &step.kind {
                 StimulusStepKind::Sample { name, .. } => self.define("sample", name),
@@ -139,7 +139,7 @@ impl DefinitionReader {
         }
     }
 
-    fn agent(&mut self, agent: &ast::Agent) {
+    fn agent(&mut self, agent: &ast::AgentSyntax) {
         self.define("agent", &agent.name);
         self.template(agent.params.as_ref());
         let mut goals: BTreeSet<&str> = BTreeSet::new();
@@ -164,7 +164,7 @@ impl DefinitionReader {
                     plan.label.iter().for_each(|label| self.define("plan label", &label.name));
                     // A goal that is not declared is what its first plan achieves.
                     let of = &plan.trigger.literal.call.name;
-                    if plan.trigger.kind == ast::TriggerKind::Achieve && goals.insert(&of.text) {
+                    if plan.trigger.kind == ast::TriggerSyntaxKind::Achieve && goals.insert(&of.text) {
                         self.define("goal", of);
                     }
                 }
@@ -176,7 +176,7 @@ impl DefinitionReader {
         }
     }
 
-    fn automaton(&mut self, automaton: &ast::Automaton) {
+    fn automaton(&mut self, automaton: &ast::AutomatonSyntax) {
         self.define("automaton", &automaton.name);
         self.template(automaton.params.as_ref());
         for member in &automaton.members {
@@ -192,7 +192,7 @@ impl DefinitionReader {
         }
     }
 
-    fn function(&mut self, function: &ast::Function) {
+    fn function(&mut self, function: &ast::FunctionSyntax) {
         let ty = function.result.as_ref().map_or(DefinedType::None, written);
         self.typed("function", &function.name, ty);
         self.params("parameter", &function.params);
@@ -201,33 +201,33 @@ impl DefinitionReader {
         self.doc = doc;
     }
 
-    fn statements(&mut self, statements: &[ast::Statement]) {
+    fn statements(&mut self, statements: &[ast::StatementSyntax]) {
         for statement in statements {
             match &statement.kind {
-                StatementKind::Var(var) => self.typed("variable", &var.name, written(&var.ty)),
-                StatementKind::If { then, otherwise, .. } => {
+                StatementSyntaxKind::Var(var) => self.typed("variable", &var.name, written(&var.ty)),
+                StatementSyntaxKind::If { then, otherwise, .. } => {
                     self.statements(then);
                     self.statements(otherwise);
                 }
-                StatementKind::While { body, .. } => self.statements(body),
-                StatementKind::For { name, body, .. } => {
+                StatementSyntaxKind::While { body, .. } => self.statements(body),
+                StatementSyntaxKind::For { name, body, .. } => {
                     self.define("variable", name);
                     self.statements(body);
                 }
-                StatementKind::Assign { .. }
-                | StatementKind::Call(_)
-                | StatementKind::Return(_)
-                | StatementKind::Error => {}
+                StatementSyntaxKind::Assign { .. }
+                | StatementSyntaxKind::Call(_)
+                | StatementSyntaxKind::Return(_)
+                | StatementSyntaxKind::Error => {}
             }
         }
     }
 
-    fn device(&mut self, device: &ast::Device) {
+    fn device(&mut self, device: &ast::DeviceSyntax) {
         for member in &device.members {
             (self.whole, self.doc) = (member.span, member.doc.clone());
             let DeviceMemberKind::Command(command) = &member.kind else { continue };
             self.define("command", &command.name);
-            let params: Vec<ast::Param> = command.params.iter().map(|p| p.param.clone()).collect();
+            let params: Vec<ast::ParamSyntax> = command.params.iter().map(|p| p.param.clone()).collect();
             self.params("parameter", &params);
         }
     }
@@ -263,12 +263,12 @@ fn written(ty: &TypeExpr) -> DefinedType {
     }
 }
 
-fn sort(of: ast::Sort) -> &'static str {
+fn sort(of: ast::TemplateSyntaxKind) -> &'static str {
     match of {
-        ast::Sort::Agent => "agent",
-        ast::Sort::Automaton => "automaton",
-        ast::Sort::Require => "requirement",
-        ast::Sort::Cover => "coverpoint",
-        ast::Sort::Cross => "cross product",
+        ast::TemplateSyntaxKind::Agent => "agent",
+        ast::TemplateSyntaxKind::Automaton => "automaton",
+        ast::TemplateSyntaxKind::Require => "requirement",
+        ast::TemplateSyntaxKind::Cover => "coverpoint",
+        ast::TemplateSyntaxKind::Cross => "cross product",
     }
 }

@@ -51,14 +51,14 @@ pub struct Resolutions {
 
 impl Resolutions {
     /// The definitions of these items, and no use yet.
-    pub(crate) fn of_items(items: &[&ast::Item]) -> Self {
+    pub(crate) fn of_items(items: &[&ast::ItemSyntax]) -> Self {
         let definitions = definitions::of_items(items);
         Self { definitions: definitions.into_iter().map(|d| (d.place, d)).collect(), ..Self::default() }
     }
 
     /// What one declaration declares.
     #[must_use]
-    pub fn of_declaration(item: &ast::Item) -> Self {
+    pub fn of_declaration(item: &ast::ItemSyntax) -> Self {
         Self::of_items(&[item])
     }
 

@@ -1,14 +1,14 @@
 //! Columns of neighbouring lines; lines to text.
 
 use crate::print::measure::WIDTH;
-use crate::token::Kind;
+use crate::token::TokenKind;
 
 /// How many blanks a line may get so that its columns stand under those of its neighbours.
 const REACH: usize = 16;
 
 /// A line of the result.
 #[derive(Debug, Default)]
-pub(super) struct Line<'t> {
+pub(super) struct OutputLine<'t> {
     /// An empty line is before it.
     pub blank: bool,
     /// Blanks before it.
@@ -17,14 +17,14 @@ pub(super) struct Line<'t> {
     /// Where columns start: places in the text. The second is used only with the first.
     pub stops: [Option<usize>; 2],
     /// A whole member of this sort.
-    pub sort: Option<Kind>,
+    pub sort: Option<TokenKind>,
     /// One or several whole members.
     pub whole: bool,
     pub comment: Option<&'t str>,
 }
 
 /// Aligns and joins the lines.
-pub(super) fn text(mut lines: Vec<Line<'_>>) -> String {
+pub(super) fn text(mut lines: Vec<OutputLine<'_>>) -> String {
     each_run(
         &mut lines,
         |a, b| a.sort.is_some() && a.sort == b.sort,
@@ -51,13 +51,13 @@ pub(super) fn text(mut lines: Vec<Line<'_>>) -> String {
 
 /// Neighbours: no empty line between them, the same indentation, and what `same` says.
 fn each_run<'l, 't>(
-    lines: &'l mut [Line<'t>],
-    same: impl Fn(&Line<'t>, &Line<'t>) -> bool,
-    mut use_run: impl FnMut(&mut [Line<'t>]),
+    lines: &'l mut [OutputLine<'t>],
+    same: impl Fn(&OutputLine<'t>, &OutputLine<'t>) -> bool,
+    mut use_run: impl FnMut(&mut [OutputLine<'t>]),
 ) {
     let mut rest = lines;
     while !rest.is_empty() {
-        let together = |w: &[Line<'t>]| !w[1].blank && w[0].indent == w[1].indent && same(&w[0], &w[1]);
+        let together = |w: &[OutputLine<'t>]| !w[1].blank && w[0].indent == w[1].indent && same(&w[0], &w[1]);
         let length = 1 + rest.windows(2).take_while(|w| together(w)).count();
         let (run, after) = rest.split_at_mut(length);
         if length > 1 {
@@ -78,13 +78,13 @@ fn width(text: &str) -> usize {
 }
 
 /// The width of the cell that ends at a stop.
-fn cell(line: &Line<'_>, column: usize) -> Option<(usize, usize)> {
+fn cell(line: &OutputLine<'_>, column: usize) -> Option<(usize, usize)> {
     let end = line.stops[column]?;
     let start = if column == 0 { 0 } else { line.stops[0]? };
     Some((end, width(&line.text[start..end])))
 }
 
-fn column(run: &mut [Line<'_>], column: usize) {
+fn column(run: &mut [OutputLine<'_>], column: usize) {
     let target = target(run.iter().filter_map(|l| cell(l, column).map(|c| c.1)));
     for line in run {
         let Some((end, own)) = cell(line, column) else { continue };
@@ -100,8 +100,8 @@ fn column(run: &mut [Line<'_>], column: usize) {
 }
 
 /// Comments at the ends of neighbouring lines start in one column.
-fn comments(lines: &[Line<'_>], pads: &mut [usize]) {
-    let has = |l: &Line<'_>| l.whole && l.comment.is_some();
+fn comments(lines: &[OutputLine<'_>], pads: &mut [usize]) {
+    let has = |l: &OutputLine<'_>| l.whole && l.comment.is_some();
     let mut at = 0;
     while at < lines.len() {
         let mut end = at + 1;

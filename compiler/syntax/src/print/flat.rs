@@ -1,14 +1,14 @@
 //! Members on one line.
 
 use crate::print::marks::BlockKind;
-use crate::print::shape::{Block, Member, Part};
+use crate::print::shape::{BlockShape, MemberPart, MemberShape};
 use crate::print::spacing::{blank, ends_line};
-use crate::print::trivia::Tok;
-use crate::token::Kind;
+use crate::print::trivia::PrintToken;
+use crate::token::TokenKind;
 
 /// A text on one line, and where its columns start.
 #[derive(Debug, Default)]
-pub(super) struct Flat {
+pub(super) struct FlatText {
     pub text: String,
     pub stops: [Option<usize>; 2],
     width: usize,
@@ -17,16 +17,16 @@ pub(super) struct Flat {
     columns: [Option<usize>; 2],
 }
 
-impl Flat {
+impl FlatText {
     /// A member, if it may stand on one line and has room there.
-    pub(super) fn member(toks: &[Tok<'_>], member: &Member, room: usize) -> Option<Self> {
+    pub(super) fn member(toks: &[PrintToken<'_>], member: &MemberShape, room: usize) -> Option<Self> {
         let mut flat = Self { room, columns: columns(toks, member).1, ..Self::default() };
         flat.write_member(toks, member)?;
         Some(flat)
     }
 
     /// A block with its braces.
-    pub(super) fn block(toks: &[Tok<'_>], block: &Block, room: usize) -> Option<Self> {
+    pub(super) fn block(toks: &[PrintToken<'_>], block: &BlockShape, room: usize) -> Option<Self> {
         let mut flat = Self { room, ..Self::default() };
         flat.write_block(toks, block)?;
         Some(flat)
@@ -36,10 +36,10 @@ impl Flat {
         self.width
     }
 
-    fn write_member(&mut self, toks: &[Tok<'_>], member: &Member) -> Option<()> {
+    fn write_member(&mut self, toks: &[PrintToken<'_>], member: &MemberShape) -> Option<()> {
         for part in &member.parts {
             match part {
-                Part::Run(run) => {
+                MemberPart::Run(run) => {
                     for at in run.clone() {
                         if at > member.first && ends_line(toks, at, member.first) {
                             return None;
@@ -47,7 +47,7 @@ impl Flat {
                         self.token(toks, at, at > member.first && blank(toks, at))?;
                     }
                 }
-                Part::Block(block) => {
+                MemberPart::Block(block) => {
                     if commented(toks, block.open) {
                         return None;
                     }
@@ -60,7 +60,7 @@ impl Flat {
         Some(())
     }
 
-    fn write_block(&mut self, toks: &[Tok<'_>], block: &Block) -> Option<()> {
+    fn write_block(&mut self, toks: &[PrintToken<'_>], block: &BlockShape) -> Option<()> {
         self.add("{")?;
         for (n, member) in block.members.iter().enumerate() {
             if toks[member.first].newline || commented(toks, member.first) {
@@ -80,7 +80,7 @@ impl Flat {
         self.add(" }")
     }
 
-    fn token(&mut self, toks: &[Tok<'_>], at: usize, space: bool) -> Option<()> {
+    fn token(&mut self, toks: &[PrintToken<'_>], at: usize, space: bool) -> Option<()> {
         self.stop(at);
         if space {
             self.add(" ")?;
@@ -107,13 +107,13 @@ impl Flat {
 }
 
 /// A comment is before a token.
-fn commented(toks: &[Tok<'_>], at: usize) -> bool {
+fn commented(toks: &[PrintToken<'_>], at: usize) -> bool {
     !toks[at].leading.is_empty() || at.checked_sub(1).is_some_and(|before| toks[before].trailing.is_some())
 }
 
 /// A token as it is written: a quantity has one blank before its unit.
-pub(super) fn write(tok: &Tok<'_>, out: &mut String) {
-    if tok.kind == Kind::Quantity {
+pub(super) fn write(tok: &PrintToken<'_>, out: &mut String) {
+    if tok.kind == TokenKind::Quantity {
         out.push_str(tok.text[..tok.unit].trim_end());
         out.push(' ');
         out.push_str(&tok.text[tok.unit..]);
@@ -123,49 +123,52 @@ pub(super) fn write(tok: &Tok<'_>, out: &mut String) {
 }
 
 /// What sort of member it is, if such members are aligned, and the tokens before which its columns start.
-pub(super) fn columns(toks: &[Tok<'_>], member: &Member) -> (Option<Kind>, [Option<usize>; 2]) {
+pub(super) fn columns(
+    toks: &[PrintToken<'_>],
+    member: &MemberShape,
+) -> (Option<TokenKind>, [Option<usize>; 2]) {
     let first = toks[member.first].kind;
     let find = |kind, from| find(toks, kind, from, member.end);
     let start = member.first + 1;
     match first {
-        Kind::Const
-        | Kind::Network
-        | Kind::Part
-        | Kind::Belief
-        | Kind::Agent
-        | Kind::Automaton
-        | Kind::Require
-        | Kind::Cross => (Some(first), [find(Kind::Assign, start), None]),
-        Kind::Cover => {
-            let assign = find(Kind::Assign, start);
-            (Some(first), [assign, assign.and_then(|at| find(Kind::Bins, at))])
+        TokenKind::Const
+        | TokenKind::Network
+        | TokenKind::Part
+        | TokenKind::Belief
+        | TokenKind::Agent
+        | TokenKind::Automaton
+        | TokenKind::Require
+        | TokenKind::Cross => (Some(first), [find(TokenKind::Assign, start), None]),
+        TokenKind::Cover => {
+            let assign = find(TokenKind::Assign, start);
+            (Some(first), [assign, assign.and_then(|at| find(TokenKind::Bins, at))])
         }
-        Kind::Event => (Some(first), [find(Kind::FromWord, start), None]),
-        Kind::Actor | Kind::Var => (Some(first), [find(Kind::Colon, start), None]),
-        Kind::Sample => (Some(first), [find(Kind::In, start), None]),
-        Kind::Bin => (Some(first), [find(Kind::When, start), None]),
-        Kind::From => (Some(first), [Some(start), Some(start + 2).filter(|at| *at < member.end)]),
-        Kind::Location | Kind::Init | Kind::Committed | Kind::Urgent => {
-            (Some(Kind::Location), [find(Kind::LBrace, start), None])
+        TokenKind::Event => (Some(first), [find(TokenKind::FromWord, start), None]),
+        TokenKind::Actor | TokenKind::Var => (Some(first), [find(TokenKind::Colon, start), None]),
+        TokenKind::Sample => (Some(first), [find(TokenKind::In, start), None]),
+        TokenKind::Bin => (Some(first), [find(TokenKind::When, start), None]),
+        TokenKind::From => (Some(first), [Some(start), Some(start + 2).filter(|at| *at < member.end)]),
+        TokenKind::Location | TokenKind::Init | TokenKind::Committed | TokenKind::Urgent => {
+            (Some(TokenKind::Location), [find(TokenKind::LBrace, start), None])
         }
-        Kind::Plan => {
-            let reacts = find(Kind::On, start).is_some() && find(Kind::When, start).is_none();
-            (Some(first), [find(Kind::LBrace, start).filter(|_| reacts), None])
+        TokenKind::Plan => {
+            let reacts = find(TokenKind::On, start).is_some() && find(TokenKind::When, start).is_none();
+            (Some(first), [find(TokenKind::LBrace, start).filter(|_| reacts), None])
         }
         _ => (None, [None, None]),
     }
 }
 
 /// The first token of a kind outside brackets, near the start of a member.
-fn find(toks: &[Tok<'_>], kind: Kind, from: usize, end: usize) -> Option<usize> {
+fn find(toks: &[PrintToken<'_>], kind: TokenKind, from: usize, end: usize) -> Option<usize> {
     let mut depth = 0_usize;
     for (at, tok) in toks.iter().enumerate().take(end.min(from + crate::print::measure::WIDTH)).skip(from) {
         if depth == 0 && tok.kind == kind {
             return Some(at);
         }
         match tok.kind {
-            Kind::LParen | Kind::LBracket | Kind::LBrace => depth += 1,
-            Kind::RParen | Kind::RBracket | Kind::RBrace => depth = depth.saturating_sub(1),
+            TokenKind::LParen | TokenKind::LBracket | TokenKind::LBrace => depth += 1,
+            TokenKind::RParen | TokenKind::RBracket | TokenKind::RBrace => depth = depth.saturating_sub(1),
             _ => {}
         }
     }

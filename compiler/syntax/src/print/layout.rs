@@ -1,19 +1,19 @@
 //! Members to lines: one line for what fits and may, else blocks are opened and long lines broken.
 
-use crate::print::align::Line;
-use crate::print::flat::{Flat, columns};
+use crate::print::align::OutputLine;
+use crate::print::flat::{FlatText, columns};
 use crate::print::marks::BlockKind;
 use crate::print::measure::{STEP, WIDTH};
-use crate::print::shape::{Block, Member, Part};
-use crate::print::spacing::{Weakness, blank, ends_line, weakness};
-use crate::print::trivia::{Comment, Tok};
-use crate::token::Kind;
+use crate::print::shape::{BlockShape, MemberPart, MemberShape};
+use crate::print::spacing::{BindingStrength, blank, ends_line, weakness};
+use crate::print::trivia::{Comment, PrintToken};
+use crate::token::TokenKind;
 
 /// The lines of a file.
-pub(super) fn lines<'t>(toks: &[Tok<'t>], members: &[Member]) -> Vec<Line<'t>> {
-    let mut layout = Layout { toks, lines: Vec::new() };
+pub(super) fn lines<'t>(toks: &[PrintToken<'t>], members: &[MemberShape]) -> Vec<OutputLine<'t>> {
+    let mut layout = LineLayout { toks, lines: Vec::new() };
     for (n, member) in members.iter().enumerate() {
-        layout.member(member, Place { indent: 0, first: n == 0, separator: "" });
+        layout.member(member, MemberPlace { indent: 0, first: n == 0, separator: "" });
     }
     if let Some(end) = toks.last() {
         layout.comments(&end.leading, 0, members.is_empty());
@@ -23,7 +23,7 @@ pub(super) fn lines<'t>(toks: &[Tok<'t>], members: &[Member]) -> Vec<Line<'t>> {
 
 /// Where a member goes.
 #[derive(Clone, Copy)]
-struct Place {
+struct MemberPlace {
     indent: usize,
     /// The first of its block: no empty line before it.
     first: bool,
@@ -32,45 +32,50 @@ struct Place {
 }
 
 /// A piece of text that no line end divides.
-struct Atom {
+struct UnbreakableText {
     text: String,
     width: usize,
     /// A blank before it.
     space: bool,
     /// How weakly it holds to the one before, the brackets around first; `None`: always.
-    key: Option<Weakness>,
+    key: Option<BindingStrength>,
     /// A line starts here, for a comment or by the author's right.
     must: bool,
     /// The author started a line here.
     newline: bool,
-    depth: Weakness,
+    depth: BindingStrength,
     tok: usize,
     last: usize,
 }
 
 /// How a sequence of atoms came out.
-struct Laid {
+struct LaidSequence {
     /// All lines fit, and end where the author ended them.
     as_written: bool,
 }
 
-struct Layout<'a, 't> {
-    toks: &'a [Tok<'t>],
-    lines: Vec<Line<'t>>,
+struct LineLayout<'a, 't> {
+    toks: &'a [PrintToken<'t>],
+    lines: Vec<OutputLine<'t>>,
 }
 
-impl<'t> Layout<'_, 't> {
+impl<'t> LineLayout<'_, 't> {
     fn comments(&mut self, comments: &[Comment<'t>], indent: usize, first: bool) {
         for (n, comment) in comments.iter().enumerate() {
             let blank = comment.blank && !(first && n == 0);
-            self.lines.push(Line { blank, indent, comment: Some(comment.text), ..Line::default() });
+            self.lines.push(OutputLine {
+                blank,
+                indent,
+                comment: Some(comment.text),
+                ..OutputLine::default()
+            });
         }
     }
 
     // ── Members ──
 
     /// The members of an open block.
-    fn members(&mut self, block: &Block, indent: usize) {
+    fn members(&mut self, block: &BlockShape, indent: usize) {
         for (n, member) in block.members.iter().enumerate() {
             let last = n + 1 == block.members.len();
             let separator = match block.kind {
@@ -81,12 +86,12 @@ impl<'t> Layout<'_, 't> {
             if n > 0 && self.joins(member, block.kind, separator) {
                 continue;
             }
-            self.member(member, Place { indent, first: n == 0, separator });
+            self.member(member, MemberPlace { indent, first: n == 0, separator });
         }
     }
 
     /// Puts a member on the line of the one before, if the author did and there is room.
-    fn joins(&mut self, member: &Member, kind: BlockKind, separator: &str) -> bool {
+    fn joins(&mut self, member: &MemberShape, kind: BlockKind, separator: &str) -> bool {
         let first = &self.toks[member.first];
         let Some(line) = self.lines.last() else { return false };
         if first.newline || !first.leading.is_empty() || !line.whole || line.comment.is_some() {
@@ -95,7 +100,9 @@ impl<'t> Layout<'_, 't> {
         // A step that ends with a block has no semicolon where the line ends.
         let between = if kind == BlockKind::Members || line.text.ends_with('}') { "; " } else { " " };
         let used = line.indent + line.text.chars().count() + between.len() + separator.len();
-        let Some(flat) = Flat::member(self.toks, member, WIDTH.saturating_sub(used)) else { return false };
+        let Some(flat) = FlatText::member(self.toks, member, WIDTH.saturating_sub(used)) else {
+            return false;
+        };
         let comment = self.toks[member.end - 1].trailing;
         if let Some(line) = self.lines.last_mut() {
             line.text += between;
@@ -107,7 +114,7 @@ impl<'t> Layout<'_, 't> {
         true
     }
 
-    fn member(&mut self, member: &Member, place: Place) {
+    fn member(&mut self, member: &MemberShape, place: MemberPlace) {
         let first = &self.toks[member.first];
         self.comments(&first.leading, place.indent, place.first);
         let from = self.lines.len();
@@ -120,33 +127,33 @@ impl<'t> Layout<'_, 't> {
     }
 
     /// On one line.
-    fn whole(&mut self, member: &Member, place: Place) -> bool {
+    fn whole(&mut self, member: &MemberShape, place: MemberPlace) -> bool {
         let room = WIDTH.saturating_sub(place.indent + place.separator.len());
-        let Some(flat) = Flat::member(self.toks, member, room) else { return false };
+        let Some(flat) = FlatText::member(self.toks, member, room) else { return false };
         let (sort, _) = columns(self.toks, member);
-        self.lines.push(Line {
+        self.lines.push(OutputLine {
             indent: place.indent,
             text: flat.text + place.separator,
             stops: flat.stops,
             sort,
             whole: true,
             comment: self.toks[member.end - 1].trailing,
-            ..Line::default()
+            ..OutputLine::default()
         });
         true
     }
 
     /// On several lines, blocks on one: as the author has it, if every line fits.
-    fn inline(&mut self, member: &Member, place: Place) -> bool {
-        let blocks = member.parts.iter().any(|p| matches!(p, Part::Block(_)));
+    fn inline(&mut self, member: &MemberShape, place: MemberPlace) -> bool {
+        let blocks = member.parts.iter().any(|p| matches!(p, MemberPart::Block(_)));
         let mut atoms = Vec::new();
         for part in &member.parts {
             match part {
-                Part::Run(run) => self.atoms(run.clone(), member.first, &mut atoms),
-                Part::Block(block) => match Flat::block(self.toks, block, WIDTH) {
+                MemberPart::Run(run) => self.atoms(run.clone(), member.first, &mut atoms),
+                MemberPart::Block(block) => match FlatText::block(self.toks, block, WIDTH) {
                     Some(flat) if !ends_line(self.toks, block.open, member.first) => {
                         let width = flat.width();
-                        atoms.push(Atom {
+                        atoms.push(UnbreakableText {
                             text: flat.text,
                             width,
                             last: block.close,
@@ -168,12 +175,12 @@ impl<'t> Layout<'_, 't> {
     }
 
     /// Every block open, one member a line.
-    fn open(&mut self, member: &Member, place: Place) {
+    fn open(&mut self, member: &MemberShape, place: MemberPlace) {
         let mut atoms = Vec::new();
         for part in &member.parts {
             match part {
-                Part::Run(run) => self.atoms(run.clone(), member.first, &mut atoms),
-                Part::Block(block) => {
+                MemberPart::Run(run) => self.atoms(run.clone(), member.first, &mut atoms),
+                MemberPart::Block(block) => {
                     let close = &self.toks[block.close];
                     atoms.push(self.brace(block.open));
                     let commented = self.toks[block.open].trailing.is_some() || !close.leading.is_empty();
@@ -186,7 +193,7 @@ impl<'t> Layout<'_, 't> {
                     self.members(block, inner);
                     self.comments(&close.leading, inner, block.members.is_empty());
                     atoms.clear();
-                    atoms.push(Atom { must: false, ..self.brace(block.close) });
+                    atoms.push(UnbreakableText { must: false, ..self.brace(block.close) });
                 }
             }
         }
@@ -196,20 +203,20 @@ impl<'t> Layout<'_, 't> {
 
     // ── Atoms ──
 
-    fn atoms(&self, run: std::ops::Range<usize>, first: usize, atoms: &mut Vec<Atom>) {
-        let mut depth: Weakness = 0;
+    fn atoms(&self, run: std::ops::Range<usize>, first: usize, atoms: &mut Vec<UnbreakableText>) {
+        let mut depth: BindingStrength = 0;
         for at in run {
             let tok = &self.toks[at];
-            if matches!(tok.kind, Kind::RParen | Kind::RBracket | Kind::RBrace) {
+            if matches!(tok.kind, TokenKind::RParen | TokenKind::RBracket | TokenKind::RBrace) {
                 depth = depth.saturating_sub(1);
             }
             let mut text = String::with_capacity(tok.text.len() + 1);
             crate::print::flat::write(tok, &mut text);
-            let closes = tok.broken && tok.kind == Kind::RParen;
+            let closes = tok.broken && tok.kind == TokenKind::RParen;
             if closes {
                 end_with(atoms, ",");
             }
-            atoms.push(Atom {
+            atoms.push(UnbreakableText {
                 width: text.chars().count(),
                 text,
                 space: blank(self.toks, at),
@@ -220,32 +227,43 @@ impl<'t> Layout<'_, 't> {
                 tok: at,
                 last: at,
             });
-            if matches!(tok.kind, Kind::LParen | Kind::LBracket | Kind::LBrace) {
+            if matches!(tok.kind, TokenKind::LParen | TokenKind::LBracket | TokenKind::LBrace) {
                 depth += 1;
             }
         }
     }
 
     /// The brace of a block.
-    fn brace(&self, at: usize) -> Atom {
+    fn brace(&self, at: usize) -> UnbreakableText {
         let text = self.toks[at].text.to_owned();
         let must = at > 0 && (!self.toks[at].leading.is_empty() || self.toks[at - 1].trailing.is_some());
-        Atom { text, width: 1, space: true, key: None, must, newline: false, depth: 0, tok: at, last: at }
+        UnbreakableText {
+            text,
+            width: 1,
+            space: true,
+            key: None,
+            must,
+            newline: false,
+            depth: 0,
+            tok: at,
+            last: at,
+        }
     }
 
     // ── Lines ──
 
     /// Atoms to lines; those after the first are indented by `more`.
-    fn lay(&mut self, atoms: &[Atom], indent: usize, more: usize) -> Laid {
+    fn lay(&mut self, atoms: &[UnbreakableText], indent: usize, more: usize) -> LaidSequence {
         let total: usize = atoms.iter().map(|a| a.width + usize::from(a.space)).sum();
         let long = indent + total > WIDTH;
-        let mut laid = Laid { as_written: true };
-        let mut lists = Lists { open: Vec::new(), base: indent, more };
+        let mut laid = LaidSequence { as_written: true };
+        let mut lists = BrokenLists { open: Vec::new(), base: indent, more };
         let (mut at, mut here) = (0, indent);
         while at < atoms.len() {
             if at > 0 {
                 let leading = self.toks[atoms[at].tok].leading.iter().map(|c| c.text);
-                let line = |comment| Line { indent: here, comment: Some(comment), ..Line::default() };
+                let line =
+                    |comment| OutputLine { indent: here, comment: Some(comment), ..OutputLine::default() };
                 self.lines.extend(leading.map(line));
             }
             let end = line_end(atoms, at, here, long, &mut laid);
@@ -258,7 +276,7 @@ impl<'t> Layout<'_, 't> {
                 lists.pass(self.toks, atom, here);
             }
             let comment = self.toks[atoms[end - 1].last].trailing;
-            self.lines.push(Line { indent: here, text, comment, ..Line::default() });
+            self.lines.push(OutputLine { indent: here, text, comment, ..OutputLine::default() });
             if let Some(next) = atoms.get(end) {
                 here = lists.indent(self.toks, &atoms[end - 1], next);
             }
@@ -269,17 +287,17 @@ impl<'t> Layout<'_, 't> {
 }
 
 /// The lists that are broken after their parenthesis, while lines are laid.
-struct Lists {
+struct BrokenLists {
     /// The indentation of the elements, and how deep they are.
-    open: Vec<(usize, Weakness)>,
+    open: Vec<(usize, BindingStrength)>,
     base: usize,
     more: usize,
 }
 
-impl Lists {
-    fn pass(&mut self, toks: &[Tok<'_>], atom: &Atom, here: usize) {
+impl BrokenLists {
+    fn pass(&mut self, toks: &[PrintToken<'_>], atom: &UnbreakableText, here: usize) {
         let tok = &toks[atom.tok];
-        if tok.broken && tok.kind == Kind::LParen {
+        if tok.broken && tok.kind == TokenKind::LParen {
             self.open.push((here + STEP, atom.depth + 1));
         } else if tok.broken {
             self.open.pop();
@@ -287,7 +305,7 @@ impl Lists {
     }
 
     /// The indentation of the line that starts with `next`.
-    fn indent(&mut self, toks: &[Tok<'_>], last: &Atom, next: &Atom) -> usize {
+    fn indent(&mut self, toks: &[PrintToken<'_>], last: &UnbreakableText, next: &UnbreakableText) -> usize {
         let Some((inner, depth)) = self.open.last().copied() else {
             let here = self.base + self.more;
             if toks[next.tok].mark.pattern {
@@ -297,21 +315,21 @@ impl Lists {
             return here;
         };
         let (before, tok) = (&toks[last.tok], &toks[next.tok]);
-        if tok.broken && tok.kind == Kind::RParen {
+        if tok.broken && tok.kind == TokenKind::RParen {
             return inner.saturating_sub(STEP);
         }
-        let starts = (before.broken && before.kind == Kind::LParen)
-            || (before.kind == Kind::Comma && last.depth == depth);
+        let starts = (before.broken && before.kind == TokenKind::LParen)
+            || (before.kind == TokenKind::Comma && last.depth == depth);
         if starts { inner } else { inner + STEP }
     }
 }
 
-fn ends_with_block(member: &Member) -> bool {
-    matches!(member.parts.last(), Some(Part::Block(_)))
+fn ends_with_block(member: &MemberShape) -> bool {
+    matches!(member.parts.last(), Some(MemberPart::Block(_)))
 }
 
 /// Writes a separator after the last atom.
-fn end_with(atoms: &mut [Atom], separator: &str) {
+fn end_with(atoms: &mut [UnbreakableText], separator: &str) {
     if let Some(last) = atoms.last_mut() {
         last.text += separator;
         last.width += separator.len();
@@ -319,9 +337,15 @@ fn end_with(atoms: &mut [Atom], separator: &str) {
 }
 
 /// Where the line that starts at an atom ends: where it must, or where it holds together least of all places that fit.
-fn line_end(atoms: &[Atom], at: usize, indent: usize, long: bool, laid: &mut Laid) -> usize {
+fn line_end(
+    atoms: &[UnbreakableText],
+    at: usize,
+    indent: usize,
+    long: bool,
+    laid: &mut LaidSequence,
+) -> usize {
     let mut width = indent + atoms[at].width;
-    let mut best: Option<(Weakness, usize)> = None;
+    let mut best: Option<(BindingStrength, usize)> = None;
     for (n, atom) in atoms.iter().enumerate().skip(at + 1) {
         if atom.must || (long && atom.newline && atom.key.is_some()) {
             laid.as_written &= width <= WIDTH;

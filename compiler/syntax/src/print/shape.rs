@@ -3,42 +3,42 @@
 use std::ops::Range;
 
 use crate::print::marks::BlockKind;
-use crate::print::trivia::Tok;
+use crate::print::trivia::PrintToken;
 
 /// A declaration, a member, a step, an element.
 #[derive(Debug)]
-pub(super) struct Member {
+pub(super) struct MemberShape {
     /// Its first token.
     pub first: usize,
     /// After its last token.
     pub end: usize,
-    pub parts: Vec<Part>,
+    pub parts: Vec<MemberPart>,
 }
 
 /// A piece of a member.
 #[derive(Debug)]
-pub(super) enum Part {
+pub(super) enum MemberPart {
     /// Tokens outside blocks.
     Run(Range<usize>),
-    Block(Block),
+    Block(BlockShape),
 }
 
 /// `{ … }`
 #[derive(Debug)]
-pub(super) struct Block {
+pub(super) struct BlockShape {
     pub kind: BlockKind,
     pub open: usize,
     pub close: usize,
-    pub members: Vec<Member>,
+    pub members: Vec<MemberShape>,
 }
 
 /// The declarations of a file.
-pub(super) fn members(toks: &[Tok<'_>]) -> Vec<Member> {
+pub(super) fn members(toks: &[PrintToken<'_>]) -> Vec<MemberShape> {
     within(toks, 0, toks.len().saturating_sub(1))
 }
 
 /// The members from one token to another. Brackets nest no deeper than the parser lets them.
-fn within(toks: &[Tok<'_>], from: usize, to: usize) -> Vec<Member> {
+fn within(toks: &[PrintToken<'_>], from: usize, to: usize) -> Vec<MemberShape> {
     let mut members = Vec::new();
     let mut at = from;
     while at < to {
@@ -49,7 +49,7 @@ fn within(toks: &[Tok<'_>], from: usize, to: usize) -> Vec<Member> {
     members
 }
 
-fn member(toks: &[Tok<'_>], first: usize, to: usize) -> Member {
+fn member(toks: &[PrintToken<'_>], first: usize, to: usize) -> MemberShape {
     let mut parts = Vec::new();
     let (mut run, mut at) = (first, first);
     while at < to && (at == first || !toks[at].mark.start) {
@@ -58,15 +58,20 @@ fn member(toks: &[Tok<'_>], first: usize, to: usize) -> Member {
             continue;
         };
         if run < at {
-            parts.push(Part::Run(run..at));
+            parts.push(MemberPart::Run(run..at));
         }
         let close = toks[at].close.clamp(at, to);
-        parts.push(Part::Block(Block { kind, open: at, close, members: within(toks, at + 1, close) }));
+        parts.push(MemberPart::Block(BlockShape {
+            kind,
+            open: at,
+            close,
+            members: within(toks, at + 1, close),
+        }));
         at = close + 1;
         run = at;
     }
     if run < at {
-        parts.push(Part::Run(run..at));
+        parts.push(MemberPart::Run(run..at));
     }
-    Member { first, end: at, parts }
+    MemberShape { first, end: at, parts }
 }

@@ -1,62 +1,68 @@
 //! Blanks between two tokens, and where a line may break.
 
-use crate::print::trivia::Tok;
-use crate::token::Kind;
+use crate::print::trivia::PrintToken;
+use crate::token::TokenKind;
 
 /// How weakly two tokens hold together: the lower, the sooner a line breaks there.
-pub(super) type Weakness = u16;
+pub(super) type BindingStrength = u16;
 
 /// Before the pattern of a requirement.
-const PATTERN: Weakness = 0;
+const PATTERN: BindingStrength = 0;
 /// Before a clause, such as `when`.
-const CLAUSE: Weakness = 1;
+const CLAUSE: BindingStrength = 1;
 /// After a comma, or a semicolon of an edge.
-const COMMA: Weakness = 2;
+const COMMA: BindingStrength = 2;
 
 /// Whether a blank stands between the token before `at` and this one.
-pub(super) fn blank(toks: &[Tok<'_>], at: usize) -> bool {
+pub(super) fn blank(toks: &[PrintToken<'_>], at: usize) -> bool {
     let Some(before) = at.checked_sub(1) else { return false };
     let (p, n) = (&toks[before], &toks[at]);
-    if matches!(n.kind, Kind::Comma | Kind::Semi | Kind::RParen | Kind::RBracket | Kind::Dot) {
+    if matches!(
+        n.kind,
+        TokenKind::Comma | TokenKind::Semi | TokenKind::RParen | TokenKind::RBracket | TokenKind::Dot
+    ) {
         return false;
     }
     match p.kind {
-        Kind::LParen
-        | Kind::LBracket
-        | Kind::Dot
-        | Kind::Internal
-        | Kind::At_
-        | Kind::Tilde
-        | Kind::MinusPlus => return false,
+        TokenKind::LParen
+        | TokenKind::LBracket
+        | TokenKind::Dot
+        | TokenKind::Internal
+        | TokenKind::At_
+        | TokenKind::Tilde
+        | TokenKind::MinusPlus => return false,
         // A participant that may stay away, and not a question.
-        Kind::Question if n.kind != Kind::Pipe => return false,
-        Kind::Bang | Kind::BangBang => return matches!(n.kind, Kind::Bang | Kind::BangBang),
-        Kind::Plus | Kind::Minus if p.mark.prefix => return false,
-        Kind::DotDot => return !p.mark.tight,
+        TokenKind::Question if n.kind != TokenKind::Pipe => return false,
+        TokenKind::Bang | TokenKind::BangBang => {
+            return matches!(n.kind, TokenKind::Bang | TokenKind::BangBang);
+        }
+        TokenKind::Plus | TokenKind::Minus if p.mark.prefix => return false,
+        TokenKind::DotDot => return !p.mark.tight,
         _ => {}
     }
     match n.kind {
         // What may stay away or be left out is marked behind it.
-        Kind::Question => !(p.kind.can_be_name() || p.kind == Kind::RBracket),
-        Kind::Colon => before > 0 && toks[before - 1].kind == Kind::Actor || of_channel(toks, at),
-        Kind::LParen => !n.mark.call,
+        TokenKind::Question => !(p.kind.can_be_name() || p.kind == TokenKind::RBracket),
+        TokenKind::Colon => before > 0 && toks[before - 1].kind == TokenKind::Actor || of_channel(toks, at),
+        TokenKind::LParen => !n.mark.call,
         // An index and annotations belong to what is before; a list stands alone.
-        Kind::LBracket => n.mark.apart || !(p.kind.ends_operand() || p.kind.can_be_name()),
-        Kind::DotDot => !n.mark.tight,
+        TokenKind::LBracket => n.mark.apart || !(p.kind.ends_operand() || p.kind.can_be_name()),
+        TokenKind::DotDot => !n.mark.tight,
         _ => true,
     }
 }
 
 /// A colon with the kind of a channel behind it: it belongs to all names, as that of an actor does not to the name alone.
-fn of_channel(toks: &[Tok<'_>], at: usize) -> bool {
-    toks.get(at + 1).is_some_and(|t| matches!(t.kind, Kind::Urgent | Kind::Broadcast | Kind::Joint))
+fn of_channel(toks: &[PrintToken<'_>], at: usize) -> bool {
+    toks.get(at + 1)
+        .is_some_and(|t| matches!(t.kind, TokenKind::Urgent | TokenKind::Broadcast | TokenKind::Joint))
 }
 
 /// How weakly the token at `at` holds to the one before; `None`: a line does not break here.
-pub(super) fn weakness(toks: &[Tok<'_>], at: usize, first: usize) -> Option<Weakness> {
+pub(super) fn weakness(toks: &[PrintToken<'_>], at: usize, first: usize) -> Option<BindingStrength> {
     let before = at.checked_sub(1)?;
     let (p, n) = (&toks[before], &toks[at]);
-    if matches!(p.kind, Kind::Comma | Kind::Semi) {
+    if matches!(p.kind, TokenKind::Comma | TokenKind::Semi) {
         return Some(COMMA);
     }
     if n.mark.pattern {
@@ -68,72 +74,72 @@ pub(super) fn weakness(toks: &[Tok<'_>], at: usize, first: usize) -> Option<Weak
     operator(n)
 }
 
-fn operator(n: &Tok<'_>) -> Option<Weakness> {
+fn operator(n: &PrintToken<'_>) -> Option<BindingStrength> {
     Some(match n.kind {
-        Kind::Else | Kind::Or | Kind::OrOr | Kind::Pipe => 3,
-        Kind::And | Kind::AndAnd => 4,
-        Kind::Eq | Kind::Ne | Kind::Lt | Kind::Le | Kind::Gt | Kind::Ge => 5,
-        Kind::Plus | Kind::Minus if !n.mark.prefix => 6,
-        Kind::Star | Kind::Slash | Kind::Percent => 7,
+        TokenKind::Else | TokenKind::Or | TokenKind::OrOr | TokenKind::Pipe => 3,
+        TokenKind::And | TokenKind::AndAnd => 4,
+        TokenKind::Eq | TokenKind::Ne | TokenKind::Lt | TokenKind::Le | TokenKind::Gt | TokenKind::Ge => 5,
+        TokenKind::Plus | TokenKind::Minus if !n.mark.prefix => 6,
+        TokenKind::Star | TokenKind::Slash | TokenKind::Percent => 7,
         _ => return None,
     })
 }
 
 /// A word that starts a clause, after the end of another one.
-fn clause(p: Kind, n: Kind) -> bool {
+fn clause(p: TokenKind, n: TokenKind) -> bool {
     let starts = matches!(
         n,
-        Kind::When
-            | Kind::On
-            | Kind::Do
-            | Kind::Select
-            | Kind::Emit
-            | Kind::Within
-            | Kind::While
-            | Kind::Until
-            | Kind::Causes
-            | Kind::Forbids
-            | Kind::FromWord
-            | Kind::Bins
-            | Kind::With
-            | Kind::Tip
-            | Kind::Tool
-            | Kind::Speed
-            | Kind::Reach
-            | Kind::Delay
-            | Kind::At
-            | Kind::Axis
-            | Kind::Limits
-            | Kind::Rotated
-            | Kind::Mass
-            | Kind::Ghost
-            | Kind::Graspable
-            | Kind::Expect
+        TokenKind::When
+            | TokenKind::On
+            | TokenKind::Do
+            | TokenKind::Select
+            | TokenKind::Emit
+            | TokenKind::Within
+            | TokenKind::While
+            | TokenKind::Until
+            | TokenKind::Causes
+            | TokenKind::Forbids
+            | TokenKind::FromWord
+            | TokenKind::Bins
+            | TokenKind::With
+            | TokenKind::Tip
+            | TokenKind::Tool
+            | TokenKind::Speed
+            | TokenKind::Reach
+            | TokenKind::Delay
+            | TokenKind::At
+            | TokenKind::Axis
+            | TokenKind::Limits
+            | TokenKind::Rotated
+            | TokenKind::Mass
+            | TokenKind::Ghost
+            | TokenKind::Graspable
+            | TokenKind::Expect
     );
     starts && p.ends_operand()
 }
 
 /// A line ends before the token at `at`, whatever the room: for a comment, or because the author decided so and may.
-pub(super) fn ends_line(toks: &[Tok<'_>], at: usize, first: usize) -> bool {
+pub(super) fn ends_line(toks: &[PrintToken<'_>], at: usize, first: usize) -> bool {
     let Some(before) = at.checked_sub(1) else { return false };
     let (p, n) = (&toks[before], &toks[at]);
     if !n.leading.is_empty() || p.trailing.is_some() {
         return true;
     }
-    let broken_list = (p.broken && p.kind == Kind::LParen) || (n.broken && n.kind == Kind::RParen);
+    let broken_list = (p.broken && p.kind == TokenKind::LParen) || (n.broken && n.kind == TokenKind::RParen);
     let decided = matches!(weakness(toks, at, first), Some(PATTERN | CLAUSE | COMMA));
     broken_list || (n.newline && (decided || would_join(toks, before)))
 }
 
 /// On one line the number before would take the next token as its unit, or lose its `%`.
-fn would_join(toks: &[Tok<'_>], before: usize) -> bool {
+fn would_join(toks: &[PrintToken<'_>], before: usize) -> bool {
     let (p, n) = (&toks[before], &toks[before + 1]);
     match p.kind {
-        Kind::Int | Kind::Float => {
-            let counts = before > 0 && toks[before - 1].kind == Kind::Most;
-            matches!(n.kind, Kind::Ident | Kind::Percent) && !counts
+        TokenKind::Int | TokenKind::Float => {
+            let counts = before > 0 && toks[before - 1].kind == TokenKind::Most;
+            matches!(n.kind, TokenKind::Ident | TokenKind::Percent) && !counts
         }
-        Kind::Quantity => p.text.ends_with('%') && n.kind.starts_operand(),
+        TokenKind::Quantity => p.text.ends_with('%') && n.kind.starts_operand(),
         _ => false,
     }
 }

@@ -1,8 +1,8 @@
 //! The tokens with the comments and line ends around them. Separators that mean nothing are left out: `layout` writes
 //! those that the style wants.
 
-use crate::print::marks::{BlockKind, Mark};
-use crate::token::{Kind, Lexeme};
+use crate::print::marks::{BlockKind, TokenMark};
+use crate::token::{Lexeme, TokenKind};
 
 /// A comment on lines of its own, or at the end of a line.
 #[derive(Clone, Copy, Debug)]
@@ -14,12 +14,12 @@ pub(super) struct Comment<'t> {
 
 /// A token, and what is around it.
 #[derive(Debug)]
-pub(super) struct Tok<'t> {
-    pub kind: Kind,
+pub(super) struct PrintToken<'t> {
+    pub kind: TokenKind,
     pub text: &'t str,
     /// Where the unit starts in the text of a quantity.
     pub unit: usize,
-    pub mark: Mark,
+    pub mark: TokenMark,
     /// The first of its line.
     pub newline: bool,
     /// A blank line is before it, and before no comment of its own.
@@ -35,15 +35,16 @@ pub(super) struct Tok<'t> {
 }
 
 /// The tokens of a text, and one more for its end.
-pub(super) fn tokens<'t>(text: &'t str, lexemes: &[Lexeme], marks: &[Mark]) -> Vec<Tok<'t>> {
-    let mut reader = Reader { out: Vec::with_capacity(lexemes.len() + 1), open: Vec::new(), kept: None };
+pub(super) fn tokens<'t>(text: &'t str, lexemes: &[Lexeme], marks: &[TokenMark]) -> Vec<PrintToken<'t>> {
+    let mut reader =
+        TriviaReader { out: Vec::with_capacity(lexemes.len() + 1), open: Vec::new(), kept: None };
     let mut end = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
     for (at, (lexeme, mark)) in lexemes.iter().zip(marks).enumerate() {
         let (from, to) = (lexeme.start as usize, lexeme.end as usize);
         reader.gap(&text[end..from], at == 0);
         let next = lexemes.get(at + 1).map(|t| t.kind);
         let before_action = marks.get(at + 1).is_some_and(|m| m.action);
-        let tok = Tok {
+        let tok = PrintToken {
             kind: lexeme.kind,
             text: &text[from..to],
             unit: lexeme.unit.saturating_sub(lexeme.start) as usize,
@@ -67,21 +68,21 @@ pub(super) fn tokens<'t>(text: &'t str, lexemes: &[Lexeme], marks: &[Mark]) -> V
 
 /// What is between two tokens.
 #[derive(Default)]
-struct Gap<'t> {
+struct TokenGap<'t> {
     newline: bool,
     blank: bool,
     leading: Vec<Comment<'t>>,
 }
 
-struct Reader<'t> {
-    out: Vec<Tok<'t>>,
+struct TriviaReader<'t> {
+    out: Vec<PrintToken<'t>>,
     /// Of the brackets that are open: whether it is a block of elements with commas.
     open: Vec<bool>,
     /// What is before the next token, since the last one that was kept.
-    kept: Option<Gap<'t>>,
+    kept: Option<TokenGap<'t>>,
 }
 
-impl<'t> Reader<'t> {
+impl<'t> TriviaReader<'t> {
     /// Takes up the comments and line ends of the text between two tokens.
     fn gap(&mut self, between: &'t str, first: bool) {
         let gap = self.kept.get_or_insert_default();
@@ -109,21 +110,21 @@ impl<'t> Reader<'t> {
     }
 
     /// Keeps a token, unless it is a separator without meaning.
-    fn token(&mut self, mut tok: Tok<'t>, next: Option<Kind>, before_action: bool) {
+    fn token(&mut self, mut tok: PrintToken<'t>, next: Option<TokenKind>, before_action: bool) {
         let listed = self.open.last().copied().unwrap_or(false);
         let dropped = match tok.kind {
-            Kind::Semi => !before_action,
-            Kind::Comma => listed || next == Some(Kind::RParen),
+            TokenKind::Semi => !before_action,
+            TokenKind::Comma => listed || next == Some(TokenKind::RParen),
             _ => false,
         };
         if dropped {
             return;
         }
         match tok.kind {
-            Kind::LBrace | Kind::LParen | Kind::LBracket => {
+            TokenKind::LBrace | TokenKind::LParen | TokenKind::LBracket => {
                 self.open.push(tok.mark.block == Some(BlockKind::List));
             }
-            Kind::RBrace | Kind::RParen | Kind::RBracket => {
+            TokenKind::RBrace | TokenKind::RParen | TokenKind::RBracket => {
                 self.open.pop();
             }
             _ => {}
@@ -135,11 +136,11 @@ impl<'t> Reader<'t> {
 
     fn finish(&mut self, text: &'t str) {
         let gap = self.kept.take().unwrap_or_default();
-        self.out.push(Tok {
-            kind: Kind::End,
+        self.out.push(PrintToken {
+            kind: TokenKind::End,
             text: &text[text.len()..],
             unit: 0,
-            mark: Mark::default(),
+            mark: TokenMark::default(),
             newline: true,
             blank: false,
             leading: gap.leading,
@@ -151,20 +152,20 @@ impl<'t> Reader<'t> {
 }
 
 /// Finds the partner of every bracket, and the lists that are broken after their opening parenthesis.
-fn brackets(toks: &mut [Tok<'_>]) {
+fn brackets(toks: &mut [PrintToken<'_>]) {
     let mut open: Vec<(usize, bool)> = Vec::new();
     for at in 0..toks.len() {
         match toks[at].kind {
-            Kind::LBrace | Kind::LParen | Kind::LBracket => open.push((at, false)),
-            Kind::Comma => {
+            TokenKind::LBrace | TokenKind::LParen | TokenKind::LBracket => open.push((at, false)),
+            TokenKind::Comma => {
                 if let Some(top) = open.last_mut() {
                     top.1 = true;
                 }
             }
-            Kind::RBrace | Kind::RParen | Kind::RBracket => {
+            TokenKind::RBrace | TokenKind::RParen | TokenKind::RBracket => {
                 let Some((from, commas)) = open.pop() else { continue };
                 toks[from].close = at;
-                if toks[at].kind == Kind::RParen && commas && toks[from + 1].newline {
+                if toks[at].kind == TokenKind::RParen && commas && toks[from + 1].newline {
                     toks[from].broken = true;
                     toks[at].broken = true;
                 }

@@ -4,19 +4,21 @@ use std::ops::Range;
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 
-use super::Recovery;
-use crate::ast::{AutomatonMember, AutomatonMemberKind, Function, Statement, StatementKind};
-use crate::context::Unit;
-use crate::report::{Fault, found, report};
+use super::RecoveringParser;
+use crate::ast::{
+    AutomatonMember, AutomatonMemberKind, FunctionSyntax, StatementSyntax, StatementSyntaxKind,
+};
+use crate::context::ParsedUnit;
+use crate::report::{ParseFault, found, report};
 use crate::run::run;
-use crate::token::Kind;
+use crate::token::TokenKind;
 
-impl Recovery<'_, '_> {
+impl RecoveringParser<'_, '_> {
     /// A function of an automaton whose header or body is broken.
-    pub(super) fn function(&mut self, range: &Range<usize>) -> Option<Unit> {
+    pub(super) fn function(&mut self, range: &Range<usize>) -> Option<ParsedUnit> {
         let (open, close) = self.pairs(range).pop()?;
         let shell = self.shell(range.start, &[(open, close)]);
-        let unit = match run(self.cx, Some(Kind::StartAutomatonMember), &shell) {
+        let unit = match run(self.cx, Some(TokenKind::StartAutomatonMember), &shell) {
             Ok(unit) => Some(unit),
             Err(fault) => {
                 report(self.cx, &fault, &shell, None);
@@ -25,24 +27,24 @@ impl Recovery<'_, '_> {
         };
         let body = self.statements(open + 1..close);
         match unit {
-            Some(Unit::AutomatonMember(AutomatonMember {
+            Some(ParsedUnit::AutomatonMember(AutomatonMember {
                 doc,
                 kind: AutomatonMemberKind::Function(function),
                 ..
             })) => {
-                let kind = AutomatonMemberKind::Function(Function { body, ..function });
+                let kind = AutomatonMemberKind::Function(FunctionSyntax { body, ..function });
                 let span = self.span(&(range.start..close + 1));
-                Some(Unit::AutomatonMember(AutomatonMember { doc, kind, span }))
+                Some(ParsedUnit::AutomatonMember(AutomatonMember { doc, kind, span }))
             }
             _ => None,
         }
     }
 
-    pub(super) fn statements(&mut self, block: Range<usize>) -> Vec<Statement> {
+    pub(super) fn statements(&mut self, block: Range<usize>) -> Vec<StatementSyntax> {
         let mut statements = Vec::new();
         let mut at = block.start;
         while at < block.end {
-            at = if self.tokens[at].kind == Kind::Semi {
+            at = if self.tokens[at].kind == TokenKind::Semi {
                 self.empty_statement(&block, at)
             } else if let Some(next) = self.block_statement(at, block.end, &mut statements) {
                 next
@@ -54,10 +56,10 @@ impl Recovery<'_, '_> {
     }
 
     /// Takes the statement at `at` and gives where the next one starts.
-    fn plain_statement(&mut self, at: usize, end: usize, statements: &mut Vec<Statement>) -> usize {
+    fn plain_statement(&mut self, at: usize, end: usize, statements: &mut Vec<StatementSyntax>) -> usize {
         let stop = self.end_of_step(at, end);
-        let fault = match run(self.cx, Some(Kind::StartStatement), &self.tokens[at..stop]) {
-            Ok(Unit::Statement(statement)) => {
+        let fault = match run(self.cx, Some(TokenKind::StartStatement), &self.tokens[at..stop]) {
+            Ok(ParsedUnit::Statement(statement)) => {
                 statements.push(statement);
                 return stop + 1;
             }
@@ -69,8 +71,8 @@ impl Recovery<'_, '_> {
             && next < stop
             && fault.complete()
             && starts_statement(self.tokens[next].kind)
-            && let Ok(Unit::Statement(statement)) =
-                run(self.cx, Some(Kind::StartStatement), &self.tokens[at..next])
+            && let Ok(ParsedUnit::Statement(statement)) =
+                run(self.cx, Some(TokenKind::StartStatement), &self.tokens[at..next])
         {
             statements.push(statement);
             self.missing_separator(next);
@@ -78,11 +80,11 @@ impl Recovery<'_, '_> {
         }
         let next = self.resume_statement(at, next, end);
         self.said_of_statement(&fault, at..next);
-        statements.push(Statement { kind: StatementKind::Error, span: self.span(&(at..next)) });
-        next + usize::from(next < end && self.tokens[next].kind == Kind::Semi)
+        statements.push(StatementSyntax { kind: StatementSyntaxKind::Error, span: self.span(&(at..next)) });
+        next + usize::from(next < end && self.tokens[next].kind == TokenKind::Semi)
     }
 
-    fn said_of_statement(&mut self, fault: &Fault, range: Range<usize>) {
+    fn said_of_statement(&mut self, fault: &ParseFault, range: Range<usize>) {
         let next = self.tokens.get(range.end).copied();
         report(self.cx, fault, &self.tokens[range], next);
     }
@@ -100,9 +102,9 @@ impl Recovery<'_, '_> {
                 }
             }
             match token.kind {
-                Kind::LBrace => depth += 1,
-                Kind::RBrace => depth = depth.saturating_sub(1),
-                Kind::Semi if depth == 0 => return i,
+                TokenKind::LBrace => depth += 1,
+                TokenKind::RBrace => depth = depth.saturating_sub(1),
+                TokenKind::Semi if depth == 0 => return i,
                 _ => {}
             }
         }
@@ -121,12 +123,12 @@ impl Recovery<'_, '_> {
             .help("take the `;` away")
             .fix("take the `;` away", span, "", true),
         );
-        (at..block.end).find(|i| self.tokens[*i].kind != Kind::Semi).unwrap_or(block.end)
+        (at..block.end).find(|i| self.tokens[*i].kind != TokenKind::Semi).unwrap_or(block.end)
     }
 
     fn missing_separator(&mut self, at: usize) {
         let token = self.tokens[at];
-        if token.kind == Kind::Error {
+        if token.kind == TokenKind::Error {
             return;
         }
         let message = format!("expected `;`, found {}", found(token, self.cx.text));
@@ -141,23 +143,28 @@ impl Recovery<'_, '_> {
     }
 
     /// Takes the statement at `at` if it is one with blocks, and gives where the next one starts.
-    fn block_statement(&mut self, at: usize, end: usize, statements: &mut Vec<Statement>) -> Option<usize> {
+    fn block_statement(
+        &mut self,
+        at: usize,
+        end: usize,
+        statements: &mut Vec<StatementSyntax>,
+    ) -> Option<usize> {
         let blocks = self.blocks(at, end);
         let close = blocks.last()?.1;
-        let statement = match run(self.cx, Some(Kind::StartStatement), &self.tokens[at..close + 1]) {
-            Ok(Unit::Statement(statement)) => statement,
+        let statement = match run(self.cx, Some(TokenKind::StartStatement), &self.tokens[at..close + 1]) {
+            Ok(ParsedUnit::Statement(statement)) => statement,
             Ok(_) | Err(_) => self.broken_block_statement(at, &blocks),
         };
         statements.push(statement);
         let after = close + 1;
-        Some(after + usize::from(after < end && self.tokens[after].kind == Kind::Semi))
+        Some(after + usize::from(after < end && self.tokens[after].kind == TokenKind::Semi))
     }
 
     /// Reads the statement with empty blocks, and the statements of the blocks by themselves.
-    fn broken_block_statement(&mut self, at: usize, blocks: &[(usize, usize)]) -> Statement {
+    fn broken_block_statement(&mut self, at: usize, blocks: &[(usize, usize)]) -> StatementSyntax {
         let shell = self.shell(at, blocks);
-        let statement = match run(self.cx, Some(Kind::StartStatement), &shell) {
-            Ok(Unit::Statement(statement)) => Some(statement),
+        let statement = match run(self.cx, Some(TokenKind::StartStatement), &shell) {
+            Ok(ParsedUnit::Statement(statement)) => Some(statement),
             Ok(_) => None,
             Err(fault) => {
                 let next = blocks.last().and_then(|block| self.tokens.get(block.1 + 1)).copied();
@@ -165,47 +172,53 @@ impl Recovery<'_, '_> {
                 None
             }
         };
-        let mut bodies: Vec<Vec<Statement>> =
+        let mut bodies: Vec<Vec<StatementSyntax>> =
             blocks.iter().map(|(open, close)| self.statements(open + 1..*close)).collect();
         bodies.reverse();
         match statement {
-            Some(Statement { kind, span }) => Statement { kind: filled(kind, &mut bodies), span },
+            Some(StatementSyntax { kind, span }) => StatementSyntax { kind: filled(kind, &mut bodies), span },
             None => {
                 let close = blocks.last().map_or(at, |block| block.1);
-                Statement { kind: StatementKind::Error, span: self.span(&(at..close + 1)) }
+                StatementSyntax { kind: StatementSyntaxKind::Error, span: self.span(&(at..close + 1)) }
             }
         }
     }
 }
 
 /// The statement with these bodies for its empty blocks; the first is the last of the list.
-fn filled(kind: StatementKind, bodies: &mut Vec<Vec<Statement>>) -> StatementKind {
+fn filled(kind: StatementSyntaxKind, bodies: &mut Vec<Vec<StatementSyntax>>) -> StatementSyntaxKind {
     let mut next = || bodies.pop().unwrap_or_default();
     match kind {
-        StatementKind::If { condition, otherwise, .. } => {
+        StatementSyntaxKind::If { condition, otherwise, .. } => {
             let then = next();
             // Of an empty shell, only `else if` has a statement.
             let otherwise = match otherwise.into_iter().next() {
-                Some(Statement { kind, span }) => vec![Statement { kind: filled(kind, bodies), span }],
+                Some(StatementSyntax { kind, span }) => {
+                    vec![StatementSyntax { kind: filled(kind, bodies), span }]
+                }
                 None => next(),
             };
-            StatementKind::If { condition, then, otherwise }
+            StatementSyntaxKind::If { condition, then, otherwise }
         }
-        StatementKind::While { condition, .. } => StatementKind::While { condition, body: next() },
-        StatementKind::For { name, range, .. } => StatementKind::For { name, range, body: next() },
-        plain @ (StatementKind::Var(_)
-        | StatementKind::Assign { .. }
-        | StatementKind::Call(_)
-        | StatementKind::Return(_)
-        | StatementKind::Error) => plain,
+        StatementSyntaxKind::While { condition, .. } => {
+            StatementSyntaxKind::While { condition, body: next() }
+        }
+        StatementSyntaxKind::For { name, range, .. } => {
+            StatementSyntaxKind::For { name, range, body: next() }
+        }
+        plain @ (StatementSyntaxKind::Var(_)
+        | StatementSyntaxKind::Assign { .. }
+        | StatementSyntaxKind::Call(_)
+        | StatementSyntaxKind::Return(_)
+        | StatementSyntaxKind::Error) => plain,
     }
 }
 
-fn starts_statement(kind: Kind) -> bool {
-    kind.starts_call() || matches!(kind, Kind::Var | Kind::If | Kind::Return)
+fn starts_statement(kind: TokenKind) -> bool {
+    kind.starts_call() || matches!(kind, TokenKind::Var | TokenKind::If | TokenKind::Return)
 }
 
 /// A token that starts a statement and, at the start of a line, is nothing else.
-fn starts_only_statements(kind: Kind) -> bool {
-    matches!(kind, Kind::Var | Kind::If | Kind::While | Kind::For | Kind::Return)
+fn starts_only_statements(kind: TokenKind) -> bool {
+    matches!(kind, TokenKind::Var | TokenKind::If | TokenKind::While | TokenKind::For | TokenKind::Return)
 }

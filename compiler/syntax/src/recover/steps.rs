@@ -4,19 +4,19 @@ use std::ops::Range;
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 
-use super::Recovery;
-use crate::ast::{Step, StepKind};
-use crate::context::Unit;
-use crate::report::{Fault, found, report};
+use super::RecoveringParser;
+use crate::ast::{StepSyntax, StepSyntaxKind};
+use crate::context::ParsedUnit;
+use crate::report::{ParseFault, found, report};
 use crate::run::run;
-use crate::token::{Kind, Lexeme};
+use crate::token::{Lexeme, TokenKind};
 
-impl Recovery<'_, '_> {
-    pub(super) fn steps(&mut self, block: Range<usize>) -> Vec<Step> {
+impl RecoveringParser<'_, '_> {
+    pub(super) fn steps(&mut self, block: Range<usize>) -> Vec<StepSyntax> {
         let mut steps = Vec::new();
         let mut at = block.start;
         while at < block.end {
-            at = if self.tokens[at].kind == Kind::Semi {
+            at = if self.tokens[at].kind == TokenKind::Semi {
                 self.empty_step(&block, at)
             } else if let Some(next) = self.block_step(at, block.end, &mut steps) {
                 next
@@ -30,7 +30,7 @@ impl Recovery<'_, '_> {
     // ── Steps without blocks ──
 
     /// Takes the step at `at` and gives where the next one starts.
-    fn plain_step(&mut self, at: usize, end: usize, steps: &mut Vec<Step>) -> usize {
+    fn plain_step(&mut self, at: usize, end: usize, steps: &mut Vec<StepSyntax>) -> usize {
         let stop = self.end_of_step(at, end);
         let fault = match self.read(at..stop) {
             Ok(step) => {
@@ -43,7 +43,7 @@ impl Recovery<'_, '_> {
         if next > at
             && next < stop
             && fault.complete()
-            && (starts_step(self.tokens[next].kind) || self.tokens[next].kind == Kind::Dot)
+            && (starts_step(self.tokens[next].kind) || self.tokens[next].kind == TokenKind::Dot)
             && let Ok(step) = self.read(at..next)
         {
             steps.extend(step);
@@ -56,20 +56,20 @@ impl Recovery<'_, '_> {
         }
         let next = self.resume_step(at, next, end);
         self.report(&fault, at..next);
-        steps.push(Step { kind: StepKind::Error, span: self.span(&(at..next)) });
-        next + usize::from(next < end && self.tokens[next].kind == Kind::Semi)
+        steps.push(StepSyntax { kind: StepSyntaxKind::Error, span: self.span(&(at..next)) });
+        next + usize::from(next < end && self.tokens[next].kind == TokenKind::Semi)
     }
 
     /// Reads a step. The dot that it starts with is that of an internal action, whatever stands before it.
-    fn read(&mut self, range: Range<usize>) -> Result<Option<Step>, Fault> {
+    fn read(&mut self, range: Range<usize>) -> Result<Option<StepSyntax>, ParseFault> {
         let mut tokens = self.tokens[range].to_vec();
         if let Some(first) = tokens.first_mut()
-            && first.kind == Kind::Dot
+            && first.kind == TokenKind::Dot
         {
-            first.kind = Kind::Internal;
+            first.kind = TokenKind::Internal;
         }
-        match run(self.cx, Some(Kind::StartStep), &tokens)? {
-            Unit::Step(step) => Ok(Some(step)),
+        match run(self.cx, Some(TokenKind::StartStep), &tokens)? {
+            ParsedUnit::Step(step) => Ok(Some(step)),
             _ => Ok(None),
         }
     }
@@ -78,9 +78,9 @@ impl Recovery<'_, '_> {
         let mut depth = 0_usize;
         for i in at..end {
             match self.tokens[i].kind {
-                Kind::LBrace => depth += 1,
-                Kind::RBrace => depth = depth.saturating_sub(1),
-                Kind::Semi if depth == 0 => return i,
+                TokenKind::LBrace => depth += 1,
+                TokenKind::RBrace => depth = depth.saturating_sub(1),
+                TokenKind::Semi if depth == 0 => return i,
                 _ => {}
             }
         }
@@ -101,9 +101,9 @@ impl Recovery<'_, '_> {
                 }
             }
             match token.kind {
-                Kind::LBrace => depth += 1,
-                Kind::RBrace => depth = depth.saturating_sub(1),
-                Kind::Semi if depth == 0 => return i,
+                TokenKind::LBrace => depth += 1,
+                TokenKind::RBrace => depth = depth.saturating_sub(1),
+                TokenKind::Semi if depth == 0 => return i,
                 _ => {}
             }
         }
@@ -122,12 +122,12 @@ impl Recovery<'_, '_> {
             .help("take the `;` away")
             .fix("take the `;` away", span, "", true),
         );
-        (at..block.end).find(|i| self.tokens[*i].kind != Kind::Semi).unwrap_or(block.end)
+        (at..block.end).find(|i| self.tokens[*i].kind != TokenKind::Semi).unwrap_or(block.end)
     }
 
     fn missing_semicolon(&mut self, at: usize) {
         let token = self.tokens[at];
-        if token.kind == Kind::Error {
+        if token.kind == TokenKind::Error {
             return;
         }
         let message = format!("expected `;`, found {}", found(token, self.cx.text));
@@ -152,7 +152,7 @@ impl Recovery<'_, '_> {
         let named = |dot: &Lexeme| {
             self.tokens.get(at + 1).is_some_and(|next| next.start == dot.end && next.kind.is_word())
         };
-        self.tokens.get(at).is_some_and(|dot| dot.kind == Kind::Dot && !named(dot))
+        self.tokens.get(at).is_some_and(|dot| dot.kind == TokenKind::Dot && !named(dot))
     }
 
     pub(super) fn full_stop(&mut self, at: usize) {
@@ -167,34 +167,33 @@ impl Recovery<'_, '_> {
     // ── Steps with blocks ──
 
     /// Takes the step at `at` if it is one with blocks, and gives where the next one starts.
-    fn block_step(&mut self, at: usize, end: usize, steps: &mut Vec<Step>) -> Option<usize> {
+    fn block_step(&mut self, at: usize, end: usize, steps: &mut Vec<StepSyntax>) -> Option<usize> {
         let blocks = self.blocks(at, end);
         let close = blocks.last()?.1;
-        let step = match run(self.cx, Some(Kind::StartStep), &self.tokens[at..close + 1]) {
-            Ok(Unit::Step(step)) => step,
+        let step = match run(self.cx, Some(TokenKind::StartStep), &self.tokens[at..close + 1]) {
+            Ok(ParsedUnit::Step(step)) => step,
             Ok(_) | Err(_) => self.broken_block_step(at, &blocks),
         };
         steps.push(step);
         let after = close + 1;
-        Some(after + usize::from(after < end && self.tokens[after].kind == Kind::Semi))
+        Some(after + usize::from(after < end && self.tokens[after].kind == TokenKind::Semi))
     }
 
     /// The braces of the blocks of an `if`, `while`, `for` or `fork`; none if it is another step, or has no block.
     pub(super) fn blocks(&self, at: usize, end: usize) -> Vec<(usize, usize)> {
         let mut blocks = Vec::new();
         let word = self.tokens[at].kind;
-        if !matches!(word, Kind::If | Kind::While | Kind::For | Kind::Fork) {
+        if !matches!(word, TokenKind::If | TokenKind::While | TokenKind::For | TokenKind::Fork) {
             return blocks;
         }
-        let kind = |i: usize| if i < end { self.tokens[i].kind } else { Kind::End };
+        let kind = |i: usize| if i < end { self.tokens[i].kind } else { TokenKind::End };
         let mut from = at + 1;
         while let Some((open, close)) = self.block_after(from, end) {
             blocks.push((open, close));
             from = match (word, kind(close + 1), kind(close + 2)) {
-                (Kind::If, Kind::Else, Kind::If) => close + 3,
-                (Kind::If, Kind::Else, Kind::LBrace) | (Kind::Fork, Kind::And | Kind::Or, Kind::LBrace) => {
-                    close + 2
-                }
+                (TokenKind::If, TokenKind::Else, TokenKind::If) => close + 3,
+                (TokenKind::If, TokenKind::Else, TokenKind::LBrace)
+                | (TokenKind::Fork, TokenKind::And | TokenKind::Or, TokenKind::LBrace) => close + 2,
                 _ => break,
             };
         }
@@ -207,14 +206,14 @@ impl Recovery<'_, '_> {
         let mut at = from;
         while at < end {
             match self.tokens[at].kind {
-                Kind::Semi => return None,
-                Kind::If if at == from || self.tokens[at - 1].kind != Kind::Else => choices += 1,
-                Kind::LBrace => {
+                TokenKind::Semi => return None,
+                TokenKind::If if at == from || self.tokens[at - 1].kind != TokenKind::Else => choices += 1,
+                TokenKind::LBrace => {
                     let close = self.closing(at, end)?;
                     if choices == 0 {
                         return Some((at, close));
                     }
-                    choices -= usize::from(self.tokens[at - 1].kind == Kind::Else);
+                    choices -= usize::from(self.tokens[at - 1].kind == TokenKind::Else);
                     at = close;
                 }
                 _ => {}
@@ -228,8 +227,8 @@ impl Recovery<'_, '_> {
         let mut depth = 0_usize;
         (open..end).find(|i| {
             match self.tokens[*i].kind {
-                Kind::LBrace => depth += 1,
-                Kind::RBrace => depth -= 1,
+                TokenKind::LBrace => depth += 1,
+                TokenKind::RBrace => depth -= 1,
                 _ => {}
             }
             depth == 0
@@ -237,10 +236,10 @@ impl Recovery<'_, '_> {
     }
 
     /// Reads the step with empty blocks, and the steps of the blocks by themselves.
-    fn broken_block_step(&mut self, at: usize, blocks: &[(usize, usize)]) -> Step {
+    fn broken_block_step(&mut self, at: usize, blocks: &[(usize, usize)]) -> StepSyntax {
         let shell = self.shell(at, blocks);
-        let step = match run(self.cx, Some(Kind::StartStep), &shell) {
-            Ok(Unit::Step(step)) => Some(step),
+        let step = match run(self.cx, Some(TokenKind::StartStep), &shell) {
+            Ok(ParsedUnit::Step(step)) => Some(step),
             Ok(_) => None,
             Err(fault) => {
                 let next = blocks.last().and_then(|block| self.tokens.get(block.1 + 1)).copied();
@@ -248,83 +247,83 @@ impl Recovery<'_, '_> {
                 None
             }
         };
-        let mut bodies: Vec<Vec<Step>> =
+        let mut bodies: Vec<Vec<StepSyntax>> =
             blocks.iter().map(|(open, close)| self.steps(open + 1..*close)).collect();
         bodies.reverse();
         match step {
-            Some(Step { kind, span }) => Step { kind: filled(kind, &mut bodies), span },
+            Some(StepSyntax { kind, span }) => StepSyntax { kind: filled(kind, &mut bodies), span },
             None => {
                 let close = blocks.last().map_or(at, |block| block.1);
-                Step { kind: StepKind::Error, span: self.span(&(at..close + 1)) }
+                StepSyntax { kind: StepSyntaxKind::Error, span: self.span(&(at..close + 1)) }
             }
         }
     }
 }
 
 /// The step with these bodies for its empty blocks; the first is the last of the list.
-fn filled(kind: StepKind, bodies: &mut Vec<Vec<Step>>) -> StepKind {
+fn filled(kind: StepSyntaxKind, bodies: &mut Vec<Vec<StepSyntax>>) -> StepSyntaxKind {
     let mut next = || bodies.pop().unwrap_or_default();
     match kind {
-        StepKind::If { condition, otherwise, .. } => {
+        StepSyntaxKind::If { condition, otherwise, .. } => {
             let then = next();
             // Of an empty shell, only `else if` has a step.
             let otherwise = match otherwise.into_iter().next() {
-                Some(Step { kind, span }) => vec![Step { kind: filled(kind, bodies), span }],
+                Some(StepSyntax { kind, span }) => vec![StepSyntax { kind: filled(kind, bodies), span }],
                 None => next(),
             };
-            StepKind::If { condition, then, otherwise }
+            StepSyntaxKind::If { condition, then, otherwise }
         }
-        StepKind::While { condition, .. } => StepKind::While { condition, body: next() },
-        StepKind::For { condition, .. } => StepKind::For { condition, body: next() },
-        StepKind::Fork { all, branches } => {
-            StepKind::Fork { all, branches: branches.iter().map(|_| next()).collect() }
+        StepSyntaxKind::While { condition, .. } => StepSyntaxKind::While { condition, body: next() },
+        StepSyntaxKind::For { condition, .. } => StepSyntaxKind::For { condition, body: next() },
+        StepSyntaxKind::Fork { all, branches } => {
+            StepSyntaxKind::Fork { all, branches: branches.iter().map(|_| next()).collect() }
         }
-        plain @ (StepKind::Do(_)
-        | StepKind::Achieve { .. }
-        | StepKind::Spawn(_)
-        | StepKind::Query(_)
-        | StepKind::Test(_)
-        | StepKind::Unify { .. }
-        | StepKind::Add(_)
-        | StepKind::Remove(_)
-        | StepKind::Replace(_)
-        | StepKind::Await { .. }
-        | StepKind::Wait(_)
-        | StepKind::Internal(_)
-        | StepKind::Error) => plain,
+        plain @ (StepSyntaxKind::Do(_)
+        | StepSyntaxKind::Achieve { .. }
+        | StepSyntaxKind::Spawn(_)
+        | StepSyntaxKind::Query(_)
+        | StepSyntaxKind::Test(_)
+        | StepSyntaxKind::Unify { .. }
+        | StepSyntaxKind::Add(_)
+        | StepSyntaxKind::Remove(_)
+        | StepSyntaxKind::Replace(_)
+        | StepSyntaxKind::Await { .. }
+        | StepSyntaxKind::Wait(_)
+        | StepSyntaxKind::Internal(_)
+        | StepSyntaxKind::Error) => plain,
     }
 }
 
 /// A token that starts a step of a plan.
-fn starts_step(kind: Kind) -> bool {
+fn starts_step(kind: TokenKind) -> bool {
     kind.starts_call()
         || matches!(
             kind,
-            Kind::Await
-                | Kind::If
-                | Kind::Internal
-                | Kind::Bang
-                | Kind::BangBang
-                | Kind::Question
-                | Kind::Plus
-                | Kind::Minus
-                | Kind::MinusPlus
+            TokenKind::Await
+                | TokenKind::If
+                | TokenKind::Internal
+                | TokenKind::Bang
+                | TokenKind::BangBang
+                | TokenKind::Question
+                | TokenKind::Plus
+                | TokenKind::Minus
+                | TokenKind::MinusPlus
         )
 }
 
 /// A token that starts a step and, at the start of a line, is nothing else.
-fn starts_only_steps(kind: Kind) -> bool {
+fn starts_only_steps(kind: TokenKind) -> bool {
     matches!(
         kind,
-        Kind::Await
-            | Kind::If
-            | Kind::While
-            | Kind::For
-            | Kind::Fork
-            | Kind::Internal
-            | Kind::Bang
-            | Kind::BangBang
-            | Kind::Question
-            | Kind::MinusPlus
+        TokenKind::Await
+            | TokenKind::If
+            | TokenKind::While
+            | TokenKind::For
+            | TokenKind::Fork
+            | TokenKind::Internal
+            | TokenKind::Bang
+            | TokenKind::BangBang
+            | TokenKind::Question
+            | TokenKind::MinusPlus
     )
 }

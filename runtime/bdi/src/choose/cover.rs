@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    sets::{Row, row_at, shuffle},
+    sets::{AlternativeRow, row_at, shuffle},
     space::AllowedSpace,
 };
 
@@ -16,11 +16,11 @@ pub(super) const CANDIDATES: usize = 30;
 pub(super) const MAX_TUPLES: u128 = 100_000_000;
 
 /// A factor and one of its alternatives.
-pub(super) type Place = (usize, u32);
+pub(super) type FactorChoice = (usize, u32);
 
 /// A covering array, and the strength that it has.
 pub(super) struct CoveringArray {
-    pub rows: Vec<Row>,
+    pub rows: Vec<AlternativeRow>,
     /// Less than what was asked for if there would be too many tuples.
     pub strength: usize,
 }
@@ -82,7 +82,7 @@ impl<'s> UncoveredTuples<'s> {
 
     /// The first tuple of a group with these alternatives, all of its factors' but `open`'s, and the distance between
     /// those that differ in `open` only.
-    fn line(&self, group: &FactorGroup, row: &Row, open: usize) -> (usize, usize) {
+    fn line(&self, group: &FactorGroup, row: &AlternativeRow, open: usize) -> (usize, usize) {
         let (mut at, mut stride, mut step) = (group.start, 1, 0);
         for factor in group.factors.iter().rev() {
             if *factor == open {
@@ -99,7 +99,7 @@ impl<'s> UncoveredTuples<'s> {
         self.open[tuple / 64] >> (tuple % 64) & 1 == 1
     }
 
-    pub(super) fn cover(&mut self, row: &Row) {
+    pub(super) fn cover(&mut self, row: &AlternativeRow) {
         for index in 0..self.groups.len() {
             let tuple = self.line(&self.groups[index], row, usize::MAX).0;
             self.close(index, tuple, row);
@@ -107,7 +107,7 @@ impl<'s> UncoveredTuples<'s> {
     }
 
     /// A tuple, which a row has, is no longer looked for.
-    fn close(&mut self, group: usize, tuple: usize, row: &Row) {
+    fn close(&mut self, group: usize, tuple: usize, row: &AlternativeRow) {
         if self.is_open(tuple) {
             self.open[tuple / 64] &= !(1 << (tuple % 64));
             for factor in &self.groups[group].factors {
@@ -153,7 +153,7 @@ impl<'s> UncoveredTuples<'s> {
     }
 
     /// The alternative with the most open tuples; the first of several.
-    pub(super) fn neediest(&self) -> Place {
+    pub(super) fn neediest(&self) -> FactorChoice {
         let mut best = (0, 0, 0);
         for (factor, counts) in self.of.iter().enumerate() {
             for (alternative, open) in (0u32..).zip(counts) {
@@ -167,7 +167,7 @@ impl<'s> UncoveredTuples<'s> {
 
     /// What candidates begin with: the neediest alternative; if tuples are of more than two, the first open tuple that it
     /// is in, so that every candidate covers one.
-    fn seed(&self) -> Vec<Place> {
+    fn seed(&self) -> Vec<FactorChoice> {
         let (factor, alternative) = self.neediest();
         if self.strength == 2 {
             return vec![(factor, alternative)];
@@ -176,7 +176,7 @@ impl<'s> UncoveredTuples<'s> {
     }
 
     /// The first open tuple that has this alternative.
-    pub(super) fn open_tuple(&self, (factor, alternative): Place) -> Vec<Place> {
+    pub(super) fn open_tuple(&self, (factor, alternative): FactorChoice) -> Vec<FactorChoice> {
         let with = |g: &&FactorGroup| g.left > 0 && g.factors.contains(&factor);
         for group in self.groups.iter().filter(with) {
             let tuples: usize = group.factors.iter().map(|f| self.sizes[*f] as usize).product();
@@ -191,7 +191,7 @@ impl<'s> UncoveredTuples<'s> {
     }
 
     /// The alternatives of the tuple of this number of these factors.
-    fn places(&self, factors: &[usize], mut tuple: usize) -> Vec<Place> {
+    fn places(&self, factors: &[usize], mut tuple: usize) -> Vec<FactorChoice> {
         let mut places = Vec::with_capacity(self.strength);
         for factor in factors.iter().rev() {
             let size = self.sizes[*factor] as usize;
@@ -204,7 +204,7 @@ impl<'s> UncoveredTuples<'s> {
 
     /// For each alternative of a factor: how many open tuples it makes with alternatives of the factors that are placed,
     /// which are in increasing order.
-    pub(super) fn gains(&self, factor: usize, placed: &[usize], row: &Row) -> Vec<usize> {
+    pub(super) fn gains(&self, factor: usize, placed: &[usize], row: &AlternativeRow) -> Vec<usize> {
         let mut gains = vec![0; self.sizes[factor] as usize];
         let others = self.strength - 1;
         if placed.len() < others {
@@ -306,7 +306,7 @@ pub(super) fn covering(sizes: &[u32], strength: usize, limit: usize, rng: &mut C
     let mut uncovered = UncoveredTuples::new(sizes, strength);
     let mut rows = Vec::new();
     while uncovered.left > 0 && rows.len() < limit {
-        let mut best: Option<(usize, Row)> = None;
+        let mut best: Option<(usize, AlternativeRow)> = None;
         let start = uncovered.seed();
         for _ in 0..CANDIDATES {
             let (gain, row) = candidate(&uncovered, &start, rng);
@@ -324,8 +324,12 @@ pub(super) fn covering(sizes: &[u32], strength: usize, limit: usize, rng: &mut C
 
 /// A row that starts from alternatives of some factors and goes through the other factors in a random order, each time
 /// taking what covers most with the row so far; and how many open tuples these steps covered.
-fn candidate(uncovered: &UncoveredTuples, start: &[Place], rng: &mut ChaCha8Rng) -> (usize, Row) {
-    let mut row: Row = vec![0; uncovered.sizes.len()];
+fn candidate(
+    uncovered: &UncoveredTuples,
+    start: &[FactorChoice],
+    rng: &mut ChaCha8Rng,
+) -> (usize, AlternativeRow) {
+    let mut row: AlternativeRow = vec![0; uncovered.sizes.len()];
     let mut placed: Vec<usize> = start.iter().map(|(factor, _)| *factor).collect();
     for (factor, alternative) in start {
         row[*factor] = *alternative;
@@ -353,12 +357,12 @@ mod tests {
 
     use super::*;
 
-    fn rows(sizes: &[u32], strength: usize, seed: u64) -> Vec<Row> {
+    fn rows(sizes: &[u32], strength: usize, seed: u64) -> Vec<AlternativeRow> {
         covering(sizes, strength, usize::MAX, &mut ChaCha8Rng::seed_from_u64(seed)).rows
     }
 
     /// All tuples that rows cover, and the number there is, counted without the machinery above.
-    fn counted(sizes: &[u32], rows: &[Row], strength: usize) -> (usize, usize) {
+    fn counted(sizes: &[u32], rows: &[AlternativeRow], strength: usize) -> (usize, usize) {
         let (mut seen, mut all) = (0, 0);
         for mask in (0u32..1 << sizes.len()).filter(|m| m.count_ones() as usize == strength) {
             let factors: Vec<usize> = (0..sizes.len()).filter(|f| mask >> f & 1 == 1).collect();
@@ -381,7 +385,7 @@ mod tests {
                 prop_assert_eq!(row.len(), sizes.len());
                 prop_assert!(row.iter().zip(&sizes).all(|(a, n)| a < n));
             }
-            let distinct: BTreeSet<&Row> = found.iter().collect();
+            let distinct: BTreeSet<&AlternativeRow> = found.iter().collect();
             prop_assert_eq!(distinct.len(), found.len(), "a row covers something that no other does");
             // No array is smaller than the product of the two largest factors; a greedy one is not far above.
             let mut sorted = sizes.clone();
@@ -399,7 +403,7 @@ mod tests {
             let least = strength.min(sizes.len());
             let (seen, all) = counted(&sizes, &found, least);
             prop_assert_eq!(seen, all);
-            let distinct: BTreeSet<&Row> = found.iter().collect();
+            let distinct: BTreeSet<&AlternativeRow> = found.iter().collect();
             prop_assert_eq!(distinct.len(), found.len());
             let mut sorted = sizes.clone();
             sorted.sort_unstable_by(|a, b| b.cmp(a));
@@ -439,7 +443,7 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(0);
         for strength in [2, 3, 6] {
             assert_eq!(covering(&[3], strength, 9, &mut rng).rows, [[0], [1], [2]]);
-            assert_eq!(covering(&[], strength, 9, &mut rng).rows, [Row::new()]);
+            assert_eq!(covering(&[], strength, 9, &mut rng).rows, [AlternativeRow::new()]);
         }
         assert_eq!(covering(&[4, 4], 2, 3, &mut rng).rows.len(), 3);
     }

@@ -15,7 +15,7 @@ use super::{
     factors::{BeliefFactor, ChooseError},
     judge::ConditionEvaluator,
     learn::FactorLearner,
-    sets::{BATCH, BeliefSet, MAX_SETS, Row, belief_set, row_at, shuffle, sizes, space},
+    sets::{AlternativeRow, BATCH, BeliefSet, MAX_SETS, belief_set, row_at, shuffle, sizes, space},
     space::AllowedSpace,
     within::within,
 };
@@ -48,7 +48,7 @@ pub fn explore(factors: &[BeliefFactor], explore: ExploreMode, tests: u32, seed:
     let (rows, cut) = match explore {
         // INVARIANT: `wanted` is at most the space.
         ExploreMode::Exhaustive => {
-            let rows: Vec<Row> = (0..wanted as u128).map(|index| row_at(&sizes, index)).collect();
+            let rows: Vec<AlternativeRow> = (0..wanted as u128).map(|index| row_at(&sizes, index)).collect();
             (rows, (wanted as u128) < space)
         }
         ExploreMode::Wise(_) if space == 0 => (Vec::new(), false),
@@ -122,7 +122,7 @@ impl<'a> BeliefExplorer<'a> {
         let of_row = factors.to_vec();
         let fault = Rc::new(Cell::new(None));
         let told = Rc::clone(&fault);
-        let holds = move |question: usize, row: &Row| {
+        let holds = move |question: usize, row: &AlternativeRow| {
             let alternatives = of_row.iter().zip(row).map(|(f, a)| (f.agent, &f.alternatives[*a as usize]));
             let holds = judge
                 .holds(question, &mut alternatives.flat_map(|(id, a)| a.facts.iter().map(move |f| (id, f))));
@@ -221,18 +221,24 @@ fn wanted(space: u128, tests: u32) -> usize {
 }
 
 /// Adds different random rows until there are `wanted`, which is at most the space.
-fn fill(mut rows: Vec<Row>, sizes: &[u32], space: u128, wanted: usize, rng: &mut ChaCha8Rng) -> Vec<Row> {
-    let mut seen: BTreeSet<Row> = rows.iter().cloned().collect();
+fn fill(
+    mut rows: Vec<AlternativeRow>,
+    sizes: &[u32],
+    space: u128,
+    wanted: usize,
+    rng: &mut ChaCha8Rng,
+) -> Vec<AlternativeRow> {
+    let mut seen: BTreeSet<AlternativeRow> = rows.iter().cloned().collect();
     // In a small space drawing would take long to find the last ones: deal them out instead.
     if space <= 4 * wanted as u128 {
-        let mut rest: Vec<Row> =
+        let mut rest: Vec<AlternativeRow> =
             (0..space).map(|index| row_at(sizes, index)).filter(|row| !seen.contains(row)).collect();
         shuffle(&mut rest, rng);
         rest.truncate(wanted.saturating_sub(rows.len()));
         rows.append(&mut rest);
     }
     while rows.len() < wanted {
-        let row: Row = sizes.iter().map(|size| rng.random_range(0..*size)).collect();
+        let row: AlternativeRow = sizes.iter().map(|size| rng.random_range(0..*size)).collect();
         if seen.insert(row.clone()) {
             rows.push(row);
         }

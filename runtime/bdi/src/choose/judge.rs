@@ -13,7 +13,7 @@ use super::{
     sets::BeliefSet,
 };
 use crate::{
-    belief::{Annotations, BeliefBase, Ground, sourced, typed},
+    belief::{BeliefBase, FactAnnotations, GroundArguments, sourced, typed},
     check,
     dice::AgentRng,
     mind::{AgentIdentity, MentalState, PeerTable},
@@ -147,8 +147,8 @@ impl<'p> ConditionEvaluator<'p> {
 /// As an agent does when it starts; a fact that does not fit its declaration is left out.
 fn believe(mind: &mut MentalState<'_>, fact: &InitialFact) {
     let declared = mind.agent.and_then(|a| a.beliefs.get(usize::from(fact.belief.0)));
-    if let Some(args) = declared.and_then(|b| typed(&b.params, Ground::from_slice(&fact.args))) {
-        let annotations = sourced(Annotations::from_slice(&fact.annotations));
+    if let Some(args) = declared.and_then(|b| typed(&b.params, GroundArguments::from_slice(&fact.args))) {
+        let annotations = sourced(FactAnnotations::from_slice(&fact.annotations));
         mind.beliefs.insert(fact.belief, &args, annotations);
     }
 }

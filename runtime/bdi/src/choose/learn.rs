@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{
     factors::BeliefFactor,
-    sets::{BATCH, BeliefSet, Row, belief_set, sizes},
+    sets::{AlternativeRow, BATCH, BeliefSet, belief_set, sizes},
     space::{AllowedSpace, NextRow},
     within::after,
 };
@@ -41,9 +41,9 @@ pub struct FactorLearner<'a> {
     sizes: Vec<u32>,
     /// By factor, the alternative before it (0 for the first) and the alternative; absent: 0.
     values: BTreeMap<(u32, u32, u32), f64>,
-    seen: BTreeSet<Row>,
+    seen: BTreeSet<AlternativeRow>,
     /// Of the last batch.
-    rows: Vec<Row>,
+    rows: Vec<AlternativeRow>,
     epsilon: f64,
     wanted: usize,
     rng: ChaCha8Rng,
@@ -97,7 +97,7 @@ impl<'a> FactorLearner<'a> {
         self.epsilon = (self.epsilon * EPSILON.1).max(EPSILON.2);
     }
 
-    fn episode(&mut self, row: &Row, reward: f64) {
+    fn episode(&mut self, row: &AlternativeRow, reward: f64) {
         for factor in (0..row.len()).rev() {
             let target = match factor + 1 {
                 last if last == row.len() => reward,
@@ -125,7 +125,7 @@ impl<'a> FactorLearner<'a> {
     }
 
     /// A row that was not there yet: drawn; if that takes too long the first after the last one drawn.
-    fn new_row(&mut self) -> Option<Row> {
+    fn new_row(&mut self) -> Option<AlternativeRow> {
         let mut last = None;
         for _ in 0..=ATTEMPTS {
             let Some(row) = self.draw() else { continue };
@@ -140,7 +140,7 @@ impl<'a> FactorLearner<'a> {
     }
 
     /// The first row that was not there from this one on, and from the start again after the end.
-    fn after(&mut self, mut row: Row) -> Option<Row> {
+    fn after(&mut self, mut row: AlternativeRow) -> Option<AlternativeRow> {
         let Some(space) = &mut self.space else {
             while self.seen.contains(&row) {
                 advance(&mut row, &self.sizes);
@@ -161,8 +161,8 @@ impl<'a> FactorLearner<'a> {
     }
 
     /// `None` if the alternatives that were taken leave none that is allowed.
-    fn draw(&mut self) -> Option<Row> {
-        let mut row = Row::with_capacity(self.sizes.len());
+    fn draw(&mut self) -> Option<AlternativeRow> {
+        let mut row = AlternativeRow::with_capacity(self.sizes.len());
         for factor in 0..self.sizes.len() {
             let at_random = self.rng.random_range(0.0..1.0) < self.epsilon;
             let permitted = match &mut self.space {
@@ -179,12 +179,12 @@ impl<'a> FactorLearner<'a> {
 }
 
 /// The alternative taken for the factor before; 0 for the first factor.
-fn before(row: &Row, factor: usize) -> u32 {
+fn before(row: &AlternativeRow, factor: usize) -> u32 {
     factor.checked_sub(1).map_or(0, |f| row[f])
 }
 
 /// The next row in lexicographic order, the first after the last.
-fn advance(row: &mut Row, sizes: &[u32]) {
+fn advance(row: &mut AlternativeRow, sizes: &[u32]) {
     for (digit, size) in row.iter_mut().zip(sizes).rev() {
         *digit += 1;
         if *digit < *size {
@@ -211,7 +211,11 @@ mod tests {
     }
 
     /// Rows of so many batches, when each set brings what `reward` says.
-    fn run(learner: &mut FactorLearner, batches: usize, reward: impl Fn(&Row) -> u32) -> Vec<Row> {
+    fn run(
+        learner: &mut FactorLearner,
+        batches: usize,
+        reward: impl Fn(&AlternativeRow) -> u32,
+    ) -> Vec<AlternativeRow> {
         let mut all = Vec::new();
         for _ in 0..batches {
             learner.next_batch();
@@ -229,16 +233,16 @@ mod tests {
         assert_eq!(rows.len(), 24);
         assert_eq!(rows.iter().collect::<BTreeSet<_>>().len(), 24);
         assert!(learner.next_batch().is_empty());
-        assert_eq!(run(&mut FactorLearner::new(&[], 1, 0), 2, |_| 1), [Row::new()]);
+        assert_eq!(run(&mut FactorLearner::new(&[], 1, 0), 2, |_| 1), [AlternativeRow::new()]);
     }
 
     #[test]
     fn what_brings_something_is_chosen_more_often() {
         // Only sets with alternative 7 after alternative 3 bring anything: one in 64 at random.
-        let is_good = |row: &Row| row[1] == 3 && row[2] == 7;
+        let is_good = |row: &AlternativeRow| row[1] == 3 && row[2] == 7;
         let mut learner = FactorLearner::new(&factors(&[8, 8, 8, 8]), 4096, 11);
         let rows = run(&mut learner, 40, |row| u32::from(is_good(row)));
-        let good = |rows: &[Row]| rows.iter().filter(|r| is_good(r)).count();
+        let good = |rows: &[AlternativeRow]| rows.iter().filter(|r| is_good(r)).count();
         let (first, last) = (good(&rows[..320]), good(&rows[320..]));
         assert!(first < 64 && good(&rows) >= 32, "{first} of 320, then {last} of 320");
         // There are 64 such sets in all; at random 10 of 640 would be among them.

@@ -22,7 +22,7 @@ pub struct BeliefSet {
 }
 
 /// An index of an alternative for each factor.
-pub(super) type Row = Vec<u32>;
+pub(super) type AlternativeRow = Vec<u32>;
 
 pub(super) fn sizes(factors: &[BeliefFactor]) -> Vec<u32> {
     factors.iter().map(|f| f.alternatives.len() as u32).collect()
@@ -33,7 +33,7 @@ pub(super) fn space(sizes: &[u32]) -> u128 {
     sizes.iter().fold(1u128, |product, size| product.saturating_mul(u128::from(*size)))
 }
 
-pub(super) fn belief_set(factors: &[BeliefFactor], row: &Row) -> BeliefSet {
+pub(super) fn belief_set(factors: &[BeliefFactor], row: &AlternativeRow) -> BeliefSet {
     let mut set = BeliefSet::default();
     for (factor, choice) in factors.iter().zip(row) {
         let alternative = &factor.alternatives[*choice as usize];
@@ -46,7 +46,7 @@ pub(super) fn belief_set(factors: &[BeliefFactor], row: &Row) -> BeliefSet {
 }
 
 /// The row of this index in lexicographic order.
-pub(super) fn row_at(sizes: &[u32], mut index: u128) -> Row {
+pub(super) fn row_at(sizes: &[u32], mut index: u128) -> AlternativeRow {
     let mut row = vec![0; sizes.len()];
     for (digit, size) in row.iter_mut().zip(sizes).rev() {
         *digit = (index % u128::from(*size)) as u32;

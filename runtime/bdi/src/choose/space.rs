@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::sets::{Row, shuffle};
+use super::sets::{AlternativeRow, shuffle};
 
 /// A group of at most so many rows is gone through.
 pub(super) const MAX_ROWS: u128 = 1_000_000;
@@ -28,13 +28,13 @@ const MAX_MEMO: usize = 200_000;
 const EFFORT: u64 = 5_000_000;
 
 /// Decides a condition by its number; only the alternatives of the factors in its scope are looked at.
-pub(super) type Holds<'a> = Box<dyn FnMut(usize, &Row) -> bool + 'a>;
+pub(super) type ConditionOracle<'a> = Box<dyn FnMut(usize, &AlternativeRow) -> bool + 'a>;
 
 struct ConditionClause {
     /// Upwards.
     scope: Vec<usize>,
     /// Answers by the alternatives of the scope.
-    known: BTreeMap<Row, bool>,
+    known: BTreeMap<AlternativeRow, bool>,
 }
 
 /// Factors that conditions tie together.
@@ -84,7 +84,7 @@ impl TiedFactors {
 /// What a search brought.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum NextRow {
-    Row(Row),
+    Row(AlternativeRow),
     /// There is none.
     End,
     /// The search took too long.
@@ -95,7 +95,7 @@ pub(super) enum NextRow {
 pub(super) struct AllowedSpace<'a> {
     pub sizes: Vec<u32>,
     clauses: Vec<ConditionClause>,
-    holds: Holds<'a>,
+    holds: ConditionOracle<'a>,
     pub groups: Vec<TiedFactors>,
     /// By factor: its group; none for a free one.
     pub group_of: Vec<Option<usize>>,
@@ -110,7 +110,12 @@ pub(super) struct AllowedSpace<'a> {
 }
 
 impl<'a> AllowedSpace<'a> {
-    pub fn new(sizes: Vec<u32>, scopes: Vec<Vec<usize>>, holds: Holds<'a>, rng: &mut ChaCha8Rng) -> Self {
+    pub fn new(
+        sizes: Vec<u32>,
+        scopes: Vec<Vec<usize>>,
+        holds: ConditionOracle<'a>,
+        rng: &mut ChaCha8Rng,
+    ) -> Self {
         Self::limited(sizes, scopes, holds, MAX_ROWS, rng)
     }
 
@@ -118,7 +123,7 @@ impl<'a> AllowedSpace<'a> {
     pub fn limited(
         sizes: Vec<u32>,
         scopes: Vec<Vec<usize>>,
-        holds: Holds<'a>,
+        holds: ConditionOracle<'a>,
         max_rows: u128,
         rng: &mut ChaCha8Rng,
     ) -> Self {
@@ -195,8 +200,8 @@ impl<'a> AllowedSpace<'a> {
         self.groups.iter().find(|g| g.len() == 0)
     }
 
-    fn decide(&mut self, clause: usize, row: &Row) -> bool {
-        let key: Row = self.clauses[clause].scope.iter().map(|f| row[*f]).collect();
+    fn decide(&mut self, clause: usize, row: &AlternativeRow) -> bool {
+        let key: AlternativeRow = self.clauses[clause].scope.iter().map(|f| row[*f]).collect();
         if let Some(known) = self.clauses[clause].known.get(&key) {
             return *known;
         }
@@ -209,7 +214,7 @@ impl<'a> AllowedSpace<'a> {
     }
 
     /// Whether the alternatives up to this factor can stand, as far as is seen from them.
-    fn stands(&mut self, factor: usize, row: &Row) -> bool {
+    fn stands(&mut self, factor: usize, row: &AlternativeRow) -> bool {
         if let Some(group) = self.group_of[factor].and_then(|g| self.groups.get(g)).filter(|g| g.exact) {
             let before = group.factors.iter().take_while(|f| **f <= factor);
             let prefix: Vec<u16> = before.map(|f| row[*f] as u16).collect();
@@ -220,7 +225,7 @@ impl<'a> AllowedSpace<'a> {
 
     /// Goes to the first allowed row from this one on, in lexicographic order of the factors given; `Some(false)` if there
     /// is none, `None` if that takes too long.
-    fn search(&mut self, factors: &[usize], row: &mut Row, nodes: &mut u64) -> Option<bool> {
+    fn search(&mut self, factors: &[usize], row: &mut AlternativeRow, nodes: &mut u64) -> Option<bool> {
         let (mut depth, mut is_tight) = (0, true);
         while let Some(factor) = factors.get(depth).copied() {
             *nodes = nodes.checked_sub(1)?;
@@ -242,7 +247,7 @@ impl<'a> AllowedSpace<'a> {
     }
 
     /// The first allowed row from this one on, in lexicographic order.
-    pub fn next(&mut self, from: &Row) -> NextRow {
+    pub fn next(&mut self, from: &AlternativeRow) -> NextRow {
         let (mut row, mut nodes) = (from.clone(), MAX_NODES);
         if self.never {
             return NextRow::End;
@@ -358,7 +363,7 @@ impl<'a> AllowedSpace<'a> {
 
     /// An allowed row, drawn: first an alternative of each free factor, then a row of each group. Of a larger group it is
     /// the first that an attempt finds, and otherwise one of the sample.
-    pub fn draw(&mut self, rng: &mut ChaCha8Rng) -> Option<Row> {
+    pub fn draw(&mut self, rng: &mut ChaCha8Rng) -> Option<AlternativeRow> {
         let mut row = vec![0; self.sizes.len()];
         for factor in (0..row.len()).filter(|f| self.group_of[*f].is_none()) {
             row[factor] = rng.random_range(0..self.sizes[factor]);

@@ -7,8 +7,8 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    cover::{CANDIDATES, Place, UncoveredTuples, tuples},
-    sets::{MAX_SETS, Row, shuffle},
+    cover::{CANDIDATES, FactorChoice, UncoveredTuples, tuples},
+    sets::{AlternativeRow, MAX_SETS, shuffle},
     space::{AllowedSpace, NextRow},
 };
 
@@ -21,7 +21,7 @@ const MISSES: usize = 1_000;
 /// What was found within a space.
 #[derive(Debug, Default)]
 pub(super) struct AllowedRows {
-    pub rows: Vec<Row>,
+    pub rows: Vec<AlternativeRow>,
     /// A limit cut short what was asked for.
     pub cut: bool,
     pub notes: Vec<String>,
@@ -54,7 +54,7 @@ pub(super) fn within(
 }
 
 /// The first allowed rows, and what comes after them.
-fn first(space: &mut AllowedSpace<'_>, limit: usize) -> (Vec<Row>, NextRow) {
+fn first(space: &mut AllowedSpace<'_>, limit: usize) -> (Vec<AlternativeRow>, NextRow) {
     let mut rows = Vec::new();
     let mut next = space.next(&vec![0; space.sizes.len()]);
     while let NextRow::Row(row) = &next {
@@ -68,7 +68,7 @@ fn first(space: &mut AllowedSpace<'_>, limit: usize) -> (Vec<Row>, NextRow) {
 }
 
 /// The first allowed row after this one.
-pub(super) fn after(space: &mut AllowedSpace<'_>, row: &Row) -> NextRow {
+pub(super) fn after(space: &mut AllowedSpace<'_>, row: &AlternativeRow) -> NextRow {
     let mut from = row.clone();
     match from.last_mut() {
         Some(last) => *last += 1,
@@ -83,7 +83,7 @@ fn fill(found: &mut AllowedRows, space: &mut AllowedSpace<'_>, tests: usize, rng
     let most = allowed.map_or(usize::MAX, |n| usize::try_from(n).unwrap_or(usize::MAX));
     let wanted = tests.min(MAX_SETS).min(most);
     let rows = &mut found.rows;
-    let mut seen: BTreeSet<Row> = rows.iter().cloned().collect();
+    let mut seen: BTreeSet<AlternativeRow> = rows.iter().cloned().collect();
     if rows.len() < wanted && allowed.is_some_and(|n| n <= 4 * wanted as u128) {
         let (mut rest, _) = first(space, most);
         rest.retain(|row| !seen.contains(row));
@@ -125,7 +125,7 @@ fn covering(space: &mut AllowedSpace<'_>, mut strength: usize, rng: &mut ChaCha8
     while uncovered.left > 0 && found.rows.len() < MAX_SETS {
         let start = uncovered.open_tuple(uncovered.neediest());
         let begun = TupleCandidates::new(space, &start);
-        let mut best: Option<(usize, Row)> = None;
+        let mut best: Option<(usize, AlternativeRow)> = None;
         for _ in 0..CANDIDATES {
             let (gain, row) = begun.candidate(&uncovered, rng);
             if best.as_ref().is_none_or(|(most, _)| gain > *most) {
@@ -154,12 +154,12 @@ fn excluded_note(excluded: u64, strength: usize, is_exact: bool) -> String {
 /// A tuple that candidates begin with, and by group the allowed rows that have it; `None`: all of them.
 struct TupleCandidates<'s, 'a> {
     space: &'s AllowedSpace<'a>,
-    start: &'s [Place],
+    start: &'s [FactorChoice],
     matching: Vec<Option<Vec<u32>>>,
 }
 
 impl<'s, 'a> TupleCandidates<'s, 'a> {
-    fn new(space: &'s AllowedSpace<'a>, start: &'s [Place]) -> Self {
+    fn new(space: &'s AllowedSpace<'a>, start: &'s [FactorChoice]) -> Self {
         let mut begun = Self { space, start, matching: vec![None; space.groups.len()] };
         let mut matching = begun.matching.clone();
         start.iter().for_each(|place| begun.narrow(&mut matching, *place));
@@ -168,7 +168,7 @@ impl<'s, 'a> TupleCandidates<'s, 'a> {
     }
 
     /// Leaves the rows that have this alternative.
-    fn narrow(&self, matching: &mut [Option<Vec<u32>>], (factor, alternative): Place) {
+    fn narrow(&self, matching: &mut [Option<Vec<u32>>], (factor, alternative): FactorChoice) {
         let Some(at) = self.space.group_of[factor] else { return };
         let group = &self.space.groups[at];
         let Some(place) = group.place(factor) else { return };
@@ -197,8 +197,8 @@ impl<'s, 'a> TupleCandidates<'s, 'a> {
     }
 
     /// As [`candidate`](super::cover), of what is permitted.
-    fn candidate(&self, uncovered: &UncoveredTuples<'_>, rng: &mut ChaCha8Rng) -> (usize, Row) {
-        let mut row: Row = vec![0; self.space.sizes.len()];
+    fn candidate(&self, uncovered: &UncoveredTuples<'_>, rng: &mut ChaCha8Rng) -> (usize, AlternativeRow) {
+        let mut row: AlternativeRow = vec![0; self.space.sizes.len()];
         let mut placed: Vec<usize> = self.start.iter().map(|(factor, _)| *factor).collect();
         self.start.iter().for_each(|(factor, alternative)| row[*factor] = *alternative);
         let mut order: Vec<usize> = (0..row.len()).filter(|f| !placed.contains(f)).collect();
@@ -255,18 +255,18 @@ mod tests {
         rng: &mut ChaCha8Rng,
     ) -> AllowedSpace<'a> {
         let scopes = clauses.iter().map(|(scope, _)| scope.clone()).collect();
-        let holds = move |clause: usize, row: &Row| holds(clauses, clause, row);
+        let holds = move |clause: usize, row: &AlternativeRow| holds(clauses, clause, row);
         AllowedSpace::limited(sizes.to_vec(), scopes, Box::new(holds), max, rng)
     }
 
     /// The allowed rows, by trying all.
-    fn allowed(sizes: &[u32], clauses: &[(Vec<usize>, u8)]) -> Vec<Row> {
+    fn allowed(sizes: &[u32], clauses: &[(Vec<usize>, u8)]) -> Vec<AlternativeRow> {
         let count: u32 = sizes.iter().product();
         let all = (0..count).map(|i| row_at(sizes, i.into()));
         all.filter(|row| (0..clauses.len()).all(|c| holds(clauses, c, row))).collect()
     }
 
-    fn sub_tuples(rows: &[Row], factors: usize, strength: usize) -> BTreeSet<Vec<(usize, u32)>> {
+    fn sub_tuples(rows: &[AlternativeRow], factors: usize, strength: usize) -> BTreeSet<Vec<(usize, u32)>> {
         let mut found = BTreeSet::new();
         for mask in (0u32..1 << factors).filter(|m| m.count_ones() as usize == strength.min(factors)) {
             let chosen: Vec<usize> = (0..factors).filter(|f| mask >> f & 1 == 1).collect();
@@ -297,7 +297,7 @@ mod tests {
         method: ExploreMode,
         tests: u32,
         seed: u64,
-    ) -> Result<Vec<Row>, ChooseError> {
+    ) -> Result<Vec<AlternativeRow>, ChooseError> {
         let rng = ChaCha8Rng::seed_from_u64(seed);
         let mut explorer = BeliefExplorer::within(space, &factors(sizes), (method, tests), rng)?;
         let mut rows = Vec::new();
@@ -309,7 +309,11 @@ mod tests {
             assert!(batch.len() <= BATCH);
             explorer.learn(&vec![1; batch.len()]);
             let of = |fact: &InitialFact| fact.args[0].as_f64().map_or(0, |n| n as u32);
-            rows.extend(batch.iter().map(|set| set.facts.iter().map(|(_, fact)| of(fact)).collect::<Row>()));
+            rows.extend(
+                batch
+                    .iter()
+                    .map(|set| set.facts.iter().map(|(_, fact)| of(fact)).collect::<AlternativeRow>()),
+            );
         }
     }
 
@@ -342,7 +346,7 @@ mod tests {
                     continue;
                 };
                 prop_assert!(!allowed.is_empty());
-                let distinct: BTreeSet<&Row> = rows.iter().collect();
+                let distinct: BTreeSet<&AlternativeRow> = rows.iter().collect();
                 prop_assert_eq!(distinct.len(), rows.len());
                 prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", method);
                 let least = allowed.len().min(tests as usize);
@@ -372,7 +376,7 @@ mod tests {
                     continue;
                 };
                 prop_assert!(rows.iter().all(|row| allowed.contains(row)), "{:?}", method);
-                let distinct: BTreeSet<&Row> = rows.iter().collect();
+                let distinct: BTreeSet<&AlternativeRow> = rows.iter().collect();
                 prop_assert_eq!(distinct.len(), rows.len());
                 // So small a space is found whole at random.
                 if let ExploreMode::Wise(t) = method {
@@ -385,7 +389,7 @@ mod tests {
 
     /// 40 beliefs of which at most three are held.
     fn few_of_many(rng: &mut ChaCha8Rng) -> AllowedSpace<'static> {
-        let few = |_, row: &Row| row.iter().sum::<u32>() <= 3;
+        let few = |_, row: &AlternativeRow| row.iter().sum::<u32>() <= 3;
         AllowedSpace::new(vec![2; 40], vec![(0..40).collect()], Box::new(few), rng)
     }
 
@@ -400,7 +404,7 @@ mod tests {
             assert!(rows.iter().all(|row| row.iter().sum::<u32>() <= 3), "{method:?}");
             assert!(rows.len() >= 50, "{method:?}: {}", rows.len());
             if method == ExploreMode::Wise(2) {
-                let held = |r: &Row, f: usize, g: usize| r[f] == 1 && r[g] == 1;
+                let held = |r: &AlternativeRow, f: usize, g: usize| r[f] == 1 && r[g] == 1;
                 let pairs = (0..40).flat_map(|f| (0..f).map(move |g| (f, g)));
                 for (f, g) in pairs {
                     assert!(rows.iter().any(|r| held(r, f, g)), "{f} {g}");
@@ -412,7 +416,7 @@ mod tests {
     #[test]
     fn what_no_row_fulfils_is_said() {
         let mut rng = ChaCha8Rng::seed_from_u64(0);
-        let never = |_, row: &Row| row[1] == 2;
+        let never = |_, row: &AlternativeRow| row[1] == 2;
         let space = AllowedSpace::new(vec![2, 2], vec![vec![1]], Box::new(never), &mut rng);
         let error = explored(&[2, 2], space, ExploreMode::Wise(2), 9, 0).unwrap_err();
         assert_eq!(error.to_string(), "no belief set fulfils what `where` says of b1");
@@ -424,7 +428,7 @@ mod tests {
     #[test]
     fn what_is_left_out_is_counted() {
         let mut rng = ChaCha8Rng::seed_from_u64(0);
-        let differ = |_, row: &Row| row[0] != row[1];
+        let differ = |_, row: &AlternativeRow| row[0] != row[1];
         let space = AllowedSpace::new(vec![3, 3, 2], vec![vec![0, 1]], Box::new(differ), &mut rng);
         let explorer =
             BeliefExplorer::within(space, &factors(&[3, 3, 2]), (ExploreMode::Wise(2), 9), rng).unwrap();

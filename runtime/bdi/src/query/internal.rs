@@ -12,7 +12,7 @@ use super::{AnswerSource, BeliefQueryError, FormulaPosition, QuerySolver, Solver
 use crate::{
     dice::AgentRng,
     mind::{GoalAttitude, MentalState},
-    unify::{Slot, eval, undo, unify_all},
+    unify::{VariableSlot, eval, undo, unify_all},
 };
 
 impl<'p> QuerySolver<'p> {
@@ -24,7 +24,7 @@ impl<'p> QuerySolver<'p> {
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
         let base = at.base as usize;
-        let value = |e, slots: &[Slot]| eval(e, &slots[base..]);
+        let value = |e, slots: &[VariableSlot]| eval(e, &slots[base..]);
         let (out, result) = match internal {
             InternalAct::FindAll { template, formula, .. } => {
                 return Ok(Some(self.collect(internal, formula, Some(template), at)));

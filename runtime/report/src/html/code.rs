@@ -2,34 +2,34 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use hrdsl_results::{CodeFile, Results, SuiteInfo};
+use hrdsl_results::{CampaignResults, CodeFile, SuiteInfo};
 use serde::Serialize;
 
-use super::pieces::{Ratio, branches_of, lines_of};
+use super::pieces::{ShownRatio, branches_of, lines_of};
 use crate::{facts, text};
 
 #[derive(Serialize)]
-pub struct Code {
-    lines: Ratio,
-    branches: Ratio,
-    chart: Option<Chart>,
-    files: Vec<File>,
+pub struct CodeSection {
+    lines: ShownRatio,
+    branches: ShownRatio,
+    chart: Option<CoverageChart>,
+    files: Vec<CoveredFile>,
 }
 
 #[derive(Serialize)]
-struct File {
+struct CoveredFile {
     name: String,
-    lines: Ratio,
-    branches: Ratio,
+    lines: ShownRatio,
+    branches: ShownRatio,
     missed_lines: String,
     missed_branches: usize,
     /// The suites have a column each, if it is known which test executed what.
     is_per_suite: bool,
-    rows: Vec<Line>,
+    rows: Vec<CodeLine>,
 }
 
 #[derive(Serialize)]
-struct Line {
+struct CodeLine {
     number: usize,
     /// `h` executed, `m` missed, `b` executed with a missed branch, or nothing to execute.
     class: &'static str,
@@ -42,12 +42,12 @@ struct Line {
 }
 
 /// `None` if no code was measured.
-pub fn code(results: &Results) -> Option<Code> {
+pub fn code(results: &CampaignResults) -> Option<CodeSection> {
     let all = facts::code(results);
     if results.code.is_empty() {
         return None;
     }
-    Some(Code {
+    Some(CodeSection {
         lines: lines_of(all),
         branches: branches_of(all),
         chart: chart(&results.suites, &|suite| measured(results, suite)),
@@ -55,10 +55,10 @@ pub fn code(results: &Results) -> Option<Code> {
     })
 }
 
-fn file(results: &Results, file: &CodeFile) -> File {
+fn file(results: &CampaignResults, file: &CodeFile) -> CoveredFile {
     let is_executed = file.lines.iter().any(|(_, tests)| *tests > 0);
     let missed = file.lines.iter().filter(|(_, tests)| *tests == 0).map(|(line, _)| *line);
-    File {
+    CoveredFile {
         name: file.file.clone(),
         lines: lines_of(file.ratios),
         branches: branches_of(file.ratios),
@@ -69,7 +69,7 @@ fn file(results: &Results, file: &CodeFile) -> File {
     }
 }
 
-fn rows(file: &CodeFile) -> Vec<Line> {
+fn rows(file: &CodeFile) -> Vec<CodeLine> {
     let counts = file.lines.iter().zip(&file.suites);
     let counts: BTreeMap<u32, (u32, &Vec<u32>)> =
         counts.map(|((line, tests), suites)| (*line, (*tests, suites))).collect();
@@ -83,7 +83,7 @@ fn rows(file: &CodeFile) -> Vec<Line> {
             Some(_) if !missed.is_empty() => ("b", "◐"),
             Some(_) => ("h", ""),
         };
-        Line {
+        CodeLine {
             number: number as usize,
             class,
             symbol,
@@ -111,26 +111,26 @@ fn note(missed: &BTreeSet<i32>) -> String {
 
 /// The accumulated percentage of lines after each test, with each test's own as a dot.
 #[derive(Serialize)]
-struct Chart {
+struct CoverageChart {
     width: u32,
     height: u32,
     left: String,
     right: String,
     bottom: String,
     title: String,
-    grid: Vec<Tick>,
-    ticks: Vec<Tick>,
-    curves: Vec<Curve>,
+    grid: Vec<ChartTick>,
+    ticks: Vec<ChartTick>,
+    curves: Vec<ChartCurve>,
 }
 
 #[derive(Serialize)]
-struct Tick {
+struct ChartTick {
     at: String,
     label: String,
 }
 
 #[derive(Serialize)]
-struct Curve {
+struct ChartCurve {
     /// Which of the styles for suites.
     style: usize,
     name: String,
@@ -153,12 +153,12 @@ const BOTTOM: f64 = 286.0;
 const LABEL: f64 = 17.0;
 
 /// From the place in a suite and a percentage to the picture.
-struct Scale {
+struct ChartScale {
     tests: f64,
     least: f64,
 }
 
-impl Scale {
+impl ChartScale {
     fn x(&self, test: usize) -> f64 {
         LEFT + (RIGHT - LEFT) * test as f64 / self.tests
     }
@@ -169,26 +169,26 @@ impl Scale {
 }
 
 /// For each test of a suite whether its code was measured: a program that dies at once may leave nothing to measure.
-fn measured(results: &Results, suite: &SuiteInfo) -> Vec<bool> {
+fn measured(results: &CampaignResults, suite: &SuiteInfo) -> Vec<bool> {
     results.tests.iter().filter(|t| t.suite == suite.name).map(|t| t.code.lines_total > 0).collect()
 }
 
-fn chart(suites: &[SuiteInfo], measured: &dyn Fn(&SuiteInfo) -> Vec<bool>) -> Option<Chart> {
+fn chart(suites: &[SuiteInfo], measured: &dyn Fn(&SuiteInfo) -> Vec<bool>) -> Option<CoverageChart> {
     let most = suites.iter().map(|s| s.code_accumulated.len()).max().filter(|most| *most > 0)?;
     let suites: Vec<(&SuiteInfo, Vec<bool>)> = suites.iter().map(|s| (s, measured(s))).collect();
     let alone =
         suites.iter().flat_map(|(s, m)| s.code_per_test.iter().zip(m).filter(|(_, m)| **m).map(|(v, _)| *v));
     let first = suites.iter().filter_map(|(s, _)| s.code_accumulated.first().copied());
     let least = alone.chain(first).filter(|v| v.is_finite()).fold(100.0, f64::min);
-    let scale = Scale { tests: most as f64, least: ((least / 10.0).floor() * 10.0).clamp(0.0, 90.0) };
+    let scale = ChartScale { tests: most as f64, least: ((least / 10.0).floor() * 10.0).clamp(0.0, 90.0) };
     let step = if scale.least >= 80.0 { 5 } else { 10 };
-    let tick = |at: f64, label: String| Tick { at: coordinate(at), label };
+    let tick = |at: f64, label: String| ChartTick { at: coordinate(at), label };
     let drawn = suites.iter().enumerate().filter(|(_, (s, _))| !s.code_accumulated.is_empty());
-    let mut curves: Vec<Curve> = drawn.map(|(i, (s, measured))| curve(i, s, measured, &scale)).collect();
+    let mut curves: Vec<ChartCurve> = drawn.map(|(i, (s, measured))| curve(i, s, measured, &scale)).collect();
     place_labels(&mut curves);
-    let says = |c: &Curve| format!("{} ends at {} %", c.name, c.last);
+    let says = |c: &ChartCurve| format!("{} ends at {} %", c.name, c.last);
     let says: Vec<String> = curves.iter().map(says).collect();
-    Some(Chart {
+    Some(CoverageChart {
         width: WIDTH as u32,
         height: HEIGHT as u32,
         left: coordinate(LEFT),
@@ -215,7 +215,7 @@ fn coordinate(value: f64) -> String {
     text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
 }
 
-fn curve(index: usize, suite: &SuiteInfo, measured: &[bool], scale: &Scale) -> Curve {
+fn curve(index: usize, suite: &SuiteInfo, measured: &[bool], scale: &ChartScale) -> ChartCurve {
     let style = index % STYLES;
     let mut line = String::new();
     let mut last_y = String::new();
@@ -238,7 +238,7 @@ fn curve(index: usize, suite: &SuiteInfo, measured: &[bool], scale: &Scale) -> C
     };
     let dots = (1..).zip(&suite.code_per_test).zip(measured).filter(|(_, m)| **m);
     let last = suite.code_accumulated.last().copied().unwrap_or(0.0);
-    Curve {
+    ChartCurve {
         style,
         name: suite.name.to_string(),
         last: format!("{last:.1}"),
@@ -251,7 +251,7 @@ fn curve(index: usize, suite: &SuiteInfo, measured: &[bool], scale: &Scale) -> C
 }
 
 /// Moves the labels at the curves' ends apart, from the lowest curve up and, where there is no room, down again.
-fn place_labels(curves: &mut [Curve]) {
+fn place_labels(curves: &mut [ChartCurve]) {
     let mut order: Vec<(f64, usize)> =
         curves.iter().enumerate().map(|(i, c)| (c.label_y.parse().unwrap_or(BOTTOM), i)).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));

@@ -4,18 +4,22 @@ use hrdsl_results::CoverageRatios;
 use serde::Serialize;
 
 #[derive(Serialize)]
-pub struct Ratio {
+pub struct ShownRatio {
     pub percent: String,
     pub part: u32,
     pub whole: u32,
 }
 
-pub fn lines_of(ratios: CoverageRatios) -> Ratio {
-    Ratio { percent: format!("{:.1}", ratios.line_percent()), part: ratios.lines, whole: ratios.lines_total }
+pub fn lines_of(ratios: CoverageRatios) -> ShownRatio {
+    ShownRatio {
+        percent: format!("{:.1}", ratios.line_percent()),
+        part: ratios.lines,
+        whole: ratios.lines_total,
+    }
 }
 
-pub fn branches_of(ratios: CoverageRatios) -> Ratio {
-    Ratio {
+pub fn branches_of(ratios: CoverageRatios) -> ShownRatio {
+    ShownRatio {
         percent: format!("{:.1}", ratios.branch_percent()),
         part: ratios.branches,
         whole: ratios.branches_total,
@@ -24,7 +28,7 @@ pub fn branches_of(ratios: CoverageRatios) -> Ratio {
 
 /// A test by name, with its place in the list.
 #[derive(Serialize)]
-pub struct Link {
+pub struct TestLink {
     pub name: String,
     pub place: Option<usize>,
 }

@@ -1,9 +1,9 @@
 //! Every test with its verdicts, its origin and its steps.
 
-use hrdsl_results::{BinName, Results, RunEnd, TestResult, VerdictOutcome as Outcome, VerdictResult};
+use hrdsl_results::{BinName, CampaignResults, RunEnd, TestResult, VerdictOutcome as Outcome, VerdictResult};
 use serde::Serialize;
 
-use super::violations::{Witness, counterexample};
+use super::violations::{CounterexampleTimeline, counterexample};
 use crate::{
     facts::{self, ShownOutcome},
     text,
@@ -13,15 +13,15 @@ use crate::{
 const COLUMNS: usize = 12;
 
 #[derive(Serialize)]
-pub struct List {
+pub struct TestList {
     suites: Vec<String>,
     requirements: Vec<String>,
     has_columns: bool,
-    tests: Vec<Test>,
+    tests: Vec<TestEntry>,
 }
 
 #[derive(Serialize)]
-struct Test {
+struct TestEntry {
     place: usize,
     class: char,
     symbol: &'static str,
@@ -37,10 +37,10 @@ struct Test {
     duration: String,
     /// One letter for each requirement.
     letters: String,
-    marks: Vec<Mark>,
+    marks: Vec<OutcomeMark>,
     error: String,
     failures: Vec<FailedVerdict>,
-    others: Vec<Group>,
+    others: Vec<OutcomeGroup>,
     because: Vec<String>,
     bins: Vec<TestBin>,
     bins_hit: usize,
@@ -57,7 +57,7 @@ struct Test {
 }
 
 #[derive(Serialize)]
-struct Mark {
+struct OutcomeMark {
     class: char,
     symbol: &'static str,
 }
@@ -66,12 +66,12 @@ struct Mark {
 struct FailedVerdict {
     requirement: String,
     title: String,
-    counterexample: Option<Witness>,
+    counterexample: Option<CounterexampleTimeline>,
 }
 
 /// The requirements with one outcome.
 #[derive(Serialize)]
-struct Group {
+struct OutcomeGroup {
     class: char,
     symbol: &'static str,
     word: &'static str,
@@ -87,8 +87,8 @@ struct TestBin {
 }
 
 /// All tests.
-pub fn list(results: &Results) -> List {
-    List {
+pub fn list(results: &CampaignResults) -> TestList {
+    TestList {
         suites: results.suites.iter().map(|s| s.name.to_string()).collect(),
         requirements: results.requirements.iter().map(|r| r.name.to_string()).collect(),
         has_columns: results.requirements.len() <= COLUMNS,
@@ -105,11 +105,11 @@ fn outcome(test: &TestResult, requirement: &str) -> Outcome {
         .map_or(Outcome::Vacuous, |v| v.outcome)
 }
 
-fn test(results: &Results, index: usize, test: &TestResult) -> Test {
+fn test(results: &CampaignResults, index: usize, test: &TestResult) -> TestEntry {
     let suite = results.suites.iter().position(|s| s.name == test.suite);
     let outcomes: Vec<Outcome> = results.requirements.iter().map(|r| outcome(test, &r.name)).collect();
     let overall = overall(test, &outcomes);
-    Test {
+    TestEntry {
         place: index + 1,
         class: overall.letter(),
         symbol: overall.symbol(),
@@ -127,7 +127,7 @@ fn test(results: &Results, index: usize, test: &TestResult) -> Test {
         },
         duration: text::stretch(test.duration),
         letters: outcomes.iter().map(|o| o.letter()).collect(),
-        marks: outcomes.iter().map(|o| Mark { class: o.letter(), symbol: o.symbol() }).collect(),
+        marks: outcomes.iter().map(|o| OutcomeMark { class: o.letter(), symbol: o.symbol() }).collect(),
         error: test.error.as_deref().map(|e| text::ends(&text::clean(e))).unwrap_or_default(),
         failures: test
             .judgement
@@ -169,7 +169,7 @@ fn overall(test: &TestResult, outcomes: &[Outcome]) -> Outcome {
     }
 }
 
-fn says(results: &Results, test: &TestResult, outcomes: &[Outcome]) -> String {
+fn says(results: &CampaignResults, test: &TestResult, outcomes: &[Outcome]) -> String {
     let named = |outcome: Outcome| -> Vec<String> {
         let such = results.requirements.iter().zip(outcomes).filter(|(_, o)| **o == outcome);
         such.map(|(r, _)| r.name.to_string()).collect()
@@ -187,7 +187,7 @@ fn says(results: &Results, test: &TestResult, outcomes: &[Outcome]) -> String {
     says.join("; ")
 }
 
-fn failed(results: &Results, verdict: &VerdictResult) -> FailedVerdict {
+fn failed(results: &CampaignResults, verdict: &VerdictResult) -> FailedVerdict {
     let requirement = results.requirements.iter().find(|r| r.name == verdict.requirement);
     FailedVerdict {
         requirement: verdict.requirement.to_string(),
@@ -196,12 +196,16 @@ fn failed(results: &Results, verdict: &VerdictResult) -> FailedVerdict {
     }
 }
 
-fn groups(test: &TestResult) -> Vec<Group> {
+fn groups(test: &TestResult) -> Vec<OutcomeGroup> {
     let group = |outcome: Outcome| {
         let such = test.judgement.verdicts.iter().filter(|v| v.outcome == outcome);
         let verdicts: Vec<String> = such.map(|v| in_words(v, outcome)).collect();
-        let group =
-            Group { class: outcome.letter(), symbol: outcome.symbol(), word: outcome.word(), verdicts };
+        let group = OutcomeGroup {
+            class: outcome.letter(),
+            symbol: outcome.symbol(),
+            word: outcome.word(),
+            verdicts,
+        };
         (!group.verdicts.is_empty()).then_some(group)
     };
     [Outcome::Pass, Outcome::Inconclusive, Outcome::Vacuous, Outcome::Error]

@@ -1,11 +1,11 @@
 //! Violated requirements, each with a few tests that show it and their counterexamples.
 
 use hrdsl_results::{
-    FirstFailure, RequirementResult, Results, SuiteName, TestName, TestResult, VerdictResult,
+    CampaignResults, FirstFailure, RequirementResult, SuiteName, TestName, TestResult, VerdictResult,
 };
 use serde::Serialize;
 
-use super::pieces::Link;
+use super::pieces::TestLink;
 use crate::{facts, text};
 
 /// Tests that are shown with their counterexample for each requirement.
@@ -15,7 +15,7 @@ const START: usize = 3;
 const END: usize = 9;
 
 #[derive(Serialize)]
-pub struct Violated {
+pub struct ViolatedRequirement {
     name: String,
     kind: &'static str,
     title: String,
@@ -23,33 +23,33 @@ pub struct Violated {
     tests: usize,
     /// `random_tests 31, …`
     per_suite: Vec<(String, usize)>,
-    shown: Vec<Shown>,
-    others: Vec<Link>,
+    shown: Vec<ViolatingTest>,
+    others: Vec<TestLink>,
 }
 
 /// A test with its first violation.
 #[derive(Serialize)]
-pub struct Shown {
-    test: Link,
-    counterexample: Option<Witness>,
+pub struct ViolatingTest {
+    test: TestLink,
+    counterexample: Option<CounterexampleTimeline>,
     /// The command that runs the test again.
     again: String,
 }
 
 /// How a verdict came about.
 #[derive(Serialize)]
-pub struct Witness {
+pub struct CounterexampleTimeline {
     how: String,
     time: String,
     margin: String,
     /// Further violations in the same test.
     more: u32,
-    points: Vec<Point>,
+    points: Vec<TimelinePoint>,
 }
 
 /// A point of a counterexample's line of time.
 #[derive(Serialize)]
-pub struct Point {
+pub struct TimelinePoint {
     /// `gap`: steps left out; `end`: the violation.
     class: &'static str,
     time: String,
@@ -59,7 +59,7 @@ pub struct Point {
 }
 
 /// One for each violated requirement.
-pub fn all(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Violated> {
+pub fn all(results: &CampaignResults, link: &dyn Fn(&TestName) -> TestLink) -> Vec<ViolatedRequirement> {
     let of = |requirement: &RequirementResult| {
         let failing = facts::failing(results, requirement);
         (!failing.is_empty()).then(|| violated(results, requirement, &failing, link))
@@ -68,13 +68,13 @@ pub fn all(results: &Results, link: &dyn Fn(&TestName) -> Link) -> Vec<Violated>
 }
 
 fn violated(
-    results: &Results,
+    results: &CampaignResults,
     requirement: &RequirementResult,
     failing: &[(usize, &TestResult)],
-    link: &dyn Fn(&TestName) -> Link,
-) -> Violated {
+    link: &dyn Fn(&TestName) -> TestLink,
+) -> ViolatedRequirement {
     let chosen = choose(failing);
-    let shown = |(_, test): &(usize, &TestResult)| Shown {
+    let shown = |(_, test): &(usize, &TestResult)| ViolatingTest {
         test: link(&test.name),
         counterexample: facts::failure(test, &requirement.name)
             .map(|(verdict, failure)| counterexample(verdict, failure)),
@@ -82,7 +82,7 @@ fn violated(
     };
     let number = |suite: &SuiteName| failing.iter().filter(|(_, t)| t.suite == *suite).count();
     let others = failing.iter().filter(|(i, _)| chosen.iter().all(|(c, _)| c != i));
-    Violated {
+    ViolatedRequirement {
         name: requirement.name.to_string(),
         kind: facts::kind(requirement),
         title: requirement.title.clone(),
@@ -110,26 +110,31 @@ fn choose<'a>(failing: &[(usize, &'a TestResult)]) -> Vec<(usize, &'a TestResult
 }
 
 /// The counterexample of a failure as a line of time that ends with the violation.
-pub fn counterexample(verdict: &VerdictResult, failure: &FirstFailure) -> Witness {
+pub fn counterexample(verdict: &VerdictResult, failure: &FirstFailure) -> CounterexampleTimeline {
     let steps = &failure.counterexample;
-    let point = |i: usize| Point {
+    let point = |i: usize| TimelinePoint {
         class: if i + 1 == steps.len() && !failure.deadline { "end" } else { "" },
         time: text::moment(steps[i].time),
         text: steps[i].text.clone(),
         line: steps[i].step + 2,
     };
-    let mut points: Vec<Point> = if steps.len() <= START + END + 1 {
+    let mut points: Vec<TimelinePoint> = if steps.len() <= START + END + 1 {
         (0..steps.len()).map(point).collect()
     } else {
         let left_out = text::count(steps.len() - START - END, "step");
-        let gap = Point { class: "gap", time: String::new(), text: format!("{left_out} left out"), line: 0 };
+        let gap = TimelinePoint {
+            class: "gap",
+            time: String::new(),
+            text: format!("{left_out} left out"),
+            line: 0,
+        };
         (0..START).map(point).chain([gap]).chain((steps.len() - END..steps.len()).map(point)).collect()
     };
     if failure.deadline {
         let text = "the deadline passed".to_owned();
-        points.push(Point { class: "end", time: text::moment(failure.time), text, line: 0 });
+        points.push(TimelinePoint { class: "end", time: text::moment(failure.time), text, line: 0 });
     }
-    Witness {
+    CounterexampleTimeline {
         how: facts::how(failure),
         time: text::moment(failure.time),
         margin: verdict

@@ -3,7 +3,7 @@
 
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Expr, Nanos, Span, Type, Unit, Value};
-use hrdsl_sim::{CommandError, CommandId, MotorCommand, Sim};
+use hrdsl_sim::{CommandError, CommandId, MotorCommand, WorldSimulation};
 
 pub const SECOND: Nanos = 1_000_000_000;
 pub const STEP: Nanos = 10_000_000;
@@ -162,11 +162,11 @@ pub fn truth(name: &str, term: SignalTerm) -> Signal {
     signal(name, Type::Bool, vec![term], Expr::Var(0))
 }
 
-pub fn float(sim: &Sim, i: u16) -> f64 {
+pub fn float(sim: &WorldSimulation, i: u16) -> f64 {
     sim.read(SignalId(i)).as_f64().unwrap()
 }
 
-pub fn boolean(sim: &Sim, i: u16) -> bool {
+pub fn boolean(sim: &WorldSimulation, i: u16) -> bool {
     sim.read(SignalId(i)).as_bool().unwrap()
 }
 
@@ -183,7 +183,11 @@ pub fn move_to(target: Vec3) -> MotorCommand {
 }
 
 /// Runs until the command ends; gives the seconds it took.
-pub fn wait(sim: &mut Sim, id: CommandId, mut each: impl FnMut(&Sim)) -> (f64, Result<(), CommandError>) {
+pub fn wait(
+    sim: &mut WorldSimulation,
+    id: CommandId,
+    mut each: impl FnMut(&WorldSimulation),
+) -> (f64, Result<(), CommandError>) {
     let start = sim.now();
     loop {
         let Some(next) = sim.next_wake() else { panic!("the world rests, but a command is under way") };
@@ -196,7 +200,7 @@ pub fn wait(sim: &mut Sim, id: CommandId, mut each: impl FnMut(&Sim)) -> (f64, R
     }
 }
 
-pub fn run(sim: &mut Sim, command: MotorCommand) -> f64 {
+pub fn run(sim: &mut WorldSimulation, command: MotorCommand) -> f64 {
     let what = format!("{command:?}");
     let id = sim.command(command).unwrap_or_else(|e| panic!("{what}: {e}"));
     let (time, result) = wait(sim, id, |_| {});
@@ -205,7 +209,7 @@ pub fn run(sim: &mut Sim, command: MotorCommand) -> f64 {
 }
 
 /// Runs until nothing moves.
-pub fn settle(sim: &mut Sim) {
+pub fn settle(sim: &mut WorldSimulation) {
     let start = sim.now();
     while let Some(next) = sim.next_wake() {
         assert!(next - start < 600 * SECOND, "never comes to rest");
@@ -218,7 +222,7 @@ pub fn distance(a: Vec3, b: Vec3) -> f64 {
 }
 
 /// Fetches the first leg and holds it out.
-pub fn offer(sim: &mut Sim) {
+pub fn offer(sim: &mut WorldSimulation) {
     let [x, y, z] = LEGS[0];
     run(sim, move_to(LEGS[0]));
     run(sim, MotorCommand::CloseFingers { gripper: GRIP });

@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    handle::{CellHandle, Supervisor},
-    message::{CellOrder, Isolation},
+    handle::{CellHandle, SupervisorCommand},
+    message::{CellIsolation, CellOrder},
 };
 use crate::{error::SutError, limits::ProgramLimits};
 
 /// What all cells of a campaign have in common.
 #[derive(Clone, Debug)]
-pub struct Cells {
-    pub supervisor: Supervisor,
-    pub isolation: Isolation,
+pub struct CellSettings {
+    pub supervisor: SupervisorCommand,
+    pub isolation: CellIsolation,
     /// Folders that the programs do not see: the results of earlier and of this campaign.
     pub hidden: Vec<PathBuf>,
     /// Whether the machine's network is the programs', too.
@@ -23,18 +23,18 @@ pub struct Cells {
     pub gaps: Vec<String>,
 }
 
-impl Cells {
+impl CellSettings {
     /// Makes a cell for the project's folder, with nothing in it: of the wanted kind, or else with namespaces if the
     /// machine allows them, and with copies if not.
     ///
     /// # Errors
     /// [`SutError::Io`] if no cell can be made, or not one of the kind that is wanted.
     pub fn probe(
-        supervisor: Supervisor,
+        supervisor: SupervisorCommand,
         project: &Path,
-        wanted: Option<Isolation>,
+        wanted: Option<CellIsolation>,
     ) -> Result<Self, SutError> {
-        let isolation = wanted.unwrap_or(Isolation::Namespaces);
+        let isolation = wanted.unwrap_or(CellIsolation::Namespaces);
         let mut cells = Self {
             supervisor,
             isolation,
@@ -47,7 +47,7 @@ impl Cells {
             Ok(cell) => cell,
             Err(refusal) if wanted.is_some() => return Err(refusal),
             Err(refusal) => {
-                cells.isolation = Isolation::Copies;
+                cells.isolation = CellIsolation::Copies;
                 cells.gaps.push(format!("namespaces cannot be had here ({refusal})"));
                 cells.empty_cell(project)?
             }
@@ -76,7 +76,7 @@ impl Cells {
 
     fn gaps_of(&self, cell: &CellHandle) -> Vec<String> {
         let mut gaps = Vec::new();
-        if self.isolation == Isolation::Copies {
+        if self.isolation == CellIsolation::Copies {
             gaps.push(
                 "each program runs in a copy of its folder: what it writes to absolute paths elsewhere, its process numbers and its \
                  network are not kept apart from other tests"

@@ -26,7 +26,7 @@ const PAUSE: Duration = Duration::from_millis(1);
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Of `/proc/PID/stat`, what is needed here.
-struct Stat {
+struct ProcessStat {
     /// `R` running, `D` waiting for a disk, `S` asleep, `T` stopped, `Z` dead …
     state: u8,
     /// Page faults of the children that it has waited for: above zero if there were any.
@@ -37,14 +37,14 @@ struct Stat {
     children: u64,
 }
 
-fn stat(path: &str) -> Option<Stat> {
+fn stat(path: &str) -> Option<ProcessStat> {
     let text = fs::read_to_string(path).ok()?;
     // The name, in parentheses, may hold anything.
     let rest = text.get(text.rfind(')')? + 2..)?;
     let fields: Vec<&str> = rest.split_ascii_whitespace().collect();
     // Numbered as in proc(5), where the state is the third.
     let number = |field: usize| fields.get(field - 3)?.parse::<u64>().ok();
-    Some(Stat {
+    Some(ProcessStat {
         state: *fields.first()?.as_bytes().first()?,
         children_faults: number(11)?,
         own: number(14)? + number(15)?,

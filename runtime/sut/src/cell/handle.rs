@@ -19,7 +19,7 @@ use rustix::{
     },
 };
 
-use super::message::{CellEnding, CellOrder, CellReport, CellRequest, CellUsage, Isolation};
+use super::message::{CellEnding, CellIsolation, CellOrder, CellReport, CellRequest, CellUsage};
 use crate::error::SutError;
 
 /// How long the supervisor may take to make a cell, and to end it: it only guards.
@@ -27,12 +27,12 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The program that supervises cells: it calls [`supervise`](super::supervise) with what follows these words.
 #[derive(Clone, Debug)]
-pub struct Supervisor {
+pub struct SupervisorCommand {
     program: PathBuf,
     words: Vec<OsString>,
 }
 
-impl Supervisor {
+impl SupervisorCommand {
     /// A program of its own.
     #[must_use]
     pub fn program(program: impl Into<PathBuf>) -> Self {
@@ -91,7 +91,7 @@ impl From<CellRefusal> for SutError {
 impl CellHandle {
     /// Starts a cell and the program in it, which inherits the descriptors.
     pub(crate) fn start(
-        supervisor: &Supervisor,
+        supervisor: &SupervisorCommand,
         order: &CellOrder,
         descriptors: &[BorrowedFd<'_>],
     ) -> Result<Self, CellRefusal> {
@@ -101,8 +101,8 @@ impl CellHandle {
         let mut command = Command::new(&supervisor.program);
         command.args(&supervisor.words);
         command.arg(match order.isolation {
-            Isolation::Namespaces => "namespaces",
-            Isolation::Copies => "copies",
+            CellIsolation::Namespaces => "namespaces",
+            CellIsolation::Copies => "copies",
         });
         command.arg(if order.network { "network" } else { "loopback" });
         command.stdin(Stdio::from(theirs)).stdout(Stdio::piped()).stderr(Stdio::piped()).env_clear();

@@ -20,14 +20,14 @@ pub(super) fn keep(
     most_bytes: u64,
     is_new: &dyn Fn(&Path) -> bool,
 ) -> KeptFiles {
-    let mut keeper = Keeper { kept: KeptFiles::default(), most_bytes, bytes: 0 };
+    let mut keeper = FileKeeper { kept: KeptFiles::default(), most_bytes, bytes: 0 };
     for (known_as, found_at) in folders {
         keeper.keep_folder(known_as, found_at, &|path| to.join(place(path, project)), is_new);
     }
     keeper.kept
 }
 
-struct Keeper {
+struct FileKeeper {
     kept: KeptFiles,
     most_bytes: u64,
     bytes: u64,
@@ -45,7 +45,7 @@ fn place(path: &Path, project: &Path) -> PathBuf {
     }
 }
 
-impl Keeper {
+impl FileKeeper {
     fn keep_folder(
         &mut self,
         known_as: &Path,

@@ -4,7 +4,7 @@ use std::{ffi::OsString, time::Duration};
 
 use serde::{Deserialize, Serialize};
 
-use crate::exit::Exit;
+use crate::exit::ProgramExit;
 
 /// The folder of a cell's own home and temporary files: the same path in every cell.
 pub const CELL_FOLDER: &str = "/tmp/.hrdsl-cell";
@@ -12,7 +12,7 @@ pub const CELL_FOLDER: &str = "/tmp/.hrdsl-cell";
 /// How a cell keeps its program apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Isolation {
+pub enum CellIsolation {
     /// Namespaces of processes, files, network and inter-process communication: the program sees the machine's files,
     /// and what it writes is its own.
     Namespaces,
@@ -23,7 +23,7 @@ pub enum Isolation {
 /// All that the supervisor must know; sent once, with the program's descriptors.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct CellOrder {
-    pub isolation: Isolation,
+    pub isolation: CellIsolation,
     /// The program and its arguments; empty: the cell is made and ends at once, to see whether it can be.
     pub command: Vec<OsString>,
     /// The program's whole environment, but for what the supervisor adds (`HOME`, `TMPDIR`, descriptors).
@@ -91,7 +91,7 @@ pub struct CellUsage {
 /// How the program ended, and what became of its files.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellEnding {
-    pub exit: Exit,
+    pub exit: ProgramExit,
     /// Whether there was ever another process in the cell.
     pub others: bool,
     pub cpu: Duration,

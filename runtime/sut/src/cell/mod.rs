@@ -4,8 +4,8 @@
 //!
 //! 1. [`CellHandle::start`](handle::CellHandle::start) starts a *supervisor* (this program, or another that calls
 //!    [`supervise`]) and hands it a [`CellOrder`](message::CellOrder) with the program's descriptors.
-//! 2. The supervisor makes the cell. With [`Isolation::Namespaces`] it enters namespaces of its own
-//!    (`supervisor.rs`) and mounts a private view of the file system (`view.rs`); with [`Isolation::Copies`] it copies the
+//! 2. The supervisor makes the cell. With [`CellIsolation::Namespaces`] it enters namespaces of its own
+//!    (`supervisor.rs`) and mounts a private view of the file system (`view.rs`); with [`CellIsolation::Copies`] it copies the
 //!    project's folder (`copies.rs`). Either way it has a process outside, to which the program is no child, and which
 //!    cleans up whatever the program does to its parent.
 //! 3. It starts the program under its limits and without rights over the machine (`rights.rs`), and answers
@@ -28,7 +28,7 @@ mod rights;
 mod supervisor;
 mod view;
 
-pub use cells::Cells;
-pub use handle::Supervisor;
-pub use message::{CELL_FOLDER, CellEnding, CellUsage, Isolation, KeptFiles};
+pub use cells::CellSettings;
+pub use handle::SupervisorCommand;
+pub use message::{CELL_FOLDER, CellEnding, CellIsolation, CellUsage, KeptFiles};
 pub use supervisor::supervise;

@@ -39,11 +39,11 @@ use super::{
     descendants,
     keep::keep,
     limits,
-    message::{CELL_FOLDER, CellEnding, CellOrder, CellReport, CellRequest, Isolation, KeptFiles},
+    message::{CELL_FOLDER, CellEnding, CellIsolation, CellOrder, CellReport, CellRequest, KeptFiles},
     namespaces, rights,
     view::PrivateView,
 };
-use crate::exit::Exit;
+use crate::exit::ProgramExit;
 
 /// The word with which the supervisor starts itself again, inside the cell.
 const INSIDE: &str = "inside";
@@ -53,7 +53,7 @@ const INSIDE: &str = "inside";
 #[must_use]
 pub fn supervise(args: &[OsString]) -> ExitCode {
     let Some(control) = std::io::stdin().as_fd().try_clone_to_owned().ok() else { return ExitCode::FAILURE };
-    let mut control = Control { socket: control, inbox: Vec::new() };
+    let mut control = ControlSocket { socket: control, inbox: Vec::new() };
     let words: Vec<&str> = args.iter().filter_map(|a| a.to_str()).collect();
     // A debugger on the terminal is interrupted there; whoever supervises it goes on.
     let interrupts = SigSet::from(Signal::SIGINT);
@@ -64,44 +64,46 @@ pub fn supervise(args: &[OsString]) -> ExitCode {
         ["copies", _] => adopt_and_wait(args),
         ["copies", _, INSIDE] => run(&mut control, false),
         ["namespaces", _, INSIDE] => run(&mut control, true),
-        _ => Err(Refusal::of("the supervisor", io::ErrorKind::InvalidInput.into())),
+        _ => Err(SetupRefusal::of("the supervisor", io::ErrorKind::InvalidInput.into())),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(refusal) => {
-            let Refusal { absent, what, why } = refusal;
+            let SetupRefusal { absent, what, why } = refusal;
             control.report(&CellReport::Refused { absent, what, why });
             ExitCode::FAILURE
         }
     }
 }
 
-struct Refusal {
+struct SetupRefusal {
     absent: bool,
     what: String,
     why: String,
 }
 
-impl Refusal {
+impl SetupRefusal {
     fn of(what: impl Into<String>, why: io::Error) -> Self {
         Self { absent: false, what: what.into(), why: why.to_string() }
     }
 }
 
-fn enter_and_wait(network: bool, args: &[OsString]) -> Result<(), Refusal> {
-    namespaces::enter(network).map_err(|(what, why)| Refusal::of(what, why))?;
+fn enter_and_wait(network: bool, args: &[OsString]) -> Result<(), SetupRefusal> {
+    namespaces::enter(network).map_err(|(what, why)| SetupRefusal::of(what, why))?;
     // It reports; nothing is left to say here.
-    let _ = again(args).spawn().map_err(|e| Refusal::of("the first process of the namespaces", e))?.wait();
+    let _ =
+        again(args).spawn().map_err(|e| SetupRefusal::of("the first process of the namespaces", e))?.wait();
     Ok(())
 }
 
 /// Has the folder of a cell without namespaces, in which the other supervisor works. What is left of the program when that one
 /// has ended, however it has, comes to this process and ends.
-fn adopt_and_wait(args: &[OsString]) -> Result<(), Refusal> {
+fn adopt_and_wait(args: &[OsString]) -> Result<(), SetupRefusal> {
     adopt()?;
-    let folder = CellFolder::make().map_err(|e| Refusal::of("a folder for copies", e))?;
+    let folder = CellFolder::make().map_err(|e| SetupRefusal::of("a folder for copies", e))?;
     let other = again(args).env("TMPDIR", folder.path()).spawn();
-    let other = Pid::from_raw(other.map_err(|e| Refusal::of("the other supervisor", e))?.id().cast_signed());
+    let other =
+        Pid::from_raw(other.map_err(|e| SetupRefusal::of("the other supervisor", e))?.id().cast_signed());
     loop {
         match waitid(Id::Pid(other), WaitPidFlag::WEXITED | WaitPidFlag::WSTOPPED) {
             // The program must not keep its supervisor from watching it.
@@ -115,9 +117,9 @@ fn adopt_and_wait(args: &[OsString]) -> Result<(), Refusal> {
 }
 
 /// Makes this process the parent of all below it that lose theirs.
-fn adopt() -> Result<(), Refusal> {
+fn adopt() -> Result<(), SetupRefusal> {
     set_child_subreaper(Some(rustix::process::getpid()))
-        .map_err(|e| Refusal::of("adoption of processes", e.into()))
+        .map_err(|e| SetupRefusal::of("adoption of processes", e.into()))
 }
 
 /// The command that starts this program once more, inside the cell.
@@ -134,12 +136,12 @@ fn again(args: &[OsString]) -> Command {
 }
 
 /// The supervisor's end of the connection.
-struct Control {
+struct ControlSocket {
     socket: OwnedFd,
     inbox: Vec<u8>,
 }
 
-impl Control {
+impl ControlSocket {
     /// The harness may be gone; then the next look at the socket says so.
     fn report(&mut self, report: &CellReport) {
         if let Ok(mut line) = serde_json::to_vec(report) {
@@ -206,15 +208,15 @@ enum CellPlace {
 }
 
 /// Makes the cell, runs the program in it, and ends it.
-fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
+fn run(control: &mut ControlSocket, alone: bool) -> Result<(), SetupRefusal> {
     if alone {
         // The outer supervisor is its only parent, and has one thread.
         set_parent_process_death_signal(Some(rustix::process::Signal::KILL))
-            .map_err(|e| Refusal::of("its end", e.into()))?;
+            .map_err(|e| SetupRefusal::of("its end", e.into()))?;
     } else {
         adopt()?;
     }
-    let Some((order, descriptors)) = control.order().map_err(|e| Refusal::of("the order", e))? else {
+    let Some((order, descriptors)) = control.order().map_err(|e| SetupRefusal::of("the order", e))? else {
         return Ok(());
     };
     if !order.terminal {
@@ -222,19 +224,19 @@ fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
         let _ = rustix::process::setsid();
     }
     let chlds = SigSet::from(Signal::SIGCHLD);
-    chlds.thread_block().map_err(|e| Refusal::of("signals", e.into()))?;
+    chlds.thread_block().map_err(|e| SetupRefusal::of("signals", e.into()))?;
     let ended = SignalFd::with_flags(&chlds, SfdFlags::SFD_CLOEXEC | SfdFlags::SFD_NONBLOCK)
-        .map_err(|e| Refusal::of("signals", e.into()))?;
+        .map_err(|e| SetupRefusal::of("signals", e.into()))?;
     let keep_to =
         order.keep.as_ref().map(|to| open(Path::new(to), OFlags::PATH | OFlags::CLOEXEC, Mode::empty()));
-    let keep_to = keep_to.transpose().map_err(|e| Refusal::of("the folder for files", e.into()))?;
+    let keep_to = keep_to.transpose().map_err(|e| SetupRefusal::of("the folder for files", e.into()))?;
     let place = make(&order)?;
     let fixed_addresses = limits::fix_addresses();
     limits::limit_resources(order.memory);
     // What this process has open (folders of the machine among them) is not for the program to find in /proc.
     set_dumpable_behavior(DumpableBehavior::NotDumpable)
-        .map_err(|e| Refusal::of("a supervisor of its own", e.into()))?;
-    rights::give_up().map_err(|e| Refusal::of("the program's rights", e.into()))?;
+        .map_err(|e| SetupRefusal::of("a supervisor of its own", e.into()))?;
+    rights::give_up().map_err(|e| SetupRefusal::of("the program's rights", e.into()))?;
     let child = if order.command.is_empty() { None } else { Some(start(&order, &place, &descriptors)?) };
     drop(descriptors);
     control.report(&started(fixed_addresses, &place, &order));
@@ -246,7 +248,7 @@ fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
     if there {
         let kept = keep_to.as_ref().map(|to| keep_files(&place, &order, to));
         let ending = CellEnding {
-            exit: watch.main.unwrap_or(Exit::Killed),
+            exit: watch.main.unwrap_or(ProgramExit::Killed),
             others: watch.others,
             cpu: usage.cpu.max(descendants::usage().cpu),
             kept,
@@ -256,27 +258,27 @@ fn run(control: &mut Control, alone: bool) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn make(order: &CellOrder) -> Result<CellPlace, Refusal> {
+fn make(order: &CellOrder) -> Result<CellPlace, SetupRefusal> {
     let dir = PathBuf::from(&order.dir);
     let hidden: Vec<PathBuf> = order.hidden.iter().map(PathBuf::from).collect();
     match order.isolation {
-        Isolation::Namespaces => {
+        CellIsolation::Namespaces => {
             if !order.network {
-                namespaces::bring_up_loopback().map_err(|e| Refusal::of("the loopback interface", e))?;
+                namespaces::bring_up_loopback().map_err(|e| SetupRefusal::of("the loopback interface", e))?;
             }
             let own = [dir, "/tmp".into(), "/var/tmp".into()];
-            let refusal = |(what, why)| Refusal::of(format!("a private view of {what}"), why);
+            let refusal = |(what, why)| SetupRefusal::of(format!("a private view of {what}"), why);
             let view = PrivateView::assemble(order.memory, &own, &hidden).map_err(refusal)?;
             view.enter().map_err(refusal)?;
             for folder in ["home", "tmp"] {
                 let folder = Path::new(CELL_FOLDER).join(folder);
-                std::fs::create_dir_all(folder).map_err(|e| Refusal::of(CELL_FOLDER, e))?;
+                std::fs::create_dir_all(folder).map_err(|e| SetupRefusal::of(CELL_FOLDER, e))?;
             }
             Ok(CellPlace::Namespaces(view))
         }
-        Isolation::Copies => {
+        CellIsolation::Copies => {
             let copy = ProjectCopy::make(std::env::temp_dir(), &dir, &hidden)
-                .map_err(|e| Refusal::of(format!("a copy of {}", dir.display()), e))?;
+                .map_err(|e| SetupRefusal::of(format!("a copy of {}", dir.display()), e))?;
             Ok(CellPlace::Copy(copy))
         }
     }
@@ -300,7 +302,7 @@ fn started(fixed_addresses: bool, place: &CellPlace, order: &CellOrder) -> CellR
     CellReport::Started { fixed_addresses, moved, read_only }
 }
 
-fn start(order: &CellOrder, place: &CellPlace, descriptors: &[OwnedFd]) -> Result<Child, Refusal> {
+fn start(order: &CellOrder, place: &CellPlace, descriptors: &[OwnedFd]) -> Result<Child, SetupRefusal> {
     let (dir, home, temporary) = match place {
         CellPlace::Namespaces(_) => {
             let own = Path::new(CELL_FOLDER);
@@ -330,7 +332,7 @@ fn start(order: &CellOrder, place: &CellPlace, descriptors: &[OwnedFd]) -> Resul
     if let Ok(blocked) = blocked {
         let _ = blocked.thread_set_mask();
     }
-    child.map_err(|e| Refusal {
+    child.map_err(|e| SetupRefusal {
         absent: e.kind() == io::ErrorKind::NotFound,
         what: words[0].to_string_lossy().into_owned(),
         why: e.to_string(),
@@ -339,12 +341,12 @@ fn start(order: &CellOrder, place: &CellPlace, descriptors: &[OwnedFd]) -> Resul
 
 /// Waits for the program's end and for what the harness asks.
 struct ProgramWatch<'c> {
-    control: &'c mut Control,
+    control: &'c mut ControlSocket,
     ended: SignalFd,
     /// Whether there was ever another process.
     others: bool,
     /// How the program ended.
-    main: Option<Exit>,
+    main: Option<ProgramExit>,
 }
 
 impl ProgramWatch<'_> {
@@ -384,9 +386,9 @@ impl ProgramWatch<'_> {
         let look = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
         while let Ok(status) = waitid(Id::All, look) {
             let (pid, exit) = if let WaitStatus::Exited(pid, code) = status {
-                (pid, Exit::Code(code))
+                (pid, ProgramExit::Code(code))
             } else if let WaitStatus::Signaled(pid, signal, _) = status {
-                (pid, Exit::Signal(signal as i32))
+                (pid, ProgramExit::Signal(signal as i32))
             } else {
                 return;
             };

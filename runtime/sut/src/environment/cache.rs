@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 use walkdir::WalkDir;
 
-use super::preparation::Preparation;
+use super::preparation::PreparationStep;
 use crate::error::SutError;
 
 /// In each folder that was made.
@@ -25,11 +25,11 @@ const MANIFEST: &str = ".hrdsl-manifest.json";
 /// Tells backup programs, and us, that a folder is a cache (bford.info/cachedir).
 const TAG: (&str, &str) = ("CACHEDIR.TAG", "Signature: 8a477f597d28d172789f06886806bc55\n# Made by hrdsl.\n");
 
-pub(super) type Listener<'a> = &'a dyn Fn(Preparation<'_>);
+pub(super) type PreparationListener<'a> = &'a dyn Fn(PreparationStep<'_>);
 
-pub(super) struct Cache<'a> {
+pub(super) struct EnvironmentCache<'a> {
     dir: PathBuf,
-    pub listen: Listener<'a>,
+    pub listen: PreparationListener<'a>,
 }
 
 /// A folder of the cache.
@@ -49,9 +49,9 @@ pub(super) struct MakingPart {
     pub scratch: PathBuf,
 }
 
-impl<'a> Cache<'a> {
+impl<'a> EnvironmentCache<'a> {
     /// Makes the folder, and removes what interrupted processes have left there.
-    pub(super) fn open(dir: &Path, listen: Listener<'a>) -> Result<Self, SutError> {
+    pub(super) fn open(dir: &Path, listen: PreparationListener<'a>) -> Result<Self, SutError> {
         fs::create_dir_all(dir).map_err(SutError::io(format!("cannot make {}", dir.display())))?;
         let dir = dir.canonicalize().map_err(SutError::io("cannot find the cache"))?;
         let tag = dir.join(TAG.0);
@@ -65,8 +65,8 @@ impl<'a> Cache<'a> {
     }
 
     /// The same cache with another listener.
-    pub(super) fn silent(&self) -> Cache<'static> {
-        Cache { dir: self.dir.clone(), listen: &|_| {} }
+    pub(super) fn silent(&self) -> EnvironmentCache<'static> {
+        EnvironmentCache { dir: self.dir.clone(), listen: &|_| {} }
     }
 
     /// A folder that needs no making.
@@ -93,13 +93,13 @@ impl<'a> Cache<'a> {
         let temporary = tempfile::Builder::new().prefix(&temporary_prefix(&name)).tempdir_in(&self.dir);
         let temporary = temporary.map_err(self.fault())?;
         if place.exists() {
-            (self.listen)(Preparation::Damaged { what: part.what, why: &why });
+            (self.listen)(PreparationStep::Damaged { what: part.what, why: &why });
             fs::rename(&place, temporary.path().join("damaged")).map_err(self.fault())?;
         }
         let start = Instant::now();
-        (self.listen)(Preparation::Started { what: part.what });
+        (self.listen)(PreparationStep::Started { what: part.what });
         self.fill(&temporary, &place, fill)?;
-        (self.listen)(Preparation::Finished { what: part.what, elapsed: start.elapsed() });
+        (self.listen)(PreparationStep::Finished { what: part.what, elapsed: start.elapsed() });
         Ok(place)
     }
 
@@ -114,7 +114,7 @@ impl<'a> Cache<'a> {
         fs::create_dir(&making.folder).map_err(self.fault())?;
         fs::create_dir(&making.scratch).map_err(self.fault())?;
         fill(&making)?;
-        let manifest = serde_json::to_vec(&Manifest::of(&making.folder)).map_err(io::Error::other);
+        let manifest = serde_json::to_vec(&FolderManifest::of(&making.folder)).map_err(io::Error::other);
         let written = manifest.and_then(|text| fs::write(making.folder.join(MANIFEST), text));
         written.map_err(self.fault())?;
         fs::rename(&making.folder, place).map_err(self.fault())
@@ -126,7 +126,7 @@ impl<'a> Cache<'a> {
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                (self.listen)(Preparation::Waiting { what });
+                (self.listen)(PreparationStep::Waiting { what });
                 file.lock().map_err(self.fault())?;
             }
             // A file system without locks: two processes may make the same, and one of them fails.
@@ -171,11 +171,11 @@ fn name_of_temporary(name: &OsStr) -> Option<&str> {
 
 /// Each file with its size and the second of its last change: archives keep no more.
 #[derive(Serialize, Deserialize)]
-struct Manifest {
+struct FolderManifest {
     files: Vec<(String, u64, i64)>,
 }
 
-impl Manifest {
+impl FolderManifest {
     fn of(folder: &Path) -> Self {
         let mut files = Vec::new();
         for entry in WalkDir::new(folder).sort_by_file_name().into_iter().flatten() {
@@ -195,7 +195,7 @@ fn damage(place: &Path) -> Option<String> {
     let Some(manifest) = fs::read(place.join(MANIFEST)).ok() else {
         return Some(format!("{} is missing", place.join(MANIFEST).display()));
     };
-    let Ok(Manifest { files }) = serde_json::from_slice(&manifest) else {
+    let Ok(FolderManifest { files }) = serde_json::from_slice(&manifest) else {
         return Some(format!("{} cannot be read", place.join(MANIFEST).display()));
     };
     files.into_iter().find_map(|(name, size, time)| {
@@ -230,7 +230,7 @@ mod tests {
     #[test]
     fn a_folder_is_made_once_and_never_half() {
         let dir = tempfile::tempdir().unwrap();
-        let cache = Cache::open(dir.path(), &|_| {}).unwrap();
+        let cache = EnvironmentCache::open(dir.path(), &|_| {}).unwrap();
         let fail = cache.made(&part(), |making| {
             fs::write(making.folder.join("half"), "").unwrap();
             Err(SutError::Environment { what: "w".into(), detail: "d".into() })
@@ -247,12 +247,12 @@ mod tests {
     fn damage_is_told_and_repaired() {
         let dir = tempfile::tempdir().unwrap();
         let told = RefCell::new(Vec::new());
-        let listen = |step: Preparation<'_>| {
-            if let Preparation::Damaged { why, .. } = step {
+        let listen = |step: PreparationStep<'_>| {
+            if let PreparationStep::Damaged { why, .. } = step {
                 told.borrow_mut().push(why.to_owned());
             }
         };
-        let cache = Cache::open(dir.path(), &listen).unwrap();
+        let cache = EnvironmentCache::open(dir.path(), &listen).unwrap();
         let place = cache.made(&part(), fill).unwrap();
         fs::write(place.join("of a program"), "").unwrap();
         cache.made(&part(), |_| panic!("a file more is no damage")).unwrap();
@@ -279,7 +279,7 @@ mod tests {
         let (begins, begun) = channel();
         std::thread::scope(|scope| {
             scope.spawn(|| {
-                let first = Cache::open(dir.path(), &|_| {}).unwrap();
+                let first = EnvironmentCache::open(dir.path(), &|_| {}).unwrap();
                 let made = first.made(&part(), move |making| {
                     begins.send(()).unwrap();
                     waiting.recv().unwrap();
@@ -288,11 +288,11 @@ mod tests {
                 made.unwrap();
             });
             begun.recv().unwrap();
-            let listen = |step: Preparation<'_>| match step {
-                Preparation::Waiting { .. } => waits.send(()).unwrap(),
+            let listen = |step: PreparationStep<'_>| match step {
+                PreparationStep::Waiting { .. } => waits.send(()).unwrap(),
                 other => panic!("{other:?}"),
             };
-            let second = Cache::open(dir.path(), &listen).unwrap();
+            let second = EnvironmentCache::open(dir.path(), &listen).unwrap();
             let place = second.made(&part(), |_| panic!("made twice")).unwrap();
             assert!(place.join("all").exists());
         });
@@ -306,10 +306,10 @@ mod tests {
         fs::write(left.join("half"), "").unwrap();
         let lock = File::create(dir.path().join(".x-1.lock")).unwrap();
         lock.lock().unwrap();
-        Cache::open(dir.path(), &|_| {}).unwrap();
+        EnvironmentCache::open(dir.path(), &|_| {}).unwrap();
         assert!(left.exists(), "somebody works there");
         drop(lock);
-        Cache::open(dir.path(), &|_| {}).unwrap();
+        EnvironmentCache::open(dir.path(), &|_| {}).unwrap();
         assert!(!left.exists());
     }
 }

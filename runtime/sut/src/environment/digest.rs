@@ -8,9 +8,9 @@ use super::local;
 use crate::error::SutError;
 
 /// A hash of parts that are told apart: `ab`, `c` is not `a`, `bc`.
-pub(super) struct Fingerprint(Sha256);
+pub(super) struct PartsHasher(Sha256);
 
-impl Fingerprint {
+impl PartsHasher {
     pub(super) fn new() -> Self {
         Self(Sha256::new())
     }
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn parts_are_told_apart() {
-        assert_ne!(Fingerprint::of(&["ab", "c"]).finish(), Fingerprint::of(&["a", "bc"]).finish());
-        assert_eq!(Fingerprint::of(&["a"]).finish().len(), 16);
+        assert_ne!(PartsHasher::of(&["ab", "c"]).finish(), PartsHasher::of(&["a", "bc"]).finish());
+        assert_eq!(PartsHasher::of(&["a"]).finish().len(), 16);
     }
 }

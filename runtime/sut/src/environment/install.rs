@@ -9,11 +9,11 @@ use std::{
 };
 
 use super::{
-    cache::{Listener, MakingPart},
+    cache::{MakingPart, PreparationListener},
     local,
     named::{self, LocalKind},
-    preparation::Preparation,
-    requirements::{RequirementLine, Requirements},
+    preparation::PreparationStep,
+    requirements::{PipRequirements, RequirementLine},
     watch::{PipSaid, watch},
 };
 use crate::error::SutError;
@@ -25,12 +25,12 @@ const LONGEST_LINE: usize = 240;
 /// What is installed, and how.
 pub(super) struct PipOrder<'a> {
     pub python: &'a Path,
-    pub requirements: &'a Requirements,
+    pub requirements: &'a PipRequirements,
     /// In words.
     pub what: &'a str,
     /// Whether pip must build anew what it may have built before under the same name.
     pub afresh: bool,
-    pub listen: Listener<'a>,
+    pub listen: PreparationListener<'a>,
 }
 
 /// Installs by the interpreter's own pip or, if it has none, by that of a virtual environment made for this.
@@ -88,7 +88,11 @@ fn pip(
     let start = Instant::now();
     watch(&mut command, &|doing| {
         let doing = written.original(doing);
-        (order.listen)(Preparation::Working { what: order.what, doing: &doing, elapsed: start.elapsed() });
+        (order.listen)(PreparationStep::Working {
+            what: order.what,
+            doing: &doing,
+            elapsed: start.elapsed(),
+        });
     })
 }
 
@@ -111,7 +115,7 @@ fn failure(order: &PipOrder<'_>, written: &WrittenList, said: &PipSaid) -> SutEr
 }
 
 /// The requirements that pip's errors name, a line for each.
-fn blamed(requirements: &Requirements, text: &str) -> String {
+fn blamed(requirements: &PipRequirements, text: &str) -> String {
     let blamed = |line: &&RequirementLine| line.name.is_some() && is_blamed(line, text);
     let lines = requirements.all_lines().filter(blamed);
     lines.map(|line| format!("required at {}: {}\n", line.origin, line.text)).collect()
@@ -153,7 +157,7 @@ struct WrittenList {
 }
 
 impl WrittenList {
-    fn new(requirements: &Requirements, scratch: &Path) -> Result<Self, SutError> {
+    fn new(requirements: &PipRequirements, scratch: &Path) -> Result<Self, SutError> {
         let at = |name: &str| scratch.join(name);
         let mut written = Self {
             requirements: at("requirements.txt"),
@@ -231,7 +235,7 @@ mod tests {
         assert!(made.status.success());
         let making = MakingPart { folder: at("made"), scratch: at("scratch") };
         fs::create_dir(&making.scratch).unwrap();
-        let requirements = Requirements::built_in("--no-index", folder.path());
+        let requirements = PipRequirements::built_in("--no-index", folder.path());
         let python = &at("bare/bin/python");
         let order =
             PipOrder { python, requirements: &requirements, what: "nothing", afresh: false, listen: &|_| {} };
@@ -241,7 +245,7 @@ mod tests {
 
     #[test]
     fn errors_are_traced_to_their_requirements() {
-        let requirements = Requirements::built_in("Py_Yaml==9\nother", Path::new("/"));
+        let requirements = PipRequirements::built_in("Py_Yaml==9\nother", Path::new("/"));
         let text = "ERROR: No matching distribution found for py-yaml==9\nnote: other";
         assert_eq!(blamed(&requirements, text), "required at built in:1: Py_Yaml==9\n");
         assert_eq!(shortened(&"é".repeat(300)).chars().count(), LONGEST_LINE + 1);

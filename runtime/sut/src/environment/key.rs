@@ -6,10 +6,10 @@ use std::{
 };
 
 use super::{
-    digest::Fingerprint,
+    digest::PartsHasher,
     named::{self, LocalKind, LocalRequirement},
-    probe::Probe,
-    requirements::{RequirementLine, Requirements, Variables},
+    probe::ProbedInterpreter,
+    requirements::{EnvVarLookup, PipRequirements, RequirementLine},
 };
 use crate::error::SutError;
 
@@ -23,12 +23,12 @@ pub(super) struct PackagesKey {
 
 impl PackagesKey {
     pub(super) fn new(
-        probe: &Probe,
-        requirements: &Requirements,
-        variables: Variables<'_>,
+        probe: &ProbedInterpreter,
+        requirements: &PipRequirements,
+        variables: EnvVarLookup<'_>,
     ) -> Result<Self, SutError> {
         let mut maker =
-            KeyMaker { print: Fingerprint::of(&[&probe.tag, &probe.base]), has_sources: false, variables };
+            KeyMaker { print: PartsHasher::of(&[&probe.tag, &probe.base]), has_sources: false, variables };
         maker.requirements(requirements)?;
         for (section, name, value) in &probe.pip {
             maker.option(section, name, value, &requirements.folder)?;
@@ -38,13 +38,13 @@ impl PackagesKey {
 }
 
 struct KeyMaker<'a> {
-    print: Fingerprint,
+    print: PartsHasher,
     has_sources: bool,
-    variables: Variables<'a>,
+    variables: EnvVarLookup<'a>,
 }
 
 impl KeyMaker<'_> {
-    fn requirements(&mut self, requirements: &Requirements) -> Result<(), SutError> {
+    fn requirements(&mut self, requirements: &PipRequirements) -> Result<(), SutError> {
         for lines in [&requirements.lines, &requirements.constraints] {
             self.print.part(&(lines.len() as u64).to_le_bytes());
             lines.iter().try_for_each(|line| self.line(line))?;
@@ -116,10 +116,10 @@ impl KeyMaker<'_> {
             match name {
                 "find-links" => self.links(&path)?,
                 "constraint" => {
-                    let found = Requirements::read_constraints(&path, folder, self.variables)?;
+                    let found = PipRequirements::read_constraints(&path, folder, self.variables)?;
                     self.requirements(&found)?;
                 }
-                "requirement" => self.requirements(&Requirements::read(&path, self.variables)?)?,
+                "requirement" => self.requirements(&PipRequirements::read(&path, self.variables)?)?,
                 _ => {}
             }
         }

@@ -21,14 +21,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use cache::{Cache, CachePart, Listener, MakingPart};
-use digest::Fingerprint;
+use cache::{CachePart, EnvironmentCache, MakingPart, PreparationListener};
+use digest::PartsHasher;
 use install::{PipOrder, command, install, normal, run};
 use key::PackagesKey;
-use probe::Probe;
-use requirements::Requirements;
+use probe::ProbedInterpreter;
+use requirements::PipRequirements;
 
-pub use preparation::{Hooked, Preparation};
+pub use preparation::{HookedPackage, PreparationStep};
 
 use crate::error::SutError;
 
@@ -87,7 +87,7 @@ pub struct PythonEnv {
 
 /// What an environment is prepared for.
 #[derive(Clone, Copy, Debug)]
-pub struct Needs<'a> {
+pub struct EnvironmentNeeds<'a> {
     /// The interpreter: a name on the path, or a path relative to `dir`.
     pub python: &'a str,
     /// The folder in which the program runs.
@@ -108,8 +108,11 @@ impl PythonEnv {
     /// # Errors
     /// [`SutError::Absent`] without Python or requirements file; [`SutError::Environment`] with pip's last lines if it
     /// fails, or the line of the requirements that is at fault; [`SutError::Io`] if the cache cannot be written.
-    pub fn prepare(needs: &Needs<'_>, listen: &dyn Fn(Preparation<'_>)) -> Result<Self, SutError> {
-        let cache = Cache::open(needs.cache, listen)?;
+    pub fn prepare(
+        needs: &EnvironmentNeeds<'_>,
+        listen: &dyn Fn(PreparationStep<'_>),
+    ) -> Result<Self, SutError> {
+        let cache = EnvironmentCache::open(needs.cache, listen)?;
         let dir = std::path::absolute(needs.dir)
             .map_err(SutError::io(format!("cannot find {}", needs.dir.display())))?;
         let probe = probe::ask(needs.python, &dir, needs.requirements.is_some())?;
@@ -118,7 +121,7 @@ impl PythonEnv {
         let analyses = cache.folder("analyses")?;
         let list = needs.requirements.map(std::path::absolute).transpose();
         let list = list.map_err(SutError::io("cannot find the requirements"))?;
-        let requirements = list.map(|list| Requirements::read(&list, &variable)).transpose()?;
+        let requirements = list.map(|list| PipRequirements::read(&list, &variable)).transpose()?;
         say_hooked(&probe, requirements.as_ref(), listen);
         let mut path = Vec::new();
         if let Some(requirements) = requirements.filter(|found| found.named().next().is_some()) {
@@ -165,8 +168,12 @@ fn variable(name: &str) -> Option<String> {
 }
 
 /// The packages that no program will find, apart from those that the requirements install.
-fn say_hooked(probe: &Probe, requirements: Option<&Requirements>, listen: Listener<'_>) {
-    let lines = || requirements.into_iter().flat_map(Requirements::all_lines);
+fn say_hooked(
+    probe: &ProbedInterpreter,
+    requirements: Option<&PipRequirements>,
+    listen: PreparationListener<'_>,
+) {
+    let lines = || requirements.into_iter().flat_map(PipRequirements::all_lines);
     let names: Vec<String> = lines().filter_map(|line| line.name.as_deref()).map(normal).collect();
     let folder = |path: &Path| path.canonicalize().ok();
     let folders: Vec<PathBuf> = lines().filter_map(|line| folder(&line.local.as_ref()?.path)).collect();
@@ -176,14 +183,14 @@ fn say_hooked(probe: &Probe, requirements: Option<&Requirements>, listen: Listen
         !names.contains(&normal(&hook.package)) && !place.is_some_and(|place| folders.contains(&place))
     });
     if !hooked.is_empty() {
-        listen(Preparation::Hooked { packages: &hooked });
+        listen(PreparationStep::Hooked { packages: &hooked });
     }
 }
 
-fn sdk(cache: &Cache<'_>, probe: &Probe) -> Result<PathBuf, SutError> {
+fn sdk(cache: &EnvironmentCache<'_>, probe: &ProbedInterpreter) -> Result<PathBuf, SutError> {
     let made_from: Vec<&str> =
         [probe.tag.as_str()].into_iter().chain(SDK.iter().flat_map(|&(name, text)| [name, text])).collect();
-    let part = CachePart { kind: "sdk", key: Fingerprint::of(&made_from).finish(), what: "the SDK" };
+    let part = CachePart { kind: "sdk", key: PartsHasher::of(&made_from).finish(), what: "the SDK" };
     cache.silent().made(&part, |making| write_sdk(&probe.executable, &making.folder))
 }
 
@@ -198,14 +205,14 @@ fn write_sdk(python: &Path, dir: &Path) -> Result<(), SutError> {
     run(command(python).args(["-I", "-m", "compileall", "-q"]).arg(&package)).map(drop)
 }
 
-fn coverage(cache: &Cache<'_>, probe: &Probe) -> Result<PathBuf, SutError> {
+fn coverage(cache: &EnvironmentCache<'_>, probe: &ProbedInterpreter) -> Result<PathBuf, SutError> {
     let part = CachePart {
         kind: "coverage",
-        key: Fingerprint::of(&[&probe.tag, COVERAGE]).finish(),
+        key: PartsHasher::of(&[&probe.tag, COVERAGE]).finish(),
         what: "coverage.py",
     };
     cache.made(&part, |making| {
-        let requirements = Requirements::built_in(COVERAGE, &making.scratch);
+        let requirements = PipRequirements::built_in(COVERAGE, &making.scratch);
         let python = &probe.executable;
         let listen = cache.listen;
         let order = PipOrder { python, requirements: &requirements, what: part.what, afresh: false, listen };
@@ -215,9 +222,9 @@ fn coverage(cache: &Cache<'_>, probe: &Probe) -> Result<PathBuf, SutError> {
 
 /// Installs the requirements of a list.
 fn packages(
-    cache: &Cache<'_>,
-    probe: &Probe,
-    requirements: &Requirements,
+    cache: &EnvironmentCache<'_>,
+    probe: &ProbedInterpreter,
+    requirements: &PipRequirements,
     list: Option<&Path>,
 ) -> Result<PathBuf, SutError> {
     let key = || PackagesKey::new(probe, requirements, &variable);
@@ -241,7 +248,7 @@ fn packages(
 }
 
 /// The first requirements, and how many more there are.
-fn summary(requirements: &Requirements) -> String {
+fn summary(requirements: &PipRequirements) -> String {
     let names: Vec<&str> = requirements.named().collect();
     match names[..] {
         [a, b, c, _, ..] => format!("{a}, {b}, {c} and {} more", names.len() - 3),

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// A step of the preparation. `what` is what is installed, in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Preparation<'a> {
+pub enum PreparationStep<'a> {
     /// Another process installs the same; this one waits until it has ended.
     Waiting {
         what: &'a str,
@@ -30,13 +30,13 @@ pub enum Preparation<'a> {
     /// The interpreter has packages that are installed as editable by a hook of `site`. Hooks do not run in tests, so
     /// programs do not find these packages.
     Hooked {
-        packages: &'a [Hooked],
+        packages: &'a [HookedPackage],
     },
 }
 
 /// A package that only a hook can find.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Hooked {
+pub struct HookedPackage {
     pub package: String,
     /// Where its code is, if that is known: what to write into `requirements.txt`.
     pub folder: Option<String>,

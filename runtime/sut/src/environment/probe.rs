@@ -11,14 +11,14 @@ use serde::Deserialize;
 
 use super::{
     install::{command, last_lines},
-    preparation::Hooked,
+    preparation::HookedPackage,
 };
 use crate::error::SutError;
 
 const PROBE: &str = include_str!("probe.py");
 
 #[derive(Deserialize)]
-pub(super) struct Probe {
+pub(super) struct ProbedInterpreter {
     /// Of a virtual environment its own link, behind any wrapper on the path.
     pub executable: PathBuf,
     /// The installation that it belongs to: what is built here links with that.
@@ -39,21 +39,21 @@ struct EditableHook {
     url: String,
 }
 
-impl Probe {
-    pub(super) fn hooked(&self) -> Vec<Hooked> {
+impl ProbedInterpreter {
+    pub(super) fn hooked(&self) -> Vec<HookedPackage> {
         let folder = |url: &str| {
             let path = url.strip_prefix("file://")?;
             Some(percent_decode_str(path).decode_utf8_lossy().into_owned())
         };
         let hooked =
-            |hook: &EditableHook| Hooked { package: hook.package.clone(), folder: folder(&hook.url) };
+            |hook: &EditableHook| HookedPackage { package: hook.package.clone(), folder: folder(&hook.url) };
         self.hooked.iter().map(hooked).collect()
     }
 }
 
 /// Asks the interpreter that `word` means for a program in `dir`. `python` and `python3` stand for each other where
 /// there is only one of them.
-pub(super) fn ask(word: &str, dir: &Path, with_pip: bool) -> Result<Probe, SutError> {
+pub(super) fn ask(word: &str, dir: &Path, with_pip: bool) -> Result<ProbedInterpreter, SutError> {
     let other = match word {
         "python" => "python3",
         "python3" => "python",
@@ -63,7 +63,7 @@ pub(super) fn ask(word: &str, dir: &Path, with_pip: bool) -> Result<Probe, SutEr
 }
 
 /// A word with a slash is relative to `dir`, one without is searched for on the path.
-fn ask_one(word: &str, dir: &Path, with_pip: bool) -> Result<Probe, SutError> {
+fn ask_one(word: &str, dir: &Path, with_pip: bool) -> Result<ProbedInterpreter, SutError> {
     let program = if word.contains('/') { dir.join(word) } else { PathBuf::from(word) };
     let shown = program.display();
     let mut command = command(&program);
@@ -82,7 +82,7 @@ fn ask_one(word: &str, dir: &Path, with_pip: bool) -> Result<Probe, SutError> {
     })?;
     match told(&output) {
         Some(probe) if probe.version >= (3, 8, 0) => Ok(probe),
-        Some(Probe { version: (major, minor, micro), .. }) => Err(SutError::Environment {
+        Some(ProbedInterpreter { version: (major, minor, micro), .. }) => Err(SutError::Environment {
             what: format!("`{shown}` is Python {major}.{minor}.{micro}"),
             detail: "Python 3.8 or newer is needed".to_owned(),
         }),
@@ -94,7 +94,7 @@ fn ask_one(word: &str, dir: &Path, with_pip: bool) -> Result<Probe, SutError> {
 }
 
 /// The last line is the answer; hooks of `site` may have printed before.
-fn told(output: &Output) -> Option<Probe> {
+fn told(output: &Output) -> Option<ProbedInterpreter> {
     let last = output.stdout.trim_ascii_end().rsplit(|&b| b == b'\n').next()?;
     serde_json::from_slice(last).ok().filter(|_| output.status.success())
 }

@@ -17,7 +17,7 @@ use crate::error::SutError;
 
 /// What pip is to install.
 #[derive(Debug)]
-pub(super) struct Requirements {
+pub(super) struct PipRequirements {
     /// Where pip runs: paths in requirements are relative to it, wherever the requirement stands.
     pub folder: PathBuf,
     pub lines: Vec<RequirementLine>,
@@ -58,11 +58,11 @@ impl LineOrigin {
 }
 
 /// The values of environment variables.
-pub(super) type Variables<'a> = &'a dyn Fn(&str) -> Option<String>;
+pub(super) type EnvVarLookup<'a> = &'a dyn Fn(&str) -> Option<String>;
 
-impl Requirements {
+impl PipRequirements {
     /// Reads a file and all that it includes.
-    pub(super) fn read(list: &Path, variables: Variables<'_>) -> Result<Self, SutError> {
+    pub(super) fn read(list: &Path, variables: EnvVarLookup<'_>) -> Result<Self, SutError> {
         Self::read_as(FileRole::Requirements, list, list.parent().unwrap_or(Path::new(".")), variables)
     }
 
@@ -70,7 +70,7 @@ impl Requirements {
     pub(super) fn read_constraints(
         list: &Path,
         folder: &Path,
-        variables: Variables<'_>,
+        variables: EnvVarLookup<'_>,
     ) -> Result<Self, SutError> {
         Self::read_as(FileRole::Constraints, list, folder, variables)
     }
@@ -79,7 +79,7 @@ impl Requirements {
         role: FileRole,
         list: &Path,
         folder: &Path,
-        variables: Variables<'_>,
+        variables: EnvVarLookup<'_>,
     ) -> Result<Self, SutError> {
         let found = Self { folder: folder.to_owned(), lines: Vec::new(), constraints: Vec::new() };
         let mut reader = RequirementsReader { found, variables, open: Vec::new() };
@@ -117,8 +117,8 @@ enum FileRole {
 }
 
 struct RequirementsReader<'a> {
-    found: Requirements,
-    variables: Variables<'a>,
+    found: PipRequirements,
+    variables: EnvVarLookup<'a>,
     /// The files that are being read, each included by the one before.
     open: Vec<PathBuf>,
 }
@@ -258,7 +258,7 @@ fn without_comment(line: &str) -> &str {
 }
 
 /// `${NAME}` of capital letters, digits and `_`, where the variable has a value; everything else stays.
-fn expand(text: &str, variables: Variables<'_>) -> String {
+fn expand(text: &str, variables: EnvVarLookup<'_>) -> String {
     let mut expanded = String::new();
     let mut rest = text;
     while let Some(at) = rest.find("${") {
@@ -287,7 +287,7 @@ fn expand(text: &str, variables: Variables<'_>) -> String {
 mod tests {
     use super::*;
 
-    fn read(files: &[(&str, &str)]) -> Result<Requirements, SutError> {
+    fn read(files: &[(&str, &str)]) -> Result<PipRequirements, SutError> {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in files {
             let path = folder.path().join(name);
@@ -295,7 +295,7 @@ mod tests {
             fs::write(path, text).unwrap();
         }
         let variables = |name: &str| (name == "TOKEN").then(|| "s3cret".to_owned());
-        Requirements::read(&folder.path().join("requirements.txt"), &variables)
+        PipRequirements::read(&folder.path().join("requirements.txt"), &variables)
     }
 
     fn texts(lines: &[RequirementLine]) -> Vec<&str> {

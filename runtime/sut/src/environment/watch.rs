@@ -49,14 +49,14 @@ pub(super) fn watch(command: &mut Command, on_work: &dyn Fn(&str)) -> Result<Pip
     Ok(PipSaid { status: child.wait().map_err(fail())?, stdout, stderr })
 }
 
-type Spoken = Option<(PipStream, String)>;
+type StreamLine = Option<(PipStream, String)>;
 
 /// A line, or none within a tick; `None` at the end. A process that the command has left behind may hold its output
 /// open: that is not waited for.
 fn next(
     lines: &Receiver<(PipStream, String)>,
     child: &mut std::process::Child,
-) -> std::io::Result<Option<Spoken>> {
+) -> std::io::Result<Option<StreamLine>> {
     match lines.recv_timeout(TICK) {
         Ok(line) => Ok(Some(Some(line))),
         Err(RecvTimeoutError::Disconnected) => Ok(None),

@@ -7,8 +7,9 @@ use std::{
 };
 
 use hrdsl_sut::{
-    Answer, Cells, Finished, Launch, Needs, Process, ProgramLimits, PythonEnv, Reply, Request, StopFlag,
-    cell::{Isolation, Supervisor},
+    CellSettings, EnvironmentNeeds, FinishedProcess, HarnessReply, LaunchSpec, ProgramLimits, ProgramRequest,
+    PythonEnv, ReplyAnswer, StopFlag, SutProcess,
+    cell::{CellIsolation, SupervisorCommand},
 };
 
 pub const GRACE: Duration = Duration::from_secs(20);
@@ -18,7 +19,8 @@ pub fn environment(requirements: Option<&Path>) -> PythonEnv {
     let python = std::env::var("HRDSL_TEST_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sut");
     let dir = Path::new(".");
-    PythonEnv::prepare(&Needs { python: &python, dir, requirements, cache: &cache }, &|_| {}).unwrap()
+    PythonEnv::prepare(&EnvironmentNeeds { python: &python, dir, requirements, cache: &cache }, &|_| {})
+        .unwrap()
 }
 
 fn plain_environment() -> PythonEnv {
@@ -26,8 +28,8 @@ fn plain_environment() -> PythonEnv {
     ENV.get_or_init(|| environment(None)).clone()
 }
 
-pub fn launch(words: &[&str]) -> Launch {
-    Launch {
+pub fn launch(words: &[&str]) -> LaunchSpec {
+    LaunchSpec {
         command: words.iter().map(|&w| w.to_owned()).collect(),
         dir: PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/programs"),
         seed: 17,
@@ -43,27 +45,27 @@ pub fn launch(words: &[&str]) -> Launch {
 }
 
 /// Cells of one kind, or of the best that the machine allows.
-pub fn cells(isolation: Option<Isolation>) -> Cells {
-    let supervisor = Supervisor::program(env!("CARGO_BIN_EXE_hrdsl-cell"));
-    Cells::probe(supervisor, Path::new(env!("CARGO_MANIFEST_DIR")), isolation).unwrap()
+pub fn cells(isolation: Option<CellIsolation>) -> CellSettings {
+    let supervisor = SupervisorCommand::program(env!("CARGO_BIN_EXE_hrdsl-cell"));
+    CellSettings::probe(supervisor, Path::new(env!("CARGO_MANIFEST_DIR")), isolation).unwrap()
 }
 
-pub fn reply(process: &mut Process, time: i64, answer: Answer) {
-    process.reply(&Reply { time, answer }).unwrap();
+pub fn reply(process: &mut SutProcess, time: i64, answer: ReplyAnswer) {
+    process.reply(&HarnessReply { time, answer }).unwrap();
 }
 
 /// Runs a program to its normal end, with a harness whose sleeps pass time and who says yes to all else.
 #[allow(dead_code, reason = "not every test file uses it")]
-pub fn run(launch: &Launch) -> (Vec<Request>, Finished) {
-    let mut process = Process::spawn(launch).unwrap();
+pub fn run(launch: &LaunchSpec) -> (Vec<ProgramRequest>, FinishedProcess) {
+    let mut process = SutProcess::spawn(launch).unwrap();
     let mut requests = Vec::new();
     let mut time = 0;
-    while requests.last() != Some(&Request::Done) {
+    while requests.last() != Some(&ProgramRequest::Done) {
         let request = process.next().unwrap();
-        if let Request::Sleep { seconds } = request {
+        if let ProgramRequest::Sleep { seconds } = request {
             time += hrdsl_ir::value::nanos(seconds);
         }
-        reply(&mut process, time, Answer::Ok);
+        reply(&mut process, time, ReplyAnswer::Ok);
         requests.push(request);
     }
     (requests, process.finish(GRACE))

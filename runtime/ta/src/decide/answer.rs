@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::{
     decide::{
         explore::explore,
-        extremum::{Extremum, ExtremumSide, extrema},
+        extremum::{ExtremumSide, MeasureExtremum, extrema},
         fastest::{fastest, shortest},
         liveness::{LivenessSearch, MaximalRun, MaximalRunSearchResult},
         plain::ReachabilityGraph,
@@ -80,7 +80,7 @@ pub struct QueryAnswer {
     /// A run that shows it: a witness of `E<>` and `E[]`, a counterexample of `A[]`, `A<>` and `-->`.
     pub run: Option<Box<WitnessRun>>,
     /// Of `sup` and `inf`: for each measure.
-    pub extrema: Vec<Extremum>,
+    pub extrema: Vec<MeasureExtremum>,
 }
 
 /// Answers one query.
@@ -159,13 +159,13 @@ struct QueryEvaluator<'a> {
 }
 
 /// How a goal ended, and how many symbolic states were kept.
-type Decided = (GoalOutcome, usize);
+type DecidedGoal = (GoalOutcome, usize);
 
 impl QueryEvaluator<'_> {
     /// Decides the goals: those without `deadlock` in one exploration by simulation, those with it in one of a zone graph
     /// that tells valuations apart.
-    fn decide(&self, goals: &[Option<ReachabilityGoal>]) -> Result<Vec<Option<Decided>>, SearchError> {
-        let mut all: Vec<Option<Decided>> = goals.iter().map(|_| None).collect();
+    fn decide(&self, goals: &[Option<ReachabilityGoal>]) -> Result<Vec<Option<DecidedGoal>>, SearchError> {
+        let mut all: Vec<Option<DecidedGoal>> = goals.iter().map(|_| None).collect();
         let asks = |g: &ReachabilityGoal| g.formula().is_some_and(|f| f.asks_deadlock());
         let of = |deadlock: bool| -> Vec<(usize, &ReachabilityGoal)> {
             let some = goals.iter().enumerate().filter_map(|(i, g)| Some((i, g.as_ref()?)));
@@ -198,7 +198,7 @@ impl QueryEvaluator<'_> {
     fn deadlocks(
         &self,
         goals: &[(usize, &ReachabilityGoal)],
-        all: &mut [Option<Decided>],
+        all: &mut [Option<DecidedGoal>],
     ) -> Result<(), SearchError> {
         let formulas: Vec<StateFormula> = goals.iter().filter_map(|(_, g)| g.formula()).collect();
         let refs: Vec<&StateFormula> = formulas.iter().collect();
@@ -441,7 +441,7 @@ fn none(verdict: QueryVerdict, why: String) -> QueryAnswer {
     QueryAnswer { verdict, why, run: None, extrema: Vec::new() }
 }
 
-fn limit_text(e: &Extremum, side: ExtremumSide) -> String {
+fn limit_text(e: &MeasureExtremum, side: ExtremumSide) -> String {
     use crate::decide::extremum::{ExtremumLimit, ExtremumValue};
     let text = |q: &ExtremumValue| match q {
         ExtremumValue::Nanos(n) => format!("{} s", seconds(*n, 1)),

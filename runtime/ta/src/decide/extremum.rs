@@ -39,7 +39,7 @@ pub const RAISES: u32 = 14;
 
 /// A bound of one measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Extremum {
+pub struct MeasureExtremum {
     pub limit: ExtremumLimit,
     /// A run to a state in which the measure has the value, or one less than a unit of time from it.
     pub run: Option<Box<WitnessRun>>,
@@ -96,7 +96,7 @@ pub(crate) fn extrema(
     when: &StateFormula,
     budget: SearchBudget,
     timing: ScheduleOptions,
-) -> Result<Vec<Extremum>, SearchError> {
+) -> Result<Vec<MeasureExtremum>, SearchError> {
     let mut graph = ZoneGraph::new(model, ZoneDetail::Reach, &[when], 0)?;
     let mut tracks: Vec<MeasureTracker> = of.iter().map(|m| MeasureTracker::of(m, &graph)).collect();
     let mut raised = 0;
@@ -234,7 +234,7 @@ impl MeasureTracker {
         when: &StateFormula,
         exhausted: bool,
         timing: ScheduleOptions,
-    ) -> Result<Extremum, SearchError> {
+    ) -> Result<MeasureExtremum, SearchError> {
         let unit = graph.model.unit;
         let (best, open, endless, clock) = match self {
             MeasureTracker::Number { best, .. } => (*best, exhausted, None, None),
@@ -248,15 +248,15 @@ impl MeasureTracker {
         };
         if let Some(node) = endless {
             let run = reach_formula(graph, plain.path(node), when, &[], timing)?;
-            return Ok(Extremum { limit: ExtremumLimit::Unbounded, run: Some(Box::new(run)) });
+            return Ok(MeasureExtremum { limit: ExtremumLimit::Unbounded, run: Some(Box::new(run)) });
         }
         let Some(b) = best else {
             let limit =
                 if open { ExtremumLimit::Inconclusive { seen: None } } else { ExtremumLimit::Nowhere };
-            return Ok(Extremum { limit, run: None });
+            return Ok(MeasureExtremum { limit, run: None });
         };
         if open {
-            return Ok(Extremum {
+            return Ok(MeasureExtremum {
                 limit: ExtremumLimit::Inconclusive { seen: Some(quantity(b.value)) },
                 run: None,
             });
@@ -265,7 +265,7 @@ impl MeasureTracker {
         let stops: Vec<PathSegment> = plain.path(b.node);
         let run = reach_formula(graph, stops, when, &near, timing)?;
         let limit = ExtremumLimit::At { value: quantity(b.value), attained: b.attained };
-        Ok(Extremum { limit, run: Some(Box::new(run)) })
+        Ok(MeasureExtremum { limit, run: Some(Box::new(run)) })
     }
 }
 

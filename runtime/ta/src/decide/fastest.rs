@@ -29,7 +29,7 @@ use crate::{
 };
 
 /// A time: units, and whether it must be exceeded.
-type Cost = (i64, bool);
+type TimeLowerBound = (i64, bool);
 
 struct FastestNode {
     state: Rc<[i64]>,
@@ -52,7 +52,7 @@ struct FastestSearch<'g, 'm, 'p> {
     formula: Option<StateFormula>,
     nodes: Vec<FastestNode>,
     of: FxHashMap<Rc<[i64]>, Vec<usize>>,
-    queue: BinaryHeap<Reverse<(Cost, FastestQueueEntry)>>,
+    queue: BinaryHeap<Reverse<(TimeLowerBound, FastestQueueEntry)>>,
     bytes: usize,
 }
 
@@ -213,7 +213,7 @@ impl FastestSearch<'_, '_, '_> {
     }
 
     /// The least time of a zone, or the transitions so far.
-    fn cost(&self, zone: &Dbm, steps: i64) -> Cost {
+    fn cost(&self, zone: &Dbm, steps: i64) -> TimeLowerBound {
         if self.aim == FastestObjective::Steps {
             return (steps, false);
         }
@@ -221,7 +221,12 @@ impl FastestSearch<'_, '_, '_> {
         (-b.value(), b.is_strict())
     }
 
-    fn goal_cost(&self, state: &[i64], zone: &Dbm, steps: i64) -> Result<Option<Cost>, SearchError> {
+    fn goal_cost(
+        &self,
+        state: &[i64],
+        zone: &Dbm,
+        steps: i64,
+    ) -> Result<Option<TimeLowerBound>, SearchError> {
         let Some(formula) = &self.formula else { return Ok(None) };
         if self.goal.settled && self.graph.model.any_committed(state) {
             return Ok(None);

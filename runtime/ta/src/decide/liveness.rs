@@ -71,7 +71,7 @@ struct CellNode {
     zone: Dbm,
 }
 
-type Key = (Rc<[i64]>, ClockCell);
+type ClockCellKey = (Rc<[i64]>, ClockCell);
 
 /// A node with how it was come to.
 struct EnteredNode {
@@ -94,7 +94,7 @@ pub(crate) struct LivenessSearch<'g, 'm, 'p> {
     budget: SearchBudget,
     entered: Vec<EnteredNode>,
     /// Nodes from which there is no run that avoids the formula.
-    safe: FxHashMap<Key, Vec<Dbm>>,
+    safe: FxHashMap<ClockCellKey, Vec<Dbm>>,
     bytes: usize,
 }
 
@@ -141,7 +141,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         first: &StateFormula,
         then: &StateFormula,
     ) -> Result<MaximalRunSearchResult, SearchError> {
-        let mut seen: FxHashMap<Key, Vec<Dbm>> = FxHashMap::default();
+        let mut seen: FxHashMap<ClockCellKey, Vec<Dbm>> = FxHashMap::default();
         let mut waiting: std::collections::VecDeque<usize> = std::collections::VecDeque::new();
         for node in self.starts()? {
             waiting.push_back(self.enter(node, None, None));
@@ -293,7 +293,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
 
     fn search(&mut self, root: usize, avoid: &StateFormula) -> Result<MaximalRunSearchResult, SearchError> {
         let mut stack: Vec<LivenessFrame> = Vec::new();
-        let mut on_stack: FxHashMap<Key, Vec<usize>> = FxHashMap::default();
+        let mut on_stack: FxHashMap<ClockCellKey, Vec<usize>> = FxHashMap::default();
         if let Some(trap) = self.visit(root, avoid, &mut stack, &mut on_stack)? {
             return Ok(MaximalRunSearchResult::Found(Box::new(trap)));
         }
@@ -335,7 +335,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         self.safe.get(&key).is_some_and(|zones| zones.iter().any(|z| z.includes(&node.zone)))
     }
 
-    fn finish(&mut self, at: usize, on_stack: &mut FxHashMap<Key, Vec<usize>>) {
+    fn finish(&mut self, at: usize, on_stack: &mut FxHashMap<ClockCellKey, Vec<usize>>) {
         let node = &self.entered[at].node;
         let key = (node.state.clone(), node.cell.clone());
         if let Some(list) = on_stack.get_mut(&key) {
@@ -353,7 +353,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         at: usize,
         avoid: &StateFormula,
         stack: &mut Vec<LivenessFrame>,
-        on_stack: &mut FxHashMap<Key, Vec<usize>>,
+        on_stack: &mut FxHashMap<ClockCellKey, Vec<usize>>,
     ) -> Result<Option<MaximalRun>, SearchError> {
         let node = self.entered[at].node.clone();
         if self.is_safe(&node) || self.holds(avoid, &node)? {

@@ -38,7 +38,7 @@ pub(crate) struct ReachabilityGraph<'g, 'm, 'p> {
 }
 
 /// What is done with each symbolic state.
-pub(crate) type Look<'a> =
+pub(crate) type StateVisitor<'a> =
     dyn FnMut(u32, &ReachedState, &DelayCondition) -> Result<ControlFlow<()>, SearchError> + 'a;
 
 impl<'g, 'm, 'p> ReachabilityGraph<'g, 'm, 'p> {
@@ -53,7 +53,7 @@ impl<'g, 'm, 'p> ReachabilityGraph<'g, 'm, 'p> {
     pub(crate) fn explore(
         &mut self,
         budget: SearchBudget,
-        look: &mut Look,
+        look: &mut StateVisitor,
     ) -> Result<Option<SearchCutoff>, SearchError> {
         let (state, stay, zone) = self.graph.start()?;
         self.insert(state.into(), &stay, zone, None);
@@ -74,7 +74,7 @@ impl<'g, 'm, 'p> ReachabilityGraph<'g, 'm, 'p> {
         Ok(None)
     }
 
-    fn step(&mut self, at: u32, look: &mut Look) -> Result<ControlFlow<()>, SearchError> {
+    fn step(&mut self, at: u32, look: &mut StateVisitor) -> Result<ControlFlow<()>, SearchError> {
         let node = &self.nodes[at as usize];
         let (state, zone) = (node.state.clone(), node.zone.clone());
         let Some(stay) = self.graph.stay(&state)? else { return Ok(ControlFlow::Continue(())) };

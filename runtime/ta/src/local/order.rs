@@ -16,13 +16,13 @@ use crate::{
 };
 
 /// Units, then infinitely small steps for strict bounds.
-type Time = (i64, i64);
+type SeparationTime = (i64, i64);
 
 /// `later ≥ earlier + by`, of transitions counted from 1; 0 is the start.
 struct TransitionSeparation {
     later: usize,
     earlier: usize,
-    by: Time,
+    by: SeparationTime,
 }
 
 /// The constraints on a path's times, as it goes on.
@@ -36,7 +36,7 @@ struct PathClocks<'s, 'm, 'p> {
 }
 
 impl PathClocks<'_, '_, '_> {
-    fn at_least(&mut self, later: usize, earlier: usize, by: Time) {
+    fn at_least(&mut self, later: usize, earlier: usize, by: SeparationTime) {
         self.constraints.push(TransitionSeparation { later, earlier, by });
     }
 
@@ -108,7 +108,7 @@ pub(super) fn by_time(
     let times = least(taken.len() + 2, &constraints)
         .ok_or_else(|| SearchError::Internal("the local zones reach a goal that no run reaches".into()))?;
     let last = times.get(taken.len()).copied();
-    let mut ordered: Vec<(Time, PathTransition)> = times.into_iter().skip(1).zip(taken).collect();
+    let mut ordered: Vec<(SeparationTime, PathTransition)> = times.into_iter().skip(1).zip(taken).collect();
     ordered.sort_by_key(|(time, _)| *time);
     if to_last {
         // The sort is stable: of those of its time it is the last.
@@ -181,12 +181,12 @@ fn advance(
 }
 
 /// The least times that keep all constraints, from 0 for the start; `None`: there are none.
-fn least(count: usize, constraints: &[TransitionSeparation]) -> Option<Vec<Time>> {
+fn least(count: usize, constraints: &[TransitionSeparation]) -> Option<Vec<SeparationTime>> {
     let mut times = vec![(0, 0); count];
     for _ in 0..=count {
         let mut changed = false;
         for c in constraints {
-            let from: Time = times[c.earlier];
+            let from: SeparationTime = times[c.earlier];
             let at = (from.0 + c.by.0, from.1 + c.by.1);
             if at > times[c.later] {
                 if c.later == 0 {

@@ -6,14 +6,14 @@ use super::{
     order,
     refusal::{LocalSearchError, NotApplicableError},
     space::{LocalStateSpace, LocalWorkspace, LocalZoneFilter},
-    zone::{self, Bound, LocalZone},
+    zone::{self, LocalZone, LocalZoneBound},
 };
 use crate::{
     network::{
         error::ModelError,
         model::CompiledNetwork,
         query::{ReachabilityGoal, SearchBudget},
-        semantics::{EnumerationScratch, Firing, FiringOrError},
+        semantics::{EnumerationScratch, FiringOrError, TransitionFiring},
     },
     search::{
         goals::CompiledGoals,
@@ -59,7 +59,7 @@ struct LocalSearch<'m, 'p> {
     open: Vec<bool>,
     left: usize,
     /// Its zones are the stored ones as far as all processes have one time, of the clocks that matter.
-    store: PassedList<Bound>,
+    store: PassedList<LocalZoneBound>,
     /// By node: its zone, until its successors are computed.
     zones: Vec<Option<LocalZone>>,
     waiting: WaitingList,
@@ -226,7 +226,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
     }
 
     /// Looks at the goals that a transition meets.
-    fn taken(&mut self, before: &[i64], firing: &Firing, (node, number): (u32, u32)) {
+    fn taken(&mut self, before: &[i64], firing: &TransitionFiring, (node, number): (u32, u32)) {
         if self.left == 0 {
             return;
         }

@@ -8,7 +8,8 @@ use super::{
     access::NetworkProcesses,
     refusal::{LocalSearchError, NotApplicableError},
     zone::{
-        self, Bound, BoundOverflowError, ClockAssignment, ClockBound, LocalLuBounds, LocalZone, MeetingBounds,
+        self, BoundOverflowError, ClockAssignment, ClockBound, LocalLuBounds, LocalZone, LocalZoneBound,
+        MeetingBounds,
     },
 };
 use crate::{
@@ -16,12 +17,12 @@ use crate::{
         code::{CodeEvalContext, CodeEvalError},
         error::ModelError,
         model::CompiledNetwork,
-        semantics::{ConstraintFilter, Firing, FiringOrError, TransitionEffect},
+        semantics::{ConstraintFilter, FiringOrError, TransitionEffect, TransitionFiring},
     },
     witness::error::SearchError,
     zone::{
         constraint::DifferenceConstraint,
-        extrapolation::{Abstraction, ActiveClocks, NONE},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, NONE},
     },
 };
 
@@ -44,7 +45,7 @@ pub(super) struct LocalWorkspace {
     pub sets: Vec<ClockAssignment>,
     pub zone: LocalZone,
     /// The zone as far as all processes have one time, of the clocks that matter.
-    pub together: Vec<Bound>,
+    pub together: Vec<LocalZoneBound>,
     pub frame: ActiveClocks,
     /// The clocks of the frame, counted from 0, without the reference, and their bounds.
     pub clocks: Vec<u16>,
@@ -114,7 +115,8 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
         zone: &LocalZone,
         found: &FiringOrError,
     ) -> Result<bool, LocalSearchError> {
-        let (FiringOrError::Firing(Firing { guard, .. }) | FiringOrError::Fault { guard, .. }) = found;
+        let (FiringOrError::Firing(TransitionFiring { guard, .. }) | FiringOrError::Fault { guard, .. }) =
+            found;
         w.bounds.clear();
         for c in *guard {
             w.bounds.push(clock_bound(c)?);
@@ -182,7 +184,7 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
         &self,
         w: &mut LocalWorkspace,
         zone: &LocalZone,
-        firing: &Firing,
+        firing: &TransitionFiring,
     ) -> Result<bool, LocalSearchError> {
         w.sets.clear();
         for r in &w.effect.resets {
@@ -227,7 +229,7 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
     /// Lets time pass for those who were part of a transition to the target, with only the clocks that matter there.
     /// Whether all processes can have one time then.
     fn enter(&self, w: &mut LocalWorkspace, who: &[u16]) -> Result<bool, LocalSearchError> {
-        self.model.extrapolation.frame(&w.effect.target, Abstraction::LowerUpper, &mut w.frame);
+        self.model.extrapolation.frame(&w.effect.target, ExtrapolationAbstraction::LowerUpper, &mut w.frame);
         w.clocks.clear();
         w.lu.clear();
         for (&clock, lu) in w.frame.clocks.iter().zip(&w.frame.bounds).skip(1) {

@@ -8,27 +8,27 @@
 //! variable, the common time of those that meet, so that a row, a column and one pass over the matrix suffice.
 
 /// A bound `< c` (as `2c`) or `≤ c` (as `2c + 1`), or [`INF`].
-pub(crate) type Bound = i32;
+pub(crate) type LocalZoneBound = i32;
 
 /// No bound.
-pub(crate) const INF: Bound = 1 << 29;
+pub(crate) const INF: LocalZoneBound = 1 << 29;
 /// `≤ 0`
-pub(crate) const ZERO: Bound = 1;
+pub(crate) const ZERO: LocalZoneBound = 1;
 /// Finite bounds of times that meet must stay within this, so that no sum of two comes near [`INF`].
-const MOST: Bound = 1 << 27;
+const MOST: LocalZoneBound = 1 << 27;
 
 /// `≤ c`; `None`: the number is too large.
-pub(crate) fn le(c: i64) -> Option<Bound> {
+pub(crate) fn le(c: i64) -> Option<LocalZoneBound> {
     i32::try_from(c).ok().filter(|c| c.unsigned_abs() < 1 << 25).map(|c| 2 * c + 1)
 }
 
 /// `< c`; `None`: the number is too large.
-pub(crate) fn lt(c: i64) -> Option<Bound> {
+pub(crate) fn lt(c: i64) -> Option<LocalZoneBound> {
     le(c).map(|b| b - 1)
 }
 
 /// The bound of a sum of two bounded differences.
-pub(crate) fn plus(a: Bound, b: Bound) -> Bound {
+pub(crate) fn plus(a: LocalZoneBound, b: LocalZoneBound) -> LocalZoneBound {
     if a >= INF || b >= INF { INF } else { a + b - ((a | b) & 1) }
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct ClockBound {
     /// The clock, from 0.
     pub clock: u16,
     pub upper: bool,
-    pub bound: Bound,
+    pub bound: LocalZoneBound,
 }
 
 /// A clock becomes another's value, or zero, plus a number.
@@ -48,7 +48,7 @@ pub(crate) struct ClockAssignment {
     pub clock: u16,
     pub from: Option<u16>,
     /// `≤` the number.
-    pub by: Bound,
+    pub by: LocalZoneBound,
 }
 
 /// The numbers of a path have grown too large for the matrices.
@@ -61,16 +61,16 @@ pub(crate) struct LocalZone {
     processes: usize,
     n: usize,
     /// Row by row: the bound on `row - column`.
-    d: Vec<Bound>,
+    d: Vec<LocalZoneBound>,
 }
 
 /// The bounds on the common time of processes that meet.
 #[derive(Default)]
 pub(crate) struct MeetingBounds {
     /// On `time - variable`.
-    row: Vec<Bound>,
+    row: Vec<LocalZoneBound>,
     /// On `variable - time`.
-    col: Vec<Bound>,
+    col: Vec<LocalZoneBound>,
 }
 
 impl LocalZone {
@@ -80,7 +80,7 @@ impl LocalZone {
         Self { processes, n, d: vec![ZERO; n * n] }
     }
 
-    fn row(&self, i: usize) -> &[Bound] {
+    fn row(&self, i: usize) -> &[LocalZoneBound] {
         &self.d[i * self.n..(i + 1) * self.n]
     }
 
@@ -138,7 +138,7 @@ impl LocalZone {
     fn copy(&mut self, sets: &[ClockAssignment], now: usize) {
         let (n, p, old) = (self.n, self.processes, self.d.clone());
         // Each variable after it is one before it, less a number.
-        let mut from: Vec<(usize, Bound)> = (0..n).map(|i| (i, ZERO)).collect();
+        let mut from: Vec<(usize, LocalZoneBound)> = (0..n).map(|i| (i, ZERO)).collect();
         for s in sets {
             let source = s.from.map_or(now, |y| p + usize::from(y));
             from[p + usize::from(s.clock)] = (source, s.by);
@@ -193,7 +193,7 @@ impl LocalZone {
         &self,
         clocks: &[u16],
         meeting: &mut MeetingBounds,
-        out: &mut Vec<Bound>,
+        out: &mut Vec<LocalZoneBound>,
     ) -> Result<bool, BoundOverflowError> {
         if !meeting.gather_all(self, clocks) {
             return Ok(false);
@@ -275,7 +275,7 @@ impl MeetingBounds {
             return false;
         }
         self.col.clear();
-        let least = |row: &[Bound]| row[..p].iter().fold(INF, |least, &b| b.min(least));
+        let least = |row: &[LocalZoneBound]| row[..p].iter().fold(INF, |least, &b| b.min(least));
         self.col.extend(clocks.iter().map(|&x| least(zone.row(p + usize::from(x)))));
         true
     }
@@ -318,16 +318,16 @@ impl MeetingBounds {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LocalLuBounds {
     /// `< -L`; without a lower bound, [`INF`].
-    pub lower: Bound,
+    pub lower: LocalZoneBound,
     /// `≤ -U`; without an upper bound, [`INF`].
-    pub upper: Bound,
+    pub upper: LocalZoneBound,
 }
 
 /// Whether each valuation of the synchronised zone `a` is simulated by one of `b`: `a ⊆ aLU(b)`.
 ///
 /// Theorem of Herbreteau, Srivathsan and Walukiewicz, "Better abstractions for timed automata" (LICS 2012): it is not so
 /// iff for some x and y, `a_x0 ≥ (≤, -U_x)`, `b_xy < a_xy` and `b_xy + (<, -L_y) < a_x0`, where `z_xy` bounds `y - x`.
-pub(crate) fn is_simulated(a: &[Bound], b: &[Bound], lu: &[LocalLuBounds]) -> bool {
+pub(crate) fn is_simulated(a: &[LocalZoneBound], b: &[LocalZoneBound], lu: &[LocalLuBounds]) -> bool {
     let dim = lu.len() + 1;
     for x in 0..dim {
         let low = a[x * dim];

@@ -8,8 +8,8 @@ use crate::{
         error::ModelError,
         model::CompiledNetwork,
         semantics::{
-            ClockReset, CompiledMove, EnumerationScratch, Firing, FiringOrError, NoConstraintFilter,
-            TransitionEffect,
+            ClockReset, CompiledMove, EnumerationScratch, FiringOrError, NoConstraintFilter,
+            TransitionEffect, TransitionFiring,
         },
     },
     zone::{constraint::DifferenceConstraint, dbm::DbmBound},
@@ -82,7 +82,7 @@ impl CompiledNetwork<'_> {
     fn action(
         &self,
         state: &[i64],
-        firing: &Firing,
+        firing: &TransitionFiring,
         stack: &mut Vec<i64>,
         effect: &mut TransitionEffect,
     ) -> Option<EnabledTransition> {
@@ -111,7 +111,7 @@ impl CompiledNetwork<'_> {
     pub(crate) fn target(&self, state: &[i64], taken: &PathTransition) -> Result<Vec<i64>, ModelError> {
         let mut effect = TransitionEffect::default();
         let PathTransition { parts, medium, args, guard, .. } = taken;
-        let firing = Firing { parts, medium: *medium, args, guard };
+        let firing = TransitionFiring { parts, medium: *medium, args, guard };
         match self.effect(state, &firing, &mut Vec::new(), &mut effect) {
             Ok(_) => Ok(effect.target),
             Err((m, e, f)) => Err(self.fault(usize::from(m), usize::from(e), f)),

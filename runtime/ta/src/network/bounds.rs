@@ -8,7 +8,7 @@ use crate::{
     },
     zone::{
         constraint::{DifferenceConstraint, constraints},
-        extrapolation::{Abstraction, ActiveClocks, LuBounds, NEVER, NONE},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, LuBounds, NEVER, NONE},
     },
 };
 
@@ -90,7 +90,7 @@ impl ExtrapolationBounds {
     }
 
     /// The clocks that matter in a state, with their bounds.
-    pub(crate) fn frame(&self, state: &[i64], abstraction: Abstraction, out: &mut ActiveClocks) {
+    pub(crate) fn frame(&self, state: &[i64], abstraction: ExtrapolationAbstraction, out: &mut ActiveClocks) {
         out.clocks.clear();
         out.bounds.clear();
         out.clocks.push(0);
@@ -109,7 +109,7 @@ impl ExtrapolationBounds {
                 out.bounds.push(lu);
             }
         }
-        if abstraction == Abstraction::Greatest {
+        if abstraction == ExtrapolationAbstraction::Greatest {
             for lu in &mut out.bounds {
                 let most = lu.lower.max(lu.upper);
                 *lu = LuBounds { lower: most, upper: most };
@@ -128,7 +128,7 @@ struct BoundsAnalysis<'m, 'p> {
 }
 
 /// Where a clock's value comes from when an edge is taken: a clock and what is added, at least.
-type Source = Option<(u16, i64)>;
+type ClockValueSource = Option<(u16, i64)>;
 
 impl<'m, 'p> BoundsAnalysis<'m, 'p> {
     fn run(
@@ -145,7 +145,7 @@ impl<'m, 'p> BoundsAnalysis<'m, 'p> {
             a.own(m);
         }
         a.everywhere(formulas, dim);
-        let steps: Vec<Vec<Vec<Source>>> = members
+        let steps: Vec<Vec<Vec<ClockValueSource>>> = members
             .iter()
             .enumerate()
             .map(|(m, member)| member.edges.iter().map(|e| a.sources(m, e)).collect())
@@ -252,11 +252,11 @@ impl<'m, 'p> BoundsAnalysis<'m, 'p> {
     }
 
     /// For each column where its value comes from; `None`: it is set to a time.
-    fn sources(&self, m: usize, arrow: &CompiledEdge) -> Vec<Source> {
+    fn sources(&self, m: usize, arrow: &CompiledEdge) -> Vec<ClockValueSource> {
         let member = &self.members[m];
         let locals = arrow.locals(self.library);
         let own = member.first_clock as u16..;
-        let mut all: Vec<(u16, Source)> = (1..=self.shared as u16)
+        let mut all: Vec<(u16, ClockValueSource)> = (1..=self.shared as u16)
             .chain(own.take(member.automaton.clocks.len()))
             .map(|c| (c, Some((c, 0))))
             .collect();
@@ -292,7 +292,7 @@ impl<'m, 'p> BoundsAnalysis<'m, 'p> {
     }
 
     /// One round of the bounds from the targets of edges to where they start. Returns whether anything changed.
-    fn propagate(&mut self, steps: &[Vec<Vec<Source>>]) -> bool {
+    fn propagate(&mut self, steps: &[Vec<Vec<ClockValueSource>>]) -> bool {
         let mut changed = false;
         let members = self.members;
         // What anybody wants of a shared clock: an edge that sets it from another clock must know that.

@@ -182,12 +182,12 @@ pub(crate) struct VariableScope {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) enum Instruction {
+pub(crate) enum CompiledStatement {
     Assign(CompiledLvalue, CompiledExpr),
     Call(u32, Box<[CompiledExpr]>),
-    If(CompiledExpr, Box<[Instruction]>, Box<[Instruction]>),
-    While(CompiledExpr, Box<[Instruction]>),
-    For(u32, CompiledExpr, CompiledExpr, Box<[Instruction]>),
+    If(CompiledExpr, Box<[CompiledStatement]>, Box<[CompiledStatement]>),
+    While(CompiledExpr, Box<[CompiledStatement]>),
+    For(u32, CompiledExpr, CompiledExpr, Box<[CompiledStatement]>),
     Return(Option<CompiledExpr>),
 }
 
@@ -201,7 +201,7 @@ pub(crate) struct CompiledFunction {
     pub frame: Vec<(i64, i64)>,
     pub inits: Vec<i64>,
     pub result: Option<(NumberType, i64, i64)>,
-    pub body: Box<[Instruction]>,
+    pub body: Box<[CompiledStatement]>,
 }
 
 /// Everything that code refers to.
@@ -313,25 +313,25 @@ impl<'e> CodeEvalContext<'e> {
     }
 
     /// `Some`: it returned.
-    fn run(&mut self, routine: u32, body: &[Instruction]) -> Result<Option<i64>, CodeEvalError> {
+    fn run(&mut self, routine: u32, body: &[CompiledStatement]) -> Result<Option<i64>, CodeEvalError> {
         for i in body {
             self.step()?;
             let returned = match i {
-                Instruction::Assign(place, value) => {
+                CompiledStatement::Assign(place, value) => {
                     self.assign(place, value, Some(routine))?;
                     None
                 }
-                Instruction::Call(f, args) => {
+                CompiledStatement::Call(f, args) => {
                     self.call(*f, args)?;
                     None
                 }
-                Instruction::If(c, then, otherwise) => {
+                CompiledStatement::If(c, then, otherwise) => {
                     let body = if c.eval(self)? != 0 { then } else { otherwise };
                     self.run(routine, body)?
                 }
-                Instruction::While(c, body) => self.repeat(routine, c, body)?,
-                Instruction::For(slot, lo, hi, body) => self.count(routine, *slot, (lo, hi), body)?,
-                Instruction::Return(value) => {
+                CompiledStatement::While(c, body) => self.repeat(routine, c, body)?,
+                CompiledStatement::For(slot, lo, hi, body) => self.count(routine, *slot, (lo, hi), body)?,
+                CompiledStatement::Return(value) => {
                     return Ok(Some(value.as_ref().map_or(Ok(0), |v| v.eval(self))?));
                 }
             };
@@ -346,7 +346,7 @@ impl<'e> CodeEvalContext<'e> {
         &mut self,
         routine: u32,
         c: &CompiledExpr,
-        body: &[Instruction],
+        body: &[CompiledStatement],
     ) -> Result<Option<i64>, CodeEvalError> {
         while c.eval(self)? != 0 {
             self.step()?;
@@ -363,7 +363,7 @@ impl<'e> CodeEvalContext<'e> {
         routine: u32,
         slot: u32,
         (lo, hi): (&CompiledExpr, &CompiledExpr),
-        body: &[Instruction],
+        body: &[CompiledStatement],
     ) -> Result<Option<i64>, CodeEvalError> {
         let (lo, hi) = (lo.eval(self)?, hi.eval(self)?);
         let (least, most) = self.library.routines[routine as usize].frame[slot as usize];
@@ -643,37 +643,37 @@ impl CodeLibrary {
 
     fn scan(
         &self,
-        body: &[Instruction],
+        body: &[CompiledStatement],
         read: &mut dyn FnMut(u32),
         written: &mut dyn FnMut(u32),
         called: &mut dyn FnMut(u32),
     ) {
         for i in body {
             match i {
-                Instruction::Assign(place, value) => {
+                CompiledStatement::Assign(place, value) => {
                     value.scan(read, called);
                     place.indices.iter().for_each(|(at, ..)| at.scan(read, called));
                     place.targets(written);
                 }
-                Instruction::Call(routine, args) => {
+                CompiledStatement::Call(routine, args) => {
                     called(*routine);
                     args.iter().for_each(|a| a.scan(read, called));
                 }
-                Instruction::If(c, then, otherwise) => {
+                CompiledStatement::If(c, then, otherwise) => {
                     c.scan(read, called);
                     self.scan(then, read, written, called);
                     self.scan(otherwise, read, written, called);
                 }
-                Instruction::While(c, body) => {
+                CompiledStatement::While(c, body) => {
                     c.scan(read, called);
                     self.scan(body, read, written, called);
                 }
-                Instruction::For(_, lo, hi, body) => {
+                CompiledStatement::For(_, lo, hi, body) => {
                     lo.scan(read, called);
                     hi.scan(read, called);
                     self.scan(body, read, written, called);
                 }
-                Instruction::Return(value) => value.iter().for_each(|v| v.scan(read, called)),
+                CompiledStatement::Return(value) => value.iter().for_each(|v| v.scan(read, called)),
             }
         }
     }

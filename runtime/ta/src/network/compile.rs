@@ -15,8 +15,8 @@ use crate::{
     network::{
         bounds::ExtrapolationBounds,
         code::{
-            CodeLibrary, CompiledExpr, CompiledFunction, CompiledLvalue, Instruction, NumberType, SyncMedium,
-            VariablePlace, VariableScope,
+            CodeLibrary, CompiledExpr, CompiledFunction, CompiledLvalue, CompiledStatement, NumberType,
+            SyncMedium, VariablePlace, VariableScope,
         },
         error::ModelError,
         model::{BoundWidth, CompiledNetwork, ObservationOptions},
@@ -42,14 +42,18 @@ struct NetworkCompiler<'p> {
     library: CodeLibrary,
 }
 
-type Result<T> = std::result::Result<T, ModelError>;
+type ModelResult<T> = std::result::Result<T, ModelError>;
 
 impl<'p> CompiledNetwork<'p> {
     /// Compiles a network, with what observes and restricts it.
     ///
     /// # Errors
     /// If the program is malformed or its constants are too far apart.
-    pub fn new(program: &'p Program, network: &'p Network, observe: &ObservationOptions) -> Result<Self> {
+    pub fn new(
+        program: &'p Program,
+        network: &'p Network,
+        observe: &ObservationOptions,
+    ) -> ModelResult<Self> {
         compiled(program, network, observe)
     }
 }
@@ -58,9 +62,9 @@ fn compiled<'p>(
     program: &'p Program,
     network: &'p Network,
     observe: &ObservationOptions,
-) -> Result<CompiledNetwork<'p>> {
+) -> ModelResult<CompiledNetwork<'p>> {
     let automata: Vec<&Automaton> =
-        network.automata.iter().map(|&id| well_formed::automaton(program, id)).collect::<Result<_>>()?;
+        network.automata.iter().map(|&id| well_formed::automaton(program, id)).collect::<ModelResult<_>>()?;
     if observe.counters.iter().any(|c| c.cap < 0) || observe.limits.iter().any(|l| l.at_most < 0) {
         return Err(ModelError::Question("a counter's cap or a limit is negative".into()));
     }
@@ -169,7 +173,11 @@ fn malformed(automaton: &str, what: &str) -> ModelError {
 
 impl<'p> NetworkCompiler<'p> {
     /// The members with their names, without locations and edges.
-    fn members(&self, network: &Network, automata: &[&'p Automaton]) -> Result<Vec<CompiledAutomaton<'p>>> {
+    fn members(
+        &self,
+        network: &Network,
+        automata: &[&'p Automaton],
+    ) -> ModelResult<Vec<CompiledAutomaton<'p>>> {
         let count = automata.len();
         let shared = self.program.shared.len();
         let (mut base, mut clock) = (shared, 1 + self.program.clocks.len());
@@ -198,7 +206,7 @@ impl<'p> NetworkCompiler<'p> {
 
     // ── Functions ──
 
-    fn functions(&mut self, network: &Network, members: &[CompiledAutomaton]) -> Result<()> {
+    fn functions(&mut self, network: &Network, members: &[CompiledAutomaton]) -> ModelResult<()> {
         let shared: Vec<(VariablePlace, NumberType)> = self
             .program
             .shared
@@ -243,7 +251,7 @@ impl<'p> NetworkCompiler<'p> {
         f: &AutomatonFunction,
         first: usize,
         body: &[FunctionStatement],
-    ) -> Option<Box<[Instruction]>> {
+    ) -> Option<Box<[CompiledStatement]>> {
         body.iter().map(|s| self.statement(names, f, first, s)).collect()
     }
 
@@ -253,23 +261,23 @@ impl<'p> NetworkCompiler<'p> {
         f: &AutomatonFunction,
         first: usize,
         s: &FunctionStatement,
-    ) -> Option<Instruction> {
+    ) -> Option<CompiledStatement> {
         let lib = &self.library;
         Some(match s {
             FunctionStatement::Assign { place, value } => {
                 let (reach, value) = self.assignment(names, place, value)?;
-                Instruction::Assign(reach, value)
+                CompiledStatement::Assign(reach, value)
             }
             FunctionStatement::Call { function, args } => {
                 let routine = lib.routine(*function, names.member)?;
-                Instruction::Call(routine, lib.arguments(names, routine, args)?)
+                CompiledStatement::Call(routine, lib.arguments(names, routine, args)?)
             }
-            FunctionStatement::If { condition, then, otherwise } => Instruction::If(
+            FunctionStatement::If { condition, then, otherwise } => CompiledStatement::If(
                 lib.compile(names, condition, NumberType::Bool),
                 self.body(names, f, first, then)?,
                 self.body(names, f, first, otherwise)?,
             ),
-            FunctionStatement::While { condition, body } => Instruction::While(
+            FunctionStatement::While { condition, body } => CompiledStatement::While(
                 lib.compile(names, condition, NumberType::Bool),
                 self.body(names, f, first, body)?,
             ),
@@ -278,12 +286,12 @@ impl<'p> NetworkCompiler<'p> {
                 names.vars.get(usize::from(*slot))?;
                 let (lo, hi) =
                     (lib.compile(names, lo, NumberType::Int), lib.compile(names, hi, NumberType::Int));
-                Instruction::For(local as u32, lo, hi, self.body(names, f, first, body)?)
+                CompiledStatement::For(local as u32, lo, hi, self.body(names, f, first, body)?)
             }
             FunctionStatement::Return(value) => {
                 let ty = f.result.as_ref().map(NumberType::of);
                 let code = |e| ty.map(|ty| lib.compile(names, e, ty));
-                Instruction::Return(match value {
+                CompiledStatement::Return(match value {
                     None => None,
                     Some(e) => Some(code(e)?),
                 })
@@ -304,7 +312,7 @@ impl<'p> NetworkCompiler<'p> {
 
     // ── Automata ──
 
-    fn member(&mut self, members: &mut [CompiledAutomaton<'p>], m: usize) -> Result<()> {
+    fn member(&mut self, members: &mut [CompiledAutomaton<'p>], m: usize) -> ModelResult<()> {
         let (automaton, first) = (members[m].automaton, members[m].first_clock);
         let names = members[m].names.clone();
         let mut locations = Vec::new();
@@ -351,7 +359,7 @@ impl<'p> NetworkCompiler<'p> {
         outer: &VariableScope,
         edge: &'p Edge,
         number: u32,
-    ) -> Result<CompiledEdge<'p>> {
+    ) -> ModelResult<CompiledEdge<'p>> {
         let unknown = || malformed(&automaton.name, "an edge uses something unknown");
         let mut names = outer.clone();
         let mut binders: Vec<NumberType> = edge.selects.iter().map(NumberType::of).collect();
@@ -423,7 +431,7 @@ impl<'p> NetworkCompiler<'p> {
         names: &VariableScope,
         locals: &[(i64, i64)],
         update: &EdgeAssignment,
-    ) -> Result<EdgeUpdate> {
+    ) -> ModelResult<EdgeUpdate> {
         let unknown = || malformed(&automaton.name, "an edge uses something unknown");
         Ok(match update {
             EdgeAssignment::Assign { place, value } => {
@@ -488,7 +496,7 @@ impl<'p> NetworkCompiler<'p> {
         names: &VariableScope,
         locals: &[(i64, i64)],
         time: &TimeSum,
-    ) -> Result<TimeExpr> {
+    ) -> ModelResult<TimeExpr> {
         let far = || ModelError::Constants { automaton: automaton.name.clone() };
         let mut terms = Vec::new();
         let mut units = time.nanos / self.unit;
@@ -513,7 +521,7 @@ impl<'p> NetworkCompiler<'p> {
         first: usize,
         locals: &[(i64, i64)],
         constraints_of: &[ClockConstraint],
-    ) -> Result<ClockConstraints> {
+    ) -> ModelResult<ClockConstraints> {
         let mut out = ClockConstraints::default();
         for c in constraints_of {
             let (i, j) = (self.clock(c.clock, first), c.minus.map_or(0, |m| self.clock(m, first)));
@@ -589,7 +597,7 @@ impl<'p> NetworkCompiler<'p> {
         names: &VariableScope,
         medium: SyncMedium,
         args: &[Expr],
-    ) -> Result<EdgeSync> {
+    ) -> ModelResult<EdgeSync> {
         let unknown = || malformed(&automaton.name, "an edge sends something unknown");
         let params = self.params(medium).ok_or_else(unknown)?;
         let mut all = Vec::new();
@@ -615,7 +623,7 @@ impl<'p> NetworkCompiler<'p> {
         names: &VariableScope,
         arg: &Expr,
         ty: NumberType,
-    ) -> Result<CompiledExpr> {
+    ) -> ModelResult<CompiledExpr> {
         match ty {
             NumberType::Constant => {
                 let value = arg.eval(&|_| None);
@@ -675,7 +683,7 @@ impl<'p> NetworkCompiler<'p> {
         observe: &ObservationOptions,
         slots: &[&AutomatonVar],
         members: usize,
-    ) -> Result<ClockConstraints> {
+    ) -> ModelResult<ClockConstraints> {
         let vars = slots
             .iter()
             .enumerate()
@@ -761,7 +769,7 @@ fn width(
     formulas: &ClockConstraints,
     dim: usize,
     library: &CodeLibrary,
-) -> Result<BoundWidth> {
+) -> ModelResult<BoundWidth> {
     let (mut most, mut differences, mut updates) = (1, false, 0);
     let mut note = |c: &ClockConstraints| {
         for f in &c.fixed {

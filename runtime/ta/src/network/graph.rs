@@ -24,13 +24,13 @@ use crate::{
         constraint::{DifferenceConstraint, keep},
         dbm::{Dbm, DbmBound},
         diagonals::split,
-        extrapolation::{Abstraction, ActiveClocks, KEEP, MaximalConstants, NONE, extra},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, KEEP, MaximalConstants, NONE, extra},
         federation::{Federation, past},
     },
 };
 
 /// A state, what staying there means, and the clocks on entering it.
-pub(crate) type Followed<'a> = (&'a [i64], DelayCondition, Dbm);
+pub(crate) type SuccessorState<'a> = (&'a [i64], DelayCondition, Dbm);
 
 /// What a walk keeps of zones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -196,7 +196,7 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         &self,
         action: &'a EnabledTransition,
         zone: &Dbm,
-    ) -> Result<Option<Followed<'a>>, ModelError> {
+    ) -> Result<Option<SuccessorState<'a>>, ModelError> {
         let mut zone = zone.clone();
         if !action.taken.guard.iter().all(|c| keep(&mut zone, *c)) {
             return Ok(None);
@@ -385,7 +385,7 @@ impl SymbolicView for DiscreteStateView<'_, '_, '_> {
 impl CompiledNetwork<'_> {
     fn bounds(&self, state: &[i64], out: &mut MaximalConstants) {
         let mut frame = ActiveClocks::default();
-        self.extrapolation.frame(state, Abstraction::LowerUpper, &mut frame);
+        self.extrapolation.frame(state, ExtrapolationAbstraction::LowerUpper, &mut frame);
         for (&clock, lu) in frame.clocks.iter().zip(&frame.bounds) {
             let x = usize::from(clock);
             (out.lower[x], out.upper[x]) = (lu.lower, lu.upper);

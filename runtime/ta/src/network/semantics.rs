@@ -28,7 +28,7 @@ use crate::{
 };
 
 /// The values of an edge's selects, then of the parameters it binds.
-pub type Binders = SmallVec<[Value; 2]>;
+pub type BinderValues = SmallVec<[Value; 2]>;
 
 /// One automaton's part in a transition.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -37,7 +37,7 @@ pub struct AutomatonMove {
     pub automaton: usize,
     /// Index in the automaton.
     pub edge: usize,
-    pub binders: Binders,
+    pub binders: BinderValues,
 }
 
 /// One automaton's part in a transition, in numbers.
@@ -49,7 +49,7 @@ pub(crate) struct CompiledMove {
 }
 
 /// Something that may happen in a discrete state.
-pub(crate) struct Firing<'a> {
+pub(crate) struct TransitionFiring<'a> {
     /// In the order of their updates.
     pub parts: &'a [CompiledMove],
     pub medium: Option<SyncMedium>,
@@ -60,7 +60,7 @@ pub(crate) struct Firing<'a> {
 
 /// What an enumeration comes upon.
 pub(crate) enum FiringOrError<'a> {
-    Firing(Firing<'a>),
+    Firing(TransitionFiring<'a>),
     /// Something of the edge has no value, if these constraints hold.
     Fault {
         member: u16,
@@ -114,8 +114,8 @@ pub(crate) struct EnumerationScratch {
 }
 
 /// All combinations of the selects' values, the first select slowest.
-pub(crate) fn choices(selects: &[AutomatonVar]) -> Vec<Binders> {
-    let mut all = vec![Binders::new()];
+pub(crate) fn choices(selects: &[AutomatonVar]) -> Vec<BinderValues> {
+    let mut all = vec![BinderValues::new()];
     for s in selects {
         let mut longer = Vec::new();
         for chosen in &all {
@@ -131,7 +131,7 @@ pub(crate) fn choices(selects: &[AutomatonVar]) -> Vec<Binders> {
 }
 
 /// Binds an event's arguments to a receiving edge's parameters, if they match.
-pub(crate) fn bind(pattern: &[ReceiveArg], args: &[Value], binders: &mut Binders) -> bool {
+pub(crate) fn bind(pattern: &[ReceiveArg], args: &[Value], binders: &mut BinderValues) -> bool {
     for (p, &v) in pattern.iter().zip(args) {
         match p {
             ReceiveArg::Match(ArgPattern::Any) => {}
@@ -186,17 +186,17 @@ struct FiringEnumeration<'a, 'p, M, F> {
     s: &'a mut EnumerationScratch,
 }
 
-type Flow = ControlFlow<()>;
+type EnumerationFlow = ControlFlow<()>;
 
 impl<'p> CompiledNetwork<'p> {
     /// Calls `found` with all that may happen, until it breaks off. The state is not changed.
-    pub(crate) fn enumerate<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow>(
+    pub(crate) fn enumerate<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow>(
         &self,
         state: &mut [i64],
         may: &M,
         scratch: &mut EnumerationScratch,
         found: &mut F,
-    ) -> Flow {
+    ) -> EnumerationFlow {
         let committed = self.any_committed(state);
         let mut e = FiringEnumeration { model: self, state, committed, may, found, s: scratch };
         for m in 0..self.members.len() {
@@ -218,7 +218,7 @@ impl<'p> CompiledNetwork<'p> {
     pub(crate) fn effect(
         &self,
         state: &[i64],
-        firing: &Firing,
+        firing: &TransitionFiring,
         stack: &mut Vec<i64>,
         effect: &mut TransitionEffect,
     ) -> Result<bool, (u16, u16, CodeEvalError)> {
@@ -402,7 +402,7 @@ impl<'p> CompiledNetwork<'p> {
     }
 }
 
-impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_, '_, M, F> {
+impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnumeration<'_, '_, M, F> {
     fn arrow(&self, member: usize, edge: usize) -> &'_ CompiledEdge<'_> {
         &self.model.members[member].edges[edge]
     }
@@ -449,7 +449,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
         Ok(data.eval(&mut CodeEvalContext::new(&model.library, self.state, &mut self.s.stack))? != 0)
     }
 
-    fn fault(&mut self, member: usize, edge: usize, fault: CodeEvalError) -> Flow {
+    fn fault(&mut self, member: usize, edge: usize, fault: CodeEvalError) -> EnumerationFlow {
         let guard = std::mem::take(&mut self.s.guard);
         let flow = (self.found)(FiringOrError::Fault {
             member: member as u16,
@@ -461,7 +461,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
         flow
     }
 
-    fn fire(&mut self, medium: Option<SyncMedium>) -> Flow {
+    fn fire(&mut self, medium: Option<SyncMedium>) -> EnumerationFlow {
         if !self.is_allowed() {
             return ControlFlow::Continue(());
         }
@@ -470,8 +470,12 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
             std::mem::take(&mut self.s.args),
             std::mem::take(&mut self.s.guard),
         );
-        let flow =
-            (self.found)(FiringOrError::Firing(Firing { parts: &parts, medium, args: &args, guard: &guard }));
+        let flow = (self.found)(FiringOrError::Firing(TransitionFiring {
+            parts: &parts,
+            medium,
+            args: &args,
+            guard: &guard,
+        }));
         (self.s.parts, self.s.args, self.s.guard) = (parts, args, guard);
         flow
     }
@@ -490,7 +494,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
         }
     }
 
-    fn active(&mut self, member: usize, edge: usize) -> Flow {
+    fn active(&mut self, member: usize, edge: usize) -> EnumerationFlow {
         if self.forbidden(member, edge) {
             return ControlFlow::Continue(());
         }
@@ -505,7 +509,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
         ControlFlow::Continue(())
     }
 
-    fn begin(&mut self, member: usize, edge: usize, binders: &SmallVec<[i64; 4]>) -> Flow {
+    fn begin(&mut self, member: usize, edge: usize, binders: &SmallVec<[i64; 4]>) -> EnumerationFlow {
         let model = self.model;
         self.s.guard.clear();
         match self.opens(member, edge, binders) {
@@ -549,7 +553,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
         Ok(())
     }
 
-    fn binary(&mut self, member: usize, signal: &EdgeOutput) -> Flow {
+    fn binary(&mut self, member: usize, signal: &EdgeOutput) -> EnumerationFlow {
         let model = self.model;
         let own = !self.committed || model.is_committed(self.state, member);
         for partner in &signal.partners {
@@ -565,7 +569,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
         ControlFlow::Continue(())
     }
 
-    fn meet(&mut self, member: usize, edge: usize, medium: SyncMedium) -> Flow {
+    fn meet(&mut self, member: usize, edge: usize, medium: SyncMedium) -> EnumerationFlow {
         let model = self.model;
         let arrow = &model.members[member].edges[edge];
         let EdgeSync::In(pattern) = &arrow.sync else { return ControlFlow::Continue(()) };
@@ -593,7 +597,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
         ControlFlow::Continue(())
     }
 
-    fn broadcast(&mut self, signal: &EdgeOutput) -> Flow {
+    fn broadcast(&mut self, signal: &EdgeOutput) -> EnumerationFlow {
         let mut options: Vec<Vec<SyncResponse>> = Vec::new();
         for partner in &signal.partners {
             let p = usize::from(partner.member);
@@ -649,7 +653,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
     }
 
     /// All combinations of what the partners may do, the last partner fastest.
-    fn combine(&mut self, options: &[Vec<SyncResponse>], medium: Option<SyncMedium>) -> Flow {
+    fn combine(&mut self, options: &[Vec<SyncResponse>], medium: Option<SyncMedium>) -> EnumerationFlow {
         let (parts, guards) = (self.s.parts.len(), self.s.guard.len());
         let mut at: SmallVec<[usize; 8]> = SmallVec::from_elem(0, options.len());
         loop {
@@ -686,7 +690,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> Flow> FiringEnumeration<'_,
         }
     }
 
-    fn multiway(&mut self, index: usize) -> Flow {
+    fn multiway(&mut self, index: usize) -> EnumerationFlow {
         let model = self.model;
         let shared = &model.multiway[index];
         let mut options: Vec<Vec<SyncResponse>> = Vec::new();

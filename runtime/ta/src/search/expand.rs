@@ -8,7 +8,7 @@ use crate::{
     network::{actions::PathTransition, error::ModelError, model::CompiledNetwork},
     search::{
         goals::{CompiledGoals, SymbolicStateRef},
-        options::{SearchOptions, Subsumption},
+        options::{SearchOptions, SubsumptionRelation},
         stepper::{SymbolicStepper, SymbolicSuccessor},
         store::{NIL, PassedList, hash_words},
         waiting,
@@ -18,7 +18,7 @@ use crate::{
         constraint::DifferenceConstraint,
         dbm::{Dbm, DbmNumber, dominates},
         diagonals::split,
-        extrapolation::{Abstraction, ActiveClocks, NONE, extra_lu, thresholds},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, NONE, extra_lu, thresholds},
     },
 };
 
@@ -162,7 +162,7 @@ struct WorkerMemory<N> {
 pub(crate) struct ExpansionError;
 
 impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
-    pub(crate) fn new(model: &'m CompiledNetwork<'p>, abstraction: Abstraction) -> Self {
+    pub(crate) fn new(model: &'m CompiledNetwork<'p>, abstraction: ExtrapolationAbstraction) -> Self {
         let m = WorkerMemory {
             stack: Vec::new(),
             packed: Vec::new(),
@@ -354,7 +354,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     pub(crate) fn compare(
         &mut self,
         store: &PassedList<N>,
-        subsumption: Subsumption,
+        subsumption: SubsumptionRelation,
         discrete: u32,
         first: u32,
         zone: &[N],
@@ -400,34 +400,39 @@ impl<N: DbmNumber> ExpansionState<N> {
 
 /// What an entry of a zone must be at least to cover a zone.
 fn demands<N: DbmNumber>(
-    subsumption: Subsumption,
+    subsumption: SubsumptionRelation,
     frame: &ActiveClocks,
     zone: &Dbm<N>,
     out: &mut Vec<N>,
     flat: &[N],
 ) {
     match subsumption {
-        Subsumption::Inclusion | Subsumption::Equality => {
+        SubsumptionRelation::Inclusion | SubsumptionRelation::Equality => {
             out.clear();
             out.extend_from_slice(flat);
         }
-        Subsumption::Simulation => thresholds(frame, zone, out),
+        SubsumptionRelation::Simulation => thresholds(frame, zone, out),
     }
 }
 
-fn subsumes<N: DbmNumber>(subsumption: Subsumption, old: &[N], demands: &[N]) -> bool {
+fn subsumes<N: DbmNumber>(subsumption: SubsumptionRelation, old: &[N], demands: &[N]) -> bool {
     match subsumption {
-        Subsumption::Equality => old == demands,
-        Subsumption::Inclusion | Subsumption::Simulation => dominates(old, demands),
+        SubsumptionRelation::Equality => old == demands,
+        SubsumptionRelation::Inclusion | SubsumptionRelation::Simulation => dominates(old, demands),
     }
 }
 
 /// Whether the new zone covers the old one, both without padding.
-fn covers<N: DbmNumber>(subsumption: Subsumption, frame: &ActiveClocks, new: &[N], old: &[N]) -> bool {
+fn covers<N: DbmNumber>(
+    subsumption: SubsumptionRelation,
+    frame: &ActiveClocks,
+    new: &[N],
+    old: &[N],
+) -> bool {
     match subsumption {
-        Subsumption::Equality => false,
-        Subsumption::Inclusion => dominates(new, old),
-        Subsumption::Simulation => {
+        SubsumptionRelation::Equality => false,
+        SubsumptionRelation::Inclusion => dominates(new, old),
+        SubsumptionRelation::Simulation => {
             let dim = frame.dim();
             let rows = new.chunks_exact(dim).zip(old.chunks_exact(dim)).zip(&frame.bounds);
             rows.clone().all(|((new_row, old_row), lu)| {
@@ -576,7 +581,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         let hash = hash_words(&m.packed);
         let known = store.find(hash, &m.packed);
         let simple = self.model.extrapolation.diagonals.is_none();
-        if subsumption == Subsumption::Simulation
+        if subsumption == SubsumptionRelation::Simulation
             && simple
             && let Some(discrete) = known
         {
@@ -641,8 +646,8 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         if let Some(discrete) = known {
             let flat = &batch.zones[place..];
             // Simulation was looked at before.
-            let looked =
-                subsumption == Subsumption::Simulation && self.model.extrapolation.diagonals.is_none();
+            let looked = subsumption == SubsumptionRelation::Simulation
+                && self.model.extrapolation.diagonals.is_none();
             if !looked {
                 demands(subsumption, frame, zone, &mut m.bounds, flat);
             }

@@ -1,6 +1,6 @@
 //! How to search.
 
-use crate::{network::query::SearchBudget, zone::extrapolation::Abstraction};
+use crate::{network::query::SearchBudget, zone::extrapolation::ExtrapolationAbstraction};
 
 /// In which order waiting states are expanded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum SearchOrder {
 
 /// When a state covers another of the same discrete part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Subsumption {
+pub enum SubsumptionRelation {
     /// Its zone has all valuations of the other.
     Inclusion,
     /// The zones are the same.
@@ -34,8 +34,8 @@ pub enum Subsumption {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchOptions {
     pub order: SearchOrder,
-    pub subsumption: Subsumption,
-    pub abstraction: Abstraction,
+    pub subsumption: SubsumptionRelation,
+    pub abstraction: ExtrapolationAbstraction,
     /// Threads; results do not depend on it.
     pub threads: usize,
     /// States with a committed location are stored, too; otherwise transitions out of them are a part of those into them.
@@ -53,8 +53,8 @@ impl Default for SearchOptions {
     fn default() -> Self {
         Self {
             order: SearchOrder::default(),
-            subsumption: Subsumption::default(),
-            abstraction: Abstraction::default(),
+            subsumption: SubsumptionRelation::default(),
+            abstraction: ExtrapolationAbstraction::default(),
             threads: 1,
             keep_committed: true,
             reduce: true,
@@ -71,7 +71,7 @@ impl SearchOptions {
     pub fn reference() -> Self {
         Self {
             order: SearchOrder::Breadth,
-            subsumption: Subsumption::Inclusion,
+            subsumption: SubsumptionRelation::Inclusion,
             reduce: false,
             ..Self::default()
         }

@@ -19,7 +19,7 @@ use crate::{
     search::{
         expand::{ExpansionBatch, ExpansionContext, ExpansionWorker, GoalPath},
         goals::CompiledGoals,
-        options::{SearchOptions, Subsumption},
+        options::{SearchOptions, SubsumptionRelation},
         report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport},
         slice,
         store::{NIL, PassedList, StateLayout},
@@ -77,8 +77,8 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             if options.reduce { slice::relevant(model, &compiled) } else { vec![true; model.size()] };
         let mut options = *options;
         // With differences of clocks a simulation by bounds of single clocks is none.
-        if model.extrapolation.diagonals.is_some() && options.subsumption == Subsumption::Simulation {
-            options.subsumption = Subsumption::Inclusion;
+        if model.extrapolation.diagonals.is_some() && options.subsumption == SubsumptionRelation::Simulation {
+            options.subsumption = SubsumptionRelation::Inclusion;
         }
         let pool = if options.threads > 1 {
             let built = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
@@ -264,7 +264,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
     }
 
     fn absorb(&mut self, batch: &ExpansionBatch<N>, first: u32) -> Option<SearchCutoff> {
-        let simulates = self.options.subsumption == Subsumption::Simulation;
+        let simulates = self.options.subsumption == SubsumptionRelation::Simulation;
         let worker = &mut self.workers[0];
         for item in &batch.items {
             if simulates && item.parent != NIL && self.store.nodes[item.parent as usize].covered {

@@ -11,14 +11,14 @@ use crate::{
         error::ModelError,
         model::CompiledNetwork,
         semantics::{
-            ClockReset, ConstraintFilter, EnumerationScratch, Firing, FiringOrError, NegativityCheck,
-            TransitionEffect,
+            ClockReset, ConstraintFilter, EnumerationScratch, FiringOrError, NegativityCheck,
+            TransitionEffect, TransitionFiring,
         },
     },
     zone::{
         constraint::DifferenceConstraint,
         dbm::{Dbm, DbmBound, DbmNumber},
-        extrapolation::{Abstraction, ActiveClocks},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction},
     },
 };
 
@@ -26,7 +26,7 @@ use crate::{
 pub(crate) struct SymbolicSuccessor<'a, N> {
     /// Its number among those of the same symbolic state.
     pub number: u32,
-    pub firing: &'a Firing<'a>,
+    pub firing: &'a TransitionFiring<'a>,
     pub state: &'a mut Vec<i64>,
     pub frame: &'a ActiveClocks,
     /// Not extrapolated.
@@ -37,7 +37,7 @@ pub(crate) struct SymbolicSuccessor<'a, N> {
 /// Computes symbolic successors, with memory that it uses again and again.
 pub(crate) struct SymbolicStepper<'m, 'p, N> {
     pub model: &'m CompiledNetwork<'p>,
-    pub abstraction: Abstraction,
+    pub abstraction: ExtrapolationAbstraction,
     scratch: EnumerationScratch,
     before: Vec<i64>,
     w: StepperWorkspace<N>,
@@ -88,7 +88,7 @@ fn set_index(index: &mut Vec<u16>, frame: &ActiveClocks, dim: usize) {
 }
 
 impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
-    pub(crate) fn new(model: &'m CompiledNetwork<'p>, abstraction: Abstraction) -> Self {
+    pub(crate) fn new(model: &'m CompiledNetwork<'p>, abstraction: ExtrapolationAbstraction) -> Self {
         let w = StepperWorkspace {
             effect: TransitionEffect::default(),
             stack: Vec::new(),
@@ -190,13 +190,14 @@ impl<N: DbmNumber> StepperWorkspace<N> {
     fn found(
         &mut self,
         model: &CompiledNetwork,
-        abstraction: Abstraction,
+        abstraction: ExtrapolationAbstraction,
         state: &[i64],
         zone: &Dbm<N>,
         index: &[u16],
         found: &FiringOrError,
     ) -> Result<bool, ModelError> {
-        let (FiringOrError::Firing(Firing { guard, .. }) | FiringOrError::Fault { guard, .. }) = found;
+        let (FiringOrError::Firing(TransitionFiring { guard, .. }) | FiringOrError::Fault { guard, .. }) =
+            found;
         // Without a guard the zone is as it was: no copy is needed.
         let guarded = !guard.is_empty();
         if guarded {

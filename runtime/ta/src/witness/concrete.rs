@@ -20,7 +20,7 @@ use crate::network::{
     code::SyncMedium,
     error::{EdgeName, ModelError, argument_fault, bad_argument, range_fault},
     query::nanos,
-    semantics::{AutomatonMove, Binders, bind, choices},
+    semantics::{AutomatonMove, BinderValues, bind, choices},
 };
 
 /// The state of some automata at an instant; time is in ticks.
@@ -400,7 +400,7 @@ impl<'p> ConcreteInterpreter<'p> {
                     _,
                 ) => continue,
             };
-            let mut bound = Binders::new();
+            let mut bound = BinderValues::new();
             let here = edge.from == self.location[member];
             if !here || pattern.len() != args.len() || !bind(pattern, args, &mut bound) {
                 continue;

@@ -21,7 +21,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::{
     network::{
         error::ModelError,
-        semantics::{AutomatonMove, Binders, bind, choices},
+        semantics::{AutomatonMove, BinderValues, bind, choices},
         well_formed,
     },
     witness::concrete::ConcreteInterpreter,
@@ -87,7 +87,7 @@ impl<'p> VirtualTimePlayer<'p> {
         for e in 0..self.machine.members[0].edges.len() {
             let edge = &self.machine.members[0].edges[e];
             let SyncLabel::Receive { event: wanted, args: pattern } = &edge.sync else { continue };
-            let mut bound = Binders::new();
+            let mut bound = BinderValues::new();
             if *wanted != event || pattern.len() != args.len() || !bind(pattern, args, &mut bound) {
                 continue;
             }
@@ -280,7 +280,7 @@ impl<'p> VirtualTimePlayer<'p> {
             return None;
         }
         let after = VirtualTimePlayer { machine: after, entered: 0, taken: 0, rng: None, fault: None };
-        let none = AutomatonMove { automaton: 0, edge: m.edge, binders: Binders::new() };
+        let none = AutomatonMove { automaton: 0, edge: m.edge, binders: BinderValues::new() };
         window = after.window(&place.invariant, &zeros, &none, window).ok()?;
         (window.0 <= window.1).then_some(window.0)
     }

@@ -28,14 +28,14 @@ pub struct ScheduleOptions {
 }
 
 /// A time: units, then infinitely small steps.
-type Time = (i64, i64);
+type ScheduleTime = (i64, i64);
 
 /// `later ≥ earlier + (units, ε)`, of the times with these numbers.
 #[derive(Clone, Copy, Debug)]
 struct TimeSeparation {
     later: usize,
     earlier: usize,
-    by: Time,
+    by: ScheduleTime,
 }
 
 /// The times of a path under construction; time 0 is the start.
@@ -142,12 +142,12 @@ fn dawdle(ticks: i64) -> i128 {
 }
 
 /// The least times that keep all constraints, from 0 for the start; `None`: there are none.
-fn least(count: usize, constraints: &[TimeSeparation]) -> Option<Vec<Time>> {
+fn least(count: usize, constraints: &[TimeSeparation]) -> Option<Vec<ScheduleTime>> {
     let mut times = vec![(0, 0); count];
     for _ in 0..=count {
         let mut changed = false;
         for c in constraints {
-            let from: Time = times[c.earlier];
+            let from: ScheduleTime = times[c.earlier];
             let at = (from.0 + c.by.0, from.1 + c.by.1);
             if at > times[c.later] {
                 if c.later == 0 {

@@ -172,7 +172,7 @@ pub struct Dbm<N = i64> {
 }
 
 /// A row, copied.
-type Row<N> = SmallVec<[N; 32]>;
+type DbmRow<N> = SmallVec<[N; 32]>;
 
 impl<N: DbmNumber> Dbm<N> {
     /// All clocks are zero. `dim` counts the reference clock.
@@ -233,7 +233,7 @@ impl<N: DbmNumber> Dbm<N> {
         &mut self.m[i * self.stride..(i + 1) * self.stride]
     }
 
-    fn copied(&self, i: usize) -> Row<N> {
+    fn copied(&self, i: usize) -> DbmRow<N> {
         SmallVec::from_slice(&self.m[i * self.stride..(i + 1) * self.stride])
     }
 

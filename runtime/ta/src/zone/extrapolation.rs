@@ -36,7 +36,7 @@ impl LuBounds {
 
 /// Which bounds an extrapolation uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Abstraction {
+pub enum ExtrapolationAbstraction {
     /// Lower and upper bounds apart: keeps what can be reached.
     #[default]
     LowerUpper,

@@ -7,9 +7,9 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_ta::{
-    Abstraction, CompiledNetwork, GoalKind, GoalOutcome, ModelError, ObservationOptions, QueryOptions,
-    QueryVerdict, ReachabilityGoal, SearchError, SearchOptions, SearchOrder, SearchReport, Subsumption,
-    answer, explore as search,
+    CompiledNetwork, ExtrapolationAbstraction, GoalKind, GoalOutcome, ModelError, ObservationOptions,
+    QueryOptions, QueryVerdict, ReachabilityGoal, SearchError, SearchOptions, SearchOrder, SearchReport,
+    SubsumptionRelation, answer, explore as search,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -71,10 +71,13 @@ fn modes() -> Vec<(&'static str, SearchOptions)> {
     let with = |order, threads| SearchOptions { order, threads, ..SearchOptions::default() };
     vec![
         ("reference", SearchOptions::reference()),
-        ("equality", SearchOptions { subsumption: Subsumption::Equality, ..SearchOptions::reference() }),
+        (
+            "equality",
+            SearchOptions { subsumption: SubsumptionRelation::Equality, ..SearchOptions::reference() },
+        ),
         (
             "greatest constants",
-            SearchOptions { abstraction: Abstraction::Greatest, ..SearchOptions::reference() },
+            SearchOptions { abstraction: ExtrapolationAbstraction::Greatest, ..SearchOptions::reference() },
         ),
         ("shortest", SearchOptions::shortest()),
         ("breadth", with(SearchOrder::Breadth, 1)),

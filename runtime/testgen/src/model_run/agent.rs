@@ -2,13 +2,13 @@
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{ActionToken, AgentAction, IntentionSummary, RunStatus, Society};
+use hrdsl_bdi::{ActionToken, AgentAction, AgentSociety, IntentionSummary, RunStatus};
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use hrdsl_harness::{
-    HarnessError, Performance, Player, PlayerContext, PlayerMessage, draw_samples, is_perceived,
+    ActorPlayer, HarnessError, PlayerContext, PlayerMessage, StimulusPerformance, draw_samples, is_perceived,
 };
 
 /// From so many agents on they reason on several threads.
@@ -17,7 +17,7 @@ const MANY: usize = 32;
 /// All agents of a run; each has a player of its own, but they reason together.
 pub struct AgentCompany<'p> {
     program: &'p Program,
-    pub society: Society<'p>,
+    pub society: AgentSociety<'p>,
     members: Vec<AgentPerformer>,
     /// The delivery that they have all heard.
     heard: u64,
@@ -39,7 +39,7 @@ pub struct SnapshotLog {
 
 impl SnapshotLog {
     /// How they stand at the end of this instant.
-    fn note(&mut self, time: Nanos, society: &Society<'_>) {
+    fn note(&mut self, time: Nanos, society: &AgentSociety<'_>) {
         if self.noted >= NOTED {
             self.missed = Some(time);
             return;
@@ -54,7 +54,7 @@ impl SnapshotLog {
 
     /// All of them, the last one as the agents stand now.
     #[must_use]
-    pub fn finish(mut self, society: &Society<'_>) -> Vec<AgentSnapshot> {
+    pub fn finish(mut self, society: &AgentSociety<'_>) -> Vec<AgentSnapshot> {
         if let Some(time) = self.missed {
             self.all.pop_if(|s| s.time == time);
             self.all.push(AgentSnapshot::of(time, society));
@@ -64,7 +64,7 @@ impl SnapshotLog {
 }
 
 impl AgentSnapshot {
-    fn of(time: Nanos, society: &Society<'_>) -> Self {
+    fn of(time: Nanos, society: &AgentSociety<'_>) -> Self {
         let count = society.agents().count();
         Self { time, agents: (0..count).map(|agent| society.standing(agent)).collect() }
     }
@@ -82,14 +82,14 @@ pub struct AgentSnapshot {
 /// What an agent is doing in the world.
 struct AgentPerformer {
     actor: ActorId,
-    performances: Vec<(ActionToken, Performance)>,
+    performances: Vec<(ActionToken, StimulusPerformance)>,
     /// Draws the samples of its stimuli.
     rng: ChaCha8Rng,
 }
 
 impl<'p> AgentCompany<'p> {
     #[must_use]
-    pub fn new(program: &'p Program, mut society: Society<'p>) -> Rc<RefCell<Self>> {
+    pub fn new(program: &'p Program, mut society: AgentSociety<'p>) -> Rc<RefCell<Self>> {
         let member =
             |actor| AgentPerformer { actor, performances: Vec::new(), rng: ChaCha8Rng::seed_from_u64(0) };
         let members: Vec<AgentPerformer> = society.actors().map(member).collect();
@@ -133,7 +133,7 @@ impl<'p> AgentCompany<'p> {
         }
         let member = &mut self.members[agent];
         let samples = draw_samples(self.program, event, &args, &mut member.rng)?;
-        let performance = Performance::begin(self.program, event, &args, &samples, cx)?;
+        let performance = StimulusPerformance::begin(self.program, event, &args, &samples, cx)?;
         if performance.is_done(cx.now) {
             self.society.stimulus_done(agent, token, cx.now);
         } else {
@@ -221,7 +221,7 @@ impl<'p> AgentPlayer<'p> {
     }
 }
 
-impl Player for AgentPlayer<'_> {
+impl ActorPlayer for AgentPlayer<'_> {
     fn actors(&self) -> &[ActorId] {
         &self.actors
     }

@@ -3,7 +3,7 @@
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value, ta::AutomatonId};
 use hrdsl_ta::VirtualTimePlayer as Machine;
 
-use hrdsl_harness::{HarnessError, Player, PlayerContext, PlayerMessage};
+use hrdsl_harness::{ActorPlayer, HarnessError, PlayerContext, PlayerMessage};
 
 pub struct AutomatonPlayer<'p> {
     program: &'p Program,
@@ -34,7 +34,7 @@ impl<'p> AutomatonPlayer<'p> {
     }
 }
 
-impl Player for AutomatonPlayer<'_> {
+impl ActorPlayer for AutomatonPlayer<'_> {
     fn actors(&self) -> &[ActorId] {
         &self.actors
     }

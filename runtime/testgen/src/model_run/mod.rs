@@ -5,9 +5,9 @@ mod automaton;
 
 use std::{cell::RefCell, rc::Rc};
 
-use hrdsl_bdi::{CYCLE_LIMIT, LogItem, Society, measure::AgentCounts};
+use hrdsl_bdi::{AgentSociety, CYCLE_LIMIT, LogItem, measure::AgentCounts};
 pub use hrdsl_bdi::{IntentionSummary, LogDetail, RunStatus, show};
-use hrdsl_harness::{Harness, HarnessRun, Player, RunTermination};
+use hrdsl_harness::{ActorPlayer, HarnessLoop, HarnessRun, RunTermination};
 use hrdsl_ir::{
     Nanos, Program,
     bdi::{AgentId, InitialFact},
@@ -154,7 +154,7 @@ impl<'p> ModelCast<'p, '_> {
             PlayerRef::Automaton(_) => None,
         };
         let agents: Vec<(AgentId, Vec<InitialFact>)> = self.players.iter().filter_map(agent).collect();
-        let mut society = Society::with_detail(program, &agents, self.options.seed, self.options.detail);
+        let mut society = AgentSociety::with_detail(program, &agents, self.options.seed, self.options.detail);
         society.set_cycle_limit(self.options.cycles);
         society.measure();
         if watch {
@@ -163,14 +163,14 @@ impl<'p> ModelCast<'p, '_> {
         let company = AgentCompany::new(program, society);
         company.borrow_mut().snapshots = watch.then(SnapshotLog::default);
         let mut members = AgentPlayer::all(&company).into_iter();
-        let play = |player: &PlayerRef| -> Option<Box<dyn Player + 'p>> {
+        let play = |player: &PlayerRef| -> Option<Box<dyn ActorPlayer + 'p>> {
             match player {
                 PlayerRef::Agent(_) => Some(Box::new(members.next()?)),
                 PlayerRef::Automaton(automaton) => Some(Box::new(AutomatonPlayer::new(program, *automaton))),
             }
         };
         let cast = self.players.iter().filter_map(play).collect();
-        let run = Harness::new(program, cast, None, self.options.horizon).run();
+        let run = HarnessLoop::new(program, cast, None, self.options.horizon).run();
         (company, run)
     }
 }

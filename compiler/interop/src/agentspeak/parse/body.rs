@@ -1,28 +1,28 @@
 //! Bodies of plans.
 
-use super::{Parsed, Parser};
+use super::{AgentSpeakParseResult, AgentSpeakParser};
 use crate::agentspeak::{
-    ast::{Adding, Step, StepKind, TermKind},
-    lex::Tok,
+    ast::{AgentSpeakStep, AgentSpeakStepKind, BeliefAddition, TermKind},
+    lex::AgentSpeakTokenKind,
 };
 
-impl Parser {
+impl AgentSpeakParser {
     /// Steps up to the full stop or the brace after them.
-    pub(super) fn body(&mut self) -> Parsed<Vec<Step>> {
+    pub(super) fn body(&mut self) -> AgentSpeakParseResult<Vec<AgentSpeakStep>> {
         self.deeper(|p| {
             let mut steps = Vec::new();
-            while !p.is(".") && !p.is("}") && *p.peek() != Tok::End {
+            while !p.is(".") && !p.is("}") && *p.peek() != AgentSpeakTokenKind::End {
                 let step = p.branches()?;
                 let is_block = !matches!(
                     step.kind,
-                    StepKind::Achieve(_)
-                        | StepKind::Spawn(_)
-                        | StepKind::Query(_)
-                        | StepKind::Add(..)
-                        | StepKind::Remove(_)
-                        | StepKind::Replace(_)
-                        | StepKind::Action(_)
-                        | StepKind::Formula(_)
+                    AgentSpeakStepKind::Achieve(_)
+                        | AgentSpeakStepKind::Spawn(_)
+                        | AgentSpeakStepKind::Query(_)
+                        | AgentSpeakStepKind::Add(..)
+                        | AgentSpeakStepKind::Remove(_)
+                        | AgentSpeakStepKind::Replace(_)
+                        | AgentSpeakStepKind::Action(_)
+                        | AgentSpeakStepKind::Formula(_)
                 );
                 steps.push(step);
                 if !p.take(";") && !is_block && !p.is(".") && !p.is("}") {
@@ -34,7 +34,7 @@ impl Parser {
     }
 
     /// `a |&| b`, `a ||| b`: groups to the right.
-    fn branches(&mut self) -> Parsed<Step> {
+    fn branches(&mut self) -> AgentSpeakParseResult<AgentSpeakStep> {
         let start = self.here();
         let first = self.factor()?;
         let all = self.is("|&|");
@@ -45,35 +45,41 @@ impl Parser {
         let rest = self.deeper(Self::branches)?;
         let mut branches = vec![opened(first)];
         match rest {
-            Step { kind: StepKind::Fork { branches: more, all: same }, .. } if same == all => {
+            AgentSpeakStep { kind: AgentSpeakStepKind::Fork { branches: more, all: same }, .. }
+                if same == all =>
+            {
                 branches.extend(more)
             }
             other => branches.push(opened(other)),
         }
-        Ok(Step { kind: StepKind::Fork { branches, all }, span: self.since(start) })
+        Ok(AgentSpeakStep { kind: AgentSpeakStepKind::Fork { branches, all }, span: self.since(start) })
     }
 
-    fn factor(&mut self) -> Parsed<Step> {
+    fn factor(&mut self) -> AgentSpeakParseResult<AgentSpeakStep> {
         let start = self.here();
         let kind = match self.peek() {
-            Tok::Word("if") => self.condition()?,
-            Tok::Word(word @ ("while" | "for")) => {
+            AgentSpeakTokenKind::Word("if") => self.condition()?,
+            AgentSpeakTokenKind::Word(word @ ("while" | "for")) => {
                 let loops = *word == "while";
                 self.advance();
                 self.expect("(", "before the condition")?;
                 let condition = self.formula()?;
                 self.expect(")", "after the condition")?;
                 let body = self.block()?;
-                if loops { StepKind::While { condition, body } } else { StepKind::For { condition, body } }
+                if loops {
+                    AgentSpeakStepKind::While { condition, body }
+                } else {
+                    AgentSpeakStepKind::For { condition, body }
+                }
             }
-            Tok::Mark("{") => StepKind::Block(self.block()?),
+            AgentSpeakTokenKind::Mark("{") => AgentSpeakStepKind::Block(self.block()?),
             _ => self.plain()?,
         };
-        Ok(Step { kind, span: self.since(start) })
+        Ok(AgentSpeakStep { kind, span: self.since(start) })
     }
 
     /// From `if` or `elif` on.
-    fn condition(&mut self) -> Parsed<StepKind> {
+    fn condition(&mut self) -> AgentSpeakParseResult<AgentSpeakStepKind> {
         self.advance();
         self.expect("(", "before the condition")?;
         let condition = self.formula()?;
@@ -82,40 +88,40 @@ impl Parser {
         let start = self.here();
         let otherwise = if self.is_word("elif") {
             let kind = self.deeper(Self::condition)?;
-            vec![Step { kind, span: self.since(start) }]
+            vec![AgentSpeakStep { kind, span: self.since(start) }]
         } else if self.is_word("else") {
             self.advance();
             if self.is_word("if") {
                 let kind = self.deeper(Self::condition)?;
-                vec![Step { kind, span: self.since(start) }]
+                vec![AgentSpeakStep { kind, span: self.since(start) }]
             } else {
                 self.block()?
             }
         } else {
             Vec::new()
         };
-        Ok(StepKind::If { condition, then, otherwise })
+        Ok(AgentSpeakStepKind::If { condition, then, otherwise })
     }
 
-    fn block(&mut self) -> Parsed<Vec<Step>> {
+    fn block(&mut self) -> AgentSpeakParseResult<Vec<AgentSpeakStep>> {
         self.expect("{", "before the steps")?;
         let steps = self.body()?;
         self.expect("}", "after the steps")?;
         Ok(steps)
     }
 
-    fn plain(&mut self) -> Parsed<StepKind> {
+    fn plain(&mut self) -> AgentSpeakParseResult<AgentSpeakStepKind> {
         let sign = match self.peek() {
-            Tok::Mark(m @ ("!" | "!!" | "?" | "+" | "-")) => *m,
+            AgentSpeakTokenKind::Mark(m @ ("!" | "!!" | "?" | "+" | "-")) => *m,
             _ => return self.bare(),
         };
         self.advance();
         if sign == "?" {
-            return Ok(StepKind::Query(self.formula()?));
+            return Ok(AgentSpeakStepKind::Query(self.formula()?));
         }
         let second = match self.peek() {
-            Tok::Mark(m @ ("+" | "<" | ">")) if sign == "+" => Some(*m),
-            Tok::Mark(m @ ("+" | "-")) if sign == "-" => Some(*m),
+            AgentSpeakTokenKind::Mark(m @ ("+" | "<" | ">")) if sign == "+" => Some(*m),
+            AgentSpeakTokenKind::Mark(m @ ("+" | "-")) if sign == "-" => Some(*m),
             _ => None,
         };
         if second.is_some() {
@@ -123,30 +129,30 @@ impl Parser {
         }
         let of = self.literal_or_var(&format!("after `{sign}`"))?;
         Ok(match (sign, second) {
-            ("!", _) => StepKind::Achieve(of),
-            ("!!", _) => StepKind::Spawn(of),
-            ("+", Some("+")) => StepKind::Add(of, Adding::NewFocus),
-            ("+", Some("<")) => StepKind::Add(of, Adding::First),
-            ("+", Some(_)) => StepKind::Add(of, Adding::Last),
-            ("+", None) => StepKind::Add(of, Adding::Plain),
-            (_, Some("+")) => StepKind::Replace(of),
-            _ => StepKind::Remove(of),
+            ("!", _) => AgentSpeakStepKind::Achieve(of),
+            ("!!", _) => AgentSpeakStepKind::Spawn(of),
+            ("+", Some("+")) => AgentSpeakStepKind::Add(of, BeliefAddition::NewFocus),
+            ("+", Some("<")) => AgentSpeakStepKind::Add(of, BeliefAddition::First),
+            ("+", Some(_)) => AgentSpeakStepKind::Add(of, BeliefAddition::Last),
+            ("+", None) => AgentSpeakStepKind::Add(of, BeliefAddition::Plain),
+            (_, Some("+")) => AgentSpeakStepKind::Replace(of),
+            _ => AgentSpeakStepKind::Remove(of),
         })
     }
 
-    fn bare(&mut self) -> Parsed<StepKind> {
+    fn bare(&mut self) -> AgentSpeakParseResult<AgentSpeakStepKind> {
         let term = self.formula()?;
         Ok(match term.kind {
-            TermKind::Literal(literal) => StepKind::Action(literal),
-            _ => StepKind::Formula(term),
+            TermKind::Literal(literal) => AgentSpeakStepKind::Action(literal),
+            _ => AgentSpeakStepKind::Formula(term),
         })
     }
 }
 
 /// The steps of a branch.
-fn opened(step: Step) -> Vec<Step> {
+fn opened(step: AgentSpeakStep) -> Vec<AgentSpeakStep> {
     match step.kind {
-        StepKind::Block(steps) => steps,
+        AgentSpeakStepKind::Block(steps) => steps,
         _ => vec![step],
     }
 }

@@ -1,57 +1,60 @@
 //! Terms and formulas, from the loosest operator to the tightest.
 
-use super::{Parsed, Parser};
+use super::{AgentSpeakParseResult, AgentSpeakParser};
 use crate::agentspeak::{
-    ast::{Literal, Op, Plan, Step, StepKind, Term, TermKind, TriggerKind},
-    lex::Tok,
+    ast::{
+        AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakPlan, AgentSpeakStep, AgentSpeakStepKind,
+        AgentSpeakTerm, AgentSpeakTriggerKind, TermKind,
+    },
+    lex::AgentSpeakTokenKind,
 };
 
-impl Parser {
+impl AgentSpeakParser {
     /// A formula, or any term.
-    pub(super) fn formula(&mut self) -> Parsed<Term> {
+    pub(super) fn formula(&mut self) -> AgentSpeakParseResult<AgentSpeakTerm> {
         self.deeper(|p| {
             let left = p.conjunction()?;
             if p.take("|") {
                 let right = p.formula()?;
-                return Ok(binary(Op::Or, left, right));
+                return Ok(binary(AgentSpeakOperator::Or, left, right));
             }
             Ok(left)
         })
     }
 
-    fn conjunction(&mut self) -> Parsed<Term> {
+    fn conjunction(&mut self) -> AgentSpeakParseResult<AgentSpeakTerm> {
         self.deeper(|p| {
             let left = p.negation()?;
             if p.take("&") {
                 let right = p.conjunction()?;
-                return Ok(binary(Op::And, left, right));
+                return Ok(binary(AgentSpeakOperator::And, left, right));
             }
             Ok(left)
         })
     }
 
-    fn negation(&mut self) -> Parsed<Term> {
+    fn negation(&mut self) -> AgentSpeakParseResult<AgentSpeakTerm> {
         let start = self.here();
         if !self.is_word("not") {
             return self.relation();
         }
         self.advance();
         let of = self.deeper(Self::negation)?;
-        Ok(Term { kind: TermKind::Not(Box::new(of)), span: self.since(start) })
+        Ok(AgentSpeakTerm { kind: TermKind::Not(Box::new(of)), span: self.since(start) })
     }
 
-    fn relation(&mut self) -> Parsed<Term> {
+    fn relation(&mut self) -> AgentSpeakParseResult<AgentSpeakTerm> {
         let left = self.sum()?;
         let op = match self.peek() {
-            Tok::Mark("<") => Op::Less,
-            Tok::Mark("<=") => Op::LessEqual,
-            Tok::Mark(">") => Op::Greater,
-            Tok::Mark(">=") => Op::GreaterEqual,
-            Tok::Mark("==") => Op::Equal,
-            Tok::Mark("\\==") => Op::Different,
-            Tok::Mark("=") => Op::Unify,
-            Tok::Mark("\\=") => Op::NotUnify,
-            Tok::Mark("=..") => Op::Univ,
+            AgentSpeakTokenKind::Mark("<") => AgentSpeakOperator::Less,
+            AgentSpeakTokenKind::Mark("<=") => AgentSpeakOperator::LessEqual,
+            AgentSpeakTokenKind::Mark(">") => AgentSpeakOperator::Greater,
+            AgentSpeakTokenKind::Mark(">=") => AgentSpeakOperator::GreaterEqual,
+            AgentSpeakTokenKind::Mark("==") => AgentSpeakOperator::Equal,
+            AgentSpeakTokenKind::Mark("\\==") => AgentSpeakOperator::Different,
+            AgentSpeakTokenKind::Mark("=") => AgentSpeakOperator::Unify,
+            AgentSpeakTokenKind::Mark("\\=") => AgentSpeakOperator::NotUnify,
+            AgentSpeakTokenKind::Mark("=..") => AgentSpeakOperator::Univ,
             _ => return Ok(left),
         };
         self.advance();
@@ -60,12 +63,12 @@ impl Parser {
     }
 
     /// What may stand in a list: no formula, because `|` is the list's.
-    fn sum(&mut self) -> Parsed<Term> {
+    fn sum(&mut self) -> AgentSpeakParseResult<AgentSpeakTerm> {
         let mut left = self.product()?;
         loop {
             let op = match self.peek() {
-                Tok::Mark("+") => Op::Add,
-                Tok::Mark("-") => Op::Sub,
+                AgentSpeakTokenKind::Mark("+") => AgentSpeakOperator::Add,
+                AgentSpeakTokenKind::Mark("-") => AgentSpeakOperator::Sub,
                 _ => return Ok(left),
             };
             self.advance();
@@ -73,14 +76,14 @@ impl Parser {
         }
     }
 
-    fn product(&mut self) -> Parsed<Term> {
+    fn product(&mut self) -> AgentSpeakParseResult<AgentSpeakTerm> {
         let mut left = self.power()?;
         loop {
             let op = match self.peek() {
-                Tok::Mark("*") => Op::Mul,
-                Tok::Mark("/") => Op::Div,
-                Tok::Word("div") => Op::IntDiv,
-                Tok::Word("mod") => Op::Mod,
+                AgentSpeakTokenKind::Mark("*") => AgentSpeakOperator::Mul,
+                AgentSpeakTokenKind::Mark("/") => AgentSpeakOperator::Div,
+                AgentSpeakTokenKind::Word("div") => AgentSpeakOperator::IntDiv,
+                AgentSpeakTokenKind::Word("mod") => AgentSpeakOperator::Mod,
                 _ => return Ok(left),
             };
             self.advance();
@@ -88,79 +91,79 @@ impl Parser {
         }
     }
 
-    fn power(&mut self) -> Parsed<Term> {
+    fn power(&mut self) -> AgentSpeakParseResult<AgentSpeakTerm> {
         let left = self.simple()?;
         if self.take("**") {
             let right = self.deeper(Self::power)?;
-            return Ok(binary(Op::Pow, left, right));
+            return Ok(binary(AgentSpeakOperator::Pow, left, right));
         }
         Ok(left)
     }
 
-    fn simple(&mut self) -> Parsed<Term> {
+    fn simple(&mut self) -> AgentSpeakParseResult<AgentSpeakTerm> {
         let start = self.here();
         let kind = match self.peek().clone() {
-            Tok::Int(n) => {
+            AgentSpeakTokenKind::Int(n) => {
                 self.advance();
                 TermKind::Int(n)
             }
-            Tok::Float(x) => {
+            AgentSpeakTokenKind::Float(x) => {
                 self.advance();
                 TermKind::Float(x)
             }
-            Tok::Text(t) => {
+            AgentSpeakTokenKind::Text(t) => {
                 self.advance();
                 TermKind::Text(t)
             }
-            Tok::Word(w @ ("true" | "false")) => {
+            AgentSpeakTokenKind::Word(w @ ("true" | "false")) => {
                 self.advance();
                 TermKind::Bool(w == "true")
             }
-            Tok::Any | Tok::Var(_) => return self.literal_or_var(""),
-            Tok::Mark("+") => {
+            AgentSpeakTokenKind::Any | AgentSpeakTokenKind::Var(_) => return self.literal_or_var(""),
+            AgentSpeakTokenKind::Mark("+") => {
                 self.advance();
                 return self.deeper(Self::simple);
             }
-            Tok::Mark("-") => {
+            AgentSpeakTokenKind::Mark("-") => {
                 self.advance();
                 match self.deeper(Self::simple)? {
-                    Term { kind: TermKind::Int(n), .. } => TermKind::Int(-n),
-                    Term { kind: TermKind::Float(x), .. } => TermKind::Float(-x),
+                    AgentSpeakTerm { kind: TermKind::Int(n), .. } => TermKind::Int(-n),
+                    AgentSpeakTerm { kind: TermKind::Float(x), .. } => TermKind::Float(-x),
                     other => TermKind::Neg(Box::new(other)),
                 }
             }
-            Tok::Mark("(") => {
+            AgentSpeakTokenKind::Mark("(") => {
                 self.advance();
                 let inner = self.formula()?;
                 self.expect(")", "to close the parenthesis")?;
                 return Ok(inner);
             }
-            Tok::Mark("[") => self.deeper(Self::list)?,
-            Tok::Mark("{") => self.deeper(Self::braces)?,
+            AgentSpeakTokenKind::Mark("[") => self.deeper(Self::list)?,
+            AgentSpeakTokenKind::Mark("{") => self.deeper(Self::braces)?,
             _ => return self.deeper(|p| p.literal_or_var("here")),
         };
-        Ok(Term { kind, span: self.since(start) })
+        Ok(AgentSpeakTerm { kind, span: self.since(start) })
     }
 
-    pub(super) fn literal_or_var(&mut self, place: &str) -> Parsed<Term> {
+    pub(super) fn literal_or_var(&mut self, place: &str) -> AgentSpeakParseResult<AgentSpeakTerm> {
         let start = self.here();
         let kind = match self.peek().clone() {
-            Tok::Any => {
+            AgentSpeakTokenKind::Any => {
                 self.advance();
                 TermKind::Any
             }
-            Tok::Var(name) => {
+            AgentSpeakTokenKind::Var(name) => {
                 self.advance();
                 let annotations = if self.is("[") { self.annotations()? } else { Vec::new() };
                 TermKind::Var { name, annotations }
             }
             _ => TermKind::Literal(self.literal(format!("a term {place}").trim_end())?),
         };
-        Ok(Term { kind, span: self.since(start) })
+        Ok(AgentSpeakTerm { kind, span: self.since(start) })
     }
 
     /// `~ns::name(args)[annotations]`
-    pub(super) fn literal(&mut self, what: &str) -> Parsed<Literal> {
+    pub(super) fn literal(&mut self, what: &str) -> AgentSpeakParseResult<AgentSpeakLiteral> {
         let start = self.here();
         let negated = self.take("~");
         let mut functor = String::new();
@@ -168,7 +171,9 @@ impl Parser {
             functor.push_str("default::");
         }
         loop {
-            let Tok::Atom(name) = self.peek().clone() else { return Err(self.expected(what)) };
+            let AgentSpeakTokenKind::Atom(name) = self.peek().clone() else {
+                return Err(self.expected(what));
+            };
             self.advance();
             functor.push_str(&name);
             if !self.take("::") {
@@ -186,16 +191,16 @@ impl Parser {
             self.expect(")", "or `,` after the argument")?;
         }
         let annotations = if self.is("[") { self.annotations()? } else { Vec::new() };
-        Ok(Literal { negated, functor, args, annotations, span: self.since(start) })
+        Ok(AgentSpeakLiteral { negated, functor, args, annotations, span: self.since(start) })
     }
 
-    pub(super) fn annotations(&mut self) -> Parsed<Vec<Term>> {
+    pub(super) fn annotations(&mut self) -> AgentSpeakParseResult<Vec<AgentSpeakTerm>> {
         let start = self.here();
         let TermKind::List { mut items, rest } = self.deeper(Self::list)? else { return Ok(Vec::new()) };
         // What is left of the annotations: nothing that a scenario could speak of.
         if let Some(rest) = rest {
             let (items_of_rest, tail) = (vec![*rest], None);
-            items.push(Term {
+            items.push(AgentSpeakTerm {
                 kind: TermKind::List { items: items_of_rest, rest: tail },
                 span: self.since(start),
             });
@@ -203,7 +208,7 @@ impl Parser {
         Ok(items)
     }
 
-    fn list(&mut self) -> Parsed<TermKind> {
+    fn list(&mut self) -> AgentSpeakParseResult<TermKind> {
         self.advance();
         let (mut items, mut rest) = (Vec::new(), None);
         if self.take("]") {
@@ -221,32 +226,34 @@ impl Parser {
     }
 
     /// `{ … }` as a term: a trigger, a plan, or a body.
-    fn braces(&mut self) -> Parsed<TermKind> {
+    fn braces(&mut self) -> AgentSpeakParseResult<TermKind> {
         self.advance();
         let start = self.here();
         let plan_begins = self.is("@")
-            || (matches!(self.peek(), Tok::Mark("+" | "-" | "^"))
-                && !matches!(self.peek_at(1), Tok::Mark("+" | "-" | "<" | ">")));
+            || (matches!(self.peek(), AgentSpeakTokenKind::Mark("+" | "-" | "^"))
+                && !matches!(self.peek_at(1), AgentSpeakTokenKind::Mark("+" | "-" | "<" | ">")));
         if !plan_begins {
             let body = self.body()?;
             self.expect("}", "after the steps")?;
             return Ok(TermKind::Body(body));
         }
-        let Plan { label, annotations, trigger, context, mut body } = self.plan()?;
+        let AgentSpeakPlan { label, annotations, trigger, context, mut body } = self.plan()?;
         if self.take("}") {
             let alone = label.is_none() && annotations.is_empty() && context.is_none() && body.is_empty();
             return Ok(if alone { TermKind::Trigger(Box::new(trigger)) } else { TermKind::Plan });
         }
         let kind = match trigger.kind {
-            TriggerKind::Added => StepKind::Add(trigger.of, crate::agentspeak::ast::Adding::Plain),
-            TriggerKind::Removed => StepKind::Remove(trigger.of),
-            TriggerKind::Achieve
-            | TriggerKind::Failed
-            | TriggerKind::Test
-            | TriggerKind::TestFailed
-            | TriggerKind::State => return Err(self.expected("`}`, `:` or `<-` after the trigger")),
+            AgentSpeakTriggerKind::Added => {
+                AgentSpeakStepKind::Add(trigger.of, crate::agentspeak::ast::BeliefAddition::Plain)
+            }
+            AgentSpeakTriggerKind::Removed => AgentSpeakStepKind::Remove(trigger.of),
+            AgentSpeakTriggerKind::Achieve
+            | AgentSpeakTriggerKind::Failed
+            | AgentSpeakTriggerKind::Test
+            | AgentSpeakTriggerKind::TestFailed
+            | AgentSpeakTriggerKind::State => return Err(self.expected("`}`, `:` or `<-` after the trigger")),
         };
-        body.push(Step { kind, span: self.since(start) });
+        body.push(AgentSpeakStep { kind, span: self.since(start) });
         self.expect(";", "after the step")?;
         body.extend(self.body()?);
         self.expect("}", "after the steps")?;
@@ -254,7 +261,7 @@ impl Parser {
     }
 }
 
-fn binary(op: Op, left: Term, right: Term) -> Term {
+fn binary(op: AgentSpeakOperator, left: AgentSpeakTerm, right: AgentSpeakTerm) -> AgentSpeakTerm {
     let span = left.span.to(right.span);
-    Term { kind: TermKind::Binary { op, left: Box::new(left), right: Box::new(right) }, span }
+    AgentSpeakTerm { kind: TermKind::Binary { op, left: Box::new(left), right: Box::new(right) }, span }
 }

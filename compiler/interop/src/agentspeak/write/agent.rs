@@ -4,43 +4,51 @@ use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
 use super::{
-    clause::{Clause, Context, Stop, Usage, Want, Written},
-    modes::Rules,
+    clause::{BindingMode, ClauseContext, ClauseFailure, ClauseResult, ClauseTranslator, PredicateUsage},
+    modes::TranslatedRules,
     steps::block,
 };
 use crate::agentspeak::{
-    ast::{Item, ItemKind, Key, Literal, Plan, Program, Term, TermKind, TriggerKind},
+    ast::{
+        AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakPlan, AgentSpeakProgram,
+        AgentSpeakTerm, AgentSpeakTriggerKind, PredicateIndicator, TermKind,
+    },
     names::{ident, unused},
-    system::Entry,
+    system::AgentSpeakAgent,
     term::{literal, valued},
 };
 
 /// What is to be written of an agent.
-pub struct Agent {
+pub struct TranslatedAgent {
     pub name: String,
     /// The initial beliefs of each name.
-    pub facts: IndexMap<Key, Vec<String>>,
+    pub facts: IndexMap<PredicateIndicator, Vec<String>>,
     /// Comments on those that are left out.
     pub no_facts: String,
     pub rules: String,
     pub goals: String,
     pub plans: String,
-    pub used: Usage,
+    pub used: PredicateUsage,
     pub left_out: Vec<(Span, String)>,
     pub remarks: Vec<(Span, String)>,
     labels: IndexSet<String>,
 }
 
 /// Writes the members of an agent.
-pub fn agent(cx: &Context<'_>, entry: &Entry, program: &Program, rules: Rules) -> Agent {
-    let mut agent = Agent {
+pub fn agent(
+    cx: &ClauseContext<'_>,
+    entry: &AgentSpeakAgent,
+    program: &AgentSpeakProgram,
+    rules: TranslatedRules,
+) -> TranslatedAgent {
+    let mut agent = TranslatedAgent {
         name: entry.name.clone(),
         facts: IndexMap::new(),
         no_facts: String::new(),
         rules: String::new(),
         goals: String::new(),
         plans: String::new(),
-        used: Usage::default(),
+        used: PredicateUsage::default(),
         left_out: Vec::new(),
         remarks: Vec::new(),
         labels: IndexSet::new(),
@@ -57,11 +65,13 @@ pub fn agent(cx: &Context<'_>, entry: &Entry, program: &Program, rules: Rules) -
     agent
 }
 
-impl Agent {
-    fn item(&mut self, cx: &Context<'_>, item: &Item, rules: &Rules) {
+impl TranslatedAgent {
+    fn item(&mut self, cx: &ClauseContext<'_>, item: &AgentSpeakItem, rules: &TranslatedRules) {
         match &item.kind {
-            ItemKind::Belief(belief) if !rules.contains_key(&item.span) => self.fact(cx, belief, item.span),
-            ItemKind::Belief(_) | ItemKind::Rule { .. } => match rules.get(&item.span) {
+            AgentSpeakItemKind::Belief(belief) if !rules.contains_key(&item.span) => {
+                self.fact(cx, belief, item.span)
+            }
+            AgentSpeakItemKind::Belief(_) | AgentSpeakItemKind::Rule { .. } => match rules.get(&item.span) {
                 Some(Ok((text, used))) => {
                     self.rules += &format!("{text}\n");
                     self.used.beliefs.extend(used.beliefs.iter().cloned());
@@ -75,20 +85,20 @@ impl Agent {
                 }
                 None => {}
             },
-            ItemKind::Goal(goal) => match literal(goal) {
+            AgentSpeakItemKind::Goal(goal) => match literal(goal) {
                 Ok(of) => self.goal(cx, of, item.span),
                 Err(reason) => {
                     let comment = self.leave(cx, item.span, &reason);
                     self.goals += &comment;
                 }
             },
-            ItemKind::Plan(plan) => self.plan(cx, plan, item.span),
-            ItemKind::Skipped(message) => self.remarks.push((item.span, message.clone())),
+            AgentSpeakItemKind::Plan(plan) => self.plan(cx, plan, item.span),
+            AgentSpeakItemKind::Skipped(message) => self.remarks.push((item.span, message.clone())),
         }
     }
 
     /// A comment on what is left out.
-    fn leave(&mut self, cx: &Context<'_>, span: Span, reason: &str) -> String {
+    fn leave(&mut self, cx: &ClauseContext<'_>, span: Span, reason: &str) -> String {
         self.left_out.push((span, reason.to_owned()));
         cx.system.comment(span, reason) + "\n"
     }
@@ -96,15 +106,15 @@ impl Agent {
     /// Writes something alone; if it cannot be written, nothing of it stays.
     fn alone(
         &mut self,
-        cx: &Context<'_>,
+        cx: &ClauseContext<'_>,
         span: Span,
-        write: impl FnOnce(&mut Clause<'_>) -> Written<String>,
+        write: impl FnOnce(&mut ClauseTranslator<'_>) -> ClauseResult<String>,
     ) -> Result<String, String> {
         if let Some(reason) = cx.left_out.get(&span) {
             return Err(self.leave(cx, span, reason));
         }
         let name = self.name.clone();
-        let mut clause = Clause::new(cx, &name, self.used.clone());
+        let mut clause = ClauseTranslator::new(cx, &name, self.used.clone());
         match write(&mut clause) {
             Ok(text) => {
                 self.used = clause.used;
@@ -115,15 +125,15 @@ impl Agent {
         }
     }
 
-    fn fact(&mut self, cx: &Context<'_>, belief: &Literal, span: Span) {
-        match self.alone(cx, span, |c| c.belief(belief, Want::Value)) {
+    fn fact(&mut self, cx: &ClauseContext<'_>, belief: &AgentSpeakLiteral, span: Span) {
+        match self.alone(cx, span, |c| c.belief(belief, BindingMode::Value)) {
             Ok(text) => self.facts.entry(belief.key()).or_default().push(text),
             Err(comment) => self.no_facts += &comment,
         }
     }
 
-    fn goal(&mut self, cx: &Context<'_>, goal: &Literal, span: Span) {
-        match self.alone(cx, span, |c| c.goal(goal, Want::Value)) {
+    fn goal(&mut self, cx: &ClauseContext<'_>, goal: &AgentSpeakLiteral, span: Span) {
+        match self.alone(cx, span, |c| c.goal(goal, BindingMode::Value)) {
             Ok(text) => {
                 self.used.adopted.insert(goal.key());
                 self.goals += &format!("goal !{text}\n");
@@ -132,7 +142,7 @@ impl Agent {
         }
     }
 
-    fn plan(&mut self, cx: &Context<'_>, plan: &Plan, span: Span) {
+    fn plan(&mut self, cx: &ClauseContext<'_>, plan: &AgentSpeakPlan, span: Span) {
         let mut left_out = Vec::new();
         let label = self.label(plan);
         let written = self.alone(cx, span, |c| {
@@ -146,14 +156,14 @@ impl Agent {
                 self.left_out.extend(left_out);
                 if let Ok(of) = literal(&plan.trigger.of) {
                     match plan.trigger.kind {
-                        TriggerKind::Achieve => self.used.planned.insert(of.key()),
+                        AgentSpeakTriggerKind::Achieve => self.used.planned.insert(of.key()),
                         // What can fail must have a plan to fail in.
-                        TriggerKind::Failed => self.used.adopted.insert(of.key()),
-                        TriggerKind::Added
-                        | TriggerKind::Removed
-                        | TriggerKind::Test
-                        | TriggerKind::TestFailed
-                        | TriggerKind::State => false,
+                        AgentSpeakTriggerKind::Failed => self.used.adopted.insert(of.key()),
+                        AgentSpeakTriggerKind::Added
+                        | AgentSpeakTriggerKind::Removed
+                        | AgentSpeakTriggerKind::Test
+                        | AgentSpeakTriggerKind::TestFailed
+                        | AgentSpeakTriggerKind::State => false,
                     };
                 }
                 self.label_remarks(plan);
@@ -163,9 +173,8 @@ impl Agent {
     }
 
     /// `@label[atomic]`, once.
-    fn label(&mut self, plan: &Plan) -> String {
-        let is_atomic =
-            |t: &Term| matches!(&t.kind, TermKind::Literal(l) if l.functor == "atomic" && l.args.is_empty());
+    fn label(&mut self, plan: &AgentSpeakPlan) -> String {
+        let is_atomic = |t: &AgentSpeakTerm| matches!(&t.kind, TermKind::Literal(l) if l.functor == "atomic" && l.args.is_empty());
         let atomic = if plan.annotations.iter().any(is_atomic) { "[atomic]" } else { "" };
         let wanted = match (&plan.label, atomic.is_empty()) {
             (Some(label), _) => ident(label),
@@ -177,7 +186,7 @@ impl Agent {
         format!("@{name}{atomic} ")
     }
 
-    fn label_remarks(&mut self, plan: &Plan) {
+    fn label_remarks(&mut self, plan: &AgentSpeakPlan) {
         for annotation in &plan.annotations {
             let text = match &annotation.kind {
                 TermKind::Literal(l) if l.functor != "atomic" => l.functor.clone(),
@@ -195,26 +204,26 @@ impl Agent {
 }
 
 /// The trigger and the context.
-fn head(clause: &mut Clause<'_>, plan: &Plan) -> Written<String> {
+fn head(clause: &mut ClauseTranslator<'_>, plan: &AgentSpeakPlan) -> ClauseResult<String> {
     let of = literal(&plan.trigger.of)?;
     let trigger = if plan.trigger.kind.is_goal() {
         let plain = failure(clause, plan.trigger.kind, of);
-        clause.goal(&plain, Want::Pattern)?
+        clause.goal(&plain, BindingMode::Pattern)?
     } else {
         // A trigger is matched with what happened; that a rule needs a value there does not matter.
         let inputs = IndexMap::new();
-        let cx = Context { inputs: &inputs, ..*clause.cx };
-        let mut own = Clause::new(&cx, clause.agent, clause.used.clone());
-        let text = own.belief(of, Want::Pattern)?;
+        let cx = ClauseContext { inputs: &inputs, ..*clause.cx };
+        let mut own = ClauseTranslator::new(&cx, clause.agent, clause.used.clone());
+        let text = own.belief(of, BindingMode::Pattern)?;
         clause.used = own.used;
         clause.remarks.extend(own.remarks);
         // The same once more, so that the variables have their values and names here.
         for arg in &of.args {
-            clause.values(arg, Want::Pattern)?;
+            clause.values(arg, BindingMode::Pattern)?;
         }
         for annotation in &of.annotations {
             if let Some((_, value)) = valued(annotation) {
-                clause.values(value, Want::Pattern)?;
+                clause.values(value, BindingMode::Pattern)?;
             }
         }
         text
@@ -229,22 +238,26 @@ fn head(clause: &mut Clause<'_>, plan: &Plan) -> Written<String> {
 }
 
 /// A failure plan's annotations say how it failed: a scenario has one sort of failure.
-fn failure(clause: &mut Clause<'_>, kind: TriggerKind, of: &Literal) -> Literal {
-    let keep = |t: &Term| matches!(valued(t), Some(("source", _)));
-    if kind == TriggerKind::Failed
+fn failure(
+    clause: &mut ClauseTranslator<'_>,
+    kind: AgentSpeakTriggerKind,
+    of: &AgentSpeakLiteral,
+) -> AgentSpeakLiteral {
+    let keep = |t: &AgentSpeakTerm| matches!(valued(t), Some(("source", _)));
+    if kind == AgentSpeakTriggerKind::Failed
         && let Some(annotation) = of.annotations.iter().find(|t| !keep(t))
     {
         let message = "the plan is for failures of all sorts: hrdsl does not tell them apart".to_owned();
         clause.remarks.push((annotation.span, message));
         let annotations = of.annotations.iter().filter(|t| keep(t)).cloned().collect();
-        return Literal { annotations, ..of.clone() };
+        return AgentSpeakLiteral { annotations, ..of.clone() };
     }
     of.clone()
 }
 
-fn unbound(stop: Stop) -> Stop {
+fn unbound(stop: ClauseFailure) -> ClauseFailure {
     match stop {
-        Stop::Unbound(name) if name != "_" => Stop::Other(format!(
+        ClauseFailure::Unbound(name) if name != "_" => ClauseFailure::Other(format!(
             "`{name}` has no value here: in Jason the comparison is never true, and the plan never selected; in hrdsl it is an error"
         )),
         other => other,

@@ -6,33 +6,33 @@ use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
 use super::super::{
-    ast::{Key, Literal, Op, Term, TermKind, each_term},
-    names::{Names, ident, unused, variable},
-    system::System,
-    term::{Reason, valued},
-    types::{Ty, TyId, Types},
+    ast::{AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakTerm, PredicateIndicator, TermKind, each_term},
+    names::{AgentSpeakNames, ident, unused, variable},
+    system::AgentSpeakSystem,
+    term::{OmissionReason, valued},
+    types::{AgentSpeakType, TyId, UnificationTable},
 };
 
 /// What all clauses of a program need to know.
-pub struct Context<'a> {
-    pub system: &'a System,
-    pub types: &'a Types,
-    pub left_out: &'a IndexMap<Span, Reason>,
-    pub names: &'a Names,
+pub struct ClauseContext<'a> {
+    pub system: &'a AgentSpeakSystem,
+    pub types: &'a UnificationTable,
+    pub left_out: &'a IndexMap<Span, OmissionReason>,
+    pub names: &'a AgentSpeakNames,
     /// Of beliefs with rules, the arguments that must have a value.
-    pub inputs: &'a IndexMap<Key, BTreeSet<usize>>,
+    pub inputs: &'a IndexMap<PredicateIndicator, BTreeSet<usize>>,
 }
 
 /// Why something cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Stop {
+pub enum ClauseFailure {
     /// A variable without a value is read.
     Unbound(String),
-    Other(Reason),
+    Other(OmissionReason),
 }
 
-impl Stop {
-    pub fn reason(&self) -> Reason {
+impl ClauseFailure {
+    pub fn reason(&self) -> OmissionReason {
         match self {
             Self::Unbound(name) if name == "_" => "`_` has no value, and one is needed here".to_owned(),
             Self::Unbound(name) => format!("`{name}` has no value here"),
@@ -41,46 +41,46 @@ impl Stop {
     }
 }
 
-impl From<String> for Stop {
+impl From<String> for ClauseFailure {
     fn from(reason: String) -> Self {
         Self::Other(reason)
     }
 }
 
-impl From<&str> for Stop {
+impl From<&str> for ClauseFailure {
     fn from(reason: &str) -> Self {
         Self::Other(reason.to_owned())
     }
 }
 
-pub type Written<T> = Result<T, Stop>;
+pub type ClauseResult<T> = Result<T, ClauseFailure>;
 
 /// What an agent's clauses speak of, as far as they are carried over.
 #[derive(Clone, Debug, Default)]
-pub struct Usage {
-    pub beliefs: IndexSet<Key>,
-    pub annotations: IndexSet<(Key, String)>,
+pub struct PredicateUsage {
+    pub beliefs: IndexSet<PredicateIndicator>,
+    pub annotations: IndexSet<(PredicateIndicator, String)>,
     /// Goals that are adopted, or asked about.
-    pub adopted: IndexSet<Key>,
+    pub adopted: IndexSet<PredicateIndicator>,
     /// Goals with a plan.
-    pub planned: IndexSet<Key>,
-    pub actions: IndexSet<Key>,
+    pub planned: IndexSet<PredicateIndicator>,
+    pub actions: IndexSet<PredicateIndicator>,
     /// To whom, whether of a goal, about what.
-    pub sent: IndexSet<(Option<String>, bool, Key)>,
+    pub sent: IndexSet<(Option<String>, bool, PredicateIndicator)>,
     /// Whether the rule of whole numbers from one to another is needed.
     pub between: bool,
 }
 
 /// Whether terms may bind variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Want {
+pub enum BindingMode {
     Pattern,
     Value,
 }
 
 /// A piece of text, and how tight its loosest operator is.
 #[derive(Clone, Debug)]
-pub struct Piece {
+pub struct ClauseFragment {
     pub text: String,
     pub level: u8,
 }
@@ -93,7 +93,7 @@ pub const SUM: u8 = 5;
 pub const PRODUCT: u8 = 6;
 pub const ATOM: u8 = 8;
 
-impl Piece {
+impl ClauseFragment {
     pub fn new(text: impl Into<String>, level: u8) -> Self {
         Self { text: text.into(), level }
     }
@@ -116,20 +116,20 @@ impl Piece {
     }
 }
 
-pub struct Clause<'a> {
-    pub cx: &'a Context<'a>,
+pub struct ClauseTranslator<'a> {
+    pub cx: &'a ClauseContext<'a>,
     pub agent: &'a str,
     /// Variables that have a value.
     pub bound: BTreeSet<String>,
     vars: IndexMap<String, String>,
     fresh: usize,
-    pub used: Usage,
+    pub used: PredicateUsage,
     /// Places that are carried over otherwise than they were meant, with what is to be said.
     pub remarks: Vec<(Span, String)>,
 }
 
-impl<'a> Clause<'a> {
-    pub fn new(cx: &'a Context<'a>, agent: &'a str, used: Usage) -> Self {
+impl<'a> ClauseTranslator<'a> {
+    pub fn new(cx: &'a ClauseContext<'a>, agent: &'a str, used: PredicateUsage) -> Self {
         let (bound, vars) = (BTreeSet::new(), IndexMap::new());
         Self { cx, agent, bound, vars, fresh: 0, used, remarks: Vec::new() }
     }
@@ -153,12 +153,12 @@ impl<'a> Clause<'a> {
         written
     }
 
-    pub fn type_of(&self, of: &Term) -> Written<TyId> {
-        self.cx.types.terms.get(&of.span).copied().ok_or_else(|| Stop::from("this has no type"))
+    pub fn type_of(&self, of: &AgentSpeakTerm) -> ClauseResult<TyId> {
+        self.cx.types.terms.get(&of.span).copied().ok_or_else(|| ClauseFailure::from("this has no type"))
     }
 
     /// Whether all variables of a term have values.
-    pub fn is_bound(&self, of: &Term) -> bool {
+    pub fn is_bound(&self, of: &AgentSpeakTerm) -> bool {
         let mut all = true;
         each_term(of, &mut |t| match &t.kind {
             TermKind::Any => all = false,
@@ -169,16 +169,16 @@ impl<'a> Clause<'a> {
     }
 
     /// The single values of which a term consists.
-    pub fn values(&mut self, of: &Term, want: Want) -> Written<Vec<String>> {
+    pub fn values(&mut self, of: &AgentSpeakTerm, want: BindingMode) -> ClauseResult<Vec<String>> {
         let id = self.type_of(of)?;
         let types = self.cx.types;
         match &of.kind {
-            TermKind::Any if want == Want::Value => Err(Stop::Unbound("_".to_owned())),
+            TermKind::Any if want == BindingMode::Value => Err(ClauseFailure::Unbound("_".to_owned())),
             TermKind::Any => Ok(vec!["_".to_owned(); types.leaves(id).len()]),
             TermKind::Var { name, .. } => {
                 if !self.bound.contains(name) {
-                    if want == Want::Value {
-                        return Err(Stop::Unbound(name.clone()));
+                    if want == BindingMode::Value {
+                        return Err(ClauseFailure::Unbound(name.clone()));
                     }
                     self.bound.insert(name.clone());
                 }
@@ -186,12 +186,12 @@ impl<'a> Clause<'a> {
                 let count = types.leaves(id).len();
                 Ok(if count == 1 { vec![name] } else { (1..=count).map(|i| format!("{name}_{i}")).collect() })
             }
-            TermKind::Literal(l) if matches!(types.get(id), Ty::Struct(..)) => {
-                let parts = l.args.iter().map(|a| self.values(a, want)).collect::<Written<Vec<_>>>()?;
+            TermKind::Literal(l) if matches!(types.get(id), AgentSpeakType::Struct(..)) => {
+                let parts = l.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?;
                 Ok(parts.concat())
             }
             TermKind::List { items, rest } => {
-                let items = items.iter().map(|i| self.values(i, want)).collect::<Written<Vec<_>>>()?;
+                let items = items.iter().map(|i| self.values(i, want)).collect::<ClauseResult<Vec<_>>>()?;
                 let rest = rest.as_ref().map(|r| self.values(r, want)).transpose()?;
                 let leaf = |k: usize| {
                     let items: Vec<&str> = items.iter().map(|i| i[k].as_str()).collect();
@@ -207,7 +207,7 @@ impl<'a> Clause<'a> {
     }
 
     /// A term that is a single value.
-    pub fn value(&mut self, of: &Term, want: Want) -> Written<String> {
+    pub fn value(&mut self, of: &AgentSpeakTerm, want: BindingMode) -> ClauseResult<String> {
         match <[String; 1]>::try_from(self.values(of, want)?) {
             Ok([one]) => Ok(one),
             Err(_) => Err("a structure cannot stand here".into()),
@@ -215,31 +215,36 @@ impl<'a> Clause<'a> {
     }
 
     /// An expression, whose variables have values.
-    pub fn expr(&mut self, of: &Term) -> Written<Piece> {
+    pub fn expr(&mut self, of: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
         let id = self.type_of(of)?;
-        let float = matches!(self.cx.types.get(id), Ty::Number { float: true });
-        let signed =
-            |text: String| if text.starts_with('-') { Piece::new(text, SUM) } else { Piece::new(text, ATOM) };
+        let float = matches!(self.cx.types.get(id), AgentSpeakType::Number { float: true });
+        let signed = |text: String| {
+            if text.starts_with('-') {
+                ClauseFragment::new(text, SUM)
+            } else {
+                ClauseFragment::new(text, ATOM)
+            }
+        };
         Ok(match &of.kind {
             TermKind::Int(n) if float => signed(format!("{n}.0")),
             TermKind::Int(n) => signed(n.to_string()),
             TermKind::Float(x) => signed(float_text(*x)),
-            TermKind::Text(text) => Piece::new(quoted(text), ATOM),
-            TermKind::Bool(b) => Piece::new(b.to_string(), ATOM),
-            TermKind::Neg(inner) => Piece::new(format!("-{}", self.expr(inner)?.at(ATOM)), SUM),
+            TermKind::Text(text) => ClauseFragment::new(quoted(text), ATOM),
+            TermKind::Bool(b) => ClauseFragment::new(b.to_string(), ATOM),
+            TermKind::Neg(inner) => ClauseFragment::new(format!("-{}", self.expr(inner)?.at(ATOM)), SUM),
             TermKind::Literal(l) if l.is_internal() => {
-                let args = l.args.iter().map(|a| Ok(self.expr(a)?.text)).collect::<Written<Vec<_>>>()?;
+                let args = l.args.iter().map(|a| Ok(self.expr(a)?.text)).collect::<ClauseResult<Vec<_>>>()?;
                 let name = l.functor.trim_start_matches("math.");
-                Piece::new(format!("{name}({})", args.join(", ")), ATOM)
+                ClauseFragment::new(format!("{name}({})", args.join(", ")), ATOM)
             }
             TermKind::Literal(l) if l.args.is_empty() => {
-                Piece::new(self.cx.names.atom(self.cx.types, id, &l.functor), ATOM)
+                ClauseFragment::new(self.cx.names.atom(self.cx.types, id, &l.functor), ATOM)
             }
             TermKind::Binary { op, left, right } if op.is_arithmetic() => {
                 self.arithmetic(*op, left, right, float)?
             }
             TermKind::Var { .. } | TermKind::Any | TermKind::List { .. } => {
-                Piece::new(self.value(of, Want::Value)?, ATOM)
+                ClauseFragment::new(self.value(of, BindingMode::Value)?, ATOM)
             }
             TermKind::Literal(_)
             | TermKind::Binary { .. }
@@ -250,12 +255,18 @@ impl<'a> Clause<'a> {
         })
     }
 
-    fn arithmetic(&mut self, op: Op, left: &Term, right: &Term, float: bool) -> Written<Piece> {
-        if op == Op::Pow {
+    fn arithmetic(
+        &mut self,
+        op: AgentSpeakOperator,
+        left: &AgentSpeakTerm,
+        right: &AgentSpeakTerm,
+        float: bool,
+    ) -> ClauseResult<ClauseFragment> {
+        if op == AgentSpeakOperator::Pow {
             return self.power(left, right);
         }
         let (mut l, mut r) = (self.expr(left)?, self.expr(right)?);
-        if op == Op::Div {
+        if op == AgentSpeakOperator::Div {
             // Whole numbers would be divided without a rest.
             for (piece, of) in [(&mut l, left), (&mut r, right)] {
                 if matches!(of.kind, TermKind::Int(_)) && !piece.text.contains('.') {
@@ -264,36 +275,46 @@ impl<'a> Clause<'a> {
             }
         }
         Ok(match op {
-            Op::Add => Piece::new(format!("{} + {}", l.at(SUM), r.at(PRODUCT)), SUM),
-            Op::Sub => Piece::new(format!("{} - {}", l.at(SUM), r.at(PRODUCT)), SUM),
-            Op::Mul => Piece::new(format!("{} * {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT),
-            Op::Mod => Piece::new(format!("{} % {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT),
-            Op::IntDiv if float => return Err("`div` of numbers that may have decimals".into()),
-            Op::IntDiv => Piece::new(format!("{} / {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT),
-            Op::Div if [left, right].iter().all(|t| !is_number(t)) => {
-                Piece::new(format!("1.0 * {} / {}", l.at(ATOM), r.at(ATOM)), PRODUCT)
+            AgentSpeakOperator::Add => ClauseFragment::new(format!("{} + {}", l.at(SUM), r.at(PRODUCT)), SUM),
+            AgentSpeakOperator::Sub => ClauseFragment::new(format!("{} - {}", l.at(SUM), r.at(PRODUCT)), SUM),
+            AgentSpeakOperator::Mul => {
+                ClauseFragment::new(format!("{} * {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT)
             }
-            Op::Div => Piece::new(format!("{} / {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT),
-            Op::Pow
-            | Op::Or
-            | Op::And
-            | Op::Less
-            | Op::LessEqual
-            | Op::Greater
-            | Op::GreaterEqual
-            | Op::Equal
-            | Op::Different
-            | Op::Unify
-            | Op::NotUnify
-            | Op::Univ => return Err("a formula stands where a value should".into()),
+            AgentSpeakOperator::Mod => {
+                ClauseFragment::new(format!("{} % {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT)
+            }
+            AgentSpeakOperator::IntDiv if float => {
+                return Err("`div` of numbers that may have decimals".into());
+            }
+            AgentSpeakOperator::IntDiv => {
+                ClauseFragment::new(format!("{} / {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT)
+            }
+            AgentSpeakOperator::Div if [left, right].iter().all(|t| !is_number(t)) => {
+                ClauseFragment::new(format!("1.0 * {} / {}", l.at(ATOM), r.at(ATOM)), PRODUCT)
+            }
+            AgentSpeakOperator::Div => {
+                ClauseFragment::new(format!("{} / {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT)
+            }
+            AgentSpeakOperator::Pow
+            | AgentSpeakOperator::Or
+            | AgentSpeakOperator::And
+            | AgentSpeakOperator::Less
+            | AgentSpeakOperator::LessEqual
+            | AgentSpeakOperator::Greater
+            | AgentSpeakOperator::GreaterEqual
+            | AgentSpeakOperator::Equal
+            | AgentSpeakOperator::Different
+            | AgentSpeakOperator::Unify
+            | AgentSpeakOperator::NotUnify
+            | AgentSpeakOperator::Univ => return Err("a formula stands where a value should".into()),
         })
     }
 
-    fn power(&mut self, base: &Term, exponent: &Term) -> Written<Piece> {
+    fn power(&mut self, base: &AgentSpeakTerm, exponent: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
         match exponent.kind {
             TermKind::Int(n @ 1..=4) => {
                 let base = self.expr(base)?.at(ATOM);
-                Ok(Piece::new(vec![base; n as usize].join(" * "), PRODUCT))
+                Ok(ClauseFragment::new(vec![base; n as usize].join(" * "), PRODUCT))
             }
             _ => Err("hrdsl has no `**`, except with a small number as its exponent".into()),
         }
@@ -301,97 +322,116 @@ impl<'a> Clause<'a> {
 
     // ── Formulas ──
 
-    pub fn formula(&mut self, of: &Term) -> Written<Piece> {
+    pub fn formula(&mut self, of: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
         match &of.kind {
-            TermKind::Bool(b) => Ok(Piece::new(b.to_string(), ATOM)),
+            TermKind::Bool(b) => Ok(ClauseFragment::new(b.to_string(), ATOM)),
             TermKind::Literal(l) if l.is_internal() => self.internal_formula(l),
-            TermKind::Literal(l) => Ok(Piece::new(self.belief(l, Want::Pattern)?, ATOM)),
+            TermKind::Literal(l) => Ok(ClauseFragment::new(self.belief(l, BindingMode::Pattern)?, ATOM)),
             TermKind::Not(inner) => {
                 let before = self.bound.clone();
                 let inner = self.formula(inner);
                 self.bound = before;
-                Ok(Piece::new(format!("not {}", inner?.at(ATOM)), NOT))
+                Ok(ClauseFragment::new(format!("not {}", inner?.at(ATOM)), NOT))
             }
-            TermKind::Binary { op: Op::And, left, right } => {
+            TermKind::Binary { op: AgentSpeakOperator::And, left, right } => {
                 let (l, r) = (self.formula(left)?, self.formula(right)?);
-                Ok(Piece::new(format!("{} && {}", l.at(AND), r.at(AND)), AND))
+                Ok(ClauseFragment::new(format!("{} && {}", l.at(AND), r.at(AND)), AND))
             }
-            TermKind::Binary { op: Op::Or, left, right } => {
+            TermKind::Binary { op: AgentSpeakOperator::Or, left, right } => {
                 let before = self.bound.clone();
                 let l = self.formula(left)?;
                 let after = std::mem::replace(&mut self.bound, before);
                 let r = self.formula(right)?;
                 self.bound = self.bound.intersection(&after).cloned().collect();
-                Ok(Piece::new(format!("{} || {}", l.at(OR), r.at(OR)), OR))
+                Ok(ClauseFragment::new(format!("{} || {}", l.at(OR), r.at(OR)), OR))
             }
-            TermKind::Binary { op: Op::Unify, left, right } => self.unify(left, right),
+            TermKind::Binary { op: AgentSpeakOperator::Unify, left, right } => self.unify(left, right),
             TermKind::Binary { op, left, right } => self.compare(*op, left, right),
             _ => Err("this is no formula".into()),
         }
     }
 
-    fn compare(&mut self, op: Op, left: &Term, right: &Term) -> Written<Piece> {
+    fn compare(
+        &mut self,
+        op: AgentSpeakOperator,
+        left: &AgentSpeakTerm,
+        right: &AgentSpeakTerm,
+    ) -> ClauseResult<ClauseFragment> {
         let sign = match op {
-            Op::Less => "<",
-            Op::LessEqual => "<=",
-            Op::Greater => ">",
-            Op::GreaterEqual => ">=",
-            Op::Equal => "==",
-            Op::Different | Op::NotUnify => "!=",
+            AgentSpeakOperator::Less => "<",
+            AgentSpeakOperator::LessEqual => "<=",
+            AgentSpeakOperator::Greater => ">",
+            AgentSpeakOperator::GreaterEqual => ">=",
+            AgentSpeakOperator::Equal => "==",
+            AgentSpeakOperator::Different | AgentSpeakOperator::NotUnify => "!=",
             _ => return Err("this is no formula".into()),
         };
-        let is_empty = |t: &Term| matches!(&t.kind, TermKind::List { items, rest: None } if items.is_empty());
+        let is_empty =
+            |t: &AgentSpeakTerm| matches!(&t.kind, TermKind::List { items, rest: None } if items.is_empty());
         if let Some(list) = [(left, right), (right, left)].iter().find(|(_, r)| is_empty(r)).map(|(l, _)| *l)
         {
-            let empty = Piece::new(format!(".empty({})", self.values(list, Want::Value)?[0]), ATOM);
-            return Ok(if sign == "==" { empty } else { Piece::new(format!("not {}", empty.text), NOT) });
+            let empty =
+                ClauseFragment::new(format!(".empty({})", self.values(list, BindingMode::Value)?[0]), ATOM);
+            return Ok(if sign == "==" {
+                empty
+            } else {
+                ClauseFragment::new(format!("not {}", empty.text), NOT)
+            });
         }
         let id = self.type_of(left)?;
         if !self.cx.types.is_compound(id) {
             let (l, r) = (self.expr(left)?, self.expr(right)?);
-            return Ok(Piece::new(format!("{} {sign} {}", l.at(SUM), r.at(SUM)), COMPARE));
+            return Ok(ClauseFragment::new(format!("{} {sign} {}", l.at(SUM), r.at(SUM)), COMPARE));
         }
-        let (l, r) = (self.values(left, Want::Value)?, self.values(right, Want::Value)?);
-        let pairs = l.iter().zip(&r).map(|(l, r)| Piece::new(format!("{l} {sign} {r}"), COMPARE)).collect();
+        let (l, r) = (self.values(left, BindingMode::Value)?, self.values(right, BindingMode::Value)?);
+        let pairs =
+            l.iter().zip(&r).map(|(l, r)| ClauseFragment::new(format!("{l} {sign} {r}"), COMPARE)).collect();
         if sign == "==" {
-            return Ok(Piece::all(pairs));
+            return Ok(ClauseFragment::all(pairs));
         }
-        let pairs: Vec<String> = pairs.into_iter().map(|p: Piece| p.text).collect();
-        Ok(Piece::new(pairs.join(" || "), OR))
+        let pairs: Vec<String> = pairs.into_iter().map(|p: ClauseFragment| p.text).collect();
+        Ok(ClauseFragment::new(pairs.join(" || "), OR))
     }
 
     /// `l = r`: one of them has a value, the other is matched with it.
-    pub fn unify(&mut self, left: &Term, right: &Term) -> Written<Piece> {
+    pub fn unify(&mut self, left: &AgentSpeakTerm, right: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
         // If neither has a value, what is to be computed is at fault.
-        let computed = |t: &Term| matches!(t.kind, TermKind::Binary { .. } | TermKind::Neg(_));
+        let computed = |t: &AgentSpeakTerm| matches!(t.kind, TermKind::Binary { .. } | TermKind::Neg(_));
         let swap = !self.is_bound(right) && (self.is_bound(left) || computed(left));
         let (pattern, value) = if swap { (right, left) } else { (left, right) };
-        let values = self.values(value, Want::Value)?;
-        let patterns = self.values(pattern, Want::Pattern)?;
+        let values = self.values(value, BindingMode::Value)?;
+        let patterns = self.values(pattern, BindingMode::Pattern)?;
         let pairs = patterns.iter().zip(&values).filter(|(p, v)| p != v);
-        Ok(Piece::all(pairs.map(|(p, v)| Piece::new(format!("{p} = {v}"), COMPARE)).collect()))
+        Ok(ClauseFragment::all(
+            pairs.map(|(p, v)| ClauseFragment::new(format!("{p} = {v}"), COMPARE)).collect(),
+        ))
     }
 
     /// `~b(…)[…]`
-    pub fn belief(&mut self, of: &Literal, want: Want) -> Written<String> {
+    pub fn belief(&mut self, of: &AgentSpeakLiteral, want: BindingMode) -> ClauseResult<String> {
         let key = of.key();
-        if want == Want::Pattern
+        if want == BindingMode::Pattern
             && let Some(inputs) = self.cx.inputs.get(&key)
         {
             for arg in inputs.iter().filter_map(|i| of.args.get(*i)) {
                 if !self.is_bound(arg) {
-                    self.values(arg, Want::Value)?;
+                    self.values(arg, BindingMode::Value)?;
                 }
             }
         }
-        let args = of.args.iter().map(|a| self.values(a, want)).collect::<Written<Vec<_>>>()?.concat();
+        let args = of.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?.concat();
         self.used.beliefs.insert(key.clone());
         let annotations = self.annotations(of, &key, want)?;
         let name = self.cx.names.beliefs.get(&key).cloned().unwrap_or_else(|| ident(&key.0));
         Ok(format!("{}{}{annotations}", if of.negated { "~" } else { "" }, call(&name, &args)))
     }
 
-    fn annotations(&mut self, of: &Literal, key: &Key, want: Want) -> Written<String> {
+    fn annotations(
+        &mut self,
+        of: &AgentSpeakLiteral,
+        key: &PredicateIndicator,
+        want: BindingMode,
+    ) -> ClauseResult<String> {
         let mut all = Vec::new();
         for annotation in &of.annotations {
             let Some((name, value)) = valued(annotation) else {
@@ -408,13 +448,13 @@ impl<'a> Clause<'a> {
     }
 
     /// `g(…)`, without its sign. Annotations but the source are dropped.
-    pub fn goal(&mut self, of: &Literal, want: Want) -> Written<String> {
+    pub fn goal(&mut self, of: &AgentSpeakLiteral, want: BindingMode) -> ClauseResult<String> {
         let key = of.key();
-        let args = of.args.iter().map(|a| self.values(a, want)).collect::<Written<Vec<_>>>()?.concat();
+        let args = of.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?.concat();
         let mut source = String::new();
         for annotation in &of.annotations {
             match valued(annotation) {
-                Some(("source", value)) if want == Want::Pattern => {
+                Some(("source", value)) if want == BindingMode::Pattern => {
                     source = format!("[source({})]", self.value(value, want)?);
                 }
                 Some(("source", _)) => {}
@@ -457,6 +497,6 @@ fn float_text(x: f64) -> String {
     }
 }
 
-fn is_number(of: &Term) -> bool {
+fn is_number(of: &AgentSpeakTerm) -> bool {
     matches!(of.kind, TermKind::Int(_) | TermKind::Float(_))
 }

@@ -4,16 +4,19 @@ use hrdsl_source::Span;
 
 use super::{
     super::{
-        ast::{Literal, Term, TermKind},
-        term::{Message, atom, literal, message, performative},
-        types::Ty,
+        ast::{AgentSpeakLiteral, AgentSpeakTerm, TermKind},
+        term::{AgentSpeakMessage, atom, literal, message, performative},
+        types::AgentSpeakType,
     },
-    clause::{AND, ATOM, Clause, NOT, PRODUCT, Piece, Stop, Want, Written, quoted},
+    clause::{
+        AND, ATOM, BindingMode, ClauseFailure, ClauseFragment, ClauseResult, ClauseTranslator, NOT, PRODUCT,
+        quoted,
+    },
 };
 
-impl Clause<'_> {
+impl ClauseTranslator<'_> {
     /// One that asks.
-    pub(super) fn internal_formula(&mut self, of: &Literal) -> Written<Piece> {
+    pub(super) fn internal_formula(&mut self, of: &AgentSpeakLiteral) -> ClauseResult<ClauseFragment> {
         let name = of.functor.as_str();
         let text = match (name, of.args.as_slice()) {
             (".findall" | ".setof", [template, formula, list]) => {
@@ -23,110 +26,144 @@ impl Clause<'_> {
                 let before = self.bound.clone();
                 let formula = self.formula(formula);
                 self.bound = before;
-                format!(".count({}, {})", formula?.text, self.value(n, Want::Pattern)?)
+                format!(".count({}, {})", formula?.text, self.value(n, BindingMode::Pattern)?)
             }
             (".member", [element, list]) => return self.member(element, list),
             (".nth", [index, list, element]) => {
                 let index = self.expr(index)?.text;
-                let lists = self.values(list, Want::Value)?;
-                let elements = self.values(element, Want::Pattern)?;
+                let lists = self.values(list, BindingMode::Value)?;
+                let elements = self.values(element, BindingMode::Pattern)?;
                 let each = lists.iter().zip(&elements).map(|(l, e)| format!(".nth({index}, {l}, {e})"));
-                return Ok(Piece::all(each.map(|t| Piece::new(t, ATOM)).collect()));
+                return Ok(ClauseFragment::all(each.map(|t| ClauseFragment::new(t, ATOM)).collect()));
             }
             (".min" | ".max", [list, element]) => return self.extreme(name, list, element),
             (".length", [list, n]) => {
-                format!(".length({}, {})", self.values(list, Want::Value)?[0], self.value(n, Want::Pattern)?)
+                format!(
+                    ".length({}, {})",
+                    self.values(list, BindingMode::Value)?[0],
+                    self.value(n, BindingMode::Pattern)?
+                )
             }
-            (".empty", [list]) => format!(".empty({})", self.values(list, Want::Value)?[0]),
+            (".empty", [list]) => format!(".empty({})", self.values(list, BindingMode::Value)?[0]),
             (".concat", [args @ .., result]) => return self.componentwise(name, args, result),
             (".reverse", [list, result]) => {
                 return self.componentwise(name, std::slice::from_ref(list), result);
             }
             (".term2string", [value, result]) => {
-                format!(".string({}, {})", self.expr(value)?.text, self.value(result, Want::Pattern)?)
+                format!(".string({}, {})", self.expr(value)?.text, self.value(result, BindingMode::Pattern)?)
             }
             (".range", [x, lo, hi]) => {
                 let (lo, hi) = (self.expr(lo)?.text, self.expr(hi)?.text);
-                let x = self.value(x, Want::Pattern)?;
+                let x = self.value(x, BindingMode::Pattern)?;
                 self.between(&x, &lo, &hi)
             }
             (
                 ".sort" | ".shuffle" | ".union" | ".intersection" | ".difference" | ".delete",
                 [args @ .., result],
             ) => {
-                let args = args.iter().map(|a| self.value(a, Want::Value)).collect::<Written<Vec<_>>>()?;
-                format!("{name}({}, {})", args.join(", "), self.value(result, Want::Pattern)?)
+                let args = args
+                    .iter()
+                    .map(|a| self.value(a, BindingMode::Value))
+                    .collect::<ClauseResult<Vec<_>>>()?;
+                format!("{name}({}, {})", args.join(", "), self.value(result, BindingMode::Pattern)?)
             }
             (".prefix" | ".suffix" | ".sublist", [a, b]) => {
-                format!("{name}({}, {})", self.value(a, Want::Value)?, self.value(b, Want::Value)?)
+                format!(
+                    "{name}({}, {})",
+                    self.value(a, BindingMode::Value)?,
+                    self.value(b, BindingMode::Value)?
+                )
             }
             (".random", [list, x]) => {
-                format!(".random({}, {})", self.value(list, Want::Value)?, self.value(x, Want::Pattern)?)
+                format!(
+                    ".random({}, {})",
+                    self.value(list, BindingMode::Value)?,
+                    self.value(x, BindingMode::Pattern)?
+                )
             }
             (".random" | ".my_name" | ".all_names", [x]) => {
-                format!("{name}({})", self.value(x, Want::Pattern)?)
+                format!("{name}({})", self.value(x, BindingMode::Pattern)?)
             }
             (".intend" | ".desire" | ".suspended", [goal]) => format!("{name}({})", self.asked_goal(goal)?),
             _ => return Err(format!("`{name}` cannot stand in a condition").into()),
         };
-        Ok(Piece::new(text, ATOM))
+        Ok(ClauseFragment::new(text, ATOM))
     }
 
     /// A goal that is matched; what it would bind stays open.
-    fn asked_goal(&mut self, of: &Term) -> Written<String> {
+    fn asked_goal(&mut self, of: &AgentSpeakTerm) -> ClauseResult<String> {
         let goal = literal(of)?;
         let before = self.bound.clone();
-        let text = self.goal(goal, Want::Pattern);
+        let text = self.goal(goal, BindingMode::Pattern);
         self.bound = before;
         self.used.adopted.insert(goal.key());
         text
     }
 
     /// A list of structures is as many lists.
-    fn find_all(&mut self, name: &str, template: &Term, formula: &Term, list: &Term) -> Written<Piece> {
+    fn find_all(
+        &mut self,
+        name: &str,
+        template: &AgentSpeakTerm,
+        formula: &AgentSpeakTerm,
+        list: &AgentSpeakTerm,
+    ) -> ClauseResult<ClauseFragment> {
         let before = self.bound.clone();
-        let found = self.formula(formula).and_then(|f| Ok((f.text, self.values(template, Want::Value)?)));
+        let found =
+            self.formula(formula).and_then(|f| Ok((f.text, self.values(template, BindingMode::Value)?)));
         self.bound = before;
         let (formula, values) = found?;
         if name == ".setof" && values.len() > 1 {
             return Err("a list of structures cannot be sorted".into());
         }
-        let lists = self.values(list, Want::Pattern)?;
-        let each =
-            values.iter().zip(&lists).map(|(v, l)| Piece::new(format!("{name}({v}, {formula}, {l})"), ATOM));
-        Ok(Piece::all(each.collect()))
+        let lists = self.values(list, BindingMode::Pattern)?;
+        let each = values
+            .iter()
+            .zip(&lists)
+            .map(|(v, l)| ClauseFragment::new(format!("{name}({v}, {formula}, {l})"), ATOM));
+        Ok(ClauseFragment::all(each.collect()))
     }
 
     /// Of a list of structures, the elements of its lists at one place.
-    fn member(&mut self, element: &Term, list: &Term) -> Written<Piece> {
-        let lists = self.values(list, Want::Value)?;
-        let elements = self.values(element, Want::Pattern)?;
+    fn member(&mut self, element: &AgentSpeakTerm, list: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
+        let lists = self.values(list, BindingMode::Value)?;
+        let elements = self.values(element, BindingMode::Pattern)?;
         match (elements.as_slice(), lists.as_slice()) {
-            ([x], [l]) => Ok(Piece::new(format!(".member({x}, {l})"), ATOM)),
+            ([x], [l]) => Ok(ClauseFragment::new(format!(".member({x}, {l})"), ATOM)),
             _ => Ok(self.at_one_place(&elements, &lists, Vec::new())),
         }
     }
 
-    fn extreme(&mut self, name: &str, list: &Term, element: &Term) -> Written<Piece> {
-        let lists = self.values(list, Want::Value)?;
-        let mut elements = self.values(element, Want::Pattern)?;
+    fn extreme(
+        &mut self,
+        name: &str,
+        list: &AgentSpeakTerm,
+        element: &AgentSpeakTerm,
+    ) -> ClauseResult<ClauseFragment> {
+        let lists = self.values(list, BindingMode::Value)?;
+        let mut elements = self.values(element, BindingMode::Pattern)?;
         if let ([x], [l]) = (elements.as_slice(), lists.as_slice()) {
-            return Ok(Piece::new(format!("{name}({l}, {x})"), ATOM));
+            return Ok(ClauseFragment::new(format!("{name}({l}, {x})"), ATOM));
         }
         if elements[0] == "_" {
             elements[0] = self.fresh("Best");
         }
-        let first = Piece::new(format!("{name}({}, {})", lists[0], elements[0]), ATOM);
+        let first = ClauseFragment::new(format!("{name}({}, {})", lists[0], elements[0]), ATOM);
         Ok(self.at_one_place(&elements, &lists, vec![first]))
     }
 
-    fn at_one_place(&mut self, elements: &[String], lists: &[String], mut parts: Vec<Piece>) -> Piece {
+    fn at_one_place(
+        &mut self,
+        elements: &[String],
+        lists: &[String],
+        mut parts: Vec<ClauseFragment>,
+    ) -> ClauseFragment {
         let (length, index) = (self.fresh("Length"), self.fresh("Index"));
-        parts.push(Piece::new(format!(".length({}, {length})", lists[0]), ATOM));
-        parts.push(Piece::new(self.between(&index, "0", &format!("{length} - 1")), ATOM));
+        parts.push(ClauseFragment::new(format!(".length({}, {length})", lists[0]), ATOM));
+        parts.push(ClauseFragment::new(self.between(&index, "0", &format!("{length} - 1")), ATOM));
         let each = elements.iter().zip(lists).filter(|(e, _)| *e != "_");
-        parts.extend(each.map(|(e, l)| Piece::new(format!(".nth({index}, {l}, {e})"), ATOM)));
-        Piece::all(parts)
+        parts.extend(each.map(|(e, l)| ClauseFragment::new(format!(".nth({index}, {l}, {e})"), ATOM)));
+        ClauseFragment::all(parts)
     }
 
     fn between(&mut self, x: &str, lo: &str, hi: &str) -> String {
@@ -134,25 +171,31 @@ impl Clause<'_> {
         format!("{}({x}, {lo}, {hi})", super::writer::between(self.cx.names))
     }
 
-    fn componentwise(&mut self, name: &str, args: &[Term], result: &Term) -> Written<Piece> {
-        let args = args.iter().map(|a| self.values(a, Want::Value)).collect::<Written<Vec<_>>>()?;
-        let results = self.values(result, Want::Pattern)?;
-        let one = |k: usize, result: &String| -> Option<Piece> {
+    fn componentwise(
+        &mut self,
+        name: &str,
+        args: &[AgentSpeakTerm],
+        result: &AgentSpeakTerm,
+    ) -> ClauseResult<ClauseFragment> {
+        let args =
+            args.iter().map(|a| self.values(a, BindingMode::Value)).collect::<ClauseResult<Vec<_>>>()?;
+        let results = self.values(result, BindingMode::Pattern)?;
+        let one = |k: usize, result: &String| -> Option<ClauseFragment> {
             let args = args.iter().map(|a| a.get(k).cloned()).collect::<Option<Vec<_>>>()?;
-            Some(Piece::new(format!("{name}({}, {result})", args.join(", ")), ATOM))
+            Some(ClauseFragment::new(format!("{name}({}, {result})", args.join(", ")), ATOM))
         };
-        let each: Option<Vec<Piece>> = results.iter().enumerate().map(|(k, r)| one(k, r)).collect();
-        each.map(Piece::all).ok_or_else(|| Stop::from("a structure cannot stand here"))
+        let each: Option<Vec<ClauseFragment>> = results.iter().enumerate().map(|(k, r)| one(k, r)).collect();
+        each.map(ClauseFragment::all).ok_or_else(|| ClauseFailure::from("a structure cannot stand here"))
     }
 
     // ── Steps ──
 
     pub(super) fn internal_step(
         &mut self,
-        of: &Literal,
+        of: &AgentSpeakLiteral,
         span: Span,
         out: &mut Vec<(Span, String)>,
-    ) -> Written<Vec<String>> {
+    ) -> ClauseResult<Vec<String>> {
         let name = of.functor.as_str();
         Ok(match (name, of.args.as_slice()) {
             (".print" | ".println", args) => vec![self.print(args)?],
@@ -174,7 +217,7 @@ impl Clause<'_> {
             }
             (".abolish", [belief]) => {
                 let before = self.bound.clone();
-                let text = self.belief(literal(belief)?, Want::Pattern);
+                let text = self.belief(literal(belief)?, BindingMode::Pattern);
                 self.bound = before;
                 vec![format!(".abolish({})", text?)]
             }
@@ -194,7 +237,7 @@ impl Clause<'_> {
         })
     }
 
-    fn print(&mut self, args: &[Term]) -> Written<String> {
+    fn print(&mut self, args: &[AgentSpeakTerm]) -> ClauseResult<String> {
         let mut parts: Vec<Result<String, String>> = Vec::new();
         for arg in args {
             self.printed(arg, &mut parts)?;
@@ -212,7 +255,7 @@ impl Clause<'_> {
     }
 
     /// What is printed of a term: texts, and expressions as errors.
-    fn printed(&mut self, of: &Term, parts: &mut Vec<Result<String, String>>) -> Written<()> {
+    fn printed(&mut self, of: &AgentSpeakTerm, parts: &mut Vec<Result<String, String>>) -> ClauseResult<()> {
         match &of.kind {
             TermKind::Text(text) => parts.push(Ok(text.clone())),
             TermKind::Literal(l) if !l.is_internal() => {
@@ -231,11 +274,11 @@ impl Clause<'_> {
             _ => {
                 let id = self.type_of(of)?;
                 let functor = match self.cx.types.get(id) {
-                    Ty::Struct(functor, _) => Some(functor.clone()),
+                    AgentSpeakType::Struct(functor, _) => Some(functor.clone()),
                     _ => None,
                 };
                 parts.extend(functor.iter().map(|f| Ok(format!("{f}("))));
-                for (i, value) in self.values(of, Want::Value)?.into_iter().enumerate() {
+                for (i, value) in self.values(of, BindingMode::Value)?.into_iter().enumerate() {
                     if i > 0 {
                         parts.push(Ok(",".to_owned()));
                     }
@@ -249,7 +292,7 @@ impl Clause<'_> {
 
     // ── Messages ──
 
-    fn send(&mut self, message: &Message<'_>) -> Written<Vec<String>> {
+    fn send(&mut self, message: &AgentSpeakMessage<'_>) -> ClauseResult<Vec<String>> {
         let named =
             message.to.is_some_and(|to| atom(to).is_some() || matches!(to.kind, TermKind::List { .. }));
         if !named && self.cx.system.agents.len() < 2 {
@@ -260,7 +303,8 @@ impl Clause<'_> {
             return Ok(vec![format!(".broadcast({}, {content})", message.performative)]);
         };
         if let TermKind::List { items, rest: None } = &to.kind {
-            let each = items.iter().map(|item| self.send_to(item, message)).collect::<Written<Vec<_>>>()?;
+            let each =
+                items.iter().map(|item| self.send_to(item, message)).collect::<ClauseResult<Vec<_>>>()?;
             return Ok(each.concat());
         }
         let listed = atom(to).is_none()
@@ -268,7 +312,7 @@ impl Clause<'_> {
         if !listed {
             return self.send_to(to, message);
         }
-        let list = self.value(to, Want::Value)?;
+        let list = self.value(to, BindingMode::Value)?;
         let one = self.fresh("Each");
         let content = self.content(message, None)?;
         if !message.rest.is_empty() {
@@ -280,11 +324,11 @@ impl Clause<'_> {
         )])
     }
 
-    fn send_to(&mut self, to: &Term, message: &Message<'_>) -> Written<Vec<String>> {
+    fn send_to(&mut self, to: &AgentSpeakTerm, message: &AgentSpeakMessage<'_>) -> ClauseResult<Vec<String>> {
         let known = atom(to).filter(|name| *name != "self").map(str::to_owned);
         let whom = match atom(to) {
             Some(name) => self.cx.names.agents.get(name).cloned().unwrap_or_else(|| name.to_owned()),
-            None => self.value(to, Want::Value)?,
+            None => self.value(to, BindingMode::Value)?,
         };
         match (message.performative, message.rest) {
             ("askOne", [answer, time @ ..]) => self.ask(&whom, known, message, answer, time),
@@ -296,12 +340,15 @@ impl Clause<'_> {
         }
     }
 
-    fn content(&mut self, message: &Message<'_>, to: Option<String>) -> Written<String> {
+    fn content(&mut self, message: &AgentSpeakMessage<'_>, to: Option<String>) -> ClauseResult<String> {
         let of = literal(message.content)?;
         let goal = performative(message.performative) == Some(true);
         self.used.sent.insert((to, goal, of.key()));
-        let want =
-            if matches!(message.performative, "tell" | "achieve") { Want::Value } else { Want::Pattern };
+        let want = if matches!(message.performative, "tell" | "achieve") {
+            BindingMode::Value
+        } else {
+            BindingMode::Pattern
+        };
         let before = self.bound.clone();
         let (mentioned, text) = if goal {
             (true, self.goal(of, want))
@@ -317,11 +364,11 @@ impl Clause<'_> {
         text
     }
 
-    fn timeout(&mut self, time: &[Term]) -> Written<String> {
+    fn timeout(&mut self, time: &[AgentSpeakTerm]) -> ClauseResult<String> {
         time.first().map_or(Ok(String::new()), |t| Ok(format!(", {}", self.milliseconds(t)?)))
     }
 
-    fn milliseconds(&mut self, of: &Term) -> Written<String> {
+    fn milliseconds(&mut self, of: &AgentSpeakTerm) -> ClauseResult<String> {
         Ok(match of.kind {
             TermKind::Int(n) if n % 1000 == 0 => format!("{} s", n / 1000),
             TermKind::Int(n) => format!("{n} ms"),
@@ -334,20 +381,20 @@ impl Clause<'_> {
         &mut self,
         whom: &str,
         known: Option<String>,
-        message: &Message<'_>,
-        answer: &Term,
-        time: &[Term],
-    ) -> Written<Vec<String>> {
+        message: &AgentSpeakMessage<'_>,
+        answer: &AgentSpeakTerm,
+        time: &[AgentSpeakTerm],
+    ) -> ClauseResult<Vec<String>> {
         let question = literal(message.content)?;
         let time = self.timeout(time)?;
         self.used.sent.insert((known, false, question.key()));
-        let answers: Vec<Option<&Term>> = match &answer.kind {
+        let answers: Vec<Option<&AgentSpeakTerm>> = match &answer.kind {
             TermKind::Literal(l) if l.key() == question.key() => l.args.iter().map(Some).collect(),
             TermKind::Var { .. } | TermKind::Any => vec![None; question.args.len()],
             _ => return Err("the answer is not of the form of the question".into()),
         };
         let whole = match &answer.kind {
-            TermKind::Var { .. } if !question.args.is_empty() => self.values(answer, Want::Pattern)?,
+            TermKind::Var { .. } if !question.args.is_empty() => self.values(answer, BindingMode::Pattern)?,
             _ => Vec::new(),
         };
         let (mut args, mut after, mut at) = (Vec::new(), Vec::new(), 0);
@@ -357,21 +404,22 @@ impl Clause<'_> {
             at += count;
             match (self.is_bound(asked), answered) {
                 (true, Some(answered)) => {
-                    args.extend(self.values(asked, Want::Value)?);
+                    args.extend(self.values(asked, BindingMode::Value)?);
                     if !matches!(answered.kind, TermKind::Any) && answered.span != asked.span {
                         after.extend(Some(self.unify(answered, asked)?).filter(|p| p.text != "true"));
                     }
                 }
                 (true, None) => {
-                    let values = self.values(asked, Want::Value)?;
-                    after
-                        .extend(mine.iter().zip(&values).map(|(m, v)| Piece::new(format!("{m} = {v}"), AND)));
+                    let values = self.values(asked, BindingMode::Value)?;
+                    after.extend(
+                        mine.iter().zip(&values).map(|(m, v)| ClauseFragment::new(format!("{m} = {v}"), AND)),
+                    );
                     args.extend(values);
                 }
-                (false, Some(answered)) => args.extend(self.values(answered, Want::Pattern)?),
+                (false, Some(answered)) => args.extend(self.values(answered, BindingMode::Pattern)?),
                 (false, None) if mine.is_empty() => {
                     let before = self.bound.clone();
-                    let values = self.values(asked, Want::Pattern);
+                    let values = self.values(asked, BindingMode::Pattern);
                     self.bound = before;
                     args.extend(values?);
                 }
@@ -382,7 +430,7 @@ impl Clause<'_> {
         let sign = if question.negated { "~" } else { "" };
         let mut steps = vec![format!(".ask({whom}, {sign}{}{time})", super::clause::call(&name, &args))];
         if !after.is_empty() {
-            let after = Piece::all(after);
+            let after = ClauseFragment::all(after);
             steps.push(format!("?({})", after.text));
         }
         Ok(steps)
@@ -392,10 +440,10 @@ impl Clause<'_> {
         &mut self,
         whom: &str,
         known: Option<String>,
-        message: &Message<'_>,
-        answer: &Term,
-        time: &[Term],
-    ) -> Written<Vec<String>> {
+        message: &AgentSpeakMessage<'_>,
+        answer: &AgentSpeakTerm,
+        time: &[AgentSpeakTerm],
+    ) -> ClauseResult<Vec<String>> {
         let question = literal(message.content)?;
         let [asked] = question.args.as_slice() else {
             return Err("all answers are asked for at once only if the question has one place".into());
@@ -403,18 +451,23 @@ impl Clause<'_> {
         let time = self.timeout(time)?;
         self.used.sent.insert((known, false, question.key()));
         let before = self.bound.clone();
-        let mut template = self.value(asked, Want::Pattern)?;
+        let mut template = self.value(asked, BindingMode::Pattern)?;
         self.bound = before;
         if template == "_" {
             template = self.fresh("Each");
         }
-        let list = self.value(answer, Want::Pattern)?;
+        let list = self.value(answer, BindingMode::Pattern)?;
         let name = self.cx.names.beliefs.get(&question.key()).cloned().unwrap_or_default();
         Ok(vec![format!(".ask_all({whom}, {template}, {name}({template}), {list}{time})")])
     }
 
     /// For a time; or until something is believed, which is looked at every 100 ms.
-    fn wait(&mut self, what: &Term, rest: &[Term], span: Span) -> Written<Vec<String>> {
+    fn wait(
+        &mut self,
+        what: &AgentSpeakTerm,
+        rest: &[AgentSpeakTerm],
+        span: Span,
+    ) -> ClauseResult<Vec<String>> {
         let trigger = match &what.kind {
             TermKind::Trigger(t) => Some(&t.of),
             _ => None,
@@ -437,7 +490,8 @@ impl Clause<'_> {
         if time.is_none() && !open {
             self.bound = before;
         }
-        let until = format!("not {}", Piece::new(condition.text.clone(), condition.level).at(NOT + 1));
+        let until =
+            format!("not {}", ClauseFragment::new(condition.text.clone(), condition.level).at(NOT + 1));
         let mut steps = vec![match &time {
             None => format!("while {until} {{ wait 100 ms }}"),
             Some(time) => format!("fork {{ while {until} {{ wait 100 ms }} }} or {{ wait {time} }}"),

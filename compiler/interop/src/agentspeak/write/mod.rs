@@ -16,31 +16,31 @@ mod writer;
 use indexmap::IndexMap;
 
 use super::{
-    ast::Key,
+    ast::PredicateIndicator,
     names::{ident, parameter},
-    survey::Sort,
+    survey::PredicateKind,
     types::TyId,
 };
-use agent::Agent;
-use clause::{Context, call};
-pub use writer::Writer;
+use agent::TranslatedAgent;
+use clause::{ClauseContext, call};
+pub use writer::AgentSpeakTranslator;
 use writer::between;
 
 /// The text, not yet formatted, and what is left out or meant otherwise.
-pub struct Text {
+pub struct ScenarioDraft {
     pub text: String,
     pub left_out: Vec<(hrdsl_source::Span, String)>,
     pub remarks: Vec<(hrdsl_source::Span, String)>,
 }
 
-impl Writer<'_> {
-    pub fn write(&self) -> Text {
+impl AgentSpeakTranslator<'_> {
+    pub fn write(&self) -> ScenarioDraft {
         let (mut left_out, mut remarks) = (Vec::new(), Vec::new());
-        let mut agents: Vec<Agent> = Vec::new();
+        let mut agents: Vec<TranslatedAgent> = Vec::new();
         for entry in &self.system.agents {
             let program = &self.system.programs[entry.program];
             let (inputs, rules) = modes::rules(self, entry, program);
-            let cx = Context {
+            let cx = ClauseContext {
                 system: self.system,
                 types: &self.inferred.types,
                 left_out: &self.inferred.left_out,
@@ -60,10 +60,10 @@ impl Writer<'_> {
         }
         let names: Vec<&str> = agents.iter().map(|a| self.names.agents[&a.name].as_str()).collect();
         text += &format!("suite together by agents {} {{ tests 1 }}\n", names.join(", "));
-        Text { text, left_out, remarks }
+        ScenarioDraft { text, left_out, remarks }
     }
 
-    fn vocabulary(&self, agents: &[Agent]) -> String {
+    fn vocabulary(&self, agents: &[TranslatedAgent]) -> String {
         let mut text = String::new();
         for agent in agents {
             text += &format!("actor {} : environment\n", self.names.agents[&agent.name]);
@@ -77,7 +77,7 @@ impl Writer<'_> {
         for agent in agents {
             for key in &agent.used.actions {
                 let Some(name) = self.names.actions.get(&(agent.name.clone(), key.clone())) else { continue };
-                let params = self.params(Sort::Action, key, &self.inferred.types.actions);
+                let params = self.params(PredicateKind::Action, key, &self.inferred.types.actions);
                 let actor = &self.names.agents[&agent.name];
                 text += &format!("stimulus {} by {actor} {{ hold 1 s }}\n", call(name, &params));
             }
@@ -86,7 +86,12 @@ impl Writer<'_> {
     }
 
     /// `name: type` for each single value.
-    fn params(&self, sort: Sort, key: &Key, places: &IndexMap<Key, Vec<TyId>>) -> Vec<String> {
+    fn params(
+        &self,
+        sort: PredicateKind,
+        key: &PredicateIndicator,
+        places: &IndexMap<PredicateIndicator, Vec<TyId>>,
+    ) -> Vec<String> {
         let types = &self.inferred.types;
         let mut used = indexmap::IndexSet::new();
         let mut params = Vec::new();
@@ -96,7 +101,7 @@ impl Writer<'_> {
             let leaves = types.leaves(*place);
             let single = leaves.len() == 1;
             for (k, leaf) in leaves.into_iter().enumerate() {
-                if sort == Sort::Action && types.is_for_agents(leaf) {
+                if sort == PredicateKind::Action && types.is_for_agents(leaf) {
                     continue;
                 }
                 let mut name = if single { base.clone() } else { format!("{base}_{}", k + 1) };
@@ -110,7 +115,7 @@ impl Writer<'_> {
         params
     }
 
-    fn agent(&self, agent: &Agent, remarks: &mut Vec<(hrdsl_source::Span, String)>) -> String {
+    fn agent(&self, agent: &TranslatedAgent, remarks: &mut Vec<(hrdsl_source::Span, String)>) -> String {
         let name = &self.names.agents[&agent.name];
         let mut text = format!("agent {name} plays {name} {{\n");
         text += &self.beliefs(agent);
@@ -122,7 +127,7 @@ impl Writer<'_> {
         }
         text.push('\n');
         for key in agent.used.planned.union(&agent.used.adopted).filter(|k| k.1 > 0) {
-            let params = self.params(Sort::Goal, key, &self.inferred.types.goals);
+            let params = self.params(PredicateKind::Goal, key, &self.inferred.types.goals);
             text += &format!("goal {}\n", call(&self.names.goals[key], &params));
         }
         text.push('\n');
@@ -147,11 +152,11 @@ impl Writer<'_> {
         text + "}\n\n"
     }
 
-    fn beliefs(&self, agent: &Agent) -> String {
+    fn beliefs(&self, agent: &TranslatedAgent) -> String {
         let types = &self.inferred.types;
         let mut text = String::new();
         for key in &agent.used.beliefs {
-            let params = self.params(Sort::Belief, key, &types.beliefs);
+            let params = self.params(PredicateKind::Belief, key, &types.beliefs);
             let mut line = format!("belief {}", call(&self.names.beliefs[key], &params));
             let annotations: Vec<String> = types
                 .annotations
@@ -181,7 +186,7 @@ impl Writer<'_> {
 }
 
 /// Declares what is told and asked where it arrives.
-fn deliver(agents: &mut [Agent]) {
+fn deliver(agents: &mut [TranslatedAgent]) {
     let mut arriving = Vec::new();
     for agent in &*agents {
         arriving.extend(
@@ -193,7 +198,7 @@ fn deliver(agents: &mut [Agent]) {
         );
     }
     // An annotation that one agent knows must be known where its facts come from.
-    let annotations: Vec<(Key, String)> =
+    let annotations: Vec<(PredicateIndicator, String)> =
         agents.iter().flat_map(|a| a.used.annotations.iter().cloned()).collect();
     for (from, to, goal, key) in arriving {
         let all = to.is_none();

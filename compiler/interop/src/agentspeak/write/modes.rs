@@ -7,30 +7,40 @@ use hrdsl_source::Span;
 use indexmap::IndexMap;
 
 use super::{
-    clause::{COMPARE, Clause, Context, Piece, Stop, Usage, Want, Written},
-    writer::Writer,
+    clause::{
+        BindingMode, COMPARE, ClauseContext, ClauseFailure, ClauseFragment, ClauseResult, ClauseTranslator,
+        PredicateUsage,
+    },
+    writer::AgentSpeakTranslator,
 };
 use crate::agentspeak::{
-    ast::{Item, ItemKind, Key, Literal, Program, Term, TermKind, each_term},
-    system::Entry,
+    ast::{
+        AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakProgram, AgentSpeakTerm,
+        PredicateIndicator, TermKind, each_term,
+    },
+    system::AgentSpeakAgent,
 };
 
-pub type Inputs = IndexMap<Key, BTreeSet<usize>>;
+pub type InputArguments = IndexMap<PredicateIndicator, BTreeSet<usize>>;
 
 /// What became of the rules: the text of each, or why it is left out.
-pub type Rules = IndexMap<Span, Result<(String, Usage), String>>;
+pub type TranslatedRules = IndexMap<Span, Result<(String, PredicateUsage), String>>;
 
 /// The rules of a program.
-pub fn rules(writer: &Writer<'_>, entry: &Entry, program: &Program) -> (Inputs, Rules) {
-    let all: Vec<Clauses<'_>> = program.items.iter().filter_map(clause_of).collect();
-    let mut done: Rules = IndexMap::new();
+pub fn rules(
+    writer: &AgentSpeakTranslator<'_>,
+    entry: &AgentSpeakAgent,
+    program: &AgentSpeakProgram,
+) -> (InputArguments, TranslatedRules) {
+    let all: Vec<AgentSpeakClause<'_>> = program.items.iter().filter_map(clause_of).collect();
+    let mut done: TranslatedRules = IndexMap::new();
     for (span, ..) in &all {
         if let Some(reason) = writer.inferred.left_out.get(span) {
             done.insert(*span, Err(reason.clone()));
         }
     }
     loop {
-        let mut inputs = Inputs::new();
+        let mut inputs = InputArguments::new();
         let written = fixed_point(writer, entry, &all, &done, &mut inputs);
         let failed: Vec<_> =
             written.iter().filter_map(|(s, w)| Some((*s, w.as_ref().err()?.reason()))).collect();
@@ -43,41 +53,46 @@ pub fn rules(writer: &Writer<'_>, entry: &Entry, program: &Program) -> (Inputs, 
 }
 
 /// The place, head and body of a rule.
-type Clauses<'p> = (Span, &'p Literal, Option<&'p Term>);
+type AgentSpeakClause<'p> = (Span, &'p AgentSpeakLiteral, Option<&'p AgentSpeakTerm>);
 
 /// A belief with open places holds whatever is there: it is a rule without a body.
-fn clause_of(item: &Item) -> Option<Clauses<'_>> {
+fn clause_of(item: &AgentSpeakItem) -> Option<AgentSpeakClause<'_>> {
     match &item.kind {
-        ItemKind::Rule { head, body } => Some((item.span, head, Some(body))),
-        ItemKind::Belief(head) if head.args.iter().any(|a| has_any(a) || !variables(a).is_empty()) => {
+        AgentSpeakItemKind::Rule { head, body } => Some((item.span, head, Some(body))),
+        AgentSpeakItemKind::Belief(head)
+            if head.args.iter().any(|a| has_any(a) || !variables(a).is_empty()) =>
+        {
             Some((item.span, head, None))
         }
-        ItemKind::Belief(_) | ItemKind::Goal(_) | ItemKind::Plan(_) | ItemKind::Skipped(_) => None,
+        AgentSpeakItemKind::Belief(_)
+        | AgentSpeakItemKind::Goal(_)
+        | AgentSpeakItemKind::Plan(_)
+        | AgentSpeakItemKind::Skipped(_) => None,
     }
 }
 
-type Tried = Vec<(Span, Written<(String, Usage)>)>;
+type RuleAttempts = Vec<(Span, ClauseResult<(String, PredicateUsage)>)>;
 
 fn fixed_point(
-    writer: &Writer<'_>,
-    entry: &Entry,
-    all: &[Clauses<'_>],
-    done: &Rules,
-    inputs: &mut Inputs,
-) -> Tried {
+    writer: &AgentSpeakTranslator<'_>,
+    entry: &AgentSpeakAgent,
+    all: &[AgentSpeakClause<'_>],
+    done: &TranslatedRules,
+    inputs: &mut InputArguments,
+) -> RuleAttempts {
     loop {
         let before = inputs.clone();
         let mut written = Vec::new();
         for (span, head, body) in all.iter().filter(|(s, ..)| !done.contains_key(s)) {
             let known = inputs.clone();
-            let cx = Context {
+            let cx = ClauseContext {
                 system: writer.system,
                 types: &writer.inferred.types,
                 left_out: &writer.inferred.left_out,
                 names: writer.names,
                 inputs: &known,
             };
-            let mut clause = Clause::new(&cx, &entry.name, Usage::default());
+            let mut clause = ClauseTranslator::new(&cx, &entry.name, PredicateUsage::default());
             let needed = inputs.entry(head.key()).or_default();
             let result = rule(&mut clause, head, *body, needed);
             written.push((*span, result.map(|text| (text, clause.used))));
@@ -90,11 +105,11 @@ fn fixed_point(
 
 /// Writes a rule; what must have a value that was not known to goes into `inputs`.
 fn rule(
-    clause: &mut Clause<'_>,
-    head: &Literal,
-    body: Option<&Term>,
+    clause: &mut ClauseTranslator<'_>,
+    head: &AgentSpeakLiteral,
+    body: Option<&AgentSpeakTerm>,
     inputs: &mut BTreeSet<usize>,
-) -> Written<String> {
+) -> ClauseResult<String> {
     for (i, arg) in head.args.iter().enumerate() {
         if inputs.contains(&i) {
             clause.bound.extend(variables(arg));
@@ -102,12 +117,12 @@ fn rule(
     }
     let body = body.filter(|b| !matches!(b.kind, TermKind::Bool(true)));
     let written = body.map(|b| clause.formula(b)).transpose();
-    if let Err(Stop::Unbound(name)) = &written {
+    if let Err(ClauseFailure::Unbound(name)) = &written {
         inputs.extend(
             head.args.iter().enumerate().filter(|(_, a)| variables(a).contains(name)).map(|(i, _)| i),
         );
     }
-    let mut parts: Vec<Piece> = written?.into_iter().collect();
+    let mut parts: Vec<ClauseFragment> = written?.into_iter().collect();
     for (i, arg) in head.args.iter().enumerate() {
         if variables(arg).iter().any(|v| !clause.bound.contains(v)) || has_any(arg) {
             inputs.insert(i);
@@ -115,13 +130,14 @@ fn rule(
         }
     }
     let text = clause.head(head, &mut parts)?;
-    let body = if parts.is_empty() { String::new() } else { format!(" when {}", Piece::all(parts).text) };
+    let body =
+        if parts.is_empty() { String::new() } else { format!(" when {}", ClauseFragment::all(parts).text) };
     Ok(format!("rule {text}{body}"))
 }
 
-impl Clause<'_> {
+impl ClauseTranslator<'_> {
     /// A rule's head: what is open there gets a name, and a variable that is there twice is compared after the body.
-    fn head(&mut self, head: &Literal, parts: &mut Vec<Piece>) -> Written<String> {
+    fn head(&mut self, head: &AgentSpeakLiteral, parts: &mut Vec<ClauseFragment>) -> ClauseResult<String> {
         if !head.annotations.is_empty() {
             return Err("the head of a rule has no annotations in hrdsl".into());
         }
@@ -130,12 +146,12 @@ impl Clause<'_> {
         for arg in &head.args {
             let again = matches!(&arg.kind, TermKind::Var { name, .. } if seen.contains(name));
             seen.extend(variables(arg));
-            for value in self.values(arg, Want::Pattern)? {
+            for value in self.values(arg, BindingMode::Pattern)? {
                 if value == "_" {
                     args.push(self.fresh("Any"));
                 } else if again {
                     let same = self.fresh("Same");
-                    parts.push(Piece::new(format!("{same} = {value}"), COMPARE));
+                    parts.push(ClauseFragment::new(format!("{same} = {value}"), COMPARE));
                     args.push(same);
                 } else {
                     args.push(value);
@@ -149,7 +165,7 @@ impl Clause<'_> {
     }
 }
 
-fn variables(of: &Term) -> Vec<String> {
+fn variables(of: &AgentSpeakTerm) -> Vec<String> {
     let mut all = Vec::new();
     each_term(of, &mut |t| {
         if let TermKind::Var { name, .. } = &t.kind {
@@ -159,7 +175,7 @@ fn variables(of: &Term) -> Vec<String> {
     all
 }
 
-fn has_any(of: &Term) -> bool {
+fn has_any(of: &AgentSpeakTerm) -> bool {
     let mut any = false;
     each_term(of, &mut |t| any |= matches!(t.kind, TermKind::Any));
     any

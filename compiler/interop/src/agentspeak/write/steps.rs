@@ -2,32 +2,32 @@
 
 use super::{
     super::{
-        ast::{Step, StepKind, Term, TermKind},
+        ast::{AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm, TermKind},
         term::literal,
-        types::Ty,
+        types::AgentSpeakType,
     },
-    clause::{Clause, Stop, Want, Written, call},
+    clause::{BindingMode, ClauseFailure, ClauseResult, ClauseTranslator, call},
 };
 
 /// A line of a body.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Line {
+pub enum PlanBodyLine {
     Step(String),
     Comment(String),
 }
 
 /// Lines in braces.
-pub fn block(lines: &[Line]) -> String {
+pub fn block(lines: &[PlanBodyLine]) -> String {
     let short = lines.len() <= 3
-        && lines.iter().all(|l| matches!(l, Line::Step(text) if !text.contains('\n')))
-        && lines.iter().map(|l| if let Line::Step(t) = l { t.len() } else { 0 }).sum::<usize>() < 70;
-    let last = lines.iter().rposition(|l| matches!(l, Line::Step(_)));
+        && lines.iter().all(|l| matches!(l, PlanBodyLine::Step(text) if !text.contains('\n')))
+        && lines.iter().map(|l| if let PlanBodyLine::Step(t) = l { t.len() } else { 0 }).sum::<usize>() < 70;
+    let last = lines.iter().rposition(|l| matches!(l, PlanBodyLine::Step(_)));
     let mut parts = Vec::new();
     for (i, line) in lines.iter().enumerate() {
         match line {
-            Line::Step(text) if Some(i) == last => parts.push(text.clone()),
-            Line::Step(text) => parts.push(format!("{text};")),
-            Line::Comment(text) => parts.push(text.clone()),
+            PlanBodyLine::Step(text) if Some(i) == last => parts.push(text.clone()),
+            PlanBodyLine::Step(text) => parts.push(format!("{text};")),
+            PlanBodyLine::Comment(text) => parts.push(text.clone()),
         }
     }
     if parts.is_empty() {
@@ -39,31 +39,35 @@ pub fn block(lines: &[Line]) -> String {
     }
 }
 
-impl Clause<'_> {
+impl ClauseTranslator<'_> {
     /// A body; what cannot be carried over is a comment, and goes into `out`.
-    pub fn steps(&mut self, steps: &[Step], out: &mut Vec<(hrdsl_source::Span, String)>) -> Vec<Line> {
+    pub fn steps(
+        &mut self,
+        steps: &[AgentSpeakStep],
+        out: &mut Vec<(hrdsl_source::Span, String)>,
+    ) -> Vec<PlanBodyLine> {
         let mut lines = Vec::new();
         for step in steps {
-            if let StepKind::Block(inner) = &step.kind {
+            if let AgentSpeakStepKind::Block(inner) = &step.kind {
                 lines.extend(self.steps(inner, out));
                 continue;
             }
             let before = (self.bound.clone(), self.used.clone(), self.remarks.len(), out.len());
             let written = match self.cx.left_out.get(&step.span) {
-                Some(reason) => Err(Stop::Other(reason.clone())),
+                Some(reason) => Err(ClauseFailure::Other(reason.clone())),
                 None => self.step(step, out),
             };
             match written {
-                Ok(texts) => lines.extend(texts.into_iter().map(Line::Step)),
+                Ok(texts) => lines.extend(texts.into_iter().map(PlanBodyLine::Step)),
                 Err(stop) => {
                     self.remarks.truncate(before.2);
                     out.truncate(before.3);
                     (self.bound, self.used) = (before.0, before.1);
                     if let Some(failing) = self.never(step, &stop) {
-                        lines.push(Line::Step(failing));
+                        lines.push(PlanBodyLine::Step(failing));
                         continue;
                     }
-                    lines.push(Line::Comment(self.cx.system.comment(step.span, &stop.reason())));
+                    lines.push(PlanBodyLine::Comment(self.cx.system.comment(step.span, &stop.reason())));
                     out.push((step.span, stop.reason()));
                 }
             }
@@ -72,9 +76,13 @@ impl Clause<'_> {
     }
 
     /// A comparison with a variable that has no value is never true: the step fails.
-    fn never(&mut self, step: &Step, stop: &Stop) -> Option<String> {
-        let (StepKind::Formula(of) | StepKind::Query(of)) = &step.kind else { return None };
-        let (TermKind::Binary { op, .. }, Stop::Unbound(name)) = (&of.kind, stop) else { return None };
+    fn never(&mut self, step: &AgentSpeakStep, stop: &ClauseFailure) -> Option<String> {
+        let (AgentSpeakStepKind::Formula(of) | AgentSpeakStepKind::Query(of)) = &step.kind else {
+            return None;
+        };
+        let (TermKind::Binary { op, .. }, ClauseFailure::Unbound(name)) = (&of.kind, stop) else {
+            return None;
+        };
         if !op.is_relation() {
             return None;
         }
@@ -84,46 +92,52 @@ impl Clause<'_> {
         Some(".fail".to_owned())
     }
 
-    fn step(&mut self, step: &Step, out: &mut Vec<(hrdsl_source::Span, String)>) -> Written<Vec<String>> {
+    fn step(
+        &mut self,
+        step: &AgentSpeakStep,
+        out: &mut Vec<(hrdsl_source::Span, String)>,
+    ) -> ClauseResult<Vec<String>> {
         let one = |text: String| Ok(vec![text]);
         match &step.kind {
-            StepKind::Achieve(of) | StepKind::Spawn(of) => {
+            AgentSpeakStepKind::Achieve(of) | AgentSpeakStepKind::Spawn(of) => {
                 let goal = literal(of)?;
-                let text = self.goal(goal, Want::Value).map_err(|stop| match stop {
-                    Stop::Unbound(name) if name != "_" => Stop::Other(format!(
+                let text = self.goal(goal, BindingMode::Value).map_err(|stop| match stop {
+                    ClauseFailure::Unbound(name) if name != "_" => ClauseFailure::Other(format!(
                         "`{name}` has no value here, and a goal gives none back: use a test goal, `?{}(…)`",
                         goal.functor
                     )),
                     other => other,
                 })?;
                 self.used.adopted.insert(goal.key());
-                let sign = if matches!(step.kind, StepKind::Achieve(_)) { "!" } else { "!!" };
+                let sign = if matches!(step.kind, AgentSpeakStepKind::Achieve(_)) { "!" } else { "!!" };
                 one(format!("{sign}{text}"))
             }
-            StepKind::Query(of) => match &of.kind {
+            AgentSpeakStepKind::Query(of) => match &of.kind {
                 TermKind::Literal(l) if !l.is_internal() => {
-                    let text = self.belief(l, Want::Pattern)?;
+                    let text = self.belief(l, BindingMode::Pattern)?;
                     one(format!("?{text}"))
                 }
                 _ => self.test(of),
             },
-            StepKind::Formula(of) => self.test(of),
-            StepKind::Add(of, _) => {
-                let text = self.held(of, Want::Value)?;
+            AgentSpeakStepKind::Formula(of) => self.test(of),
+            AgentSpeakStepKind::Add(of, _) => {
+                let text = self.held(of, BindingMode::Value)?;
                 one(format!("+{text}"))
             }
-            StepKind::Replace(of) => {
-                let text = self.held(of, Want::Value)?;
+            AgentSpeakStepKind::Replace(of) => {
+                let text = self.held(of, BindingMode::Value)?;
                 one(format!("-+{text}"))
             }
-            StepKind::Remove(of) => {
+            AgentSpeakStepKind::Remove(of) => {
                 let before = self.bound.clone();
-                let text = self.held(of, Want::Pattern);
+                let text = self.held(of, BindingMode::Pattern);
                 self.bound = before;
                 one(format!("-{}", text?))
             }
-            StepKind::Action(action) if action.is_internal() => self.internal_step(action, step.span, out),
-            StepKind::Action(action) => {
+            AgentSpeakStepKind::Action(action) if action.is_internal() => {
+                self.internal_step(action, step.span, out)
+            }
+            AgentSpeakStepKind::Action(action) => {
                 let key = action.key();
                 let args = self.action_args(&action.args)?;
                 let name = self.cx.names.actions.get(&(self.agent.to_owned(), key.clone())).cloned();
@@ -131,29 +145,34 @@ impl Clause<'_> {
                 if !action.annotations.is_empty() {
                     self.remarks.push((action.span, "an action's annotations are dropped".to_owned()));
                 }
-                one(call(&name.ok_or_else(|| Stop::from("the action has no name"))?, &args))
+                one(call(&name.ok_or_else(|| ClauseFailure::from("the action has no name"))?, &args))
             }
-            StepKind::If { condition, then, otherwise } => one(self.choice(condition, then, otherwise, out)?),
-            StepKind::While { condition, body } | StepKind::For { condition, body } => {
-                let word = if matches!(step.kind, StepKind::While { .. }) { "while" } else { "for" };
+            AgentSpeakStepKind::If { condition, then, otherwise } => {
+                one(self.choice(condition, then, otherwise, out)?)
+            }
+            AgentSpeakStepKind::While { condition, body } | AgentSpeakStepKind::For { condition, body } => {
+                let word =
+                    if matches!(step.kind, AgentSpeakStepKind::While { .. }) { "while" } else { "for" };
                 let before = self.bound.clone();
                 let condition = self.formula(condition).map(|c| c.text);
                 let body = if condition.is_ok() { self.steps(body, out) } else { Vec::new() };
                 self.bound = before;
                 one(format!("{word} {} {}", condition?, block(&body)))
             }
-            StepKind::Fork { branches, all } => one(self.fork(branches.iter().map(Vec::as_slice), *all, out)),
+            AgentSpeakStepKind::Fork { branches, all } => {
+                one(self.fork(branches.iter().map(Vec::as_slice), *all, out))
+            }
             // What is in it stands for itself.
-            StepKind::Block(_) => Ok(Vec::new()),
+            AgentSpeakStepKind::Block(_) => Ok(Vec::new()),
         }
     }
 
     /// The arguments of an action of the environment: a stimulus has no strings and lists.
-    fn action_args(&mut self, terms: &[Term]) -> Written<Vec<String>> {
+    fn action_args(&mut self, terms: &[AgentSpeakTerm]) -> ClauseResult<Vec<String>> {
         let mut args = Vec::new();
         for term in terms {
             let leaves = self.cx.types.leaves(self.type_of(term)?);
-            for (value, leaf) in self.values(term, Want::Value)?.into_iter().zip(leaves) {
+            for (value, leaf) in self.values(term, BindingMode::Value)?.into_iter().zip(leaves) {
                 if self.cx.types.is_for_agents(leaf) {
                     let message =
                         "only agents know strings and lists: this argument of the action is dropped";
@@ -168,11 +187,11 @@ impl Clause<'_> {
 
     fn choice(
         &mut self,
-        condition: &Term,
-        then: &[Step],
-        otherwise: &[Step],
+        condition: &AgentSpeakTerm,
+        then: &[AgentSpeakStep],
+        otherwise: &[AgentSpeakStep],
         out: &mut Vec<(hrdsl_source::Span, String)>,
-    ) -> Written<String> {
+    ) -> ClauseResult<String> {
         let before = self.bound.clone();
         let condition = match self.formula(condition) {
             Ok(piece) => piece.text,
@@ -185,7 +204,7 @@ impl Clause<'_> {
         let after = std::mem::replace(&mut self.bound, before);
         let otherwise = match otherwise {
             [] => String::new(),
-            [Step { kind: StepKind::If { condition, then, otherwise }, .. }] => {
+            [AgentSpeakStep { kind: AgentSpeakStepKind::If { condition, then, otherwise }, .. }] => {
                 format!(" else {}", self.choice(condition, then, otherwise, out)?)
             }
             steps => format!(" else {}", block(&self.steps(steps, out))),
@@ -196,7 +215,7 @@ impl Clause<'_> {
 
     pub fn fork<'s>(
         &mut self,
-        branches: impl Iterator<Item = &'s [Step]>,
+        branches: impl Iterator<Item = &'s [AgentSpeakStep]>,
         all: bool,
         out: &mut Vec<(hrdsl_source::Span, String)>,
     ) -> String {
@@ -210,7 +229,7 @@ impl Clause<'_> {
     }
 
     /// A formula as a step.
-    fn test(&mut self, of: &Term) -> Written<Vec<String>> {
+    fn test(&mut self, of: &AgentSpeakTerm) -> ClauseResult<Vec<String>> {
         if matches!(of.kind, TermKind::Bool(true)) {
             return Ok(Vec::new());
         }
@@ -226,14 +245,14 @@ impl Clause<'_> {
     }
 
     /// The belief that is added or removed; a variable that holds a structure is the belief of that name.
-    fn held(&mut self, of: &Term, want: Want) -> Written<String> {
+    fn held(&mut self, of: &AgentSpeakTerm, want: BindingMode) -> ClauseResult<String> {
         let TermKind::Var { .. } = &of.kind else { return self.belief(literal(of)?, want) };
         let id = self.type_of(of)?;
-        let Ty::Struct(functor, args) = self.cx.types.get(id).clone() else {
+        let AgentSpeakType::Struct(functor, args) = self.cx.types.get(id).clone() else {
             return Err("this is no belief".into());
         };
         let key = (functor, args.len());
-        let values = self.values(of, Want::Value)?;
+        let values = self.values(of, BindingMode::Value)?;
         self.used.beliefs.insert(key.clone());
         Ok(call(&self.cx.names.beliefs[&key], &values))
     }

@@ -1,21 +1,21 @@
 //! All that the text is made of.
 
 use crate::agentspeak::{
-    infer::Inferred,
-    names::{Names, unused},
-    survey::Survey,
-    system::System,
+    infer::InferenceOutcome,
+    names::{AgentSpeakNames, unused},
+    survey::PredicateSurvey,
+    system::AgentSpeakSystem,
 };
 
 /// All that the text is made of.
-pub struct Writer<'a> {
-    pub system: &'a System,
-    pub inferred: &'a Inferred,
-    pub names: &'a Names,
-    pub surveys: &'a [Survey],
+pub struct AgentSpeakTranslator<'a> {
+    pub system: &'a AgentSpeakSystem,
+    pub inferred: &'a InferenceOutcome,
+    pub names: &'a AgentSpeakNames,
+    pub surveys: &'a [PredicateSurvey],
 }
 
 /// The name of the rule that answers with the whole numbers from one to another.
-pub fn between(names: &Names) -> String {
+pub fn between(names: &AgentSpeakNames) -> String {
     unused("between".to_owned(), &names.beliefs.values().cloned().collect())
 }

@@ -5,26 +5,26 @@ use hrdsl_ir::{
     ta::{AutomatonVar, ChannelKind, Edge, ReceiveArg, SyncLabel},
 };
 
-use super::{Writer, expr::Exprs, expr::number};
-use crate::exchange::obstacle::Obstacle;
+use super::{TcheckerWriter, expr::TcheckerExprWriter, expr::number};
+use crate::exchange::obstacle::ExportObstacle;
 
 /// The most edges that one edge may become.
 const MAX_INSTANCES: usize = 4_096;
 
 /// An edge as TChecker has them.
 #[derive(Clone)]
-pub struct Instance {
+pub struct EdgeInstance {
     pub from: usize,
     pub to: usize,
     pub event: String,
     pub guard: Vec<String>,
     pub body: Vec<String>,
-    pub part: Part,
+    pub part: EdgeSyncRole,
 }
 
 /// What an edge has to do with others.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Part {
+pub enum EdgeSyncRole {
     Alone,
     /// With the name of the medium and its arguments.
     Offers(String),
@@ -36,17 +36,17 @@ pub enum Part {
 }
 
 /// A medium's name, the values of each of its parameters, and what an edge says of them.
-type Medium<'e> = (String, Vec<Vec<Value>>, Vec<Argument<'e>>);
+type MediumUse<'e> = (String, Vec<Vec<Value>>, Vec<MediumArgument<'e>>);
 
 /// What an edge says about one argument.
-enum Argument<'e> {
+enum MediumArgument<'e> {
     Sent(&'e Expr),
     Taken(ReceiveArg),
 }
 
-impl Writer<'_> {
+impl TcheckerWriter<'_> {
     /// The edges of an automaton.
-    pub(super) fn instances(&mut self, a: usize) -> Vec<Instance> {
+    pub(super) fn instances(&mut self, a: usize) -> Vec<EdgeInstance> {
         let automaton = self.automata[a];
         let mut out = Vec::new();
         for edge in &automaton.edges {
@@ -57,12 +57,12 @@ impl Writer<'_> {
             let before = out.len();
             for binders in chosen {
                 if let Err(message) = self.with_selects(a, edge, &binders, &mut out) {
-                    self.obstacles.push(Obstacle { message, origin: edge.origin });
+                    self.obstacles.push(ExportObstacle { message, origin: edge.origin });
                     break;
                 }
                 if out.len() - before > MAX_INSTANCES {
                     let message = format!("this edge becomes more than {MAX_INSTANCES} of them");
-                    self.obstacles.push(Obstacle { message, origin: edge.origin });
+                    self.obstacles.push(ExportObstacle { message, origin: edge.origin });
                     break;
                 }
             }
@@ -75,15 +75,15 @@ impl Writer<'_> {
         a: usize,
         edge: &Edge,
         binders: &[Value],
-        out: &mut Vec<Instance>,
+        out: &mut Vec<EdgeInstance>,
     ) -> Result<(), String> {
         let (name, domains, args) = self.medium(edge)?;
         let mut all: Vec<Vec<Value>> = vec![Vec::new()];
         for (domain, arg) in domains.iter().zip(&args) {
             let constant = match arg {
-                Argument::Sent(e) => self.constant(a, e, binders),
-                Argument::Taken(ReceiveArg::Match(ArgPattern::Is(v))) => Some(*v),
-                Argument::Taken(ReceiveArg::Match(ArgPattern::Any) | ReceiveArg::Bind) => None,
+                MediumArgument::Sent(e) => self.constant(a, e, binders),
+                MediumArgument::Taken(ReceiveArg::Match(ArgPattern::Is(v))) => Some(*v),
+                MediumArgument::Taken(ReceiveArg::Match(ArgPattern::Any) | ReceiveArg::Bind) => None,
             };
             all = match constant {
                 Some(v) => crossed(all, &[v]),
@@ -95,9 +95,11 @@ impl Writer<'_> {
             let mut equal = Vec::new();
             for (value, arg) in values.iter().zip(&args) {
                 match arg {
-                    Argument::Taken(ReceiveArg::Bind) => bound.push(*value),
-                    Argument::Sent(e) if self.constant(a, e, binders).is_none() => equal.push((*e, *value)),
-                    Argument::Taken(ReceiveArg::Match(_)) | Argument::Sent(_) => {}
+                    MediumArgument::Taken(ReceiveArg::Bind) => bound.push(*value),
+                    MediumArgument::Sent(e) if self.constant(a, e, binders).is_none() => {
+                        equal.push((*e, *value))
+                    }
+                    MediumArgument::Taken(ReceiveArg::Match(_)) | MediumArgument::Sent(_) => {}
                 }
             }
             let known = edge.guard.as_ref().and_then(|g| self.constant(a, g, &bound));
@@ -117,7 +119,7 @@ impl Writer<'_> {
     }
 
     /// The medium of an edge: its name, the values of each parameter, what the edge says of them.
-    fn medium<'e>(&self, edge: &'e Edge) -> Result<Medium<'e>, String> {
+    fn medium<'e>(&self, edge: &'e Edge) -> Result<MediumUse<'e>, String> {
         let event = |id: &hrdsl_ir::EventId| {
             let event = self.program.event(*id);
             let domains = event.params.iter().map(|p| domain(&event.name, &p.name, p.ty));
@@ -127,8 +129,8 @@ impl Writer<'_> {
             let channel = &self.program.channels[usize::from(id.0)];
             (channel.name.clone(), channel.params.iter().map(values).collect())
         };
-        let sent = |args: &'e [Expr]| args.iter().map(Argument::Sent).collect();
-        let taken = |args: &[ReceiveArg]| args.iter().map(|a| Argument::Taken(*a)).collect();
+        let sent = |args: &'e [Expr]| args.iter().map(MediumArgument::Sent).collect();
+        let taken = |args: &[ReceiveArg]| args.iter().map(|a| MediumArgument::Taken(*a)).collect();
         Ok(match &edge.sync {
             SyncLabel::Internal => (String::new(), Vec::new(), Vec::new()),
             SyncLabel::Send { event: e, args } => {
@@ -168,8 +170,8 @@ impl Writer<'_> {
         bound: &[Value],
         equal: &[(&Expr, Value)],
         flat: String,
-    ) -> Result<Instance, String> {
-        let exprs = Exprs::new(self.program, &self.names, a, self.unit, bound);
+    ) -> Result<EdgeInstance, String> {
+        let exprs = TcheckerExprWriter::new(self.program, &self.names, a, self.unit, bound);
         let mut guard: Vec<String> =
             edge.clock_guard.iter().map(|c| exprs.bound(c)).collect::<Result<_, _>>()?;
         if let Some(e) = &edge.guard
@@ -190,18 +192,18 @@ impl Writer<'_> {
             body.extend(exprs.update(u, &mut fresh)?);
         }
         let part = match &edge.sync {
-            SyncLabel::Internal => Part::Alone,
-            SyncLabel::Send { .. } => Part::Announces(flat),
-            SyncLabel::Receive { .. } => Part::Hears(flat),
+            SyncLabel::Internal => EdgeSyncRole::Alone,
+            SyncLabel::Send { .. } => EdgeSyncRole::Announces(flat),
+            SyncLabel::Receive { .. } => EdgeSyncRole::Hears(flat),
             SyncLabel::Offer { channel, .. } => match self.kind(channel.0) {
-                ChannelKind::Broadcast => Part::Announces(flat),
-                ChannelKind::HandShake | ChannelKind::Joint(_) => Part::Offers(flat),
+                ChannelKind::Broadcast => EdgeSyncRole::Announces(flat),
+                ChannelKind::HandShake | ChannelKind::Joint(_) => EdgeSyncRole::Offers(flat),
             },
             SyncLabel::Accept { channel, .. } => match self.kind(channel.0) {
-                ChannelKind::Broadcast => Part::Hears(flat),
-                ChannelKind::HandShake | ChannelKind::Joint(_) => Part::Accepts(flat),
+                ChannelKind::Broadcast => EdgeSyncRole::Hears(flat),
+                ChannelKind::HandShake | ChannelKind::Joint(_) => EdgeSyncRole::Accepts(flat),
             },
-            SyncLabel::Join { channel } => Part::Joins(usize::from(channel.0)),
+            SyncLabel::Join { channel } => EdgeSyncRole::Joins(usize::from(channel.0)),
         };
         if let SyncLabel::Offer { channel, .. }
         | SyncLabel::Accept { channel, .. }
@@ -211,11 +213,11 @@ impl Writer<'_> {
             if channel.urgent {
                 let message =
                     format!("the channel `{}` is urgent: TChecker has no urgent channels", channel.name);
-                self.obstacles.push(Obstacle { message, origin: channel.origin });
+                self.obstacles.push(ExportObstacle { message, origin: channel.origin });
             }
         }
         let (from, to) = (usize::from(edge.from.0), usize::from(edge.to.0));
-        Ok(Instance { from, to, event: String::new(), guard, body, part })
+        Ok(EdgeInstance { from, to, event: String::new(), guard, body, part })
     }
 
     fn kind(&self, channel: u16) -> &ChannelKind {

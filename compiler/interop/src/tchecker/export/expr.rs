@@ -6,40 +6,40 @@ use hrdsl_ir::{
     ta::{self, ClockConstraint, ClockId, ClockOp, EdgeAssignment, FunctionStatement, TimeSum},
 };
 
-use super::names::Names;
+use super::names::TcheckerNames;
 
 /// Writes the expressions of one automaton, with constants for what an edge binds.
-pub struct Exprs<'a> {
+pub struct TcheckerExprWriter<'a> {
     program: &'a Program,
-    names: &'a Names,
+    names: &'a TcheckerNames,
     automaton: usize,
     unit: Nanos,
     /// What the slots after the automaton's own stand for.
-    bound: Bound<'a>,
+    bound: SlotSubstitution<'a>,
 }
 
 #[derive(Clone, Copy)]
-enum Bound<'a> {
+enum SlotSubstitution<'a> {
     /// Of an edge.
     Values(&'a [Value]),
     /// Of a function's body: the text of each parameter and local, and how many slots come before them.
     Texts(&'a [(String, bool)], usize),
 }
 
-type Text = Result<String, String>;
+type TcheckerTextResult = Result<String, String>;
 
 /// How deep functions may be inserted into each other.
 const MAX_DEPTH: u8 = 20;
 
-impl<'a> Exprs<'a> {
+impl<'a> TcheckerExprWriter<'a> {
     pub fn new(
         program: &'a Program,
-        names: &'a Names,
+        names: &'a TcheckerNames,
         automaton: usize,
         unit: Nanos,
         bound: &'a [Value],
     ) -> Self {
-        Self { program, names, automaton, unit, bound: Bound::Values(bound) }
+        Self { program, names, automaton, unit, bound: SlotSubstitution::Values(bound) }
     }
 
     /// How many variables the automaton sees: the shared ones and its own.
@@ -59,12 +59,12 @@ impl<'a> Exprs<'a> {
     /// How many slots come before what is bound.
     fn known(&self) -> usize {
         match self.bound {
-            Bound::Values(_) => self.own_slots(),
-            Bound::Texts(_, known) => known,
+            SlotSubstitution::Values(_) => self.own_slots(),
+            SlotSubstitution::Texts(_, known) => known,
         }
     }
 
-    fn var(&self, slot: u16) -> Text {
+    fn var(&self, slot: u16) -> TcheckerTextResult {
         let slot = usize::from(slot);
         if let Some(at) = self.network_slot(slot) {
             let (int, element) = self.names.slots[at];
@@ -76,11 +76,11 @@ impl<'a> Exprs<'a> {
             });
         }
         match self.bound {
-            Bound::Values(values) => match values.get(slot - self.known()) {
+            SlotSubstitution::Values(values) => match values.get(slot - self.known()) {
                 Some(v) => number(self.program, *v),
                 None => Err("a variable is not there".to_owned()),
             },
-            Bound::Texts(texts, known) => match texts.get(slot - known) {
+            SlotSubstitution::Texts(texts, known) => match texts.get(slot - known) {
                 Some((text, _)) => Ok(text.clone()),
                 None => Err("a variable is not there".to_owned()),
             },
@@ -88,7 +88,7 @@ impl<'a> Exprs<'a> {
     }
 
     /// An element by its indices: arrays of arrays are one array.
-    fn place(&self, place: &Lvalue, depth: u8) -> Text {
+    fn place(&self, place: &Lvalue, depth: u8) -> TcheckerTextResult {
         if place.indices.is_empty() {
             return self.var(place.slot);
         }
@@ -156,7 +156,7 @@ impl<'a> Exprs<'a> {
     }
 
     /// A comparison that is true where the condition is what it is wanted to be.
-    fn atom(&self, e: &Expr, wanted: bool, depth: u8) -> Text {
+    fn atom(&self, e: &Expr, wanted: bool, depth: u8) -> TcheckerTextResult {
         match e {
             Expr::Unary(UnaryOp::Not, a) => self.atom(a, !wanted, depth),
             Expr::Binary(op, a, b) => match comparison(*op, wanted) {
@@ -169,7 +169,7 @@ impl<'a> Exprs<'a> {
     }
 
     /// A condition as 0 or 1.
-    fn truth(&self, e: &Expr, depth: u8) -> Text {
+    fn truth(&self, e: &Expr, depth: u8) -> TcheckerTextResult {
         match e {
             Expr::Binary(BinaryOp::Or, a, b) => {
                 let mut left = Vec::new();
@@ -196,7 +196,7 @@ impl<'a> Exprs<'a> {
     // ── Numbers ──
 
     /// The number that a value is kept as.
-    pub fn int(&self, e: &Expr, depth: u8) -> Text {
+    pub fn int(&self, e: &Expr, depth: u8) -> TcheckerTextResult {
         if depth > MAX_DEPTH {
             return Err("functions are nested too deep to be inserted".to_owned());
         }
@@ -218,13 +218,13 @@ impl<'a> Exprs<'a> {
     }
 
     /// In parentheses, unless it is a number or a name.
-    fn term(&self, e: &Expr, depth: u8) -> Text {
+    fn term(&self, e: &Expr, depth: u8) -> TcheckerTextResult {
         let text = self.int(e, depth)?;
         let simple = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         Ok(if simple || text.starts_with("(if ") { text } else { format!("({text})") })
     }
 
-    fn choice(&self, condition: &Expr, then: &str, otherwise: &str, depth: u8) -> Text {
+    fn choice(&self, condition: &Expr, then: &str, otherwise: &str, depth: u8) -> TcheckerTextResult {
         let mut parts = Vec::new();
         self.conjuncts(condition, depth, &mut parts)?;
         Ok(if parts.is_empty() {
@@ -234,7 +234,7 @@ impl<'a> Exprs<'a> {
         })
     }
 
-    fn call(&self, function: NumberFunction, args: &[Expr], depth: u8) -> Text {
+    fn call(&self, function: NumberFunction, args: &[Expr], depth: u8) -> TcheckerTextResult {
         let args: Vec<String> = args.iter().map(|a| self.term(a, depth)).collect::<Result<_, _>>()?;
         let choose = |sign: &str| {
             let fold =
@@ -252,7 +252,7 @@ impl<'a> Exprs<'a> {
     }
 
     /// A function that is one expression, with its arguments put in.
-    fn applied(&self, function: usize, args: &[Expr], depth: u8) -> Text {
+    fn applied(&self, function: usize, args: &[Expr], depth: u8) -> TcheckerTextResult {
         let Some(f) = self.program.functions.get(function) else {
             return Err("a function is not there".to_owned());
         };
@@ -270,10 +270,20 @@ impl<'a> Exprs<'a> {
         inner.int(value, depth + 1)
     }
 
-    fn inside<'b>(&'b self, f: &ta::AutomatonFunction, texts: &'b [(String, bool)]) -> Exprs<'b> {
+    fn inside<'b>(
+        &'b self,
+        f: &ta::AutomatonFunction,
+        texts: &'b [(String, bool)],
+    ) -> TcheckerExprWriter<'b> {
         let known = if f.owner.is_some() { self.own_slots() } else { self.names.shared_slots };
-        let bound = Bound::Texts(texts, known);
-        Exprs { program: self.program, names: self.names, automaton: self.automaton, unit: self.unit, bound }
+        let bound = SlotSubstitution::Texts(texts, known);
+        TcheckerExprWriter {
+            program: self.program,
+            names: self.names,
+            automaton: self.automaton,
+            unit: self.unit,
+            bound,
+        }
     }
 
     // ── Clocks ──
@@ -285,7 +295,7 @@ impl<'a> Exprs<'a> {
         &self.names.clocks[at]
     }
 
-    fn time(&self, time: &TimeSum) -> Text {
+    fn time(&self, time: &TimeSum) -> TcheckerTextResult {
         let mut parts = Vec::new();
         for term in &time.terms {
             parts.push(format!("{}*{}", self.term(&term.value, 0)?, term.factor / self.unit));
@@ -296,7 +306,7 @@ impl<'a> Exprs<'a> {
         Ok(parts.join("+"))
     }
 
-    pub fn bound(&self, c: &ClockConstraint) -> Text {
+    pub fn bound(&self, c: &ClockConstraint) -> TcheckerTextResult {
         let minus = c.minus.map_or(String::new(), |m| format!("-{}", self.clock(m)));
         let sign = match c.op {
             ClockOp::Lt => "<",
@@ -413,7 +423,7 @@ impl<'a> Exprs<'a> {
         Ok(())
     }
 
-    fn all(&self, condition: &Expr, depth: u8) -> Text {
+    fn all(&self, condition: &Expr, depth: u8) -> TcheckerTextResult {
         let mut parts = Vec::new();
         self.conjuncts(condition, depth, &mut parts)?;
         Ok(if parts.is_empty() { "1==1".to_owned() } else { parts.join(" && ") })
@@ -421,7 +431,7 @@ impl<'a> Exprs<'a> {
 }
 
 /// The number that a value is kept as.
-pub fn number(program: &Program, v: Value) -> Text {
+pub fn number(program: &Program, v: Value) -> TcheckerTextResult {
     match v {
         Value::Bool(b) => Ok(i32::from(b).to_string()),
         Value::Int(n) if n < 0 => Ok(format!("({n})")),

@@ -21,9 +21,9 @@ use hrdsl_ir::{
     ta::{Automaton, LocationKind, Network},
 };
 
-use self::{edges::Instance, expr::Exprs, names::Names};
+use self::{edges::EdgeInstance, expr::TcheckerExprWriter, names::TcheckerNames};
 use crate::exchange::{
-    obstacle::Obstacle,
+    obstacle::ExportObstacle,
     time::{self, seconds},
 };
 
@@ -31,13 +31,13 @@ use crate::exchange::{
 ///
 /// # Errors
 /// What TChecker cannot say: urgent channels, functions that are more than one expression, numbers that do not fit, …
-pub fn export(program: &Program, network: &Network) -> Result<String, Vec<Obstacle>> {
+pub fn export(program: &Program, network: &Network) -> Result<String, Vec<ExportObstacle>> {
     let automata: Vec<&Automaton> =
         network.automata.iter().filter_map(|id| program.automata.get(usize::from(id.0))).collect();
-    let mut writer = Writer {
+    let mut writer = TcheckerWriter {
         program,
         network,
-        names: Names::new(program, network, &automata),
+        names: TcheckerNames::new(program, network, &automata),
         unit: time::unit(program, &automata),
         automata,
         obstacles: Vec::new(),
@@ -53,22 +53,22 @@ pub fn export(program: &Program, network: &Network) -> Result<String, Vec<Obstac
     }
 }
 
-struct Writer<'p> {
+struct TcheckerWriter<'p> {
     program: &'p Program,
     network: &'p Network,
     automata: Vec<&'p Automaton>,
-    names: Names,
+    names: TcheckerNames,
     unit: Nanos,
-    obstacles: Vec<Obstacle>,
+    obstacles: Vec<ExportObstacle>,
     out: String,
 }
 
-impl Writer<'_> {
+impl TcheckerWriter<'_> {
     fn write(&mut self) {
         let _ = writeln!(self.out, "# {}: one unit of time is {}", self.network.name, seconds(self.unit));
         let _ = writeln!(self.out, "system:{}", self.names.system);
         self.variables();
-        let instances: Vec<Vec<Instance>> = (0..self.automata.len()).map(|a| self.instances(a)).collect();
+        let instances: Vec<Vec<EdgeInstance>> = (0..self.automata.len()).map(|a| self.instances(a)).collect();
         let joined = self.vectors(&instances);
         let mut events: Vec<&str> = joined.edges.iter().flatten().map(|e| e.event.as_str()).collect();
         events.sort_unstable();
@@ -93,13 +93,13 @@ impl Writer<'_> {
             let init = int.inits[0];
             if int.inits.iter().any(|i| *i != init) {
                 let message = format!("the elements of `{}` start with different values", int.name);
-                self.obstacles.push(Obstacle { message, origin: self.network.origin });
+                self.obstacles.push(ExportObstacle { message, origin: self.network.origin });
             }
             let _ = writeln!(self.out, "int:{size}:{lo}:{hi}:{init}:{}", int.name);
         }
     }
 
-    fn process(&mut self, a: usize, edges: &[Instance]) {
+    fn process(&mut self, a: usize, edges: &[EdgeInstance]) {
         let automaton = self.automata[a];
         let process = &self.names.processes[a];
         let _ = writeln!(self.out, "process:{process}");
@@ -114,18 +114,18 @@ impl Writer<'_> {
                 LocationKind::Urgent => attributes.push("urgent:".to_owned()),
                 LocationKind::Committed => attributes.push("committed:".to_owned()),
             }
-            let exprs = Exprs::new(self.program, &self.names, a, self.unit, &[]);
+            let exprs = TcheckerExprWriter::new(self.program, &self.names, a, self.unit, &[]);
             let mut parts: Vec<String> = Vec::new();
             for c in &location.invariant {
                 match exprs.bound(c) {
                     Ok(text) => parts.push(text),
-                    Err(message) => self.obstacles.push(Obstacle { message, origin: location.origin }),
+                    Err(message) => self.obstacles.push(ExportObstacle { message, origin: location.origin }),
                 }
             }
             if let Some(e) = &location.holds {
                 match exprs.conjunction(e) {
                     Ok(all) => parts.extend(all),
-                    Err(message) => self.obstacles.push(Obstacle { message, origin: location.origin }),
+                    Err(message) => self.obstacles.push(ExportObstacle { message, origin: location.origin }),
                 }
             }
             if !parts.is_empty() {

@@ -12,14 +12,14 @@ const RESERVED: [&str; 17] = [
 ];
 
 /// A bounded integer, or an array of them.
-pub struct Int {
+pub struct BoundedIntArray {
     pub name: String,
     pub lo: i64,
     pub hi: i64,
     pub inits: Vec<i64>,
 }
 
-pub struct Names {
+pub struct TcheckerNames {
     pub system: String,
     pub processes: Vec<String>,
     /// By process.
@@ -29,7 +29,7 @@ pub struct Names {
     /// Where each automaton's own clocks start.
     pub first_clock: Vec<usize>,
     pub shared_clocks: usize,
-    pub ints: Vec<Int>,
+    pub ints: Vec<BoundedIntArray>,
     /// Of each of the network's slots (the shared variables, then each automaton's): its integer, and which element.
     pub slots: Vec<(usize, usize)>,
     /// Where each automaton's own slots start.
@@ -38,7 +38,7 @@ pub struct Names {
     used: Vec<String>,
 }
 
-impl Names {
+impl TcheckerNames {
     pub fn new(program: &Program, network: &Network, automata: &[&Automaton]) -> Self {
         let mut names = Self {
             system: String::new(),
@@ -96,7 +96,7 @@ impl Names {
                 (Some(_) | None, _) => {
                     let wanted = array.as_ref().map_or(v.name.as_str(), |(base, ..)| base);
                     let name = self.fresh(&format!("{prefix}{wanted}"));
-                    self.ints.push(Int { name, lo: v.lo, hi: v.hi, inits: vec![v.init] });
+                    self.ints.push(BoundedIntArray { name, lo: v.lo, hi: v.hi, inits: vec![v.init] });
                 }
             }
             let int = self.ints.len() - 1;

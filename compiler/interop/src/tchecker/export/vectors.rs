@@ -7,50 +7,51 @@
 use hrdsl_ir::ta::{ChannelKind, LocationKind};
 
 use super::{
-    Writer,
-    edges::{Instance, Part},
+    TcheckerWriter,
+    edges::{EdgeInstance, EdgeSyncRole},
 };
-use crate::exchange::obstacle::Obstacle;
+use crate::exchange::obstacle::ExportObstacle;
 
 /// The most loops that stand in for one location's edges that are closed.
 const MAX_LOOPS: usize = 256;
 
 /// What is to be written.
-pub struct Joined {
+pub struct SynchronizedEdges {
     /// By process, with their events.
-    pub edges: Vec<Vec<Instance>>,
+    pub edges: Vec<Vec<EdgeInstance>>,
     /// `P@a:Q@b?`
     pub syncs: Vec<String>,
 }
 
-impl Writer<'_> {
-    pub(super) fn vectors(&mut self, instances: &[Vec<Instance>]) -> Joined {
-        let mut joined = Joined { edges: vec![Vec::new(); instances.len()], syncs: Vec::new() };
-        let mut parts: Vec<&Part> = instances.iter().flatten().map(|i| &i.part).collect();
+impl TcheckerWriter<'_> {
+    pub(super) fn vectors(&mut self, instances: &[Vec<EdgeInstance>]) -> SynchronizedEdges {
+        let mut joined = SynchronizedEdges { edges: vec![Vec::new(); instances.len()], syncs: Vec::new() };
+        let mut parts: Vec<&EdgeSyncRole> = instances.iter().flatten().map(|i| &i.part).collect();
         parts.sort();
         parts.dedup();
         for part in parts {
             match part {
-                Part::Alone => self.alone(instances, &mut joined),
-                Part::Offers(name) => self.hand_shake(name, instances, &mut joined),
-                Part::Announces(name) => self.broadcast(name, instances, &mut joined),
-                Part::Joins(channel) => self.joint(*channel, instances, &mut joined),
+                EdgeSyncRole::Alone => self.alone(instances, &mut joined),
+                EdgeSyncRole::Offers(name) => self.hand_shake(name, instances, &mut joined),
+                EdgeSyncRole::Announces(name) => self.broadcast(name, instances, &mut joined),
+                EdgeSyncRole::Joins(channel) => self.joint(*channel, instances, &mut joined),
                 // With what they take.
-                Part::Accepts(_) | Part::Hears(_) => {}
+                EdgeSyncRole::Accepts(_) | EdgeSyncRole::Hears(_) => {}
             }
         }
         joined
     }
 
-    fn alone(&mut self, instances: &[Vec<Instance>], joined: &mut Joined) {
+    fn alone(&mut self, instances: &[Vec<EdgeInstance>], joined: &mut SynchronizedEdges) {
         let event = self.names.fresh("tau");
         for p in 0..instances.len() {
-            keep(p, instances, &Part::Alone, &event, joined);
+            keep(p, instances, &EdgeSyncRole::Alone, &event, joined);
         }
     }
 
-    fn hand_shake(&mut self, name: &str, instances: &[Vec<Instance>], joined: &mut Joined) {
-        let (offers, accepts) = (Part::Offers(name.to_owned()), Part::Accepts(name.to_owned()));
+    fn hand_shake(&mut self, name: &str, instances: &[Vec<EdgeInstance>], joined: &mut SynchronizedEdges) {
+        let (offers, accepts) =
+            (EdgeSyncRole::Offers(name.to_owned()), EdgeSyncRole::Accepts(name.to_owned()));
         let (senders, receivers) = (with(instances, &offers), with(instances, &accepts));
         let (out, taken) = (self.names.fresh(name), self.names.fresh(&format!("{name}_in")));
         let pairs: Vec<(usize, usize)> =
@@ -71,8 +72,8 @@ impl Writer<'_> {
         }
     }
 
-    fn broadcast(&mut self, name: &str, instances: &[Vec<Instance>], joined: &mut Joined) {
-        let (sends, hears) = (Part::Announces(name.to_owned()), Part::Hears(name.to_owned()));
+    fn broadcast(&mut self, name: &str, instances: &[Vec<EdgeInstance>], joined: &mut SynchronizedEdges) {
+        let (sends, hears) = (EdgeSyncRole::Announces(name.to_owned()), EdgeSyncRole::Hears(name.to_owned()));
         let (senders, receivers) = (with(instances, &sends), with(instances, &hears));
         let (out, taken) = (self.names.fresh(name), self.names.fresh(&format!("{name}_in")));
         for s in &senders {
@@ -97,10 +98,10 @@ impl Writer<'_> {
         }
     }
 
-    fn joint(&mut self, channel: usize, instances: &[Vec<Instance>], joined: &mut Joined) {
+    fn joint(&mut self, channel: usize, instances: &[Vec<EdgeInstance>], joined: &mut SynchronizedEdges) {
         let channel_name = self.program.channels[channel].name.clone();
         let ChannelKind::Joint(parties) = &self.program.channels[channel].kind else { return };
-        let part = Part::Joins(channel);
+        let part = EdgeSyncRole::Joins(channel);
         let at = |party: &hrdsl_ir::ta::ChannelParticipant| {
             self.network.automata.iter().position(|a| *a == party.automaton)
         };
@@ -120,7 +121,7 @@ impl Writer<'_> {
                 if taking.iter().all(|(_, optional)| *optional) {
                     let message = format!("all parts of `{channel_name}` are optional, and some have guards");
                     let origin = self.program.channels[channel].origin;
-                    self.obstacles.push(Obstacle { message, origin });
+                    self.obstacles.push(ExportObstacle { message, origin });
                 }
                 self.loops(*p, instances, &part, &event, joined);
             } else if *optional {
@@ -137,10 +138,10 @@ impl Writer<'_> {
     fn loops(
         &mut self,
         p: usize,
-        instances: &[Vec<Instance>],
-        part: &Part,
+        instances: &[Vec<EdgeInstance>],
+        part: &EdgeSyncRole,
         event: &str,
-        joined: &mut Joined,
+        joined: &mut SynchronizedEdges,
     ) {
         let automaton = self.automata[p];
         for (l, location) in automaton.locations.iter().enumerate() {
@@ -149,7 +150,7 @@ impl Writer<'_> {
                     "`{}` hears `{event}` under a guard, and its location `{}` is committed: TChecker's weak edges have no guards",
                     automaton.name, location.name
                 );
-                self.obstacles.push(Obstacle { message, origin: location.origin });
+                self.obstacles.push(ExportObstacle { message, origin: location.origin });
                 return;
             }
             let mine = instances[p].iter().filter(|i| i.part == *part && i.from == l);
@@ -159,10 +160,10 @@ impl Writer<'_> {
             }
             if ways.len() > MAX_LOOPS {
                 let message = format!("`{event}` has too many guards in `{}`", location.name);
-                self.obstacles.push(Obstacle { message, origin: location.origin });
+                self.obstacles.push(ExportObstacle { message, origin: location.origin });
                 return;
             }
-            let loops = ways.into_iter().map(|guard| Instance {
+            let loops = ways.into_iter().map(|guard| EdgeInstance {
                 from: l,
                 to: l,
                 event: event.to_owned(),
@@ -186,15 +187,21 @@ fn closed(way: &[String], guard: &[String]) -> Vec<Vec<String>> {
     (0..guard.len()).map(one).collect()
 }
 
-fn with(instances: &[Vec<Instance>], part: &Part) -> Vec<usize> {
+fn with(instances: &[Vec<EdgeInstance>], part: &EdgeSyncRole) -> Vec<usize> {
     (0..instances.len()).filter(|p| instances[*p].iter().any(|i| i.part == *part)).collect()
 }
 
-fn guarded(p: usize, instances: &[Vec<Instance>], part: &Part) -> bool {
+fn guarded(p: usize, instances: &[Vec<EdgeInstance>], part: &EdgeSyncRole) -> bool {
     instances[p].iter().any(|i| i.part == *part && !i.guard.is_empty())
 }
 
-fn keep(p: usize, instances: &[Vec<Instance>], part: &Part, event: &str, joined: &mut Joined) {
+fn keep(
+    p: usize,
+    instances: &[Vec<EdgeInstance>],
+    part: &EdgeSyncRole,
+    event: &str,
+    joined: &mut SynchronizedEdges,
+) {
     let mine = instances[p].iter().filter(|i| i.part == *part);
-    joined.edges[p].extend(mine.map(|i| Instance { event: event.to_owned(), ..i.clone() }));
+    joined.edges[p].extend(mine.map(|i| EdgeInstance { event: event.to_owned(), ..i.clone() }));
 }

@@ -1,77 +1,77 @@
 //! What a TChecker file says.
 
 /// Where something is written: a byte offset in the file.
-pub type At = usize;
+pub type ByteOffset = usize;
 
 #[derive(Debug, Default)]
-pub struct Model {
+pub struct TcheckerModel {
     pub name: String,
-    pub clocks: Vec<Array>,
-    pub ints: Vec<Int>,
+    pub clocks: Vec<TcheckerArray>,
+    pub ints: Vec<TcheckerInt>,
     pub events: Vec<String>,
-    pub processes: Vec<Process>,
-    pub syncs: Vec<Sync>,
+    pub processes: Vec<TcheckerProcess>,
+    pub syncs: Vec<TcheckerSync>,
     /// Attributes that mean nothing here: the key, and where it is.
-    pub ignored: Vec<(String, At)>,
+    pub ignored: Vec<(String, ByteOffset)>,
 }
 
 /// `clock:size:name`
 #[derive(Debug)]
-pub struct Array {
+pub struct TcheckerArray {
     pub name: String,
     pub size: u32,
-    pub at: At,
+    pub at: ByteOffset,
 }
 
 /// `int:size:min:max:init:name`
 #[derive(Debug)]
-pub struct Int {
-    pub of: Array,
+pub struct TcheckerInt {
+    pub of: TcheckerArray,
     pub lo: i64,
     pub hi: i64,
     pub init: i64,
 }
 
 #[derive(Debug)]
-pub struct Process {
+pub struct TcheckerProcess {
     pub name: String,
-    pub at: At,
-    pub locations: Vec<Location>,
-    pub edges: Vec<Edge>,
+    pub at: ByteOffset,
+    pub locations: Vec<TcheckerLocation>,
+    pub edges: Vec<TcheckerEdge>,
 }
 
 #[derive(Debug, Default)]
-pub struct Location {
+pub struct TcheckerLocation {
     pub name: String,
     pub initial: bool,
     pub committed: bool,
     pub urgent: bool,
     pub labels: Vec<String>,
     /// A conjunction.
-    pub invariant: Vec<Expr>,
-    pub at: At,
+    pub invariant: Vec<TcheckerExpr>,
+    pub at: ByteOffset,
 }
 
 #[derive(Debug)]
-pub struct Edge {
+pub struct TcheckerEdge {
     /// Indices into the process's locations.
     pub from: usize,
     pub to: usize,
     pub event: String,
     /// A conjunction.
-    pub provided: Vec<Expr>,
-    pub body: Vec<Statement>,
-    pub at: At,
+    pub provided: Vec<TcheckerExpr>,
+    pub body: Vec<TcheckerStatement>,
+    pub at: ByteOffset,
 }
 
 /// `sync:P@a:Q@b?`
 #[derive(Debug)]
-pub struct Sync {
-    pub parties: Vec<Party>,
+pub struct TcheckerSync {
+    pub parties: Vec<SyncParty>,
 }
 
 #[derive(Debug)]
-pub struct Party {
+pub struct SyncParty {
     /// Index into the model's processes.
     pub process: usize,
     pub event: String,
@@ -79,24 +79,24 @@ pub struct Party {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Expr {
-    pub kind: Kind,
-    pub at: At,
+pub struct TcheckerExpr {
+    pub kind: TcheckerExprKind,
+    pub at: ByteOffset,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
+pub enum TcheckerExprKind {
     Int(i64),
     /// An integer or clock, perhaps an element of an array.
-    Name(String, Option<Box<Expr>>),
-    Neg(Box<Expr>),
-    Not(Box<Expr>),
-    Binary(Op, Box<Expr>, Box<Expr>),
-    If(Box<Expr>, Box<Expr>, Box<Expr>),
+    Name(String, Option<Box<TcheckerExpr>>),
+    Neg(Box<TcheckerExpr>),
+    Not(Box<TcheckerExpr>),
+    Binary(TcheckerOperator, Box<TcheckerExpr>, Box<TcheckerExpr>),
+    If(Box<TcheckerExpr>, Box<TcheckerExpr>, Box<TcheckerExpr>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Op {
+pub enum TcheckerOperator {
     Add,
     Sub,
     Mul,
@@ -111,7 +111,7 @@ pub enum Op {
     And,
 }
 
-impl Op {
+impl TcheckerOperator {
     pub fn text(self) -> &'static str {
         match self {
             Self::Add => "+",
@@ -164,15 +164,15 @@ impl Op {
 }
 
 #[derive(Clone, Debug)]
-pub struct Statement {
-    pub kind: Act,
-    pub at: At,
+pub struct TcheckerStatement {
+    pub kind: TcheckerStatementKind,
+    pub at: ByteOffset,
 }
 
 #[derive(Clone, Debug)]
-pub enum Act {
-    Assign { name: String, index: Option<Expr>, value: Expr },
-    If { condition: Expr, then: Vec<Statement>, otherwise: Vec<Statement> },
-    While { condition: Expr, body: Vec<Statement> },
-    Local { name: String, size: Option<Expr>, init: Option<Expr> },
+pub enum TcheckerStatementKind {
+    Assign { name: String, index: Option<TcheckerExpr>, value: TcheckerExpr },
+    If { condition: TcheckerExpr, then: Vec<TcheckerStatement>, otherwise: Vec<TcheckerStatement> },
+    While { condition: TcheckerExpr, body: Vec<TcheckerStatement> },
+    Local { name: String, size: Option<TcheckerExpr>, init: Option<TcheckerExpr> },
 }

@@ -4,14 +4,14 @@
 //! edge gets a guard, where the ranges do not show that it needs none.
 
 use super::{
-    ast::{Act, Expr, Kind, Op, Statement},
-    expr::{Exprs, constant},
-    parse::Fault,
+    ast::{TcheckerExpr, TcheckerExprKind, TcheckerOperator, TcheckerStatement, TcheckerStatementKind},
+    expr::{ScenarioExprWriter, constant},
+    parse::TcheckerFault,
 };
 
 /// What the statements of one edge become.
 #[derive(Default)]
-pub struct Effect {
+pub struct TranslatedEffect {
     /// The actions, in order.
     pub actions: Vec<String>,
     /// Functions that the actions call: their names and bodies.
@@ -24,29 +24,33 @@ pub struct Effect {
 
 /// Translates the statements of one edge; `function` gives names to new functions.
 pub fn effect(
-    exprs: &Exprs<'_>,
-    body: &[Statement],
+    exprs: &ScenarioExprWriter<'_>,
+    body: &[TcheckerStatement],
     function: &mut dyn FnMut() -> String,
-) -> Result<Effect, Fault> {
-    let mut effect = Effect::default();
-    let mut known = Known::default();
-    let plain = body.iter().all(|s| matches!(s.kind, Act::Assign { .. }));
-    let mut run: Vec<&Statement> = Vec::new();
+) -> Result<TranslatedEffect, TcheckerFault> {
+    let mut effect = TranslatedEffect::default();
+    let mut known = SymbolicStore::default();
+    let plain = body.iter().all(|s| matches!(s.kind, TcheckerStatementKind::Assign { .. }));
+    let mut run: Vec<&TcheckerStatement> = Vec::new();
     for statement in body {
         match &statement.kind {
-            Act::Assign { name, index, value } => match exprs.clock(&lvalue(name, index, statement.at))? {
-                Some(clock) => {
-                    flush(exprs, &mut run, &mut effect, function)?;
-                    effect.actions.push(format!("{clock} = {}", exprs.clock_value(value)?));
+            TcheckerStatementKind::Assign { name, index, value } => {
+                match exprs.clock(&lvalue(name, index, statement.at))? {
+                    Some(clock) => {
+                        flush(exprs, &mut run, &mut effect, function)?;
+                        effect.actions.push(format!("{clock} = {}", exprs.clock_value(value)?));
+                    }
+                    None if plain => {
+                        range(exprs, &mut known, statement, &mut effect)?;
+                        let target = exprs.target(name, index.as_ref(), statement.at)?;
+                        effect.actions.push(format!("{target} = {}", exprs.integer(value)?));
+                    }
+                    None => run.push(statement),
                 }
-                None if plain => {
-                    range(exprs, &mut known, statement, &mut effect)?;
-                    let target = exprs.target(name, index.as_ref(), statement.at)?;
-                    effect.actions.push(format!("{target} = {}", exprs.integer(value)?));
-                }
-                None => run.push(statement),
-            },
-            Act::If { .. } | Act::While { .. } | Act::Local { .. } => run.push(statement),
+            }
+            TcheckerStatementKind::If { .. }
+            | TcheckerStatementKind::While { .. }
+            | TcheckerStatementKind::Local { .. } => run.push(statement),
         }
     }
     flush(exprs, &mut run, &mut effect, function)?;
@@ -56,17 +60,17 @@ pub fn effect(
     Ok(effect)
 }
 
-fn lvalue(name: &str, index: &Option<Expr>, at: usize) -> Expr {
-    Expr { kind: Kind::Name(name.to_owned(), index.clone().map(Box::new)), at }
+fn lvalue(name: &str, index: &Option<TcheckerExpr>, at: usize) -> TcheckerExpr {
+    TcheckerExpr { kind: TcheckerExprKind::Name(name.to_owned(), index.clone().map(Box::new)), at }
 }
 
 /// Statements on integers become a function.
 fn flush(
-    exprs: &Exprs<'_>,
-    run: &mut Vec<&Statement>,
-    effect: &mut Effect,
+    exprs: &ScenarioExprWriter<'_>,
+    run: &mut Vec<&TcheckerStatement>,
+    effect: &mut TranslatedEffect,
     function: &mut dyn FnMut() -> String,
-) -> Result<(), Fault> {
+) -> Result<(), TcheckerFault> {
     if run.is_empty() {
         return Ok(());
     }
@@ -80,37 +84,41 @@ fn flush(
     Ok(())
 }
 
-fn block(exprs: &Exprs<'_>, body: &[Statement]) -> Result<String, Fault> {
+fn block(exprs: &ScenarioExprWriter<'_>, body: &[TcheckerStatement]) -> Result<String, TcheckerFault> {
     let mut text = String::new();
     body.iter().try_for_each(|s| write(exprs, s, &mut text))?;
     Ok(format!("{{\n{text}}}"))
 }
 
-fn write(exprs: &Exprs<'_>, statement: &Statement, out: &mut String) -> Result<(), Fault> {
+fn write(
+    exprs: &ScenarioExprWriter<'_>,
+    statement: &TcheckerStatement,
+    out: &mut String,
+) -> Result<(), TcheckerFault> {
     let text = match &statement.kind {
-        Act::Assign { name, index, value } => {
+        TcheckerStatementKind::Assign { name, index, value } => {
             if exprs.clock(&lvalue(name, index, statement.at))?.is_some() {
                 let message = "a clock is set under a condition: a scenario sets clocks on edges only";
-                return Err(Fault { at: statement.at, message: message.to_owned() });
+                return Err(TcheckerFault { at: statement.at, message: message.to_owned() });
             }
             format!("{} = {};", exprs.target(name, index.as_ref(), statement.at)?, exprs.integer(value)?)
         }
-        Act::If { condition, then, otherwise } => {
+        TcheckerStatementKind::If { condition, then, otherwise } => {
             let other = match otherwise.as_slice() {
                 [] => String::new(),
                 some => format!(" else {}", block(exprs, some)?),
             };
             format!("if {} {}{other}", exprs.boolean(condition)?, block(exprs, then)?)
         }
-        Act::While { condition, body } => {
+        TcheckerStatementKind::While { condition, body } => {
             format!("while {} {}", exprs.boolean(condition)?, block(exprs, body)?)
         }
-        Act::Local { name, size, init } => {
+        TcheckerStatementKind::Local { name, size, init } => {
             let of = "-2147483648..2147483647";
             match (size.as_ref().map(|s| (constant(s), s)), init) {
                 (Some((Some(n), _)), _) => format!("var {name}: ({of})[{n}];"),
                 (Some((None, size)), _) => {
-                    return Err(Fault {
+                    return Err(TcheckerFault {
                         at: size.at,
                         message: "the size of an array is a constant".to_owned(),
                     });
@@ -130,19 +138,19 @@ fn write(exprs: &Exprs<'_>, statement: &Statement, out: &mut String) -> Result<(
 
 /// What variables are, in terms of what they were before the edge.
 #[derive(Default)]
-struct Known {
-    values: Vec<(String, Option<i64>, Expr)>,
+struct SymbolicStore {
+    values: Vec<(String, Option<i64>, TcheckerExpr)>,
     /// Arrays of which some element, nobody knows which, was assigned.
     blurred: Vec<String>,
 }
 
-impl Known {
+impl SymbolicStore {
     /// The expression in what was before; `None`: it reads an element that cannot be told.
-    fn before(&self, e: &Expr) -> Option<Expr> {
-        let sub = |e: &Expr| self.before(e).map(Box::new);
+    fn before(&self, e: &TcheckerExpr) -> Option<TcheckerExpr> {
+        let sub = |e: &TcheckerExpr| self.before(e).map(Box::new);
         let kind = match &e.kind {
-            Kind::Int(n) => Kind::Int(*n),
-            Kind::Name(name, index) => {
+            TcheckerExprKind::Int(n) => TcheckerExprKind::Int(*n),
+            TcheckerExprKind::Name(name, index) => {
                 let at = index.as_ref().map(|i| constant(i));
                 let touched = self.values.iter().rev().find(|(n, ..)| n == name);
                 match (touched, at) {
@@ -151,7 +159,7 @@ impl Known {
                             Some(i) => Some(sub(i)?),
                             None => None,
                         };
-                        Kind::Name(name.clone(), index)
+                        TcheckerExprKind::Name(name.clone(), index)
                     }
                     (Some(_), Some(Some(_)) | None) if !self.blurred.contains(name) => {
                         let at = at.flatten();
@@ -163,36 +171,41 @@ impl Known {
                     (Some(_) | None, _) => return None,
                 }
             }
-            Kind::Neg(a) => Kind::Neg(sub(a)?),
-            Kind::Not(a) => Kind::Not(sub(a)?),
-            Kind::Binary(op, a, b) => Kind::Binary(*op, sub(a)?, sub(b)?),
-            Kind::If(c, a, b) => Kind::If(sub(c)?, sub(a)?, sub(b)?),
+            TcheckerExprKind::Neg(a) => TcheckerExprKind::Neg(sub(a)?),
+            TcheckerExprKind::Not(a) => TcheckerExprKind::Not(sub(a)?),
+            TcheckerExprKind::Binary(op, a, b) => TcheckerExprKind::Binary(*op, sub(a)?, sub(b)?),
+            TcheckerExprKind::If(c, a, b) => TcheckerExprKind::If(sub(c)?, sub(a)?, sub(b)?),
         };
-        Some(Expr { kind, at: e.at })
+        Some(TcheckerExpr { kind, at: e.at })
     }
 }
 
 /// Notes an assignment, with the guard that keeps it in range.
-fn range(exprs: &Exprs<'_>, known: &mut Known, s: &Statement, effect: &mut Effect) -> Result<(), Fault> {
-    let Act::Assign { name, index, value } = &s.kind else { return Ok(()) };
+fn range(
+    exprs: &ScenarioExprWriter<'_>,
+    known: &mut SymbolicStore,
+    s: &TcheckerStatement,
+    effect: &mut TranslatedEffect,
+) -> Result<(), TcheckerFault> {
+    let TcheckerStatementKind::Assign { name, index, value } = &s.kind else { return Ok(()) };
     let Some(int) = exprs.model.ints.iter().find(|i| i.of.name == *name) else { return Ok(()) };
     match known.before(value) {
         None => effect.unguarded = effect.unguarded.or(Some(s.at)),
         Some(before) => {
             let interval = exprs.interval(&before);
-            let bound = |op: Op, n: i64| Expr {
-                kind: Kind::Binary(
+            let bound = |op: TcheckerOperator, n: i64| TcheckerExpr {
+                kind: TcheckerExprKind::Binary(
                     op,
                     Box::new(before.clone()),
-                    Box::new(Expr { kind: Kind::Int(n), at: s.at }),
+                    Box::new(TcheckerExpr { kind: TcheckerExprKind::Int(n), at: s.at }),
                 ),
                 at: s.at,
             };
             if interval.is_none_or(|(lo, _)| lo < int.lo) {
-                effect.guards.push(exprs.boolean(&bound(Op::Ge, int.lo))?);
+                effect.guards.push(exprs.boolean(&bound(TcheckerOperator::Ge, int.lo))?);
             }
             if interval.is_none_or(|(_, hi)| hi > int.hi) {
-                effect.guards.push(exprs.boolean(&bound(Op::Le, int.hi))?);
+                effect.guards.push(exprs.boolean(&bound(TcheckerOperator::Le, int.hi))?);
             }
             match index.as_ref().map(constant) {
                 None => known.values.push((name.clone(), None, before)),

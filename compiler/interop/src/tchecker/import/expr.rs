@@ -1,14 +1,14 @@
 //! Expressions of TChecker as text of a scenario: integers, conditions, bounds on clocks.
 
 use super::{
-    ast::{Expr, Kind, Model, Op},
-    names::Names,
-    parse::Fault,
+    ast::{TcheckerExpr, TcheckerExprKind, TcheckerModel, TcheckerOperator},
+    names::TcheckerScenarioNames,
+    parse::TcheckerFault,
 };
 
 /// How tightly the text around an expression binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Level {
+enum SurroundingPrecedence {
     And,
     Not,
     Compare,
@@ -18,26 +18,26 @@ enum Level {
 }
 
 /// Writes expressions. A name that the model does not declare is a local variable of a function.
-pub struct Exprs<'a> {
-    pub model: &'a Model,
-    pub names: &'a Names,
+pub struct ScenarioExprWriter<'a> {
+    pub model: &'a TcheckerModel,
+    pub names: &'a TcheckerScenarioNames,
 }
 
-type Text = Result<String, Fault>;
+type ScenarioTextResult = Result<String, TcheckerFault>;
 
-fn fault<T>(e: &Expr, message: impl Into<String>) -> Result<T, Fault> {
-    Err(Fault { at: e.at, message: message.into() })
+fn fault<T>(e: &TcheckerExpr, message: impl Into<String>) -> Result<T, TcheckerFault> {
+    Err(TcheckerFault { at: e.at, message: message.into() })
 }
 
-impl Exprs<'_> {
+impl ScenarioExprWriter<'_> {
     /// The clock that a name means, if it is one.
-    pub fn clock(&self, e: &Expr) -> Result<Option<String>, Fault> {
-        let Kind::Name(name, index) = &e.kind else { return Ok(None) };
+    pub fn clock(&self, e: &TcheckerExpr) -> Result<Option<String>, TcheckerFault> {
+        let TcheckerExprKind::Name(name, index) = &e.kind else { return Ok(None) };
         let Some(at) = self.model.clocks.iter().position(|c| c.name == *name) else { return Ok(None) };
         self.element(e, at, index.as_deref()).map(Some)
     }
 
-    fn element(&self, e: &Expr, clock: usize, index: Option<&Expr>) -> Text {
+    fn element(&self, e: &TcheckerExpr, clock: usize, index: Option<&TcheckerExpr>) -> ScenarioTextResult {
         let elements = &self.names.clocks[clock];
         let at = match index {
             None if elements.len() == 1 => 0,
@@ -54,8 +54,8 @@ impl Exprs<'_> {
     }
 
     /// `x` or `x - y`
-    fn clock_term(&self, e: &Expr) -> Result<Option<String>, Fault> {
-        if let Kind::Binary(Op::Sub, left, right) = &e.kind {
+    fn clock_term(&self, e: &TcheckerExpr) -> Result<Option<String>, TcheckerFault> {
+        if let TcheckerExprKind::Binary(TcheckerOperator::Sub, left, right) = &e.kind {
             return Ok(match (self.clock(left)?, self.clock(right)?) {
                 (Some(x), Some(y)) => Some(format!("{x} - {y}")),
                 (Some(_), None) | (None, Some(_)) => {
@@ -68,49 +68,54 @@ impl Exprs<'_> {
     }
 
     /// One part of a conjunction.
-    pub fn part(&self, e: &Expr) -> Text {
+    pub fn part(&self, e: &TcheckerExpr) -> ScenarioTextResult {
         let (e, negated) = match &e.kind {
-            Kind::Not(inner) if self.is_clock_bound(inner)? => (&**inner, true),
-            Kind::Int(_) | Kind::Name(..) | Kind::Neg(_) | Kind::Not(_) | Kind::Binary(..) | Kind::If(..) => {
-                (e, false)
-            }
+            TcheckerExprKind::Not(inner) if self.is_clock_bound(inner)? => (&**inner, true),
+            TcheckerExprKind::Int(_)
+            | TcheckerExprKind::Name(..)
+            | TcheckerExprKind::Neg(_)
+            | TcheckerExprKind::Not(_)
+            | TcheckerExprKind::Binary(..)
+            | TcheckerExprKind::If(..) => (e, false),
         };
-        let Kind::Binary(op, left, right) = &e.kind else { return self.condition(e, Level::And) };
+        let TcheckerExprKind::Binary(op, left, right) = &e.kind else {
+            return self.condition(e, SurroundingPrecedence::And);
+        };
         if !op.compares() {
-            return self.condition(e, Level::And);
+            return self.condition(e, SurroundingPrecedence::And);
         }
         let (term, op, other) = match (self.clock_term(left)?, self.clock_term(right)?) {
-            (None, None) => return self.condition(e, Level::And),
+            (None, None) => return self.condition(e, SurroundingPrecedence::And),
             (Some(x), Some(y)) => return Ok(format!("{x} {} {y}", op.text())),
             (Some(x), None) => (x, *op, right),
             (None, Some(y)) => (y, op.flipped(), left),
         };
         let op = if negated { op.negated().unwrap_or(op) } else { op };
-        if op == Op::Ne {
+        if op == TcheckerOperator::Ne {
             return fault(e, "a clock is not compared by `!=`");
         }
         Ok(format!("{term} {} {}", op.text(), self.time(other)?))
     }
 
-    fn is_clock_bound(&self, e: &Expr) -> Result<bool, Fault> {
-        let Kind::Binary(op, left, right) = &e.kind else { return Ok(false) };
+    fn is_clock_bound(&self, e: &TcheckerExpr) -> Result<bool, TcheckerFault> {
+        let TcheckerExprKind::Binary(op, left, right) = &e.kind else { return Ok(false) };
         Ok(op.compares() && (self.clock_term(left)?.is_some() || self.clock_term(right)?.is_some()))
     }
 
     /// A number of TChecker's units of time: each is a second.
-    pub fn time(&self, e: &Expr) -> Text {
+    pub fn time(&self, e: &TcheckerExpr) -> ScenarioTextResult {
         match constant(e) {
             Some(n) => Ok(format!("{n} s")),
-            None => Ok(format!("{} * 1 s", self.int(e, Level::Product)?)),
+            None => Ok(format!("{} * 1 s", self.int(e, SurroundingPrecedence::Product)?)),
         }
     }
 
     /// What a clock is set to.
-    pub fn clock_value(&self, e: &Expr) -> Text {
+    pub fn clock_value(&self, e: &TcheckerExpr) -> ScenarioTextResult {
         if let Some(y) = self.clock(e)? {
             return Ok(y);
         }
-        if let Kind::Binary(Op::Add, left, right) = &e.kind {
+        if let TcheckerExprKind::Binary(TcheckerOperator::Add, left, right) = &e.kind {
             if let Some(y) = self.clock(left)? {
                 return Ok(format!("{y} + {}", self.time(right)?));
             }
@@ -121,59 +126,92 @@ impl Exprs<'_> {
         if constant(e) == Some(0) { Ok("0".to_owned()) } else { self.time(e) }
     }
 
-    pub fn integer(&self, e: &Expr) -> Text {
-        self.int(e, Level::And)
+    pub fn integer(&self, e: &TcheckerExpr) -> ScenarioTextResult {
+        self.int(e, SurroundingPrecedence::And)
     }
 
-    pub fn boolean(&self, e: &Expr) -> Text {
-        self.condition(e, Level::And)
+    pub fn boolean(&self, e: &TcheckerExpr) -> ScenarioTextResult {
+        self.condition(e, SurroundingPrecedence::And)
     }
 
-    fn condition(&self, e: &Expr, around: Level) -> Text {
+    fn condition(&self, e: &TcheckerExpr, around: SurroundingPrecedence) -> ScenarioTextResult {
         let (text, level) = match &e.kind {
-            Kind::Binary(Op::And, left, right) => (
-                format!("{} && {}", self.condition(left, Level::And)?, self.condition(right, Level::Not)?),
-                Level::And,
+            TcheckerExprKind::Binary(TcheckerOperator::And, left, right) => (
+                format!(
+                    "{} && {}",
+                    self.condition(left, SurroundingPrecedence::And)?,
+                    self.condition(right, SurroundingPrecedence::Not)?
+                ),
+                SurroundingPrecedence::And,
             ),
-            Kind::Not(inner) => (format!("not {}", self.condition(inner, Level::Not)?), Level::Not),
-            Kind::Binary(op, left, right) if op.compares() => {
-                let (l, r) = (self.int(left, Level::Sum)?, self.int(right, Level::Sum)?);
-                (format!("{l} {} {r}", op.text()), Level::Compare)
+            TcheckerExprKind::Not(inner) => (
+                format!("not {}", self.condition(inner, SurroundingPrecedence::Not)?),
+                SurroundingPrecedence::Not,
+            ),
+            TcheckerExprKind::Binary(op, left, right) if op.compares() => {
+                let (l, r) = (
+                    self.int(left, SurroundingPrecedence::Sum)?,
+                    self.int(right, SurroundingPrecedence::Sum)?,
+                );
+                (format!("{l} {} {r}", op.text()), SurroundingPrecedence::Compare)
             }
-            Kind::Int(n) => (if *n == 0 { "false" } else { "true" }.to_owned(), Level::Factor),
-            Kind::Name(..) | Kind::Neg(_) | Kind::Binary(..) | Kind::If(..) => {
-                (format!("{} != 0", self.int(e, Level::Sum)?), Level::Compare)
+            TcheckerExprKind::Int(n) => {
+                (if *n == 0 { "false" } else { "true" }.to_owned(), SurroundingPrecedence::Factor)
+            }
+            TcheckerExprKind::Name(..)
+            | TcheckerExprKind::Neg(_)
+            | TcheckerExprKind::Binary(..)
+            | TcheckerExprKind::If(..) => {
+                (format!("{} != 0", self.int(e, SurroundingPrecedence::Sum)?), SurroundingPrecedence::Compare)
             }
         };
         Ok(if level < around { format!("({text})") } else { text })
     }
 
-    fn int(&self, e: &Expr, around: Level) -> Text {
+    fn int(&self, e: &TcheckerExpr, around: SurroundingPrecedence) -> ScenarioTextResult {
         let (text, level) = match &e.kind {
-            Kind::Int(n) => (n.to_string(), if *n < 0 { Level::Sum } else { Level::Factor }),
-            Kind::Name(name, index) => (self.variable(e, name, index.as_deref())?, Level::Factor),
-            Kind::Neg(inner) => (format!("-{}", self.int(inner, Level::Factor)?), Level::Product),
-            Kind::Binary(op @ (Op::Add | Op::Sub), left, right) => {
-                let (l, r) = (self.int(left, Level::Sum)?, self.int(right, Level::Product)?);
-                (format!("{l} {} {r}", op.text()), Level::Sum)
+            TcheckerExprKind::Int(n) => (
+                n.to_string(),
+                if *n < 0 { SurroundingPrecedence::Sum } else { SurroundingPrecedence::Factor },
+            ),
+            TcheckerExprKind::Name(name, index) => {
+                (self.variable(e, name, index.as_deref())?, SurroundingPrecedence::Factor)
             }
-            Kind::Binary(op @ (Op::Mul | Op::Div | Op::Rem), left, right) => {
-                let (l, r) = (self.int(left, Level::Product)?, self.int(right, Level::Factor)?);
-                (format!("{l} {} {r}", op.text()), Level::Product)
+            TcheckerExprKind::Neg(inner) => (
+                format!("-{}", self.int(inner, SurroundingPrecedence::Factor)?),
+                SurroundingPrecedence::Product,
+            ),
+            TcheckerExprKind::Binary(op @ (TcheckerOperator::Add | TcheckerOperator::Sub), left, right) => {
+                let (l, r) = (
+                    self.int(left, SurroundingPrecedence::Sum)?,
+                    self.int(right, SurroundingPrecedence::Product)?,
+                );
+                (format!("{l} {} {r}", op.text()), SurroundingPrecedence::Sum)
             }
-            Kind::If(c, a, b) => {
+            TcheckerExprKind::Binary(
+                op @ (TcheckerOperator::Mul | TcheckerOperator::Div | TcheckerOperator::Rem),
+                left,
+                right,
+            ) => {
+                let (l, r) = (
+                    self.int(left, SurroundingPrecedence::Product)?,
+                    self.int(right, SurroundingPrecedence::Factor)?,
+                );
+                (format!("{l} {} {r}", op.text()), SurroundingPrecedence::Product)
+            }
+            TcheckerExprKind::If(c, a, b) => {
                 let (c, a, b) = (self.boolean(c)?, self.integer(a)?, self.integer(b)?);
-                (format!("if {c} {{ {a} }} else {{ {b} }}"), Level::Factor)
+                (format!("if {c} {{ {a} }} else {{ {b} }}"), SurroundingPrecedence::Factor)
             }
             // A truth as a number.
-            Kind::Not(_) | Kind::Binary(..) => {
-                (format!("if {} {{ 1 }} else {{ 0 }}", self.boolean(e)?), Level::Factor)
+            TcheckerExprKind::Not(_) | TcheckerExprKind::Binary(..) => {
+                (format!("if {} {{ 1 }} else {{ 0 }}", self.boolean(e)?), SurroundingPrecedence::Factor)
             }
         };
         Ok(if level < around { format!("({text})") } else { text })
     }
 
-    fn variable(&self, e: &Expr, name: &str, index: Option<&Expr>) -> Text {
+    fn variable(&self, e: &TcheckerExpr, name: &str, index: Option<&TcheckerExpr>) -> ScenarioTextResult {
         if self.clock(e)?.is_some() {
             return fault(e, "a clock is no number: it is compared, as a part of a conjunction");
         }
@@ -190,36 +228,45 @@ impl Exprs<'_> {
     }
 
     /// What is assigned to: an integer, or an element of an array.
-    pub fn target(&self, name: &str, index: Option<&Expr>, at: usize) -> Text {
-        let e = Expr { kind: Kind::Name(name.to_owned(), index.cloned().map(Box::new)), at };
+    pub fn target(&self, name: &str, index: Option<&TcheckerExpr>, at: usize) -> ScenarioTextResult {
+        let e =
+            TcheckerExpr { kind: TcheckerExprKind::Name(name.to_owned(), index.cloned().map(Box::new)), at };
         self.variable(&e, name, index)
     }
 
     /// Between which numbers the value lies, as far as the ranges of the variables tell.
-    pub fn interval(&self, e: &Expr) -> Option<(i64, i64)> {
+    pub fn interval(&self, e: &TcheckerExpr) -> Option<(i64, i64)> {
         match &e.kind {
-            Kind::Int(n) => Some((*n, *n)),
-            Kind::Name(name, _) => self.model.ints.iter().find(|i| i.of.name == *name).map(|i| (i.lo, i.hi)),
-            Kind::Neg(inner) => {
+            TcheckerExprKind::Int(n) => Some((*n, *n)),
+            TcheckerExprKind::Name(name, _) => {
+                self.model.ints.iter().find(|i| i.of.name == *name).map(|i| (i.lo, i.hi))
+            }
+            TcheckerExprKind::Neg(inner) => {
                 let (lo, hi) = self.interval(inner)?;
                 Some((hi.checked_neg()?, lo.checked_neg()?))
             }
-            Kind::Binary(op, left, right) => {
+            TcheckerExprKind::Binary(op, left, right) => {
                 let ((a, b), (c, d)) = (self.interval(left)?, self.interval(right)?);
                 match op {
-                    Op::Add => Some((a.checked_add(c)?, b.checked_add(d)?)),
-                    Op::Sub => Some((a.checked_sub(d)?, b.checked_sub(c)?)),
-                    Op::Mul => {
+                    TcheckerOperator::Add => Some((a.checked_add(c)?, b.checked_add(d)?)),
+                    TcheckerOperator::Sub => Some((a.checked_sub(d)?, b.checked_sub(c)?)),
+                    TcheckerOperator::Mul => {
                         let all =
                             [a.checked_mul(c)?, a.checked_mul(d)?, b.checked_mul(c)?, b.checked_mul(d)?];
                         Some((*all.iter().min()?, *all.iter().max()?))
                     }
-                    Op::Div | Op::Rem => None,
-                    Op::Eq | Op::Ne | Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::And => Some((0, 1)),
+                    TcheckerOperator::Div | TcheckerOperator::Rem => None,
+                    TcheckerOperator::Eq
+                    | TcheckerOperator::Ne
+                    | TcheckerOperator::Lt
+                    | TcheckerOperator::Le
+                    | TcheckerOperator::Gt
+                    | TcheckerOperator::Ge
+                    | TcheckerOperator::And => Some((0, 1)),
                 }
             }
-            Kind::Not(_) => Some((0, 1)),
-            Kind::If(_, a, b) => {
+            TcheckerExprKind::Not(_) => Some((0, 1)),
+            TcheckerExprKind::If(_, a, b) => {
                 let ((a, b), (c, d)) = (self.interval(a)?, self.interval(b)?);
                 Some((a.min(c), b.max(d)))
             }
@@ -228,21 +275,27 @@ impl Exprs<'_> {
 }
 
 /// The number that an expression is, if it has no variables.
-pub fn constant(e: &Expr) -> Option<i64> {
+pub fn constant(e: &TcheckerExpr) -> Option<i64> {
     match &e.kind {
-        Kind::Int(n) => Some(*n),
-        Kind::Neg(inner) => constant(inner)?.checked_neg(),
-        Kind::Binary(op, left, right) => {
+        TcheckerExprKind::Int(n) => Some(*n),
+        TcheckerExprKind::Neg(inner) => constant(inner)?.checked_neg(),
+        TcheckerExprKind::Binary(op, left, right) => {
             let (a, b) = (constant(left)?, constant(right)?);
             match op {
-                Op::Add => a.checked_add(b),
-                Op::Sub => a.checked_sub(b),
-                Op::Mul => a.checked_mul(b),
-                Op::Div => a.checked_div(b),
-                Op::Rem => a.checked_rem(b),
-                Op::Eq | Op::Ne | Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::And => None,
+                TcheckerOperator::Add => a.checked_add(b),
+                TcheckerOperator::Sub => a.checked_sub(b),
+                TcheckerOperator::Mul => a.checked_mul(b),
+                TcheckerOperator::Div => a.checked_div(b),
+                TcheckerOperator::Rem => a.checked_rem(b),
+                TcheckerOperator::Eq
+                | TcheckerOperator::Ne
+                | TcheckerOperator::Lt
+                | TcheckerOperator::Le
+                | TcheckerOperator::Gt
+                | TcheckerOperator::Ge
+                | TcheckerOperator::And => None,
             }
         }
-        Kind::Name(..) | Kind::Not(_) | Kind::If(..) => None,
+        TcheckerExprKind::Name(..) | TcheckerExprKind::Not(_) | TcheckerExprKind::If(..) => None,
     }
 }

@@ -17,13 +17,13 @@ mod term;
 mod write;
 
 use crate::exchange::{
-    note::{Imported, Note, Severity, SyntaxError},
-    source::{Source, too_large},
+    note::{ImportNote, ImportedScenario, NoteSeverity, SyntaxError},
+    source::{ForeignSource, too_large},
 };
 
 /// How to import.
 #[derive(Clone, Debug, Default)]
-pub struct Options {
+pub struct TcheckerOptions {
     /// The scenario's name; otherwise that of the system.
     pub name: Option<String>,
 }
@@ -32,7 +32,7 @@ pub struct Options {
 ///
 /// # Errors
 /// What cannot be read, or cannot be said in a scenario, and where.
-pub fn import(file: &Source, options: &Options) -> Result<Imported, Vec<SyntaxError>> {
+pub fn import(file: &ForeignSource, options: &TcheckerOptions) -> Result<ImportedScenario, Vec<SyntaxError>> {
     if let Some(large) = too_large(file) {
         return Err(vec![large]);
     }
@@ -44,25 +44,25 @@ pub fn import(file: &Source, options: &Options) -> Result<Imported, Vec<SyntaxEr
         return Err(errors(file, faults));
     }
     let written = write::write(&model).map_err(|faults| errors(file, faults))?;
-    let mut notes: Vec<Note> = Vec::new();
+    let mut notes: Vec<ImportNote> = Vec::new();
     for (at, severity, message) in written.notes {
         let (line, column) = place(&file.text, at);
-        notes.push(Note { file: file.name.clone(), line, column, severity, message, help: None });
+        notes.push(ImportNote { file: file.name.clone(), line, column, severity, message, help: None });
     }
     for (key, at) in &model.ignored {
         let (line, column) = place(&file.text, *at);
         let message = format!("the attribute `{key}` has no meaning here");
-        let severity = Severity::LeftOut;
-        notes.push(Note { file: file.name.clone(), line, column, severity, message, help: None });
+        let severity = NoteSeverity::LeftOut;
+        notes.push(ImportNote { file: file.name.clone(), line, column, severity, message, help: None });
     }
     notes.sort();
     notes.dedup();
     let text = hrdsl_syntax::format(&written.text).unwrap_or(written.text);
-    Ok(Imported { text, notes })
+    Ok(ImportedScenario { text, notes })
 }
 
-fn errors(file: &Source, faults: Vec<parse::Fault>) -> Vec<SyntaxError> {
-    let error = |f: parse::Fault| {
+fn errors(file: &ForeignSource, faults: Vec<parse::TcheckerFault>) -> Vec<SyntaxError> {
+    let error = |f: parse::TcheckerFault| {
         let (line, column) = place(&file.text, f.at);
         SyntaxError { file: file.name.clone(), line, column, message: f.message }
     };

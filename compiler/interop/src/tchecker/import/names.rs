@@ -3,14 +3,14 @@
 use hrdsl_syntax::token::KEYWORDS;
 use indexmap::IndexSet;
 
-use super::ast::{At, Model};
+use super::ast::{ByteOffset, TcheckerModel};
 use crate::exchange::name::{clean, unused};
 
 /// Words with a meaning of their own in expressions.
 const TAKEN: [&str; 6] = ["min", "max", "abs", "norm", "deadlock", "int"];
 
 /// The scenario's names, by the places of what they name in the model.
-pub struct Names {
+pub struct TcheckerScenarioNames {
     pub scenario: String,
     pub network: String,
     pub processes: Vec<String>,
@@ -21,12 +21,12 @@ pub struct Names {
     pub ints: Vec<String>,
     pub channels: Vec<String>,
     /// Everything that has another name: what it is, both names, the place.
-    pub changed: Vec<(&'static str, String, String, At)>,
+    pub changed: Vec<(&'static str, String, String, ByteOffset)>,
     used: IndexSet<String>,
 }
 
-impl Names {
-    pub fn new(model: &Model) -> Self {
+impl TcheckerScenarioNames {
+    pub fn new(model: &TcheckerModel) -> Self {
         let mut names = Self {
             scenario: ident(&model.name),
             network: String::new(),
@@ -82,13 +82,13 @@ impl Names {
         name
     }
 
-    fn give(&mut self, what: &'static str, old: &str, at: At) -> String {
+    fn give(&mut self, what: &'static str, old: &str, at: ByteOffset) -> String {
         let name = self.fresh(old);
         self.note(what, old, &name, at);
         name
     }
 
-    fn note(&mut self, what: &'static str, old: &str, new: &str, at: At) {
+    fn note(&mut self, what: &'static str, old: &str, new: &str, at: ByteOffset) {
         if old != new {
             self.changed.push((what, old.to_owned(), new.to_owned(), at));
         }

@@ -3,37 +3,41 @@
 use indexmap::IndexMap;
 
 use super::{
-    ast::{Array, At, Edge, Int, Location, Model, Party, Process, Sync},
-    term::Terms,
+    ast::{
+        ByteOffset, SyncParty, TcheckerArray, TcheckerEdge, TcheckerInt, TcheckerLocation, TcheckerModel,
+        TcheckerProcess, TcheckerSync,
+    },
+    term::TcheckerTermParser,
 };
 
 /// What cannot be read, and where.
 #[derive(Debug)]
-pub struct Fault {
-    pub at: At,
+pub struct TcheckerFault {
+    pub at: ByteOffset,
     pub message: String,
 }
 
-fn fault<T>(at: At, message: impl Into<String>) -> Result<T, Fault> {
-    Err(Fault { at, message: message.into() })
+fn fault<T>(at: ByteOffset, message: impl Into<String>) -> Result<T, TcheckerFault> {
+    Err(TcheckerFault { at, message: message.into() })
 }
 
 /// One declaration: its fields, and its attributes in order.
-struct Declaration<'t> {
-    fields: Vec<(&'t str, At)>,
-    attributes: Vec<Attribute<'t>>,
+struct TcheckerDeclaration<'t> {
+    fields: Vec<(&'t str, ByteOffset)>,
+    attributes: Vec<TcheckerAttribute<'t>>,
 }
 
-struct Attribute<'t> {
+struct TcheckerAttribute<'t> {
     key: &'t str,
     value: &'t str,
-    at: At,
-    value_at: At,
+    at: ByteOffset,
+    value_at: ByteOffset,
 }
 
 /// Reads a whole file. Each declaration with a fault costs that one alone.
-pub fn parse(text: &str) -> (Model, Vec<Fault>) {
-    let mut reader = Reader { model: Model::default(), places: IndexMap::new(), seen_system: false };
+pub fn parse(text: &str) -> (TcheckerModel, Vec<TcheckerFault>) {
+    let mut reader =
+        TcheckerReader { model: TcheckerModel::default(), places: IndexMap::new(), seen_system: false };
     let mut faults = Vec::new();
     let mut at = 0;
     let blank = without_comments(text);
@@ -52,7 +56,10 @@ pub fn parse(text: &str) -> (Model, Vec<Fault>) {
         at = end;
     }
     if !reader.seen_system && faults.is_empty() {
-        faults.push(Fault { at: 0, message: "expected `system:NAME` as the first declaration".to_owned() });
+        faults.push(TcheckerFault {
+            at: 0,
+            message: "expected `system:NAME` as the first declaration".to_owned(),
+        });
     }
     (reader.model, faults)
 }
@@ -73,7 +80,10 @@ fn without_comments(text: &str) -> String {
 }
 
 /// The declaration that starts at `start`, and where it ends; a broken one is skipped to the end of its line.
-fn declaration(text: &str, start: At) -> Result<(Declaration<'_>, At), (Fault, At)> {
+fn declaration(
+    text: &str,
+    start: ByteOffset,
+) -> Result<(TcheckerDeclaration<'_>, ByteOffset), (TcheckerFault, ByteOffset)> {
     let rest = &text[start..];
     let line = rest.find('\n').map_or(text.len(), |i| start + i);
     let head_end = rest.find(['\n', '{']).map_or(text.len(), |i| start + i);
@@ -85,22 +95,22 @@ fn declaration(text: &str, start: At) -> Result<(Declaration<'_>, At), (Fault, A
         at += field.len() + 1;
     }
     if !text[head_end..].starts_with('{') {
-        return Ok((Declaration { fields, attributes: Vec::new() }, head_end));
+        return Ok((TcheckerDeclaration { fields, attributes: Vec::new() }, head_end));
     }
     let Some(close) = text[head_end..].find('}').map(|i| head_end + i) else {
         return Err((
-            Fault { at: head_end, message: "this `{` has no `}`".to_owned() },
+            TcheckerFault { at: head_end, message: "this `{` has no `}`".to_owned() },
             text.len().max(line),
         ));
     };
     match attributes(&text[head_end + 1..close], head_end + 1) {
-        Ok(attributes) => Ok((Declaration { fields, attributes }, close + 1)),
+        Ok(attributes) => Ok((TcheckerDeclaration { fields, attributes }, close + 1)),
         Err(f) => Err((f, close + 1)),
     }
 }
 
 /// `key: value : key: value`
-fn attributes(text: &str, start: At) -> Result<Vec<Attribute<'_>>, Fault> {
+fn attributes(text: &str, start: ByteOffset) -> Result<Vec<TcheckerAttribute<'_>>, TcheckerFault> {
     let mut parts = Vec::new();
     let mut at = start;
     for part in text.split(':') {
@@ -117,7 +127,7 @@ fn attributes(text: &str, start: At) -> Result<Vec<Attribute<'_>>, Fault> {
     for pair in parts.chunks(2) {
         match pair {
             [(key, at), (value, value_at)] if is_name(key) => {
-                all.push(Attribute { key, value, at: *at, value_at: *value_at });
+                all.push(TcheckerAttribute { key, value, at: *at, value_at: *value_at });
             }
             [(key, at), _] => return fault(*at, format!("`{key}` is no name of an attribute")),
             [(key, at)] => return fault(*at, format!("expected `:` after `{key}`, as in `initial:`")),
@@ -133,15 +143,15 @@ fn is_name(text: &str) -> bool {
         && text.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '$'))
 }
 
-struct Reader {
-    model: Model,
+struct TcheckerReader {
+    model: TcheckerModel,
     /// Each process's locations by name.
     places: IndexMap<String, IndexMap<String, usize>>,
     seen_system: bool,
 }
 
-impl Reader {
-    fn declare(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
+impl TcheckerReader {
+    fn declare(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let (word, at) = d.fields[0];
         if !self.seen_system && word != "system" {
             self.seen_system = true;
@@ -165,15 +175,15 @@ impl Reader {
         }
     }
 
-    fn ignore(&mut self, attribute: &Attribute<'_>) {
+    fn ignore(&mut self, attribute: &TcheckerAttribute<'_>) {
         self.model.ignored.push((attribute.key.to_owned(), attribute.at));
     }
 
-    fn ignore_all(&mut self, d: &Declaration<'_>) {
+    fn ignore_all(&mut self, d: &TcheckerDeclaration<'_>) {
         d.attributes.iter().for_each(|a| self.ignore(a));
     }
 
-    fn system(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
+    fn system(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let [name] = fields(d, ["NAME"])?;
         if std::mem::replace(&mut self.seen_system, true) {
             return fault(d.fields[0].1, "there is a second `system`");
@@ -183,13 +193,13 @@ impl Reader {
         Ok(())
     }
 
-    fn process(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
+    fn process(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let [name] = fields(d, ["NAME"])?;
         let text = named(name)?;
         if self.places.insert(text.clone(), IndexMap::new()).is_some() {
             return fault(name.1, format!("there is already a process `{text}`"));
         }
-        self.model.processes.push(Process {
+        self.model.processes.push(TcheckerProcess {
             name: text,
             at: name.1,
             locations: Vec::new(),
@@ -199,7 +209,7 @@ impl Reader {
         Ok(())
     }
 
-    fn event(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
+    fn event(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let [name] = fields(d, ["NAME"])?;
         let text = named(name)?;
         if self.model.events.contains(&text) {
@@ -210,7 +220,7 @@ impl Reader {
         Ok(())
     }
 
-    fn fresh(&self, (name, at): (&str, At)) -> Result<String, Fault> {
+    fn fresh(&self, (name, at): (&str, ByteOffset)) -> Result<String, TcheckerFault> {
         let text = named((name, at))?;
         let clocks = self.model.clocks.iter().map(|c| &c.name);
         let ints = self.model.ints.iter().map(|i| &i.of.name);
@@ -220,18 +230,18 @@ impl Reader {
         Ok(text)
     }
 
-    fn clock(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
+    fn clock(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let [size, name] = fields(d, ["SIZE", "NAME"])?;
-        let array = Array { name: self.fresh(name)?, size: sized(size)?, at: name.1 };
+        let array = TcheckerArray { name: self.fresh(name)?, size: sized(size)?, at: name.1 };
         self.model.clocks.push(array);
         self.ignore_all(d);
         Ok(())
     }
 
-    fn int(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
+    fn int(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let [size, lo, hi, init, name] = fields(d, ["SIZE", "MIN", "MAX", "INIT", "NAME"])?;
-        let of = Array { name: self.fresh(name)?, size: sized(size)?, at: name.1 };
-        let int = Int { of, lo: number(lo)?, hi: number(hi)?, init: number(init)? };
+        let of = TcheckerArray { name: self.fresh(name)?, size: sized(size)?, at: name.1 };
+        let int = TcheckerInt { of, lo: number(lo)?, hi: number(hi)?, init: number(init)? };
         if int.lo > int.init || int.init > int.hi {
             return fault(init.1, format!("{} is not within {} and {}", int.init, int.lo, int.hi));
         }
@@ -240,17 +250,17 @@ impl Reader {
         Ok(())
     }
 
-    fn process_of(&self, (name, at): (&str, At)) -> Result<usize, Fault> {
+    fn process_of(&self, (name, at): (&str, ByteOffset)) -> Result<usize, TcheckerFault> {
         match self.places.get_index_of(name) {
             Some(i) => Ok(i),
             None => fault(at, format!("no process is called `{name}`")),
         }
     }
 
-    fn location(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
+    fn location(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let [process, name] = fields(d, ["PROCESS", "NAME"])?;
         let p = self.process_of(process)?;
-        let mut location = Location { name: named(name)?, at: name.1, ..Location::default() };
+        let mut location = TcheckerLocation { name: named(name)?, at: name.1, ..TcheckerLocation::default() };
         let known = self.places[p].len();
         if self.places[p].insert(location.name.clone(), known).is_some() {
             return fault(name.1, format!("`{}` has already a location `{}`", process.0, location.name));
@@ -272,15 +282,15 @@ impl Reader {
         Ok(())
     }
 
-    fn edge(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
+    fn edge(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let [process, from, to, event] = fields(d, ["PROCESS", "SOURCE", "TARGET", "EVENT"])?;
         let p = self.process_of(process)?;
-        let find = |(name, at): (&str, At)| match self.places[p].get(name) {
+        let find = |(name, at): (&str, ByteOffset)| match self.places[p].get(name) {
             Some(&i) => Ok(i),
             None => fault(at, format!("`{}` has no location `{name}`", process.0)),
         };
         let (from, to) = (find(from)?, find(to)?);
-        let mut edge = Edge {
+        let mut edge = TcheckerEdge {
             from,
             to,
             event: self.event_of(event)?,
@@ -299,15 +309,15 @@ impl Reader {
         Ok(())
     }
 
-    fn event_of(&self, (name, at): (&str, At)) -> Result<String, Fault> {
+    fn event_of(&self, (name, at): (&str, ByteOffset)) -> Result<String, TcheckerFault> {
         match self.model.events.iter().find(|e| *e == name) {
             Some(event) => Ok(event.clone()),
             None => fault(at, format!("no event is called `{name}`")),
         }
     }
 
-    fn sync(&mut self, d: &Declaration<'_>) -> Result<(), Fault> {
-        let mut parties: Vec<Party> = Vec::new();
+    fn sync(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
+        let mut parties: Vec<SyncParty> = Vec::new();
         for &(field, at) in &d.fields[1..] {
             let (strong, weak) = field.strip_suffix('?').map_or((field, false), |f| (f, true));
             let Some((process, event)) = strong.split_once('@') else {
@@ -318,33 +328,33 @@ impl Reader {
             if parties.iter().any(|p| p.process == process) {
                 return fault(at, format!("`{field}` is a second part of one process"));
             }
-            parties.push(Party { process, event, weak });
+            parties.push(SyncParty { process, event, weak });
         }
         if parties.len() < 2 {
             return fault(d.fields[0].1, "a `sync` has two parts at least, as in `sync:P@a:Q@a`");
         }
-        self.model.syncs.push(Sync { parties });
+        self.model.syncs.push(TcheckerSync { parties });
         self.ignore_all(d);
         Ok(())
     }
 
-    fn terms<'a>(&'a self, a: &Attribute<'a>) -> Terms<'a> {
-        Terms::new(&self.model, a.value, a.value_at)
+    fn terms<'a>(&'a self, a: &TcheckerAttribute<'a>) -> TcheckerTermParser<'a> {
+        TcheckerTermParser::new(&self.model, a.value, a.value_at)
     }
 }
 
-fn named((text, at): (&str, At)) -> Result<String, Fault> {
+fn named((text, at): (&str, ByteOffset)) -> Result<String, TcheckerFault> {
     if is_name(text) { Ok(text.to_owned()) } else { fault(at, format!("expected a name, found `{text}`")) }
 }
 
-fn number((text, at): (&str, At)) -> Result<i64, Fault> {
+fn number((text, at): (&str, ByteOffset)) -> Result<i64, TcheckerFault> {
     text.parse().or_else(|_| fault(at, format!("expected a whole number, found `{text}`")))
 }
 
 /// The most elements of an array that are taken: more would be no model that can be searched.
 const MAX_SIZE: i64 = 10_000;
 
-fn sized(field: (&str, At)) -> Result<u32, Fault> {
+fn sized(field: (&str, ByteOffset)) -> Result<u32, TcheckerFault> {
     match number(field)? {
         n @ 1..=MAX_SIZE => Ok(u32::try_from(n).unwrap_or(1)),
         n => fault(field.1, format!("a size is 1 to {MAX_SIZE}, not {n}")),
@@ -352,8 +362,11 @@ fn sized(field: (&str, At)) -> Result<u32, Fault> {
 }
 
 /// The fields after the keyword.
-fn fields<'t, const N: usize>(d: &Declaration<'t>, names: [&str; N]) -> Result<[(&'t str, At); N], Fault> {
+fn fields<'t, const N: usize>(
+    d: &TcheckerDeclaration<'t>,
+    names: [&str; N],
+) -> Result<[(&'t str, ByteOffset); N], TcheckerFault> {
     let (word, at) = d.fields[0];
-    <[(&str, At); N]>::try_from(&d.fields[1..])
+    <[(&str, ByteOffset); N]>::try_from(&d.fields[1..])
         .or_else(|_| fault(at, format!("expected `{word}:{}`", names.join(":"))))
 }

@@ -3,30 +3,33 @@
 use indexmap::{IndexMap, IndexSet};
 
 use super::{
-    ast::{Act, Edge, Expr, Kind, Model, Process, Statement},
-    effect::{self, Effect},
-    expr::{Exprs, constant},
-    names::Names,
-    parse::Fault,
+    ast::{
+        TcheckerEdge, TcheckerExpr, TcheckerExprKind, TcheckerModel, TcheckerProcess, TcheckerStatement,
+        TcheckerStatementKind,
+    },
+    effect::{self, TranslatedEffect},
+    expr::{ScenarioExprWriter, constant},
+    names::TcheckerScenarioNames,
+    parse::TcheckerFault,
 };
-use crate::exchange::note::Severity;
+use crate::exchange::note::NoteSeverity;
 
 /// The most edges that one edge becomes because it names a clock by an index that varies.
 const MAX_COPIES: usize = 1_000;
 
-pub struct Written {
+pub struct TcheckerTranslation {
     pub text: String,
-    pub notes: Vec<(usize, Severity, String)>,
+    pub notes: Vec<(usize, NoteSeverity, String)>,
 }
 
 /// The scenario, before it is formatted.
 ///
 /// # Errors
 /// What a scenario cannot say.
-pub fn write(model: &Model) -> Result<Written, Vec<Fault>> {
-    let mut writer = Writer {
+pub fn write(model: &TcheckerModel) -> Result<TcheckerTranslation, Vec<TcheckerFault>> {
+    let mut writer = TcheckerTranslator {
         model,
-        names: Names::new(model),
+        names: TcheckerScenarioNames::new(model),
         owners: owners(model),
         out: String::new(),
         notes: Vec::new(),
@@ -38,23 +41,23 @@ pub fn write(model: &Model) -> Result<Written, Vec<Fault>> {
     }
     writer.footer();
     if writer.faults.is_empty() {
-        Ok(Written { text: writer.out, notes: writer.notes })
+        Ok(TcheckerTranslation { text: writer.out, notes: writer.notes })
     } else {
         Err(writer.faults)
     }
 }
 
-struct Writer<'a> {
-    model: &'a Model,
-    names: Names,
+struct TcheckerTranslator<'a> {
+    model: &'a TcheckerModel,
+    names: TcheckerScenarioNames,
     /// Of each clock, the processes that name it.
     owners: Vec<IndexSet<usize>>,
     out: String,
-    notes: Vec<(usize, Severity, String)>,
-    faults: Vec<Fault>,
+    notes: Vec<(usize, NoteSeverity, String)>,
+    faults: Vec<TcheckerFault>,
 }
 
-impl Writer<'_> {
+impl TcheckerTranslator<'_> {
     fn line(&mut self, text: &str) {
         self.out.push_str(text);
         self.out.push('\n');
@@ -87,14 +90,14 @@ impl Writer<'_> {
             }
         }
         for (sync, name) in self.model.syncs.iter().zip(self.names.channels.clone()) {
-            let party = |p: &super::ast::Party| {
+            let party = |p: &super::ast::SyncParty| {
                 format!("{}{}", self.names.processes[p.process], if p.weak { "?" } else { "" })
             };
             let parties: Vec<String> = sync.parties.iter().map(party).collect();
             self.line(&format!("channel {name} : joint {}", parties.join(" | ")));
         }
         for (what, old, new, at) in self.names.changed.clone() {
-            self.notes.push((at, Severity::Info, format!("the {what} `{old}` is called `{new}`")));
+            self.notes.push((at, NoteSeverity::Info, format!("the {what} `{old}` is called `{new}`")));
         }
     }
 
@@ -123,12 +126,12 @@ impl Writer<'_> {
         self.line(&format!("\nautomaton {name} {{\n{}\n}}", body.join("\n")));
     }
 
-    fn locations(&mut self, p: usize, process: &Process, body: &mut Vec<String>) {
+    fn locations(&mut self, p: usize, process: &TcheckerProcess, body: &mut Vec<String>) {
         let initial: Vec<usize> =
             (0..process.locations.len()).filter(|l| process.locations[*l].initial).collect();
         if initial.is_empty() {
             let message = format!("`{}` has no initial location: write `{{initial:}}`", process.name);
-            self.faults.push(Fault { at: process.at, message });
+            self.faults.push(TcheckerFault { at: process.at, message });
         }
         for (l, location) in process.locations.iter().enumerate() {
             let init = if initial == [l] { "init " } else { "" };
@@ -153,19 +156,19 @@ impl Writer<'_> {
             }
             let message =
                 format!("`{}` starts in any of several locations: by way of `{start}`", process.name);
-            self.notes.push((process.at, Severity::Info, message));
+            self.notes.push((process.at, NoteSeverity::Info, message));
         }
     }
 
-    fn conjunction(&mut self, parts: &[Expr]) -> Vec<String> {
-        let exprs = Exprs { model: self.model, names: &self.names };
+    fn conjunction(&mut self, parts: &[TcheckerExpr]) -> Vec<String> {
+        let exprs = ScenarioExprWriter { model: self.model, names: &self.names };
         let (good, bad): (Vec<_>, Vec<_>) = parts.iter().map(|e| exprs.part(e)).partition(Result::is_ok);
         self.faults.extend(bad.into_iter().filter_map(Result::err));
         good.into_iter().filter_map(Result::ok).collect()
     }
 
     /// The edges that an edge becomes: one for each synchronisation of its event, and for each value of a clock's index.
-    fn edge(&mut self, p: usize, edge: &Edge) -> Result<Vec<(Vec<String>, String)>, Fault> {
+    fn edge(&mut self, p: usize, edge: &TcheckerEdge) -> Result<Vec<(Vec<String>, String)>, TcheckerFault> {
         let syncs: Vec<String> = self
             .model
             .syncs
@@ -182,13 +185,14 @@ impl Writer<'_> {
             let wanted = format!("update_{}_{}", self.names.processes[p], edge.event);
             let fresh = &mut self.names;
             // Names are given first: the writer of expressions reads them.
-            let complex = body.iter().filter(|s| !matches!(s.kind, Act::Assign { .. })).count();
+            let complex =
+                body.iter().filter(|s| !matches!(s.kind, TcheckerStatementKind::Assign { .. })).count();
             for _ in 0..complex + 1 {
                 if complex > 0 {
                     names.push(fresh.fresh(&wanted));
                 }
             }
-            let exprs = Exprs { model: self.model, names: &self.names };
+            let exprs = ScenarioExprWriter { model: self.model, names: &self.names };
             let mut left = names.into_iter();
             let effect = effect::effect(&exprs, &body, &mut || left.next().unwrap_or_default())?;
             let mut guard: Vec<String> = provided.iter().map(|e| exprs.part(e)).collect::<Result<_, _>>()?;
@@ -199,25 +203,25 @@ impl Writer<'_> {
         Ok(written)
     }
 
-    fn note_ranges(&mut self, edge: &Edge, effect: &Effect, shared: bool) {
+    fn note_ranges(&mut self, edge: &TcheckerEdge, effect: &TranslatedEffect, shared: bool) {
         if let Some(at) = effect.unguarded {
             let message =
                 "an assignment out of range is a fault of the model here; TChecker makes the edge impossible";
-            self.notes.push((at, Severity::Warning, message.to_owned()));
+            self.notes.push((at, NoteSeverity::Warning, message.to_owned()));
         }
         if shared && !effect.guards.is_empty() {
             let message = "the guard that keeps this edge's integers in range is evaluated before the statements of the others";
-            self.notes.push((edge.at, Severity::Info, message.to_owned()));
+            self.notes.push((edge.at, NoteSeverity::Info, message.to_owned()));
         }
     }
 
     fn text(
         &self,
         p: usize,
-        edge: &Edge,
+        edge: &TcheckerEdge,
         syncs: &[String],
         guard: &[String],
-        effect: Effect,
+        effect: TranslatedEffect,
     ) -> Vec<(Vec<String>, String)> {
         let name = |l: usize| self.names.locations[p][l].as_str();
         let mut head = format!("{} -> {}", name(edge.from), name(edge.to));
@@ -263,7 +267,7 @@ impl Writer<'_> {
 // ── Clocks ──
 
 /// Of each clock, the processes that name it.
-fn owners(model: &Model) -> Vec<IndexSet<usize>> {
+fn owners(model: &TcheckerModel) -> Vec<IndexSet<usize>> {
     let mut owners = vec![IndexSet::new(); model.clocks.len()];
     for (p, process) in model.processes.iter().enumerate() {
         let mut see = |name: &str| {
@@ -282,56 +286,61 @@ fn owners(model: &Model) -> Vec<IndexSet<usize>> {
     owners
 }
 
-fn each_name(e: &Expr, f: &mut dyn FnMut(&str)) {
+fn each_name(e: &TcheckerExpr, f: &mut dyn FnMut(&str)) {
     match &e.kind {
-        Kind::Int(_) => {}
-        Kind::Name(name, index) => {
+        TcheckerExprKind::Int(_) => {}
+        TcheckerExprKind::Name(name, index) => {
             f(name);
             index.iter().for_each(|i| each_name(i, f));
         }
-        Kind::Neg(a) | Kind::Not(a) => each_name(a, f),
-        Kind::Binary(_, a, b) => {
+        TcheckerExprKind::Neg(a) | TcheckerExprKind::Not(a) => each_name(a, f),
+        TcheckerExprKind::Binary(_, a, b) => {
             each_name(a, f);
             each_name(b, f);
         }
-        Kind::If(c, a, b) => [c, a, b].into_iter().for_each(|e| each_name(e, f)),
+        TcheckerExprKind::If(c, a, b) => [c, a, b].into_iter().for_each(|e| each_name(e, f)),
     }
 }
 
-fn each_in(s: &Statement, f: &mut dyn FnMut(&str)) {
+fn each_in(s: &TcheckerStatement, f: &mut dyn FnMut(&str)) {
     match &s.kind {
-        Act::Assign { name, index, value } => {
+        TcheckerStatementKind::Assign { name, index, value } => {
             f(name);
             index.iter().for_each(|i| each_name(i, f));
             each_name(value, f);
         }
-        Act::If { condition, then, otherwise } => {
+        TcheckerStatementKind::If { condition, then, otherwise } => {
             each_name(condition, f);
             then.iter().chain(otherwise).for_each(|s| each_in(s, f));
         }
-        Act::While { condition, body } => {
+        TcheckerStatementKind::While { condition, body } => {
             each_name(condition, f);
             body.iter().for_each(|s| each_in(s, f));
         }
-        Act::Local { size, init, .. } => size.iter().chain(init).for_each(|e| each_name(e, f)),
+        TcheckerStatementKind::Local { size, init, .. } => {
+            size.iter().chain(init).for_each(|e| each_name(e, f))
+        }
     }
 }
 
 /// One copy for each value of each index of a clock that varies, with the guard that the index has it.
 fn instances(
-    model: &Model,
-    provided: Vec<Expr>,
-    body: Vec<Statement>,
-    out: &mut Vec<(Vec<Expr>, Vec<Statement>)>,
-) -> Result<(), Fault> {
-    let mut found: Option<(Expr, u32)> = None;
+    model: &TcheckerModel,
+    provided: Vec<TcheckerExpr>,
+    body: Vec<TcheckerStatement>,
+    out: &mut Vec<(Vec<TcheckerExpr>, Vec<TcheckerStatement>)>,
+) -> Result<(), TcheckerFault> {
+    let mut found: Option<(TcheckerExpr, u32)> = None;
     for e in &provided {
         find_varying(model, e, &mut found);
     }
     let mut assigned: Vec<String> = Vec::new();
     for s in &body {
-        if let Act::Assign { name, index, value } = &s.kind {
-            let target = Expr { kind: Kind::Name(name.clone(), index.clone().map(Box::new)), at: s.at };
+        if let TcheckerStatementKind::Assign { name, index, value } = &s.kind {
+            let target = TcheckerExpr {
+                kind: TcheckerExprKind::Name(name.clone(), index.clone().map(Box::new)),
+                at: s.at,
+            };
             let before = found.clone();
             find_varying(model, &target, &mut found);
             find_varying(model, value, &mut found);
@@ -340,7 +349,7 @@ fn instances(
                 each_name(e, &mut |n| changed |= assigned.iter().any(|a| a == n));
                 if changed {
                     let message = "the index of this clock changes on the edge itself";
-                    return Err(Fault { at: e.at, message: message.to_owned() });
+                    return Err(TcheckerFault { at: e.at, message: message.to_owned() });
                 }
             }
             assigned.push(name.clone());
@@ -352,42 +361,50 @@ fn instances(
     };
     for n in 0..size {
         if out.len() >= MAX_COPIES {
-            return Err(Fault { at: index.at, message: "this index makes too many edges".to_owned() });
+            return Err(TcheckerFault {
+                at: index.at,
+                message: "this index makes too many edges".to_owned(),
+            });
         }
-        let value = Expr { kind: Kind::Int(i64::from(n)), at: index.at };
-        let mut guards: Vec<Expr> = provided.iter().map(|e| replaced(model, e, &index, &value)).collect();
-        let same = Kind::Binary(super::ast::Op::Eq, Box::new(index.clone()), Box::new(value.clone()));
-        guards.push(Expr { kind: same, at: index.at });
+        let value = TcheckerExpr { kind: TcheckerExprKind::Int(i64::from(n)), at: index.at };
+        let mut guards: Vec<TcheckerExpr> =
+            provided.iter().map(|e| replaced(model, e, &index, &value)).collect();
+        let same = TcheckerExprKind::Binary(
+            super::ast::TcheckerOperator::Eq,
+            Box::new(index.clone()),
+            Box::new(value.clone()),
+        );
+        guards.push(TcheckerExpr { kind: same, at: index.at });
         let body = body.iter().map(|s| replaced_in(model, s, &index, &value)).collect();
         instances(model, guards, body, out)?;
     }
     Ok(())
 }
 
-fn find_varying(model: &Model, e: &Expr, found: &mut Option<(Expr, u32)>) {
+fn find_varying(model: &TcheckerModel, e: &TcheckerExpr, found: &mut Option<(TcheckerExpr, u32)>) {
     match &e.kind {
-        Kind::Int(_) => {}
-        Kind::Name(name, Some(index)) => {
+        TcheckerExprKind::Int(_) => {}
+        TcheckerExprKind::Name(name, Some(index)) => {
             let clock = model.clocks.iter().find(|c| c.name == *name);
             if let (Some(clock), None, None) = (clock, constant(index), &found) {
                 *found = Some(((**index).clone(), clock.size));
             }
         }
-        Kind::Name(_, None) => {}
-        Kind::Neg(a) | Kind::Not(a) => find_varying(model, a, found),
-        Kind::Binary(_, a, b) => {
+        TcheckerExprKind::Name(_, None) => {}
+        TcheckerExprKind::Neg(a) | TcheckerExprKind::Not(a) => find_varying(model, a, found),
+        TcheckerExprKind::Binary(_, a, b) => {
             find_varying(model, a, found);
             find_varying(model, b, found);
         }
-        Kind::If(c, a, b) => [c, a, b].into_iter().for_each(|e| find_varying(model, e, found)),
+        TcheckerExprKind::If(c, a, b) => [c, a, b].into_iter().for_each(|e| find_varying(model, e, found)),
     }
 }
 
 /// The same text, wherever it is written.
-fn same(a: &Expr, b: &Expr) -> bool {
+fn same(a: &TcheckerExpr, b: &TcheckerExpr) -> bool {
     match (&a.kind, &b.kind) {
-        (Kind::Int(m), Kind::Int(n)) => m == n,
-        (Kind::Name(m, i), Kind::Name(n, j)) => {
+        (TcheckerExprKind::Int(m), TcheckerExprKind::Int(n)) => m == n,
+        (TcheckerExprKind::Name(m, i), TcheckerExprKind::Name(n, j)) => {
             m == n
                 && match (i, j) {
                     (Some(i), Some(j)) => same(i, j),
@@ -395,37 +412,65 @@ fn same(a: &Expr, b: &Expr) -> bool {
                     (Some(_), None) | (None, Some(_)) => false,
                 }
         }
-        (Kind::Neg(a), Kind::Neg(b)) | (Kind::Not(a), Kind::Not(b)) => same(a, b),
-        (Kind::Binary(p, a, b), Kind::Binary(q, c, d)) => p == q && same(a, c) && same(b, d),
-        (Kind::If(a, b, c), Kind::If(d, e, f)) => same(a, d) && same(b, e) && same(c, f),
+        (TcheckerExprKind::Neg(a), TcheckerExprKind::Neg(b))
+        | (TcheckerExprKind::Not(a), TcheckerExprKind::Not(b)) => same(a, b),
+        (TcheckerExprKind::Binary(p, a, b), TcheckerExprKind::Binary(q, c, d)) => {
+            p == q && same(a, c) && same(b, d)
+        }
+        (TcheckerExprKind::If(a, b, c), TcheckerExprKind::If(d, e, f)) => {
+            same(a, d) && same(b, e) && same(c, f)
+        }
         (
-            Kind::Int(_) | Kind::Name(..) | Kind::Neg(_) | Kind::Not(_) | Kind::Binary(..) | Kind::If(..),
+            TcheckerExprKind::Int(_)
+            | TcheckerExprKind::Name(..)
+            | TcheckerExprKind::Neg(_)
+            | TcheckerExprKind::Not(_)
+            | TcheckerExprKind::Binary(..)
+            | TcheckerExprKind::If(..),
             _,
         ) => false,
     }
 }
 
 /// The expression with this index of a clock replaced by a number.
-fn replaced(model: &Model, e: &Expr, index: &Expr, value: &Expr) -> Expr {
-    let sub = |e: &Expr| Box::new(replaced(model, e, index, value));
+fn replaced(
+    model: &TcheckerModel,
+    e: &TcheckerExpr,
+    index: &TcheckerExpr,
+    value: &TcheckerExpr,
+) -> TcheckerExpr {
+    let sub = |e: &TcheckerExpr| Box::new(replaced(model, e, index, value));
     let kind = match &e.kind {
-        Kind::Int(n) => Kind::Int(*n),
-        Kind::Name(name, Some(i)) if same(i, index) && model.clocks.iter().any(|c| c.name == *name) => {
-            Kind::Name(name.clone(), Some(Box::new(value.clone())))
+        TcheckerExprKind::Int(n) => TcheckerExprKind::Int(*n),
+        TcheckerExprKind::Name(name, Some(i))
+            if same(i, index) && model.clocks.iter().any(|c| c.name == *name) =>
+        {
+            TcheckerExprKind::Name(name.clone(), Some(Box::new(value.clone())))
         }
-        Kind::Name(name, i) => Kind::Name(name.clone(), i.as_ref().map(|i| sub(i))),
-        Kind::Neg(a) => Kind::Neg(sub(a)),
-        Kind::Not(a) => Kind::Not(sub(a)),
-        Kind::Binary(op, a, b) => Kind::Binary(*op, sub(a), sub(b)),
-        Kind::If(c, a, b) => Kind::If(sub(c), sub(a), sub(b)),
+        TcheckerExprKind::Name(name, i) => TcheckerExprKind::Name(name.clone(), i.as_ref().map(|i| sub(i))),
+        TcheckerExprKind::Neg(a) => TcheckerExprKind::Neg(sub(a)),
+        TcheckerExprKind::Not(a) => TcheckerExprKind::Not(sub(a)),
+        TcheckerExprKind::Binary(op, a, b) => TcheckerExprKind::Binary(*op, sub(a), sub(b)),
+        TcheckerExprKind::If(c, a, b) => TcheckerExprKind::If(sub(c), sub(a), sub(b)),
     };
-    Expr { kind, at: e.at }
+    TcheckerExpr { kind, at: e.at }
 }
 
-fn replaced_in(model: &Model, s: &Statement, index: &Expr, value: &Expr) -> Statement {
-    let Act::Assign { name, index: at, value: of } = &s.kind else { return s.clone() };
-    let target = Expr { kind: Kind::Name(name.clone(), at.clone().map(Box::new)), at: s.at };
-    let Kind::Name(name, at) = replaced(model, &target, index, value).kind else { return s.clone() };
+fn replaced_in(
+    model: &TcheckerModel,
+    s: &TcheckerStatement,
+    index: &TcheckerExpr,
+    value: &TcheckerExpr,
+) -> TcheckerStatement {
+    let TcheckerStatementKind::Assign { name, index: at, value: of } = &s.kind else { return s.clone() };
+    let target =
+        TcheckerExpr { kind: TcheckerExprKind::Name(name.clone(), at.clone().map(Box::new)), at: s.at };
+    let TcheckerExprKind::Name(name, at) = replaced(model, &target, index, value).kind else {
+        return s.clone();
+    };
     let of = replaced(model, of, index, value);
-    Statement { kind: Act::Assign { name, index: at.map(|i| *i), value: of }, at: s.at }
+    TcheckerStatement {
+        kind: TcheckerStatementKind::Assign { name, index: at.map(|i| *i), value: of },
+        at: s.at,
+    }
 }

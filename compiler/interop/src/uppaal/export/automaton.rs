@@ -10,23 +10,23 @@ use hrdsl_ir::ta::{
 use indexmap::IndexSet;
 
 use super::{
-    Channel, Exporter, Part, escaped,
-    expr::{Context, Level, Said, Text},
+    MultiwayRole, UppaalChannel, UppaalExporter, escaped,
+    expr::{UppaalExprContext, UppaalExprText, UppaalPrecedence, UppaalTextResult},
     function,
-    slots::{Names, Slot, Slots, slot},
+    slots::{UppaalNames, UppaalSlot, UppaalSlotTable, slot},
 };
 
 /// How far apart locations are drawn.
 const COLUMN: i32 = 250;
 const ROW: i32 = 130;
 
-impl Exporter<'_> {
+impl UppaalExporter<'_> {
     /// The template of the automaton at this place of the network.
     pub fn template(&mut self, at: usize) -> String {
         let automaton = self.automaton(at);
         let mut names = self.names.clone();
         let mut context = self.global.clone();
-        let mut slots = Slots::default();
+        let mut slots = UppaalSlotTable::default();
         let mut lines = slots.declare(&automaton.vars, &mut names);
         context.slots.append(slots);
         for clock in &automaton.clocks {
@@ -53,7 +53,12 @@ impl Exporter<'_> {
     }
 
     /// The functions that know the automaton's own variables.
-    fn own_functions(&mut self, at: usize, context: &mut Context, names: &mut Names) -> String {
+    fn own_functions(
+        &mut self,
+        at: usize,
+        context: &mut UppaalExprContext,
+        names: &mut UppaalNames,
+    ) -> String {
         let program = self.program;
         let mut called = IndexSet::new();
         function::called_by(self.automaton(at), &mut |f| {
@@ -78,7 +83,7 @@ impl Exporter<'_> {
         location: &Location,
         id: usize,
         (name, (x, y)): (&str, (i32, i32)),
-        context: &Context,
+        context: &UppaalExprContext,
     ) -> String {
         let place = format!("the location `{}` of `{}`", location.name, automaton.name);
         let mut text = format!("    <location id=\"id{id}\" x=\"{x}\" y=\"{y}\">\n");
@@ -98,11 +103,12 @@ impl Exporter<'_> {
         &mut self,
         at: usize,
         edge: &Edge,
-        context: &Context,
-        names: &Names,
+        context: &UppaalExprContext,
+        names: &UppaalNames,
         layout: &[(i32, i32)],
     ) -> String {
-        let mut binders = Binders { context: context.clone(), names: names.clone(), selects: Vec::new() };
+        let mut binders =
+            EdgeSelections { context: context.clone(), names: names.clone(), selects: Vec::new() };
         edge.selects.iter().for_each(|s| {
             binders.bind(s);
         });
@@ -131,7 +137,7 @@ impl Exporter<'_> {
         text + "    </transition>\n"
     }
 
-    fn sync(&self, at: usize, sync: &SyncLabel, binders: &mut Binders) -> Said<String> {
+    fn sync(&self, at: usize, sync: &SyncLabel, binders: &mut EdgeSelections) -> UppaalTextResult<String> {
         let id = self.network.automata[at];
         match sync {
             SyncLabel::Internal => Ok(String::new()),
@@ -142,12 +148,12 @@ impl Exporter<'_> {
             SyncLabel::Join { channel } => {
                 let known = self.channels.get(channel).ok_or("a channel that is not known here")?;
                 Ok(match self.part(*channel, id) {
-                    Part::Offer => format!("{}!", known.name),
-                    Part::Accept => format!("{}?", known.name),
-                    Part::Alone if known.urgent => {
+                    MultiwayRole::Offer => format!("{}!", known.name),
+                    MultiwayRole::Accept => format!("{}?", known.name),
+                    MultiwayRole::Alone if known.urgent => {
                         return Err("an urgent channel of one automaton".to_owned());
                     }
-                    Part::Alone => String::new(),
+                    MultiwayRole::Alone => String::new(),
                 })
             }
         }
@@ -155,17 +161,17 @@ impl Exporter<'_> {
 }
 
 /// What an edge selects: the scenario's selects, then what it binds.
-struct Binders {
-    context: Context,
-    names: Names,
+struct EdgeSelections {
+    context: UppaalExprContext,
+    names: UppaalNames,
     selects: Vec<String>,
 }
 
-impl Binders {
+impl EdgeSelections {
     /// Adds a select; it is the next variable of the edge's expressions.
     fn bind(&mut self, var: &AutomatonVar) -> String {
         let name = self.select(var);
-        self.context.slots.slots.push(Slot { text: name.clone(), as_number: var.is_bool, ..slot(var) });
+        self.context.slots.slots.push(UppaalSlot { text: name.clone(), as_number: var.is_bool, ..slot(var) });
         name
     }
 
@@ -176,15 +182,22 @@ impl Binders {
     }
 }
 
-fn offer(channel: Option<&Channel>, args: &[hrdsl_ir::Expr], context: &Context) -> Said<String> {
+fn offer(
+    channel: Option<&UppaalChannel>,
+    args: &[hrdsl_ir::Expr],
+    context: &UppaalExprContext,
+) -> UppaalTextResult<String> {
     let channel = channel.ok_or("a channel that is not known here")?;
     let mut text = channel.name.clone();
     for (param, arg) in channel.params.iter().zip(args) {
         let arg = context.expr(arg, param.enumeration)?;
         let arg = match (param.is_bool, arg.text.as_str()) {
-            (true, "true") => Text::new("1", Level::Atom),
-            (true, "false") => Text::new("0", Level::Atom),
-            (true, _) => Text::new(format!("({} ? 1 : 0)", arg.at(Level::Or)), Level::Atom),
+            (true, "true") => UppaalExprText::new("1", UppaalPrecedence::Atom),
+            (true, "false") => UppaalExprText::new("0", UppaalPrecedence::Atom),
+            (true, _) => UppaalExprText::new(
+                format!("({} ? 1 : 0)", arg.at(UppaalPrecedence::Or)),
+                UppaalPrecedence::Atom,
+            ),
             (false, _) => arg,
         };
         text += &format!("[{}]", from_zero(&arg, param.lo));
@@ -192,7 +205,11 @@ fn offer(channel: Option<&Channel>, args: &[hrdsl_ir::Expr], context: &Context) 
     Ok(text + "!")
 }
 
-fn accept(channel: Option<&Channel>, args: &[ReceiveArg], binders: &mut Binders) -> Said<String> {
+fn accept(
+    channel: Option<&UppaalChannel>,
+    args: &[ReceiveArg],
+    binders: &mut EdgeSelections,
+) -> UppaalTextResult<String> {
     let channel = channel.ok_or("a channel that is not known here")?;
     let mut text = channel.name.clone();
     for (param, arg) in channel.params.iter().zip(args) {
@@ -202,9 +219,11 @@ fn accept(channel: Option<&Channel>, args: &[ReceiveArg], binders: &mut Binders)
                 from_zero(&binders.context.constant(*value, param.enumeration)?, param.lo)
             }
             ReceiveArg::Match(ArgPattern::Any) => {
-                from_zero(&Text::new(binders.select(param), Level::Atom), param.lo)
+                from_zero(&UppaalExprText::new(binders.select(param), UppaalPrecedence::Atom), param.lo)
             }
-            ReceiveArg::Bind => from_zero(&Text::new(binders.bind(param), Level::Atom), param.lo),
+            ReceiveArg::Bind => {
+                from_zero(&UppaalExprText::new(binders.bind(param), UppaalPrecedence::Atom), param.lo)
+            }
         };
         text += &format!("[{index}]");
     }
@@ -212,16 +231,16 @@ fn accept(channel: Option<&Channel>, args: &[ReceiveArg], binders: &mut Binders)
 }
 
 /// An index: UPPAAL's arrays begin at 0.
-fn from_zero(value: &Text, lo: i64) -> String {
+fn from_zero(value: &UppaalExprText, lo: i64) -> String {
     match (lo, value.text.parse::<i64>()) {
         (0, _) => value.text.clone(),
         (lo, Ok(n)) => (n - lo).to_string(),
-        (lo, Err(_)) if lo > 0 => format!("{} - {lo}", value.at(Level::Sum)),
-        (lo, Err(_)) => format!("{} + {}", value.at(Level::Sum), lo.unsigned_abs()),
+        (lo, Err(_)) if lo > 0 => format!("{} - {lo}", value.at(UppaalPrecedence::Sum)),
+        (lo, Err(_)) => format!("{} + {}", value.at(UppaalPrecedence::Sum), lo.unsigned_abs()),
     }
 }
 
-fn invariant(location: &Location, context: &Context) -> Said<String> {
+fn invariant(location: &Location, context: &UppaalExprContext) -> UppaalTextResult<String> {
     let mut parts = Vec::new();
     for constraint in &location.invariant {
         match constraint.op {
@@ -232,20 +251,21 @@ fn invariant(location: &Location, context: &Context) -> Said<String> {
         }
     }
     if let Some(holds) = &location.holds {
-        parts.push(context.expr(holds, None)?.at(Level::And));
+        parts.push(context.expr(holds, None)?.at(UppaalPrecedence::And));
     }
     Ok(parts.join(" && "))
 }
 
-fn guard(edge: &Edge, context: &Context) -> Said<String> {
-    let mut parts = edge.clock_guard.iter().map(|c| context.constraint(c)).collect::<Said<Vec<_>>>()?;
+fn guard(edge: &Edge, context: &UppaalExprContext) -> UppaalTextResult<String> {
+    let mut parts =
+        edge.clock_guard.iter().map(|c| context.constraint(c)).collect::<UppaalTextResult<Vec<_>>>()?;
     if let Some(guard) = &edge.guard {
-        parts.push(context.expr(guard, None)?.at(Level::And));
+        parts.push(context.expr(guard, None)?.at(UppaalPrecedence::And));
     }
     Ok(parts.join(" && "))
 }
 
-fn updates(all: &[EdgeAssignment], context: &Context) -> Said<String> {
+fn updates(all: &[EdgeAssignment], context: &UppaalExprContext) -> UppaalTextResult<String> {
     let mut parts = Vec::new();
     for update in all {
         parts.push(match update {

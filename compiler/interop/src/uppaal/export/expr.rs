@@ -6,11 +6,11 @@ use hrdsl_ir::{
     ta::{ClockConstraint, ClockOp, TimeSum},
 };
 
-use super::slots::Slots;
+use super::slots::UppaalSlotTable;
 
 /// How tightly an expression holds together, from the loosest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum UppaalPrecedence {
     Or,
     And,
     Equality,
@@ -23,28 +23,28 @@ pub enum Level {
 }
 
 #[derive(Clone, Debug)]
-pub struct Text {
+pub struct UppaalExprText {
     pub text: String,
-    pub level: Level,
+    pub level: UppaalPrecedence,
 }
 
-impl Text {
-    pub fn new(text: impl Into<String>, level: Level) -> Self {
+impl UppaalExprText {
+    pub fn new(text: impl Into<String>, level: UppaalPrecedence) -> Self {
         Self { text: text.into(), level }
     }
 
-    pub fn at(&self, level: Level) -> String {
+    pub fn at(&self, level: UppaalPrecedence) -> String {
         if self.level < level { format!("({})", self.text) } else { self.text.clone() }
     }
 }
 
 /// What cannot be said.
-pub type Said<T> = Result<T, String>;
+pub type UppaalTextResult<T> = Result<T, String>;
 
 /// What expressions need to know.
 #[derive(Clone, Debug, Default)]
-pub struct Context {
-    pub slots: Slots,
+pub struct UppaalExprContext {
+    pub slots: UppaalSlotTable,
     pub clocks: Vec<String>,
     /// Names of functions by their id; `None`: it cannot be called here.
     pub functions: Vec<Option<String>>,
@@ -58,35 +58,44 @@ pub struct Context {
     pub unit: i64,
 }
 
-impl Context {
+impl UppaalExprContext {
     /// The text of an expression; `of` is the enumeration that its value is of, if it is one.
-    pub fn expr(&self, e: &Expr, of: Option<Enumeration>) -> Said<Text> {
+    pub fn expr(&self, e: &Expr, of: Option<Enumeration>) -> UppaalTextResult<UppaalExprText> {
         match e {
             Expr::Const(value) => self.constant(*value, of),
             Expr::Var(slot) => self.slot(*slot),
-            Expr::Unary(UnaryOp::Not, a) => {
-                Ok(Text::new(format!("!{}", self.expr(a, None)?.at(Level::Unary)), Level::Unary))
-            }
-            Expr::Unary(UnaryOp::Neg, a) => {
-                Ok(Text::new(format!("-{}", self.expr(a, None)?.at(Level::Atom)), Level::Unary))
-            }
+            Expr::Unary(UnaryOp::Not, a) => Ok(UppaalExprText::new(
+                format!("!{}", self.expr(a, None)?.at(UppaalPrecedence::Unary)),
+                UppaalPrecedence::Unary,
+            )),
+            Expr::Unary(UnaryOp::Neg, a) => Ok(UppaalExprText::new(
+                format!("-{}", self.expr(a, None)?.at(UppaalPrecedence::Atom)),
+                UppaalPrecedence::Unary,
+            )),
             Expr::Binary(op, a, b) => self.binary(*op, a, b),
             Expr::If(c, a, b) => {
                 let (c, a, b) = (self.expr(c, None)?, self.expr(a, of)?, self.expr(b, of)?);
-                let text = format!("({} ? {} : {})", c.at(Level::Or), a.at(Level::Or), b.at(Level::Or));
-                Ok(Text::new(text, Level::Atom))
+                let text = format!(
+                    "({} ? {} : {})",
+                    c.at(UppaalPrecedence::Or),
+                    a.at(UppaalPrecedence::Or),
+                    b.at(UppaalPrecedence::Or)
+                );
+                Ok(UppaalExprText::new(text, UppaalPrecedence::Atom))
             }
             Expr::Call(function, args) => self.call(*function, args),
             Expr::List(..) => Err("lists".to_owned()),
-            Expr::Element(place) => Ok(Text::new(self.place(place)?, Level::Atom)),
-            Expr::Apply(function, args) => Ok(Text::new(self.apply(function.0, args)?, Level::Atom)),
+            Expr::Element(place) => Ok(UppaalExprText::new(self.place(place)?, UppaalPrecedence::Atom)),
+            Expr::Apply(function, args) => {
+                Ok(UppaalExprText::new(self.apply(function.0, args)?, UppaalPrecedence::Atom))
+            }
         }
     }
 
     /// A constant; a value of an enumeration is the constant for its number.
-    pub fn constant(&self, value: Value, of: Option<Enumeration>) -> Said<Text> {
+    pub fn constant(&self, value: Value, of: Option<Enumeration>) -> UppaalTextResult<UppaalExprText> {
         match value {
-            Value::Bool(b) => Ok(Text::new(b.to_string(), Level::Atom)),
+            Value::Bool(b) => Ok(UppaalExprText::new(b.to_string(), UppaalPrecedence::Atom)),
             Value::Int(n) if i32::try_from(n).is_ok() => Ok(number(n)),
             Value::Int(n) => Err(format!("the number {n}: UPPAAL's integers have 32 bits")),
             Value::Symbol(symbol) => {
@@ -96,7 +105,10 @@ impl Context {
                 })?;
                 let known = of.and_then(|of| self.symbols.iter().find(|(e, _)| *e == of));
                 let name = known.and_then(|(_, names)| names.get(at));
-                Ok(name.map_or_else(|| number(at as i64), |name| Text::new(name.clone(), Level::Atom)))
+                Ok(name.map_or_else(
+                    || number(at as i64),
+                    |name| UppaalExprText::new(name.clone(), UppaalPrecedence::Atom),
+                ))
             }
             Value::Float(x) => Err(format!("the number {x} with a fraction")),
             Value::Text(_) => Err("strings".to_owned()),
@@ -104,41 +116,49 @@ impl Context {
         }
     }
 
-    fn slot(&self, slot: u16) -> Said<Text> {
+    fn slot(&self, slot: u16) -> UppaalTextResult<UppaalExprText> {
         let slot = self.slots.slots.get(usize::from(slot)).ok_or("a variable that is not known here")?;
         Ok(if slot.as_number {
-            Text::new(format!("{} == 1", slot.text), Level::Equality)
+            UppaalExprText::new(format!("{} == 1", slot.text), UppaalPrecedence::Equality)
         } else {
-            Text::new(slot.text.clone(), Level::Atom)
+            UppaalExprText::new(slot.text.clone(), UppaalPrecedence::Atom)
         })
     }
 
-    fn binary(&self, op: BinaryOp, a: &Expr, b: &Expr) -> Said<Text> {
+    fn binary(&self, op: BinaryOp, a: &Expr, b: &Expr) -> UppaalTextResult<UppaalExprText> {
         let (sign, level) = match op {
-            BinaryOp::Or => ("||", Level::Or),
-            BinaryOp::And => ("&&", Level::And),
-            BinaryOp::Eq => ("==", Level::Equality),
-            BinaryOp::Ne => ("!=", Level::Equality),
-            BinaryOp::Lt => ("<", Level::Order),
-            BinaryOp::Le => ("<=", Level::Order),
-            BinaryOp::Gt => (">", Level::Order),
-            BinaryOp::Ge => (">=", Level::Order),
-            BinaryOp::Add => ("+", Level::Sum),
-            BinaryOp::Sub => ("-", Level::Sum),
-            BinaryOp::Mul => ("*", Level::Product),
-            BinaryOp::Div => ("/", Level::Product),
-            BinaryOp::Rem => ("%", Level::Product),
+            BinaryOp::Or => ("||", UppaalPrecedence::Or),
+            BinaryOp::And => ("&&", UppaalPrecedence::And),
+            BinaryOp::Eq => ("==", UppaalPrecedence::Equality),
+            BinaryOp::Ne => ("!=", UppaalPrecedence::Equality),
+            BinaryOp::Lt => ("<", UppaalPrecedence::Order),
+            BinaryOp::Le => ("<=", UppaalPrecedence::Order),
+            BinaryOp::Gt => (">", UppaalPrecedence::Order),
+            BinaryOp::Ge => (">=", UppaalPrecedence::Order),
+            BinaryOp::Add => ("+", UppaalPrecedence::Sum),
+            BinaryOp::Sub => ("-", UppaalPrecedence::Sum),
+            BinaryOp::Mul => ("*", UppaalPrecedence::Product),
+            BinaryOp::Div => ("/", UppaalPrecedence::Product),
+            BinaryOp::Rem => ("%", UppaalPrecedence::Product),
         };
         let of = self.enumeration(a).or_else(|| self.enumeration(b));
         let (a, b) = (self.expr(a, of)?, self.expr(b, of)?);
         let tighter = match level {
-            Level::Or | Level::And => level,
-            Level::Sum => Level::Product,
-            Level::Product => Level::Unary,
-            Level::Equality | Level::Order | Level::Extreme | Level::Unary | Level::Atom => Level::Sum,
+            UppaalPrecedence::Or | UppaalPrecedence::And => level,
+            UppaalPrecedence::Sum => UppaalPrecedence::Product,
+            UppaalPrecedence::Product => UppaalPrecedence::Unary,
+            UppaalPrecedence::Equality
+            | UppaalPrecedence::Order
+            | UppaalPrecedence::Extreme
+            | UppaalPrecedence::Unary
+            | UppaalPrecedence::Atom => UppaalPrecedence::Sum,
         };
-        let left = if matches!(level, Level::Equality | Level::Order) { Level::Sum } else { level };
-        Ok(Text::new(format!("{} {sign} {}", a.at(left), b.at(tighter)), level))
+        let left = if matches!(level, UppaalPrecedence::Equality | UppaalPrecedence::Order) {
+            UppaalPrecedence::Sum
+        } else {
+            level
+        };
+        Ok(UppaalExprText::new(format!("{} {sign} {}", a.at(left), b.at(tighter)), level))
     }
 
     /// The enumeration that a variable's or function's value is of.
@@ -153,18 +173,27 @@ impl Context {
         }
     }
 
-    fn call(&self, function: NumberFunction, args: &[Expr]) -> Said<Text> {
-        let args = args.iter().map(|a| self.expr(a, None)).collect::<Said<Vec<_>>>()?;
+    fn call(&self, function: NumberFunction, args: &[Expr]) -> UppaalTextResult<UppaalExprText> {
+        let args = args.iter().map(|a| self.expr(a, None)).collect::<UppaalTextResult<Vec<_>>>()?;
         match (function, args.as_slice()) {
-            (NumberFunction::Min, [a, b]) => {
-                Ok(Text::new(format!("{} <? {}", a.at(Level::Sum), b.at(Level::Sum)), Level::Extreme))
-            }
-            (NumberFunction::Max, [a, b]) => {
-                Ok(Text::new(format!("{} >? {}", a.at(Level::Sum), b.at(Level::Sum)), Level::Extreme))
-            }
+            (NumberFunction::Min, [a, b]) => Ok(UppaalExprText::new(
+                format!("{} <? {}", a.at(UppaalPrecedence::Sum), b.at(UppaalPrecedence::Sum)),
+                UppaalPrecedence::Extreme,
+            )),
+            (NumberFunction::Max, [a, b]) => Ok(UppaalExprText::new(
+                format!("{} >? {}", a.at(UppaalPrecedence::Sum), b.at(UppaalPrecedence::Sum)),
+                UppaalPrecedence::Extreme,
+            )),
             (NumberFunction::Abs, [a]) => {
-                let negative = Text::new(format!("-{}", a.at(Level::Atom)), Level::Unary).text;
-                Ok(Text::new(format!("({} >? {negative})", a.at(Level::Sum)), Level::Atom))
+                let negative = UppaalExprText::new(
+                    format!("-{}", a.at(UppaalPrecedence::Atom)),
+                    UppaalPrecedence::Unary,
+                )
+                .text;
+                Ok(UppaalExprText::new(
+                    format!("({} >? {negative})", a.at(UppaalPrecedence::Sum)),
+                    UppaalPrecedence::Atom,
+                ))
             }
             (NumberFunction::Norm, _) => Err("`norm`".to_owned()),
             (NumberFunction::Min | NumberFunction::Max | NumberFunction::Abs, _) => {
@@ -173,20 +202,20 @@ impl Context {
         }
     }
 
-    pub fn apply(&self, function: u16, args: &[Expr]) -> Said<String> {
+    pub fn apply(&self, function: u16, args: &[Expr]) -> UppaalTextResult<String> {
         let at = usize::from(function);
         let name = self.functions.get(at).cloned().flatten();
         let name = name.ok_or("a function of another automaton")?;
         let params = self.params.get(at).map_or(&[] as &[_], Vec::as_slice);
         let of = params.iter().copied().chain(std::iter::repeat(None));
         let args = args.iter().zip(of).map(|(a, of)| self.expr(a, of).map(|t| t.text));
-        Ok(format!("{name}({})", args.collect::<Said<Vec<_>>>()?.join(", ")))
+        Ok(format!("{name}({})", args.collect::<UppaalTextResult<Vec<_>>>()?.join(", ")))
     }
 
     // ── Places ──
 
     /// A variable, or an element that indices choose.
-    pub fn place(&self, place: &Lvalue) -> Said<String> {
+    pub fn place(&self, place: &Lvalue) -> UppaalTextResult<String> {
         let slot = usize::from(place.slot);
         if place.indices.is_empty() {
             let slot = self.slots.slots.get(slot).ok_or("a variable that is not known here")?;
@@ -219,16 +248,20 @@ impl Context {
 
     // ── Time ──
 
-    pub fn time(&self, time: &TimeSum) -> Said<Text> {
+    pub fn time(&self, time: &TimeSum) -> UppaalTextResult<UppaalExprText> {
         let mut terms = Vec::new();
         for term in &time.terms {
             let factor = self.units(term.factor)?;
             let value = self.expr(&term.value, None)?;
             terms.push(match factor {
                 1 => value,
-                n => Text::new(
-                    format!("{} * {}", number(n).at(Level::Unary), value.at(Level::Unary)),
-                    Level::Product,
+                n => UppaalExprText::new(
+                    format!(
+                        "{} * {}",
+                        number(n).at(UppaalPrecedence::Unary),
+                        value.at(UppaalPrecedence::Unary)
+                    ),
+                    UppaalPrecedence::Product,
                 ),
             });
         }
@@ -236,13 +269,16 @@ impl Context {
         if constant != 0 || terms.is_empty() {
             terms.push(number(constant));
         }
-        let text = terms
-            .into_iter()
-            .reduce(|a, b| Text::new(format!("{} + {}", a.at(Level::Sum), b.at(Level::Product)), Level::Sum));
+        let text = terms.into_iter().reduce(|a, b| {
+            UppaalExprText::new(
+                format!("{} + {}", a.at(UppaalPrecedence::Sum), b.at(UppaalPrecedence::Product)),
+                UppaalPrecedence::Sum,
+            )
+        });
         text.ok_or_else(|| "an empty time".to_owned())
     }
 
-    fn units(&self, nanos: i64) -> Said<i64> {
+    fn units(&self, nanos: i64) -> UppaalTextResult<i64> {
         let units = nanos / self.unit;
         // UPPAAL's clocks are compared with half the range of its integers.
         if units.unsigned_abs() >= 1 << 30 {
@@ -255,7 +291,7 @@ impl Context {
         Ok(units)
     }
 
-    pub fn constraint(&self, c: &ClockConstraint) -> Said<String> {
+    pub fn constraint(&self, c: &ClockConstraint) -> UppaalTextResult<String> {
         let clock = |id: hrdsl_ir::ta::ClockId| {
             self.clocks
                 .get(usize::from(id.0))
@@ -273,10 +309,10 @@ impl Context {
             ClockOp::Ge => ">=",
             ClockOp::Gt => ">",
         };
-        Ok(format!("{text} {sign} {}", self.time(&c.bound)?.at(Level::Sum)))
+        Ok(format!("{text} {sign} {}", self.time(&c.bound)?.at(UppaalPrecedence::Sum)))
     }
 }
 
-pub fn number(n: i64) -> Text {
-    Text::new(n.to_string(), if n < 0 { Level::Unary } else { Level::Atom })
+pub fn number(n: i64) -> UppaalExprText {
+    UppaalExprText::new(n.to_string(), if n < 0 { UppaalPrecedence::Unary } else { UppaalPrecedence::Atom })
 }

@@ -9,11 +9,11 @@ use hrdsl_ir::{
 use indexmap::IndexSet;
 
 use super::{
-    Exporter, all_exprs,
-    expr::{Context, Level, Said},
-    slots::{Names, Slots, slot, ty},
+    UppaalExporter, all_exprs,
+    expr::{UppaalExprContext, UppaalPrecedence, UppaalTextResult},
+    slots::{UppaalNames, UppaalSlotTable, slot, ty},
 };
-use crate::exchange::obstacle::Obstacle;
+use crate::exchange::obstacle::ExportObstacle;
 
 /// The functions that an expression calls.
 pub fn in_expr(e: &Expr, note: &mut dyn FnMut(FunctionId)) {
@@ -114,11 +114,11 @@ pub fn order(
     id: FunctionId,
     above: &mut Vec<FunctionId>,
     out: &mut IndexSet<FunctionId>,
-) -> Result<(), Obstacle> {
+) -> Result<(), ExportObstacle> {
     let function = &program.functions[usize::from(id.0)];
     if above.contains(&id) {
         let message = format!("the function `{}` calls itself: UPPAAL's functions cannot", function.name);
-        return Err(Obstacle { origin: function.origin, message });
+        return Err(ExportObstacle { origin: function.origin, message });
     }
     if out.contains(&id) {
         return Ok(());
@@ -132,15 +132,20 @@ pub fn order(
     Ok(())
 }
 
-impl Exporter<'_> {
+impl UppaalExporter<'_> {
     /// The texts of functions; their names become known to the context.
-    pub fn functions(&mut self, ids: &[FunctionId], context: &mut Context, names: &mut Names) -> String {
+    pub fn functions(
+        &mut self,
+        ids: &[FunctionId],
+        context: &mut UppaalExprContext,
+        names: &mut UppaalNames,
+    ) -> String {
         let program = self.program;
         let mut text = String::new();
         for id in ids {
             let function = &program.functions[usize::from(id.0)];
             let name = names.fresh(&function.name);
-            let written = Writer::new(context.clone(), names.clone()).function(function, &name);
+            let written = UppaalFunctionWriter::new(context.clone(), names.clone()).function(function, &name);
             let place = format!("the function `{}`", function.name);
             text += &self.said(written, function.origin, &place);
             context.functions[usize::from(id.0)] = Some(name);
@@ -149,26 +154,26 @@ impl Exporter<'_> {
     }
 }
 
-struct Writer {
-    context: Context,
-    names: Names,
+struct UppaalFunctionWriter {
+    context: UppaalExprContext,
+    names: UppaalNames,
     /// Declarations of variables that the scenario does not have.
     extra: Vec<String>,
     result: Option<hrdsl_ir::Enumeration>,
 }
 
-impl Writer {
-    fn new(context: Context, names: Names) -> Self {
+impl UppaalFunctionWriter {
+    fn new(context: UppaalExprContext, names: UppaalNames) -> Self {
         Self { context, names, extra: Vec::new(), result: None }
     }
 
-    fn function(mut self, function: &AutomatonFunction, name: &str) -> Said<String> {
-        let mut slots = Slots::default();
+    fn function(mut self, function: &AutomatonFunction, name: &str) -> UppaalTextResult<String> {
+        let mut slots = UppaalSlotTable::default();
         let mut params = Vec::new();
         for param in &function.params {
             let name = self.names.fresh(&param.name);
             params.push(format!("{} {name}", ty(param)));
-            slots.slots.push(super::slots::Slot { text: name, ..slot(param) });
+            slots.slots.push(super::slots::UppaalSlot { text: name, ..slot(param) });
         }
         let first = self.context.slots.slots.len() + function.params.len();
         let locals = slots.declare(&function.locals, &mut self.names);
@@ -190,13 +195,13 @@ impl Writer {
         Ok(text + &body + "}\n")
     }
 
-    fn statements(&mut self, all: &[FunctionStatement], depth: usize) -> Said<String> {
+    fn statements(&mut self, all: &[FunctionStatement], depth: usize) -> UppaalTextResult<String> {
         all.iter().map(|s| self.statement(s, depth)).collect()
     }
 
-    fn statement(&mut self, statement: &FunctionStatement, depth: usize) -> Said<String> {
+    fn statement(&mut self, statement: &FunctionStatement, depth: usize) -> UppaalTextResult<String> {
         let pad = "  ".repeat(depth);
-        let expr = |cx: &Context, e: &Expr| cx.expr(e, None).map(|t| t.text);
+        let expr = |cx: &UppaalExprContext, e: &Expr| cx.expr(e, None).map(|t| t.text);
         Ok(match statement {
             FunctionStatement::Assign { place, value } => {
                 let of = self.context.enumeration_of(place);
@@ -234,7 +239,7 @@ impl Writer {
         hi: &Expr,
         body: &[FunctionStatement],
         depth: usize,
-    ) -> Said<String> {
+    ) -> UppaalTextResult<String> {
         let pad = "  ".repeat(depth);
         let (from, to) = (self.context.expr(lo, None)?, self.context.expr(hi, None)?);
         let known =
@@ -249,7 +254,10 @@ impl Writer {
         self.extra.push(format!("int[-2147483647,2147483647] {next}, {last};"));
         let body = self.statements(body, depth + 1)?;
         let mut text = format!("{pad}{last} = {};\n", to.text);
-        text += &format!("{pad}for ({next} = {}; {next} <= {last}; {next}++) {{\n", from.at(Level::Sum));
+        text += &format!(
+            "{pad}for ({next} = {}; {next} <= {last}; {next}++) {{\n",
+            from.at(UppaalPrecedence::Sum)
+        );
         text += &format!("{pad}  {name} = {next};\n{body}{pad}}}\n");
         Ok(text)
     }

@@ -26,25 +26,25 @@ use hrdsl_ir::{
 use indexmap::{IndexMap, IndexSet};
 
 use self::{
-    expr::Context,
-    slots::{Names, Slots},
+    expr::UppaalExprContext,
+    slots::{UppaalNames, UppaalSlotTable},
 };
-use crate::exchange::{obstacle::Obstacle, time};
+use crate::exchange::{obstacle::ExportObstacle, time};
 
 /// The texts of an export.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Exported {
+pub struct UppaalDocument {
     /// The model in XML, with its queries.
     pub text: String,
     /// The queries alone, as a `.q` file has them.
     pub queries: String,
     /// Queries that were left out; the model means the same without them.
-    pub left_out: Vec<Obstacle>,
+    pub left_out: Vec<ExportObstacle>,
 }
 
 /// A channel of UPPAAL, or an array of them.
 #[derive(Clone, Debug)]
-struct Channel {
+struct UppaalChannel {
     name: String,
     params: Vec<AutomatonVar>,
     broadcast: bool,
@@ -53,7 +53,7 @@ struct Channel {
 
 /// How an automaton's part in a multi-way channel is said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
+enum MultiwayRole {
     Offer,
     Accept,
     /// It is alone in it.
@@ -61,19 +61,19 @@ enum Part {
 }
 
 /// All that is known while a network is exported.
-struct Exporter<'p> {
+struct UppaalExporter<'p> {
     program: &'p Program,
     network: &'p Network,
-    faults: Vec<Obstacle>,
-    names: Names,
+    faults: Vec<ExportObstacle>,
+    names: UppaalNames,
     /// What all automata know.
-    global: Context,
-    events: IndexMap<EventId, Channel>,
-    channels: IndexMap<ChannelId, Channel>,
+    global: UppaalExprContext,
+    events: IndexMap<EventId, UppaalChannel>,
+    channels: IndexMap<ChannelId, UppaalChannel>,
     /// Names of templates, by their place in the network.
     processes: Vec<String>,
     /// What automata know, by their place in the network.
-    contexts: Vec<Context>,
+    contexts: Vec<UppaalExprContext>,
     /// Names of locations, by automaton in the network.
     locations: Vec<Vec<String>>,
 }
@@ -82,14 +82,14 @@ struct Exporter<'p> {
 ///
 /// # Errors
 /// Everything that UPPAAL's language cannot say.
-pub fn export(program: &Program, network: usize) -> Result<Exported, Vec<Obstacle>> {
+pub fn export(program: &Program, network: usize) -> Result<UppaalDocument, Vec<ExportObstacle>> {
     let Some(chosen) = program.networks.get(network) else {
         let message = "there is no such network".to_owned();
-        return Err(vec![Obstacle { origin: Span::default(), message }]);
+        return Err(vec![ExportObstacle { origin: Span::default(), message }]);
     };
     let queries: Vec<&Query> =
         program.queries.iter().filter(|q| usize::from(q.network.0) == network).collect();
-    let mut exporter = Exporter::new(program, chosen);
+    let mut exporter = UppaalExporter::new(program, chosen);
     exporter.global.unit = time::unit(program, &exporter.automata().collect::<Vec<_>>());
     let declarations = exporter.declarations();
     let mut functions = exporter.shared_functions(&queries);
@@ -116,7 +116,7 @@ pub fn export(program: &Program, network: usize) -> Result<Exported, Vec<Obstacl
     }
     text += "  </queries>\n</nta>\n";
     let queries = asked.iter().map(|(f, c)| format!("/*\n{}\n*/\n{f}\n\n", c.replace("*/", "* /"))).collect();
-    Ok(Exported { text, queries, left_out })
+    Ok(UppaalDocument { text, queries, left_out })
 }
 
 const HEADER: &str = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\
@@ -131,19 +131,19 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-impl<'p> Exporter<'p> {
+impl<'p> UppaalExporter<'p> {
     fn new(program: &'p Program, network: &'p Network) -> Self {
-        let mut names = Names::default();
+        let mut names = UppaalNames::default();
         let automata = network.automata.iter().map(|id| &program.automata[usize::from(id.0)]);
         // Processes keep their names before all others: reports speak of them.
         let processes = automata.map(|a| names.fresh(&a.name)).collect();
         let none = || vec![None; program.functions.len()];
         let of = |v: &AutomatonVar| v.enumeration;
-        let global = Context {
+        let global = UppaalExprContext {
             functions: none(),
             results: program.functions.iter().map(|f| f.result.as_ref().and_then(of)).collect(),
             params: program.functions.iter().map(|f| f.params.iter().map(of).collect()).collect(),
-            ..Context::default()
+            ..UppaalExprContext::default()
         };
         Self {
             program,
@@ -169,7 +169,7 @@ impl<'p> Exporter<'p> {
     }
 
     fn fault(&mut self, span: Span, message: impl Into<String>) {
-        self.faults.push(Obstacle { origin: span, message: message.into() });
+        self.faults.push(ExportObstacle { origin: span, message: message.into() });
     }
 
     /// Keeps what was said; notes what could not be.
@@ -187,7 +187,7 @@ impl<'p> Exporter<'p> {
             format!("// The network {} of the scenario {}.\n", self.network.name, self.program.name);
         text += &format!("// One unit of time is {}.\n", duration(self.global.unit));
         text += &self.enumerations();
-        let mut slots = Slots::default();
+        let mut slots = UppaalSlotTable::default();
         let lines = slots.declare(&self.program.shared, &mut self.names);
         self.global.slots = slots;
         lines.iter().for_each(|line| text += &format!("{line}\n"));
@@ -281,7 +281,7 @@ impl<'p> Exporter<'p> {
             params.push(AutomatonVar { name: param.name.clone(), lo, hi, init: lo, is_bool, enumeration });
         }
         let name = self.names.fresh(&event.name);
-        self.events.insert(id, Channel { name, params, broadcast: true, urgent: false });
+        self.events.insert(id, UppaalChannel { name, params, broadcast: true, urgent: false });
     }
 
     fn channel(&mut self, id: ChannelId) {
@@ -307,7 +307,7 @@ impl<'p> Exporter<'p> {
         };
         let name = self.names.fresh(&channel.name);
         let (params, urgent) = (channel.params.clone(), channel.urgent);
-        self.channels.insert(id, Channel { name, params, broadcast, urgent });
+        self.channels.insert(id, UppaalChannel { name, params, broadcast, urgent });
     }
 
     fn present(&self, parties: &[ChannelParticipant]) -> Vec<ChannelParticipant> {
@@ -325,14 +325,14 @@ impl<'p> Exporter<'p> {
         }
     }
 
-    fn part(&self, id: ChannelId, automaton: AutomatonId) -> Part {
+    fn part(&self, id: ChannelId, automaton: AutomatonId) -> MultiwayRole {
         let ChannelKind::Joint(parties) = &self.program.channels[usize::from(id.0)].kind else {
-            return Part::Alone;
+            return MultiwayRole::Alone;
         };
         match self.present(parties).as_slice() {
-            [one] if !one.optional => Part::Alone,
-            [first, ..] if first.automaton == automaton => Part::Offer,
-            _ => Part::Accept,
+            [one] if !one.optional => MultiwayRole::Alone,
+            [first, ..] if first.automaton == automaton => MultiwayRole::Offer,
+            _ => MultiwayRole::Accept,
         }
     }
 

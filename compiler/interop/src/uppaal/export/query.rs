@@ -3,15 +3,15 @@
 use hrdsl_ir::ta::{Query, QueryFormula, QueryKind, QueryMeasure};
 
 use super::{
-    Exporter,
-    expr::{Context, Level, Said, Text},
-    slots::Slots,
+    UppaalExporter,
+    expr::{UppaalExprContext, UppaalExprText, UppaalPrecedence, UppaalTextResult},
+    slots::UppaalSlotTable,
 };
-use crate::exchange::obstacle::Obstacle;
+use crate::exchange::obstacle::ExportObstacle;
 
-impl Exporter<'_> {
+impl UppaalExporter<'_> {
     /// Each query's formula and comment; and those that UPPAAL cannot ask.
-    pub fn queries(&self, queries: &[&Query]) -> (Vec<(String, String)>, Vec<Obstacle>) {
+    pub fn queries(&self, queries: &[&Query]) -> (Vec<(String, String)>, Vec<ExportObstacle>) {
         let context = self.network_context();
         let (mut asked, mut left_out) = (Vec::new(), Vec::new());
         for query in queries {
@@ -22,7 +22,7 @@ impl Exporter<'_> {
                 }
                 Err(why) => {
                     let message = format!("the query `{}`: UPPAAL cannot say {why}", query.name);
-                    left_out.push(Obstacle { origin: query.origin, message });
+                    left_out.push(ExportObstacle { origin: query.origin, message });
                 }
             }
         }
@@ -30,12 +30,12 @@ impl Exporter<'_> {
     }
 
     /// Variables and clocks as formulas number them: shared ones, then those of each automaton.
-    fn network_context(&self) -> Context {
+    fn network_context(&self) -> UppaalExprContext {
         let mut all = self.global.clone();
         for (context, process) in self.contexts.iter().zip(&self.processes) {
             let prefix = format!("{process}.");
             let shared = self.global.slots.slots.len();
-            let mut own = Slots {
+            let mut own = UppaalSlotTable {
                 slots: context.slots.slots[shared..].to_vec(),
                 groups: context.slots.groups.iter().filter(|g| g.first >= shared).cloned().collect(),
             };
@@ -47,7 +47,7 @@ impl Exporter<'_> {
         all
     }
 
-    fn ask(&self, ask: &QueryKind, context: &Context) -> Said<String> {
+    fn ask(&self, ask: &QueryKind, context: &UppaalExprContext) -> UppaalTextResult<String> {
         let formula = |f: &QueryFormula| self.formula(f, context);
         Ok(match ask {
             QueryKind::Possibly(f) => format!("E<> {}", formula(f)?.text),
@@ -60,7 +60,13 @@ impl Exporter<'_> {
         })
     }
 
-    fn bound(&self, word: &str, of: &[QueryMeasure], when: &QueryFormula, context: &Context) -> Said<String> {
+    fn bound(
+        &self,
+        word: &str,
+        of: &[QueryMeasure],
+        when: &QueryFormula,
+        context: &UppaalExprContext,
+    ) -> UppaalTextResult<String> {
         let when = match when {
             QueryFormula::And(all) if all.is_empty() => String::new(),
             QueryFormula::Data(hrdsl_ir::Expr::Const(hrdsl_ir::Value::Bool(true))) => String::new(),
@@ -80,17 +86,24 @@ impl Exporter<'_> {
                 .ok_or("a clock that is not known here".to_owned()),
             QueryMeasure::Data(e) => context.expr(e, None).map(|t| t.text),
         };
-        Ok(format!("{word}{when}: {}", of.iter().map(measure).collect::<Said<Vec<_>>>()?.join(", ")))
+        Ok(format!(
+            "{word}{when}: {}",
+            of.iter().map(measure).collect::<UppaalTextResult<Vec<_>>>()?.join(", ")
+        ))
     }
 
-    fn formula(&self, formula: &QueryFormula, context: &Context) -> Said<Text> {
-        let joined = |all: &[QueryFormula], sign: &str, level: Level, none: &str| {
+    fn formula(
+        &self,
+        formula: &QueryFormula,
+        context: &UppaalExprContext,
+    ) -> UppaalTextResult<UppaalExprText> {
+        let joined = |all: &[QueryFormula], sign: &str, level: UppaalPrecedence, none: &str| {
             let parts = all.iter().map(|f| self.formula(f, context).map(|t| t.at(level)));
-            let parts = parts.collect::<Said<Vec<_>>>()?;
+            let parts = parts.collect::<UppaalTextResult<Vec<_>>>()?;
             Ok(match parts.as_slice() {
-                [] => Text::new(none, Level::Atom),
+                [] => UppaalExprText::new(none, UppaalPrecedence::Atom),
                 [_] => self.formula(&all[0], context)?,
-                _ => Text::new(parts.join(sign), level),
+                _ => UppaalExprText::new(parts.join(sign), level),
             })
         };
         match formula {
@@ -98,16 +111,19 @@ impl Exporter<'_> {
                 let at = usize::from(*automaton);
                 let name = self.locations.get(at).and_then(|l| l.get(usize::from(location.0)));
                 let name = name.ok_or("a location that is not known here")?;
-                Ok(Text::new(format!("{}.{name}", self.processes[at]), Level::Atom))
+                Ok(UppaalExprText::new(format!("{}.{name}", self.processes[at]), UppaalPrecedence::Atom))
             }
             QueryFormula::Data(e) => context.expr(e, None),
-            QueryFormula::Clock(c) => Ok(Text::new(context.constraint(c)?, Level::Order)),
-            QueryFormula::Deadlock => Ok(Text::new("deadlock", Level::Atom)),
-            QueryFormula::Not(f) => {
-                Ok(Text::new(format!("!{}", self.formula(f, context)?.at(Level::Unary)), Level::Unary))
+            QueryFormula::Clock(c) => {
+                Ok(UppaalExprText::new(context.constraint(c)?, UppaalPrecedence::Order))
             }
-            QueryFormula::And(all) => joined(all, " && ", Level::And, "true"),
-            QueryFormula::Or(all) => joined(all, " || ", Level::Or, "false"),
+            QueryFormula::Deadlock => Ok(UppaalExprText::new("deadlock", UppaalPrecedence::Atom)),
+            QueryFormula::Not(f) => Ok(UppaalExprText::new(
+                format!("!{}", self.formula(f, context)?.at(UppaalPrecedence::Unary)),
+                UppaalPrecedence::Unary,
+            )),
+            QueryFormula::And(all) => joined(all, " && ", UppaalPrecedence::And, "true"),
+            QueryFormula::Or(all) => joined(all, " || ", UppaalPrecedence::Or, "false"),
         }
     }
 }

@@ -5,7 +5,7 @@ use indexmap::IndexSet;
 
 /// Names that are in use.
 #[derive(Clone, Debug, Default)]
-pub struct Names(IndexSet<String>);
+pub struct UppaalNames(IndexSet<String>);
 
 /// Words of UPPAAL's language that are no names.
 const KEYWORDS: &[&str] = &[
@@ -98,7 +98,7 @@ const KEYWORDS: &[&str] = &[
     "while",
 ];
 
-impl Names {
+impl UppaalNames {
     /// A name that nothing else has.
     pub fn fresh(&mut self, wanted: &str) -> String {
         let clean: String = wanted.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
@@ -118,7 +118,7 @@ impl Names {
 
 /// One variable as an expression sees it.
 #[derive(Clone, Debug)]
-pub struct Slot {
+pub struct UppaalSlot {
     /// What reads it and, unless it is a binder, what assigns it.
     pub text: String,
     /// A bool that UPPAAL keeps as a number of 0..1.
@@ -128,7 +128,7 @@ pub struct Slot {
 
 /// Variables that are one array in UPPAAL.
 #[derive(Clone, Debug)]
-pub struct Group {
+pub struct SlotArray {
     /// The slot of the first element.
     pub first: usize,
     pub name: String,
@@ -136,7 +136,7 @@ pub struct Group {
     pub dims: Vec<usize>,
 }
 
-impl Group {
+impl SlotArray {
     pub fn count(&self) -> usize {
         self.dims.iter().product()
     }
@@ -149,14 +149,14 @@ impl Group {
 
 /// What the variables of a place in the program are.
 #[derive(Clone, Debug, Default)]
-pub struct Slots {
-    pub slots: Vec<Slot>,
-    pub groups: Vec<Group>,
+pub struct UppaalSlotTable {
+    pub slots: Vec<UppaalSlot>,
+    pub groups: Vec<SlotArray>,
 }
 
-impl Slots {
+impl UppaalSlotTable {
     /// Adds variables and gives their declarations.
-    pub fn declare(&mut self, vars: &[AutomatonVar], names: &mut Names) -> Vec<String> {
+    pub fn declare(&mut self, vars: &[AutomatonVar], names: &mut UppaalNames) -> Vec<String> {
         let mut lines = Vec::new();
         let mut at = 0;
         while at < vars.len() {
@@ -164,7 +164,7 @@ impl Slots {
             let (base, dims) = array(rest).unwrap_or_else(|| (rest[0].name.clone(), Vec::new()));
             let name = names.fresh(&base);
             let count = dims.iter().product::<usize>();
-            let group = Group { first: self.slots.len(), name: name.clone(), dims };
+            let group = SlotArray { first: self.slots.len(), name: name.clone(), dims };
             for (offset, var) in rest.iter().enumerate().take(count) {
                 let mut text = name.clone();
                 let mut left = offset;
@@ -172,7 +172,7 @@ impl Slots {
                     text += &format!("[{}]", left / stride);
                     left %= stride;
                 }
-                self.slots.push(Slot { text, ..slot(var) });
+                self.slots.push(UppaalSlot { text, ..slot(var) });
             }
             let sizes: String = group.dims.iter().map(|d| format!("[{d}]")).collect();
             let init = initial(&rest[..count], &group.dims);
@@ -192,15 +192,15 @@ impl Slots {
         self
     }
 
-    pub fn append(&mut self, other: Slots) {
+    pub fn append(&mut self, other: UppaalSlotTable) {
         let shift = self.slots.len();
         self.slots.extend(other.slots);
-        self.groups.extend(other.groups.into_iter().map(|g| Group { first: g.first + shift, ..g }));
+        self.groups.extend(other.groups.into_iter().map(|g| SlotArray { first: g.first + shift, ..g }));
     }
 }
 
-pub fn slot(var: &AutomatonVar) -> Slot {
-    Slot { text: var.name.clone(), as_number: false, enumeration: var.enumeration }
+pub fn slot(var: &AutomatonVar) -> UppaalSlot {
+    UppaalSlot { text: var.name.clone(), as_number: false, enumeration: var.enumeration }
 }
 
 pub fn ty(var: &AutomatonVar) -> String {

@@ -3,13 +3,13 @@
 use hrdsl_source::Span;
 
 #[derive(Clone, Debug)]
-pub struct Expr {
-    pub kind: ExprKind,
+pub struct UppaalExpr {
+    pub kind: UppaalExprKind,
     pub span: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BinaryOp {
+pub enum UppaalBinaryOperator {
     Add,
     Sub,
     Mul,
@@ -31,49 +31,49 @@ pub enum BinaryOp {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantifier {
+pub enum UppaalQuantifier {
     Forall,
     Exists,
     Sum,
 }
 
 #[derive(Clone, Debug)]
-pub enum ExprKind {
+pub enum UppaalExprKind {
     Int(i64),
     Bool(bool),
     Name(String),
-    Neg(Box<Expr>),
-    Not(Box<Expr>),
-    Binary(BinaryOp, Box<Expr>, Box<Expr>),
-    Choice(Box<Expr>, Box<Expr>, Box<Expr>),
-    Index(Box<Expr>, Box<Expr>),
-    Call(Box<Expr>, Vec<Expr>),
-    Field(Box<Expr>, String),
+    Neg(Box<UppaalExpr>),
+    Not(Box<UppaalExpr>),
+    Binary(UppaalBinaryOperator, Box<UppaalExpr>, Box<UppaalExpr>),
+    Choice(Box<UppaalExpr>, Box<UppaalExpr>, Box<UppaalExpr>),
+    Index(Box<UppaalExpr>, Box<UppaalExpr>),
+    Call(Box<UppaalExpr>, Vec<UppaalExpr>),
+    Field(Box<UppaalExpr>, String),
     /// `a op= b`; no operator: `a = b`
-    Assign(Option<BinaryOp>, Box<Expr>, Box<Expr>),
+    Assign(Option<UppaalBinaryOperator>, Box<UppaalExpr>, Box<UppaalExpr>),
     /// `++` and `--`, before or after.
     Step {
         up: bool,
-        of: Box<Expr>,
+        of: Box<UppaalExpr>,
     },
-    Quantified(Quantifier, String, Box<Type>, Box<Expr>),
+    Quantified(UppaalQuantifier, String, Box<UppaalType>, Box<UppaalExpr>),
     /// `x'`
     Rate,
     Deadlock,
 }
 
 #[derive(Clone, Debug)]
-pub struct Type {
+pub struct UppaalType {
     pub constant: bool,
     pub urgent: bool,
     pub broadcast: bool,
-    pub base: Base,
+    pub base: UppaalBaseType,
     pub span: Span,
 }
 
 #[derive(Clone, Debug)]
-pub enum Base {
-    Int(Option<Box<(Expr, Expr)>>),
+pub enum UppaalBaseType {
+    Int(Option<Box<(UppaalExpr, UppaalExpr)>>),
     Bool,
     Clock,
     Chan,
@@ -83,152 +83,157 @@ pub enum Base {
 
 /// One dimension of an array: so many, or one for each value of a type.
 #[derive(Clone, Debug)]
-pub enum Dim {
-    Size(Expr),
-    Of(Type),
+pub enum UppaalDimension {
+    Size(UppaalExpr),
+    Of(UppaalType),
 }
 
 #[derive(Clone, Debug)]
-pub enum Init {
-    One(Expr),
-    List(Vec<Init>, Span),
+pub enum UppaalInitializer {
+    One(UppaalExpr),
+    List(Vec<UppaalInitializer>, Span),
 }
 
 #[derive(Clone, Debug)]
-pub struct Declarator {
+pub struct UppaalDeclarator {
     pub name: String,
     pub span: Span,
-    pub dims: Vec<Dim>,
-    pub init: Option<Init>,
+    pub dims: Vec<UppaalDimension>,
+    pub init: Option<UppaalInitializer>,
 }
 
 #[derive(Clone, Debug)]
-pub struct Param {
-    pub ty: Type,
+pub struct UppaalParameter {
+    pub ty: UppaalType,
     pub by_reference: bool,
     pub name: String,
-    pub dims: Vec<Dim>,
+    pub dims: Vec<UppaalDimension>,
     pub span: Span,
 }
 
 #[derive(Clone, Debug)]
-pub struct Function {
-    pub ty: Type,
+pub struct UppaalFunction {
+    pub ty: UppaalType,
     pub name: String,
-    pub params: Vec<Param>,
-    pub body: Vec<Statement>,
+    pub params: Vec<UppaalParameter>,
+    pub body: Vec<UppaalStatement>,
     pub span: Span,
 }
 
 #[derive(Clone, Debug)]
-pub enum Decl {
-    Vars(Type, Vec<Declarator>),
-    Typedef(Type, Declarator),
-    Function(Function),
+pub enum UppaalDeclaration {
+    Vars(UppaalType, Vec<UppaalDeclarator>),
+    Typedef(UppaalType, UppaalDeclarator),
+    Function(UppaalFunction),
     /// `name(params) = of(args);`
-    Instance(Instance),
+    Instance(UppaalInstance),
     /// `system A, B;`
     System(Vec<(String, Span)>),
 }
 
 #[derive(Clone, Debug)]
-pub struct Instance {
+pub struct UppaalInstance {
     pub name: String,
-    pub params: Vec<Param>,
+    pub params: Vec<UppaalParameter>,
     pub of: String,
-    pub args: Vec<Expr>,
+    pub args: Vec<UppaalExpr>,
     pub span: Span,
 }
 
 #[derive(Clone, Debug)]
-pub struct Statement {
-    pub kind: StatementKind,
+pub struct UppaalStatement {
+    pub kind: UppaalStatementKind,
     pub span: Span,
 }
 
 #[derive(Clone, Debug)]
-pub enum StatementKind {
-    Decl(Decl),
-    Expr(Expr),
-    Block(Vec<Statement>),
-    If(Expr, Box<Statement>, Option<Box<Statement>>),
-    While(Expr, Box<Statement>),
-    DoWhile(Box<Statement>, Expr),
-    For(Vec<Expr>, Option<Expr>, Vec<Expr>, Box<Statement>),
-    ForRange(String, Type, Box<Statement>),
-    Return(Option<Expr>),
+pub enum UppaalStatementKind {
+    Decl(UppaalDeclaration),
+    Expr(UppaalExpr),
+    Block(Vec<UppaalStatement>),
+    If(UppaalExpr, Box<UppaalStatement>, Option<Box<UppaalStatement>>),
+    While(UppaalExpr, Box<UppaalStatement>),
+    DoWhile(Box<UppaalStatement>, UppaalExpr),
+    For(Vec<UppaalExpr>, Option<UppaalExpr>, Vec<UppaalExpr>, Box<UppaalStatement>),
+    ForRange(String, UppaalType, Box<UppaalStatement>),
+    Return(Option<UppaalExpr>),
     Empty,
 }
 
 /// `c[i]!`
 #[derive(Clone, Debug)]
-pub struct Sync {
-    pub channel: Expr,
+pub struct UppaalSync {
+    pub channel: UppaalExpr,
     pub offers: bool,
 }
 
 #[derive(Clone, Debug)]
-pub struct Select {
+pub struct UppaalSelect {
     pub name: String,
-    pub ty: Type,
+    pub ty: UppaalType,
     pub span: Span,
 }
 
 #[derive(Clone, Debug)]
-pub enum Ask {
-    Possibly(Expr),
-    Invariantly(Expr),
-    PotentiallyAlways(Expr),
-    Eventually(Expr),
-    LeadsTo(Expr, Expr),
-    Sup(Option<Expr>, Vec<Expr>),
-    Inf(Option<Expr>, Vec<Expr>),
+pub enum UppaalQuery {
+    Possibly(UppaalExpr),
+    Invariantly(UppaalExpr),
+    PotentiallyAlways(UppaalExpr),
+    Eventually(UppaalExpr),
+    LeadsTo(UppaalExpr, UppaalExpr),
+    Sup(Option<UppaalExpr>, Vec<UppaalExpr>),
+    Inf(Option<UppaalExpr>, Vec<UppaalExpr>),
 }
 
-impl Expr {
+impl UppaalExpr {
     /// The name at the bottom of a chain of indices and fields.
     pub fn root(&self) -> Option<&str> {
         match &self.kind {
-            ExprKind::Name(name) => Some(name),
-            ExprKind::Index(of, _) | ExprKind::Field(of, _) => of.root(),
-            ExprKind::Int(_)
-            | ExprKind::Bool(_)
-            | ExprKind::Neg(_)
-            | ExprKind::Not(_)
-            | ExprKind::Binary(..)
-            | ExprKind::Choice(..)
-            | ExprKind::Call(..)
-            | ExprKind::Assign(..)
-            | ExprKind::Step { .. }
-            | ExprKind::Quantified(..)
-            | ExprKind::Rate
-            | ExprKind::Deadlock => None,
+            UppaalExprKind::Name(name) => Some(name),
+            UppaalExprKind::Index(of, _) | UppaalExprKind::Field(of, _) => of.root(),
+            UppaalExprKind::Int(_)
+            | UppaalExprKind::Bool(_)
+            | UppaalExprKind::Neg(_)
+            | UppaalExprKind::Not(_)
+            | UppaalExprKind::Binary(..)
+            | UppaalExprKind::Choice(..)
+            | UppaalExprKind::Call(..)
+            | UppaalExprKind::Assign(..)
+            | UppaalExprKind::Step { .. }
+            | UppaalExprKind::Quantified(..)
+            | UppaalExprKind::Rate
+            | UppaalExprKind::Deadlock => None,
         }
     }
 
     /// Calls `f` with it and every expression in it.
-    pub fn each(&self, f: &mut dyn FnMut(&Expr)) {
+    pub fn each(&self, f: &mut dyn FnMut(&UppaalExpr)) {
         f(self);
         match &self.kind {
-            ExprKind::Int(_)
-            | ExprKind::Bool(_)
-            | ExprKind::Name(_)
-            | ExprKind::Rate
-            | ExprKind::Deadlock => {}
-            ExprKind::Neg(a) | ExprKind::Not(a) | ExprKind::Field(a, _) | ExprKind::Step { of: a, .. } => {
+            UppaalExprKind::Int(_)
+            | UppaalExprKind::Bool(_)
+            | UppaalExprKind::Name(_)
+            | UppaalExprKind::Rate
+            | UppaalExprKind::Deadlock => {}
+            UppaalExprKind::Neg(a)
+            | UppaalExprKind::Not(a)
+            | UppaalExprKind::Field(a, _)
+            | UppaalExprKind::Step { of: a, .. } => {
                 a.each(f);
             }
-            ExprKind::Quantified(_, _, _, a) => a.each(f),
-            ExprKind::Binary(_, a, b) | ExprKind::Index(a, b) | ExprKind::Assign(_, a, b) => {
+            UppaalExprKind::Quantified(_, _, _, a) => a.each(f),
+            UppaalExprKind::Binary(_, a, b)
+            | UppaalExprKind::Index(a, b)
+            | UppaalExprKind::Assign(_, a, b) => {
                 a.each(f);
                 b.each(f);
             }
-            ExprKind::Choice(a, b, c) => {
+            UppaalExprKind::Choice(a, b, c) => {
                 a.each(f);
                 b.each(f);
                 c.each(f);
             }
-            ExprKind::Call(of, args) => {
+            UppaalExprKind::Call(of, args) => {
                 of.each(f);
                 args.iter().for_each(|a| a.each(f));
             }
@@ -236,27 +241,28 @@ impl Expr {
     }
 }
 
-impl Statement {
+impl UppaalStatement {
     /// Calls `f` with every expression in it.
-    pub fn each(&self, f: &mut dyn FnMut(&Expr)) {
+    pub fn each(&self, f: &mut dyn FnMut(&UppaalExpr)) {
         match &self.kind {
-            StatementKind::Expr(e) | StatementKind::Return(Some(e)) => e.each(f),
-            StatementKind::Block(all) => all.iter().for_each(|s| s.each(f)),
-            StatementKind::If(c, then, otherwise) => {
+            UppaalStatementKind::Expr(e) | UppaalStatementKind::Return(Some(e)) => e.each(f),
+            UppaalStatementKind::Block(all) => all.iter().for_each(|s| s.each(f)),
+            UppaalStatementKind::If(c, then, otherwise) => {
                 c.each(f);
                 then.each(f);
                 otherwise.iter().for_each(|s| s.each(f));
             }
-            StatementKind::While(c, body) | StatementKind::DoWhile(body, c) => {
+            UppaalStatementKind::While(c, body) | UppaalStatementKind::DoWhile(body, c) => {
                 c.each(f);
                 body.each(f);
             }
-            StatementKind::For(init, c, step, body) => {
+            UppaalStatementKind::For(init, c, step, body) => {
                 init.iter().chain(c).chain(step).for_each(|e| e.each(f));
                 body.each(f);
             }
-            StatementKind::ForRange(_, _, body) => body.each(f),
-            StatementKind::Decl(_) | StatementKind::Return(None) | StatementKind::Empty => {}
+            UppaalStatementKind::ForRange(_, _, body) => body.each(f),
+            UppaalStatementKind::Decl(_) | UppaalStatementKind::Return(None) | UppaalStatementKind::Empty => {
+            }
         }
     }
 }

@@ -3,11 +3,11 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{BinaryOp, Expr, ExprKind, Quantifier},
+    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier},
     expr::{all, not},
-    fault::{Fault, fault},
-    scope::{Level, Out, Sym},
-    translation::Cx,
+    fault::{UppaalFault, fault},
+    scope::{ScenarioExprText, ScenarioPrecedence, UppaalSymbol},
+    translation::UppaalTranslation,
 };
 
 /// How many edges one transition may become.
@@ -15,12 +15,12 @@ const MAX_ALTERNATIVES: usize = 64;
 
 /// A conjunction.
 #[derive(Clone, Debug, Default)]
-pub struct Conjunction {
+pub struct GuardConjunction {
     pub clocks: Vec<String>,
-    pub data: Vec<Out>,
+    pub data: Vec<ScenarioExprText>,
 }
 
-impl Conjunction {
+impl GuardConjunction {
     /// The text, empty if it always holds; `None` if it never does.
     pub fn text(&self) -> Option<String> {
         let data = all(self.data.iter().cloned());
@@ -28,102 +28,110 @@ impl Conjunction {
             Some(0) => None,
             Some(_) => Some(self.clocks.join(" && ")),
             None if self.clocks.is_empty() => Some(data.text),
-            None => Some(format!("{} && {}", self.clocks.join(" && "), data.at(Level::And))),
+            None => Some(format!("{} && {}", self.clocks.join(" && "), data.at(ScenarioPrecedence::And))),
         }
     }
 }
 
 /// Clocks with their signs, and what is added to them.
 #[derive(Default)]
-struct Sum {
+struct UppaalClockSum {
     clocks: Vec<(i64, String)>,
-    terms: Vec<(i64, Out)>,
+    terms: Vec<(i64, ScenarioExprText)>,
 }
 
-impl Cx<'_> {
-    pub fn mentions_clock(&mut self, e: &Expr) -> bool {
+impl UppaalTranslation<'_> {
+    pub fn mentions_clock(&mut self, e: &UppaalExpr) -> bool {
         let mut names = Vec::new();
         e.each(&mut |part| match &part.kind {
-            ExprKind::Name(_) | ExprKind::Field(..) => names.push(part.clone()),
-            ExprKind::Int(_)
-            | ExprKind::Bool(_)
-            | ExprKind::Neg(_)
-            | ExprKind::Not(_)
-            | ExprKind::Binary(..)
-            | ExprKind::Choice(..)
-            | ExprKind::Index(..)
-            | ExprKind::Call(..)
-            | ExprKind::Assign(..)
-            | ExprKind::Step { .. }
-            | ExprKind::Quantified(..)
-            | ExprKind::Rate
-            | ExprKind::Deadlock => {}
+            UppaalExprKind::Name(_) | UppaalExprKind::Field(..) => names.push(part.clone()),
+            UppaalExprKind::Int(_)
+            | UppaalExprKind::Bool(_)
+            | UppaalExprKind::Neg(_)
+            | UppaalExprKind::Not(_)
+            | UppaalExprKind::Binary(..)
+            | UppaalExprKind::Choice(..)
+            | UppaalExprKind::Index(..)
+            | UppaalExprKind::Call(..)
+            | UppaalExprKind::Assign(..)
+            | UppaalExprKind::Step { .. }
+            | UppaalExprKind::Quantified(..)
+            | UppaalExprKind::Rate
+            | UppaalExprKind::Deadlock => {}
         });
         names.iter().any(|n| self.names_clock(n))
     }
 
-    fn names_clock(&mut self, e: &Expr) -> bool {
+    fn names_clock(&mut self, e: &UppaalExpr) -> bool {
         match &e.kind {
-            ExprKind::Name(name) => matches!(self.find(name), Some(Sym::Clock(_))),
+            UppaalExprKind::Name(name) => matches!(self.find(name), Some(UppaalSymbol::Clock(_))),
             // What `forall` binds may be an argument of the process: any of its processes has the same clocks.
-            ExprKind::Field(of, field) => {
+            UppaalExprKind::Field(of, field) => {
                 let name = match &of.kind {
-                    ExprKind::Call(of, _) => of.root(),
+                    UppaalExprKind::Call(of, _) => of.root(),
                     _ => of.root(),
                 };
-                let of_name = |p: &&super::translation::Process| name == Some(&p.model_name);
+                let of_name = |p: &&super::translation::UppaalProcess| name == Some(&p.model_name);
                 let process = self.processes.iter().find(of_name);
-                process.is_some_and(|p| matches!(p.scope.get(field), Some(Sym::Clock(_))))
+                process.is_some_and(|p| matches!(p.scope.get(field), Some(UppaalSymbol::Clock(_))))
             }
             _ => false,
         }
     }
 
     /// The alternatives of a condition, each a conjunction.
-    pub fn alternatives(&mut self, e: &Expr) -> Result<Vec<Conjunction>, Fault> {
+    pub fn alternatives(&mut self, e: &UppaalExpr) -> Result<Vec<GuardConjunction>, UppaalFault> {
         self.split(e, true)
     }
 
     /// Where the condition is as `wanted`.
-    fn split(&mut self, e: &Expr, wanted: bool) -> Result<Vec<Conjunction>, Fault> {
+    fn split(&mut self, e: &UppaalExpr, wanted: bool) -> Result<Vec<GuardConjunction>, UppaalFault> {
         if !self.mentions_clock(e) {
             let data = self.condition(e)?;
             let data = if wanted { data } else { not(&data) };
-            return Ok(vec![Conjunction { clocks: Vec::new(), data: vec![data] }]);
+            return Ok(vec![GuardConjunction { clocks: Vec::new(), data: vec![data] }]);
         }
         match &e.kind {
-            ExprKind::Not(of) => self.split(of, !wanted),
-            ExprKind::Binary(BinaryOp::And, a, b) => {
+            UppaalExprKind::Not(of) => self.split(of, !wanted),
+            UppaalExprKind::Binary(UppaalBinaryOperator::And, a, b) => {
                 let parts = vec![self.split(a, wanted)?, self.split(b, wanted)?];
                 combine(parts, wanted, e.span)
             }
-            ExprKind::Binary(BinaryOp::Or, a, b) => {
+            UppaalExprKind::Binary(UppaalBinaryOperator::Or, a, b) => {
                 let parts = vec![self.split(a, wanted)?, self.split(b, wanted)?];
                 combine(parts, !wanted, e.span)
             }
-            ExprKind::Binary(BinaryOp::Imply, a, b) => {
+            UppaalExprKind::Binary(UppaalBinaryOperator::Imply, a, b) => {
                 let parts = vec![self.split(a, !wanted)?, self.split(b, wanted)?];
                 combine(parts, !wanted, e.span)
             }
-            ExprKind::Choice(c, a, b) => {
+            UppaalExprKind::Choice(c, a, b) => {
                 let yes = combine(vec![self.split(c, true)?, self.split(a, wanted)?], true, e.span)?;
                 let no = combine(vec![self.split(c, false)?, self.split(b, wanted)?], true, e.span)?;
                 combine(vec![yes, no], false, e.span)
             }
-            ExprKind::Quantified(q @ (Quantifier::Forall | Quantifier::Exists), name, ty, of) => {
+            UppaalExprKind::Quantified(
+                q @ (UppaalQuantifier::Forall | UppaalQuantifier::Exists),
+                name,
+                ty,
+                of,
+            ) => {
                 let parts = self.parts(name, ty, |cx| cx.split(of, wanted))?;
-                combine(parts, (*q == Quantifier::Forall) == wanted, e.span)
+                combine(parts, (*q == UppaalQuantifier::Forall) == wanted, e.span)
             }
-            ExprKind::Binary(op, a, b) => {
-                let Some(op) = Comparison::of(*op) else {
+            UppaalExprKind::Binary(op, a, b) => {
+                let Some(op) = UppaalClockComparison::of(*op) else {
                     return fault(e.span, "clocks may be compared, and nothing else");
                 };
                 let op = if wanted { op } else { op.negated() };
-                let sides =
-                    if op == Comparison::Ne { vec![Comparison::Lt, Comparison::Gt] } else { vec![op] };
+                let sides = if op == UppaalClockComparison::Ne {
+                    vec![UppaalClockComparison::Lt, UppaalClockComparison::Gt]
+                } else {
+                    vec![op]
+                };
                 let one = |cx: &mut Self, op| {
                     let clocks = vec![cx.comparison(op, a, b, e.span)?];
-                    Ok(Conjunction { clocks, data: Vec::new() })
+                    Ok(GuardConjunction { clocks, data: Vec::new() })
                 };
                 sides.into_iter().map(|op| one(self, op)).collect()
             }
@@ -135,8 +143,14 @@ impl Cx<'_> {
     }
 
     /// A comparison of clocks as a scenario writes it.
-    fn comparison(&mut self, op: Comparison, a: &Expr, b: &Expr, span: Span) -> Result<String, Fault> {
-        let mut sum = Sum::default();
+    fn comparison(
+        &mut self,
+        op: UppaalClockComparison,
+        a: &UppaalExpr,
+        b: &UppaalExpr,
+        span: Span,
+    ) -> Result<String, UppaalFault> {
+        let mut sum = UppaalClockSum::default();
         self.add(a, 1, &mut sum)?;
         self.add(b, -1, &mut sum)?;
         sum.terms.iter_mut().for_each(|(sign, _)| *sign = -*sign);
@@ -154,23 +168,23 @@ impl Cx<'_> {
         Ok(format!("{left} {} {}", op.text(), time(&sum.terms)))
     }
 
-    fn add(&mut self, e: &Expr, sign: i64, sum: &mut Sum) -> Result<(), Fault> {
+    fn add(&mut self, e: &UppaalExpr, sign: i64, sum: &mut UppaalClockSum) -> Result<(), UppaalFault> {
         if !self.mentions_clock(e) {
             let value = self.expr(e)?.into_int();
             sum.terms.push((sign, value));
             return Ok(());
         }
         match &e.kind {
-            ExprKind::Binary(BinaryOp::Add, a, b) => {
+            UppaalExprKind::Binary(UppaalBinaryOperator::Add, a, b) => {
                 self.add(a, sign, sum)?;
                 self.add(b, sign, sum)
             }
-            ExprKind::Binary(BinaryOp::Sub, a, b) => {
+            UppaalExprKind::Binary(UppaalBinaryOperator::Sub, a, b) => {
                 self.add(a, sign, sum)?;
                 self.add(b, -sign, sum)
             }
-            ExprKind::Neg(of) => self.add(of, -sign, sum),
-            ExprKind::Name(_) | ExprKind::Index(..) | ExprKind::Field(..) => {
+            UppaalExprKind::Neg(of) => self.add(of, -sign, sum),
+            UppaalExprKind::Name(_) | UppaalExprKind::Index(..) | UppaalExprKind::Field(..) => {
                 let clock = self.clock(e)?;
                 sum.clocks.push((sign, clock));
                 Ok(())
@@ -182,17 +196,17 @@ impl Cx<'_> {
         }
     }
 
-    pub fn clock(&mut self, e: &Expr) -> Result<String, Fault> {
+    pub fn clock(&mut self, e: &UppaalExpr) -> Result<String, UppaalFault> {
         match self.place(e)? {
-            Sym::Clock(c) if c.dims.is_empty() => Ok(c.name),
-            Sym::Clock(_) => fault(e.span, "this is an array of clocks: an index is missing"),
+            UppaalSymbol::Clock(c) if c.dims.is_empty() => Ok(c.name),
+            UppaalSymbol::Clock(_) => fault(e.span, "this is an array of clocks: an index is missing"),
             other => fault(e.span, format!("expected a clock, found {}", other.noun())),
         }
     }
 
     /// What a clock is set to.
-    pub fn setting(&mut self, e: &Expr) -> Result<String, Fault> {
-        let mut sum = Sum::default();
+    pub fn setting(&mut self, e: &UppaalExpr) -> Result<String, UppaalFault> {
+        let mut sum = UppaalClockSum::default();
         self.add(e, 1, &mut sum)?;
         let value = time(&sum.terms);
         match sum.clocks.as_slice() {
@@ -204,37 +218,43 @@ impl Cx<'_> {
     }
 
     /// A condition of a query, in which clocks may stand under `or` and `not`.
-    pub fn formula(&mut self, e: &Expr) -> Result<Out, Fault> {
+    pub fn formula(&mut self, e: &UppaalExpr) -> Result<ScenarioExprText, UppaalFault> {
         if !self.mentions_clock(e) {
             return self.condition(e);
         }
         match &e.kind {
-            ExprKind::Not(of) => self.formula(of).map(|of| not(&of)),
-            ExprKind::Binary(BinaryOp::And, a, b) => {
+            UppaalExprKind::Not(of) => self.formula(of).map(|of| not(&of)),
+            UppaalExprKind::Binary(UppaalBinaryOperator::And, a, b) => {
                 let parts = [self.formula(a)?, self.formula(b)?];
                 Ok(all(parts.into_iter()))
             }
-            ExprKind::Binary(BinaryOp::Or, a, b) => {
+            UppaalExprKind::Binary(UppaalBinaryOperator::Or, a, b) => {
                 let parts = [self.formula(a)?, self.formula(b)?];
                 Ok(super::expr::any(parts.into_iter()))
             }
-            ExprKind::Binary(BinaryOp::Imply, a, b) => {
+            UppaalExprKind::Binary(UppaalBinaryOperator::Imply, a, b) => {
                 let (a, b) = (self.formula(a)?, self.formula(b)?);
-                let text = format!("{} imply {}", a.at(Level::Or), b.at(Level::Or));
-                Ok(Out::new(text, Level::Imply, true))
+                let text = format!("{} imply {}", a.at(ScenarioPrecedence::Or), b.at(ScenarioPrecedence::Or));
+                Ok(ScenarioExprText::new(text, ScenarioPrecedence::Imply, true))
             }
-            ExprKind::Quantified(Quantifier::Forall, name, ty, of) => {
+            UppaalExprKind::Quantified(UppaalQuantifier::Forall, name, ty, of) => {
                 Ok(all(self.parts(name, ty, |cx| cx.formula(of))?.into_iter()))
             }
-            ExprKind::Quantified(Quantifier::Exists, name, ty, of) => {
+            UppaalExprKind::Quantified(UppaalQuantifier::Exists, name, ty, of) => {
                 Ok(super::expr::any(self.parts(name, ty, |cx| cx.formula(of))?.into_iter()))
             }
             _ => {
                 let parts = self.split(e, true)?;
-                let text = |c: &Conjunction| {
-                    let level =
-                        if c.clocks.len() + c.data.len() > 1 { Level::And } else { Level::Comparison };
-                    c.text().map_or_else(|| Out::bool(false), |t| Out::new(t, level, true))
+                let text = |c: &GuardConjunction| {
+                    let level = if c.clocks.len() + c.data.len() > 1 {
+                        ScenarioPrecedence::And
+                    } else {
+                        ScenarioPrecedence::Comparison
+                    };
+                    c.text().map_or_else(
+                        || ScenarioExprText::bool(false),
+                        |t| ScenarioExprText::new(t, level, true),
+                    )
                 };
                 Ok(super::expr::any(parts.iter().map(text)))
             }
@@ -243,11 +263,16 @@ impl Cx<'_> {
 }
 
 /// All of these together, or one of them.
-fn combine(parts: Vec<Vec<Conjunction>>, together: bool, span: Span) -> Result<Vec<Conjunction>, Fault> {
-    let mut out: Vec<Conjunction> = if together { vec![Conjunction::default()] } else { Vec::new() };
+fn combine(
+    parts: Vec<Vec<GuardConjunction>>,
+    together: bool,
+    span: Span,
+) -> Result<Vec<GuardConjunction>, UppaalFault> {
+    let mut out: Vec<GuardConjunction> =
+        if together { vec![GuardConjunction::default()] } else { Vec::new() };
     for part in parts {
         if together {
-            let with = |a: &Conjunction, b: &Conjunction| Conjunction {
+            let with = |a: &GuardConjunction, b: &GuardConjunction| GuardConjunction {
                 clocks: a.clocks.iter().chain(&b.clocks).cloned().collect(),
                 data: a.data.iter().chain(&b.data).cloned().collect(),
             };
@@ -266,11 +291,11 @@ fn combine(parts: Vec<Vec<Conjunction>>, together: bool, span: Span) -> Result<V
 }
 
 /// A sum of numbers as a time, one unit being a second.
-fn time(terms: &[(i64, Out)]) -> String {
+fn time(terms: &[(i64, ScenarioExprText)]) -> String {
     if let Some(all) = terms.iter().map(|(s, t)| t.value.map(|n| s * n)).collect::<Option<Vec<_>>>() {
         // The name of a constant says more than its number.
         if let [(1, only)] = terms
-            && only.level == Level::Atom
+            && only.level == ScenarioPrecedence::Atom
             && only.text.parse::<i64>().is_err()
         {
             return format!("{} * 1 s", only.text);
@@ -281,7 +306,7 @@ fn time(terms: &[(i64, Out)]) -> String {
     for (sign, term) in terms {
         let shown = match term.value {
             Some(n) => format!("{n} s"),
-            None => format!("{} * 1 s", term.at(Level::Atom)),
+            None => format!("{} * 1 s", term.at(ScenarioPrecedence::Atom)),
         };
         match (text.is_empty(), sign) {
             (true, 1) => text = shown,
@@ -294,7 +319,7 @@ fn time(terms: &[(i64, Out)]) -> String {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Comparison {
+enum UppaalClockComparison {
     Lt,
     Le,
     Eq,
@@ -303,25 +328,25 @@ enum Comparison {
     Ne,
 }
 
-impl Comparison {
-    fn of(op: BinaryOp) -> Option<Self> {
+impl UppaalClockComparison {
+    fn of(op: UppaalBinaryOperator) -> Option<Self> {
         Some(match op {
-            BinaryOp::Lt => Self::Lt,
-            BinaryOp::Le => Self::Le,
-            BinaryOp::Eq => Self::Eq,
-            BinaryOp::Ge => Self::Ge,
-            BinaryOp::Gt => Self::Gt,
-            BinaryOp::Ne => Self::Ne,
-            BinaryOp::Add
-            | BinaryOp::Sub
-            | BinaryOp::Mul
-            | BinaryOp::Div
-            | BinaryOp::Rem
-            | BinaryOp::Min
-            | BinaryOp::Max
-            | BinaryOp::And
-            | BinaryOp::Or
-            | BinaryOp::Imply => return None,
+            UppaalBinaryOperator::Lt => Self::Lt,
+            UppaalBinaryOperator::Le => Self::Le,
+            UppaalBinaryOperator::Eq => Self::Eq,
+            UppaalBinaryOperator::Ge => Self::Ge,
+            UppaalBinaryOperator::Gt => Self::Gt,
+            UppaalBinaryOperator::Ne => Self::Ne,
+            UppaalBinaryOperator::Add
+            | UppaalBinaryOperator::Sub
+            | UppaalBinaryOperator::Mul
+            | UppaalBinaryOperator::Div
+            | UppaalBinaryOperator::Rem
+            | UppaalBinaryOperator::Min
+            | UppaalBinaryOperator::Max
+            | UppaalBinaryOperator::And
+            | UppaalBinaryOperator::Or
+            | UppaalBinaryOperator::Imply => return None,
         })
     }
 

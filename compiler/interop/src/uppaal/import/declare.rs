@@ -5,13 +5,16 @@ use std::rc::Rc;
 use hrdsl_source::Span;
 
 use super::{
-    ast::{Base, Decl, Declarator, Dim, ExprKind, Init, Param, Type},
-    fault::{Fault, fault},
-    scope::{
-        ArrayOf, ChanSym, ClockSym, FunctionSym, Level, Out, Owner, Range, Scalar, Sym, Ty, VarSym,
-        combinations, numbered,
+    ast::{
+        UppaalBaseType, UppaalDeclaration, UppaalDeclarator, UppaalDimension, UppaalExprKind,
+        UppaalInitializer, UppaalParameter, UppaalType,
     },
-    translation::Cx,
+    fault::{UppaalFault, fault},
+    scope::{
+        ArrayOf, ChanSym, ClockSym, FunctionSym, IndexRange, NameOwner, ScenarioExprText, ScenarioPrecedence,
+        UppaalScalarType, UppaalSymbol, UppaalSymbolType, VarSym, combinations, numbered,
+    },
+    translation::UppaalTranslation,
 };
 
 /// Single values that one declaration may have.
@@ -20,13 +23,15 @@ const MAX_VALUES: i64 = 256;
 /// UPPAAL's integers without a range.
 const INT: (i64, i64) = (-32768, 32767);
 
-impl Cx<'_> {
+impl UppaalTranslation<'_> {
     // ── Types ──
 
-    pub fn ty(&mut self, ty: &Type) -> Result<Ty, Fault> {
+    pub fn ty(&mut self, ty: &UppaalType) -> Result<UppaalSymbolType, UppaalFault> {
         match &ty.base {
-            Base::Int(None) => Ok(Ty::Data(Scalar::range(INT.0, INT.1), Vec::new())),
-            Base::Int(Some(bounds)) => {
+            UppaalBaseType::Int(None) => {
+                Ok(UppaalSymbolType::Data(UppaalScalarType::range(INT.0, INT.1), Vec::new()))
+            }
+            UppaalBaseType::Int(Some(bounds)) => {
                 let (lo, hi) = (self.expr(&bounds.0)?.into_int(), self.expr(&bounds.1)?.into_int());
                 let (Some(l), Some(h)) = (lo.value, hi.value) else {
                     return fault(ty.span, "the bounds of a type must be constant");
@@ -34,22 +39,25 @@ impl Cx<'_> {
                 if l > h {
                     return fault(ty.span, format!("the range {l}..{h} is empty"));
                 }
-                let text = format!("{}..{}", lo.at(Level::Sum), hi.at(Level::Sum));
-                Ok(Ty::Data(Scalar { text, ..Scalar::range(l, h) }, Vec::new()))
+                let text = format!("{}..{}", lo.at(ScenarioPrecedence::Sum), hi.at(ScenarioPrecedence::Sum));
+                Ok(UppaalSymbolType::Data(
+                    UppaalScalarType { text, ..UppaalScalarType::range(l, h) },
+                    Vec::new(),
+                ))
             }
-            Base::Bool => Ok(Ty::Data(Scalar::bool(), Vec::new())),
-            Base::Clock => Ok(Ty::Clock(Vec::new())),
-            Base::Chan => {
+            UppaalBaseType::Bool => Ok(UppaalSymbolType::Data(UppaalScalarType::bool(), Vec::new())),
+            UppaalBaseType::Clock => Ok(UppaalSymbolType::Clock(Vec::new())),
+            UppaalBaseType::Chan => {
                 let (urgent, broadcast) = (ty.urgent, ty.broadcast);
-                Ok(Ty::Chan { urgent, broadcast, dims: Vec::new() })
+                Ok(UppaalSymbolType::Chan { urgent, broadcast, dims: Vec::new() })
             }
-            Base::Void => Ok(Ty::Void),
-            Base::Named(name) => match self.find(name).cloned() {
-                Some(Sym::Type(Ty::Chan { urgent, broadcast, dims })) => {
+            UppaalBaseType::Void => Ok(UppaalSymbolType::Void),
+            UppaalBaseType::Named(name) => match self.find(name).cloned() {
+                Some(UppaalSymbol::Type(UppaalSymbolType::Chan { urgent, broadcast, dims })) => {
                     let (urgent, broadcast) = (urgent || ty.urgent, broadcast || ty.broadcast);
-                    Ok(Ty::Chan { urgent, broadcast, dims })
+                    Ok(UppaalSymbolType::Chan { urgent, broadcast, dims })
                 }
-                Some(Sym::Type(ty)) => Ok(ty),
+                Some(UppaalSymbol::Type(ty)) => Ok(ty),
                 Some(other) => fault(ty.span, format!("`{name}` is {}, not a type", other.noun())),
                 None => fault(ty.span, format!("there is no type `{name}`")),
             },
@@ -57,42 +65,51 @@ impl Cx<'_> {
     }
 
     /// A type with the dimensions that stand after the name.
-    pub fn declared(&mut self, ty: &Type, dims: &[Dim]) -> Result<Ty, Fault> {
+    pub fn declared(
+        &mut self,
+        ty: &UppaalType,
+        dims: &[UppaalDimension],
+    ) -> Result<UppaalSymbolType, UppaalFault> {
         let own = dims.iter().map(|d| self.dim(d)).collect::<Result<Vec<_>, _>>()?;
-        let with = |dims: Vec<Range>| own.iter().copied().chain(dims).collect::<Vec<_>>();
+        let with = |dims: Vec<IndexRange>| own.iter().copied().chain(dims).collect::<Vec<_>>();
         let out = match self.ty(ty)? {
-            Ty::Data(scalar, dims) => Ty::Data(scalar, with(dims)),
-            Ty::Clock(dims) => Ty::Clock(with(dims)),
-            Ty::Chan { urgent, broadcast, dims } => Ty::Chan { urgent, broadcast, dims: with(dims) },
-            Ty::Void => Ty::Void,
+            UppaalSymbolType::Data(scalar, dims) => UppaalSymbolType::Data(scalar, with(dims)),
+            UppaalSymbolType::Clock(dims) => UppaalSymbolType::Clock(with(dims)),
+            UppaalSymbolType::Chan { urgent, broadcast, dims } => {
+                UppaalSymbolType::Chan { urgent, broadcast, dims: with(dims) }
+            }
+            UppaalSymbolType::Void => UppaalSymbolType::Void,
         };
         match &out {
-            Ty::Data(_, dims) | Ty::Clock(dims) => limited(dims, ty.span)?,
-            Ty::Chan { .. } | Ty::Void => {}
+            UppaalSymbolType::Data(_, dims) | UppaalSymbolType::Clock(dims) => limited(dims, ty.span)?,
+            UppaalSymbolType::Chan { .. } | UppaalSymbolType::Void => {}
         }
         Ok(out)
     }
 
-    fn dim(&mut self, dim: &Dim) -> Result<Range, Fault> {
+    fn dim(&mut self, dim: &UppaalDimension) -> Result<IndexRange, UppaalFault> {
         let size = match dim {
-            Dim::Of(ty) => {
+            UppaalDimension::Of(ty) => {
                 let scalar = self.scalar(ty)?;
-                return Ok(Range { lo: scalar.lo, hi: scalar.hi });
+                return Ok(IndexRange { lo: scalar.lo, hi: scalar.hi });
             }
-            Dim::Size(e) => e,
+            UppaalDimension::Size(e) => e,
         };
-        if let ExprKind::Name(name) = &size.kind
-            && let Some(Sym::Type(ty)) = self.find(name)
+        if let UppaalExprKind::Name(name) = &size.kind
+            && let Some(UppaalSymbol::Type(ty)) = self.find(name)
         {
             return match ty {
-                Ty::Data(scalar, dims) if dims.is_empty() => Ok(Range { lo: scalar.lo, hi: scalar.hi }),
-                Ty::Data(..) | Ty::Clock(_) | Ty::Chan { .. } | Ty::Void => {
-                    fault(size.span, format!("`{name}` is no type of indices"))
+                UppaalSymbolType::Data(scalar, dims) if dims.is_empty() => {
+                    Ok(IndexRange { lo: scalar.lo, hi: scalar.hi })
                 }
+                UppaalSymbolType::Data(..)
+                | UppaalSymbolType::Clock(_)
+                | UppaalSymbolType::Chan { .. }
+                | UppaalSymbolType::Void => fault(size.span, format!("`{name}` is no type of indices")),
             };
         }
         match self.constant(size)? {
-            n @ 1.. => Ok(Range { lo: 0, hi: n - 1 }),
+            n @ 1.. => Ok(IndexRange { lo: 0, hi: n - 1 }),
             n => fault(size.span, format!("an array has at least one element, not {n}")),
         }
     }
@@ -100,9 +117,9 @@ impl Cx<'_> {
     // ── Declarations ──
 
     /// Declares for all (`own` is false) or in the process that is being written.
-    pub fn declare(&mut self, decl: &Decl, own: bool) {
+    pub fn declare(&mut self, decl: &UppaalDeclaration, own: bool) {
         let declared = match decl {
-            Decl::Vars(ty, declarators) => {
+            UppaalDeclaration::Vars(ty, declarators) => {
                 for declarator in declarators {
                     if let Err(fault) = self.variable(ty, declarator, own) {
                         self.faults.push(fault);
@@ -110,19 +127,21 @@ impl Cx<'_> {
                 }
                 Ok(())
             }
-            Decl::Typedef(ty, declarator) => self.declared(ty, &declarator.dims).map(|ty| {
-                self.bind(&declarator.name, Sym::Type(ty), own);
+            UppaalDeclaration::Typedef(ty, declarator) => self.declared(ty, &declarator.dims).map(|ty| {
+                self.bind(&declarator.name, UppaalSymbol::Type(ty), own);
             }),
-            Decl::Function(function) => self.declare_function(function, own),
-            Decl::Instance(i) if own => fault(i.span, "a process is made in the system's declarations"),
-            Decl::Instance(_) | Decl::System(_) => Ok(()),
+            UppaalDeclaration::Function(function) => self.declare_function(function, own),
+            UppaalDeclaration::Instance(i) if own => {
+                fault(i.span, "a process is made in the system's declarations")
+            }
+            UppaalDeclaration::Instance(_) | UppaalDeclaration::System(_) => Ok(()),
         };
         if let Err(fault) = declared {
             self.faults.push(fault);
         }
     }
 
-    pub fn bind(&mut self, name: &str, sym: Sym, own: bool) {
+    pub fn bind(&mut self, name: &str, sym: UppaalSymbol, own: bool) {
         let scope = match &mut self.process {
             Some(process) if own => process,
             Some(_) | None => &mut self.global,
@@ -130,20 +149,27 @@ impl Cx<'_> {
         scope.insert(name.to_owned(), sym);
     }
 
-    fn owner(own: bool) -> Owner {
-        if own { Owner::Process } else { Owner::All }
+    fn owner(own: bool) -> NameOwner {
+        if own { NameOwner::Process } else { NameOwner::All }
     }
 
-    fn variable(&mut self, ty: &Type, declarator: &Declarator, own: bool) -> Result<(), Fault> {
-        let Declarator { name, span, dims, init } = declarator;
+    fn variable(
+        &mut self,
+        ty: &UppaalType,
+        declarator: &UppaalDeclarator,
+        own: bool,
+    ) -> Result<(), UppaalFault> {
+        let UppaalDeclarator { name, span, dims, init } = declarator;
         let sym = match self.declared(ty, dims)? {
-            Ty::Data(scalar, dims) if ty.constant => self.constant_sym(declarator, scalar, dims, own)?,
-            Ty::Data(scalar, dims) => {
+            UppaalSymbolType::Data(scalar, dims) if ty.constant => {
+                self.constant_sym(declarator, scalar, dims, own)?
+            }
+            UppaalSymbolType::Data(scalar, dims) => {
                 let written = self.names.fresh(name, *span, Self::owner(own));
                 let init = self.initial(&scalar, &dims, init.as_ref(), *span)?;
                 let line = var_line(&written, &scalar, &dims, &init);
                 self.add_line(line, own);
-                Sym::Var(VarSym {
+                UppaalSymbol::Var(VarSym {
                     name: written,
                     ty: scalar,
                     dims,
@@ -154,23 +180,23 @@ impl Cx<'_> {
                     readonly: false,
                 })
             }
-            Ty::Clock(dims) => self.clock_sym(name, *span, dims, own),
-            Ty::Chan { urgent, broadcast, dims } => {
-                let written = self.names.fresh(name, *span, Owner::All);
+            UppaalSymbolType::Clock(dims) => self.clock_sym(name, *span, dims, own),
+            UppaalSymbolType::Chan { urgent, broadcast, dims } => {
+                let written = self.names.fresh(name, *span, NameOwner::All);
                 if own {
                     return fault(*span, "a channel is declared for all, not in a template");
                 }
                 let chan = ChanSym { name: written, dims, at: Vec::new(), urgent, broadcast };
                 self.channels.push(chan.clone());
-                Sym::Chan(chan)
+                UppaalSymbol::Chan(chan)
             }
-            Ty::Void => return fault(*span, "a variable cannot be `void`"),
+            UppaalSymbolType::Void => return fault(*span, "a variable cannot be `void`"),
         };
         self.bind(name, sym, own);
         Ok(())
     }
 
-    fn clock_sym(&mut self, name: &str, span: Span, dims: Vec<Range>, own: bool) -> Sym {
+    fn clock_sym(&mut self, name: &str, span: Span, dims: Vec<IndexRange>, own: bool) -> UppaalSymbol {
         let written = self.names.fresh(name, span, Self::owner(own));
         for at in combinations(&dims) {
             // Elements of arrays are clocks of their own.
@@ -184,30 +210,30 @@ impl Cx<'_> {
                 self.lines.push(format!("var {clock}: clock"));
             }
         }
-        Sym::Clock(ClockSym { name: written, dims, own })
+        UppaalSymbol::Clock(ClockSym { name: written, dims, own })
     }
 
     fn constant_sym(
         &mut self,
-        declarator: &Declarator,
-        scalar: Scalar,
-        dims: Vec<Range>,
+        declarator: &UppaalDeclarator,
+        scalar: UppaalScalarType,
+        dims: Vec<IndexRange>,
         own: bool,
-    ) -> Result<Sym, Fault> {
-        let Declarator { name, span, init, .. } = declarator;
+    ) -> Result<UppaalSymbol, UppaalFault> {
+        let UppaalDeclarator { name, span, init, .. } = declarator;
         let Some(init) = init else { return fault(*span, format!("the constant `{name}` has no value")) };
         if dims.is_empty() {
-            let Init::One(e) = init else { return fault(*span, "expected one value") };
+            let UppaalInitializer::One(e) = init else { return fault(*span, "expected one value") };
             let value = self.expr(e)?.of_type(scalar.is_bool);
             let Some(n) = value.value else { return fault(e.span, "this must be constant") };
             in_range(&scalar, n, e.span)?;
             if own {
-                return Ok(Sym::Const(scalar.literal(n)));
+                return Ok(UppaalSymbol::Const(scalar.literal(n)));
             }
-            let written = self.names.fresh(name, *span, Owner::All);
+            let written = self.names.fresh(name, *span, NameOwner::All);
             self.lines.push(format!("const {written} = {}", value.text));
-            let out = Out::new(written, Level::Atom, scalar.is_bool);
-            return Ok(Sym::Const(Out { value: Some(n), ..out }));
+            let out = ScenarioExprText::new(written, ScenarioPrecedence::Atom, scalar.is_bool);
+            return Ok(UppaalSymbol::Const(ScenarioExprText { value: Some(n), ..out }));
         }
         let written = self.names.fresh(name, *span, Self::owner(own));
         self.constant_array(written, scalar, dims, init, own, *span)
@@ -217,25 +243,25 @@ impl Cx<'_> {
     fn constant_array(
         &mut self,
         name: String,
-        scalar: Scalar,
-        dims: Vec<Range>,
-        init: &Init,
+        scalar: UppaalScalarType,
+        dims: Vec<IndexRange>,
+        init: &UppaalInitializer,
         own: bool,
         span: Span,
-    ) -> Result<Sym, Fault> {
+    ) -> Result<UppaalSymbol, UppaalFault> {
         let text = self.initial(&scalar, &dims, Some(init), span)?;
         let mut values = Vec::new();
         self.flat(&scalar, &dims, Some(init), span, &mut values)?;
         let (lo, hi) = (values.iter().min().copied(), values.iter().max().copied());
         let narrow = match (lo.zip(hi), scalar.is_bool) {
-            (Some((lo, hi)), false) => Scalar::range(lo, hi),
+            (Some((lo, hi)), false) => UppaalScalarType::range(lo, hi),
             (Some(_) | None, _) => scalar,
         };
         let line = var_line(&name, &narrow, &dims, &text);
         let arrays = if own { &mut self.own_arrays } else { &mut self.arrays };
         arrays.insert(name.clone(), (line, false));
         let sizes = dims.iter().map(|d| usize::try_from(d.count()).unwrap_or(0)).collect();
-        Ok(Sym::Var(VarSym {
+        Ok(UppaalSymbol::Var(VarSym {
             name,
             ty: narrow,
             dims,
@@ -269,21 +295,21 @@ impl Cx<'_> {
     /// The value that a variable starts with; tuples for arrays.
     pub fn initial(
         &mut self,
-        scalar: &Scalar,
-        dims: &[Range],
-        init: Option<&Init>,
+        scalar: &UppaalScalarType,
+        dims: &[IndexRange],
+        init: Option<&UppaalInitializer>,
         span: Span,
-    ) -> Result<String, Fault> {
+    ) -> Result<String, UppaalFault> {
         let Some((dim, rest)) = dims.split_first() else {
             return match init {
                 None => Ok(scalar.literal(scalar.default()).text),
-                Some(Init::One(e)) => {
+                Some(UppaalInitializer::One(e)) => {
                     let value = self.expr(e)?.of_type(scalar.is_bool);
                     let Some(n) = value.value else { return fault(e.span, "this must be constant") };
                     in_range(scalar, n, e.span)?;
                     Ok(value.text)
                 }
-                Some(Init::List(_, span)) => fault(*span, "expected one value, not a list"),
+                Some(UppaalInitializer::List(_, span)) => fault(*span, "expected one value, not a list"),
             };
         };
         let items = listed(init, *dim, span)?;
@@ -298,16 +324,16 @@ impl Cx<'_> {
 
     fn flat(
         &mut self,
-        scalar: &Scalar,
-        dims: &[Range],
-        init: Option<&Init>,
+        scalar: &UppaalScalarType,
+        dims: &[IndexRange],
+        init: Option<&UppaalInitializer>,
         span: Span,
         out: &mut Vec<i64>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), UppaalFault> {
         let Some((dim, rest)) = dims.split_first() else {
             out.push(match init {
-                Some(Init::One(e)) => self.constant(e)?,
-                Some(Init::List(..)) | None => scalar.default(),
+                Some(UppaalInitializer::One(e)) => self.constant(e)?,
+                Some(UppaalInitializer::List(..)) | None => scalar.default(),
             });
             return Ok(());
         };
@@ -321,48 +347,53 @@ impl Cx<'_> {
 
     // ── Functions ──
 
-    fn declare_function(&mut self, decl: &super::ast::Function, own: bool) -> Result<(), Fault> {
+    fn declare_function(&mut self, decl: &super::ast::UppaalFunction, own: bool) -> Result<(), UppaalFault> {
         let params =
             decl.params.iter().map(|p| self.declared(&p.ty, &p.dims)).collect::<Result<Vec<_>, _>>()?;
         let result = match self.ty(&decl.ty)? {
-            Ty::Void => None,
-            Ty::Data(scalar, dims) if dims.is_empty() => Some(scalar),
-            Ty::Data(..) | Ty::Clock(_) | Ty::Chan { .. } => {
+            UppaalSymbolType::Void => None,
+            UppaalSymbolType::Data(scalar, dims) if dims.is_empty() => Some(scalar),
+            UppaalSymbolType::Data(..) | UppaalSymbolType::Clock(_) | UppaalSymbolType::Chan { .. } => {
                 return fault(decl.ty.span, "a function gives a single value, or is `void`");
             }
         };
-        let is_plain =
-            |(p, ty): (&Param, &Ty)| !p.by_reference && matches!(ty, Ty::Data(_, d) if d.is_empty());
+        let is_plain = |(p, ty): (&UppaalParameter, &UppaalSymbolType)| {
+            !p.by_reference && matches!(ty, UppaalSymbolType::Data(_, d) if d.is_empty())
+        };
         let plain = decl.params.iter().zip(&params).all(is_plain);
         let name = plain.then(|| self.names.fresh(&decl.name, decl.span, Self::owner(own)));
         let function = Rc::new(FunctionSym { decl: decl.clone(), params, result, own, name: name.clone() });
         if let Some(name) = name {
             self.write_function(&function, &name, Vec::new(), own)?;
         }
-        self.bind(&decl.name, Sym::Function(function), own);
+        self.bind(&decl.name, UppaalSymbol::Function(function), own);
         Ok(())
     }
 }
 
-fn listed(init: Option<&Init>, dim: Range, span: Span) -> Result<Option<&[Init]>, Fault> {
+fn listed(
+    init: Option<&UppaalInitializer>,
+    dim: IndexRange,
+    span: Span,
+) -> Result<Option<&[UppaalInitializer]>, UppaalFault> {
     match init {
         None => Ok(None),
-        Some(Init::List(all, _)) if all.len() as i64 == dim.count() => Ok(Some(all)),
-        Some(Init::List(all, span)) => {
+        Some(UppaalInitializer::List(all, _)) if all.len() as i64 == dim.count() => Ok(Some(all)),
+        Some(UppaalInitializer::List(all, span)) => {
             fault(*span, format!("this has {} values, and the array {}", all.len(), dim.count()))
         }
-        Some(Init::One(_)) => fault(span, "an array is given its values in braces"),
+        Some(UppaalInitializer::One(_)) => fault(span, "an array is given its values in braces"),
     }
 }
 
-pub fn in_range(scalar: &Scalar, n: i64, span: Span) -> Result<(), Fault> {
+pub fn in_range(scalar: &UppaalScalarType, n: i64, span: Span) -> Result<(), UppaalFault> {
     if (scalar.lo..=scalar.hi).contains(&n) {
         return Ok(());
     }
     fault(span, format!("{n} is not in the range {}..{}", scalar.lo, scalar.hi))
 }
 
-fn limited(dims: &[Range], span: Span) -> Result<(), Fault> {
+fn limited(dims: &[IndexRange], span: Span) -> Result<(), UppaalFault> {
     let count = dims.iter().try_fold(1i64, |n, d| n.checked_mul(d.count()));
     match count {
         Some(1..=MAX_VALUES) => Ok(()),
@@ -370,7 +401,7 @@ fn limited(dims: &[Range], span: Span) -> Result<(), Fault> {
     }
 }
 
-pub fn type_text(scalar: &Scalar, dims: &[Range]) -> String {
+pub fn type_text(scalar: &UppaalScalarType, dims: &[IndexRange]) -> String {
     if dims.is_empty() {
         return scalar.text.clone();
     }
@@ -378,6 +409,6 @@ pub fn type_text(scalar: &Scalar, dims: &[Range]) -> String {
     dims.iter().fold(of, |text, d| format!("{text}[{}]", d.count()))
 }
 
-pub fn var_line(name: &str, scalar: &Scalar, dims: &[Range], init: &str) -> String {
+pub fn var_line(name: &str, scalar: &UppaalScalarType, dims: &[IndexRange], init: &str) -> String {
     format!("var {name}: {} = {init}", type_text(scalar, dims))
 }

@@ -3,77 +3,90 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{BinaryOp, Expr, ExprKind, Quantifier, Type},
-    fault::{Fault, fault, unsupported},
-    scope::{ArrayOf, ChanSym, ClockSym, Level, Out, Scalar, Scope, Sym, Ty, VarSym, numbered},
-    translation::Cx,
+    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier, UppaalType},
+    fault::{UppaalFault, fault, unsupported},
+    scope::{
+        ArrayOf, ChanSym, ClockSym, ScenarioExprText, ScenarioPrecedence, UppaalScalarType, UppaalScope,
+        UppaalSymbol, UppaalSymbolType, VarSym, numbered,
+    },
+    translation::UppaalTranslation,
 };
 
 /// How many parts `forall`, `exists` and `sum` may become.
 const MAX_PARTS: i64 = 1024;
 
-impl Cx<'_> {
-    pub fn find(&self, name: &str) -> Option<&Sym> {
+impl UppaalTranslation<'_> {
+    pub fn find(&self, name: &str) -> Option<&UppaalSymbol> {
         let scopes = self.locals.iter().rev().chain(&self.process).chain([&self.global]);
         scopes.into_iter().find_map(|s| s.get(name))
     }
 
     /// A constant number.
-    pub fn constant(&mut self, e: &Expr) -> Result<i64, Fault> {
+    pub fn constant(&mut self, e: &UppaalExpr) -> Result<i64, UppaalFault> {
         match self.expr(e)?.value {
             Some(n) => Ok(n),
             None => fault(e.span, "this must be constant"),
         }
     }
 
-    pub fn condition(&mut self, e: &Expr) -> Result<Out, Fault> {
+    pub fn condition(&mut self, e: &UppaalExpr) -> Result<ScenarioExprText, UppaalFault> {
         Ok(self.expr(e)?.into_bool())
     }
 
-    pub fn expr(&mut self, e: &Expr) -> Result<Out, Fault> {
+    pub fn expr(&mut self, e: &UppaalExpr) -> Result<ScenarioExprText, UppaalFault> {
         match &e.kind {
-            ExprKind::Int(n) => Ok(Out::int(*n)),
-            ExprKind::Bool(b) => Ok(Out::bool(*b)),
-            ExprKind::Name(_) | ExprKind::Index(..) | ExprKind::Field(..) => self.read(e),
-            ExprKind::Neg(of) => self.negative(of),
-            ExprKind::Not(of) => {
+            UppaalExprKind::Int(n) => Ok(ScenarioExprText::int(*n)),
+            UppaalExprKind::Bool(b) => Ok(ScenarioExprText::bool(*b)),
+            UppaalExprKind::Name(_) | UppaalExprKind::Index(..) | UppaalExprKind::Field(..) => self.read(e),
+            UppaalExprKind::Neg(of) => self.negative(of),
+            UppaalExprKind::Not(of) => {
                 let of = self.condition(of)?;
                 Ok(not(&of))
             }
-            ExprKind::Binary(op, a, b) => self.binary(*op, a, b, e.span),
-            ExprKind::Choice(c, a, b) => self.choice(c, a, b),
-            ExprKind::Call(of, args) => self.call(of, args, e.span).and_then(|(text, result)| {
+            UppaalExprKind::Binary(op, a, b) => self.binary(*op, a, b, e.span),
+            UppaalExprKind::Choice(c, a, b) => self.choice(c, a, b),
+            UppaalExprKind::Call(of, args) => self.call(of, args, e.span).and_then(|(text, result)| {
                 let Some(result) = result else {
                     return fault(e.span, "this function has no value (`void`)");
                 };
-                Ok(Out::new(text, Level::Atom, result.is_bool))
+                Ok(ScenarioExprText::new(text, ScenarioPrecedence::Atom, result.is_bool))
             }),
-            ExprKind::Quantified(q, name, ty, of) => self.quantified(*q, name, ty, of),
-            ExprKind::Assign(..) => fault(
+            UppaalExprKind::Quantified(q, name, ty, of) => self.quantified(*q, name, ty, of),
+            UppaalExprKind::Assign(..) => fault(
                 e.span,
                 "an assignment within an expression is not supported: write it before, \
                  or put parentheses around what is assigned (`and`, `or` and `not` bind looser than `=`)",
             ),
-            ExprKind::Step { .. } => fault(
+            UppaalExprKind::Step { .. } => fault(
                 e.span,
                 "`++` and `--` within an expression are not supported: write them as an assignment of their own",
             ),
-            ExprKind::Rate => Err(unsupported(e.span, "rates of clocks (`x'`)")),
-            ExprKind::Deadlock if self.in_query => Ok(Out::new("deadlock".to_owned(), Level::Atom, true)),
-            ExprKind::Deadlock => fault(e.span, "`deadlock` may be asked in queries only"),
+            UppaalExprKind::Rate => Err(unsupported(e.span, "rates of clocks (`x'`)")),
+            UppaalExprKind::Deadlock if self.in_query => {
+                Ok(ScenarioExprText::new("deadlock".to_owned(), ScenarioPrecedence::Atom, true))
+            }
+            UppaalExprKind::Deadlock => fault(e.span, "`deadlock` may be asked in queries only"),
         }
     }
 
-    fn negative(&mut self, of: &Expr) -> Result<Out, Fault> {
+    fn negative(&mut self, of: &UppaalExpr) -> Result<ScenarioExprText, UppaalFault> {
         let of = self.expr(of)?.into_int();
         if let Some(n) = of.value.filter(|_| of.text.bytes().all(|b| b.is_ascii_digit())) {
-            return Ok(Out::int(-n));
+            return Ok(ScenarioExprText::int(-n));
         }
-        let text = format!("-{}", of.at(Level::Atom));
-        Ok(Out { value: of.value.map(|n| -n), ..Out::new(text, Level::Factor, false) })
+        let text = format!("-{}", of.at(ScenarioPrecedence::Atom));
+        Ok(ScenarioExprText {
+            value: of.value.map(|n| -n),
+            ..ScenarioExprText::new(text, ScenarioPrecedence::Factor, false)
+        })
     }
 
-    fn choice(&mut self, c: &Expr, a: &Expr, b: &Expr) -> Result<Out, Fault> {
+    fn choice(
+        &mut self,
+        c: &UppaalExpr,
+        a: &UppaalExpr,
+        b: &UppaalExpr,
+    ) -> Result<ScenarioExprText, UppaalFault> {
         let c = self.condition(c)?;
         let (a, b) = (self.expr(a)?, self.expr(b)?);
         let is_bool = a.is_bool && b.is_bool;
@@ -82,77 +95,106 @@ impl Cx<'_> {
             return Ok(if c != 0 { a } else { b });
         }
         let text = format!("if {} {{ {} }} else {{ {} }}", c.text, a.text, b.text);
-        Ok(Out::new(text, Level::Atom, is_bool))
+        Ok(ScenarioExprText::new(text, ScenarioPrecedence::Atom, is_bool))
     }
 
-    fn binary(&mut self, op: BinaryOp, a: &Expr, b: &Expr, span: Span) -> Result<Out, Fault> {
+    fn binary(
+        &mut self,
+        op: UppaalBinaryOperator,
+        a: &UppaalExpr,
+        b: &UppaalExpr,
+        span: Span,
+    ) -> Result<ScenarioExprText, UppaalFault> {
         let (a, b) = (self.expr(a)?, self.expr(b)?);
         let both_bools = a.is_bool && b.is_bool;
         let (sign, level, of_bools) = match op {
-            BinaryOp::Or => ("||", Level::Or, true),
-            BinaryOp::And => ("&&", Level::And, true),
-            BinaryOp::Imply => ("imply", Level::Imply, true),
-            BinaryOp::Eq => ("==", Level::Comparison, both_bools),
-            BinaryOp::Ne => ("!=", Level::Comparison, both_bools),
-            BinaryOp::Lt => ("<", Level::Comparison, false),
-            BinaryOp::Le => ("<=", Level::Comparison, false),
-            BinaryOp::Gt => (">", Level::Comparison, false),
-            BinaryOp::Ge => (">=", Level::Comparison, false),
-            BinaryOp::Add => ("+", Level::Sum, false),
-            BinaryOp::Sub => ("-", Level::Sum, false),
-            BinaryOp::Mul => ("*", Level::Product, false),
-            BinaryOp::Div => ("/", Level::Product, false),
-            BinaryOp::Rem => ("%", Level::Product, false),
-            BinaryOp::Min => ("min", Level::Atom, false),
-            BinaryOp::Max => ("max", Level::Atom, false),
+            UppaalBinaryOperator::Or => ("||", ScenarioPrecedence::Or, true),
+            UppaalBinaryOperator::And => ("&&", ScenarioPrecedence::And, true),
+            UppaalBinaryOperator::Imply => ("imply", ScenarioPrecedence::Imply, true),
+            UppaalBinaryOperator::Eq => ("==", ScenarioPrecedence::Comparison, both_bools),
+            UppaalBinaryOperator::Ne => ("!=", ScenarioPrecedence::Comparison, both_bools),
+            UppaalBinaryOperator::Lt => ("<", ScenarioPrecedence::Comparison, false),
+            UppaalBinaryOperator::Le => ("<=", ScenarioPrecedence::Comparison, false),
+            UppaalBinaryOperator::Gt => (">", ScenarioPrecedence::Comparison, false),
+            UppaalBinaryOperator::Ge => (">=", ScenarioPrecedence::Comparison, false),
+            UppaalBinaryOperator::Add => ("+", ScenarioPrecedence::Sum, false),
+            UppaalBinaryOperator::Sub => ("-", ScenarioPrecedence::Sum, false),
+            UppaalBinaryOperator::Mul => ("*", ScenarioPrecedence::Product, false),
+            UppaalBinaryOperator::Div => ("/", ScenarioPrecedence::Product, false),
+            UppaalBinaryOperator::Rem => ("%", ScenarioPrecedence::Product, false),
+            UppaalBinaryOperator::Min => ("min", ScenarioPrecedence::Atom, false),
+            UppaalBinaryOperator::Max => ("max", ScenarioPrecedence::Atom, false),
         };
         let (a, b) = (a.of_type(of_bools), b.of_type(of_bools));
         let value = a.value.zip(b.value).map(|(a, b)| fold(op, a, b, span)).transpose()?;
-        if value.is_none() && matches!(op, BinaryOp::And | BinaryOp::Or) {
+        if value.is_none() && matches!(op, UppaalBinaryOperator::And | UppaalBinaryOperator::Or) {
             let both = [a, b].into_iter();
-            return Ok(if op == BinaryOp::And { all(both) } else { any(both) });
+            return Ok(if op == UppaalBinaryOperator::And { all(both) } else { any(both) });
         }
-        let is_bool = level <= Level::Comparison;
+        let is_bool = level <= ScenarioPrecedence::Comparison;
         let text = match op {
-            BinaryOp::Min | BinaryOp::Max => format!("{sign}({}, {})", a.text, b.text),
-            BinaryOp::Imply => format!("{} imply {}", a.at(Level::Or), b.at(Level::Or)),
-            BinaryOp::Or | BinaryOp::And | BinaryOp::Add | BinaryOp::Mul => {
+            UppaalBinaryOperator::Min | UppaalBinaryOperator::Max => {
+                format!("{sign}({}, {})", a.text, b.text)
+            }
+            UppaalBinaryOperator::Imply => {
+                format!("{} imply {}", a.at(ScenarioPrecedence::Or), b.at(ScenarioPrecedence::Or))
+            }
+            UppaalBinaryOperator::Or
+            | UppaalBinaryOperator::And
+            | UppaalBinaryOperator::Add
+            | UppaalBinaryOperator::Mul => {
                 format!("{} {sign} {}", a.at(level), b.at(level))
             }
-            BinaryOp::Sub | BinaryOp::Div => format!("{} {sign} {}", a.at(level), b.at(next(level))),
+            UppaalBinaryOperator::Sub | UppaalBinaryOperator::Div => {
+                format!("{} {sign} {}", a.at(level), b.at(next(level)))
+            }
             // After `%` a sign is not the beginning of an operand.
-            BinaryOp::Rem => format!("{} % {}", a.at(level), b.at(Level::Atom)),
-            BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
-                format!("{} {sign} {}", a.at(Level::Sum), b.at(Level::Sum))
+            UppaalBinaryOperator::Rem => format!("{} % {}", a.at(level), b.at(ScenarioPrecedence::Atom)),
+            UppaalBinaryOperator::Eq
+            | UppaalBinaryOperator::Ne
+            | UppaalBinaryOperator::Lt
+            | UppaalBinaryOperator::Le
+            | UppaalBinaryOperator::Gt
+            | UppaalBinaryOperator::Ge => {
+                format!("{} {sign} {}", a.at(ScenarioPrecedence::Sum), b.at(ScenarioPrecedence::Sum))
             }
         };
-        Ok(Out { text, level, is_bool, value })
+        Ok(ScenarioExprText { text, level, is_bool, value })
     }
 
-    fn quantified(&mut self, q: Quantifier, name: &str, ty: &Type, of: &Expr) -> Result<Out, Fault> {
+    fn quantified(
+        &mut self,
+        q: UppaalQuantifier,
+        name: &str,
+        ty: &UppaalType,
+        of: &UppaalExpr,
+    ) -> Result<ScenarioExprText, UppaalFault> {
         let parts = self.parts(name, ty, |cx| cx.expr(of))?;
-        if q == Quantifier::Sum {
-            let parts = parts.into_iter().map(Out::into_int);
-            return Ok(joined(parts, "+", Level::Sum, Out::int(0), |a, b| a.checked_add(b)));
+        if q == UppaalQuantifier::Sum {
+            let parts = parts.into_iter().map(ScenarioExprText::into_int);
+            return Ok(joined(parts, "+", ScenarioPrecedence::Sum, ScenarioExprText::int(0), |a, b| {
+                a.checked_add(b)
+            }));
         }
-        let parts = parts.into_iter().map(Out::into_bool);
-        Ok(if q == Quantifier::Forall { all(parts) } else { any(parts) })
+        let parts = parts.into_iter().map(ScenarioExprText::into_bool);
+        Ok(if q == UppaalQuantifier::Forall { all(parts) } else { any(parts) })
     }
 
     /// What is made of each value of a type.
     pub fn parts<T>(
         &mut self,
         name: &str,
-        ty: &Type,
-        make: impl Fn(&mut Self) -> Result<T, Fault>,
-    ) -> Result<Vec<T>, Fault> {
+        ty: &UppaalType,
+        make: impl Fn(&mut Self) -> Result<T, UppaalFault>,
+    ) -> Result<Vec<T>, UppaalFault> {
         let scalar = self.scalar(ty)?;
         if scalar.hi - scalar.lo >= MAX_PARTS {
             return fault(ty.span, format!("this has more than {MAX_PARTS} values"));
         }
         let mut parts = Vec::new();
         for n in scalar.lo..=scalar.hi {
-            self.locals.push(Scope::from_iter([(name.to_owned(), Sym::Const(scalar.literal(n)))]));
+            self.locals
+                .push(UppaalScope::from_iter([(name.to_owned(), UppaalSymbol::Const(scalar.literal(n)))]));
             let part = make(self);
             self.locals.pop();
             parts.push(part?);
@@ -162,36 +204,37 @@ impl Cx<'_> {
 
     // ── Places ──
 
-    fn read(&mut self, e: &Expr) -> Result<Out, Fault> {
+    fn read(&mut self, e: &UppaalExpr) -> Result<ScenarioExprText, UppaalFault> {
         match self.place(e)? {
-            Sym::Const(out) => Ok(out),
-            Sym::Var(var) if var.dims.is_empty() => Ok(self.value_of(&var)),
-            Sym::Location(text) => Ok(Out::new(text, Level::Atom, true)),
-            Sym::Clock(clock) => fault(
+            UppaalSymbol::Const(out) => Ok(out),
+            UppaalSymbol::Var(var) if var.dims.is_empty() => Ok(self.value_of(&var)),
+            UppaalSymbol::Location(text) => Ok(ScenarioExprText::new(text, ScenarioPrecedence::Atom, true)),
+            UppaalSymbol::Clock(clock) => fault(
                 e.span,
                 format!("the clock `{}` may be compared with numbers and clocks only", clock.name),
             ),
-            other @ (Sym::Var(_) | Sym::Chan(_) | Sym::Type(_) | Sym::Function(_)) => {
-                fault(e.span, format!("{} has no value", other.noun()))
-            }
+            other @ (UppaalSymbol::Var(_)
+            | UppaalSymbol::Chan(_)
+            | UppaalSymbol::Type(_)
+            | UppaalSymbol::Function(_)) => fault(e.span, format!("{} has no value", other.noun())),
         }
     }
 
     /// The value of a single variable or element.
-    pub fn value_of(&mut self, var: &VarSym) -> Out {
+    pub fn value_of(&mut self, var: &VarSym) -> ScenarioExprText {
         if let Some(values) = &var.values {
             if let Some(n) = element(var, values) {
                 return var.ty.literal(n);
             }
             self.use_array(var);
         }
-        Out::new(place_text(var), Level::Atom, var.ty.is_bool)
+        ScenarioExprText::new(place_text(var), ScenarioPrecedence::Atom, var.ty.is_bool)
     }
 
     /// What a name with indices stands for.
-    pub fn place(&mut self, e: &Expr) -> Result<Sym, Fault> {
+    pub fn place(&mut self, e: &UppaalExpr) -> Result<UppaalSymbol, UppaalFault> {
         match &e.kind {
-            ExprKind::Name(name) => match self.find(name) {
+            UppaalExprKind::Name(name) => match self.find(name) {
                 Some(sym) => Ok(sym.clone()),
                 None if self.in_query && self.processes.iter().any(|p| p.model_name == *name) => fault(
                     e.span,
@@ -199,34 +242,44 @@ impl Cx<'_> {
                 ),
                 None => fault(e.span, format!("there is no `{name}` here")),
             },
-            ExprKind::Index(of, index) => {
+            UppaalExprKind::Index(of, index) => {
                 let sym = self.place(of)?;
                 let index_span = index.span;
                 let index = self.expr(index)?.into_int();
                 self.element(sym, index, index_span)
             }
-            ExprKind::Field(of, name) => self.member(of, name, e.span),
-            ExprKind::Int(_)
-            | ExprKind::Bool(_)
-            | ExprKind::Neg(_)
-            | ExprKind::Not(_)
-            | ExprKind::Binary(..)
-            | ExprKind::Choice(..)
-            | ExprKind::Call(..)
-            | ExprKind::Assign(..)
-            | ExprKind::Step { .. }
-            | ExprKind::Quantified(..)
-            | ExprKind::Rate
-            | ExprKind::Deadlock => fault(e.span, "expected the name of a variable, a clock or a channel"),
+            UppaalExprKind::Field(of, name) => self.member(of, name, e.span),
+            UppaalExprKind::Int(_)
+            | UppaalExprKind::Bool(_)
+            | UppaalExprKind::Neg(_)
+            | UppaalExprKind::Not(_)
+            | UppaalExprKind::Binary(..)
+            | UppaalExprKind::Choice(..)
+            | UppaalExprKind::Call(..)
+            | UppaalExprKind::Assign(..)
+            | UppaalExprKind::Step { .. }
+            | UppaalExprKind::Quantified(..)
+            | UppaalExprKind::Rate
+            | UppaalExprKind::Deadlock => {
+                fault(e.span, "expected the name of a variable, a clock or a channel")
+            }
         }
     }
 
-    fn element(&mut self, sym: Sym, index: Out, span: Span) -> Result<Sym, Fault> {
+    fn element(
+        &mut self,
+        sym: UppaalSymbol,
+        index: ScenarioExprText,
+        span: Span,
+    ) -> Result<UppaalSymbol, UppaalFault> {
         let dims = match &sym {
-            Sym::Var(v) => &v.dims,
-            Sym::Clock(c) => &c.dims,
-            Sym::Chan(c) => &c.dims,
-            Sym::Const(_) | Sym::Type(_) | Sym::Function(_) | Sym::Location(_) => {
+            UppaalSymbol::Var(v) => &v.dims,
+            UppaalSymbol::Clock(c) => &c.dims,
+            UppaalSymbol::Chan(c) => &c.dims,
+            UppaalSymbol::Const(_)
+            | UppaalSymbol::Type(_)
+            | UppaalSymbol::Function(_)
+            | UppaalSymbol::Location(_) => {
                 return fault(span, format!("{} has no elements", sym.noun()));
             }
         };
@@ -240,32 +293,37 @@ impl Cx<'_> {
         }
         let (dim, rest) = (*dim, rest.to_vec());
         Ok(match sym {
-            Sym::Var(mut v) => {
+            UppaalSymbol::Var(mut v) => {
                 v.dims = rest;
                 v.at.push(from_zero(index, dim.lo));
-                Sym::Var(v)
+                UppaalSymbol::Var(v)
             }
-            Sym::Clock(c) => {
+            UppaalSymbol::Clock(c) => {
                 let Some(n) = index.value else {
                     return fault(span, "the index of an array of clocks must be constant");
                 };
-                Sym::Clock(ClockSym { name: numbered(&c.name, &[n]), dims: rest, own: c.own })
+                UppaalSymbol::Clock(ClockSym { name: numbered(&c.name, &[n]), dims: rest, own: c.own })
             }
-            Sym::Chan(mut c) => {
+            UppaalSymbol::Chan(mut c) => {
                 c.dims = rest;
                 c.at.push(index);
-                Sym::Chan(c)
+                UppaalSymbol::Chan(c)
             }
-            other @ (Sym::Const(_) | Sym::Type(_) | Sym::Function(_) | Sym::Location(_)) => other,
+            other @ (UppaalSymbol::Const(_)
+            | UppaalSymbol::Type(_)
+            | UppaalSymbol::Function(_)
+            | UppaalSymbol::Location(_)) => other,
         })
     }
 
     /// `P.x`, `P(1).x`: what a process has of this name.
-    fn member(&mut self, of: &Expr, name: &str, span: Span) -> Result<Sym, Fault> {
+    fn member(&mut self, of: &UppaalExpr, name: &str, span: Span) -> Result<UppaalSymbol, UppaalFault> {
         let (process, args) = match &of.kind {
-            ExprKind::Name(process) => (process, Vec::new()),
-            ExprKind::Call(of, args) if self.in_query => {
-                let ExprKind::Name(process) = &of.kind else { return fault(span, "expected a process") };
+            UppaalExprKind::Name(process) => (process, Vec::new()),
+            UppaalExprKind::Call(of, args) if self.in_query => {
+                let UppaalExprKind::Name(process) = &of.kind else {
+                    return fault(span, "expected a process");
+                };
                 let args = args.iter().map(|a| self.constant(a)).collect::<Result<Vec<_>, _>>()?;
                 (process, args)
             }
@@ -287,34 +345,43 @@ impl Cx<'_> {
         };
         let automaton = &found.name;
         Ok(match sym.clone() {
-            Sym::Var(v) if v.own => Sym::Var(VarSym { name: format!("{automaton}.{}", v.name), ..v }),
-            Sym::Clock(c) if c.own => Sym::Clock(ClockSym { name: format!("{automaton}.{}", c.name), ..c }),
-            Sym::Location(l) => Sym::Location(format!("{automaton}.{l}")),
-            other @ (Sym::Const(_)
-            | Sym::Var(_)
-            | Sym::Clock(_)
-            | Sym::Chan(_)
-            | Sym::Type(_)
-            | Sym::Function(_)) => other,
+            UppaalSymbol::Var(v) if v.own => {
+                UppaalSymbol::Var(VarSym { name: format!("{automaton}.{}", v.name), ..v })
+            }
+            UppaalSymbol::Clock(c) if c.own => {
+                UppaalSymbol::Clock(ClockSym { name: format!("{automaton}.{}", c.name), ..c })
+            }
+            UppaalSymbol::Location(l) => UppaalSymbol::Location(format!("{automaton}.{l}")),
+            other @ (UppaalSymbol::Const(_)
+            | UppaalSymbol::Var(_)
+            | UppaalSymbol::Clock(_)
+            | UppaalSymbol::Chan(_)
+            | UppaalSymbol::Type(_)
+            | UppaalSymbol::Function(_)) => other,
         })
     }
 
     // ── Types ──
 
     /// The type of single values.
-    pub fn scalar(&mut self, ty: &Type) -> Result<Scalar, Fault> {
+    pub fn scalar(&mut self, ty: &UppaalType) -> Result<UppaalScalarType, UppaalFault> {
         match self.ty(ty)? {
-            Ty::Data(scalar, dims) if dims.is_empty() => Ok(scalar),
-            Ty::Data(..) | Ty::Clock(_) | Ty::Chan { .. } | Ty::Void => {
+            UppaalSymbolType::Data(scalar, dims) if dims.is_empty() => Ok(scalar),
+            UppaalSymbolType::Data(..)
+            | UppaalSymbolType::Clock(_)
+            | UppaalSymbolType::Chan { .. }
+            | UppaalSymbolType::Void => {
                 fault(ty.span, "expected a type of single values: `bool`, or integers of a range")
             }
         }
     }
 
-    pub fn channel<'s>(&mut self, sym: &'s Sym, span: Span) -> Result<&'s ChanSym, Fault> {
+    pub fn channel<'s>(&mut self, sym: &'s UppaalSymbol, span: Span) -> Result<&'s ChanSym, UppaalFault> {
         match sym {
-            Sym::Chan(c) if c.dims.is_empty() => Ok(c),
-            Sym::Chan(c) => fault(span, format!("`{}` is an array of channels: an index is missing", c.name)),
+            UppaalSymbol::Chan(c) if c.dims.is_empty() => Ok(c),
+            UppaalSymbol::Chan(c) => {
+                fault(span, format!("`{}` is an array of channels: an index is missing", c.name))
+            }
             other => fault(span, format!("expected a channel, found {}", other.noun())),
         }
     }
@@ -334,94 +401,112 @@ fn element(var: &VarSym, array: &ArrayOf) -> Option<i64> {
     array.values.get(at).copied()
 }
 
-fn from_zero(index: Out, lo: i64) -> Out {
+fn from_zero(index: ScenarioExprText, lo: i64) -> ScenarioExprText {
     match (lo, index.value) {
         (0, _) => index,
-        (_, Some(n)) => Out::int(n - lo),
-        (lo, None) if lo > 0 => Out::new(format!("{} - {lo}", index.at(Level::Sum)), Level::Sum, false),
-        (lo, None) => {
-            Out::new(format!("{} + {}", index.at(Level::Sum), lo.unsigned_abs()), Level::Sum, false)
-        }
+        (_, Some(n)) => ScenarioExprText::int(n - lo),
+        (lo, None) if lo > 0 => ScenarioExprText::new(
+            format!("{} - {lo}", index.at(ScenarioPrecedence::Sum)),
+            ScenarioPrecedence::Sum,
+            false,
+        ),
+        (lo, None) => ScenarioExprText::new(
+            format!("{} + {}", index.at(ScenarioPrecedence::Sum), lo.unsigned_abs()),
+            ScenarioPrecedence::Sum,
+            false,
+        ),
     }
 }
 
-fn next(level: Level) -> Level {
+fn next(level: ScenarioPrecedence) -> ScenarioPrecedence {
     match level {
-        Level::Sum => Level::Product,
-        Level::Product => Level::Factor,
-        Level::Imply
-        | Level::Or
-        | Level::And
-        | Level::Not
-        | Level::Comparison
-        | Level::Factor
-        | Level::Atom => Level::Atom,
+        ScenarioPrecedence::Sum => ScenarioPrecedence::Product,
+        ScenarioPrecedence::Product => ScenarioPrecedence::Factor,
+        ScenarioPrecedence::Imply
+        | ScenarioPrecedence::Or
+        | ScenarioPrecedence::And
+        | ScenarioPrecedence::Not
+        | ScenarioPrecedence::Comparison
+        | ScenarioPrecedence::Factor
+        | ScenarioPrecedence::Atom => ScenarioPrecedence::Atom,
     }
 }
 
-pub fn not(of: &Out) -> Out {
+pub fn not(of: &ScenarioExprText) -> ScenarioExprText {
     match of.value {
-        Some(n) => Out::bool(n == 0),
-        None => Out::new(format!("not {}", of.at(Level::Atom)), Level::Not, true),
+        Some(n) => ScenarioExprText::bool(n == 0),
+        None => ScenarioExprText::new(
+            format!("not {}", of.at(ScenarioPrecedence::Atom)),
+            ScenarioPrecedence::Not,
+            true,
+        ),
     }
 }
 
 fn joined(
-    parts: impl Iterator<Item = Out>,
+    parts: impl Iterator<Item = ScenarioExprText>,
     sign: &str,
-    level: Level,
-    none: Out,
+    level: ScenarioPrecedence,
+    none: ScenarioExprText,
     fold: impl Fn(i64, i64) -> Option<i64>,
-) -> Out {
+) -> ScenarioExprText {
     parts
         .reduce(|a, b| {
             let value = a.value.zip(b.value).and_then(|(a, b)| fold(a, b));
             let text = format!("{} {sign} {}", a.at(level), b.at(level));
-            Out { value, ..Out::new(text, level, none.is_bool) }
+            ScenarioExprText { value, ..ScenarioExprText::new(text, level, none.is_bool) }
         })
         .unwrap_or(none)
 }
 
 /// The conjunction; what is certainly true is left out.
-pub fn all(parts: impl Iterator<Item = Out>) -> Out {
-    let parts: Vec<Out> = parts.filter(|p| p.value != Some(1)).collect();
+pub fn all(parts: impl Iterator<Item = ScenarioExprText>) -> ScenarioExprText {
+    let parts: Vec<ScenarioExprText> = parts.filter(|p| p.value != Some(1)).collect();
     match parts.iter().find(|p| p.value == Some(0)) {
-        Some(_) => Out::bool(false),
-        None => joined(parts.into_iter(), "&&", Level::And, Out::bool(true), |a, b| Some(a & b)),
+        Some(_) => ScenarioExprText::bool(false),
+        None => {
+            joined(parts.into_iter(), "&&", ScenarioPrecedence::And, ScenarioExprText::bool(true), |a, b| {
+                Some(a & b)
+            })
+        }
     }
 }
 
 /// The disjunction; what is certainly false is left out.
-pub fn any(parts: impl Iterator<Item = Out>) -> Out {
-    let parts: Vec<Out> = parts.filter(|p| p.value != Some(0)).collect();
+pub fn any(parts: impl Iterator<Item = ScenarioExprText>) -> ScenarioExprText {
+    let parts: Vec<ScenarioExprText> = parts.filter(|p| p.value != Some(0)).collect();
     match parts.iter().find(|p| p.value == Some(1)) {
-        Some(_) => Out::bool(true),
-        None => joined(parts.into_iter(), "||", Level::Or, Out::bool(false), |a, b| Some(a | b)),
+        Some(_) => ScenarioExprText::bool(true),
+        None => {
+            joined(parts.into_iter(), "||", ScenarioPrecedence::Or, ScenarioExprText::bool(false), |a, b| {
+                Some(a | b)
+            })
+        }
     }
 }
 
-fn fold(op: BinaryOp, a: i64, b: i64, span: Span) -> Result<i64, Fault> {
+fn fold(op: UppaalBinaryOperator, a: i64, b: i64, span: Span) -> Result<i64, UppaalFault> {
     let value = match op {
-        BinaryOp::Add => a.checked_add(b),
-        BinaryOp::Sub => a.checked_sub(b),
-        BinaryOp::Mul => a.checked_mul(b),
-        BinaryOp::Div if b == 0 => return fault(span, "this divides by zero"),
-        BinaryOp::Rem if b == 0 => return fault(span, "this divides by zero"),
-        BinaryOp::Div => a.checked_div(b),
-        BinaryOp::Rem => a.checked_rem(b),
-        BinaryOp::Min => Some(a.min(b)),
-        BinaryOp::Max => Some(a.max(b)),
-        BinaryOp::Eq => Some(i64::from(a == b)),
-        BinaryOp::Ne => Some(i64::from(a != b)),
-        BinaryOp::Lt => Some(i64::from(a < b)),
-        BinaryOp::Le => Some(i64::from(a <= b)),
-        BinaryOp::Gt => Some(i64::from(a > b)),
-        BinaryOp::Ge => Some(i64::from(a >= b)),
-        BinaryOp::And => Some(i64::from(a != 0 && b != 0)),
-        BinaryOp::Or => Some(i64::from(a != 0 || b != 0)),
-        BinaryOp::Imply => Some(i64::from(a == 0 || b != 0)),
+        UppaalBinaryOperator::Add => a.checked_add(b),
+        UppaalBinaryOperator::Sub => a.checked_sub(b),
+        UppaalBinaryOperator::Mul => a.checked_mul(b),
+        UppaalBinaryOperator::Div if b == 0 => return fault(span, "this divides by zero"),
+        UppaalBinaryOperator::Rem if b == 0 => return fault(span, "this divides by zero"),
+        UppaalBinaryOperator::Div => a.checked_div(b),
+        UppaalBinaryOperator::Rem => a.checked_rem(b),
+        UppaalBinaryOperator::Min => Some(a.min(b)),
+        UppaalBinaryOperator::Max => Some(a.max(b)),
+        UppaalBinaryOperator::Eq => Some(i64::from(a == b)),
+        UppaalBinaryOperator::Ne => Some(i64::from(a != b)),
+        UppaalBinaryOperator::Lt => Some(i64::from(a < b)),
+        UppaalBinaryOperator::Le => Some(i64::from(a <= b)),
+        UppaalBinaryOperator::Gt => Some(i64::from(a > b)),
+        UppaalBinaryOperator::Ge => Some(i64::from(a >= b)),
+        UppaalBinaryOperator::And => Some(i64::from(a != 0 && b != 0)),
+        UppaalBinaryOperator::Or => Some(i64::from(a != 0 || b != 0)),
+        UppaalBinaryOperator::Imply => Some(i64::from(a == 0 || b != 0)),
     };
     value
         .filter(|n| i32::try_from(*n).is_ok())
-        .ok_or_else(|| Fault { span, message: "this is larger than UPPAAL's integers".to_owned() })
+        .ok_or_else(|| UppaalFault { span, message: "this is larger than UPPAAL's integers".to_owned() })
 }

@@ -2,18 +2,18 @@
 
 use hrdsl_source::{FileId, Span};
 
-use super::fault::Fault;
+use super::fault::UppaalFault;
 
 /// A piece of a file: its characters with their places. In XML the characters are those that the entities stand for.
 #[derive(Clone, Debug, Default)]
-pub struct Piece {
+pub struct UppaalFragment {
     pub file: FileId,
     pub chars: Vec<(u32, char)>,
     /// The place after the last character.
     pub end: u32,
 }
 
-impl Piece {
+impl UppaalFragment {
     /// A whole file.
     pub fn of_file(file: FileId, text: &str) -> Self {
         let chars = text.char_indices().map(|(i, c)| (i as u32, c)).collect();
@@ -42,27 +42,27 @@ impl Piece {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Tok {
+pub enum UppaalTokenKind {
     Word(String),
     Int(i64),
     Mark(&'static str),
     End,
 }
 
-impl Tok {
+impl UppaalTokenKind {
     pub fn shown(&self) -> String {
         match self {
-            Tok::Word(w) => format!("`{w}`"),
-            Tok::Int(n) => format!("`{n}`"),
-            Tok::Mark(m) => format!("`{m}`"),
-            Tok::End => "the end".to_owned(),
+            UppaalTokenKind::Word(w) => format!("`{w}`"),
+            UppaalTokenKind::Int(n) => format!("`{n}`"),
+            UppaalTokenKind::Mark(m) => format!("`{m}`"),
+            UppaalTokenKind::End => "the end".to_owned(),
         }
     }
 }
 
 #[derive(Clone, Debug)]
-pub struct Token {
-    pub tok: Tok,
+pub struct UppaalToken {
+    pub tok: UppaalTokenKind,
     pub span: Span,
 }
 
@@ -74,27 +74,27 @@ const MARKS: &[&str] = &[
 ];
 
 /// All tokens, the last of which is the end.
-pub fn lex(piece: &Piece) -> Result<Vec<Token>, Fault> {
-    let mut lexer = Lexer { piece, at: 0 };
+pub fn lex(piece: &UppaalFragment) -> Result<Vec<UppaalToken>, UppaalFault> {
+    let mut lexer = UppaalLexer { piece, at: 0 };
     let mut tokens = Vec::new();
     loop {
         lexer.blanks()?;
         let start = lexer.place();
         let tok = lexer.token()?;
-        let is_end = tok == Tok::End;
-        tokens.push(Token { tok, span: Span { file: piece.file, start, end: lexer.last() } });
+        let is_end = tok == UppaalTokenKind::End;
+        tokens.push(UppaalToken { tok, span: Span { file: piece.file, start, end: lexer.last() } });
         if is_end {
             return Ok(tokens);
         }
     }
 }
 
-struct Lexer<'a> {
-    piece: &'a Piece,
+struct UppaalLexer<'a> {
+    piece: &'a UppaalFragment,
     at: usize,
 }
 
-impl Lexer<'_> {
+impl UppaalLexer<'_> {
     fn char(&self, ahead: usize) -> Option<char> {
         self.piece.chars.get(self.at + ahead).map(|(_, c)| *c)
     }
@@ -109,12 +109,12 @@ impl Lexer<'_> {
         last.map_or(self.piece.end, |(at, c)| at + c.len_utf8() as u32)
     }
 
-    fn fault(&self, message: impl Into<String>) -> Fault {
+    fn fault(&self, message: impl Into<String>) -> UppaalFault {
         let start = self.place();
-        Fault { span: Span { file: self.piece.file, start, end: start }, message: message.into() }
+        UppaalFault { span: Span { file: self.piece.file, start, end: start }, message: message.into() }
     }
 
-    fn blanks(&mut self) -> Result<(), Fault> {
+    fn blanks(&mut self) -> Result<(), UppaalFault> {
         loop {
             match (self.char(0), self.char(1)) {
                 (Some(c), _) if c.is_whitespace() => self.at += 1,
@@ -130,7 +130,7 @@ impl Lexer<'_> {
         }
     }
 
-    fn comment(&mut self) -> Result<(), Fault> {
+    fn comment(&mut self) -> Result<(), UppaalFault> {
         let open = self.fault("this comment is not closed: `*/` is missing");
         self.at += 2;
         loop {
@@ -145,10 +145,12 @@ impl Lexer<'_> {
         }
     }
 
-    fn token(&mut self) -> Result<Tok, Fault> {
-        let Some(c) = self.char(0) else { return Ok(Tok::End) };
+    fn token(&mut self) -> Result<UppaalTokenKind, UppaalFault> {
+        let Some(c) = self.char(0) else { return Ok(UppaalTokenKind::End) };
         if c.is_ascii_alphabetic() || c == '_' {
-            return Ok(Tok::Word(self.run(|c| c.is_ascii_alphanumeric() || c == '_' || c == '$')));
+            return Ok(UppaalTokenKind::Word(
+                self.run(|c| c.is_ascii_alphanumeric() || c == '_' || c == '$'),
+            ));
         }
         if c.is_ascii_digit() {
             return self.number();
@@ -158,7 +160,7 @@ impl Lexer<'_> {
             return Err(self.fault(format!("`{c}` is not part of the language of UPPAAL's models")));
         };
         self.at += mark.len();
-        Ok(Tok::Mark(mark))
+        Ok(UppaalTokenKind::Mark(mark))
     }
 
     fn run(&mut self, belongs: impl Fn(char) -> bool) -> String {
@@ -170,7 +172,7 @@ impl Lexer<'_> {
         word
     }
 
-    fn number(&mut self) -> Result<Tok, Fault> {
+    fn number(&mut self) -> Result<UppaalTokenKind, UppaalFault> {
         let start = self.at;
         let digits = self.run(|c| c.is_ascii_digit());
         if self.char(0) == Some('.') && self.char(1).is_some_and(|c| c.is_ascii_digit()) {
@@ -178,9 +180,9 @@ impl Lexer<'_> {
             return Err(self.fault("numbers with a fraction (`double`) are not supported"));
         }
         let number = digits.parse::<i64>().ok().filter(|n| *n <= i64::from(i32::MAX));
-        number.map(Tok::Int).ok_or_else(|| {
+        number.map(UppaalTokenKind::Int).ok_or_else(|| {
             let span = Span { file: self.piece.file, start: self.piece.chars[start].0, end: self.last() };
-            Fault { span, message: format!("{digits} is larger than UPPAAL's integers") }
+            UppaalFault { span, message: format!("{digits} is larger than UPPAAL's integers") }
         })
     }
 }

@@ -32,15 +32,15 @@ mod xml;
 
 use hrdsl_source::{FileId, SourceFiles, Span, TextPosition};
 
-use self::{fault::Fault, translation::Cx};
+use self::{fault::UppaalFault, translation::UppaalTranslation};
 use crate::exchange::{
-    note::{Imported, Note, Severity, SyntaxError},
-    source::{Source, too_large},
+    note::{ImportNote, ImportedScenario, NoteSeverity, SyntaxError},
+    source::{ForeignSource, too_large},
 };
 
 /// How to import.
 #[derive(Clone, Debug, Default)]
-pub struct Options {
+pub struct UppaalOptions {
     /// The scenario's name; otherwise that of the file.
     pub name: Option<String>,
 }
@@ -50,10 +50,10 @@ pub struct Options {
 /// # Errors
 /// What cannot be read, and what a scenario cannot say.
 pub fn import(
-    model: &Source,
-    questions: Option<&Source>,
-    options: &Options,
-) -> Result<Imported, Vec<SyntaxError>> {
+    model: &ForeignSource,
+    questions: Option<&ForeignSource>,
+    options: &UppaalOptions,
+) -> Result<ImportedScenario, Vec<SyntaxError>> {
     let large: Vec<SyntaxError> = std::iter::once(model).chain(questions).filter_map(too_large).collect();
     if !large.is_empty() {
         return Err(large);
@@ -65,30 +65,30 @@ pub fn import(
         let file: FileId = files.add(&source.name, &source.text);
         read.queries.extend(queries::read(file, &source.text));
     }
-    let mut cx = Cx::new(&read);
+    let mut cx = UppaalTranslation::new(&read);
     let written =
         cx.write(&options.name.clone().unwrap_or_else(|| stem(&model.name).to_owned()), &model.name);
     if !cx.faults.is_empty() {
         return Err(errors(&files, cx.faults));
     }
     for (span, old, new) in std::mem::take(&mut cx.names.renamed) {
-        cx.notes.push((span, Severity::Info, format!("`{old}` is called `{new}`")));
+        cx.notes.push((span, NoteSeverity::Info, format!("`{old}` is called `{new}`")));
     }
-    let skipped = read.skipped.iter().map(|(span, what)| (*span, Severity::LeftOut, what.clone()));
-    let mut notes: Vec<Note> = cx.notes.into_iter().chain(skipped).map(|n| note(&files, n)).collect();
+    let skipped = read.skipped.iter().map(|(span, what)| (*span, NoteSeverity::LeftOut, what.clone()));
+    let mut notes: Vec<ImportNote> = cx.notes.into_iter().chain(skipped).map(|n| note(&files, n)).collect();
     notes.sort();
     notes.dedup();
     let text = hrdsl_syntax::format(&written).unwrap_or(written);
-    Ok(Imported { text, notes })
+    Ok(ImportedScenario { text, notes })
 }
 
-fn note(files: &SourceFiles, (span, severity, message): (Span, Severity, String)) -> Note {
+fn note(files: &SourceFiles, (span, severity, message): (Span, NoteSeverity, String)) -> ImportNote {
     let (file, TextPosition { line, column }) = place(files, span);
-    Note { file, line, column, severity, message, help: None }
+    ImportNote { file, line, column, severity, message, help: None }
 }
 
-fn errors(files: &SourceFiles, faults: Vec<Fault>) -> Vec<SyntaxError> {
-    let error = |fault: Fault| {
+fn errors(files: &SourceFiles, faults: Vec<UppaalFault>) -> Vec<SyntaxError> {
+    let error = |fault: UppaalFault| {
         let (file, TextPosition { line, column }) = place(files, fault.span);
         SyntaxError { file, line, column, message: fault.message }
     };

@@ -4,34 +4,42 @@ use hrdsl_source::Span;
 use indexmap::IndexMap;
 
 use super::{
-    ast::{Expr, Instance, Param, Sync},
-    clocks::Conjunction,
+    ast::{UppaalExpr, UppaalInstance, UppaalParameter, UppaalSync},
+    clocks::GuardConjunction,
     declare::{in_range, var_line},
-    fault::{Fault, fault},
-    scope::{Out, Owner, Scope, Sym, Ty, VarSym, combinations, numbered},
+    fault::{UppaalFault, fault},
+    scope::{
+        NameOwner, ScenarioExprText, UppaalScope, UppaalSymbol, UppaalSymbolType, VarSym, combinations,
+        numbered,
+    },
     template::ParsedEdge,
-    translation::{Cx, Process},
-    xml::{Kind, Location, Template, Transition},
+    translation::{UppaalProcess, UppaalTranslation},
+    xml::{UppaalLocation, UppaalLocationKind, UppaalTemplate, UppaalTransition},
 };
 
 /// How many processes a system may have.
 const MAX_PROCESSES: usize = 512;
 
 /// What a process is made of, before its automaton is written.
-pub struct Plan {
+pub struct UppaalProcessPlan {
     pub model_name: String,
     pub args: Vec<i64>,
     pub template: usize,
-    pub scope: Scope,
+    pub scope: UppaalScope,
     /// The text of its arguments, for people.
     pub shown: Vec<String>,
 }
 
-impl Cx<'_> {
+impl UppaalTranslation<'_> {
     // ── Instances ──
 
     /// What the name in the `system` line stands for: one process, or one for each value of its parameters.
-    pub fn plans(&mut self, name: &str, span: Span, instances: &[Instance]) -> Result<Vec<Plan>, Fault> {
+    pub fn plans(
+        &mut self,
+        name: &str,
+        span: Span,
+        instances: &[UppaalInstance],
+    ) -> Result<Vec<UppaalProcessPlan>, UppaalFault> {
         let params = match instances.iter().find(|i| i.name == name) {
             Some(instance) => instance.params.clone(),
             None => match self.templates.iter().find(|t| t.name == name) {
@@ -43,8 +51,13 @@ impl Cx<'_> {
         for param in &params {
             let ty = self.declared(&param.ty, &param.dims)?;
             match ty {
-                Ty::Data(scalar, dims) if dims.is_empty() && !param.by_reference => scalars.push(scalar),
-                Ty::Data(..) | Ty::Clock(_) | Ty::Chan { .. } | Ty::Void => {
+                UppaalSymbolType::Data(scalar, dims) if dims.is_empty() && !param.by_reference => {
+                    scalars.push(scalar)
+                }
+                UppaalSymbolType::Data(..)
+                | UppaalSymbolType::Clock(_)
+                | UppaalSymbolType::Chan { .. }
+                | UppaalSymbolType::Void => {
                     let message = format!(
                         "`{name}` needs an argument for `{}`: make a process of it first",
                         param.name
@@ -53,16 +66,17 @@ impl Cx<'_> {
                 }
             }
         }
-        let ranges: Vec<_> = scalars.iter().map(|s| super::scope::Range { lo: s.lo, hi: s.hi }).collect();
+        let ranges: Vec<_> =
+            scalars.iter().map(|s| super::scope::IndexRange { lo: s.lo, hi: s.hi }).collect();
         let count = ranges.iter().try_fold(1i64, |n, r| n.checked_mul(r.count()));
         if count.is_none_or(|n| n > MAX_PROCESSES as i64) {
             return fault(span, format!("`{name}` stands for more than {MAX_PROCESSES} processes"));
         }
         let mut plans = Vec::new();
         for args in combinations(&ranges) {
-            let given = scalars.iter().zip(&args).map(|(s, n)| Sym::Const(s.literal(*n))).collect();
+            let given = scalars.iter().zip(&args).map(|(s, n)| UppaalSymbol::Const(s.literal(*n))).collect();
             let (template, scope, shown) = self.bound(name, given, instances, span)?;
-            plans.push(Plan { model_name: name.to_owned(), args, template, scope, shown });
+            plans.push(UppaalProcessPlan { model_name: name.to_owned(), args, template, scope, shown });
         }
         Ok(plans)
     }
@@ -71,10 +85,10 @@ impl Cx<'_> {
     fn bound(
         &mut self,
         name: &str,
-        given: Vec<Sym>,
-        instances: &[Instance],
+        given: Vec<UppaalSymbol>,
+        instances: &[UppaalInstance],
         span: Span,
-    ) -> Result<(usize, Scope, Vec<String>), Fault> {
+    ) -> Result<(usize, UppaalScope, Vec<String>), UppaalFault> {
         if let Some(at) = instances.iter().position(|i| i.name == name) {
             // An instance is made of what stands before it.
             let (instance, before) = (&instances[at], &instances[..at]);
@@ -89,7 +103,7 @@ impl Cx<'_> {
             let outer = std::mem::replace(&mut self.locals, vec![scope]);
             let args = params.iter().zip(&instance.args).map(|(p, a)| self.argument(p, a)).collect();
             self.locals = outer;
-            let args: Result<Vec<Sym>, Fault> = args;
+            let args: Result<Vec<UppaalSymbol>, UppaalFault> = args;
             return self.bound(&instance.of, args?, before, instance.span);
         }
         let Some(template) = self.templates.iter().position(|t| t.name == name) else {
@@ -100,7 +114,12 @@ impl Cx<'_> {
         Ok((template, params.iter().map(|p| p.name.clone()).zip(given).collect(), shown))
     }
 
-    fn params_of(&self, name: &str, instances: &[Instance], span: Span) -> Result<Vec<Param>, Fault> {
+    fn params_of(
+        &self,
+        name: &str,
+        instances: &[UppaalInstance],
+        span: Span,
+    ) -> Result<Vec<UppaalParameter>, UppaalFault> {
         let instance = instances.iter().find(|i| i.name == name).map(|i| &i.params);
         let template = || self.templates.iter().find(|t| t.name == name).map(|t| &t.params);
         match instance.or_else(template) {
@@ -109,37 +128,39 @@ impl Cx<'_> {
         }
     }
 
-    fn argument(&mut self, param: &Param, arg: &Expr) -> Result<Sym, Fault> {
+    fn argument(&mut self, param: &UppaalParameter, arg: &UppaalExpr) -> Result<UppaalSymbol, UppaalFault> {
         match self.declared(&param.ty, &param.dims)? {
-            Ty::Data(scalar, dims) if dims.is_empty() && !param.by_reference => {
+            UppaalSymbolType::Data(scalar, dims) if dims.is_empty() && !param.by_reference => {
                 let n = self.constant(arg)?;
                 in_range(&scalar, n, arg.span)?;
-                Ok(Sym::Const(scalar.literal(n)))
+                Ok(UppaalSymbol::Const(scalar.literal(n)))
             }
-            Ty::Data(scalar, dims) => match self.place(arg)? {
-                Sym::Const(out) if dims.is_empty() && param.ty.constant => Ok(Sym::Const(out)),
-                Sym::Var(mut v) if v.dims.len() == dims.len() && v.ty.is_bool == scalar.is_bool => {
+            UppaalSymbolType::Data(scalar, dims) => match self.place(arg)? {
+                UppaalSymbol::Const(out) if dims.is_empty() && param.ty.constant => {
+                    Ok(UppaalSymbol::Const(out))
+                }
+                UppaalSymbol::Var(mut v) if v.dims.len() == dims.len() && v.ty.is_bool == scalar.is_bool => {
                     v.readonly |= param.ty.constant || !param.by_reference;
-                    Ok(Sym::Var(v))
+                    Ok(UppaalSymbol::Var(v))
                 }
                 other => fault(arg.span, format!("`{}` cannot be {}", param.name, other.noun())),
             },
-            Ty::Clock(dims) => match self.place(arg)? {
-                Sym::Clock(c) if c.dims.len() == dims.len() => Ok(Sym::Clock(c)),
+            UppaalSymbolType::Clock(dims) => match self.place(arg)? {
+                UppaalSymbol::Clock(c) if c.dims.len() == dims.len() => Ok(UppaalSymbol::Clock(c)),
                 other => fault(arg.span, format!("`{}` is a clock, not {}", param.name, other.noun())),
             },
-            Ty::Chan { dims, .. } => match self.place(arg)? {
-                Sym::Chan(c) if c.dims.len() == dims.len() => Ok(Sym::Chan(c)),
+            UppaalSymbolType::Chan { dims, .. } => match self.place(arg)? {
+                UppaalSymbol::Chan(c) if c.dims.len() == dims.len() => Ok(UppaalSymbol::Chan(c)),
                 other => fault(arg.span, format!("`{}` is a channel, not {}", param.name, other.noun())),
             },
-            Ty::Void => fault(param.span, "a parameter cannot be `void`"),
+            UppaalSymbolType::Void => fault(param.span, "a parameter cannot be `void`"),
         }
     }
 
     // ── Automata ──
 
     /// Writes the automaton of a process.
-    pub fn automaton(&mut self, plan: Plan, name: String) {
+    pub fn automaton(&mut self, plan: UppaalProcessPlan, name: String) {
         self.names.start_process();
         self.own_specialised.clear();
         let template = &self.model.templates[plan.template];
@@ -167,14 +188,14 @@ impl Cx<'_> {
         let mut scope = self.process.take().unwrap_or_default();
         for (location, written) in template.locations.iter().zip(&written) {
             if let Some(name) = &location.name {
-                scope.insert(name.clone(), Sym::Location(written.clone()));
+                scope.insert(name.clone(), UppaalSymbol::Location(written.clone()));
             }
         }
         let mut doc = format!("The template `{}`", template.name);
         if !plan.shown.is_empty() {
             doc += &format!(", {}", plan.shown.join(", "));
         }
-        self.processes.push(Process {
+        self.processes.push(UppaalProcess {
             model_name: plan.model_name,
             args: plan.args,
             name,
@@ -189,7 +210,7 @@ impl Cx<'_> {
         });
     }
 
-    fn kept<T>(&mut self, made: Result<T, Fault>) -> Option<T> {
+    fn kept<T>(&mut self, made: Result<T, UppaalFault>) -> Option<T> {
         made.map_err(|fault| self.faults.push(fault)).ok()
     }
 
@@ -201,50 +222,52 @@ impl Cx<'_> {
             if param.by_reference || param.ty.constant || !is_assigned {
                 continue;
             }
-            let Ok(Ty::Data(scalar, dims)) = self.declared(&param.ty, &param.dims) else { continue };
+            let Ok(UppaalSymbolType::Data(scalar, dims)) = self.declared(&param.ty, &param.dims) else {
+                continue;
+            };
             let value = match self.process.as_ref().and_then(|p| p.get(&param.name)) {
-                Some(Sym::Const(out)) if dims.is_empty() => out.text.clone(),
+                Some(UppaalSymbol::Const(out)) if dims.is_empty() => out.text.clone(),
                 Some(_) | None => continue,
             };
-            let name = self.names.fresh(&param.name, param.span, Owner::Process);
+            let name = self.names.fresh(&param.name, param.span, NameOwner::Process);
             self.own_lines.push(var_line(&name, &scalar, &[], &value));
             let (at, values) = (Vec::new(), None);
             let sym = VarSym { name, ty: scalar, dims, at, values, own: true, local: false, readonly: false };
-            self.bind(&param.name, Sym::Var(sym), true);
+            self.bind(&param.name, UppaalSymbol::Var(sym), true);
         }
     }
 
-    fn location_names(&mut self, template: &Template) -> Vec<String> {
+    fn location_names(&mut self, template: &UppaalTemplate) -> Vec<String> {
         let mut names = IndexMap::new();
         // Names of the model first: a nameless location gives way.
         for (i, location) in template.locations.iter().enumerate() {
             if let Some(name) = &location.name {
-                names.insert(i, self.names.fresh(name, location.span, Owner::Process));
+                names.insert(i, self.names.fresh(name, location.span, NameOwner::Process));
             }
         }
         let mut all = Vec::new();
         for i in 0..template.locations.len() {
             let name = names.get(&i).cloned();
-            all.push(name.unwrap_or_else(|| self.names.unused(&format!("l{i}"), Owner::Process)));
+            all.push(name.unwrap_or_else(|| self.names.unused(&format!("l{i}"), NameOwner::Process)));
         }
         all
     }
 
     fn location(
         &mut self,
-        location: &Location,
+        location: &UppaalLocation,
         name: &str,
         is_initial: bool,
-        invariant: Option<&Expr>,
-    ) -> Result<String, Fault> {
+        invariant: Option<&UppaalExpr>,
+    ) -> Result<String, UppaalFault> {
         let mut text = doc(&location.comment);
         if is_initial {
             text += "init ";
         }
         text += match location.kind {
-            Kind::Normal => "",
-            Kind::Urgent => "urgent ",
-            Kind::Committed => "committed ",
+            UppaalLocationKind::Normal => "",
+            UppaalLocationKind::Urgent => "urgent ",
+            UppaalLocationKind::Committed => "committed ",
         };
         text += &format!("location {name}");
         let Some(invariant) = invariant else { return Ok(text) };
@@ -260,8 +283,13 @@ impl Cx<'_> {
         Ok(text)
     }
 
-    fn edge(&mut self, t: &Transition, edge: &ParsedEdge, names: &[String]) -> Result<Vec<String>, Fault> {
-        self.locals.push(Scope::new());
+    fn edge(
+        &mut self,
+        t: &UppaalTransition,
+        edge: &ParsedEdge,
+        names: &[String],
+    ) -> Result<Vec<String>, UppaalFault> {
+        self.locals.push(UppaalScope::new());
         let made = self.edge_texts(t, edge, names);
         self.locals.pop();
         made
@@ -269,21 +297,21 @@ impl Cx<'_> {
 
     fn edge_texts(
         &mut self,
-        t: &Transition,
+        t: &UppaalTransition,
         edge: &ParsedEdge,
         names: &[String],
-    ) -> Result<Vec<String>, Fault> {
+    ) -> Result<Vec<String>, UppaalFault> {
         let mut head = format!("{} -> {}", names[t.from], names[t.to]);
         let mut selects = Vec::new();
         self.names.start_function();
         for select in &edge.select {
             let scalar = self.scalar(&select.ty)?;
-            let name = self.names.fresh(&select.name, select.span, Owner::Function);
+            let name = self.names.fresh(&select.name, select.span, NameOwner::Function);
             selects.push(format!("{name}: {}", scalar.text));
             let (at, dims, values) = (Vec::new(), Vec::new(), None);
             let sym = VarSym { name, ty: scalar, dims, at, values, own: false, local: true, readonly: true };
             if let Some(scope) = self.locals.last_mut() {
-                scope.insert(select.name.clone(), Sym::Var(sym));
+                scope.insert(select.name.clone(), UppaalSymbol::Var(sym));
             }
         }
         if !selects.is_empty() {
@@ -291,7 +319,7 @@ impl Cx<'_> {
         }
         let guards = match &edge.guard {
             Some(guard) => self.alternatives(guard)?,
-            None => vec![Conjunction::default()],
+            None => vec![GuardConjunction::default()],
         };
         let sync = match &edge.sync {
             Some(sync) => Some(self.sync(sync, guards.iter().any(|g| !g.clocks.is_empty()))?),
@@ -321,40 +349,40 @@ impl Cx<'_> {
     }
 
     /// Whether the edge offers, and the channel with its arguments.
-    fn sync(&mut self, sync: &Sync, has_clocks: bool) -> Result<(bool, String), Fault> {
+    fn sync(&mut self, sync: &UppaalSync, has_clocks: bool) -> Result<(bool, String), UppaalFault> {
         let sym = self.place(&sync.channel)?;
         let channel = self.channel(&sym, sync.channel.span)?;
         if channel.urgent && has_clocks && (sync.offers || !channel.broadcast) {
             let message = format!("`{}` is urgent: its edges have no conditions over clocks", channel.name);
             return fault(sync.channel.span, message);
         }
-        let args: Vec<&str> = channel.at.iter().map(|a: &Out| a.text.as_str()).collect();
+        let args: Vec<&str> = channel.at.iter().map(|a: &ScenarioExprText| a.text.as_str()).collect();
         let args = if args.is_empty() { String::new() } else { format!("({})", args.join(", ")) };
         Ok((sync.offers, channel.name.clone() + &args))
     }
 
     /// The automaton's name: that of the process, and the values that it ranges over.
-    pub fn automaton_name(&mut self, plan: &Plan, span: Span) -> String {
+    pub fn automaton_name(&mut self, plan: &UppaalProcessPlan, span: Span) -> String {
         if plan.args.is_empty() {
-            return self.names.fresh(&plan.model_name, span, Owner::All);
+            return self.names.fresh(&plan.model_name, span, NameOwner::All);
         }
         let digit = plan.model_name.ends_with(|c: char| c.is_ascii_digit());
         let wanted = match plan.args.as_slice() {
             [only] if !digit && *only >= 0 => format!("{}{only}", plan.model_name),
             args => numbered(&plan.model_name, args),
         };
-        self.names.unused(&wanted, Owner::All)
+        self.names.unused(&wanted, NameOwner::All)
     }
 }
 
-fn shown(sym: &Sym) -> String {
+fn shown(sym: &UppaalSymbol) -> String {
     match sym {
-        Sym::Const(out) => out.text.clone(),
-        Sym::Var(v) => super::expr::place_text(v),
-        Sym::Clock(c) => c.name.clone(),
-        Sym::Chan(c) => c.at.iter().fold(c.name.clone(), |text, at| format!("{text}[{}]", at.text)),
-        Sym::Location(l) => l.clone(),
-        Sym::Type(_) | Sym::Function(_) => sym.noun().to_owned(),
+        UppaalSymbol::Const(out) => out.text.clone(),
+        UppaalSymbol::Var(v) => super::expr::place_text(v),
+        UppaalSymbol::Clock(c) => c.name.clone(),
+        UppaalSymbol::Chan(c) => c.at.iter().fold(c.name.clone(), |text, at| format!("{text}[{}]", at.text)),
+        UppaalSymbol::Location(l) => l.clone(),
+        UppaalSymbol::Type(_) | UppaalSymbol::Function(_) => sym.noun().to_owned(),
     }
 }
 

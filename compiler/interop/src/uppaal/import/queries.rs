@@ -3,16 +3,16 @@
 use hrdsl_source::FileId;
 
 use super::{
-    ast::Ask,
-    fault::{Fault, unsupported},
-    lex::Piece,
-    parse::Parser,
+    ast::UppaalQuery,
+    fault::{UppaalFault, unsupported},
+    lex::UppaalFragment,
+    parse::UppaalParser,
     xml::QueryText,
 };
 
 /// The formulas of a `.q` file with the comments before them.
 pub fn read(file: FileId, text: &str) -> Vec<QueryText> {
-    let all = Piece::of_file(file, text);
+    let all = UppaalFragment::of_file(file, text);
     let (mut queries, mut comment, mut line_start, mut at) = (Vec::new(), String::new(), 0, 0);
     let char = |i: usize| all.chars.get(i).map(|(_, c)| *c);
     let mut blank = true;
@@ -83,7 +83,7 @@ const UNSUPPORTED: &[(&str, &str)] = &[
 ];
 
 /// What a formula asks.
-pub fn parse(piece: &Piece) -> Result<Ask, Fault> {
+pub fn parse(piece: &UppaalFragment) -> Result<UppaalQuery, UppaalFault> {
     let found = |i: usize| piece.chars.get(i).map(|(_, c)| *c);
     let mut at = 0;
     while found(at).is_some_and(char::is_whitespace) {
@@ -102,14 +102,14 @@ pub fn parse(piece: &Piece) -> Result<Ask, Fault> {
     let symbol: String = head.iter().map(|(_, c)| *c).collect();
     let after = head.last().map_or(at, |(i, _)| i + 1);
     let make = match symbol.as_str() {
-        "E<>" => Some(Ask::Possibly as fn(_) -> _),
-        "A[]" => Some(Ask::Invariantly as fn(_) -> _),
-        "E[]" => Some(Ask::PotentiallyAlways as fn(_) -> _),
-        "A<>" => Some(Ask::Eventually as fn(_) -> _),
+        "E<>" => Some(UppaalQuery::Possibly as fn(_) -> _),
+        "A[]" => Some(UppaalQuery::Invariantly as fn(_) -> _),
+        "E[]" => Some(UppaalQuery::PotentiallyAlways as fn(_) -> _),
+        "A<>" => Some(UppaalQuery::Eventually as fn(_) -> _),
         _ => None,
     };
     if let Some(make) = make {
-        let mut parser = Parser::new(&piece.part(after, piece.chars.len()))?;
+        let mut parser = UppaalParser::new(&piece.part(after, piece.chars.len()))?;
         let formula = parser.expr()?;
         ended(&parser, piece)?;
         return Ok(make(formula));
@@ -122,19 +122,19 @@ pub fn parse(piece: &Piece) -> Result<Ask, Fault> {
     let rest = piece.part(end, piece.chars.len());
     let next = rest.chars.iter().map(|(_, c)| *c).find(|c| !c.is_whitespace());
     if matches!(word.as_str(), "sup" | "inf") && matches!(next, Some(':' | '{')) {
-        let mut parser = Parser::new(&rest)?;
+        let mut parser = UppaalParser::new(&rest)?;
         let (when, of) = parser.measures()?;
         ended(&parser, piece)?;
-        return Ok(if word == "sup" { Ask::Sup(when, of) } else { Ask::Inf(when, of) });
+        return Ok(if word == "sup" { UppaalQuery::Sup(when, of) } else { UppaalQuery::Inf(when, of) });
     }
     let starts = |w: &str| w == word && !matches!(next, Some('.' | '=' | '-' | '!' | '>'));
     if let Some((_, what)) = UNSUPPORTED.iter().find(|(w, _)| starts(w)) {
         return Err(unsupported(piece.part(at, end).span(), what));
     }
-    let mut parser = Parser::new(piece)?;
+    let mut parser = UppaalParser::new(piece)?;
     let (left, right) = parser.leads_to()?;
     ended(&parser, piece)?;
-    right.map(|right| Ask::LeadsTo(left, right)).ok_or_else(|| Fault {
+    right.map(|right| UppaalQuery::LeadsTo(left, right)).ok_or_else(|| UppaalFault {
         span: piece.span(),
         message: "expected a query that begins with `E<>`, `A[]`, `E[]`, `A<>`, `sup` or `inf`, or has `-->`"
             .to_owned(),
@@ -142,7 +142,7 @@ pub fn parse(piece: &Piece) -> Result<Ask, Fault> {
 }
 
 /// `under S` belongs to games and strategies.
-fn ended(parser: &Parser, piece: &Piece) -> Result<(), Fault> {
+fn ended(parser: &UppaalParser, piece: &UppaalFragment) -> Result<(), UppaalFault> {
     parser.end().map_err(|fault| {
         if fault.message.contains("`under`") {
             return unsupported(piece.span(), "strategies (`under`)");

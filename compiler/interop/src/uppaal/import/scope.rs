@@ -3,16 +3,16 @@
 use std::rc::Rc;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::token::{Class, KEYWORDS};
+use hrdsl_syntax::token::{KEYWORDS, KeywordClass};
 use indexmap::{IndexMap, IndexSet};
 
 use super::ast;
 
 /// An expression of the scenario.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Out {
+pub struct ScenarioExprText {
     pub text: String,
-    pub level: Level,
+    pub level: ScenarioPrecedence,
     pub is_bool: bool,
     /// A bool as 0 or 1.
     pub value: Option<i64>,
@@ -20,7 +20,7 @@ pub struct Out {
 
 /// How tightly an expression holds together, from the loosest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum ScenarioPrecedence {
     Imply,
     Or,
     And,
@@ -32,22 +32,27 @@ pub enum Level {
     Atom,
 }
 
-impl Out {
+impl ScenarioExprText {
     pub fn int(n: i64) -> Self {
-        let level = if n < 0 { Level::Factor } else { Level::Atom };
+        let level = if n < 0 { ScenarioPrecedence::Factor } else { ScenarioPrecedence::Atom };
         Self { text: n.to_string(), level, is_bool: false, value: Some(n) }
     }
 
     pub fn bool(b: bool) -> Self {
-        Self { text: b.to_string(), level: Level::Atom, is_bool: true, value: Some(i64::from(b)) }
+        Self {
+            text: b.to_string(),
+            level: ScenarioPrecedence::Atom,
+            is_bool: true,
+            value: Some(i64::from(b)),
+        }
     }
 
-    pub fn new(text: String, level: Level, is_bool: bool) -> Self {
+    pub fn new(text: String, level: ScenarioPrecedence, is_bool: bool) -> Self {
         Self { text, level, is_bool, value: None }
     }
 
     /// In parentheses, if it holds together less tightly than it must here.
-    pub fn at(&self, level: Level) -> String {
+    pub fn at(&self, level: ScenarioPrecedence) -> String {
         if self.level < level { format!("({})", self.text) } else { self.text.clone() }
     }
 
@@ -56,7 +61,9 @@ impl Out {
         match (self.is_bool, self.value) {
             (false, _) => self,
             (true, Some(n)) => Self::int(n),
-            (true, None) => Self::new(format!("if {} {{ 1 }} else {{ 0 }}", self.text), Level::Atom, false),
+            (true, None) => {
+                Self::new(format!("if {} {{ 1 }} else {{ 0 }}", self.text), ScenarioPrecedence::Atom, false)
+            }
         }
     }
 
@@ -65,7 +72,11 @@ impl Out {
         match (self.is_bool, self.value) {
             (true, _) => self,
             (false, Some(n)) => Self::bool(n != 0),
-            (false, None) => Self::new(format!("{} != 0", self.at(Level::Sum)), Level::Comparison, true),
+            (false, None) => Self::new(
+                format!("{} != 0", self.at(ScenarioPrecedence::Sum)),
+                ScenarioPrecedence::Comparison,
+                true,
+            ),
         }
     }
 
@@ -76,7 +87,7 @@ impl Out {
 
 /// The type of single values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scalar {
+pub struct UppaalScalarType {
     pub is_bool: bool,
     pub lo: i64,
     pub hi: i64,
@@ -84,7 +95,7 @@ pub struct Scalar {
     pub text: String,
 }
 
-impl Scalar {
+impl UppaalScalarType {
     pub fn bool() -> Self {
         Self { is_bool: true, lo: 0, hi: 1, text: "bool".to_owned() }
     }
@@ -98,40 +109,40 @@ impl Scalar {
         if self.lo <= 0 && 0 <= self.hi { 0 } else { self.lo }
     }
 
-    pub fn literal(&self, n: i64) -> Out {
-        if self.is_bool { Out::bool(n != 0) } else { Out::int(n) }
+    pub fn literal(&self, n: i64) -> ScenarioExprText {
+        if self.is_bool { ScenarioExprText::bool(n != 0) } else { ScenarioExprText::int(n) }
     }
 }
 
 /// The indices of one dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Range {
+pub struct IndexRange {
     pub lo: i64,
     pub hi: i64,
 }
 
-impl Range {
+impl IndexRange {
     pub fn count(self) -> i64 {
         self.hi - self.lo + 1
     }
 }
 
 #[derive(Clone, Debug)]
-pub enum Ty {
-    Data(Scalar, Vec<Range>),
-    Clock(Vec<Range>),
-    Chan { urgent: bool, broadcast: bool, dims: Vec<Range> },
+pub enum UppaalSymbolType {
+    Data(UppaalScalarType, Vec<IndexRange>),
+    Clock(Vec<IndexRange>),
+    Chan { urgent: bool, broadcast: bool, dims: Vec<IndexRange> },
     Void,
 }
 
 #[derive(Clone, Debug)]
 pub struct VarSym {
     pub name: String,
-    pub ty: Scalar,
+    pub ty: UppaalScalarType,
     /// Those that no index has been given for.
-    pub dims: Vec<Range>,
+    pub dims: Vec<IndexRange>,
     /// The indices given so far, counted from 0.
-    pub at: Vec<Out>,
+    pub at: Vec<ScenarioExprText>,
     /// Of a constant array.
     pub values: Option<Rc<ArrayOf>>,
     /// Belongs to a process.
@@ -151,57 +162,57 @@ pub struct ArrayOf {
 #[derive(Clone, Debug)]
 pub struct ClockSym {
     pub name: String,
-    pub dims: Vec<Range>,
+    pub dims: Vec<IndexRange>,
     pub own: bool,
 }
 
 #[derive(Clone, Debug)]
 pub struct ChanSym {
     pub name: String,
-    pub dims: Vec<Range>,
-    pub at: Vec<Out>,
+    pub dims: Vec<IndexRange>,
+    pub at: Vec<ScenarioExprText>,
     pub urgent: bool,
     pub broadcast: bool,
 }
 
 #[derive(Debug)]
 pub struct FunctionSym {
-    pub decl: ast::Function,
-    pub params: Vec<Ty>,
-    pub result: Option<Scalar>,
+    pub decl: ast::UppaalFunction,
+    pub params: Vec<UppaalSymbolType>,
+    pub result: Option<UppaalScalarType>,
     pub own: bool,
     /// Its name, if it has no parameters that are references: then there is one function for all calls.
     pub name: Option<String>,
 }
 
 #[derive(Clone, Debug)]
-pub enum Sym {
-    Const(Out),
+pub enum UppaalSymbol {
+    Const(ScenarioExprText),
     Var(VarSym),
     Clock(ClockSym),
     Chan(ChanSym),
-    Type(Ty),
+    Type(UppaalSymbolType),
     Function(Rc<FunctionSym>),
     /// In queries: that a process is there.
     Location(String),
 }
 
-impl Sym {
+impl UppaalSymbol {
     pub fn noun(&self) -> &'static str {
         match self {
-            Sym::Const(_) => "a constant",
-            Sym::Var(v) if !v.dims.is_empty() => "an array",
-            Sym::Var(_) => "a variable",
-            Sym::Clock(_) => "a clock",
-            Sym::Chan(_) => "a channel",
-            Sym::Type(_) => "a type",
-            Sym::Function(_) => "a function",
-            Sym::Location(_) => "a location",
+            UppaalSymbol::Const(_) => "a constant",
+            UppaalSymbol::Var(v) if !v.dims.is_empty() => "an array",
+            UppaalSymbol::Var(_) => "a variable",
+            UppaalSymbol::Clock(_) => "a clock",
+            UppaalSymbol::Chan(_) => "a channel",
+            UppaalSymbol::Type(_) => "a type",
+            UppaalSymbol::Function(_) => "a function",
+            UppaalSymbol::Location(_) => "a location",
         }
     }
 }
 
-pub type Scope = IndexMap<String, Sym>;
+pub type UppaalScope = IndexMap<String, UppaalSymbol>;
 
 /// Words with a meaning of their own where names stand.
 const TAKEN: &[&str] = &[
@@ -238,7 +249,7 @@ const TAKEN: &[&str] = &[
 
 /// Names that are in use. Those of a process are kept apart from those of all, and differ from them.
 #[derive(Debug, Default)]
-pub struct Names {
+pub struct UppaalScenarioNames {
     global: IndexSet<String>,
     own: IndexSet<String>,
     /// Of the function that is being written.
@@ -247,15 +258,15 @@ pub struct Names {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Owner {
+pub enum NameOwner {
     All,
     Process,
     Function,
 }
 
-impl Names {
+impl UppaalScenarioNames {
     /// A name that is nothing else's; it is noted if it is another one than in the model.
-    pub fn fresh(&mut self, wanted: &str, span: Span, owner: Owner) -> String {
+    pub fn fresh(&mut self, wanted: &str, span: Span, owner: NameOwner) -> String {
         let name = self.unused(wanted, owner);
         if name != wanted {
             self.renamed.push((span, wanted.to_owned(), name.clone()));
@@ -264,7 +275,7 @@ impl Names {
     }
 
     /// The same for what has no name in the model.
-    pub fn unused(&mut self, wanted: &str, owner: Owner) -> String {
+    pub fn unused(&mut self, wanted: &str, owner: NameOwner) -> String {
         let base = crate::exchange::name::clean(wanted);
         let mut name = base.clone();
         let mut n = 1;
@@ -273,18 +284,18 @@ impl Names {
             name = if n == 2 && is_reserved(&base) { format!("{base}_") } else { format!("{base}_{n}") };
         }
         let pool = match owner {
-            Owner::All => &mut self.global,
-            Owner::Process => &mut self.own,
-            Owner::Function => &mut self.local,
+            NameOwner::All => &mut self.global,
+            NameOwner::Process => &mut self.own,
+            NameOwner::Function => &mut self.local,
         };
         pool.insert(name.clone());
         name
     }
 
-    fn has(&self, name: &str, owner: Owner) -> bool {
+    fn has(&self, name: &str, owner: NameOwner) -> bool {
         self.global.contains(name)
-            || owner != Owner::All && self.own.contains(name)
-            || owner == Owner::Function && self.local.contains(name)
+            || owner != NameOwner::All && self.own.contains(name)
+            || owner == NameOwner::Function && self.local.contains(name)
     }
 
     pub fn start_process(&mut self) {
@@ -298,7 +309,7 @@ impl Names {
 
 fn is_reserved(name: &str) -> bool {
     let keyword = KEYWORDS.iter().find(|k| k.word == name);
-    keyword.is_some_and(|k| k.class != Class::Soft) || is_soft_word(name) || TAKEN.contains(&name)
+    keyword.is_some_and(|k| k.class != KeywordClass::Soft) || is_soft_word(name) || TAKEN.contains(&name)
 }
 
 /// Soft keywords that are not taken as names everywhere.
@@ -324,7 +335,7 @@ fn is_soft_word(name: &str) -> bool {
 }
 
 /// Every combination of indices, the last fastest.
-pub fn combinations(dims: &[Range]) -> Vec<Vec<i64>> {
+pub fn combinations(dims: &[IndexRange]) -> Vec<Vec<i64>> {
     let mut all = vec![Vec::new()];
     for dim in dims {
         all = all

@@ -5,24 +5,37 @@ use std::rc::Rc;
 use hrdsl_source::Span;
 
 use super::{
-    ast::{BinaryOp, Decl, Expr, ExprKind, Statement, StatementKind},
+    ast::{
+        UppaalBinaryOperator, UppaalDeclaration, UppaalExpr, UppaalExprKind, UppaalStatement,
+        UppaalStatementKind,
+    },
     declare::var_line,
     expr::place_text,
-    fault::{Fault, fault},
-    scope::{FunctionSym, Level, Out, Owner, Scalar, Scope, Sym, Ty, VarSym, combinations},
-    translation::Cx,
+    fault::{UppaalFault, fault},
+    scope::{
+        FunctionSym, NameOwner, ScenarioExprText, ScenarioPrecedence, UppaalScalarType, UppaalScope,
+        UppaalSymbol, UppaalSymbolType, VarSym, combinations,
+    },
+    translation::UppaalTranslation,
 };
 
-impl Cx<'_> {
+impl UppaalTranslation<'_> {
     // ── Calls ──
 
     /// The call's text and what it gives.
-    pub fn call(&mut self, of: &Expr, args: &[Expr], span: Span) -> Result<(String, Option<Scalar>), Fault> {
-        let ExprKind::Name(name) = &of.kind else { return fault(span, "expected the name of a function") };
+    pub fn call(
+        &mut self,
+        of: &UppaalExpr,
+        args: &[UppaalExpr],
+        span: Span,
+    ) -> Result<(String, Option<UppaalScalarType>), UppaalFault> {
+        let UppaalExprKind::Name(name) = &of.kind else {
+            return fault(span, "expected the name of a function");
+        };
         let Some(sym) = self.find(name).cloned() else {
             return fault(of.span, format!("there is no function `{name}` here"));
         };
-        let Sym::Function(function) = sym else {
+        let UppaalSymbol::Function(function) = sym else {
             return fault(of.span, format!("`{name}` is {}, not a function", sym.noun()));
         };
         if function.params.len() != args.len() {
@@ -32,14 +45,14 @@ impl Cx<'_> {
         let (mut values, mut aliases) = (Vec::new(), Vec::new());
         for ((param, ty), arg) in function.decl.params.iter().zip(&function.params).zip(args) {
             match ty {
-                Ty::Data(scalar, dims) if dims.is_empty() && !param.by_reference => {
+                UppaalSymbolType::Data(scalar, dims) if dims.is_empty() && !param.by_reference => {
                     values.push(self.expr(arg)?.of_type(scalar.is_bool).text);
                 }
-                Ty::Data(..) => {
+                UppaalSymbolType::Data(..) => {
                     let readonly = !param.by_reference || param.ty.constant;
                     aliases.push((param.name.clone(), self.alias(arg, readonly)?));
                 }
-                Ty::Clock(_) | Ty::Chan { .. } | Ty::Void => {
+                UppaalSymbolType::Clock(_) | UppaalSymbolType::Chan { .. } | UppaalSymbolType::Void => {
                     return fault(
                         arg.span,
                         "only variables can be given to functions, no clocks and channels",
@@ -55,8 +68,10 @@ impl Cx<'_> {
     }
 
     /// What a parameter that is a reference stands for.
-    fn alias(&mut self, arg: &Expr, readonly: bool) -> Result<VarSym, Fault> {
-        let Sym::Var(mut var) = self.place(arg)? else { return fault(arg.span, "expected a variable") };
+    fn alias(&mut self, arg: &UppaalExpr, readonly: bool) -> Result<VarSym, UppaalFault> {
+        let UppaalSymbol::Var(mut var) = self.place(arg)? else {
+            return fault(arg.span, "expected a variable");
+        };
         if var.local {
             return fault(arg.span, "a variable of a function cannot be given as a reference");
         }
@@ -75,7 +90,7 @@ impl Cx<'_> {
         &mut self,
         function: &Rc<FunctionSym>,
         aliases: Vec<(String, VarSym)>,
-    ) -> Result<String, Fault> {
+    ) -> Result<String, UppaalFault> {
         let own = function.own || aliases.iter().any(|(_, v)| v.own);
         let shown: Vec<String> = aliases.iter().map(|(_, v)| place_text(v)).collect();
         let key = format!("{} {} {}", function.own, function.decl.name, shown.join(" "));
@@ -83,7 +98,7 @@ impl Cx<'_> {
         if let Some(name) = known.get(&key) {
             return Ok(name.clone());
         }
-        let owner = if own { Owner::Process } else { Owner::All };
+        let owner = if own { NameOwner::Process } else { NameOwner::All };
         let name = self.names.unused(&format!("{}_{}", function.decl.name, shown.join("_")), owner);
         let known = if own { &mut self.own_specialised } else { &mut self.specialised };
         known.insert(key, name.clone());
@@ -98,25 +113,26 @@ impl Cx<'_> {
         name: &str,
         aliases: Vec<(String, VarSym)>,
         own: bool,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), UppaalFault> {
         if self.writing > 20 {
             return fault(function.decl.span, "a function that calls itself is not supported");
         }
-        let mut scope: Scope = aliases.into_iter().map(|(name, v)| (name, Sym::Var(v))).collect();
+        let mut scope: UppaalScope =
+            aliases.into_iter().map(|(name, v)| (name, UppaalSymbol::Var(v))).collect();
         if self.writing == 0 {
             self.names.start_function();
         }
         let mut params = Vec::new();
         for (param, ty) in function.decl.params.iter().zip(&function.params) {
-            let Ty::Data(scalar, _) = ty else { continue };
+            let UppaalSymbolType::Data(scalar, _) = ty else { continue };
             if scope.contains_key(&param.name) {
                 continue;
             }
-            let written = self.names.fresh(&param.name, param.span, Owner::Function);
+            let written = self.names.fresh(&param.name, param.span, NameOwner::Function);
             params.push(format!("{written}: {}", scalar.text));
             scope.insert(
                 param.name.clone(),
-                Sym::Var(local(written, scalar.clone(), Vec::new(), param.ty.constant)),
+                UppaalSymbol::Var(local(written, scalar.clone(), Vec::new(), param.ty.constant)),
             );
         }
         // What the function knows: nothing of where it is called.
@@ -141,17 +157,25 @@ impl Cx<'_> {
 
     // ── Statements ──
 
-    fn statements(&mut self, all: &[Statement], result: Option<&Scalar>) -> Result<Vec<String>, Fault> {
-        self.locals.push(Scope::new());
+    fn statements(
+        &mut self,
+        all: &[UppaalStatement],
+        result: Option<&UppaalScalarType>,
+    ) -> Result<Vec<String>, UppaalFault> {
+        self.locals.push(UppaalScope::new());
         let mut lines = Vec::new();
         let written = all.iter().try_for_each(|s| self.statement(s, result, &mut lines));
         self.locals.pop();
         written.map(|()| lines)
     }
 
-    fn nested(&mut self, s: &Statement, result: Option<&Scalar>) -> Result<String, Fault> {
+    fn nested(
+        &mut self,
+        s: &UppaalStatement,
+        result: Option<&UppaalScalarType>,
+    ) -> Result<String, UppaalFault> {
         let all = match &s.kind {
-            StatementKind::Block(all) => self.statements(all, result)?,
+            UppaalStatementKind::Block(all) => self.statements(all, result)?,
             _ => self.statements(std::slice::from_ref(s), result)?,
         };
         Ok(format!("{{\n{}\n}}", all.join("\n")))
@@ -159,23 +183,23 @@ impl Cx<'_> {
 
     fn statement(
         &mut self,
-        s: &Statement,
-        result: Option<&Scalar>,
+        s: &UppaalStatement,
+        result: Option<&UppaalScalarType>,
         lines: &mut Vec<String>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), UppaalFault> {
         match &s.kind {
-            StatementKind::Empty => {}
-            StatementKind::Decl(decl) => self.local_declaration(decl, s.span, lines)?,
-            StatementKind::Expr(e) => {
+            UppaalStatementKind::Empty => {}
+            UppaalStatementKind::Decl(decl) => self.local_declaration(decl, s.span, lines)?,
+            UppaalStatementKind::Expr(e) => {
                 let mut effects = Vec::new();
                 self.effect(e, &mut effects)?;
                 lines.extend(effects.into_iter().map(|e| e + ";"));
             }
-            StatementKind::Block(all) => {
+            UppaalStatementKind::Block(all) => {
                 let inner = self.statements(all, result)?;
                 lines.extend(inner);
             }
-            StatementKind::If(c, then, otherwise) => {
+            UppaalStatementKind::If(c, then, otherwise) => {
                 let c = self.condition(c)?;
                 let mut text = format!("if {} {}", c.text, self.nested(then, result)?);
                 if let Some(otherwise) = otherwise {
@@ -183,35 +207,35 @@ impl Cx<'_> {
                 }
                 lines.push(text);
             }
-            StatementKind::While(c, body) => {
+            UppaalStatementKind::While(c, body) => {
                 let c = self.condition(c)?;
                 lines.push(format!("while {} {}", c.text, self.nested(body, result)?));
             }
-            StatementKind::DoWhile(body, c) => {
-                let again = self.names.unused("again", Owner::Function);
+            UppaalStatementKind::DoWhile(body, c) => {
+                let again = self.names.unused("again", NameOwner::Function);
                 let body = self.nested(body, result)?;
                 let c = self.condition(c)?;
                 lines.push(format!("var {again}: bool = true;"));
                 let inner = body.strip_prefix('{').and_then(|b| b.strip_suffix('}')).unwrap_or_default();
                 lines.push(format!("while {again} {{{inner}{again} = {}\n}}", c.text));
             }
-            StatementKind::For(init, c, step, body) => {
+            UppaalStatementKind::For(init, c, step, body) => {
                 self.for_loop(init, c.as_ref(), step, body, result, lines)?
             }
-            StatementKind::ForRange(name, ty, body) => {
+            UppaalStatementKind::ForRange(name, ty, body) => {
                 let scalar = self.scalar(ty)?;
                 if scalar.is_bool {
                     return fault(ty.span, "`for` over `bool` is not supported: say `int[0,1]`");
                 }
-                let written = self.names.fresh(name, s.span, Owner::Function);
-                let sym = Sym::Var(local(written.clone(), scalar.clone(), Vec::new(), true));
-                self.locals.push(Scope::from_iter([(name.clone(), sym)]));
+                let written = self.names.fresh(name, s.span, NameOwner::Function);
+                let sym = UppaalSymbol::Var(local(written.clone(), scalar.clone(), Vec::new(), true));
+                self.locals.push(UppaalScope::from_iter([(name.clone(), sym)]));
                 let body = self.nested(body, result);
                 self.locals.pop();
                 lines.push(format!("for {written} in {} {}", scalar.text, body?));
             }
-            StatementKind::Return(None) => lines.push("return;".to_owned()),
-            StatementKind::Return(Some(e)) => {
+            UppaalStatementKind::Return(None) => lines.push("return;".to_owned()),
+            UppaalStatementKind::Return(Some(e)) => {
                 let Some(result) = result else {
                     return fault(s.span, "this function has no value (`void`)");
                 };
@@ -224,13 +248,13 @@ impl Cx<'_> {
 
     fn for_loop(
         &mut self,
-        init: &[Expr],
-        c: Option<&Expr>,
-        step: &[Expr],
-        body: &Statement,
-        result: Option<&Scalar>,
+        init: &[UppaalExpr],
+        c: Option<&UppaalExpr>,
+        step: &[UppaalExpr],
+        body: &UppaalStatement,
+        result: Option<&UppaalScalarType>,
         lines: &mut Vec<String>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), UppaalFault> {
         let mut effects = Vec::new();
         init.iter().try_for_each(|e| self.effect(e, &mut effects))?;
         lines.extend(effects.drain(..).map(|e| e + ";"));
@@ -246,44 +270,53 @@ impl Cx<'_> {
         Ok(())
     }
 
-    fn local_declaration(&mut self, decl: &Decl, span: Span, lines: &mut Vec<String>) -> Result<(), Fault> {
+    fn local_declaration(
+        &mut self,
+        decl: &UppaalDeclaration,
+        span: Span,
+        lines: &mut Vec<String>,
+    ) -> Result<(), UppaalFault> {
         let (ty, declarators) = match decl {
-            Decl::Vars(ty, declarators) => (ty, declarators),
-            Decl::Typedef(ty, declarator) => {
+            UppaalDeclaration::Vars(ty, declarators) => (ty, declarators),
+            UppaalDeclaration::Typedef(ty, declarator) => {
                 let ty = self.declared(ty, &declarator.dims)?;
-                self.bind_local(&declarator.name, Sym::Type(ty));
+                self.bind_local(&declarator.name, UppaalSymbol::Type(ty));
                 return Ok(());
             }
-            Decl::Function(_) | Decl::Instance(_) | Decl::System(_) => {
+            UppaalDeclaration::Function(_)
+            | UppaalDeclaration::Instance(_)
+            | UppaalDeclaration::System(_) => {
                 return fault(span, "this cannot be declared in a function");
             }
         };
         for declarator in declarators {
-            let Ty::Data(scalar, dims) = self.declared(ty, &declarator.dims)? else {
+            let UppaalSymbolType::Data(scalar, dims) = self.declared(ty, &declarator.dims)? else {
                 return fault(declarator.span, "a function has variables only: no clocks and channels");
             };
             let constant = match &declarator.init {
-                Some(super::ast::Init::One(e)) if ty.constant && dims.is_empty() => self.expr(e)?.value,
+                Some(super::ast::UppaalInitializer::One(e)) if ty.constant && dims.is_empty() => {
+                    self.expr(e)?.value
+                }
                 Some(_) | None => None,
             };
             if let Some(n) = constant {
-                self.bind_local(&declarator.name, Sym::Const(scalar.literal(n)));
+                self.bind_local(&declarator.name, UppaalSymbol::Const(scalar.literal(n)));
                 continue;
             }
             let init = match &declarator.init {
-                Some(super::ast::Init::One(e)) if dims.is_empty() => {
+                Some(super::ast::UppaalInitializer::One(e)) if dims.is_empty() => {
                     self.expr(e)?.of_type(scalar.is_bool).text
                 }
                 init => self.initial(&scalar, &dims, init.as_ref(), declarator.span)?,
             };
-            let written = self.names.fresh(&declarator.name, declarator.span, Owner::Function);
+            let written = self.names.fresh(&declarator.name, declarator.span, NameOwner::Function);
             lines.push(var_line(&written, &scalar, &dims, &init) + ";");
-            self.bind_local(&declarator.name, Sym::Var(local(written, scalar, dims, ty.constant)));
+            self.bind_local(&declarator.name, UppaalSymbol::Var(local(written, scalar, dims, ty.constant)));
         }
         Ok(())
     }
 
-    fn bind_local(&mut self, name: &str, sym: Sym) {
+    fn bind_local(&mut self, name: &str, sym: UppaalSymbol) {
         if let Some(scope) = self.locals.last_mut() {
             scope.insert(name.to_owned(), sym);
         }
@@ -292,10 +325,10 @@ impl Cx<'_> {
     // ── Updates ──
 
     /// What an expression changes, as actions or statements.
-    pub fn effect(&mut self, e: &Expr, out: &mut Vec<String>) -> Result<(), Fault> {
+    pub fn effect(&mut self, e: &UppaalExpr, out: &mut Vec<String>) -> Result<(), UppaalFault> {
         match &e.kind {
-            ExprKind::Assign(op, to, value) => self.assign(*op, to, value, e.span, out),
-            ExprKind::Step { up, of } => {
+            UppaalExprKind::Assign(op, to, value) => self.assign(*op, to, value, e.span, out),
+            UppaalExprKind::Step { up, of } => {
                 let to = self.assigned(of)?;
                 if to.ty.is_bool || !to.dims.is_empty() {
                     return fault(e.span, "`++` and `--` are for numbers");
@@ -303,12 +336,12 @@ impl Cx<'_> {
                 out.push(format!("{} {} 1", place_text(&to), if *up { "+=" } else { "-=" }));
                 Ok(())
             }
-            ExprKind::Call(of, args) => {
+            UppaalExprKind::Call(of, args) => {
                 let (text, _) = self.call(of, args, e.span)?;
                 out.push(text);
                 Ok(())
             }
-            ExprKind::Choice(c, a, b) if self.writing > 0 => {
+            UppaalExprKind::Choice(c, a, b) if self.writing > 0 => {
                 let c = self.condition(c)?;
                 let (mut then, mut otherwise) = (Vec::new(), Vec::new());
                 self.effect(a, &mut then)?;
@@ -329,11 +362,13 @@ impl Cx<'_> {
     }
 
     /// A variable that may be assigned.
-    fn assigned(&mut self, e: &Expr) -> Result<VarSym, Fault> {
+    fn assigned(&mut self, e: &UppaalExpr) -> Result<VarSym, UppaalFault> {
         match self.place(e)? {
-            Sym::Var(v) if v.readonly => fault(e.span, format!("`{}` cannot be assigned here", v.name)),
-            Sym::Var(v) => Ok(v),
-            Sym::Clock(_) => {
+            UppaalSymbol::Var(v) if v.readonly => {
+                fault(e.span, format!("`{}` cannot be assigned here", v.name))
+            }
+            UppaalSymbol::Var(v) => Ok(v),
+            UppaalSymbol::Clock(_) => {
                 fault(e.span, "a function of a scenario cannot set clocks: set them on the transition")
             }
             other => fault(e.span, format!("{} cannot be assigned", other.noun())),
@@ -342,19 +377,19 @@ impl Cx<'_> {
 
     fn assign(
         &mut self,
-        op: Option<BinaryOp>,
-        to: &Expr,
-        value: &Expr,
+        op: Option<UppaalBinaryOperator>,
+        to: &UppaalExpr,
+        value: &UppaalExpr,
         span: Span,
         out: &mut Vec<String>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), UppaalFault> {
         let mut value = value.clone();
-        if let ExprKind::Assign(_, inner, _) = &value.kind {
+        if let UppaalExprKind::Assign(_, inner, _) = &value.kind {
             let inner = (**inner).clone();
             self.effect(&value, out)?;
             value = inner;
         }
-        if self.writing == 0 && matches!(self.place(to), Ok(Sym::Clock(_))) {
+        if self.writing == 0 && matches!(self.place(to), Ok(UppaalSymbol::Clock(_))) {
             if op.is_some() {
                 return fault(span, "a clock is set by `=`");
             }
@@ -373,11 +408,15 @@ impl Cx<'_> {
         }
         out.push(match op {
             None => format!("{text} = {}", value.text),
-            Some(BinaryOp::Add) => format!("{text} += {}", value.text),
-            Some(BinaryOp::Sub) => format!("{text} -= {}", value.text),
-            Some(BinaryOp::Mul) => format!("{text} = {text} * {}", value.at(Level::Factor)),
-            Some(BinaryOp::Div) => format!("{text} = {text} / {}", value.at(Level::Factor)),
-            Some(_) => format!("{text} = {text} % {}", value.at(Level::Atom)),
+            Some(UppaalBinaryOperator::Add) => format!("{text} += {}", value.text),
+            Some(UppaalBinaryOperator::Sub) => format!("{text} -= {}", value.text),
+            Some(UppaalBinaryOperator::Mul) => {
+                format!("{text} = {text} * {}", value.at(ScenarioPrecedence::Factor))
+            }
+            Some(UppaalBinaryOperator::Div) => {
+                format!("{text} = {text} / {}", value.at(ScenarioPrecedence::Factor))
+            }
+            Some(_) => format!("{text} = {text} % {}", value.at(ScenarioPrecedence::Atom)),
         });
         Ok(())
     }
@@ -386,20 +425,22 @@ impl Cx<'_> {
     fn assign_array(
         &mut self,
         to: &VarSym,
-        op: Option<BinaryOp>,
-        value: &Expr,
+        op: Option<UppaalBinaryOperator>,
+        value: &UppaalExpr,
         span: Span,
         out: &mut Vec<String>,
-    ) -> Result<(), Fault> {
-        let Sym::Var(from) = self.place(value)? else { return fault(value.span, "expected an array") };
+    ) -> Result<(), UppaalFault> {
+        let UppaalSymbol::Var(from) = self.place(value)? else {
+            return fault(value.span, "expected an array");
+        };
         let sizes = |v: &VarSym| v.dims.iter().map(|d| d.count()).collect::<Vec<_>>();
         if op.is_some() || sizes(to) != sizes(&from) || to.ty.is_bool != from.ty.is_bool {
             return fault(span, "arrays are assigned as a whole if they are of one size and type");
         }
-        let from_zero = to.dims.iter().map(|d| super::scope::Range { lo: 0, hi: d.count() - 1 });
+        let from_zero = to.dims.iter().map(|d| super::scope::IndexRange { lo: 0, hi: d.count() - 1 });
         for at in combinations(&from_zero.collect::<Vec<_>>()) {
             let element = |v: &VarSym| {
-                let at = v.at.iter().cloned().chain(at.iter().map(|n| Out::int(*n))).collect();
+                let at = v.at.iter().cloned().chain(at.iter().map(|n| ScenarioExprText::int(*n))).collect();
                 VarSym { at, dims: Vec::new(), ..v.clone() }
             };
             let value = self.value_of(&element(&from));
@@ -409,6 +450,6 @@ impl Cx<'_> {
     }
 }
 
-fn local(name: String, ty: Scalar, dims: Vec<super::scope::Range>, readonly: bool) -> VarSym {
+fn local(name: String, ty: UppaalScalarType, dims: Vec<super::scope::IndexRange>, readonly: bool) -> VarSym {
     VarSym { name, ty, dims, at: Vec::new(), values: None, own: false, local: true, readonly }
 }

@@ -3,41 +3,44 @@
 use indexmap::IndexSet;
 
 use super::{
-    ast::{BinaryOp, Decl, Expr, ExprKind, Param, Select, Sync},
-    fault::Fault,
-    lex::Piece,
-    parse::Parser,
-    xml::{Template, Transition},
+    ast::{
+        UppaalBinaryOperator, UppaalDeclaration, UppaalExpr, UppaalExprKind, UppaalParameter, UppaalSelect,
+        UppaalSync,
+    },
+    fault::UppaalFault,
+    lex::UppaalFragment,
+    parse::UppaalParser,
+    xml::{UppaalTemplate, UppaalTransition},
 };
 
 /// A template whose labels have been read.
 pub struct ParsedTemplate {
     pub name: String,
-    pub params: Vec<Param>,
-    pub declarations: Vec<Decl>,
+    pub params: Vec<UppaalParameter>,
+    pub declarations: Vec<UppaalDeclaration>,
     /// By location.
-    pub invariants: Vec<Option<Expr>>,
+    pub invariants: Vec<Option<UppaalExpr>>,
     pub edges: Vec<ParsedEdge>,
     /// Names that something is assigned to, or that are given to functions.
     pub assigned: IndexSet<String>,
 }
 
 pub struct ParsedEdge {
-    pub select: Vec<Select>,
-    pub guard: Option<Expr>,
-    pub sync: Option<Sync>,
-    pub assign: Vec<Expr>,
+    pub select: Vec<UppaalSelect>,
+    pub guard: Option<UppaalExpr>,
+    pub sync: Option<UppaalSync>,
+    pub assign: Vec<UppaalExpr>,
 }
 
 fn read<T>(
-    piece: &Piece,
-    faults: &mut Vec<Fault>,
-    parse: impl FnOnce(&mut Parser) -> Result<T, Fault>,
+    piece: &UppaalFragment,
+    faults: &mut Vec<UppaalFault>,
+    parse: impl FnOnce(&mut UppaalParser) -> Result<T, UppaalFault>,
 ) -> Option<T> {
     if piece.is_blank() {
         return None;
     }
-    let parsed = Parser::new(piece).and_then(|mut parser| {
+    let parsed = UppaalParser::new(piece).and_then(|mut parser| {
         if parser.at_end() {
             return Ok(None);
         }
@@ -51,45 +54,45 @@ fn read<T>(
     })
 }
 
-pub fn declarations(piece: &Piece, faults: &mut Vec<Fault>) -> Vec<Decl> {
-    read(piece, faults, Parser::declarations).unwrap_or_default()
+pub fn declarations(piece: &UppaalFragment, faults: &mut Vec<UppaalFault>) -> Vec<UppaalDeclaration> {
+    read(piece, faults, UppaalParser::declarations).unwrap_or_default()
 }
 
 /// In the old language commas join the conditions of a guard.
-fn conjunction(parser: &mut Parser) -> Result<Option<Expr>, Fault> {
+fn conjunction(parser: &mut UppaalParser) -> Result<Option<UppaalExpr>, UppaalFault> {
     let all = parser.list(";")?;
     Ok(all.into_iter().reduce(|a, b| {
         let span = a.span.to(b.span);
-        Expr { kind: ExprKind::Binary(BinaryOp::And, Box::new(a), Box::new(b)), span }
+        UppaalExpr { kind: UppaalExprKind::Binary(UppaalBinaryOperator::And, Box::new(a), Box::new(b)), span }
     }))
 }
 
 /// Reads all labels of a template.
-pub fn template(template: &Template, faults: &mut Vec<Fault>) -> ParsedTemplate {
+pub fn template(template: &UppaalTemplate, faults: &mut Vec<UppaalFault>) -> ParsedTemplate {
     let params = read(&template.parameters, faults, |p| p.params(")")).unwrap_or_default();
     let declarations = declarations(&template.declaration, faults);
     let invariants =
         template.locations.iter().map(|l| read(&l.invariant, faults, conjunction).flatten()).collect();
-    let edge = |t: &Transition, faults: &mut Vec<Fault>| ParsedEdge {
-        select: read(&t.select, faults, Parser::selects).unwrap_or_default(),
+    let edge = |t: &UppaalTransition, faults: &mut Vec<UppaalFault>| ParsedEdge {
+        select: read(&t.select, faults, UppaalParser::selects).unwrap_or_default(),
         guard: read(&t.guard, faults, conjunction).flatten(),
-        sync: read(&t.sync, faults, Parser::sync),
+        sync: read(&t.sync, faults, UppaalParser::sync),
         assign: read(&t.assign, faults, |p| p.list(";")).unwrap_or_default(),
     };
     let edges: Vec<ParsedEdge> = template.transitions.iter().map(|t| edge(t, faults)).collect();
     let mut assigned = IndexSet::new();
-    let mut note = |e: &Expr| match &e.kind {
-        ExprKind::Assign(_, to, _) | ExprKind::Step { of: to, .. } => {
+    let mut note = |e: &UppaalExpr| match &e.kind {
+        UppaalExprKind::Assign(_, to, _) | UppaalExprKind::Step { of: to, .. } => {
             assigned.extend(to.root().map(str::to_owned));
         }
-        ExprKind::Call(_, args) => {
-            assigned.extend(args.iter().filter_map(Expr::root).map(str::to_owned));
+        UppaalExprKind::Call(_, args) => {
+            assigned.extend(args.iter().filter_map(UppaalExpr::root).map(str::to_owned));
         }
         _ => {}
     };
     edges.iter().flat_map(|e| &e.assign).for_each(|e| e.each(&mut note));
     for declaration in &declarations {
-        if let Decl::Function(function) = declaration {
+        if let UppaalDeclaration::Function(function) = declaration {
             function.body.iter().for_each(|s| s.each(&mut note));
         }
     }

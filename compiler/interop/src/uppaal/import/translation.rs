@@ -4,23 +4,23 @@ use hrdsl_source::Span;
 use indexmap::IndexMap;
 
 use super::{
-    fault::Fault,
-    scope::{ChanSym, Names, Scope},
+    fault::UppaalFault,
+    scope::{ChanSym, UppaalScenarioNames, UppaalScope},
     template::ParsedTemplate,
-    xml::Model,
+    xml::UppaalModel,
 };
-use crate::exchange::note::Severity;
+use crate::exchange::note::NoteSeverity;
 
 /// A process: an automaton of the scenario.
 #[derive(Debug)]
-pub(crate) struct Process {
+pub(crate) struct UppaalProcess {
     /// As the model calls it, with the values of what it ranges over.
     pub model_name: String,
     pub args: Vec<i64>,
     /// As the scenario calls it.
     pub name: String,
     /// Its parameters, and what it declares.
-    pub scope: Scope,
+    pub scope: UppaalScope,
     /// Declarations of its constant arrays, and whether they are needed.
     pub arrays: IndexMap<String, (String, bool)>,
     pub clocks: Vec<String>,
@@ -32,16 +32,16 @@ pub(crate) struct Process {
 }
 
 /// All that is known while a model is translated.
-pub(crate) struct Cx<'m> {
-    pub model: &'m Model,
+pub(crate) struct UppaalTranslation<'m> {
+    pub model: &'m UppaalModel,
     pub templates: Vec<ParsedTemplate>,
-    pub faults: Vec<Fault>,
-    pub notes: Vec<(Span, Severity, String)>,
-    pub names: Names,
-    pub global: Scope,
-    pub process: Option<Scope>,
-    pub locals: Vec<Scope>,
-    pub processes: Vec<Process>,
+    pub faults: Vec<UppaalFault>,
+    pub notes: Vec<(Span, NoteSeverity, String)>,
+    pub names: UppaalScenarioNames,
+    pub global: UppaalScope,
+    pub process: Option<UppaalScope>,
+    pub locals: Vec<UppaalScope>,
+    pub processes: Vec<UppaalProcess>,
     pub in_query: bool,
     /// How many functions are being written, one called by the other.
     pub writing: usize,
@@ -57,15 +57,15 @@ pub(crate) struct Cx<'m> {
     pub own_specialised: IndexMap<String, String>,
 }
 
-impl<'m> Cx<'m> {
-    pub fn new(model: &'m Model) -> Self {
+impl<'m> UppaalTranslation<'m> {
+    pub fn new(model: &'m UppaalModel) -> Self {
         Self {
             model,
             templates: Vec::new(),
             faults: Vec::new(),
             notes: Vec::new(),
-            names: Names::default(),
-            global: Scope::new(),
+            names: UppaalScenarioNames::default(),
+            global: UppaalScope::new(),
             process: None,
             locals: Vec::new(),
             processes: Vec::new(),

@@ -3,16 +3,16 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{Ask, Decl, Expr, Instance},
-    fault::Fault,
+    ast::{UppaalDeclaration, UppaalExpr, UppaalInstance, UppaalQuery},
+    fault::UppaalFault,
     queries,
-    scope::{Owner, Range},
+    scope::{IndexRange, NameOwner},
     template,
-    translation::Cx,
+    translation::UppaalTranslation,
 };
-use crate::exchange::note::Severity;
+use crate::exchange::note::NoteSeverity;
 
-impl Cx<'_> {
+impl UppaalTranslation<'_> {
     /// Writes everything; what is in the way is among the faults then.
     pub fn write(&mut self, name: &str, file: &str) -> String {
         let model = self.model;
@@ -28,10 +28,10 @@ impl Cx<'_> {
         if !self.faults.is_empty() {
             return String::new();
         }
-        let scenario = self.names.unused(name, Owner::All);
+        let scenario = self.names.unused(name, NameOwner::All);
         global.iter().for_each(|d| self.declare(d, false));
         system.iter().for_each(|d| self.declare(d, false));
-        let network = self.names.unused("model", Owner::All);
+        let network = self.names.unused("model", NameOwner::All);
         self.all_processes(&system);
         if !self.faults.is_empty() {
             return String::new();
@@ -40,20 +40,22 @@ impl Cx<'_> {
         self.text(&scenario, file, &network, &asked)
     }
 
-    fn all_processes(&mut self, system: &[Decl]) {
-        let mut instances: Vec<Instance> = Vec::new();
+    fn all_processes(&mut self, system: &[UppaalDeclaration]) {
+        let mut instances: Vec<UppaalInstance> = Vec::new();
         let mut listed = None;
         for decl in system {
             match decl {
-                Decl::Instance(instance) => instances.push(instance.clone()),
-                Decl::System(names) => listed = Some(names.clone()),
-                Decl::Vars(..) | Decl::Typedef(..) | Decl::Function(_) => {}
+                UppaalDeclaration::Instance(instance) => instances.push(instance.clone()),
+                UppaalDeclaration::System(names) => listed = Some(names.clone()),
+                UppaalDeclaration::Vars(..)
+                | UppaalDeclaration::Typedef(..)
+                | UppaalDeclaration::Function(_) => {}
             }
         }
         let Some(listed) = listed else {
-            let span = self.model.system.last().map_or_else(Span::default, super::lex::Piece::span);
+            let span = self.model.system.last().map_or_else(Span::default, super::lex::UppaalFragment::span);
             let message = "there is no line `system …;` that says what the system is made of".to_owned();
-            return self.faults.push(Fault { span, message });
+            return self.faults.push(UppaalFault { span, message });
         };
         let mut plans = Vec::new();
         for (name, span) in &listed {
@@ -79,7 +81,7 @@ impl Cx<'_> {
             let made = queries::parse(&query.formula).and_then(|ask| self.ask(&ask));
             match made {
                 Ok(ask) => {
-                    let name = self.names.unused(&format!("q{}", i + 1), Owner::All);
+                    let name = self.names.unused(&format!("q{}", i + 1), NameOwner::All);
                     let title = if query.comment.is_empty() {
                         String::new()
                     } else {
@@ -92,7 +94,7 @@ impl Cx<'_> {
                     out.push(format!("// not carried over: {}\n//   {shown}", fault.message));
                     self.notes.push((
                         fault.span,
-                        Severity::LeftOut,
+                        NoteSeverity::LeftOut,
                         format!("the query `{shown}`: {}", fault.message),
                     ));
                 }
@@ -102,19 +104,24 @@ impl Cx<'_> {
         out
     }
 
-    fn ask(&mut self, ask: &Ask) -> Result<String, Fault> {
+    fn ask(&mut self, ask: &UppaalQuery) -> Result<String, UppaalFault> {
         Ok(match ask {
-            Ask::Possibly(f) => format!("E<> {}", self.formula(f)?.text),
-            Ask::Invariantly(f) => format!("A[] {}", self.formula(f)?.text),
-            Ask::PotentiallyAlways(f) => format!("E[] {}", self.formula(f)?.text),
-            Ask::Eventually(f) => format!("A<> {}", self.formula(f)?.text),
-            Ask::LeadsTo(f, g) => format!("{} --> {}", self.formula(f)?.text, self.formula(g)?.text),
-            Ask::Sup(when, of) => self.bound_of("sup", when.as_ref(), of)?,
-            Ask::Inf(when, of) => self.bound_of("inf", when.as_ref(), of)?,
+            UppaalQuery::Possibly(f) => format!("E<> {}", self.formula(f)?.text),
+            UppaalQuery::Invariantly(f) => format!("A[] {}", self.formula(f)?.text),
+            UppaalQuery::PotentiallyAlways(f) => format!("E[] {}", self.formula(f)?.text),
+            UppaalQuery::Eventually(f) => format!("A<> {}", self.formula(f)?.text),
+            UppaalQuery::LeadsTo(f, g) => format!("{} --> {}", self.formula(f)?.text, self.formula(g)?.text),
+            UppaalQuery::Sup(when, of) => self.bound_of("sup", when.as_ref(), of)?,
+            UppaalQuery::Inf(when, of) => self.bound_of("inf", when.as_ref(), of)?,
         })
     }
 
-    fn bound_of(&mut self, word: &str, when: Option<&Expr>, of: &[Expr]) -> Result<String, Fault> {
+    fn bound_of(
+        &mut self,
+        word: &str,
+        when: Option<&UppaalExpr>,
+        of: &[UppaalExpr],
+    ) -> Result<String, UppaalFault> {
         let when = match when {
             Some(f) => format!("{{ {} }}", self.formula(f)?.text),
             None => String::new(),
@@ -173,8 +180,9 @@ fn section(text: &mut String, lines: impl Iterator<Item = String>) {
 }
 
 fn channel(channel: &super::scope::ChanSym) -> String {
-    let index =
-        |(i, d): (usize, &Range)| format!("{}: {}..{}", ["i", "j", "k"].get(i).unwrap_or(&"n"), d.lo, d.hi);
+    let index = |(i, d): (usize, &IndexRange)| {
+        format!("{}: {}..{}", ["i", "j", "k"].get(i).unwrap_or(&"n"), d.lo, d.hi)
+    };
     let mut text = format!("channel {}", channel.name);
     if channel.dims.len() > 3 {
         let params = channel.dims.iter().enumerate().map(|(i, d)| format!("i{i}: {}..{}", d.lo, d.hi));

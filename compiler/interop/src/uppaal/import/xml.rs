@@ -6,77 +6,78 @@ use hrdsl_source::{FileId, Span};
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::{
-    fault::{Fault, unsupported},
-    lex::Piece,
+    fault::{UppaalFault, unsupported},
+    lex::UppaalFragment,
 };
 
 #[derive(Debug, Default)]
-pub struct Model {
-    pub declaration: Piece,
-    pub templates: Vec<Template>,
+pub struct UppaalModel {
+    pub declaration: UppaalFragment,
+    pub templates: Vec<UppaalTemplate>,
     /// What instantiates templates, and the line that says what the system is made of.
-    pub system: Vec<Piece>,
+    pub system: Vec<UppaalFragment>,
     pub queries: Vec<QueryText>,
     /// What is of no account for the behaviour.
     pub skipped: Vec<(Span, String)>,
 }
 
 #[derive(Debug)]
-pub struct Template {
+pub struct UppaalTemplate {
     pub name: String,
-    pub parameters: Piece,
-    pub declaration: Piece,
-    pub locations: Vec<Location>,
+    pub parameters: UppaalFragment,
+    pub declaration: UppaalFragment,
+    pub locations: Vec<UppaalLocation>,
     /// The index of the initial location.
     pub initial: usize,
-    pub transitions: Vec<Transition>,
+    pub transitions: Vec<UppaalTransition>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum UppaalLocationKind {
     Normal,
     Urgent,
     Committed,
 }
 
 #[derive(Debug)]
-pub struct Location {
+pub struct UppaalLocation {
     pub name: Option<String>,
     pub span: Span,
-    pub kind: Kind,
-    pub invariant: Piece,
+    pub kind: UppaalLocationKind,
+    pub invariant: UppaalFragment,
     pub comment: String,
 }
 
 #[derive(Debug)]
-pub struct Transition {
+pub struct UppaalTransition {
     pub from: usize,
     pub to: usize,
-    pub select: Piece,
-    pub guard: Piece,
-    pub sync: Piece,
-    pub assign: Piece,
+    pub select: UppaalFragment,
+    pub guard: UppaalFragment,
+    pub sync: UppaalFragment,
+    pub assign: UppaalFragment,
     pub comment: String,
 }
 
 #[derive(Debug)]
 pub struct QueryText {
-    pub formula: Piece,
+    pub formula: UppaalFragment,
     pub comment: String,
 }
 
 /// Reads a model.
-pub fn read(file: FileId, text: &str) -> Result<Model, Vec<Fault>> {
+pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
     if let Some((at, message)) = refused(text) {
-        return Err(vec![Fault { span: Span::new(file, at, at), message }]);
+        return Err(vec![UppaalFault { span: Span::new(file, at, at), message }]);
     }
     let options = ParsingOptions { allow_dtd: true, nodes_limit: 1_000_000, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|e| {
         let at = offset(text, e.pos());
         let message = format!("this is not XML as UPPAAL writes it: {}", without_place(&e.to_string()));
-        vec![Fault { span: Span::new(file, at, at), message }]
+        vec![UppaalFault { span: Span::new(file, at, at), message }]
     })?;
-    let mut reader = Reader { file, text, faults: Vec::new(), model: Model::default(), ids: BTreeMap::new() };
+    let mut reader =
+        UppaalReader { file, text, faults: Vec::new(), model: UppaalModel::default(), ids: BTreeMap::new() };
     let root = document.root_element();
     if root.tag_name().name() == "nta" {
         reader.nta(root);
@@ -156,19 +157,19 @@ fn without_place(message: &str) -> &str {
 /// Elements that change nothing of what a model does.
 const IDLE: &[&str] = &["nail", "label-position", "lsc", "imports", "name", "option", "expect", "result"];
 
-struct Reader<'t> {
+struct UppaalReader<'t> {
     file: FileId,
     text: &'t str,
-    faults: Vec<Fault>,
-    model: Model,
+    faults: Vec<UppaalFault>,
+    model: UppaalModel,
     /// The locations of the present template, by id.
     ids: BTreeMap<String, usize>,
 }
 
-impl Reader<'_> {
+impl UppaalReader<'_> {
     fn fault(&mut self, node: Node<'_, '_>, message: impl Into<String>) {
         let span = self.span(node);
-        self.faults.push(Fault { span, message: message.into() });
+        self.faults.push(UppaalFault { span, message: message.into() });
     }
 
     fn unsupported(&mut self, node: Node<'_, '_>, what: &str) {
@@ -209,7 +210,7 @@ impl Reader<'_> {
             return self.fault(node, "this template has no name");
         };
         self.ids.clear();
-        let mut template = Template {
+        let mut template = UppaalTemplate {
             name: name.to_owned(),
             parameters: child("parameter").map(|n| self.piece(n)).unwrap_or_default(),
             declaration: child("declaration").map(|n| self.piece(n)).unwrap_or_default(),
@@ -233,7 +234,7 @@ impl Reader<'_> {
         self.model.templates.push(template);
     }
 
-    fn initial(&mut self, node: Node<'_, '_>, template: &mut Template) {
+    fn initial(&mut self, node: Node<'_, '_>, template: &mut UppaalTemplate) {
         let Some(init) = node.children().find(|n| n.has_tag_name("init")) else {
             let name = &template.name;
             return self.fault(node, format!("the template `{name}` has no initial location (`<init>`)"));
@@ -245,13 +246,13 @@ impl Reader<'_> {
         }
     }
 
-    fn location(&mut self, node: Node<'_, '_>, template: &mut Template) {
+    fn location(&mut self, node: Node<'_, '_>, template: &mut UppaalTemplate) {
         let Some(id) = node.attribute("id") else { return self.fault(node, "this location has no id") };
-        let mut location = Location {
+        let mut location = UppaalLocation {
             name: None,
             span: self.span(node),
-            kind: Kind::Normal,
-            invariant: Piece::default(),
+            kind: UppaalLocationKind::Normal,
+            invariant: UppaalFragment::default(),
             comment: String::new(),
         };
         for part in node.children().filter(Node::is_element) {
@@ -259,9 +260,11 @@ impl Reader<'_> {
                 "name" => {
                     location.name = part.text().map(|t| t.trim().to_owned()).filter(|t| !t.is_empty());
                 }
-                "urgent" if location.kind != Kind::Committed => location.kind = Kind::Urgent,
+                "urgent" if location.kind != UppaalLocationKind::Committed => {
+                    location.kind = UppaalLocationKind::Urgent
+                }
                 "urgent" => {}
-                "committed" => location.kind = Kind::Committed,
+                "committed" => location.kind = UppaalLocationKind::Committed,
                 "label" => self.location_label(part, &mut location),
                 name if IDLE.contains(&name) => {}
                 name => self.unknown(part, name),
@@ -271,7 +274,7 @@ impl Reader<'_> {
         template.locations.push(location);
     }
 
-    fn location_label(&mut self, part: Node<'_, '_>, location: &mut Location) {
+    fn location_label(&mut self, part: Node<'_, '_>, location: &mut UppaalLocation) {
         match part.attribute("kind").unwrap_or_default() {
             "invariant" => location.invariant = self.piece(part),
             "exponentialrate" if self.piece(part).is_blank() => {}
@@ -289,7 +292,7 @@ impl Reader<'_> {
             .push((span, format!("`{kind}` is code for tests: a scenario has no place for it")));
     }
 
-    fn transition(&mut self, node: Node<'_, '_>, template: &mut Template) {
+    fn transition(&mut self, node: Node<'_, '_>, template: &mut UppaalTemplate) {
         let end = |reader: &mut Self, name: &str| {
             let Some(part) = node.children().find(|n| n.has_tag_name(name)) else {
                 reader.fault(node, format!("this transition has no `{name}`"));
@@ -305,9 +308,10 @@ impl Reader<'_> {
         if node.attribute("controllable") == Some("false") {
             self.unsupported(node, "transitions that are not controllable (games)");
         }
-        let blank = Piece::default;
+        let blank = UppaalFragment::default;
         let (select, guard, sync, assign) = (blank(), blank(), blank(), blank());
-        let mut transition = Transition { from, to, select, guard, sync, assign, comment: String::new() };
+        let mut transition =
+            UppaalTransition { from, to, select, guard, sync, assign, comment: String::new() };
         for part in node.children().filter(Node::is_element) {
             match part.tag_name().name() {
                 "label" => self.transition_label(part, &mut transition),
@@ -319,7 +323,7 @@ impl Reader<'_> {
         template.transitions.push(transition);
     }
 
-    fn transition_label(&mut self, part: Node<'_, '_>, transition: &mut Transition) {
+    fn transition_label(&mut self, part: Node<'_, '_>, transition: &mut UppaalTransition) {
         match part.attribute("kind").unwrap_or_default() {
             "select" => transition.select = self.piece(part),
             "guard" => transition.guard = self.piece(part),
@@ -344,7 +348,7 @@ impl Reader<'_> {
     }
 
     /// The text of an element, each character with its place.
-    fn piece(&self, node: Node<'_, '_>) -> Piece {
+    fn piece(&self, node: Node<'_, '_>) -> UppaalFragment {
         let mut chars = Vec::new();
         for part in node.children().filter(Node::is_text) {
             let range = part.range();
@@ -353,7 +357,7 @@ impl Reader<'_> {
         }
         let range = node.range();
         let end = chars.last().map_or(range.start, |(at, c): &(u32, char)| *at as usize + c.len_utf8());
-        Piece { file: self.file, chars, end: end as u32 }
+        UppaalFragment { file: self.file, chars, end: end as u32 }
     }
 }
 

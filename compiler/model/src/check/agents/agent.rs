@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use hrdsl_source::{Diagnostic, Span};
 use hrdsl_syntax::ast::{
-    self, AgentMemberKind as Member, Call, ExprKind as Syntax, ItemKind, Sort, StepKind, TriggerKind,
+    self, AgentMemberKind as Member, CallSyntax, ExprSyntaxKind as Syntax, ItemSyntaxKind, StepSyntaxKind,
+    TemplateSyntaxKind, TriggerSyntaxKind,
 };
 
 use crate::check::state::phase::CheckPhase;
@@ -50,18 +51,18 @@ impl AgentScope {
 }
 
 /// A goal as it is adopted: `table`, `deliver(…)`.
-fn written(name: &ast::Name, params: &[ast::Param]) -> String {
+fn written(name: &ast::NameSyntax, params: &[ast::ParamSyntax]) -> String {
     if params.is_empty() { name.text.clone() } else { format!("{}(…)", name.text) }
 }
 
 /// The agent itself adopts the goal.
-fn adopts(agent: &ast::Agent, goal: &str) -> bool {
+fn adopts(agent: &ast::AgentSyntax, goal: &str) -> bool {
     let mut found = false;
     for member in &agent.members {
         match &member.kind {
             Member::Goal(call) => found |= call.name.text == goal,
             Member::Plan(plan) => each_step(&plan.body, &mut |step| {
-                if let StepKind::Achieve { call, .. } | StepKind::Spawn(call) = &step.kind {
+                if let StepSyntaxKind::Achieve { call, .. } | StepSyntaxKind::Spawn(call) = &step.kind {
                     found |= call.name.text == goal;
                 }
             }),
@@ -76,7 +77,7 @@ fn adopts(agent: &ast::Agent, goal: &str) -> bool {
 }
 
 /// The declaration of a goal's types, as it would be adopted.
-fn declared(agent: &ast::Agent, goal: &str) -> Option<(String, Span)> {
+fn declared(agent: &ast::AgentSyntax, goal: &str) -> Option<(String, Span)> {
     agent.members.iter().find_map(|m| match &m.kind {
         Member::GoalType { name, params } if name.text == goal => Some((written(name, params), name.span)),
         _ => None,
@@ -86,22 +87,22 @@ fn declared(agent: &ast::Agent, goal: &str) -> Option<(String, Span)> {
 impl<'a> Checker<'a> {
     pub(in crate::check) fn agents(&mut self) {
         for (item, _) in self.each_item() {
-            if let ItemKind::Agent(agent) = item {
+            if let ItemSyntaxKind::Agent(agent) = item {
                 asked_goals(agent, &mut self.agents.asked_goals);
             }
         }
         // All names come first, since agents send each other messages; those of templates before those of instances, so
         // that a fault of a template is said of the template.
-        self.templates_of(Sort::Agent, |c, template| c.template_agent(template, false));
+        self.templates_of(TemplateSyntaxKind::Agent, |c, template| c.template_agent(template, false));
         let decls = self.players.agents.clone();
-        let each = |c: &mut Self, check: &dyn Fn(&mut Self, usize, &'a ast::Agent)| {
+        let each = |c: &mut Self, check: &dyn Fn(&mut Self, usize, &'a ast::AgentSyntax)| {
             for (index, agent) in decls.iter().enumerate() {
                 let place = agent.instance.map(|i| (&i.name, i.span));
                 c.as_instance(agent.given.clone(), place, |c| check(c, index, agent.syntax));
             }
         };
         each(self, &|c, index, agent| c.declare_members(index, agent));
-        self.templates_of(Sort::Agent, |c, template| {
+        self.templates_of(TemplateSyntaxKind::Agent, |c, template| {
             if c.source.looks_at(CheckPhase::Agents, template.name.span) {
                 c.template_agent(template, true);
             }
@@ -119,7 +120,7 @@ impl<'a> Checker<'a> {
 
     /// Looks at a template by itself: at its declarations, or at all.
     fn template_agent(&mut self, template: DeclaredTemplate<'a>, whole: bool) {
-        let ItemKind::Agent(syntax) = template.kind else { return };
+        let ItemSyntaxKind::Agent(syntax) = template.kind else { return };
         let (index, contents) = (self.s.agents.len(), self.s.contents.len());
         let plain = DeclaredPlayer { syntax, given: None, instance: None };
         self.push_agent(&plain, template.name, template.name.span);
@@ -137,7 +138,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Beliefs and goals with their types.
-    fn declare_members(&mut self, index: usize, agent: &'a ast::Agent) {
+    fn declare_members(&mut self, index: usize, agent: &'a ast::AgentSyntax) {
         for member in &agent.members {
             if let Member::Belief { name, params, annotations, on, .. } = &member.kind {
                 self.declare_belief(index, (name, params, annotations), on.as_ref(), member.span);
@@ -165,8 +166,8 @@ impl<'a> Checker<'a> {
     fn declare_belief(
         &mut self,
         index: usize,
-        (name, params, annotations): (&ast::Name, &[ast::Param], &[ast::Param]),
-        on: Option<&ast::Name>,
+        (name, params, annotations): (&ast::NameSyntax, &[ast::ParamSyntax], &[ast::ParamSyntax]),
+        on: Option<&ast::NameSyntax>,
         span: Span,
     ) {
         let fields = self.fields(params);
@@ -195,7 +196,12 @@ impl<'a> Checker<'a> {
     }
 
     /// `on sensed`: the event whose arguments the belief holds.
-    fn percept(&mut self, index: usize, name: &ast::Name, fields: &DeclaredFields) -> Option<crate::EventId> {
+    fn percept(
+        &mut self,
+        index: usize,
+        name: &ast::NameSyntax,
+        fields: &DeclaredFields,
+    ) -> Option<crate::EventId> {
         let event = self.event(Noun::EventOrStimulus, name, None)?;
         self.perceives(self.s.agents[index].actor, event, name.span, false);
         let types = |params: &[Parameter]| params.iter().map(|p| p.ty).collect::<Vec<_>>();
@@ -221,7 +227,7 @@ impl<'a> Checker<'a> {
     }
 
     /// `goal deliver(leg: 1..4)`
-    fn declare_goals(&mut self, index: usize, agent: &ast::Agent) {
+    fn declare_goals(&mut self, index: usize, agent: &ast::AgentSyntax) {
         let mut table = NameTable::default();
         for member in &agent.members {
             let Member::GoalType { name, params } = &member.kind else { continue };
@@ -250,7 +256,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn agent(&mut self, index: usize, agent: &ast::Agent) {
+    fn agent(&mut self, index: usize, agent: &ast::AgentSyntax) {
         let mut scope = AgentScope::new(index);
         self.source.unread_members = unread::in_agent(agent);
         for member in &agent.members {
@@ -273,7 +279,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Plans for goals that nothing adopts: most often one of a goal's plans is misspelt.
-    fn unadopted(&mut self, scope: &AgentScope, agent: &ast::Agent) {
+    fn unadopted(&mut self, scope: &AgentScope, agent: &ast::AgentSyntax) {
         let mut adopted: BTreeSet<&str> = self.agents.asked_goals.clone();
         let mut here: indexmap::IndexSet<&str> = indexmap::IndexSet::new();
         let mut broken = false;
@@ -281,11 +287,11 @@ impl<'a> Checker<'a> {
             match &member.kind {
                 Member::Goal(call) => here.extend([call.name.text.as_str()]),
                 Member::Plan(plan) => each_step(&plan.body, &mut |step| match &step.kind {
-                    StepKind::Achieve { call, .. } | StepKind::Spawn(call) => {
+                    StepSyntaxKind::Achieve { call, .. } | StepSyntaxKind::Spawn(call) => {
                         here.extend([call.name.text.as_str()]);
                     }
                     // It may have been an adoption.
-                    StepKind::Error => broken = true,
+                    StepSyntaxKind::Error => broken = true,
                     _ => {}
                 }),
                 Member::Belief { .. } | Member::Rule { .. } | Member::GoalType { .. } | Member::Allow(_) => {}
@@ -300,7 +306,7 @@ impl<'a> Checker<'a> {
         adopted.extend(here.iter().copied());
         for member in &agent.members {
             if let Member::Plan(plan) = &member.kind
-                && plan.trigger.kind == TriggerKind::Achieve
+                && plan.trigger.kind == TriggerSyntaxKind::Achieve
                 && !adopted.contains(plan.trigger.literal.call.name.text.as_str())
             {
                 let name = &plan.trigger.literal.call.name;
@@ -315,7 +321,7 @@ impl<'a> Checker<'a> {
     }
 
     /// `= had(0)`: the fact must be of the belief that is being declared.
-    fn initial_belief(&mut self, scope: &AgentScope, declared: &ast::Name, fact: &ast::Literal) {
+    fn initial_belief(&mut self, scope: &AgentScope, declared: &ast::NameSyntax, fact: &ast::LiteralSyntax) {
         let Some(belief) = self.belief_or_negation(scope, fact) else { return };
         let name = &fact.call.name;
         if name.text != declared.text {
@@ -343,7 +349,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn initial_goal(&mut self, scope: &AgentScope, call: &Call) {
+    fn initial_goal(&mut self, scope: &AgentScope, call: &CallSyntax) {
         let Some(goal) = self.goal(scope, call) else { return };
         let args = match self.goal_fields(scope.id, goal) {
             Some(fields) => self.ground(Noun::Goal, call, &fields).unwrap_or_default(),
@@ -359,7 +365,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Constant arguments.
-    fn ground(&mut self, noun: Noun, call: &Call, fields: &DeclaredFields) -> Option<Vec<Value>> {
+    fn ground(&mut self, noun: Noun, call: &CallSyntax, fields: &DeclaredFields) -> Option<Vec<Value>> {
         let args = self.args(noun, call, fields, &mut ExprEnv::constants());
         for arg in &args {
             if arg.constant().is_none() && arg.ty != InferredType::Unknown {
@@ -384,7 +390,7 @@ impl<'a> Checker<'a> {
     pub(in crate::check) fn belief_or_negation(
         &mut self,
         scope: &AgentScope,
-        literal: &ast::Literal,
+        literal: &ast::LiteralSyntax,
     ) -> Option<BeliefId> {
         let belief = self.belief(scope, &literal.call.name)?;
         if literal.negated { self.negation(scope.id, belief) } else { Some(belief) }
@@ -407,7 +413,11 @@ impl<'a> Checker<'a> {
         Some(BeliefId(id))
     }
 
-    pub(in crate::check) fn belief(&mut self, scope: &AgentScope, name: &ast::Name) -> Option<BeliefId> {
+    pub(in crate::check) fn belief(
+        &mut self,
+        scope: &AgentScope,
+        name: &ast::NameSyntax,
+    ) -> Option<BeliefId> {
         let table = &self.agents.beliefs[usize::from(scope.id.0)];
         if let Some(id) = table.get(&name.text) {
             let place = table.span(id);
@@ -435,7 +445,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A goal with its number of arguments; there must be a plan for it.
-    pub(in crate::check) fn goal(&mut self, scope: &AgentScope, call: &Call) -> Option<GoalId> {
+    pub(in crate::check) fn goal(&mut self, scope: &AgentScope, call: &CallSyntax) -> Option<GoalId> {
         let name = &call.name;
         let goals = &self.agents.goals[usize::from(scope.id.0)];
         let Some((index, _, entry)) = goals.get_full(&name.text) else {
@@ -507,11 +517,11 @@ impl<'a> Checker<'a> {
 }
 
 /// The goals with a plan `+!g`, by the first plan for each.
-fn achieved(agent: &ast::Agent) -> OrderedMap<String, GoalEntry> {
+fn achieved(agent: &ast::AgentSyntax) -> OrderedMap<String, GoalEntry> {
     let mut goals = OrderedMap::default();
     for member in &agent.members {
         if let Member::Plan(plan) = &member.kind
-            && plan.trigger.kind == TriggerKind::Achieve
+            && plan.trigger.kind == TriggerSyntaxKind::Achieve
         {
             let call = &plan.trigger.literal.call;
             let arity = call.args.as_ref().map_or(0, Vec::len);
@@ -523,27 +533,27 @@ fn achieved(agent: &ast::Agent) -> OrderedMap<String, GoalEntry> {
 }
 
 /// Calls `f` with each step, those within blocks too.
-fn each_step<'a>(steps: &'a [ast::Step], f: &mut dyn FnMut(&'a ast::Step)) {
+fn each_step<'a>(steps: &'a [ast::StepSyntax], f: &mut dyn FnMut(&'a ast::StepSyntax)) {
     for step in steps {
         f(step);
         match &step.kind {
-            StepKind::If { then, otherwise, .. } => {
+            StepSyntaxKind::If { then, otherwise, .. } => {
                 each_step(then, f);
                 each_step(otherwise, f);
             }
-            StepKind::While { body, .. } | StepKind::For { body, .. } => each_step(body, f),
-            StepKind::Fork { branches, .. } => branches.iter().for_each(|b| each_step(b, f)),
+            StepSyntaxKind::While { body, .. } | StepSyntaxKind::For { body, .. } => each_step(body, f),
+            StepSyntaxKind::Fork { branches, .. } => branches.iter().for_each(|b| each_step(b, f)),
             _ => {}
         }
     }
 }
 
 /// The goals that an agent asks others to achieve.
-fn asked_goals<'a>(agent: &'a ast::Agent, goals: &mut BTreeSet<&'a str>) {
+fn asked_goals<'a>(agent: &'a ast::AgentSyntax, goals: &mut BTreeSet<&'a str>) {
     for member in &agent.members {
         let Member::Plan(plan) = &member.kind else { continue };
         each_step(&plan.body, &mut |step| {
-            let StepKind::Internal(call) = &step.kind else { return };
+            let StepSyntaxKind::Internal(call) = &step.kind else { return };
             let args = call.args.as_deref().unwrap_or_default();
             let message = match (call.name.text.as_str(), args) {
                 ("send", [_, how, what]) | ("broadcast", [how, what]) => Some((how, what)),

@@ -1,7 +1,7 @@
 //! Formulas: contexts of plans, bodies of rules, conditions of steps. They are read from the left; what they bind has a
 //! value after them.
 
-use hrdsl_syntax::ast::{self, ExprKind as Syntax};
+use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax};
 
 use crate::check::{
     agents::{
@@ -43,7 +43,7 @@ impl Checker<'_> {
     pub(in crate::check) fn context(
         &mut self,
         scope: &AgentScope,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         env: &mut ExprEnv,
     ) -> TypedContext {
         match &e.kind {
@@ -90,7 +90,7 @@ impl Checker<'_> {
     }
 
     /// A single name that is neither a variable nor a constant is meant as a belief.
-    fn is_literal(&self, path: &ast::Path, env: &ExprEnv) -> bool {
+    fn is_literal(&self, path: &ast::PathSyntax, env: &ExprEnv) -> bool {
         let [name] = path.names.as_slice() else { return false };
         let text = name.text.as_str();
         env.find(text).is_none()
@@ -99,15 +99,20 @@ impl Checker<'_> {
             && !is_variable_name(text)
     }
 
-    fn belief_in(&mut self, scope: &AgentScope, literal: &ast::Literal, env: &mut ExprEnv) -> TypedContext {
+    fn belief_in(
+        &mut self,
+        scope: &AgentScope,
+        literal: &ast::LiteralSyntax,
+        env: &mut ExprEnv,
+    ) -> TypedContext {
         self.literal(scope, literal, env, (true, true)).map_or(TypedContext::True, TypedContext::Belief)
     }
 
     /// `X = e`, `[H | T] = e`: the side with open variables is matched with the other.
     pub(in crate::check) fn unify(
         &mut self,
-        left: &ast::Expr,
-        right: &ast::Expr,
+        left: &ast::ExprSyntax,
+        right: &ast::ExprSyntax,
         env: &mut ExprEnv,
     ) -> TypedContext {
         let swapped = self.is_pattern(right, env) && !self.is_pattern(left, env);
@@ -136,8 +141,8 @@ impl Checker<'_> {
     fn either(
         &mut self,
         scope: &AgentScope,
-        left: &ast::Expr,
-        right: &ast::Expr,
+        left: &ast::ExprSyntax,
+        right: &ast::ExprSyntax,
         env: &mut ExprEnv,
     ) -> TypedContext {
         let before = known(env);
@@ -188,7 +193,7 @@ impl Checker<'_> {
     }
 
     /// A belief inside of a comparison is a frequent slip.
-    fn belief_in_test(&mut self, scope: &AgentScope, e: &ast::Expr) -> bool {
+    fn belief_in_test(&mut self, scope: &AgentScope, e: &ast::ExprSyntax) -> bool {
         let Syntax::Binary { left, right, .. } = &e.kind else { return false };
         for side in [left, right] {
             if let Syntax::Call { callee, .. } = &side.kind

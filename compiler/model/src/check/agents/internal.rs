@@ -1,6 +1,6 @@
 //! Internal actions: their arguments, by the table.
 
-use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
+use hrdsl_syntax::ast::{self, CallSyntax, ExprSyntaxKind as Syntax};
 
 use crate::check::{
     agents::{
@@ -21,7 +21,7 @@ use crate::{
 
 impl Checker<'_> {
     /// The row of an internal action, if it has the right number of arguments.
-    fn action(&mut self, call: &Call) -> Option<&'static InternalAction> {
+    fn action(&mut self, call: &CallSyntax) -> Option<&'static InternalAction> {
         let name = &call.name;
         let Some(action) = INTERNAL_ACTIONS.iter().find(|a| a.name == name.text) else {
             let all = INTERNAL_ACTIONS.iter().map(|a| a.name);
@@ -43,7 +43,7 @@ impl Checker<'_> {
     pub(in crate::check) fn asked(
         &mut self,
         scope: &AgentScope,
-        call: &Call,
+        call: &CallSyntax,
         env: &mut ExprEnv,
     ) -> TypedContext {
         let action = self.action(call);
@@ -53,7 +53,7 @@ impl Checker<'_> {
         let args = call.args.as_deref().unwrap_or_default();
         let Some(action) = action.filter(|a| a.asks()) else {
             // Nothing is said about what it may have been meant to bind.
-            let variable = |c: &Checker<'_>, name: &ast::Name| c.is_variable(&name.text);
+            let variable = |c: &Checker<'_>, name: &ast::NameSyntax| c.is_variable(&name.text);
             args.iter().for_each(|arg| self.bind_names(arg, env, &variable));
             return TypedContext::True;
         };
@@ -67,7 +67,7 @@ impl Checker<'_> {
         &mut self,
         scope: &AgentScope,
         action: &InternalAction,
-        args: &[ast::Expr],
+        args: &[ast::ExprSyntax],
         env: &mut ExprEnv,
     ) -> Option<TypedInternalAct> {
         let agent = InferredType::Enum(self.players.agent_names);
@@ -135,7 +135,7 @@ impl Checker<'_> {
     /// A result: a term that is matched with it.
     pub(in crate::check) fn out(
         &mut self,
-        arg: &ast::Expr,
+        arg: &ast::ExprSyntax,
         kind: InferredType,
         env: &mut ExprEnv,
     ) -> TypedTerm {
@@ -146,7 +146,7 @@ impl Checker<'_> {
     fn function(
         &mut self,
         f: ListFunction,
-        args: &[ast::Expr],
+        args: &[ast::ExprSyntax],
         env: &mut ExprEnv,
     ) -> Option<(Vec<TypedExpr>, InferredType)> {
         use ListFunction as F;
@@ -201,7 +201,7 @@ impl Checker<'_> {
     }
 
     /// Lists alone make a list; with a string among them all are put into a string.
-    fn concat(&mut self, args: &[ast::Expr], env: &mut ExprEnv) -> (Vec<TypedExpr>, InferredType) {
+    fn concat(&mut self, args: &[ast::ExprSyntax], env: &mut ExprEnv) -> (Vec<TypedExpr>, InferredType) {
         let args: Vec<TypedExpr> = args.iter().map(|a| self.expr(a, env)).collect();
         if args.iter().any(|a| a.ty == InferredType::Text) {
             return (args, InferredType::Text);
@@ -220,7 +220,7 @@ impl Checker<'_> {
         (fitted, ty)
     }
 
-    fn list_or_text(&mut self, e: &ast::Expr, like: InferredType, env: &mut ExprEnv) -> TypedExpr {
+    fn list_or_text(&mut self, e: &ast::ExprSyntax, like: InferredType, env: &mut ExprEnv) -> TypedExpr {
         let e = self.single(e, like, env);
         match e.ty {
             InferredType::Text | InferredType::List(_) | InferredType::Unknown => e,
@@ -235,7 +235,7 @@ impl Checker<'_> {
     fn goal_term(
         &mut self,
         scope: &AgentScope,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         env: &mut ExprEnv,
         binds: bool,
     ) -> Option<(GoalId, Vec<TypedTerm>)> {
@@ -254,7 +254,7 @@ impl Checker<'_> {
     }
 
     /// The goal that an argument names.
-    pub(in crate::check) fn goal_call(&mut self, e: &ast::Expr) -> Option<Call> {
+    pub(in crate::check) fn goal_call(&mut self, e: &ast::ExprSyntax) -> Option<CallSyntax> {
         if let Syntax::Unary { op: UnaryOp::Not, .. } = &e.kind {
             let help = "a goal is written without `!` here";
             self.report(agents::no_formula("a negation", e.span, help));
@@ -282,7 +282,7 @@ impl Checker<'_> {
     pub(in crate::check) fn internal_step(
         &mut self,
         scope: &AgentScope,
-        call: &Call,
+        call: &CallSyntax,
         env: &mut ExprEnv,
     ) -> Option<TypedStepKind> {
         let known_to_ask = INTERNAL_ACTIONS.iter().any(|a| a.name == call.name.text && a.asks());
@@ -291,7 +291,7 @@ impl Checker<'_> {
         }
         let args = call.args.as_deref().unwrap_or_default();
         let Some(action) = self.action(call) else {
-            let variable = |c: &Checker<'_>, name: &ast::Name| c.is_variable(&name.text);
+            let variable = |c: &Checker<'_>, name: &ast::NameSyntax| c.is_variable(&name.text);
             args.iter().for_each(|arg| self.bind_names(arg, env, &variable));
             return None;
         };
@@ -317,7 +317,12 @@ impl Checker<'_> {
     }
 
     /// `.abolish(b(_))`; without parentheses all facts of the belief.
-    fn abolish(&mut self, scope: &AgentScope, e: &ast::Expr, env: &mut ExprEnv) -> Option<TypedStepKind> {
+    fn abolish(
+        &mut self,
+        scope: &AgentScope,
+        e: &ast::ExprSyntax,
+        env: &mut ExprEnv,
+    ) -> Option<TypedStepKind> {
         let Some(mut literal) = literal_of(e) else {
             if e.kind != Syntax::Error {
                 self.report(types::needs_name(Noun::Belief, e.span));
@@ -327,7 +332,7 @@ impl Checker<'_> {
         let named = self.agents.beliefs[usize::from(scope.id.0)].get(&literal.call.name.text);
         if let (None, Some(id)) = (&literal.call.args, named) {
             let fields = self.belief_fields(scope.id, crate::BeliefId(id));
-            let any = |_: &_| ast::Expr { kind: Syntax::Any, span: e.span };
+            let any = |_: &_| ast::ExprSyntax { kind: Syntax::Any, span: e.span };
             literal.call.args = Some(fields.iter().map(any).collect());
         }
         Some(TypedStepKind::Abolish(self.literal(scope, &literal, env, (false, false))?))

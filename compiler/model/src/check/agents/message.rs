@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
+use hrdsl_syntax::ast::{self, CallSyntax, ExprSyntaxKind as Syntax};
 
 use crate::check::{
     agents::{
@@ -50,7 +50,7 @@ struct MessageTopic {
     id: ContentId,
     fields: Option<DeclaredFields>,
     arity: usize,
-    call: Call,
+    call: CallSyntax,
     /// The belief of the one receiver, if it is one.
     belief: Option<(AgentId, BeliefId)>,
 }
@@ -60,9 +60,9 @@ impl Checker<'_> {
     pub(in crate::check) fn send_message(
         &mut self,
         scope: &AgentScope,
-        to: Option<&ast::Expr>,
-        how: &ast::Expr,
-        what: &ast::Expr,
+        to: Option<&ast::ExprSyntax>,
+        how: &ast::ExprSyntax,
+        what: &ast::ExprSyntax,
         env: &mut ExprEnv,
     ) -> Option<TypedStepKind> {
         let to = to.map(|e| self.receiver(scope, e, env));
@@ -91,15 +91,15 @@ impl Checker<'_> {
     pub(in crate::check) fn ask(
         &mut self,
         scope: &AgentScope,
-        to: &ast::Expr,
-        what: &ast::Expr,
-        within: Option<&ast::Expr>,
+        to: &ast::ExprSyntax,
+        what: &ast::ExprSyntax,
+        within: Option<&ast::ExprSyntax>,
         env: &mut ExprEnv,
     ) -> Option<TypedStepKind> {
         let (to, receiver) = self.receiver(scope, to, env);
         let within = within.map(|e| self.duration(e, "the time to wait", env));
         let Some(about) = self.about(scope, &receiver, what, false, false) else {
-            let variable = |c: &Checker<'_>, name: &ast::Name| c.is_variable(&name.text);
+            let variable = |c: &Checker<'_>, name: &ast::NameSyntax| c.is_variable(&name.text);
             self.bind_names(what, env, &variable);
             return None;
         };
@@ -112,8 +112,8 @@ impl Checker<'_> {
     pub(in crate::check) fn ask_all(
         &mut self,
         scope: &AgentScope,
-        (to, template, what, out): (&ast::Expr, &ast::Expr, &ast::Expr, &ast::Expr),
-        within: Option<&ast::Expr>,
+        (to, template, what, out): (&ast::ExprSyntax, &ast::ExprSyntax, &ast::ExprSyntax, &ast::ExprSyntax),
+        within: Option<&ast::ExprSyntax>,
         env: &mut ExprEnv,
     ) -> Option<TypedStepKind> {
         let (to, receiver) = self.receiver(scope, to, env);
@@ -131,7 +131,7 @@ impl Checker<'_> {
         Some(TypedStepKind::AskAll { to, template, content: about.id, args, out, within })
     }
 
-    fn performative(&mut self, e: &ast::Expr) -> Option<Performative> {
+    fn performative(&mut self, e: &ast::ExprSyntax) -> Option<Performative> {
         let Syntax::Path(path) = &e.kind else {
             if e.kind != Syntax::Error {
                 self.report(types::needs_name(Noun::Performative, e.span));
@@ -154,7 +154,7 @@ impl Checker<'_> {
     fn receiver(
         &mut self,
         scope: &AgentScope,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         env: &mut ExprEnv,
     ) -> (TypedExpr, MessageReceiver) {
         if let Syntax::Path(path) = &e.kind
@@ -193,13 +193,13 @@ impl Checker<'_> {
         &mut self,
         scope: &AgentScope,
         receiver: &MessageReceiver,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         goal: bool,
         to_others: bool,
     ) -> Option<MessageTopic> {
         let literal = if goal {
             let call = self.goal_call(e)?;
-            ast::Literal { negated: false, span: call.span, call, annotations: Vec::new() }
+            ast::LiteralSyntax { negated: false, span: call.span, call, annotations: Vec::new() }
         } else {
             match literal_of(e) {
                 Some(literal) => literal,
@@ -243,7 +243,7 @@ impl Checker<'_> {
     fn declared_in(
         &mut self,
         agent: AgentId,
-        name: &ast::Name,
+        name: &ast::NameSyntax,
         negated: bool,
         goal: bool,
     ) -> Option<(Option<Vec<Parameter>>, Option<DeclaredFields>, Option<BeliefId>)> {
@@ -264,7 +264,7 @@ impl Checker<'_> {
         &mut self,
         noun: Noun,
         having: &[AgentId],
-        literal: &ast::Literal,
+        literal: &ast::LiteralSyntax,
         params: Option<&Vec<Parameter>>,
         goal: bool,
     ) {
@@ -299,7 +299,7 @@ impl Checker<'_> {
     fn nobody_has(
         &mut self,
         noun: Noun,
-        name: &ast::Name,
+        name: &ast::NameSyntax,
         receiver: &MessageReceiver,
         receivers: &[AgentId],
     ) {
@@ -315,7 +315,7 @@ impl Checker<'_> {
         }
         names.dedup();
         let is = receivers.iter().find_map(|a| self.kind_of_agent(*a, &name.text));
-        let unread = |d: &DeclaredPlayer<'_, ast::Agent>| unread::in_agent(d.syntax);
+        let unread = |d: &DeclaredPlayer<'_, ast::AgentSyntax>| unread::in_agent(d.syntax);
         if receivers.iter().any(|a| self.players.agents.get(usize::from(a.0)).is_some_and(unread)) {
             return;
         }
@@ -342,7 +342,7 @@ impl Checker<'_> {
         self.report(issue);
     }
 
-    fn content(&mut self, literal: &ast::Literal, is_goal: bool, arity: usize) -> Option<ContentId> {
+    fn content(&mut self, literal: &ast::LiteralSyntax, is_goal: bool, arity: usize) -> Option<ContentId> {
         let sign = if literal.negated { "~" } else { "" };
         let name = format!("{sign}{}", literal.call.name.text);
         let mut known = self.s.contents.iter().zip(&self.s.speech);

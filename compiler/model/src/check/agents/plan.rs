@@ -1,7 +1,7 @@
 //! Plans: trigger, context, body; each variable must have a value before it is read, from left to right.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Call, TriggerKind};
+use hrdsl_syntax::ast::{self, CallSyntax, TriggerSyntaxKind};
 
 use crate::check::{
     agents::agent::AgentScope,
@@ -22,7 +22,7 @@ impl Checker<'_> {
     pub(in crate::check) fn plan(
         &mut self,
         scope: &mut AgentScope,
-        plan: &ast::Plan,
+        plan: &ast::PlanSyntax,
         span: Span,
     ) -> Option<TypedPlan> {
         let (label, atomic) = self.label(scope, plan);
@@ -44,7 +44,7 @@ impl Checker<'_> {
         Some(TypedPlan { label, atomic, trigger, context, body, vars, origin: span })
     }
 
-    fn label(&mut self, scope: &mut AgentScope, plan: &ast::Plan) -> (String, bool) {
+    fn label(&mut self, scope: &mut AgentScope, plan: &ast::PlanSyntax) -> (String, bool) {
         let trigger = plan.trigger.literal.call.name.text.clone();
         let count = scope.plans_of.entry(trigger.clone()).or_insert(0);
         *count += 1;
@@ -65,17 +65,19 @@ impl Checker<'_> {
     fn trigger(
         &mut self,
         scope: &AgentScope,
-        trigger: &ast::Trigger,
+        trigger: &ast::TriggerSyntax,
         env: &mut ExprEnv,
     ) -> Option<MatchedTrigger> {
         let literal = &trigger.literal;
         let make: fn(BeliefId) -> TriggerOn = match trigger.kind {
-            TriggerKind::Added => TriggerOn::BeliefAdded,
-            TriggerKind::Removed => TriggerOn::BeliefRemoved,
-            TriggerKind::Test => TriggerOn::TestAdded,
-            TriggerKind::TestFailed => TriggerOn::TestFailed,
-            TriggerKind::Achieve | TriggerKind::Failed => return self.goal_trigger(scope, trigger, env),
-            TriggerKind::On => return self.event_trigger(scope, literal, env),
+            TriggerSyntaxKind::Added => TriggerOn::BeliefAdded,
+            TriggerSyntaxKind::Removed => TriggerOn::BeliefRemoved,
+            TriggerSyntaxKind::Test => TriggerOn::TestAdded,
+            TriggerSyntaxKind::TestFailed => TriggerOn::TestFailed,
+            TriggerSyntaxKind::Achieve | TriggerSyntaxKind::Failed => {
+                return self.goal_trigger(scope, trigger, env);
+            }
+            TriggerSyntaxKind::On => return self.event_trigger(scope, literal, env),
         };
         let literal = self.literal(scope, literal, env, (true, false))?;
         Some((make(literal.belief), literal.args, literal.annotations))
@@ -84,7 +86,7 @@ impl Checker<'_> {
     fn goal_trigger(
         &mut self,
         scope: &AgentScope,
-        trigger: &ast::Trigger,
+        trigger: &ast::TriggerSyntax,
         env: &mut ExprEnv,
     ) -> Option<MatchedTrigger> {
         let literal = &trigger.literal;
@@ -94,7 +96,7 @@ impl Checker<'_> {
         let args = self.matched(Noun::Goal, &literal.call, fields.as_ref(), env, true);
         let annotations = self.matched_annotations(&literal.annotations, Some(&[]), env, true);
         let goal = goal?;
-        let achieve = trigger.kind == TriggerKind::Achieve;
+        let achieve = trigger.kind == TriggerSyntaxKind::Achieve;
         let on = if achieve { TriggerOn::GoalAdded(goal) } else { TriggerOn::GoalFailed(goal) };
         Some((on, args, annotations))
     }
@@ -102,7 +104,7 @@ impl Checker<'_> {
     fn event_trigger(
         &mut self,
         scope: &AgentScope,
-        literal: &ast::Literal,
+        literal: &ast::LiteralSyntax,
         env: &mut ExprEnv,
     ) -> Option<MatchedTrigger> {
         let call = &literal.call;
@@ -124,7 +126,7 @@ impl Checker<'_> {
     }
 
     /// Only beliefs have a strong negation.
-    pub(in crate::check) fn not_negated(&mut self, literal: &ast::Literal, what: &str) {
+    pub(in crate::check) fn not_negated(&mut self, literal: &ast::LiteralSyntax, what: &str) {
         if literal.negated {
             self.report(agents::not_negated(what, literal.span));
         }
@@ -164,7 +166,7 @@ impl Checker<'_> {
     }
 
     /// Only the events of the actor that is played can be made.
-    pub(in crate::check) fn owns(&mut self, actor: ActorId, event: EventId, call: &Call) {
+    pub(in crate::check) fn owns(&mut self, actor: ActorId, event: EventId, call: &CallSyntax) {
         let from = self.s.events[usize::from(event.0)].from;
         if from != actor && from != NOBODY && actor != NOBODY {
             let (owner, player) = (self.actor_name(from), self.actor_name(actor));

@@ -18,8 +18,8 @@ use crate::{
 
 /// A rule that is worked on.
 struct RuleClause<'a> {
-    head: &'a ast::Literal,
-    body: Option<&'a ast::Expr>,
+    head: &'a ast::LiteralSyntax,
+    body: Option<&'a ast::ExprSyntax>,
     span: Span,
 }
 
@@ -32,7 +32,7 @@ struct RuleFindings {
 impl Checker<'_> {
     /// The rules of an agent. First their modes are worked out: what a rule needs may depend on what those need that it
     /// asks; then what is wrong is said.
-    pub(in crate::check) fn agent_rules(&mut self, scope: &AgentScope, agent: &ast::Agent) {
+    pub(in crate::check) fn agent_rules(&mut self, scope: &AgentScope, agent: &ast::AgentSyntax) {
         let clauses: Vec<RuleClause<'_>> = agent
             .members
             .iter()

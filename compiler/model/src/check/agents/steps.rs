@@ -1,6 +1,6 @@
 //! The steps of plans.
 
-use hrdsl_syntax::ast::{self, Call, StepKind as Syntax};
+use hrdsl_syntax::ast::{self, CallSyntax, StepSyntaxKind as Syntax};
 
 use crate::check::{
     agents::{
@@ -20,14 +20,19 @@ impl Checker<'_> {
     pub(in crate::check) fn plan_body(
         &mut self,
         scope: &AgentScope,
-        steps: &[ast::Step],
+        steps: &[ast::StepSyntax],
         env: &mut ExprEnv,
     ) -> Vec<TypedStep> {
-        let step = |s: &ast::Step| Some(TypedStep { kind: self.step(scope, s, env)?, origin: s.span });
+        let step = |s: &ast::StepSyntax| Some(TypedStep { kind: self.step(scope, s, env)?, origin: s.span });
         steps.iter().filter_map(step).collect()
     }
 
-    fn step(&mut self, scope: &AgentScope, step: &ast::Step, env: &mut ExprEnv) -> Option<TypedStepKind> {
+    fn step(
+        &mut self,
+        scope: &AgentScope,
+        step: &ast::StepSyntax,
+        env: &mut ExprEnv,
+    ) -> Option<TypedStepKind> {
         Some(match &step.kind {
             Syntax::Do(call) => self.act_of(scope, call, env)?,
             Syntax::Achieve { call, within } => {
@@ -92,8 +97,8 @@ impl Checker<'_> {
     fn if_step(
         &mut self,
         scope: &AgentScope,
-        condition: &ast::Expr,
-        (then, otherwise): (&[ast::Step], &[ast::Step]),
+        condition: &ast::ExprSyntax,
+        (then, otherwise): (&[ast::StepSyntax], &[ast::StepSyntax]),
         span: hrdsl_source::Span,
         env: &mut ExprEnv,
     ) -> TypedStepKind {
@@ -114,8 +119,8 @@ impl Checker<'_> {
     fn loop_step(
         &mut self,
         scope: &AgentScope,
-        condition: &ast::Expr,
-        body: &[ast::Step],
+        condition: &ast::ExprSyntax,
+        body: &[ast::StepSyntax],
         env: &mut ExprEnv,
     ) -> (TypedContext, Vec<TypedStep>) {
         let before = known(env);
@@ -126,7 +131,12 @@ impl Checker<'_> {
     }
 
     /// A time; one that is known must be positive.
-    pub(in crate::check) fn duration(&mut self, e: &ast::Expr, what: &str, env: &mut ExprEnv) -> TypedExpr {
+    pub(in crate::check) fn duration(
+        &mut self,
+        e: &ast::ExprSyntax,
+        what: &str,
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
         let time = self.expr_of(e, InferredType::Float(Dimension::TIME), env);
         if let Some(t) = time.constant().and_then(Value::as_f64) {
             if t <= 0.0 {
@@ -139,7 +149,7 @@ impl Checker<'_> {
     }
 
     /// A stimulus or event of the agent's own actor.
-    fn act_of(&mut self, scope: &AgentScope, call: &Call, env: &mut ExprEnv) -> Option<TypedStepKind> {
+    fn act_of(&mut self, scope: &AgentScope, call: &CallSyntax, env: &mut ExprEnv) -> Option<TypedStepKind> {
         let local = self.kind_in_agent(scope, &call.name.text);
         let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
         self.owns(self.s.agents[usize::from(scope.id.0)].actor, event, call);
@@ -151,7 +161,7 @@ impl Checker<'_> {
     fn adopt(
         &mut self,
         scope: &AgentScope,
-        call: &Call,
+        call: &CallSyntax,
         env: &mut ExprEnv,
     ) -> (Option<GoalId>, Vec<TypedExpr>) {
         let goal = self.goal(scope, call);

@@ -1,7 +1,7 @@
 //! Terms and literals: what is matched with facts and goals, and what is made. A variable that has no value yet gets it.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
+use hrdsl_syntax::ast::{self, CallSyntax, ExprSyntaxKind as Syntax};
 
 use crate::check::{
     agents::agent::AgentScope,
@@ -55,29 +55,29 @@ impl TermMode {
 }
 
 /// A literal that is written as an expression: `~b(X)[source(S)]`.
-pub(in crate::check) fn literal_of(e: &ast::Expr) -> Option<ast::Literal> {
+pub(in crate::check) fn literal_of(e: &ast::ExprSyntax) -> Option<ast::LiteralSyntax> {
     let literal = match &e.kind {
         Syntax::Path(path) => {
             let [name] = path.names.as_slice() else { return None };
-            let call = Call { name: name.clone(), args: None, span: e.span };
-            ast::Literal { negated: false, call, annotations: Vec::new(), span: e.span }
+            let call = CallSyntax { name: name.clone(), args: None, span: e.span };
+            ast::LiteralSyntax { negated: false, call, annotations: Vec::new(), span: e.span }
         }
         Syntax::Call { callee, args } => {
             let [name] = callee.names.as_slice() else { return None };
-            let call = Call { name: name.clone(), args: Some(args.clone()), span: e.span };
-            ast::Literal { negated: false, call, annotations: Vec::new(), span: e.span }
+            let call = CallSyntax { name: name.clone(), args: Some(args.clone()), span: e.span };
+            ast::LiteralSyntax { negated: false, call, annotations: Vec::new(), span: e.span }
         }
         Syntax::Strong(inner) => {
             let inner = literal_of(inner).filter(|l| !l.negated)?;
-            ast::Literal { negated: true, span: e.span, ..inner }
+            ast::LiteralSyntax { negated: true, span: e.span, ..inner }
         }
         Syntax::Annotated { of, annotations } => {
             let of = literal_of(of).filter(|l| l.annotations.is_empty())?;
-            ast::Literal { annotations: annotations.clone(), span: e.span, ..of }
+            ast::LiteralSyntax { annotations: annotations.clone(), span: e.span, ..of }
         }
         Syntax::Index { of, index } => {
             let of = literal_of(of).filter(|l| l.annotations.is_empty())?;
-            ast::Literal { annotations: vec![(**index).clone()], span: e.span, ..of }
+            ast::LiteralSyntax { annotations: vec![(**index).clone()], span: e.span, ..of }
         }
         _ => return None,
     };
@@ -94,13 +94,13 @@ impl Checker<'_> {
     pub(in crate::check) fn matched(
         &mut self,
         noun: Noun,
-        call: &Call,
+        call: &CallSyntax,
         fields: Option<&DeclaredFields>,
         env: &mut ExprEnv,
         binds: bool,
     ) -> Vec<TypedTerm> {
         let args = call.args.as_deref().unwrap_or_default();
-        let variable = |c: &Checker<'_>, name: &ast::Name| c.is_variable(&name.text);
+        let variable = |c: &Checker<'_>, name: &ast::NameSyntax| c.is_variable(&name.text);
         if fields.is_none() && noun != Noun::Goal {
             // Its name has a diagnostic.
             if binds {
@@ -136,7 +136,7 @@ impl Checker<'_> {
     /// A term where something is due.
     pub(in crate::check) fn matched_arg(
         &mut self,
-        arg: &ast::Expr,
+        arg: &ast::ExprSyntax,
         due: TermMode,
         env: &mut ExprEnv,
         binds: bool,
@@ -165,8 +165,8 @@ impl Checker<'_> {
     /// `[H | T]`
     fn matched_list(
         &mut self,
-        items: &[ast::Expr],
-        rest: Option<&ast::Expr>,
+        items: &[ast::ExprSyntax],
+        rest: Option<&ast::ExprSyntax>,
         due: TermMode,
         span: Span,
         env: &mut ExprEnv,
@@ -191,7 +191,7 @@ impl Checker<'_> {
     }
 
     /// Whether something in a list is matched, and not only computed.
-    pub(in crate::check) fn is_pattern(&self, e: &ast::Expr, env: &ExprEnv) -> bool {
+    pub(in crate::check) fn is_pattern(&self, e: &ast::ExprSyntax, env: &ExprEnv) -> bool {
         match &e.kind {
             Syntax::Any => true,
             Syntax::Path(path) => match path.names.as_slice() {
@@ -214,7 +214,7 @@ impl Checker<'_> {
     /// Binds a variable, or compares with its value.
     pub(in crate::check) fn matched_variable(
         &mut self,
-        name: &ast::Name,
+        name: &ast::NameSyntax,
         due: TermMode,
         env: &mut ExprEnv,
         binds: bool,
@@ -255,7 +255,7 @@ impl Checker<'_> {
     pub(in crate::check) fn literal(
         &mut self,
         scope: &AgentScope,
-        literal: &ast::Literal,
+        literal: &ast::LiteralSyntax,
         env: &mut ExprEnv,
         (binds, asks): (bool, bool),
     ) -> Option<TypedLiteral> {
@@ -275,7 +275,7 @@ impl Checker<'_> {
     pub(in crate::check) fn assertion(
         &mut self,
         scope: &AgentScope,
-        literal: &ast::Literal,
+        literal: &ast::LiteralSyntax,
         env: &mut ExprEnv,
     ) -> Option<TypedAssertion> {
         let belief = self.belief_or_negation(scope, literal)?;
@@ -297,7 +297,7 @@ impl Checker<'_> {
     /// Annotations that are matched; `declared`: besides `source`, `None` if that is not known.
     pub(in crate::check) fn matched_annotations(
         &mut self,
-        annotations: &[ast::Expr],
+        annotations: &[ast::ExprSyntax],
         declared: Option<&[Parameter]>,
         env: &mut ExprEnv,
         binds: bool,
@@ -309,7 +309,7 @@ impl Checker<'_> {
             } else if let Syntax::Call { args, .. } = &e.kind
                 && binds
             {
-                let variable = |c: &Checker<'_>, name: &ast::Name| c.is_variable(&name.text);
+                let variable = |c: &Checker<'_>, name: &ast::NameSyntax| c.is_variable(&name.text);
                 args.iter().for_each(|arg| self.bind_names(arg, env, &variable));
             }
         }
@@ -319,11 +319,11 @@ impl Checker<'_> {
     /// `sure(90)`: which annotation it is, its value and the type of that.
     pub(in crate::check) fn annotation<'e>(
         &mut self,
-        e: &'e ast::Expr,
+        e: &'e ast::ExprSyntax,
         declared: Option<&[Parameter]>,
-    ) -> Option<(BeliefAnnotation, &'e ast::Expr, Type)> {
+    ) -> Option<(BeliefAnnotation, &'e ast::ExprSyntax, Type)> {
         let declared = declared?;
-        let (name, args): (&ast::Name, &[ast::Expr]) = match &e.kind {
+        let (name, args): (&ast::NameSyntax, &[ast::ExprSyntax]) = match &e.kind {
             Syntax::Call { callee, args } if callee.names.len() == 1 => (&callee.names[0], args),
             Syntax::Path(path) if path.names.len() == 1 => (&path.names[0], &[]),
             Syntax::Error => return None,
@@ -357,7 +357,7 @@ impl Checker<'_> {
         (agent, belief): (u16, BeliefId),
         args: &[TypedTerm],
         before: &[bool],
-        call: &Call,
+        call: &CallSyntax,
         env: &ExprEnv,
     ) {
         let Some(modes) = self.agents.modes.get(&(agent, belief.0)).cloned() else { return };
@@ -386,7 +386,7 @@ impl Checker<'_> {
     /// An expression of the kind that a variable or literal is compared with.
     pub(in crate::check) fn single(
         &mut self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         kind: InferredType,
         env: &mut ExprEnv,
     ) -> TypedExpr {

@@ -1,6 +1,6 @@
 //! Assignments of edges: what may be assigned, and clocks.
 
-use hrdsl_syntax::ast::{self, Access, Name};
+use hrdsl_syntax::ast::{self, AccessSyntax, NameSyntax};
 
 use crate::check::{
     automata::{automaton::EdgeScope, clock::is_clock},
@@ -17,9 +17,9 @@ impl Checker<'_> {
     pub(in crate::check) fn update(
         &mut self,
         scope: &EdgeScope,
-        (target, access): (&Name, &[Access]),
+        (target, access): (&NameSyntax, &[AccessSyntax]),
         op: Option<BinaryOp>,
-        value: &ast::Expr,
+        value: &ast::ExprSyntax,
         env: &mut ExprEnv,
         updates: &mut Vec<TypedUpdate>,
     ) {

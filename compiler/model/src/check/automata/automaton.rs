@@ -3,7 +3,9 @@
 use std::rc::Rc;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, ItemKind, Name, Sort};
+use hrdsl_syntax::ast::{
+    self, AutomatonMemberKind as Member, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind,
+};
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
@@ -51,8 +53,8 @@ fn emissions(steps: &[TypedStimulusStep]) -> usize {
 impl Checker<'_> {
     pub(in crate::check) fn automata(&mut self) {
         self.shared_functions();
-        self.templates_of(Sort::Automaton, |c, template| {
-            let ItemKind::Automaton(syntax) = template.kind else { return };
+        self.templates_of(TemplateSyntaxKind::Automaton, |c, template| {
+            let ItemSyntaxKind::Automaton(syntax) = template.kind else { return };
             let index = c.s.automata.len();
             let functions = c.s.functions.len();
             let plain = DeclaredPlayer { syntax, given: None, instance: None };
@@ -69,14 +71,14 @@ impl Checker<'_> {
             self.as_instance(automaton.given, place, |c| c.automaton(index, automaton.syntax, whole));
         }
         for (item, span) in self.each_item() {
-            if let ItemKind::Network { name, automata } = item {
+            if let ItemSyntaxKind::Network { name, automata } = item {
                 self.network(name, automata, span);
             }
         }
     }
 
     /// Clocks, variables, functions and locations; edges too, if it is looked at as a `whole`.
-    fn automaton(&mut self, index: usize, automaton: &ast::Automaton, whole: bool) {
+    fn automaton(&mut self, index: usize, automaton: &ast::AutomatonSyntax, whole: bool) {
         let actor = self.s.automata[index].actor;
         let mut scope = EdgeScope {
             index,
@@ -164,7 +166,7 @@ impl Checker<'_> {
             .then(|| too_many(format!("`{name}` sees more than {} variables", MAX_NAMES), span))
     }
 
-    fn clock(&mut self, index: usize, clock: &Name, scope: &mut EdgeScope) {
+    fn clock(&mut self, index: usize, clock: &NameSyntax, scope: &mut EdgeScope) {
         self.check_free(&scope.env, Noun::Clock, clock);
         if scope.vars.get(&clock.text).is_none() && scope.clocks.insert(&clock.text, clock.span).is_ok() {
             Rc::make_mut(&mut scope.env.own).add_clock(&clock.text, clock.span);
@@ -172,7 +174,7 @@ impl Checker<'_> {
         }
     }
 
-    fn own_var(&mut self, index: usize, var: &ast::Var, scope: &mut EdgeScope) {
+    fn own_var(&mut self, index: usize, var: &ast::VarSyntax, scope: &mut EdgeScope) {
         self.check_free(&scope.env, Noun::Clock, &var.name);
         let (layout, vars) = self.var(var);
         if scope.clocks.get(&var.name.text).is_some() {
@@ -190,7 +192,7 @@ impl Checker<'_> {
         }
     }
 
-    fn locations(&mut self, index: usize, automaton: &ast::Automaton, scope: &mut EdgeScope) {
+    fn locations(&mut self, index: usize, automaton: &ast::AutomatonSyntax, scope: &mut EdgeScope) {
         let mut initial: Option<(LocationId, Span)> = None;
         let mut broken = false;
         for member in &automaton.members {
@@ -222,7 +224,7 @@ impl Checker<'_> {
         }
     }
 
-    fn network(&mut self, name: &Name, automata: &[Name], span: Span) {
+    fn network(&mut self, name: &NameSyntax, automata: &[NameSyntax], span: Span) {
         let mut ids: Vec<AutomatonId> = Vec::new();
         let mut seen = NameTable::default();
         for automaton in automata {

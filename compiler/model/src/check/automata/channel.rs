@@ -1,7 +1,7 @@
 //! Channels: their declarations, and what an edge does over one.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Call, ItemKind, Name};
+use hrdsl_syntax::ast::{self, CallSyntax, ItemSyntaxKind, NameSyntax};
 
 use crate::check::{
     automata::automaton::EdgeScope,
@@ -27,21 +27,21 @@ impl Checker<'_> {
     /// After the automata have their names: those are the parties of joint channels.
     pub(in crate::check) fn declare_channels(&mut self) {
         for (item, span) in self.each_item() {
-            if let ItemKind::Channel(channel) = item {
+            if let ItemSyntaxKind::Channel(channel) = item {
                 self.declare_channel(channel, span);
             }
         }
     }
 
-    fn declare_channel(&mut self, channel: &ast::Channel, whole: Span) {
+    fn declare_channel(&mut self, channel: &ast::ChannelSyntax, whole: Span) {
         for one in &channel.names {
             let name = &one.name;
             let fields = self.channel_params(&one.params);
             let mut parties = Vec::new();
             let kind = match &channel.kind {
-                ast::ChannelKind::HandShake => ChannelKind::HandShake,
-                ast::ChannelKind::Broadcast => ChannelKind::Broadcast,
-                ast::ChannelKind::Joint(of) => {
+                ast::ChannelSyntaxKind::HandShake => ChannelKind::HandShake,
+                ast::ChannelSyntaxKind::Broadcast => ChannelKind::Broadcast,
+                ast::ChannelSyntaxKind::Joint(of) => {
                     if let Some(param) = one.params.first() {
                         self.report(automata::joint_params(&name.text, param.name.span));
                     }
@@ -66,7 +66,7 @@ impl Checker<'_> {
     }
 
     /// Parameters of finite types.
-    fn channel_params(&mut self, params: &[ast::Param]) -> DeclaredFields {
+    fn channel_params(&mut self, params: &[ast::ParamSyntax]) -> DeclaredFields {
         let fields = self.fields(params);
         for (param, (_, layout)) in params.iter().zip(fields.iter()) {
             if self.plain(layout, &param.name.text, type_span(&param.ty)) {
@@ -79,8 +79,8 @@ impl Checker<'_> {
     /// The automata of a joint channel; `places` gets where they are named.
     fn parties(
         &mut self,
-        channel: &Name,
-        parties: &[ast::Party],
+        channel: &NameSyntax,
+        parties: &[ast::PartySyntax],
         places: &mut Vec<Span>,
     ) -> Vec<ChannelParticipant> {
         let (mut resolved, mut seen) = (Vec::new(), NameTable::default());
@@ -106,7 +106,7 @@ impl Checker<'_> {
     pub(in crate::check) fn medium(
         &mut self,
         scope: &EdgeScope,
-        name: &Name,
+        name: &NameSyntax,
         local: Option<Noun>,
     ) -> Option<EdgeMedium> {
         let given = self.given(&name.text).is_some();
@@ -140,7 +140,7 @@ impl Checker<'_> {
         &mut self,
         scope: &EdgeScope,
         channel: ChannelId,
-        call: &Call,
+        call: &CallSyntax,
         env: &mut ExprEnv,
         equal: &mut Vec<TypedExpr>,
     ) -> Option<TypedSync> {
@@ -171,7 +171,7 @@ impl Checker<'_> {
     pub(in crate::check) fn offer(
         &mut self,
         channel: ChannelId,
-        call: &Call,
+        call: &CallSyntax,
         env: &mut ExprEnv,
     ) -> Option<TypedSync> {
         if self.is_joint(channel) {

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Access, ExprKind as Syntax, Name, TypeExpr};
+use hrdsl_syntax::ast::{self, AccessSyntax, ExprSyntaxKind as Syntax, NameSyntax, TypeExpr};
 
 use crate::check::{
     automata::automaton::EdgeScope,
@@ -43,7 +43,7 @@ impl ClockSum {
 }
 
 /// The sizes of an array of clocks, and none for one clock. `None`: the type is another.
-fn sizes(ty: &TypeExpr) -> Option<Vec<&ast::Expr>> {
+fn sizes(ty: &TypeExpr) -> Option<Vec<&ast::ExprSyntax>> {
     match ty {
         TypeExpr::Named(name) => (name.text == "clock").then(Vec::new),
         TypeExpr::Array(of, size) => {
@@ -57,7 +57,7 @@ fn sizes(ty: &TypeExpr) -> Option<Vec<&ast::Expr>> {
 
 impl Checker<'_> {
     /// `var total: clock`, `var t: clock[3]`; whether it is one.
-    pub(in crate::check) fn declare_shared_clocks(&mut self, var: &ast::Var, whole: Span) -> bool {
+    pub(in crate::check) fn declare_shared_clocks(&mut self, var: &ast::VarSyntax, whole: Span) -> bool {
         let named = self.types.enums.get("clock").is_some() || self.types.record_names.get("clock").is_some();
         let Some(sizes) = sizes(&var.ty).filter(|_| !named) else { return false };
         if let Some(init) = &var.init {
@@ -110,7 +110,12 @@ impl Checker<'_> {
     }
 
     /// The clock that an expression is. `None`: it is none; `Some(None)`: it has a diagnostic.
-    fn clock_of(&mut self, e: &ast::Expr, scope: &EdgeScope, env: &mut ExprEnv) -> Option<Option<ClockId>> {
+    fn clock_of(
+        &mut self,
+        e: &ast::ExprSyntax,
+        scope: &EdgeScope,
+        env: &mut ExprEnv,
+    ) -> Option<Option<ClockId>> {
         let (mut of, mut indices) = (e, Vec::new());
         while let Syntax::Index { of: inner, index } = &of.kind {
             indices.push(&**index);
@@ -125,8 +130,8 @@ impl Checker<'_> {
     /// The clock of a name and constant indices.
     fn clock_at(
         &mut self,
-        name: &Name,
-        indices: &[&ast::Expr],
+        name: &NameSyntax,
+        indices: &[&ast::ExprSyntax],
         scope: &EdgeScope,
         env: &mut ExprEnv,
     ) -> Option<ClockId> {
@@ -153,7 +158,7 @@ impl Checker<'_> {
     fn add_to(
         &mut self,
         sum: &mut ClockSum,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         sign: i8,
         scope: &EdgeScope,
         env: &mut ExprEnv,
@@ -204,7 +209,7 @@ impl Checker<'_> {
     /// comparison; `Some(None)`: it is a bound, but a wrong one.
     pub(in crate::check) fn clock_bound(
         &mut self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         scope: &EdgeScope,
         env: &mut ExprEnv,
     ) -> Option<Option<TypedClockConstraint>> {
@@ -241,17 +246,17 @@ impl Checker<'_> {
     /// `x = 0`, `x = n * 1 s`, `x = y + 2 s`, `x += 1 s`, `t[0] = 0`
     pub(in crate::check) fn set_clock(
         &mut self,
-        (target, access): (&Name, &[Access]),
+        (target, access): (&NameSyntax, &[AccessSyntax]),
         op: Option<BinaryOp>,
-        value: &ast::Expr,
+        value: &ast::ExprSyntax,
         scope: &EdgeScope,
         env: &mut ExprEnv,
     ) -> Option<TypedUpdate> {
         let mut indices = Vec::new();
         for step in access {
             match step {
-                Access::Index(e) => indices.push(e),
-                Access::Field(_) => {
+                AccessSyntax::Index(e) => indices.push(e),
+                AccessSyntax::Field(_) => {
                     self.report(automata::clock_set(&target.text, target.span));
                     return None;
                 }
@@ -282,11 +287,11 @@ impl Checker<'_> {
 }
 
 /// Whether a name is a clock's, or that of an array of clocks.
-pub(in crate::check) fn is_clock(name: &Name, env: &ExprEnv) -> bool {
+pub(in crate::check) fn is_clock(name: &NameSyntax, env: &ExprEnv) -> bool {
     env.find(&name.text).is_some_and(|l| l.noun == Noun::Clock)
 }
 
-pub(in crate::check) fn mentions_clock(e: &ast::Expr, env: &ExprEnv) -> bool {
+pub(in crate::check) fn mentions_clock(e: &ast::ExprSyntax, env: &ExprEnv) -> bool {
     let mut names = Vec::new();
     names_in(e, &mut names);
     names.iter().any(|name| is_clock(name, env))

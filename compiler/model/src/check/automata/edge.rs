@@ -2,7 +2,8 @@
 
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
-    self, BinaryOp, Call, EdgeActionKind as Action, ExprKind as Syntax, Name, Param as SyntaxParam,
+    self, BinaryOp, CallSyntax, EdgeActionKind as Action, ExprSyntaxKind as Syntax, NameSyntax,
+    ParamSyntax as SyntaxParam,
 };
 
 use crate::check::{
@@ -25,7 +26,7 @@ impl Checker<'_> {
     pub(in crate::check) fn edge(
         &mut self,
         scope: &EdgeScope,
-        edge: &ast::Edge,
+        edge: &ast::EdgeSyntax,
         span: Span,
     ) -> Option<TypedEdge> {
         let (from, to) = (self.location(scope, &edge.from), self.location(scope, &edge.to));
@@ -70,7 +71,7 @@ impl Checker<'_> {
     pub(in crate::check) fn conjunction(
         &mut self,
         scope: &EdgeScope,
-        condition: Option<&ast::Expr>,
+        condition: Option<&ast::ExprSyntax>,
         env: &mut ExprEnv,
     ) -> (Vec<TypedClockConstraint>, Vec<TypedExpr>, Option<Span>) {
         let (mut bounds, mut data, mut timed) = (Vec::new(), Vec::new(), None);
@@ -86,7 +87,7 @@ impl Checker<'_> {
         (bounds, data, timed)
     }
 
-    fn location(&mut self, scope: &EdgeScope, name: &Name) -> Option<LocationId> {
+    fn location(&mut self, scope: &EdgeScope, name: &NameSyntax) -> Option<LocationId> {
         if let Some(id) = scope.locations.get(&name.text) {
             self.refer(name, scope.locations.span(id));
             return Some(LocationId(id));
@@ -117,7 +118,7 @@ impl Checker<'_> {
     fn receive(
         &mut self,
         scope: &EdgeScope,
-        call: &Call,
+        call: &CallSyntax,
         env: &mut ExprEnv,
         equal: &mut Vec<TypedExpr>,
     ) -> Option<TypedSync> {
@@ -143,7 +144,7 @@ impl Checker<'_> {
     pub(in crate::check) fn received_args(
         &mut self,
         noun: Noun,
-        call: &Call,
+        call: &CallSyntax,
         fields: &[(String, TypeLayout)],
         env: &mut ExprEnv,
         equal: &mut Vec<TypedExpr>,
@@ -158,7 +159,7 @@ impl Checker<'_> {
         // What is there before the edge binds anything.
         let scalar = fields.iter().all(|(_, layout)| matches!(layout, TypeLayout::Scalar(_)));
         let seen = if scalar { ExprEnv::default() } else { env.clone() };
-        let free = |c: &Checker<'_>, name: &Name| {
+        let free = |c: &Checker<'_>, name: &NameSyntax| {
             seen.layout(&name.text).is_none()
                 && seen.find(&name.text).is_none()
                 && !c.has_value(&name.text)
@@ -169,8 +170,9 @@ impl Checker<'_> {
     }
 
     /// What an unknown event would bind is known, but not its types.
-    fn bind_unknown(&mut self, call: &Call, env: &mut ExprEnv) {
-        let free = |c: &Checker<'_>, name: &Name| !c.has_value(&name.text) && !is_variable_name(&name.text);
+    fn bind_unknown(&mut self, call: &CallSyntax, env: &mut ExprEnv) {
+        let free =
+            |c: &Checker<'_>, name: &NameSyntax| !c.has_value(&name.text) && !is_variable_name(&name.text);
         call.args.iter().flatten().for_each(|arg| self.bind_names(arg, env, &free));
     }
 
@@ -200,7 +202,7 @@ impl Checker<'_> {
 
     fn received(
         &mut self,
-        arg: &ast::Expr,
+        arg: &ast::ExprSyntax,
         ty: Type,
         env: &mut ExprEnv,
         equal: &mut Vec<TypedExpr>,
@@ -251,7 +253,7 @@ impl Checker<'_> {
         ReceiveArg::Bind
     }
 
-    fn send(&mut self, scope: &EdgeScope, call: &Call, env: &mut ExprEnv) -> Option<TypedSync> {
+    fn send(&mut self, scope: &EdgeScope, call: &CallSyntax, env: &mut ExprEnv) -> Option<TypedSync> {
         let local = env.find(&call.name.text).map(|l| l.noun);
         let event = match self.medium(scope, &call.name, local)? {
             EdgeMedium::Channel(channel) => return self.offer(channel, call, env),
@@ -286,7 +288,7 @@ impl Checker<'_> {
 }
 
 /// The parts of a conjunction, in order.
-pub(in crate::check) fn conjuncts(e: &ast::Expr) -> Vec<&ast::Expr> {
+pub(in crate::check) fn conjuncts(e: &ast::ExprSyntax) -> Vec<&ast::ExprSyntax> {
     match &e.kind {
         Syntax::Binary { op: ast::BinaryOp::And, left, right } => {
             let mut parts = conjuncts(left);

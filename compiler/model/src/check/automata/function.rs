@@ -3,7 +3,7 @@
 use std::{collections::BTreeSet, rc::Rc};
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, Call, ItemKind, Name};
+use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, CallSyntax, ItemSyntaxKind, NameSyntax};
 
 use crate::check::{
     automata::{statement, statement::FunctionBody},
@@ -29,7 +29,7 @@ impl Checker<'_> {
         let start = self.s.functions.len();
         let mut bodies = Vec::new();
         for (item, span) in self.each_item() {
-            let ItemKind::Function(function) = item else { continue };
+            let ItemSyntaxKind::Function(function) = item else { continue };
             let env = ExprEnv { shared: self.shared.scope.clone(), ..ExprEnv::default() };
             let callable = self.declare_function(function, None, &env, span);
             // Nobody else holds the scope now: it grows without a copy.
@@ -47,7 +47,7 @@ impl Checker<'_> {
     pub(in crate::check) fn own_functions(
         &mut self,
         index: usize,
-        automaton: &ast::Automaton,
+        automaton: &ast::AutomatonSyntax,
         env: &mut ExprEnv,
     ) {
         let start = self.s.functions.len();
@@ -64,7 +64,7 @@ impl Checker<'_> {
     }
 
     /// The bodies of functions that know each other, and what follows from all of them.
-    fn functions_of(&mut self, start: usize, bodies: Vec<(FunctionId, &ast::Function)>, env: &ExprEnv) {
+    fn functions_of(&mut self, start: usize, bodies: Vec<(FunctionId, &ast::FunctionSyntax)>, env: &ExprEnv) {
         for (id, function) in bodies {
             let env = ExprEnv {
                 noun: Some(Noun::Variable),
@@ -84,7 +84,7 @@ impl Checker<'_> {
 
     fn declare_function(
         &mut self,
-        function: &ast::Function,
+        function: &ast::FunctionSyntax,
         owner: Option<AutomatonId>,
         env: &ExprEnv,
         span: Span,
@@ -122,7 +122,7 @@ impl Checker<'_> {
         Some(CallableFunction { id: FunctionId(id), params: params.into(), result, span: name.span })
     }
 
-    fn function_params(&mut self, function: &ast::Function) -> Vec<(String, TypeLayout)> {
+    fn function_params(&mut self, function: &ast::FunctionSyntax) -> Vec<(String, TypeLayout)> {
         let mut params: Vec<(String, TypeLayout)> = Vec::new();
         for param in &function.params {
             let name = &param.name;
@@ -133,7 +133,7 @@ impl Checker<'_> {
     }
 
     /// Nothing that is called or read like it has the name.
-    fn free_function(&mut self, name: &Name, env: &ExprEnv) -> bool {
+    fn free_function(&mut self, name: &NameSyntax, env: &ExprEnv) -> bool {
         let said = self.issues.list.len();
         let text = name.text.as_str();
         if FUNCTIONS.iter().any(|(built_in, _)| *built_in == text) {
@@ -172,7 +172,7 @@ impl Checker<'_> {
         self.issues.list.len() == said
     }
 
-    fn function_body(&mut self, id: FunctionId, function: &ast::Function, mut env: ExprEnv) {
+    fn function_body(&mut self, id: FunctionId, function: &ast::FunctionSyntax, mut env: ExprEnv) {
         let callable = env.function(&function.name.text).cloned();
         for (param, (_, layout)) in function.params.iter().zip(callable.iter().flat_map(|c| c.params.iter()))
         {
@@ -211,8 +211,8 @@ impl Checker<'_> {
     /// `f(a, b)`, if `f` is a function that is known here.
     pub(in crate::check) fn applied_function(
         &mut self,
-        name: &Name,
-        args: &[ast::Expr],
+        name: &NameSyntax,
+        args: &[ast::ExprSyntax],
         span: Span,
         env: &mut ExprEnv,
     ) -> Option<TypedExpr> {
@@ -238,7 +238,7 @@ impl Checker<'_> {
     /// `f(a, b)` for its effect; `None`: no function of the name is known here, or its arguments do not fit.
     pub(in crate::check) fn called_function(
         &mut self,
-        call: &Call,
+        call: &CallSyntax,
         env: &mut ExprEnv,
     ) -> Option<(FunctionId, Vec<TypedExpr>)> {
         let callable = env.function(&call.name.text)?.clone();
@@ -252,7 +252,7 @@ impl Checker<'_> {
     /// An action of an edge that is not a sending; says so of one that was meant to be one.
     pub(in crate::check) fn calls_function(
         &mut self,
-        call: &Call,
+        call: &CallSyntax,
         env: &mut ExprEnv,
         updates: &mut Vec<TypedUpdate>,
     ) -> bool {
@@ -283,8 +283,8 @@ impl Checker<'_> {
     fn function_args(
         &mut self,
         callable: &CallableFunction,
-        name: &Name,
-        args: &[ast::Expr],
+        name: &NameSyntax,
+        args: &[ast::ExprSyntax],
         span: Span,
         env: &mut ExprEnv,
     ) -> Option<Vec<TypedExpr>> {
@@ -318,8 +318,9 @@ impl Checker<'_> {
     }
 
     /// A function of automata that is called elsewhere; says so.
-    pub(in crate::check) fn function_elsewhere(&mut self, name: &Name) -> bool {
-        let function = |item: &ItemKind| matches!(item, ItemKind::Function(f) if f.name.text == name.text);
+    pub(in crate::check) fn function_elsewhere(&mut self, name: &NameSyntax) -> bool {
+        let function =
+            |item: &ItemSyntaxKind| matches!(item, ItemSyntaxKind::Function(f) if f.name.text == name.text);
         let found = self.each_item().any(|(item, _)| function(item));
         if found {
             self.report(functions::not_here(&name.text, name.span));

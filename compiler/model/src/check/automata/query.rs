@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, ItemKind, Name, UnaryOp};
+use hrdsl_syntax::ast::{self, BinaryOp, ExprSyntaxKind as Syntax, ItemSyntaxKind, NameSyntax, UnaryOp};
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
@@ -39,13 +39,13 @@ struct QuerySum<'e> {
     plus: Vec<ClockId>,
     minus: Vec<ClockId>,
     /// Each with whether it is subtracted.
-    rest: Vec<(&'e ast::Expr, bool)>,
+    rest: Vec<(&'e ast::ExprSyntax, bool)>,
 }
 
 impl Checker<'_> {
     pub(in crate::check) fn queries(&mut self) {
         for (item, span) in self.each_item() {
-            if let ItemKind::Query(query) = item {
+            if let ItemSyntaxKind::Query(query) = item {
                 let looked_at = self.source.looks_at(CheckPhase::Queries, span);
                 let resolved = if looked_at { self.query(query, span) } else { None };
                 let new = self.issues.declare(&mut self.networks.queries, Noun::Query, &query.name).is_some();
@@ -55,7 +55,7 @@ impl Checker<'_> {
         self.say_impure();
     }
 
-    fn query(&mut self, query: &ast::Query, span: Span) -> Option<TypedQuery> {
+    fn query(&mut self, query: &ast::QuerySyntax, span: Span) -> Option<TypedQuery> {
         let network = self.networks.table.get(&query.network.text).map(NetworkId);
         self.refer(&query.network, self.networks.table.span_of(&query.network.text));
         let Some(network) = network else {
@@ -75,22 +75,24 @@ impl Checker<'_> {
         })
     }
 
-    fn query_ask(&mut self, ask: &ast::Ask, net: &mut QueryNetwork) -> TypedQueryKind {
+    fn query_ask(&mut self, ask: &ast::FormulaSyntax, net: &mut QueryNetwork) -> TypedQueryKind {
         let always = || TypedFormula::And(Vec::new());
         match ask {
-            ast::Ask::Possibly(f) => TypedQueryKind::Possibly(self.formula(f, net)),
-            ast::Ask::Invariantly(f) => TypedQueryKind::Invariantly(self.formula(f, net)),
-            ast::Ask::PotentiallyAlways(f) => TypedQueryKind::PotentiallyAlways(self.formula(f, net)),
-            ast::Ask::Eventually(f) => TypedQueryKind::Eventually(self.formula(f, net)),
-            ast::Ask::LeadsTo(f, g) => {
+            ast::FormulaSyntax::Possibly(f) => TypedQueryKind::Possibly(self.formula(f, net)),
+            ast::FormulaSyntax::Invariantly(f) => TypedQueryKind::Invariantly(self.formula(f, net)),
+            ast::FormulaSyntax::PotentiallyAlways(f) => {
+                TypedQueryKind::PotentiallyAlways(self.formula(f, net))
+            }
+            ast::FormulaSyntax::Eventually(f) => TypedQueryKind::Eventually(self.formula(f, net)),
+            ast::FormulaSyntax::LeadsTo(f, g) => {
                 let f = self.formula(f, net);
                 TypedQueryKind::LeadsTo(f, self.formula(g, net))
             }
-            ast::Ask::Sup { when, of } => {
+            ast::FormulaSyntax::Sup { when, of } => {
                 let when = when.as_ref().map_or_else(always, |f| self.formula(f, net));
                 TypedQueryKind::Sup { of: self.measures(of, net), when }
             }
-            ast::Ask::Inf { when, of } => {
+            ast::FormulaSyntax::Inf { when, of } => {
                 let when = when.as_ref().map_or_else(always, |f| self.formula(f, net));
                 TypedQueryKind::Inf { of: self.measures(of, net), when }
             }
@@ -145,13 +147,13 @@ impl Checker<'_> {
     }
 
     /// Whether all names are known, and are variables, constants or functions; says what is not.
-    fn data_names(&mut self, e: &ast::Expr, net: &QueryNetwork) -> bool {
+    fn data_names(&mut self, e: &ast::ExprSyntax, net: &QueryNetwork) -> bool {
         let mut known = true;
         each_path(e, &mut |path| known &= self.data_name(path, net));
         known
     }
 
-    fn data_name(&mut self, path: &ast::Path, net: &QueryNetwork) -> bool {
+    fn data_name(&mut self, path: &ast::PathSyntax, net: &QueryNetwork) -> bool {
         let whole = joined(&path.names);
         if net.clocks.contains_key(&whole) {
             self.report(queries::clock_value(&whole, path.span));
@@ -188,13 +190,13 @@ impl Checker<'_> {
         }
     }
 
-    fn is_automaton(&self, name: &Name) -> bool {
+    fn is_automaton(&self, name: &NameSyntax) -> bool {
         let id = self.players.table.get(&name.text).map(|id| self.players.ids[usize::from(id)]);
         matches!(id, Some(PlayerRef::Automaton(_))) && self.types.enums.get(&name.text).is_none()
     }
 
     /// A name is that of a location, variable or clock of an automaton.
-    fn refer_member(&mut self, automaton: &Name, member: &Name) {
+    fn refer_member(&mut self, automaton: &NameSyntax, member: &NameSyntax) {
         let Some(at) = self.s.automata.iter().position(|a| a.name == automaton.text) else { return };
         let Some(scope) = self.networks.scopes.get(&at).cloned() else { return };
         let known = ExprEnv { own: scope.clone(), ..ExprEnv::default() };
@@ -203,7 +205,7 @@ impl Checker<'_> {
     }
 
     /// Whether the automaton is in the network and has something of this name, and one thing only.
-    fn has_member(&mut self, automaton: &Name, member: &Name, net: &QueryNetwork) -> bool {
+    fn has_member(&mut self, automaton: &NameSyntax, member: &NameSyntax, net: &QueryNetwork) -> bool {
         if !net.automata.contains(&automaton.text) {
             let issue = queries::not_in_network(&automaton.text, &net.name, &net.automata, automaton.span);
             self.report(issue);
@@ -229,7 +231,7 @@ impl Checker<'_> {
 
     // ── formulas ──
 
-    fn formula(&mut self, e: &ast::Expr, net: &mut QueryNetwork) -> TypedFormula {
+    fn formula(&mut self, e: &ast::ExprSyntax, net: &mut QueryNetwork) -> TypedFormula {
         match &e.kind {
             Syntax::Binary { op: BinaryOp::And, left, right } => {
                 let left = self.formula(left, net);
@@ -269,7 +271,7 @@ impl Checker<'_> {
     }
 
     /// `deadlock`, or `Automaton.location`.
-    fn state(&mut self, path: &ast::Path, net: &QueryNetwork) -> Option<TypedFormula> {
+    fn state(&mut self, path: &ast::PathSyntax, net: &QueryNetwork) -> Option<TypedFormula> {
         match path.names.as_slice() {
             [name] if name.text == "deadlock" => Some(TypedFormula::Deadlock),
             [automaton, member] if self.is_automaton(automaton) => {
@@ -284,14 +286,14 @@ impl Checker<'_> {
         }
     }
 
-    fn data(&mut self, e: &ast::Expr, net: &mut QueryNetwork) -> TypedFormula {
+    fn data(&mut self, e: &ast::ExprSyntax, net: &mut QueryNetwork) -> TypedFormula {
         if !self.data_names(e, net) {
             return nothing();
         }
         TypedFormula::Data(self.expr_of(e, InferredType::Bool, &mut net.env))
     }
 
-    fn measures(&mut self, of: &[ast::Expr], net: &mut QueryNetwork) -> Vec<TypedMeasure> {
+    fn measures(&mut self, of: &[ast::ExprSyntax], net: &mut QueryNetwork) -> Vec<TypedMeasure> {
         let mut measures = Vec::new();
         for e in of {
             if let Some(clock) = clock_named(e, net) {
@@ -335,7 +337,7 @@ impl Checker<'_> {
     fn clock_formula(
         &mut self,
         op: BinaryOp,
-        (left, right): (&ast::Expr, &ast::Expr),
+        (left, right): (&ast::ExprSyntax, &ast::ExprSyntax),
         span: Span,
         net: &mut QueryNetwork,
     ) -> Option<TypedFormula> {
@@ -404,7 +406,7 @@ impl QueryNetwork {
 }
 
 impl<'e> QuerySum<'e> {
-    fn add(&mut self, e: &'e ast::Expr, negative: bool, net: &QueryNetwork) {
+    fn add(&mut self, e: &'e ast::ExprSyntax, negative: bool, net: &QueryNetwork) {
         if let Some(clock) = clock_named(e, net) {
             if negative {
                 self.minus.push(clock)
@@ -456,12 +458,12 @@ fn joined_by(
     join(parts)
 }
 
-fn joined(names: &[Name]) -> String {
+fn joined(names: &[NameSyntax]) -> String {
     names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".")
 }
 
 /// The clock that an expression names: `x`, `P.x`, `x[2]`.
-fn clock_named(e: &ast::Expr, net: &QueryNetwork) -> Option<ClockId> {
+fn clock_named(e: &ast::ExprSyntax, net: &QueryNetwork) -> Option<ClockId> {
     let name = match &e.kind {
         Syntax::Path(path) => joined(&path.names),
         Syntax::Index { of, index } => match (&of.kind, &index.kind) {
@@ -484,7 +486,7 @@ fn mirrored(op: ClockOp) -> ClockOp {
 }
 
 /// Calls `f` with each name, dotted or not, that an expression reads.
-fn each_path(e: &ast::Expr, f: &mut dyn FnMut(&ast::Path)) {
+fn each_path(e: &ast::ExprSyntax, f: &mut dyn FnMut(&ast::PathSyntax)) {
     match &e.kind {
         Syntax::Path(path) => f(path),
         Syntax::Call { args, .. } | Syntax::Tuple(args) => args.iter().for_each(|a| each_path(a, f)),

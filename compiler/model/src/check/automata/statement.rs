@@ -1,7 +1,7 @@
 //! The statements of functions.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Access, Name, StatementKind as Syntax};
+use hrdsl_syntax::ast::{self, AccessSyntax, NameSyntax, StatementSyntaxKind as Syntax};
 
 use crate::check::{
     checker::Checker,
@@ -36,7 +36,7 @@ impl<'n> FunctionBody<'n> {
 }
 
 /// Whether some statement could not be read.
-pub(in crate::check) fn unread(statements: &[ast::Statement]) -> bool {
+pub(in crate::check) fn unread(statements: &[ast::StatementSyntax]) -> bool {
     statements.iter().any(|s| match &s.kind {
         Syntax::Error => true,
         Syntax::If { then, otherwise, .. } => unread(then) || unread(otherwise),
@@ -59,7 +59,7 @@ impl Checker<'_> {
     /// What is declared in a block is known to its end.
     pub(in crate::check) fn block(
         &mut self,
-        statements: &[ast::Statement],
+        statements: &[ast::StatementSyntax],
         env: &mut ExprEnv,
         body: &mut FunctionBody<'_>,
     ) -> Vec<TypedStatement> {
@@ -75,7 +75,7 @@ impl Checker<'_> {
 
     fn statement(
         &mut self,
-        statement: &ast::Statement,
+        statement: &ast::StatementSyntax,
         env: &mut ExprEnv,
         body: &mut FunctionBody<'_>,
         out: &mut Vec<TypedStatement>,
@@ -117,7 +117,7 @@ impl Checker<'_> {
     /// `var i: 0..5 = 0`
     fn local_var(
         &mut self,
-        var: &ast::Var,
+        var: &ast::VarSyntax,
         env: &mut ExprEnv,
         body: &mut FunctionBody<'_>,
         out: &mut Vec<TypedStatement>,
@@ -157,9 +157,9 @@ impl Checker<'_> {
     /// `queue[len] = e`
     fn assign_in_function(
         &mut self,
-        (target, access): (&Name, &[Access]),
+        (target, access): (&NameSyntax, &[AccessSyntax]),
         op: Option<BinaryOp>,
-        value: &ast::Expr,
+        value: &ast::ExprSyntax,
         env: &mut ExprEnv,
         body: &FunctionBody<'_>,
         out: &mut Vec<TypedStatement>,
@@ -196,7 +196,7 @@ impl Checker<'_> {
     }
 
     /// A call of what is no function.
-    fn no_such_statement(&mut self, call: &ast::Call, env: &mut ExprEnv) {
+    fn no_such_statement(&mut self, call: &ast::CallSyntax, env: &mut ExprEnv) {
         let name = &call.name;
         call.args.iter().flatten().for_each(|a| drop(self.item(a, env)));
         match self.kind_of(&name.text) {
@@ -214,9 +214,9 @@ impl Checker<'_> {
     /// `for i in lo..hi { … }`
     fn for_loop(
         &mut self,
-        name: &Name,
-        range: &ast::Range,
-        inner: &[ast::Statement],
+        name: &NameSyntax,
+        range: &ast::RangeSyntax,
+        inner: &[ast::StatementSyntax],
         env: &mut ExprEnv,
         body: &mut FunctionBody<'_>,
     ) -> Option<TypedStatement> {
@@ -245,8 +245,8 @@ impl Checker<'_> {
     /// `return e`
     fn returned(
         &mut self,
-        value: Option<&ast::Expr>,
-        statement: &ast::Statement,
+        value: Option<&ast::ExprSyntax>,
+        statement: &ast::StatementSyntax,
         env: &mut ExprEnv,
         body: &FunctionBody<'_>,
     ) -> Option<TypedExpr> {

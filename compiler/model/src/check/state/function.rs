@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::Name;
+use hrdsl_syntax::ast::NameSyntax;
 
 use crate::FunctionId;
 
@@ -17,5 +17,5 @@ pub(crate) struct FunctionCalls {
     /// Calls in places where nothing may change.
     pub only_read: Vec<(FunctionId, Span)>,
     /// By the place of their names: the functions that all automata know, and those of automata.
-    pub declared: BTreeMap<Span, (Name, Span)>,
+    pub declared: BTreeMap<Span, (NameSyntax, Span)>,
 }

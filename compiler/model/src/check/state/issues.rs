@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
-use hrdsl_syntax::ast::Name;
+use hrdsl_syntax::ast::NameSyntax;
 
 use super::{
     item::MAX_COPIES,
@@ -33,7 +33,7 @@ impl Default for IssueList {
 
 impl IssueList {
     /// Enters a name into a table and gives its id, which is that of the next element of the table's vector.
-    pub fn declare(&mut self, table: &mut NameTable, noun: Noun, name: &Name) -> Option<u16> {
+    pub fn declare(&mut self, table: &mut NameTable, noun: Noun, name: &NameSyntax) -> Option<u16> {
         self.declare_as(table, noun, &name.text, name.span)
     }
 

@@ -1,7 +1,7 @@
 //! Items: what an expression yields, a value of one part or of several.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Name};
+use hrdsl_syntax::ast::{self, NameSyntax};
 
 use crate::{InferredType, Type, TypedExpr, types::TypeLayout};
 
@@ -27,11 +27,11 @@ pub(crate) enum ArgumentPart<'e> {
     /// `_`
     Any,
     /// Not looked at yet.
-    Syntax(&'e ast::Expr, Type),
+    Syntax(&'e ast::ExprSyntax, Type),
     /// A part of something that was looked at as a whole.
     Done(TypedExpr, Type),
     /// A part of a variable: its name with the part's.
-    Variable(Name, Type),
+    Variable(NameSyntax, Type),
 }
 
 impl ExprItem {

@@ -6,7 +6,7 @@ use std::{
 };
 
 use hrdsl_source::{Enumeration, FileId, Span};
-use hrdsl_syntax::ast::{self, Instance, Name, Sort};
+use hrdsl_syntax::ast::{self, InstanceSyntax, NameSyntax, TemplateSyntaxKind};
 
 use super::{
     function::FunctionCalls,
@@ -22,7 +22,7 @@ use crate::PlayerRef;
 
 /// What is checked: the items of a scenario and of its modules, and what of them could not be read.
 pub(crate) struct CheckedSource<'a> {
-    pub items: Vec<&'a ast::Item>,
+    pub items: Vec<&'a ast::ItemSyntax>,
     /// The first items come from modules.
     pub from_modules: usize,
     /// A module is missing, which may have the parts that are used.
@@ -58,7 +58,7 @@ impl CheckedSource<'_> {
 pub(crate) struct DeclaredPlayer<'a, T> {
     pub syntax: &'a T,
     pub given: Option<Rc<TemplateArguments>>,
-    pub instance: Option<&'a Instance>,
+    pub instance: Option<&'a InstanceSyntax>,
 }
 
 impl<T> Clone for DeclaredPlayer<'_, T> {
@@ -76,8 +76,8 @@ pub(crate) enum ConstState {
 }
 
 pub(crate) struct ConstEntry<'a> {
-    pub name: &'a Name,
-    pub value: &'a ast::Expr,
+    pub name: &'a NameSyntax,
+    pub value: &'a ast::ExprSyntax,
     pub state: ConstState,
 }
 
@@ -97,7 +97,7 @@ pub(crate) struct TypeNames<'a> {
 #[derive(Default)]
 pub(crate) struct TemplateNames<'a> {
     /// By sort and name.
-    pub declared: OrderedMap<(Sort, &'a str), DeclaredTemplate<'a>>,
+    pub declared: OrderedMap<(TemplateSyntaxKind, &'a str), DeclaredTemplate<'a>>,
     /// Instances that could not be made: nothing is said about their names.
     pub broken_instances: BTreeSet<String>,
     /// What the parameters stand for in the instance that is being checked.
@@ -113,15 +113,15 @@ pub(crate) struct EventNames<'a> {
     /// By [`EventId`](crate::EventId): the parameters as declared.
     pub fields: Vec<DeclaredFields>,
     /// By [`EventId`](crate::EventId): the body of each stimulus.
-    pub stimuli: Vec<Option<&'a ast::Stimulus>>,
+    pub stimuli: Vec<Option<&'a ast::StimulusSyntax>>,
 }
 
 /// Agents and automata.
 pub(crate) struct PlayerNames<'a> {
     pub table: NameTable,
     pub ids: Vec<PlayerRef>,
-    pub agents: Vec<DeclaredPlayer<'a, ast::Agent>>,
-    pub automata: Vec<DeclaredPlayer<'a, ast::Automaton>>,
+    pub agents: Vec<DeclaredPlayer<'a, ast::AgentSyntax>>,
+    pub automata: Vec<DeclaredPlayer<'a, ast::AutomatonSyntax>>,
     /// The names of all agents, `self` and `percept`.
     pub agent_names: Enumeration,
 }
@@ -152,7 +152,7 @@ pub(crate) struct ChannelNames {
 /// The world's parts and names.
 pub(crate) struct WorldState<'a> {
     pub exists: bool,
-    pub parts: OrderedMap<&'a str, (&'a ast::Part, Span)>,
+    pub parts: OrderedMap<&'a str, (&'a ast::PartSyntax, Span)>,
     /// The parts that are being taken apart, the outermost first.
     pub open_parts: Vec<&'a str>,
     pub names: WorldNames,

@@ -1,6 +1,6 @@
 //! Phases: in which one a declaration is checked, and what it can speak of.
 
-use hrdsl_syntax::ast::{ItemKind, Sort};
+use hrdsl_syntax::ast::{ItemSyntaxKind, TemplateSyntaxKind};
 
 /// The phases in their order: each uses the names of those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,33 +20,37 @@ pub(crate) enum CheckPhase {
 
 impl CheckPhase {
     /// In which phase the body of a declaration is checked.
-    pub fn of(kind: &ItemKind) -> Self {
+    pub fn of(kind: &ItemSyntaxKind) -> Self {
         match kind {
-            ItemKind::Use(_)
-            | ItemKind::Allow(_)
-            | ItemKind::Enum { .. }
-            | ItemKind::Record { .. }
-            | ItemKind::Actor { .. }
-            | ItemKind::Const { .. }
-            | ItemKind::Event(_)
-            | ItemKind::Var(_)
-            | ItemKind::Channel(_)
-            | ItemKind::Error => CheckPhase::Vocabulary,
-            ItemKind::Part(_) | ItemKind::Device(_) | ItemKind::World(_) => CheckPhase::World,
-            ItemKind::Stimulus(_) => CheckPhase::Stimuli,
-            ItemKind::Agent(_) => CheckPhase::Agents,
-            ItemKind::Automaton(_) | ItemKind::Function(_) | ItemKind::Network { .. } => CheckPhase::Automata,
-            ItemKind::Query(_) => CheckPhase::Queries,
-            ItemKind::Require(_) | ItemKind::Assume(_) => CheckPhase::Requirements,
-            ItemKind::Cover(_) | ItemKind::Cross(_) => CheckPhase::Coverage,
-            ItemKind::Suite(_) => CheckPhase::Suites,
-            ItemKind::System(_) => CheckPhase::Systems,
-            ItemKind::Test(_) => CheckPhase::Tests,
-            ItemKind::Instance(instance) => match instance.sort {
-                Sort::Agent => CheckPhase::Agents,
-                Sort::Automaton => CheckPhase::Automata,
-                Sort::Require => CheckPhase::Requirements,
-                Sort::Cover | Sort::Cross => CheckPhase::Coverage,
+            ItemSyntaxKind::Use(_)
+            | ItemSyntaxKind::Allow(_)
+            | ItemSyntaxKind::Enum { .. }
+            | ItemSyntaxKind::Record { .. }
+            | ItemSyntaxKind::Actor { .. }
+            | ItemSyntaxKind::Const { .. }
+            | ItemSyntaxKind::Event(_)
+            | ItemSyntaxKind::Var(_)
+            | ItemSyntaxKind::Channel(_)
+            | ItemSyntaxKind::Error => CheckPhase::Vocabulary,
+            ItemSyntaxKind::Part(_) | ItemSyntaxKind::Device(_) | ItemSyntaxKind::World(_) => {
+                CheckPhase::World
+            }
+            ItemSyntaxKind::Stimulus(_) => CheckPhase::Stimuli,
+            ItemSyntaxKind::Agent(_) => CheckPhase::Agents,
+            ItemSyntaxKind::Automaton(_) | ItemSyntaxKind::Function(_) | ItemSyntaxKind::Network { .. } => {
+                CheckPhase::Automata
+            }
+            ItemSyntaxKind::Query(_) => CheckPhase::Queries,
+            ItemSyntaxKind::Require(_) | ItemSyntaxKind::Assume(_) => CheckPhase::Requirements,
+            ItemSyntaxKind::Cover(_) | ItemSyntaxKind::Cross(_) => CheckPhase::Coverage,
+            ItemSyntaxKind::Suite(_) => CheckPhase::Suites,
+            ItemSyntaxKind::System(_) => CheckPhase::Systems,
+            ItemSyntaxKind::Test(_) => CheckPhase::Tests,
+            ItemSyntaxKind::Instance(instance) => match instance.sort {
+                TemplateSyntaxKind::Agent => CheckPhase::Agents,
+                TemplateSyntaxKind::Automaton => CheckPhase::Automata,
+                TemplateSyntaxKind::Require => CheckPhase::Requirements,
+                TemplateSyntaxKind::Cover | TemplateSyntaxKind::Cross => CheckPhase::Coverage,
             },
         }
     }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use hrdsl_syntax::ast::{Name, Param as SyntaxParam};
+use hrdsl_syntax::ast::{NameSyntax, ParamSyntax as SyntaxParam};
 
 use crate::types::TypeLayout;
 
@@ -22,7 +22,7 @@ pub(crate) enum RecordState {
 }
 
 pub(crate) struct RecordEntry<'a> {
-    pub name: &'a Name,
+    pub name: &'a NameSyntax,
     pub syntax: &'a [SyntaxParam],
     pub fields: DeclaredFields,
     pub state: RecordState,

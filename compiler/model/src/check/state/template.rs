@@ -1,7 +1,7 @@
 //! Templates: declarations with parameters, and what an instance gives for them.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ItemKind, Name};
+use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax};
 
 use super::{item::ExprItem, table::OrderedMap};
 use crate::{ActorId, CoverpointId, EventPattern, noun::Noun};
@@ -48,7 +48,7 @@ impl TemplateArgument {
 /// A declaration with parameters.
 #[derive(Clone, Copy)]
 pub(crate) struct DeclaredTemplate<'a> {
-    pub kind: &'a ItemKind,
-    pub name: &'a Name,
-    pub params: &'a [ast::Param],
+    pub kind: &'a ItemSyntaxKind,
+    pub name: &'a NameSyntax,
+    pub params: &'a [ast::ParamSyntax],
 }

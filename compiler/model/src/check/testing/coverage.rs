@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, CrossMemberKind as Member, ExprKind as Syntax, ItemKind, Name, Sort};
+use hrdsl_syntax::ast::{
+    self, CrossMemberKind as Member, ExprSyntaxKind as Syntax, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind,
+};
 
 use crate::check::{
     checker::Checker,
@@ -19,23 +21,23 @@ use crate::{
 
 impl Checker<'_> {
     pub(in crate::check) fn coverage(&mut self) {
-        self.templates_of(Sort::Cover, |c, template| {
-            if let ItemKind::Cover(cover) = template.kind {
+        self.templates_of(TemplateSyntaxKind::Cover, |c, template| {
+            if let ItemSyntaxKind::Cover(cover) = template.kind {
                 c.point_of(cover);
             }
         });
         for (item, span) in self.each_item() {
             match item {
                 _ if template(item).is_some() => {}
-                ItemKind::Cover(cover) => {
+                ItemSyntaxKind::Cover(cover) => {
                     let resolved = self.point_of(cover);
                     self.add_point(&cover.name, cover, resolved, span);
                 }
-                ItemKind::Instance(instance) if instance.sort == Sort::Cover => {
+                ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Cover => {
                     let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else {
                         continue;
                     };
-                    let ItemKind::Cover(cover) = template.kind else { continue };
+                    let ItemSyntaxKind::Cover(cover) = template.kind else { continue };
                     let place = Some((&instance.name, instance.span));
                     let resolved = self.as_instance(Some(given), place, |c| c.point_of(cover));
                     self.add_point(&instance.name, cover, resolved, span);
@@ -43,23 +45,23 @@ impl Checker<'_> {
                 _ => {}
             }
         }
-        self.templates_of(Sort::Cross, |c, template| {
-            if let ItemKind::Cross(cross) = template.kind {
+        self.templates_of(TemplateSyntaxKind::Cross, |c, template| {
+            if let ItemSyntaxKind::Cross(cross) = template.kind {
                 c.cross_of(cross, cross.name.span);
             }
         });
         for (item, span) in self.each_item() {
             match item {
                 _ if template(item).is_some() => {}
-                ItemKind::Cross(cross) => {
+                ItemSyntaxKind::Cross(cross) => {
                     let resolved = self.cross_of(cross, span);
                     self.cross(&cross.name, resolved);
                 }
-                ItemKind::Instance(instance) if instance.sort == Sort::Cross => {
+                ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Cross => {
                     let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else {
                         continue;
                     };
-                    let ItemKind::Cross(cross) = template.kind else { continue };
+                    let ItemSyntaxKind::Cross(cross) = template.kind else { continue };
                     let place = Some((&instance.name, instance.span));
                     let resolved = self.as_instance(Some(given), place, |c| c.cross_of(cross, span));
                     self.cross(&instance.name, resolved);
@@ -71,26 +73,26 @@ impl Checker<'_> {
 
     fn add_point(
         &mut self,
-        name: &Name,
-        syntax: &ast::Cover,
+        name: &NameSyntax,
+        syntax: &ast::CoverSyntax,
         (count, bins): (Vec<EventPattern>, Vec<CoverBin>),
         span: Span,
     ) {
-        self.not_a_template(Sort::Cover, name);
+        self.not_a_template(TemplateSyntaxKind::Cover, name);
         if self.issues.declare(&mut self.judged.points, Noun::Point, name).is_some() {
             self.s.places.bins.push(syntax.bins.iter().map(|bin| bin.name.span).collect());
             self.s.points.push(CoverPoint { name: name.text.clone(), count, bins, origin: span });
         }
     }
 
-    fn cross(&mut self, name: &Name, cross: CoverCross) {
-        self.not_a_template(Sort::Cross, name);
+    fn cross(&mut self, name: &NameSyntax, cross: CoverCross) {
+        self.not_a_template(TemplateSyntaxKind::Cross, name);
         if self.issues.declare(&mut self.judged.crosses, Noun::Cross, name).is_some() {
             self.s.crosses.push(CoverCross { name: name.text.clone(), ..cross });
         }
     }
 
-    fn point_of(&mut self, cover: &ast::Cover) -> (Vec<EventPattern>, Vec<CoverBin>) {
+    fn point_of(&mut self, cover: &ast::CoverSyntax) -> (Vec<EventPattern>, Vec<CoverBin>) {
         let count = self.patterns(&cover.count);
         let mut table = NameTable::default();
         let (mut bins, mut covered) = (Vec::new(), CoveredBins::default());
@@ -111,7 +113,7 @@ impl Checker<'_> {
         (count, bins)
     }
 
-    fn bin(&mut self, bin: &ast::Bin) -> Option<CoverBin> {
+    fn bin(&mut self, bin: &ast::BinSyntax) -> Option<CoverBin> {
         let lo = self.count(&bin.lo, "a bin's number", 0)?;
         let hi = match &bin.hi {
             Some(hi) => Some(self.count(hi, "a bin's number", 0)?),
@@ -124,7 +126,7 @@ impl Checker<'_> {
         Some(CoverBin { name: bin.name.text.clone(), lo, hi })
     }
 
-    fn cross_of(&mut self, cross: &ast::Cross, span: Span) -> CoverCross {
+    fn cross_of(&mut self, cross: &ast::CrossSyntax, span: Span) -> CoverCross {
         let mut points = Vec::new();
         for name in &cross.points {
             points.extend(self.point_named(name));
@@ -150,7 +152,7 @@ impl Checker<'_> {
     /// A formula over `point.bin`.
     fn cross_condition(
         &mut self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         points: &[CoverpointId],
         whole: bool,
     ) -> Option<BinCondition> {
@@ -181,8 +183,8 @@ impl Checker<'_> {
 
     fn in_bin(
         &mut self,
-        point: &Name,
-        bin: &Name,
+        point: &NameSyntax,
+        bin: &NameSyntax,
         points: &[CoverpointId],
         whole: bool,
     ) -> Option<BinCondition> {
@@ -221,7 +223,7 @@ impl Checker<'_> {
         self.bin_of(id, bin)
     }
 
-    fn bin_of(&mut self, id: CoverpointId, bin: &Name) -> Option<BinCondition> {
+    fn bin_of(&mut self, id: CoverpointId, bin: &NameSyntax) -> Option<BinCondition> {
         let of_point = &self.s.points[usize::from(id.0)].bins;
         let Some(at) = of_point.iter().position(|b| b.name == bin.text) else {
             let bins: Vec<String> = of_point.iter().map(|b| b.name.clone()).collect();

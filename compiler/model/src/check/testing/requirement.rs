@@ -1,7 +1,7 @@
 //! Requirements and assumptions.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ItemKind, Name, PatternKind, Sort};
+use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax, PatternKind, TemplateSyntaxKind};
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{checker::Checker, state::scope::ExprEnv, vocabulary::template::template};
@@ -12,29 +12,29 @@ use crate::{
 
 impl Checker<'_> {
     pub(in crate::check) fn requirements(&mut self) {
-        self.templates_of(Sort::Require, |c, template| {
-            if let ItemKind::Require(require) = template.kind {
+        self.templates_of(TemplateSyntaxKind::Require, |c, template| {
+            if let ItemSyntaxKind::Require(require) = template.kind {
                 c.resolved(require);
             }
         });
         for (item, span) in self.each_item() {
             match item {
                 _ if template(item).is_some() => {}
-                ItemKind::Require(require) => {
+                ItemSyntaxKind::Require(require) => {
                     let looked_at = self.source.looks_at(CheckPhase::Requirements, span);
                     let resolved = if looked_at { self.resolved(require) } else { None };
                     self.requirement(&require.name, resolved, require.pattern.span, span);
                 }
-                ItemKind::Instance(instance) if instance.sort == Sort::Require => {
+                ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Require => {
                     let Some((template, given)) = self.instance(instance, &ExprEnv::measured("")) else {
                         continue;
                     };
-                    let ItemKind::Require(require) = template.kind else { continue };
+                    let ItemSyntaxKind::Require(require) = template.kind else { continue };
                     let place = Some((&instance.name, instance.span));
                     let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
                     self.requirement(&instance.name, resolved, instance.span, span);
                 }
-                ItemKind::Assume(assume) if self.source.looks_at(CheckPhase::Requirements, span) => {
+                ItemSyntaxKind::Assume(assume) if self.source.looks_at(CheckPhase::Requirements, span) => {
                     self.assume(assume, span);
                 }
                 _ => {}
@@ -43,7 +43,10 @@ impl Checker<'_> {
     }
 
     /// What a requirement says, whatever its name.
-    fn resolved(&mut self, require: &ast::Require) -> Option<(RequirementKind, String, RequirementPattern)> {
+    fn resolved(
+        &mut self,
+        require: &ast::RequireSyntax,
+    ) -> Option<(RequirementKind, String, RequirementPattern)> {
         let kind = match self.choice(Noun::RequirementKind, &require.kind, &["safety", "functional"]) {
             Some(0) => RequirementKind::Safety,
             Some(_) | None => RequirementKind::Functional,
@@ -55,12 +58,12 @@ impl Checker<'_> {
 
     fn requirement(
         &mut self,
-        name: &Name,
+        name: &NameSyntax,
         resolved: Option<(RequirementKind, String, RequirementPattern)>,
         text: Span,
         span: Span,
     ) {
-        self.not_a_template(Sort::Require, name);
+        self.not_a_template(TemplateSyntaxKind::Require, name);
         let new = self.issues.declare(&mut self.judged.requirements, Noun::Requirement, name).is_some();
         if let Some((kind, title, pattern)) = resolved.filter(|_| new) {
             let name = name.text.clone();
@@ -68,7 +71,7 @@ impl Checker<'_> {
         }
     }
 
-    fn requirement_pattern(&mut self, pattern: &ast::Pattern) -> Option<RequirementPattern> {
+    fn requirement_pattern(&mut self, pattern: &ast::PatternSyntax) -> Option<RequirementPattern> {
         Some(match &pattern.kind {
             PatternKind::Causes { trigger, response, within } => {
                 let (trigger, response) = (self.patterns(trigger), self.patterns(response));
@@ -91,7 +94,7 @@ impl Checker<'_> {
     }
 
     /// A boolean that depends on the world.
-    fn condition(&mut self, e: &ast::Expr) -> TypedExpr {
+    fn condition(&mut self, e: &ast::ExprSyntax) -> TypedExpr {
         let e = self.expr_of(e, InferredType::Bool, &mut ExprEnv::measured(""));
         let mut reads = false;
         e.each(&mut |part| {
@@ -107,7 +110,7 @@ impl Checker<'_> {
         e
     }
 
-    fn assume(&mut self, assume: &ast::Assume, span: Span) {
+    fn assume(&mut self, assume: &ast::AssumeSyntax, span: Span) {
         let at_most = self.count(&assume.at_most, "the number", 0);
         let events = self.patterns(&assume.events);
         let within = assume.within.as_ref().and_then(|e| self.time(e, "the time", true));

@@ -3,7 +3,7 @@
 use hrdsl_ir::value::nanos;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
-    self, ItemKind, Method as SyntaxMethod, Name, SuiteMember, SuiteMemberKind as Member,
+    self, ItemSyntaxKind, MethodSyntax as SyntaxMethod, NameSyntax, SuiteMember, SuiteMemberKind as Member,
 };
 
 use crate::check::state::phase::CheckPhase;
@@ -45,7 +45,7 @@ impl Checker<'_> {
     pub(in crate::check) fn suites(&mut self) {
         self.source.unread_members = self.players.agents.iter().any(|a| unread::in_agent(a.syntax));
         for (item, span) in self.each_item() {
-            if let ItemKind::Suite(suite) = item {
+            if let ItemSyntaxKind::Suite(suite) = item {
                 let looked_at = self.source.looks_at(CheckPhase::Suites, span);
                 let resolved = if looked_at { self.suite(suite, span) } else { None };
                 let new = self.issues.declare(&mut self.judged.suites, Noun::Suite, &suite.name).is_some();
@@ -55,7 +55,7 @@ impl Checker<'_> {
         self.source.unread_members = false;
     }
 
-    fn suite(&mut self, suite: &ast::Suite, span: Span) -> Option<TypedSuite> {
+    fn suite(&mut self, suite: &ast::SuiteSyntax, span: Span) -> Option<TypedSuite> {
         let players = match &suite.method {
             SyntaxMethod::Agents(names) => self.suite_players(names),
             SyntaxMethod::Search(_) | SyntaxMethod::Random => Vec::new(),
@@ -114,7 +114,7 @@ impl Checker<'_> {
     }
 
     /// Agents and automata; at most one for an actor.
-    fn suite_players(&mut self, list: &[Name]) -> Vec<PlayerRef> {
+    fn suite_players(&mut self, list: &[NameSyntax]) -> Vec<PlayerRef> {
         self.judged.unknown_player = list.iter().any(|name| self.players.table.get(&name.text).is_none());
         let mut players = Vec::new();
         let mut actors = Vec::new();
@@ -153,7 +153,7 @@ impl Checker<'_> {
         players
     }
 
-    fn suite_network(&mut self, name: &Name) -> Option<NetworkId> {
+    fn suite_network(&mut self, name: &NameSyntax) -> Option<NetworkId> {
         let found = self.networks.table.get(&name.text).map(NetworkId);
         self.refer(name, self.networks.table.span_of(&name.text));
         if found.is_none() {
@@ -281,7 +281,7 @@ impl Checker<'_> {
     }
 
     /// `violation of R1, R2`, `trigger of R1`
-    fn reach_of(&mut self, what: &Name, list: &[Name], said: &mut SuiteMembers) {
+    fn reach_of(&mut self, what: &NameSyntax, list: &[NameSyntax], said: &mut SuiteMembers) {
         let what = self.choice(Noun::ReachOf, what, &["violation", "trigger"]);
         for name in list {
             if self.judged.requirements.get(&name.text).is_none() {
@@ -307,7 +307,7 @@ impl Checker<'_> {
         }
     }
 
-    fn reach_query(&mut self, name: &Name) -> Option<SearchGoal> {
+    fn reach_query(&mut self, name: &NameSyntax) -> Option<SearchGoal> {
         if self.networks.queries.get(&name.text).is_none() {
             let all: Vec<String> = self.networks.queries.names().map(str::to_owned).collect();
             self.unknown(Noun::Query, name, &all, None);
@@ -338,7 +338,12 @@ impl Checker<'_> {
     }
 
     /// The queries that a suite reaches are about its network.
-    fn of_network(&mut self, network: NetworkId, goals: &[SearchGoal], suite: &ast::Suite) -> NetworkId {
+    fn of_network(
+        &mut self,
+        network: NetworkId,
+        goals: &[SearchGoal],
+        suite: &ast::SuiteSyntax,
+    ) -> NetworkId {
         for goal in goals {
             let SearchGoal::Query(id) = goal else { continue };
             let query = &self.s.queries[usize::from(id.0)];
@@ -354,7 +359,7 @@ impl Checker<'_> {
     }
 
     /// `pairwise`, `wise(3)`, …
-    fn explore(&mut self, call: &ast::Call) -> Option<ExploreMode> {
+    fn explore(&mut self, call: &ast::CallSyntax) -> Option<ExploreMode> {
         let words = ["exhaustive", "pairwise", "random", "learn", "wise"];
         let way = self.choice(Noun::Explore, &call.name, &words)?;
         let args = call.args.as_deref().unwrap_or_default();
@@ -378,9 +383,9 @@ impl Checker<'_> {
     fn choose(
         &mut self,
         any: bool,
-        belief: &Name,
-        agent: &Name,
-        per: Option<&Name>,
+        belief: &NameSyntax,
+        agent: &NameSyntax,
+        per: Option<&NameSyntax>,
         players: &[PlayerRef],
     ) -> Option<TypedChoice> {
         let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
@@ -432,7 +437,11 @@ impl Checker<'_> {
     }
 
     /// `where F`: a formula over the beliefs of the agent.
-    fn choice_condition(&mut self, agent: &Name, formula: &ast::Expr) -> Option<TypedChoiceCondition> {
+    fn choice_condition(
+        &mut self,
+        agent: &NameSyntax,
+        formula: &ast::ExprSyntax,
+    ) -> Option<TypedChoiceCondition> {
         let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
         let Some(PlayerRef::Agent(id)) = player else { return None };
         let mut env = ExprEnv { plan: true, noun: Some(Noun::Variable), ..ExprEnv::default() };
@@ -446,7 +455,7 @@ impl Checker<'_> {
     }
 
     /// A stimulus that a test can do.
-    pub(in crate::check) fn test_stimulus(&mut self, name: &Name) -> Option<EventId> {
+    pub(in crate::check) fn test_stimulus(&mut self, name: &NameSyntax) -> Option<EventId> {
         if let Some(id) = self.events.table.get(&name.text) {
             let event = &self.s.events[usize::from(id)];
             if self.role_of(event.from) == Role::System {
@@ -459,7 +468,7 @@ impl Checker<'_> {
         self.event(Noun::Stimulus, name, None)
     }
 
-    fn length(&mut self, range: &ast::Range) -> Option<(u32, u32)> {
+    fn length(&mut self, range: &ast::RangeSyntax) -> Option<(u32, u32)> {
         let lo = self.count(&range.lo, "a length", 0)?;
         let hi = match &range.hi {
             Some(hi) => self.count(hi, "a length", 1)?,
@@ -474,9 +483,10 @@ impl Checker<'_> {
         Some((u32::try_from(lo).ok()?, u32::try_from(hi).ok()?))
     }
 
-    fn pause(&mut self, range: &ast::Range) -> Option<(f64, f64)> {
-        let mut end =
-            |e: &ast::Expr| self.expr_of(e, InferredType::Float(Dimension::TIME), &mut ExprEnv::constants());
+    fn pause(&mut self, range: &ast::RangeSyntax) -> Option<(f64, f64)> {
+        let mut end = |e: &ast::ExprSyntax| {
+            self.expr_of(e, InferredType::Float(Dimension::TIME), &mut ExprEnv::constants())
+        };
         let lo = end(&range.lo);
         let Some(hi) = range.hi.as_ref().map(end) else {
             self.report(names::missing(range.span, "a pause has an upper end", "write `pause 0 s .. 10 s`"));

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::value::{SECOND, nanos};
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ItemKind, SystemMemberKind as Member};
+use hrdsl_syntax::ast::{self, ItemSyntaxKind, SystemMemberKind as Member};
 
 use crate::check::checker::Checker;
 use crate::{
@@ -14,7 +14,7 @@ impl Checker<'_> {
     pub(in crate::check) fn systems(&mut self) {
         let mut found: Option<Span> = None;
         for (item, span) in self.each_item() {
-            let ItemKind::System(system) = item else { continue };
+            let ItemSyntaxKind::System(system) = item else { continue };
             if let Some(first) = found {
                 self.report(names::twice("system", span, first));
                 continue;
@@ -25,7 +25,7 @@ impl Checker<'_> {
         }
     }
 
-    fn system(&mut self, system: &ast::System, span: Span) -> SystemUnderTest {
+    fn system(&mut self, system: &ast::SystemSyntax, span: Span) -> SystemUnderTest {
         let actor = self.actor(&system.actor);
         if let Some(actor) = actor.filter(|a| self.role_of(*a) == Role::Environment) {
             let issue = roles::system_plays_environment(self.actor_name(actor), system.actor.span);

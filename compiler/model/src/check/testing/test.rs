@@ -6,7 +6,7 @@ use hrdsl_ir::{
     value::nanos,
 };
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Call, ItemKind, Name, TestMemberKind as Member, Text};
+use hrdsl_syntax::ast::{self, CallSyntax, ItemSyntaxKind, NameSyntax, TestMemberKind as Member, TextSyntax};
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
@@ -22,17 +22,17 @@ use crate::{
 
 impl Checker<'_> {
     /// The tests of the scenario itself, then those of the files of tests, which hold nothing else.
-    pub(in crate::check) fn tests(&mut self, files: &[&ast::File]) {
+    pub(in crate::check) fn tests(&mut self, files: &[&ast::FileSyntax]) {
         let mut table = NameTable::default();
         for (item, span) in self.each_item() {
-            if let ItemKind::Test(test) = item {
+            if let ItemSyntaxKind::Test(test) = item {
                 self.test(test, span, &mut table);
             }
         }
         for item in files.iter().flat_map(|f| &f.items) {
             match &item.kind {
-                ItemKind::Test(test) => self.test(test, item.span, &mut table),
-                ItemKind::Error => {}
+                ItemSyntaxKind::Test(test) => self.test(test, item.span, &mut table),
+                ItemSyntaxKind::Error => {}
                 _ => {
                     let message = "a file of tests holds tests only";
                     self.report(bad_test(item.span, message, "move this to the scenario"));
@@ -48,7 +48,7 @@ impl Checker<'_> {
         }
     }
 
-    fn test(&mut self, test: &ast::Test, span: Span, table: &mut NameTable) {
+    fn test(&mut self, test: &ast::TestSyntax, span: Span, table: &mut NameTable) {
         let full = text(&test.name.names);
         // Its full name starts with the scenario's, whether that is written or not.
         let prefix = format!("{}.", self.s.name);
@@ -98,7 +98,7 @@ impl Checker<'_> {
         }
     }
 
-    fn seed(&mut self, e: &ast::Expr) -> u64 {
+    fn seed(&mut self, e: &ast::ExprSyntax) -> u64 {
         let Some(Value::Int(n)) = self.constant(e, InferredType::Int, &mut ExprEnv::constants()) else {
             return 0;
         };
@@ -110,11 +110,11 @@ impl Checker<'_> {
     }
 
     /// `cross.bin`
-    fn predicted(&mut self, text: &Text) {
+    fn predicted(&mut self, text: &TextSyntax) {
         let (cross, bin) = text.text.split_once('.').unwrap_or((&text.text, ""));
         let Some(id) = self.judged.crosses.get(cross) else {
             let all: Vec<String> = self.judged.crosses.names().map(str::to_owned).collect();
-            let name = Name { text: cross.to_owned(), span: text.span };
+            let name = NameSyntax { text: cross.to_owned(), span: text.span };
             self.unknown(Noun::Cross, &name, &all, Some(Noun::Cross));
             return;
         };
@@ -125,7 +125,7 @@ impl Checker<'_> {
         }
     }
 
-    fn test_do(&mut self, call: &Call, with: &[(Name, ast::Expr)]) -> Option<TestStep> {
+    fn test_do(&mut self, call: &CallSyntax, with: &[(NameSyntax, ast::ExprSyntax)]) -> Option<TestStep> {
         let event = self.test_stimulus(&call.name)?;
         let fields = self.fields_of(event);
         let args = self.args(Noun::Stimulus, call, &fields, &mut ExprEnv::constants());
@@ -143,8 +143,8 @@ impl Checker<'_> {
     fn samples(
         &mut self,
         event: crate::EventId,
-        call: &Call,
-        with: &[(Name, ast::Expr)],
+        call: &CallSyntax,
+        with: &[(NameSyntax, ast::ExprSyntax)],
     ) -> Option<Vec<Value>> {
         let stimulus = self.s.events[usize::from(event.0)].stimulus.as_ref();
         let declared = stimulus.map_or_else(Vec::new, |s| s.samples.clone());

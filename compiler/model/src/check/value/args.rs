@@ -2,7 +2,7 @@
 
 use hrdsl_ir::Unit;
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Call, ExprKind as Syntax};
+use hrdsl_syntax::ast::{self, CallSyntax, ExprSyntaxKind as Syntax};
 
 use crate::check::{
     checker::Checker,
@@ -17,7 +17,7 @@ impl Checker<'_> {
     pub(in crate::check) fn args(
         &mut self,
         noun: Noun,
-        call: &Call,
+        call: &CallSyntax,
         fields: &[(String, TypeLayout)],
         env: &mut ExprEnv,
     ) -> Vec<TypedExpr> {
@@ -42,14 +42,19 @@ impl Checker<'_> {
         values
     }
 
-    pub(in crate::check) fn wrong_arity(&mut self, noun: Noun, call: &Call, fields: &[(String, TypeLayout)]) {
+    pub(in crate::check) fn wrong_arity(
+        &mut self,
+        noun: Noun,
+        call: &CallSyntax,
+        fields: &[(String, TypeLayout)],
+    ) {
         let names: Vec<&str> = fields.iter().map(|(n, _)| n.as_str()).collect();
         let got = call.args.as_ref().map_or(0, Vec::len);
         self.report(types::arity(noun, &call.name.text, &names, got, call.span));
     }
 
     /// An event with constants or `_` for arguments; without parentheses any arguments will do.
-    pub(in crate::check) fn pattern(&mut self, call: &Call, env: &mut ExprEnv) -> Option<EventPattern> {
+    pub(in crate::check) fn pattern(&mut self, call: &CallSyntax, env: &mut ExprEnv) -> Option<EventPattern> {
         let event = self.event(Noun::EventOrStimulus, &call.name, None)?;
         let fields = self.fields_of(event);
         let Some(args) = &call.args else {
@@ -82,14 +87,14 @@ impl Checker<'_> {
     }
 
     /// Patterns over constants. A parameter of a template may stand for several.
-    pub(in crate::check) fn patterns(&mut self, calls: &[Call]) -> Vec<EventPattern> {
+    pub(in crate::check) fn patterns(&mut self, calls: &[CallSyntax]) -> Vec<EventPattern> {
         self.patterns_with(calls, &mut ExprEnv::constants()).into_iter().map(|(p, _)| p).collect()
     }
 
     /// Patterns with the places where they are named.
     pub(in crate::check) fn patterns_with(
         &mut self,
-        calls: &[Call],
+        calls: &[CallSyntax],
         env: &mut ExprEnv,
     ) -> Vec<(EventPattern, Span)> {
         let mut all = Vec::new();
@@ -152,10 +157,10 @@ impl Checker<'_> {
     /// The arguments of a call with their types, taken apart as the parameters are.
     pub(in crate::check) fn spread_args<'e>(
         &mut self,
-        args: &'e [ast::Expr],
+        args: &'e [ast::ExprSyntax],
         fields: &[(String, TypeLayout)],
         env: &mut ExprEnv,
-        variable: &dyn Fn(&Checker<'_>, &ast::Name) -> bool,
+        variable: &dyn Fn(&Checker<'_>, &ast::NameSyntax) -> bool,
     ) -> Vec<ArgumentPart<'e>> {
         let mut parts = Vec::new();
         for (arg, (_, layout)) in args.iter().zip(fields) {

@@ -110,7 +110,12 @@ impl Checker<'_> {
     }
 
     /// `norm(v)`: the length of a vector.
-    pub(in crate::check) fn norm(&mut self, args: &[ast::Expr], span: Span, env: &mut ExprEnv) -> TypedExpr {
+    pub(in crate::check) fn norm(
+        &mut self,
+        args: &[ast::ExprSyntax],
+        span: Span,
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
         let [arg] = args else {
             self.report(types::counts(Noun::Function, "norm", 1, args.len(), span));
             return TypedExpr::error(span);

@@ -1,7 +1,7 @@
 //! Expressions where something of a certain layout is due, and arguments taken apart as their parameters are.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
+use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax, NameSyntax};
 
 use crate::check::{
     checker::Checker,
@@ -16,7 +16,7 @@ impl Checker<'_> {
     /// An expression where something of this layout is due.
     pub(in crate::check) fn item_for(
         &mut self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         layout: &TypeLayout,
         env: &mut ExprEnv,
     ) -> ExprItem {
@@ -127,7 +127,7 @@ impl Checker<'_> {
     }
 
     /// The bare name of some enumeration's value, or something that holds one: what is due says which it is.
-    pub(in crate::check) fn needs_due(&self, e: &ast::Expr) -> bool {
+    pub(in crate::check) fn needs_due(&self, e: &ast::ExprSyntax) -> bool {
         match &e.kind {
             Syntax::Path(path) => {
                 path.names.len() == 1 && self.types.values.contains_key(path.names[0].text.as_str())
@@ -141,7 +141,7 @@ impl Checker<'_> {
     /// An expression beside something that it is compared with, which says of which enumeration its bare names are.
     pub(in crate::check) fn item_like(
         &mut self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         like: &ExprItem,
         env: &mut ExprEnv,
     ) -> ExprItem {
@@ -164,10 +164,10 @@ impl Checker<'_> {
     /// An argument taken apart as its parameter is, without looking at the single values yet.
     pub(in crate::check) fn spread<'e>(
         &mut self,
-        arg: &'e ast::Expr,
+        arg: &'e ast::ExprSyntax,
         layout: &TypeLayout,
         env: &mut ExprEnv,
-        variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
+        variable: &dyn Fn(&Checker<'_>, &NameSyntax) -> bool,
         out: &mut Vec<ArgumentPart<'e>>,
     ) {
         if let TypeLayout::Scalar(ty) = layout {
@@ -182,7 +182,7 @@ impl Checker<'_> {
             return self.bind_names(arg, env, variable);
         }
         let due = self.parts_of(layout);
-        let given: Option<&[ast::Expr]> = match &arg.kind {
+        let given: Option<&[ast::ExprSyntax]> = match &arg.kind {
             Syntax::Tuple(parts) => Some(parts),
             Syntax::Call { callee, args } if self.is_record(callee, layout) => Some(args),
             _ => None,
@@ -233,7 +233,7 @@ impl Checker<'_> {
     /// The parts of a variable that is bound here, or was.
     fn spread_variable(
         &mut self,
-        name: &Name,
+        name: &NameSyntax,
         layout: &TypeLayout,
         env: &mut ExprEnv,
         out: &mut Vec<ArgumentPart<'_>>,
@@ -252,12 +252,12 @@ impl Checker<'_> {
         }
         self.leaves(&name.text, layout, &mut leaves);
         env.declare_layout(&name.text, layout.clone());
-        let part = |(text, ty)| ArgumentPart::Variable(Name { text, span: name.span }, ty);
+        let part = |(text, ty)| ArgumentPart::Variable(NameSyntax { text, span: name.span }, ty);
         out.extend(leaves.into_iter().map(part));
     }
 
     /// What a variable stands for, if it is of another layout.
-    fn stands_for_other(&self, name: &Name, layout: &TypeLayout, env: &ExprEnv) -> Option<String> {
+    fn stands_for_other(&self, name: &NameSyntax, layout: &TypeLayout, env: &ExprEnv) -> Option<String> {
         match (env.find(&name.text), env.layout(&name.text)) {
             (Some(local), _) => Some(local.ty.to_string()),
             (None, Some(TypeLayout::Unknown)) => None,
@@ -269,9 +269,9 @@ impl Checker<'_> {
     /// What a pattern would bind is known, but not its types.
     pub(in crate::check) fn bind_names(
         &self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         env: &mut ExprEnv,
-        variable: &dyn Fn(&Checker<'_>, &Name) -> bool,
+        variable: &dyn Fn(&Checker<'_>, &NameSyntax) -> bool,
     ) {
         match &e.kind {
             Syntax::Path(path) => {
@@ -291,7 +291,7 @@ impl Checker<'_> {
         }
     }
 
-    fn is_record(&self, callee: &ast::Path, layout: &TypeLayout) -> bool {
+    fn is_record(&self, callee: &ast::PathSyntax, layout: &TypeLayout) -> bool {
         match (callee.names.as_slice(), layout) {
             ([name], TypeLayout::Record(id)) => self.types.records[usize::from(*id)].name.text == name.text,
             (_, _) => false,

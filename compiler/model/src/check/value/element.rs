@@ -1,6 +1,6 @@
 //! Elements of arrays of variables that are chosen at run time: an index outside of its array is a fault of the model.
 
-use hrdsl_syntax::ast::{self, Access, ExprKind as Syntax, Name};
+use hrdsl_syntax::ast::{self, AccessSyntax, ExprSyntaxKind as Syntax, NameSyntax};
 
 use hrdsl_source::Span;
 
@@ -49,7 +49,7 @@ pub(in crate::check) fn type_of(local: &LocalName) -> Type {
 }
 
 /// The name that an expression of indices and fields starts with.
-fn root(e: &ast::Expr) -> Option<&ast::Path> {
+fn root(e: &ast::ExprSyntax) -> Option<&ast::PathSyntax> {
     match &e.kind {
         Syntax::Index { of, .. } | Syntax::Field { of, .. } => root(of),
         Syntax::Path(path) => Some(path),
@@ -59,7 +59,7 @@ fn root(e: &ast::Expr) -> Option<&ast::Path> {
 
 impl Checker<'_> {
     /// `a[i].x` of a variable; `None`: it is not one whose elements are chosen at run time.
-    pub(in crate::check) fn element(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> Option<ExprItem> {
+    pub(in crate::check) fn element(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> Option<ExprItem> {
         if env.elements == IndexedArrays::None {
             return None;
         }
@@ -85,7 +85,7 @@ impl Checker<'_> {
         })
     }
 
-    fn reach(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> Option<ReachedElements> {
+    fn reach(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> Option<ReachedElements> {
         match &e.kind {
             Syntax::Index { of, index } => {
                 let reached = self.reach(of, env)?;
@@ -104,7 +104,7 @@ impl Checker<'_> {
         }
     }
 
-    fn at_field(&mut self, reached: ReachedElements, field: &Name) -> Option<ReachedElements> {
+    fn at_field(&mut self, reached: ReachedElements, field: &NameSyntax) -> Option<ReachedElements> {
         let (part, layout) = self.field_of(&reached.layout, field)?;
         Some(ReachedElements { name: format!("{}{part}", reached.name), layout, indices: reached.indices })
     }
@@ -113,7 +113,7 @@ impl Checker<'_> {
     fn at_index(
         &mut self,
         mut reached: ReachedElements,
-        index: &ast::Expr,
+        index: &ast::ExprSyntax,
         of: Span,
         env: &mut ExprEnv,
     ) -> Option<ReachedElements> {
@@ -203,18 +203,18 @@ impl Checker<'_> {
     /// `target… = value`: what each single value of the target becomes, in order.
     pub(in crate::check) fn assigned(
         &mut self,
-        target: &Name,
-        (layout, access): (TypeLayout, &[Access]),
+        target: &NameSyntax,
+        (layout, access): (TypeLayout, &[AccessSyntax]),
         op: Option<BinaryOp>,
-        value: &ast::Expr,
+        value: &ast::ExprSyntax,
         env: &mut ExprEnv,
     ) -> Vec<(TypedLvalue, TypedExpr)> {
         let mut reached = Some(ReachedElements::whole(&target.text, layout));
         for step in access {
             let Some(before) = reached else { break };
             reached = match step {
-                Access::Index(e) => self.at_index(before, e, target.span, env),
-                Access::Field(name) => self.at_field(before, name),
+                AccessSyntax::Index(e) => self.at_index(before, e, target.span, env),
+                AccessSyntax::Field(name) => self.at_field(before, name),
             };
         }
         let Some(reached) = reached else { return Vec::new() };
@@ -255,8 +255,8 @@ impl Checker<'_> {
         place: &TypedLvalue,
         ty: Type,
         op: BinaryOp,
-        value: &ast::Expr,
-        target: &Name,
+        value: &ast::ExprSyntax,
+        target: &NameSyntax,
         env: &mut ExprEnv,
     ) -> TypedExpr {
         if !InferredType::of(ty).is_number() {
@@ -278,7 +278,7 @@ impl Checker<'_> {
     }
 
     /// Several values are set one after the other: none may be read after it is set. Says so if one is.
-    fn apart(&mut self, places: &[TypedLvalue], values: &[TypedExpr], target: &Name) -> bool {
+    fn apart(&mut self, places: &[TypedLvalue], values: &[TypedExpr], target: &NameSyntax) -> bool {
         let mut set: Vec<VariableRef> = Vec::new();
         for (place, value) in places.iter().zip(values) {
             let mut read = false;

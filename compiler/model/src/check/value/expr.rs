@@ -1,7 +1,7 @@
 //! Expressions: types, dimensions, folding.
 
 use hrdsl_source::{Enumeration, Span, Symbol};
-use hrdsl_syntax::ast::{self, BinaryOp, ExprKind as Syntax, Name, UnaryOp};
+use hrdsl_syntax::ast::{self, BinaryOp, ExprSyntaxKind as Syntax, NameSyntax, UnaryOp};
 
 use crate::check::{
     checker::Checker,
@@ -32,7 +32,7 @@ const MAX_DATA: f64 = 1e15;
 
 impl<'a> Checker<'a> {
     /// Resolves and types an expression of one value, and folds it if it is constant.
-    pub(in crate::check) fn expr(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> TypedExpr {
+    pub(in crate::check) fn expr(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> TypedExpr {
         let item = self.item(e, env);
         self.one(item)
     }
@@ -49,7 +49,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Resolves and types an expression of one or more values.
-    pub(in crate::check) fn item(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> ExprItem {
+    pub(in crate::check) fn item(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> ExprItem {
         let span = e.span;
         ExprItem::One(match &e.kind {
             Syntax::Bool(b) => TypedExpr::value(Value::Bool(*b), InferredType::Bool, span),
@@ -100,7 +100,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A value of an enumeration by its bare name, where one of this enumeration is due.
-    fn symbol_of(&mut self, e: &ast::Expr, of: Enumeration) -> Option<TypedExpr> {
+    fn symbol_of(&mut self, e: &ast::ExprSyntax, of: Enumeration) -> Option<TypedExpr> {
         let Syntax::Path(path) = &e.kind else { return None };
         let [name] = path.names.as_slice() else { return None };
         if self.given(&name.text).is_some() {
@@ -114,7 +114,7 @@ impl<'a> Checker<'a> {
     /// An expression that must be of this kind.
     pub(in crate::check) fn expr_of(
         &mut self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         want: InferredType,
         env: &mut ExprEnv,
     ) -> TypedExpr {
@@ -128,7 +128,7 @@ impl<'a> Checker<'a> {
     /// An expression where a value of this kind is due, which may be written by its bare name.
     pub(in crate::check) fn item_due(
         &mut self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         want: InferredType,
         env: &mut ExprEnv,
     ) -> ExprItem {
@@ -169,7 +169,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A name that nothing has.
-    fn means_nothing(&self, name: &Name, env: &ExprEnv) -> bool {
+    fn means_nothing(&self, name: &NameSyntax, env: &ExprEnv) -> bool {
         let local = env.find(&name.text).is_some() || env.layout(&name.text).is_some();
         let signal = env
             .world
@@ -180,7 +180,12 @@ impl<'a> Checker<'a> {
     }
 
     /// An expression for a parameter or variable of this type; a constant must lie in its range.
-    pub(in crate::check) fn expr_for(&mut self, e: &ast::Expr, ty: Type, env: &mut ExprEnv) -> TypedExpr {
+    pub(in crate::check) fn expr_for(
+        &mut self,
+        e: &ast::ExprSyntax,
+        ty: Type,
+        env: &mut ExprEnv,
+    ) -> TypedExpr {
         let e = self.expr_of(e, InferredType::of(ty), env);
         self.in_range(&e, ty);
         e
@@ -208,7 +213,7 @@ impl<'a> Checker<'a> {
     /// A constant of this kind; `None` with a diagnostic otherwise.
     pub(in crate::check) fn constant(
         &mut self,
-        e: &ast::Expr,
+        e: &ast::ExprSyntax,
         want: InferredType,
         env: &mut ExprEnv,
     ) -> Option<Value> {
@@ -220,12 +225,12 @@ impl<'a> Checker<'a> {
     }
 
     /// A constant quantity, in SI units.
-    pub(in crate::check) fn quantity_of(&mut self, e: &ast::Expr, dim: Dimension) -> Option<f64> {
+    pub(in crate::check) fn quantity_of(&mut self, e: &ast::ExprSyntax, dim: Dimension) -> Option<f64> {
         self.constant(e, InferredType::Float(dim), &mut ExprEnv::constants()).and_then(Value::as_f64)
     }
 
     /// A constant time in seconds, not negative; or more than zero.
-    pub(in crate::check) fn time(&mut self, e: &ast::Expr, what: &str, positive: bool) -> Option<f64> {
+    pub(in crate::check) fn time(&mut self, e: &ast::ExprSyntax, what: &str, positive: bool) -> Option<f64> {
         let t = self.quantity_of(e, Dimension::TIME)?;
         if t < 0.0 || positive && t == 0.0 {
             let rule = if positive { "more than 0 s" } else { "at least 0 s" };
@@ -240,7 +245,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A constant amount of data, in bytes: at least one.
-    pub(in crate::check) fn amount_of_data(&mut self, e: &ast::Expr, what: &str) -> Option<u64> {
+    pub(in crate::check) fn amount_of_data(&mut self, e: &ast::ExprSyntax, what: &str) -> Option<u64> {
         let bytes = self.quantity_of(e, Dimension::DATA)?;
         if (1.0..=MAX_DATA).contains(&bytes) {
             return Some(bytes as u64);
@@ -251,7 +256,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A constant whole number of at least `lo`.
-    pub(in crate::check) fn count(&mut self, e: &ast::Expr, what: &str, lo: i64) -> Option<i64> {
+    pub(in crate::check) fn count(&mut self, e: &ast::ExprSyntax, what: &str, lo: i64) -> Option<i64> {
         let Value::Int(n) = self.constant(e, InferredType::Int, &mut ExprEnv::constants())? else {
             return None;
         };
@@ -302,7 +307,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn quantity(&mut self, number: f64, unit: &Name, span: Span) -> TypedExpr {
+    fn quantity(&mut self, number: f64, unit: &NameSyntax, span: Span) -> TypedExpr {
         match UnitOfMeasure::of(&unit.text) {
             Some(unit) => {
                 let si = Ok(Value::Float(unit.to_si(number)));
@@ -318,11 +323,17 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn call(&mut self, callee: &ast::Path, args: &[ast::Expr], span: Span, env: &mut ExprEnv) -> ExprItem {
+    fn call(
+        &mut self,
+        callee: &ast::PathSyntax,
+        args: &[ast::ExprSyntax],
+        span: Span,
+        env: &mut ExprEnv,
+    ) -> ExprItem {
         let name = &callee.names[0];
         // One of an automaton has its name before it, in a query.
         let whole = callee.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
-        let whole = Name { text: whole, ..name.clone() };
+        let whole = NameSyntax { text: whole, ..name.clone() };
         if let Some(value) = self.applied_function(&whole, args, span, env) {
             return ExprItem::One(value);
         }
@@ -360,8 +371,8 @@ impl<'a> Checker<'a> {
     fn record(
         &mut self,
         id: u16,
-        name: &Name,
-        args: &[ast::Expr],
+        name: &NameSyntax,
+        args: &[ast::ExprSyntax],
         span: Span,
         env: &mut ExprEnv,
     ) -> ExprItem {
@@ -389,7 +400,7 @@ impl<'a> Checker<'a> {
         self.folded(folded, TypedExpr { kind: TypedExprKind::Call(f, args), ty, span })
     }
 
-    fn unary(&mut self, op: UnaryOp, operand: &ast::Expr, span: Span, env: &mut ExprEnv) -> ExprItem {
+    fn unary(&mut self, op: UnaryOp, operand: &ast::ExprSyntax, span: Span, env: &mut ExprEnv) -> ExprItem {
         let operand = match op {
             UnaryOp::Not => ExprItem::One(self.expr_of(operand, InferredType::Bool, env)),
             UnaryOp::Neg => self.item(operand, env),
@@ -428,8 +439,8 @@ impl<'a> Checker<'a> {
     fn binary(
         &mut self,
         op: BinaryOp,
-        l: &ast::Expr,
-        r: &ast::Expr,
+        l: &ast::ExprSyntax,
+        r: &ast::ExprSyntax,
         span: Span,
         env: &mut ExprEnv,
     ) -> ExprItem {
@@ -445,7 +456,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Both operands; bare names of an enumeration's values are of the other side's enumeration.
-    fn sides(&mut self, l: &ast::Expr, r: &ast::Expr, env: &mut ExprEnv) -> (ExprItem, ExprItem) {
+    fn sides(&mut self, l: &ast::ExprSyntax, r: &ast::ExprSyntax, env: &mut ExprEnv) -> (ExprItem, ExprItem) {
         if !self.types.values.is_empty() && self.needs_due(l) && !self.needs_due(r) {
             let right = self.item(r, env);
             return (self.item_like(l, &right, env), right);

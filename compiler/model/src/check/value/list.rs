@@ -1,7 +1,7 @@
 //! Lists, and what stands in the place of a value without being one.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ExprKind as Syntax};
+use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax};
 
 use crate::check::{checker::Checker, state::scope::ExprEnv};
 use crate::{
@@ -11,7 +11,7 @@ use crate::{
 
 impl Checker<'_> {
     /// What belongs into a formula stands where a value is needed.
-    pub(in crate::check) fn no_value_here(&mut self, e: &ast::Expr, env: &ExprEnv) {
+    pub(in crate::check) fn no_value_here(&mut self, e: &ast::ExprSyntax, env: &ExprEnv) {
         let issue = match &e.kind {
             Syntax::Unify { .. } => agents::no_binding(e.span, env.plan),
             Syntax::Internal(call) => {
@@ -31,8 +31,8 @@ impl Checker<'_> {
     /// `[a, b | rest]`, whose elements are all of one kind; `element`: what they are to be.
     pub(in crate::check) fn list(
         &mut self,
-        items: &[ast::Expr],
-        rest: Option<&ast::Expr>,
+        items: &[ast::ExprSyntax],
+        rest: Option<&ast::ExprSyntax>,
         element: InferredType,
         span: Span,
         env: &mut ExprEnv,

@@ -1,7 +1,7 @@
 //! Locals: a name that is declared in a place must be free there.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::Name;
+use hrdsl_syntax::ast::NameSyntax;
 
 use crate::check::{checker::Checker, state::scope::ExprEnv};
 use crate::{noun::Noun, report::names::duplicate, types::TypeLayout};
@@ -11,7 +11,7 @@ impl Checker<'_> {
     pub(in crate::check) fn add_local(
         &mut self,
         env: &mut ExprEnv,
-        name: &Name,
+        name: &NameSyntax,
         noun: Noun,
         layout: &TypeLayout,
     ) {
@@ -27,7 +27,7 @@ impl Checker<'_> {
     }
 
     /// The name is neither a local, a parameter of the template, nor a constant.
-    pub(in crate::check) fn check_free(&mut self, env: &ExprEnv, noun: Noun, name: &Name) {
+    pub(in crate::check) fn check_free(&mut self, env: &ExprEnv, noun: Noun, name: &NameSyntax) {
         let constant: Option<Span> = self.consts.get(name.text.as_str()).map(|c| c.name.span);
         let local = env.find(&name.text).map(|l| l.noun);
         let local = local.or_else(|| env.layout(&name.text).map(|_| Noun::Variable));

@@ -1,7 +1,7 @@
 //! What names in expressions stand for: locals, parameters of templates, constants, values of enumerations, signals.
 
 use hrdsl_source::{Enumeration, Span, Symbol};
-use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
+use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax, NameSyntax};
 
 use crate::check::{
     checker::Checker,
@@ -20,7 +20,7 @@ use crate::{
 };
 
 impl<'a> Checker<'a> {
-    pub(in crate::check) fn path(&mut self, path: &ast::Path, env: &mut ExprEnv) -> ExprItem {
+    pub(in crate::check) fn path(&mut self, path: &ast::PathSyntax, env: &mut ExprEnv) -> ExprItem {
         if let [_, _, ..] = path.names.as_slice() {
             // A part of a local has a name of its own.
             if let Some(leaf) =
@@ -71,7 +71,7 @@ impl<'a> Checker<'a> {
     }
 
     /// What a name stands for that has a value; `None` if it has none.
-    fn named(&mut self, name: &Name, env: &mut ExprEnv) -> Option<ExprItem> {
+    fn named(&mut self, name: &NameSyntax, env: &mut ExprEnv) -> Option<ExprItem> {
         if env.broken.contains(&name.text) {
             return Some(ExprItem::error(name.span));
         }
@@ -123,7 +123,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The value of a variable of the place itself: a parameter, a bound variable or a clock.
-    fn local_named(&mut self, name: &Name, local: &LocalName, env: &ExprEnv) -> TypedExpr {
+    fn local_named(&mut self, name: &NameSyntax, local: &LocalName, env: &ExprEnv) -> TypedExpr {
         self.refer(name, Some(local.place));
         match local.leaf {
             Some(leaf) if local.bound => {
@@ -142,7 +142,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A value of an enumeration; of two enumerations that both have it, neither is meant.
-    fn enumeration_value(&mut self, name: &Name) -> Option<ExprItem> {
+    fn enumeration_value(&mut self, name: &NameSyntax) -> Option<ExprItem> {
         match self.types.values.get(name.text.as_str())?.as_slice() {
             &[of] => {
                 self.refer_value(of, name);
@@ -157,7 +157,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A name is that of a value of an enumeration, which is used by it.
-    pub(in crate::check) fn refer_value(&mut self, of: Enumeration, name: &Name) {
+    pub(in crate::check) fn refer_value(&mut self, of: Enumeration, name: &NameSyntax) {
         let Some(whole) = self.s.enums.iter().find(|e| e.of == of).map(|e| e.span) else { return };
         let value = self.s.names.named_in(whole, "value", &name.text);
         self.refer(name, value);
@@ -166,7 +166,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A plan's variable by its full name, of which `P.x` may be one.
-    pub(in crate::check) fn variable(&mut self, name: &Name, env: &ExprEnv) -> TypedExpr {
+    pub(in crate::check) fn variable(&mut self, name: &NameSyntax, env: &ExprEnv) -> TypedExpr {
         let local = env.find(&name.text).filter(|l| l.bound);
         self.refer(name, local.map(|l| l.place));
         match local.and_then(|l| Some((l.leaf?, l.ty))) {
@@ -176,7 +176,7 @@ impl<'a> Checker<'a> {
     }
 
     /// `Odrer.feed`: the enumeration that a name was meant to be, if it has the value and nothing has the name.
-    fn misspelt_enum(&self, name: &Name, value: &Name) -> Option<&'static str> {
+    fn misspelt_enum(&self, name: &NameSyntax, value: &NameSyntax) -> Option<&'static str> {
         if self.has_value(&name.text) || self.kind_of(&name.text).is_some() {
             return None;
         }
@@ -186,7 +186,7 @@ impl<'a> Checker<'a> {
     }
 
     /// `Order.feed`
-    fn symbol_named(&mut self, of: Enumeration, value: &Name, span: Span) -> TypedExpr {
+    fn symbol_named(&mut self, of: Enumeration, value: &NameSyntax, span: Span) -> TypedExpr {
         match of.symbol(&value.text) {
             Some(symbol) => symbol_value(of, symbol, span),
             None => {
@@ -198,7 +198,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A name that has no value here.
-    fn without_value(&mut self, name: &Name, env: &ExprEnv) -> TypedExpr {
+    fn without_value(&mut self, name: &NameSyntax, env: &ExprEnv) -> TypedExpr {
         let names = self.names_with_value(env);
         self.agents.unbound.insert(name.text.clone());
         if let Some(help) = self.values_of_type(name) {
@@ -239,7 +239,7 @@ impl<'a> Checker<'a> {
     }
 
     /// How a value of the type of this name is written.
-    fn values_of_type(&self, name: &Name) -> Option<String> {
+    fn values_of_type(&self, name: &NameSyntax) -> Option<String> {
         if let Some(of) = self.types.enums.get(&name.text) {
             let first = self.s.enums[usize::from(of)].of.values().first().copied()?;
             return Some(format!("name one of its values: `{}.{first}`", name.text));
@@ -251,7 +251,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The value of a constant, worked out at its first use.
-    fn const_value(&mut self, name: &Name) -> ExprItem {
+    fn const_value(&mut self, name: &NameSyntax) -> ExprItem {
         let Some(entry) = self.consts.get_mut(name.text.as_str()) else { return ExprItem::error(name.span) };
         match std::mem::replace(&mut entry.state, ConstState::Open) {
             ConstState::Done(item) => {
@@ -276,7 +276,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Works out a constant after those that it names, without recursion: a chain of constants may be long.
-    fn work_out(&mut self, name: &'a Name) {
+    fn work_out(&mut self, name: &'a NameSyntax) {
         let mut open = vec![(name, self.unseen_in(name))];
         while let Some((name, needed)) = open.last_mut() {
             let name = *name;
@@ -307,12 +307,12 @@ impl<'a> Checker<'a> {
     }
 
     /// The constants that the value of a constant names and that are not worked out, the first last.
-    fn unseen_in(&self, name: &Name) -> Vec<&'a Name> {
+    fn unseen_in(&self, name: &NameSyntax) -> Vec<&'a NameSyntax> {
         let mut names = Vec::new();
         if let Some(entry) = self.consts.get(name.text.as_str()) {
             names_in(entry.value, &mut names);
         }
-        let unseen = |n: &&Name| {
+        let unseen = |n: &&NameSyntax| {
             self.consts.get(n.text.as_str()).is_some_and(|c| matches!(c.state, ConstState::Unseen))
         };
         names.retain(unseen);
@@ -322,7 +322,7 @@ impl<'a> Checker<'a> {
 
     /// Works out all constants, so that each fault in one is found.
     pub(in crate::check) fn all_consts(&mut self) {
-        let names: Vec<Name> = self.consts.values().map(|c| c.name.clone()).collect();
+        let names: Vec<NameSyntax> = self.consts.values().map(|c| c.name.clone()).collect();
         for name in names {
             self.const_value(&name);
         }
@@ -330,7 +330,7 @@ impl<'a> Checker<'a> {
 }
 
 /// The first names of all paths in an expression.
-pub(in crate::check) fn names_in<'e>(e: &'e ast::Expr, names: &mut Vec<&'e Name>) {
+pub(in crate::check) fn names_in<'e>(e: &'e ast::ExprSyntax, names: &mut Vec<&'e NameSyntax>) {
     match &e.kind {
         Syntax::Bool(_)
         | Syntax::Int(_)

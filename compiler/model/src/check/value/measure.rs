@@ -1,7 +1,7 @@
 //! Names and measurements of the world in expressions.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name};
+use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax, NameSyntax};
 
 use crate::check::{
     checker::Checker,
@@ -20,7 +20,7 @@ const MEASURES: [&str; 7] = ["distance", "range", "angle", "visible", "holds", "
 
 impl Checker<'_> {
     /// A declared signal.
-    pub(in crate::check) fn signal_named(&mut self, name: &Name, env: &ExprEnv) -> Option<TypedExpr> {
+    pub(in crate::check) fn signal_named(&mut self, name: &NameSyntax, env: &ExprEnv) -> Option<TypedExpr> {
         let prefix = env.world.as_ref()?;
         let id = self.world.names.signals.get(&format!("{prefix}{}", name.text))?;
         self.refer(name, self.world.names.signals.span(id));
@@ -44,7 +44,7 @@ impl Checker<'_> {
     }
 
     /// `person.hand.x`, `robot.signal`
-    pub(in crate::check) fn dotted(&mut self, path: &ast::Path, env: &ExprEnv) -> TypedExpr {
+    pub(in crate::check) fn dotted(&mut self, path: &ast::PathSyntax, env: &ExprEnv) -> TypedExpr {
         let Some(prefix) = env.world.clone() else {
             self.report(names::unknown(
                 env.noun.unwrap_or(Noun::Constant),
@@ -90,7 +90,7 @@ impl Checker<'_> {
     }
 
     /// What a name before a dot is near to, if that is a value or a part of the world, and no body is.
-    fn meant_in_world(&self, name: &Name, prefix: &str, env: &ExprEnv) -> Option<(Noun, Vec<String>)> {
+    fn meant_in_world(&self, name: &NameSyntax, prefix: &str, env: &ExprEnv) -> Option<(Noun, Vec<String>)> {
         let near = |names: &[String]| nearest(&name.text, names.iter().map(String::as_str)).is_some();
         let full = self.full_name(std::slice::from_ref(name), prefix)?;
         let bodies = self.world.names.below(Noun::Body, prefix);
@@ -106,8 +106,8 @@ impl Checker<'_> {
     /// A function over the world.
     pub(in crate::check) fn measured(
         &mut self,
-        callee: &ast::Path,
-        args: &[ast::Expr],
+        callee: &ast::PathSyntax,
+        args: &[ast::ExprSyntax],
         span: Span,
         env: &mut ExprEnv,
     ) -> TypedExpr {
@@ -130,7 +130,7 @@ impl Checker<'_> {
         self.term(&name, args, &prefix, span).unwrap_or_else(|| TypedExpr::error(span))
     }
 
-    fn term(&mut self, name: &str, args: &[ast::Expr], prefix: &str, span: Span) -> Option<TypedExpr> {
+    fn term(&mut self, name: &str, args: &[ast::ExprSyntax], prefix: &str, span: Span) -> Option<TypedExpr> {
         let length = InferredType::Float(Dimension::LENGTH);
         let (what, ty) = match name {
             "joint_speed" => {
@@ -163,7 +163,7 @@ impl Checker<'_> {
     }
 
     /// An argument that names a body.
-    pub(in crate::check) fn body_arg(&mut self, arg: &ast::Expr, prefix: &str) -> Option<BodyRef> {
+    pub(in crate::check) fn body_arg(&mut self, arg: &ast::ExprSyntax, prefix: &str) -> Option<BodyRef> {
         match &arg.kind {
             Syntax::Path(path) => self.body_ref(&path.names, prefix),
             _ => {
@@ -173,7 +173,7 @@ impl Checker<'_> {
         }
     }
 
-    fn world_arg(&mut self, noun: Noun, arg: &ast::Expr, prefix: &str) -> Option<u16> {
+    fn world_arg(&mut self, noun: Noun, arg: &ast::ExprSyntax, prefix: &str) -> Option<u16> {
         match &arg.kind {
             Syntax::Path(path) => self.world_name(noun, &path.names, prefix),
             _ => {
@@ -184,7 +184,7 @@ impl Checker<'_> {
     }
 
     /// A body or current body.
-    pub(in crate::check) fn body_ref(&mut self, names: &[Name], prefix: &str) -> Option<BodyRef> {
+    pub(in crate::check) fn body_ref(&mut self, names: &[NameSyntax], prefix: &str) -> Option<BodyRef> {
         let full = self.full_name(names, prefix)?;
         if let Some(body) = self.world.names.body_ref(&full) {
             self.refer_in_world(names, &full);
@@ -213,7 +213,12 @@ impl Checker<'_> {
     }
 
     /// Something in the world by its dotted name, or a diagnostic at the first name that leads nowhere.
-    pub(in crate::check) fn world_name(&mut self, noun: Noun, names: &[Name], prefix: &str) -> Option<u16> {
+    pub(in crate::check) fn world_name(
+        &mut self,
+        noun: Noun,
+        names: &[NameSyntax],
+        prefix: &str,
+    ) -> Option<u16> {
         let full = self.full_name(names, prefix)?;
         if let Some(id) = self.world.names.get(noun, &full) {
             self.refer_in_world(names, &full);
@@ -255,7 +260,7 @@ impl Checker<'_> {
     }
 
     /// The full name of something of the world, which a parameter may stand for; `None` if that is not known.
-    pub(in crate::check) fn full_name(&self, names: &[Name], prefix: &str) -> Option<String> {
+    pub(in crate::check) fn full_name(&self, names: &[NameSyntax], prefix: &str) -> Option<String> {
         match self.given(&names[0].text) {
             Some(TemplateArgument::Unknown) => None,
             Some(TemplateArgument::Thing(_, full)) if names.len() == 1 => Some(full.clone()),
@@ -271,7 +276,7 @@ impl Checker<'_> {
     }
 
     /// The names of a path in the world: each is that of an instance of a part or of something in it.
-    pub(in crate::check) fn refer_in_world(&mut self, names: &[Name], full: &str) {
+    pub(in crate::check) fn refer_in_world(&mut self, names: &[NameSyntax], full: &str) {
         if self.given(&names[0].text).is_some() {
             return self.refer_given(&names[0]);
         }
@@ -284,7 +289,7 @@ impl Checker<'_> {
     }
 
     /// What a parameter stands for has no such thing, or is of another kind.
-    fn not_in_given(&mut self, noun: Noun, is: Noun, names: &[Name], given: &str) -> Option<u16> {
+    fn not_in_given(&mut self, noun: Noun, is: Noun, names: &[NameSyntax], given: &str) -> Option<u16> {
         if self
             .world
             .names
@@ -301,7 +306,7 @@ impl Checker<'_> {
                 let near: Vec<String> = near.collect();
                 let is = self.world.names.kind_of(given).or((is != noun).then_some(is));
                 let before = self.issues.list.len();
-                self.unknown(noun, &Name { text: given.to_owned(), span: only.span }, &near, is);
+                self.unknown(noun, &NameSyntax { text: given.to_owned(), span: only.span }, &near, is);
                 // What is to be mended is what the instance gives.
                 for issue in self.issues.list.iter_mut().skip(before) {
                     let help = issue.help.take().map_or(String::new(), |help| format!(": {help}"));
@@ -318,7 +323,7 @@ impl Checker<'_> {
         None
     }
 
-    fn no_function(&mut self, callee: &ast::Path, env: &ExprEnv, known: bool) {
+    fn no_function(&mut self, callee: &ast::PathSyntax, env: &ExprEnv, known: bool) {
         let name = text(&callee.names);
         if known {
             let message = format!("`{name}` is measured in the world, which cannot be read here");
@@ -337,12 +342,12 @@ impl Checker<'_> {
         }
         all.extend(self.types.record_names.names().map(str::to_owned));
         all.extend(env.function_names().map(str::to_owned));
-        let callee = Name { text: name, span: callee.span };
+        let callee = NameSyntax { text: name, span: callee.span };
         self.unknown(Noun::Function, &callee, &all, None);
     }
 
     /// Checks what can be checked about an argument of an unknown function: nothing is said about names of bodies.
-    fn item_quietly(&mut self, e: &ast::Expr, env: &mut ExprEnv) {
+    fn item_quietly(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) {
         match &e.kind {
             Syntax::Path(_) | Syntax::Any => {}
             Syntax::Tuple(parts) => parts.iter().for_each(|p| self.item_quietly(p, env)),
@@ -360,6 +365,6 @@ fn term(term: SignalTerm, ty: InferredType, span: Span) -> TypedExpr {
 }
 
 /// A dotted name as text.
-pub(in crate::check) fn text(names: &[Name]) -> String {
+pub(in crate::check) fn text(names: &[NameSyntax]) -> String {
     names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".")
 }

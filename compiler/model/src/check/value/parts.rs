@@ -2,7 +2,7 @@
 //! knows single values alone.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, Name};
+use hrdsl_syntax::ast::{self, NameSyntax};
 
 use crate::check::{
     checker::Checker,
@@ -23,7 +23,12 @@ use crate::{
 
 impl Checker<'_> {
     /// `(a, b)`, which has as many single values as anything can have.
-    pub(in crate::check) fn tuple(&mut self, parts: &[ast::Expr], span: Span, env: &mut ExprEnv) -> ExprItem {
+    pub(in crate::check) fn tuple(
+        &mut self,
+        parts: &[ast::ExprSyntax],
+        span: Span,
+        env: &mut ExprEnv,
+    ) -> ExprItem {
         let parts: Vec<ExprItem> = parts.iter().map(|p| self.item(p, env)).collect();
         let whole = ExprItem::Tuple(parts, span);
         if whole.singles() > MAX_PARTS {
@@ -143,7 +148,7 @@ impl Checker<'_> {
     // ── parts ──
 
     /// `item.name`
-    pub(in crate::check) fn field(&mut self, item: ExprItem, name: &Name) -> ExprItem {
+    pub(in crate::check) fn field(&mut self, item: ExprItem, name: &NameSyntax) -> ExprItem {
         let span = item.span().to(name.span);
         if item.is_unknown() {
             self.not_known(&item);
@@ -173,7 +178,7 @@ impl Checker<'_> {
         }
     }
 
-    fn no_field(&mut self, name: &Name, fields: &[String], of: &str, parts: bool) {
+    fn no_field(&mut self, name: &NameSyntax, fields: &[String], of: &str, parts: bool) {
         let issue = names::unknown(Noun::Field, &name.text, name.span, fields.iter().map(String::as_str));
         self.report(match (fields.is_empty(), parts) {
             (false, _) => issue,
@@ -186,7 +191,7 @@ impl Checker<'_> {
     pub(in crate::check) fn field_of(
         &mut self,
         layout: &TypeLayout,
-        name: &Name,
+        name: &NameSyntax,
     ) -> Option<(String, TypeLayout)> {
         let parts = self.parts_of(layout);
         let names: Vec<String> = match layout {
@@ -216,8 +221,8 @@ impl Checker<'_> {
     /// `of[index]`
     pub(in crate::check) fn index(
         &mut self,
-        of: &ast::Expr,
-        index: &ast::Expr,
+        of: &ast::ExprSyntax,
+        index: &ast::ExprSyntax,
         span: Span,
         env: &mut ExprEnv,
     ) -> ExprItem {

@@ -3,7 +3,7 @@
 use hrdsl_ir::ListOf;
 
 use hrdsl_source::{Enumeration, Span};
-use hrdsl_syntax::ast::{self, Name, Param as SyntaxParam, TypeExpr};
+use hrdsl_syntax::ast::{self, NameSyntax, ParamSyntax as SyntaxParam, TypeExpr};
 
 use crate::check::{
     checker::Checker,
@@ -27,7 +27,12 @@ use crate::{
 const MAX_RECORDS: usize = 64;
 
 impl<'a> Checker<'a> {
-    pub(in crate::check) fn declare_enum(&mut self, name: &'a Name, values: &'a [Name], span: Span) {
+    pub(in crate::check) fn declare_enum(
+        &mut self,
+        name: &'a NameSyntax,
+        values: &'a [NameSyntax],
+        span: Span,
+    ) {
         if self.type_is_taken(name) {
             return;
         }
@@ -55,7 +60,7 @@ impl<'a> Checker<'a> {
         self.s.enums.push(EnumDecl { of, span });
     }
 
-    pub(in crate::check) fn declare_record(&mut self, name: &'a Name, syntax: &'a [SyntaxParam]) {
+    pub(in crate::check) fn declare_record(&mut self, name: &'a NameSyntax, syntax: &'a [SyntaxParam]) {
         if self.type_is_taken(name) {
             return;
         }
@@ -72,7 +77,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Types have one namespace, which the language's own are in too.
-    fn type_is_taken(&mut self, name: &Name) -> bool {
+    fn type_is_taken(&mut self, name: &NameSyntax) -> bool {
         let first = self.types.enums.get(&name.text).and_then(|id| self.types.enums.span(id));
         let first = first.or_else(|| {
             self.types.record_names.get(&name.text).and_then(|id| self.types.record_names.span(id))
@@ -115,7 +120,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The fields of a record, which may be needed before its turn; `None` if they need themselves.
-    pub(in crate::check) fn record_fields(&mut self, id: u16, name: &Name) -> Option<DeclaredFields> {
+    pub(in crate::check) fn record_fields(&mut self, id: u16, name: &NameSyntax) -> Option<DeclaredFields> {
         self.resolve_record(usize::from(id), self.types.open_records);
         let entry = &self.types.records[usize::from(id)];
         if entry.state == RecordState::Open {
@@ -240,7 +245,7 @@ impl<'a> Checker<'a> {
         found.is_none()
     }
 
-    fn named_type(&mut self, name: &Name) -> Option<TypeLayout> {
+    fn named_type(&mut self, name: &NameSyntax) -> Option<TypeLayout> {
         if name.text == "agent" {
             return Some(TypeLayout::Scalar(Type::Enum(self.players.agent_names)));
         }
@@ -284,7 +289,7 @@ impl<'a> Checker<'a> {
         type_names().chain(["agent"]).map(str::to_owned).chain(own).collect()
     }
 
-    fn range_type(&mut self, lo: &ast::Expr, hi: &ast::Expr) -> Option<Type> {
+    fn range_type(&mut self, lo: &ast::ExprSyntax, hi: &ast::ExprSyntax) -> Option<Type> {
         let span = lo.span.to(hi.span);
         let lo = self.constant(lo, InferredType::Int, &mut ExprEnv::constants());
         let hi = self.constant(hi, InferredType::Int, &mut ExprEnv::constants());

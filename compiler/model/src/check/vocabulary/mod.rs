@@ -6,7 +6,7 @@ pub(in crate::check) mod template;
 use std::rc::Rc;
 
 use hrdsl_source::{Enumeration, Span};
-use hrdsl_syntax::ast::{self, Instance, ItemKind, Name, Sort};
+use hrdsl_syntax::ast::{self, InstanceSyntax, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind};
 
 use crate::check::{
     checker::{Checker, NOBODY},
@@ -30,8 +30,10 @@ impl<'a> Checker<'a> {
     /// The names of all agents, `self` and `percept`: the values of the type `agent`.
     fn name_agents(&mut self) {
         let named = self.each_item().filter_map(|(item, _)| match item {
-            ItemKind::Agent(agent) if agent.params.is_none() => Some(agent.name.text.as_str()),
-            ItemKind::Instance(instance) if instance.sort == Sort::Agent => Some(instance.name.text.as_str()),
+            ItemSyntaxKind::Agent(agent) if agent.params.is_none() => Some(agent.name.text.as_str()),
+            ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Agent => {
+                Some(instance.name.text.as_str())
+            }
             _ => None,
         });
         let names: Vec<&str> = named.chain(["self", "percept"]).collect();
@@ -42,15 +44,15 @@ impl<'a> Checker<'a> {
         self.name_agents();
         for (item, _) in self.each_item() {
             match item {
-                ItemKind::Actor { name, role } => self.declare_actor(name, role),
-                ItemKind::Const { name, value } => self.declare_const(name, value),
-                ItemKind::Part(part) => self.declare_part(part),
-                ItemKind::Record { name, fields } => self.declare_record(name, fields),
+                ItemSyntaxKind::Actor { name, role } => self.declare_actor(name, role),
+                ItemSyntaxKind::Const { name, value } => self.declare_const(name, value),
+                ItemSyntaxKind::Part(part) => self.declare_part(part),
+                ItemSyntaxKind::Record { name, fields } => self.declare_record(name, fields),
                 _ => {}
             }
         }
         for (item, span) in self.each_item() {
-            if let ItemKind::Enum { name, values } = item {
+            if let ItemSyntaxKind::Enum { name, values } = item {
                 self.declare_enum(name, values, span);
             }
         }
@@ -59,24 +61,24 @@ impl<'a> Checker<'a> {
         self.all_consts();
         for (item, span) in self.each_item() {
             match item {
-                ItemKind::Event(event) => self.declare_events(event, span),
-                ItemKind::Stimulus(stimulus) => self.declare_stimulus(stimulus, span),
+                ItemSyntaxKind::Event(event) => self.declare_events(event, span),
+                ItemSyntaxKind::Stimulus(stimulus) => self.declare_stimulus(stimulus, span),
                 _ => {}
             }
         }
         for (item, span) in self.each_item() {
             match item {
                 _ if template(item).is_some() => {}
-                ItemKind::Agent(syntax) => {
+                ItemSyntaxKind::Agent(syntax) => {
                     let plain = DeclaredPlayer { syntax, given: None, instance: None };
                     self.declare_agent(plain, &syntax.name, span);
                 }
-                ItemKind::Automaton(syntax) => {
+                ItemSyntaxKind::Automaton(syntax) => {
                     let plain = DeclaredPlayer { syntax, given: None, instance: None };
                     self.declare_automaton(plain, &syntax.name, span);
                 }
-                ItemKind::Instance(instance) => self.declare_instance(instance, span),
-                ItemKind::Var(var) => self.declare_shared(var, span),
+                ItemSyntaxKind::Instance(instance) => self.declare_instance(instance, span),
+                ItemSyntaxKind::Var(var) => self.declare_shared(var, span),
                 _ => {}
             }
         }
@@ -84,18 +86,18 @@ impl<'a> Checker<'a> {
     }
 
     /// An instance of a template of agents or automata.
-    fn declare_instance(&mut self, instance: &'a Instance, span: Span) {
-        if !matches!(instance.sort, Sort::Agent | Sort::Automaton) {
+    fn declare_instance(&mut self, instance: &'a InstanceSyntax, span: Span) {
+        if !matches!(instance.sort, TemplateSyntaxKind::Agent | TemplateSyntaxKind::Automaton) {
             return;
         }
         let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else { return };
         let (given, instance_of) = (Some(given), Some(instance));
         match template.kind {
-            ItemKind::Agent(syntax) => {
+            ItemSyntaxKind::Agent(syntax) => {
                 let declared = DeclaredPlayer { syntax, given, instance: instance_of };
                 self.declare_agent(declared, &instance.name, span);
             }
-            ItemKind::Automaton(syntax) => {
+            ItemSyntaxKind::Automaton(syntax) => {
                 let declared = DeclaredPlayer { syntax, given, instance: instance_of };
                 self.declare_automaton(declared, &instance.name, span);
             }
@@ -103,7 +105,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn declare_actor(&mut self, name: &Name, role: &Name) {
+    fn declare_actor(&mut self, name: &NameSyntax, role: &NameSyntax) {
         let role = match self.choice(Noun::Role, role, &["environment", "system"]) {
             Some(1) => Role::System,
             Some(_) | None => Role::Environment,
@@ -113,7 +115,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn declare_const(&mut self, name: &'a Name, value: &'a ast::Expr) {
+    fn declare_const(&mut self, name: &'a NameSyntax, value: &'a ast::ExprSyntax) {
         if let Some(first) = self.consts.get(name.text.as_str()) {
             let issue = names::duplicate(Noun::Constant, &name.text, name.span, Some(first.name.span));
             return self.report(issue);
@@ -121,7 +123,7 @@ impl<'a> Checker<'a> {
         self.consts.insert(&name.text, ConstEntry { name, value, state: ConstState::Unseen });
     }
 
-    fn declare_part(&mut self, part: &'a ast::Part) {
+    fn declare_part(&mut self, part: &'a ast::PartSyntax) {
         let name = &part.name;
         if let Some((_, first)) = self.world.parts.get(name.text.as_str()) {
             let issue = names::duplicate(Noun::Part, &name.text, name.span, Some(*first));
@@ -130,7 +132,7 @@ impl<'a> Checker<'a> {
         self.world.parts.insert(&name.text, (part, name.span));
     }
 
-    fn declare_events(&mut self, event: &'a ast::Event, span: Span) {
+    fn declare_events(&mut self, event: &'a ast::EventSyntax, span: Span) {
         let from = self.actor(&event.from);
         let to: Vec<ActorId> = event.to.iter().filter_map(|a| self.actor(a)).collect();
         for one in &event.names {
@@ -140,7 +142,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn declare_stimulus(&mut self, stimulus: &'a ast::Stimulus, span: Span) {
+    fn declare_stimulus(&mut self, stimulus: &'a ast::StimulusSyntax, span: Span) {
         let fields = self.plain_fields(&stimulus.params);
         let by = self.actor(&stimulus.by);
         if let Some(actor) = by.filter(|a| self.role_of(*a) == Role::System) {
@@ -163,11 +165,11 @@ impl<'a> Checker<'a> {
 
     fn push_event(
         &mut self,
-        name: &Name,
+        name: &NameSyntax,
         fields: DeclaredFields,
         from: Option<ActorId>,
         to: Vec<ActorId>,
-        stimulus: Option<&'a ast::Stimulus>,
+        stimulus: Option<&'a ast::StimulusSyntax>,
         span: Span,
     ) {
         let noun = if stimulus.is_some() { Noun::Stimulus } else { Noun::Event };
@@ -189,8 +191,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn declare_agent(&mut self, agent: DeclaredPlayer<'a, ast::Agent>, name: &Name, span: Span) {
-        self.not_a_template(Sort::Agent, name);
+    fn declare_agent(&mut self, agent: DeclaredPlayer<'a, ast::AgentSyntax>, name: &NameSyntax, span: Span) {
+        self.not_a_template(TemplateSyntaxKind::Agent, name);
         if self.issues.declare(&mut self.players.table, Noun::Agent, name).is_some() {
             let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
             self.players.ids.push(PlayerRef::Agent(id));
@@ -202,8 +204,8 @@ impl<'a> Checker<'a> {
     /// An agent that has nothing yet.
     pub(in crate::check) fn push_agent(
         &mut self,
-        agent: &DeclaredPlayer<'a, ast::Agent>,
-        name: &Name,
+        agent: &DeclaredPlayer<'a, ast::AgentSyntax>,
+        name: &NameSyntax,
         span: Span,
     ) {
         let plays = &agent.syntax.plays;
@@ -224,8 +226,13 @@ impl<'a> Checker<'a> {
         });
     }
 
-    fn declare_automaton(&mut self, automaton: DeclaredPlayer<'a, ast::Automaton>, name: &Name, span: Span) {
-        self.not_a_template(Sort::Automaton, name);
+    fn declare_automaton(
+        &mut self,
+        automaton: DeclaredPlayer<'a, ast::AutomatonSyntax>,
+        name: &NameSyntax,
+        span: Span,
+    ) {
+        self.not_a_template(TemplateSyntaxKind::Automaton, name);
         if self.issues.declare(&mut self.players.table, Noun::Automaton, name).is_some() {
             let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
             self.players.ids.push(PlayerRef::Automaton(id));
@@ -237,8 +244,8 @@ impl<'a> Checker<'a> {
     /// An automaton that has nothing yet.
     pub(in crate::check) fn push_automaton(
         &mut self,
-        automaton: &DeclaredPlayer<'a, ast::Automaton>,
-        name: &Name,
+        automaton: &DeclaredPlayer<'a, ast::AutomatonSyntax>,
+        name: &NameSyntax,
         span: Span,
     ) {
         let plays = automaton.syntax.plays.as_ref();
@@ -257,7 +264,7 @@ impl<'a> Checker<'a> {
         });
     }
 
-    fn declare_shared(&mut self, var: &ast::Var, span: Span) {
+    fn declare_shared(&mut self, var: &ast::VarSyntax, span: Span) {
         self.check_free(&ExprEnv::constants(), Noun::Variable, &var.name);
         let (issues, names) = (&mut self.issues, &mut self.shared.names);
         if issues.declare(names, Noun::Variable, &var.name).is_none() {
@@ -283,7 +290,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A variable of an automaton or shared: of finite types, each part with a value at the start.
-    pub(in crate::check) fn var(&mut self, var: &ast::Var) -> (TypeLayout, Vec<AutomatonVar>) {
+    pub(in crate::check) fn var(&mut self, var: &ast::VarSyntax) -> (TypeLayout, Vec<AutomatonVar>) {
         let span = var.name.span;
         let layout = self.layout(&var.ty).filter(|l| {
             self.plain(l, &var.name.text, span) && self.finite_layout(l, "a variable of automata", span)

@@ -3,7 +3,9 @@
 use std::{collections::BTreeSet, rc::Rc};
 
 use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
-use hrdsl_syntax::ast::{self, ExprKind as Syntax, ItemKind, Name, Sort, TypeExpr};
+use hrdsl_syntax::ast::{
+    self, ExprSyntaxKind as Syntax, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind, TypeExpr,
+};
 
 use crate::check::{
     checker::Checker,
@@ -66,7 +68,7 @@ pub(in crate::check) fn is_kind_word(text: &str) -> bool {
 }
 
 /// The kind of a parameter that is no value.
-fn kind_of_param(param: &ast::Param) -> Option<Noun> {
+fn kind_of_param(param: &ast::ParamSyntax) -> Option<Noun> {
     match &param.ty {
         TypeExpr::Named(name) => kind_word(&name.text),
         TypeExpr::Range(..) | TypeExpr::Array(..) | TypeExpr::List(_) | TypeExpr::Error => None,
@@ -74,35 +76,37 @@ fn kind_of_param(param: &ast::Param) -> Option<Noun> {
 }
 
 /// The template that an item declares, if it has parameters.
-pub(in crate::check) fn template(kind: &ItemKind) -> Option<(Sort, DeclaredTemplate<'_>)> {
+pub(in crate::check) fn template(
+    kind: &ItemSyntaxKind,
+) -> Option<(TemplateSyntaxKind, DeclaredTemplate<'_>)> {
     let (sort, name, params) = match kind {
-        ItemKind::Agent(a) => (Sort::Agent, &a.name, &a.params),
-        ItemKind::Automaton(a) => (Sort::Automaton, &a.name, &a.params),
-        ItemKind::Require(r) => (Sort::Require, &r.name, &r.params),
-        ItemKind::Cover(c) => (Sort::Cover, &c.name, &c.params),
-        ItemKind::Cross(c) => (Sort::Cross, &c.name, &c.params),
-        ItemKind::Use(_)
-        | ItemKind::Allow(_)
-        | ItemKind::Enum { .. }
-        | ItemKind::Record { .. }
-        | ItemKind::Actor { .. }
-        | ItemKind::Const { .. }
-        | ItemKind::Event(_)
-        | ItemKind::Stimulus(_)
-        | ItemKind::Var(_)
-        | ItemKind::Channel(_)
-        | ItemKind::Function(_)
-        | ItemKind::Query(_)
-        | ItemKind::Network { .. }
-        | ItemKind::Assume(_)
-        | ItemKind::Suite(_)
-        | ItemKind::Part(_)
-        | ItemKind::Device(_)
-        | ItemKind::World(_)
-        | ItemKind::System(_)
-        | ItemKind::Test(_)
-        | ItemKind::Instance(_)
-        | ItemKind::Error => return None,
+        ItemSyntaxKind::Agent(a) => (TemplateSyntaxKind::Agent, &a.name, &a.params),
+        ItemSyntaxKind::Automaton(a) => (TemplateSyntaxKind::Automaton, &a.name, &a.params),
+        ItemSyntaxKind::Require(r) => (TemplateSyntaxKind::Require, &r.name, &r.params),
+        ItemSyntaxKind::Cover(c) => (TemplateSyntaxKind::Cover, &c.name, &c.params),
+        ItemSyntaxKind::Cross(c) => (TemplateSyntaxKind::Cross, &c.name, &c.params),
+        ItemSyntaxKind::Use(_)
+        | ItemSyntaxKind::Allow(_)
+        | ItemSyntaxKind::Enum { .. }
+        | ItemSyntaxKind::Record { .. }
+        | ItemSyntaxKind::Actor { .. }
+        | ItemSyntaxKind::Const { .. }
+        | ItemSyntaxKind::Event(_)
+        | ItemSyntaxKind::Stimulus(_)
+        | ItemSyntaxKind::Var(_)
+        | ItemSyntaxKind::Channel(_)
+        | ItemSyntaxKind::Function(_)
+        | ItemSyntaxKind::Query(_)
+        | ItemSyntaxKind::Network { .. }
+        | ItemSyntaxKind::Assume(_)
+        | ItemSyntaxKind::Suite(_)
+        | ItemSyntaxKind::Part(_)
+        | ItemSyntaxKind::Device(_)
+        | ItemSyntaxKind::World(_)
+        | ItemSyntaxKind::System(_)
+        | ItemSyntaxKind::Test(_)
+        | ItemSyntaxKind::Instance(_)
+        | ItemSyntaxKind::Error => return None,
     };
     params.as_deref().map(|params| (sort, DeclaredTemplate { kind, name, params }))
 }
@@ -123,7 +127,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A name that a template of the sort has already.
-    pub(in crate::check) fn not_a_template(&mut self, sort: Sort, name: &Name) {
+    pub(in crate::check) fn not_a_template(&mut self, sort: TemplateSyntaxKind, name: &NameSyntax) {
         let first = self.templates.declared.get(&(sort, name.text.as_str())).map(|t| t.name.span);
         if first.is_some() {
             self.report(names::duplicate(Noun::Template, &name.text, name.span, first));
@@ -131,7 +135,13 @@ impl<'a> Checker<'a> {
     }
 
     pub(in crate::check) fn is_template(&self, text: &str) -> bool {
-        let sorts = [Sort::Agent, Sort::Automaton, Sort::Require, Sort::Cover, Sort::Cross];
+        let sorts = [
+            TemplateSyntaxKind::Agent,
+            TemplateSyntaxKind::Automaton,
+            TemplateSyntaxKind::Require,
+            TemplateSyntaxKind::Cover,
+            TemplateSyntaxKind::Cross,
+        ];
         sorts.into_iter().any(|sort| self.templates.declared.contains_key(&(sort, text)))
     }
 
@@ -141,7 +151,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A name is that of a parameter of the template.
-    pub(in crate::check) fn refer_given(&mut self, name: &Name) {
+    pub(in crate::check) fn refer_given(&mut self, name: &NameSyntax) {
         let place =
             self.templates.given.as_ref().and_then(|given| given.get(&name.text)).map(|bound| bound.place);
         self.refer(name, place);
@@ -161,7 +171,7 @@ impl<'a> Checker<'a> {
     /// The template that an instance is of, and what is given for its parameters.
     pub(in crate::check) fn instance(
         &mut self,
-        instance: &'a ast::Instance,
+        instance: &'a ast::InstanceSyntax,
         env: &ExprEnv,
     ) -> Option<(DeclaredTemplate<'a>, Rc<TemplateArguments>)> {
         let made = self.make_instance(instance, env);
@@ -173,7 +183,7 @@ impl<'a> Checker<'a> {
 
     fn make_instance(
         &mut self,
-        instance: &'a ast::Instance,
+        instance: &'a ast::InstanceSyntax,
         env: &ExprEnv,
     ) -> Option<(DeclaredTemplate<'a>, Rc<TemplateArguments>)> {
         let Some(template) =
@@ -199,9 +209,9 @@ impl<'a> Checker<'a> {
     /// What the arguments give for the parameters. `whole`: the world is there, and what they name must be in it.
     pub(in crate::check) fn bind(
         &mut self,
-        name: &Name,
-        params: &[ast::Param],
-        args: &[ast::Expr],
+        name: &NameSyntax,
+        params: &[ast::ParamSyntax],
+        args: &[ast::ExprSyntax],
         span: Span,
         env: &ExprEnv,
         whole: bool,
@@ -239,7 +249,13 @@ impl<'a> Checker<'a> {
         result
     }
 
-    fn given_thing(&mut self, kind: Noun, arg: &ast::Expr, env: &ExprEnv, whole: bool) -> TemplateArgument {
+    fn given_thing(
+        &mut self,
+        kind: Noun,
+        arg: &ast::ExprSyntax,
+        env: &ExprEnv,
+        whole: bool,
+    ) -> TemplateArgument {
         if kind == Noun::Event
             && let Some(patterns) = self.alternatives(arg)
         {
@@ -286,7 +302,7 @@ impl<'a> Checker<'a> {
     }
 
     /// `a`, `a(true)`, `a or b(_)`: `None` if it is nothing of this form.
-    fn alternatives(&mut self, arg: &ast::Expr) -> Option<Option<Vec<EventPattern>>> {
+    fn alternatives(&mut self, arg: &ast::ExprSyntax) -> Option<Option<Vec<EventPattern>>> {
         match &arg.kind {
             Syntax::Binary { op: BinaryOp::Or, left, right } => {
                 let (left, right) = (self.alternatives(left)?, self.alternatives(right)?);
@@ -296,19 +312,19 @@ impl<'a> Checker<'a> {
                 }))
             }
             Syntax::Path(path) if path.names.len() == 1 => {
-                let call = ast::Call { name: path.names[0].clone(), args: None, span: arg.span };
+                let call = ast::CallSyntax { name: path.names[0].clone(), args: None, span: arg.span };
                 Some(self.pattern_of(&call))
             }
             Syntax::Call { callee, args } if callee.names.len() == 1 => {
                 let args = Some(args.clone());
-                let call = ast::Call { name: callee.names[0].clone(), args, span: arg.span };
+                let call = ast::CallSyntax { name: callee.names[0].clone(), args, span: arg.span };
                 Some(self.pattern_of(&call))
             }
             _ => None,
         }
     }
 
-    fn pattern_of(&mut self, call: &ast::Call) -> Option<Vec<EventPattern>> {
+    fn pattern_of(&mut self, call: &ast::CallSyntax) -> Option<Vec<EventPattern>> {
         let before = self.issues.list.len();
         let patterns = self.patterns(std::slice::from_ref(call));
         (self.issues.list.len() == before && !patterns.is_empty()).then_some(patterns)
@@ -317,7 +333,7 @@ impl<'a> Checker<'a> {
     // ── the template by itself ──
 
     /// What the parameters are in the check of the template by itself: some value of their type, or nothing known.
-    fn placeholders(&mut self, params: &[ast::Param], trial: TemplateTrial) -> Rc<TemplateArguments> {
+    fn placeholders(&mut self, params: &[ast::ParamSyntax], trial: TemplateTrial) -> Rc<TemplateArguments> {
         let mut given = TemplateArguments::default();
         for (index, param) in params.iter().enumerate() {
             let value = if kind_of_param(param).is_some() {
@@ -371,10 +387,11 @@ impl<'a> Checker<'a> {
     /// Checks each template of a sort by itself.
     pub(in crate::check) fn templates_of(
         &mut self,
-        sort: Sort,
+        sort: TemplateSyntaxKind,
         check: impl Fn(&mut Self, DeclaredTemplate<'a>),
     ) {
-        let of_sort = |((s, _), t): (&(Sort, &'a str), &DeclaredTemplate<'a>)| (*s == sort).then_some(*t);
+        let of_sort =
+            |((s, _), t): (&(TemplateSyntaxKind, &'a str), &DeclaredTemplate<'a>)| (*s == sort).then_some(*t);
         let templates: Vec<DeclaredTemplate<'a>> =
             self.templates.declared.iter().filter_map(of_sort).collect();
         for template in templates {
@@ -384,7 +401,7 @@ impl<'a> Checker<'a> {
 
     /// Checks something with parameters by itself. Wrong is what is wrong whatever the parameters stand for: with each
     /// of several values. What is wrong with some values only is found in the instances that give them.
-    pub(in crate::check) fn by_itself(&mut self, params: &[ast::Param], check: impl Fn(&mut Self)) {
+    pub(in crate::check) fn by_itself(&mut self, params: &[ast::ParamSyntax], check: impl Fn(&mut Self)) {
         let before = self.issues.list.len();
         let mut always: Option<Vec<Diagnostic>> = None;
         // What is said in one trial may be taken back.
@@ -417,7 +434,7 @@ impl<'a> Checker<'a> {
     pub(in crate::check) fn as_instance<T>(
         &mut self,
         given: Option<Rc<TemplateArguments>>,
-        instance: Option<(&Name, Span)>,
+        instance: Option<(&NameSyntax, Span)>,
         check: impl FnOnce(&mut Self) -> T,
     ) -> T {
         let Some(given) = given else { return check(self) };
@@ -430,7 +447,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The diagnostics since then are of an instance: what is new in them is said with the instance.
-    pub(in crate::check) fn said_in(&mut self, before: usize, instance: Option<(&Name, Span)>) {
+    pub(in crate::check) fn said_in(&mut self, before: usize, instance: Option<(&NameSyntax, Span)>) {
         let new = self.issues.list.split_off(before);
         let found = !new.is_empty();
         if found {

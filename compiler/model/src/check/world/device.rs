@@ -7,7 +7,7 @@ use hrdsl_ir::{
         DeviceSort, Expectation, NumberCount, PrimitiveParam,
     },
 };
-use hrdsl_syntax::ast::{self, DeviceMemberKind as Member, ItemKind, Name};
+use hrdsl_syntax::ast::{self, DeviceMemberKind as Member, ItemSyntaxKind, NameSyntax};
 
 use crate::check::{
     checker::Checker,
@@ -34,7 +34,7 @@ impl<'a> Checker<'a> {
         self.s.device_kinds = DeviceSort::ALL.map(kind).into();
         let mut known = OrderedMap::default();
         for item in self.source.items.clone() {
-            let ItemKind::Device(device) = &item.kind else { continue };
+            let ItemSyntaxKind::Device(device) = &item.kind else { continue };
             let sort = self.device_sort(&device.kind);
             if let Some(sort) = sort {
                 let kind = self.kind_mut(sort);
@@ -68,7 +68,7 @@ impl<'a> Checker<'a> {
         self.s.device_kinds.iter().find(|kind| kind.sort == sort)
     }
 
-    fn device_sort(&mut self, kind: &Name) -> Option<DeviceSort> {
+    fn device_sort(&mut self, kind: &NameSyntax) -> Option<DeviceSort> {
         let words = DeviceSort::ALL.map(DeviceSort::name);
         self.choice(Noun::DeviceKind, kind, &words).map(|at| DeviceSort::ALL[at])
     }
@@ -77,10 +77,10 @@ impl<'a> Checker<'a> {
     fn device_command(
         &mut self,
         sort: Option<DeviceSort>,
-        command: &ast::DeviceCommand,
+        command: &ast::DeviceCommandSyntax,
         doc: &str,
     ) -> Option<DeviceCommand> {
-        let params: Vec<ast::Param> = command.params.iter().map(|p| p.param.clone()).collect();
+        let params: Vec<ast::ParamSyntax> = command.params.iter().map(|p| p.param.clone()).collect();
         let layouts = self.fields(&params);
         let sort = sort?;
         let expect = command.expect.as_ref().map(|e| self.expectation(sort, e));
@@ -110,7 +110,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn primitive(&mut self, sort: DeviceSort, name: &Name) -> Option<DevicePrimitive> {
+    fn primitive(&mut self, sort: DeviceSort, name: &NameSyntax) -> Option<DevicePrimitive> {
         let own = || DevicePrimitive::ALL.into_iter().filter(|p| p.sort() == sort).map(DevicePrimitive::name);
         let issue = match DevicePrimitive::named(&name.text) {
             Some(primitive) if primitive.sort() == sort => return Some(primitive),
@@ -126,10 +126,10 @@ impl<'a> Checker<'a> {
         &mut self,
         primitive: DevicePrimitive,
         takes: &PrimitiveParam,
-        param: &ast::CommandParam,
+        param: &ast::CommandParamSyntax,
         layout: &TypeLayout,
     ) {
-        let ast::Param { name, ty } = &param.param;
+        let ast::ParamSyntax { name, ty } = &param.param;
         if *layout != TypeLayout::Unknown && *layout != layout_of(takes.ty) {
             let got = self.shown_layout(layout);
             self.report(devices::other_type(
@@ -145,7 +145,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn expectation(&mut self, sort: DeviceSort, expect: &ast::Expectation) -> Option<Expectation> {
+    fn expectation(&mut self, sort: DeviceSort, expect: &ast::ExpectationSyntax) -> Option<Expectation> {
         let own: Vec<DeviceMeasure> = DeviceMeasure::ALL.into_iter().filter(|m| m.sort() == sort).collect();
         let Some(measure) = own.iter().find(|m| m.name() == expect.measure.text) else {
             let name = &expect.measure;
@@ -161,8 +161,8 @@ impl<'a> Checker<'a> {
     /// `on close robot.grip`
     pub(in crate::check) fn commanded(
         &mut self,
-        command: &Name,
-        device: &ast::Path,
+        command: &NameSyntax,
+        device: &ast::PathSyntax,
         prefix: &str,
     ) -> Option<TypedRuleTrigger> {
         let knows = |kind: &&DeviceKind| kind.command(&command.text).is_some();
@@ -190,7 +190,12 @@ impl<'a> Checker<'a> {
     }
 
     /// The device that a path names; if there is none, one of these sorts was meant.
-    fn device_of(&mut self, path: &ast::Path, meant: &[DeviceSort], prefix: &str) -> Option<DeviceBody> {
+    fn device_of(
+        &mut self,
+        path: &ast::PathSyntax,
+        meant: &[DeviceSort],
+        prefix: &str,
+    ) -> Option<DeviceBody> {
         // A parameter stands for what it is declared to be.
         if let [only] = path.names.as_slice()
             && let Some(TemplateArgument::Thing(is, _)) = self.given(&only.text)

@@ -6,7 +6,8 @@ pub(in crate::check) mod stimulus;
 
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
-    self, ItemKind, Name, RuleOn as SyntaxRuleOn, WorldMember, WorldMemberKind as Member,
+    self, ItemSyntaxKind, NameSyntax, RuleTriggerSyntax as SyntaxRuleOn, WorldMember,
+    WorldMemberKind as Member,
 };
 
 use crate::check::{
@@ -33,7 +34,7 @@ impl<'a> Checker<'a> {
     pub(in crate::check) fn world(&mut self) {
         let mut found: Option<Span> = None;
         for (item, span) in self.each_item() {
-            let ItemKind::World(world) = item else { continue };
+            let ItemSyntaxKind::World(world) = item else { continue };
             if let Some(first) = found {
                 self.report(names::twice("world", span, first));
                 continue;
@@ -85,9 +86,9 @@ impl<'a> Checker<'a> {
 
     /// Parts of the scenario that the world does not use are checked as if they stood alone in a world.
     fn unused_parts(&mut self) {
-        let own: Vec<&'a ast::Part> = self.source.items[self.source.from_modules..]
+        let own: Vec<&'a ast::PartSyntax> = self.source.items[self.source.from_modules..]
             .iter()
-            .filter_map(|i| if let ItemKind::Part(part) = &i.kind { Some(part) } else { None })
+            .filter_map(|i| if let ItemSyntaxKind::Part(part) = &i.kind { Some(part) } else { None })
             .collect();
         for part in own {
             if self.s.names.is_used(part.name.span) {
@@ -151,7 +152,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn body(&mut self, p: &PlacedMember<'a>, body: &'a ast::Body) {
+    fn body(&mut self, p: &PlacedMember<'a>, body: &'a ast::BodySyntax) {
         let motion = match self.choice(Noun::Motion, &body.motion, &["fixed", "dynamic", "kinematic"]) {
             Some(1) => BodyMotion::Dynamic,
             Some(2) => BodyMotion::Kinematic,
@@ -184,7 +185,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn shape(&mut self, body: &ast::Body) -> Option<BodyShape> {
+    fn shape(&mut self, body: &ast::BodySyntax) -> Option<BodyShape> {
         let shapes = ["box", "sphere", "capsule", "cylinder"];
         let usage = ["box(X, Y, Z)", "sphere(RADIUS)", "capsule(RADIUS, LENGTH)", "cylinder(RADIUS, LENGTH)"];
         let chosen = self.choice(Noun::Shape, &body.shape, &shapes)?;
@@ -206,7 +207,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn more_than_zero(&mut self, e: &ast::Expr, dim: Dimension, what: &str) -> Option<f64> {
+    fn more_than_zero(&mut self, e: &ast::ExprSyntax, dim: Dimension, what: &str) -> Option<f64> {
         let x = self.quantity_of(e, dim)?;
         if x <= 0.0 {
             let rule = format!("more than 0 {}", dim.symbol().unwrap_or_default());
@@ -216,7 +217,7 @@ impl<'a> Checker<'a> {
         Some(x)
     }
 
-    fn local_body(&mut self, name: &Name, prefix: &str) -> Option<BodyId> {
+    fn local_body(&mut self, name: &NameSyntax, prefix: &str) -> Option<BodyId> {
         self.world_name(Noun::Body, std::slice::from_ref(name), prefix).map(BodyId)
     }
 
@@ -262,7 +263,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn limits(&mut self, limits: &ast::Range) -> (f64, f64) {
+    fn limits(&mut self, limits: &ast::RangeSyntax) -> (f64, f64) {
         let lo = self.quantity_of(&limits.lo, Dimension::ANGLE);
         let Some(hi) = &limits.hi else {
             self.report(bad_world(limits.span, "limits have two ends", "write `limits -90 deg .. 90 deg`"));
@@ -314,7 +315,7 @@ impl<'a> Checker<'a> {
     }
 
     /// An arm's joints follow each other from the base to the tip.
-    fn chain(&mut self, ids: &[JointId], names: &[Name], tip: &Name, tip_id: BodyId) {
+    fn chain(&mut self, ids: &[JointId], names: &[NameSyntax], tip: &NameSyntax, tip_id: BodyId) {
         let joints: Vec<(BodyId, BodyId)> = {
             let world = self.world_mut();
             ids.iter().map(|j| &world.joints[usize::from(j.0)]).map(|j| (j.parent, j.child)).collect()

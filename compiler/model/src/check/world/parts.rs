@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use hrdsl_source::{Diagnostic, Span};
-use hrdsl_syntax::ast::{self, Name, WorldMember, WorldMemberKind as Member};
+use hrdsl_syntax::ast::{self, NameSyntax, WorldMember, WorldMemberKind as Member};
 
 use crate::check::{
     checker::Checker,
@@ -32,7 +32,7 @@ pub(crate) struct PlacedMember<'a> {
     /// What the parameters of its part stand for.
     pub given: Option<Rc<TemplateArguments>>,
     /// The part of the world that gives them.
-    pub instance: Option<(Name, Span)>,
+    pub instance: Option<(NameSyntax, Span)>,
 }
 
 impl<'a> Checker<'a> {
@@ -42,7 +42,7 @@ impl<'a> Checker<'a> {
         members: &'a [WorldMember],
         prefix: &str,
         frame: PartFrame,
-        instance: Option<(Name, Span)>,
+        instance: Option<(NameSyntax, Span)>,
     ) -> Vec<PlacedMember<'a>> {
         let mut all = Vec::new();
         for member in members {
@@ -105,7 +105,7 @@ impl<'a> Checker<'a> {
         let placed = PartInstance { name: full.clone(), frame, span: member.span };
         self.world_mut().parts.push(placed);
         let end = args.iter().flatten().last().map_or(of.span, |a| a.span);
-        let here = Name { text: full.clone(), span: name.span };
+        let here = NameSyntax { text: full.clone(), span: name.span };
         let instance = given.is_some().then(|| (here, name.span.to(end)));
         let outer = std::mem::replace(&mut self.templates.given, given);
         let (before, prefix) = (self.issues.list.len(), format!("{full}."));
@@ -122,9 +122,9 @@ impl<'a> Checker<'a> {
     /// What the arguments give for a part's parameters.
     fn given_part(
         &mut self,
-        part: &ast::Part,
-        of: &Name,
-        args: Option<&[ast::Expr]>,
+        part: &ast::PartSyntax,
+        of: &NameSyntax,
+        args: Option<&[ast::ExprSyntax]>,
         prefix: &str,
     ) -> Result<Option<Rc<TemplateArguments>>, ()> {
         match (&part.params, args) {
@@ -140,7 +140,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn part(&mut self, of: &Name) -> Option<&'a ast::Part> {
+    fn part(&mut self, of: &NameSyntax) -> Option<&'a ast::PartSyntax> {
         let Some((part, _)) = self.world.parts.get(of.text.as_str()) else {
             let names: Vec<String> = self.world.parts.keys().map(|k| (*k).to_owned()).collect();
             if self.source.unread_items || self.source.missing_modules {
@@ -171,7 +171,7 @@ impl<'a> Checker<'a> {
     }
 
     /// `at (…) rotated (0 deg, 0 deg, 90 deg)`
-    fn frame(&mut self, at: &ast::Expr, rotated: Option<&ast::Expr>) -> PartFrame {
+    fn frame(&mut self, at: &ast::ExprSyntax, rotated: Option<&ast::ExprSyntax>) -> PartFrame {
         let position = self.vector(at, InferredType::Float(Dimension::LENGTH)).unwrap_or_default();
         let angles =
             rotated.and_then(|r| self.vector(r, InferredType::Float(Dimension::ANGLE))).unwrap_or_default();
@@ -186,8 +186,8 @@ impl<'a> Checker<'a> {
     }
 
     /// Three constants of one kind.
-    pub(in crate::check) fn vector(&mut self, e: &ast::Expr, want: InferredType) -> Option<[f64; 3]> {
-        if let ast::ExprKind::Tuple(parts) = &e.kind
+    pub(in crate::check) fn vector(&mut self, e: &ast::ExprSyntax, want: InferredType) -> Option<[f64; 3]> {
+        if let ast::ExprSyntaxKind::Tuple(parts) = &e.kind
             && parts.len() == 3
         {
             let mut vector = [0.0; 3];
@@ -202,7 +202,7 @@ impl<'a> Checker<'a> {
         let whole = matches!(item, ExprItem::Array(..) | ExprItem::Tuple(..));
         item.flatten(&mut values);
         if !whole || values.len() != 3 {
-            if self.issues.list.len() == known && e.kind != ast::ExprKind::Error {
+            if self.issues.list.len() == known && e.kind != ast::ExprSyntaxKind::Error {
                 self.report(not_a_vector(want, e.span));
             }
             return None;

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::Unit;
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ExprKind as Syntax, Name, SampleRange, StimulusStepKind as Step};
+use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax, NameSyntax, SampleRange, StimulusStepKind as Step};
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
@@ -32,7 +32,7 @@ impl Checker<'_> {
         }
     }
 
-    fn stimulus(&mut self, index: usize, stimulus: &ast::Stimulus) -> TypedStimulus {
+    fn stimulus(&mut self, index: usize, stimulus: &ast::StimulusSyntax) -> TypedStimulus {
         let mut env = ExprEnv { noun: Some(Noun::Parameter), ..ExprEnv::default() };
         let fields = self.events.fields[index].clone();
         for (syntax, (_, layout)) in stimulus.params.iter().zip(fields.iter()) {
@@ -46,7 +46,7 @@ impl Checker<'_> {
 
     fn steps(
         &mut self,
-        steps: &[ast::StimulusStep],
+        steps: &[ast::StimulusStepSyntax],
         by: ActorId,
         samples: &mut Vec<TypedSample>,
         env: &mut ExprEnv,
@@ -84,7 +84,7 @@ impl Checker<'_> {
 
     fn sample(
         &mut self,
-        name: &Name,
+        name: &NameSyntax,
         range: &SampleRange,
         samples: &mut Vec<TypedSample>,
         env: &mut ExprEnv,
@@ -172,7 +172,7 @@ impl Checker<'_> {
         }
     }
 
-    fn emit(&mut self, call: &ast::Call, by: ActorId, env: &mut ExprEnv) -> Option<TypedStimulusStep> {
+    fn emit(&mut self, call: &ast::CallSyntax, by: ActorId, env: &mut ExprEnv) -> Option<TypedStimulusStep> {
         let event: EventId = self.event(Noun::Event, &call.name, None)?;
         let from = self.s.events[usize::from(event.0)].from;
         if from != by && from != NOBODY && by != NOBODY {
@@ -194,8 +194,8 @@ impl Checker<'_> {
 
     fn act(
         &mut self,
-        path: &ast::Path,
-        args: &[ast::Expr],
+        path: &ast::PathSyntax,
+        args: &[ast::ExprSyntax],
         span: Span,
         env: &mut ExprEnv,
     ) -> Option<TypedWorldAction> {
@@ -238,7 +238,7 @@ impl Checker<'_> {
     }
 
     /// A kinematic body.
-    fn movable(&mut self, names: &[Name]) -> Option<crate::BodyId> {
+    fn movable(&mut self, names: &[NameSyntax]) -> Option<crate::BodyId> {
         let id = match self.body_ref(names, "")? {
             BodyRef::Body(id) => Some(id),
             BodyRef::Current(_) => None,
@@ -264,7 +264,7 @@ impl Checker<'_> {
     }
 
     /// A vector of three lengths, a body, or a body plus such a vector.
-    fn point(&mut self, e: &ast::Expr, env: &mut ExprEnv) -> Option<TypedPoint> {
+    fn point(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> Option<TypedPoint> {
         match &e.kind {
             Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right }
                 if self.is_body(left, env) =>
@@ -308,13 +308,13 @@ impl Checker<'_> {
     }
 
     /// Whether a name means a body: it stands for no value.
-    fn is_body(&self, e: &ast::Expr, env: &ExprEnv) -> bool {
+    fn is_body(&self, e: &ast::ExprSyntax, env: &ExprEnv) -> bool {
         let Syntax::Path(path) = &e.kind else { return false };
         let first = &path.names[0].text;
         env.find(first).is_none() && env.layout(first).is_none() && !self.consts.contains_key(first.as_str())
     }
 
-    fn offset(&mut self, e: &ast::Expr, negative: bool, env: &mut ExprEnv) -> Option<[TypedExpr; 3]> {
+    fn offset(&mut self, e: &ast::ExprSyntax, negative: bool, env: &mut ExprEnv) -> Option<[TypedExpr; 3]> {
         let known = self.issues.list.len();
         let lengths = TypeLayout::Array(Box::new(TypeLayout::Scalar(Type::Float(Unit::Metre))), 3);
         let mut parts = Vec::new();

@@ -1,14 +1,15 @@
 //! The members of agents, automata, suites, tests, systems, worlds and devices.
 
 use crate::ast::{
-    Access, AgentMember, AgentMemberKind, Ask, Automaton, AutomatonMember, AutomatonMemberKind, DeviceMember,
-    DeviceMemberKind, Edge, EdgeActionKind, Function, Plan, Query, RuleOn, Statement, StatementKind, Step,
-    StepKind, SuiteMemberKind, SystemMemberKind, TestMemberKind, Var, WorldMember, WorldMemberKind,
+    AccessSyntax, AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, AutomatonSyntax,
+    DeviceMember, DeviceMemberKind, EdgeActionKind, EdgeSyntax, FormulaSyntax, FunctionSyntax, PlanSyntax,
+    QuerySyntax, RuleTriggerSyntax, StatementSyntax, StatementSyntaxKind, StepSyntax, StepSyntaxKind,
+    SuiteMemberKind, SystemMemberKind, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
 };
-use crate::print::marks::{BlockKind, Marker};
-use crate::token::Kind;
+use crate::print::marks::{BlockKind, TokenMarker};
+use crate::token::TokenKind;
 
-impl Marker<'_> {
+impl TokenMarker<'_> {
     // ── Agents ──
 
     pub(super) fn agent_member(&mut self, member: &AgentMember) {
@@ -34,7 +35,7 @@ impl Marker<'_> {
         }
     }
 
-    pub(super) fn plan(&mut self, plan: &Plan) {
+    pub(super) fn plan(&mut self, plan: &PlanSyntax) {
         self.set(plan.trigger.span.start, |m| m.prefix = true);
         self.literal(&plan.trigger.literal);
         self.maybe(plan.context.as_ref());
@@ -43,7 +44,7 @@ impl Marker<'_> {
         plan.body.iter().for_each(|s| self.step(s));
     }
 
-    pub(super) fn step(&mut self, step: &Step) {
+    pub(super) fn step(&mut self, step: &StepSyntax) {
         self.set(step.span.start, |m| {
             m.start = true;
             m.prefix = true;
@@ -51,47 +52,49 @@ impl Marker<'_> {
         self.step_kind(step);
     }
 
-    fn step_kind(&mut self, step: &Step) {
+    fn step_kind(&mut self, step: &StepSyntax) {
         match &step.kind {
-            StepKind::Do(call) | StepKind::Spawn(call) | StepKind::Internal(call) => self.call(call),
-            StepKind::Achieve { call, within } => {
+            StepSyntaxKind::Do(call) | StepSyntaxKind::Spawn(call) | StepSyntaxKind::Internal(call) => {
+                self.call(call)
+            }
+            StepSyntaxKind::Achieve { call, within } => {
                 self.call(call);
                 self.maybe(within.as_ref());
             }
-            StepKind::Query(literal)
-            | StepKind::Add(literal)
-            | StepKind::Remove(literal)
-            | StepKind::Replace(literal) => self.literal(literal),
-            StepKind::Test(expr) | StepKind::Wait(expr) => self.expr(expr),
-            StepKind::Unify { left, right } => {
+            StepSyntaxKind::Query(literal)
+            | StepSyntaxKind::Add(literal)
+            | StepSyntaxKind::Remove(literal)
+            | StepSyntaxKind::Replace(literal) => self.literal(literal),
+            StepSyntaxKind::Test(expr) | StepSyntaxKind::Wait(expr) => self.expr(expr),
+            StepSyntaxKind::Unify { left, right } => {
                 self.expr(left);
                 self.expr(right);
             }
-            StepKind::Await { events, within } => {
+            StepSyntaxKind::Await { events, within } => {
                 self.calls(events);
                 self.maybe(within.as_ref());
             }
-            StepKind::If { condition, then, otherwise } => {
+            StepSyntaxKind::If { condition, then, otherwise } => {
                 self.expr(condition);
                 self.block(condition.span.end, BlockKind::Steps);
                 then.iter().for_each(|s| self.step(s));
                 self.else_steps(step.span.end, otherwise);
             }
-            StepKind::While { condition, body } | StepKind::For { condition, body } => {
+            StepSyntaxKind::While { condition, body } | StepSyntaxKind::For { condition, body } => {
                 self.expr(condition);
                 self.block(condition.span.end, BlockKind::Steps);
                 body.iter().for_each(|s| self.step(s));
             }
-            StepKind::Fork { branches, .. } => {
+            StepSyntaxKind::Fork { branches, .. } => {
                 self.branches(step.span.start, branches.len());
                 branches.iter().flatten().for_each(|s| self.step(s));
             }
-            StepKind::Error => {}
+            StepSyntaxKind::Error => {}
         }
     }
 
     /// What follows `else`: another choice, or a block that ends with the step.
-    fn else_steps(&mut self, end: u32, steps: &[Step]) {
+    fn else_steps(&mut self, end: u32, steps: &[StepSyntax]) {
         if let [step] = steps
             && self.after_else(step.span.start)
         {
@@ -114,12 +117,12 @@ impl Marker<'_> {
 
     // ── Automata ──
 
-    pub(super) fn var(&mut self, var: &Var) {
+    pub(super) fn var(&mut self, var: &VarSyntax) {
         self.ty(&var.ty);
         self.maybe(var.init.as_ref());
     }
 
-    pub(super) fn automaton(&mut self, start: u32, automaton: &Automaton) {
+    pub(super) fn automaton(&mut self, start: u32, automaton: &AutomatonSyntax) {
         self.block(start, BlockKind::Members);
         self.params(automaton.name.span.end, automaton.params.as_deref().unwrap_or_default());
         automaton.members.iter().for_each(|m| self.automaton_member(m));
@@ -132,7 +135,10 @@ impl Marker<'_> {
             AutomatonMemberKind::Var(var) => self.var(var),
             AutomatonMemberKind::Location { name, invariant, .. } => {
                 let after = self.at(name.span.end);
-                if self.tokens.get(after).is_some_and(|t| t.kind == Kind::LBrace && t.start < member.span.end)
+                if self
+                    .tokens
+                    .get(after)
+                    .is_some_and(|t| t.kind == TokenKind::LBrace && t.start < member.span.end)
                 {
                     self.marks[after].block = Some(BlockKind::Members);
                     if invariant.is_some() {
@@ -146,7 +152,7 @@ impl Marker<'_> {
         }
     }
 
-    pub(super) fn function(&mut self, function: &Function) {
+    pub(super) fn function(&mut self, function: &FunctionSyntax) {
         self.params(function.name.span.end, &function.params);
         if let Some(ty) = &function.result {
             self.ty(ty);
@@ -155,33 +161,33 @@ impl Marker<'_> {
         function.body.iter().for_each(|s| self.statement(s));
     }
 
-    fn statement(&mut self, statement: &Statement) {
+    fn statement(&mut self, statement: &StatementSyntax) {
         self.set(statement.span.start, |m| m.start = true);
         self.statement_kind(statement);
     }
 
-    fn statement_kind(&mut self, statement: &Statement) {
+    fn statement_kind(&mut self, statement: &StatementSyntax) {
         match &statement.kind {
-            StatementKind::Var(var) => self.var(var),
-            StatementKind::Assign { access, value, .. } => {
+            StatementSyntaxKind::Var(var) => self.var(var),
+            StatementSyntaxKind::Assign { access, value, .. } => {
                 self.accesses(access);
                 self.expr(value);
             }
-            StatementKind::Call(call) => self.call(call),
-            StatementKind::Return(value) => self.maybe(value.as_ref()),
-            StatementKind::Error => {}
-            StatementKind::If { condition, then, otherwise } => {
+            StatementSyntaxKind::Call(call) => self.call(call),
+            StatementSyntaxKind::Return(value) => self.maybe(value.as_ref()),
+            StatementSyntaxKind::Error => {}
+            StatementSyntaxKind::If { condition, then, otherwise } => {
                 self.expr(condition);
                 self.block(condition.span.end, BlockKind::Steps);
                 then.iter().for_each(|s| self.statement(s));
                 self.else_statements(statement.span.end, otherwise);
             }
-            StatementKind::While { condition, body } => {
+            StatementSyntaxKind::While { condition, body } => {
                 self.expr(condition);
                 self.block(condition.span.end, BlockKind::Steps);
                 body.iter().for_each(|s| self.statement(s));
             }
-            StatementKind::For { range, body, .. } => {
+            StatementSyntaxKind::For { range, body, .. } => {
                 self.range(range);
                 self.block(range.span.end, BlockKind::Steps);
                 body.iter().for_each(|s| self.statement(s));
@@ -189,7 +195,7 @@ impl Marker<'_> {
         }
     }
 
-    fn else_statements(&mut self, end: u32, statements: &[Statement]) {
+    fn else_statements(&mut self, end: u32, statements: &[StatementSyntax]) {
         if let [statement] = statements
             && self.after_else(statement.span.start)
         {
@@ -199,32 +205,35 @@ impl Marker<'_> {
         statements.iter().for_each(|s| self.statement(s));
     }
 
-    fn accesses(&mut self, access: &[Access]) {
+    fn accesses(&mut self, access: &[AccessSyntax]) {
         for part in access {
             match part {
-                Access::Index(index) => self.expr(index),
-                Access::Field(_) => {}
+                AccessSyntax::Index(index) => self.expr(index),
+                AccessSyntax::Field(_) => {}
             }
         }
     }
 
-    pub(super) fn query(&mut self, query: &Query) {
+    pub(super) fn query(&mut self, query: &QuerySyntax) {
         match &query.ask {
-            Ask::Possibly(e) | Ask::Invariantly(e) | Ask::PotentiallyAlways(e) | Ask::Eventually(e) => {
+            FormulaSyntax::Possibly(e)
+            | FormulaSyntax::Invariantly(e)
+            | FormulaSyntax::PotentiallyAlways(e)
+            | FormulaSyntax::Eventually(e) => {
                 self.expr(e);
             }
-            Ask::LeadsTo(e, f) => {
+            FormulaSyntax::LeadsTo(e, f) => {
                 self.expr(e);
                 self.expr(f);
             }
-            Ask::Sup { when, of } | Ask::Inf { when, of } => {
+            FormulaSyntax::Sup { when, of } | FormulaSyntax::Inf { when, of } => {
                 self.maybe(when.as_ref());
                 of.iter().for_each(|e| self.expr(e));
             }
         }
     }
 
-    pub(super) fn edge(&mut self, edge: &Edge) {
+    pub(super) fn edge(&mut self, edge: &EdgeSyntax) {
         edge.selects.iter().for_each(|p| self.param(p));
         self.maybe(edge.guard.as_ref());
         edge.on.iter().for_each(|c| self.call(c));
@@ -339,8 +348,8 @@ impl Marker<'_> {
             }
             WorldMemberKind::Rule(rule) => {
                 match &rule.on {
-                    RuleOn::Event(call) => self.call(call),
-                    RuleOn::Commanded { .. } => {}
+                    RuleTriggerSyntax::Event(call) => self.call(call),
+                    RuleTriggerSyntax::Commanded { .. } => {}
                 }
                 self.maybe(rule.when.as_ref());
                 self.call(&rule.emit);

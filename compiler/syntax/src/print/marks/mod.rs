@@ -5,10 +5,10 @@ mod members;
 mod terms;
 
 use crate::ast::{
-    Cover, CrossMemberKind, Event, File, Item, ItemKind, PatternKind, Require, SampleRange, Stimulus,
-    StimulusStep, StimulusStepKind,
+    CoverSyntax, CrossMemberKind, EventSyntax, FileSyntax, ItemSyntax, ItemSyntaxKind, PatternKind,
+    RequireSyntax, SampleRange, StimulusStepKind, StimulusStepSyntax, StimulusSyntax,
 };
-use crate::token::{Kind, Lexeme};
+use crate::token::{Lexeme, TokenKind};
 
 /// What stands in a block, and what separates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub(in crate::print) enum BlockKind {
 
 /// What is known of a token.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::print) struct Mark {
+pub(in crate::print) struct TokenMark {
     /// Starts a declaration, a member, a step, an element of a block.
     pub start: bool,
     /// Starts an action of an edge.
@@ -43,8 +43,8 @@ pub(in crate::print) struct Mark {
 }
 
 /// One mark for each token of a text without faults.
-pub(in crate::print) fn marks(file: &File, tokens: &[Lexeme]) -> Vec<Mark> {
-    let mut marker = Marker { tokens, marks: vec![Mark::default(); tokens.len()] };
+pub(in crate::print) fn marks(file: &FileSyntax, tokens: &[Lexeme]) -> Vec<TokenMark> {
+    let mut marker = TokenMarker { tokens, marks: vec![TokenMark::default(); tokens.len()] };
     if let (Some(_), Some(first)) = (&file.scenario, marker.marks.first_mut()) {
         first.start = true;
     }
@@ -52,18 +52,18 @@ pub(in crate::print) fn marks(file: &File, tokens: &[Lexeme]) -> Vec<Mark> {
     marker.marks
 }
 
-struct Marker<'t> {
+struct TokenMarker<'t> {
     tokens: &'t [Lexeme],
-    marks: Vec<Mark>,
+    marks: Vec<TokenMark>,
 }
 
-impl Marker<'_> {
+impl TokenMarker<'_> {
     /// The first token that starts here or later.
     fn at(&self, offset: u32) -> usize {
         self.tokens.partition_point(|t| t.start < offset)
     }
 
-    fn set(&mut self, offset: u32, mark: impl FnOnce(&mut Mark)) {
+    fn set(&mut self, offset: u32, mark: impl FnOnce(&mut TokenMark)) {
         let at = self.at(offset);
         if let Some(found) = self.marks.get_mut(at) {
             mark(found);
@@ -77,7 +77,7 @@ impl Marker<'_> {
     /// The parenthesis right after a name.
     fn call_after(&mut self, end: u32) {
         let at = self.at(end);
-        if self.tokens.get(at).is_some_and(|t| t.kind == Kind::LParen) {
+        if self.tokens.get(at).is_some_and(|t| t.kind == TokenKind::LParen) {
             self.marks[at].call = true;
         }
     }
@@ -87,9 +87,9 @@ impl Marker<'_> {
         let mut depth = 0_usize;
         for at in self.at(offset)..self.tokens.len() {
             match self.tokens[at].kind {
-                Kind::LParen => depth += 1,
-                Kind::RParen => depth = depth.saturating_sub(1),
-                Kind::LBrace if depth == 0 => {
+                TokenKind::LParen => depth += 1,
+                TokenKind::RParen => depth = depth.saturating_sub(1),
+                TokenKind::LBrace if depth == 0 => {
                     self.marks[at].block = Some(kind);
                     return;
                 }
@@ -100,56 +100,56 @@ impl Marker<'_> {
 
     // ── Declarations ──
 
-    fn item(&mut self, item: &Item) {
+    fn item(&mut self, item: &ItemSyntax) {
         let start = item.span.start;
         self.start(start);
         match &item.kind {
-            ItemKind::Use(_)
-            | ItemKind::Allow(_)
-            | ItemKind::Actor { .. }
-            | ItemKind::Network { .. }
-            | ItemKind::Error => {}
-            ItemKind::Enum { values, .. } => {
+            ItemSyntaxKind::Use(_)
+            | ItemSyntaxKind::Allow(_)
+            | ItemSyntaxKind::Actor { .. }
+            | ItemSyntaxKind::Network { .. }
+            | ItemSyntaxKind::Error => {}
+            ItemSyntaxKind::Enum { values, .. } => {
                 self.block(start, BlockKind::List);
                 values.iter().for_each(|v| self.start(v.span.start));
             }
-            ItemKind::Record { fields, .. } => {
+            ItemSyntaxKind::Record { fields, .. } => {
                 self.block(start, BlockKind::List);
                 for field in fields {
                     self.start(field.name.span.start);
                     self.param(field);
                 }
             }
-            ItemKind::Const { value, .. } => self.expr(value),
-            ItemKind::Event(event) => self.event(event),
-            ItemKind::Stimulus(stimulus) => self.stimulus(start, stimulus),
-            ItemKind::Agent(agent) => {
+            ItemSyntaxKind::Const { value, .. } => self.expr(value),
+            ItemSyntaxKind::Event(event) => self.event(event),
+            ItemSyntaxKind::Stimulus(stimulus) => self.stimulus(start, stimulus),
+            ItemSyntaxKind::Agent(agent) => {
                 self.block(start, BlockKind::Members);
                 self.params(agent.name.span.end, agent.params.as_deref().unwrap_or_default());
                 agent.members.iter().for_each(|m| self.agent_member(m));
             }
-            ItemKind::Var(var) => self.var(var),
-            ItemKind::Automaton(automaton) => self.automaton(start, automaton),
-            ItemKind::Channel(channel) => {
+            ItemSyntaxKind::Var(var) => self.var(var),
+            ItemSyntaxKind::Automaton(automaton) => self.automaton(start, automaton),
+            ItemSyntaxKind::Channel(channel) => {
                 channel.names.iter().for_each(|name| self.params(name.name.span.end, &name.params));
             }
-            ItemKind::Function(function) => self.function(function),
-            ItemKind::Query(query) => self.query(query),
-            ItemKind::Require(require) => self.require(require),
-            ItemKind::Assume(assume) => {
+            ItemSyntaxKind::Function(function) => self.function(function),
+            ItemSyntaxKind::Query(query) => self.query(query),
+            ItemSyntaxKind::Require(require) => self.require(require),
+            ItemSyntaxKind::Assume(assume) => {
                 self.expr(&assume.at_most);
                 self.calls(&assume.events);
                 self.maybe(assume.within.as_ref());
             }
-            ItemKind::Cover(cover) => self.cover(cover),
-            ItemKind::Instance(instance) => self.args(instance.of.span.end, &instance.args),
-            ItemKind::Cross(_)
-            | ItemKind::Suite(_)
-            | ItemKind::Part(_)
-            | ItemKind::Device(_)
-            | ItemKind::World(_)
-            | ItemKind::System(_)
-            | ItemKind::Test(_) => {
+            ItemSyntaxKind::Cover(cover) => self.cover(cover),
+            ItemSyntaxKind::Instance(instance) => self.args(instance.of.span.end, &instance.args),
+            ItemSyntaxKind::Cross(_)
+            | ItemSyntaxKind::Suite(_)
+            | ItemSyntaxKind::Part(_)
+            | ItemSyntaxKind::Device(_)
+            | ItemSyntaxKind::World(_)
+            | ItemSyntaxKind::System(_)
+            | ItemSyntaxKind::Test(_) => {
                 self.block(start, BlockKind::Members);
                 self.simple_members(&item.kind);
             }
@@ -157,37 +157,37 @@ impl Marker<'_> {
     }
 
     /// The members of the declarations that hold nothing but one line each.
-    fn simple_members(&mut self, kind: &ItemKind) {
-        if let ItemKind::Cross(cross) = kind {
+    fn simple_members(&mut self, kind: &ItemSyntaxKind) {
+        if let ItemSyntaxKind::Cross(cross) = kind {
             self.params(cross.name.span.end, cross.params.as_deref().unwrap_or_default());
             for member in &cross.members {
                 self.start(member.span.start);
                 self.cross_member(&member.kind);
             }
         }
-        if let ItemKind::Suite(suite) = kind {
+        if let ItemSyntaxKind::Suite(suite) = kind {
             for member in &suite.members {
                 self.start(member.span.start);
                 self.suite_member(&member.kind);
             }
         }
-        if let ItemKind::Part(part) = kind {
+        if let ItemSyntaxKind::Part(part) = kind {
             self.params(part.name.span.end, part.params.as_deref().unwrap_or_default());
             part.members.iter().for_each(|m| self.world_member(m));
         }
-        if let ItemKind::Device(device) = kind {
+        if let ItemSyntaxKind::Device(device) = kind {
             device.members.iter().for_each(|m| self.device_member(m));
         }
-        if let ItemKind::World(world) = kind {
+        if let ItemSyntaxKind::World(world) = kind {
             world.members.iter().for_each(|m| self.world_member(m));
         }
-        if let ItemKind::System(system) = kind {
+        if let ItemSyntaxKind::System(system) = kind {
             for member in &system.members {
                 self.start(member.span.start);
                 self.system_member(&member.kind);
             }
         }
-        if let ItemKind::Test(test) = kind {
+        if let ItemSyntaxKind::Test(test) = kind {
             for member in &test.members {
                 self.start(member.span.start);
                 self.test_member(&member.kind);
@@ -195,13 +195,13 @@ impl Marker<'_> {
         }
     }
 
-    fn event(&mut self, event: &Event) {
+    fn event(&mut self, event: &EventSyntax) {
         for name in &event.names {
             self.params(name.name.span.end, &name.params);
         }
     }
 
-    fn require(&mut self, require: &Require) {
+    fn require(&mut self, require: &RequireSyntax) {
         self.params(require.name.span.end, require.params.as_deref().unwrap_or_default());
         self.set(require.pattern.span.start, |m| m.pattern = true);
         match &require.pattern.kind {
@@ -224,7 +224,7 @@ impl Marker<'_> {
         }
     }
 
-    fn cover(&mut self, cover: &Cover) {
+    fn cover(&mut self, cover: &CoverSyntax) {
         self.params(cover.name.span.end, cover.params.as_deref().unwrap_or_default());
         if let Some(first) = cover.count.first() {
             let before = self.at(first.span.start).saturating_sub(1);
@@ -245,18 +245,18 @@ impl Marker<'_> {
 
     // ── Stimuli ──
 
-    fn stimulus(&mut self, start: u32, stimulus: &Stimulus) {
+    fn stimulus(&mut self, start: u32, stimulus: &StimulusSyntax) {
         self.block(start, BlockKind::Members);
         self.params(stimulus.name.span.end, &stimulus.params);
         stimulus.body.iter().for_each(|s| self.stimulus_step(s));
     }
 
-    fn stimulus_step(&mut self, step: &StimulusStep) {
+    fn stimulus_step(&mut self, step: &StimulusStepSyntax) {
         self.start(step.span.start);
         self.stimulus_kind(step);
     }
 
-    fn stimulus_kind(&mut self, step: &StimulusStep) {
+    fn stimulus_kind(&mut self, step: &StimulusStepSyntax) {
         match &step.kind {
             StimulusStepKind::Sample { range, .. } => self.sample(range),
             StimulusStepKind::Emit(call) => self.call(call),
@@ -273,7 +273,7 @@ impl Marker<'_> {
     }
 
     /// What follows `else`: another choice, or a block that ends with the step.
-    fn otherwise(&mut self, end: u32, steps: &[StimulusStep]) {
+    fn otherwise(&mut self, end: u32, steps: &[StimulusStepSyntax]) {
         if let [step] = steps
             && self.after_else(step.span.start)
         {
@@ -284,7 +284,7 @@ impl Marker<'_> {
     }
 
     fn after_else(&self, offset: u32) -> bool {
-        self.at(offset).checked_sub(1).is_some_and(|at| self.tokens[at].kind == Kind::Else)
+        self.at(offset).checked_sub(1).is_some_and(|at| self.tokens[at].kind == TokenKind::Else)
     }
 
     /// The block after `else` that ends here, if there is one.
@@ -292,7 +292,7 @@ impl Marker<'_> {
         let last = self.at(end).saturating_sub(1);
         if let Some(open) = self.opening(last)
             && open > 0
-            && self.tokens[open - 1].kind == Kind::Else
+            && self.tokens[open - 1].kind == TokenKind::Else
         {
             self.marks[open].block = Some(kind);
         }
@@ -303,8 +303,8 @@ impl Marker<'_> {
         let mut depth = 0_usize;
         for at in (0..=close).rev() {
             match self.tokens[at].kind {
-                Kind::RBrace => depth += 1,
-                Kind::LBrace => {
+                TokenKind::RBrace => depth += 1,
+                TokenKind::LBrace => {
                     depth = depth.checked_sub(1)?;
                     if depth == 0 {
                         return Some(at);
@@ -321,8 +321,8 @@ impl Marker<'_> {
         let mut depth = 0_usize;
         for (at, token) in self.tokens.iter().enumerate().skip(open) {
             match token.kind {
-                Kind::LBrace => depth += 1,
-                Kind::RBrace => {
+                TokenKind::LBrace => depth += 1,
+                TokenKind::RBrace => {
                     depth = depth.checked_sub(1)?;
                     if depth == 0 {
                         return Some(at);

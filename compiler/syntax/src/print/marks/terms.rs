@@ -1,36 +1,38 @@
 //! Calls, parameters, types and expressions.
 
-use crate::ast::{Call, Expr, ExprKind, Literal, Param, Range, TypeExpr, UnaryOp};
-use crate::print::marks::Marker;
-use crate::token::Kind;
+use crate::ast::{
+    CallSyntax, ExprSyntax, ExprSyntaxKind, LiteralSyntax, ParamSyntax, RangeSyntax, TypeExpr, UnaryOp,
+};
+use crate::print::marks::TokenMarker;
+use crate::token::TokenKind;
 
-impl Marker<'_> {
-    pub(super) fn call(&mut self, call: &Call) {
+impl TokenMarker<'_> {
+    pub(super) fn call(&mut self, call: &CallSyntax) {
         if let Some(args) = &call.args {
             self.args(call.name.span.end, args);
         }
     }
 
-    pub(super) fn literal(&mut self, literal: &Literal) {
+    pub(super) fn literal(&mut self, literal: &LiteralSyntax) {
         self.call(&literal.call);
         literal.annotations.iter().for_each(|a| self.expr(a));
     }
 
-    pub(super) fn calls(&mut self, calls: &[Call]) {
+    pub(super) fn calls(&mut self, calls: &[CallSyntax]) {
         calls.iter().for_each(|c| self.call(c));
     }
 
-    pub(super) fn args(&mut self, name_end: u32, args: &[Expr]) {
+    pub(super) fn args(&mut self, name_end: u32, args: &[ExprSyntax]) {
         self.call_after(name_end);
         args.iter().for_each(|a| self.expr(a));
     }
 
-    pub(super) fn params(&mut self, name_end: u32, params: &[Param]) {
+    pub(super) fn params(&mut self, name_end: u32, params: &[ParamSyntax]) {
         self.call_after(name_end);
         params.iter().for_each(|p| self.param(p));
     }
 
-    pub(super) fn param(&mut self, param: &Param) {
+    pub(super) fn param(&mut self, param: &ParamSyntax) {
         self.ty(&param.ty);
     }
 
@@ -46,74 +48,74 @@ impl Marker<'_> {
         }
     }
 
-    pub(super) fn range(&mut self, range: &Range) {
+    pub(super) fn range(&mut self, range: &RangeSyntax) {
         self.range_of(&range.lo, range.hi.as_ref(), range.hi.is_none());
     }
 
-    pub(super) fn range_of(&mut self, lo: &Expr, hi: Option<&Expr>, open: bool) {
+    pub(super) fn range_of(&mut self, lo: &ExprSyntax, hi: Option<&ExprSyntax>, open: bool) {
         self.expr(lo);
         self.maybe(hi);
         if (open || hi.is_some()) && small(lo) && hi.is_none_or(small) {
             let at = self.at(lo.span.end);
-            if self.tokens.get(at).is_some_and(|t| t.kind == Kind::DotDot) {
+            if self.tokens.get(at).is_some_and(|t| t.kind == TokenKind::DotDot) {
                 self.marks[at].tight = true;
             }
         }
     }
 
-    pub(super) fn maybe(&mut self, expr: Option<&Expr>) {
+    pub(super) fn maybe(&mut self, expr: Option<&ExprSyntax>) {
         if let Some(expr) = expr {
             self.expr(expr);
         }
     }
 
-    pub(super) fn expr(&mut self, expr: &Expr) {
+    pub(super) fn expr(&mut self, expr: &ExprSyntax) {
         match &expr.kind {
-            ExprKind::Bool(_)
-            | ExprKind::Int(_)
-            | ExprKind::Float(_)
-            | ExprKind::Quantity { .. }
-            | ExprKind::Any
-            | ExprKind::Text(_)
-            | ExprKind::Path(_)
-            | ExprKind::Error => {}
-            ExprKind::Call { callee, args } => self.args(callee.span.end, args),
-            ExprKind::Index { of, index } => {
+            ExprSyntaxKind::Bool(_)
+            | ExprSyntaxKind::Int(_)
+            | ExprSyntaxKind::Float(_)
+            | ExprSyntaxKind::Quantity { .. }
+            | ExprSyntaxKind::Any
+            | ExprSyntaxKind::Text(_)
+            | ExprSyntaxKind::Path(_)
+            | ExprSyntaxKind::Error => {}
+            ExprSyntaxKind::Call { callee, args } => self.args(callee.span.end, args),
+            ExprSyntaxKind::Index { of, index } => {
                 self.expr(of);
                 self.expr(index);
             }
-            ExprKind::Field { of, .. } => self.expr(of),
-            ExprKind::Unary { op, operand } => {
+            ExprSyntaxKind::Field { of, .. } => self.expr(of),
+            ExprSyntaxKind::Unary { op, operand } => {
                 if *op == UnaryOp::Neg {
                     self.sign(expr.span.start);
                 }
                 self.expr(operand);
             }
-            ExprKind::Binary { left, right, .. } => {
+            ExprSyntaxKind::Binary { left, right, .. } => {
                 self.expr(left);
                 self.expr(right);
             }
-            ExprKind::If { condition, then, otherwise } => {
+            ExprSyntaxKind::If { condition, then, otherwise } => {
                 self.expr(condition);
                 self.expr(then);
                 self.expr(otherwise);
             }
-            ExprKind::Tuple(parts) => parts.iter().for_each(|p| self.expr(p)),
-            ExprKind::List { items, rest } => {
+            ExprSyntaxKind::Tuple(parts) => parts.iter().for_each(|p| self.expr(p)),
+            ExprSyntaxKind::List { items, rest } => {
                 self.apart(expr.span.start);
                 items.iter().for_each(|i| self.expr(i));
                 self.maybe(rest.as_deref());
             }
-            ExprKind::Strong(of) => {
+            ExprSyntaxKind::Strong(of) => {
                 self.sign(expr.span.start);
                 self.expr(of);
             }
-            ExprKind::Annotated { of, annotations } => {
+            ExprSyntaxKind::Annotated { of, annotations } => {
                 self.expr(of);
                 annotations.iter().for_each(|a| self.expr(a));
             }
-            ExprKind::Internal(call) => self.call(call),
-            ExprKind::Unify { left, right } => {
+            ExprSyntaxKind::Internal(call) => self.call(call),
+            ExprSyntaxKind::Unify { left, right } => {
                 self.expr(left);
                 self.expr(right);
             }
@@ -138,34 +140,34 @@ impl Marker<'_> {
 
     fn within_parentheses(&self, offset: u32) -> usize {
         let from = self.at(offset);
-        let parentheses = self.tokens[from..].iter().take_while(|t| t.kind == Kind::LParen).count();
+        let parentheses = self.tokens[from..].iter().take_while(|t| t.kind == TokenKind::LParen).count();
         from + parentheses
     }
 }
 
 /// Needs no blanks around its `..`.
-fn small(expr: &Expr) -> bool {
+fn small(expr: &ExprSyntax) -> bool {
     match &expr.kind {
-        ExprKind::Int(_) => true,
-        ExprKind::Path(path) => path.names.len() == 1,
-        ExprKind::Unary { op: UnaryOp::Neg, operand } => matches!(operand.kind, ExprKind::Int(_)),
-        ExprKind::Unary { op: UnaryOp::Not, .. }
-        | ExprKind::Bool(_)
-        | ExprKind::Float(_)
-        | ExprKind::Quantity { .. }
-        | ExprKind::Any
-        | ExprKind::Call { .. }
-        | ExprKind::Index { .. }
-        | ExprKind::Field { .. }
-        | ExprKind::Binary { .. }
-        | ExprKind::If { .. }
-        | ExprKind::Tuple(_)
-        | ExprKind::Text(_)
-        | ExprKind::List { .. }
-        | ExprKind::Strong(_)
-        | ExprKind::Annotated { .. }
-        | ExprKind::Internal(_)
-        | ExprKind::Unify { .. }
-        | ExprKind::Error => false,
+        ExprSyntaxKind::Int(_) => true,
+        ExprSyntaxKind::Path(path) => path.names.len() == 1,
+        ExprSyntaxKind::Unary { op: UnaryOp::Neg, operand } => matches!(operand.kind, ExprSyntaxKind::Int(_)),
+        ExprSyntaxKind::Unary { op: UnaryOp::Not, .. }
+        | ExprSyntaxKind::Bool(_)
+        | ExprSyntaxKind::Float(_)
+        | ExprSyntaxKind::Quantity { .. }
+        | ExprSyntaxKind::Any
+        | ExprSyntaxKind::Call { .. }
+        | ExprSyntaxKind::Index { .. }
+        | ExprSyntaxKind::Field { .. }
+        | ExprSyntaxKind::Binary { .. }
+        | ExprSyntaxKind::If { .. }
+        | ExprSyntaxKind::Tuple(_)
+        | ExprSyntaxKind::Text(_)
+        | ExprSyntaxKind::List { .. }
+        | ExprSyntaxKind::Strong(_)
+        | ExprSyntaxKind::Annotated { .. }
+        | ExprSyntaxKind::Internal(_)
+        | ExprSyntaxKind::Unify { .. }
+        | ExprSyntaxKind::Error => false,
     }
 }

@@ -80,7 +80,7 @@ fn fire(zone: &LocalZone, shot: &Shot) -> Option<LocalZone> {
 }
 
 /// The same operations, each with a closure from scratch.
-fn close(d: &mut [Bound], n: usize) -> bool {
+fn close(d: &mut [LocalZoneBound], n: usize) -> bool {
     for k in 0..n {
         for i in 0..n {
             for j in 0..n {
@@ -135,7 +135,7 @@ fn fire_slowly(zone: &LocalZone, shot: &Shot) -> Option<LocalZone> {
     close(&mut d, n).then_some(LocalZone { processes: PROCESSES, n, d })
 }
 
-fn synchronise_slowly(zone: &LocalZone) -> Option<Vec<Bound>> {
+fn synchronise_slowly(zone: &LocalZone) -> Option<Vec<LocalZoneBound>> {
     let n = zone.n;
     let mut d = zone.d.clone();
     for p in 0..PROCESSES {

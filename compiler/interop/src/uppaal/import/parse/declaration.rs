@@ -1,15 +1,18 @@
 //! Declarations, types and parameters.
 
-use super::{Parsed, Parser, is_keyword};
+use super::{UppaalParseResult, UppaalParser, is_keyword};
 use crate::uppaal::import::{
-    ast::{Base, Decl, Declarator, Dim, Expr, Function, Init, Instance, Param, Type},
+    ast::{
+        UppaalBaseType, UppaalDeclaration, UppaalDeclarator, UppaalDimension, UppaalExpr, UppaalFunction,
+        UppaalInitializer, UppaalInstance, UppaalParameter, UppaalType,
+    },
     fault::unsupported,
-    lex::Tok,
+    lex::UppaalTokenKind,
 };
 
-impl Parser {
+impl UppaalParser {
     /// Declarations up to the end of the piece; those of the system, too.
-    pub fn declarations(&mut self) -> Parsed<Vec<Decl>> {
+    pub fn declarations(&mut self) -> UppaalParseResult<Vec<UppaalDeclaration>> {
         let mut all = Vec::new();
         while !self.at_end() {
             if !self.take(";") {
@@ -19,18 +22,21 @@ impl Parser {
         Ok(all)
     }
 
-    pub(super) fn declaration(&mut self) -> Parsed<Decl> {
+    pub(super) fn declaration(&mut self) -> UppaalParseResult<UppaalDeclaration> {
         self.supported()?;
         if self.take_word("typedef") {
             let ty = self.ty()?;
             let declarator = self.declarator()?;
             self.expect(";")?;
-            return Ok(Decl::Typedef(ty, declarator));
+            return Ok(UppaalDeclaration::Typedef(ty, declarator));
         }
         if self.take_word("system") {
             return self.system();
         }
-        if matches!((self.peek(), self.ahead(1)), (Tok::Word(_), Tok::Mark("=" | ":=" | "("))) {
+        if matches!(
+            (self.peek(), self.ahead(1)),
+            (UppaalTokenKind::Word(_), UppaalTokenKind::Mark("=" | ":=" | "("))
+        ) {
             return self.instance();
         }
         let start = self.span();
@@ -38,21 +44,27 @@ impl Parser {
         if self.is_word("priority") {
             return Err(unsupported(self.span(), "priorities of channels (`chan priority`)"));
         }
-        if matches!((self.peek(), self.ahead(1)), (Tok::Word(_), Tok::Mark("("))) {
+        if matches!((self.peek(), self.ahead(1)), (UppaalTokenKind::Word(_), UppaalTokenKind::Mark("("))) {
             let (name, _) = self.name("a name")?;
             let params = self.params_in_parentheses()?;
             let body = self.block()?;
-            return Ok(Decl::Function(Function { ty, name, params, body, span: start.to(self.last()) }));
+            return Ok(UppaalDeclaration::Function(UppaalFunction {
+                ty,
+                name,
+                params,
+                body,
+                span: start.to(self.last()),
+            }));
         }
         let mut declarators = vec![self.declarator()?];
         while self.take(",") {
             declarators.push(self.declarator()?);
         }
         self.expect(";")?;
-        Ok(Decl::Vars(ty, declarators))
+        Ok(UppaalDeclaration::Vars(ty, declarators))
     }
 
-    pub(super) fn system(&mut self) -> Parsed<Decl> {
+    pub(super) fn system(&mut self) -> UppaalParseResult<UppaalDeclaration> {
         let mut names = vec![self.name("a process")?];
         while !self.take(";") {
             if self.is("<") {
@@ -61,10 +73,10 @@ impl Parser {
             self.expect(",")?;
             names.push(self.name("a process")?);
         }
-        Ok(Decl::System(names))
+        Ok(UppaalDeclaration::System(names))
     }
 
-    pub(super) fn instance(&mut self) -> Parsed<Decl> {
+    pub(super) fn instance(&mut self) -> UppaalParseResult<UppaalDeclaration> {
         let (name, span) = self.name("the name of a process")?;
         let params = if self.is("(") { self.params_in_parentheses()? } else { Vec::new() };
         if !self.take(":=") {
@@ -75,10 +87,10 @@ impl Parser {
         let args = self.list(")")?;
         self.expect(")")?;
         self.expect(";")?;
-        Ok(Decl::Instance(Instance { name, params, of, args, span }))
+        Ok(UppaalDeclaration::Instance(UppaalInstance { name, params, of, args, span }))
     }
 
-    pub(super) fn ty(&mut self) -> Parsed<Type> {
+    pub(super) fn ty(&mut self) -> UppaalParseResult<UppaalType> {
         let span = self.span();
         let (mut constant, mut urgent, mut broadcast) = (false, false, false);
         loop {
@@ -97,31 +109,35 @@ impl Parser {
         let untyped = constant
             && matches!(
                 (self.peek(), self.ahead(1)),
-                (Tok::Word(_), Tok::Int(_) | Tok::Mark("=" | ":=" | "-"))
+                (UppaalTokenKind::Word(_), UppaalTokenKind::Int(_) | UppaalTokenKind::Mark("=" | ":=" | "-"))
             );
-        let base = if untyped { Base::Int(None) } else { self.base()? };
-        Ok(Type { constant, urgent, broadcast, base, span: span.to(self.last()) })
+        let base = if untyped { UppaalBaseType::Int(None) } else { self.base()? };
+        Ok(UppaalType { constant, urgent, broadcast, base, span: span.to(self.last()) })
     }
 
-    pub(super) fn base(&mut self) -> Parsed<Base> {
-        let Tok::Word(word) = self.peek().clone() else { return Err(self.fault("a type")) };
+    pub(super) fn base(&mut self) -> UppaalParseResult<UppaalBaseType> {
+        let UppaalTokenKind::Word(word) = self.peek().clone() else { return Err(self.fault("a type")) };
         let base = match word.as_str() {
             "int" => {
                 self.next();
-                return Ok(Base::Int(if self.take("[") { Some(Box::new(self.bounds()?)) } else { None }));
+                return Ok(UppaalBaseType::Int(if self.take("[") {
+                    Some(Box::new(self.bounds()?))
+                } else {
+                    None
+                }));
             }
-            "bool" => Base::Bool,
-            "clock" => Base::Clock,
-            "chan" => Base::Chan,
-            "void" => Base::Void,
+            "bool" => UppaalBaseType::Bool,
+            "clock" => UppaalBaseType::Clock,
+            "chan" => UppaalBaseType::Chan,
+            "void" => UppaalBaseType::Void,
             w if is_keyword(w) => return Err(self.fault("a type")),
-            _ => Base::Named(word),
+            _ => UppaalBaseType::Named(word),
         };
         self.next();
         Ok(base)
     }
 
-    pub(super) fn bounds(&mut self) -> Parsed<(Expr, Expr)> {
+    pub(super) fn bounds(&mut self) -> UppaalParseResult<(UppaalExpr, UppaalExpr)> {
         let lo = self.expr()?;
         self.expect(",")?;
         let hi = self.expr()?;
@@ -129,34 +145,38 @@ impl Parser {
         Ok((lo, hi))
     }
 
-    pub(super) fn dims(&mut self) -> Parsed<Vec<Dim>> {
+    pub(super) fn dims(&mut self) -> UppaalParseResult<Vec<UppaalDimension>> {
         let mut dims = Vec::new();
         while self.take("[") {
             self.supported()?;
             let is_type = self.is_word("int") || self.is_word("bool");
-            dims.push(if is_type { Dim::Of(self.ty()?) } else { Dim::Size(self.expr()?) });
+            dims.push(if is_type {
+                UppaalDimension::Of(self.ty()?)
+            } else {
+                UppaalDimension::Size(self.expr()?)
+            });
             self.expect("]")?;
         }
         Ok(dims)
     }
 
-    pub(super) fn declarator(&mut self) -> Parsed<Declarator> {
+    pub(super) fn declarator(&mut self) -> UppaalParseResult<UppaalDeclarator> {
         let (name, span) = self.name("a name")?;
         let dims = self.dims()?;
-        let old_constant = matches!(self.peek(), Tok::Int(_));
+        let old_constant = matches!(self.peek(), UppaalTokenKind::Int(_));
         let init = if self.take("=") || self.take(":=") || old_constant { Some(self.init()?) } else { None };
-        Ok(Declarator { name, span, dims, init })
+        Ok(UppaalDeclarator { name, span, dims, init })
     }
 
-    pub(super) fn init(&mut self) -> Parsed<Init> {
+    pub(super) fn init(&mut self) -> UppaalParseResult<UppaalInitializer> {
         let start = self.span();
         if !self.take("{") {
-            return Ok(Init::One(self.expr()?));
+            return Ok(UppaalInitializer::One(self.expr()?));
         }
         self.deeper(|p| {
             let mut all = Vec::new();
             while !p.is("}") {
-                if matches!((p.peek(), p.ahead(1)), (Tok::Word(_), Tok::Mark(":"))) {
+                if matches!((p.peek(), p.ahead(1)), (UppaalTokenKind::Word(_), UppaalTokenKind::Mark(":"))) {
                     return Err(unsupported(p.span(), "records (`struct`)"));
                 }
                 all.push(p.init()?);
@@ -165,11 +185,11 @@ impl Parser {
                 }
             }
             p.expect("}")?;
-            Ok(Init::List(all, start.to(p.last())))
+            Ok(UppaalInitializer::List(all, start.to(p.last())))
         })
     }
 
-    pub(super) fn params_in_parentheses(&mut self) -> Parsed<Vec<Param>> {
+    pub(super) fn params_in_parentheses(&mut self) -> UppaalParseResult<Vec<UppaalParameter>> {
         self.expect("(")?;
         let params = self.params(")")?;
         self.expect(")")?;
@@ -177,13 +197,13 @@ impl Parser {
     }
 
     /// Parameters up to a mark, or to the end.
-    pub fn params(&mut self, close: &str) -> Parsed<Vec<Param>> {
-        let mut params: Vec<Param> = Vec::new();
+    pub fn params(&mut self, close: &str) -> UppaalParseResult<Vec<UppaalParameter>> {
+        let mut params: Vec<UppaalParameter> = Vec::new();
         while !self.at_end() && !self.is(close) {
             // `int a, b` of the old language repeats no type.
             let repeats = matches!(
                 (self.peek(), self.ahead(1)),
-                (Tok::Word(w), Tok::Mark("," | ";" | ")") | Tok::End) if !is_keyword(w)
+                (UppaalTokenKind::Word(w), UppaalTokenKind::Mark("," | ";" | ")") | UppaalTokenKind::End) if !is_keyword(w)
             );
             let before = params.last().filter(|_| repeats).map(|p| (p.ty.clone(), p.by_reference));
             let ty = match &before {
@@ -193,7 +213,7 @@ impl Parser {
             let by_reference = self.take("&") || before.is_some_and(|(_, r)| r);
             let (name, span) = self.name("the name of a parameter")?;
             let dims = self.dims()?;
-            params.push(Param { ty, by_reference, name, dims, span });
+            params.push(UppaalParameter { ty, by_reference, name, dims, span });
             if !self.take(",") && !self.take(";") {
                 break;
             }

@@ -7,18 +7,18 @@ mod statement;
 use hrdsl_source::Span;
 
 use super::{
-    ast::{Expr, Select, Sync},
-    fault::{Fault, unsupported},
-    lex::{Piece, Tok, Token, lex},
+    ast::{UppaalExpr, UppaalSelect, UppaalSync},
+    fault::{UppaalFault, unsupported},
+    lex::{UppaalFragment, UppaalToken, UppaalTokenKind, lex},
 };
 
 /// How deep expressions and statements may be nested.
 const MAX_DEPTH: usize = 60;
 
-type Parsed<T> = Result<T, Fault>;
+type UppaalParseResult<T> = Result<T, UppaalFault>;
 
-pub struct Parser {
-    tokens: Vec<Token>,
+pub struct UppaalParser {
+    tokens: Vec<UppaalToken>,
     at: usize,
     depth: usize,
     /// Operators of the expression that is being read: they are as high as the expression can be.
@@ -47,19 +47,19 @@ const UNSUPPORTED: &[(&str, &str)] = &[
     ("priority", "priorities of channels (`chan priority`)"),
 ];
 
-impl Parser {
-    pub fn new(piece: &Piece) -> Parsed<Self> {
+impl UppaalParser {
+    pub fn new(piece: &UppaalFragment) -> UppaalParseResult<Self> {
         Ok(Self { tokens: lex(piece)?, at: 0, depth: 0, operators: 0 })
     }
 
     // ── Tokens ──
 
-    fn peek(&self) -> &Tok {
+    fn peek(&self) -> &UppaalTokenKind {
         self.ahead(0)
     }
 
-    fn ahead(&self, n: usize) -> &Tok {
-        self.tokens.get(self.at + n).map_or(&Tok::End, |t| &t.tok)
+    fn ahead(&self, n: usize) -> &UppaalTokenKind {
+        self.tokens.get(self.at + n).map_or(&UppaalTokenKind::End, |t| &t.tok)
     }
 
     fn span(&self) -> Span {
@@ -76,11 +76,11 @@ impl Parser {
     }
 
     fn is(&self, mark: &str) -> bool {
-        matches!(self.peek(), Tok::Mark(m) if *m == mark)
+        matches!(self.peek(), UppaalTokenKind::Mark(m) if *m == mark)
     }
 
     fn is_word(&self, word: &str) -> bool {
-        matches!(self.peek(), Tok::Word(w) if w == word)
+        matches!(self.peek(), UppaalTokenKind::Word(w) if w == word)
     }
 
     fn take(&mut self, mark: &str) -> bool {
@@ -99,47 +99,50 @@ impl Parser {
         found
     }
 
-    fn fault(&self, expected: &str) -> Fault {
+    fn fault(&self, expected: &str) -> UppaalFault {
         let message = format!("expected {expected}, found {}", self.peek().shown());
-        Fault { span: self.span(), message }
+        UppaalFault { span: self.span(), message }
     }
 
-    fn expect(&mut self, mark: &str) -> Parsed<()> {
+    fn expect(&mut self, mark: &str) -> UppaalParseResult<()> {
         if self.take(mark) { Ok(()) } else { Err(self.fault(&format!("`{mark}`"))) }
     }
 
-    fn name(&mut self, what: &str) -> Parsed<(String, Span)> {
+    fn name(&mut self, what: &str) -> UppaalParseResult<(String, Span)> {
         self.supported()?;
         match self.peek() {
-            Tok::Word(w) if !is_keyword(w) => {
+            UppaalTokenKind::Word(w) if !is_keyword(w) => {
                 let out = (w.clone(), self.span());
                 self.next();
                 Ok(out)
             }
-            Tok::Word(_) | Tok::Int(_) | Tok::Mark(_) | Tok::End => Err(self.fault(what)),
+            UppaalTokenKind::Word(_)
+            | UppaalTokenKind::Int(_)
+            | UppaalTokenKind::Mark(_)
+            | UppaalTokenKind::End => Err(self.fault(what)),
         }
     }
 
     /// Nothing follows.
-    pub fn end(&self) -> Parsed<()> {
-        if *self.peek() == Tok::End { Ok(()) } else { Err(self.fault("the end")) }
+    pub fn end(&self) -> UppaalParseResult<()> {
+        if *self.peek() == UppaalTokenKind::End { Ok(()) } else { Err(self.fault("the end")) }
     }
 
     pub fn at_end(&self) -> bool {
-        *self.peek() == Tok::End
+        *self.peek() == UppaalTokenKind::End
     }
 
-    fn supported(&self) -> Parsed<()> {
-        let Tok::Word(word) = self.peek() else { return Ok(()) };
+    fn supported(&self) -> UppaalParseResult<()> {
+        let UppaalTokenKind::Word(word) = self.peek() else { return Ok(()) };
         match UNSUPPORTED.iter().find(|(w, _)| w == word) {
             Some((_, what)) => Err(unsupported(self.span(), what)),
             None => Ok(()),
         }
     }
 
-    fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+    fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> UppaalParseResult<T>) -> UppaalParseResult<T> {
         if self.depth == MAX_DEPTH {
-            return Err(Fault { span: self.span(), message: "this is nested too deeply".to_owned() });
+            return Err(UppaalFault { span: self.span(), message: "this is nested too deeply".to_owned() });
         }
         self.depth += 1;
         let out = parse(self);
@@ -150,7 +153,7 @@ impl Parser {
     // ── Labels ──
 
     /// Expressions separated by commas, none if `close` is next.
-    pub fn list(&mut self, close: &str) -> Parsed<Vec<Expr>> {
+    pub fn list(&mut self, close: &str) -> UppaalParseResult<Vec<UppaalExpr>> {
         let mut all = Vec::new();
         if self.is(close) || self.at_end() {
             return Ok(all);
@@ -163,12 +166,12 @@ impl Parser {
         }
     }
 
-    pub fn selects(&mut self) -> Parsed<Vec<Select>> {
+    pub fn selects(&mut self) -> UppaalParseResult<Vec<UppaalSelect>> {
         let mut all = Vec::new();
         while !self.at_end() {
             let (name, span) = self.name("the name of what is selected")?;
             self.expect(":")?;
-            all.push(Select { name, ty: self.ty()?, span });
+            all.push(UppaalSelect { name, ty: self.ty()?, span });
             if !self.take(",") && !self.take(";") {
                 break;
             }
@@ -176,24 +179,24 @@ impl Parser {
         Ok(all)
     }
 
-    pub fn sync(&mut self) -> Parsed<Sync> {
+    pub fn sync(&mut self) -> UppaalParseResult<UppaalSync> {
         let channel = self.postfix()?;
         let offers = self.take("!");
         if !offers && !self.take("?") {
             return Err(self.fault("`!` or `?`"));
         }
-        Ok(Sync { channel, offers })
+        Ok(UppaalSync { channel, offers })
     }
 
     /// `f --> g`, or `f` alone.
-    pub fn leads_to(&mut self) -> Parsed<(Expr, Option<Expr>)> {
+    pub fn leads_to(&mut self) -> UppaalParseResult<(UppaalExpr, Option<UppaalExpr>)> {
         let left = self.expr()?;
         let right = if self.take("-->") { Some(self.expr()?) } else { None };
         Ok((left, right))
     }
 
     /// `{ f } : a, b` or `: a, b`
-    pub fn measures(&mut self) -> Parsed<(Option<Expr>, Vec<Expr>)> {
+    pub fn measures(&mut self) -> UppaalParseResult<(Option<UppaalExpr>, Vec<UppaalExpr>)> {
         let when = if self.take("{") {
             let f = self.expr()?;
             self.expect("}")?;

@@ -1,13 +1,13 @@
 //! Statements of functions.
 
-use super::{Parsed, Parser, is_keyword};
+use super::{UppaalParseResult, UppaalParser, is_keyword};
 use crate::uppaal::import::{
-    ast::{Expr, Statement, StatementKind},
-    lex::Tok,
+    ast::{UppaalExpr, UppaalStatement, UppaalStatementKind},
+    lex::UppaalTokenKind,
 };
 
-impl Parser {
-    pub(super) fn block(&mut self) -> Parsed<Vec<Statement>> {
+impl UppaalParser {
+    pub(super) fn block(&mut self) -> UppaalParseResult<Vec<UppaalStatement>> {
         self.expect("{")?;
         let mut all = Vec::new();
         while !self.take("}") {
@@ -19,32 +19,32 @@ impl Parser {
         Ok(all)
     }
 
-    pub(super) fn boxed(&mut self) -> Parsed<Box<Statement>> {
+    pub(super) fn boxed(&mut self) -> UppaalParseResult<Box<UppaalStatement>> {
         self.deeper(Self::statement).map(Box::new)
     }
 
-    pub(super) fn statement(&mut self) -> Parsed<Statement> {
+    pub(super) fn statement(&mut self) -> UppaalParseResult<UppaalStatement> {
         let start = self.span();
         self.supported()?;
         let kind = self.statement_kind()?;
-        Ok(Statement { kind, span: start.to(self.last()) })
+        Ok(UppaalStatement { kind, span: start.to(self.last()) })
     }
 
-    pub(super) fn statement_kind(&mut self) -> Parsed<StatementKind> {
+    pub(super) fn statement_kind(&mut self) -> UppaalParseResult<UppaalStatementKind> {
         if self.is("{") {
-            return Ok(StatementKind::Block(self.block()?));
+            return Ok(UppaalStatementKind::Block(self.block()?));
         }
         if self.take(";") {
-            return Ok(StatementKind::Empty);
+            return Ok(UppaalStatementKind::Empty);
         }
         if self.take_word("if") {
             let condition = self.parenthesised()?;
             let then = self.boxed()?;
             let otherwise = if self.take_word("else") { Some(self.boxed()?) } else { None };
-            return Ok(StatementKind::If(condition, then, otherwise));
+            return Ok(UppaalStatementKind::If(condition, then, otherwise));
         }
         if self.take_word("while") {
-            return Ok(StatementKind::While(self.parenthesised()?, self.boxed()?));
+            return Ok(UppaalStatementKind::While(self.parenthesised()?, self.boxed()?));
         }
         if self.take_word("do") {
             let body = self.boxed()?;
@@ -53,7 +53,7 @@ impl Parser {
             }
             let condition = self.parenthesised()?;
             self.expect(";")?;
-            return Ok(StatementKind::DoWhile(body, condition));
+            return Ok(UppaalStatementKind::DoWhile(body, condition));
         }
         if self.take_word("for") {
             return self.for_statement();
@@ -61,14 +61,14 @@ impl Parser {
         if self.take_word("return") {
             let value = if self.is(";") { None } else { Some(self.expr()?) };
             self.expect(";")?;
-            return Ok(StatementKind::Return(value));
+            return Ok(UppaalStatementKind::Return(value));
         }
         let starts_type =
             ["const", "int", "bool", "clock", "chan", "typedef"].iter().any(|w| self.is_word(w));
         if starts_type
-            || matches!((self.peek(), self.ahead(1)), (Tok::Word(_), Tok::Word(w)) if !is_keyword(w))
+            || matches!((self.peek(), self.ahead(1)), (UppaalTokenKind::Word(_), UppaalTokenKind::Word(w)) if !is_keyword(w))
         {
-            return Ok(StatementKind::Decl(self.declaration()?));
+            return Ok(UppaalStatementKind::Decl(self.declaration()?));
         }
         let mut all = vec![self.expr()?];
         while self.take(",") {
@@ -76,21 +76,21 @@ impl Parser {
         }
         self.expect(";")?;
         Ok(if all.len() == 1 {
-            StatementKind::Expr(all.swap_remove(0))
+            UppaalStatementKind::Expr(all.swap_remove(0))
         } else {
-            let each = |e: Expr| Statement { span: e.span, kind: StatementKind::Expr(e) };
-            StatementKind::Block(all.into_iter().map(each).collect())
+            let each = |e: UppaalExpr| UppaalStatement { span: e.span, kind: UppaalStatementKind::Expr(e) };
+            UppaalStatementKind::Block(all.into_iter().map(each).collect())
         })
     }
 
-    pub(super) fn for_statement(&mut self) -> Parsed<StatementKind> {
+    pub(super) fn for_statement(&mut self) -> UppaalParseResult<UppaalStatementKind> {
         self.expect("(")?;
-        if matches!((self.peek(), self.ahead(1)), (Tok::Word(_), Tok::Mark(":"))) {
+        if matches!((self.peek(), self.ahead(1)), (UppaalTokenKind::Word(_), UppaalTokenKind::Mark(":"))) {
             let (name, _) = self.name("a name")?;
             self.expect(":")?;
             let ty = self.ty()?;
             self.expect(")")?;
-            return Ok(StatementKind::ForRange(name, ty, self.boxed()?));
+            return Ok(UppaalStatementKind::ForRange(name, ty, self.boxed()?));
         }
         let init = self.list(";")?;
         self.expect(";")?;
@@ -98,10 +98,10 @@ impl Parser {
         self.expect(";")?;
         let step = self.list(")")?;
         self.expect(")")?;
-        Ok(StatementKind::For(init, condition, step, self.boxed()?))
+        Ok(UppaalStatementKind::For(init, condition, step, self.boxed()?))
     }
 
-    pub(super) fn parenthesised(&mut self) -> Parsed<Expr> {
+    pub(super) fn parenthesised(&mut self) -> UppaalParseResult<UppaalExpr> {
         self.expect("(")?;
         let e = self.expr()?;
         self.expect(")")?;
