@@ -284,7 +284,7 @@ fn what_tests_are_for_is_explained() {
     let out = hrdsl_in(here.path(), "gen scenario.hri --suite calm --json");
     expect_code(&out, 0);
     let document: Value = serde_json::from_slice(&out.stdout).unwrap();
-    assert_eq!((document["format"].as_str(), document["version"].as_i64()), (Some("hrdsl-gen"), Some(1)));
+    assert_eq!((document["format"].as_str(), document["version"].as_i64()), (Some("hrdsl-gen"), Some(2)));
     let suite = &document["suites"][0];
     let uncovered = suite["explanation"]["uncovered"].as_array().unwrap();
     assert!(uncovered.iter().any(|u| u["goal"] == "plan Guest.wise" && u["reason"] != ""), "{suite}");

@@ -10,6 +10,7 @@
 pub mod bdi;
 pub mod coverage;
 pub mod device;
+mod eval_error;
 pub mod event;
 pub mod exec;
 pub mod expr;

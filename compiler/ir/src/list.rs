@@ -13,7 +13,7 @@ use hrdsl_source::Symbol;
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{expr::EvalError, value::Value};
+use crate::{eval_error::EvalError, value::Value};
 
 /// A string.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

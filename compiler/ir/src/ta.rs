@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 pub use hrdsl_source::LocationKind;
 
+pub use crate::expr::FunctionId;
 use crate::{
     event::{ActorId, ArgPattern, EventId},
     expr::{Expr, Lvalue},
@@ -26,10 +27,6 @@ pub struct ClockId(pub u16);
 /// Index into [`Program::channels`](crate::Program::channels).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ChannelId(pub u16);
-
-/// Index into [`Program::functions`](crate::Program::functions).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct FunctionId(pub u16);
 
 /// Index into [`Program::networks`](crate::Program::networks).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

@@ -22,8 +22,6 @@ use state::{
 };
 
 pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction};
-pub(crate) use value::linear::BadTime;
-pub(crate) use vocabulary::layout::type_span;
 
 /// Resolves and checks a scenario with the modules it uses and files of tests in its vocabulary.
 ///

@@ -2,7 +2,15 @@
 
 use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
-use crate::{check::BadTime, noun::Noun};
+use crate::noun::Noun;
+
+/// Why a sum is no time that an engine can count with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BadTime {
+    /// A factor is no whole number of nanoseconds.
+    Fraction,
+    TooLong,
+}
 
 /// HR0501
 pub(crate) fn no_initial(automaton: &str, span: Span) -> Diagnostic {

@@ -9,7 +9,6 @@ use hrdsl_syntax::ast::{
 };
 
 use super::{DefinedType, NameDefinition};
-use crate::check::type_span;
 
 /// The definitions of these items and of all in them.
 pub(super) fn of_items(items: &[&ast::ItemSyntax]) -> Vec<NameDefinition> {
@@ -270,5 +269,19 @@ fn sort(of: ast::TemplateSyntaxKind) -> &'static str {
         ast::TemplateSyntaxKind::Require => "requirement",
         ast::TemplateSyntaxKind::Cover => "coverpoint",
         ast::TemplateSyntaxKind::Cross => "cross product",
+    }
+}
+
+/// Where a type is written.
+pub(crate) fn type_span(ty: &TypeExpr) -> Span {
+    match ty {
+        TypeExpr::Named(name) => name.span,
+        TypeExpr::Range(lo, hi) => lo.span.to(hi.span),
+        TypeExpr::Array(of, size) => match of.as_ref() {
+            TypeExpr::Error => size.span,
+            of => type_span(of).to(size.span),
+        },
+        TypeExpr::List(of) => type_span(of),
+        TypeExpr::Error => Span::default(),
     }
 }

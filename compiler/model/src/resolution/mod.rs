@@ -5,6 +5,8 @@
 
 mod definitions;
 
+pub(crate) use definitions::type_span;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_source::{FileId, Span};

@@ -7,8 +7,8 @@ use crate::check::{
     automata::automaton::EdgeScope,
     checker::Checker,
     state::{record::DeclaredFields, scope::ExprEnv, table::NameTable},
-    vocabulary::layout::type_span,
 };
+use crate::resolution::type_span;
 use crate::{
     Channel, ChannelId, ChannelKind, ChannelParticipant, ChannelPlaces, EventId, PlayerRef, TypedExpr,
     TypedSync,

@@ -3,6 +3,7 @@
 use hrdsl_source::Span;
 
 use crate::check::value::expr::MAX_TIME;
+use crate::report::automata::BadTime;
 use crate::{BinaryOp, InferredType, TypedExpr, TypedExprKind, TypedTime, TypedTimeTerm, UnaryOp, Value};
 
 /// `constant + Σ factor · value`, in SI units; each value is a whole number.
@@ -10,14 +11,6 @@ use crate::{BinaryOp, InferredType, TypedExpr, TypedExprKind, TypedTime, TypedTi
 pub(in crate::check) struct LinearTime {
     constant: f64,
     terms: Vec<(f64, TypedExpr)>,
-}
-
-/// Why a sum is no time that an engine can count with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum BadTime {
-    /// A factor is no whole number of nanoseconds.
-    Fraction,
-    TooLong,
 }
 
 impl LinearTime {

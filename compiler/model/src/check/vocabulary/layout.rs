@@ -15,6 +15,7 @@ use crate::check::{
     },
     vocabulary::{template, template::KIND_WORDS},
 };
+use crate::resolution::type_span;
 use crate::{
     EnumDecl, InferredType, Parameter, Type, Value,
     noun::Noun,
@@ -299,19 +300,5 @@ impl<'a> Checker<'a> {
             return None;
         }
         Some(Type::Int { lo, hi })
-    }
-}
-
-/// Where a type is written.
-pub(crate) fn type_span(ty: &TypeExpr) -> Span {
-    match ty {
-        TypeExpr::Named(name) => name.span,
-        TypeExpr::Range(lo, hi) => lo.span.to(hi.span),
-        TypeExpr::Array(of, size) => match of.as_ref() {
-            TypeExpr::Error => size.span,
-            of => type_span(of).to(size.span),
-        },
-        TypeExpr::List(of) => type_span(of),
-        TypeExpr::Error => Span::default(),
     }
 }

@@ -12,8 +12,8 @@ use hrdsl_syntax::ast::{self, DeviceMemberKind as Member, ItemSyntaxKind, NameSy
 use crate::check::{
     checker::Checker,
     state::{table::OrderedMap, template::TemplateArgument},
-    vocabulary::layout::type_span,
 };
+use crate::resolution::type_span;
 use crate::{
     ArmId, GripperId, InferredType, Type,
     noun::Noun,

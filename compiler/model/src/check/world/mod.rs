@@ -13,7 +13,6 @@ use hrdsl_syntax::ast::{
 use crate::check::{
     checker::Checker,
     state::{scope::ExprEnv, world::WorldNames},
-    vocabulary::layout,
     world::parts::PlacedMember,
 };
 use crate::{
@@ -341,7 +340,7 @@ impl<'a> Checker<'a> {
         self.check_free(&ExprEnv::constants(), Noun::Signal, name);
         let to: Vec<ActorId> = to.iter().filter_map(|a| self.actor(a)).collect();
         let ty = self.ty(ty).filter(|of| {
-            self.plain(&crate::types::TypeLayout::Scalar(*of), &name.text, layout::type_span(ty))
+            self.plain(&crate::types::TypeLayout::Scalar(*of), &name.text, crate::resolution::type_span(ty))
         });
         let mut env = ExprEnv::measured(&p.prefix);
         let value = match ty {
