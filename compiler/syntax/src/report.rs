@@ -365,6 +365,23 @@ fn reserved(word: &str) -> Option<&'static Keyword> {
     KEYWORDS.iter().find(|k| k.word == word && k.class == KeywordClass::Reserved)
 }
 
+/// What stands after a name that is declared or set.
+fn follows_a_name(kind: TokenKind) -> bool {
+    matches!(
+        kind,
+        TokenKind::Colon
+            | TokenKind::Assign
+            | TokenKind::LParen
+            | TokenKind::RParen
+            | TokenKind::Comma
+            | TokenKind::Semi
+            | TokenKind::Arrow
+            | TokenKind::FromWord
+            | TokenKind::Plays
+            | TokenKind::By
+    )
+}
+
 fn help(
     cx: &ParseContext<'_>,
     fault: &ParseFault,
@@ -373,21 +390,7 @@ fn help(
 ) -> Option<String> {
     let word = cx.text_of(token);
     let [before, after] = around.map(|t| t.map(|t| t.kind));
-    let named = matches!(
-        after,
-        Some(
-            TokenKind::Colon
-                | TokenKind::Assign
-                | TokenKind::LParen
-                | TokenKind::RParen
-                | TokenKind::Comma
-                | TokenKind::Semi
-                | TokenKind::Arrow
-                | TokenKind::FromWord
-                | TokenKind::Plays
-                | TokenKind::By
-        )
-    );
+    let named = after.is_some_and(follows_a_name);
     // Where an expression is expected, the word may have been meant as the operator that it is.
     if let Some(keyword) = reserved(word)
         && fault.has("IDENT")

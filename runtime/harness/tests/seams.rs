@@ -61,7 +61,24 @@ fn program() -> Program {
         signals: vec![SignalId(0)],
         origin: Span::default(),
     };
-    let world = World {
+    Program {
+        name: "seams".into(),
+        actors: vec![actor("guest", Role::Environment), actor("robot", Role::System)],
+        events: vec![
+            event("ask", GUEST, &["n"], Some(ask)),
+            event("asked", GUEST, &["n"], None),
+            event("done", ROBOT, &[], None),
+            event("gripped", GUEST, &[], None),
+        ],
+        signals: vec![near],
+        world: Some(world(rule)),
+        ..Program::default()
+    }
+}
+
+/// A world with an arm and a gripper.
+fn world(rule: WorldRule) -> World {
+    World {
         step: 1_000_000,
         sample: SECOND / 20,
         gravity: [0.0; 3],
@@ -77,19 +94,6 @@ fn program() -> Program {
         currents: Vec::new(),
         rules: vec![rule],
         origin: Span::default(),
-    };
-    Program {
-        name: "seams".into(),
-        actors: vec![actor("guest", Role::Environment), actor("robot", Role::System)],
-        events: vec![
-            event("ask", GUEST, &["n"], Some(ask)),
-            event("asked", GUEST, &["n"], None),
-            event("done", ROBOT, &[], None),
-            event("gripped", GUEST, &[], None),
-        ],
-        signals: vec![near],
-        world: Some(world),
-        ..Program::default()
     }
 }
 

@@ -152,28 +152,24 @@ fn edge(rng: &mut ChaCha8Rng, me: u16, places: u16) -> Edge {
     let channel = ChannelId(rng.random_range(0..9));
     let offers = rng.random_bool(0.5);
     let mut clocks = true;
-    let bound = |offers: bool, args: Vec<Expr>, got: ReceiveArg| {
+    let bound = |offers: bool, args: Vec<Expr>, got: Option<ReceiveArg>| {
         if offers {
             SyncLabel::Offer { channel, args }
         } else {
-            SyncLabel::Accept { channel, args: vec![got] }
+            SyncLabel::Accept { channel, args: got.into_iter().collect() }
         }
     };
     match channel.0 {
         0 => {
             e.selects = if offers { vec![var("s", 0, 1)] } else { Vec::new() };
-            e.sync = bound(offers, vec![Expr::Var(2)], ReceiveArg::Bind);
+            e.sync = bound(offers, vec![Expr::Var(2)], Some(ReceiveArg::Bind));
         }
         2 => {
-            e.sync = bound(offers, vec![q(Expr::int(0))], ReceiveArg::Bind);
+            e.sync = bound(offers, vec![q(Expr::int(0))], Some(ReceiveArg::Bind));
             clocks = offers;
         }
         1 | 3 => {
-            e.sync = if offers {
-                SyncLabel::Offer { channel, args: Vec::new() }
-            } else {
-                SyncLabel::Accept { channel, args: Vec::new() }
-            };
+            e.sync = bound(offers, Vec::new(), None);
             clocks = false;
         }
         4 => {

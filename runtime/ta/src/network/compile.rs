@@ -376,26 +376,12 @@ impl<'p> NetworkCompiler<'p> {
                 let party = parties.iter().find(|p| p.automaton == id).ok_or_else(unknown)?;
                 EdgeSync::Join { channel: *channel, optional: party.optional }
             }
-            SyncLabel::Receive { event, args } => {
-                let params = self.params(SyncMedium::Event(*event)).ok_or_else(unknown)?;
-                EdgeSync::In(self.pattern(
-                    SyncMedium::Event(*event),
-                    args,
-                    &params,
-                    &mut binders,
-                    &mut locals,
-                ))
-            }
-            SyncLabel::Accept { channel, args } => {
-                let params = self.params(SyncMedium::Channel(*channel)).ok_or_else(unknown)?;
-                EdgeSync::In(self.pattern(
-                    SyncMedium::Channel(*channel),
-                    args,
-                    &params,
-                    &mut binders,
-                    &mut locals,
-                ))
-            }
+            SyncLabel::Receive { event, args } => self
+                .received(SyncMedium::Event(*event), args, &mut binders, &mut locals)
+                .ok_or_else(unknown)?,
+            SyncLabel::Accept { channel, args } => self
+                .received(SyncMedium::Channel(*channel), args, &mut binders, &mut locals)
+                .ok_or_else(unknown)?,
             SyncLabel::Send { .. } | SyncLabel::Offer { .. } => EdgeSync::Internal,
         };
         names.vars.extend(binders.iter().enumerate().map(|(i, &ty)| (VariablePlace::Local(i as u32), ty)));
@@ -566,6 +552,18 @@ impl<'p> NetworkCompiler<'p> {
                 Some(ty.number(*v).unwrap_or(NEVER))
             }
         }
+    }
+
+    /// What an edge receives over a medium. `None`: there is no such medium.
+    fn received(
+        &mut self,
+        medium: SyncMedium,
+        args: &[ReceiveArg],
+        binders: &mut Vec<NumberType>,
+        locals: &mut Vec<(i64, i64)>,
+    ) -> Option<EdgeSync> {
+        let params = self.params(medium)?;
+        Some(EdgeSync::In(self.pattern(medium, args, &params, binders, locals)))
     }
 
     fn pattern(

@@ -16,6 +16,7 @@ use super::{
 
 impl ClauseTranslator<'_> {
     /// One that asks.
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub(super) fn internal_formula(&mut self, of: &AgentSpeakLiteral) -> ClauseResult<ClauseFragment> {
         let name = of.functor.as_str();
         let text = match (name, of.args.as_slice()) {

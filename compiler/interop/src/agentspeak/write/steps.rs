@@ -92,6 +92,7 @@ impl ClauseTranslator<'_> {
         Some(".fail".to_owned())
     }
 
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn step(
         &mut self,
         step: &AgentSpeakStep,
