@@ -300,8 +300,8 @@ fn merge(rules: &mut Vec<Rule>) {
 }
 
 fn read_rules(text: &str) -> (Vec<String>, Vec<Rule>) {
-    let (_, text) =
-        text.split_once("grammar<'t, 'c>(cx: &'c mut ParseContext<'t>);").expect("the file's head");
+    let head = text.split_once("grammar<").and_then(|(_, text)| text.split_once(';'));
+    let (_, text) = head.expect("the file's head");
     let text = text.split("// ── Tokens ──").next().unwrap_or_default();
     let mut reader = Reader { tokens: tokens(text), at: 0 };
     let (mut sections, mut rules) = (vec!["Declarations".to_owned()], Vec::new());
