@@ -25,8 +25,7 @@ pub fn recheck(compilation: &CompilationResult, at: usize, text: &str) -> Option
     let scenario = compilation.ast.first()?;
     let index = scenario.items.iter().position(|item| item.span.range().contains(&at))?;
     let old = &scenario.items[index];
-    let mut files = compilation.files.clone();
-    let file = files.add("declaration", text);
+    let file = FileId(u16::try_from(compilation.files.iter().count()).unwrap_or(u16::MAX));
     let (read, mut diagnostics) = hrdsl_syntax::parse(file, text);
     let [item] = read.items.as_slice() else { return None };
     if read.scenario.is_some() || [old, item].iter().any(|i| is_of_the_whole(&i.kind)) {
@@ -36,7 +35,8 @@ pub fn recheck(compilation: &CompilationResult, at: usize, text: &str) -> Option
         compilation.modules.iter().filter_map(|m| compilation.ast.get(*m)).collect();
     let missing = compilation.diagnostics.iter().any(|d| d.code == DiagnosticCode::UNKNOWN_MODULE);
     diagnostics.extend(hrdsl_model::resolve_alone(scenario, (index, item), &modules, missing));
-    let same_names = declares(&files, old) == declares(&files, item);
+    let before = declares(old, &|span| compilation.files.text(span).to_owned());
+    let same_names = before == declares(item, &|span| text.get(span.range()).unwrap_or("").to_owned());
     let moved = SpanShift { alone: file, old: old.span, len: text.len() };
     diagnostics.iter_mut().for_each(|d| moved.diagnostic(d));
     diagnostics.sort_by_key(|d| (d.span(), d.code));
@@ -48,10 +48,7 @@ fn is_of_the_whole(kind: &ItemSyntaxKind) -> bool {
 }
 
 /// What the rest of a scenario sees of a declaration. Of some all is seen: the value of a constant, the parts of the world.
-fn declares(
-    files: &hrdsl_source::SourceFiles,
-    item: &ast::ItemSyntax,
-) -> Vec<(&'static str, String, String)> {
+fn declares(item: &ast::ItemSyntax, written: &dyn Fn(Span) -> String) -> Vec<(&'static str, String, String)> {
     let whole = match &item.kind {
         ItemSyntaxKind::Agent(_)
         | ItemSyntaxKind::Automaton(_)
@@ -79,12 +76,12 @@ fn declares(
         | ItemSyntaxKind::Device(_)
         | ItemSyntaxKind::World(_)
         | ItemSyntaxKind::Instance(_)
-        | ItemSyntaxKind::Error => files.text(item.span).to_owned(),
+        | ItemSyntaxKind::Error => written(item.span),
     };
     let names = Resolutions::of_declaration(item);
     let ty = |ty: &DefinedType| match ty {
         DefinedType::None => String::new(),
-        DefinedType::Written(span) => files.text(*span).to_owned(),
+        DefinedType::Written(span) => written(*span),
         DefinedType::Inferred(ty) => ty.clone(),
     };
     let names = names.definitions().map(|d| (d.noun, d.name.clone(), ty(&d.ty)));

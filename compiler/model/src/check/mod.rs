@@ -52,11 +52,13 @@ pub fn resolve_part(
 ) -> (Scenario, Vec<Diagnostic>) {
     let items = scenario.items.iter().collect();
     let source = source(items, modules, missing);
-    phases(source, scenario.scenario.as_ref(), tests)
+    let mut checker = phases(source, scenario.scenario.as_ref(), tests);
+    checker.places();
+    (checker.s, checker.issues.distinct())
 }
 
 /// One declaration of a scenario that stands in place of that with this index: only what is said of it is given. It is the
-/// only one of its file, `alone`; of the others no more is looked at than it can speak of.
+/// only one of its file; of the others no more is looked at than it can speak of.
 #[must_use]
 pub fn resolve_alone(
     scenario: &ast::FileSyntax,
@@ -70,7 +72,7 @@ pub fn resolve_alone(
     let file = declaration.span.file;
     let mut source = source(items, modules, missing);
     source.alone = Some(LoneDeclaration { file, phase: CheckPhase::of(&declaration.kind) });
-    let (_, mut issues) = phases(source, scenario.scenario.as_ref(), &[]);
+    let mut issues = phases(source, scenario.scenario.as_ref(), &[]).issues.distinct();
     issues.retain(|issue| issue.span().file == file);
     issues
 }
@@ -102,7 +104,7 @@ fn phases<'a>(
     source: CheckedSource<'a>,
     name: Option<&ast::NameSyntax>,
     tests: &[&ast::FileSyntax],
-) -> (Scenario, Vec<Diagnostic>) {
+) -> Checker<'a> {
     let mut checker = Checker::new(source);
     checker.s.name = name.map_or_else(String::new, |n| n.text.clone());
     checker.vocabulary();
@@ -125,8 +127,7 @@ fn phases<'a>(
     }
     checker.tests(tests);
     checker.say_without_world();
-    checker.places();
-    (checker.s, checker.issues.distinct())
+    checker
 }
 
 /// What a module shares. Anything else in it has a diagnostic, and is not the scenario's.

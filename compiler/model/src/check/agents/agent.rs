@@ -450,7 +450,7 @@ impl<'a> Checker<'a> {
         let goals = &self.agents.goals[usize::from(scope.id.0)];
         let Some((index, _, entry)) = goals.get_full(&name.text) else {
             let helpless = !self.issues.compares();
-            let goals: Vec<String> = if helpless { Vec::new() } else { goals.keys().cloned().collect() };
+            let goals = self.near(goals.keys().map(String::as_str));
             self.issues.compared += goals.len();
             let near = goals.iter().map(String::as_str);
             let is = self.kind_in_agent(scope, &name.text).or_else(|| self.kind_of(&name.text));
