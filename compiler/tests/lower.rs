@@ -695,12 +695,12 @@ fn coverage_suites_and_tests() {
     assert_eq!((&condition.context, condition.vars.as_slice()), (&only_true, &["N".to_owned()][..]));
     assert_eq!(choose[0].condition, None);
     assert_eq!(
-        (p.suites[0].tests, p.suites[0].horizon, p.suites[0].patience),
+        (p.suites[0].settings.tests, p.suites[0].settings.horizon, p.suites[0].settings.patience),
         (100, 300 * SECOND, 60 * SECOND)
     );
     let SuiteMethod::Search { network: NetworkId(0), goals, .. } = &p.suites[1].method else { panic!() };
     assert_eq!(goals[..], [SearchGoal::Bins(CrossId(0)), SearchGoal::Locations, SearchGoal::Edges]);
-    assert_eq!(p.suites[1].tests, 7);
+    assert_eq!(p.suites[1].settings.tests, 7);
     assert_eq!(
         p.suites[2].method,
         SuiteMethod::Random {

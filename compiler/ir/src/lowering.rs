@@ -314,9 +314,7 @@ impl<E> Suite<E> {
         Suite {
             name: self.name.clone(),
             method: self.method.lower(f),
-            tests: self.tests,
-            horizon: self.horizon,
-            patience: self.patience,
+            settings: self.settings,
             origin: self.origin,
         }
     }

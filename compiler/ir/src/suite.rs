@@ -10,20 +10,34 @@ use crate::{
     expr::Expr,
     monitor::RequirementId,
     ta::{AutomatonId, NetworkId, QueryId},
-    value::Nanos,
+    value::{Nanos, SECOND},
 };
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Suite<E = Expr> {
     pub name: String,
     pub method: SuiteMethod<E>,
+    #[serde(flatten)]
+    pub settings: SuiteSettings,
+    pub origin: Span,
+}
+
+/// What a suite may set, whatever its method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SuiteSettings {
     /// How many concrete tests; abstract tests that are fewer are made concrete several times, with other seeds.
     pub tests: u32,
     /// A model run (by agents) ends at this virtual time.
     pub horizon: Nanos,
     /// The bound of an `await` in a generated test whose model gives none.
     pub patience: Nanos,
-    pub origin: Span,
+}
+
+impl Default for SuiteSettings {
+    fn default() -> Self {
+        Self { tests: 100, horizon: 300 * SECOND, patience: 60 * SECOND }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

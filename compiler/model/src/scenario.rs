@@ -213,21 +213,14 @@ pub struct TypedRequirement {
     pub name: String,
     pub kind: RequirementKind,
     pub title: String,
-    pub pattern: RequirementPattern,
+    pub pattern: TypedPattern,
     /// The formal part.
     pub text: Span,
     pub span: Span,
 }
 
 /// Times in seconds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RequirementPattern {
-    Causes { trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Option<f64> },
-    Forbids { trigger: Vec<EventPattern>, forbidden: Vec<EventPattern>, until: Vec<EventPattern> },
-    NeverWhile { events: Vec<EventPattern>, condition: Option<TypedExpr> },
-    Globally(TypedExpr),
-}
+pub type TypedPattern = hrdsl_syntax::RequirementPattern<EventPattern, TypedExpr, f64>;
 
 /// `assume at most N e within D`
 #[derive(Clone, Debug, PartialEq, Serialize)]

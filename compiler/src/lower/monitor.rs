@@ -9,9 +9,9 @@ use hrdsl_ir::{
     value::nanos,
     world::SignalId,
 };
-use hrdsl_model::{self as model, InferredType, RequirementPattern, TypedExprKind};
+use hrdsl_model::{self as model, InferredType, TypedExprKind};
 use hrdsl_source::SourceFiles;
-use hrdsl_syntax::ast;
+use hrdsl_syntax::{RequirementPattern, ast};
 
 use super::world::{SignalReader, SignalTable};
 use MonitorEffect::{Discharge, Fail, ResetClock, Trigger};

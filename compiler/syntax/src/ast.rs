@@ -7,6 +7,8 @@ use hrdsl_source::Span;
 pub use hrdsl_source::{BinaryOp, LocationKind, UnaryOp};
 use serde::Serialize;
 
+use crate::pattern::RequirementPattern;
+
 /// An identifier where it was written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct NameSyntax {
@@ -696,35 +698,14 @@ pub struct RequireSyntax {
     pub pattern: PatternSyntax,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PatternSyntax {
-    pub kind: PatternKind,
-    pub span: Span,
-}
+/// What a requirement says, as it is written.
+pub type ParsedPattern = RequirementPattern<CallSyntax, ExprSyntax, ExprSyntax>;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PatternKind {
-    /// `after T: R within D` and `T causes R within D` (they mean the same)
-    Causes {
-        trigger: Vec<CallSyntax>,
-        response: Vec<CallSyntax>,
-        within: Option<ExprSyntax>,
-    },
-    /// `T forbids E until U`
-    Forbids {
-        trigger: Vec<CallSyntax>,
-        forbidden: Vec<CallSyntax>,
-        until: Vec<CallSyntax>,
-    },
-    /// `never E while P`
-    NeverWhile {
-        events: Vec<CallSyntax>,
-        condition: Option<ExprSyntax>,
-    },
-    /// `globally P`
-    Globally(ExprSyntax),
-    Error,
+pub struct PatternSyntax {
+    /// `None`: it could not be read.
+    pub kind: Option<ParsedPattern>,
+    pub span: Span,
 }
 
 /// `assume at most 4 leg_request within 300 s`
@@ -822,18 +803,15 @@ pub enum SuiteMemberKind {
     },
     /// `explore pairwise`, `explore wise(3)`
     Explore(CallSyntax),
-    /// `stop after 20`: when so many belief sets in a row added nothing
-    StopAfter(ExprSyntax),
     /// `minimise`: only the tests that are needed for what all of them reach
     Minimise,
     /// `reach each plan`, `context`, `message`, `path`
     ReachEach(NameSyntax),
     /// `tests 160`
-    Tests(ExprSyntax),
-    /// `horizon 300 s`: a model run ends at this virtual time
-    Horizon(ExprSyntax),
-    /// `patience 60 s`: the bound of an await that the model gives none
-    Patience(ExprSyntax),
+    Setting {
+        what: SuiteSetting,
+        value: ExprSyntax,
+    },
     /// `reach each bin of c`
     ReachBins(NameSyntax),
     /// `reach each location`
@@ -860,6 +838,20 @@ pub enum SuiteMemberKind {
     /// `pause 0 s .. 10 s`
     Pause(RangeSyntax),
     Error,
+}
+
+/// What a suite sets to a number or a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SuiteSetting {
+    /// `stop after 20`: when so many belief sets in a row added nothing
+    StopAfter,
+    /// `tests 160`
+    Tests,
+    /// `horizon 300 s`: a model run ends at this virtual time
+    Horizon,
+    /// `patience 60 s`: the bound of an await that the model gives none
+    Patience,
 }
 
 /// `test bdi_tests.t017 { … }`

@@ -1,6 +1,6 @@
 //! Keywords that start declarations and can be names: which of the two one is, by the tokens around it.
 
-use crate::token::{Lexeme, TokenKind};
+use crate::token::{KeywordTrait, Lexeme, TokenKind};
 
 /// Whether the tokens after the keyword at `at` are those of its declaration.
 pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
@@ -21,7 +21,7 @@ pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
         TokenKind::Query => after(&[TokenKind::Of, TokenKind::Str]),
         TokenKind::Require => {
             after(&[TokenKind::LParen, TokenKind::Assign])
-                || ((tokens[at].first || !goes_on(next))
+                || ((tokens[at].first || !next.is(KeywordTrait::AfterEvent))
                     && next.can_be_name()
                     && kind(2).is_some_and(TokenKind::can_be_name)
                     && starts_pattern(kind(3)))
@@ -45,14 +45,6 @@ pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
     }
 }
 
-/// What follows an event in a requirement.
-fn goes_on(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::Causes | TokenKind::Forbids | TokenKind::Until | TokenKind::Within | TokenKind::While
-    )
-}
-
 /// What follows the kind of a requirement.
 fn starts_pattern(kind: Option<TokenKind>) -> bool {
     kind.is_some_and(|k| k.can_be_name() || matches!(k, TokenKind::Str | TokenKind::LParen))
@@ -60,24 +52,5 @@ fn starts_pattern(kind: Option<TokenKind>) -> bool {
 
 /// Words that a name follows, at the level of declarations.
 pub(crate) fn wants_a_name(kind: TokenKind) -> bool {
-    kind.continues()
-        || matches!(
-            kind,
-            TokenKind::FromWord
-                | TokenKind::To
-                | TokenKind::By
-                | TokenKind::Plays
-                | TokenKind::Of
-                | TokenKind::Agents
-                | TokenKind::After
-                | TokenKind::Never
-                | TokenKind::Globally
-                | TokenKind::While
-                | TokenKind::Causes
-                | TokenKind::Forbids
-                | TokenKind::Until
-                | TokenKind::Within
-                | TokenKind::Most
-                | TokenKind::Bins
-        )
+    kind.continues() || kind.is(KeywordTrait::WantsName)
 }

@@ -19,6 +19,7 @@ mod heads;
 mod lex;
 mod outline;
 mod parse;
+mod pattern;
 mod print;
 mod recover;
 mod report;
@@ -34,7 +35,11 @@ mod grammar {
 
 pub use outline::{MAX_HEIGHT, MAX_NESTING};
 pub use parse::{MAX_BYTES, parse};
+pub use pattern::{BannedEvents, DemandedEvents, RequirementPattern};
 pub use print::format;
+
+/// The grammar as the parser is made of it: `src/grammar.lalrpop` with the registry of keywords put in.
+pub const GRAMMAR: &str = include_str!(concat!(env!("OUT_DIR"), "/grammar.lalrpop"));
 
 /// Where the words of a text are that are no units: names and keywords, in order.
 pub fn words(text: &str) -> impl Iterator<Item = std::ops::Range<usize>> {

@@ -19,7 +19,7 @@ use crate::ast::{
 use crate::context::{ParseContext, ParsedUnit};
 use crate::report::{ParseFault, report};
 use crate::run::run;
-use crate::token::{Lexeme, TokenKind};
+use crate::token::{KeywordTrait, Lexeme, TokenKind};
 
 pub(crate) struct RecoveringParser<'a, 't> {
     pub cx: &'a mut ParseContext<'t>,
@@ -382,7 +382,7 @@ impl RecoveringParser<'_, '_> {
 }
 
 macro_rules! members {
-    ($($member:ident $kinds:ident $start:ident [$($doc:ident)?] $($names:ident)? : $($kind:ident)|*;)*) => {$(
+    ($($member:ident $kinds:ident $start:ident [$($doc:ident)?] $first:ident $(| $names:ident)?;)*) => {$(
         impl BlockMember for $member {
             const START: TokenKind = TokenKind::$start;
 
@@ -395,24 +395,20 @@ macro_rules! members {
             }
 
             fn starts(kind: TokenKind) -> bool {
-                matches!(kind, $(TokenKind::$kind)|*) $(|| kind.$names())?
+                kind.is(KeywordTrait::$first) $(|| kind.$names())?
             }
         }
     )*};
 }
 
 members! {
-    StimulusStepSyntax StimulusStepKind StartStimulusStep [] starts_call: Emit | If;
-    AgentMember AgentMemberKind StartAgentMember [doc]: Belief | Rule | Goal | Plan | Allow;
-    AutomatonMember AutomatonMemberKind StartAutomatonMember [doc]:
-        Clock | Var | Fn | Init | Committed | Urgent | Location | From | Allow;
-    CrossMember CrossMemberKind StartCrossMember []: Bin | Ignore | Allow;
-    SuiteMember SuiteMemberKind StartSuiteMember []:
-        Choose | Explore | Stop | Minimise | Witness | Delays | Tests | Horizon | Patience | Reach | Stimuli | Await
-            | Length | Pause;
-    TestMember TestMemberKind StartTestMember [] starts_call: Await;
-    WorldMember WorldMemberKind StartWorldMember [doc]:
-        Step | Sample | Gravity | Part | Body | Joint | Arm | Gripper | Current | Signal | On | Allow;
-    DeviceMember DeviceMemberKind StartDeviceMember [doc]: Command;
-    SystemMember SystemMemberKind StartSystemMember []: Run | Coverage | Limit | Budget | Cpu | Wall | Memory | Output | Env | Online;
+    StimulusStepSyntax StimulusStepKind StartStimulusStep [] InStimulus | starts_call;
+    AgentMember AgentMemberKind StartAgentMember [doc] InAgent;
+    AutomatonMember AutomatonMemberKind StartAutomatonMember [doc] InAutomaton | starts_edge;
+    CrossMember CrossMemberKind StartCrossMember [] InCross;
+    SuiteMember SuiteMemberKind StartSuiteMember [] InSuite;
+    TestMember TestMemberKind StartTestMember [] InTest | starts_call;
+    WorldMember WorldMemberKind StartWorldMember [doc] InWorld;
+    DeviceMember DeviceMemberKind StartDeviceMember [doc] InDevice;
+    SystemMember SystemMemberKind StartSystemMember [] InSystem;
 }

@@ -3,7 +3,7 @@
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use crate::context::ParseContext;
-use crate::token::{KEYWORDS, Keyword, KeywordClass, Lexeme, TokenKind};
+use crate::token::{KEYWORDS, Keyword, KeywordClass, KeywordTrait, Lexeme, TokenKind};
 
 /// Where a run stopped fitting the grammar.
 #[derive(Clone, Debug)]
@@ -95,6 +95,8 @@ struct TerminalGroup {
     if_none: &'static [&'static str],
     /// Names, and with them all soft keywords, are part of it.
     names: bool,
+    /// The keywords that start a member of this block are part of it.
+    members: Option<KeywordTrait>,
     /// The others that are part of it.
     covers: &'static [&'static str],
     says: &'static [&'static str],
@@ -111,6 +113,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["-+", "await"],
         if_none: &[],
         names: true,
+        members: None,
         covers: &["!", "!!", "?", "+", "-", "-+", "await", "wait", "if", "while", "for", "fork", "INTERNAL"],
         says: &["a step such as `!goal` or `await`"],
     },
@@ -119,6 +122,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["emit", "hold", "sample"],
         if_none: &["INT"],
         names: true,
+        members: None,
         covers: &["emit", "hold", "sample", "if"],
         says: &["a step such as `emit` or `hold`"],
     },
@@ -127,6 +131,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["seed", "because", "await"],
         if_none: &["INT"],
         names: true,
+        members: None,
         covers: &["seed", "method", "because", "predicts", "await", "wait"],
         says: &["a step such as `await` or `wait`"],
     },
@@ -135,10 +140,8 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["gravity", "joint"],
         if_none: &["IDENT"],
         names: false,
-        covers: &[
-            "step", "sample", "gravity", "part", "body", "joint", "arm", "gripper", "current", "signal",
-            "on", "allow",
-        ],
+        members: Some(KeywordTrait::InWorld),
+        covers: &[],
         says: &["a member of the world such as `body` or `signal`"],
     },
     TerminalGroup {
@@ -146,10 +149,8 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["explore", "horizon"],
         if_none: &["IDENT"],
         names: false,
-        covers: &[
-            "choose", "explore", "stop", "minimise", "witness", "delays", "tests", "horizon", "patience",
-            "reach", "stimuli", "await", "length", "pause",
-        ],
+        members: Some(KeywordTrait::InSuite),
+        covers: &[],
         says: &["a line such as `choose` or `tests`"],
     },
     TerminalGroup {
@@ -157,6 +158,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["each", "query", "IDENT"],
         if_none: &["imply"],
         names: true,
+        members: None,
         covers: &["each", "query"],
         says: &["`each`", "`query`", "a name"],
     },
@@ -165,7 +167,8 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["ORIGIN", "clock"],
         if_none: &["IDENT"],
         names: false,
-        covers: &["ORIGIN", "clock", "var", "fn", "init", "urgent", "committed", "location", "allow"],
+        members: Some(KeywordTrait::InAutomaton),
+        covers: &["ORIGIN"],
         says: &["`location`", "`clock`", "`var`", "an edge such as `a -> b`"],
     },
     TerminalGroup {
@@ -173,6 +176,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["after", "never", "ERROR", "("],
         if_none: &["-"],
         names: true,
+        members: None,
         covers: &["ERROR", "(", "after", "never", "globally"],
         says: &["a pattern such as `after` or `globally`"],
     },
@@ -181,6 +185,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["+", "-", "on"],
         if_none: &["*"],
         names: false,
+        members: None,
         covers: &["+", "-", "on"],
         says: &["a trigger such as `+!goal` or `on event`"],
     },
@@ -189,6 +194,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["INT", "-", "not"],
         if_none: &[],
         names: true,
+        members: None,
         covers: EXPRESSION,
         says: &["an expression"],
     },
@@ -197,6 +203,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["INT", "-", "("],
         if_none: &[],
         names: true,
+        members: None,
         covers: EXPRESSION,
         says: &["a value"],
     },
@@ -205,6 +212,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["+", "*", "."],
         if_none: &[],
         names: false,
+        members: None,
         covers: &[".", "(", "["],
         says: &[],
     },
@@ -213,6 +221,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["+", "*", "["],
         if_none: &[],
         names: false,
+        members: None,
         covers: &["["],
         says: &[],
     },
@@ -221,6 +230,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["=", "+=", "["],
         if_none: &[],
         names: false,
+        members: None,
         covers: &[".", "["],
         says: &[],
     },
@@ -229,6 +239,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["when", "["],
         if_none: &[],
         names: false,
+        members: None,
         covers: &["(", "["],
         says: &[],
     },
@@ -238,6 +249,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["IDENT", "."],
         if_none: &[],
         names: false,
+        members: None,
         covers: &["."],
         says: &[],
     },
@@ -247,6 +259,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["allow", "plan"],
         if_none: &["IDENT"],
         names: false,
+        members: None,
         covers: &["allow"],
         says: &[],
     },
@@ -255,6 +268,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["allow", "clock"],
         if_none: &["IDENT"],
         names: false,
+        members: None,
         covers: &["allow"],
         says: &[],
     },
@@ -263,6 +277,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["allow", "ORIGIN"],
         if_none: &["IDENT"],
         names: false,
+        members: None,
         covers: &["allow"],
         says: &[],
     },
@@ -271,6 +286,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["allow", "bin"],
         if_none: &["IDENT"],
         names: false,
+        members: None,
         covers: &["allow"],
         says: &[],
     },
@@ -290,7 +306,9 @@ fn describe(fault: &ParseFault, first: bool) -> Vec<String> {
             && !group.if_none.iter().any(|t| left.contains(t));
         if fits {
             said.extend(group.says.iter().map(|s| (*s).to_owned()));
-            left.retain(|t| !(group.covers.contains(t) || group.names && is_name(t)));
+            let member =
+                |t: &str| group.members.is_some_and(|m| row(t).is_some_and(|k| k.traits.contains(&m)));
+            left.retain(|t| !(group.covers.contains(t) || group.names && is_name(t) || member(t)));
         }
     }
     if left.contains(&"IDENT") {
@@ -316,8 +334,12 @@ fn is_name(terminal: &str) -> bool {
     terminal == "IDENT" || keyword(terminal).is_some_and(|class| class != KeywordClass::Reserved)
 }
 
+fn row(word: &str) -> Option<&'static Keyword> {
+    KEYWORDS.iter().find(|k| k.word == word)
+}
+
 fn keyword(word: &str) -> Option<KeywordClass> {
-    KEYWORDS.iter().find(|k| k.word == word).map(|k| k.class)
+    row(word).map(|k| k.class)
 }
 
 fn terminal(name: &str) -> Option<String> {
@@ -362,7 +384,7 @@ fn keyword_near<'f>(cx: &ParseContext<'_>, fault: &'f ParseFault, token: Lexeme)
 
 /// The keyword, if no name can be like it.
 fn reserved(word: &str) -> Option<&'static Keyword> {
-    KEYWORDS.iter().find(|k| k.word == word && k.class == KeywordClass::Reserved)
+    row(word).filter(|k| k.class == KeywordClass::Reserved)
 }
 
 /// What stands after a name that is declared or set.

@@ -15,6 +15,31 @@ pub enum KeywordClass {
     Reserved,
 }
 
+/// What else may be true of a keyword, where it stands as one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum KeywordTrait {
+    /// The grammar says place by place where it may be a name; all others may be one wherever `Soft` is.
+    Apart,
+    /// Starts a clause, before which a long line is broken.
+    Clause,
+    /// May follow an event in a requirement.
+    AfterEvent,
+    /// Stands between the trigger of a requirement and what is said of it.
+    Response,
+    /// At the level of declarations a name follows.
+    WantsName,
+    // Starts a member, or a step, of such a block.
+    InStimulus,
+    InAgent,
+    InAutomaton,
+    InCross,
+    InSuite,
+    InTest,
+    InWorld,
+    InDevice,
+    InSystem,
+}
+
 /// One row of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct Keyword {
@@ -23,10 +48,11 @@ pub struct Keyword {
     /// The construct that it belongs to, as the specification's table shows it.
     pub place: &'static str,
     pub(crate) kind: TokenKind,
+    pub(crate) traits: &'static [KeywordTrait],
 }
 
-macro_rules! tokens {
-    ($($kind:ident $word:tt $class:ident $place:literal),* $(,)?) => {
+macro_rules! keywords {
+    ($($kind:ident $word:tt $class:ident $place:literal [$($holds:ident)*];)*) => {
         /// The kind of a token.
         #[derive(Logos, Clone, Copy, Debug, PartialEq, Eq)]
         #[logos(skip r"[ \t\r]+")]
@@ -113,7 +139,13 @@ macro_rules! tokens {
 
         /// All keywords, by where they belong.
         pub const KEYWORDS: &[Keyword] = &[
-            $(Keyword { word: $word, class: KeywordClass::$class, place: $place, kind: TokenKind::$kind }),*
+            $(Keyword {
+                word: $word,
+                class: KeywordClass::$class,
+                place: $place,
+                kind: TokenKind::$kind,
+                traits: &[$(KeywordTrait::$holds),*],
+            }),*
         ];
 
         impl TokenKind {
@@ -124,150 +156,20 @@ macro_rules! tokens {
                     _ => None,
                 }
             }
+
+            /// Whether the registry says this of a keyword.
+            pub(crate) fn is(self, what: KeywordTrait) -> bool {
+                let traits: &[KeywordTrait] = match self {
+                    $(Self::$kind => &[$(KeywordTrait::$holds),*],)*
+                    _ => &[],
+                };
+                traits.contains(&what)
+            }
         }
     };
 }
 
-tokens! {
-    Scenario "scenario" Head "the first line of a scenario",
-    Use "use" Head "declaration",
-    Actor "actor" Head "declaration",
-    Const "const" Head "declaration",
-    Event "event" Head "declaration",
-    Stimulus "stimulus" Head "declaration",
-    Agent "agent" Head "declaration",
-    Var "var" Head "declaration, automaton, function",
-    Channel "channel" Head "declaration",
-    Fn "fn" Head "declaration, automaton",
-    Automaton "automaton" Head "declaration",
-    Network "network" Head "declaration",
-    Query "query" Head "declaration, suite",
-    Require "require" Head "declaration",
-    Assume "assume" Head "declaration",
-    Cover "cover" Head "declaration",
-    Cross "cross" Head "declaration",
-    Suite "suite" Head "declaration",
-    Part "part" Head "declaration, world",
-    Device "device" Head "declaration",
-    World "world" Head "declaration",
-    System "system" Head "declaration, actor",
-    Test "test" Head "declaration",
-    Enum "enum" Head "declaration",
-    Record "record" Head "declaration",
-    Allow "allow" Head "before what is allowed",
-
-    True "true" Reserved "expression",
-    False "false" Reserved "expression",
-    Not "not" Reserved "expression",
-    And "and" Reserved "expression, plan",
-    Or "or" Reserved "expression, list of events, plan",
-    Imply "imply" Hard "expression",
-    If "if" Hard "expression, stimulus, plan, function",
-    Else "else" Hard "expression, stimulus, plan, function, device",
-    Return "return" Hard "function",
-    FromWord "from" Hard "event",
-    To "to" Hard "event, signal",
-    By "by" Hard "stimulus, suite, world",
-    In "in" Hard "stimulus, world, function",
-    Plays "plays" Hard "agent, automaton",
-    When "when" Hard "plan, edge, cross, world",
-    On "on" Hard "belief, plan, edge, world",
-    Do "do" Hard "edge, device",
-    Emit "emit" Hard "stimulus, world",
-    Within "within" Hard "plan, requirement, test",
-    Await "await" Hard "plan, suite, test",
-
-    Sample "sample" Soft "stimulus, world",
-    Hold "hold" Soft "stimulus",
-    Belief "belief" Soft "agent",
-    Goal "goal" Soft "agent",
-    Plan "plan" Soft "agent, suite",
-    Rule "rule" Soft "agent",
-    For "for" Soft "plan, function",
-    Fork "fork" Soft "plan",
-    Wait "wait" Soft "plan, test",
-    Clock "clock" Soft "automaton",
-    Init "init" Soft "automaton",
-    Committed "committed" Soft "automaton",
-    Urgent "urgent" Soft "automaton, channel",
-    Location "location" Soft "automaton, suite",
-    Broadcast "broadcast" Soft "channel",
-    Sup "sup" Soft "query",
-    Inf "inf" Soft "query",
-    Invariant "invariant" Soft "automaton",
-    Select "select" Soft "edge",
-    After "after" Soft "requirement, suite",
-    Causes "causes" Soft "requirement",
-    Forbids "forbids" Soft "requirement",
-    Until "until" Soft "requirement",
-    Never "never" Soft "requirement",
-    While "while" Soft "requirement, plan, function",
-    Globally "globally" Soft "requirement",
-    At "at" Soft "assumption, world",
-    Most "most" Soft "assumption",
-    Count "count" Soft "coverage",
-    Bins "bins" Soft "coverage",
-    Bin "bin" Soft "cross, suite",
-    Ignore "ignore" Soft "cross",
-    Agents "agents" Soft "suite",
-    Search "search" Soft "suite",
-    Random "random" Soft "suite",
-    Of "of" Soft "suite, query",
-    Choose "choose" Soft "suite",
-    One "one" Soft "suite",
-    AnyWord "any" Soft "suite",
-    Per "per" Soft "suite",
-    Where "where" Soft "suite",
-    Explore "explore" Soft "suite",
-    Stop "stop" Soft "suite",
-    Minimise "minimise" Soft "suite",
-    Witness "witness" Soft "suite",
-    Delays "delays" Soft "suite",
-    Tests "tests" Soft "suite",
-    Horizon "horizon" Soft "suite",
-    Patience "patience" Soft "suite",
-    Reach "reach" Soft "suite, world",
-    Each "each" Soft "suite",
-    Edge "edge" Soft "suite",
-    Stimuli "stimuli" Soft "suite",
-    Length "length" Soft "suite",
-    Pause "pause" Soft "suite",
-    Seed "seed" Soft "test",
-    Method "method" Soft "test",
-    Because "because" Soft "test",
-    Predicts "predicts" Soft "test",
-    With "with" Soft "test",
-    Step "step" Soft "world",
-    Gravity "gravity" Soft "world",
-    Body "body" Soft "world",
-    Joint "joint" Soft "world, channel",
-    Arm "arm" Soft "world",
-    Gripper "gripper" Soft "world",
-    Current "current" Soft "world",
-    Signal "signal" Soft "world",
-    Rotated "rotated" Soft "world",
-    Mass "mass" Soft "world",
-    Ghost "ghost" Soft "world",
-    Graspable "graspable" Soft "world",
-    Axis "axis" Soft "world",
-    Limits "limits" Soft "world",
-    Tip "tip" Soft "world",
-    Tool "tool" Soft "world",
-    Speed "speed" Soft "world",
-    Delay "delay" Soft "world",
-    Command "command" Soft "device",
-    Expect "expect" Soft "device",
-    Run "run" Soft "system",
-    Coverage "coverage" Soft "system",
-    Limit "limit" Soft "system",
-    Budget "budget" Soft "system",
-    Cpu "cpu" Soft "system",
-    Wall "wall" Soft "system",
-    Memory "memory" Soft "system",
-    Output "output" Soft "system",
-    Env "env" Soft "system",
-    Online "online" Soft "system",
-}
+include!("keywords.rs");
 
 impl TokenKind {
     /// Starts a declaration.
@@ -308,6 +210,11 @@ impl TokenKind {
     /// May be the first token of a step that names what is done. Words that hold the text together are hardly meant so.
     pub(crate) fn starts_call(self) -> bool {
         self.is_name() || self.is_head()
+    }
+
+    /// The name that an edge leaves from.
+    pub(crate) fn starts_edge(self) -> bool {
+        self == Self::From
     }
 
     /// An identifier or any keyword.

@@ -2,7 +2,7 @@
 //!
 //! Everywhere else the grammar itself takes a keyword for a name where the keyword does not fit.
 
-use crate::token::{Lexeme, TokenKind};
+use crate::token::{KeywordTrait, Lexeme, TokenKind};
 
 /// Makes names of the keywords that what stands around them shows to be names.
 pub(crate) fn names(tokens: &mut [Lexeme]) {
@@ -120,7 +120,7 @@ fn starts_a_response(tokens: &[Lexeme]) -> bool {
     let [word, next, ..] = tokens else { return false };
     let event =
         next.kind.can_be_name() && next.kind != TokenKind::While && !(next.first && next.kind.is_head());
-    matches!(word.kind, TokenKind::Causes | TokenKind::Forbids) && event
+    word.kind.is(KeywordTrait::Response) && event
 }
 
 /// Whether a keyword that parentheses follow is a call by what follows them.
@@ -140,9 +140,9 @@ fn called_before(kind: TokenKind, next: Option<Lexeme>) -> bool {
             )
         ),
         TokenKind::After | TokenKind::Never => {
-            matches!(after, Some(TokenKind::Causes | TokenKind::Forbids | TokenKind::Or))
+            after.is_some_and(|k| k == TokenKind::Or || k.is(KeywordTrait::Response))
         }
-        TokenKind::Globally => matches!(after, Some(TokenKind::Causes | TokenKind::Forbids)),
+        TokenKind::Globally => after.is_some_and(|k| k.is(KeywordTrait::Response)),
         _ => false,
     }
 }

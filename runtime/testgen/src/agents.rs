@@ -106,7 +106,7 @@ pub fn belief_set(
     let SuiteMethod::Agents { players, explore, stop_after, goals, .. } = &suite.method else {
         return Err(not_by_agents(suite));
     };
-    let mut explorer = explorer(program, suite, count.unwrap_or(suite.tests), seed)?;
+    let mut explorer = explorer(program, suite, count.unwrap_or(suite.settings.tests), seed)?;
     let awaits = extract::AwaitGroups::of(program, players);
     let goals = AgentGoals::of(program, players, goals);
     let model = AgentRunInput { program, suite, players, awaits, goals: &goals, seed };
@@ -140,7 +140,7 @@ pub fn how_many_sets(
     count: Option<u32>,
     seed: u64,
 ) -> Result<(usize, u128), String> {
-    let explorer = explorer(program, suite, count.unwrap_or(suite.tests), seed)?;
+    let explorer = explorer(program, suite, count.unwrap_or(suite.settings.tests), seed)?;
     Ok((explorer.left(), explorer.space))
 }
 
@@ -172,14 +172,14 @@ impl AgentRunInput<'_> {
             self.program,
             self.players,
             &set.facts,
-            &ModelRunOptions::new(seed, self.suite.horizon, LogDetail::Failures),
+            &ModelRunOptions::new(seed, self.suite.settings.horizon, LogDetail::Failures),
         );
         if let RunTermination::Fault(fault) = ended {
             return Err(format!("suite `{}`, with {}: {fault}", self.suite.name, set.text.join(", ")));
         }
         let covered = extract::covered(self.program, &trace);
         let test = AbstractTest {
-            steps: extract::steps(self.program, &self.awaits, &trace, self.suite.patience),
+            steps: extract::steps(self.program, &self.awaits, &trace, self.suite.settings.patience),
             because: vec![set.text.join(", ")],
             predicts: covered.cross_names(&self.program.coverage),
             reaches: self.goals.reached(&measured, &covered),

@@ -104,7 +104,7 @@ pub fn generate_with(
     options: GenerateOptions,
 ) -> Result<GeneratedSuite, String> {
     let GenerateOptions { count, seed, minimise, .. } = options;
-    let most = count.unwrap_or(suite.tests);
+    let most = count.unwrap_or(suite.settings.tests);
     if most > MAX_TESTS {
         return Err(format!("{most} tests are more than are generated for one suite: at most {MAX_TESTS}"));
     }
@@ -239,9 +239,7 @@ mod tests {
                 witness: hrdsl_ir::suite::WitnessKind::default(),
                 delays: hrdsl_ir::suite::DelayChoice::default(),
             },
-            tests: 1,
-            horizon: 0,
-            patience: 0,
+            settings: hrdsl_ir::suite::SuiteSettings { tests: 1, horizon: 0, patience: 0 },
             origin: Span::default(),
         };
         let found = AgentFindings {

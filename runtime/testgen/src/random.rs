@@ -28,8 +28,9 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
     for event in stimuli {
         choices.extend(instances(program, *event)?);
     }
-    choices
-        .extend(awaits.iter().map(|e| TestStep::Await { events: vec![e.clone()], within: suite.patience }));
+    choices.extend(
+        awaits.iter().map(|e| TestStep::Await { events: vec![e.clone()], within: suite.settings.patience }),
+    );
     if choices.is_empty() {
         return Err(format!("suite `{}` has no stimuli to draw from", suite.name));
     }
@@ -154,9 +155,7 @@ mod tests {
                 pause_lo: 0,
                 pause_hi: 0,
             },
-            tests: 1,
-            horizon: 0,
-            patience: 0,
+            settings: hrdsl_ir::suite::SuiteSettings { tests: 1, horizon: 0, patience: 0 },
             origin: Span::default(),
         };
         let drawn = harvest(&program, &suite, 1, 3).unwrap();

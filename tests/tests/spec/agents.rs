@@ -130,7 +130,7 @@ fn compared(name: &str, text: &str) -> usize {
     let program = compilation.program.unwrap_or_else(|| panic!("{name}: {said:#?}"));
     let suite = &program.suites[0];
     let SuiteMethod::Agents { choose, explore: how, .. } = &suite.method else { panic!("{suite:?}") };
-    let sets = explore(&factors(&program, choose).unwrap(), *how, suite.tests, 0).sets;
+    let sets = explore(&factors(&program, choose).unwrap(), *how, suite.settings.tests, 0).sets;
     let casts: [&[u16]; 5] = [&[0, 1, 2], &[2, 1, 0], &[1, 0], &[0, 2], &[0]];
     let runs: Vec<Cast> = casts.into_iter().map(<[u16]>::to_vec).cycle().zip(sets).collect();
     let got = by_the_pages(&program, text, &runs, CYCLE_LIMIT);

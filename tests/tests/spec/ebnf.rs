@@ -405,7 +405,7 @@ fn page(text: &str) -> String {
 
 #[test]
 fn the_grammar() {
-    generated("spec/grammar.md", "rules", &page(&read("compiler/syntax/src/grammar.lalrpop")));
+    generated("spec/grammar.md", "rules", &page(hrdsl_syntax::GRAMMAR));
 }
 
 #[test]

@@ -171,7 +171,7 @@ impl<'p> InspectedRun<'p> {
             program,
             self.players,
             &self.facts,
-            &ModelRunOptions::new(self.seed, self.suite.horizon, detail),
+            &ModelRunOptions::new(self.seed, self.suite.settings.horizon, detail),
         )
     }
 

@@ -10,9 +10,8 @@ use super::{
     flow::{ValueFlow, flows},
 };
 use crate::{
-    ArgPattern, EventId, EventPattern, ReceiveArg, RequirementPattern, Role, Scenario, TestStep, TriggerOn,
-    TypedExpr, TypedMethod, TypedStepKind, TypedStimulusStep, TypedSync, TypedTerm, Value,
-    world::TypedRuleTrigger,
+    ArgPattern, EventId, EventPattern, ReceiveArg, Role, Scenario, TestStep, TriggerOn, TypedExpr,
+    TypedMethod, TypedStepKind, TypedStimulusStep, TypedSync, TypedTerm, Value, world::TypedRuleTrigger,
 };
 
 /// So many different combinations of arguments are told apart; a maker beyond them counts as making any.
@@ -271,16 +270,8 @@ impl<'a> ScenarioFacts<'a> {
 
     fn judgement(&mut self, scenario: &Scenario) {
         for requirement in &scenario.requirements {
-            let (trigger, others): (&[EventPattern], Vec<&EventPattern>) = match &requirement.pattern {
-                RequirementPattern::Causes { trigger, response, .. } => (trigger, response.iter().collect()),
-                RequirementPattern::Forbids { trigger, forbidden, until } => {
-                    (trigger, forbidden.iter().chain(until).collect())
-                }
-                RequirementPattern::NeverWhile { events, .. } => (events, Vec::new()),
-                RequirementPattern::Globally(_) => (&[], Vec::new()),
-            };
-            trigger.iter().chain(others).for_each(|p| self.reads(p.event));
-            self.triggers.push(trigger.iter().map(WantedFact::of).collect());
+            requirement.pattern.events().for_each(|p| self.reads(p.event));
+            self.triggers.push(requirement.pattern.triggers().iter().map(WantedFact::of).collect());
         }
         let counted = scenario.points.iter().flat_map(|p| &p.count);
         for pattern in scenario.assumptions.iter().flat_map(|a| &a.events).chain(counted) {

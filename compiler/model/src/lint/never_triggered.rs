@@ -4,8 +4,8 @@ use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::facts::ScenarioFacts;
 use crate::{
-    BinaryOp, NumberFunction, RequirementPattern, Scenario, SignalTerm, TypedExpr, TypedExprKind, UnaryOp,
-    Value, VariableRef,
+    BinaryOp, NumberFunction, Scenario, SignalTerm, TypedExpr, TypedExprKind, TypedPattern, UnaryOp, Value,
+    VariableRef,
 };
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
@@ -28,19 +28,11 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, is
 }
 
 /// Why a condition on the world never says anything, if so.
-fn constant(scenario: &Scenario, pattern: &RequirementPattern) -> Option<(String, &'static str)> {
-    match pattern {
-        RequirementPattern::NeverWhile { condition: Some(c), .. } if truth(scenario, c, 0) == Some(false) => {
-            Some(("the condition is never true".to_owned(), "change the condition"))
-        }
-        RequirementPattern::Globally(c) if truth(scenario, c, 0) == Some(true) => {
-            Some(("the condition is always true".to_owned(), "change the condition"))
-        }
-        RequirementPattern::NeverWhile { .. }
-        | RequirementPattern::Globally(_)
-        | RequirementPattern::Causes { .. }
-        | RequirementPattern::Forbids { .. } => None,
-    }
+fn constant(scenario: &Scenario, pattern: &TypedPattern) -> Option<(String, &'static str)> {
+    let harmless = pattern.harmless();
+    let same = truth(scenario, pattern.condition()?, 0) == Some(harmless);
+    let why = if harmless { "the condition is always true" } else { "the condition is never true" };
+    same.then(|| (why.to_owned(), "change the condition"))
 }
 
 /// Signals within signals are followed so far.

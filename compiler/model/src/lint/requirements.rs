@@ -6,9 +6,7 @@ use super::{
     facts::{ScenarioFacts, WantedFact},
     interval::same,
 };
-use crate::{
-    ArgPattern, BinaryOp, EventPattern, RequirementPattern, Scenario, TypedExpr, TypedExprKind, UnaryOp,
-};
+use crate::{ArgPattern, BinaryOp, EventPattern, Scenario, TypedExpr, TypedExprKind, TypedPattern, UnaryOp};
 
 /// Beyond so many pairs nothing is said.
 const PAIRS: usize = 1 << 16;
@@ -61,12 +59,8 @@ impl RequirementClash {
     }
 }
 
-fn clash(
-    facts: &ScenarioFacts<'_>,
-    first: &RequirementPattern,
-    second: &RequirementPattern,
-) -> Option<RequirementClash> {
-    if let (RequirementPattern::Globally(a), RequirementPattern::Globally(b)) = (first, second) {
+fn clash(facts: &ScenarioFacts<'_>, first: &TypedPattern, second: &TypedPattern) -> Option<RequirementClash> {
+    if let (Some(a), Some(b)) = (first.always(), second.always()) {
         return exclude(a, b).then_some(RequirementClash::Conditions);
     }
     if forbids(facts, first, second) {
@@ -76,22 +70,16 @@ fn clash(
 }
 
 /// Whether every answer that `wants` asks for is forbidden by `ban` from its trigger on, in whatever run triggers both.
-fn forbids(facts: &ScenarioFacts<'_>, wants: &RequirementPattern, ban: &RequirementPattern) -> bool {
-    let RequirementPattern::Causes { trigger, response, .. } = wants else { return false };
-    match ban {
-        RequirementPattern::NeverWhile { events, condition: None } => covers(events, response),
-        RequirementPattern::Forbids { trigger: from, forbidden, until } => {
-            // Whatever lifts the ban may come before the answer, unless nobody makes it or it is forbidden itself.
-            let lifts = |p: &&EventPattern| {
-                !facts.in_vain(&[WantedFact::of(p)]) && !covers(forbidden, std::slice::from_ref(p))
-            };
-            let lifted = until.iter().any(|p| lifts(&p));
-            !lifted && covers(forbidden, response) && (covers(from, trigger) || covers(trigger, from))
-        }
-        RequirementPattern::NeverWhile { .. }
-        | RequirementPattern::Causes { .. }
-        | RequirementPattern::Globally(_) => false,
-    }
+fn forbids(facts: &ScenarioFacts<'_>, wants: &TypedPattern, ban: &TypedPattern) -> bool {
+    let (Some(wanted), Some(banned)) = (wants.demands(), ban.bans()) else { return false };
+    // Whatever lifts the ban may come before the answer, unless nobody makes it or it is forbidden itself.
+    let lifts = |p: &&EventPattern| {
+        !facts.in_vain(&[WantedFact::of(p)]) && !covers(banned.events, std::slice::from_ref(p))
+    };
+    let lifted = banned.until.iter().any(|p| lifts(&p));
+    let both_begin =
+        banned.from.is_none_or(|from| covers(from, wanted.trigger) || covers(wanted.trigger, from));
+    !lifted && covers(banned.events, wanted.response) && both_begin
 }
 
 /// Whether each event that fits one of `some` fits one of `all`.

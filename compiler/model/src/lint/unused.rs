@@ -10,8 +10,8 @@ use super::{
 };
 use crate::{
     ActorId, AutomatonId, AutomatonVar, FunctionEffects, MessageSubject, NetworkId, Performative, PlayerRef,
-    RequirementPattern, Role, Scenario, TypedAgent, TypedAutomaton, TypedContext, TypedExpr, TypedExprKind,
-    TypedMethod, TypedStepKind, TypedSync, TypedTime, TypedUpdate, VariableRef, leaves,
+    Role, Scenario, TypedAgent, TypedAutomaton, TypedContext, TypedExpr, TypedExprKind, TypedMethod,
+    TypedStepKind, TypedSync, TypedTime, TypedUpdate, VariableRef, leaves,
 };
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
@@ -412,11 +412,7 @@ fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<UnusedName<'a>>) {
         rule.guard.iter().chain(&rule.args).for_each(&mut mark);
     }
     for requirement in &scenario.requirements {
-        match &requirement.pattern {
-            RequirementPattern::NeverWhile { condition, .. } => condition.iter().for_each(&mut mark),
-            RequirementPattern::Globally(condition) => mark(condition),
-            RequirementPattern::Causes { .. } | RequirementPattern::Forbids { .. } => {}
-        }
+        requirement.pattern.condition().into_iter().for_each(&mut mark);
     }
     for (i, signal) in world.signals.iter().enumerate().filter(|(i, _)| !read[*i]) {
         let at = scenario.places.signals.get(i).copied().unwrap_or(signal.span);

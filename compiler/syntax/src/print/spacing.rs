@@ -1,7 +1,7 @@
 //! Blanks between two tokens, and where a line may break.
 
 use crate::print::trivia::PrintToken;
-use crate::token::TokenKind;
+use crate::token::{KeywordTrait, TokenKind};
 
 /// How weakly two tokens hold together: the lower, the sooner a line breaks there.
 pub(super) type BindingStrength = u16;
@@ -87,36 +87,7 @@ fn operator(n: &PrintToken<'_>) -> Option<BindingStrength> {
 
 /// A word that starts a clause, after the end of another one.
 fn clause(p: TokenKind, n: TokenKind) -> bool {
-    let starts = matches!(
-        n,
-        TokenKind::When
-            | TokenKind::On
-            | TokenKind::Do
-            | TokenKind::Select
-            | TokenKind::Emit
-            | TokenKind::Within
-            | TokenKind::While
-            | TokenKind::Until
-            | TokenKind::Causes
-            | TokenKind::Forbids
-            | TokenKind::FromWord
-            | TokenKind::Bins
-            | TokenKind::With
-            | TokenKind::Tip
-            | TokenKind::Tool
-            | TokenKind::Speed
-            | TokenKind::Reach
-            | TokenKind::Delay
-            | TokenKind::At
-            | TokenKind::Axis
-            | TokenKind::Limits
-            | TokenKind::Rotated
-            | TokenKind::Mass
-            | TokenKind::Ghost
-            | TokenKind::Graspable
-            | TokenKind::Expect
-    );
-    starts && p.ends_operand()
+    n.is(KeywordTrait::Clause) && p.ends_operand()
 }
 
 /// A line ends before the token at `at`, whatever the room: for a comment, or because the author decided so and may.

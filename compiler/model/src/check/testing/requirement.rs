@@ -1,12 +1,12 @@
 //! Requirements and assumptions.
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax, PatternKind, TemplateSyntaxKind};
+use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind};
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{checker::Checker, state::scope::ExprEnv, vocabulary::template::template};
 use crate::{
-    InferredType, RequirementKind, RequirementPattern, TypedAssumption, TypedExpr, TypedExprKind,
+    EventPattern, InferredType, RequirementKind, TypedAssumption, TypedExpr, TypedExprKind, TypedPattern,
     TypedRequirement, VariableRef, noun::Noun, report::requirements::says_nothing,
 };
 
@@ -43,10 +43,7 @@ impl Checker<'_> {
     }
 
     /// What a requirement says, whatever its name.
-    fn resolved(
-        &mut self,
-        require: &ast::RequireSyntax,
-    ) -> Option<(RequirementKind, String, RequirementPattern)> {
+    fn resolved(&mut self, require: &ast::RequireSyntax) -> Option<(RequirementKind, String, TypedPattern)> {
         let kind = match self.choice(Noun::RequirementKind, &require.kind, &["safety", "functional"]) {
             Some(0) => RequirementKind::Safety,
             Some(_) | None => RequirementKind::Functional,
@@ -59,7 +56,7 @@ impl Checker<'_> {
     fn requirement(
         &mut self,
         name: &NameSyntax,
-        resolved: Option<(RequirementKind, String, RequirementPattern)>,
+        resolved: Option<(RequirementKind, String, TypedPattern)>,
         text: Span,
         span: Span,
     ) {
@@ -71,26 +68,17 @@ impl Checker<'_> {
         }
     }
 
-    fn requirement_pattern(&mut self, pattern: &ast::PatternSyntax) -> Option<RequirementPattern> {
-        Some(match &pattern.kind {
-            PatternKind::Causes { trigger, response, within } => {
-                let (trigger, response) = (self.patterns(trigger), self.patterns(response));
-                let within = within.as_ref().and_then(|e| self.time(e, "the time to respond", true));
-                RequirementPattern::Causes { trigger, response, within }
-            }
-            PatternKind::Forbids { trigger, forbidden, until } => RequirementPattern::Forbids {
-                trigger: self.patterns(trigger),
-                forbidden: self.patterns(forbidden),
-                until: self.patterns(until),
-            },
-            PatternKind::NeverWhile { events, condition } => {
-                let events = self.patterns(events);
-                let condition = condition.as_ref().map(|e| self.condition(e));
-                RequirementPattern::NeverWhile { events, condition }
-            }
-            PatternKind::Globally(condition) => RequirementPattern::Globally(self.condition(condition)),
-            PatternKind::Error => return None,
-        })
+    fn requirement_pattern(&mut self, pattern: &ast::PatternSyntax) -> Option<TypedPattern> {
+        let pattern = pattern.kind.as_ref()?;
+        Some(
+            pattern.map(self, Self::pattern_list, Self::condition, |c, e| {
+                c.time(e, "the time to respond", true)
+            }),
+        )
+    }
+
+    fn pattern_list(&mut self, events: &[ast::CallSyntax]) -> Vec<EventPattern> {
+        self.patterns(events)
     }
 
     /// A boolean that depends on the world.

@@ -1,9 +1,10 @@
 //! Suites: how tests are made.
 
-use hrdsl_ir::value::nanos;
+use hrdsl_ir::{Nanos, suite::SuiteSettings, value::nanos};
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, ItemSyntaxKind, MethodSyntax as SyntaxMethod, NameSyntax, SuiteMember, SuiteMemberKind as Member,
+    SuiteSetting,
 };
 
 use crate::check::state::phase::CheckPhase;
@@ -15,8 +16,8 @@ use crate::check::{
 };
 use crate::{
     ChoiceKind, CrossId, DelayChoice, Dimension, EventId, EventPattern, ExploreMode, InferredType, ModelGoal,
-    NetworkId, PlayerRef, QueryId, RequirementId, RequirementPattern, Role, SearchGoal, TypedChoice,
-    TypedChoiceCondition, TypedMethod, TypedQueryKind, TypedSuite, Value, WitnessKind,
+    NetworkId, PlayerRef, QueryId, RequirementId, Role, SearchGoal, TypedChoice, TypedChoiceCondition,
+    TypedMethod, TypedQueryKind, TypedSuite, Value, WitnessKind,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
 };
@@ -36,9 +37,16 @@ struct SuiteMembers {
     awaits: Vec<EventPattern>,
     length: Option<(u32, u32)>,
     pause: Option<(f64, f64)>,
-    tests: Option<u32>,
-    horizon: Option<f64>,
-    patience: Option<f64>,
+    settings: SuiteSettings,
+}
+
+impl SuiteMembers {
+    /// In seconds; one that has a diagnostic leaves what was.
+    fn set_time(&mut self, of: impl FnOnce(&mut SuiteSettings) -> &mut Nanos, time: Option<f64>) {
+        if let Some(time) = time {
+            *of(&mut self.settings) = nanos(time);
+        }
+    }
 }
 
 impl Checker<'_> {
@@ -103,14 +111,7 @@ impl Checker<'_> {
                 }
             }
         };
-        Some(TypedSuite {
-            name: suite.name.text.clone(),
-            method,
-            tests: said.tests.unwrap_or(100),
-            horizon: nanos(said.horizon.unwrap_or(300.0)),
-            patience: nanos(said.patience.unwrap_or(60.0)),
-            origin: span,
-        })
+        Some(TypedSuite { name: suite.name.text.clone(), method, settings: said.settings, origin: span })
     }
 
     /// Agents and automata; at most one for an actor.
@@ -168,9 +169,8 @@ impl Checker<'_> {
         let needs = match &member.kind {
             Member::Choose { .. }
             | Member::Explore(_)
-            | Member::StopAfter(_)
-            | Member::Minimise
-            | Member::Horizon(_) => "agents",
+            | Member::Setting { what: SuiteSetting::StopAfter | SuiteSetting::Horizon, .. }
+            | Member::Minimise => "agents",
             Member::ReachEach(_) if matches!(method, SyntaxMethod::Search(_)) => return true,
             Member::ReachEach(_) => "agents",
             // Both.
@@ -185,7 +185,9 @@ impl Checker<'_> {
             | Member::Witness(_)
             | Member::Delays(_) => "search",
             Member::Stimuli(_) | Member::Await(_) | Member::Length(_) | Member::Pause(_) => "random",
-            Member::Tests(_) | Member::Patience(_) | Member::Error => return true,
+            Member::Setting { what: SuiteSetting::Tests | SuiteSetting::Patience, .. } | Member::Error => {
+                return true;
+            }
         };
         let is = match method {
             SyntaxMethod::Agents(_) => "agents",
@@ -214,10 +216,7 @@ impl Checker<'_> {
                 said.choose.extend(choice.map(|choice| TypedChoice { condition, ..choice }));
             }
             Member::Explore(call) => said.explore = self.explore(call),
-            Member::StopAfter(e) => {
-                let count = self.count(e, "the number of sets without anything new", 1);
-                said.stop_after = count.and_then(|n| u32::try_from(n).ok());
-            }
+            Member::Setting { what, value } => self.setting(*what, value, said),
             Member::Minimise => said.minimise = true,
             Member::ReachEach(word) if by_search => {
                 let goals = [SearchGoal::Pairs, SearchGoal::Uses];
@@ -230,9 +229,6 @@ impl Checker<'_> {
                 let words = ["plan", "context", "message", "path", "edge", "bin of …"];
                 let found = self.choice(Noun::Reach, word, &words);
                 said.reached.extend(found.and_then(|i| goals.get(i)));
-            }
-            Member::Tests(e) => {
-                said.tests = self.count(e, "the number of tests", 1).and_then(|n| u32::try_from(n).ok());
             }
             Member::ReachOf { what, names } => self.reach_of(what, names, said),
             Member::ReachQueries(names) => {
@@ -250,8 +246,6 @@ impl Checker<'_> {
                 let found = self.choice(Noun::Delays, word, &["earliest", "latest", "sampled"]);
                 said.delays = found.map_or(said.delays, |i| kinds[i]);
             }
-            Member::Horizon(e) => said.horizon = self.time(e, "the horizon", true),
-            Member::Patience(e) => said.patience = self.time(e, "the patience", true),
             Member::ReachBins(name) => match self.judged.crosses.get(&name.text) {
                 Some(id) => {
                     self.refer(name, self.judged.crosses.span(id));
@@ -280,6 +274,23 @@ impl Checker<'_> {
         }
     }
 
+    fn setting(&mut self, what: SuiteSetting, value: &ast::ExprSyntax, said: &mut SuiteMembers) {
+        let whole = |n: Option<i64>| n.and_then(|n| u32::try_from(n).ok());
+        match what {
+            SuiteSetting::StopAfter => {
+                said.stop_after = whole(self.count(value, "the number of sets without anything new", 1));
+            }
+            SuiteSetting::Tests => {
+                let tests = whole(self.count(value, "the number of tests", 1));
+                said.settings.tests = tests.unwrap_or(said.settings.tests);
+            }
+            SuiteSetting::Horizon => said.set_time(|s| &mut s.horizon, self.time(value, "the horizon", true)),
+            SuiteSetting::Patience => {
+                said.set_time(|s| &mut s.patience, self.time(value, "the patience", true));
+            }
+        }
+    }
+
     /// `violation of R1, R2`, `trigger of R1`
     fn reach_of(&mut self, what: &NameSyntax, list: &[NameSyntax], said: &mut SuiteMembers) {
         let what = self.choice(Noun::ReachOf, what, &["violation", "trigger"]);
@@ -292,7 +303,7 @@ impl Checker<'_> {
             self.refer(name, self.judged.requirements.span_of(&name.text));
             // One with a diagnostic is in no list.
             let Some(at) = self.s.requirements.iter().position(|r| r.name == name.text) else { continue };
-            if reads_signals(&self.s.requirements[at].pattern) {
+            if self.s.requirements[at].pattern.condition().is_some() {
                 let message =
                     format!("`{}` reads signals of the world, which a network does not have", name.text);
                 self.report(bad_suite(name.span, message, "remove it: `hrdsl sim` judges it in every run"));
@@ -498,15 +509,6 @@ impl Checker<'_> {
             self.report(types::must_be("a pause", "at least 0 s", range.span));
         }
         Some((lo, hi))
-    }
-}
-
-/// Whether a requirement needs more than events.
-fn reads_signals(pattern: &RequirementPattern) -> bool {
-    match pattern {
-        RequirementPattern::Causes { .. } | RequirementPattern::Forbids { .. } => false,
-        RequirementPattern::NeverWhile { condition, .. } => condition.is_some(),
-        RequirementPattern::Globally(_) => true,
     }
 }
 

@@ -253,10 +253,7 @@ impl TokenMarker<'_> {
 
     pub(super) fn suite_member(&mut self, kind: &SuiteMemberKind) {
         match kind {
-            SuiteMemberKind::Tests(expr)
-            | SuiteMemberKind::StopAfter(expr)
-            | SuiteMemberKind::Horizon(expr)
-            | SuiteMemberKind::Patience(expr) => self.expr(expr),
+            SuiteMemberKind::Setting { value, .. } => self.expr(value),
             SuiteMemberKind::Await(events) => self.calls(events),
             SuiteMemberKind::Explore(call) => self.call(call),
             SuiteMemberKind::Length(range) | SuiteMemberKind::Pause(range) => self.range(range),

@@ -5,8 +5,8 @@ mod members;
 mod terms;
 
 use crate::ast::{
-    CoverSyntax, CrossMemberKind, EventSyntax, FileSyntax, ItemSyntax, ItemSyntaxKind, PatternKind,
-    RequireSyntax, SampleRange, StimulusStepKind, StimulusStepSyntax, StimulusSyntax,
+    CoverSyntax, CrossMemberKind, EventSyntax, FileSyntax, ItemSyntax, ItemSyntaxKind, RequireSyntax,
+    SampleRange, StimulusStepKind, StimulusStepSyntax, StimulusSyntax,
 };
 use crate::token::{Lexeme, TokenKind};
 
@@ -204,24 +204,10 @@ impl TokenMarker<'_> {
     fn require(&mut self, require: &RequireSyntax) {
         self.params(require.name.span.end, require.params.as_deref().unwrap_or_default());
         self.set(require.pattern.span.start, |m| m.pattern = true);
-        match &require.pattern.kind {
-            PatternKind::Causes { trigger, response, within } => {
-                self.calls(trigger);
-                self.calls(response);
-                self.maybe(within.as_ref());
-            }
-            PatternKind::Forbids { trigger, forbidden, until } => {
-                self.calls(trigger);
-                self.calls(forbidden);
-                self.calls(until);
-            }
-            PatternKind::NeverWhile { events, condition } => {
-                self.calls(events);
-                self.maybe(condition.as_ref());
-            }
-            PatternKind::Globally(expr) => self.expr(expr),
-            PatternKind::Error => {}
-        }
+        let Some(pattern) = &require.pattern.kind else { return };
+        pattern.events().for_each(|e| self.call(e));
+        self.maybe(pattern.condition());
+        self.maybe(pattern.time());
     }
 
     fn cover(&mut self, cover: &CoverSyntax) {
