@@ -17,6 +17,8 @@ pub enum CommandExit {
     Inconclusive = 4,
     /// A campaign was interrupted; what had ended is published.
     Interrupted = 5,
+    /// Something is wrong with hrdsl itself (`EX_SOFTWARE` of sysexits.h).
+    Internal = 70,
 }
 
 /// What `hrdsl --help` says about them.
@@ -30,7 +32,8 @@ Exit codes:
   3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism found a difference;
      `prove`: a requirement is violated, or a query is not satisfied
   4  `prove`: something was not decided within the budget, and nothing else is wrong
-  5  `sim`: interrupted; the results are those of the tests that had ended";
+  5  `sim`: interrupted; the results are those of the tests that had ended
+  70 hrdsl itself is at fault: an internal error, which is worth a report";
 
 impl From<CommandExit> for ExitCode {
     fn from(exit: CommandExit) -> Self {

@@ -26,6 +26,8 @@ use std::{path::PathBuf, process::ExitCode};
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use hrdsl_runtime::campaign::{InternalError, guarded, record_panics};
+
 use crate::exit::CommandExit;
 
 /// Test the code of robots that work with people.
@@ -66,6 +68,19 @@ enum TopLevelCommand {
 }
 
 fn main() -> ExitCode {
+    record_panics();
+    guarded(run).unwrap_or_else(|fault| internal_error(&fault))
+}
+
+fn internal_error(fault: &InternalError) -> ExitCode {
+    terminal::say_line(format_args!(
+        "{fault}\n  This is a fault of hrdsl {}, not of your files. Please report it with this line, the command and the files.",
+        env!("CARGO_PKG_VERSION")
+    ));
+    CommandExit::Internal.into()
+}
+
+fn run() -> ExitCode {
     let mut args = std::env::args_os().skip(1);
     if args.next().is_some_and(|word| word == commands::sim::SUPERVISE) {
         return hrdsl_runtime::campaign::supervise(&args.collect::<Vec<_>>());

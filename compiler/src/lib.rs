@@ -21,7 +21,7 @@ mod spoken;
 use hrdsl_ir::Program;
 use hrdsl_model::Scenario;
 use hrdsl_source::{Diagnostic, FileId, SourceFiles};
-pub use hrdsl_syntax::{MAX_BYTES, ast, format, parse, token};
+pub use hrdsl_syntax::{GRAMMAR, MAX_BYTES, ast, format, parse, token};
 
 pub use modules::{LibraryOnlyLoader, ModuleLoader, ModuleText};
 pub use recheck::{RecheckResult, recheck};

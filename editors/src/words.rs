@@ -1,9 +1,9 @@
 //! The words of the language, as templates name them.
 
 use hrdsl_model::{UNITS, type_names};
-use hrdsl_syntax::token::{KEYWORDS, Keyword, KeywordClass};
+use hrdsl_syntax::token::{KEYWORDS, Keyword, KeywordClass, KeywordTrait};
 
-/// The words of a list: `heads`, `hard`, `soft`, `soft:PLACE`, `units` or `types`. `None`: there is no such list.
+/// The words of a list: `heads`, `hard`, `soft`, `soft:PLACE`, `before_event`, `after_event`, `units` or `types`. `None`: there is no such list.
 #[must_use]
 pub fn list(name: &str) -> Option<Vec<&'static str>> {
     let words =
@@ -12,6 +12,8 @@ pub fn list(name: &str) -> Option<Vec<&'static str>> {
         "heads" => Some(words(&|k| k.class == KeywordClass::Head)),
         "hard" => Some(words(&|k| matches!(k.class, KeywordClass::Hard | KeywordClass::Reserved))),
         "soft" => Some(words(&|k| k.class == KeywordClass::Soft)),
+        "before_event" => Some(words(&|k| k.traits.contains(&KeywordTrait::BeforeEvent))),
+        "after_event" => Some(words(&|k| k.traits.contains(&KeywordTrait::AfterEvent))),
         "units" => Some(base_units()),
         // A shared clock is declared as a variable is.
         "types" => Some(type_names().chain(["clock"]).collect()),

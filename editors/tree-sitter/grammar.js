@@ -597,6 +597,7 @@ module.exports = grammar({
         $.after_pattern,
         $.causes_pattern,
         $.forbids_pattern,
+        $.precedes_pattern,
         $.never_pattern,
         $.globally_pattern,
       ),
@@ -623,6 +624,8 @@ module.exports = grammar({
         keyword($, "until"),
         field("until", $.events),
       ),
+    precedes_pattern: ($) =>
+      seq(field("first", $.events), keyword($, "precedes"), field("then", $.events)),
     never_pattern: ($) =>
       seq(
         keyword($, "never"),
@@ -715,7 +718,7 @@ module.exports = grammar({
         seq(keyword($, "explore"), field("value", $.identifier), optional(field("arguments", $.arguments))),
         seq(keyword($, "stop"), keyword($, "after"), field("value", $.expression)),
         keyword($, "minimise"),
-        ...["tests", "horizon", "patience"].map((word) =>
+        ...["tests", "horizon", "patience", "warmup"].map((word) =>
           seq(keyword($, word), field("value", $.expression)),
         ),
         ...["witness", "delays"].map((word) => seq(keyword($, word), field("value", $.identifier))),

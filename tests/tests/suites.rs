@@ -1,9 +1,9 @@
-//! The suites by agents of the case studies against the published ones: the same bins with fewer tests.
+//! Suites: those of the case studies against the published ones (the same bins with fewer tests), and what suites may ask for and set.
 
 use std::fs;
 
 use hrdsl_compiler::{InputFile, compile};
-use hrdsl_ir::{Program, suite::SuiteMethod};
+use hrdsl_ir::{Program, suite::SuiteMethod, test::TestStep};
 use hrdsl_runtime::testgen::{GenerateOptions, generate_with};
 
 fn program(example: &str) -> Program {
@@ -41,4 +41,51 @@ fn the_handover_has_its_fourteen_bins() {
 fn home_care_has_its_six_bins() {
     let (pairs, least) = pairwise("homecare", 6);
     assert!(pairs < 62 && least <= 6, "{pairs} {least}");
+}
+
+/// A counter up to 1000 is no variable of few values; the robot never says `never`.
+#[test]
+fn a_search_reaches_each_value_after_the_warm_up() {
+    let text = "scenario s
+        actor person : environment
+        actor robot  : system
+        enum Pace { slow, fast, never }
+        event asked(pace: Pace) from person to robot
+        stimulus ask(pace: Pace) by person { emit asked(pace) }
+        var asks: 0..1000
+        automaton Visitor plays person {
+          var hurry: bool = false
+          clock x
+          init location idle
+          location gone
+          idle -> gone when x >= 1 s do ask(fast); hurry = true; asks += 1
+        }
+        automaton Robot plays robot {
+          var heard: Pace = slow
+          init location waiting
+          waiting -> waiting on asked(how) do heard = how
+        }
+        network party = Visitor | Robot
+        suite each by search of party { reach each value; tests 2; warmup 2500 ms }";
+    let compiled = compile(InputFile { name: "s.hri", text }, &[]);
+    let program = compiled.program.unwrap_or_else(|| panic!("{:#?}", compiled.diagnostics));
+    let made = generate_with(&program, &program.suites[0], GenerateOptions::default()).unwrap();
+    let fates: Vec<(String, String)> =
+        made.goals.iter().map(|g| (g.goal.to_string(), format!("{:?}", g.status))).collect();
+    let of = |status: &str| -> Vec<&str> {
+        fates.iter().filter(|(_, s)| s == status).map(|(name, _)| name.as_str()).collect()
+    };
+    assert_eq!(
+        of("Reached"),
+        [
+            "value Visitor.hurry = false",
+            "value Visitor.hurry = true",
+            "value Robot.heard = slow",
+            "value Robot.heard = fast"
+        ]
+    );
+    assert_eq!(of("Unreachable"), ["value Robot.heard = never"]);
+    for test in &made.tests {
+        assert_eq!(test.steps[0], TestStep::Wait { time: 2_500_000_000 }, "{:?}", test.steps);
+    }
 }

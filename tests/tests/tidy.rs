@@ -222,3 +222,43 @@ fn the_table_of_lints_is_true() {
     }
     assert!(faults.is_empty(), "{faults}");
 }
+
+/// The names of the types that the sources declare at the left margin, tests excepted, with the files.
+fn type_names() -> Vec<(String, String)> {
+    let mut names = Vec::new();
+    for (file, text) in rust().into_iter().filter(|(name, _)| name.contains("src/")) {
+        if file.ends_with("/tests.rs") {
+            continue;
+        }
+        for line in text.lines().take_while(|l| *l != "#[cfg(test)]") {
+            let said =
+                line.strip_prefix("pub ").or_else(|| line.split_once("pub(").map(|(_, l)| l)).unwrap_or(line);
+            let said = said.split_once(") ").filter(|_| line.starts_with("pub(")).map_or(said, |(_, l)| l);
+            let declared = ["struct ", "enum ", "trait ", "type "].iter().find_map(|k| said.strip_prefix(k));
+            if let Some(rest) = declared {
+                let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                names.push((name, file.clone()));
+            }
+        }
+    }
+    names
+}
+
+/// `cargo test -p hrdsl-tests --test tidy names -- --nocapture` prints the shares.
+#[test]
+fn names_of_types_are_distinct_and_of_more_than_one_word() {
+    let names = type_names();
+    let all = names.len();
+    assert!(all > 1_000, "only {all} types were found: does the test still see them?");
+    let mut files: std::collections::BTreeMap<&str, Vec<&str>> = std::collections::BTreeMap::new();
+    for (name, file) in &names {
+        files.entry(name).or_default().push(file);
+    }
+    let twice: Vec<_> = files.iter().filter(|(_, files)| files.len() > 1).collect();
+    let words = |name: &str| name.chars().filter(|c| c.is_uppercase()).count();
+    let one = files.keys().filter(|name| words(name) < 2).count();
+    let (distinct, one) = (100.0 * files.len() as f64 / all as f64, 100.0 * one as f64 / files.len() as f64);
+    println!("{all} types, {distinct:.0} % of their names distinct, {one:.0} % of one word");
+    assert!(distinct >= 99.0, "these names are given twice: {twice:#?}");
+    assert!(one <= 10.0, "{one} % of the names of types are one word");
+}

@@ -32,11 +32,13 @@ pub struct SuiteSettings {
     pub horizon: Nanos,
     /// The bound of an `await` in a generated test whose model gives none.
     pub patience: Nanos,
+    /// How long a generated test waits before its first step: for code that is not ready at once.
+    pub warmup: Nanos,
 }
 
 impl Default for SuiteSettings {
     fn default() -> Self {
-        Self { tests: 100, horizon: 300 * SECOND, patience: 60 * SECOND }
+        Self { tests: 100, horizon: 300 * SECOND, patience: 60 * SECOND, warmup: 0 }
     }
 }
 
@@ -202,6 +204,8 @@ pub enum SearchGoal {
     Pairs,
     /// `reach each use`, a def-use pair: an edge that assigns a variable, and one that reads it with no assignment between
     Uses,
+    /// `reach each value`: of each variable of few values
+    Values,
     /// `reach violation of R`
     Violation(RequirementId),
     /// `reach trigger of R`

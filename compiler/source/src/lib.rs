@@ -15,4 +15,4 @@ pub use files::{SourceFile, SourceFiles, TextPosition};
 pub use printable::{is_steering, printable, printable_char, printable_line};
 pub use shared_words::{BinaryOp, LocationKind, UnaryOp};
 pub use span::{FileId, Span};
-pub use symbol::{Enumeration, Symbol};
+pub use symbol::{Enumeration, InternedTotals, Symbol};

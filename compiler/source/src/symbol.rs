@@ -29,6 +29,23 @@ struct EnumEntry {
 static SYMBOLS: Mutex<BTreeMap<&'static str, Symbol>> = Mutex::new(BTreeMap::new());
 static ENUMERATIONS: Mutex<BTreeMap<(String, Vec<Symbol>), Enumeration>> = Mutex::new(BTreeMap::new());
 
+/// How much this process has interned so far, and keeps until it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InternedTotals {
+    pub names: usize,
+    pub enumerations: usize,
+}
+
+impl InternedTotals {
+    #[must_use]
+    pub fn now() -> Self {
+        Self {
+            names: SYMBOLS.lock().unwrap_or_else(PoisonError::into_inner).len(),
+            enumerations: ENUMERATIONS.lock().unwrap_or_else(PoisonError::into_inner).len(),
+        }
+    }
+}
+
 /// A value of an enumeration: a name. Symbols of the same name are equal, whatever enumeration they come from, and are
 /// ordered by name.
 #[derive(Clone, Copy)]

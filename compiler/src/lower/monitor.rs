@@ -37,6 +37,7 @@ pub(crate) fn monitor(
         RequirementPattern::Forbids { trigger, forbidden, until } => {
             forbids(trigger.clone(), forbidden.clone(), until.clone())
         }
+        RequirementPattern::Precedes { first, then } => precedes(first.clone(), then.clone()),
         RequirementPattern::NeverWhile { events, condition } => {
             never(events.clone(), condition.as_ref(), signals)
         }
@@ -110,6 +111,18 @@ fn forbids(
         edge(1, 1, MonitorTrigger::Event(trigger), None, &[Trigger]),
     ];
     let states = vec![state("idle", false, None), state("armed", false, None)];
+    PatternMachine { states, edges, ..PatternMachine::default() }
+}
+
+/// An event that is both comes first, and is allowed.
+fn precedes(first: Vec<EventPattern>, then: Vec<EventPattern>) -> PatternMachine {
+    let then = MonitorTrigger::Event(then);
+    let edges = vec![
+        edge(0, 1, MonitorTrigger::Event(first), None, &[]),
+        edge(0, 0, then.clone(), None, &[Trigger, Fail]),
+        edge(1, 1, then, None, &[Trigger, Discharge]),
+    ];
+    let states = vec![state("before", false, None), state("after", false, None)];
     PatternMachine { states, edges, ..PatternMachine::default() }
 }
 

@@ -852,6 +852,8 @@ pub enum SuiteSetting {
     Horizon,
     /// `patience 60 s`: the bound of an await that the model gives none
     Patience,
+    /// `warmup 2 s`: before the first step of each test
+    Warmup,
 }
 
 /// `test bdi_tests.t017 { … }`

@@ -70,9 +70,10 @@ keywords! {
     Invariant "invariant" Soft "automaton" [];
     Select "select" Soft "edge" [Clause];
     After "after" Soft "requirement, suite" [Apart WantsName];
-    Causes "causes" Soft "requirement" [Clause AfterEvent Response WantsName];
-    Forbids "forbids" Soft "requirement" [Clause AfterEvent Response WantsName];
-    Until "until" Soft "requirement" [Clause AfterEvent WantsName];
+    Causes "causes" Soft "requirement" [Clause AfterEvent Response BeforeEvent WantsName];
+    Forbids "forbids" Soft "requirement" [Clause AfterEvent Response BeforeEvent WantsName];
+    Precedes "precedes" Soft "requirement" [Clause AfterEvent Response BeforeEvent WantsName];
+    Until "until" Soft "requirement" [Clause AfterEvent BeforeEvent WantsName];
     Never "never" Soft "requirement" [Apart WantsName];
     While "while" Soft "requirement, plan, function" [Apart Clause AfterEvent WantsName];
     Globally "globally" Soft "requirement" [Apart WantsName];
@@ -97,6 +98,7 @@ keywords! {
     Witness "witness" Soft "suite" [InSuite];
     Delays "delays" Soft "suite" [InSuite];
     Tests "tests" Soft "suite" [InSuite];
+    Warmup "warmup" Soft "suite" [InSuite];
     Horizon "horizon" Soft "suite" [InSuite];
     Patience "patience" Soft "suite" [InSuite];
     Reach "reach" Soft "suite, world" [Clause InSuite];

@@ -13,6 +13,8 @@ pub enum RequirementPattern<E, C, T> {
     Causes { trigger: Vec<E>, response: Vec<E>, within: Option<T> },
     /// `T forbids E until U`
     Forbids { trigger: Vec<E>, forbidden: Vec<E>, until: Vec<E> },
+    /// `F precedes T`: no T before the first F
+    Precedes { first: Vec<E>, then: Vec<E> },
     /// `never E while P`
     NeverWhile { events: Vec<E>, condition: Option<C> },
     /// `globally P`
@@ -39,7 +41,7 @@ impl<E, C, T> RequirementPattern<E, C, T> {
     pub fn triggers(&self) -> &[E] {
         match self {
             Self::Causes { trigger, .. } | Self::Forbids { trigger, .. } => trigger,
-            Self::NeverWhile { events, .. } => events,
+            Self::NeverWhile { events, .. } | Self::Precedes { then: events, .. } => events,
             Self::Globally(_) => &[],
         }
     }
@@ -49,6 +51,7 @@ impl<E, C, T> RequirementPattern<E, C, T> {
         let others: [&[E]; 2] = match self {
             Self::Causes { response, .. } => [response, &[]],
             Self::Forbids { forbidden, until, .. } => [forbidden, until],
+            Self::Precedes { first, .. } => [first, &[]],
             Self::NeverWhile { .. } | Self::Globally(_) => [&[], &[]],
         };
         self.triggers().iter().chain(others.into_iter().flatten())
@@ -60,7 +63,7 @@ impl<E, C, T> RequirementPattern<E, C, T> {
         match self {
             Self::NeverWhile { condition, .. } => condition.as_ref(),
             Self::Globally(condition) => Some(condition),
-            Self::Causes { .. } | Self::Forbids { .. } => None,
+            Self::Causes { .. } | Self::Forbids { .. } | Self::Precedes { .. } => None,
         }
     }
 
@@ -68,7 +71,9 @@ impl<E, C, T> RequirementPattern<E, C, T> {
     pub fn time(&self) -> Option<&T> {
         match self {
             Self::Causes { within, .. } => within.as_ref(),
-            Self::Forbids { .. } | Self::NeverWhile { .. } | Self::Globally(_) => None,
+            Self::Forbids { .. } | Self::Precedes { .. } | Self::NeverWhile { .. } | Self::Globally(_) => {
+                None
+            }
         }
     }
 
@@ -88,7 +93,9 @@ impl<E, C, T> RequirementPattern<E, C, T> {
     pub fn demands(&self) -> Option<DemandedEvents<'_, E>> {
         match self {
             Self::Causes { trigger, response, .. } => Some(DemandedEvents { trigger, response }),
-            Self::Forbids { .. } | Self::NeverWhile { .. } | Self::Globally(_) => None,
+            Self::Forbids { .. } | Self::Precedes { .. } | Self::NeverWhile { .. } | Self::Globally(_) => {
+                None
+            }
         }
     }
 
@@ -102,6 +109,7 @@ impl<E, C, T> RequirementPattern<E, C, T> {
             Self::NeverWhile { events, condition: None } => {
                 Some(BannedEvents { events, from: None, until: &[] })
             }
+            Self::Precedes { first, then } => Some(BannedEvents { events: then, from: None, until: first }),
             Self::NeverWhile { .. } | Self::Causes { .. } | Self::Globally(_) => None,
         }
     }
@@ -125,6 +133,9 @@ impl<E, C, T> RequirementPattern<E, C, T> {
                 forbidden: events(cx, forbidden),
                 until: events(cx, until),
             },
+            Self::Precedes { first, then } => {
+                RequirementPattern::Precedes { first: events(cx, first), then: events(cx, then) }
+            }
             Self::NeverWhile { events: list, condition: while_true } => RequirementPattern::NeverWhile {
                 events: events(cx, list),
                 condition: while_true.as_ref().map(|c| condition(cx, c)),

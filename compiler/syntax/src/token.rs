@@ -17,7 +17,7 @@ pub enum KeywordClass {
 
 /// What else may be true of a keyword, where it stands as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum KeywordTrait {
+pub enum KeywordTrait {
     /// The grammar says place by place where it may be a name; all others may be one wherever `Soft` is.
     Apart,
     /// Starts a clause, before which a long line is broken.
@@ -26,6 +26,8 @@ pub(crate) enum KeywordTrait {
     AfterEvent,
     /// Stands between the trigger of a requirement and what is said of it.
     Response,
+    /// In a requirement an event may follow, as the first of a part of its own.
+    BeforeEvent,
     /// At the level of declarations a name follows.
     WantsName,
     // Starts a member, or a step, of such a block.
@@ -48,7 +50,7 @@ pub struct Keyword {
     /// The construct that it belongs to, as the specification's table shows it.
     pub place: &'static str,
     pub(crate) kind: TokenKind,
-    pub(crate) traits: &'static [KeywordTrait],
+    pub traits: &'static [KeywordTrait],
 }
 
 macro_rules! keywords {

@@ -3,8 +3,8 @@
 
 use hrdsl_source::FileId;
 use hrdsl_syntax::ast::{ExprSyntaxKind, ItemSyntaxKind};
-use hrdsl_syntax::token::{KEYWORDS, KeywordClass};
 use hrdsl_syntax::parse;
+use hrdsl_syntax::token::{KEYWORDS, KeywordClass};
 
 const SPEC: &str = include_str!("../../../spec/grammar.md");
 const LEXICAL: &str = include_str!("../../../spec/lexical.md");

@@ -28,7 +28,7 @@
 [
   "scenario" "actor" "const" "stimulus" "agent" "automaton" "network" "require" "assume" "cover" "cross" "suite" "part"
   "world" "system" "test" "from" "to" "by" "in" "plays" "when" "on" "do" "emit" "within" "sample" "hold" "belief" "goal"
-  "plan" "clock" "location" "invariant" "select" "after" "causes" "forbids" "until" "never" "globally" "at"
+  "plan" "clock" "location" "invariant" "select" "after" "causes" "forbids" "precedes" "until" "never" "globally" "at"
   "most" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per" "where" "explore" "tests"
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
   "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "device" "command" "expect" "rotated" "mass" "ghost"

@@ -1,6 +1,7 @@
 //! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then [`tally`] adds them up.
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
+mod internal;
 mod tally;
 
 use std::{
@@ -36,6 +37,7 @@ use hrdsl_trace::{
 
 use hrdsl_testgen::step_text;
 
+pub use internal::{InternalError, guarded, record_panics};
 pub use tally::tally;
 
 /// How much of the program's output is kept, in bytes for each stream.
@@ -201,9 +203,14 @@ impl CampaignSetup<'_> {
         }
     }
 
-    /// Runs and judges one test.
+    /// Runs and judges one test. A fault of hrdsl itself breaks off this test alone.
     fn run_one(&self, system: &SystemUnderTest, test: &Test) -> TestAttempt {
-        let (run, finished) = self.execute(system, test);
+        guarded(|| self.judged(test, self.execute(system, test))).unwrap_or_else(|fault| {
+            self.judged(test, (failed(HarnessError::Internal(fault.to_string())), None))
+        })
+    }
+
+    fn judged(&self, test: &Test, (run, finished): (HarnessRun, Option<FinishedProcess>)) -> TestAttempt {
         let header = RecordingHeader {
             test: Some(test.name.clone()),
             seed: Some(test.seed),
@@ -214,7 +221,9 @@ impl CampaignSetup<'_> {
         let judgement = judge(self.program, &run.trace, ending.kind);
         let fault = match &run.ended {
             RunTermination::Fault(HarnessError::System(fault)) => Some(fault.kind),
-            RunTermination::Fault(HarnessError::Model(_) | HarnessError::World(_))
+            RunTermination::Fault(
+                HarnessError::Model(_) | HarnessError::World(_) | HarnessError::Internal(_),
+            )
             | RunTermination::Quiescent
             | RunTermination::Limit => None,
         };
@@ -224,15 +233,13 @@ impl CampaignSetup<'_> {
     }
 
     fn execute(&self, system: &SystemUnderTest, test: &Test) -> (HarnessRun, Option<FinishedProcess>) {
-        let failed =
-            |fault| (HarnessRun { trace: Trace::default(), ended: RunTermination::Fault(fault) }, None);
         let stage = match SimWorld::new(self.program) {
             Ok(world) => world.map(|world| WorldStage::new(self.program, Box::new(world))),
-            Err(why) => return failed(HarnessError::World(why.to_string())),
+            Err(why) => return (failed(HarnessError::World(why.to_string())), None),
         };
         let mut process = match SutProcess::spawn(&self.launch(system, test)) {
             Ok(process) => process,
-            Err(error) => return failed(HarnessError::System(SystemFault::from(error))),
+            Err(error) => return (failed(HarnessError::System(SystemFault::from(error))), None),
         };
         let players: Vec<Box<dyn ActorPlayer + '_>> = vec![
             Box::new(ScriptPlayer::new(self.program, test)),
@@ -264,6 +271,11 @@ impl CampaignSetup<'_> {
             stop: self.stop.clone(),
         }
     }
+}
+
+/// A run that never began.
+fn failed(fault: HarnessError) -> HarnessRun {
+    HarnessRun { trace: Trace::default(), ended: RunTermination::Fault(fault) }
 }
 
 /// What is known about a test when its run is over.

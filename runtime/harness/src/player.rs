@@ -50,6 +50,9 @@ pub enum HarnessError {
     World(String),
     #[error("{0}")]
     System(SystemFault),
+    /// Of hrdsl itself.
+    #[error("{0}")]
+    Internal(String),
 }
 
 /// Whether an actor perceives an event: stimuli reach the environment only; what is addressed to nobody in particular

@@ -1,11 +1,12 @@
 //! What a suite by search asks for, as goals of the search: one name for each, and what a run must show.
 
 use hrdsl_ir::{
-    Program,
+    Expr, Program,
     coverage::{BinCondition, BinName, CoverCross},
+    expr::BinaryOp,
     monitor::RequirementId,
     suite::SearchGoal,
-    ta::{Automaton, AutomatonId, LocationId, Network, QueryKind},
+    ta::{Automaton, AutomatonId, AutomatonVar, LocationId, Network, QueryKind},
 };
 use hrdsl_results::GoalName;
 use hrdsl_ta::{EventCounter, GoalKind, StateFormula};
@@ -49,6 +50,7 @@ fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<NamedGoal>
         SearchGoal::Edges => each_automaton(program, network, edges),
         SearchGoal::Pairs => each_automaton(program, network, flow::pairs),
         SearchGoal::Uses => flow::uses(program, network),
+        SearchGoal::Values => values(program, network),
         SearchGoal::Violation(id) => requirement(program, *id, "violation", WitnessedGoal::Violation),
         SearchGoal::Trigger(id) => requirement(program, *id, "trigger", WitnessedGoal::Trigger),
         SearchGoal::Query(id) => {
@@ -98,6 +100,26 @@ fn edges(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
         NamedGoal::one(name, what, false, WitnessedGoal::Edge(index, edge))
     });
     named.collect()
+}
+
+/// A variable of more values is a counter or a time, and its values are no cases.
+const MOST_VALUES: i64 = 16;
+
+/// Each value of each variable that has few.
+fn values(program: &Program, network: &Network) -> Vec<NamedGoal> {
+    let members = network.automata.iter().filter_map(|id| program.automata.get(usize::from(id.0)));
+    let vars = program.shared.iter().chain(members.flat_map(|a| &a.vars));
+    let slots = (0u16..).zip(vars.zip(hrdsl_ta::slot_names(program, network)));
+    let few = |var: &AutomatonVar| var.hi - var.lo < MOST_VALUES && !is_generated(&var.name);
+    let of = |(slot, (var, name)): (u16, (&AutomatonVar, String))| {
+        let each = (var.lo..=var.hi).filter_map(|n| var.value(n)).map(move |value| {
+            let is = Expr::binary(BinaryOp::Eq, Expr::Var(slot), Expr::Const(value));
+            let what = GoalKind::Condition(StateFormula::Data(is));
+            NamedGoal::one(format!("value {name} = {value}"), what, false, WitnessedGoal::Nothing)
+        });
+        each.collect::<Vec<_>>()
+    };
+    slots.filter(|(_, (var, _))| few(var)).flat_map(of).collect()
 }
 
 // ── bins ──

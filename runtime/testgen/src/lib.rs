@@ -31,7 +31,7 @@ mod write;
 use hrdsl_ir::{
     Program,
     suite::{DelayChoice, Suite, SuiteMethod, WitnessKind},
-    test::{Test, TestMethod, TestProvenance},
+    test::{Test, TestMethod, TestProvenance, TestStep},
 };
 use hrdsl_prove::ProofOptions;
 use hrdsl_results::{GoalReport, GoalStatus, ModelCoverage, SuiteExplanation, UncoveredGoal};
@@ -206,16 +206,24 @@ fn make_concrete(
                     because: test.because.clone(),
                     predicts: test.predicts.clone(),
                 },
-                steps: concrete::concretise(program, &test.steps, seed)?,
+                steps: warmed_up(suite, concrete::concretise(program, &test.steps, seed)?),
                 origin: suite.origin,
             })
         })
         .collect()
 }
 
+fn warmed_up(suite: &Suite, mut steps: Vec<TestStep>) -> Vec<TestStep> {
+    let time = suite.settings.warmup;
+    if time > 0 {
+        steps.insert(0, TestStep::Wait { time });
+    }
+    steps
+}
+
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::{Span, ta::NetworkId, test::TestStep};
+    use hrdsl_ir::{Span, ta::NetworkId};
     use hrdsl_results::GoalName;
 
     use super::*;
@@ -239,7 +247,7 @@ mod tests {
                 witness: hrdsl_ir::suite::WitnessKind::default(),
                 delays: hrdsl_ir::suite::DelayChoice::default(),
             },
-            settings: hrdsl_ir::suite::SuiteSettings { tests: 1, horizon: 0, patience: 0 },
+            settings: hrdsl_ir::suite::SuiteSettings { tests: 1, ..SuiteSettings::default() },
             origin: Span::default(),
         };
         let found = AgentFindings {

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use crate::{page::read, tables::generated};
+use crate::tables::generated;
 
 /// A piece of the grammar's text.
 #[derive(Clone, Debug, PartialEq)]
@@ -405,7 +405,7 @@ fn page(text: &str) -> String {
 
 #[test]
 fn the_grammar() {
-    generated("spec/grammar.md", "rules", &page(hrdsl_syntax::GRAMMAR));
+    generated("spec/grammar.md", "rules", &page(hrdsl_compiler::GRAMMAR));
 }
 
 #[test]

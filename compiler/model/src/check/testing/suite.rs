@@ -185,9 +185,7 @@ impl Checker<'_> {
             | Member::Witness(_)
             | Member::Delays(_) => "search",
             Member::Stimuli(_) | Member::Await(_) | Member::Length(_) | Member::Pause(_) => "random",
-            Member::Setting { what: SuiteSetting::Tests | SuiteSetting::Patience, .. } | Member::Error => {
-                return true;
-            }
+            Member::Setting { .. } | Member::Error => return true,
         };
         let is = match method {
             SyntaxMethod::Agents(_) => "agents",
@@ -219,8 +217,8 @@ impl Checker<'_> {
             Member::Setting { what, value } => self.setting(*what, value, said),
             Member::Minimise => said.minimise = true,
             Member::ReachEach(word) if by_search => {
-                let goals = [SearchGoal::Pairs, SearchGoal::Uses];
-                let words = ["pair", "use", "location", "edge", "bin of …"];
+                let goals = [SearchGoal::Pairs, SearchGoal::Uses, SearchGoal::Values];
+                let words = ["pair", "use", "value", "location", "edge", "bin of …"];
                 let found = self.choice(Noun::SearchReach, word, &words);
                 said.goals.extend(found.and_then(|i| goals.get(i)));
             }
@@ -285,6 +283,7 @@ impl Checker<'_> {
                 said.settings.tests = tests.unwrap_or(said.settings.tests);
             }
             SuiteSetting::Horizon => said.set_time(|s| &mut s.horizon, self.time(value, "the horizon", true)),
+            SuiteSetting::Warmup => said.set_time(|s| &mut s.warmup, self.time(value, "the warm-up", false)),
             SuiteSetting::Patience => {
                 said.set_time(|s| &mut s.patience, self.time(value, "the patience", true));
             }
