@@ -20,12 +20,12 @@ struct RegistryRow {
     traits: &'static [&'static str],
 }
 
-const REGISTRY: &[RegistryRow] = include!("src/keywords.rs");
+const REGISTRY: &[RegistryRow] = include!("src/keywords.in");
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=src/grammar.lalrpop");
-    println!("cargo::rerun-if-changed=src/keywords.rs");
+    println!("cargo::rerun-if-changed=src/keywords.in");
     let out = env::var("OUT_DIR")?;
     let whole = with_keywords(&fs::read_to_string("src/grammar.lalrpop")?);
     let place = Path::new(&out).join("grammar.lalrpop");

@@ -15,6 +15,7 @@
 
 pub mod ast;
 mod context;
+mod expected;
 mod heads;
 mod lex;
 mod outline;

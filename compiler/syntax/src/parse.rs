@@ -7,9 +7,9 @@ use crate::context::{ParseContext, ParsedUnit};
 use crate::lex::{LexedFile, lex};
 use crate::outline::{ChunkKind, DeclarationChunk, FileOutline, outline};
 use crate::recover::RecoveringParser;
-use crate::report::{ParseFault, report};
 use crate::run::run;
 use crate::token::{Lexeme, TokenKind};
+use crate::{expected::ParseFault, report::report};
 
 /// The largest file that is read.
 pub const MAX_BYTES: usize = 64 << 20;

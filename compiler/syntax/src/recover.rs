@@ -17,9 +17,9 @@ use crate::ast::{
     TestMemberKind, WorldMember, WorldMemberKind,
 };
 use crate::context::{ParseContext, ParsedUnit};
-use crate::report::{ParseFault, report};
 use crate::run::run;
 use crate::token::{KeywordTrait, Lexeme, TokenKind};
+use crate::{expected::ParseFault, report::report};
 
 pub(crate) struct RecoveringParser<'a, 't> {
     pub cx: &'a mut ParseContext<'t>,

@@ -5,8 +5,8 @@ use std::cell::Cell;
 use lalrpop_util::ParseError;
 
 use crate::context::{ParseContext, ParsedUnit};
+use crate::expected::ParseFault;
 use crate::grammar::UnitParser;
-use crate::report::ParseFault;
 use crate::token::{Lexeme, TokenKind};
 
 /// Reads one run of tokens as what `start` says: `None` a declaration. Of a run that does not fit, no diagnostics stay.

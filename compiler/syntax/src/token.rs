@@ -171,7 +171,7 @@ macro_rules! keywords {
     };
 }
 
-include!("keywords.rs");
+include!("keywords.in");
 
 impl TokenKind {
     /// Starts a declaration.

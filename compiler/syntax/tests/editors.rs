@@ -60,8 +60,29 @@ fn keywords_h() -> String {
     text
 }
 
+/// The query with all keywords that it does not name by themselves in its one long list.
+fn highlights(query: &str) -> String {
+    let (before, rest) = query.split_once("[\n  \"").expect("the list of keywords");
+    let (_, after) = rest.split_once("\n] @keyword\n").expect("the end of the list");
+    let others = || before.lines().chain(after.lines()).filter(|line| !line.starts_with('('));
+    let alone = |word: &str| others().any(|line| line.contains(&format!("\"{word}\"")));
+    let listed = KEYWORDS.iter().filter(|k| k.class != KeywordClass::Reserved && !alone(k.word));
+    let mut list = String::new();
+    let mut width = usize::MAX;
+    for keyword in listed {
+        let word = format!("\"{}\"", keyword.word);
+        let wraps = width.saturating_add(word.len()) > 118;
+        list += if wraps { "\n  " } else { " " };
+        width = if wraps { 2 } else { width + 1 } + word.len();
+        list += &word;
+    }
+    format!("{before}[{list}\n] @keyword\n{after}")
+}
+
 #[test]
 fn keywords_are_those_of_the_registry() {
+    let query = grammar().join("queries/highlights.scm");
+    same(&query, &highlights(&fs::read_to_string(&query).expect("the query is there")));
     same(&grammar().join("keywords.json"), &keywords_json());
     same(&grammar().join("src/keywords.h"), &keywords_h());
 }

@@ -247,7 +247,10 @@ mod tests {
                 witness: hrdsl_ir::suite::WitnessKind::default(),
                 delays: hrdsl_ir::suite::DelayChoice::default(),
             },
-            settings: hrdsl_ir::suite::SuiteSettings { tests: 1, ..SuiteSettings::default() },
+            settings: hrdsl_ir::suite::SuiteSettings {
+                tests: 1,
+                ..hrdsl_ir::suite::SuiteSettings::default()
+            },
             origin: Span::default(),
         };
         let found = AgentFindings {

@@ -155,7 +155,10 @@ mod tests {
                 pause_lo: 0,
                 pause_hi: 0,
             },
-            settings: hrdsl_ir::suite::SuiteSettings { tests: 1, ..SuiteSettings::default() },
+            settings: hrdsl_ir::suite::SuiteSettings {
+                tests: 1,
+                ..hrdsl_ir::suite::SuiteSettings::default()
+            },
             origin: Span::default(),
         };
         let drawn = harvest(&program, &suite, 1, 3).unwrap();

@@ -9,9 +9,12 @@ use crate::ast::{
     AutomatonMember, AutomatonMemberKind, FunctionSyntax, StatementSyntax, StatementSyntaxKind,
 };
 use crate::context::ParsedUnit;
-use crate::report::{ParseFault, found, report};
 use crate::run::run;
 use crate::token::TokenKind;
+use crate::{
+    expected::ParseFault,
+    report::{found, report},
+};
 
 impl RecoveringParser<'_, '_> {
     /// A function of an automaton whose header or body is broken.

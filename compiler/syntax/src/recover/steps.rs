@@ -7,9 +7,12 @@ use hrdsl_source::{Diagnostic, DiagnosticCode};
 use super::RecoveringParser;
 use crate::ast::{StepSyntax, StepSyntaxKind};
 use crate::context::ParsedUnit;
-use crate::report::{ParseFault, found, report};
 use crate::run::run;
 use crate::token::{Lexeme, TokenKind};
+use crate::{
+    expected::ParseFault,
+    report::{found, report},
+};
 
 impl RecoveringParser<'_, '_> {
     pub(super) fn steps(&mut self, block: Range<usize>) -> Vec<StepSyntax> {

@@ -3,5 +3,6 @@
 pub(super) mod coverage;
 pub(super) mod requirement;
 pub(super) mod suite;
+mod suite_goals;
 pub(super) mod system;
 pub(super) mod test;
