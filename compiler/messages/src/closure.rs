@@ -9,7 +9,7 @@ use crate::{
     fault::{MessageFault, MessageFaultKind},
     implied::ActionInterfaces,
     library::{KnownAction, KnownMessage, MessageLibrary},
-    name::{InterfaceName, InterfaceSpace, RosVersion},
+    name::{InterfaceName, RosVersion},
     table::{ActionRow, InterfaceTable, MessageRow, ServedAction, ServiceRow},
 };
 
@@ -87,12 +87,8 @@ impl<'l> InterfaceClosure<'l> {
     }
 
     fn add(&mut self, name: &InterfaceName, asked_at: Span) {
-        let found = match name.space {
-            InterfaceSpace::Msg => self.message(name),
-            InterfaceSpace::Srv => self.service(name) || self.message(name),
-            InterfaceSpace::Action => self.action(name) || self.message(name),
-        };
-        if !found {
+        // Services that an action implies are of its space, and so are the messages of both.
+        if !(self.action(name) || self.service(name) || self.message(name)) {
             let kind = MessageFaultKind::UnknownType(name.written(self.library.version()));
             let help = format!("name the workspace that holds the package `{}`", name.package);
             self.faults.push(kind.at(asked_at, help));
@@ -119,19 +115,10 @@ impl<'l> InterfaceClosure<'l> {
                 }
             };
             for part in parts.into_iter().chain(wire) {
-                self.add_part(part, action.span);
+                self.add(part, action.span);
             }
         }
         true
-    }
-
-    /// What an action is made of: services and messages.
-    fn add_part(&mut self, name: &InterfaceName, asked_at: Span) {
-        if !(self.service(name) || self.message(name)) {
-            let kind = MessageFaultKind::UnknownType(name.written(self.library.version()));
-            let help = format!("name the workspace that holds the package `{}`", name.package);
-            self.faults.push(kind.at(asked_at, help));
-        }
     }
 
     /// Adds a message behind all that it holds. Without a recursion: a chain may be as long as the library, if it is at fault.

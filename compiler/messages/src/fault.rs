@@ -15,8 +15,8 @@ pub struct MessageFault {
     pub span: Span,
     /// What to write.
     pub help: String,
-    /// What it clashes with: the place, and what is there.
-    pub other: Option<(Span, String)>,
+    /// Where that stands which it repeats.
+    pub first: Option<Span>,
 }
 
 /// What is wrong; its text is the message of the fault.
@@ -92,15 +92,15 @@ impl MessageFaultKind {
     /// The fault of this kind at a place.
     #[must_use]
     pub fn at(self, span: Span, help: impl Into<String>) -> MessageFault {
-        MessageFault { kind: self, span, help: help.into(), other: None }
+        MessageFault { kind: self, span, help: help.into(), first: None }
     }
 }
 
 impl MessageFault {
-    /// What it clashes with.
+    /// It repeats what stands there.
     #[must_use]
-    pub fn with(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.other = Some((span, text.into()));
+    pub fn repeats(mut self, first: Span) -> Self {
+        self.first = Some(first);
         self
     }
 }

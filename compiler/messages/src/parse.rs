@@ -209,6 +209,10 @@ impl MessageParser<'_> {
             return;
         }
         let (of, rest) = line.split_before(|c| c.is_whitespace() || c == '#');
+        if of.text.starts_with("---") {
+            let kind = MessageFaultKind::UnexpectedText(line.text.to_owned());
+            return self.faults.say(kind.at(line.span(), "write `---` between two parts, alone on its line"));
+        }
         let (name, rest) = rest.trimmed().split_before(|c| c.is_whitespace() || matches!(c, '=' | '#'));
         let rest = rest.trimmed();
         if name.is_empty() {
@@ -288,7 +292,7 @@ impl MessageParser<'_> {
         }
         if let Some(first) = self.names.get(name.text) {
             let kind = MessageFaultKind::DuplicateName(name.text.to_owned());
-            self.faults.say(kind.at(name.span(), "give one of them another name").with(*first, "first here"));
+            self.faults.say(kind.at(name.span(), "give one of them another name").repeats(*first));
             return false;
         }
         self.names.insert(name.text.to_owned(), name.span());

@@ -48,7 +48,10 @@ fn unknown_types(
                     format!("name the workspace that holds the package `{}`, or mend the name", held.package)
                 }
             };
-            let kind = MessageFaultKind::UnknownType(held.in_field(version));
+            // As it is written there: without the package that it is of anyway.
+            let written =
+                if held.package == name.package { held.name.clone() } else { held.in_field(version) };
+            let kind = MessageFaultKind::UnknownType(written);
             found.push((name.clone(), kind.at(field.type_span, help)));
         }
     }

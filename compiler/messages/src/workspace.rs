@@ -148,7 +148,7 @@ impl WorkspaceSearch<'_> {
                 first.folder
             );
             let kind = MessageFaultKind::DuplicatePackage(name);
-            return self.faults.push(kind.at(span, help).with(first.span, "first here"));
+            return self.faults.push(kind.at(span, help).repeats(first.span));
         }
         let definitions =
             definitions.iter().filter_map(|path| self.definition(&name, folder, path)).collect();
