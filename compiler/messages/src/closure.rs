@@ -8,7 +8,8 @@ use crate::{
     checksum::{sum, summed_text},
     fault::{MessageFault, MessageFaultKind},
     implied::ActionInterfaces,
-    library::{KnownAction, KnownMessage, MessageLibrary},
+    known::{KnownAction, KnownMessage},
+    library::MessageLibrary,
     name::{InterfaceName, RosVersion},
     table::{ActionRow, InterfaceTable, MessageRow, ServedAction, ServiceRow},
 };

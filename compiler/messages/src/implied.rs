@@ -5,10 +5,11 @@ use hrdsl_source::Span;
 use crate::{
     definition::{
         ActionDefinition, ElementCount, FieldElement, MessageDefinition, MessageField, MessageFieldType,
-        PrimitiveType, ServiceDefinition,
+        ServiceDefinition,
     },
     name::{InterfaceName, InterfaceSpace, RosVersion},
     parse::part_name,
+    primitive::PrimitiveType,
 };
 
 /// A field of what is implied: its name, and what it holds.

@@ -13,13 +13,16 @@ mod checksum;
 mod closure;
 mod definition;
 mod fault;
+mod guess;
 mod implied;
+mod known;
 mod library;
 pub mod limits;
 mod manifest;
 mod name;
 mod parse;
 mod placed;
+mod primitive;
 mod print;
 mod resolve;
 mod standard;
@@ -30,15 +33,15 @@ mod workspace;
 
 pub use definition::{
     ActionDefinition, ElementCount, FieldElement, MessageConstant, MessageDefinition, MessageField,
-    MessageFieldType, PrimitiveType, ServiceDefinition,
+    MessageFieldType, ServiceDefinition,
 };
 pub use fault::{MessageFault, MessageFaultKind};
 pub use implied::ActionInterfaces;
-pub use library::{
-    KnownAction, KnownMessage, KnownService, MessageLibrary, MessageLibraryBuilder, UnknownInterface,
-};
+pub use known::{KnownAction, KnownMessage, KnownService};
+pub use library::{MessageLibrary, MessageLibraryBuilder, UnknownInterface};
 pub use name::{InterfaceName, InterfaceSpace, NamedPart, RosVersion};
 pub use parse::{DefinitionText, InterfaceDefinition, parse_definition};
+pub use primitive::PrimitiveType;
 pub use table::{
     ActionRow, ArrayRow, ConstantRow, FieldRow, InterfaceTable, MessageRow, ServedAction, ServiceRow,
 };

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_source::{SourceFiles, Span, nearest};
+use hrdsl_source::{SourceFiles, Span};
 
 use crate::{
-    definition::{MessageDefinition, PrimitiveType, ServiceDefinition},
+    definition::{MessageDefinition, ServiceDefinition},
     fault::MessageFault,
+    guess::nearest_interface,
     implied::{ActionInterfaces, implied_by},
+    known::{KnownAction, KnownMessage, KnownService},
     name::{InterfaceName, InterfaceSpace, RosVersion},
     parse::InterfaceDefinition,
     resolve,
@@ -23,31 +25,6 @@ pub struct MessageLibrary {
     services: BTreeMap<InterfaceName, KnownService>,
     actions: BTreeMap<InterfaceName, KnownAction>,
     faults: Vec<MessageFault>,
-}
-
-/// A message, and what is wrong with it.
-#[derive(Clone, Debug)]
-pub struct KnownMessage {
-    pub definition: MessageDefinition,
-    pub faults: Vec<MessageFault>,
-}
-
-/// The messages of a service.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct KnownService {
-    pub request: InterfaceName,
-    pub response: InterfaceName,
-}
-
-/// The messages of an action, and the interfaces by which it is spoken.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct KnownAction {
-    pub goal: InterfaceName,
-    pub result: InterfaceName,
-    pub feedback: InterfaceName,
-    pub interfaces: ActionInterfaces,
-    /// Of its definition.
-    pub span: Span,
 }
 
 /// A name that no definition has.
@@ -141,10 +118,7 @@ impl MessageLibrary {
                     [&action.goal, &action.result, &action.feedback].map(|part| part.name.clone());
                 let interfaces = ActionInterfaces::of(&action.name, self.version);
                 self.actions.insert(action.name, KnownAction { goal, result, feedback, interfaces, span });
-                // What is wrong with the text is said of its first part, which nobody needs without the others.
-                self.add_message(action.goal, faults);
-                self.add_message(action.result, Vec::new());
-                self.add_message(action.feedback, Vec::new());
+                self.add_parts(vec![action.goal, action.result, action.feedback], faults);
             }
         }
     }
@@ -153,8 +127,17 @@ impl MessageLibrary {
         let known =
             KnownService { request: service.request.name.clone(), response: service.response.name.clone() };
         self.services.insert(service.name, known);
-        self.add_message(service.request, faults);
-        self.add_message(service.response, Vec::new());
+        self.add_parts(vec![service.request, service.response], faults);
+    }
+
+    /// The parts of one file, each with what is wrong in it; what stands in no part goes with the first.
+    fn add_parts(&mut self, mut parts: Vec<MessageDefinition>, mut faults: Vec<MessageFault>) {
+        while let Some(part) = parts.pop() {
+            let is_inside = |fault: &MessageFault| parts.is_empty() || fault.span.start >= part.span.start;
+            let (inside, before) = faults.into_iter().partition(is_inside);
+            faults = before;
+            self.add_message(part, inside);
+        }
     }
 
     fn add_message(&mut self, definition: MessageDefinition, faults: Vec<MessageFault>) {
@@ -247,41 +230,4 @@ impl MessageLibrary {
         nearest_interface(wanted, self.named(space).filter(|name| name.space == space))
             .map(|name| name.in_field(RosVersion::Ros1))
     }
-}
-
-/// The interface that was probably meant: one of the same name in another package, one of a similar name in the same package, or
-/// the same name in a package of a similar one.
-pub(crate) fn nearest_interface<'a>(
-    wanted: &InterfaceName,
-    known: impl Iterator<Item = &'a InterfaceName>,
-) -> Option<&'a InterfaceName> {
-    let known: Vec<&InterfaceName> = known.collect();
-    let of_that_name = || known.iter().filter(|name| name.name.eq_ignore_ascii_case(&wanted.name));
-    let packages = of_that_name().map(|name| name.package.as_str());
-    let in_near_package = nearest(&wanted.package, packages);
-    if let Some(package) = in_near_package {
-        return of_that_name().find(|name| name.package == package).copied();
-    }
-    let in_package = || known.iter().filter(|name| name.package == wanted.package);
-    if let Some(near) = nearest(&wanted.name, in_package().map(|name| name.name.as_str())) {
-        return in_package().find(|name| name.name == near).copied();
-    }
-    of_that_name().next().copied()
-}
-
-/// What a field was probably meant to hold, as it is to be written there.
-pub(crate) fn nearest_type(
-    wanted: &InterfaceName,
-    home: &str,
-    version: RosVersion,
-    messages: &BTreeMap<InterfaceName, KnownMessage>,
-) -> Option<String> {
-    let known = || messages.keys().filter(|name| name.space == InterfaceSpace::Msg);
-    let elsewhere = known().find(|name| name.name == wanted.name);
-    if let (true, Some(name)) = (wanted.package == home, elsewhere) {
-        return Some(name.in_field(version));
-    }
-    let words = PrimitiveType::ALL.into_iter().filter(|t| t.is_in(version)).map(PrimitiveType::word);
-    let word = if wanted.package == home { nearest(&wanted.name, words) } else { None };
-    word.map(str::to_owned).or_else(|| nearest_interface(wanted, known()).map(|name| name.in_field(version)))
 }

@@ -9,12 +9,13 @@ use hrdsl_source::{FileId, Span};
 use crate::{
     definition::{
         ActionDefinition, ElementCount, FieldElement, MessageConstant, MessageDefinition, MessageField,
-        MessageFieldType, PrimitiveType, ServiceDefinition,
+        MessageFieldType, ServiceDefinition,
     },
     fault::{MessageFault, MessageFaultKind},
     limits::{MOST_BYTES, MOST_FAULTS, MOST_MEMBERS},
     name::{InterfaceName, InterfaceSpace, NamedPart, RosVersion},
     placed::PlacedText,
+    primitive::PrimitiveType,
     types::read_type,
     value::{MessageValue, QuoteScan, ValueProblem, list_pieces, read_value},
 };
@@ -346,16 +347,14 @@ impl MessageParser<'_> {
         text: PlacedText<'_>,
     ) -> Result<MessageValue, MessageFault> {
         let value = self.scalar(of, text)?;
-        match (&value, most) {
-            (MessageValue::Text(inner), Some(most)) if inner.chars().count() as u64 > u64::from(most) => {
-                let kind = MessageFaultKind::ValueOutOfRange {
-                    value: text.text.to_owned(),
-                    of: format!("{}<={most}", of.word()),
-                };
-                Err(kind.at(text.span(), format!("write at most {most} characters")))
-            }
-            _ => Ok(value),
+        if let (MessageValue::Text(inner), Some(most)) = (&value, most)
+            && inner.chars().count() as u64 > u64::from(most)
+        {
+            let (value, of) = (text.text.to_owned(), format!("{}<={most}", of.word()));
+            let kind = MessageFaultKind::ValueOutOfRange { value, of };
+            return Err(kind.at(text.span(), format!("write at most {most} characters")));
         }
+        Ok(value)
     }
 
     fn scalar(&self, of: PrimitiveType, text: PlacedText<'_>) -> Result<MessageValue, MessageFault> {

@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use crate::{
-    definition::{ElementCount, FieldElement, MessageDefinition},
+    definition::{ElementCount, FieldElement, MessageDefinition, MessageField},
     fault::{MessageFault, MessageFaultKind},
-    library::{KnownMessage, nearest_type},
+    guess::nearest_type,
+    known::KnownMessage,
     limits::{MOST_DEPTH, MOST_FAULTS, MOST_FIXED_VALUES},
     name::{InterfaceName, RosVersion},
 };
@@ -190,7 +191,7 @@ impl<'m> MessageOrder<'m> {
 
 /// How many values a message holds before anything is put into its sequences.
 fn fixed_values(message: &MessageDefinition, sizes: &BTreeMap<&InterfaceName, (u32, u64)>) -> u64 {
-    let of_field = |field: &crate::definition::MessageField| {
+    let of_field = |field: &MessageField| {
         let one = match &field.of.element {
             FieldElement::Primitive(_) | FieldElement::BoundedText(..) => 1,
             FieldElement::Message(name) => sizes.get(name).map_or(1, |(_, values)| *values),

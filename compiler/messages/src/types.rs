@@ -1,10 +1,11 @@
 //! The type of a field, as it is written: `float32[36]`, `string<=10[<=5]`, `geometry_msgs/Pose[]`.
 
 use crate::{
-    definition::{ElementCount, FieldElement, MessageFieldType, PrimitiveType},
+    definition::{ElementCount, FieldElement, MessageFieldType},
     fault::{MessageFault, MessageFaultKind},
     name::{InterfaceName, InterfaceSpace, NamedPart, RosVersion, is_identifier},
     placed::PlacedText,
+    primitive::PrimitiveType,
 };
 
 /// The package that every message's header comes from, in ROS 1 even where `Header` stands alone.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::{Serialize, Serializer, ser::SerializeSeq};
 
-use crate::{definition::PrimitiveType, name::RosVersion};
+use crate::{name::RosVersion, primitive::PrimitiveType};
 
 /// A value that a definition gives. Whole numbers of every type fit.
 #[derive(Clone, Debug, PartialEq)]

@@ -176,6 +176,27 @@ fn a_table_is_as_good_as_what_it_needs() {
     assert!(library.closure(&[InterfaceName::message("a", "Absent")]).is_err());
 }
 
+/// Of the parts of a file only those are refused in which something is wrong; what is made of them needs them all.
+#[test]
+fn each_part_has_its_own_faults() {
+    let definitions = [("action/Go.action", "int32 x\n---\nint32\n---\n"), ("srv/Ask.srv", "int32 x\n---\n")];
+    let files = FilesInMemory::new(&[]).package("ws/src/a", "a", &definitions);
+    let mut sources = SourceFiles::default();
+    let library =
+        with_standard(RosVersion::Ros1, &mut sources).workspace(&files, "ws", Span::default()).finish();
+    let is_right = |name| library.closure(&[name]).is_ok();
+    assert!(
+        is_right(InterfaceName::message("a", "GoGoal"))
+            && is_right(InterfaceName::message("a", "GoFeedback"))
+    );
+    assert!(
+        !is_right(InterfaceName::message("a", "GoResult"))
+            && !is_right(InterfaceName::message("a", "GoAction"))
+    );
+    assert!(!is_right(InterfaceName::new("a", InterfaceSpace::Action, "Go")));
+    assert!(is_right(InterfaceName::new("a", InterfaceSpace::Srv, "Ask")));
+}
+
 #[test]
 fn depth_and_size_are_bounded() {
     let chain = |n: u32| format!("M{}{} next\n", n + 1, if n.is_multiple_of(2) { "[]" } else { "" });
