@@ -203,7 +203,7 @@ impl MessageLibrary {
     pub fn find(&self, written: &str, space: InterfaceSpace) -> Result<&InterfaceName, UnknownInterface> {
         let wanted = InterfaceName::read(written, space);
         let known = wanted.as_ref().and_then(|wanted| match space {
-            InterfaceSpace::Msg => self.messages_from(wanted).map(|known| known.0),
+            InterfaceSpace::Msg => self.message_named(wanted),
             InterfaceSpace::Srv => self.services_from(wanted).map(|known| known.0),
             InterfaceSpace::Action => self.actions_from(wanted).map(|known| known.0),
         });
@@ -215,6 +215,16 @@ impl MessageLibrary {
             };
             UnknownInterface { written: written.to_owned(), space, nearest }
         })
+    }
+
+    /// In ROS 1 the names of a service's two messages do not say that they are of a service.
+    fn message_named(&self, wanted: &InterfaceName) -> Option<&InterfaceName> {
+        let of_service = || InterfaceName::new(&wanted.package, InterfaceSpace::Srv, &wanted.name);
+        let known = self.messages_from(wanted).or_else(|| match self.version {
+            RosVersion::Ros1 => self.messages_from(&of_service()),
+            RosVersion::Ros2 => None,
+        });
+        known.map(|known| known.0)
     }
 
     /// The names of all messages, services or actions.

@@ -156,6 +156,9 @@ fn a_name_that_is_not_there_has_a_nearest() {
     }
     assert_eq!(nearest("std_srvs/SetBol", InterfaceSpace::Srv).as_deref(), Some("std_srvs/SetBool"));
     assert!(library.find("sensor_msgs/msg/LaserScan", InterfaceSpace::Msg).is_ok());
+    assert!(library.find("std_srvs/srv/SetBool_Request", InterfaceSpace::Msg).is_ok());
+    assert!(library.find("std_srvs/SetBool_Request", InterfaceSpace::Msg).is_err());
+    assert!(standard(RosVersion::Ros1).find("std_srvs/SetBoolRequest", InterfaceSpace::Msg).is_ok());
     let unknown = library.find("a_msgs/B", InterfaceSpace::Action).unwrap_err();
     assert_eq!(unknown.to_string(), "no action is called `a_msgs/B`");
 }
