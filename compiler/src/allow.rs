@@ -101,7 +101,7 @@ fn judge(allowance: &LintAllowance<'_>, used: bool, broken: bool, on_error: bool
         let message = format!("no diagnostic has the code `{}`", code.text);
         let error = Diagnostic::error(DiagnosticCode::UNKNOWN_NAME, code.span, message);
         let codes: Vec<String> = REGISTRY.iter().map(|info| info.code.to_string()).collect();
-        let near = hrdsl_model::nearest(&code.text, codes.iter().map(String::as_str));
+        let near = hrdsl_source::nearest(&code.text, codes.iter().map(String::as_str));
         return Some(match near {
             Some(near) => error.help(format!("did you mean `{near}`?")).fix(
                 format!("replace `{}` by `{near}`", code.text),

@@ -189,7 +189,7 @@ fn not_a_module(used: &ModuleSyntax) -> Diagnostic {
 /// HR0104, at the first name that differs from those of the nearest module.
 fn unknown(name: &str, path: &ast::PathSyntax) -> Diagnostic {
     let names: Vec<&str> = hrdsl_stdlib::MODULES.iter().map(|m| m.0).collect();
-    let near = hrdsl_model::nearest(name, names.iter().copied());
+    let near = hrdsl_source::nearest(name, names.iter().copied());
     let parts = near.unwrap_or_default().split('.').map(Some).chain(std::iter::repeat(None));
     let wrong = path.names.iter().zip(parts).find(|(n, part)| Some(n.text.as_str()) != *part);
     let span = if near.is_some() { wrong.map_or(path.span, |(n, _)| n.span) } else { path.span };

@@ -1,5 +1,9 @@
-//! The standard modules, embedded: `std.robots.bert2` is `stdlib/robots/bert2.hri`.
+//! The standard modules, embedded: `std.robots.bert2` is `stdlib/robots/bert2.hri`; and the standard packages of ROS interfaces.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
+
+mod messages;
+
+pub use messages::{ROS1_PACKAGES, ROS2_PACKAGES};
 
 /// The module that every scenario has without using it: what devices can be told.
 pub const DEVICES: &str = "std.devices";
@@ -27,5 +31,8 @@ mod tests {
         assert!(super::module("std.person").is_some());
         assert!(super::module("std.persn").is_none());
         assert!(super::MODULES.is_sorted_by_key(|m| m.0));
+        assert!(
+            super::ROS1_PACKAGES.is_sorted_by_key(|p| p.0) && super::ROS2_PACKAGES.is_sorted_by_key(|p| p.0)
+        );
     }
 }

@@ -4,7 +4,6 @@
 mod check;
 mod expr;
 mod lint;
-mod nearest;
 mod noun;
 mod report;
 mod resolution;
@@ -19,7 +18,6 @@ pub use expr::{
     VariableRef, leaves,
 };
 pub use lint::lint;
-pub use nearest::{distance, nearest};
 pub use report::world::LIBRARY_PARTS;
 pub use resolution::{DefinedType, NameDefinition, Resolutions};
 pub use scenario::*;

@@ -4,6 +4,7 @@
 mod codes;
 mod diagnostic;
 mod files;
+mod nearest;
 mod printable;
 mod shared_words;
 mod span;
@@ -12,6 +13,7 @@ mod symbol;
 pub use codes::{CodeInfo, DiagnosticCode, GROUPS, REGISTRY};
 pub use diagnostic::{Diagnostic, Severity, SpanLabel, SuggestedFix, TextEdit};
 pub use files::{SourceFile, SourceFiles, TextPosition};
+pub use nearest::{distance, nearest};
 pub use printable::{is_steering, printable, printable_char, printable_line};
 pub use shared_words::{BinaryOp, LocationKind, UnaryOp};
 pub use span::{FileId, Span};

@@ -2,10 +2,10 @@
 
 use crate::{
     AgentId, BeliefDecl, BeliefId, ChoiceKind, GoalId, Performative, Scenario, TriggerOn, TypedAgent,
-    TypedChoiceCondition, TypedContext, TypedPlan, TypedStep, TypedStepKind, TypedTerm, nearest::nearest,
+    TypedChoiceCondition, TypedContext, TypedPlan, TypedStep, TypedStepKind, TypedTerm,
 };
 use hrdsl_ir::bdi::each_step;
-use hrdsl_source::{Diagnostic, Span};
+use hrdsl_source::{Diagnostic, Span, nearest};
 
 use super::{
     agent_index::{AgentIndex, AgentWork, SentMessage},

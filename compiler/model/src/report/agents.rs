@@ -1,8 +1,8 @@
 //! HR04xx: agents.
 
-use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span, nearest};
 
-use crate::{InferredType, nearest::nearest, noun::Noun, report::names::with_nearest};
+use crate::{InferredType, noun::Noun, report::names::with_nearest};
 
 /// HR0401: a variable is read before anything gives it a value.
 pub(crate) fn unbound<'a>(name: &str, span: Span, others: impl IntoIterator<Item = &'a str>) -> Diagnostic {

@@ -1,8 +1,8 @@
 //! HR01xx: names.
 
-use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span, nearest};
 
-use crate::{nearest::nearest, noun::Noun};
+use crate::noun::Noun;
 
 /// HR0101: nothing of this kind has the name.
 pub(crate) fn unknown<'a>(

@@ -260,12 +260,12 @@ impl Checker<'_> {
         if env.function(text).is_none() {
             let known =
                 self.given(text).is_some() || self.kind_of(text).is_some() || self.source.unread_items;
-            let meant = (!known).then(|| crate::nearest::nearest(text, env.function_names())).flatten();
+            let meant = (!known).then(|| hrdsl_source::nearest(text, env.function_names())).flatten();
             if self.source.unread_members && self.kind_of(text).is_none() {
                 // It may be a function that could not be read.
                 return true;
             }
-            let event = crate::nearest::nearest(text, self.events.table.names());
+            let event = hrdsl_source::nearest(text, self.events.table.names());
             // Short names are near to all others.
             let near = meant.filter(|near| event.is_none() && near.len() > 2);
             let Some(near) = near else { return false };

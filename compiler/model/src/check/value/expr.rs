@@ -151,7 +151,7 @@ impl<'a> Checker<'a> {
                 let values = of.values().iter().map(|v| v.name());
                 let others = self.names_with_value(env);
                 // Another name is offered only if it is near.
-                let near = crate::nearest::nearest(
+                let near = hrdsl_source::nearest(
                     &name.text,
                     values.clone().chain(others.iter().map(String::as_str)),
                 );

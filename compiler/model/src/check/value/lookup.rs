@@ -182,7 +182,7 @@ impl<'a> Checker<'a> {
         }
         let of = self.types.values.get(value.text.as_str())?;
         let names = of.iter().map(|of| of.name());
-        crate::nearest::nearest(&name.text, names)
+        hrdsl_source::nearest(&name.text, names)
     }
 
     /// `Order.feed`

@@ -1,6 +1,6 @@
 //! Names and measurements of the world in expressions.
 
-use hrdsl_source::Span;
+use hrdsl_source::{Span, nearest};
 use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax, NameSyntax};
 
 use crate::check::{
@@ -11,7 +11,6 @@ use crate::check::{
 use crate::{
     ArmId, Axis, BodyRef, Dimension, GripperId, InferredType, SignalId, SignalTerm, TypedExpr, TypedExprKind,
     VariableRef,
-    nearest::nearest,
     noun::Noun,
     report::{names, types},
 };

@@ -16,19 +16,27 @@ pub fn distance(a: &str, b: &str) -> usize {
     // INVARIANT: row[j] is the distance of a[..i] and b[..j]; `last` and `before` are the rows of i - 1 and i - 2.
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).map(|j| j * INDEL).collect();
-    for i in 1..=a.len() {
-        let mut row = vec![i * INDEL];
-        for j in 1..=b.len() {
-            let replace = if a[i - 1] == b[j - 1] { 0 } else { REPLACE };
-            let mut best = (last[j - 1] + replace).min(last[j] + INDEL).min(row[j - 1] + INDEL);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                best = best.min(before[j - 2] + SWAP);
+    let mut a_before = None;
+    for (i, &in_a) in a.iter().enumerate() {
+        let mut left = (i + 1) * INDEL;
+        let mut row = vec![left];
+        let mut b_before = None;
+        // Both have an entry more than `b` has letters; the row before last is empty in the first round.
+        let mut swapped = before.iter();
+        for ((&in_b, diagonal), above) in b.iter().zip(&last).zip(last.iter().skip(1)) {
+            let replace = if in_a == in_b { 0 } else { REPLACE };
+            let mut best = (diagonal + replace).min(above + INDEL).min(left + INDEL);
+            if b_before.is_some() {
+                let swap = swapped.next().filter(|_| b_before == Some(in_a) && a_before == Some(in_b));
+                best = swap.map_or(best, |cost| best.min(cost + SWAP));
             }
             row.push(best);
+            (left, b_before) = (best, Some(in_b));
         }
         before = std::mem::replace(&mut last, row);
+        a_before = Some(in_a);
     }
-    last[b.len()]
+    last.last().copied().unwrap_or_default()
 }
 
 /// The candidate nearest to `name`, if one is near enough to have been meant; of equals the one that begins alike for

@@ -1,0 +1,62 @@
+//! The standard packages of ROS interfaces, embedded: types, names, constants and defaults, a text for each package.
+//!
+//! A line `== msg/Header.msg` begins a definition; the lines up to the next are what its file says, without comments.
+
+/// Packages of ROS 1 Noetic: name and text, sorted by name.
+pub const ROS1_PACKAGES: &[(&str, &str)] = &[
+    ("actionlib", include_str!("../messages/ros1/actionlib.txt")),
+    ("actionlib_msgs", include_str!("../messages/ros1/actionlib_msgs.txt")),
+    ("bond", include_str!("../messages/ros1/bond.txt")),
+    ("control_msgs", include_str!("../messages/ros1/control_msgs.txt")),
+    ("diagnostic_msgs", include_str!("../messages/ros1/diagnostic_msgs.txt")),
+    ("dynamic_reconfigure", include_str!("../messages/ros1/dynamic_reconfigure.txt")),
+    ("gazebo_msgs", include_str!("../messages/ros1/gazebo_msgs.txt")),
+    ("geometry_msgs", include_str!("../messages/ros1/geometry_msgs.txt")),
+    ("moveit_msgs", include_str!("../messages/ros1/moveit_msgs.txt")),
+    ("nav_msgs", include_str!("../messages/ros1/nav_msgs.txt")),
+    ("object_recognition_msgs", include_str!("../messages/ros1/object_recognition_msgs.txt")),
+    ("octomap_msgs", include_str!("../messages/ros1/octomap_msgs.txt")),
+    ("play_motion_msgs", include_str!("../messages/ros1/play_motion_msgs.txt")),
+    ("roscpp", include_str!("../messages/ros1/roscpp.txt")),
+    ("rosgraph_msgs", include_str!("../messages/ros1/rosgraph_msgs.txt")),
+    ("sensor_msgs", include_str!("../messages/ros1/sensor_msgs.txt")),
+    ("shape_msgs", include_str!("../messages/ros1/shape_msgs.txt")),
+    ("std_msgs", include_str!("../messages/ros1/std_msgs.txt")),
+    ("std_srvs", include_str!("../messages/ros1/std_srvs.txt")),
+    ("stereo_msgs", include_str!("../messages/ros1/stereo_msgs.txt")),
+    ("tf2_msgs", include_str!("../messages/ros1/tf2_msgs.txt")),
+    ("trajectory_msgs", include_str!("../messages/ros1/trajectory_msgs.txt")),
+    ("visualization_msgs", include_str!("../messages/ros1/visualization_msgs.txt")),
+];
+
+/// Packages of ROS 2 Humble, likewise.
+pub const ROS2_PACKAGES: &[(&str, &str)] = &[
+    ("action_msgs", include_str!("../messages/ros2/action_msgs.txt")),
+    ("actionlib_msgs", include_str!("../messages/ros2/actionlib_msgs.txt")),
+    ("builtin_interfaces", include_str!("../messages/ros2/builtin_interfaces.txt")),
+    ("composition_interfaces", include_str!("../messages/ros2/composition_interfaces.txt")),
+    ("control_msgs", include_str!("../messages/ros2/control_msgs.txt")),
+    ("diagnostic_msgs", include_str!("../messages/ros2/diagnostic_msgs.txt")),
+    ("example_interfaces", include_str!("../messages/ros2/example_interfaces.txt")),
+    ("gazebo_msgs", include_str!("../messages/ros2/gazebo_msgs.txt")),
+    ("geometry_msgs", include_str!("../messages/ros2/geometry_msgs.txt")),
+    ("lifecycle_msgs", include_str!("../messages/ros2/lifecycle_msgs.txt")),
+    ("moveit_msgs", include_str!("../messages/ros2/moveit_msgs.txt")),
+    ("nav_msgs", include_str!("../messages/ros2/nav_msgs.txt")),
+    ("object_recognition_msgs", include_str!("../messages/ros2/object_recognition_msgs.txt")),
+    ("octomap_msgs", include_str!("../messages/ros2/octomap_msgs.txt")),
+    ("rcl_interfaces", include_str!("../messages/ros2/rcl_interfaces.txt")),
+    ("rmw_dds_common", include_str!("../messages/ros2/rmw_dds_common.txt")),
+    ("rosbag2_interfaces", include_str!("../messages/ros2/rosbag2_interfaces.txt")),
+    ("rosgraph_msgs", include_str!("../messages/ros2/rosgraph_msgs.txt")),
+    ("sensor_msgs", include_str!("../messages/ros2/sensor_msgs.txt")),
+    ("shape_msgs", include_str!("../messages/ros2/shape_msgs.txt")),
+    ("statistics_msgs", include_str!("../messages/ros2/statistics_msgs.txt")),
+    ("std_msgs", include_str!("../messages/ros2/std_msgs.txt")),
+    ("std_srvs", include_str!("../messages/ros2/std_srvs.txt")),
+    ("stereo_msgs", include_str!("../messages/ros2/stereo_msgs.txt")),
+    ("tf2_msgs", include_str!("../messages/ros2/tf2_msgs.txt")),
+    ("trajectory_msgs", include_str!("../messages/ros2/trajectory_msgs.txt")),
+    ("unique_identifier_msgs", include_str!("../messages/ros2/unique_identifier_msgs.txt")),
+    ("visualization_msgs", include_str!("../messages/ros2/visualization_msgs.txt")),
+];
