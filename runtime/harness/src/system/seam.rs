@@ -1,12 +1,14 @@
 //! The seam to the system: what plays the system actor, be it a process in lock-step or a robot outside.
 //!
 //! A system asks, and is answered. A request need not be answered before the next one comes: each has a [`RequestTicket`], and
-//! whoever waits for nothing goes on asking. A process in lock-step is a system that has at most one request open.
+//! whoever waits for nothing goes on asking. A process in lock-step has at most one request open. What comes meanwhile (events,
+//! ends of commands, messages of other programs) waits for it as [`SystemArrival`]s.
 
 use std::{collections::BTreeMap, fmt};
 
 use hrdsl_ir::{Nanos, Value};
 
+use super::port::{GoalEnd, MessageText, PortDeclaration, PortListing};
 use crate::{argument::SystemArgument, command::CommandRequest};
 
 /// Whatever plays the system actor.
@@ -46,8 +48,27 @@ pub enum SystemRequest {
     Drop { events: Vec<String> },
     /// The present value of a signal.
     Read { signal: String },
-    /// Let a device do something, and tell it when that has ended.
+    /// Let a device do something, and answer when that has ended.
     Command(CommandRequest),
+    /// Let a device do something; that it has ended will arrive, by this number of the program's own.
+    Begin { call: u64, command: CommandRequest },
+    /// Answer when something has arrived; or when it is `until`; or when it is `give_up` and nothing else happens any more at
+    /// that instant. What has arrived already is the answer at once.
+    Wait { until: Option<Nanos>, give_up: Option<Nanos> },
+    /// Open a port to other programs.
+    Open(PortDeclaration),
+    Close { port: u64 },
+    /// What is open, and an arrival when that changes.
+    List,
+    Publish { port: u64, message: MessageText },
+    /// Ask a service, or send an action a goal: the answer will arrive by this number of the program's own.
+    Call { port: u64, call: u64, message: MessageText },
+    /// Answer such a call, by the number with which it arrived.
+    Respond { call: u64, answer: Result<MessageText, String> },
+    Feedback { call: u64, message: MessageText },
+    Finish { call: u64, end: GoalEnd, message: MessageText },
+    /// End a goal of one's own.
+    Cancel { call: u64 },
     /// It has come to its normal end.
     Done,
 }
@@ -65,12 +86,38 @@ pub enum SystemAnswer {
     Value(Value),
     /// To a command: it ended, well or for this reason not.
     Ended(Result<(), String>),
+    /// To a wait: what has arrived, in the order in which it did.
+    Arrived { arrivals: Vec<SystemArrival>, gave_up: bool },
+    /// To a list.
+    Listed(Vec<PortListing>),
     /// To any request: it makes no sense.
     Refused {
         error: String,
         /// What to write instead.
         help: Option<String>,
     },
+}
+
+/// What comes to a program without an answer of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SystemArrival {
+    /// An event that its actor hears, and when it happened.
+    Event { name: String, args: BTreeMap<String, Value>, time: Nanos },
+    /// A command that it began has ended.
+    Ended { call: u64, how: Result<(), String> },
+    /// To a subscriber.
+    Message { port: u64, message: MessageText },
+    /// To a server: a request or a goal, and the number to answer by.
+    Called { port: u64, call: u64, message: MessageText },
+    /// To a client: the answer to its call; why there is none.
+    Answered { call: u64, answer: Result<MessageText, String> },
+    /// To a client of an action.
+    Feedback { call: u64, message: MessageText },
+    Finished { call: u64, end: GoalEnd, message: MessageText },
+    /// To a server of actions: the client wants the goal to end.
+    Canceled { port: u64, call: u64 },
+    /// Ports were opened or closed since it asked for the list.
+    Changed,
 }
 
 impl fmt::Display for SystemArgument {
