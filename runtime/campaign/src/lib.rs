@@ -243,7 +243,11 @@ impl CampaignSetup<'_> {
         };
         let players: Vec<Box<dyn ActorPlayer + '_>> = vec![
             Box::new(ScriptPlayer::new(self.program, test)),
-            Box::new(SystemPlayer::new(self.program, system.actor, LockStep::new(&mut process))),
+            Box::new(SystemPlayer::new(
+                self.program,
+                system.actor,
+                LockStep::new(&mut process, &self.program.actor(system.actor).name),
+            )),
         ];
         let run = HarnessLoop::new(self.program, players, stage, system.limit).run();
         if !matches!(run.ended, RunTermination::Fault(_)) {

@@ -11,7 +11,7 @@ use hrdsl_ir::{
 use crate::{
     clock::TimeSource,
     command::CheckedCommand,
-    system::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemRequest},
+    system::seam::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemRequest},
     world::{CommandId, WorldBackend},
 };
 

@@ -22,7 +22,6 @@ mod script;
 mod stage;
 mod stimulus;
 mod system;
-mod system_player;
 mod world;
 
 pub use argument::SystemArgument;
@@ -34,6 +33,9 @@ pub use run::{HarnessLoop, HarnessRun, RunTermination};
 pub use script::ScriptPlayer;
 pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
-pub use system::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemFaultKind, SystemRequest};
-pub use system_player::SystemPlayer;
+pub use system::player::SystemPlayer;
+pub use system::port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortListing};
+pub use system::seam::{
+    RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemFault, SystemFaultKind, SystemRequest,
+};
 pub use world::{CommandId, WorldBackend};

@@ -40,4 +40,7 @@ pub use limits::{LimitOverrun, ProgramLimits, StopFlag};
 pub use lock_step::LockStep;
 pub use output::{CapturedOutput, CapturedStream};
 pub use process::{FinishedProcess, SutProcess};
-pub use protocol::{HarnessReply, PROTOCOL_VERSION, ProgramRequest, ProtocolArgument, ReplyAnswer};
+pub use protocol::{
+    HarnessReply, MessageRequest, PROTOCOL_VERSION, ProgramRequest, ProtocolArgument, RefusedLine,
+    ReplyAnswer, WrittenPortKind,
+};

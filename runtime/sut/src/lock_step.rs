@@ -1,28 +1,35 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    CommandRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind,
-    SystemRequest,
+    CommandRequest, PortDeclaration, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault,
+    SystemFaultKind, SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
 use crate::{
     error::SutError,
     process::SutProcess,
-    protocol::{HarnessReply, ProgramRequest, ProtocolArgument, ReplyAnswer},
+    protocol::{HarnessReply, MessageRequest, ProgramRequest, ProtocolArgument, RefusedLine, ReplyAnswer},
 };
 
 /// A running [`SutProcess`] behind the seam.
 pub struct LockStep<'r> {
     process: &'r mut SutProcess,
+    /// The program's name in the scenario.
+    name: String,
     /// Whether it waits for an answer.
     waits: bool,
+    /// What it is answered is to its hello.
+    greets: bool,
+    /// Requests without a reply that the harness has not yet answered, by their lines.
+    one_way: Vec<u64>,
 }
 
 impl<'r> LockStep<'r> {
     #[must_use]
-    pub fn new(process: &'r mut SutProcess) -> Self {
-        Self { process, waits: false }
+    pub fn new(process: &'r mut SutProcess, name: &str) -> Self {
+        let name = name.to_owned();
+        Self { process, name, waits: false, greets: false, one_way: Vec::new() }
     }
 }
 
@@ -33,13 +40,32 @@ impl SystemActor for LockStep<'_> {
 
     fn next(&mut self, _: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault> {
         let request = self.process.next()?;
-        self.waits = true;
-        Ok(Some((RequestTicket::default(), meant(request))))
+        let line = RequestTicket(self.process.line());
+        if request.is_one_way() {
+            self.one_way.push(line.0);
+        } else {
+            self.waits = true;
+            self.greets = matches!(request, ProgramRequest::Hello { .. });
+        }
+        Ok(Some((line, meant(request))))
     }
 
-    fn answer(&mut self, _: RequestTicket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault> {
+    fn answer(&mut self, line: RequestTicket, now: Nanos, answer: SystemAnswer) -> Result<(), SystemFault> {
+        if let Some(at) = self.one_way.iter().position(|l| *l == line.0) {
+            self.one_way.swap_remove(at);
+            if let SystemAnswer::Refused { error, help } = answer {
+                self.process.refuse(RefusedLine { line: line.0, error, help });
+            }
+            return Ok(());
+        }
         self.waits = false;
-        Ok(self.process.reply(&HarnessReply { time: now, answer: said(answer) })?)
+        let version = self.process.version();
+        let answer = if std::mem::take(&mut self.greets) && version > 1 {
+            ReplyAnswer::Hello { version, program: self.name.clone() }
+        } else {
+            said(answer)
+        };
+        Ok(self.process.reply(&HarnessReply { time: now, answer })?)
     }
 }
 
@@ -56,10 +82,32 @@ fn meant(request: ProgramRequest) -> SystemRequest {
         }
         ProgramRequest::Drop { events } => SystemRequest::Drop { events },
         ProgramRequest::Read { signal } => SystemRequest::Read { signal },
-        ProgramRequest::Act { on, command, args, wait: _ } => {
-            SystemRequest::Command(CommandRequest { device: on, command, args: arguments(args) })
+        ProgramRequest::Act { on, command, args, wait, call } => {
+            let command = CommandRequest { device: on, command, args: arguments(args) };
+            match call.filter(|_| !wait) {
+                Some(call) => SystemRequest::Begin { call, command },
+                None => SystemRequest::Command(command),
+            }
         }
+        ProgramRequest::Wait { until, give_up } => SystemRequest::Wait { until, give_up },
+        ProgramRequest::Open { port, kind, name, type_name, latched, depth } => {
+            SystemRequest::Open(PortDeclaration { port, kind: kind.into(), name, type_name, latched, depth })
+        }
+        ProgramRequest::Close { port } => SystemRequest::Close { port },
+        ProgramRequest::List => SystemRequest::List,
+        ProgramRequest::Cancel { call } => SystemRequest::Cancel { call },
+        ProgramRequest::Message(request) => carried(request),
         ProgramRequest::Done => SystemRequest::Done,
+    }
+}
+
+fn carried(request: MessageRequest) -> SystemRequest {
+    match request {
+        MessageRequest::Publish { port, message } => SystemRequest::Publish { port, message },
+        MessageRequest::Call { port, call, message } => SystemRequest::Call { port, call, message },
+        MessageRequest::Respond { call, answer } => SystemRequest::Respond { call, answer },
+        MessageRequest::Feedback { call, message } => SystemRequest::Feedback { call, message },
+        MessageRequest::Finish { call, end, message } => SystemRequest::Finish { call, end, message },
     }
 }
 
@@ -78,6 +126,8 @@ fn said(answer: SystemAnswer) -> ReplyAnswer {
         SystemAnswer::TimedOut => ReplyAnswer::TimedOut,
         SystemAnswer::Value(value) => ReplyAnswer::Value(value),
         SystemAnswer::Ended(how) => ReplyAnswer::Acted(how),
+        SystemAnswer::Arrived { arrivals, gave_up } => ReplyAnswer::Arrived { arrivals, gave_up },
+        SystemAnswer::Listed(ports) => ReplyAnswer::Listed(ports),
         SystemAnswer::Refused { error, help } => ReplyAnswer::Error { error, help },
     }
 }

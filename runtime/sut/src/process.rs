@@ -30,7 +30,7 @@ use crate::{
     limits::{LimitOverrun, ProgramLimits, StopFlag},
     output::{CapturedOutput, StreamCapture},
     patience::{LOOK, WaitBudget},
-    protocol::{self, HarnessReply, ProgramRequest, ProtocolLine, ReplyAnswer},
+    protocol::{self, HarnessReply, ProgramRequest, ProtocolLine, RefusedLine, ReplyAnswer, ReplyLine},
 };
 
 /// A request longer than this is rubbish.
@@ -64,6 +64,12 @@ pub struct SutProcess {
     /// When the supervisor was last asked what the program uses.
     asked: Instant,
     time: Nanos,
+    /// The version of the protocol that its last hello said; until then 1.
+    version: u32,
+    /// How many lines it has written.
+    lines: u64,
+    /// What goes with the next reply.
+    refused: Vec<RefusedLine>,
     /// Whether it has made a request.
     spoke: bool,
     /// Whether it has gone over a limit.
@@ -140,6 +146,9 @@ impl SutProcess {
             begun: Instant::now(),
             asked: Instant::now(),
             time: 0,
+            version: 1,
+            lines: 0,
+            refused: Vec::new(),
             spoke: false,
             overran: false,
             coverage: memory.map(|file| (file, launch.coverage.clone())),
@@ -161,21 +170,29 @@ impl SutProcess {
         let mut refused = 0_usize;
         loop {
             if let Some(line) = self.take_line()? {
-                match protocol::parse(&line) {
+                self.lines += 1;
+                match protocol::parse(&line, self.version) {
                     ProtocolLine::Request(request) => {
+                        if let ProgramRequest::Hello { version, .. } = &request {
+                            self.version = *version;
+                        }
                         self.spoke = true;
                         return Ok(request);
                     }
                     ProtocolLine::Rubbish(why) => return Err(self.rubbish(&line, why)),
-                    ProtocolLine::Refused(error) => {
+                    ProtocolLine::Refused { why: error, waits } => {
                         self.spoke = true;
                         refused += 1;
                         if refused > MOST_REFUSED {
                             let why = format!("{MOST_REFUSED} requests were refused, the last since {error}");
                             return Err(self.rubbish(&line, why));
                         }
-                        let answer =
-                            ReplyAnswer::Error { error, help: Some("see spec/protocol.md".to_owned()) };
+                        let help = Some("see spec/protocol.md".to_owned());
+                        if !waits {
+                            self.refuse(RefusedLine { line: self.lines, error, help });
+                            continue;
+                        }
+                        let answer = ReplyAnswer::Error { error, help };
                         self.reply(&HarnessReply { time: self.time, answer })?;
                         // It has asked: the wait for its next request begins.
                         patience = WaitBudget::new(self.limits.budget);
@@ -199,7 +216,8 @@ impl SutProcess {
     pub fn reply(&mut self, reply: &HarnessReply) -> Result<(), SutError> {
         self.time = reply.time;
         self.outbox.clear();
-        serde_json::to_writer(&mut self.outbox, reply)
+        let refused = std::mem::take(&mut self.refused);
+        serde_json::to_writer(&mut self.outbox, &ReplyLine { reply, refused: &refused })
             .map_err(|e| SutError::io("cannot write a reply")(io::Error::other(e)))?;
         self.outbox.push(b'\n');
         let mut sent = 0;
@@ -221,6 +239,25 @@ impl SutProcess {
             }
         }
         Ok(())
+    }
+
+    /// A request without a reply was refused: the next reply says so.
+    pub fn refuse(&mut self, line: RefusedLine) {
+        if self.refused.len() < MOST_REFUSED {
+            self.refused.push(line);
+        }
+    }
+
+    /// The version of the protocol that it speaks.
+    #[must_use]
+    pub fn version(&self) -> u32 {
+        self.version
+    }
+
+    /// The number of the line of its last request, from 1.
+    #[must_use]
+    pub fn line(&self) -> u64 {
+        self.lines
     }
 
     /// Ends the program: it gets `grace` (of processor time or sleep) to end by itself, unless it has had its time already,

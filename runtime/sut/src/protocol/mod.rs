@@ -1,12 +1,23 @@
-//! The lock-step protocol, version 1, as data (`spec/protocol.md`): one JSON line each way.
+//! The lock-step protocol, versions 1 and 2, as data (`spec/protocol.md`): one JSON line each way.
 
-use std::{collections::BTreeMap, fmt};
+mod ports;
+mod reply;
 
+use std::{borrow::Cow, collections::BTreeMap, fmt};
+
+use hrdsl_harness::PortKind;
 use hrdsl_ir::{Nanos, Value};
-use serde::{Deserialize, Serialize, Serializer, ser::SerializeMap};
+use serde::{Deserialize, Serialize};
 
-/// The version that this crate speaks.
-pub const PROTOCOL_VERSION: u32 = 1;
+pub use ports::MessageRequest;
+pub(crate) use reply::ReplyLine;
+pub use reply::{HarnessReply, RefusedLine, ReplyAnswer};
+
+/// The newest version that this crate speaks; it speaks the older ones, too.
+pub const PROTOCOL_VERSION: u32 = 2;
+
+/// How many messages wait for a subscriber that does not say.
+const DEPTH: usize = 1_000;
 
 /// What the program asks for. Durations are in seconds, finite and not negative ([`Process::next`](crate::Process::next)
 /// refuses others).
@@ -14,7 +25,10 @@ pub const PROTOCOL_VERSION: u32 = 1;
 #[serde(tag = "request", rename_all = "snake_case")]
 pub enum ProgramRequest {
     /// The first request; may come again with another name.
-    Hello { version: u32, name: String },
+    Hello {
+        version: u32,
+        name: String,
+    },
     /// What time is it?
     Now,
     /// Make an event of the scenario happen.
@@ -24,7 +38,9 @@ pub enum ProgramRequest {
         args: BTreeMap<String, ProtocolArgument>,
     },
     /// Let simulated time pass.
-    Sleep { seconds: f64 },
+    Sleep {
+        seconds: f64,
+    },
     /// Take the first of these events out of the mailbox, or wait for one.
     WaitFor {
         events: Vec<String>,
@@ -33,9 +49,13 @@ pub enum ProgramRequest {
         timeout: Option<f64>,
     },
     /// Forget these events in the mailbox; none named: all.
-    Drop { events: Vec<String> },
+    Drop {
+        events: Vec<String>,
+    },
     /// The present value of a signal.
-    Read { signal: String },
+    Read {
+        signal: String,
+    },
     /// Let a device do something.
     Act {
         /// The device: `robot.arm`.
@@ -45,16 +65,79 @@ pub enum ProgramRequest {
         command: String,
         #[serde(default)]
         args: BTreeMap<String, ProtocolArgument>,
-        /// Whether the reply comes when the command has ended; version 1 always waits.
+        /// Whether the reply comes when the command has ended.
         #[serde(default = "yes")]
         wait: bool,
+        /// If not: the program's number for the command, by which it is told of the end. From version 2 on.
+        #[serde(default)]
+        call: Option<u64>,
     },
+    /// What has arrived, or what arrives until one of these times. From version 2 on, as all below but done.
+    Wait {
+        #[serde(default)]
+        until: Option<Nanos>,
+        #[serde(default)]
+        give_up: Option<Nanos>,
+    },
+    /// Be a publisher, subscriber, server or client.
+    Open {
+        port: u64,
+        kind: WrittenPortKind,
+        name: String,
+        #[serde(rename = "type")]
+        type_name: String,
+        #[serde(default)]
+        latched: bool,
+        #[serde(default = "usual_depth")]
+        depth: usize,
+    },
+    Close {
+        port: u64,
+    },
+    /// What is open in the system.
+    List,
+    /// End a goal.
+    Cancel {
+        call: u64,
+    },
+    /// With a message in it.
+    #[serde(skip)]
+    Message(MessageRequest),
     /// The program has come to its normal end.
     Done,
 }
 
 fn yes() -> bool {
     true
+}
+
+fn usual_depth() -> usize {
+    DEPTH
+}
+
+/// A [`PortKind`] as the protocol writes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WrittenPortKind {
+    Publisher,
+    Subscriber,
+    Server,
+    Client,
+    ActionServer,
+    ActionClient,
+}
+
+impl From<WrittenPortKind> for PortKind {
+    fn from(kind: WrittenPortKind) -> Self {
+        match kind {
+            WrittenPortKind::Publisher => PortKind::Publisher,
+            WrittenPortKind::Subscriber => PortKind::Subscriber,
+            WrittenPortKind::Server => PortKind::Server,
+            WrittenPortKind::Client => PortKind::Client,
+            WrittenPortKind::ActionServer => PortKind::ActionServer,
+            WrittenPortKind::ActionClient => PortKind::ActionClient,
+        }
+    }
 }
 
 /// An argument of an event or a command, as the program wrote it: what it means, its declaration tells.
@@ -80,90 +163,84 @@ impl fmt::Display for ProtocolArgument {
 }
 
 impl ProgramRequest {
-    /// Why the request makes no sense whatever the scenario, if it does not.
-    pub(crate) fn fault(&self) -> Option<String> {
+    /// Why the request makes no sense whatever the scenario, to a program that speaks this version, if it does not.
+    pub(crate) fn fault(&self, version: u32) -> Option<String> {
         let bad = |s: f64| (!s.is_finite() || s < 0.0).then(|| format!("{s} is no duration"));
+        if version < self.since() {
+            return Some(format!(
+                "this request is one of version {}, and `hello` said {version}",
+                self.since()
+            ));
+        }
         match self {
-            ProgramRequest::Hello { version, .. } => (*version != PROTOCOL_VERSION)
-                .then(|| format!("protocol version {version} is not spoken here, only {PROTOCOL_VERSION}")),
+            ProgramRequest::Hello { version, .. } => (!(1..=PROTOCOL_VERSION).contains(version)).then(|| {
+                format!("protocol version {version} is not spoken here, only 1 to {PROTOCOL_VERSION}")
+            }),
             ProgramRequest::Sleep { seconds } => bad(*seconds),
             ProgramRequest::WaitFor { events, .. } if events.is_empty() => {
                 Some("wait_for without events".to_owned())
             }
             ProgramRequest::WaitFor { timeout, .. } => timeout.and_then(bad),
-            ProgramRequest::Act { wait: false, .. } => Some("version 1 has no act without wait".to_owned()),
+            ProgramRequest::Act { wait: false, call: None, .. } => {
+                Some("act without wait needs the number of a `call`".to_owned())
+            }
+            ProgramRequest::Open { name, type_name, .. } if name.is_empty() || type_name.is_empty() => {
+                Some("a port needs a `name` and a `type`".to_owned())
+            }
             ProgramRequest::Now
             | ProgramRequest::Emit { .. }
             | ProgramRequest::Drop { .. }
             | ProgramRequest::Read { .. }
             | ProgramRequest::Act { .. }
+            | ProgramRequest::Wait { .. }
+            | ProgramRequest::Open { .. }
+            | ProgramRequest::Close { .. }
+            | ProgramRequest::List
+            | ProgramRequest::Cancel { .. }
+            | ProgramRequest::Message(_)
             | ProgramRequest::Done => None,
         }
     }
-}
 
-/// What the harness answers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HarnessReply {
-    /// Simulated time.
-    pub time: Nanos,
-    pub answer: ReplyAnswer,
-}
-
-/// The part of a reply that depends on the request.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ReplyAnswer {
-    /// To hello, now, emit, sleep, drop, done.
-    Ok,
-    /// To wait_for: the event that came, and when it happened.
-    Event { name: String, args: BTreeMap<String, Value>, time: Nanos },
-    /// To wait_for: the timeout passed.
-    TimedOut,
-    /// To read.
-    Value(Value),
-    /// To act: it ended, well or for this reason not.
-    Acted(Result<(), String>),
-    /// To any request: it was refused; the program gets an exception.
-    Error {
-        error: String,
-        /// What to write instead.
-        help: Option<String>,
-    },
-    /// To any request: the test is over.
-    Stop,
-}
-
-impl Serialize for HarnessReply {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct EventOccurrence<'a> {
-            name: &'a str,
-            args: &'a BTreeMap<String, Value>,
-            time: Nanos,
+    /// The version that brought it.
+    fn since(&self) -> u32 {
+        match self {
+            ProgramRequest::Act { wait: false, .. }
+            | ProgramRequest::Wait { .. }
+            | ProgramRequest::Open { .. }
+            | ProgramRequest::Close { .. }
+            | ProgramRequest::List
+            | ProgramRequest::Cancel { .. }
+            | ProgramRequest::Message(_) => 2,
+            ProgramRequest::Hello { .. }
+            | ProgramRequest::Now
+            | ProgramRequest::Emit { .. }
+            | ProgramRequest::Sleep { .. }
+            | ProgramRequest::WaitFor { .. }
+            | ProgramRequest::Drop { .. }
+            | ProgramRequest::Read { .. }
+            | ProgramRequest::Act { .. }
+            | ProgramRequest::Done => 1,
         }
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("t", &self.time)?;
-        match &self.answer {
-            ReplyAnswer::Ok => {}
-            ReplyAnswer::Event { name, args, time } => {
-                map.serialize_entry("event", &EventOccurrence { name, args, time: *time })?;
-            }
-            ReplyAnswer::TimedOut => map.serialize_entry("event", &None::<()>)?,
-            ReplyAnswer::Value(value) => map.serialize_entry("value", value)?,
-            ReplyAnswer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
-            ReplyAnswer::Acted(Err(error)) => {
-                map.serialize_entry("ok", &false)?;
-                map.serialize_entry("error", error)?;
-            }
-            ReplyAnswer::Error { error, help } => {
-                map.serialize_entry("error", error)?;
-                if let Some(help) = help {
-                    map.serialize_entry("help", help)?;
-                }
-            }
-            ReplyAnswer::Stop => map.serialize_entry("stop", &true)?,
+    }
+
+    /// Whether it has no reply of its own.
+    pub(crate) fn is_one_way(&self) -> bool {
+        match self {
+            ProgramRequest::Close { .. } | ProgramRequest::Cancel { .. } | ProgramRequest::Message(_) => true,
+            ProgramRequest::Hello { .. }
+            | ProgramRequest::Now
+            | ProgramRequest::Emit { .. }
+            | ProgramRequest::Sleep { .. }
+            | ProgramRequest::WaitFor { .. }
+            | ProgramRequest::Drop { .. }
+            | ProgramRequest::Read { .. }
+            | ProgramRequest::Act { .. }
+            | ProgramRequest::Wait { .. }
+            | ProgramRequest::Open { .. }
+            | ProgramRequest::List
+            | ProgramRequest::Done => false,
         }
-        map.end()
     }
 }
 
@@ -171,23 +248,44 @@ impl Serialize for HarnessReply {
 #[derive(Debug)]
 pub(crate) enum ProtocolLine {
     Request(ProgramRequest),
-    /// JSON, but not a request that this version knows: the program is told so.
-    Refused(String),
+    /// JSON, but not a request that this version knows: the program is told so; at once, if it waits for a reply.
+    Refused {
+        why: String,
+        waits: bool,
+    },
     /// No JSON object with a `request`: whoever wrote it does not speak the protocol.
     Rubbish(String),
 }
 
-pub(crate) fn parse(line: &[u8]) -> ProtocolLine {
-    let why = match serde_json::from_slice::<ProgramRequest>(line) {
-        Ok(request) => match request.fault() {
+/// The kind of a request; the rest of the line is looked at when that is known.
+#[derive(Deserialize)]
+struct RequestHead<'l> {
+    #[serde(borrow)]
+    request: Cow<'l, str>,
+}
+
+/// The kinds of requests that have no reply of their own, from version 2 on.
+const ONE_WAY: [&str; 7] = ["publish", "call", "respond", "feedback", "finish", "close", "cancel"];
+
+/// What a line means to a program that speaks this version.
+pub(crate) fn parse(line: &[u8], version: u32) -> ProtocolLine {
+    let head: Option<RequestHead<'_>> = serde_json::from_slice(line).ok();
+    let waits = version < 2 || !head.as_ref().is_some_and(|head| ONE_WAY.contains(&&*head.request));
+    let with_message = head.and_then(|head| ports::parse(&head.request, line));
+    let request = match with_message {
+        Some(request) => request.map(ProgramRequest::Message),
+        None => serde_json::from_slice::<ProgramRequest>(line),
+    };
+    let why = match request {
+        Ok(request) => match request.fault(version) {
             None => return ProtocolLine::Request(request),
-            Some(fault) => return ProtocolLine::Refused(fault),
+            Some(why) => return ProtocolLine::Refused { why, waits },
         },
         Err(why) => why.to_string(),
     };
     match serde_json::from_slice::<serde_json::Value>(line) {
         Ok(value) if value.get("request").is_some_and(serde_json::Value::is_string) => {
-            ProtocolLine::Refused(why)
+            ProtocolLine::Refused { why, waits }
         }
         Ok(_) => ProtocolLine::Rubbish("no request".to_owned()),
         Err(_) => ProtocolLine::Rubbish(why),
@@ -201,7 +299,7 @@ mod tests {
     use super::*;
 
     fn request(line: &str) -> ProgramRequest {
-        match parse(line.as_bytes()) {
+        match parse(line.as_bytes(), PROTOCOL_VERSION) {
             ProtocolLine::Request(request) => request,
             other => panic!("{line}: {other:?}"),
         }
@@ -226,7 +324,7 @@ mod tests {
                 ])
             }
         );
-        let ProgramRequest::Act { on, command, args, wait } = request(
+        let ProgramRequest::Act { on, command, args, wait, call: None } = request(
             r#"{"request":"act","on":"robot.arm","do":"move_to","args":{"to":[0,1,2.5],"speed":0.2}}"#,
         ) else {
             panic!()
@@ -246,7 +344,10 @@ mod tests {
         assert_eq!(args["pace"], ProtocolArgument::Text("fast".into()));
         assert_eq!(args["odd"], ProtocolArgument::Text("ä \"b\"".into()));
         let symbol = Value::Symbol(Symbol::intern("fast"));
-        let wire = |answer| serde_json::to_string(&HarnessReply { time: 5, answer }).unwrap();
+        let wire = |answer| {
+            let reply = HarnessReply { time: 5, answer };
+            serde_json::to_string(&ReplyLine { reply: &reply, refused: &[] }).unwrap()
+        };
         assert_eq!(wire(ReplyAnswer::Value(symbol)), r#"{"t":5,"value":"fast"}"#);
         let event = ReplyAnswer::Event {
             name: "paced".into(),
@@ -277,7 +378,9 @@ mod tests {
             (r#"{"request":"sleep"}"#, true),
             (r#"{"request":"sleep","seconds":-1}"#, true),
             (r#"{"request":"sleep","seconds":"long"}"#, true),
-            (r#"{"request":"hello","version":2,"name":"x"}"#, true),
+            (r#"{"request":"hello","version":3,"name":"x"}"#, true),
+            (r#"{"request":"wait"}"#, true),
+            (r#"{"request":"publish","port":1,"message":2}"#, true),
             (r#"{"request":"wait_for","events":[]}"#, true),
             (r#"{"request":"wait_for","events":["a"],"timeout":-0.1}"#, true),
             (r#"{"request":"act","on":"a","do":"b","wait":false}"#, true),
@@ -288,8 +391,8 @@ mod tests {
             ("Hello, world", false),
             ("\u{fffd}{", false),
         ] {
-            match parse(line.as_bytes()) {
-                ProtocolLine::Refused(why) => assert!(refused, "{line}: {why}"),
+            match parse(line.as_bytes(), 1) {
+                ProtocolLine::Refused { why, waits } => assert!(refused && waits, "{line}: {why}"),
                 ProtocolLine::Rubbish(why) => assert!(!refused, "{line}: {why}"),
                 ProtocolLine::Request(request) => panic!("{line}: {request:?}"),
             }
@@ -298,7 +401,10 @@ mod tests {
 
     #[test]
     fn replies_are_written_as_specified() {
-        let wire = |answer| serde_json::to_string(&HarnessReply { time: 5, answer }).unwrap();
+        let wire = |answer| {
+            let reply = HarnessReply { time: 5, answer };
+            serde_json::to_string(&ReplyLine { reply: &reply, refused: &[] }).unwrap()
+        };
         assert_eq!(wire(ReplyAnswer::Ok), r#"{"t":5}"#);
         assert_eq!(wire(ReplyAnswer::TimedOut), r#"{"t":5,"event":null}"#);
         assert_eq!(wire(ReplyAnswer::Value(Value::Bool(true))), r#"{"t":5,"value":true}"#);

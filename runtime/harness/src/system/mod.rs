@@ -1,0 +1,9 @@
+//! The system: the seam to whatever plays its actor, and the player that answers it and lets its programs speak with each other.
+
+mod graph;
+mod mailbox;
+pub mod player;
+pub mod port;
+mod program;
+pub mod seam;
+mod vocabulary;

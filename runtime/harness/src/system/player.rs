@@ -1,0 +1,276 @@
+//! The player of the system actor: answers what its programs ask, lets time pass while they wait, and carries their messages.
+
+use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value};
+
+use super::{
+    graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
+    mailbox::HeardEvent,
+    program::{RequestWait, ServedProgram},
+    seam::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemRequest},
+    vocabulary::{ActorVocabulary, refuse},
+};
+use crate::{
+    command::{CommandRequest, NotBegun},
+    message::PlayerMessage,
+    player::{ActorPlayer, HarnessError, PlayerContext},
+    world::CommandId,
+};
+
+/// Plays the system actor by its programs, each a [`SystemActor`].
+///
+/// At one instant they are served in the order in which they are given, each until it waits; then again from the first, until all
+/// of them wait.
+pub struct SystemPlayer<'p, S> {
+    vocabulary: ActorVocabulary<'p>,
+    actors: [ActorId; 1],
+    programs: Vec<ServedProgram<S>>,
+    graph: MessageGraph,
+}
+
+/// What a request comes to at once.
+enum RequestResponse {
+    Answer(SystemAnswer),
+    Wait(RequestWait),
+    End,
+}
+
+impl<'p, S: SystemActor> SystemPlayer<'p, S> {
+    /// One program.
+    #[must_use]
+    pub fn new(program: &'p Program, actor: ActorId, system: S) -> Self {
+        Self::of_programs(program, actor, [(program.actor(actor).name.clone(), system)])
+    }
+
+    /// Several, each with its name.
+    #[must_use]
+    pub fn of_programs(
+        program: &'p Program,
+        actor: ActorId,
+        programs: impl IntoIterator<Item = (String, S)>,
+    ) -> Self {
+        Self {
+            vocabulary: ActorVocabulary { program, actor },
+            actors: [actor],
+            programs: programs.into_iter().map(|(name, system)| ServedProgram::new(name, system)).collect(),
+            graph: MessageGraph::default(),
+        }
+    }
+
+    /// Takes requests for as long as somebody makes some.
+    fn serve(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
+        let mut asked = true;
+        while asked {
+            asked = false;
+            for index in 0..self.programs.len() {
+                while let Some((ticket, request)) = self.next_request(index, cx.now)? {
+                    asked = true;
+                    self.take(index, ticket, request, cx).map_err(|e| self.named(index, e))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn next_request(
+        &mut self,
+        index: ProgramIndex,
+        now: Nanos,
+    ) -> Result<Option<(RequestTicket, SystemRequest)>, HarnessError> {
+        let program = &mut self.programs[index];
+        if program.ended || !program.system.is_ready() {
+            return Ok(None);
+        }
+        let asked = program.system.next(now).map_err(HarnessError::System);
+        asked.map_err(|e| self.named(index, e))
+    }
+
+    /// Of several programs it is said which one.
+    fn named(&self, index: ProgramIndex, error: HarnessError) -> HarnessError {
+        match error {
+            HarnessError::System(SystemFault { message, kind }) if self.programs.len() > 1 => {
+                let message = format!("program `{}`: {message}", self.programs[index].name);
+                HarnessError::System(SystemFault { message, kind })
+            }
+            HarnessError::System(_)
+            | HarnessError::Model(_)
+            | HarnessError::World(_)
+            | HarnessError::Internal(_) => error,
+        }
+    }
+
+    fn take(
+        &mut self,
+        index: ProgramIndex,
+        ticket: RequestTicket,
+        request: SystemRequest,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), HarnessError> {
+        self.programs[index].count(cx.now)?;
+        match self.response(index, request, cx)? {
+            RequestResponse::Answer(answer) => self.programs[index].answer(ticket, cx.now, answer),
+            RequestResponse::Wait(wait) => self.programs[index].wait(ticket, wait, &self.vocabulary, cx.now),
+            RequestResponse::End => {
+                self.programs[index].ended = true;
+                let told = self.graph.leave(index);
+                self.deliver(told, cx.now)
+            }
+        }
+    }
+
+    fn response(
+        &mut self,
+        index: ProgramIndex,
+        request: SystemRequest,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<RequestResponse, HarnessError> {
+        use RequestResponse::{Answer, End, Wait};
+        let told = match request {
+            SystemRequest::Now => return Ok(Answer(SystemAnswer::Ok)),
+            SystemRequest::Done => return Ok(End),
+            SystemRequest::Sleep { time } => return Ok(Wait(RequestWait::Time(cx.now.saturating_add(time)))),
+            SystemRequest::Wait { until, give_up } => {
+                return Ok(Wait(RequestWait::Arrivals { until, give_up }));
+            }
+            SystemRequest::WaitFor { events, timeout } => {
+                return Ok(self.wait_for(index, &events, timeout, cx.now));
+            }
+            SystemRequest::Drop { events } => return Ok(Answer(self.drop_mail(index, &events))),
+            SystemRequest::Read { signal } => {
+                return Ok(Answer(self.vocabulary.read(&signal, cx.stage.as_deref_mut())));
+            }
+            SystemRequest::Emit { event, args } => {
+                return Ok(Answer(match self.vocabulary.emission(&event, &args) {
+                    Ok((event, args)) => {
+                        cx.out.push(PlayerMessage::Event { event, args });
+                        SystemAnswer::Ok
+                    }
+                    Err(answer) => answer,
+                }));
+            }
+            SystemRequest::Command(request) => {
+                return Ok(match begin(&request, cx) {
+                    Ok(id) => Wait(RequestWait::Command(id)),
+                    Err(answer) => Answer(answer),
+                });
+            }
+            SystemRequest::Begin { call, command } => {
+                return Ok(Answer(match begin(&command, cx) {
+                    Ok(id) => {
+                        self.programs[index].began(id, call);
+                        SystemAnswer::Ok
+                    }
+                    Err(answer) => answer,
+                }));
+            }
+            SystemRequest::List => {
+                let names: Vec<String> = self.programs.iter().map(|p| p.name.clone()).collect();
+                return Ok(Answer(SystemAnswer::Listed(self.graph.watch(index, &names))));
+            }
+            SystemRequest::Open(declared) => self.graph.open(index, declared),
+            SystemRequest::Close { port } => {
+                self.programs[index].mailbox.forget_port(port);
+                self.graph.close(index, port)
+            }
+            SystemRequest::Publish { port, message } => self.graph.publish(index, port, &message),
+            SystemRequest::Call { port, call, message } => self.graph.call(index, port, call, message),
+            SystemRequest::Respond { call, answer } => self.graph.respond(index, call, answer),
+            SystemRequest::Feedback { call, message } => self.graph.feedback(index, call, message),
+            SystemRequest::Finish { call, end, message } => self.graph.finish(index, call, end, message),
+            SystemRequest::Cancel { call } => self.graph.cancel(index, call),
+        };
+        Ok(Answer(self.told(told, cx.now)?))
+    }
+
+    /// Carries out what a request does to others.
+    fn told(&mut self, outcome: GraphOutcome, now: Nanos) -> Result<SystemAnswer, HarnessError> {
+        match outcome {
+            Ok(deliveries) => self.deliver(deliveries, now).map(|()| SystemAnswer::Ok),
+            Err(why) => Ok(refuse(why, None)),
+        }
+    }
+
+    fn deliver(&mut self, deliveries: Vec<GraphDelivery>, now: Nanos) -> Result<(), HarnessError> {
+        for GraphDelivery { to, arrival, depth } in deliveries {
+            let delivered = self.programs[to].deliver(arrival, depth, &self.vocabulary, now);
+            delivered.map_err(|e| self.named(to, e))?;
+        }
+        Ok(())
+    }
+
+    fn wait_for(
+        &mut self,
+        index: ProgramIndex,
+        names: &[String],
+        timeout: Option<Nanos>,
+        now: Nanos,
+    ) -> RequestResponse {
+        let events = match self.vocabulary.audible(names) {
+            Ok(events) => events,
+            Err(answer) => return RequestResponse::Answer(answer),
+        };
+        match self.programs[index].mailbox.take_event(&events) {
+            Some(heard) => RequestResponse::Answer(self.vocabulary.event_answer(heard)),
+            None => {
+                let until = timeout.map(|t| now.saturating_add(t));
+                RequestResponse::Wait(RequestWait::Events { events, until })
+            }
+        }
+    }
+
+    fn drop_mail(&mut self, index: ProgramIndex, names: &[String]) -> SystemAnswer {
+        match self.vocabulary.audible(names) {
+            Ok(events) => {
+                self.programs[index].mailbox.forget(&events);
+                SystemAnswer::Ok
+            }
+            Err(answer) => answer,
+        }
+    }
+}
+
+fn begin(request: &CommandRequest, cx: &mut PlayerContext<'_, '_>) -> Result<CommandId, SystemAnswer> {
+    let Some(stage) = cx.stage.as_deref_mut() else {
+        return Err(refuse("there is no world to act in", None));
+    };
+    stage.command(request).map_err(|why| match why {
+        NotBegun::Refused { error, help } => refuse(error, help),
+        NotBegun::Failed(why) => SystemAnswer::Ended(Err(why)),
+    })
+}
+
+impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
+    fn actors(&self) -> &[ActorId] {
+        &self.actors
+    }
+
+    fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
+        for index in 0..self.programs.len() {
+            self.programs[index].wake(&self.vocabulary, cx).map_err(|e| self.named(index, e))?;
+            self.serve(cx)?;
+        }
+        Ok(())
+    }
+
+    fn hear(
+        &mut self,
+        event: EventId,
+        args: &[Value],
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), HarnessError> {
+        for index in 0..self.programs.len() {
+            let heard = HeardEvent { event, args: args.to_vec(), time: cx.now };
+            let told = self.programs[index].hear(heard, &self.vocabulary, cx);
+            told.map_err(|e| self.named(index, e))?;
+            self.serve(cx)?;
+        }
+        Ok(())
+    }
+
+    fn next_wake(&self) -> Option<Nanos> {
+        self.programs.iter().filter_map(ServedProgram::next_wake).min()
+    }
+
+    fn is_finished(&self) -> bool {
+        self.programs.iter().all(|p| p.ended)
+    }
+}

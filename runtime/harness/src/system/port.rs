@@ -1,0 +1,77 @@
+//! What programs of a system open to speak with each other: topics, services and actions, as data.
+
+use std::{fmt, sync::Arc};
+
+/// A message as its maker wrote it: the text of a JSON value, which nobody here looks into.
+pub type MessageText = Arc<str>;
+
+/// What a program does at a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum PortKind {
+    Publisher,
+    Subscriber,
+    Server,
+    Client,
+    ActionServer,
+    ActionClient,
+}
+
+impl PortKind {
+    /// What is at the name: those of one sort find each other.
+    #[must_use]
+    pub fn sort(self) -> &'static str {
+        match self {
+            PortKind::Publisher | PortKind::Subscriber => "topic",
+            PortKind::Server | PortKind::Client => "service",
+            PortKind::ActionServer | PortKind::ActionClient => "action",
+        }
+    }
+}
+
+impl fmt::Display for PortKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            PortKind::Publisher => "publisher",
+            PortKind::Subscriber => "subscriber",
+            PortKind::Server => "server",
+            PortKind::Client => "client",
+            PortKind::ActionServer => "action server",
+            PortKind::ActionClient => "action client",
+        })
+    }
+}
+
+/// A port that a program opens.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortDeclaration {
+    /// The program's own number for it.
+    pub port: u64,
+    pub kind: PortKind,
+    /// `/scan`
+    pub name: String,
+    /// `sensor_msgs/LaserScan`; compared, and not understood.
+    pub type_name: String,
+    /// Of a publisher: its last message is given to those who subscribe later.
+    pub latched: bool,
+    /// Of a subscriber: so many messages wait for it at most; of more, the oldest are lost.
+    pub depth: usize,
+}
+
+/// How the goal of an action ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GoalEnd {
+    Succeeded,
+    Aborted,
+    Canceled,
+    Rejected,
+}
+
+/// Something at a name, for those who ask what there is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortListing {
+    pub kind: PortKind,
+    pub name: String,
+    pub type_name: String,
+    /// The program that has it.
+    pub program: String,
+}

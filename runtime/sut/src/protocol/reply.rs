@@ -1,0 +1,185 @@
+//! What the harness answers, as lines of the protocol.
+
+use std::collections::BTreeMap;
+
+use hrdsl_harness::{PortListing, SystemArrival};
+use hrdsl_ir::{Nanos, Value};
+use serde::{Serialize, Serializer, ser::SerializeMap};
+use serde_json::value::RawValue;
+
+use super::ports::end_word;
+
+/// What the harness answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HarnessReply {
+    /// Simulated time.
+    pub time: Nanos,
+    pub answer: ReplyAnswer,
+}
+
+/// A reply as it is written, with the one-way requests that were refused since the last one.
+pub(crate) struct ReplyLine<'r> {
+    pub reply: &'r HarnessReply,
+    pub refused: &'r [RefusedLine],
+}
+
+/// A request without a reply of its own that was refused.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RefusedLine {
+    /// The line of the program, counted from 1.
+    pub line: u64,
+    pub error: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub help: Option<String>,
+}
+
+/// The part of a reply that depends on the request.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReplyAnswer {
+    /// To now, emit, sleep, drop, open, done, and to act that does not wait.
+    Ok,
+    /// To hello, from version 2 on: the version that is spoken, and the program's name in the scenario.
+    Hello { version: u32, program: String },
+    /// To wait_for: the event that came, and when it happened.
+    Event { name: String, args: BTreeMap<String, Value>, time: Nanos },
+    /// To wait_for: the timeout passed.
+    TimedOut,
+    /// To read.
+    Value(Value),
+    /// To act: it ended, well or for this reason not.
+    Acted(Result<(), String>),
+    /// To wait.
+    Arrived { arrivals: Vec<SystemArrival>, gave_up: bool },
+    /// To list.
+    Listed(Vec<PortListing>),
+    /// To any request: it was refused; the program gets an exception.
+    Error {
+        error: String,
+        /// What to write instead.
+        help: Option<String>,
+    },
+    /// To any request: the test is over.
+    Stop,
+}
+
+#[derive(Serialize)]
+struct WrittenEvent<'a> {
+    name: &'a str,
+    args: &'a BTreeMap<String, Value>,
+    time: Nanos,
+}
+
+impl Serialize for ReplyLine<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("t", &self.reply.time)?;
+        match &self.reply.answer {
+            ReplyAnswer::Ok => {}
+            ReplyAnswer::Hello { version, program } => {
+                map.serialize_entry("version", version)?;
+                map.serialize_entry("program", program)?;
+            }
+            ReplyAnswer::Event { name, args, time } => {
+                map.serialize_entry("event", &WrittenEvent { name, args, time: *time })?;
+            }
+            ReplyAnswer::TimedOut => map.serialize_entry("event", &None::<()>)?,
+            ReplyAnswer::Value(value) => map.serialize_entry("value", value)?,
+            ReplyAnswer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
+            ReplyAnswer::Acted(Err(error)) => {
+                map.serialize_entry("ok", &false)?;
+                map.serialize_entry("error", error)?;
+            }
+            ReplyAnswer::Arrived { arrivals, gave_up } => {
+                let written: Vec<WrittenArrival<'_>> = arrivals.iter().map(WrittenArrival).collect();
+                map.serialize_entry("arrivals", &written)?;
+                if *gave_up {
+                    map.serialize_entry("gave_up", &true)?;
+                }
+            }
+            ReplyAnswer::Listed(ports) => {
+                let written: Vec<WrittenPort<'_>> = ports.iter().map(WrittenPort).collect();
+                map.serialize_entry("ports", &written)?;
+            }
+            ReplyAnswer::Error { error, help } => {
+                map.serialize_entry("error", error)?;
+                if let Some(help) = help {
+                    map.serialize_entry("help", help)?;
+                }
+            }
+            ReplyAnswer::Stop => map.serialize_entry("stop", &true)?,
+        }
+        if !self.refused.is_empty() {
+            map.serialize_entry("refused", self.refused)?;
+        }
+        map.end()
+    }
+}
+
+struct WrittenArrival<'a>(&'a SystemArrival);
+
+impl Serialize for WrittenArrival<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        match self.0 {
+            SystemArrival::Event { name, args, time } => {
+                map.serialize_entry("event", &WrittenEvent { name, args, time: *time })?;
+            }
+            SystemArrival::Ended { call, how } => {
+                map.serialize_entry("ended", call)?;
+                map.serialize_entry("ok", &how.is_ok())?;
+                if let Err(error) = how {
+                    map.serialize_entry("error", error)?;
+                }
+            }
+            SystemArrival::Message { port, message } => {
+                map.serialize_entry("port", port)?;
+                map.serialize_entry("message", raw(message)?)?;
+            }
+            SystemArrival::Called { port, call, message } => {
+                map.serialize_entry("called", call)?;
+                map.serialize_entry("port", port)?;
+                map.serialize_entry("message", raw(message)?)?;
+            }
+            SystemArrival::Answered { call, answer } => {
+                map.serialize_entry("answered", call)?;
+                match answer {
+                    Ok(message) => map.serialize_entry("message", raw(message)?)?,
+                    Err(error) => map.serialize_entry("error", error)?,
+                }
+            }
+            SystemArrival::Feedback { call, message } => {
+                map.serialize_entry("feedback", call)?;
+                map.serialize_entry("message", raw(message)?)?;
+            }
+            SystemArrival::Finished { call, end, message } => {
+                map.serialize_entry("finished", call)?;
+                map.serialize_entry("end", end_word(*end))?;
+                map.serialize_entry("message", raw(message)?)?;
+            }
+            SystemArrival::Canceled { port, call } => {
+                map.serialize_entry("canceled", call)?;
+                map.serialize_entry("port", port)?;
+            }
+            SystemArrival::Changed => map.serialize_entry("changed", &true)?,
+        }
+        map.end()
+    }
+}
+
+/// INVARIANT: a message came out of a line of JSON.
+fn raw<E: serde::ser::Error>(message: &str) -> Result<&RawValue, E> {
+    serde_json::from_str(message).map_err(E::custom)
+}
+
+struct WrittenPort<'a>(&'a PortListing);
+
+impl Serialize for WrittenPort<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(4))?;
+        map.serialize_entry("kind", &self.0.kind.to_string().replace(' ', "_"))?;
+        map.serialize_entry("name", &self.0.name)?;
+        map.serialize_entry("type", &self.0.type_name)?;
+        map.serialize_entry("program", &self.0.program)?;
+        map.end()
+    }
+}
