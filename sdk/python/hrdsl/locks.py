@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from hrdsl.schedule import Scheduler, Task
 
 _get_ident = _thread.get_ident
-_real_lock = _thread.allocate_lock
-_real_sleep = time.sleep
+real_lock = _thread.allocate_lock
+real_sleep = time.sleep
 
 _s: Scheduler
 
@@ -32,7 +32,7 @@ def use(scheduler: Scheduler) -> None:
 
 def _check(blocking: Any, timeout: Any) -> None:
     # A real lock says what is wrong in the words of its version of Python.
-    _real_lock().acquire(blocking, timeout)
+    real_lock().acquire(blocking, timeout)
 
 
 def after(timeout: float) -> int:
@@ -46,7 +46,7 @@ def _poll(try_: Callable[[], bool], timeout: float) -> bool:
     while not try_():
         if 0 <= timeout <= waited:
             return False
-        _real_sleep(0.001)
+        real_sleep(0.001)
         waited += 0.001
     return True
 
@@ -319,10 +319,8 @@ class SimpleQueue:
 
     def get(self, block: bool = True, timeout: float | None = None) -> Any:
         """Takes the first item, or waits for one; raises `Empty` after the timeout."""
-        if block and timeout is not None:
-            _check(True, 0 if timeout >= 0 else -1)
-            if timeout < 0:
-                raise ValueError("'timeout' must be a non-negative number")
+        if block and timeout is not None and timeout < 0:
+            raise ValueError("'timeout' must be a non-negative number")
         if self._items:
             return self._items.popleft()
         if not block or timeout == 0:

@@ -7,6 +7,7 @@ processes work; their descriptors are asked whenever the loop has nothing else t
 
 from __future__ import annotations
 
+import os
 import sys
 
 from hrdsl.waits import Ready, wait
@@ -32,8 +33,8 @@ def install(asyncio: Any, scheduler: Scheduler) -> None:
     for place in (module, asyncio):
         if hasattr(place, "EventLoop"):  # from Python 3.13 on
             place.EventLoop = kind
-    if sys.version_info < (3, 12) and hasattr(module, "PidfdChildWatcher"):
-        _child_watcher(module)
+    if sys.version_info < (3, 12) and hasattr(os, "pidfd_open"):
+        _child_watcher(asyncio, module)
 
 
 def _selector(scheduler: Scheduler) -> Any:
@@ -120,12 +121,45 @@ def _loop(asyncio: Any, unix: Any, selector: Any, scheduler: Scheduler) -> Any:
     return SelectorEventLoop
 
 
-def _child_watcher(module: Any) -> None:
-    """Up to Python 3.11 a thread waits for each child, in C code; a descriptor of the process does not keep others from
-    running."""
+def _child_watcher(asyncio: Any, unix: Any) -> None:
+    """Up to Python 3.11 a thread waits for each child in C code, which would keep all others from running. In its place
+    the loop watches a descriptor of the process, as later versions do."""
+
+    class Watcher(unix.AbstractChildWatcher):  # type: ignore[misc]
+        def add_child_handler(self, pid: int, callback: Any, *args: Any) -> None:
+            loop, descriptor = asyncio.get_running_loop(), os.pidfd_open(pid)
+
+            def ended() -> None:
+                loop._remove_reader(descriptor)
+                try:
+                    status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+                except ChildProcessError:  # somebody else has waited for it
+                    status = 255
+                os.close(descriptor)
+                callback(pid, status, *args)
+
+            loop._add_reader(descriptor, ended)
+
+        def remove_child_handler(self, pid: int) -> bool:
+            return True  # asyncio never takes a handler back, but at the end of its child
+
+        def attach_loop(self, loop: Any) -> None:
+            pass
+
+        def close(self) -> None:
+            pass
+
+        def is_active(self) -> bool:
+            return True
+
+        def __enter__(self) -> Watcher:
+            return self
+
+        def __exit__(self, *exception: object) -> None:
+            pass
 
     def init(self: Any) -> None:
         if self._watcher is None:
-            self._watcher = module.PidfdChildWatcher()
+            self._watcher = Watcher()
 
-    module._UnixDefaultEventLoopPolicy._init_watcher = init
+    unix._UnixDefaultEventLoopPolicy._init_watcher = init

@@ -5,12 +5,15 @@ from __future__ import annotations
 import os
 import sys
 
-from hrdsl import threads, waits
+from hrdsl import threads
 from hrdsl.errors import Deadlock, Stopped
+from hrdsl.replace import when_imported
 from hrdsl.schedule import Scheduler
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
+    from typing import Any, Callable
+
     from hrdsl.link import Link
 
 #: Native libraries that compute in threads of their own; the machine has one core.
@@ -50,18 +53,30 @@ def install(link: Link) -> Scheduler:
         os.environ.setdefault(name, "1")
     scheduler = Scheduler(OverLink(link), _number("HRDSL_SCHEDULE", int))
     made = threads.install(scheduler)
-    waits.install(scheduler)
+    _when_imported(scheduler)
     link.sleep = scheduler.sleep  # type: ignore[method-assign]
     budget = _number("HRDSL_BUSY_SECONDS", float)
 
     def watch() -> None:
         from hrdsl.watch import Watcher
 
-        made.on_first = None
         Watcher(scheduler, made, 10.0 if budget is None else budget).start()
 
     made.on_first = watch
     return scheduler
+
+
+def _when_imported(scheduler: Scheduler) -> None:
+    def patch(name: str) -> Callable[[Any], None]:
+        def call(module: Any) -> None:
+            from hrdsl import waits
+
+            waits.PATCHES[name](module, scheduler)
+
+        return call
+
+    for name in ("select", "subprocess", "multiprocessing.process", "asyncio"):
+        when_imported(name, patch(name))
 
 
 def _number(name: str, kind: type[float]) -> int | None:

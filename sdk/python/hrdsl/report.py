@@ -25,8 +25,8 @@ def deadlock(scheduler: Scheduler) -> str:
     for task in scheduler.tasks.values():
         if task.result is None:
             what, place = _wait_of(frames.get(task.ident))
-            holder = _holder(scheduler, task)
-            lines.append("  %s: %s at %s%s\n" % (name(scheduler, task), what, place, holder))
+            told = name(scheduler, task), what, place, _holder(scheduler, task, what)
+            lines.append("  %s waits in %s at %s%s\n" % told)
     return "".join(lines)
 
 
@@ -53,10 +53,10 @@ def _wait_of(frame: FrameType | None) -> tuple[str, str]:
     """What the program's innermost line has called, and its place."""
     called = None
     while frame is not None and frame.f_code.co_filename.startswith((_OWN, _LIBRARY, "<frozen")):
-        if not _is_site(frame) and "runner.py" not in frame.f_code.co_filename:
-            called = frame
-        elif _is_site(frame):
+        if _is_site(frame):
             break
+        if not frame.f_code.co_filename.startswith((_OWN + "run", _OWN + "threads")):
+            called = frame
         frame = frame.f_back
     if frame is None:
         return "%s" % _title(called), "the end of the program"
@@ -67,9 +67,6 @@ def _is_site(frame: FrameType) -> bool:
     return "-packages" + os.sep in frame.f_code.co_filename
 
 
-_TITLES = {"acquire": "acquire", "__enter__": "with", "_wait": "wait"}
-
-
 def _title(frame: FrameType | None) -> str:
     if frame is None:
         return "a wait"
@@ -77,32 +74,24 @@ def _title(frame: FrameType | None) -> str:
     owner = frame.f_locals.get("self")
     if code.co_filename.startswith(_OWN):
         if isinstance(owner, (locks.lock, locks.RLock)):
-            return "a lock (%s)" % type(owner).__name__.replace("lock", "Lock").replace("RLock", "RLock")
+            return "RLock" if isinstance(owner, locks.RLock) else "Lock"
         if isinstance(owner, locks.SimpleQueue):
             return "SimpleQueue.get"
         return code.co_name.strip("_")
     return code.co_name if owner is None else "%s.%s" % (type(owner).__name__, code.co_name)
 
 
-def _holder(scheduler: Scheduler, task: Task) -> str:
-    what = task.what
-    if not isinstance(what, (locks.lock, locks.RLock)):
+def _holder(scheduler: Scheduler, task: Task, what: str) -> str:
+    waited = task.what
+    if not isinstance(waited, (locks.lock, locks.RLock)):
         return ""
-    owner = what._owner
+    owner = waited._owner
     if isinstance(owner, int):
         owner = scheduler.tasks.get(owner)
-    if owner is None:
-        return ", which a thread held that has ended"
-    if owner.ident not in scheduler.tasks:
-        return ", held by a thread that has ended"
-    if owner is task:
-        # The lock of a condition's waiter is its own.
-        return ", held by itself" if _is_direct(task) else ""
-    return ", held by %s" % name(scheduler, owner)
-
-
-def _is_direct(task: Task) -> bool:
-    frame = sys._current_frames().get(task.ident)
-    while frame is not None and frame.f_code.co_filename.startswith(_OWN):
-        frame = frame.f_back
-    return frame is not None and not frame.f_code.co_filename.startswith(_LIBRARY)
+    if owner is task and what not in ("Lock", "RLock"):
+        return ""  # the lock of a condition's waiter is its own
+    if owner is None or owner.ident not in scheduler.tasks:
+        by = "a thread that has ended"
+    else:
+        by = "itself" if owner is task else name(scheduler, owner)
+    return " for %s" % by if what.endswith(".join") else ", held by %s" % by

@@ -11,7 +11,6 @@ import _thread
 import sys
 import time
 from _collections import deque
-from _heapq import heapify, heappop, heappush
 
 from hrdsl.errors import Deadlock, Stopped
 
@@ -50,10 +49,18 @@ POLLS = 1000
 #: ... which lasts so long, in nanoseconds.
 STEP = 1_000_000
 
-_real_lock = _thread.allocate_lock
-_real_sleep = time.sleep
-_real_clock = getattr(time, "clock_gettime", None)
+# As they are before anything is replaced: this module is imported first.
+real_lock = _thread.allocate_lock
+real_sleep = time.sleep
+real_monotonic = time.monotonic
+real_clock = getattr(time, "clock_gettime", None)
 _get_ident = _thread.get_ident
+
+
+def _heap() -> Any:
+    import _heapq  # not for programs with one thread that never waits
+
+    return _heapq
 
 
 class Task:
@@ -63,7 +70,7 @@ class Task:
 
     def __init__(self, ident: int) -> None:
         self.ident = ident
-        self.baton = _real_lock()
+        self.baton = real_lock()
         self.baton.acquire()
         self.what: Any = None  # it waits for
         self.result: bool | BaseException | None = True  # of its last wait: None while it waits
@@ -110,7 +117,7 @@ class Scheduler:
         if deadline is not None:
             self._tickets += 1
             me.ticket = self._tickets
-            heappush(self._deadlines, (deadline, me.ticket, me))
+            _heap().heappush(self._deadlines, (deadline, me.ticket, me))
         if deadline is None or deadline > self.outside.time:
             self.polls, me.has_yielded = 0, False
         else:
@@ -141,7 +148,7 @@ class Scheduler:
         """Waits for so long in simulated time; for nothing at all, lets the others run that are ready."""
         nanos = round(seconds * 1e9)
         if self.current() is None:
-            _real_sleep(seconds)
+            real_sleep(seconds)
         elif nanos:
             self.park("sleep", self.outside.time + nanos)
         else:
@@ -236,7 +243,7 @@ class Scheduler:
         """The first deadline of those who wait."""
         deadlines = self._deadlines
         while deadlines and deadlines[0][2].ticket != deadlines[0][1]:
-            heappop(deadlines)
+            _heap().heappop(deadlines)
         return deadlines[0][0] if deadlines else None
 
     # ── the baton ──
@@ -297,12 +304,12 @@ class Scheduler:
     def _expire(self) -> None:
         deadlines, time = self._deadlines, self.outside.time
         while deadlines and deadlines[0][0] <= time:
-            _, ticket, task = heappop(deadlines)
+            _, ticket, task = _heap().heappop(deadlines)
             if task.ticket == ticket:
                 self.unpark(task, False)
         if len(deadlines) > 64 + 4 * len(self.tasks):
             self._deadlines = [entry for entry in deadlines if entry[2].ticket == entry[1]]
-            heapify(self._deadlines)
+            _heap().heapify(self._deadlines)
 
     # ── when all wait ──
 

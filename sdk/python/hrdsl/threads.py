@@ -17,8 +17,9 @@ import os
 import sys
 
 from hrdsl import locks
+from hrdsl.errors import Busy, Deadlock, Stopped
 from hrdsl.replace import Builtin, when_imported
-from hrdsl.schedule import Task
+from hrdsl.schedule import POLLS, Task
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
     from hrdsl.schedule import Scheduler
 
 _real: Any = _thread  # without the names that versions lack
-_real_start = _thread.start_new_thread
-_real_start_joinable = getattr(_thread, "start_joinable_thread", None)
-_real_sentinel = getattr(_thread, "_set_sentinel", None)
+real_start = _thread.start_new_thread
+real_start_joinable = getattr(_thread, "start_joinable_thread", None)
+real_sentinel = getattr(_thread, "_set_sentinel", None)
 _get_ident = _thread.get_ident
 
 
@@ -48,10 +49,10 @@ class Threads:
         if on_end is not None:
             task.on_end.append(on_end)
         body = _Body(self._scheduler, task, function, args, kwargs)
-        if _real_start_joinable is None:
-            task.ident = _real_start(body, ())
+        if real_start_joinable is None:
+            task.ident = real_start(body, ())
         else:
-            handle = _real_start_joinable(body, daemon=True)
+            handle = real_start_joinable(body, daemon=True)
             task.ident, task.gone = handle.ident, handle.join
         self._scheduler.add(task)
         return task
@@ -94,7 +95,8 @@ class Threads:
         if not daemon:
             _joined.append(handle)
         try:
-            handle.ident = self.start(function, (), {}, handle._set_done).ident
+            task = self.start(function, (), {}, handle._set_done)
+            handle.ident, handle._end._owner = task.ident, task
         except BaseException:
             handle._state = 0
             handle._set_done()
@@ -129,33 +131,23 @@ class _Body:
         self, scheduler: Scheduler, task: Task, function: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]
     ) -> None:
         self._parts: Any = (scheduler, task, function, args, kwargs)
-        self._repr = ""
+        self._repr = repr(function)
 
     def __call__(self) -> None:
         scheduler, task, function, args, kwargs = self._parts
-        if _real_sentinel is not None:
-            sentinel = _real_sentinel()
+        if real_sentinel is not None:
+            sentinel = real_sentinel()
             sentinel.acquire()
             task.gone = sentinel.acquire
         scheduler.begin(task)
         try:
             function(*args, **kwargs)
-        except SystemExit:
-            pass
-        except BaseException as error:
-            self._report(function, error)
-        finally:
-            self._parts = None
-            function = args = kwargs = None
+        finally:  # what it raises is reported while the next thread waits for this one to be gone
+            self._parts = function = args = kwargs = None
             scheduler.finish(task)
 
-    def _report(self, function: Any, error: BaseException) -> None:
-        # The interpreter reports what a finalizer raises; there is no other way to its hook for such exceptions.
-        error.__traceback__ = error.__traceback__ and error.__traceback__.tb_next
-        sys.stderr.write("Exception ignored in thread started by: %r\n" % (function,))
-        import traceback
-
-        traceback.print_exception(type(error), error, error.__traceback__)
+    def __repr__(self) -> str:
+        return self._repr
 
 
 _STARTED, _DONE = 1, 2
@@ -219,7 +211,7 @@ def install(scheduler: Scheduler) -> Threads:
         _mend(threading, old, new)
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=scheduler.fork)
-    when_imported("threading", lambda module: _poll_events(module, scheduler))
+    when_imported("threading", lambda module: _threading(module, scheduler))
     when_imported("_queue", _queue)
     when_imported("queue", lambda module: _poll_queues(module, scheduler))
     return threads
@@ -251,7 +243,7 @@ def _replacements(threads: Threads) -> dict[str, Any]:
 def _mend(threading: Any, old: dict[str, Any], new: dict[str, Any]) -> None:
     """`threading` was imported before, such as by `sitecustomize`, and no thread was started: it gets the names that it
     took, and locks in the place of those that it has made."""
-    kinds = (type(locks._real_lock()), old["RLock"])
+    kinds = (type(locks.real_lock()), old["RLock"])
     for name, value in list(vars(threading).items()):
         for known, real in old.items():
             if value is real and real is not None:
@@ -266,11 +258,20 @@ def _mend(threading: Any, old: dict[str, Any], new: dict[str, Any]) -> None:
         main._set_tstate_lock()
 
 
-def _poll_events(module: Any, scheduler: Scheduler) -> None:
+def _threading(module: Any, scheduler: Scheduler) -> None:
+    real_hook = module.excepthook
+
+    def excepthook(args: Any, /) -> None:
+        """Handle uncaught Thread.run() exception."""
+        if not issubclass(args.exc_type, (Stopped, Deadlock, Busy)):  # which end threads as `SystemExit` does
+            real_hook(args)
+
+    module.excepthook = Builtin(excepthook, real_hook, "threading")
+
     def is_set(self: Any) -> bool:
         """Return true if and only if the internal flag is true."""
         scheduler.polls += 1
-        if scheduler.polls >= 1000:
+        if scheduler.polls >= POLLS:
             scheduler.much_polled()
         return bool(self._flag)
 

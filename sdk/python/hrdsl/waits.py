@@ -9,21 +9,14 @@ from __future__ import annotations
 
 from hrdsl.errors import Unsupported
 from hrdsl.locks import after
-from hrdsl.replace import Builtin, when_imported
+from hrdsl.replace import Builtin
+from hrdsl.schedule import real_monotonic, real_sleep
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
     from typing import Any, Callable, NoReturn
 
     from hrdsl.schedule import Scheduler, Watch
-
-
-def install(scheduler: Scheduler) -> None:
-    """Patches what waits for descriptors and processes, once it is imported."""
-    when_imported("select", lambda module: _descriptors(module, scheduler))
-    when_imported("subprocess", _subprocess)
-    when_imported("multiprocessing.process", _multiprocessing)
-    when_imported("asyncio", lambda module: _asyncio(module, scheduler))
 
 
 class Ready:
@@ -187,9 +180,12 @@ def _epoll(real_epoll: Any, scheduler: Scheduler) -> Any:
     return epoll
 
 
-def _subprocess(module: Any) -> None:
+def _subprocess(module: Any, scheduler: Scheduler) -> None:
+    """A child lives in real time, so a wait for it, and the timeout of that, do too; simulated time stands still."""
     import selectors
+    from types import SimpleNamespace
 
+    module._time, module.time = real_monotonic, SimpleNamespace(sleep=real_sleep)
     if "poll" in _real and hasattr(selectors, "PollSelector"):
 
         class Selector(selectors.PollSelector):
@@ -198,7 +194,7 @@ def _subprocess(module: Any) -> None:
         module._PopenSelector = Selector
 
 
-def _multiprocessing(module: Any) -> None:
+def _multiprocessing(module: Any, scheduler: Scheduler) -> None:
     def start(self: Any) -> NoReturn:
         """Refused: it would run in real time beside the simulated one."""
         raise Unsupported(
@@ -213,3 +209,12 @@ def _asyncio(module: Any, scheduler: Scheduler) -> None:
     from hrdsl import loop
 
     loop.install(module, scheduler)
+
+
+#: What patches each module that waits in ways of its own.
+PATCHES: dict[str, Callable[[Any, Scheduler], None]] = {
+    "select": _descriptors,
+    "subprocess": _subprocess,
+    "multiprocessing.process": _multiprocessing,
+    "asyncio": _asyncio,
+}

@@ -7,11 +7,13 @@ import sys
 import time
 
 from hrdsl.errors import Busy
-from hrdsl.schedule import _real_clock, _real_lock
-from hrdsl.threads import _real_start
+from hrdsl.schedule import real_clock, real_lock, real_sleep
+from hrdsl.threads import real_start
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
+    from typing import Any
+
     from hrdsl.schedule import Scheduler, Task
     from hrdsl.threads import Threads
 
@@ -27,32 +29,39 @@ class Watcher:
         self._scheduler = scheduler
         self._threads = threads
         self._budget = budget
-        self._stop = _real_lock()
-        self._stopped = _real_lock()
+        self._stop: Any = None  # released to end it, while it runs
+        self._stopped: Any = None
 
     def start(self) -> None:
         """Begins to look, until the process forks."""
-        self._stop.acquire()
-        self._stopped.acquire()
-        _real_start(self._run, ())
+        self._go()
         if hasattr(os, "register_at_fork"):
             os.register_at_fork(before=self._end)
 
+    def _go(self) -> None:
+        self._threads.on_first = None
+        self._stop, self._stopped = real_lock(), real_lock()
+        self._stop.acquire()
+        self._stopped.acquire()
+        real_start(self._run, ())
+
     def _end(self) -> None:
-        """A forked process has one thread, and is told so; the next thread that is started brings a new watcher."""
-        if self._stop.locked():
+        """A forked process has one thread, and the interpreter warns of more; the next thread that the program starts
+        brings a new watcher."""
+        if self._stop is not None:
             self._stop.release()
             self._stopped.acquire()
-            self._threads.on_first = self._again
-
-    def _again(self) -> None:
-        self._threads.on_first = None
-        self._stop.acquire()
-        _real_start(self._run, ())
+            self._stop = None
+            self._threads.on_first = self._go
+        for _ in range(20):  # what has ended is counted for a moment longer
+            if _system_threads() <= len(self._scheduler.tasks):
+                break
+            real_sleep(0.0005)
 
     def _run(self) -> None:
+        stop, stopped = self._stop, self._stopped
         seen, since = (-1, -1), 0.0
-        while not self._stop.acquire(True, min(1.0, max(0.01, self._budget / 4))):
+        while not stop.acquire(True, min(1.0, max(0.01, self._budget / 4))):
             task = self._scheduler.running
             used = _processor_time(task)
             if used is None or (task.ident, self._scheduler.calls) != seen:
@@ -60,7 +69,7 @@ class Watcher:
             elif used - since > self._budget and self._keeps_others(task):
                 self._found(task, used - since)
                 break
-        self._stopped.release()
+        stopped.release()
 
     def _keeps_others(self, task: Task) -> bool:
         scheduler = self._scheduler
@@ -83,6 +92,13 @@ class Watcher:
 def _processor_time(task: Task) -> float | None:
     """What the thread has used; None if it has ended, or nobody can tell."""
     try:
-        return _real_clock(time.pthread_getcpuclockid(task.ident)) if _real_clock is not None else None
+        return real_clock(time.pthread_getcpuclockid(task.ident)) if real_clock is not None else None
     except (OSError, AttributeError, ValueError):
         return None
+
+
+def _system_threads() -> int:
+    try:
+        return os.stat("/proc/self/task").st_nlink - 2
+    except OSError:
+        return 0
