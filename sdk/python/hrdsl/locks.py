@@ -61,11 +61,14 @@ class _Waited:
 
     def _wait(self, timeout: float) -> bool:
         """Waits until it is given to this thread; below zero without an end."""
-        me = _s.current()
-        if me is None:
-            return _poll(self._try, timeout)
-        if self._owner is None:  # the others have run meanwhile
-            return self._try()
+        me = _s.running
+        if me.ident != _get_ident():
+            known = _s.current()
+            if known is None:
+                return _poll(self._try, timeout)
+            me = known
+            if self._try():  # the others have run meanwhile
+                return True
         if self._waiters is None:
             self._waiters = deque()
         self._waiters.append(me)
@@ -125,7 +128,9 @@ class lock(_Waited):
         if self._owner is None and timeout == -1:
             self._owner = _s.running
             return True
-        if timeout != -1 or blocking is not True:
+        if timeout == -1 and blocking is True:
+            return self._wait(-1)
+        if timeout != -1 or blocking is not False:
             _check(blocking, timeout)
         if not blocking or timeout == 0:
             if self._owner is not None:
@@ -137,7 +142,7 @@ class lock(_Waited):
         if self._owner is None:
             self._owner = _s.running
             return True
-        return self.acquire()
+        return self._wait(-1)
 
     def __exit__(self, *exception: object) -> None:
         if self._waiters or self._owner is None:
@@ -170,6 +175,10 @@ class lock(_Waited):
 
     def _at_fork_reinit(self) -> None:
         self._owner = self._waiters = None
+
+    def _is_owned(self) -> bool:
+        # What `Condition` asks; it would try to take the lock otherwise.
+        return self._owner is not None
 
     acquire_lock, release_lock, locked_lock = acquire, release, locked
 
@@ -206,7 +215,9 @@ class RLock(_Waited):
             if self._owner == me:
                 self._count += 1
                 return True
-        if timeout != -1 or blocking is not True:
+            if blocking is True:
+                return self._wait(-1)
+        if timeout != -1 or blocking is not False:
             _check(blocking, timeout)
         if not blocking or timeout == 0:
             if self._owner not in (None, _get_ident()):
@@ -223,7 +234,7 @@ class RLock(_Waited):
         if self._owner == me:
             self._count += 1
             return True
-        return self.acquire()
+        return self._wait(-1)
 
     def release(self) -> None:
         """Unlocks once; only its owner may do that."""
@@ -237,7 +248,11 @@ class RLock(_Waited):
                 self._owner = None
 
     def __exit__(self, *exception: object) -> None:
-        self.release()
+        if self._count == 1 and not self._waiters and self._owner == _get_ident():
+            self._count = 0
+            self._owner = None
+        else:
+            self.release()
 
     def _try(self) -> bool:
         me = _get_ident()

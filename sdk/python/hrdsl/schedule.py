@@ -115,21 +115,29 @@ class Scheduler:
         me = self.running
         me.what, me.result = what, None
         if deadline is not None:
-            self._tickets += 1
-            me.ticket = self._tickets
-            _heap().heappush(self._deadlines, (deadline, me.ticket, me))
-        if deadline is None or deadline > self.outside.time:
-            self.polls, me.has_yielded = 0, False
+            self._set_deadline(me, deadline)
         else:
-            self.polls += 1
+            self.polls, me.has_yielded = 0, False
         try:
             self._hand_over(me)
-        finally:
-            me.what, me.ticket = None, 0
-        if me.result is True or me.result is False:
-            return me.result
-        error, me.result = me.result, True
-        raise error  # type: ignore[misc]
+        except BaseException:  # of a handler of signals, in the main thread
+            self._seize(me)
+            raise
+        me.what = None
+        result = me.result
+        if result is True or result is False:
+            return result
+        me.result = True
+        raise result  # type: ignore[misc]
+
+    def _set_deadline(self, me: Task, deadline: int) -> None:
+        self._tickets += 1
+        me.ticket = self._tickets
+        _heap().heappush(self._deadlines, (deadline, me.ticket, me))
+        if deadline > self.outside.time:
+            self.polls, me.has_yielded = 0, False
+        else:  # no wait, but a look
+            self.polls += 1
 
     def unpark(self, task: Task, result: bool | BaseException = True) -> None:
         """Makes a thread ready that waits; of any other this is none's business."""
@@ -188,7 +196,7 @@ class Scheduler:
         if task is None or task.result is None:
             return None
         self.ready.append(task)  # the main thread has taken the baton from it, after a signal
-        self._await(task)
+        task.baton.acquire()
         return task
 
     def begin(self, task: Task) -> None:
@@ -250,21 +258,17 @@ class Scheduler:
 
     def _hand_over(self, me: Task) -> None:
         self.calls += 1
-        polls = self.polls
-        chosen = self._next()
+        polls, ready = self.polls, self.ready
+        if ready and not self._deadlines and self._chance is None:
+            chosen: Task | None = ready.popleft()
+        else:
+            chosen = self._next()
         if chosen is me or chosen is None:
             return
         self.running = chosen
         chosen.baton.release()
-        self._await(me)
+        me.baton.acquire()
         self.polls = polls
-
-    def _await(self, me: Task) -> None:
-        try:
-            me.baton.acquire()
-        except BaseException:  # of a handler of signals, in the main thread
-            self._seize(me)
-            raise
         if self._ended is not None:
             self._confirm_end()
 
@@ -276,12 +280,13 @@ class Scheduler:
 
     def _seize(self, me: Task) -> None:
         """A signal ends the wait of the main thread, whoever runs: the other goes on when it is its turn again."""
-        if not me.baton.acquire(False):
-            if me in self.ready:
-                self.ready.remove(me)
+        if self.running is not me and not me.baton.acquire(False):
             self.running = me
+        if me in self.ready:
+            self.ready.remove(me)
+        me.what, me.ticket = None, 0
         if me.result is None:
-            me.result = False
+            me.result = True
 
     def _next(self) -> Task | None:
         deadlines = self._deadlines

@@ -297,16 +297,22 @@ def _poll_queues(module: Any, scheduler: Scheduler) -> None:
     for name in ("empty", "full", "qsize"):
         setattr(module.Queue, name, polling(getattr(module.Queue, name)))
 
-    def trying(real: Callable[..., Any], fault: type[Exception]) -> Callable[..., Any]:
-        def call(self: Any, *args: Any, **kwargs: Any) -> Any:
-            try:
-                return real(self, *args, **kwargs)
-            except fault:
-                scheduler.polled("queue")
-                raise
+    real_get, real_put = module.Queue.get, module.Queue.put
 
-        call.__name__, call.__qualname__, call.__doc__ = real.__name__, real.__qualname__, real.__doc__
-        return call
+    def get(self: Any, block: bool = True, timeout: float | None = None) -> Any:
+        try:
+            return real_get(self, block, timeout)
+        except module.Empty:
+            scheduler.polled("queue")
+            raise
 
-    module.Queue.get = trying(module.Queue.get, module.Empty)
-    module.Queue.put = trying(module.Queue.put, module.Full)
+    def put(self: Any, item: Any, block: bool = True, timeout: float | None = None) -> None:
+        try:
+            real_put(self, item, block, timeout)
+        except module.Full:
+            scheduler.polled("queue")
+            raise
+
+    for function, real in ((get, real_get), (put, real_put)):
+        function.__qualname__, function.__doc__ = real.__qualname__, real.__doc__
+        setattr(module.Queue, function.__name__, function)
