@@ -25,8 +25,8 @@ def deadlock(scheduler: Scheduler) -> str:
     for task in scheduler.tasks.values():
         if task.result is None:
             what, place = _wait_of(frames.get(task.ident))
-            told = name(scheduler, task), what, place, _holder(scheduler, task, what)
-            lines.append("  %s waits in %s at %s%s\n" % told)
+            told = name(scheduler, task), what, place and " at " + place, _holder(scheduler, task, what)
+            lines.append("  %s waits in %s%s%s\n" % told)
     return "".join(lines)
 
 
@@ -55,11 +55,13 @@ def _wait_of(frame: FrameType | None) -> tuple[str, str]:
     while frame is not None and frame.f_code.co_filename.startswith((_OWN, _LIBRARY, "<frozen")):
         if _is_site(frame):
             break
+        if frame.f_code.co_name == "run" and frame.f_code.co_filename.endswith("threading.py"):
+            return _title(called), ""  # the target of a thread
         if not frame.f_code.co_filename.startswith((_OWN + "run", _OWN + "threads")):
             called = frame
         frame = frame.f_back
     if frame is None:
-        return "%s" % _title(called), "the end of the program"
+        return "the end of the program", ""
     return _title(called), "%s:%d" % (frame.f_code.co_filename, frame.f_lineno)
 
 
@@ -94,4 +96,4 @@ def _holder(scheduler: Scheduler, task: Task, what: str) -> str:
         by = "a thread that has ended"
     else:
         by = "itself" if owner is task else name(scheduler, owner)
-    return " for %s" % by if what.endswith(".join") else ", held by %s" % by
+    return " for %s" % by if what.endswith((".join", "program")) else ", held by %s" % by

@@ -182,6 +182,7 @@ class Scheduler:
             self.yield_()
         else:
             self.park("polls", time + STEP)
+            self._polled_at = self.outside.time
 
     # ── threads ──
 
@@ -242,10 +243,14 @@ class Scheduler:
     def end(self, error: Callable[[], BaseException]) -> None:
         """Ends the program by a fault: all waits raise it, that of the main thread first."""
         self.ending, self.failed, self._main_first = error, True, True
-        if self.main.result is None:
+        main = self.main
+        if main.result is None:
+            self.unpark(main)
+        if main in self.ready:
             self._main_first = False
-            self.unpark(self.main, error())
-            self.ready.rotate(1)
+            main.result = error()
+            self.ready.remove(main)
+            self.ready.appendleft(main)
 
     def next_deadline(self) -> int | None:
         """The first deadline of those who wait."""
