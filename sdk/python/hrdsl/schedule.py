@@ -63,6 +63,10 @@ def _heap() -> Any:
     return _heapq
 
 
+def _handle_pending() -> None:
+    """Where a function of Python begins, the interpreter calls the handlers of signals."""
+
+
 class Task:
     """A thread, as the scheduler sees it."""
 
@@ -101,6 +105,7 @@ class Scheduler:
         self._tickets = 0
         self._polled_at = -1
         self._ended: Callable[[], object] | None = None
+        self._sender: Task | None = None  # of a signal to this process
         self._chance: Any = None
         if seed is not None:
             import _random
@@ -276,6 +281,8 @@ class Scheduler:
         self.polls = polls
         if self._ended is not None:
             self._confirm_end()
+        while self._sender is not None:
+            self._handle_signals(me)
 
     def _confirm_end(self) -> None:
         # What an ending thread leaves behind is torn down after its last line; nobody runs beside that.
@@ -283,9 +290,29 @@ class Scheduler:
         if ended is not None:
             ended()
 
+    def signalled(self) -> None:
+        """To be called after the process has sent itself a signal, which the main thread handles: if it is another that
+        has sent it, that goes on when the signal is handled."""
+        me = self.current()
+        if me is not None and me is not self.main and self.main.ident in self.tasks:
+            self._sender = me
+            self.main.baton.release()
+            me.baton.acquire()
+
+    def _handle_signals(self, me: Task) -> None:
+        _handle_pending()
+        sender, self._sender = self._sender, None
+        if sender is not None:
+            sender.baton.release()
+            me.baton.acquire()
+
     def _seize(self, me: Task) -> None:
         """A signal ends the wait of the main thread, whoever runs: the other goes on when it is its turn again."""
-        if self.running is not me and not me.baton.acquire(False):
+        if self._sender is not None:
+            me.baton.acquire(False)
+            self.ready.appendleft(self._sender)
+            self.running, self._sender = me, None
+        elif self.running is not me and not me.baton.acquire(False):
             self.running = me
         if me in self.ready:
             self.ready.remove(me)

@@ -12,13 +12,14 @@ When a thread has ended in Python, the system still tears down what belongs to i
 
 from __future__ import annotations
 
+import _signal  # type: ignore[import-not-found]  # without the enumerations of `signal`
 import _thread
 import os
 import sys
 
 from hrdsl import locks
 from hrdsl.errors import Busy, Deadlock, Stopped
-from hrdsl.replace import Builtin, when_imported
+from hrdsl.replace import Builtin, put, when_imported
 from hrdsl.schedule import POLLS, Task
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -211,6 +212,7 @@ def install(scheduler: Scheduler) -> Threads:
         _mend(threading, old, new)
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=scheduler.fork)
+    _signals(scheduler)
     when_imported("threading", lambda module: _threading(module, scheduler))
     when_imported("_queue", _queue)
     when_imported("queue", lambda module: _poll_queues(module, scheduler))
@@ -276,6 +278,31 @@ def _threading(module: Any, scheduler: Scheduler) -> None:
         return bool(self._flag)
 
     module.Event.is_set = module.Event.isSet = is_set
+
+
+def _signals(scheduler: Scheduler) -> None:
+    def kill(pid: int, signal: int, /) -> None:
+        real_kill(pid, signal)
+        if pid == os.getpid():
+            scheduler.signalled()
+
+    def pthread_kill(ident: int, signal: int, /) -> None:
+        real_pthread_kill(ident, signal)
+        scheduler.signalled()
+
+    def raise_signal(signal: int, /) -> None:
+        real_raise(signal)
+        scheduler.signalled()
+
+    def interrupt_main(*signal: int) -> None:
+        real_interrupt(*signal)
+        scheduler.signalled()
+
+    modules = [_signal] + [sys.modules[name] for name in ("signal",) if name in sys.modules]
+    real_kill = put("kill", kill, os, *[module for module in map(sys.modules.get, ("posix", "nt")) if module])
+    real_pthread_kill = put("pthread_kill", pthread_kill, *modules)
+    real_raise = put("raise_signal", raise_signal, *modules)
+    real_interrupt = put("interrupt_main", interrupt_main, _thread)
 
 
 def _queue(module: Any) -> None:

@@ -58,8 +58,12 @@ def _descriptors(module: Any, scheduler: Scheduler) -> None:
     real, real_poll = module.select, getattr(module, "poll", None)
 
     def select(rlist: Any, wlist: Any, xlist: Any, timeout: float | None = None, /) -> Any:
-        if timeout is not None and timeout < 0:
-            return real(rlist, wlist, xlist, timeout)  # which refuses it
+        try:
+            is_wrong = timeout is not None and timeout < 0
+        except TypeError:
+            is_wrong = True
+        if is_wrong:
+            return real(rlist, wlist, xlist, timeout)  # which says so
         lists = [list(each) for each in (rlist, wlist, xlist)]
         watch = Ready(lambda: real(*lists, 0), lambda: _masks(lists))
         return watch.found if wait(scheduler, watch, timeout) else real(*lists, timeout)
