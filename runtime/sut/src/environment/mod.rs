@@ -59,12 +59,20 @@ const SDK: &[(&str, &str)] = sdk![
     "errors.py",
     "files.py",
     "link.py",
+    "locks.py",
+    "loop.py",
     "machine.py",
     "node.py",
+    "outside.py",
     "replace.py",
+    "report.py",
     "run.py",
     "runner.py",
+    "schedule.py",
+    "threads.py",
     "virtual.py",
+    "waits.py",
+    "watch.py",
 ];
 
 /// An interpreter, and where the modules are that programs under test need.
