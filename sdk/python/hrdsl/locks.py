@@ -62,7 +62,7 @@ class _Waited:
     def _wait(self, timeout: float) -> bool:
         """Waits until it is given to this thread; below zero without an end."""
         me = _s.running
-        if me.ident != _get_ident():
+        if me.ident != _get_ident() or me.result is None:
             known = _s.current()
             if known is None:
                 return _poll(self._try, timeout)

@@ -62,6 +62,7 @@ def main(argv: list[str]) -> NoReturn:
         if status == 0 and link.is_ours() and not link.stopped:
             link.done()
     finally:
+        scheduler.close()
         if link.is_ours():  # not in a process that the program has forked
             _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
             if recorder is not None and out is not None:

@@ -193,11 +193,11 @@ class Scheduler:
 
     def current(self) -> Task | None:
         """The thread that calls, which has the baton then; None for one that the scheduler does not know, and for a
-        handler of signals in a thread that waits."""
+        handler of signals or a finalizer in a thread that waits, or is about to."""
         me = self.running
         ident = _get_ident()
         if me.ident == ident:
-            return me
+            return None if me.result is None else me
         task = self.tasks.get(ident)
         if task is None or task.result is None:
             return None
@@ -256,6 +256,10 @@ class Scheduler:
             main.result = error()
             self.ready.remove(main)
             self.ready.appendleft(main)
+
+    def close(self) -> None:
+        """The program has ended: polls are no waits any more, for time does not pass."""
+        self.polls = -(1 << 60)
 
     def next_deadline(self) -> int | None:
         """The first deadline of those who wait."""
