@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import _thread
 import time
-from _collections import deque
+from collections import deque
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -303,13 +303,16 @@ class SimpleQueue:
     __slots__ = ("_items", "_waiters", "__weakref__")
     __module__ = "_queue"
 
+    _items: deque[Any]
+    _waiters: deque[tuple[Task, list[Any]]]
+
     #: Set when `_queue` is imported.
     Empty: type[Exception]
 
     def __new__(cls, *args: Any, **kwargs: Any) -> SimpleQueue:
         self = super().__new__(cls)
-        self._items: Any = deque()
-        self._waiters: Any = deque()
+        self._items = deque()
+        self._waiters = deque()
         return self
 
     @classmethod

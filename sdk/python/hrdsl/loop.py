@@ -47,9 +47,10 @@ def _selector(scheduler: Scheduler) -> Any:
             super().__init__()
             self.task: Task | None = None  # that waits in it
             self.is_woken = False
+            self._files: Any = self._fd_to_key  # type: ignore[attr-defined]
 
         def select(self, timeout: float | None = None) -> Any:
-            if not self._fd_to_key:
+            if not self._files:
                 return self._sleep(timeout)
             watch = Ready(lambda: self._now() or self.is_woken, self._masks)
             try:
@@ -76,7 +77,7 @@ def _selector(scheduler: Scheduler) -> Any:
             return super().select(0)
 
         def _masks(self) -> list[tuple[int, int]]:
-            return [(key.fd, 1 * bool(key.events & 1) | 4 * bool(key.events & 2)) for key in self._fd_to_key.values()]
+            return [(key.fd, 1 * bool(key.events & 1) | 4 * bool(key.events & 2)) for key in self._files.values()]
 
         def wake(self) -> None:
             self.is_woken = True

@@ -10,7 +10,7 @@ from __future__ import annotations
 import _thread
 import sys
 import time
-from _collections import deque
+from collections import deque
 
 from hrdsl.errors import Deadlock, Stopped
 
@@ -93,7 +93,7 @@ class Scheduler:
         self.outside = outside
         self.running = self.main = Task(_get_ident())  # the thread that calls
         self.tasks: dict[int, Task] = {self.main.ident: self.main}
-        self.ready: Any = deque()
+        self.ready: deque[Task] = deque()
         self.polls = 0
         self.calls = 0  # of the scheduler, so that others see that there are some
         self.watched: dict[Task, Watch] = {}

@@ -83,12 +83,14 @@ class Threads:
 
     def start_joinable_thread(self, function: Any, handle: Any = None, daemon: bool = True) -> ThreadHandle:
         """As `_thread` has it."""
+        return self._start_joinable(function, handle, daemon)
+
+    def _start_joinable(self, function: Any, given: Any, daemon: bool) -> ThreadHandle:
         if not callable(function):
             raise TypeError("thread function must be callable")
-        if handle is None:
-            handle = ThreadHandle()
-        elif not isinstance(handle, ThreadHandle):
+        if given is not None and not isinstance(given, ThreadHandle):
             raise TypeError("'handle' must be a _ThreadHandle")
+        handle: ThreadHandle = given or ThreadHandle()
         if handle._state:
             raise RuntimeError("thread already started")
         handle._state = _STARTED
