@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import sys
 
+from hrdsl.errors import Unsupported
 from hrdsl.waits import Ready, wait
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -33,7 +34,7 @@ def install(asyncio: Any, scheduler: Scheduler) -> None:
     for place in (module, asyncio):
         if hasattr(place, "EventLoop"):  # from Python 3.13 on
             place.EventLoop = kind
-    if sys.version_info < (3, 12) and hasattr(os, "pidfd_open"):
+    if sys.version_info < (3, 12):
         _child_watcher(asyncio, module)
 
 
@@ -128,6 +129,8 @@ def _child_watcher(asyncio: Any, unix: Any) -> None:
 
     class Watcher(unix.AbstractChildWatcher):  # type: ignore[misc]
         def add_child_handler(self, pid: int, callback: Any, *args: Any) -> None:
+            if not hasattr(os, "pidfd_open"):
+                raise Unsupported("asyncio waits for child processes from Python 3.9 on, on Linux; use subprocess")
             loop, descriptor = asyncio.get_running_loop(), os.pidfd_open(pid)
 
             def ended() -> None:

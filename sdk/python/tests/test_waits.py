@@ -1,5 +1,6 @@
 """Waits for descriptors, for child processes and for signals, and the event loop of asyncio."""
 
+import os
 import sys
 import textwrap
 import unittest
@@ -259,6 +260,7 @@ class Loop(Case):
             self.said(text), ["1.000 5", "1.750 [None, None, None, None]", "4.750 9", "4.750 end"]
         )
 
+    @unittest.skipUnless(hasattr(os, "pidfd_open"), "asyncio waits for children by a descriptor")
     def test_sockets_and_children_and_signals(self):
         text = """
             import asyncio, signal
