@@ -1,5 +1,6 @@
-# Waits for a lock of a thread, where no simulated time passes.
-# expect: error "it slept for 1 s of wall time"
+# Waits for an event that nobody sets: all its threads wait, which is told.
+# expect: error "exit code 1"
+# output: "hrdsl: deadlock"
 import threading
 import hrdsl
 node = hrdsl.Node('robot')

@@ -131,6 +131,7 @@ impl Harness {
                 let fails = on == "robot.arm" && !self.arm_works;
                 ReplyAnswer::Acted(if fails { Err("the planner finds no way".into()) } else { Ok(()) })
             }
+            other => panic!("this harness speaks version 1 only: {other:?}"),
         }
     }
 

@@ -24,3 +24,30 @@ class ProtocolError(RuntimeError):
         super().__init__(message if not help else "%s (%s)" % (message, help))
         self.message = message
         self.help = help
+
+
+class Deadlock(SystemExit):
+    """All threads of the program wait for each other; what each of them waits for is on standard error.
+
+    It is a `SystemExit`, so that `except Exception` does not swallow it.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(1)
+
+    def __str__(self) -> str:
+        return "all threads of the program wait for each other"
+
+
+class Busy(SystemExit):
+    """A loop that never waits keeps all other threads from running; its place is on standard error."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+
+    def __str__(self) -> str:
+        return "a loop that never waits keeps all other threads from running"
+
+
+class Unsupported(RuntimeError):
+    """What would run in real time beside the simulated one."""

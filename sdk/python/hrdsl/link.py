@@ -68,6 +68,10 @@ class Link:
             raise ProtocolError(answer["error"], answer.get("help"))
         return answer
 
+    def sleep(self, seconds: float) -> None:
+        """Lets simulated time pass."""
+        self.request({"request": "sleep", "seconds": seconds})
+
     def _exchange(self, line: bytes) -> dict[str, Any]:
         try:
             sent = os.write(self._out, line)

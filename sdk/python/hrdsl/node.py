@@ -98,7 +98,7 @@ class Node:
 
     def sleep(self, seconds: float) -> None:
         """Lets simulated time pass."""
-        self._link.request({"request": "sleep", "seconds": _seconds(seconds)})
+        self._link.sleep(_seconds(seconds))
 
     def emit(self, event: str, **args: Value) -> None:
         """Makes an event of the scenario's vocabulary happen now; a value of an enumeration is its name, a str."""

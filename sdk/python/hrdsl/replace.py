@@ -86,7 +86,8 @@ def _is_of_python(spec: Any) -> bool:
     origin: str = spec.origin or ""
     if place is None or not origin.endswith(".py"):
         return True
-    return os.path.dirname(origin) == os.path.dirname(str(place))
+    stem = os.path.join(os.path.dirname(str(place)), *spec.name.split("."))
+    return origin in (stem + ".py", os.path.join(stem, "__init__.py"))
 
 
 class _Loader:

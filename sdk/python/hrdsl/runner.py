@@ -20,7 +20,7 @@ from hrdsl.errors import ProtocolError, Stopped
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
-    from typing import Any, NoReturn
+    from typing import Any, Callable, NoReturn
 
     from hrdsl.cover import Recorder
 
@@ -50,14 +50,19 @@ def main(argv: list[str]) -> NoReturn:
 
         environment = os.environ.get
         recorder = Recorder(files, environment("HRDSL_COVERAGE_PACKAGE"), environment("HRDSL_COVERAGE_CACHE"))
-    virtual.install(link, int(os.environ.get("HRDSL_SEED", "0")))
+    scheduler = virtual.install(link, int(os.environ.get("HRDSL_SEED", "0")))
     debug.install()
     status = 1
     try:
-        status = _run(words, module, recorder)
+        status, is_stopped = _status(lambda: _run(words, module, recorder))
+        if not is_stopped and link.is_ours():
+            status = _status(_join_threads)[0] or status
+        if scheduler.failed:
+            status = status or 1
         if status == 0 and link.is_ours() and not link.stopped:
             link.done()
     finally:
+        scheduler.close()
         if link.is_ours():  # not in a process that the program has forked
             _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
             if recorder is not None and out is not None:
@@ -121,39 +126,44 @@ def _terminated(number: int, frame: Any) -> None:
     raise Stopped("terminated")
 
 
-def _run(words: list[str], module: bool, recorder: Recorder | None) -> int:
-    """Runs the script, and says with which status it ended."""
+def _run(words: list[str], module: bool, recorder: Recorder | None) -> None:
     sys.argv = list(words)
-    try:
-        if module:
-            import runpy
+    if not module:
+        _script(words[0], recorder)
+        return
+    import runpy
 
-            sys.path.insert(0, os.getcwd())
-            if recorder is not None:
-                recorder.start()
-            runpy.run_module(words[0], run_name="__main__", alter_sys=True)
-        else:
-            _script(words[0], recorder)
-        _join_threads()
-        return 0
+    sys.path.insert(0, os.getcwd())
+    if recorder is not None:
+        recorder.start()
+    runpy.run_module(words[0], run_name="__main__", alter_sys=True)
+
+
+def _status(run: Callable[[], None]) -> tuple[int, bool]:
+    """Runs a part of the program, and says with which status it has ended, and whether because the test is over."""
+    try:
+        run()
+        return 0, False
+    except Stopped:
+        return 0, True
     except SystemExit as end:
         if end.code is None or end.code == 0:
-            return 0
+            return 0, False
         if isinstance(end.code, int):
-            return end.code
+            return end.code, False
         sys.stderr.write("%s\n" % (end.code,))
-        return 1
+        return 1, False
     except BaseException as error:
         if debug.has_left(error):
             sys.stderr.write("hrdsl: the debugger was left, which ends the program\n")
-            return 1
+            return 1, True
         trace = error.__traceback__
         while trace is not None and trace.tb_frame.f_globals.get("__name__") == __name__:
             trace = trace.tb_next  # the script's own frames only
         sys.excepthook(type(error), error.with_traceback(trace), trace)
         if isinstance(error, ModuleNotFoundError):
             _advise(error)
-        return 1
+        return 1, False
 
 
 def _advise(error: ModuleNotFoundError) -> None:
@@ -183,9 +193,7 @@ def _script(path: str, recorder: Recorder | None) -> None:
 
 
 def _join_threads() -> None:
-    threading = sys.modules.get("threading")
-    if threading is None:
-        return
-    for thread in threading.enumerate():
-        if thread is not threading.current_thread() and not thread.daemon:
-            thread.join()
+    """As at the interpreter's end, but while simulated time can still pass."""
+    threading: Any = sys.modules.get("threading")
+    if threading is not None:
+        threading._shutdown()

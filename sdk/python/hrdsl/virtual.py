@@ -6,14 +6,16 @@ import sys
 import time
 import types
 
-from hrdsl import chance, dates, files, machine
+from hrdsl import chance, dates, files, machine, outside
 from hrdsl.replace import put
+from hrdsl.schedule import POLLS
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
     from typing import Any, Callable
 
     from hrdsl.link import Link
+    from hrdsl.schedule import Scheduler
 
 SECOND = 10**9  # an integer, since dividing integers rounds once
 
@@ -21,32 +23,41 @@ SECOND = 10**9  # an integer, since dividing integers rounds once
 EPOCH = 1735689600 * SECOND
 
 
-def install(link: Link, seed: int) -> None:
-    """Replaces what the standard library tells of time, chance and the machine, for this process."""
+def install(link: Link, seed: int) -> Scheduler:
+    """Replaces what the standard library tells of time, chance and the machine, for this process, and what waits."""
+    scheduler = outside.install(link)
     files.install(link, lambda: EPOCH + link.time)  # before the clocks, as it needs the real one
     chance.install(seed)
     machine.install(lambda: link.time / SECOND)
-    _clocks(link)
+    _clocks(scheduler, link)
     dates.install(lambda: (EPOCH + link.time) / SECOND)
+    return scheduler
 
 
-def _clocks(link: Link) -> None:
-    def elapsed() -> float:
-        return link.time / SECOND
-
-    def elapsed_ns() -> int:
+def _clocks(scheduler: Scheduler, link: Link) -> None:
+    def now() -> int:
+        # As `Scheduler.polled` does: a program that reads the clock again and again waits for it to move.
+        scheduler.polls += 1
+        if scheduler.polls >= POLLS:
+            scheduler.much_polled()
         return link.time
 
+    def elapsed() -> float:
+        return now() / SECOND
+
+    def elapsed_ns() -> int:
+        return now()
+
     def wall() -> float:
-        return (EPOCH + link.time) / SECOND
+        return (EPOCH + now()) / SECOND
 
     def wall_ns() -> int:
-        return EPOCH + link.time
+        return EPOCH + now()
 
     def sleep(seconds: float) -> None:
         if seconds < 0:
             raise ValueError("sleep length must be non-negative")
-        link.request({"request": "sleep", "seconds": float(seconds)})
+        scheduler.sleep(seconds)
 
     for name in ("monotonic", "perf_counter", "process_time", "thread_time"):
         put(name, elapsed, time)

@@ -4,6 +4,8 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
+import textwrap
 import threading
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -59,3 +61,18 @@ class Program:
 
 def run(words, **how):
     return Program(words, **how).finish()
+
+
+def run_text(text, **how):
+    """Runs a program of this text."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "program.py")
+        with open(path, "w") as file:
+            file.write(textwrap.dedent(text))
+        return run([path], **how)
+
+
+def run_plain(text):
+    """What such a program prints when it runs without hrdsl."""
+    command = [sys.executable, "-c", textwrap.dedent(text)]
+    return subprocess.run(command, stdout=subprocess.PIPE, universal_newlines=True, check=True).stdout

@@ -59,12 +59,20 @@ const SDK: &[(&str, &str)] = sdk![
     "errors.py",
     "files.py",
     "link.py",
+    "locks.py",
+    "loop.py",
     "machine.py",
     "node.py",
+    "outside.py",
     "replace.py",
+    "report.py",
     "run.py",
     "runner.py",
+    "schedule.py",
+    "threads.py",
     "virtual.py",
+    "waits.py",
+    "watch.py",
 ];
 
 /// An interpreter, and where the modules are that programs under test need.
@@ -153,6 +161,12 @@ impl PythonEnv {
         command.arg("--package").arg(&self.coverage).arg("--cache").arg(&self.analyses).args(files);
         let output = command.current_dir(dir).output().map_err(SutError::io("cannot start Python"))?;
         Ok(String::from_utf8_lossy(&output.stderr).lines().map(str::to_owned).collect())
+    }
+
+    /// The folder that has coverage.py.
+    #[must_use]
+    pub fn coverage_package(&self) -> &Path {
+        &self.coverage
     }
 
     /// The interpreter's full version, as `3.11.7`.

@@ -109,6 +109,48 @@ def threads():
     return seen
 
 
+def waits():
+    import asyncio
+    import queue
+    import select
+
+    seen = []
+    for wait in (
+        lambda: threading.Event().wait(0.5),
+        lambda: threading.Semaphore(0).acquire(timeout=0.25),
+        lambda: select.select([], [], [], 1.5),
+        lambda: asyncio.run(asyncio.sleep(2)),
+        lambda: queue.Queue().get(timeout=0.75),
+    ):
+        try:
+            wait()
+        except queue.Empty:
+            pass
+        seen.append(time.monotonic())
+    return seen
+
+
+def order_of_threads():
+    import concurrent.futures
+
+    seen, lock = [], threading.Lock()
+
+    def work(number):
+        for _ in range(3):
+            time.sleep(0.1)
+            with lock:
+                seen.append(number)
+
+    started = [threading.Thread(target=work, args=(number,)) for number in range(5)]
+    for thread in started:
+        thread.start()
+    with concurrent.futures.ThreadPoolExecutor(3) as pool:
+        pool.map(work, range(5, 10))
+    for thread in started:
+        thread.join()
+    return seen
+
+
 ROWS = {
     "the module `random`": lambda: (random.random(), random.seed(), random.random(), random.gauss(0, 1)),
     "generators without a seed": generators,
@@ -128,6 +170,8 @@ ROWS = {
     "order of the files in a folder": order,
     "cores and load": cores,
     "numbers of threads": threads,
+    "waits": waits,
+    "the order in which threads run": order_of_threads,
 }
 
 hrdsl.Node("repeatable").sleep(90.25)

@@ -1,7 +1,7 @@
 """Uses more of something than it may."""
 import os
+import signal
 import sys
-import threading
 
 import hrdsl
 
@@ -15,7 +15,7 @@ elif what == "cpu-between-requests":
         sum(range(100000))
         node.sleep(0.01)
 elif what == "sleep":
-    threading.Event().wait()
+    signal.pause()
 elif what == "memory":
     node.now()
     taken = []
@@ -34,8 +34,6 @@ elif what == "children":
 elif what == "environment":
     print(sorted(os.environ))
 elif what == "signals":
-    import signal
-
     print(signal.pthread_sigmask(signal.SIG_BLOCK, []), signal.getsignal(signal.SIGCHLD), signal.getsignal(signal.SIGPIPE))
 elif what == "addresses":
     print(id(object()), hash(None), [hash(object()) for _ in range(3)], id(sys))

@@ -1,0 +1,404 @@
+"""Which thread of the program runs: exactly one, until it has to wait.
+
+The threads are real ones. One of them has the baton; each of the others sleeps in a lock of its own until the baton is
+handed to it. It is handed over where a thread waits, yields or ends, and nowhere else, so that a program does the same in
+every run. When all threads wait, the world outside lets time pass until the first of their deadlines.
+"""
+
+from __future__ import annotations
+
+import _thread
+import sys
+import time
+from collections import deque
+
+from hrdsl.errors import Deadlock, Stopped
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any, Callable, Protocol
+
+    class Outside(Protocol):
+        """The world that has the time."""
+
+        @property
+        def time(self) -> int:
+            """Simulated nanoseconds, now."""
+
+        @property
+        def stopped(self) -> bool:
+            """Whether the test is over, so that no wait ends any more."""
+
+        def wait(self, until: int | None) -> None:
+            """Lets time pass until `until` (None: for ever), or until something arrives, whose handlers may call
+            `Scheduler.unpark`. Raises `Deadlock` where nothing can arrive, and `Stopped` when the test is over."""
+
+    class Watch(Protocol):
+        """A wait for descriptors, which the system's real time may end."""
+
+        def look(self) -> bool:
+            """Whether it is over, asked without waiting."""
+
+        def descriptors(self) -> list[tuple[int, int]]:
+            """What to poll for, as `select.poll` takes it."""
+
+
+#: So many polls at one instant count as a wait, ...
+POLLS = 1000
+
+#: ... which lasts so long, in nanoseconds.
+STEP = 1_000_000
+
+# As they are before anything is replaced: this module is imported first.
+real_lock = _thread.allocate_lock
+real_sleep = time.sleep
+real_monotonic = time.monotonic
+real_clock = getattr(time, "clock_gettime", None)
+_get_ident = _thread.get_ident
+
+
+def _heap() -> Any:
+    import _heapq  # not for programs with one thread that never waits
+
+    return _heapq
+
+
+def _handle_pending() -> None:
+    """Where a function of Python begins, the interpreter calls the handlers of signals."""
+
+
+class Task:
+    """A thread, as the scheduler sees it."""
+
+    __slots__ = ("ident", "baton", "what", "result", "ticket", "has_yielded", "on_end", "gone", "is_dead")
+
+    def __init__(self, ident: int) -> None:
+        self.ident = ident
+        self.baton = real_lock()
+        self.baton.acquire()
+        self.what: Any = None  # it waits for
+        self.result: bool | BaseException | None = True  # of its last wait: None while it waits
+        self.ticket = 0  # of its deadline, if it has one
+        self.has_yielded = False  # after polls, since its last wait
+        self.on_end: list[Callable[[], object]] = []
+        self.gone: Callable[[], object] | None = None  # returns when the system's thread has ended
+        self.is_dead = False
+
+
+class Scheduler:
+    """The threads of a process."""
+
+    def __init__(self, outside: Outside, seed: int | None = None) -> None:
+        """`seed` lets chance choose the thread that runs next; by default it is the one that is ready for longest."""
+        self.outside = outside
+        self.running = self.main = Task(_get_ident())  # the thread that calls
+        self.tasks: dict[int, Task] = {self.main.ident: self.main}
+        self.ready: deque[Task] = deque()
+        self.polls = 0
+        self.calls = 0  # of the scheduler, so that others see that there are some
+        self.watched: dict[Task, Watch] = {}
+        self.look: Callable[[bool], bool] | None = None  # at the descriptors of `watched`
+        self.ending: Callable[[], BaseException] | None = None  # what waits raise, once none can end
+        self.failed = False  # whether the program ends by a fault that it cannot catch
+        self._main_first = False
+        self._deadlines: list[tuple[int, int, Task]] = []
+        self._tickets = 0
+        self._polled_at = -1
+        self._ended: Callable[[], object] | None = None
+        self._sender: Task | None = None  # of a signal to this process
+        self._chance: Any = None
+        if seed is not None:
+            import _random
+
+            self._chance = _random.Random(seed)
+
+    # ── waiting ──
+
+    def park(self, what: object, deadline: int | None = None) -> bool:
+        """Lets others run until somebody calls `unpark` for the running thread, or until the deadline (simulated
+        nanoseconds): whether it was the former. Only for the thread that `current` has returned."""
+        me = self.running
+        me.what, me.result = what, None
+        if deadline is not None:
+            self._set_deadline(me, deadline)
+        else:
+            self.polls, me.has_yielded = 0, False
+        try:
+            self._hand_over(me)
+        except BaseException:  # of a handler of signals, in the main thread
+            self._seize(me)
+            raise
+        me.what = None
+        result = me.result
+        if result is True or result is False:
+            return result
+        me.result = True
+        raise result  # type: ignore[misc]
+
+    def _set_deadline(self, me: Task, deadline: int) -> None:
+        self._tickets += 1
+        me.ticket = self._tickets
+        _heap().heappush(self._deadlines, (deadline, me.ticket, me))
+        if deadline > self.outside.time:
+            self.polls, me.has_yielded = 0, False
+        else:  # no wait, but a look
+            self.polls += 1
+
+    def unpark(self, task: Task, result: bool | BaseException = True) -> None:
+        """Makes a thread ready that waits; of any other this is none's business."""
+        if task.result is None:
+            task.result, task.ticket = result, 0
+            self.ready.append(task)
+
+    def yield_(self) -> None:
+        """Lets those run that are ready."""
+        me = self.current()
+        if me is not None and (self.ready or self._deadlines):
+            self.ready.append(me)
+            self._hand_over(me)
+
+    def sleep(self, seconds: float) -> None:
+        """Waits for so long in simulated time; for nothing at all, lets the others run that are ready."""
+        nanos = round(seconds * 1e9)
+        if self.current() is None:
+            real_sleep(seconds)
+        elif nanos:
+            self.park("sleep", self.outside.time + nanos)
+        else:
+            self.polled("sleep")
+            self.yield_()
+
+    def polled(self, kind: str = "") -> None:
+        """To be called by what tells a program how things are: many such calls at one instant are a wait."""
+        self.polls += 1
+        if self.polls >= POLLS:
+            self.much_polled()
+
+    def much_polled(self) -> None:
+        """Lets the others run; if they have, and this thread polls on, time passes."""
+        self.polls = 0
+        time = self.outside.time
+        me = self.current() if time == self._polled_at else None
+        self._polled_at = time
+        if me is None:
+            return
+        if self.ready and not me.has_yielded:
+            me.has_yielded = True
+            self.yield_()
+        else:
+            self.park("polls", time + STEP)
+            self._polled_at = self.outside.time
+
+    # ── threads ──
+
+    def current(self) -> Task | None:
+        """The thread that calls, which has the baton then; None for one that the scheduler does not know, and for a
+        handler of signals or a finalizer in a thread that waits, or is about to."""
+        me = self.running
+        ident = _get_ident()
+        if me.ident == ident:
+            return None if me.result is None else me
+        task = self.tasks.get(ident)
+        if task is None or task.result is None:
+            return None
+        self.ready.append(task)  # the main thread has taken the baton from it, after a signal
+        task.baton.acquire()
+        return task
+
+    def begin(self, task: Task) -> None:
+        """To be called first by a new thread: returns when it is its turn."""
+        task.baton.acquire()
+        self._confirm_end()
+        self.polls = 0
+
+    def add(self, task: Task) -> None:
+        """A new thread is ready to run."""
+        self.calls += 1
+        self.tasks[task.ident] = task
+        self.ready.append(task)
+
+    def finish(self, task: Task) -> None:
+        """To be called last by a thread that ends: hands the baton over for good."""
+        self.current()
+        for call in task.on_end:
+            call()
+        self.tasks.pop(task.ident, None)
+        self.calls += 1
+        chosen = self._next()
+        if chosen is None:
+            return
+        self._ended = task.gone
+        self.running = chosen
+        chosen.baton.release()
+
+    def fork(self) -> None:
+        """In a process that was just forked: of all threads the one that called is left."""
+        me = self.current() or self.main
+        for task in self.tasks.values():
+            if task is not me:
+                task.is_dead, task.result = True, True
+                for call in task.on_end:
+                    call()
+        self.main, self.tasks = me, {me.ident: me}
+        self.ready.clear()
+        self._deadlines.clear()
+        self.watched.clear()
+        self._ended = None
+
+    def end(self, error: Callable[[], BaseException]) -> None:
+        """Ends the program by a fault: all waits raise it, that of the main thread first."""
+        self.ending, self.failed, self._main_first = error, True, True
+        main = self.main
+        if main.result is None:
+            self.unpark(main)
+        if main in self.ready:
+            self._main_first = False
+            main.result = error()
+            self.ready.remove(main)
+            self.ready.appendleft(main)
+
+    def close(self) -> None:
+        """The program has ended: polls are no waits any more, for time does not pass."""
+        self.polls = -(1 << 60)
+
+    def next_deadline(self) -> int | None:
+        """The first deadline of those who wait."""
+        deadlines = self._deadlines
+        while deadlines and deadlines[0][2].ticket != deadlines[0][1]:
+            _heap().heappop(deadlines)
+        return deadlines[0][0] if deadlines else None
+
+    # ── the baton ──
+
+    def _hand_over(self, me: Task) -> None:
+        self.calls += 1
+        polls, ready = self.polls, self.ready
+        if ready and not self._deadlines and self._chance is None:
+            chosen: Task | None = ready.popleft()
+        else:
+            chosen = self._next()
+        if chosen is me or chosen is None:
+            return
+        self.running = chosen
+        chosen.baton.release()
+        me.baton.acquire()
+        self.polls = polls
+        if self._ended is not None:
+            self._confirm_end()
+        while self._sender is not None:
+            self._handle_signals(me)
+
+    def _confirm_end(self) -> None:
+        # What an ending thread leaves behind is torn down after its last line; nobody runs beside that.
+        ended, self._ended = self._ended, None
+        if ended is not None:
+            ended()
+
+    def signalled(self) -> None:
+        """To be called after the process has sent itself a signal, which the main thread handles: if it is another that
+        has sent it, that goes on when the signal is handled."""
+        me = self.current()
+        if me is not None and me is not self.main and self.main.ident in self.tasks:
+            self._sender = me
+            self.main.baton.release()
+            me.baton.acquire()
+
+    def _handle_signals(self, me: Task) -> None:
+        _handle_pending()
+        sender, self._sender = self._sender, None
+        if sender is not None:
+            sender.baton.release()
+            me.baton.acquire()
+
+    def _seize(self, me: Task) -> None:
+        """A signal ends the wait of the main thread, whoever runs: the other goes on when it is its turn again."""
+        if self._sender is not None:
+            me.baton.acquire(False)
+            self.ready.appendleft(self._sender)
+            self.running, self._sender = me, None
+        elif self.running is not me and not me.baton.acquire(False):
+            self.running = me
+        if me in self.ready:
+            self.ready.remove(me)
+        me.what, me.ticket = None, 0
+        if me.result is None:
+            me.result = True
+
+    def _next(self) -> Task | None:
+        deadlines = self._deadlines
+        if deadlines and deadlines[0][0] <= self.outside.time:
+            self._expire()
+        ready = self.ready
+        if not ready:
+            self._idle()
+            if not ready:
+                return None
+        chosen: Task
+        if self._chance is not None and len(ready) > 1:
+            place = int(self._chance.random() * len(ready))
+            chosen = ready[place]
+            del ready[place]
+        else:
+            chosen = ready.popleft()
+        return chosen
+
+    def _expire(self) -> None:
+        deadlines, time = self._deadlines, self.outside.time
+        while deadlines and deadlines[0][0] <= time:
+            _, ticket, task = _heap().heappop(deadlines)
+            if task.ticket == ticket:
+                self.unpark(task, False)
+        if len(deadlines) > 64 + 4 * len(self.tasks):
+            self._deadlines = [entry for entry in deadlines if entry[2].ticket == entry[1]]
+            _heap().heapify(self._deadlines)
+
+    # ── when all wait ──
+
+    def _idle(self) -> None:
+        while not self.ready:
+            if self.ending is not None:
+                if not self._wake_all(self.ending):
+                    return
+                continue
+            until = self.next_deadline()
+            try:
+                if self.watched and self.look is not None and self.look(until is None):
+                    continue
+                self.outside.wait(until)
+            except Deadlock as found:
+                if not any(task.result is None for task in self.tasks.values()):
+                    return  # the last thread of a forked process ends
+                self._found(found)
+            except BaseException as error:
+                self._failed(error)
+            self._expire()
+
+    def _found(self, found: Deadlock) -> None:
+        from hrdsl import report
+
+        sys.stderr.write(report.deadlock(self))
+        self.ending, self.failed, self._main_first = type(found), True, True
+
+    def _failed(self, error: BaseException) -> None:
+        """Whose wait raises it: all waits if the test is over, else that which it is about."""
+        if isinstance(error, Stopped) and self.outside.stopped:
+            self.ending = type(error)
+            return
+        until = self.next_deadline()
+        me = self.running
+        if isinstance(error, Exception) and until is not None:
+            me = self._deadlines[0][2]
+        if me.result is not None:  # it ends, and waits for nothing
+            me = self.main
+        self.unpark(me, error)
+
+    def _wake_all(self, error: Callable[[], BaseException]) -> bool:
+        """The main thread is told at last, so that it finds the others gone; of a fault, at first."""
+        waiting = [task for task in self.tasks.values() if task.result is None]
+        others = [task for task in waiting if task is not self.main]
+        if self._main_first and self.main in waiting:
+            others = []
+        self._main_first = False
+        for task in others or waiting:
+            self.unpark(task, error())
+        return bool(waiting)

@@ -1,0 +1,104 @@
+"""Finds loops that never wait, so that no other thread of the program ever runs."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+
+from hrdsl.errors import Busy
+from hrdsl.schedule import real_clock, real_lock, real_sleep
+from hrdsl.threads import real_start
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any
+
+    from hrdsl.schedule import Scheduler, Task
+    from hrdsl.threads import Threads
+
+
+class Watcher:
+    """A thread of the system's, beside those of the program, that looks now and then whether the scheduler was called.
+
+    It changes nothing that the program sees unless it finds a fault: the thread that has the baton has computed for
+    `budget` seconds of its processor time without a call, while another is ready, or waits for a time that cannot come.
+    """
+
+    def __init__(self, scheduler: Scheduler, threads: Threads, budget: float) -> None:
+        self._scheduler = scheduler
+        self._threads = threads
+        self._budget = budget
+        self._stop: Any = None  # released to end it, while it runs
+        self._stopped: Any = None
+
+    def start(self) -> None:
+        """Begins to look, until the process forks."""
+        self._go()
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(before=self._end)
+
+    def _go(self) -> None:
+        self._threads.on_first = None
+        self._stop, self._stopped = real_lock(), real_lock()
+        self._stop.acquire()
+        self._stopped.acquire()
+        real_start(self._run, ())
+
+    def _end(self) -> None:
+        """A forked process has one thread, and the interpreter warns of more; the next thread that the program starts
+        brings a new watcher."""
+        if self._stop is not None:
+            self._stop.release()
+            self._stopped.acquire()
+            self._stop = None
+            self._threads.on_first = self._go
+        for _ in range(20):  # what has ended is counted for a moment longer
+            if _system_threads() <= len(self._scheduler.tasks):
+                break
+            real_sleep(0.0005)
+
+    def _run(self) -> None:
+        stop, stopped = self._stop, self._stopped
+        seen, since = (-1, -1), 0.0
+        while not stop.acquire(True, min(1.0, max(0.01, self._budget / 4))):
+            task = self._scheduler.running
+            used = _processor_time(task)
+            if used is None or (task.ident, self._scheduler.calls) != seen:
+                seen, since = (task.ident, self._scheduler.calls), used or 0.0
+            elif used - since > self._budget and self._keeps_others(task):
+                self._found(task, used - since)
+                break
+        stopped.release()
+
+    def _keeps_others(self, task: Task) -> bool:
+        scheduler = self._scheduler
+        return bool(scheduler.ready) or any(other.ticket for other in list(scheduler.tasks.values()) if other is not task)
+
+    def _found(self, task: Task, used: float) -> None:
+        from hrdsl import report
+
+        sys.stderr.write(report.busy(self._scheduler, task, used))
+        self._scheduler.end(Busy)
+        try:
+            import ctypes
+
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(task.ident), ctypes.py_object(Busy))
+        except Exception:  # there is no other way to end a loop of another thread
+            sys.stderr.flush()
+            os._exit(1)
+
+
+def _processor_time(task: Task) -> float | None:
+    """What the thread has used; None if it has ended, or nobody can tell."""
+    try:
+        return real_clock(time.pthread_getcpuclockid(task.ident)) if real_clock is not None else None
+    except (OSError, AttributeError, ValueError):
+        return None
+
+
+def _system_threads() -> int:
+    try:
+        return os.stat("/proc/self/task").st_nlink - 2
+    except OSError:
+        return 0
