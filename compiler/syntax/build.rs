@@ -1,4 +1,5 @@
 //! Generates the parser from `src/grammar.lalrpop`, after the registry of keywords has been put into it.
+#![expect(clippy::disallowed_methods, reason = "a build script reads and writes files")]
 
 use std::{env, error::Error, fs, path::Path};
 

@@ -64,7 +64,7 @@ fn keywords_h() -> String {
 fn highlights(query: &str) -> String {
     let (before, rest) = query.split_once("[\n  \"").expect("the list of keywords");
     let (_, after) = rest.split_once("\n] @keyword\n").expect("the end of the list");
-    let others = || before.lines().chain(after.lines()).filter(|line| !line.starts_with('('));
+    let others = || before.lines().chain(after.lines()).filter(|line| line.starts_with(['[', '"']));
     let alone = |word: &str| others().any(|line| line.contains(&format!("\"{word}\"")));
     let listed = KEYWORDS.iter().filter(|k| k.class != KeywordClass::Reserved && !alone(k.word));
     let mut list = String::new();

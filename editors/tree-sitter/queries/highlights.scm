@@ -26,14 +26,15 @@
 ; ── Keywords ──
 
 [
-  "scenario" "actor" "const" "stimulus" "agent" "automaton" "network" "require" "assume" "cover" "cross" "suite" "part"
-  "world" "system" "test" "from" "to" "by" "in" "plays" "when" "on" "do" "emit" "within" "sample" "hold" "belief" "goal"
-  "plan" "clock" "location" "invariant" "select" "after" "causes" "forbids" "precedes" "until" "never" "globally" "at"
-  "most" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per" "where" "explore" "tests"
+  "scenario" "actor" "const" "event" "stimulus" "agent" "var" "channel" "automaton" "network" "query" "require"
+  "assume" "cover" "cross" "suite" "part" "device" "world" "system" "test" "from" "to" "by" "in" "plays" "when" "on"
+  "do" "emit" "within" "sample" "hold" "belief" "goal" "plan" "rule" "clock" "location" "invariant" "select" "after"
+  "causes" "forbids" "precedes" "until" "never" "globally" "at" "most" "count" "bins" "bin" "ignore" "agents" "search"
+  "random" "of" "choose" "one" "any" "per" "where" "explore" "stop" "minimise" "witness" "delays" "tests" "warmup"
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
-  "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "device" "command" "expect" "rotated" "mass" "ghost"
-  "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "run" "coverage" "limit" "budget" "var" "event" "rule"
-  "cpu" "wall" "memory" "output" "env" "online" "stop" "minimise" "channel" "query" "witness" "delays"
+  "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "rotated" "mass" "ghost" "graspable" "axis"
+  "limits" "tip" "tool" "speed" "delay" "command" "expect" "run" "coverage" "limit" "budget" "cpu" "wall" "memory"
+  "output" "env" "online"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return

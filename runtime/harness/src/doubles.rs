@@ -11,7 +11,8 @@ use hrdsl_ir::{
 use crate::{
     clock::TimeSource,
     command::CheckedCommand,
-    system::seam::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemRequest},
+    fault::SystemFault,
+    system::seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     world::{CommandId, WorldBackend},
 };
 

@@ -15,6 +15,7 @@ mod argument;
 mod clock;
 mod command;
 pub mod doubles;
+mod fault;
 mod message;
 mod player;
 mod run;
@@ -27,6 +28,7 @@ mod world;
 pub use argument::SystemArgument;
 pub use clock::{TimeSource, VirtualClock};
 pub use command::{CheckedCommand, CommandRequest, NotBegun};
+pub use fault::{SystemFault, SystemFaultKind};
 pub use message::PlayerMessage;
 pub use player::{ActorPlayer, HarnessError, PlayerContext, is_perceived};
 pub use run::{HarnessLoop, HarnessRun, RunTermination};
@@ -35,7 +37,5 @@ pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
 pub use system::player::SystemPlayer;
 pub use system::port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortListing};
-pub use system::seam::{
-    RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemFault, SystemFaultKind, SystemRequest,
-};
+pub use system::seam::{RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest};
 pub use world::{CommandId, WorldBackend};

@@ -2,34 +2,15 @@
 
 mod common;
 
-use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
-
-use hrdsl_harness::{
-    ActorPlayer, CommandRequest, HarnessError, HarnessLoop, HarnessRun, RunTermination, ScriptPlayer,
-    SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
-    doubles::{ToldClock, ToldCommand, ToldStep, ToldSystem, ToldWorld},
-};
-use hrdsl_ir::{
-    Actor, ActorId, Event, EventId, EventPattern, Expr, Nanos, Parameter, Program, Role, Span, Type, Unit,
-    Value,
-    device::{
-        CommandParam, CommandType, Device, DeviceBody, DeviceCommand, DeviceKind, DevicePrimitive,
-        DeviceSort, NumberCount,
-    },
-    event::{Stimulus, StimulusStep},
-    test::{Test, TestProvenance, TestStep},
-    value::SECOND,
-    world::{
-        ArmId, DeviceCommandId, DeviceId, DeviceKindId, GripperId, RuleTrigger, Signal, SignalId, World,
-        WorldRule,
-    },
-};
-use hrdsl_trace::{RunEnd, TraceStepKind, print};
-
 use common::{
-    Answers, ask, asked, await_done, close, command, emit, end, go, program, run, sleep, system, told, wait,
-    wait_for,
+    ask, asked, await_done, close, command, emit, end, go, run, sleep, system, told, wait, wait_for,
 };
+use hrdsl_harness::{
+    HarnessError, RunTermination, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemRequest,
+    doubles::{ToldClock, ToldCommand, ToldStep, ToldWorld},
+};
+use hrdsl_ir::{EventId, Value, value::SECOND, world::SignalId};
+use hrdsl_trace::{RunEnd, TraceStepKind};
 
 #[test]
 fn a_system_in_lock_step_hears_and_answers() {

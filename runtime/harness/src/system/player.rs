@@ -6,11 +6,12 @@ use super::{
     graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
     mailbox::HeardEvent,
     program::{RequestWait, ServedProgram},
-    seam::{RequestTicket, SystemActor, SystemAnswer, SystemFault, SystemRequest},
+    seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     vocabulary::{ActorVocabulary, refuse},
 };
 use crate::{
     command::{CommandRequest, NotBegun},
+    fault::SystemFault,
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext},
     world::CommandId,

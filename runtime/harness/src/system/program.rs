@@ -4,10 +4,11 @@ use hrdsl_ir::{EventId, Nanos, value::seconds};
 
 use super::{
     mailbox::{HeardEvent, MailItem, ProgramMailbox},
-    seam::{RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemFault, SystemFaultKind},
+    seam::{RequestTicket, SystemActor, SystemAnswer, SystemArrival},
     vocabulary::ActorVocabulary,
 };
 use crate::{
+    fault::{SystemFault, SystemFaultKind},
     player::{HarnessError, PlayerContext},
     world::CommandId,
 };

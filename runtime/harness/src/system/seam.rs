@@ -9,7 +9,7 @@ use std::{collections::BTreeMap, fmt};
 use hrdsl_ir::{Nanos, Value};
 
 use super::port::{GoalEnd, MessageText, PortDeclaration, PortListing};
-use crate::{argument::SystemArgument, command::CommandRequest};
+use crate::{argument::SystemArgument, command::CommandRequest, fault::SystemFault};
 
 /// Whatever plays the system actor.
 pub trait SystemActor {
@@ -194,23 +194,4 @@ impl fmt::Display for SystemArgument {
             SystemArgument::Numbers(numbers) => write!(f, "{numbers:?}"),
         }
     }
-}
-
-/// What a system did that no system should: the message, with its last output.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-pub struct SystemFault {
-    pub message: String,
-    pub kind: SystemFaultKind,
-}
-
-/// What a fault of the system says about another run of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SystemFaultKind {
-    /// It would happen again.
-    Program,
-    /// Wall time ended the run: it may be the machine's load.
-    WallTime,
-    /// The campaign was interrupted: it says nothing about the system.
-    Interrupted,
 }

@@ -4,9 +4,9 @@
 use std::{cell::RefCell, collections::BTreeMap, rc::Rc};
 
 use hrdsl_harness::{
-    ActorPlayer, CommandRequest, HarnessError, HarnessLoop, HarnessRun, RunTermination, ScriptPlayer,
-    SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
-    doubles::{ToldClock, ToldCommand, ToldStep, ToldSystem, ToldWorld},
+    ActorPlayer, CommandRequest, HarnessLoop, HarnessRun, RunTermination, ScriptPlayer, SystemAnswer,
+    SystemArgument, SystemPlayer, SystemRequest, WorldStage,
+    doubles::{ToldClock, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{
     Actor, ActorId, Event, EventId, EventPattern, Expr, Nanos, Parameter, Program, Role, Span, Type, Unit,
@@ -23,7 +23,7 @@ use hrdsl_ir::{
         WorldRule,
     },
 };
-use hrdsl_trace::{RunEnd, TraceStepKind, print};
+use hrdsl_trace::{RunEnd, print};
 
 pub const GUEST: ActorId = ActorId(0);
 pub const ROBOT: ActorId = ActorId(1);
