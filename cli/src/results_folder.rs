@@ -14,6 +14,8 @@ use crate::{fault::CommandFault, files, terminal::shown};
 
 /// Lists what hrdsl wrote, one path a line, after a line that says what it is. `check` skips what it lists.
 pub const MARKER: &str = ".hrdsl-results";
+/// The folder of a campaign's recordings.
+pub const TRACES: &str = "traces";
 /// Where results are collected until the run is over.
 const STAGING: &str = ".hrdsl-partial";
 const FIRST_LINE: &str = "hrdsl results 1";

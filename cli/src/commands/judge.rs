@@ -102,11 +102,14 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
     })
 }
 
-/// The recordings: files as they are given, of a folder those in and below it, in order.
+/// The recordings: files as they are given, of a folder those in and below it, in order. Of a campaign's folder it is those in
+/// `traces`: what else ends in `.jsonl` there, the code under test wrote.
 fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFault> {
     let mut all = Vec::new();
     for path in given {
         if path.is_dir() {
+            let traces = path.join(results_folder::TRACES);
+            let path = if traces.is_dir() { &traces } else { path };
             let files = results_folder::files_below(path)?;
             // Links are not followed: they may lead in circles.
             let is_recording = |p: &PathBuf| p.extension().is_some_and(|e| e == "jsonl") && !p.is_symlink();

@@ -1,5 +1,5 @@
-# Waits for less than a nanosecond, for ever.
-# expect: error "requests without letting simulated time pass"
+# Waits for less than a nanosecond, for ever: as for nothing at all, so that a thousand such waits let a millisecond pass.
+# expect: error "the program used more than 5 s of processor time"
 import hrdsl
 node = hrdsl.Node('robot')
 while True:

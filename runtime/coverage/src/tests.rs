@@ -1,4 +1,4 @@
-//! Tests of counting, sorting, merging, naming and assuming.
+//! Tests of counting, sorting, naming and assuming.
 
 use hrdsl_ir::{
     ActorId, ArgPattern, Event, EventId, EventPattern, Nanos, Program, Span, Symbol, Value,
@@ -9,10 +9,7 @@ use hrdsl_ir::{
 use hrdsl_trace::{Trace, TraceObserver, TraceStep, TraceStepKind};
 use proptest::prelude::*;
 
-use crate::{
-    CoverageCollector, CoverageMismatchError, MergedCoverage, TestCoverage, assume::AssumptionChecker,
-    hits_from_numbers,
-};
+use crate::{CoverageCollector, TestCoverage, assume::AssumptionChecker};
 
 const ASK: u16 = 0;
 const DECIDED: u16 = 1;
@@ -128,35 +125,6 @@ fn what_is_ignored_hits_no_cross_bin() {
 }
 
 #[test]
-fn a_merge_counts_tests_and_names_the_first() {
-    let declared = declared();
-    let mut merge = MergedCoverage::new(&declared);
-    merge.add("t2", &hits_from_numbers(&declared, &[1, 0])).unwrap();
-    merge.add("t1", &hits_from_numbers(&declared, &[4, 2])).unwrap();
-    let rows = merge.rows(&declared);
-    let row = |name: &str| {
-        let found = rows.iter().find(|r| r.name == name).unwrap();
-        (found.cross, found.count.tests, found.count.first.as_deref())
-    };
-    assert_eq!(row("legs.none"), (false, 0, None));
-    assert_eq!(row("legs.some"), (false, 2, Some("t1")));
-    assert_eq!(row("human_robot.some"), (true, 2, Some("t1")));
-    assert_eq!(row("human_robot.idle"), (true, 0, None));
-    assert_eq!((merge.tests, merge.crosses_hit(), rows.len()), (2, (2, 3), 8));
-}
-
-#[test]
-fn foreign_coverage_is_refused_whole() {
-    let declared = declared();
-    let mut merge = MergedCoverage::new(&declared);
-    let mut foreign = hits_from_numbers(&declared, &[4, 2]);
-    foreign.crosses[0].push(3);
-    assert_eq!(merge.add("t", &foreign), Err(CoverageMismatchError));
-    assert_eq!(merge.join(&MergedCoverage::default()), Err(CoverageMismatchError));
-    assert_eq!(merge, MergedCoverage::new(&declared));
-}
-
-#[test]
 fn names_of_bins_are_stable() {
     assert_eq!(BinName::new("legs", "four").as_str(), "legs.four");
     assert_eq!(BinName::new("legs", "4 legs, \"ready\"").as_str(), "legs.4 legs, \"ready\"");
@@ -204,35 +172,6 @@ fn the_first_assumption_violated_is_named() {
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn merging_knows_no_order(
-        numbers in prop::collection::vec([0i64..6, 0i64..3], 0..12),
-        cut in 0usize..12,
-        seed in any::<prop::sample::Index>(),
-    ) {
-        let declared = declared();
-        let tests: Vec<(String, TestCoverage)> =
-            numbers.iter().enumerate().map(|(i, n)| (format!("t{i:03}"), hits_from_numbers(&declared, n))).collect();
-        let merged = |tests: &[(String, TestCoverage)]| {
-            let mut merge = MergedCoverage::new(&declared);
-            tests.iter().for_each(|(name, coverage)| merge.add(name, coverage).unwrap());
-            merge
-        };
-        let mut turned = tests.clone();
-        if !turned.is_empty() {
-            turned.rotate_left(seed.index(tests.len()));
-        }
-        turned.reverse();
-        let whole = merged(&tests);
-        prop_assert_eq!(&whole, &merged(&turned));
-        let (a, b) = turned.split_at(cut.min(turned.len()));
-        let mut parts = merged(b);
-        parts.join(&merged(a)).unwrap();
-        prop_assert_eq!(&whole, &parts);
-        let text = serde_json::to_string(&whole).unwrap();
-        prop_assert_eq!(serde_json::from_str::<MergedCoverage>(&text).unwrap(), whole);
-    }
 
     #[test]
     fn a_bins_name_can_be_read_back(owner in "[a-z_][a-z_0-9]{0,8}", bin in "[ -~äλ]{1,12}") {

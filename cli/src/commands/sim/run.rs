@@ -10,7 +10,7 @@ use hrdsl_ir::test::Test;
 use hrdsl_runtime::campaign::{CampaignOutcome, CampaignSetup, CapturedOutput, FinishedRun};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{fault::CommandFault, files};
+use crate::{fault::CommandFault, files, results_folder};
 
 /// What has come in so far.
 #[derive(Default)]
@@ -53,7 +53,7 @@ pub fn execute(
 
 /// Where a test's recording is.
 pub fn recording(to: &Path, stem: &str) -> std::path::PathBuf {
-    to.join("traces").join(format!("{stem}.jsonl"))
+    to.join(results_folder::TRACES).join(format!("{stem}.jsonl"))
 }
 
 fn write(done: &FinishedRun<'_>, to: &Path) -> Result<(), CommandFault> {
