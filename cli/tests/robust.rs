@@ -75,8 +75,7 @@ fn errors(folder: &Path) -> Vec<String> {
 
 #[test]
 fn waits_that_let_no_time_pass_end_with_an_error() {
-    let robot =
-        "import hrdsl\nnode = hrdsl.Node('robot')\nwhile True:\n    node.wait_for('asked', timeout=0)\n";
+    let robot = "import hrdsl\nn = hrdsl.Node('robot')\nwhile True:\n    n.wait_for('asked', timeout=0)\n";
     let folder = project(robot, 1);
     expect_code(&sim(folder.path(), ""), 3);
     let error = &errors(folder.path())[0];
@@ -231,9 +230,7 @@ fn files_are_kept_for_whoever_asks() {
         assert_eq!(fs::read_to_string(path).unwrap(), "kept");
     }
     // What the robot wrote is no recording.
-    let judged =
-        command().args(["judge", "scenario.hri", "out"]).current_dir(folder.path()).output().unwrap();
-    expect_code(&judged, 0);
+    expect_code(&hrdsl_in(folder.path(), "judge scenario.hri out"), 0);
 }
 
 #[test]

@@ -26,6 +26,7 @@ mod limits;
 mod lock_step;
 mod output;
 mod patience;
+mod pipes;
 mod process;
 mod protocol;
 
