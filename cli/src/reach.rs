@@ -3,11 +3,12 @@
 
 use std::{
     fs,
+    io::Read as _,
     path::{Component, Path, PathBuf},
     sync::OnceLock,
 };
 
-use hrdsl_compiler::{ModuleLoader, ModuleText};
+use hrdsl_compiler::{ModuleLoader, ModuleText, WorkspaceEntry, WorkspaceReader};
 
 use crate::{
     fault::CommandFault,
@@ -50,20 +51,26 @@ impl FileReach {
         Self { folders: std::iter::once(project.unwrap_or(own)).chain(allowed).collect(), endings }
     }
 
+    /// The real place of a file or folder, if it may be named.
+    fn whole(&self, path: &Path) -> Result<PathBuf, String> {
+        let Ok(whole) = path.canonicalize() else { return Err(format!("there is no {}", shown(path))) };
+        if self.folders.iter().any(|f| whole.starts_with(f)) {
+            return Ok(whole);
+        }
+        let first = shown(&self.folders[0]);
+        Err(format!("{} is outside of {first}; `--allow-path DIR` opens another folder", shown(path)))
+    }
+
     /// The file that a path means in the file called `from`, and its text.
     ///
     /// # Errors
     /// Why it is not read, as the end of a sentence.
     pub fn read(&self, from: &str, path: &str) -> Result<(PathBuf, String), String> {
         let file = tidy(&folder_of(Path::new(from)).join(path));
-        let Ok(whole) = file.canonicalize() else { return Err(format!("there is no file {}", shown(&file))) };
-        if !self.folders.iter().any(|f| whole.starts_with(f)) {
-            return Err(format!(
-                "{} is outside of {}; `--allow-path DIR` opens another folder",
-                shown(&file),
-                shown(&self.folders[0])
-            ));
+        if !file.exists() {
+            return Err(format!("there is no file {}", shown(&file)));
         }
+        let whole = self.whole(&file)?;
         // What is no file may have no end, or wait for somebody to write.
         if !fs::metadata(&whole).is_ok_and(|m| m.is_file()) {
             return Err(format!("{} is no regular file", shown(&file)));
@@ -100,8 +107,45 @@ impl ModuleLoader for DiskModules {
         Ok(ModuleText { name: file.display().to_string(), text })
     }
 
+    fn workspaces(&self, from: &str) -> Option<Box<dyn WorkspaceReader + '_>> {
+        Some(Box::new(DiskWorkspace { reach: &self.reach, folder: folder_of(Path::new(from)) }))
+    }
+
     fn is_file(&self, path: &str) -> Option<bool> {
         self.folder.as_ref().map(|folder| folder.join(path).is_file())
+    }
+}
+
+/// The ROS workspaces that a file names, relative to its folder.
+struct DiskWorkspace<'r> {
+    reach: &'r FileReach,
+    folder: PathBuf,
+}
+
+/// More of a file than any definition has.
+const MOST_OF_A_DEFINITION: u64 = 2 << 20;
+
+impl WorkspaceReader for DiskWorkspace<'_> {
+    fn entries(&self, folder: &str) -> Result<Vec<WorkspaceEntry>, String> {
+        let folder = tidy(&self.folder.join(folder));
+        let whole = self.reach.whole(&folder)?;
+        let entries = fs::read_dir(whole).map_err(|e| e.to_string())?;
+        let entry = |e: fs::DirEntry| WorkspaceEntry {
+            name: e.file_name().to_string_lossy().into_owned(),
+            is_folder: e.path().is_dir(),
+        };
+        Ok(entries.filter_map(Result::ok).map(entry).collect())
+    }
+
+    fn text(&self, file: &str) -> Result<String, String> {
+        let whole = self.reach.whole(&self.folder.join(file))?;
+        if !fs::metadata(&whole).is_ok_and(|m| m.is_file()) {
+            return Err("it is no regular file".to_owned());
+        }
+        let mut text = String::new();
+        let file = fs::File::open(&whole).map_err(|e| e.to_string())?;
+        file.take(MOST_OF_A_DEFINITION).read_to_string(&mut text).map_err(|e| e.to_string())?;
+        Ok(text)
     }
 }
 

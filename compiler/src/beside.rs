@@ -1,7 +1,7 @@
 //! HR0803: files that a scenario names, and that are not there.
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
-use hrdsl_syntax::ast::{FileSyntax, ItemSyntaxKind, SystemMemberKind as Member};
+use hrdsl_syntax::ast::{FileSyntax, ItemSyntaxKind, SystemMemberKind as Member, TextSyntax};
 
 use crate::ModuleLoader;
 
@@ -11,18 +11,10 @@ pub(crate) fn missing(file: &FileSyntax, loader: &dyn ModuleLoader) -> Vec<Diagn
         .items
         .iter()
         .filter_map(|i| if let ItemSyntaxKind::System(s) = &i.kind { Some(s) } else { None });
-    let named = systems.flat_map(|s| &s.members).filter_map(|m| match &m.kind {
-        Member::Coverage(files) => Some(files),
-        Member::Run(_)
-        | Member::Limit(_)
-        | Member::Budget(_)
-        | Member::Cpu(_)
-        | Member::Wall(_)
-        | Member::Memory(_)
-        | Member::Output(_)
-        | Member::Env(_)
-        | Member::Online
-        | Member::Error => None,
+    let members = systems.flat_map(|s| &s.members);
+    let named = members.flat_map(|member| match &member.kind {
+        Member::Program(program) => program.members.iter().filter_map(|m| covered(&m.kind)).collect(),
+        kind => covered(kind).into_iter().collect::<Vec<_>>(),
     });
     let missing = named.flatten().filter(|f| loader.is_file(&f.text) == Some(false));
     missing
@@ -32,4 +24,8 @@ pub(crate) fn missing(file: &FileSyntax, loader: &dyn ModuleLoader) -> Vec<Diagn
                 .help("name a file of the program, from the scenario's folder")
         })
         .collect()
+}
+
+fn covered(kind: &Member) -> Option<&Vec<TextSyntax>> {
+    if let Member::Coverage(files) = kind { Some(files) } else { None }
 }

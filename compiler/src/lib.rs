@@ -12,6 +12,7 @@
 
 mod allow;
 mod beside;
+mod interfaces;
 pub mod lower;
 pub mod modules;
 pub mod pages;
@@ -19,7 +20,9 @@ mod recheck;
 mod spoken;
 
 use hrdsl_ir::Program;
-use hrdsl_model::Scenario;
+use hrdsl_messages::MessageLibrary;
+pub use hrdsl_messages::{WorkspaceEntry, WorkspaceReader};
+use hrdsl_model::{KnownSources, Scenario};
 use hrdsl_source::{Diagnostic, FileId, SourceFiles};
 pub use hrdsl_syntax::{GRAMMAR, MAX_BYTES, ast, format, parse, token};
 
@@ -43,6 +46,8 @@ pub struct CompilationResult {
     pub ast: Vec<ast::FileSyntax>,
     /// Which of them are modules, in the order in which their declarations come.
     pub modules: Vec<usize>,
+    /// The definitions of the versions of ROS that its systems use.
+    pub interfaces: Vec<MessageLibrary>,
     /// As far as it could be resolved; `None` if the scenario is no text that can be looked at.
     pub scenario: Option<Scenario>,
     /// `Some` if and only if there are no errors.
@@ -111,7 +116,9 @@ pub fn compile_with(
         diagnostics.extend(unnamed(&ast[0], &diagnostics));
     }
     let missing = diagnostics.iter().any(|d| d.code == hrdsl_source::DiagnosticCode::UNKNOWN_MODULE);
-    let (resolved, issues) = hrdsl_model::resolve_part(&ast[0], &used, &tests, missing);
+    let interfaces = interfaces::load(&mut files, &ast, loader);
+    let known = KnownSources { missing_modules: missing, interfaces: &interfaces };
+    let (resolved, issues) = hrdsl_model::resolve_part(&ast[0], &used, &tests, known);
     diagnostics.extend(issues);
     if !alone && !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(hrdsl_model::lint(&resolved));
@@ -122,7 +129,7 @@ pub fn compile_with(
     diagnostics.sort_by_key(|d| (d.span(), d.code));
 
     let program = (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));
-    CompilationResult { files, ast, modules, scenario: Some(resolved), program, diagnostics }
+    CompilationResult { files, ast, modules, interfaces, scenario: Some(resolved), program, diagnostics }
 }
 
 /// A scenario without its `scenario` line. If something could not be read, that may have been it.

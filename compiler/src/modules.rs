@@ -1,5 +1,6 @@
 //! `use`: the modules that a scenario needs, from the library and from files, each once, in the order of their first use.
 
+use hrdsl_messages::WorkspaceReader;
 use hrdsl_source::{Diagnostic, DiagnosticCode, SourceFiles, Span};
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, ModuleSyntax};
 
@@ -21,6 +22,11 @@ pub trait ModuleLoader {
     /// # Errors
     /// Why it cannot be read, as the end of a sentence: "there is no such file".
     fn load(&self, from: &str, path: &str) -> Result<ModuleText, String>;
+
+    /// Who reads the folders of ROS workspaces, whose paths are relative to the file called `from`; `None`: nobody.
+    fn workspaces(&self, _from: &str) -> Option<Box<dyn WorkspaceReader + '_>> {
+        None
+    }
 
     /// Whether `path` is a file, from the scenario's folder; `None`: nobody knows.
     fn is_file(&self, _path: &str) -> Option<bool> {
@@ -101,7 +107,6 @@ pub fn is_module(file: &ast::FileSyntax) -> bool {
 fn only_in_scenario(kind: &ItemSyntaxKind) -> Option<&'static str> {
     match kind {
         ItemSyntaxKind::World(_) => Some("a `world`"),
-        ItemSyntaxKind::System(_) => Some("a `system`"),
         ItemSyntaxKind::Suite(_) => Some("a `suite`"),
         ItemSyntaxKind::Test(_) => Some("a `test`"),
         ItemSyntaxKind::Use(_)
@@ -125,6 +130,7 @@ fn only_in_scenario(kind: &ItemSyntaxKind) -> Option<&'static str> {
         | ItemSyntaxKind::Cross(_)
         | ItemSyntaxKind::Part(_)
         | ItemSyntaxKind::Device(_)
+        | ItemSyntaxKind::System(_)
         | ItemSyntaxKind::Instance(_)
         | ItemSyntaxKind::Error => None,
     }

@@ -1,6 +1,6 @@
 //! One declaration, whose text has changed, checked again alone: what an editor asks at every key.
 
-use hrdsl_model::{DefinedType, Resolutions};
+use hrdsl_model::{DefinedType, KnownSources, Resolutions};
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
@@ -34,7 +34,8 @@ pub fn recheck(compilation: &CompilationResult, at: usize, text: &str) -> Option
     let modules: Vec<&ast::FileSyntax> =
         compilation.modules.iter().filter_map(|m| compilation.ast.get(*m)).collect();
     let missing = compilation.diagnostics.iter().any(|d| d.code == DiagnosticCode::UNKNOWN_MODULE);
-    diagnostics.extend(hrdsl_model::resolve_alone(scenario, (index, item), &modules, missing));
+    let known = KnownSources { missing_modules: missing, interfaces: &compilation.interfaces };
+    diagnostics.extend(hrdsl_model::resolve_alone(scenario, (index, item), &modules, known));
     let before = declares(old, &|span| compilation.files.text(span).to_owned());
     let same_names = before == declares(item, &|span| text.get(span.range()).unwrap_or("").to_owned());
     let moved = SpanShift { alone: file, old: old.span, len: text.len() };

@@ -65,7 +65,7 @@ fn emit(stage: EmitStage, compilation: &CompilationResult) -> Option<Result<Stri
     struct EmittedWorld<'a> {
         world: &'a Option<hrdsl_ir::world::World>,
         signals: &'a [hrdsl_ir::world::Signal],
-        system: &'a Option<hrdsl_ir::system::SystemUnderTest>,
+        systems: &'a [hrdsl_ir::system::SystemUnderTest],
     }
     let program = compilation.program.as_ref();
     match stage {
@@ -83,7 +83,7 @@ fn emit(stage: EmitStage, compilation: &CompilationResult) -> Option<Result<Stri
         EmitStage::Coverage => Some(json(&program?.coverage)),
         EmitStage::World => {
             let p = program?;
-            Some(json(&EmittedWorld { world: &p.world, signals: &p.signals, system: &p.system }))
+            Some(json(&EmittedWorld { world: &p.world, signals: &p.signals, systems: &p.systems }))
         }
     }
 }

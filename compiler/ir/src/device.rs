@@ -210,6 +210,12 @@ pub enum DevicePrimitive {
     ReachPoint,
     /// An arm brings its joints to these angles, in its own order of them.
     ReachJoints,
+    /// An arm brings its joints through the postures of a trajectory, each at its time.
+    FollowJoints,
+    /// An arm's motor aims at an angle from now on, as one set-point of a stream.
+    AimJoint,
+    /// An arm comes to a stop.
+    StopJoints,
     /// A gripper closes; what is within reach is held.
     CloseFingers,
     /// A gripper opens; what was held is let go.
@@ -227,6 +233,12 @@ pub struct PrimitiveParam {
 
 /// The place, or the angles.
 const TO: &str = "to";
+/// The angles of all joints, posture after posture.
+const POSITIONS: &str = "positions";
+/// The time of each posture, from the beginning.
+const TIMES: &str = "times";
+/// Which joint, from the base, counted from 0.
+const JOINT: &str = "joint";
 /// No joint goes faster.
 const SPEED: &str = "speed";
 
@@ -237,9 +249,12 @@ const fn param(name: &'static str, unit: Unit, count: NumberCount, optional: boo
 const JOINT_SPEED: PrimitiveParam = param(SPEED, Unit::RadianPerSecond, NumberCount::One, true);
 
 impl DevicePrimitive {
-    pub const ALL: [DevicePrimitive; 4] = [
+    pub const ALL: [DevicePrimitive; 7] = [
         DevicePrimitive::ReachPoint,
         DevicePrimitive::ReachJoints,
+        DevicePrimitive::FollowJoints,
+        DevicePrimitive::AimJoint,
+        DevicePrimitive::StopJoints,
         DevicePrimitive::CloseFingers,
         DevicePrimitive::OpenFingers,
     ];
@@ -250,6 +265,9 @@ impl DevicePrimitive {
         match self {
             DevicePrimitive::ReachPoint => "reach_point",
             DevicePrimitive::ReachJoints => "reach_joints",
+            DevicePrimitive::FollowJoints => "follow_joints",
+            DevicePrimitive::AimJoint => "aim_joint",
+            DevicePrimitive::StopJoints => "stop_joints",
             DevicePrimitive::CloseFingers => "close_fingers",
             DevicePrimitive::OpenFingers => "open_fingers",
         }
@@ -264,7 +282,11 @@ impl DevicePrimitive {
     #[must_use]
     pub fn sort(self) -> DeviceSort {
         match self {
-            DevicePrimitive::ReachPoint | DevicePrimitive::ReachJoints => DeviceSort::Arm,
+            DevicePrimitive::ReachPoint
+            | DevicePrimitive::ReachJoints
+            | DevicePrimitive::FollowJoints
+            | DevicePrimitive::AimJoint
+            | DevicePrimitive::StopJoints => DeviceSort::Arm,
             DevicePrimitive::CloseFingers | DevicePrimitive::OpenFingers => DeviceSort::Gripper,
         }
     }
@@ -278,7 +300,23 @@ impl DevicePrimitive {
             DevicePrimitive::ReachJoints => {
                 const { &[param(TO, Unit::Radian, NumberCount::List, false), JOINT_SPEED] }
             }
-            DevicePrimitive::CloseFingers | DevicePrimitive::OpenFingers => &[],
+            DevicePrimitive::FollowJoints => {
+                const {
+                    &[
+                        param(POSITIONS, Unit::Radian, NumberCount::List, false),
+                        param(TIMES, Unit::Second, NumberCount::List, false),
+                    ]
+                }
+            }
+            DevicePrimitive::AimJoint => {
+                const {
+                    &[
+                        param(JOINT, Unit::None, NumberCount::One, false),
+                        param(TO, Unit::Radian, NumberCount::One, false),
+                    ]
+                }
+            }
+            DevicePrimitive::StopJoints | DevicePrimitive::CloseFingers | DevicePrimitive::OpenFingers => &[],
         }
     }
 
@@ -291,6 +329,14 @@ impl DevicePrimitive {
             DevicePrimitive::ReachJoints => {
                 PrimitiveCall::ReachJoints { to: arg(TO)?.to_vec(), speed: speed() }
             }
+            DevicePrimitive::FollowJoints => PrimitiveCall::FollowJoints {
+                positions: arg(POSITIONS)?.to_vec(),
+                times: arg(TIMES)?.to_vec(),
+            },
+            DevicePrimitive::AimJoint => {
+                PrimitiveCall::AimJoint { joint: *arg(JOINT)?.first()?, to: *arg(TO)?.first()? }
+            }
+            DevicePrimitive::StopJoints => PrimitiveCall::StopJoints,
             DevicePrimitive::CloseFingers => PrimitiveCall::CloseFingers,
             DevicePrimitive::OpenFingers => PrimitiveCall::OpenFingers,
         })
@@ -300,8 +346,25 @@ impl DevicePrimitive {
 /// A primitive with what it takes, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PrimitiveCall {
-    ReachPoint { to: Vec3, speed: Option<f64> },
-    ReachJoints { to: Vec<f64>, speed: Option<f64> },
+    ReachPoint {
+        to: Vec3,
+        speed: Option<f64>,
+    },
+    ReachJoints {
+        to: Vec<f64>,
+        speed: Option<f64>,
+    },
+    /// The angles of all joints, posture after posture; the time of each posture, from now.
+    FollowJoints {
+        positions: Vec<f64>,
+        times: Vec<f64>,
+    },
+    /// The joint's place in the arm, from the base, counted from 0.
+    AimJoint {
+        joint: f64,
+        to: f64,
+    },
+    StopJoints,
     CloseFingers,
     OpenFingers,
 }

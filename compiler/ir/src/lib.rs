@@ -8,6 +8,7 @@
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 pub mod bdi;
+pub mod binding;
 pub mod coverage;
 pub mod device;
 mod eval_error;
@@ -63,7 +64,8 @@ pub struct Program {
     pub suites: Vec<suite::Suite>,
     pub tests: Vec<test::Test>,
     pub world: Option<world::World>,
-    pub system: Option<system::SystemUnderTest>,
+    /// What tests can be run against; the first is meant where none is named.
+    pub systems: Vec<system::SystemUnderTest>,
 }
 
 impl Program {

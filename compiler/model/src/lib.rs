@@ -12,7 +12,7 @@ mod types;
 pub mod world;
 
 pub use check::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction};
-pub use check::{resolve, resolve_alone, resolve_part};
+pub use check::{KnownSources, resolve, resolve_alone, resolve_part};
 pub use expr::{
     BinaryOp, EvalError, NumberFunction, TypedExpr, TypedExprKind, TypedIndex, TypedLvalue, UnaryOp,
     VariableRef, leaves,

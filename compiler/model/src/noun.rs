@@ -82,6 +82,10 @@ pub(crate) enum Noun {
     Annotation,
     InternalAction,
     Performative,
+    /// A system under test.
+    System,
+    /// Of a system.
+    Program,
 }
 
 impl Noun {
@@ -158,6 +162,8 @@ impl Noun {
             | Noun::Annotation
             | Noun::InternalAction
             | Noun::Performative
+            | Noun::System
+            | Noun::Program
             | Noun::Action => format!("{self}s"),
         }
     }
@@ -214,6 +220,8 @@ impl fmt::Display for Noun {
             Noun::InternalAction => "internal action",
             Noun::Performative => "performative",
             Noun::Test => "test",
+            Noun::System => "system",
+            Noun::Program => "program",
             Noun::Part => "part",
             Noun::PartInstance => "part of the world",
             Noun::Body => "body",

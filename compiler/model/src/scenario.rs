@@ -24,7 +24,7 @@ pub use hrdsl_ir::{
     list::ListFunction,
     monitor::{RequirementId, RequirementKind},
     suite::{ChoiceKind, DelayChoice, ExploreMode, ModelGoal, PlayerRef, SearchGoal, WitnessKind},
-    system::SystemUnderTest,
+    system::{SystemProgram, SystemUnderTest},
     ta::{
         AutomatonId, AutomatonVar, Channel, ChannelId, ChannelKind, ChannelParticipant, ClockId, ClockOp,
         FunctionId, LocationId, LocationKind, Network, NetworkId, QueryId, ReceiveArg,
@@ -101,7 +101,7 @@ pub struct Scenario {
     pub tests: Vec<Test>,
     pub device_kinds: Vec<DeviceKind>,
     pub world: Option<TypedWorld>,
-    pub system: Option<SystemUnderTest>,
+    pub systems: Vec<SystemUnderTest<TypedExpr>>,
     pub declared: Vec<NamedSpan>,
     #[serde(skip)]
     pub places: DeclarationPlaces,

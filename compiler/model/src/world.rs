@@ -1,6 +1,9 @@
 //! The resolved world: parts instantiated, bodies by id. Poses are still in the coordinates of their part, with its frame.
 
-use hrdsl_ir::{device::DeviceBody, world::DeviceCommandId};
+use hrdsl_ir::{
+    device::DeviceBody,
+    world::{DeviceCommandId, DeviceId},
+};
 use hrdsl_source::Span;
 use serde::Serialize;
 
@@ -25,6 +28,18 @@ pub struct TypedWorld {
     #[serde(skip)]
     pub parts: Vec<PartInstance>,
     pub span: Span,
+}
+
+impl TypedWorld {
+    /// A device's place among all of the world: the arms, then the grippers.
+    #[must_use]
+    pub fn device_id(&self, body: DeviceBody) -> DeviceId {
+        let arms = u16::try_from(self.arms.len()).unwrap_or(u16::MAX);
+        DeviceId(match body {
+            DeviceBody::Arm(arm) => arm.0,
+            DeviceBody::Gripper(gripper) => arms.saturating_add(gripper.0),
+        })
+    }
 }
 
 /// A part that is put somewhere.

@@ -137,6 +137,8 @@ codes! {
     NOTHING_CARRIES = 802 "a body that nothing carries",
     NO_SUCH_FILE = 803 "a file that does not exist",
     BAD_COMMAND = 804 "a command that the world cannot do",
+    BAD_DEFINITION = 805 "a ROS interface with a fault",
+    BAD_BINDING = 806 "a binding that cannot work",
     BAD_TEST = 901 "a test that cannot run",
 }
 

@@ -4,6 +4,7 @@
 pub mod expr;
 pub mod monitor;
 pub mod query;
+pub mod system;
 pub mod ta;
 pub mod world;
 
@@ -19,6 +20,7 @@ pub fn lower(scenario: &Scenario, files: &SourceFiles) -> Program {
     let mut signals = world::SignalTable::declared(scenario);
     let world = scenario.world.as_ref().map(|w| world::world(w, &scenario.device_kinds, &mut signals));
     let monitors = scenario.requirements.iter().map(|r| monitor::monitor(r, files, &mut signals)).collect();
+    let systems = scenario.systems.iter().map(|s| system::system(s, &mut signals)).collect();
     let automata: Vec<_> = scenario.automata.iter().map(|a| ta::automaton(a, scenario)).collect();
     Program {
         name: scenario.name.clone(),
@@ -40,6 +42,6 @@ pub fn lower(scenario: &Scenario, files: &SourceFiles) -> Program {
         suites: scenario.suites.iter().map(|s| s.lower(&local)).collect(),
         tests: scenario.tests.clone(),
         world,
-        system: scenario.system.clone(),
+        systems,
     }
 }

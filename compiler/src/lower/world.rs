@@ -5,8 +5,8 @@ use hrdsl_ir::{
     device::{Device, DeviceBody, DeviceKind},
     value::nanos,
     world::{
-        Arm, ArmId, Axis, Body, BodyId, BodyRef, DeviceId, DeviceKindId, Gripper, GripperId, Joint,
-        RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
+        Arm, ArmId, Axis, Body, BodyId, BodyRef, DeviceKindId, Gripper, GripperId, Joint, RuleTrigger,
+        Signal, SignalId, SignalTerm, World, WorldRule,
     },
 };
 use hrdsl_model::{self as model, VariableRef, world as from};
@@ -42,7 +42,7 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         currents: w.currents.clone(),
         devices: devices(w, kinds),
         device_kinds: kinds.to_vec(),
-        rules: w.rules.iter().map(|r| rule(r, w.arms.len(), signals)).collect(),
+        rules: w.rules.iter().map(|r| rule(r, w, signals)).collect(),
         origin: w.span,
     }
 }
@@ -57,13 +57,6 @@ fn devices(w: &from::TypedWorld, kinds: &[DeviceKind]) -> Vec<Device> {
         Some(Device { name: name.clone(), kind, body })
     };
     arms.chain(grippers).filter_map(device).collect()
-}
-
-fn device_id(body: DeviceBody, arms: usize) -> DeviceId {
-    DeviceId(match body {
-        DeviceBody::Arm(arm) => arm.0,
-        DeviceBody::Gripper(gripper) => u16::try_from(arms).unwrap_or(u16::MAX).saturating_add(gripper.0),
-    })
 }
 
 /// In world coordinates: a turn about the vertical adds to the yaw, which is applied last.
@@ -94,7 +87,7 @@ fn joint(j: &from::TypedJoint) -> Joint {
     }
 }
 
-fn rule(r: &from::TypedWorldRule, arms: usize, signals: &mut SignalTable<'_>) -> WorldRule {
+fn rule(r: &from::TypedWorldRule, world: &from::TypedWorld, signals: &mut SignalTable<'_>) -> WorldRule {
     let mut reader = SignalReader { signals, read: Vec::new(), recorded: false };
     let guard = r.guard.as_ref().map(|g| reader.expr(g));
     let args = r.args.iter().map(|a| reader.expr(a)).collect();
@@ -102,7 +95,7 @@ fn rule(r: &from::TypedWorldRule, arms: usize, signals: &mut SignalTable<'_>) ->
         on: match &r.on {
             from::TypedRuleTrigger::Event(p) => RuleTrigger::Event(p.clone()),
             from::TypedRuleTrigger::Commanded { device, command } => {
-                RuleTrigger::Commanded { device: device_id(*device, arms), command: *command }
+                RuleTrigger::Commanded { device: world.device_id(*device), command: *command }
             }
         },
         guard,
@@ -176,7 +169,7 @@ impl<'a> SignalTable<'a> {
     }
 
     /// The signal that measures just this term; a new one, named as the term is written, if there is none.
-    fn of_term(&mut self, term: SignalTerm, span: Span) -> usize {
+    pub fn of_term(&mut self, term: SignalTerm, span: Span) -> usize {
         let is = |s: &Signal| s.terms == [term] && s.value == Expr::Var(0);
         if let Some(at) = self.list.iter().position(is) {
             return at;

@@ -7,6 +7,10 @@ use hrdsl_source::Span;
 pub use hrdsl_source::{BinaryOp, LocationKind, UnaryOp};
 use serde::Serialize;
 
+pub use crate::binding::{
+    BindingEntry, BindingEntryKind, BindingMember, BindingMemberKind, FieldSyntax, InterfaceSyntax,
+    MiddlewareSyntax, ServedSyntax, TopicInSyntax, TopicOutSyntax,
+};
 use crate::pattern::RequirementPattern;
 
 /// An identifier where it was written.
@@ -1060,11 +1064,21 @@ pub struct ExpectationSyntax {
     pub otherwise: TextSyntax,
 }
 
-/// `system robot { run "python3 robot.py" … }`
+/// `system robot { run "python3 robot.py" … }`, `system with_rospy plays robot { … }`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SystemSyntax {
+    /// Without one of its own it is called as its actor.
+    pub own_name: Option<NameSyntax>,
     pub actor: NameSyntax,
     pub members: Vec<SystemMember>,
+}
+
+impl SystemSyntax {
+    /// As it is chosen by.
+    #[must_use]
+    pub fn name(&self) -> &NameSyntax {
+        self.own_name.as_ref().unwrap_or(&self.actor)
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -1096,5 +1110,16 @@ pub enum SystemMemberKind {
     Env(Vec<NameSyntax>),
     /// `online`: it uses the machine's network
     Online,
+    /// `program brain { run "python3 robot.py" }`
+    Program(ProgramSyntax),
+    /// `ros1 { topic "/scan" : … }`
+    Middleware(MiddlewareSyntax),
     Error,
+}
+
+/// One of several programs of a system.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProgramSyntax {
+    pub name: NameSyntax,
+    pub members: Vec<SystemMember>,
 }

@@ -3,12 +3,12 @@
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use crate::ast::{
-    AccessSyntax, AgentMember, AutomatonMember, AutomatonMemberKind, BinSyntax, BinaryOp, BodySyntax,
-    CallSyntax, ChannelSyntax, ChannelSyntaxKind, CrossMember, DeviceMember, EdgeAction, EdgeSyntax,
-    EventName, ExprSyntax, ExprSyntaxKind, InstanceSyntax, ItemSyntaxKind, LiteralSyntax, NameSyntax,
-    ParamSyntax, PartySyntax, PathSyntax, RangeSyntax, StatementSyntax, StepSyntax, StepSyntaxKind,
-    StimulusStepSyntax, SuiteMember, SystemMember, TemplateSyntaxKind, TestMember, TextSyntax, TypeExpr,
-    UnaryOp, WorldMember,
+    AccessSyntax, AgentMember, AutomatonMember, AutomatonMemberKind, BinSyntax, BinaryOp, BindingEntry,
+    BindingMember, BodySyntax, CallSyntax, ChannelSyntax, ChannelSyntaxKind, CrossMember, DeviceMember,
+    EdgeAction, EdgeSyntax, EventName, ExprSyntax, ExprSyntaxKind, InstanceSyntax, ItemSyntaxKind,
+    LiteralSyntax, NameSyntax, ParamSyntax, PartySyntax, PathSyntax, RangeSyntax, StatementSyntax,
+    StepSyntax, StepSyntaxKind, StimulusStepSyntax, SuiteMember, SystemMember, TemplateSyntaxKind,
+    TestMember, TextSyntax, TypeExpr, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 
@@ -26,6 +26,8 @@ pub(crate) enum ParsedUnit {
     WorldMember(WorldMember),
     DeviceMember(DeviceMember),
     SystemMember(SystemMember),
+    BindingMember(BindingMember),
+    BindingEntry(BindingEntry),
 }
 
 /// What a symbol of the grammar leaves in a list: large nodes are boxed until then.

@@ -31,9 +31,8 @@ pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
         TokenKind::Suite => after(&[TokenKind::By]),
         TokenKind::Part => after(&[TokenKind::LBrace, TokenKind::LParen, TokenKind::Assign]),
         TokenKind::World => next == TokenKind::LBrace,
-        TokenKind::System | TokenKind::Device | TokenKind::Enum | TokenKind::Record => {
-            after(&[TokenKind::LBrace])
-        }
+        TokenKind::System => after(&[TokenKind::LBrace, TokenKind::Plays]),
+        TokenKind::Device | TokenKind::Enum | TokenKind::Record => after(&[TokenKind::LBrace]),
         TokenKind::Test => after(&[TokenKind::LBrace, TokenKind::Dot]),
         TokenKind::Allow => after(&[TokenKind::Str]),
         TokenKind::Channel => {

@@ -14,6 +14,7 @@
 //! [`format()`] writes a text anew in the one style of the language (`print`).
 
 pub mod ast;
+mod binding;
 mod context;
 mod expected;
 mod heads;

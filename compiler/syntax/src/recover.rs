@@ -3,6 +3,7 @@
 //! The grammar itself says where a member ends: the first token that cannot belong to it. Only after a broken member the
 //! next one is looked for by its keyword.
 
+mod nested;
 mod statements;
 mod steps;
 
@@ -11,10 +12,11 @@ use std::ops::Range;
 use hrdsl_source::Span;
 
 use crate::ast::{
-    AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, CrossMember, CrossMemberKind,
-    DeviceMember, DeviceMemberKind, ExprSyntax, ExprSyntaxKind, ItemSyntaxKind, PlanSyntax, StimulusStepKind,
-    StimulusStepSyntax, SuiteMember, SuiteMemberKind, SystemMember, SystemMemberKind, TestMember,
-    TestMemberKind, WorldMember, WorldMemberKind,
+    AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, BindingEntry, BindingEntryKind,
+    BindingMember, BindingMemberKind, CrossMember, CrossMemberKind, DeviceMember, DeviceMemberKind,
+    ExprSyntax, ExprSyntaxKind, ItemSyntaxKind, PlanSyntax, StimulusStepKind, StimulusStepSyntax,
+    SuiteMember, SuiteMemberKind, SystemMember, SystemMemberKind, TestMember, TestMemberKind, WorldMember,
+    WorldMemberKind,
 };
 use crate::context::{ParseContext, ParsedUnit};
 use crate::run::run;
@@ -271,6 +273,9 @@ impl RecoveringParser<'_, '_> {
             TokenKind::Plan if M::START == TokenKind::StartAgentMember => self.plan(&range),
             TokenKind::Fn if M::START == TokenKind::StartAutomatonMember => self.function(&range),
             TokenKind::If if M::START == TokenKind::StartStimulusStep => self.condition(&range),
+            _ if M::START == TokenKind::StartSystemMember || M::START == TokenKind::StartBindingMember => {
+                self.nested(M::START, &range)
+            }
             _ => None,
         };
         if self.cx.diagnostics.len() == said {
@@ -411,4 +416,6 @@ members! {
     WorldMember WorldMemberKind StartWorldMember [doc] InWorld;
     DeviceMember DeviceMemberKind StartDeviceMember [doc] InDevice;
     SystemMember SystemMemberKind StartSystemMember [] InSystem;
+    BindingMember BindingMemberKind StartBindingMember [] InBinding;
+    BindingEntry BindingEntryKind StartBindingEntry [] InBinding | starts_call;
 }

@@ -40,6 +40,7 @@ pub enum KeywordTrait {
     InWorld,
     InDevice,
     InSystem,
+    InBinding,
 }
 
 /// One row of the registry.
@@ -136,6 +137,8 @@ macro_rules! keywords {
             StartWorldMember,
             StartDeviceMember,
             StartSystemMember,
+            StartBindingMember,
+            StartBindingEntry,
             End,
         }
 

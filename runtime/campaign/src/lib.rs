@@ -1,6 +1,7 @@
 //! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then [`tally`] adds them up.
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
+mod binding;
 mod internal;
 mod tally;
 
@@ -18,7 +19,12 @@ use hrdsl_harness::{
     ActorPlayer, HarnessError, HarnessLoop, HarnessRun, RunTermination, ScriptPlayer, SystemFault,
     SystemFaultKind, SystemPlayer, WorldStage,
 };
-use hrdsl_ir::{Program, system::SystemUnderTest, test::Test, value::seconds};
+use hrdsl_ir::{
+    Program,
+    system::{SystemProgram, SystemUnderTest},
+    test::Test,
+    value::seconds,
+};
 use hrdsl_judge::TraceJudge;
 use hrdsl_results::{CoverageRatios, OutputSummary, RunEnd, RunMark, TestName, TestResult, TraceJudgement};
 use hrdsl_sim::SimWorld;
@@ -27,8 +33,8 @@ pub use hrdsl_sut::{
     cell::{CellIsolation, SupervisorCommand, supervise},
 };
 use hrdsl_sut::{
-    EnvironmentNeeds, FileCoverage, FinishedProcess, HarnessReply, LaunchSpec, LockStep, ReplyAnswer,
-    SutError, SutProcess,
+    EnvironmentNeeds, FileCoverage, FinishedProcess, HarnessReply, LaunchMiddleware, LaunchSpec, LockStep,
+    ReplyAnswer, SutError, SutProcess,
 };
 use hrdsl_trace::{
     Trace,
@@ -37,6 +43,7 @@ use hrdsl_trace::{
 
 use hrdsl_testgen::step_text;
 
+use binding::binding_text;
 pub use internal::{InternalError, guarded, record_panics};
 pub use tally::tally;
 
@@ -51,6 +58,8 @@ const LAST_LINES: usize = 20;
 #[derive(Clone)]
 pub struct CampaignSetup<'a> {
     pub program: &'a Program,
+    /// Which of the program's systems is tested.
+    pub system: &'a SystemUnderTest,
     /// The scenario's folder: where the program under test is started.
     pub dir: PathBuf,
     pub env: PythonEnv,
@@ -73,7 +82,14 @@ pub struct FinishedRun<'a> {
     pub result: &'a TestResult,
     /// JSON Lines.
     pub recording: &'a str,
-    pub output: &'a CapturedOutput,
+    pub output: &'a [ProgramOutput],
+}
+
+/// What one program of the system wrote.
+#[derive(Clone, Debug)]
+pub struct ProgramOutput {
+    pub program: String,
+    pub output: CapturedOutput,
 }
 
 /// A finished test, with the code of the system under test that it executed.
@@ -96,24 +112,24 @@ pub struct CampaignOutcome {
 struct TestAttempt {
     finished: FinishedTest,
     recording: String,
-    output: CapturedOutput,
+    output: Vec<ProgramOutput>,
     fault: Option<SystemFaultKind>,
 }
 
-/// Installs what the program under test needs, into `cache` on first use; `listen` is told what happens. The program
-/// is the words of the `run` command; it runs in `dir`, where its `requirements.txt` lies.
+/// Installs what the programs under test need, into `cache` on first use; `listen` is told what happens. They run in `dir`, where
+/// their `requirements.txt` lies, with the interpreter that the first of them names.
 ///
 /// # Errors
 /// Why it could not be installed.
 pub fn prepare(
-    run: &[String],
+    system: &SystemUnderTest,
     dir: &Path,
     cache: &Path,
     listen: &dyn Fn(PreparationStep<'_>),
 ) -> Result<PythonEnv, SutError> {
     let list = dir.join("requirements.txt");
     let requirements = list.exists().then_some(list.as_path());
-    let python = PythonEnv::interpreter_of(run);
+    let python = PythonEnv::interpreter_of(system.programs.iter().map(|p| p.run.as_slice()));
     PythonEnv::prepare(&EnvironmentNeeds { python, dir, requirements, cache }, listen)
 }
 
@@ -125,14 +141,16 @@ impl CampaignSetup<'_> {
     /// that is its result, and it is marked.
     ///
     /// # Errors
-    /// Only if the scenario has no system under test; what befalls a test is its result.
+    /// Only if what the programs need to know cannot be kept for them; what befalls a test is its result.
     pub fn run(
         &self,
         tests: &[Test],
         on_done: impl Fn(FinishedRun<'_>) -> Result<(), String> + Sync,
     ) -> Result<CampaignOutcome, String> {
-        let system =
-            self.program.system.as_ref().ok_or("the scenario has no `system` to run tests against")?;
+        let system = &CampaignSystem {
+            declared: self.system,
+            middleware: self.middleware().map_err(|e| e.to_string())?,
+        };
         let next = AtomicUsize::new(0);
         let results: Mutex<Vec<Option<FinishedTest>>> = Mutex::new(vec![None; tests.len()]);
         let finish = |index: usize, mut attempt: TestAttempt| {
@@ -188,7 +206,7 @@ impl CampaignSetup<'_> {
     }
 
     /// Runs a test once more that wall time has ended.
-    fn run_again(&self, system: &SystemUnderTest, test: &Test, first: TestAttempt) -> TestAttempt {
+    fn run_again(&self, system: &CampaignSystem<'_>, test: &Test, first: TestAttempt) -> TestAttempt {
         if self.stop.is_set() {
             return first;
         }
@@ -204,19 +222,23 @@ impl CampaignSetup<'_> {
     }
 
     /// Runs and judges one test. A fault of hrdsl itself breaks off this test alone.
-    fn run_one(&self, system: &SystemUnderTest, test: &Test) -> TestAttempt {
+    fn run_one(&self, system: &CampaignSystem<'_>, test: &Test) -> TestAttempt {
         guarded(|| self.judged(test, self.execute(system, test))).unwrap_or_else(|fault| {
-            self.judged(test, (failed(HarnessError::Internal(fault.to_string())), None))
+            self.judged(test, (failed(HarnessError::Internal(fault.to_string())), Vec::new()))
         })
     }
 
-    fn judged(&self, test: &Test, (run, finished): (HarnessRun, Option<FinishedProcess>)) -> TestAttempt {
+    fn judged(
+        &self,
+        test: &Test,
+        (run, finished): (HarnessRun, Vec<(String, FinishedProcess)>),
+    ) -> TestAttempt {
         let header = RecordingHeader {
             test: Some(test.name.clone()),
             seed: Some(test.seed),
             ..RecordingHeader::of(self.program)
         };
-        let ending = ending(&run, finished.as_ref());
+        let ending = ending(&run, &finished);
         let recording = record::write(self.program, &header, &run.trace, &ending);
         let judgement = judge(self.program, &run.trace, ending.kind);
         let fault = match &run.ended {
@@ -227,54 +249,92 @@ impl CampaignSetup<'_> {
             | RunTermination::Quiescent
             | RunTermination::Limit => None,
         };
-        let output = finished.as_ref().map(|f| f.output.clone()).unwrap_or_default();
+        let output = |(program, f): &(String, FinishedProcess)| ProgramOutput {
+            program: program.clone(),
+            output: f.output.clone(),
+        };
+        let output = finished.iter().map(output).collect();
         let finished = test_result(self.program, test, &run, (ending, judgement), finished);
         TestAttempt { finished, recording, output, fault }
     }
 
-    fn execute(&self, system: &SystemUnderTest, test: &Test) -> (HarnessRun, Option<FinishedProcess>) {
-        let stage = match SimWorld::new(self.program) {
-            Ok(world) => world.map(|world| WorldStage::new(self.program, Box::new(world))),
-            Err(why) => return (failed(HarnessError::World(why.to_string())), None),
-        };
-        let mut process = match SutProcess::spawn(&self.launch(system, test)) {
-            Ok(process) => process,
-            Err(error) => return (failed(HarnessError::System(SystemFault::from(error))), None),
-        };
-        let players: Vec<Box<dyn ActorPlayer + '_>> = vec![
-            Box::new(ScriptPlayer::new(self.program, test)),
-            Box::new(SystemPlayer::new(
-                self.program,
-                system.actor,
-                LockStep::new(&mut process, &self.program.actor(system.actor).name),
-            )),
-        ];
-        let run = HarnessLoop::new(self.program, players, stage, system.limit).run();
-        if !matches!(run.ended, RunTermination::Fault(_)) {
-            // It may have ended by itself: then nobody reads this.
-            let _ = process.reply(&HarnessReply { time: run.trace.end, answer: ReplyAnswer::Stop });
-        }
-        (run, Some(process.finish(GRACE)))
+    /// What programs find out about their middleware.
+    fn middleware(&self) -> Result<Option<LaunchMiddleware>, SutError> {
+        let Some(binding) = &self.system.binding else { return Ok(None) };
+        let text = binding_text(self.program, binding);
+        let file = self.env.kept(&text)?;
+        Ok(Some(LaunchMiddleware { name: binding.kind.name(), binding: file }))
     }
 
-    fn launch(&self, system: &SystemUnderTest, test: &Test) -> LaunchSpec {
+    fn execute(
+        &self,
+        system: &CampaignSystem<'_>,
+        test: &Test,
+    ) -> (HarnessRun, Vec<(String, FinishedProcess)>) {
+        let declared = system.declared;
+        let stage = match SimWorld::new(self.program) {
+            Ok(world) => world.map(|world| WorldStage::new(self.program, Box::new(world))),
+            Err(why) => return (failed(HarnessError::World(why.to_string())), Vec::new()),
+        };
+        let mut processes: Vec<(String, SutProcess)> = Vec::new();
+        for program in &declared.programs {
+            match SutProcess::spawn(&self.launch(system, program, test)) {
+                Ok(process) => processes.push((program.name.clone(), process)),
+                Err(error) => {
+                    let finished = finish(processes);
+                    return (failed(HarnessError::System(SystemFault::from(error))), finished);
+                }
+            }
+        }
+        let programs = processes.iter_mut().map(|(name, process)| {
+            let step = LockStep::new(process, name);
+            (name.clone(), step)
+        });
+        let player = SystemPlayer::of_programs(self.program, declared.actor, programs)
+            .with_binding(declared.binding.as_ref());
+        let players: Vec<Box<dyn ActorPlayer + '_>> =
+            vec![Box::new(ScriptPlayer::new(self.program, test)), Box::new(player)];
+        let run = HarnessLoop::new(self.program, players, stage, declared.limit).run();
+        if !matches!(run.ended, RunTermination::Fault(_)) {
+            for (_, process) in &mut processes {
+                // It may have ended by itself: then nobody reads this.
+                let _ = process.reply(&HarnessReply { time: run.trace.end, answer: ReplyAnswer::Stop });
+            }
+        }
+        (run, finish(processes))
+    }
+
+    fn launch(&self, system: &CampaignSystem<'_>, program: &SystemProgram, test: &Test) -> LaunchSpec {
+        let several = system.declared.programs.len() > 1;
+        let folder = |folder: &PathBuf| {
+            let folder = folder.join(TestName::from(test.name.as_str()).file_stem());
+            if several { folder.join(&program.name) } else { folder }
+        };
         LaunchSpec {
-            command: system.run.clone(),
+            command: program.run.clone(),
             dir: self.dir.clone(),
             seed: test.seed,
-            coverage: system.coverage.clone(),
+            coverage: program.coverage.clone(),
             env: self.env.clone(),
+            middleware: system.middleware.clone(),
             variables: self.variables.clone(),
             cells: self.cells.clone(),
             limits: self.limits,
             output_kept: OUTPUT_KEPT,
-            keep: self
-                .keep
-                .as_ref()
-                .map(|folder| folder.join(TestName::from(test.name.as_str()).file_stem())),
+            keep: self.keep.as_ref().map(folder),
             stop: self.stop.clone(),
         }
     }
+}
+
+/// The system with what its programs are told.
+struct CampaignSystem<'a> {
+    declared: &'a SystemUnderTest,
+    middleware: Option<LaunchMiddleware>,
+}
+
+fn finish(processes: Vec<(String, SutProcess)>) -> Vec<(String, FinishedProcess)> {
+    processes.into_iter().map(|(name, process)| (name, process.finish(GRACE))).collect()
 }
 
 /// A run that never began.
@@ -288,10 +348,11 @@ fn test_result(
     test: &Test,
     run: &HarnessRun,
     (ending, judgement): (RecordingEnd, TraceJudgement),
-    finished: Option<FinishedProcess>,
+    finished: Vec<(String, FinishedProcess)>,
 ) -> FinishedTest {
-    let (output, others, executed) = finished
-        .map_or_else(Default::default, |f| (summary(&f.output), f.others, f.coverage.unwrap_or_default()));
+    let output = summary(&finished);
+    let others = finished.iter().any(|(_, f)| f.others);
+    let executed = FileCoverage::united(finished.into_iter().filter_map(|(_, f)| f.coverage).flatten());
     let result = TestResult {
         name: test.name.as_str().into(),
         suite: test.provenance.suite.as_str().into(),
@@ -318,24 +379,35 @@ fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> TraceJudgement {
 }
 
 /// How a run ended; that a file of its program could not be kept breaks it off, too.
-fn ending(run: &HarnessRun, finished: Option<&FinishedProcess>) -> RecordingEnd {
+fn ending(run: &HarnessRun, finished: &[(String, FinishedProcess)]) -> RecordingEnd {
     let broke_off = |error| RecordingEnd { kind: RunEnd::Error, error: Some(error) };
     let kind = match &run.ended {
         RunTermination::Fault(fault) => return broke_off(fault.to_string()),
         RunTermination::Quiescent => RunEnd::Quiescent,
         RunTermination::Limit => RunEnd::Limit,
     };
-    match finished.and_then(|f| f.kept.as_ref()).and_then(|k| k.failures.first()) {
+    let kept = finished.iter().filter_map(|(_, f)| f.kept.as_ref());
+    match kept.flat_map(|k| &k.failures).next() {
         Some(file) => broke_off(format!("a file of the program could not be kept: {file}")),
         None => RecordingEnd { kind, error: None },
     }
 }
 
-fn summary(output: &CapturedOutput) -> OutputSummary {
+/// Of several programs, the last lines of each stand under its name.
+fn summary(finished: &[(String, FinishedProcess)]) -> OutputSummary {
+    let mut ends = Vec::new();
+    for (name, f) in finished {
+        let end = f.output.stderr.last_lines(LAST_LINES);
+        if finished.len() == 1 {
+            ends.push(end);
+        } else if !end.is_empty() {
+            ends.push(format!("── {name} ──\n{end}"));
+        }
+    }
     OutputSummary {
-        stdout_bytes: output.stdout.bytes,
-        stderr_bytes: output.stderr.bytes,
-        stderr_end: output.stderr.last_lines(LAST_LINES),
+        stdout_bytes: finished.iter().map(|(_, f)| f.output.stdout.bytes).sum(),
+        stderr_bytes: finished.iter().map(|(_, f)| f.output.stderr.bytes).sum(),
+        stderr_end: ends.join("\n"),
     }
 }
 

@@ -2,14 +2,16 @@
 
 use hrdsl_ir::{
     EventId, EventPattern, Nanos, Program, Value,
+    device::Device,
     expr::Expr,
-    world::{RuleTrigger, SignalId, WorldAction, WorldRule},
+    world::{RuleTrigger, SignalId, Vec3, WorldAction, WorldRule},
 };
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
 use crate::{
     command::{CommandRequest, NotBegun},
     message::PlayerMessage,
+    system::seam::SystemAnswer,
     world::{CommandId, WorldBackend},
 };
 
@@ -103,6 +105,39 @@ impl<'p> WorldStage<'p> {
         let answers = self.fire(&|on| *on == told);
         self.answers.extend(answers);
         Ok(id)
+    }
+
+    /// What a device tells of itself.
+    ///
+    /// # Errors
+    /// That there is no such device, or that it cannot tell this; and what to write instead.
+    pub fn state(&self, device: &str, what: &str) -> Result<SystemAnswer, (String, Option<String>)> {
+        let found = self.device(device)?;
+        self.world.state(found.body, what).map(SystemAnswer::Numbers).ok_or_else(|| {
+            let known = "an arm can tell `joints`, `speeds` and `tool`, a gripper nothing";
+            (format!("`{device}` cannot tell its `{what}`"), Some(known.to_owned()))
+        })
+    }
+
+    /// The angles at which an arm's tool would be at a place; why there are none.
+    ///
+    /// # Errors
+    /// That there is no such arm.
+    pub fn plan(&self, device: &str, to: Vec3) -> Result<SystemAnswer, (String, Option<String>)> {
+        let found = self.device(device)?;
+        Ok(match self.world.plan(found.body, to) {
+            Ok(angles) => SystemAnswer::Numbers(angles),
+            Err(why) => SystemAnswer::Ended(Err(why)),
+        })
+    }
+
+    fn device(&self, name: &str) -> Result<&'p Device, (String, Option<String>)> {
+        let devices = self.declared.map_or(&[][..], |world| &world.devices);
+        devices.iter().find(|d| d.name == name).ok_or_else(|| {
+            let names: Vec<&str> = devices.iter().map(|d| d.name.as_str()).collect();
+            let help = (!names.is_empty()).then(|| format!("its devices: {}", names.join(", ")));
+            (format!("the world has no device `{name}`"), help)
+        })
     }
 
     #[must_use]

@@ -2,7 +2,8 @@
 
 use hrdsl_ir::{
     Nanos, Value,
-    world::{SignalId, WorldAction},
+    device::DeviceBody,
+    world::{SignalId, Vec3, WorldAction},
 };
 
 use crate::command::CheckedCommand;
@@ -30,6 +31,21 @@ pub trait WorldBackend {
     /// # Errors
     /// Why it cannot be done as things are.
     fn command(&mut self, command: &CheckedCommand<'_>) -> Result<CommandId, String>;
+
+    /// What a device tells of itself now, in SI units; `None`: it cannot tell this.
+    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+        let _ = (device, what);
+        None
+    }
+
+    /// The angles at which an arm's tool would be at a place in the world; nothing moves.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn plan(&self, device: DeviceBody, to: Vec3) -> Result<Vec<f64>, String> {
+        let _ = (device, to);
+        Err("this device plans nothing".to_owned())
+    }
 
     /// The commands that have ended since the last call, in the order in which they did, and why those failed that did.
     fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)>;

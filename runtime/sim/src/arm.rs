@@ -33,6 +33,8 @@ pub(crate) struct ArmControl {
     chain: KinematicChain,
     /// The motors' aim while no motion is under way.
     rest: Vec<f64>,
+    /// Where set-points want the joints; the motors' aim follows no faster than the arm may.
+    aimed: Vec<f64>,
     motion: Option<ArmMotion>,
 }
 
@@ -47,7 +49,37 @@ struct ArmMotion {
     go: Nanos,
     stop: Vec<f64>,
     to: Vec<f64>,
-    profile: MotionProfile,
+    path: ArmPath,
+}
+
+/// How an arm goes to its goal.
+enum ArmPath {
+    Ramp(MotionProfile),
+    Track(JointTrack),
+}
+
+/// Postures, each at its time in seconds; between two of them each joint goes at an even speed.
+pub(crate) struct JointTrack {
+    points: Vec<(f64, Vec<f64>)>,
+}
+
+impl JointTrack {
+    /// Angles and speeds at a time, for an arm that begins at `from`.
+    fn at(&self, t: f64, from: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let next = self.points.partition_point(|(time, _)| *time <= t);
+        let Some((end, to)) = self.points.get(next) else {
+            let last = self.points.last().map_or(from, |(_, angles)| angles);
+            return (last.to_vec(), vec![0.0; from.len()]);
+        };
+        let (begin, before) = match next.checked_sub(1).and_then(|at| self.points.get(at)) {
+            Some((time, angles)) => (*time, angles.as_slice()),
+            None => (0.0, from),
+        };
+        let part = (t - begin) / (end - begin);
+        let angle = before.iter().zip(to).map(|(a, b)| a + part * (b - a));
+        let speed = before.iter().zip(to).map(|(a, b)| (b - a) / (end - begin));
+        (angle.collect(), speed.collect())
+    }
 }
 
 enum ArmGoal {
@@ -64,14 +96,22 @@ impl ArmMotion {
             return (angle.collect(), self.speed.iter().map(|v| v * rate).collect());
         }
         let t = seconds(time - self.go);
-        let (part, rate) = (self.profile.at(t), self.profile.speed(t));
+        let profile = match &self.path {
+            ArmPath::Ramp(profile) => profile,
+            ArmPath::Track(track) => return track.at(t, &self.from),
+        };
+        let (part, rate) = (profile.at(t), profile.speed(t));
         let angle = self.stop.iter().zip(&self.to).map(|(a, b)| a + part * (b - a));
         let speed = self.stop.iter().zip(&self.to).map(|(a, b)| rate * (b - a));
         (angle.collect(), speed.collect())
     }
 
     fn end(&self) -> Nanos {
-        self.go + nanos(self.profile.length())
+        let length = match &self.path {
+            ArmPath::Ramp(profile) => profile.length(),
+            ArmPath::Track(track) => track.points.last().map_or(0.0, |(time, _)| *time),
+        };
+        self.go + nanos(length)
     }
 }
 
@@ -109,6 +149,7 @@ impl ArmControl {
             base: world.joints[usize::from(arm.joints[0].0)].parent,
             max_speed: arm.max_speed,
             rest: vec![0.0; chain.links.len()],
+            aimed: vec![0.0; chain.links.len()],
             chain,
             motion: None,
         })
@@ -165,8 +206,78 @@ impl ArmControl {
         let travel = stop.iter().zip(&to).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
         let profile = MotionProfile::new(travel, limit);
         let goal = place.map_or(ArmGoal::Joints, |p| ArmGoal::Place(v3(p)));
-        let next = ArmMotion { id, goal, start: now, from, speed, go, stop, to, profile };
+        let path = ArmPath::Ramp(profile);
+        let next = ArmMotion { id, goal, start: now, from, speed, go, stop, to, path };
         self.motion.replace(next).map(|old| old.id)
+    }
+
+    /// A trajectory, if it can be followed: as many angles as joints for each time, within their limits, times that grow.
+    pub fn track(&self, positions: &[f64], times: &[f64], world: &World) -> Result<JointTrack, CommandError> {
+        if positions.iter().chain(times).any(|x| !x.is_finite()) {
+            return Err(CommandError::NotFinite);
+        }
+        let joints = self.joints.len();
+        if positions.len() != joints * times.len() {
+            let (expected, given) = (joints * times.len(), positions.len());
+            return Err(CommandError::WrongTrackLength { joints, times: times.len(), expected, given });
+        }
+        let mut points = Vec::new();
+        let mut last = 0.0;
+        for (time, angles) in times.iter().zip(positions.chunks(joints.max(1))) {
+            // A first posture at time 0 is where the arm already should be.
+            if *time < last || (*time == last && !points.is_empty()) {
+                return Err(CommandError::TimesDoNotGrow);
+            }
+            self.check(angles, world)?;
+            if *time > 0.0 {
+                points.push((*time, angles.to_vec()));
+            }
+            last = *time;
+        }
+        Ok(JointTrack { points })
+    }
+
+    /// Begins to follow a trajectory at once; what the arm was doing is given up, and its command is returned.
+    pub fn follow(&mut self, now: Nanos, id: CommandId, track: JointTrack) -> Option<CommandId> {
+        let (from, speed) = self.aim(now);
+        let to = track.points.last().map_or_else(|| from.clone(), |(_, angles)| angles.clone());
+        let (goal, path, stop) = (ArmGoal::Joints, ArmPath::Track(track), from.clone());
+        let next = ArmMotion { id, goal, start: now, from, speed, go: now, stop, to, path };
+        self.motion.replace(next).map(|old| old.id)
+    }
+
+    /// Brakes; what the arm was doing is given up, and its command is returned.
+    pub fn halt(&mut self, now: Nanos, id: CommandId) -> Option<CommandId> {
+        let stop = self.stop(now);
+        self.go(now, id, stop, None, None)
+    }
+
+    /// Lets one motor aim at an angle; what the arm was doing is given up, and its command is returned.
+    pub fn aim_joint(
+        &mut self,
+        now: Nanos,
+        joint: f64,
+        to: f64,
+        world: &World,
+    ) -> Result<Option<CommandId>, CommandError> {
+        let count = self.joints.len();
+        if !(0.0..count as f64).contains(&joint) || joint.fract() != 0.0 {
+            return Err(CommandError::NoSuchJoint { joints: count });
+        }
+        if !to.is_finite() {
+            return Err(CommandError::NotFinite);
+        }
+        let (aim, _) = self.aim(now);
+        let mut posture = if self.motion.is_some() { aim.clone() } else { self.aimed.clone() };
+        // INVARIANT: a whole number below the number of joints.
+        posture[joint as usize] = to;
+        self.check(&posture, world)?;
+        let replaced = self.motion.take().map(|old| {
+            self.rest = aim;
+            old.id
+        });
+        self.aimed = posture;
+        Ok(replaced)
     }
 
     /// Where the arm would stand if it were stopped now.
@@ -187,16 +298,19 @@ impl ArmControl {
     ///
     /// The speed is the mean over the step, and the angle that of its middle: the solver divides the step, and would be
     /// pulled ahead or back by the angle at either end.
-    pub fn drive(&self, now: Nanos, next: Nanos, physics: &mut PhysicsAdapter) {
+    pub fn drive(&mut self, now: Nanos, next: Nanos, physics: &mut PhysicsAdapter) {
+        let h = seconds(next - now);
         if self.motion.is_none() {
-            for (id, q) in self.joints.iter().zip(&self.rest) {
-                physics.drive(usize::from(id.0), *q, 0.0);
+            let most = self.max_speed * h;
+            for ((id, q), aimed) in self.joints.iter().zip(&mut self.rest).zip(&self.aimed) {
+                let step = (aimed - *q).clamp(-most, most);
+                physics.drive(usize::from(id.0), *q + step / 2.0, step / h);
+                *q += step;
             }
             return;
         }
         let (a, _) = self.aim(now);
         let (b, _) = self.aim(next);
-        let h = seconds(next - now);
         for ((id, a), b) in self.joints.iter().zip(&a).zip(&b) {
             physics.drive(usize::from(id.0), (a + b) / 2.0, (b - a) / h);
         }
@@ -233,17 +347,23 @@ impl ArmControl {
         };
         let id = motion.id;
         self.rest.clone_from(&motion.to);
+        self.aimed.clone_from(&motion.to);
         self.motion = None;
         Some((id, result))
     }
 
     pub fn is_busy(&self) -> bool {
-        self.motion.is_some()
+        self.motion.is_some() || self.aimed != self.rest
     }
 
     /// Measured, rad.
     pub fn positions(&self, physics: &PhysicsAdapter) -> Vec<f64> {
         self.joints.iter().map(|id| physics.joint_angle(usize::from(id.0))).collect()
+    }
+
+    /// Measured, rad/s.
+    pub fn speeds(&self, physics: &PhysicsAdapter) -> Vec<f64> {
+        self.joints.iter().map(|id| physics.joint_speed(usize::from(id.0))).collect()
     }
 
     /// The largest measured speed of a joint, rad/s.

@@ -14,6 +14,12 @@ pub enum MotorCommand {
     },
     /// Brings the arm's joints to these angles (rad), in the arm's order, all arriving at once.
     ReachJoints { arm: ArmId, positions: Vec<f64>, max_speed: Option<f64> },
+    /// Brings the joints through postures (rad, one after the other), each at its time (s, from now).
+    FollowJoints { arm: ArmId, positions: Vec<f64>, times: Vec<f64> },
+    /// Lets the motor of one joint, counted from the base, aim at an angle (rad) from now on.
+    AimJoint { arm: ArmId, joint: f64, to: f64 },
+    /// Gives up what the arm is doing.
+    StopJoints { arm: ArmId },
     /// Lets go of what the hand holds, after the hand's delay.
     OpenFingers { gripper: GripperId },
     /// After the hand's delay, takes the nearest body in reach. That there is none is not an error: ask whether it holds.

@@ -37,6 +37,12 @@ pub enum CommandError {
     WrongJointCount { expected: usize, given: usize },
     #[error("the position given for joint `{joint}` is beyond its limits")]
     OutOfLimits { joint: String },
+    #[error("a posture has {joints} angles, so that {times} of them have {expected}, but {given} were given")]
+    WrongTrackLength { joints: usize, times: usize, expected: usize, given: usize },
+    #[error("each posture of a trajectory comes later than the one before, the first not before the command")]
+    TimesDoNotGrow,
+    #[error("joints are counted from 0 to {}", joints.saturating_sub(1))]
+    NoSuchJoint { joints: usize },
     #[error("a speed must be a positive finite number")]
     BadSpeed,
     #[error("a place or position must be a finite number")]

@@ -129,7 +129,7 @@ impl WorldSimulation {
     }
 
     fn step(&mut self, next: Nanos) {
-        for arm in &self.arms {
+        for arm in &mut self.arms {
             arm.drive(self.last, next, &mut self.physics);
         }
         for (i, slot) in self.paths.iter_mut().enumerate() {
@@ -293,6 +293,21 @@ impl WorldSimulation {
                 self.arms[at].check(&positions, &self.world)?;
                 self.arms[at].go(self.now, id, positions, None, max_speed)
             }
+            MotorCommand::FollowJoints { arm, positions, times } => {
+                let at = self.arm(arm, None)?;
+                let track = self.arms[at].track(&positions, &times, &self.world)?;
+                self.arms[at].follow(self.now, id, track)
+            }
+            MotorCommand::AimJoint { arm, joint, to } => {
+                let at = self.arm(arm, None)?;
+                let replaced = self.arms[at].aim_joint(self.now, joint, to, &self.world)?;
+                self.finished.push((id, Ok(())));
+                replaced
+            }
+            MotorCommand::StopJoints { arm } => {
+                let at = self.arm(arm, None)?;
+                self.arms[at].halt(self.now, id)
+            }
             MotorCommand::OpenFingers { gripper } => {
                 let hand = self.hand(gripper).ok_or(CommandError::NoSuchGripper)?;
                 self.hands.open(hand, self.now, Some(id))
@@ -356,6 +371,34 @@ impl WorldSimulation {
     #[must_use]
     pub fn joint_positions(&self, arm: ArmId) -> Vec<f64> {
         self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.positions(&self.physics))
+    }
+
+    /// Their measured speeds, rad/s.
+    #[must_use]
+    pub fn joint_speeds(&self, arm: ArmId) -> Vec<f64> {
+        self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.speeds(&self.physics))
+    }
+
+    /// The angles at which an arm's tool would be at a place in the world (m).
+    ///
+    /// # Errors
+    /// That it is out of reach.
+    pub fn plan(&self, arm: ArmId, target: Vec3) -> Result<Vec<f64>, CommandError> {
+        let at = self.arm(arm, None)?;
+        if target.iter().any(|x| !x.is_finite()) {
+            return Err(CommandError::NotFinite);
+        }
+        let local = self.arms[at].relative(&self.physics, target);
+        self.arms[at].plan(self.now, local)
+    }
+
+    /// Where an arm's tool point is (m), and how its tip is turned: a unit quaternion x, y, z, w.
+    #[must_use]
+    pub fn tool_pose(&self, arm: ArmId) -> Option<[f64; 7]> {
+        let [x, y, z] = self.tool(arm)?;
+        let tip = self.world.arms.get(usize::from(arm.0))?.tip;
+        let (_, [i, j, k, w]) = self.pose(tip)?;
+        Some([x, y, z, i, j, k, w])
     }
 
     /// Where an arm's tool point is, m.

@@ -7,7 +7,7 @@ use hrdsl_harness::{CheckedCommand, CommandId, WorldBackend};
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
-    world::{SignalId, SignalTerm, WorldAction},
+    world::{SignalId, SignalTerm, Vec3, WorldAction},
 };
 
 use crate::{WorldSimulation, command::MotorCommand, error::SimError};
@@ -46,13 +46,25 @@ fn meant(body: DeviceBody, call: &PrimitiveCall) -> Option<MotorCommand> {
         (DeviceBody::Arm(arm), PrimitiveCall::ReachJoints { to, speed }) => {
             MotorCommand::ReachJoints { arm, positions: to.clone(), max_speed: *speed }
         }
+        (DeviceBody::Arm(arm), PrimitiveCall::FollowJoints { positions, times }) => {
+            MotorCommand::FollowJoints { arm, positions: positions.clone(), times: times.clone() }
+        }
+        (DeviceBody::Arm(arm), PrimitiveCall::AimJoint { joint, to }) => {
+            MotorCommand::AimJoint { arm, joint: *joint, to: *to }
+        }
+        (DeviceBody::Arm(arm), PrimitiveCall::StopJoints) => MotorCommand::StopJoints { arm },
         (DeviceBody::Gripper(gripper), PrimitiveCall::CloseFingers) => MotorCommand::CloseFingers { gripper },
         (DeviceBody::Gripper(gripper), PrimitiveCall::OpenFingers) => MotorCommand::OpenFingers { gripper },
         // INVARIANT: the checker gives each kind of device the primitives of its own sort.
         (DeviceBody::Arm(_), PrimitiveCall::CloseFingers | PrimitiveCall::OpenFingers)
-        | (DeviceBody::Gripper(_), PrimitiveCall::ReachPoint { .. } | PrimitiveCall::ReachJoints { .. }) => {
-            return None;
-        }
+        | (
+            DeviceBody::Gripper(_),
+            PrimitiveCall::ReachPoint { .. }
+            | PrimitiveCall::ReachJoints { .. }
+            | PrimitiveCall::FollowJoints { .. }
+            | PrimitiveCall::AimJoint { .. }
+            | PrimitiveCall::StopJoints,
+        ) => return None,
     })
 }
 
@@ -84,6 +96,23 @@ impl WorldBackend for SimWorld {
             self.expected.insert(id, CommandExpectation { term, value, otherwise });
         }
         Ok(id)
+    }
+
+    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+        let DeviceBody::Arm(arm) = device else { return None };
+        match what {
+            "joints" => Some(self.sim.joint_positions(arm)),
+            "speeds" => Some(self.sim.joint_speeds(arm)),
+            "tool" => self.sim.tool_pose(arm).map(Vec::from),
+            _ => None,
+        }
+    }
+
+    fn plan(&self, device: DeviceBody, to: Vec3) -> Result<Vec<f64>, String> {
+        match device {
+            DeviceBody::Arm(arm) => self.sim.plan(arm, to).map_err(|e| e.to_string()),
+            DeviceBody::Gripper(_) => Err("a gripper plans nothing".to_owned()),
+        }
     }
 
     fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)> {

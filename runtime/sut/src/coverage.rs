@@ -25,6 +25,33 @@ pub struct FileCoverage {
     pub executed_branches: Vec<(u32, i32)>,
 }
 
+impl FileCoverage {
+    /// What several programs executed, file by file, in the order in which files are first met.
+    #[must_use]
+    pub fn united(all: impl IntoIterator<Item = FileCoverage>) -> Vec<FileCoverage> {
+        let mut files: Vec<FileCoverage> = Vec::new();
+        for one in all {
+            match files.iter_mut().find(|f| f.file == one.file) {
+                Some(known) => known.add(one),
+                None => files.push(one),
+            }
+        }
+        files
+    }
+
+    fn add(&mut self, other: FileCoverage) {
+        fn unite<T: Ord>(into: &mut Vec<T>, more: Vec<T>) {
+            into.extend(more);
+            into.sort_unstable();
+            into.dedup();
+        }
+        unite(&mut self.statements, other.statements);
+        unite(&mut self.executed, other.executed);
+        unite(&mut self.branches, other.branches);
+        unite(&mut self.executed_branches, other.executed_branches);
+    }
+}
+
 /// What the runner writes is much shorter; the program, which has the file open, too, may have made it as long as it likes.
 const LONGEST: u64 = 64 << 20;
 

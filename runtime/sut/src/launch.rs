@@ -25,6 +25,8 @@ pub struct LaunchSpec {
     /// The Python files whose coverage is measured; empty: none.
     pub coverage: Vec<String>,
     pub env: PythonEnv,
+    /// What the program is told of its middleware, if the scenario binds one.
+    pub middleware: Option<LaunchMiddleware>,
     /// Variables of the environment that the program gets besides the [default](DEFAULT_VARIABLES), with their values.
     pub variables: Vec<(OsString, OsString)>,
     pub cells: CellSettings,
@@ -35,6 +37,15 @@ pub struct LaunchSpec {
     pub keep: Option<PathBuf>,
     /// Set when everything is to end.
     pub stop: StopFlag,
+}
+
+/// A middleware whose client libraries the program finds, with what the scenario says of it.
+#[derive(Clone, Debug)]
+pub struct LaunchMiddleware {
+    /// `ros1` or `ros2`.
+    pub name: &'static str,
+    /// A file of JSON (`spec/protocol.md`).
+    pub binding: PathBuf,
 }
 
 /// The variables of the harness's environment that every program gets. Others are named in the scenario.
@@ -104,7 +115,11 @@ impl LaunchSpec {
             ("PYTHONIOENCODING", "utf-8:backslashreplace".to_owned()),
         ];
         let fixed = fixed.into_iter().map(|(name, value)| (name.into(), value.into()));
-        given.chain(fixed).chain(self.variables.iter().cloned()).collect()
+        let bound = self.middleware.iter().flat_map(|m| {
+            [("HRDSL_MIDDLEWARE", m.name.into()), ("HRDSL_BINDING", m.binding.clone().into_os_string())]
+        });
+        let bound = bound.map(|(name, value)| (name.into(), value));
+        given.chain(fixed).chain(bound).chain(self.variables.iter().cloned()).collect()
     }
 
     fn kind(&self, word: &str) -> CommandKind<'_> {

@@ -36,7 +36,7 @@ pub use coverage::FileCoverage;
 pub use environment::{EnvironmentNeeds, HookedPackage, PreparationStep, PythonEnv};
 pub use error::SutError;
 pub use exit::ProgramExit;
-pub use launch::{DEFAULT_VARIABLES, LaunchSpec};
+pub use launch::{DEFAULT_VARIABLES, LaunchMiddleware, LaunchSpec};
 pub use limits::{LimitOverrun, ProgramLimits, StopFlag};
 pub use lock_step::LockStep;
 pub use output::{CapturedOutput, CapturedStream};

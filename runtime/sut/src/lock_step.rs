@@ -96,6 +96,11 @@ fn meant(request: ProgramRequest) -> SystemRequest {
         ProgramRequest::Close { port } => SystemRequest::Close { port },
         ProgramRequest::List => SystemRequest::List,
         ProgramRequest::Cancel { call } => SystemRequest::Cancel { call },
+        ProgramRequest::State { device, what } => SystemRequest::State { device, what },
+        ProgramRequest::Plan { device, to } => SystemRequest::Plan { device, to },
+        ProgramRequest::Transition { label, next } => SystemRequest::Transition { from: label, to: next },
+        // What a machine consists of matters to nobody here.
+        ProgramRequest::Machine => SystemRequest::Now,
         ProgramRequest::Message(request) => carried(request),
         ProgramRequest::Done => SystemRequest::Done,
     }
@@ -125,6 +130,7 @@ fn said(answer: SystemAnswer) -> ReplyAnswer {
         SystemAnswer::Event { name, args, time } => ReplyAnswer::Event { name, args, time },
         SystemAnswer::TimedOut => ReplyAnswer::TimedOut,
         SystemAnswer::Value(value) => ReplyAnswer::Value(value),
+        SystemAnswer::Numbers(numbers) => ReplyAnswer::Numbers(numbers),
         SystemAnswer::Ended(how) => ReplyAnswer::Acted(how),
         SystemAnswer::Arrived { arrivals, gave_up } => ReplyAnswer::Arrived { arrivals, gave_up },
         SystemAnswer::Listed(ports) => ReplyAnswer::Listed(ports),

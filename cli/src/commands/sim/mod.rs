@@ -42,7 +42,7 @@ pub const SUPERVISE: &str = "supervise-cell";
 /// run.json, the tests, a recording of each, and what the program wrote in each.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --check-determinism"
+    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --system with_rospy\n  hrdsl sim scenario.hri --check-determinism"
 )]
 pub struct SimArgs {
     /// The scenario.
@@ -55,6 +55,9 @@ pub struct SimArgs {
     /// Only this test, as `SUITE.tNNN`; may be given several times.
     #[arg(long, value_name = "NAME")]
     test: Vec<String>,
+    /// Which of the scenario's systems is tested; by default the first.
+    #[arg(long, value_name = "NAME")]
+    system: Option<String>,
     /// How many concrete tests of each suite, instead of what the suite says.
     #[arg(short = 'n', long, value_name = "N")]
     count: Option<u32>,
@@ -113,8 +116,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let Some(program) = input::report_errors(&args.file, &compilation) else {
         return Ok(CommandExit::Errors);
     };
-    let system =
-        program.system.as_ref().ok_or("the scenario has no `system` block: there is nothing to run")?;
+    let system = chosen_system(program, args.system.as_deref())?;
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
     let folder = ResultsFolder::open(&out, &NAMES)?;
 
@@ -133,7 +135,8 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     };
     let interrupted = outcome.interrupted;
     let dir = campaign.dir.clone();
-    let sources = system.coverage.iter().filter_map(|f| Some((f.clone(), files::read(&dir.join(f)).ok()?)));
+    let sources =
+        system.coverage().into_iter().filter_map(|f| files::read(&dir.join(&f)).ok().map(|text| (f, text)));
     let sources = sources.collect::<BTreeMap<_, _>>();
     let results = tally(program, args.seed, &generated, outcome, &sources, rerun(args, &out));
     publish(&results, &campaign, folder)?;
@@ -151,17 +154,31 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     })
 }
 
+/// The system of this name, or the first.
+fn chosen_system<'p>(program: &'p Program, name: Option<&str>) -> Result<&'p SystemUnderTest, CommandFault> {
+    let Some(first) = program.systems.first() else {
+        return Err("the scenario has no `system` block: there is nothing to run".to_owned());
+    };
+    let Some(name) = name else { return Ok(first) };
+    let names: Vec<&str> = program.systems.iter().map(|s| s.name.as_str()).collect();
+    program
+        .systems
+        .iter()
+        .find(|s| s.name == name)
+        .ok_or_else(|| format!("no system is called `{name}`; there are {}", names.join(", ")))
+}
+
 /// Installs what the code needs, and finds out how its tests can be kept apart.
 fn prepared<'p>(
     args: &SimArgs,
     program: &'p Program,
-    system: &SystemUnderTest,
+    system: &'p SystemUnderTest,
     out: &Path,
     folder: &ResultsFolder,
 ) -> Result<CampaignSetup<'p>, CommandFault> {
     let dir = files::folder(&args.file);
     let console = InstallProgress::default();
-    let env = prepare(&system.run, &dir, &cache()?, &|step| console.show(step)).map_err(|e| e.to_string())?;
+    let env = prepare(system, &dir, &cache()?, &|step| console.show(step)).map_err(|e| e.to_string())?;
     let wanted = args.isolation.map(|how| match how {
         IsolationArg::Namespaces => CellIsolation::Namespaces,
         IsolationArg::Copies => CellIsolation::Copies,
@@ -174,11 +191,12 @@ fn prepared<'p>(
     for gap in &cells.gaps {
         terminal::say_line(format_args!("note: {gap}"));
     }
-    for complaint in env.analyse(&dir, &system.coverage).map_err(|e| e.to_string())? {
+    for complaint in env.analyse(&dir, &system.coverage()).map_err(|e| e.to_string())? {
         terminal::say_line(format_args!("warning: {}", complaint.trim_start_matches("hrdsl: ")));
     }
     Ok(CampaignSetup {
         program,
+        system,
         dir,
         env,
         cells,
@@ -351,6 +369,7 @@ fn rerun(args: &SimArgs, out: &Path) -> String {
     let times = times.iter().filter_map(|(name, t)| Some(format!("{name} {}ms", (*t)?.as_millis())));
     let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
     let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?)));
+    words.extend(args.system.iter().map(|name| format!("--system {name}")));
     words.extend(times.chain(sizes));
     words.push("--test".to_owned());
     words.join(" ")

@@ -7,7 +7,7 @@ use std::{
 };
 
 use hrdsl_ir::test::Test;
-use hrdsl_runtime::campaign::{CampaignOutcome, CampaignSetup, CapturedOutput, FinishedRun};
+use hrdsl_runtime::campaign::{CampaignOutcome, CampaignSetup, FinishedRun, ProgramOutput};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{fault::CommandFault, files, results_folder};
@@ -66,12 +66,15 @@ fn write(done: &FinishedRun<'_>, to: &Path) -> Result<(), CommandFault> {
     Ok(())
 }
 
-/// What a program wrote, with headings between the streams.
-pub fn output_text(output: &CapturedOutput) -> String {
+/// What the programs wrote, with headings between the streams.
+pub fn output_text(output: &[ProgramOutput]) -> String {
     let mut text = String::new();
-    for (name, stream) in [("stdout", &output.stdout), ("stderr", &output.stderr)] {
-        if stream.bytes > 0 {
-            let _ = writeln!(text, "── {name} ──\n{}", stream.text().trim_end_matches('\n'));
+    for ProgramOutput { program, output: written } in output {
+        let of = if output.len() > 1 { format!("{program}: ") } else { String::new() };
+        for (name, stream) in [("stdout", &written.stdout), ("stderr", &written.stderr)] {
+            if stream.bytes > 0 {
+                let _ = writeln!(text, "── {of}{name} ──\n{}", stream.text().trim_end_matches('\n'));
+            }
         }
     }
     text

@@ -2,6 +2,7 @@
 
 mod agents;
 mod automata;
+mod binding;
 mod checker;
 mod name_spans;
 mod state;
@@ -11,6 +12,7 @@ mod value;
 mod vocabulary;
 mod world;
 
+use hrdsl_messages::MessageLibrary;
 use hrdsl_source::Diagnostic;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
@@ -39,19 +41,28 @@ pub fn resolve(
     modules: &[&ast::FileSyntax],
     tests: &[&ast::FileSyntax],
 ) -> (Scenario, Vec<Diagnostic>) {
-    resolve_part(scenario, modules, tests, false)
+    resolve_part(scenario, modules, tests, KnownSources::default())
 }
 
-/// The same, where some module may be `missing`: nothing is said about parts that it may have.
+/// What else a check rests on, besides the texts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KnownSources<'a> {
+    /// Some module is not there: nothing is said about parts that it may have.
+    pub missing_modules: bool,
+    /// The definitions of the versions of ROS that the systems use.
+    pub interfaces: &'a [MessageLibrary],
+}
+
+/// The same, with what else is known.
 #[must_use]
 pub fn resolve_part(
     scenario: &ast::FileSyntax,
     modules: &[&ast::FileSyntax],
     tests: &[&ast::FileSyntax],
-    missing: bool,
+    known: KnownSources<'_>,
 ) -> (Scenario, Vec<Diagnostic>) {
     let items = scenario.items.iter().collect();
-    let source = source(items, modules, missing);
+    let source = source(items, modules, known);
     let mut checker = phases(source, scenario.scenario.as_ref(), tests);
     checker.places();
     (checker.s, checker.issues.distinct())
@@ -64,13 +75,13 @@ pub fn resolve_alone(
     scenario: &ast::FileSyntax,
     (index, declaration): (usize, &ast::ItemSyntax),
     modules: &[&ast::FileSyntax],
-    missing: bool,
+    known: KnownSources<'_>,
 ) -> Vec<Diagnostic> {
     let mut items: Vec<&ast::ItemSyntax> = scenario.items.iter().collect();
     let Some(place) = items.get_mut(index) else { return Vec::new() };
     *place = declaration;
     let file = declaration.span.file;
-    let mut source = source(items, modules, missing);
+    let mut source = source(items, modules, known);
     source.alone = Some(LoneDeclaration { file, phase: CheckPhase::of(&declaration.kind) });
     let mut issues = phases(source, scenario.scenario.as_ref(), &[]).issues.distinct();
     issues.retain(|issue| issue.span().file == file);
@@ -81,7 +92,7 @@ pub fn resolve_alone(
 fn source<'a>(
     own: Vec<&'a ast::ItemSyntax>,
     modules: &[&'a ast::FileSyntax],
-    missing: bool,
+    known: KnownSources<'a>,
 ) -> CheckedSource<'a> {
     let mut items: Vec<&ast::ItemSyntax> =
         modules.iter().flat_map(|m| &m.items).filter(|i| shared(&i.kind)).collect();
@@ -91,7 +102,8 @@ fn source<'a>(
         unread_items: items.iter().any(|i| unread::in_item(&i.kind)),
         items,
         from_modules,
-        missing_modules: missing,
+        missing_modules: known.missing_modules,
+        interfaces: known.interfaces,
         unread_members: false,
         alone: None,
     }
@@ -132,11 +144,5 @@ fn phases<'a>(
 
 /// What a module shares. Anything else in it has a diagnostic, and is not the scenario's.
 fn shared(kind: &ItemSyntaxKind) -> bool {
-    !matches!(
-        kind,
-        ItemSyntaxKind::World(_)
-            | ItemSyntaxKind::System(_)
-            | ItemSyntaxKind::Suite(_)
-            | ItemSyntaxKind::Test(_)
-    )
+    !matches!(kind, ItemSyntaxKind::World(_) | ItemSyntaxKind::Suite(_) | ItemSyntaxKind::Test(_))
 }

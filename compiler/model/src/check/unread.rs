@@ -98,6 +98,8 @@ pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> b
         | Noun::Point
         | Noun::Cross
         | Noun::Suite
+        | Noun::System
+        | Noun::Program
         | Noun::Test
         | Noun::Part
         | Noun::PartInstance

@@ -2,6 +2,7 @@
 
 pub(crate) mod agents;
 pub(crate) mod automata;
+pub(crate) mod bindings;
 pub(crate) mod coverage;
 pub(crate) mod devices;
 pub(crate) mod functions;
@@ -10,5 +11,6 @@ pub(crate) mod queries;
 pub(crate) mod requirements;
 pub(crate) mod roles;
 pub(crate) mod scenario_tests;
+pub(crate) mod systems;
 pub(crate) mod types;
 pub(crate) mod world;

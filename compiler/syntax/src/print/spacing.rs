@@ -37,7 +37,11 @@ pub(super) fn blank(toks: &[PrintToken<'_>], at: usize) -> bool {
             return matches!(n.kind, TokenKind::Bang | TokenKind::BangBang);
         }
         TokenKind::Plus | TokenKind::Minus if p.mark.prefix => return false,
-        TokenKind::DotDot => return !p.mark.tight,
+        TokenKind::DotDot | TokenKind::Slash => {
+            if p.mark.tight || p.kind == TokenKind::DotDot {
+                return !p.mark.tight;
+            }
+        }
         _ => {}
     }
     match n.kind {
@@ -47,7 +51,7 @@ pub(super) fn blank(toks: &[PrintToken<'_>], at: usize) -> bool {
         TokenKind::LParen => !n.mark.call,
         // An index and annotations belong to what is before; a list stands alone.
         TokenKind::LBracket => n.mark.apart || !(p.kind.ends_operand() || p.kind.can_be_name()),
-        TokenKind::DotDot => !n.mark.tight,
+        TokenKind::DotDot | TokenKind::Slash => !n.mark.tight,
         _ => true,
     }
 }
@@ -80,6 +84,7 @@ fn operator(n: &PrintToken<'_>) -> Option<BindingStrength> {
         TokenKind::And | TokenKind::AndAnd => 4,
         TokenKind::Eq | TokenKind::Ne | TokenKind::Lt | TokenKind::Le | TokenKind::Gt | TokenKind::Ge => 5,
         TokenKind::Plus | TokenKind::Minus if !n.mark.prefix => 6,
+        TokenKind::Slash if n.mark.tight => return None,
         TokenKind::Star | TokenKind::Slash | TokenKind::Percent => 7,
         _ => return None,
     })

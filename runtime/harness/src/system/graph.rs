@@ -132,6 +132,12 @@ impl MessageGraph {
         Ok(self.at(&publisher).filter(hears).map(to).collect())
     }
 
+    /// Whether anybody subscribes to the topic of a publisher.
+    pub fn has_subscriber(&self, program: ProgramIndex, port: u64) -> bool {
+        let own = self.port(program, port).ok().and_then(|at| self.ports.get(at));
+        own.is_some_and(|own| self.at(&own.declared).any(|p| p.declared.kind == PortKind::Subscriber))
+    }
+
     /// A request of a service, or the goal of an action.
     pub fn call(
         &mut self,

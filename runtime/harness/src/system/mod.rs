@@ -1,5 +1,6 @@
 //! The system: the seam to whatever plays its actor, and the player that answers it and lets its programs speak with each other.
 
+mod binding;
 mod graph;
 mod mailbox;
 pub mod player;

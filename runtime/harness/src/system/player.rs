@@ -1,8 +1,11 @@
 //! The player of the system actor: answers what its programs ask, lets time pass while they wait, and carries their messages.
 
-use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value};
+use std::collections::VecDeque;
+
+use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value, binding::MiddlewareBinding};
 
 use super::{
+    binding::BindingNode,
     graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
     mailbox::HeardEvent,
     program::{RequestWait, ServedProgram},
@@ -26,6 +29,9 @@ pub struct SystemPlayer<'p, S> {
     actors: [ActorId; 1],
     programs: Vec<ServedProgram<S>>,
     graph: MessageGraph,
+    binding: Option<BindingNode<'p>>,
+    begun: bool,
+    now: Nanos,
 }
 
 /// What a request comes to at once.
@@ -54,7 +60,18 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             actors: [actor],
             programs: programs.into_iter().map(|(name, system)| ServedProgram::new(name, system)).collect(),
             graph: MessageGraph::default(),
+            binding: None,
+            begun: false,
+            now: 0,
         }
+    }
+
+    /// The same, where the scenario takes part in what the programs say to each other.
+    #[must_use]
+    pub fn with_binding(mut self, binding: Option<&'p MiddlewareBinding>) -> Self {
+        let node = self.programs.len();
+        self.binding = binding.map(|b| BindingNode::new(self.vocabulary.program, b, node));
+        self
     }
 
     /// Takes requests for as long as somebody makes some.
@@ -113,7 +130,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             RequestResponse::End => {
                 self.programs[index].ended = true;
                 let told = self.graph.leave(index);
-                self.deliver(told, cx.now)
+                self.deliver(told, cx).map(drop)
             }
         }
     }
@@ -163,11 +180,39 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                     Err(answer) => answer,
                 }));
             }
+            SystemRequest::State { device, what } => {
+                return Ok(Answer(match cx.stage.as_deref_mut() {
+                    Some(stage) => stage.state(&device, &what).unwrap_or_else(|(e, help)| refuse(e, help)),
+                    None => refuse("there is no world with devices", None),
+                }));
+            }
+            SystemRequest::Plan { device, to } => {
+                return Ok(Answer(match cx.stage.as_deref_mut() {
+                    Some(stage) => stage.plan(&device, to).unwrap_or_else(|(e, help)| refuse(e, help)),
+                    None => refuse("there is no world with devices", None),
+                }));
+            }
+            SystemRequest::Transition { from, to } => {
+                if let Some(binding) = &self.binding {
+                    let events = binding.transition(&from, &to);
+                    cx.out.extend(events.map(|(event, args)| PlayerMessage::Event { event, args }));
+                }
+                return Ok(Answer(SystemAnswer::Ok));
+            }
             SystemRequest::List => {
                 let names: Vec<String> = self.programs.iter().map(|p| p.name.clone()).collect();
                 return Ok(Answer(SystemAnswer::Listed(self.graph.watch(index, &names))));
             }
-            SystemRequest::Open(declared) => self.graph.open(index, declared),
+            SystemRequest::Open(declared) => {
+                let opened = self.graph.open(index, declared.clone());
+                match (opened, &mut self.binding) {
+                    (Ok(mut out), Some(binding)) => binding.opened(&declared, &mut self.graph).map(|more| {
+                        out.extend(more);
+                        out
+                    }),
+                    (opened, _) => opened,
+                }
+            }
             SystemRequest::Close { port } => {
                 self.programs[index].mailbox.forget_port(port);
                 self.graph.close(index, port)
@@ -179,23 +224,61 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             SystemRequest::Finish { call, end, message } => self.graph.finish(index, call, end, message),
             SystemRequest::Cancel { call } => self.graph.cancel(index, call),
         };
-        Ok(Answer(self.told(told, cx.now)?))
+        Ok(Answer(self.told(told, cx)?))
     }
 
     /// Carries out what a request does to others.
-    fn told(&mut self, outcome: GraphOutcome, now: Nanos) -> Result<SystemAnswer, HarnessError> {
-        match outcome {
-            Ok(deliveries) => self.deliver(deliveries, now).map(|()| SystemAnswer::Ok),
-            Err(why) => Ok(refuse(why, None)),
-        }
+    fn told(
+        &mut self,
+        outcome: GraphOutcome,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<SystemAnswer, HarnessError> {
+        let deliveries = match outcome {
+            Ok(deliveries) => deliveries,
+            Err(why) => return Ok(refuse(why, None)),
+        };
+        Ok(match self.deliver(deliveries, cx)? {
+            Ok(()) => SystemAnswer::Ok,
+            Err(why) => refuse(why, None),
+        })
     }
 
-    fn deliver(&mut self, deliveries: Vec<GraphDelivery>, now: Nanos) -> Result<(), HarnessError> {
-        for GraphDelivery { to, arrival, depth } in deliveries {
-            let delivered = self.programs[to].deliver(arrival, depth, &self.vocabulary, now);
-            delivered.map_err(|e| self.named(to, e))?;
+    /// Hands everything on, to the programs and to the scenario; what makes no sense to the scenario is the inner error.
+    fn deliver(
+        &mut self,
+        deliveries: Vec<GraphDelivery>,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<Result<(), String>, HarnessError> {
+        let mut waiting = VecDeque::from(deliveries);
+        let mut wrong = Ok(());
+        while let Some(GraphDelivery { to, arrival, depth }) = waiting.pop_front() {
+            match &mut self.binding {
+                Some(binding) if binding.node() == to => match binding.take(arrival, &mut self.graph, cx) {
+                    Ok(more) => waiting.extend(more),
+                    Err(why) => wrong = Err(why),
+                },
+                _ => {
+                    let delivered = self.programs[to].deliver(arrival, depth, &self.vocabulary, cx.now);
+                    delivered.map_err(|e| self.named(to, e))?;
+                }
+            }
         }
-        Ok(())
+        Ok(wrong)
+    }
+
+    /// Lets the scenario's own node do something; what it cannot do is a fault of the scenario.
+    fn bound(
+        &mut self,
+        cx: &mut PlayerContext<'_, '_>,
+        act: impl FnOnce(&mut BindingNode<'p>, &mut MessageGraph, &mut PlayerContext<'_, '_>) -> GraphOutcome,
+    ) -> Result<(), HarnessError> {
+        let Some(binding) = &mut self.binding else { return Ok(()) };
+        let outcome = act(binding, &mut self.graph, cx);
+        let told = match outcome {
+            Ok(deliveries) => self.deliver(deliveries, cx)?,
+            Err(why) => Err(why),
+        };
+        told.map_err(|why| HarnessError::Model(format!("the binding: {why}")))
     }
 
     fn wait_for(
@@ -245,6 +328,12 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
     }
 
     fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
+        self.now = cx.now;
+        if std::mem::replace(&mut self.begun, true) {
+            self.bound(cx, BindingNode::wake)?;
+        } else {
+            self.bound(cx, BindingNode::begin)?;
+        }
         for index in 0..self.programs.len() {
             self.programs[index].wake(&self.vocabulary, cx).map_err(|e| self.named(index, e))?;
             self.serve(cx)?;
@@ -258,6 +347,8 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
         args: &[Value],
         cx: &mut PlayerContext<'_, '_>,
     ) -> Result<(), HarnessError> {
+        self.now = cx.now;
+        self.bound(cx, |binding, graph, cx| binding.hear(event, args, graph, cx))?;
         for index in 0..self.programs.len() {
             let heard = HeardEvent { event, args: args.to_vec(), time: cx.now };
             let told = self.programs[index].hear(heard, &self.vocabulary, cx);
@@ -268,7 +359,8 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
     }
 
     fn next_wake(&self) -> Option<Nanos> {
-        self.programs.iter().filter_map(ServedProgram::next_wake).min()
+        let bound = self.binding.as_ref().and_then(|b| b.next_wake(self.now, &self.graph));
+        self.programs.iter().filter_map(ServedProgram::next_wake).chain(bound).min()
     }
 
     fn is_finished(&self) -> bool {

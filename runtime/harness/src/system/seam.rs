@@ -108,6 +108,21 @@ pub enum SystemRequest {
     Cancel {
         call: u64,
     },
+    /// Numbers that a device can tell of itself: the angles of its joints, the place of its tool.
+    State {
+        device: String,
+        what: String,
+    },
+    /// The angles at which an arm's tool would be at a place.
+    Plan {
+        device: String,
+        to: [f64; 3],
+    },
+    /// A state machine of its own has gone from one state to another.
+    Transition {
+        from: String,
+        to: String,
+    },
     /// It has come to its normal end.
     Done,
 }
@@ -123,6 +138,8 @@ pub enum SystemAnswer {
     TimedOut,
     /// To read.
     Value(Value),
+    /// To state and plan.
+    Numbers(Vec<f64>),
     /// To a command: it ended, well or for this reason not.
     Ended(Result<(), String>),
     /// To a wait: what has arrived, in the order in which it did.

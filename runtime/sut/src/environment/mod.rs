@@ -42,38 +42,7 @@ coverage==7.10.7; python_version == '3.9'
 coverage==7.6.1; python_version == '3.8'
 ";
 
-macro_rules! sdk {
-    ($($file:literal),* $(,)?) => {
-        &[$(($file, include_str!(concat!("../../../../sdk/python/hrdsl/", $file)))),*]
-    };
-}
-
-/// The SDK, file by file.
-const SDK: &[(&str, &str)] = sdk![
-    "__init__.py",
-    "advice.py",
-    "chance.py",
-    "cover.py",
-    "dates.py",
-    "debug.py",
-    "errors.py",
-    "files.py",
-    "link.py",
-    "locks.py",
-    "loop.py",
-    "machine.py",
-    "node.py",
-    "outside.py",
-    "replace.py",
-    "report.py",
-    "run.py",
-    "runner.py",
-    "schedule.py",
-    "threads.py",
-    "virtual.py",
-    "waits.py",
-    "watch.py",
-];
+include!(concat!(env!("OUT_DIR"), "/sdk.rs"));
 
 /// An interpreter, and where the modules are that programs under test need.
 #[derive(Clone, Debug)]
@@ -89,6 +58,8 @@ pub struct PythonEnv {
     pub(crate) coverage: PathBuf,
     /// The folder for static analyses of source files.
     pub(crate) analyses: PathBuf,
+    /// The folder for texts that programs read: what is bound to their middleware.
+    texts: PathBuf,
     /// Where modules are searched for, after the standard library.
     pub(crate) path: Vec<String>,
 }
@@ -127,6 +98,7 @@ impl PythonEnv {
         let sdk = sdk(&cache, &probe)?;
         let coverage = coverage(&cache, &probe)?;
         let analyses = cache.folder("analyses")?;
+        let texts = cache.folder("bindings")?;
         let list = needs.requirements.map(std::path::absolute).transpose();
         let list = list.map_err(SutError::io("cannot find the requirements"))?;
         let requirements = list.map(|list| PipRequirements::read(&list, &variable)).transpose()?;
@@ -138,13 +110,22 @@ impl PythonEnv {
         }
         path.extend(probe.path);
         let word = needs.python.to_owned();
-        Ok(Self { word, python: probe.executable, version: probe.version, sdk, coverage, analyses, path })
+        Ok(Self {
+            word,
+            python: probe.executable,
+            version: probe.version,
+            sdk,
+            coverage,
+            analyses,
+            texts,
+            path,
+        })
     }
 
-    /// The word of a command that names the interpreter; `python3` if the command does not run Python itself.
-    #[must_use]
-    pub fn interpreter_of(command: &[String]) -> &str {
-        command.first().map(String::as_str).filter(|word| is_python(word)).unwrap_or("python3")
+    /// The word that names the interpreter, of the first of these commands that runs Python itself; else `python3`.
+    pub fn interpreter_of<'c>(commands: impl IntoIterator<Item = &'c [String]>) -> &'c str {
+        let mut words = commands.into_iter().filter_map(|c| c.first()).map(String::as_str);
+        words.find(|word| is_python(word)).unwrap_or("python3")
     }
 
     /// Makes beforehand what follows from the texts of the measured files alone, so that the first test does not differ from
@@ -161,6 +142,23 @@ impl PythonEnv {
         command.arg("--package").arg(&self.coverage).arg("--cache").arg(&self.analyses).args(files);
         let output = command.current_dir(dir).output().map_err(SutError::io("cannot start Python"))?;
         Ok(String::from_utf8_lossy(&output.stderr).lines().map(str::to_owned).collect())
+    }
+
+    /// Keeps a text for programs to read, in a file that is called by what is in it.
+    ///
+    /// # Errors
+    /// [`SutError::Io`] if the cache cannot be written.
+    pub fn kept(&self, text: &str) -> Result<PathBuf, SutError> {
+        let file = self.texts.join(PartsHasher::of(&[text]).finish());
+        let io = || SutError::io(format!("cannot write {}", file.display()));
+        if fs::read(&file).is_ok_and(|there| there == text.as_bytes()) {
+            return Ok(file);
+        }
+        // Beside it first: another process may be reading it.
+        let mut made = tempfile::NamedTempFile::new_in(&self.texts).map_err(io())?;
+        std::io::Write::write_all(&mut made, text.as_bytes()).map_err(io())?;
+        made.persist(&file).map_err(|e| io()(e.error))?;
+        Ok(file)
     }
 
     /// The folder that has coverage.py.
@@ -209,14 +207,16 @@ fn sdk(cache: &EnvironmentCache<'_>, probe: &ProbedInterpreter) -> Result<PathBu
 }
 
 fn write_sdk(python: &Path, dir: &Path) -> Result<(), SutError> {
-    let package = dir.join("hrdsl");
     let io = || SutError::io(format!("cannot write to {}", dir.display()));
-    fs::create_dir(&package).map_err(io())?;
     for (name, text) in SDK {
-        fs::write(package.join(name), text).map_err(io())?;
+        let file = dir.join(name);
+        if let Some(folder) = file.parent() {
+            fs::create_dir_all(folder).map_err(io())?;
+        }
+        fs::write(file, text).map_err(io())?;
     }
     // Byte code now, since the programs may be told not to write any. Without it they only start more slowly.
-    run(command(python).args(["-I", "-m", "compileall", "-q"]).arg(&package)).map(drop)
+    run(command(python).args(["-I", "-m", "compileall", "-q"]).arg(dir)).map(drop)
 }
 
 fn coverage(cache: &EnvironmentCache<'_>, probe: &ProbedInterpreter) -> Result<PathBuf, SutError> {
@@ -267,22 +267,5 @@ fn summary(requirements: &PipRequirements) -> String {
     match names[..] {
         [a, b, c, _, ..] => format!("{a}, {b}, {c} and {} more", names.len() - 3),
         _ => names.join(", "),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_whole_sdk_is_embedded() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sdk/python/hrdsl");
-        let mut there: Vec<String> = fs::read_dir(folder)
-            .unwrap()
-            .map(|e| e.unwrap().file_name().into_string().unwrap())
-            .filter(|name| name.ends_with(".py"))
-            .collect();
-        there.sort();
-        assert_eq!(there, SDK.iter().map(|(name, _)| (*name).to_owned()).collect::<Vec<_>>());
     }
 }

@@ -100,6 +100,23 @@ pub enum ProgramRequest {
     Cancel {
         call: u64,
     },
+    /// What a device tells of itself, as numbers.
+    State {
+        device: String,
+        what: String,
+    },
+    /// The angles at which an arm's tool would be at a place.
+    Plan {
+        device: String,
+        to: [f64; 3],
+    },
+    /// A state machine has gone from the state `label` to the state `next`.
+    Transition {
+        label: String,
+        next: String,
+    },
+    /// A state machine begins, with these states and transitions.
+    Machine,
     /// With a message in it.
     #[serde(skip)]
     Message(MessageRequest),
@@ -197,6 +214,10 @@ impl ProgramRequest {
             | ProgramRequest::Close { .. }
             | ProgramRequest::List
             | ProgramRequest::Cancel { .. }
+            | ProgramRequest::State { .. }
+            | ProgramRequest::Plan { .. }
+            | ProgramRequest::Transition { .. }
+            | ProgramRequest::Machine
             | ProgramRequest::Message(_)
             | ProgramRequest::Done => None,
         }
@@ -211,6 +232,10 @@ impl ProgramRequest {
             | ProgramRequest::Close { .. }
             | ProgramRequest::List
             | ProgramRequest::Cancel { .. }
+            | ProgramRequest::State { .. }
+            | ProgramRequest::Plan { .. }
+            | ProgramRequest::Transition { .. }
+            | ProgramRequest::Machine
             | ProgramRequest::Message(_) => 2,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
@@ -227,7 +252,11 @@ impl ProgramRequest {
     /// Whether it has no reply of its own.
     pub(crate) fn is_one_way(&self) -> bool {
         match self {
-            ProgramRequest::Close { .. } | ProgramRequest::Cancel { .. } | ProgramRequest::Message(_) => true,
+            ProgramRequest::Close { .. }
+            | ProgramRequest::Cancel { .. }
+            | ProgramRequest::Transition { .. }
+            | ProgramRequest::Machine
+            | ProgramRequest::Message(_) => true,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
             | ProgramRequest::Emit { .. }
@@ -239,6 +268,8 @@ impl ProgramRequest {
             | ProgramRequest::Wait { .. }
             | ProgramRequest::Open { .. }
             | ProgramRequest::List
+            | ProgramRequest::State { .. }
+            | ProgramRequest::Plan { .. }
             | ProgramRequest::Done => false,
         }
     }
@@ -265,7 +296,8 @@ struct RequestHead<'l> {
 }
 
 /// The kinds of requests that have no reply of their own, from version 2 on.
-const ONE_WAY: [&str; 7] = ["publish", "call", "respond", "feedback", "finish", "close", "cancel"];
+const ONE_WAY: [&str; 9] =
+    ["publish", "call", "respond", "feedback", "finish", "close", "cancel", "transition", "machine"];
 
 /// What a line means to a program that speaks this version.
 pub(crate) fn parse(line: &[u8], version: u32) -> ProtocolLine {

@@ -46,6 +46,8 @@ pub enum ReplyAnswer {
     TimedOut,
     /// To read.
     Value(Value),
+    /// To state and plan.
+    Numbers(Vec<f64>),
     /// To act: it ended, well or for this reason not.
     Acted(Result<(), String>),
     /// To wait.
@@ -84,6 +86,7 @@ impl Serialize for ReplyLine<'_> {
             }
             ReplyAnswer::TimedOut => map.serialize_entry("event", &None::<()>)?,
             ReplyAnswer::Value(value) => map.serialize_entry("value", value)?,
+            ReplyAnswer::Numbers(numbers) => map.serialize_entry("value", numbers)?,
             ReplyAnswer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
             ReplyAnswer::Acted(Err(error)) => {
                 map.serialize_entry("ok", &false)?;

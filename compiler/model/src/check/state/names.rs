@@ -5,6 +5,7 @@ use std::{
     rc::Rc,
 };
 
+use hrdsl_messages::MessageLibrary;
 use hrdsl_source::{Enumeration, FileId, Span};
 use hrdsl_syntax::ast::{self, InstanceSyntax, NameSyntax, TemplateSyntaxKind};
 
@@ -27,6 +28,8 @@ pub(crate) struct CheckedSource<'a> {
     pub from_modules: usize,
     /// A module is missing, which may have the parts that are used.
     pub missing_modules: bool,
+    /// The definitions of the versions of ROS that the systems use.
+    pub interfaces: &'a [MessageLibrary],
     /// A declaration of the scenario, or a member of its world, could not be read.
     pub unread_items: bool,
     /// A member of the agent or automaton that is being checked could not be read.

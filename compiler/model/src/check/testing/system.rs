@@ -6,26 +6,28 @@ use hrdsl_syntax::ast::{self, ItemSyntaxKind, SystemMemberKind as Member};
 
 use crate::check::checker::Checker;
 use crate::{
-    ActorId, Role, SystemUnderTest,
-    report::{names, roles},
+    ActorId, Role, SystemProgram, SystemUnderTest, TypedExpr,
+    noun::Noun,
+    report::{names, roles, systems},
 };
 
 impl Checker<'_> {
     pub(in crate::check) fn systems(&mut self) {
-        let mut found: Option<Span> = None;
+        let mut known: Vec<(String, Span)> = Vec::new();
         for (item, span) in self.each_item() {
             let ItemSyntaxKind::System(system) = item else { continue };
-            if let Some(first) = found {
-                self.report(names::twice("system", span, first));
+            let name = system.name();
+            if let Some((_, first)) = known.iter().find(|(n, _)| *n == name.text) {
+                self.report(names::duplicate(Noun::System, &name.text, name.span, Some(*first)));
                 continue;
             }
-            found = Some(span);
+            known.push((name.text.clone(), name.span));
             let resolved = self.system(system, span);
-            self.s.system = Some(resolved);
+            self.s.systems.push(resolved);
         }
     }
 
-    fn system(&mut self, system: &ast::SystemSyntax, span: Span) -> SystemUnderTest {
+    fn system(&mut self, system: &ast::SystemSyntax, span: Span) -> SystemUnderTest<TypedExpr> {
         let actor = self.actor(&system.actor);
         if let Some(actor) = actor.filter(|a| self.role_of(*a) == Role::Environment) {
             let issue = roles::system_plays_environment(self.actor_name(actor), system.actor.span);
@@ -33,9 +35,9 @@ impl Checker<'_> {
         }
         let actor = actor.unwrap_or(ActorId(0));
         let mut resolved = SystemUnderTest {
+            name: system.name().text.clone(),
             actor,
-            run: Vec::new(),
-            coverage: Vec::new(),
+            programs: Vec::new(),
             limit: 300 * SECOND,
             budget: 10 * SECOND,
             cpu: None,
@@ -44,44 +46,110 @@ impl Checker<'_> {
             output: None,
             env: Vec::new(),
             online: false,
+            binding: None,
             origin: span,
         };
-        let mut runs = false;
         for member in &system.members {
-            match &member.kind {
-                Member::Run(text) => {
-                    runs = true;
-                    resolved.run = words(&text.text);
-                    if text.text.trim().is_empty() {
-                        self.report(names::missing(
-                            text.span,
-                            "the command is empty",
-                            "write `run \"python3 robot.py\"`",
-                        ));
-                    }
-                }
-                Member::Coverage(files) => resolved.coverage.extend(files.iter().map(|f| f.text.clone())),
-                Member::Limit(e) => {
-                    resolved.limit = self.time(e, "the limit", true).map_or(resolved.limit, nanos);
-                }
-                Member::Budget(e) => {
-                    resolved.budget = self.time(e, "the budget", true).map_or(resolved.budget, nanos);
-                }
-                Member::Cpu(e) => resolved.cpu = self.time(e, "the processor time", true).map(nanos),
-                Member::Wall(e) => resolved.wall = self.time(e, "the wall time", true).map(nanos),
-                Member::Memory(e) => resolved.memory = self.amount_of_data(e, "the memory"),
-                Member::Output(e) => resolved.output = self.amount_of_data(e, "the output"),
-                Member::Env(names) => resolved.env.extend(names.iter().map(|n| n.text.clone())),
-                Member::Online => resolved.online = true,
-                Member::Error => runs = true,
-            }
+            self.system_member(member, &mut resolved);
         }
-        if !runs {
-            let message = "the system has no command to run";
-            self.report(names::missing(system.actor.span, message, "add `run \"python3 robot.py\"`"));
-        }
+        self.programs(system, &mut resolved);
         resolved
     }
+
+    fn system_member(&mut self, member: &ast::SystemMember, resolved: &mut SystemUnderTest<TypedExpr>) {
+        match &member.kind {
+            Member::Limit(e) => {
+                resolved.limit = self.time(e, "the limit", true).map_or(resolved.limit, nanos);
+            }
+            Member::Budget(e) => {
+                resolved.budget = self.time(e, "the budget", true).map_or(resolved.budget, nanos);
+            }
+            Member::Cpu(e) => resolved.cpu = self.time(e, "the processor time", true).map(nanos),
+            Member::Wall(e) => resolved.wall = self.time(e, "the wall time", true).map(nanos),
+            Member::Memory(e) => resolved.memory = self.amount_of_data(e, "the memory"),
+            Member::Output(e) => resolved.output = self.amount_of_data(e, "the output"),
+            Member::Env(names) => resolved.env.extend(names.iter().map(|n| n.text.clone())),
+            Member::Online => resolved.online = true,
+            Member::Middleware(middleware) => {
+                if let Some(first) = &resolved.binding {
+                    let first = first.origin;
+                    self.report(names::twice("middleware", member.span, first));
+                    return;
+                }
+                resolved.binding = self.middleware(middleware, resolved.actor, member.span);
+            }
+            Member::Run(_) | Member::Coverage(_) | Member::Program(_) | Member::Error => {}
+        }
+    }
+
+    /// The programs that are named; or the one whose command stands in the system itself.
+    fn programs(&mut self, system: &ast::SystemSyntax, resolved: &mut SystemUnderTest<TypedExpr>) {
+        let broken = system.members.iter().any(|m| m.kind == Member::Error);
+        let own = self.program(&system.actor, &system.members);
+        let mut known: Vec<(String, Span)> = Vec::new();
+        for member in &system.members {
+            let Member::Program(program) = &member.kind else { continue };
+            let name = &program.name;
+            if let Some((_, first)) = known.iter().find(|(n, _)| *n == name.text) {
+                self.report(names::duplicate(Noun::Program, &name.text, name.span, Some(*first)));
+            }
+            known.push((name.text.clone(), name.span));
+            for inner in &program.members {
+                if !matches!(inner.kind, Member::Run(_) | Member::Coverage(_) | Member::Error) {
+                    self.report(systems::not_of_a_program(inner.span));
+                }
+            }
+            let checked = self.program(name, &program.members);
+            let unread = program.members.iter().any(|m| m.kind == Member::Error);
+            if checked.run.is_empty() && !unread && !has_run(&program.members) {
+                let message = format!("the program `{}` has no command to run", name.text);
+                self.report(names::missing(name.span, message, "add `run \"python3 robot.py\"`"));
+            }
+            resolved.programs.push(checked);
+        }
+        let alone = system.members.iter().find(|m| matches!(m.kind, Member::Run(_) | Member::Coverage(_)));
+        match alone {
+            Some(member) if !resolved.programs.is_empty() => {
+                self.report(systems::beside_programs(member.span));
+            }
+            _ if !resolved.programs.is_empty() => {}
+            _ => {
+                if !broken && !has_run(&system.members) {
+                    let message = "the system has no command to run";
+                    let help = "add `run \"python3 robot.py\"`";
+                    self.report(names::missing(system.actor.span, message, help));
+                }
+                resolved.programs.push(own);
+            }
+        }
+    }
+
+    fn program(&mut self, name: &ast::NameSyntax, members: &[ast::SystemMember]) -> SystemProgram {
+        let mut program = SystemProgram {
+            name: name.text.clone(),
+            run: Vec::new(),
+            coverage: Vec::new(),
+            origin: name.span,
+        };
+        for member in members {
+            match &member.kind {
+                Member::Run(text) => {
+                    program.run = words(&text.text);
+                    if text.text.trim().is_empty() {
+                        let message = "the command is empty";
+                        self.report(names::missing(text.span, message, "write `run \"python3 robot.py\"`"));
+                    }
+                }
+                Member::Coverage(files) => program.coverage.extend(files.iter().map(|f| f.text.clone())),
+                _ => {}
+            }
+        }
+        program
+    }
+}
+
+fn has_run(members: &[ast::SystemMember]) -> bool {
+    members.iter().any(|m| matches!(m.kind, Member::Run(_)))
 }
 
 /// Splits a command at white space; quotes, single or double, keep words together.

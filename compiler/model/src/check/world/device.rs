@@ -1,5 +1,6 @@
 //! Devices: the commands of each kind, checked against the primitives of the world, and the rules that wait for them.
 
+use hrdsl_ir::world::DeviceId;
 use hrdsl_ir::{
     ListOf,
     device::{
@@ -190,7 +191,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The device that a path names; if there is none, one of these sorts was meant.
-    fn device_of(
+    pub(in crate::check) fn device_of(
         &mut self,
         path: &ast::PathSyntax,
         meant: &[DeviceSort],
@@ -215,6 +216,13 @@ impl<'a> Checker<'a> {
         let noun = if let [only] = meant { noun_of(*only) } else { Noun::Device };
         self.world_name(noun, &path.names, prefix);
         None
+    }
+}
+
+impl Checker<'_> {
+    /// Its place among all devices of the world: the arms, then the grippers.
+    pub(in crate::check) fn device_id(&self, body: DeviceBody) -> DeviceId {
+        self.s.world.as_ref().map_or(DeviceId(0), |world| world.device_id(body))
     }
 }
 

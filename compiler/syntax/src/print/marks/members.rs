@@ -4,7 +4,7 @@ use crate::ast::{
     AccessSyntax, AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, AutomatonSyntax,
     DeviceMember, DeviceMemberKind, EdgeActionKind, EdgeSyntax, FormulaSyntax, FunctionSyntax, PlanSyntax,
     QuerySyntax, RuleTriggerSyntax, StatementSyntax, StatementSyntaxKind, StepSyntax, StepSyntaxKind,
-    SuiteMemberKind, SystemMemberKind, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
+    SuiteMemberKind, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
 };
 use crate::print::marks::{BlockKind, TokenMarker};
 use crate::token::TokenKind;
@@ -249,7 +249,7 @@ impl TokenMarker<'_> {
         }
     }
 
-    // ── Suites, tests, system ──
+    // ── Suites, tests ──
 
     pub(super) fn suite_member(&mut self, kind: &SuiteMemberKind) {
         match kind {
@@ -287,22 +287,6 @@ impl TokenMarker<'_> {
             | TestMemberKind::Because(_)
             | TestMemberKind::Predicts(_)
             | TestMemberKind::Error => {}
-        }
-    }
-
-    pub(super) fn system_member(&mut self, kind: &SystemMemberKind) {
-        match kind {
-            SystemMemberKind::Limit(expr)
-            | SystemMemberKind::Budget(expr)
-            | SystemMemberKind::Cpu(expr)
-            | SystemMemberKind::Wall(expr)
-            | SystemMemberKind::Memory(expr)
-            | SystemMemberKind::Output(expr) => self.expr(expr),
-            SystemMemberKind::Run(_)
-            | SystemMemberKind::Coverage(_)
-            | SystemMemberKind::Env(_)
-            | SystemMemberKind::Online
-            | SystemMemberKind::Error => {}
         }
     }
 

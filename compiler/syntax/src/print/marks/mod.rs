@@ -1,6 +1,7 @@
 //! What the tree knows of single tokens, and the tokens alone do not tell: declarations and stimuli here, other members in
 //! `members`, what they are made of in `terms`.
 
+mod bindings;
 mod members;
 mod terms;
 
@@ -36,7 +37,7 @@ pub(in crate::print) struct TokenMark {
     pub apart: bool,
     /// A sign that belongs to what follows.
     pub prefix: bool,
-    /// `..` between two small operands.
+    /// `..` between two small operands; `/` in the name of a ROS interface.
     pub tight: bool,
     /// A brace that opens a block.
     pub block: Option<BlockKind>,
@@ -182,10 +183,7 @@ impl TokenMarker<'_> {
             world.members.iter().for_each(|m| self.world_member(m));
         }
         if let ItemSyntaxKind::System(system) = kind {
-            for member in &system.members {
-                self.start(member.span.start);
-                self.system_member(&member.kind);
-            }
+            system.members.iter().for_each(|m| self.system_member(m));
         }
         if let ItemSyntaxKind::Test(test) = kind {
             for member in &test.members {

@@ -1,0 +1,238 @@
+//! What is bound to a middleware: which messages of the system's programs mean what in the scenario, as data.
+//!
+//! The scenario takes part in the middleware's graph like a further program: it publishes what the world shows, hears what the
+//! programs say, and serves what they ask.
+
+use hrdsl_source::Span;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    event::{EventId, EventPattern},
+    expr::Expr,
+    value::{Nanos, Type},
+    world::{DeviceCommandId, DeviceId, SignalId},
+};
+
+/// Which client libraries the programs use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MiddlewareKind {
+    Ros1,
+    Ros2,
+}
+
+impl MiddlewareKind {
+    /// As it is written, and as the programs' environment tells it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            MiddlewareKind::Ros1 => "ros1",
+            MiddlewareKind::Ros2 => "ros2",
+        }
+    }
+}
+
+/// All that a system's programs share with the scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MiddlewareBinding<E = Expr> {
+    pub kind: MiddlewareKind,
+    /// The table of all interfaces that the programs can use: JSON, as `spec/messages.md` describes it.
+    pub interfaces: String,
+    pub inputs: Vec<TopicInput<E>>,
+    pub outputs: Vec<TopicOutput<E>>,
+    pub services: Vec<BoundService<E>>,
+    pub actions: Vec<BoundAction<E>>,
+    pub groups: Vec<PlanningGroup>,
+    pub transitions: Vec<TransitionRule>,
+    pub origin: Span,
+}
+
+/// A topic that the scenario publishes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TopicInput<E = Expr> {
+    pub topic: String,
+    pub interface: String,
+    /// Between two messages; `None`: one at each event that it speaks of.
+    pub period: Option<Nanos>,
+    /// Who subscribes later gets the last one.
+    pub latched: bool,
+    pub message: MessageTemplate<E>,
+    pub origin: Span,
+}
+
+/// A message with gaps for values.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MessageTemplate<E = Expr> {
+    /// JSON around the gaps: one piece more than there are.
+    pub text: Vec<String>,
+    pub gaps: Vec<MessageGap<E>>,
+}
+
+/// What stands in a gap.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MessageGap<E = Expr> {
+    pub value: GapValue<E>,
+    pub scalar: MessageScalar,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GapValue<E = Expr> {
+    /// True from when one of these has happened, for so long; of a time of zero, at that instant.
+    Held { events: Vec<EventPattern>, time: Nanos },
+    /// `Expr::Var(i)` is `reads[i]`.
+    Value { value: E, reads: Vec<GapRead> },
+    /// The time of the message, as clocks of the programs tell it.
+    Now,
+}
+
+impl<E> GapValue<E> {
+    /// Whether something that happens sets it.
+    #[must_use]
+    pub fn is_of_events(&self) -> bool {
+        match self {
+            GapValue::Held { .. } => true,
+            GapValue::Value { reads, .. } => reads.iter().any(|r| matches!(r, GapRead::Argument { .. })),
+            GapValue::Now => false,
+        }
+    }
+}
+
+/// What an expression in a gap may read.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GapRead {
+    Signal(SignalId),
+    /// An argument of the last occurrence of an event; before the first, `initial`.
+    Argument {
+        event: EventId,
+        param: u16,
+        initial: crate::Value,
+    },
+}
+
+/// What a field can hold, as far as a binding is concerned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MessageScalar {
+    Bool,
+    /// A whole number of `lo..=hi`.
+    Int {
+        lo: i64,
+        hi: i64,
+    },
+    Float,
+    Text,
+    /// Seconds and nanoseconds.
+    Time,
+}
+
+/// A topic that the scenario hears.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TopicOutput<E = Expr> {
+    /// `*` stands for one or more characters that are no `/`.
+    pub topic: String,
+    pub interface: String,
+    pub rules: MessageRules<E>,
+    pub origin: Span,
+}
+
+/// What a message makes happen, rule by rule.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MessageRules<E = Expr> {
+    /// What the rules read of the message: `Expr::Var(i)` is `reads[i]`.
+    pub reads: Vec<MessageRead>,
+    pub rules: Vec<MessageRule<E>>,
+}
+
+/// A place in a message.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MessageRead {
+    pub path: Vec<MessageStep>,
+    pub ty: Type,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MessageStep {
+    Field(String),
+    Element(u32),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MessageRule<E = Expr> {
+    /// A boolean; `None`: always.
+    pub guard: Option<E>,
+    /// Only if it was false, or there was none, at the message before.
+    pub rising: bool,
+    pub effect: MessageEffect<E>,
+    pub origin: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MessageEffect<E = Expr> {
+    Emit {
+        event: EventId,
+        args: Vec<E>,
+    },
+    /// The numbers of each argument that is given, in the order of the command's parameters.
+    Command {
+        device: DeviceId,
+        command: DeviceCommandId,
+        args: Vec<Option<CommandArgument<E>>>,
+    },
+}
+
+/// An argument of a command.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CommandArgument<E = Expr> {
+    /// One number, or as many as the parameter has.
+    Numbers(Vec<E>),
+    /// All numbers of a sequence in the message, or the one that stands there.
+    Sequence(Vec<MessageStep>),
+    /// Which of these the `*` of the topic stands for, counted from 0. A message of any other topic is not heard.
+    Wildcard { names: Vec<String> },
+    /// Of a joint trajectory, the angles of these joints at each point.
+    TrackPositions { names: Vec<String> },
+    /// Of a joint trajectory, the time of each point.
+    TrackTimes,
+}
+
+/// A service that the scenario serves; it answers at once.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundService<E = Expr> {
+    pub service: String,
+    pub interface: String,
+    pub rules: MessageRules<E>,
+    pub response: MessageTemplate<E>,
+    pub origin: Span,
+}
+
+/// An action that the scenario serves. A goal that no rule fits is rejected; one that commands a device ends with the command.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundAction<E = Expr> {
+    pub action: String,
+    pub interface: String,
+    pub rules: MessageRules<E>,
+    pub result: MessageTemplate<E>,
+    pub origin: Span,
+}
+
+/// A name under which the programs plan the motions of an arm.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlanningGroup {
+    pub name: String,
+    pub device: DeviceId,
+}
+
+/// What a transition of a program's state machine means.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TransitionRule {
+    pub from: String,
+    pub to: String,
+    pub event: EventId,
+    pub args: Vec<crate::Value>,
+    pub origin: Span,
+}

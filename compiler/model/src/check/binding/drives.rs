@@ -1,0 +1,96 @@
+//! `drives DEVICE`: what the usual messages of robots tell a device, as a rule of a command.
+
+use hrdsl_ir::{
+    binding::{CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep},
+    device::{DeviceBody, DeviceSort},
+};
+use hrdsl_messages::InterfaceName;
+use hrdsl_syntax::ast::{PathSyntax, TextSyntax};
+
+use super::BindingScope;
+use crate::check::checker::Checker;
+use crate::{TypedExpr, report::bindings};
+
+/// A message that drives devices of a sort, by which command.
+struct DeviceDrive {
+    sort: DeviceSort,
+    package: &'static str,
+    message: &'static str,
+    command: &'static str,
+    /// As a person says it.
+    says: &'static str,
+}
+
+const DRIVES: [DeviceDrive; 2] = [
+    DeviceDrive {
+        sort: DeviceSort::Arm,
+        package: "std_msgs",
+        message: "Float64",
+        command: "aim",
+        says: "`std_msgs/Float64` aims one joint of an arm",
+    },
+    DeviceDrive {
+        sort: DeviceSort::Arm,
+        package: "trajectory_msgs",
+        message: "JointTrajectory",
+        command: "follow",
+        says: "`trajectory_msgs/JointTrajectory` moves an arm",
+    },
+];
+
+impl<'a> Checker<'a> {
+    /// Adds the rule.
+    pub(super) fn driven(
+        &mut self,
+        scope: BindingScope<'a>,
+        topic: &TextSyntax,
+        device: &PathSyntax,
+        message: &InterfaceName,
+        rules: &mut MessageRules<TypedExpr>,
+    ) {
+        let sorts: Vec<DeviceSort> = DRIVES.iter().map(|d| d.sort).collect();
+        let Some(body) = self.device_of(device, &sorts, "") else { return };
+        let is = |d: &&DeviceDrive| {
+            d.sort == body.sort() && d.package == message.package && d.message == message.name
+        };
+        let Some(drive) = DRIVES.iter().find(is) else {
+            let ways: Vec<&str> = DRIVES.iter().map(|d| d.says).collect();
+            let written = message.written(scope.library.version());
+            let issue =
+                bindings::no_way_to_drive(body.sort().name(), &written, &ways.join(", "), device.span);
+            self.report(issue);
+            return;
+        };
+        if drive.command == "aim" && !topic.text.contains('*') {
+            self.report(bindings::no_wildcard(topic.span));
+            return;
+        }
+        let kind = self.s.device_kinds.iter().find(|kind| kind.sort == body.sort());
+        // INVARIANT: the library declares the commands above; a test compiles a drive of each.
+        let Some(command) = kind.and_then(|kind| kind.command(drive.command)) else { return };
+        let joints = self.joint_names(body);
+        let args = match drive.command {
+            "aim" => vec![
+                Some(CommandArgument::Wildcard { names: joints }),
+                Some(CommandArgument::Sequence(vec![MessageStep::Field("data".to_owned())])),
+            ],
+            _ => vec![
+                Some(CommandArgument::TrackPositions { names: joints }),
+                Some(CommandArgument::TrackTimes),
+            ],
+        };
+        let effect = MessageEffect::Command { device: self.device_id(body), command, args };
+        rules.rules.push(MessageRule { guard: None, rising: false, effect, origin: device.span });
+    }
+
+    /// The joints of an arm, from its base, without the prefix of their part.
+    fn joint_names(&self, body: DeviceBody) -> Vec<String> {
+        let (Some(world), DeviceBody::Arm(arm)) = (&self.s.world, body) else { return Vec::new() };
+        let joints = world.arms.get(usize::from(arm.0)).map(|a| a.joints.as_slice()).unwrap_or_default();
+        let name = |id: &crate::JointId| {
+            let name = world.joints.get(usize::from(id.0)).map_or("", |j| j.name.as_str());
+            name.rsplit('.').next().unwrap_or(name).to_owned()
+        };
+        joints.iter().map(name).collect()
+    }
+}

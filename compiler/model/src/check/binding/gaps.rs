@@ -1,0 +1,152 @@
+//! The value of a field: of an event that holds for some time, or of an expression over signals and the arguments of events.
+
+use hrdsl_ir::binding::{GapRead, GapValue, MessageScalar};
+use hrdsl_ir::value::nanos;
+use hrdsl_source::Span;
+use hrdsl_syntax::ast::{self, BinaryOp, CallSyntax, ExprSyntaxKind as Syntax};
+
+use super::{BindingScope, entries::BindingPlace};
+use crate::check::{checker::Checker, state::scope::ExprEnv};
+use crate::{
+    ActorId, EventId, InferredType, Type, TypedExpr, Value, VariableRef, noun::Noun, report::bindings,
+};
+
+impl<'a> Checker<'a> {
+    pub(super) fn gap_value(
+        &mut self,
+        scope: BindingScope<'a>,
+        place: BindingPlace,
+        scalar: MessageScalar,
+        value: &ast::ExprSyntax,
+    ) -> Option<GapValue<TypedExpr>> {
+        if let Some((what, time)) = held(value) {
+            let time = self.time(time, "the time", true).map_or(0, nanos);
+            return self.held(scope, scalar, what, time);
+        }
+        if self.names_event(value) {
+            if place.periodic {
+                self.report(bindings::held_for_how_long(value.span));
+                return None;
+            }
+            return self.held(scope, scalar, value, 0);
+        }
+        let (mut env, reads) = self.heard_arguments(scope.actor);
+        let value = self.expr(value, &mut env);
+        let value = self.fitting(value, scalar)?;
+        let mut is_read = false;
+        value.each_leaf(&mut |leaf| is_read |= matches!(leaf, VariableRef::Local(_)));
+        Some(GapValue::Value { value, reads: if is_read { reads } else { Vec::new() } })
+    }
+
+    /// `held(leg_request, 5 s)`
+    fn held(
+        &mut self,
+        scope: BindingScope<'a>,
+        scalar: MessageScalar,
+        what: &ast::ExprSyntax,
+        time: i64,
+    ) -> Option<GapValue<TypedExpr>> {
+        if !matches!(scalar, MessageScalar::Bool | MessageScalar::Int { .. }) {
+            self.report(bindings::does_not_fit("true or false", scalar, what.span));
+            return None;
+        }
+        let Some(calls) = events(what) else {
+            self.report(bindings::no_event(what.span));
+            return None;
+        };
+        let found = self.patterns_with(&calls, &mut ExprEnv::constants());
+        for (pattern, span) in &found {
+            self.perceives(scope.actor, pattern.event, *span, false);
+        }
+        let events: Vec<_> = found.into_iter().map(|(pattern, _)| pattern).collect();
+        (!events.is_empty()).then_some(GapValue::Held { events, time })
+    }
+
+    /// Whether a value is written as the name of an event.
+    fn names_event(&self, value: &ast::ExprSyntax) -> bool {
+        let is_event = |name: &str| self.kind_of(name) == Some(Noun::Event);
+        events(value).is_some_and(|calls| calls.iter().all(|call| is_event(&call.name.text)))
+    }
+
+    /// Signals, measurements, and `EVENT.PARAMETER` of what the actor hears.
+    fn heard_arguments(&self, actor: ActorId) -> (ExprEnv, Vec<GapRead>) {
+        let (mut env, mut reads) = (ExprEnv::measured(""), Vec::new());
+        for (event, id) in self.s.events.iter().zip(0u16..) {
+            let hears = event.stimulus.is_none()
+                && event.from != actor
+                && (event.to.is_empty() || event.to.contains(&actor));
+            if !hears {
+                continue;
+            }
+            for (param, at) in event.params.iter().zip(0u16..) {
+                let place = self.events.table.span(id).unwrap_or_default();
+                env.push_typed(&format!("{}.{}", event.name, param.name), place, Noun::Parameter, param.ty);
+                let initial = initial(param.ty);
+                reads.push(GapRead::Argument { event: EventId(id), param: at, initial });
+            }
+        }
+        (env, reads)
+    }
+
+    /// Whether a field can hold the value.
+    fn fitting(&mut self, value: TypedExpr, scalar: MessageScalar) -> Option<TypedExpr> {
+        let fits = match (scalar, value.ty) {
+            (_, InferredType::Unknown) => return None,
+            (MessageScalar::Bool | MessageScalar::Int { .. }, InferredType::Bool)
+            | (MessageScalar::Float, InferredType::Int | InferredType::Float(_))
+            | (MessageScalar::Text, InferredType::Text | InferredType::Enum(_)) => true,
+            (MessageScalar::Int { lo, hi }, InferredType::Int) => {
+                self.in_range(&value, Type::Int { lo, hi });
+                true
+            }
+            (
+                MessageScalar::Bool
+                | MessageScalar::Int { .. }
+                | MessageScalar::Float
+                | MessageScalar::Text
+                | MessageScalar::Time,
+                _,
+            ) => false,
+        };
+        if !fits {
+            self.report(bindings::does_not_fit(&value.ty.to_string(), scalar, value.span));
+        }
+        fits.then_some(value)
+    }
+}
+
+/// What an argument is before its event has happened.
+fn initial(ty: Type) -> Value {
+    match ty {
+        Type::Bool => Value::Bool(false),
+        Type::Int { lo, hi } => Value::Int(0_i64.clamp(lo, hi.max(lo))),
+        Type::Float(_) => Value::Float(0.0),
+        Type::Enum(of) => of.values().first().map_or(Value::Bool(false), |v| Value::Symbol(*v)),
+        Type::Text | Type::List(_) => Value::Bool(false),
+    }
+}
+
+/// The two arguments of `held(…, …)`.
+fn held(value: &ast::ExprSyntax) -> Option<(&ast::ExprSyntax, &ast::ExprSyntax)> {
+    let Syntax::Call { callee, args } = &value.kind else { return None };
+    let ([name], [what, time]) = (callee.names.as_slice(), args.as_slice()) else { return None };
+    (name.text == "held").then_some((what, time))
+}
+
+/// `a`, `a(1)`, `a or b` as patterns of events.
+fn events(what: &ast::ExprSyntax) -> Option<Vec<CallSyntax>> {
+    let call = |callee: &ast::PathSyntax, args: Option<Vec<ast::ExprSyntax>>, span: Span| {
+        let [name] = callee.names.as_slice() else { return None };
+        Some(vec![CallSyntax { name: name.clone(), args, span }])
+    };
+    match &what.kind {
+        Syntax::Path(path) => call(path, None, what.span),
+        Syntax::Call { callee, args } => call(callee, Some(args.clone()), what.span),
+        Syntax::Binary { op: BinaryOp::Or, left, right } => {
+            let (mut all, more) = (events(left)?, events(right)?);
+            all.extend(more);
+            Some(all)
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,138 @@
+//! Bindings: interfaces of ROS, their fields, and what can be said of them.
+
+use hrdsl_ir::{binding::MessageScalar, device::CommandParam};
+use hrdsl_messages::{MessageFault, UnknownInterface};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
+
+use super::names::with_nearest;
+use crate::noun::Noun;
+
+/// HR0805: a definition with a fault, or a workspace.
+pub(crate) fn fault(fault: &MessageFault) -> Diagnostic {
+    let message = fault.kind.to_string();
+    let error =
+        Diagnostic::error(DiagnosticCode::BAD_DEFINITION, fault.span, message).help(fault.help.clone());
+    match fault.first {
+        Some(first) => error.label(first, "the first is here"),
+        None => error,
+    }
+}
+
+/// HR0101
+pub(crate) fn unknown_interface(unknown: &UnknownInterface, span: Span) -> Diagnostic {
+    let error = Diagnostic::error(DiagnosticCode::UNKNOWN_NAME, span, unknown.to_string());
+    match &unknown.nearest {
+        Some(near) => error.help(format!("did you mean `{near}`?")),
+        None => error.help("name the workspace that defines it: `messages \"PATH\"`"),
+    }
+}
+
+/// HR0101
+pub(crate) fn unknown_field<'n>(
+    field: &str,
+    of: &str,
+    span: Span,
+    known: impl IntoIterator<Item = &'n str>,
+) -> Diagnostic {
+    let of = if of.is_empty() { "the message".to_owned() } else { format!("`{of}`") };
+    let message = format!("{of} has no field `{field}`");
+    with_nearest(Diagnostic::error(DiagnosticCode::UNKNOWN_NAME, span, message), Noun::Field, field, known)
+}
+
+/// HR0201: a field that is a message itself.
+pub(crate) fn several_values(field: &str, parts: &[String], span: Span) -> Diagnostic {
+    let message = format!("`{field}` holds several values");
+    let error = Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message);
+    match parts.first() {
+        Some(part) => error.help(format!("name one of them, such as `{field}.{part}`")),
+        None => error,
+    }
+}
+
+/// HR0201: an array, or nothing that is there.
+pub(crate) fn not_one_value(field: &str, span: Span) -> Diagnostic {
+    let message = format!("`{field}` is not one value");
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
+        .help("of an array of a fixed length, name an element, counted from 0: `field[0] = …`")
+}
+
+/// HR0201: a value that a field cannot hold.
+pub(crate) fn does_not_fit(value: &str, field: MessageScalar, span: Span) -> Diagnostic {
+    let holds = match field {
+        MessageScalar::Bool => "true or false",
+        MessageScalar::Int { .. } => "a whole number",
+        MessageScalar::Float => "a number",
+        MessageScalar::Text => "text",
+        MessageScalar::Time => "a time, which is set by itself in the header",
+    };
+    let message = format!("the field holds {holds}, but this is {value}");
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
+}
+
+/// HR0201: an argument of a command that takes several numbers.
+pub(crate) fn other_argument(param: &CommandParam, span: Span) -> Diagnostic {
+    let message = format!("`{}` takes {}", param.name, param.ty);
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
+        .help("name a field with a sequence of numbers, or write them: `[a, b]`, `(x, y, z)`")
+}
+
+/// HR0806
+fn bad_binding(span: Span, message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(DiagnosticCode::BAD_BINDING, span, message).help(help)
+}
+
+/// HR0806
+pub(crate) fn bad_name(name: &str, wild: bool, span: Span) -> Diagnostic {
+    let help = if wild {
+        "write it from the root, as `/arm/joint/command`; one `*` may stand for a part that varies"
+    } else {
+        "write it from the root, as `/human_signals`"
+    };
+    bad_binding(span, format!("`{name}` is no name of a topic, service or action"), help)
+}
+
+/// HR0806
+pub(crate) fn never_published(span: Span) -> Diagnostic {
+    let help = "give it a rate, as `in at 10 Hz`, or let a field speak of an event, or make it `latched`";
+    bad_binding(span, "nothing makes a message of this topic", help)
+}
+
+/// HR0806
+pub(crate) fn held_for_how_long(span: Span) -> Diagnostic {
+    let help = "write for how long, as `held(leg_request, 5 s)`";
+    bad_binding(span, "an event is over at once, but messages go at a rate", help)
+}
+
+/// HR0806
+pub(crate) fn no_event(span: Span) -> Diagnostic {
+    bad_binding(span, "`held` needs an event", "write `held(leg_request, 5 s)`")
+}
+
+/// HR0806
+pub(crate) fn no_fields(span: Span) -> Diagnostic {
+    let help = "write what a message means: `emit decided(true) when data == 1`";
+    bad_binding(span, "the programs make these messages: their fields are given no values", help)
+}
+
+/// HR0806
+pub(crate) fn no_rules(span: Span) -> Diagnostic {
+    let help = "write what its fields hold: `data = held(leg_request, 5 s)`";
+    bad_binding(span, "the programs hear these messages, and do not make them", help)
+}
+
+/// HR0806
+pub(crate) fn too_large(span: Span) -> Diagnostic {
+    bad_binding(span, "the message holds more than 100000 values", "bind a smaller one")
+}
+
+/// HR0806
+pub(crate) fn no_way_to_drive(device: &str, interface: &str, ways: &str, span: Span) -> Diagnostic {
+    let message = format!("messages of the type `{interface}` drive no {device}");
+    bad_binding(span, message, format!("{ways}; for others, write a rule: `move_joints robot.arm(position)`"))
+}
+
+/// HR0806
+pub(crate) fn no_wildcard(span: Span) -> Diagnostic {
+    let help = "write `*` in the topic where the joint's name stands: `/arm/*_controller/command`";
+    bad_binding(span, "one number drives one joint, and the topic does not say which", help)
+}

@@ -1,0 +1,165 @@
+//! Systems: what their bindings read of the world becomes signals, and what they read of messages only that.
+
+use hrdsl_ir::{
+    Expr,
+    binding::{
+        BoundAction, BoundService, CommandArgument, GapRead, GapValue, MessageEffect, MessageGap,
+        MessageRead, MessageRule, MessageRules, MessageTemplate, MiddlewareBinding, TopicInput, TopicOutput,
+    },
+    system::SystemUnderTest,
+    world::SignalId,
+};
+use hrdsl_model::{TypedExpr, VariableRef};
+
+use super::{
+    expr::{LeafSource, expr},
+    world::SignalTable,
+};
+
+pub(crate) fn system(system: &SystemUnderTest<TypedExpr>, signals: &mut SignalTable<'_>) -> SystemUnderTest {
+    SystemUnderTest {
+        name: system.name.clone(),
+        actor: system.actor,
+        programs: system.programs.clone(),
+        limit: system.limit,
+        budget: system.budget,
+        cpu: system.cpu,
+        wall: system.wall,
+        memory: system.memory,
+        output: system.output,
+        env: system.env.clone(),
+        online: system.online,
+        binding: system.binding.as_ref().map(|b| binding(b, signals)),
+        origin: system.origin,
+    }
+}
+
+fn binding(b: &MiddlewareBinding<TypedExpr>, signals: &mut SignalTable<'_>) -> MiddlewareBinding {
+    let input = |t: &TopicInput<TypedExpr>| TopicInput {
+        topic: t.topic.clone(),
+        interface: t.interface.clone(),
+        period: t.period,
+        latched: t.latched,
+        message: template(&t.message, signals),
+        origin: t.origin,
+    };
+    let inputs = b.inputs.iter().map(input).collect();
+    let output = |t: &TopicOutput<TypedExpr>| TopicOutput {
+        topic: t.topic.clone(),
+        interface: t.interface.clone(),
+        rules: rules(&t.rules),
+        origin: t.origin,
+    };
+    let service = |s: &BoundService<TypedExpr>, signals: &mut SignalTable<'_>| BoundService {
+        service: s.service.clone(),
+        interface: s.interface.clone(),
+        rules: rules(&s.rules),
+        response: template(&s.response, signals),
+        origin: s.origin,
+    };
+    let action = |a: &BoundAction<TypedExpr>, signals: &mut SignalTable<'_>| BoundAction {
+        action: a.action.clone(),
+        interface: a.interface.clone(),
+        rules: rules(&a.rules),
+        result: template(&a.result, signals),
+        origin: a.origin,
+    };
+    MiddlewareBinding {
+        kind: b.kind,
+        interfaces: b.interfaces.clone(),
+        inputs,
+        outputs: b.outputs.iter().map(output).collect(),
+        services: b.services.iter().map(|s| service(s, signals)).collect(),
+        actions: b.actions.iter().map(|a| action(a, signals)).collect(),
+        groups: b.groups.clone(),
+        transitions: b.transitions.clone(),
+        origin: b.origin,
+    }
+}
+
+fn template(t: &MessageTemplate<TypedExpr>, signals: &mut SignalTable<'_>) -> MessageTemplate {
+    let gap = |gap: &MessageGap<TypedExpr>| MessageGap {
+        value: match &gap.value {
+            GapValue::Held { events, time } => GapValue::Held { events: events.clone(), time: *time },
+            GapValue::Now => GapValue::Now,
+            GapValue::Value { value, reads } => read_value(value, reads, signals),
+        },
+        scalar: gap.scalar,
+    };
+    MessageTemplate { text: t.text.clone(), gaps: t.gaps.iter().map(gap).collect() }
+}
+
+/// Only what the expression reads is kept, arguments of events and signals alike.
+fn read_value(value: &TypedExpr, reads: &[GapRead], signals: &mut SignalTable<'_>) -> GapValue {
+    let mut kept: Vec<GapRead> = Vec::new();
+    let value = expr(value, &mut |source| {
+        let signal = |at: usize| GapRead::Signal(SignalId(u16::try_from(at).unwrap_or(u16::MAX)));
+        let read = match source {
+            LeafSource::Term(term, e) => signal(signals.of_term(term, e.span)),
+            LeafSource::Leaf(VariableRef::Signal(id)) => signal(usize::from(id.0)),
+            LeafSource::Leaf(VariableRef::Local(at)) => match reads.get(usize::from(at)) {
+                Some(read) => *read,
+                // INVARIANT: the checker numbers the locals by this list.
+                None => return Expr::bool(false),
+            },
+            // INVARIANT: bindings have no other variables.
+            LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_)) => return Expr::bool(false),
+        };
+        var(&mut kept, read)
+    });
+    GapValue::Value { value, reads: kept }
+}
+
+/// The variable that stands for what is read.
+fn var<T: PartialEq>(kept: &mut Vec<T>, read: T) -> Expr {
+    let at = kept.iter().position(|known| *known == read).unwrap_or_else(|| {
+        kept.push(read);
+        kept.len() - 1
+    });
+    Expr::Var(u16::try_from(at).unwrap_or(u16::MAX))
+}
+
+fn rules(r: &MessageRules<TypedExpr>) -> MessageRules {
+    let mut kept: Vec<MessageRead> = Vec::new();
+    let mut lower = |e: &TypedExpr| {
+        expr(e, &mut |source| match source {
+            LeafSource::Leaf(VariableRef::Local(at)) => match r.reads.get(usize::from(at)) {
+                Some(read) => var(&mut kept, read.clone()),
+                // INVARIANT: the checker numbers the locals by this list.
+                None => Expr::bool(false),
+            },
+            // INVARIANT: rules read nothing but the message.
+            LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
+            | LeafSource::Term(..) => Expr::bool(false),
+        })
+    };
+    let rules = r.rules.iter().map(|rule| rule_of(rule, &mut lower)).collect();
+    MessageRules { reads: kept, rules }
+}
+
+fn rule_of(rule: &MessageRule<TypedExpr>, lower: &mut dyn FnMut(&TypedExpr) -> Expr) -> MessageRule {
+    let effect = match &rule.effect {
+        MessageEffect::Emit { event, args } => {
+            MessageEffect::Emit { event: *event, args: args.iter().map(&mut *lower).collect() }
+        }
+        MessageEffect::Command { device, command, args } => {
+            let argument = |arg: &Option<CommandArgument<TypedExpr>>| {
+                Some(match arg.as_ref()? {
+                    CommandArgument::Numbers(all) => {
+                        CommandArgument::Numbers(all.iter().map(&mut *lower).collect())
+                    }
+                    CommandArgument::Sequence(path) => CommandArgument::Sequence(path.clone()),
+                    CommandArgument::Wildcard { names } => CommandArgument::Wildcard { names: names.clone() },
+                    CommandArgument::TrackPositions { names } => {
+                        CommandArgument::TrackPositions { names: names.clone() }
+                    }
+                    CommandArgument::TrackTimes => CommandArgument::TrackTimes,
+                })
+            };
+            let args = args.iter().map(argument).collect();
+            MessageEffect::Command { device: *device, command: *command, args }
+        }
+    };
+    let guard = rule.guard.as_ref().map(lower);
+    MessageRule { guard, rising: rule.rising, effect, origin: rule.origin }
+}

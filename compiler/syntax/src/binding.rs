@@ -1,0 +1,128 @@
+//! Bindings as they are written: what programs of a system say and hear on their middleware, and what it means in the scenario.
+
+use hrdsl_source::Span;
+use serde::Serialize;
+
+use crate::ast::{CallSyntax, ExprSyntax, NameSyntax, PathSyntax, TextSyntax};
+
+/// `ros1 { topic "/scan" : sensor_msgs/LaserScan in at 10 Hz { … } }`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MiddlewareSyntax {
+    /// The keyword.
+    pub version: NameSyntax,
+    pub members: Vec<BindingMember>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BindingMember {
+    pub kind: BindingMemberKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BindingMemberKind {
+    /// `messages "../catkin_ws"`
+    Messages(TextSyntax),
+    /// `topic "/human_signals" : table_simulator/Human in at 10 Hz { … }`
+    TopicIn(TopicInSyntax),
+    /// `topic "/gpl_is_ok" : std_msgs/Int8 out { … }`
+    TopicOut(TopicOutSyntax),
+    /// `service "/get_pose" : my_msgs/GetPose { … }`
+    Service(ServedSyntax),
+    /// `action "/play_motion" : play_motion_msgs/PlayMotion { … }`
+    Action(ServedSyntax),
+    /// `group "body_arm" plans robot.arm`
+    Group {
+        name: TextSyntax,
+        device: PathSyntax,
+    },
+    /// `transition "Receive1" -> "Timeout1" emit timed_out`
+    Transition {
+        from: TextSyntax,
+        to: TextSyntax,
+        emit: CallSyntax,
+    },
+    Error,
+}
+
+/// A topic that the programs hear.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TopicInSyntax {
+    pub name: TextSyntax,
+    pub interface: InterfaceSyntax,
+    /// `at 10 Hz`
+    pub rate: Option<ExprSyntax>,
+    pub latched: Option<Span>,
+    pub entries: Vec<BindingEntry>,
+}
+
+/// A topic on which they speak.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TopicOutSyntax {
+    pub name: TextSyntax,
+    pub interface: InterfaceSyntax,
+    /// `drives robot.base`
+    pub drives: Option<PathSyntax>,
+    pub entries: Vec<BindingEntry>,
+}
+
+/// A service or an action that the scenario serves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ServedSyntax {
+    pub name: TextSyntax,
+    pub interface: InterfaceSyntax,
+    pub entries: Vec<BindingEntry>,
+}
+
+/// `std_msgs/Int8`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct InterfaceSyntax {
+    pub names: Vec<NameSyntax>,
+    pub span: Span,
+}
+
+impl InterfaceSyntax {
+    /// As it is written, without blanks.
+    #[must_use]
+    pub fn text(&self) -> String {
+        self.names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join("/")
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BindingEntry {
+    pub kind: BindingEntryKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BindingEntryKind {
+    /// `pose.position.x = robot_x`
+    Field {
+        field: FieldSyntax,
+        value: ExprSyntax,
+    },
+    /// `emit decided(true) when data == 1`
+    Emit {
+        emit: CallSyntax,
+        when: Option<ExprSyntax>,
+    },
+    /// `close robot.grip when data == 1`
+    Command {
+        command: NameSyntax,
+        device: PathSyntax,
+        args: Option<Vec<ExprSyntax>>,
+        when: Option<ExprSyntax>,
+    },
+    Error,
+}
+
+/// `pose.position.x`, `ranges[0]`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FieldSyntax {
+    pub path: PathSyntax,
+    /// Which element of an array.
+    pub index: Option<ExprSyntax>,
+}

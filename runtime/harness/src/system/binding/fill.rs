@@ -1,0 +1,127 @@
+//! Messages that the scenario makes: the gaps of a template get the values of the moment.
+
+use std::{collections::BTreeMap, fmt::Write as _};
+
+use hrdsl_ir::{
+    EventId, Nanos, Value,
+    binding::{GapRead, GapValue, MessageGap, MessageScalar, MessageTemplate, MiddlewareKind},
+    value::SECOND,
+};
+
+use crate::{stage::WorldStage, system::port::MessageText};
+
+/// What clocks of programs show at the beginning of a test, in seconds since 1970: 2025-01-01 00:00:00 UTC.
+const EPOCH: i64 = 1_735_689_600;
+
+/// What the gaps of a message depend on.
+pub(super) struct GapContext<'a, 'p> {
+    pub kind: MiddlewareKind,
+    pub heard: &'a BTreeMap<EventId, Vec<Value>>,
+    pub now: Nanos,
+    pub stage: Option<&'a mut WorldStage<'p>>,
+}
+
+impl GapContext<'_, '_> {
+    /// The message as JSON. `held` has for each gap when its events last happened.
+    ///
+    /// # Errors
+    /// A value that its field cannot hold.
+    pub fn filled(
+        &mut self,
+        template: &MessageTemplate,
+        held: &[Option<Nanos>],
+    ) -> Result<MessageText, String> {
+        let mut text = template.text.first().cloned().unwrap_or_default();
+        let pieces = template.text.iter().skip(1);
+        for ((gap, since), after) in template.gaps.iter().zip(held).zip(pieces) {
+            self.write(gap, *since, &mut text)?;
+            text.push_str(after);
+        }
+        Ok(text.into())
+    }
+
+    fn write(&mut self, gap: &MessageGap, since: Option<Nanos>, text: &mut String) -> Result<(), String> {
+        let value = match &gap.value {
+            GapValue::Now => {
+                self.time(text);
+                return Ok(());
+            }
+            GapValue::Held { time, .. } => {
+                let holds = since.is_some_and(|since| {
+                    if *time == 0 { since == self.now } else { self.now < since.saturating_add(*time) }
+                });
+                Value::Bool(holds)
+            }
+            GapValue::Value { value, reads } => {
+                let values: Vec<Value> = reads.iter().map(|read| self.read(read)).collect();
+                value.eval(&|i| values.get(usize::from(i)).copied()).map_err(|e| e.to_string())?
+            }
+        };
+        scalar(value, gap.scalar, text)
+    }
+
+    fn read(&mut self, read: &GapRead) -> Value {
+        match read {
+            GapRead::Signal(signal) => {
+                self.stage.as_deref_mut().map_or(Value::Float(f64::NAN), |stage| stage.read(*signal))
+            }
+            GapRead::Argument { event, param, initial } => {
+                let args = self.heard.get(event);
+                args.and_then(|args| args.get(usize::from(*param))).copied().unwrap_or(*initial)
+            }
+        }
+    }
+
+    fn time(&self, text: &mut String) {
+        let (seconds, nanos) = (EPOCH + self.now / SECOND, self.now % SECOND);
+        let (first, second) = match self.kind {
+            MiddlewareKind::Ros1 => ("secs", "nsecs"),
+            MiddlewareKind::Ros2 => ("sec", "nanosec"),
+        };
+        let _ = write!(text, "{{\"{first}\":{seconds},\"{second}\":{nanos}}}");
+    }
+}
+
+/// A value as its field holds it.
+fn scalar(value: Value, field: MessageScalar, text: &mut String) -> Result<(), String> {
+    match (field, value) {
+        (MessageScalar::Bool, Value::Bool(b)) => text.push_str(if b { "true" } else { "false" }),
+        (MessageScalar::Int { .. }, Value::Bool(b)) => text.push(if b { '1' } else { '0' }),
+        (MessageScalar::Int { lo, hi }, Value::Int(n)) if (lo..=hi).contains(&n) => {
+            let _ = write!(text, "{n}");
+        }
+        (MessageScalar::Float, Value::Int(n)) => {
+            let _ = write!(text, "{n}.0");
+        }
+        (MessageScalar::Float, Value::Float(x)) => float(x, text),
+        (MessageScalar::Text, Value::Symbol(symbol)) => quoted(symbol.name(), text),
+        (MessageScalar::Text, Value::Text(words)) => quoted(&words.to_string(), text),
+        (MessageScalar::Int { lo, hi }, value) => {
+            return Err(format!("a field of {lo}..{hi} cannot hold {value}"));
+        }
+        (MessageScalar::Bool | MessageScalar::Float | MessageScalar::Text | MessageScalar::Time, value) => {
+            return Err(format!("a field cannot hold {value}"));
+        }
+    }
+    Ok(())
+}
+
+/// What JSON has no number for is text.
+fn float(x: f64, text: &mut String) {
+    if x.is_finite() {
+        let _ = write!(text, "{x:?}");
+    } else {
+        text.push_str(if x.is_nan() {
+            "\"nan\""
+        } else if x > 0.0 {
+            "\"inf\""
+        } else {
+            "\"-inf\""
+        });
+    }
+}
+
+fn quoted(words: &str, text: &mut String) {
+    // INVARIANT: text has a JSON form.
+    text.push_str(&serde_json::to_string(words).unwrap_or_default());
+}

@@ -1,0 +1,437 @@
+//! The scenario as a node of the system's middleware: it publishes what the world shows, hears what programs say, and serves what
+//! they ask, as the binding says.
+
+mod fill;
+mod read;
+mod rules;
+
+use std::collections::BTreeMap;
+
+use hrdsl_ir::{
+    EventId, Nanos, Program, Value,
+    binding::{GapRead, GapValue, MessageTemplate, MiddlewareBinding, TopicInput},
+};
+
+use super::{
+    graph::{GraphDelivery, MessageGraph, ProgramIndex},
+    port::{GoalEnd, MessageText, PortDeclaration, PortKind},
+    seam::SystemArrival,
+};
+use crate::{player::PlayerContext, world::CommandId};
+use fill::GapContext;
+use rules::RuleState;
+
+/// So many messages wait for the scenario at most; it takes each at once.
+const DEPTH: usize = 1;
+
+/// What the scenario's node does at one of its ports.
+enum BoundPort {
+    Input,
+    /// By the place in the binding, as below.
+    Output {
+        output: usize,
+        wildcard: Option<String>,
+        state: RuleState,
+    },
+    Service {
+        service: usize,
+        state: RuleState,
+    },
+    Action {
+        action: usize,
+        state: RuleState,
+    },
+}
+
+/// When a topic that the scenario publishes is due.
+struct InputTimes {
+    port: u64,
+    /// Of each gap: when one of its events last happened.
+    held: Vec<Option<Nanos>>,
+    /// Between two messages of no rate: when what one says is over.
+    until: Option<Nanos>,
+    /// When the last one went.
+    sent: Option<Nanos>,
+}
+
+pub(super) struct BindingNode<'p> {
+    program: &'p Program,
+    binding: &'p MiddlewareBinding,
+    node: ProgramIndex,
+    ports: BTreeMap<u64, BoundPort>,
+    inputs: Vec<InputTimes>,
+    /// The arguments of the last occurrence of each event.
+    heard: BTreeMap<EventId, Vec<Value>>,
+    /// Goals that end with a command, by the number to answer by.
+    goals: Vec<BoundGoal>,
+    /// Commands whose end nobody is told of.
+    unattended: Vec<CommandId>,
+}
+
+struct BoundGoal {
+    command: CommandId,
+    call: u64,
+    action: usize,
+}
+
+/// What goes to others; or why a message makes no sense.
+pub(super) type BindingOutcome = Result<Vec<GraphDelivery>, String>;
+
+impl<'p> BindingNode<'p> {
+    pub fn new(program: &'p Program, binding: &'p MiddlewareBinding, node: ProgramIndex) -> Self {
+        Self {
+            program,
+            binding,
+            node,
+            ports: BTreeMap::new(),
+            inputs: Vec::new(),
+            heard: BTreeMap::new(),
+            goals: Vec::new(),
+            unattended: Vec::new(),
+        }
+    }
+
+    /// Its place among the system's programs.
+    pub fn node(&self) -> ProgramIndex {
+        self.node
+    }
+
+    /// Opens what has a name of its own, and publishes what is latched.
+    pub fn begin(&mut self, graph: &mut MessageGraph, cx: &mut PlayerContext<'_, '_>) -> BindingOutcome {
+        let binding = self.binding;
+        for input in &binding.inputs {
+            let port =
+                self.open(graph, PortKind::Publisher, &input.topic, &input.interface, input.latched)?;
+            self.ports.insert(port, BoundPort::Input);
+            let held = vec![None; input.message.gaps.len()];
+            self.inputs.push(InputTimes { port, held, until: None, sent: None });
+        }
+        for (at, output) in binding.outputs.iter().enumerate() {
+            if !output.topic.contains('*') {
+                self.listen(graph, at, &output.topic, None)?;
+            }
+        }
+        for (at, service) in binding.services.iter().enumerate() {
+            let port = self.open(graph, PortKind::Server, &service.service, &service.interface, false)?;
+            let state = RuleState::new(&service.rules);
+            self.ports.insert(port, BoundPort::Service { service: at, state });
+        }
+        for (at, action) in binding.actions.iter().enumerate() {
+            let port = self.open(graph, PortKind::ActionServer, &action.action, &action.interface, false)?;
+            let state = RuleState::new(&action.rules);
+            self.ports.insert(port, BoundPort::Action { action: at, state });
+        }
+        let mut out = Vec::new();
+        for at in 0..self.inputs.len() {
+            if binding.inputs.get(at).is_some_and(|input| input.latched) {
+                out.extend(self.publish(at, graph, cx)?);
+            }
+        }
+        Ok(out)
+    }
+
+    /// A program has opened a port: if it publishes at a name with a varying part, the scenario hears it.
+    pub fn opened(&mut self, declared: &PortDeclaration, graph: &mut MessageGraph) -> BindingOutcome {
+        if declared.kind != PortKind::Publisher {
+            return Ok(Vec::new());
+        }
+        let binding = self.binding;
+        let mut out = Vec::new();
+        for (at, output) in binding.outputs.iter().enumerate() {
+            let Some(part) = rules::wildcard(&output.topic, &declared.name) else { continue };
+            let is_heard = self.ports.values().any(|port| {
+                matches!(port, BoundPort::Output { output, wildcard: Some(known), .. }
+                    if *output == at && *known == part)
+            });
+            if !is_heard && rules::knows(&output.rules, &part) {
+                out.extend(self.listen(graph, at, &declared.name, Some(part))?);
+            }
+        }
+        Ok(out)
+    }
+
+    fn listen(
+        &mut self,
+        graph: &mut MessageGraph,
+        output: usize,
+        topic: &str,
+        wildcard: Option<String>,
+    ) -> BindingOutcome {
+        let Some(bound) = self.binding.outputs.get(output) else { return Ok(Vec::new()) };
+        let port = self.ports.len() as u64;
+        let state = RuleState::new(&bound.rules);
+        let declared = declaration(port, PortKind::Subscriber, topic, &bound.interface, false);
+        let out = graph.open(self.node, declared)?;
+        self.ports.insert(port, BoundPort::Output { output, wildcard, state });
+        Ok(out)
+    }
+
+    fn open(
+        &mut self,
+        graph: &mut MessageGraph,
+        kind: PortKind,
+        name: &str,
+        interface: &str,
+        latched: bool,
+    ) -> Result<u64, String> {
+        let port = self.ports.len() as u64;
+        // Nobody else is there yet.
+        graph.open(self.node, declaration(port, kind, name, interface, latched))?;
+        Ok(port)
+    }
+
+    // ── what the programs hear ──
+
+    /// When the next message is due, of those that somebody hears.
+    pub fn next_wake(&self, now: Nanos, graph: &MessageGraph) -> Option<Nanos> {
+        let due = |(times, input): (&InputTimes, &'p TopicInput)| {
+            let hears = graph.has_subscriber(self.node, times.port);
+            let periodic = input.period.filter(|_| hears).map(|period| next_after(now, times.sent, period));
+            periodic.into_iter().chain(times.until).min()
+        };
+        self.inputs.iter().zip(&self.binding.inputs).filter_map(due).min()
+    }
+
+    /// Publishes what is due; ends the goals whose commands have ended.
+    pub fn wake(&mut self, graph: &mut MessageGraph, cx: &mut PlayerContext<'_, '_>) -> BindingOutcome {
+        let binding = self.binding;
+        let mut out = self.ended_goals(graph, cx)?;
+        for (at, input) in binding.inputs.iter().enumerate() {
+            let Some(times) = self.inputs.get(at) else { continue };
+            let hears = graph.has_subscriber(self.node, times.port);
+            let is_fresh = times.sent != Some(cx.now) && cx.now > 0;
+            let on_grid = input.period.is_some_and(|period| hears && is_fresh && cx.now % period.max(1) == 0);
+            if on_grid || times.until.is_some_and(|until| until <= cx.now) {
+                out.extend(self.publish(at, graph, cx)?);
+            }
+        }
+        Ok(out)
+    }
+
+    /// An event that the actor hears.
+    pub fn hear(
+        &mut self,
+        event: EventId,
+        args: &[Value],
+        graph: &mut MessageGraph,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> BindingOutcome {
+        let binding = self.binding;
+        self.heard.insert(event, args.to_vec());
+        let mut out = Vec::new();
+        for (at, input) in binding.inputs.iter().enumerate() {
+            let mut is_said = false;
+            for (gap, place) in input.message.gaps.iter().zip(0..) {
+                let speaks = match &gap.value {
+                    GapValue::Held { events, .. } => events.iter().any(|p| p.matches(event, args)),
+                    GapValue::Value { reads, .. } => {
+                        reads.iter().any(|r| matches!(r, GapRead::Argument { event: of, .. } if *of == event))
+                    }
+                    GapValue::Now => false,
+                };
+                is_said |= speaks;
+                if speaks && let Some(held) = self.inputs.get_mut(at).and_then(|i| i.held.get_mut(place)) {
+                    *held = Some(cx.now);
+                }
+            }
+            if is_said && input.period.is_none() {
+                out.extend(self.publish(at, graph, cx)?);
+            }
+        }
+        Ok(out)
+    }
+
+    fn publish(
+        &mut self,
+        at: usize,
+        graph: &mut MessageGraph,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> BindingOutcome {
+        let Some(input) = self.binding.inputs.get(at) else { return Ok(Vec::new()) };
+        let Some(times) = self.inputs.get(at) else { return Ok(Vec::new()) };
+        let port = times.port;
+        let until = match input.period {
+            None => held_until(&input.message, &times.held).filter(|until| *until > cx.now),
+            Some(_) => None,
+        };
+        let message = self.filled(&input.message, &times.held, cx)?;
+        if let Some(times) = self.inputs.get_mut(at) {
+            (times.sent, times.until) = (Some(cx.now), until);
+        }
+        graph.publish(self.node, port, &message)
+    }
+
+    fn filled(
+        &self,
+        template: &MessageTemplate,
+        held: &[Option<Nanos>],
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<MessageText, String> {
+        let kind = self.binding.kind;
+        let mut context =
+            GapContext { kind, heard: &self.heard, now: cx.now, stage: cx.stage.as_deref_mut() };
+        context.filled(template, held)
+    }
+
+    // ── what they say ──
+
+    /// Something has arrived for the scenario.
+    ///
+    /// # Errors
+    /// What makes no sense about it: whoever sent it is told.
+    pub fn take(
+        &mut self,
+        arrival: SystemArrival,
+        graph: &mut MessageGraph,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> BindingOutcome {
+        match arrival {
+            SystemArrival::Message { port, message } => {
+                self.message(port, &message, cx)?;
+                Ok(Vec::new())
+            }
+            SystemArrival::Called { port, call, message } => self.called(port, call, &message, graph, cx),
+            SystemArrival::Canceled { call, .. } => self.canceled(call, graph, cx),
+            SystemArrival::Event { .. }
+            | SystemArrival::Ended { .. }
+            | SystemArrival::Answered { .. }
+            | SystemArrival::Feedback { .. }
+            | SystemArrival::Finished { .. }
+            | SystemArrival::Changed => Ok(Vec::new()),
+        }
+    }
+
+    fn message(&mut self, port: u64, text: &str, cx: &mut PlayerContext<'_, '_>) -> Result<(), String> {
+        let (program, binding) = (self.program, self.binding);
+        let Some(BoundPort::Output { output, wildcard, state }) = self.ports.get_mut(&port) else {
+            return Ok(());
+        };
+        let Some(bound) = binding.outputs.get(*output) else { return Ok(()) };
+        let message = read::parse(text)?;
+        let done = rules::carry_out(program, &bound.rules, (&message, wildcard.as_deref()), state, cx)?;
+        self.unattended.extend(done.commands);
+        Ok(())
+    }
+
+    fn called(
+        &mut self,
+        port: u64,
+        call: u64,
+        text: &str,
+        graph: &mut MessageGraph,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> BindingOutcome {
+        let (program, binding, node) = (self.program, self.binding, self.node);
+        let message = match read::parse(text) {
+            Ok(message) => message,
+            Err(why) => return graph.respond(node, call, Err(why)),
+        };
+        match self.ports.get_mut(&port) {
+            Some(BoundPort::Service { service, state }) => {
+                let Some(bound) = binding.services.get(*service) else { return Ok(Vec::new()) };
+                let done = rules::carry_out(program, &bound.rules, (&message, None), state, cx);
+                let answer = match done.map(|done| self.unattended.extend(done.commands)) {
+                    Ok(()) => Ok(self.filled(&bound.response, &vec![None; bound.response.gaps.len()], cx)?),
+                    Err(why) => Err(why),
+                };
+                graph.respond(node, call, answer)
+            }
+            Some(BoundPort::Action { action, state }) => {
+                let action = *action;
+                let Some(bound) = binding.actions.get(action) else { return Ok(Vec::new()) };
+                let done = match rules::carry_out(program, &bound.rules, (&message, None), state, cx) {
+                    Ok(done) => done,
+                    Err(why) => return graph.respond(node, call, Err(why)),
+                };
+                let before = done.commands.len().saturating_sub(1);
+                self.unattended.extend(done.commands.iter().take(before));
+                if let Some(command) = done.commands.last() {
+                    self.goals.push(BoundGoal { command: *command, call, action });
+                    return Ok(Vec::new());
+                }
+                let end = if done.failed {
+                    GoalEnd::Aborted
+                } else if done.rules == 0 {
+                    GoalEnd::Rejected
+                } else {
+                    GoalEnd::Succeeded
+                };
+                self.finish(call, action, end, graph, cx)
+            }
+            Some(BoundPort::Input | BoundPort::Output { .. }) | None => Ok(Vec::new()),
+        }
+    }
+
+    fn finish(
+        &self,
+        call: u64,
+        action: usize,
+        end: GoalEnd,
+        graph: &mut MessageGraph,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> BindingOutcome {
+        let Some(bound) = self.binding.actions.get(action) else { return Ok(Vec::new()) };
+        let result = self.filled(&bound.result, &vec![None; bound.result.gaps.len()], cx)?;
+        graph.finish(self.node, call, end, result)
+    }
+
+    fn ended_goals(&mut self, graph: &mut MessageGraph, cx: &mut PlayerContext<'_, '_>) -> BindingOutcome {
+        let mut out = Vec::new();
+        if let Some(stage) = cx.stage.as_deref_mut() {
+            self.unattended.retain(|id| stage.take_ended(*id).is_none());
+        }
+        for goal in std::mem::take(&mut self.goals) {
+            let ended = cx.stage.as_deref_mut().and_then(|stage| stage.take_ended(goal.command));
+            match ended {
+                Some(how) => {
+                    let end = if how.is_ok() { GoalEnd::Succeeded } else { GoalEnd::Aborted };
+                    out.extend(self.finish(goal.call, goal.action, end, graph, cx)?);
+                }
+                None => self.goals.push(goal),
+            }
+        }
+        Ok(out)
+    }
+
+    /// A goal that is canceled ends at once; its device is stopped, if it knows how to.
+    fn canceled(
+        &mut self,
+        call: u64,
+        graph: &mut MessageGraph,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> BindingOutcome {
+        let Some(at) = self.goals.iter().position(|goal| goal.call == call) else { return Ok(Vec::new()) };
+        let goal = self.goals.remove(at);
+        if let (Some(bound), Some(stage)) = (self.binding.actions.get(goal.action), cx.stage.as_deref_mut()) {
+            rules::stop_devices(self.program, &bound.rules, stage);
+        }
+        self.finish(call, goal.action, GoalEnd::Canceled, graph, cx)
+    }
+
+    /// What a transition of a program's state machine makes happen.
+    pub fn transition(&self, from: &str, to: &str) -> impl Iterator<Item = (EventId, Vec<Value>)> {
+        let rules = self.binding.transitions.iter().filter(move |r| r.from == from && r.to == to);
+        rules.map(|r| (r.event, r.args.clone())).collect::<Vec<_>>().into_iter()
+    }
+}
+
+fn declaration(port: u64, kind: PortKind, name: &str, interface: &str, latched: bool) -> PortDeclaration {
+    let (name, type_name) = (name.to_owned(), interface.to_owned());
+    PortDeclaration { port, kind, name, type_name, latched, depth: DEPTH }
+}
+
+/// The next point of the grid, unless the message of this instant has not gone yet.
+fn next_after(now: Nanos, sent: Option<Nanos>, period: Nanos) -> Nanos {
+    let period = period.max(1);
+    let is_due = now > 0 && now % period == 0 && sent != Some(now);
+    if is_due { now } else { (now / period + 1) * period }
+}
+
+/// When the first of what holds is over.
+fn held_until(message: &MessageTemplate, held: &[Option<Nanos>]) -> Option<Nanos> {
+    let ends = message.gaps.iter().zip(held).filter_map(|(gap, since)| match &gap.value {
+        GapValue::Held { time, .. } if *time > 0 => Some(since.as_ref()?.saturating_add(*time)),
+        GapValue::Held { .. } | GapValue::Value { .. } | GapValue::Now => None,
+    });
+    ends.min()
+}

@@ -1,0 +1,97 @@
+//! Messages that programs make: what stands at a place of one.
+
+use hrdsl_ir::{
+    Symbol, Type, Value,
+    binding::{MessageRead, MessageStep},
+};
+use serde_json::Value as Json;
+
+/// # Errors
+/// That it is no JSON.
+pub(super) fn parse(text: &str) -> Result<Json, String> {
+    serde_json::from_str(text).map_err(|e| format!("the message is no JSON: {e}"))
+}
+
+/// What lies at a place.
+pub(super) fn at<'m>(message: &'m Json, path: &[MessageStep]) -> Result<&'m Json, String> {
+    let mut here = message;
+    for step in path {
+        let next = match step {
+            MessageStep::Field(name) => here.get(name),
+            MessageStep::Element(at) => here.get(usize::try_from(*at).unwrap_or(usize::MAX)),
+        };
+        here = next.ok_or_else(|| format!("the message has no `{}`", text_of(path)))?;
+    }
+    Ok(here)
+}
+
+/// The value that a rule reads.
+pub(super) fn value(message: &Json, read: &MessageRead) -> Result<Value, String> {
+    let json = at(message, &read.path)?;
+    let found = match read.ty {
+        Type::Bool => match json {
+            Json::Bool(b) => Some(Value::Bool(*b)),
+            // Python's clients write both.
+            Json::Number(n) => n.as_i64().filter(|n| (0..=1).contains(n)).map(|n| Value::Bool(n == 1)),
+            Json::Null | Json::String(_) | Json::Array(_) | Json::Object(_) => None,
+        },
+        Type::Int { .. } => match json {
+            Json::Bool(b) => Some(Value::Int(i64::from(*b))),
+            Json::Number(n) => n.as_i64().map(Value::Int),
+            Json::Null | Json::String(_) | Json::Array(_) | Json::Object(_) => None,
+        },
+        Type::Float(_) => number(json).map(Value::Float),
+        Type::Text => json.as_str().map(|s| Value::Text(hrdsl_ir::Text::new(s))),
+        Type::Enum(of) => match json.as_str() {
+            Some(name) => {
+                let known: Option<Symbol> = of.symbol(name);
+                let none = || format!("`{}` is {name:?}, which `{of}` does not have", text_of(&read.path));
+                return known.map(Value::Symbol).ok_or_else(none);
+            }
+            None => None,
+        },
+        Type::List(_) => None,
+    };
+    let wrong =
+        || format!("`{}` is {json}, which is of another type than the interface says", text_of(&read.path));
+    found.filter(|v| read.ty.admits(*v)).ok_or_else(wrong)
+}
+
+/// A number, or one of those that JSON does not have.
+pub(super) fn number(json: &Json) -> Option<f64> {
+    match json {
+        Json::Number(n) => n.as_f64(),
+        Json::Bool(b) => Some(f64::from(u8::from(*b))),
+        Json::String(s) => match s.as_str() {
+            "nan" => Some(f64::NAN),
+            "inf" => Some(f64::INFINITY),
+            "-inf" => Some(f64::NEG_INFINITY),
+            _ => None,
+        },
+        Json::Null | Json::Array(_) | Json::Object(_) => None,
+    }
+}
+
+/// All numbers of a sequence, or the one that stands there.
+pub(super) fn numbers(message: &Json, path: &[MessageStep]) -> Result<Vec<f64>, String> {
+    let json = at(message, path)?;
+    let all = match json {
+        Json::Array(items) => items.iter().map(number).collect(),
+        Json::Null | Json::Bool(_) | Json::Number(_) | Json::String(_) | Json::Object(_) => {
+            number(json).map(|n| vec![n])
+        }
+    };
+    all.ok_or_else(|| format!("`{}` holds something else than numbers", text_of(path)))
+}
+
+fn text_of(path: &[MessageStep]) -> String {
+    let mut text = String::new();
+    for step in path {
+        match step {
+            MessageStep::Field(name) if text.is_empty() => text.push_str(name),
+            MessageStep::Field(name) => text.push_str(&format!(".{name}")),
+            MessageStep::Element(at) => text.push_str(&format!("[{at}]")),
+        }
+    }
+    text
+}

@@ -1,0 +1,245 @@
+//! What a message makes happen: the rules of a topic, a service or an action, carried out.
+
+use std::collections::BTreeMap;
+
+use hrdsl_ir::{
+    EventId, Expr, Program, Type, Value,
+    binding::{CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep},
+    world::{DeviceCommandId, DeviceId},
+};
+use serde_json::Value as Json;
+
+use super::read;
+use crate::{
+    argument::SystemArgument,
+    command::{CommandRequest, NotBegun},
+    message::PlayerMessage,
+    player::PlayerContext,
+    stage::WorldStage,
+    world::CommandId,
+};
+
+/// Of each rule: whether its guard held at the message before.
+pub(super) struct RuleState {
+    held: Vec<bool>,
+}
+
+impl RuleState {
+    pub fn new(rules: &MessageRules) -> Self {
+        Self { held: vec![false; rules.rules.len()] }
+    }
+}
+
+/// What a message came to.
+#[derive(Default)]
+pub(super) struct RuleOutcome {
+    /// How many rules it fitted.
+    pub rules: usize,
+    /// The commands that were begun.
+    pub commands: Vec<CommandId>,
+    /// Some command could not be begun as things are.
+    pub failed: bool,
+}
+
+/// Carries out the rules that a message fits.
+///
+/// # Errors
+/// What makes no sense about the message.
+pub(super) fn carry_out(
+    program: &Program,
+    rules: &MessageRules,
+    message: (&Json, Option<&str>),
+    state: &mut RuleState,
+    cx: &mut PlayerContext<'_, '_>,
+) -> Result<RuleOutcome, String> {
+    let mut outcome = RuleOutcome::default();
+    let heard = HeardMessage { program, rules, json: message.0, wildcard: message.1 };
+    for (rule, held) in rules.rules.iter().zip(&mut state.held) {
+        let holds = match &rule.guard {
+            Some(guard) => heard.eval(guard)?.as_bool() == Some(true),
+            None => true,
+        };
+        let before = std::mem::replace(held, holds);
+        if holds && !(rule.rising && before) {
+            outcome.rules += 1;
+            heard.carry_out(rule, &mut outcome, cx)?;
+        }
+    }
+    Ok(outcome)
+}
+
+struct HeardMessage<'a> {
+    program: &'a Program,
+    rules: &'a MessageRules,
+    json: &'a Json,
+    /// What the `*` of the topic stands for.
+    wildcard: Option<&'a str>,
+}
+
+impl HeardMessage<'_> {
+    /// Only what the expression reads is looked up in the message.
+    fn eval(&self, e: &Expr) -> Result<Value, String> {
+        let mut reads = BTreeMap::new();
+        let mut wrong = None;
+        e.each_var(&mut |i| {
+            if let Some(read) = self.rules.reads.get(usize::from(i)) {
+                match read::value(self.json, read) {
+                    Ok(value) => drop(reads.insert(i, value)),
+                    Err(why) => wrong = Some(why),
+                }
+            }
+        });
+        match wrong {
+            Some(why) => Err(why),
+            None => e.eval(&|i| reads.get(&i).copied()).map_err(|e| e.to_string()),
+        }
+    }
+
+    fn carry_out(
+        &self,
+        rule: &MessageRule,
+        outcome: &mut RuleOutcome,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> Result<(), String> {
+        match &rule.effect {
+            MessageEffect::Emit { event, args } => {
+                let args = self.arguments(*event, args)?;
+                cx.out.push(PlayerMessage::Event { event: *event, args });
+            }
+            MessageEffect::Command { device, command, args } => {
+                let Some(request) = self.request(*device, *command, args)? else { return Ok(()) };
+                let Some(stage) = cx.stage.as_deref_mut() else { return Ok(()) };
+                match stage.command(&request) {
+                    Ok(id) => outcome.commands.push(id),
+                    // Nobody tells a publisher: it sees what the robot does.
+                    Err(NotBegun::Failed(_)) => outcome.failed = true,
+                    Err(NotBegun::Refused { error, .. }) => return Err(error),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn arguments(&self, event: EventId, args: &[Expr]) -> Result<Vec<Value>, String> {
+        let event = self.program.event(event);
+        let argument = |(e, param): (&Expr, &hrdsl_ir::Parameter)| {
+            let value = match (self.eval(e)?, param.ty) {
+                (Value::Int(n), Type::Float(_)) => Value::Float(n as f64),
+                (value, _) => value,
+            };
+            let wrong = || format!("`{}` of `{}` cannot be {value}", param.name, event.name);
+            if param.ty.admits(value) { Ok(value) } else { Err(wrong()) }
+        };
+        args.iter().zip(&event.params).map(argument).collect()
+    }
+
+    fn request(
+        &self,
+        device: DeviceId,
+        command: DeviceCommandId,
+        args: &[Option<CommandArgument>],
+    ) -> Result<Option<CommandRequest>, String> {
+        let Some(world) = &self.program.world else { return Ok(None) };
+        let declared = world.command(device, command);
+        let mut given = BTreeMap::new();
+        for (param, arg) in declared.params.iter().zip(args) {
+            let Some(arg) = arg else { continue };
+            let numbers = match arg {
+                CommandArgument::Numbers(all) => {
+                    let number = |e: &Expr| self.eval(e)?.as_f64().ok_or_else(|| "not a number".to_owned());
+                    all.iter().map(number).collect::<Result<Vec<f64>, String>>()?
+                }
+                CommandArgument::Sequence(path) => read::numbers(self.json, path)?,
+                CommandArgument::Wildcard { names } => {
+                    let part = self.wildcard.unwrap_or_default();
+                    let Some(at) = names.iter().position(|name| name == part) else { return Ok(None) };
+                    vec![at as f64]
+                }
+                CommandArgument::TrackPositions { names } => self.track_positions(names)?,
+                CommandArgument::TrackTimes => self.track_times()?,
+            };
+            let argument = match (param.ty.count, numbers.as_slice()) {
+                (hrdsl_ir::device::NumberCount::One, [one]) => SystemArgument::Scalar(Value::Float(*one)),
+                _ => SystemArgument::Numbers(numbers),
+            };
+            given.insert(param.name.clone(), argument);
+        }
+        let device = world.device(device).name.clone();
+        Ok(Some(CommandRequest { device, command: declared.name.clone(), args: given }))
+    }
+
+    fn points(&self) -> Result<&[Json], String> {
+        let points = read::at(self.json, &[MessageStep::Field("points".to_owned())])?;
+        points.as_array().map(Vec::as_slice).ok_or_else(|| "`points` is no sequence".to_owned())
+    }
+
+    /// In the order of the arm's joints, whatever that of the message.
+    fn track_positions(&self, names: &[String]) -> Result<Vec<f64>, String> {
+        let given = read::at(self.json, &[MessageStep::Field("joint_names".to_owned())])?;
+        let given: Vec<&str> = given.as_array().into_iter().flatten().filter_map(Json::as_str).collect();
+        let place = |name: &String| {
+            let at = given.iter().position(|g| g == name);
+            at.ok_or_else(|| format!("the trajectory does not say where the joint `{name}` goes"))
+        };
+        let places = names.iter().map(place).collect::<Result<Vec<usize>, String>>()?;
+        let mut all = Vec::new();
+        for point in self.points()? {
+            let positions = read::numbers(point, &[MessageStep::Field("positions".to_owned())])?;
+            for at in &places {
+                let position = positions.get(*at).copied();
+                all.push(position.ok_or("a point of the trajectory has fewer positions than joints")?);
+            }
+        }
+        Ok(all)
+    }
+
+    fn track_times(&self) -> Result<Vec<f64>, String> {
+        let time = |point: &Json| {
+            let time = read::at(point, &[MessageStep::Field("time_from_start".to_owned())])?;
+            let part =
+                |ros1: &str, ros2: &str| time.get(ros1).or_else(|| time.get(ros2)).and_then(Json::as_f64);
+            let parts = part("secs", "sec").zip(part("nsecs", "nanosec"));
+            parts.map(|(s, n)| s + n / 1e9).ok_or_else(|| "`time_from_start` is no time".to_owned())
+        };
+        self.points()?.iter().map(time).collect()
+    }
+}
+
+/// What the `*` of a pattern stands for in a name; `None`: the name does not fit, or the pattern has none.
+pub(super) fn wildcard(pattern: &str, name: &str) -> Option<String> {
+    let (before, after) = pattern.split_once('*')?;
+    let part = name.strip_prefix(before)?.strip_suffix(after)?;
+    (!part.is_empty() && !part.contains('/')).then(|| part.to_owned())
+}
+
+/// Whether the rules know what to do for this part of a topic: those that ask for a joint know those of their arm.
+pub(super) fn knows(rules: &MessageRules, part: &str) -> bool {
+    rules.rules.iter().any(|rule| match &rule.effect {
+        MessageEffect::Emit { .. } => true,
+        MessageEffect::Command { args, .. } => args.iter().flatten().all(|arg| match arg {
+            CommandArgument::Wildcard { names } => names.iter().any(|name| name == part),
+            CommandArgument::Numbers(_)
+            | CommandArgument::Sequence(_)
+            | CommandArgument::TrackPositions { .. }
+            | CommandArgument::TrackTimes => true,
+        }),
+    })
+}
+
+/// Stops the devices that rules command, those that can be stopped.
+pub(super) fn stop_devices(program: &Program, rules: &MessageRules, stage: &mut WorldStage<'_>) {
+    let Some(world) = &program.world else { return };
+    for rule in &rules.rules {
+        let MessageEffect::Command { device, .. } = &rule.effect else { continue };
+        let device = world.device(*device);
+        if world.kind_of(device).command("stop").is_some() {
+            let request = CommandRequest {
+                device: device.name.clone(),
+                command: "stop".to_owned(),
+                args: BTreeMap::new(),
+            };
+            // It knows the command, which takes nothing: a device that cannot stop now is stopped by the next one.
+            let _ = stage.command(&request);
+        }
+    }
+}
