@@ -7,7 +7,7 @@ a constructor that takes keywords.
 from __future__ import annotations
 
 from rosidl_codec import Codec
-from rosidl_setters import blank_of, prepared, setter_of, type_text
+from rosidl_setters import blank_of, converter_of, prepared, setter_of, type_text
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -17,22 +17,22 @@ if TYPE_CHECKING:
 
 
 class Message:
-    """The base of all messages."""
+    """The base of all messages. Names of its own end with `_`, which those of fields do not."""
 
     __slots__ = ()
 
     _fields_and_field_types: dict[str, str] = {}
-    _blanks: tuple[tuple[Any, Any, bool], ...] = ()  # how to fill a slot, with what, and whether that has to be made
-    _prepare: dict[str, Callable[[Any], Any]] = {}  # what the constructor does with a field before it is set
-    _numbers: frozenset[str] = frozenset()  # slots whose values are printed without `array`
+    _blanks_: tuple[tuple[Any, Any, bool], ...] = ()  # how to fill a slot, with what, and whether that has to be made
+    _prepare_: dict[str, Callable[[Any], Any]] = {}  # what the constructor does with a field before it is set
+    _numbers_: frozenset[str] = frozenset()  # slots whose values are printed without `array`
 
     def __init__(self, **kwargs: Any) -> None:
-        for put, blank, is_made in self._blanks:
+        for put, blank, is_made in self._blanks_:
             put(self, blank() if is_made else blank)
         if kwargs:
-            self._fill(kwargs)
+            self._fill_(kwargs)
 
-    def _fill(self, given: dict[str, Any]) -> None:
+    def _fill_(self, given: dict[str, Any]) -> None:
         names = self._fields_and_field_types
         given.pop("check_fields", None)  # of Jazzy; fields are always checked here
         wrong = sorted(name for name in given if name not in names)
@@ -41,8 +41,8 @@ class Message:
         for name in names:
             if name in given:
                 value = given[name]
-                if name in self._prepare:
-                    value = self._prepare[name](value)
+                if name in self._prepare_:
+                    value = self._prepare_[name](value)
                 setattr(self, name, value)
 
     def __repr__(self) -> str:
@@ -50,7 +50,7 @@ class Message:
         for slot in self.__slots__:
             value = getattr(self, slot)
             text = repr(value)
-            if slot in self._numbers:
+            if slot in self._numbers_:
                 text = text[len("array('d', ") : -1] if len(value) else "[]"
             texts.append("%s=%s" % (slot[1:], text))
         cls = type(self)
@@ -92,9 +92,9 @@ def make_class(definition: dict[str, Any], resolve: Resolve) -> type:
         "__module__": "%s.%s.%s" % (package, space, _module_name(name)),
         "__doc__": "Message class %r." % name,
         "_fields_and_field_types": {field["name"]: type_text(field) for field in fields},
-        "_numbers": frozenset("_" + field["name"] for field in fields if prepared(field) == "array"),
-        "_codec": Codec(definition, resolve),
-        "_definition": definition,
+        "_numbers_": frozenset("_" + field["name"] for field in fields if prepared(field) == "array"),
+        "_codec_": Codec(definition, resolve),
+        "_definition_": definition,
         **constants,
     }
     for field in fields:
@@ -108,8 +108,8 @@ def make_class(definition: dict[str, Any], resolve: Resolve) -> type:
         setattr(cls, field["name"], property(slot.__get__, setter_of(field, put, resolve), None, _doc(field)))
         blank, is_made, _ = blank_of(field, resolve)
         blanks.append((put, blank, is_made))
-    cls._blanks = tuple(blanks)
-    cls._prepare = {each["name"]: _prepare(each) for each in fields if prepared(each) is not None}
+    cls._blanks_ = tuple(blanks)
+    cls._prepare_ = {each["name"]: converter_of(each) for each in fields if prepared(each) is not None}
     return cls  # type: ignore[no-any-return]
 
 
@@ -136,7 +136,7 @@ def _holder(definition: dict[str, Any], kind: str, held: dict[str, Any]) -> type
 
     package, space, name = definition["name"].split("/")
     module = "%s.%s.%s" % (package, space, _module_name(name))
-    return type(name, (), {"__init__": refuse, "__module__": module, "_definition": definition, "_kind": kind, **held})
+    return type(name, (), {"__init__": refuse, "__module__": module, "_definition_": definition, "_kind_": kind, **held})
 
 
 def _constant(constant: dict[str, Any]) -> Any:
@@ -144,12 +144,6 @@ def _constant(constant: dict[str, Any]) -> Any:
     if kind in ("float32", "float64"):
         return float(value)
     return bytes([value]) if kind == "byte" else value
-
-
-def _prepare(field: dict[str, Any]) -> Callable[[Any], Any]:
-    from rosidl_setters import converter_of
-
-    return converter_of(field)
 
 
 def _doc(field: dict[str, Any]) -> str:

@@ -118,8 +118,11 @@ class Codec:
         """How a field is formatted, and the value for it, as Python."""
         kind = field["type"]
         one: Any
+        if kind == "float64" and "array" not in field:  # without a call of a function in Python
+            scope.update(text=_float_text, odd=_odd, inf=_INFINITE)
+            return "%s", "text(v) if -inf < (v := %s) < inf else odd(v)" % place
         if "/" in kind:
-            codec = self._resolve(kind)._codec  # type: ignore[attr-defined]
+            codec = self._resolve(kind)._codec_  # type: ignore[attr-defined]
             one = lambda message: codec.encode(message)  # noqa: E731  # it changes with its first use
         elif kind == "float64":
             one = _double
@@ -162,7 +165,7 @@ class Codec:
                 return lambda values: fixed(kind, [convert(value) for value in values])
         one: Any = None
         if "/" in kind:
-            codec = self._resolve(kind)._codec  # type: ignore[attr-defined]
+            codec = self._resolve(kind)._codec_  # type: ignore[attr-defined]
             one = lambda value: codec.decode(value)  # noqa: E731  # it changes with its first use
         elif kind == "float64":
             one = float

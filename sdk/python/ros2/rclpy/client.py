@@ -63,7 +63,7 @@ class Client:
             self._waiting.append((number, arrival))
             self._node._wake_executor()
 
-        self._port.call(request._codec.encode(request).encode("ascii"), arrived)
+        self._port.call(request._codec_.encode(request).encode("ascii"), arrived)
         future = Future()
         self._pending_requests[number] = future
         future.add_done_callback(self.remove_pending_request)
@@ -95,7 +95,7 @@ class Client:
             sys.stderr.write(told % (self._full_name, self._type_name, self._node.get_name(), arrival["error"]))
             return
         what = "service %s (%s)" % (self._full_name, self._type_name)
-        response = decoded(self.srv_type.Response._codec, arrival["message"], what)
+        response = decoded(self.srv_type.Response._codec_, arrival["message"], what)
         future._set_executor(self._node.executor)
         future.set_result(response)
 

@@ -23,23 +23,28 @@ class Publisher:
         self.qos_profile = qos_profile
         self.event_handlers: list[Any] = []
         self._node = node
-        self._codec = msg_type._codec
+        self._encode = self._first_encode
         self._full_name = full_name
         self._port = _world.open_port("publisher", full_name, type_name, latched=is_latched(qos_profile))
+        self._send = self._port.publish
         self._is_destroyed = False
         self._callbacks = callbacks
         _matching.opened(self)
 
     def publish(self, msg: Any) -> None:
         """Sends a message to all who have subscribed."""
-        if self._is_destroyed:
-            raise InvalidHandle("cannot use Destroyable because destruction was requested")
         if isinstance(msg, self.msg_type):
-            self._port.publish(self._codec.encode(msg).encode("ascii"))
+            self._send(self._encode(msg).encode("ascii"))
         elif isinstance(msg, bytes):
             _world.unsupported("publishing a serialized message", "publish an object of the message's class")
         else:
             raise TypeError("Expected %s, got %s" % (self.msg_type, type(msg)))
+
+    def _first_encode(self, msg: Any) -> str:
+        codec = self.msg_type._codec_
+        text: str = codec.encode(msg)
+        self._encode = codec.encode  # which is compiled by now
+        return text
 
     def get_subscription_count(self) -> int:
         """How many have subscribed, in all programs."""
@@ -61,5 +66,10 @@ class Publisher:
         """Publishes no more."""
         if not self._is_destroyed:
             self._is_destroyed = True
+            self._send = _refuse
             _matching.closed(self)
             _world.close(self._port)
+
+
+def _refuse(message: bytes) -> None:
+    raise InvalidHandle("cannot use Destroyable because destruction was requested")

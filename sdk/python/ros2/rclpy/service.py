@@ -56,7 +56,7 @@ class Service:
             return None
         number, value = self._waiting.popleft()
         what = "service %s (%s)" % (self._full_name, self._type_name)
-        request = decoded(self.srv_type.Request._codec, value, what)
+        request = decoded(self.srv_type.Request._codec_, value, what)
         return (self._serve_async if self._is_async() else self._serve), (request, number)
 
     def _serve(self, request: Any, number: int) -> None:
@@ -72,7 +72,7 @@ class Service:
                 "service %s: the callback has to return a %s, and has returned a %s"
                 % (self._full_name, self.srv_type.Response.__name__, type(response).__name__)
             )
-        _world.exchange().respond(header, response._codec.encode(response).encode("ascii"))
+        _world.exchange().respond(header, response._codec_.encode(response).encode("ascii"))
 
     @property
     def service_name(self) -> str:

@@ -39,7 +39,7 @@ class Subscription:
         self._executor_event = False
         self._is_destroyed = False
         self._node = node
-        self._codec = msg_type._codec
+        self._codec_ = msg_type._codec_
         self._full_name = full_name
         self._type_name = type_name
         self._wake: Callable[[], None] = node._wake_executor
@@ -59,7 +59,7 @@ class Subscription:
 
     def _next(self) -> tuple[Any, int]:
         value, time = self._waiting.popleft()
-        return decoded(self._codec, value, "topic %s (%s)" % (self._full_name, self._type_name)), time
+        return decoded(self._codec_, value, "topic %s (%s)" % (self._full_name, self._type_name)), time
 
     def _take(self) -> tuple[Any, tuple[Any, ...]] | None:
         if not self._waiting:

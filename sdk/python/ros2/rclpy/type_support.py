@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 def definition_of(cls: Any) -> dict[str, Any]:
     """The definition of a class that was made from one; raises AttributeError for any other."""
-    found = getattr(cls, "__dict__", {}).get("_definition")
+    found = getattr(cls, "__dict__", {}).get("_definition_")
     if found is None:
         raise AttributeError(
             "type object '%s' has no attribute '_TYPE_SUPPORT' This might be a ROS 1 message type but it should be a "
@@ -22,7 +22,7 @@ def definition_of(cls: Any) -> dict[str, Any]:
 def name_of(cls: Any, kind: str) -> str:
     """The full name of a type, which has to be a `Message`, a `Service` or an `Action`."""
     definition = definition_of(cls)
-    if getattr(cls, "_kind", "Message") != kind:
+    if getattr(cls, "_kind_", "Message") != kind:
         what, others = {
             "Message": ("message", "a service or action"),
             "Service": ("service", "a message or action"),
