@@ -33,3 +33,4 @@ class Lane:
                 import traceback
 
                 rospy.logerr("bad callback: %s\n%s" % (self._function, traceback.format_exc()))
+            del args  # what nobody else has ends here, and not with the next item

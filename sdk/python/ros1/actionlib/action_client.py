@@ -67,9 +67,9 @@ _ENDS = {
 
 _ENDED = set(_ENDS.values()) | {GoalStatus.RECALLED, GoalStatus.LOST}
 
-#: The protocol does not tell that a server has accepted a goal: it is taken to have so long after it was sent, if it has
-#: neither rejected nor ended it.
-_ACCEPTED_AFTER = 0.001
+#: The protocol does not tell that a server has accepted a goal: it is taken to have so many nanoseconds after it was sent,
+#: if it has neither rejected nor ended it.
+_ACCEPTED_AFTER = 1_000_000
 
 
 def _steps(state: int, status: int) -> tuple[int, ...]:
@@ -163,7 +163,7 @@ class ClientGoalHandle:
         was = machine.state
         machine.transition_to(CommState.WAITING_FOR_CANCEL_ACK)
         if was != CommState.WAITING_FOR_GOAL_ACK:
-            machine.client._statuses.put(machine, GoalStatus.PREEMPTING)
+            machine.client._statuses.put(weakref.ref(machine), GoalStatus.PREEMPTING)
 
     def get_comm_state(self) -> int:
         """What the client knows of the goal (`CommState`)."""
@@ -245,7 +245,7 @@ class ActionClient:
         machine.call = self._port.call(message, lambda arrival: self._hear(kept(), arrival))
         self._open[machine.call.number] = machine.call, machine.action_goal.goal_id.stamp
         if _wire.the_servers().has(self._name):
-            self._statuses.put(machine, GoalStatus.ACTIVE)
+            self._statuses.put(kept, GoalStatus.ACTIVE)
         return ClientGoalHandle(machine)
 
     def _action_goal(self, goal: Any) -> Any:
@@ -271,10 +271,17 @@ class ActionClient:
             self._results.put(machine, arrival)
         # Else nobody has got the goal, or who had it has gone: in ROS, too, the client is not told.
 
-    def _status_cb(self, machine: CommStateMachine, status: int) -> None:
-        if status == GoalStatus.ACTIVE and machine.state == CommState.WAITING_FOR_GOAL_ACK:
-            time.sleep(_ACCEPTED_AFTER)
-        machine.update_status(status)
+    def _status_cb(self, kept: Callable[[], CommStateMachine | None], status: int) -> None:
+        machine = kept()
+        if machine is None:
+            return
+        if status == GoalStatus.ACTIVE:
+            sent = machine.action_goal.goal_id.stamp.to_nsec()
+            del machine
+            time.sleep(max(0, sent + _ACCEPTED_AFTER - rospy.Time.now().to_nsec()) / 1e9)
+            machine = kept()
+        if machine is not None:
+            machine.update_status(status)
 
     def _result_cb(self, machine: CommStateMachine, arrival: dict[str, Any]) -> None:
         action_result = self.ActionResult()
