@@ -48,6 +48,7 @@ class Link:
         self.backlog: list[dict[str, Any]] = []  # what has arrived before there is an exchange
         self.exchange: Any = None  # what hears of arrivals, when it is needed
         self.scheduler: Any = None  # of this process
+        self.on_end: list[Callable[[], object]] = []  # called when the program has come to its end, before it says so
         self.before_request: Callable[[], object] | None = None  # called before each
 
     @property

@@ -25,6 +25,11 @@ class Mailbox:
     def __len__(self) -> int:
         return len(self._items)
 
+    def limit(self, depth: int | None) -> None:
+        """Gives it another depth; of the items in it the newest stay."""
+        if self._items.maxlen != depth:
+            self._items = deque(self._items, maxlen=depth)
+
     def put(self, item: Any) -> None:
         """Puts an item in, or gives it to the thread that waits for longest; never waits."""
         while self._waiters:

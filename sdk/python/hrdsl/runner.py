@@ -58,6 +58,9 @@ def main(argv: list[str]) -> NoReturn:
         status, is_stopped = _status(lambda: _run(words, module, recorder))
         if not is_stopped and link.is_ours():
             status = _status(_join_threads)[0] or status
+        if link.is_ours():
+            for call in link.on_end:
+                status = _status(call)[0] or status
         if scheduler.failed:
             status = status or 1
         if status == 0 and link.is_ours() and not link.stopped:
