@@ -4,6 +4,8 @@ The groups are those of the scenario's binding. A plan is a straight line betwee
 obstacles are not avoided.
 """
 
+from __future__ import annotations
+
 from moveit_commander.exception import MoveItCommanderException
 from moveit_commander.roscpp_initializer import roscpp_initialize, roscpp_shutdown
 from moveit_commander.planning_scene_interface import PlanningSceneInterface

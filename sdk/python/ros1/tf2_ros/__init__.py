@@ -1,5 +1,7 @@
 """Frames and where they are, with the interface of ROS 1's tf2_ros."""
 
+from __future__ import annotations
+
 from tf2_py import (
     BufferCore,
     ConnectivityException,
