@@ -10,10 +10,15 @@
         node.emit("handover_offered")
 
 A call that waits (`sleep`, `wait_for`, an arm's motion) is one message to the harness, which lets simulated time
-pass and answers when the wait is over; between calls no simulated time passes.
+pass and answers when the wait is over; between calls no simulated time passes. A motion can be begun, too, and waited for
+beside events:
+
+    drive = node.device("robot.base").begin("drive", speed=0.3)
+    if node.wait_for("child_near", drive) is not drive:
+        node.device("robot.base").command("brake")
 """
 
 from hrdsl.errors import ProtocolError, Stopped
-from hrdsl.node import Arm, Event, Gripper, Node
+from hrdsl.node import Arm, Device, Event, Gripper, Motion, Node
 
-__all__ = ["Arm", "Event", "Gripper", "Node", "ProtocolError", "Stopped"]
+__all__ = ["Arm", "Device", "Event", "Gripper", "Motion", "Node", "ProtocolError", "Stopped"]

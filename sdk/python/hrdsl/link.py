@@ -12,10 +12,17 @@ TYPE_CHECKING = False  # as type checkers read it; `typing` takes longer to impo
 if TYPE_CHECKING:
     from typing import Any, Callable, NoReturn
 
-VERSION = 1
+VERSION = 2
+
+#: The most bytes of a line.
+LONGEST = 1 << 20
+
+#: So many bytes of requests without replies wait for one that has a reply.
+KEPT = 1 << 16
 
 _encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 _decode = json.JSONDecoder().decode
+_get_ident = _thread.get_ident
 
 
 class Link:
@@ -31,7 +38,17 @@ class Link:
         self._lock = _thread.allocate_lock()
         self._greeted = False
         self._stopped: str | None = None
+        self._buffer: list[bytes] = []  # requests without replies that have not been written
+        self._buffered = 0  # bytes of them
+        self._told: list[tuple[object, int]] = []  # since the last reply: what each is about, and the thread
+        self._lines = 0  # that had been written when the last reply came
         self.time = 0  # simulated nanoseconds at the last reply
+        self.program = ""  # its name in the scenario
+        self.faults: list[tuple[int, ProtocolError]] = []  # of requests without replies, to be raised by these threads
+        self.backlog: list[dict[str, Any]] = []  # what has arrived before there is an exchange
+        self.exchange: Any = None  # what hears of arrivals, when it is needed
+        self.scheduler: Any = None  # of this process
+        self.on_end: list[Callable[[], object]] = []  # called when the program has come to its end, before it says so
         self.before_request: Callable[[], object] | None = None  # called before each
 
     @property
@@ -46,20 +63,58 @@ class Link:
     def hello(self, name: str) -> None:
         """Names the program, and agrees on the protocol's version."""
         self._greeted = True
-        self.request({"request": "hello", "version": VERSION, "name": name})
+        answer = self.request({"request": "hello", "version": VERSION, "name": name})
+        self.program = answer.get("program", self.program)
 
     def request(self, message: dict[str, Any]) -> dict[str, Any]:
         """Sends a request and waits for its reply; raises `Stopped` when the test is over."""
+        answer = self._ask(_line(message))
+        if self.faults:
+            self._raise_fault()
+        return answer
+
+    def wait(self, until: int | None, give_up: int | None) -> dict[str, Any]:
+        """The request `wait`. What was refused meanwhile is left in `faults`, so that no arrival is lost."""
+        if until is None:
+            limits = b"" if give_up is None else b',"give_up":%d' % give_up
+        elif give_up is None:
+            limits = b',"until":%d' % until
+        else:
+            limits = b',"until":%d,"give_up":%d' % (until, give_up)
+        return self._ask(b'{"request":"wait"%s}\n' % limits)
+
+    def tell(self, line: bytes, about: object) -> None:
+        """Sends a request that has no reply, together with the next one that has; `about` is what an error calls it."""
+        if not self._greeted:
+            self.hello("program")
+        if len(line) > LONGEST:
+            raise ProtocolError(
+                "%s: a message of %d bytes as JSON; a request has at most %d" % (about, len(line), LONGEST),
+                "send less at once, such as smaller images",
+            )
+        if self._stopped is not None:
+            raise Stopped(self._stopped)
+        self._told.append((about, _get_ident()))
+        self._buffer.append(line)
+        self._buffered += len(line)
+        if self._buffered > KEPT:
+            self._check_owner()
+            with self._lock:
+                self._write(b"")
+
+    def _check_owner(self) -> None:
         if os.getpid() != self._owner:
             raise ProtocolError(
                 "a process forked from the program cannot make requests, nor wait (`time.sleep`)",
                 "leave those to the program's first process",
             )
+
+    def _ask(self, line: bytes) -> dict[str, Any]:
+        self._check_owner()
         if self.before_request is not None:
             self.before_request()
         if not self._greeted:
             self.hello("program")
-        line = _encode(message).encode("ascii") + b"\n"
         with self._lock:
             if self._stopped is not None:
                 raise Stopped(self._stopped)
@@ -74,9 +129,7 @@ class Link:
 
     def _exchange(self, line: bytes) -> dict[str, Any]:
         try:
-            sent = os.write(self._out, line)
-            while sent < len(line):
-                sent += os.write(self._out, line[sent:])
+            self._write(line)
             said = self._in.readline()
         except OSError as error:
             self._stop("the harness has gone: %s" % error)
@@ -84,9 +137,39 @@ class Link:
             self._stop("the harness has gone")
         answer: dict[str, Any] = _decode(said.decode("utf-8"))
         self.time = answer.get("t", self.time)
+        if "refused" in answer:
+            self._refused(answer["refused"])
+        self._lines += len(self._told) + 1
+        self._told.clear()
         if answer.get("stop"):
             self._stop("the test is over")
         return answer
+
+    def _write(self, line: bytes) -> None:
+        if self._buffer:
+            self._buffer.append(line)
+            line = b"".join(self._buffer)
+            self._buffer.clear()
+            self._buffered = 0
+        sent = os.write(self._out, line)
+        while sent < len(line):
+            sent += os.write(self._out, line[sent:])
+
+    def _refused(self, refused: list[dict[str, Any]]) -> None:
+        for each in refused:
+            at = each["line"] - self._lines - 1
+            if 0 <= at < len(self._told):
+                about, ident = self._told[at]
+            else:  # the program has written to the pipe itself
+                about, ident = "line %d" % each["line"], _get_ident()
+            self.faults.append((ident, ProtocolError("%s: %s" % (about, each["error"]), each.get("help"))))
+
+    def _raise_fault(self) -> None:
+        me = _get_ident()
+        for fault in self.faults:
+            if fault[0] == me:
+                self.faults.remove(fault)
+                raise fault[1]
 
     def _stop(self, why: str) -> NoReturn:
         self._stopped = why
@@ -98,6 +181,10 @@ class Link:
             self.request({"request": "done"})
         except (Stopped, ProtocolError):
             pass
+
+
+def _line(message: dict[str, Any]) -> bytes:
+    return _encode(message).encode("ascii") + b"\n"
 
 
 _link: Link | None = None

@@ -8,13 +8,17 @@ import sys
 
 from hrdsl import link as _links
 from hrdsl.errors import ProtocolError
+from hrdsl.events import Ending
+from hrdsl.exchange import the_exchange
 
 TYPE_CHECKING = False  # as type checkers read it; `typing` takes longer to import than all of this package
 if TYPE_CHECKING:
     from typing import Any, Iterable, TypeVar, Union
 
+    from hrdsl.exchange import Exchange
+
     Value = Union[bool, int, float, str]
-    Device = TypeVar("Device", bound="_Device")
+    Kind = TypeVar("Kind", bound="Device")
 
 
 class Event:
@@ -41,23 +45,62 @@ class Event:
         return "Event(%s(%s) at %.3f s)" % (self.name, args, self.time)
 
 
-class _Device:
-    def __init__(self, link: _links.Link, name: str) -> None:
-        self._link = link
+class Motion(Ending):
+    """A command that a device carries out while the program goes on. A later command to the same device ends it; it has
+    failed then."""
+
+    def __init__(self, exchange: Exchange, device: Device, command: str, args: dict[str, Any]) -> None:
+        super().__init__()
+        self._exchange = exchange
+        self.device = device
+        self.command = command
+        self.error: str | None = None  # why it has failed
+        exchange.act(device.name, command, args, self._end)
+
+    def _end(self, error: str | None) -> None:
+        self.error = error
+        self._exchange.events.ended(self)
+
+    def done(self) -> bool:
+        """Whether it has ended."""
+        if not self._place:
+            self._exchange.polled("motion")
+        return bool(self._place)
+
+    def wait(self, timeout: float | None = None) -> bool | None:
+        """Waits for its end: whether it succeeded; `None` when `timeout` has passed before."""
+        deadline = None if timeout is None else _after(self._exchange, timeout)
+        if self._exchange.events.wait(frozenset(), (self,), deadline) is None:
+            return None
+        return self.error is None
+
+    def __repr__(self) -> str:
+        state = "under way" if not self._place else "succeeded" if self.error is None else "failed: %s" % self.error
+        return "Motion(%s of %s, %s)" % (self.command, self.device.name, state)
+
+
+class Device:
+    """Something that takes commands."""
+
+    def __init__(self, exchange: Exchange, name: str) -> None:
+        self._exchange = exchange
         self.name = name
         self.last_error: str | None = None  # why the last command failed
+
+    def begin(self, command: str, /, **args: Any) -> Motion:
+        """Gives the device a command that it is declared to have, and returns at once. An argument that is `None` is left out."""
+        return Motion(self._exchange, self, command, {key: value for key, value in args.items() if value is not None})
 
     def command(self, command: str, /, **args: Any) -> bool:
         """Gives the device a command that it is declared to have, and returns when that has ended: whether it succeeded. An
         argument that is `None` is left out."""
-        given = {key: value for key, value in args.items() if value is not None}
-        message = {"request": "act", "on": self.name, "do": command, "args": given, "wait": True}
-        answer = self._link.request(message)
-        self.last_error = answer.get("error")
-        return bool(answer.get("ok"))
+        motion = self.begin(command, **args)
+        motion.wait()
+        self.last_error = motion.error
+        return motion.error is None
 
 
-class Arm(_Device):
+class Arm(Device):
     """A chain of joints under motor control. Motions return when they end: whether the target was reached."""
 
     def move_to(self, place: Iterable[float], speed: float | None = None) -> bool:
@@ -69,7 +112,7 @@ class Arm(_Device):
         return self.command("move_joints", to=_numbers(angles, None), speed=speed)
 
 
-class Gripper(_Device):
+class Gripper(Device):
     """A hand. Both calls return when the hand has done it; `close` says whether it now holds something."""
 
     def close(self) -> bool:
@@ -85,7 +128,8 @@ class Node:
     def __init__(self, name: str) -> None:
         self._link = _links.the_link()
         self._link.hello(name)
-        self._devices: dict[tuple[type[_Device], str], Any] = {}
+        self._exchange = the_exchange()
+        self._devices: dict[tuple[type[Device], str], Any] = {}
         self.name = name
         self.seed = int(os.environ.get("HRDSL_SEED", "0"))
         if "hrdsl.runner" not in sys.modules:
@@ -104,19 +148,24 @@ class Node:
         """Makes an event of the scenario's vocabulary happen now; a value of an enumeration is its name, a str."""
         self._link.request({"request": "emit", "event": event, "args": args})
 
-    def wait_for(self, *events: str, timeout: float | None = None) -> Event | None:
-        """Takes the first of these events out of the mailbox, or waits for one; `None` when `timeout` has passed."""
-        if not events:
+    def wait_for(self, *what: str | Motion, timeout: float | None = None) -> Any:
+        """Takes the first of these events out of the mailbox, or waits for one; `None` when `timeout` has passed. Among them may
+        be motions: one that has ended is returned itself, if it ended before the event came."""
+        if not what:
             raise ProtocolError("wait_for needs the name of an event")
-        message: dict[str, Any] = {"request": "wait_for", "events": list(events)}
-        if timeout is not None:
-            message["timeout"] = _seconds(timeout)
-        found = self._link.request(message).get("event")
-        return None if found is None else Event(found["name"], found.get("args", {}), found["time"] / 1e9)
+        deadline = None if timeout is None else _after(self._exchange, timeout)
+        events = self._exchange.events
+        names = [each for each in what if not isinstance(each, Motion)]
+        events.check(names)
+        motions = tuple(each for each in what if isinstance(each, Motion))
+        found = events.wait(frozenset(names), motions, deadline)
+        if found is None or isinstance(found, Motion):
+            return found
+        return Event(found["name"], found.get("args", {}), found["time"] / 1e9)
 
     def drop(self, *events: str) -> None:
         """Forgets these events in the mailbox; without names, all."""
-        self._link.request({"request": "drop", "events": list(events)})
+        self._exchange.events.drop(events)
 
     def read(self, signal: str) -> Any:
         """The present value of a signal: a bool, an int, a float in SI units, or the name of an enumeration's value."""
@@ -130,10 +179,14 @@ class Node:
         """The gripper of this name; always the same object."""
         return self._device(Gripper, name)
 
-    def _device(self, kind: type[Device], name: str) -> Device:
+    def device(self, name: str) -> Device:
+        """The device of this name, whatever its kind; always the same object."""
+        return self._device(Device, name)
+
+    def _device(self, kind: type[Kind], name: str) -> Kind:
         if (kind, name) not in self._devices:
-            self._devices[kind, name] = kind(self._link, name)
-        device: Device = self._devices[kind, name]
+            self._devices[kind, name] = kind(self._exchange, name)
+        device: Kind = self._devices[kind, name]
         return device
 
 
@@ -148,6 +201,10 @@ def _seconds(value: float) -> float:
     if not value >= 0.0 or value == float("inf"):
         raise ValueError("a duration must be finite and not negative: %r" % value)
     return value
+
+
+def _after(exchange: Exchange, timeout: float) -> int:
+    return exchange.time + round(min(_seconds(timeout), 1e10) * 1e9)  # later than any time of the harness
 
 
 def _numbers(values: Iterable[float], count: int | None) -> list[float]:

@@ -3,8 +3,9 @@
     python -m hrdsl.run [--coverage FILE]... (script.py | -m module) args...
 
 The environment has HRDSL_SEED, the two descriptors of the protocol, and optionally HRDSL_SYS_PATH (folders to search
-for modules), HRDSL_COVERAGE_FD (the descriptor that coverage is written to), HRDSL_COVERAGE_PACKAGE (the folder that has
-coverage.py) and HRDSL_COVERAGE_CACHE. With HRDSL_DEBUG=1 the debugger gets the terminal, and there is no coverage.
+for modules), HRDSL_MIDDLEWARE (`ros1` or `ros2`), HRDSL_BINDING (see `hrdsl.binding`), HRDSL_COVERAGE_FD (the descriptor
+that coverage is written to), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py) and HRDSL_COVERAGE_CACHE. With
+HRDSL_DEBUG=1 the debugger gets the terminal, and there is no coverage.
 """
 
 from __future__ import annotations
@@ -57,6 +58,9 @@ def main(argv: list[str]) -> NoReturn:
         status, is_stopped = _status(lambda: _run(words, module, recorder))
         if not is_stopped and link.is_ours():
             status = _status(_join_threads)[0] or status
+        if link.is_ours():
+            for call in link.on_end:
+                status = _status(call)[0] or status
         if scheduler.failed:
             status = status or 1
         if status == 0 and link.is_ours() and not link.stopped:
@@ -134,9 +138,21 @@ def _run(words: list[str], module: bool, recorder: Recorder | None) -> None:
     import runpy
 
     sys.path.insert(0, os.getcwd())
+    _middleware()
     if recorder is not None:
         recorder.start()
     runpy.run_module(words[0], run_name="__main__", alter_sys=True)
+
+
+def _middleware() -> None:
+    """Puts what stands for the client libraries of ROS where they are found after the program's own modules."""
+    name = os.environ.get("HRDSL_MIDDLEWARE")
+    if name:
+        sys.path.insert(1, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), name))
+    if name or "HRDSL_BINDING" in os.environ:
+        from hrdsl import interfaces
+
+        interfaces.install()
 
 
 def _status(run: Callable[[], None]) -> tuple[int, bool]:
@@ -183,6 +199,7 @@ def _script(path: str, recorder: Recorder | None) -> None:
         text = file.read()
     code = compile(text, path, "exec", dont_inherit=True)
     sys.path.insert(0, os.path.dirname(path))
+    _middleware()
     script = type(sys)("__main__")
     script.__file__ = path
     script.__dict__["__builtins__"] = builtins

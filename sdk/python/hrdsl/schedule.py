@@ -12,6 +12,7 @@ import sys
 import time
 from collections import deque
 
+from hrdsl.deadlines import Deadlines
 from hrdsl.errors import Deadlock, Stopped
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -29,9 +30,13 @@ if TYPE_CHECKING:
         def stopped(self) -> bool:
             """Whether the test is over, so that no wait ends any more."""
 
-        def wait(self, until: int | None) -> None:
-            """Lets time pass until `until` (None: for ever), or until something arrives, whose handlers may call
-            `Scheduler.unpark`. Raises `Deadlock` where nothing can arrive, and `Stopped` when the test is over."""
+        def wait(self, until: int | None, give_up: int | None) -> bool:
+            """Lets time pass until `until`, or until something arrives, whose handlers may call `Scheduler.unpark`, or
+            until `give_up`, if nothing else happens any more at that instant: whether it was the last. Raises `Deadlock`
+            where nothing ends it, and `Stopped` when the test is over."""
+
+        def can_arrive(self) -> bool:
+            """Whether something can arrive that a thread waits for."""
 
     class Watch(Protocol):
         """A wait for descriptors, which the system's real time may end."""
@@ -55,12 +60,6 @@ real_sleep = time.sleep
 real_monotonic = time.monotonic
 real_clock = getattr(time, "clock_gettime", None)
 _get_ident = _thread.get_ident
-
-
-def _heap() -> Any:
-    import _heapq  # not for programs with one thread that never waits
-
-    return _heapq
 
 
 def _handle_pending() -> None:
@@ -101,7 +100,8 @@ class Scheduler:
         self.ending: Callable[[], BaseException] | None = None  # what waits raise, once none can end
         self.failed = False  # whether the program ends by a fault that it cannot catch
         self._main_first = False
-        self._deadlines: list[tuple[int, int, Task]] = []
+        self._deadlines = Deadlines()
+        self._patience = Deadlines()  # those that come after all else that happens at their instants
         self._tickets = 0
         self._polled_at = -1
         self._ended: Callable[[], object] | None = None
@@ -114,13 +114,14 @@ class Scheduler:
 
     # ── waiting ──
 
-    def park(self, what: object, deadline: int | None = None) -> bool:
+    def park(self, what: object, deadline: int | None = None, is_patient: bool = False) -> bool:
         """Lets others run until somebody calls `unpark` for the running thread, or until the deadline (simulated
-        nanoseconds): whether it was the former. Only for the thread that `current` has returned."""
+        nanoseconds): whether it was the former. Who is patient waits for all else that happens at the instant of the
+        deadline. Only for the thread that `current` has returned."""
         me = self.running
         me.what, me.result = what, None
         if deadline is not None:
-            self._set_deadline(me, deadline)
+            self._set_deadline(me, deadline, is_patient)
         else:
             self.polls, me.has_yielded = 0, False
         try:
@@ -135,13 +136,13 @@ class Scheduler:
         me.result = True
         raise result  # type: ignore[misc]
 
-    def _set_deadline(self, me: Task, deadline: int) -> None:
+    def _set_deadline(self, me: Task, deadline: int, is_patient: bool) -> None:
         self._tickets += 1
         me.ticket = self._tickets
-        _heap().heappush(self._deadlines, (deadline, me.ticket, me))
+        (self._patience if is_patient else self._deadlines).push(deadline, me)
         if deadline > self.outside.time:
             self.polls, me.has_yielded = 0, False
-        else:  # no wait, but a look
+        elif not is_patient:  # no wait, but a look
             self.polls += 1
 
     def unpark(self, task: Task, result: bool | BaseException = True) -> None:
@@ -153,7 +154,7 @@ class Scheduler:
     def yield_(self) -> None:
         """Lets those run that are ready."""
         me = self.current()
-        if me is not None and (self.ready or self._deadlines):
+        if me is not None and (self.ready or self._deadlines.entries):
             self.ready.append(me)
             self._hand_over(me)
 
@@ -241,7 +242,8 @@ class Scheduler:
                     call()
         self.main, self.tasks = me, {me.ident: me}
         self.ready.clear()
-        self._deadlines.clear()
+        self._deadlines.entries.clear()
+        self._patience.entries.clear()
         self.watched.clear()
         self._ended = None
 
@@ -263,17 +265,15 @@ class Scheduler:
 
     def next_deadline(self) -> int | None:
         """The first deadline of those who wait."""
-        deadlines = self._deadlines
-        while deadlines and deadlines[0][2].ticket != deadlines[0][1]:
-            _heap().heappop(deadlines)
-        return deadlines[0][0] if deadlines else None
+        both = (self._deadlines.first(), self._patience.first())
+        return min((deadline for deadline in both if deadline is not None), default=None)
 
     # ── the baton ──
 
     def _hand_over(self, me: Task) -> None:
         self.calls += 1
         polls, ready = self.polls, self.ready
-        if ready and not self._deadlines and self._chance is None:
+        if ready and not self._deadlines.entries and self._chance is None:
             chosen: Task | None = ready.popleft()
         else:
             chosen = self._next()
@@ -325,9 +325,9 @@ class Scheduler:
             me.result = True
 
     def _next(self) -> Task | None:
-        deadlines = self._deadlines
+        deadlines = self._deadlines.entries
         if deadlines and deadlines[0][0] <= self.outside.time:
-            self._expire()
+            self._expire(False)
         ready = self.ready
         if not ready:
             self._idle()
@@ -342,15 +342,11 @@ class Scheduler:
             chosen = ready.popleft()
         return chosen
 
-    def _expire(self) -> None:
-        deadlines, time = self._deadlines, self.outside.time
-        while deadlines and deadlines[0][0] <= time:
-            _, ticket, task = _heap().heappop(deadlines)
-            if task.ticket == ticket:
-                self.unpark(task, False)
-        if len(deadlines) > 64 + 4 * len(self.tasks):
-            self._deadlines = [entry for entry in deadlines if entry[2].ticket == entry[1]]
-            _heap().heapify(self._deadlines)
+    def _expire(self, gave_up: bool) -> None:
+        time, tasks = self.outside.time, len(self.tasks)
+        self._deadlines.expire(time, self.unpark, tasks)
+        if self._patience.entries:
+            self._patience.expire(time if gave_up else time - 1, self.unpark, tasks)
 
     # ── when all wait ──
 
@@ -360,18 +356,21 @@ class Scheduler:
                 if not self._wake_all(self.ending):
                     return
                 continue
-            until = self.next_deadline()
+            until, give_up, gave_up = self._deadlines.first(), self._patience.first(), False
             try:
-                if self.watched and self.look is not None and self.look(until is None):
+                if self.watched and self.look is not None and self.look(self._is_timeless(until, give_up)):
                     continue
-                self.outside.wait(until)
+                gave_up = self.outside.wait(until, give_up)
             except Deadlock as found:
                 if not any(task.result is None for task in self.tasks.values()):
                     return  # the last thread of a forked process ends
                 self._found(found)
             except BaseException as error:
                 self._failed(error)
-            self._expire()
+            self._expire(gave_up)
+
+    def _is_timeless(self, until: int | None, give_up: int | None) -> bool:
+        return until is None and give_up is None and not self.outside.can_arrive()
 
     def _found(self, found: Deadlock) -> None:
         from hrdsl import report
@@ -384,10 +383,9 @@ class Scheduler:
         if isinstance(error, Stopped) and self.outside.stopped:
             self.ending = type(error)
             return
-        until = self.next_deadline()
         me = self.running
-        if isinstance(error, Exception) and until is not None:
-            me = self._deadlines[0][2]
+        if isinstance(error, Exception) and self.next_deadline() is not None:
+            me = min(self._deadlines.entries[:1] + self._patience.entries[:1])[2]
         if me.result is not None:  # it ends, and waits for nothing
             me = self.main
         self.unpark(me, error)

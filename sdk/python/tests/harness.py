@@ -1,4 +1,4 @@
-"""Runs programs as `hrdsl sim` does, with a harness whose sleeps pass time and who says yes to all else."""
+"""Runs programs as `hrdsl sim` does, with a harness whose waits pass time and who says yes to all else."""
 
 import json
 import os
@@ -7,6 +7,8 @@ import sys
 import tempfile
 import textwrap
 import threading
+
+from system import System
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 RUNNER = os.path.join(ROOT, "hrdsl", "run.py")
@@ -22,16 +24,16 @@ class Finished:
 class Program:
     """A program that runs, or has run."""
 
-    def __init__(self, words, seed=17, options=(), keep=(), env=None, **popen):
+    def __init__(self, words, seed=17, options=(), keep=(), env=None, system=None, **popen):
+        self.system = system or System()
         requests, its_requests = os.pipe()
         its_replies, self.replies = os.pipe()
         given = {key: value for key, value in os.environ.items() if not key.startswith("HRDSL_")}
         given.update(HRDSL_SEED=str(seed), PYTHONHASHSEED=str(seed), TZ="UTC", HRDSL_SYS_PATH=os.pathsep.join(sys.path))
         given.update(HRDSL_REQUEST_FD=str(its_requests), HRDSL_REPLY_FD=str(its_replies), **(env or {}))
         pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **popen}
-        command = [sys.executable, "-S", RUNNER, *options, *words]
         self.process = subprocess.Popen(
-            command, pass_fds=(its_requests, its_replies, *keep), env=given, universal_newlines=True, **pipes
+            self.command(words, options), pass_fds=(its_requests, its_replies, *keep), env=given, universal_newlines=True, **pipes
         )
         os.close(its_requests)
         os.close(its_replies)
@@ -39,17 +41,18 @@ class Program:
         self._thread = threading.Thread(target=self._answer)
         self._thread.start()
 
+    def command(self, words, options):
+        return [sys.executable, "-S", RUNNER, *options, *words]
+
     def _answer(self):
-        time = 0
         for line in self._lines:
-            request = json.loads(line)
-            self.requests.append(request)
-            if request["request"] == "sleep":
-                time += round(request["seconds"] * 10**9)
-            try:
-                os.write(self.replies, b'{"t":%d,"ok":true}\n' % time)
-            except BrokenPipeError:
-                pass
+            self.requests.append(json.loads(line))
+            reply = self.system.answer(line)
+            if reply is not None:
+                try:
+                    os.write(self.replies, (json.dumps(reply) + "\n").encode())
+                except BrokenPipeError:
+                    pass
 
     def finish(self):
         out, err = self.process.communicate()

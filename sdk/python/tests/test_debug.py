@@ -72,13 +72,13 @@ class Debug(unittest.TestCase):
         self.assertIn("42", shown)
         self.assertIn("see True", shown)
         self.assertIn("back on the terminal", shown)
-        self.assertEqual(found, [0, "after 5 1735689601.0\n", "", ["hello", "sleep", "done"]])
+        self.assertEqual(found, [0, "after 5 1735689601.0\n", "", ["hello", "wait", "done"]])
 
     def test_all_ways_into_the_debugger_are_on_the_terminal(self):
         text = PROGRAM.replace("breakpoint()", "import pdb; pdb.set_trace()") + "try:\n    1 / 0\nexcept ArithmeticError:\n    pdb.post_mortem()\n"
         shown, found = self.on_a_terminal(text, ["c", "p x + 2", "c"])
         self.assertIn("43", shown)
-        self.assertEqual((found[0], found[3]), (0, ["hello", "sleep", "done"]), found)
+        self.assertEqual((found[0], found[3]), (0, ["hello", "wait", "done"]), found)
 
     def test_who_leaves_the_debugger_ends_the_program(self):
         _, found = self.on_a_terminal(PROGRAM, ["q", "y"])

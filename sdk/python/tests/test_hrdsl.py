@@ -13,10 +13,11 @@ sys.path[:0] = [ROOT, os.path.join(ROOT, "..", "..", "examples", "handover")]
 
 import hrdsl  # noqa: E402
 from hrdsl import cover, link  # noqa: E402
+from system import System  # noqa: E402
 
 
 class Harness(threading.Thread):
-    """Answers each request by a function."""
+    """Answers each request by a function, or as a system does."""
 
     def __init__(self, answer):
         super().__init__(daemon=True)
@@ -30,7 +31,9 @@ class Harness(threading.Thread):
     def run(self):
         for line in self.lines:
             self.requests.append(json.loads(line))
-            os.write(self.write, (json.dumps(self.answer(self.requests[-1])) + "\n").encode())
+            reply = self.answer(self.requests[-1]) if callable(self.answer) else self.answer.answer(line)
+            if reply is not None:
+                os.write(self.write, (json.dumps(reply) + "\n").encode())
 
     def close(self):
         os.close(self.its_write)
@@ -51,22 +54,18 @@ class Messages(unittest.TestCase):
             self.addCleanup(sys.modules.pop, "hrdsl.runner")
         return harness, hrdsl.Node("test")
 
-    def test_a_motion_is_one_message(self):
-        harness, node = self.node(lambda request: {"t": 1500000000, "ok": True})
+    def test_a_motion_is_begun_and_waited_for(self):
+        harness, node = self.node(System(commands=lambda request: (1500000000, None)))
         self.assertIs(node.arm("robot.arm").move_to((1, 2, 3)), True)
-        self.assertEqual(
-            harness.requests[-1],
-            {"request": "act", "on": "robot.arm", "do": "move_to", "args": {"to": [1.0, 2.0, 3.0]}, "wait": True},
-        )
+        act = {"request": "act", "on": "robot.arm", "do": "move_to", "args": {"to": [1.0, 2.0, 3.0]}, "wait": False, "call": 1}
+        self.assertEqual(harness.requests[-2:], [act, {"request": "wait"}])
         self.assertEqual(node.now(), 1.5)
         self.assertIs(node.gripper("robot.grip").command("drop", command="gently", force=None), True)
-        self.assertEqual(
-            harness.requests[-1],
-            {"request": "act", "on": "robot.grip", "do": "drop", "args": {"command": "gently"}, "wait": True},
-        )
+        act = {"request": "act", "on": "robot.grip", "do": "drop", "args": {"command": "gently"}, "wait": False, "call": 2}
+        self.assertEqual(harness.requests[-2], act)
 
     def test_a_name_is_one_device(self):
-        _, node = self.node(lambda request: {"t": 1, "ok": False, "error": "joint 2 is at its limit"})
+        _, node = self.node(System(commands=lambda request: (7, "joint 2 is at its limit")))
         self.assertIs(node.arm("robot.arm").move_to((1, 2, 3)), False)
         self.assertEqual(node.arm("robot.arm").last_error, "joint 2 is at its limit")
         self.assertIsNone(node.arm("robot.other").last_error)
@@ -81,8 +80,7 @@ class Messages(unittest.TestCase):
         self.assertIn("`hrdsl sim scenario.hri --test NAME`", str(caught.exception))
 
     def test_an_event_has_its_arguments(self):
-        event = {"name": "sensed", "args": {"gaze": True}, "time": 250000000}
-        _, node = self.node(lambda request: {"t": 1, "event": event})
+        _, node = self.node(System([(250000000, {"event": {"name": "sensed", "args": {"gaze": True}}})]))
         got = node.wait_for("sensed", timeout=1)
         self.assertEqual((got.name, got.gaze, got.args, got.time), ("sensed", True, {"gaze": True}, 0.25))
         with self.assertRaises(AttributeError):

@@ -171,7 +171,7 @@ class Faults(Case):
             """
         program = StoppedAt("emit", text)
         self.assertEqual((program.code, program.out, program.err), (0, "work ends\n", ""))
-        program = StoppedAt("sleep", text.replace('node.emit("stop")', "threading.Event().wait(1)"))
+        program = StoppedAt("wait", text.replace('node.emit("stop")', "threading.Event().wait(1)"))
         self.assertEqual((program.code, program.out, program.err), (0, "work ends\n", ""))
 
 

@@ -18,18 +18,24 @@ class Outside:
     def __init__(self):
         self.time, self.stopped, self.arrivals, self.waits = 0, False, {}, []
 
-    def wait(self, until):
-        self.waits.append(until)
-        times = [time for time in self.arrivals if until is None or time <= until]
+    def wait(self, until, give_up):
+        limit = min((time for time in (until, give_up) if time is not None), default=None)
+        self.waits.append(limit)
+        times = [time for time in self.arrivals if limit is None or time < limit or time == give_up != until]
         if times:
             self.time = min(times)
             self.arrivals.pop(self.time)()
         elif self.stopped:
             raise Stopped()
-        elif until is None:
+        elif limit is None:
             raise Deadlock()
         else:
-            self.time = until
+            self.time = limit
+            return until is None or give_up is not None and give_up < until
+        return False
+
+    def can_arrive(self):
+        return bool(self.arrivals)
 
 
 class Case(unittest.TestCase):
@@ -142,8 +148,27 @@ class Waits(Case):
         self.assertEqual((self.outside.time, self.outside.waits), (7, [50]))
         self.assertIs(self.scheduler.park("another", 60), False)
 
+    def test_who_is_patient_hears_what_comes_at_the_very_deadline(self):
+        main = self.scheduler.current()
+        self.outside.arrivals[50] = lambda: self.scheduler.unpark(main)
+        self.assertIs(self.scheduler.park("a message", 50, True), True)
+        self.assertIs(self.scheduler.park("another", 60, True), False)
+        self.assertEqual((self.outside.time, self.outside.waits), (60, [50, 60]))
+
+    def test_at_one_instant_pauses_end_before_patience(self):
+        def sleep():
+            self.scheduler.park("sleep", 50)
+            self.say("slept")
+            self.scheduler.unpark(main)
+
+        main = self.scheduler.current()
+        self.start(sleep)
+        self.assertIs(self.scheduler.park("a message", 50, True), True)
+        self.assertEqual(self.said, [(50, "slept")])
+        self.join_all()
+
     def test_a_fault_of_the_outside_is_raised_by_the_wait_that_it_is_about(self):
-        def fail(until):
+        def fail(until, give_up):
             raise ValueError(until)
 
         def wait():

@@ -1,0 +1,297 @@
+"""What the programs of a system say to each other and to the world: topics, services, actions, commands and events, as
+protocol 2 has them (spec/protocol.md).
+
+Handlers are called with what has arrived while all threads wait. They must not wait themselves: they put things where
+threads find them (`hrdsl.mailbox.Mailbox`, a `deque`).
+"""
+
+from __future__ import annotations
+
+import json
+
+from hrdsl import link as _links
+from hrdsl.errors import ProtocolError
+from hrdsl.events import EventBox
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any, Callable, Union
+
+    Arrival = dict[str, Any]
+    Handler = Callable[[Arrival], object]
+    Message = Union[bytes, Any]  # bytes are JSON already
+
+_encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
+
+#: Kinds of ports at which something arrives by itself.
+_HEARING = ("subscriber", "server", "action_server")
+
+
+def the_exchange() -> Exchange:
+    """The one of this process, made at the first use."""
+    link = _links._link or _links.the_link()
+    exchange: Exchange | None = link.exchange
+    if exchange is None:
+        exchange = Exchange(link)
+    return exchange
+
+
+class Port:
+    """A publisher, subscriber, server or client of this program."""
+
+    __slots__ = ("number", "kind", "name", "type_name", "_exchange", "_tell", "_publish", "_handler")
+
+    def __init__(self, exchange: Exchange, number: int, kind: str, name: str, type_name: str, handler: Handler | None) -> None:
+        self.number, self.kind, self.name, self.type_name = number, kind, name, type_name
+        self._exchange: Exchange | None = exchange
+        self._tell = exchange.link.tell
+        self._publish = b'{"request":"publish","port":%d,"message":' % number
+        self._handler = handler
+
+    def publish(self, message: Message) -> None:
+        """Sends a message, which goes out with the next request that waits."""
+        if self._exchange is None:
+            raise self._closed()
+        if message.__class__ is not bytes:
+            message = _encode(message).encode("ascii")
+        self._tell(self._publish + message + b"}\n", self)
+
+    def call(self, message: Message, handler: Handler) -> Call:
+        """Asks the service, or gives the action a goal; the handler gets what comes of it."""
+        exchange = self._exchange
+        if exchange is None:
+            raise self._closed()
+        call = Call(exchange, exchange.number(), self)
+        text = message if isinstance(message, bytes) else _encode(message).encode("ascii")
+        exchange.calls[call.number] = handler
+        try:
+            self._tell(b'{"request":"call","port":%d,"call":%d,"message":%s}\n' % (self.number, call.number, text), self)
+        except BaseException:
+            del exchange.calls[call.number]
+            raise
+        return call
+
+    def close(self) -> None:
+        """Nothing arrives any more, and nothing can be sent."""
+        exchange, self._exchange = self._exchange, None
+        if exchange is not None:
+            exchange.ports.pop(self.number, None)
+            self._tell(b'{"request":"close","port":%d}\n' % self.number, self)
+
+    def _closed(self) -> ProtocolError:
+        return ProtocolError("the %s is closed" % self)
+
+    def __str__(self) -> str:
+        return "%s of %s (%s)" % (self.kind.replace("_", " "), self.name, self.type_name)
+
+
+class Call:
+    """A question to a service, or a goal of an action."""
+
+    __slots__ = ("number", "_exchange", "_port")
+
+    def __init__(self, exchange: Exchange, number: int, port: Port) -> None:
+        self._exchange = exchange
+        self.number = number
+        self._port = port
+
+    def cancel(self) -> None:
+        """Asks the server of an action to end the goal; nothing, once that has ended."""
+        if self.number in self._exchange.calls:
+            self._exchange.link.tell(b'{"request":"cancel","call":%d}\n' % self.number, self._port)
+
+
+class Exchange:
+    """This program's side of all of it."""
+
+    def __init__(self, link: _links.Link) -> None:
+        self.link = link
+        self.scheduler = link.scheduler or _scheduler(link)
+        self.events = EventBox(self)
+        self.ports: dict[int, Port] = {}  # that are open
+        self.calls: dict[int, Handler] = {}  # that have not ended
+        self.parked = 0  # threads that wait for what arrives
+        self._commands: dict[int, Callable[[str | None], object]] = {}
+        self._listeners: list[Handler] = []  # to events
+        self._watchers: list[Callable[[], object]] = []  # of the graph
+        self._last = 0  # number of a port or call
+        link.exchange = self
+        self.take(link.backlog)
+        link.backlog = []
+
+    @property
+    def time(self) -> int:
+        """Simulated nanoseconds, at the last reply."""
+        return self.link.time
+
+    def number(self) -> int:
+        """One that no port and no call has."""
+        self._last += 1
+        return self._last
+
+    def polled(self, kind: str = "") -> None:
+        """To be called by what tells a program how things are: many such calls at one instant are a wait."""
+        self.scheduler.polled(kind)
+
+    # ── ports ──
+
+    def open(
+        self,
+        kind: str,
+        name: str,
+        type_name: str,
+        *,
+        latched: bool = False,
+        depth: int | None = None,
+        handler: Handler | None = None,
+    ) -> Port:
+        """Becomes a `publisher`, `subscriber`, `server`, `client`, `action_server` or `action_client`. What arrives at the
+        port goes to the handler. Raises `ProtocolError` if it is refused."""
+        port = Port(self, self.number(), kind, name, type_name, handler)
+        message: dict[str, Any] = {"request": "open", "port": port.number, "kind": kind, "name": name, "type": type_name}
+        if latched:
+            message["latched"] = True
+        if depth is not None:
+            message["depth"] = depth
+        self.ports[port.number] = port
+        try:
+            self.link.request(message)
+        except BaseException:
+            self.ports.pop(port.number, None)
+            raise
+        return port
+
+    def listing(self) -> list[dict[str, str]]:
+        """All open ports of the system: `kind`, `name`, `type` and `program` of each."""
+        ports: list[dict[str, str]] = self.link.request({"request": "list"})["ports"]
+        return ports
+
+    def on_change(self, handler: Callable[[], object]) -> None:
+        """Lets it be called once when ports have been opened or closed since `listing`."""
+        self._watchers.append(handler)
+
+    # ── the side of a server ──
+
+    def respond(self, number: int, message: Message) -> None:
+        """Answers a call of a service, by the number with which it arrived."""
+        self._about_call(b'{"request":"respond","call":%d,"message":%s}\n', number, message)
+
+    def refuse(self, number: int, text: str) -> None:
+        """Answers it with an error."""
+        self._about_call(b'{"request":"respond","call":%d,"error":%s}\n', number, text)
+
+    def feedback(self, number: int, message: Message) -> None:
+        """Tells how far a goal is."""
+        self._about_call(b'{"request":"feedback","call":%d,"message":%s}\n', number, message)
+
+    def finish(self, number: int, end: str, message: Message) -> None:
+        """Ends a goal: it is `succeeded`, `aborted`, `canceled` or `rejected`."""
+        line = b'{"request":"finish","call":%%d,"end":"%s","message":%%s}\n' % end.encode("ascii")
+        self._about_call(line, number, message)
+
+    def _about_call(self, line: bytes, number: int, message: Message) -> None:
+        text = message if isinstance(message, bytes) else _encode(message).encode("ascii")
+        self.link.tell(line % (number, text), "the answer to call %d" % number)
+
+    # ── the world ──
+
+    def act(self, device: str, command: str, args: dict[str, Any], handler: Callable[[str | None], object]) -> None:
+        """Begins a command of a device; the handler is told at its end why it has failed, or None. Raises `ProtocolError` if
+        there is no such command."""
+        number = self.number()
+        self._commands[number] = handler
+        message = {"request": "act", "on": device, "do": command, "args": args, "wait": False, "call": number}
+        try:
+            answer = self.link.request(message)
+        except BaseException:
+            del self._commands[number]
+            raise
+        if answer.get("ok") is False:  # it could not be begun
+            del self._commands[number]
+            handler(answer.get("error") or "it could not be begun")
+
+    def on_event(self, handler: Handler) -> None:
+        """Lets it be called with each event that the program's actor hears: `name`, `args` and `time` (nanoseconds)."""
+        self._listeners.append(handler)
+
+    def read(self, signal: str) -> Any:
+        """The present value of a signal."""
+        return self.link.request({"request": "read", "signal": signal})["value"]
+
+    def state(self, device: str, what: str) -> list[float]:
+        """How a device is now: its `joints`, as positions in radians or metres."""
+        value: list[float] = self.link.request({"request": "state", "device": device, "what": what})["value"]
+        return value
+
+    def transition(self, machine: str, label: str, state: str, outcome: str, next: str) -> None:
+        """Tells that a state machine has moved."""
+        self.tell({
+            "request": "transition", "machine": machine, "label": label, "state": state, "outcome": outcome, "next": next,
+        })  # fmt: skip
+
+    def tell(self, message: dict[str, Any]) -> None:
+        """Sends a request of any kind that has no reply."""
+        self.link.tell(_encode(message).encode("ascii") + b"\n", message["request"])
+
+    # ── what arrives ──
+
+    def expects(self) -> bool:
+        """Whether something may arrive that ends a wait."""
+        if self.parked or self.calls or self._commands or self._listeners or self._watchers:
+            return True
+        return any(port.kind in _HEARING for port in self.ports.values())
+
+    def park(self, what: object, deadline: int | None) -> bool:
+        """Lets the calling thread wait for what arrives, and hear what comes at the very deadline (nanoseconds): whether it
+        was woken by `Scheduler.unpark`. A thread that the scheduler does not run waits for the next arrival."""
+        me = self.scheduler.current()
+        self.parked += 1
+        try:
+            if me is not None:
+                woken: bool = self.scheduler.park(what, deadline, True)
+                return woken
+            return not self.scheduler.outside.wait(None, deadline)
+        finally:
+            self.parked -= 1
+
+    def take(self, arrivals: list[Arrival]) -> None:
+        """Calls the handlers of what has arrived, in its order."""
+        for arrival in arrivals:
+            number = arrival.get("port")
+            if number is not None:
+                port = self.ports.get(number)
+                if port is not None and port._handler is not None:
+                    port._handler(arrival)
+            elif "event" in arrival:
+                self.events.arrived(arrival["event"])
+                for listener in self._listeners:
+                    listener(arrival["event"])
+            else:
+                self._take_rare(arrival)
+
+    def _take_rare(self, arrival: Arrival) -> None:
+        if "ended" in arrival:
+            ended = self._commands.pop(arrival["ended"], None)
+            if ended is not None:
+                ended(None if arrival.get("ok") else arrival.get("error") or "it failed")
+        elif "feedback" in arrival:
+            handler = self.calls.get(arrival["feedback"])
+            if handler is not None:
+                handler(arrival)
+        elif "answered" in arrival or "finished" in arrival:
+            number = arrival["answered" if "answered" in arrival else "finished"]
+            handler = self.calls.pop(number, None)
+            if handler is not None:
+                handler(arrival)
+        elif "changed" in arrival:
+            for watcher in self._watchers:
+                watcher()
+
+
+def _scheduler(link: _links.Link) -> Any:
+    """Of a program that does not run through `hrdsl.run`: nothing is replaced, and threads that it starts wait one by one."""
+    from hrdsl.outside import OverLink
+    from hrdsl.schedule import Scheduler
+
+    link.scheduler = Scheduler(OverLink(link))
+    return link.scheduler

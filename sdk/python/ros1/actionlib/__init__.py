@@ -1,0 +1,37 @@
+"""Actions: goals that a client gives a server, which tells how it gets on and how it ends.
+
+A goal, its feedback and its result go over the ports of hrdsl (one for each client and server), and not over the five
+topics that they take in ROS 1: who listens to those directly hears nothing.
+"""
+
+from actionlib.simple_action_client import SimpleActionClient, SimpleGoalState
+from actionlib.action_client import (
+    ActionClient,
+    ClientGoalHandle,
+    CommState,
+    GoalStatus,
+    TerminalState,
+    get_name_of_constant,
+)
+from actionlib.action_server import ActionServer, nop_cb
+from actionlib.server_goal_handle import ServerGoalHandle
+from actionlib.simple_action_server import SimpleActionServer
+from actionlib.goal_id_generator import GoalIDGenerator
+from actionlib.exceptions import ActionException
+
+__all__ = [
+    "ActionClient",
+    "ActionException",
+    "ActionServer",
+    "ClientGoalHandle",
+    "CommState",
+    "GoalIDGenerator",
+    "GoalStatus",
+    "ServerGoalHandle",
+    "SimpleActionClient",
+    "SimpleActionServer",
+    "SimpleGoalState",
+    "TerminalState",
+    "get_name_of_constant",
+    "nop_cb",
+]

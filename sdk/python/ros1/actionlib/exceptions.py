@@ -1,0 +1,5 @@
+"""What is wrong with the use of an action."""
+
+
+class ActionException(Exception):
+    """A type that is no action."""

@@ -1,0 +1,3 @@
+"""As `rosgraph.names`."""
+
+from rosgraph.names import *  # noqa: F403

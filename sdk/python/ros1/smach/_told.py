@@ -1,0 +1,79 @@
+"""Tells hrdsl which machines there are and how they move, so that their states and transitions are covered.
+
+A machine within another is called by the labels that lead to it: `machine/GRASP`. The outermost is called as in its
+introspection server (`SM_ROOT`), and if it has none `machine`; further ones `machine#2` and so on, as they begin.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_outermost = 0
+
+
+def is_the_end(error: BaseException) -> bool:
+    """Whether it ends the program by hrdsl (the test is over, or a deadlock): no code may take it for a failure of its own."""
+    return type(error).__module__ == "hrdsl.errors" and isinstance(error, SystemExit)
+
+
+def _exchange() -> Any:
+    """What tells hrdsl; None if it does not run this program."""
+    link = sys.modules.get("hrdsl.link")
+    if "HRDSL_BINDING" not in os.environ and getattr(link, "_link", None) is None:
+        return None
+    from hrdsl.exchange import the_exchange
+
+    return the_exchange()
+
+
+def is_child(parent: Any, label: str, state: Any) -> None:
+    """The state is about to run within a container."""
+    if hasattr(state, "_told_name") and state._told_name is None:
+        state._told_name = "%s/%s" % (_name(parent), label)
+
+
+def _name(machine: Any) -> str:
+    global _outermost
+    if machine._told_name is None:
+        _outermost += 1
+        machine._told_name = "machine" if _outermost == 1 else "machine#%d" % _outermost
+    name: str = machine._told_name
+    return name
+
+
+def begins(machine: Any) -> None:
+    """The machine is executed; the first time, what it declares is told."""
+    name = _name(machine)
+    exchange = None if machine._is_told else _exchange()
+    if exchange is None:
+        return
+    machine._is_told = True
+    edges = []
+    for label, targets in machine._transitions.items():
+        for outcome, target in targets.items():
+            edges.append([str(label), str(outcome), str(target if _leads(machine, target) else outcome)])
+    exchange.tell(
+        {
+            "request": "machine",
+            "name": name,
+            "states": [str(label) for label in machine._states],
+            "transitions": edges,
+            "outcomes": [str(outcome) for outcome in machine.get_registered_outcomes()],
+        }
+    )
+
+
+def _leads(machine: Any, target: Any) -> bool:
+    return target in machine._states or target in machine.get_registered_outcomes()
+
+
+def moves(machine: Any, label: str, state: Any, outcome: str, next: str) -> None:
+    """The machine goes from a state to the next, or to an outcome of its own."""
+    exchange = _exchange()
+    if exchange is not None:
+        exchange.transition(_name(machine), str(label), type(state).__name__, str(outcome), str(next))

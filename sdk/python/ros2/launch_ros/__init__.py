@@ -1,0 +1,3 @@
+"""Refused: launch files."""
+
+raise NotImplementedError("launch_ros is not supported by hrdsl's rclpy: name the programs of the system in the scenario, with their arguments")

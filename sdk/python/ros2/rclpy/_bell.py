@@ -1,0 +1,42 @@
+"""What threads of rclpy wait with."""
+
+from __future__ import annotations
+
+from rclpy import _world
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Bell:
+    """Wakes those who wait for it to ring, now or later."""
+
+    __slots__ = ("is_rung", "_sleepers")
+
+    def __init__(self) -> None:
+        self.is_rung = False
+        self._sleepers: list[Any] = []
+
+    def ring(self) -> None:
+        """Wakes all who wait; never waits."""
+        self.is_rung = True
+        if self._sleepers:
+            unpark = _world.exchange().scheduler.unpark
+            for sleeper in self._sleepers:
+                if sleeper is not None:
+                    unpark(sleeper)
+
+    def wait(self, deadline: int | None = None) -> bool:
+        """Waits until it rings, or has rung, or until the deadline (simulated nanoseconds), at whose very instant it is
+        still heard: whether it has rung."""
+        exchange = _world.exchange()
+        me = exchange.scheduler.current()
+        self._sleepers.append(me)
+        try:
+            while not self.is_rung:
+                if not exchange.park(self, deadline):
+                    break
+        finally:
+            self._sleepers.remove(me)
+        return self.is_rung

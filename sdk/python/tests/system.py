@@ -1,0 +1,264 @@
+"""A harness of protocol 2 for one program, with a graph of ports, and a script of what comes from outside."""
+
+import heapq
+import json
+
+HEARS = {"publisher": "subscriber", "client": "server", "action_client": "action_server"}
+
+
+class Refused(Exception):
+    """Nothing happened."""
+
+
+class System:
+    """Answers requests.
+
+    `arrivals` are pairs of a time in nanoseconds and an arrival as the protocol has it; {"topic": NAME, "message": M} is
+    published from outside, and a function is called with the system. `services` are functions from a message to a message by
+    their names; `actions` functions from a goal to a list of (delay, feedback) and (delay, end, result); `commands` is a
+    function from an `act` to (delay, error or None), `signals` and `states` have values by their names, and `latched` the
+    last messages of topics from outside. `events` are those that the actor hears; None: all. `end` is the end of the test."""
+
+    def __init__(self, arrivals=(), services=(), actions=(), commands=None, signals=(), states=(), events=None,
+                 latched=(), end=None, others=()):  # fmt: skip
+        self.time, self.stopped, self.lines = 0, False, 0
+        self.services, self.actions, self.signals, self.states = map(dict, (services, actions, signals, states))
+        self.commands = commands or (lambda request: (0, None))
+        self.events, self.end, self.others = events, end, list(others)
+        self.mailbox, self.refused, self.ports, self.calls, self.goals = [], [], {}, {}, {}
+        self.latched, self.published, self.watched = dict(latched), [], False
+        self._queue, self._number = [], 0
+        for time, arrival in arrivals:
+            self.later(time, arrival)
+
+    def later(self, time, arrival):
+        """At this time."""
+        self._number += 1
+        heapq.heappush(self._queue, (time, self._number, arrival))
+
+    def soon(self, delay, arrival):
+        self.later(self.time + delay, arrival)
+
+    def answer(self, line):
+        """The reply to a line; None: there is none."""
+        self.lines += 1
+        request = json.loads(line)
+        one_way = getattr(self, "tell_" + request["request"], None)
+        try:
+            if one_way is not None:
+                one_way(request)
+                return None
+            reply = getattr(self, "do_" + request["request"], self._yes)(request)
+        except Refused as why:
+            if one_way is not None:
+                self.refused.append({"line": self.lines, "error": str(why)})
+                return None
+            reply = {"error": str(why)}
+        if self.end is not None and self.time >= self.end:
+            self.time, self.stopped = self.end, True
+        if self.stopped:
+            reply = {"stop": True}
+        if self.refused:
+            reply["refused"], self.refused = self.refused, []
+        return {"t": self.time, **reply}
+
+    def _yes(self, request):
+        return {"ok": True}
+
+    def do_hello(self, request):
+        return {"version": 2, "program": "robot"}
+
+    def do_read(self, request):
+        return {"value": self.signals.get(request["signal"], 0)}
+
+    def do_state(self, request):
+        return {"value": self.states.get(request["device"], [])}
+
+    def do_drop(self, request):
+        for name in request["events"]:
+            if self.events is not None and name not in self.events:
+                raise Refused("no event `%s` that this actor hears" % name)
+        names = request["events"]
+        self.mailbox = [m for m in self.mailbox if "event" not in m or names and m["event"]["name"] not in names]
+        return {}
+
+    def do_act(self, request):
+        delay, error = self.commands(request)
+        if delay is None:
+            return {"ok": False, "error": error}
+        ended = {"ended": request["call"], "ok": error is None}
+        self.soon(delay, ended if error is None else {**ended, "error": error})
+        return {}
+
+    # ── time ──
+
+    def do_sleep(self, request):
+        until = self.time + round(request["seconds"] * 10**9)
+        while self._queue and self._queue[0][0] < until:
+            self._arrive()
+        self.time = until
+        return {}
+
+    def do_wait(self, request):
+        until, give_up = request.get("until"), request.get("give_up")
+        while not self.mailbox:
+            next = self._queue[0][0] if self._queue else None
+            limits = [time for time in (until, give_up) if time is not None]
+            if next is not None and (until is None or next < until) and (give_up is None or next <= max(give_up, self.time)):
+                self._arrive()
+                continue
+            if not limits:
+                self.stopped = True
+                return {}
+            self.time = max(self.time, min(limits))
+            if until is None or give_up is not None and give_up < until:
+                return {"arrivals": [], "gave_up": True}
+            return {"arrivals": []}
+        arrivals, self.mailbox = self.mailbox, []
+        return {"arrivals": arrivals}
+
+    def _arrive(self):
+        time, _, arrival = heapq.heappop(self._queue)
+        self.time = max(self.time, time)
+        if callable(arrival):
+            arrival(self)
+        elif "topic" in arrival:
+            self.publish(arrival["topic"], arrival["message"])
+        else:
+            if "event" in arrival:
+                arrival["event"].setdefault("args", {})
+                arrival["event"].setdefault("time", self.time)
+            self.mailbox.append(arrival)
+
+    # ── ports ──
+
+    def do_open(self, request):
+        for port in self.ports.values():
+            if port["name"] == request["name"] and port["type"] != request["type"]:
+                told = request["name"], port["type"], request["type"]
+                raise Refused("the topic `%s` is of type `%s`, not `%s`" % told)
+        self._changed()
+        self.ports[request["port"]] = request
+        if request["kind"] == "subscriber" and request["name"] in self.latched:
+            self.mailbox.append({"port": request["port"], "message": self.latched[request["name"]]})
+        return {}
+
+    def do_list(self, request):
+        self.watched = True
+        ports = [{key: port[key] for key in ("kind", "name", "type")} for port in self.ports.values()]
+        return {"ports": [{**port, "program": port.get("program", "robot")} for port in ports + self.others]}
+
+    def _changed(self):
+        if self.watched:
+            self.watched = False
+            self.mailbox.append({"changed": True})
+
+    def others_open(self, kind, name, type_name):
+        """Another program opens a port, which is listed."""
+        self.others.append({"kind": kind, "name": name, "type": type_name, "program": "other"})
+        self._changed()
+
+    def at(self, kind, name):
+        """The numbers of the program's ports of this kind."""
+        return [number for number, port in self.ports.items() if port["kind"] == kind and port["name"] == name]
+
+    def publish(self, name, message):
+        """From outside, or by the program."""
+        for number in self.at("subscriber", name):
+            depth = self.ports[number].get("depth", 1000)
+            waiting = [m for m in self.mailbox if m.get("port") == number]
+            if len(waiting) >= depth:
+                self.mailbox.remove(waiting[0])
+            self.mailbox.append({"port": number, "message": message})
+
+    def _port(self, request):
+        if request["port"] not in self.ports:
+            raise Refused("no port %d is open" % request["port"])
+        return self.ports[request["port"]]
+
+    def tell_close(self, request):
+        self._port(request)
+        del self.ports[request["port"]]
+        self.mailbox = [m for m in self.mailbox if m.get("port") != request["port"]]
+        self._changed()
+
+    def tell_publish(self, request):
+        port = self._port(request)
+        self.published.append((self.time, port["name"], request["message"]))
+        if port.get("latched"):
+            self.latched[port["name"]] = request["message"]
+        self.publish(port["name"], request["message"])
+
+    def tell_transition(self, request):
+        pass
+
+    def tell_machine(self, request):
+        pass
+
+    def tell_call(self, request):
+        port, call = self._port(request), request["call"]
+        name, message = port["name"], request["message"]
+        servers = self.at(HEARS[port["kind"]], name)
+        if servers:
+            self._number += 1
+            self.calls[self._number], self.goals[call] = call, self._number
+            self.mailbox.append({"called": self._number, "port": servers[0], "message": message})
+        elif name in self.services:
+            answer = self.services[name](message)
+            told = {"error": answer} if isinstance(answer, str) else {"message": answer}
+            self.mailbox.append({"answered": call, **told})
+        elif name in self.actions:
+            self.goals[call] = None
+            for delay, *what in self.actions[name](message):
+                if len(what) == 1:
+                    self.soon(delay, lambda _, w=what: self._goal_says(call, {"feedback": call, "message": w[0]}))
+                else:
+                    told = {"finished": call, "end": what[0], "message": what[1]}
+                    self.soon(delay, lambda _, told=told: self._goal_says(call, told))
+        else:
+            kind = "action" if port["kind"].startswith("action") else "service"
+            self.mailbox.append({"answered": call, "error": "the %s `%s` has no server" % (kind, name)})
+
+    def _goal_says(self, call, arrival):
+        if call in self.goals:
+            self.mailbox.append(arrival)
+            if "finished" in arrival:
+                del self.goals[call]
+
+    def call(self, name, message, kind="server"):
+        """A call, or a goal, from outside: its number."""
+        self._number += 1
+        self.calls[self._number] = None
+        for number in self.at(kind, name):
+            self.mailbox.append({"called": self._number, "port": number, "message": message})
+        return self._number
+
+    def _end(self, request, arrival):
+        if request["call"] not in self.calls:
+            raise Refused("no call %d is open" % request["call"])
+        call = self.calls.pop(request["call"])
+        if call is not None:
+            self.goals.pop(call, None)
+            self.mailbox.append({**arrival, next(iter(arrival)): call})
+
+    def tell_respond(self, request):
+        told = {key: request[key] for key in ("message", "error") if key in request}
+        self._end(request, {"answered": 0, **told})
+
+    def tell_feedback(self, request):
+        call = self.calls.get(request["call"])
+        if call is not None:
+            self.mailbox.append({"feedback": call, "message": request["message"]})
+
+    def tell_finish(self, request):
+        self._end(request, {"finished": 0, "end": request["end"], "message": request["message"]})
+
+    def tell_cancel(self, request):
+        call = request["call"]
+        if self.goals.get(call) is not None:
+            number = self.goals[call]
+            port = next(p for p, port in self.ports.items() if port["kind"] == "action_server")
+            self.mailbox.append({"canceled": number, "port": port})
+        elif call in self.goals:
+            self.mailbox.append({"finished": call, "end": "canceled", "message": None})
+            del self.goals[call]
