@@ -353,14 +353,23 @@ class Publisher(Topic):
             raise ROSException("publish() to an unregistered() handle")
         if not core._client_ready:
             raise ROSException("ROS node has not been initialized yet. Please call init_node() first")
-        if len(args) == 1 and args[0].__class__ is self.data_class and not kwds:
+        if len(args) == 1 and not kwds:
             message = args[0]
+            kind = message.__class__
+            if kind is float:
+                message = self.data_class(message)
+            elif kind is not self.data_class:
+                message = self._message(args, kwds)
         else:
-            message = args_kwds_to_message(self.data_class, args, kwds)
+            message = self._message(args, kwds)
         try:
             impl.publish(message)
         except SerializationError as error:
             raise ROSSerializationException(str(error)) from None
+
+    def _message(self, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
+        message = args_kwds_to_message(self.data_class, args, kwds)
+        return self.data_class().deserialize(message._buff) if message.__class__ is AnyMsg else message
 
 
 class _PublisherImpl(_Impl):
@@ -371,6 +380,7 @@ class _PublisherImpl(_Impl):
         self.seq = 0
         self._listeners: list[SubscribeListener] = []
         self._has_header = data_class._has_header
+        self._json = data_class._json
         super().__init__(name, data_class, table)
 
     def open(self) -> Port:
@@ -392,15 +402,13 @@ class _PublisherImpl(_Impl):
             if core._shutdown_flag:
                 return
             raise ROSException("publish() to a closed topic")
-        self.seq += 1
         if self._has_header:
+            self.seq += 1
             header = message.header
             header.seq = self.seq
             if header.frame_id is None:
                 header.frame_id = "0"
-        if message.__class__ is AnyMsg:
-            message = self.data_class().deserialize(message._buff)
-        port.publish(self.data_class._json(message).encode("ascii"))
+        port.publish(self._json(message).encode("ascii"))
 
     def add_subscriber_listener(self, listener: SubscribeListener) -> None:
         self._listeners.append(listener)
