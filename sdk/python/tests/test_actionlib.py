@@ -1,11 +1,9 @@
 """`actionlib` between programs: clients whose servers are outside, servers that are called from outside, and both in one."""
 
-import tempfile
 import unittest
 
-import tables
-from harness import run_text
 from system import System
+from tables import run_ros
 
 SECOND = 10**9
 
@@ -35,10 +33,8 @@ def counts(goal):
 
 
 class Case(unittest.TestCase):
-    def said(self, text, system=None, **how):
-        with tempfile.TemporaryDirectory() as folder:
-            env = tables.binding(folder, ["actionlib_msgs", "std_msgs"], MORE)
-            done = run_text(IMPORTS + text, system=system, env=env, **how)
+    def said(self, text, system=None):
+        done = run_ros(IMPORTS + text, ["actionlib_msgs", "std_msgs"], system, MORE)
         self.assertEqual(done.code, 0, done.err)
         self.err, self.requests = done.err, done.requests
         return done.out.splitlines()

@@ -1,12 +1,10 @@
 """`tf`, `tf2_ros` and `tf2_geometry_msgs`: what is published of frames, and where they were to each other."""
 
 import math
-import tempfile
 import unittest
 
-import tables
-from harness import run_text
 from system import System
+from tables import run_ros
 
 SECOND = 10**9
 START = 1735689600  # of simulated time, since 1970
@@ -48,10 +46,8 @@ def heard(seconds, *transforms, topic="/tf"):
 
 
 class Case(unittest.TestCase):
-    def said(self, text, system=None, **how):
-        with tempfile.TemporaryDirectory() as folder:
-            packages = ["geometry_msgs", "tf2_msgs", "std_msgs", "sensor_msgs"]
-            done = run_text(IMPORTS + text, system=system, env=tables.binding(folder, packages), **how)
+    def said(self, text, system=None):
+        done = run_ros(IMPORTS + text, ["geometry_msgs", "tf2_msgs", "std_msgs", "sensor_msgs"], system)
         self.assertEqual(done.code, 0, done.err)
         self.err, self.requests = done.err, done.requests
         return done.out.splitlines()
