@@ -161,9 +161,13 @@ def bound(folder, of, more=(), **keys):
     return {"HRDSL_BINDING": path, "HRDSL_MIDDLEWARE": "ros1"}
 
 
-def run_ros(text, packages=("std_msgs",), system=None, more=(), words=(), env=(), binding=()):
-    """Runs a program of ROS 1 of this text; `binding` is more of its binding file."""
+def run_ros(text, packages=("std_msgs",), system=None, more=(), words=(), env=(), binding=(), files=()):
+    """Runs a program of ROS 1 of this text; `binding` is more of its binding file, and `files` are beside it."""
     with tempfile.TemporaryDirectory() as folder:
+        for name, content in dict(files).items():
+            os.makedirs(os.path.join(folder, os.path.dirname(name)), exist_ok=True)
+            with open(os.path.join(folder, name), "w") as file:
+                file.write(content)
         path = os.path.join(folder, "node.py")
         with open(path, "w") as file:
             file.write(textwrap.dedent(text))

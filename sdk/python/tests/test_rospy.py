@@ -298,23 +298,64 @@ class Topics(Case):
         self.assertEqual(self.said(text, system=system), said)
         self.assertEqual(system.published, [(SECOND + 5, "/a", {"data": 5})])
 
+    def test_a_second_subscriber_gets_what_is_latched_here(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            rospy.Publisher("a", Int8, queue_size=1, latch=True).publish(3)
+            first = rospy.Subscriber("a", Int8, lambda message: print("first", message.data))
+            rospy.sleep(1)
+            second = rospy.Subscriber("a", Int8, lambda message: print("second", message.data))
+            print("made")
+            rospy.sleep(1)
+            """
+        self.assertEqual(self.said(text), ["first 3", "second 3", "made"])
+
+    def test_what_is_no_message_of_the_type_is_told(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            rospy.Subscriber("a", Int8, lambda message: print(message.data))
+            rospy.sleep(3)
+            """
+        finished = run_ros(text, system=System([(0, topic("/a", date=1)), (SECOND, topic("/a", data=1))]))
+        self.assertEqual((finished.code, finished.out), (0, "1\n"))
+        told = "unable to receive a message on topic /a: no std_msgs/Int8: there is no field 'data'"
+        self.assertEqual(finished.err, "[ERROR] [1735689600.000000]: %s\n" % told)
+
+    def test_a_topic_of_another_type(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8, String
+            rospy.init_node("node")
+            rospy.Publisher("a", Int8, queue_size=1)
+            rospy.Subscriber("a", String)
+            """
+        finished = run_ros(text)
+        self.assertEqual(finished.code, 1)
+        self.assertIn("ProtocolError: the topic `/a` is of type `std_msgs/Int8`, not `std_msgs/String`", finished.err)
+
     def test_any_message(self):
         text = """
             import rospy
             from std_msgs.msg import String
             rospy.init_node("node")
-            pub = rospy.Publisher("a", String, queue_size=1)
             back = rospy.Publisher("b", String, queue_size=1)
             def hear(message):
                 print(message._buff, String().deserialize(message._buff).data)
                 back.publish(message)
             rospy.Subscriber("a", rospy.AnyMsg, hear)
+            rospy.sleep(1)
+            pub = rospy.Publisher("a", String, queue_size=1)
+            rospy.sleep(1)
             pub.publish("hi")
             rospy.sleep(1)
             """
         system = System()
         self.assertEqual(self.said(text, system=system), ["b'\\x02\\x00\\x00\\x00hi' hi"])
-        self.assertEqual(system.published[-1], (0, "/b", {"data": "hi"}))
+        self.assertEqual(system.published[-1], (2 * SECOND, "/b", {"data": "hi"}))
 
 
 class Times(Case):
@@ -462,6 +503,42 @@ class Parameters(Case):
             self.said(text, binding={"packages": {"robot": "/opt/robot"}}),
             ["/opt/robot ['robot'] /opt/robot", "other", "False /a/b True"],
         )
+
+
+class Packages(Case):
+    def test_a_package_of_the_program_has_its_messages_beside(self):
+        text = """
+            import robot_msgs, table_simulator.msg, other_msgs.msg
+            from robot_msgs.tools import name
+            from robot_msgs.msg import Order
+            print(name, robot_msgs.__file__ is not None, Order(1), table_simulator.msg.State(), other_msgs.msg.Other._type)
+            """
+        more = {"robot_msgs__Order": "int8 number\n", "table_simulator__State": "bool done\n", "other_msgs__Other": ""}
+        files = {
+            "robot_msgs/__init__.py": "",
+            "robot_msgs/tools.py": "name = 'tools'\n",
+            "robot_msgs/msg/Order.msg": "int8 number\n",
+            "table_simulator/msg/State.msg": "bool done\n",
+        }
+        self.assertEqual(self.said(text, more=more, files=files), ["tools True number: 1 done: False other_msgs/Other"])
+
+    def test_arrays_of_numpy(self):
+        try:
+            import numpy  # noqa: F401
+        except ImportError:
+            self.skipTest("NumPy is not installed")
+        text = """
+            import numpy, rospy
+            from rospy.numpy_msg import numpy_msg
+            from sensor_msgs.msg import LaserScan
+            rospy.init_node("node")
+            pub = rospy.Publisher("a", numpy_msg(LaserScan), queue_size=1)
+            rospy.Subscriber("a", numpy_msg(LaserScan), lambda message: print(type(message.ranges).__name__, message.ranges * 2))
+            scan = LaserScan(ranges=numpy.array([1, 2.5], numpy.float32), angle_min=numpy.float64(0.5))
+            pub.publish(scan)
+            rospy.sleep(1)
+            """
+        self.assertEqual(self.said(text, ["sensor_msgs"]), ["ndarray [2. 5.]"])
 
 
 if __name__ == "__main__":

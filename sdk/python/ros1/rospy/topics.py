@@ -185,12 +185,19 @@ class _SubscriberImpl(_Impl):
         self._header: dict[str, str] = {}
         super().__init__(name, data_class, table)
 
+    def connect(self) -> None:
+        if self.type != "*":
+            super().connect()
+        else:  # when somebody has the topic, and so its type is known
+            threading.Thread(target=self._connect_later, name=resolve_name(self.name), daemon=True).start()
+
+    def _connect_later(self) -> None:
+        name = resolve_name(self.name)
+        graph.wait(lambda: self.closed or graph.type_of(name), None)
+        super().connect()
+
     def open(self) -> Port:
-        type_name = self.type
-        if type_name == "*":
-            type_name = graph.wait(lambda: graph.type_of(self.resolved_name), the_exchange().time) or "*"
-        if type_name == "*":
-            raise NotImplementedError("AnyMsg on %s: a topic that nobody has is of no type; subscribe to it later" % self.resolved_name)
+        type_name = self.type if self.type != "*" else graph.type_of(self.resolved_name) or "*"
         self._reads = self.data_class._of_json if self.type != "*" else _any_reader(type_name)
         self._header = {
             "topic": self.resolved_name, "type": type_name, "md5sum": self.data_class._md5sum, "callerid": get_caller_id(),
@@ -246,9 +253,14 @@ class _SubscriberImpl(_Impl):
             arrival: Arrival | None = self._box.get()
             if arrival is None or self.closed:
                 return
-            message = self._reads(arrival["message"])
+            try:
+                message = self._reads(arrival["message"])
+            except genpy.DeserializationError as error:
+                logerr("unable to receive a message on topic %s: %s" % (self.resolved_name, error))
+                continue
             message._connection_header = self._header
-            if arrival.get("latched"):
+            publisher = _publishers.get(self.name)
+            if arrival.get("latched") or publisher is not None and publisher.is_latch:
                 self._latched = message
             for callback in self.callbacks:
                 self._invoke(message, callback.call, callback.args)
@@ -380,6 +392,8 @@ class _PublisherImpl(_Impl):
         self.seq = 0
         self._listeners: list[SubscribeListener] = []
         self._has_header = data_class._has_header
+        if data_class is AnyMsg:
+            raise NotImplementedError("a publisher of AnyMsg on %s: name the type that it publishes" % name)
         self._json = data_class._json
         super().__init__(name, data_class, table)
 
