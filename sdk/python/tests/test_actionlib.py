@@ -277,9 +277,7 @@ rospy.spin()
         system = self.outside((SECOND, self.goal(1)), (2 * SECOND, self.goal(2)), (3 * SECOND, self.cancel(1)))
         system.end = 5 * SECOND
         out = self.said(text, system)
-        self.assertEqual(
-            out, ["1.000 goal 1 True False", "2.000 preempt", "2.000 goal 2 True False", "3.000 preempt"]
-        )
+        self.assertEqual(out, ["1.000 goal 1 True False", "2.000 preempt", "2.000 goal 2 True False", "3.000 preempt"])
         self.assertEqual([end for _, _, end in self.told()], ["canceled", "aborted"])
 
     def test_an_execution_that_says_nothing_or_fails(self):

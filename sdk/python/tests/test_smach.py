@@ -284,9 +284,7 @@ class Preemption(Quiet):
             machine.add("A", Does(ask), {"done": "B"})
             machine.add("B", Does(heed, ["done", "preempted"]))
         self.assertEqual(machine.execute(), "preempted")
-        self.assertIn(
-            "Last state 'A' did not service preempt. Preempting next state 'B' before executing...", self.said("info")
-        )
+        self.assertIn("Last state 'A' did not service preempt. Preempting next state 'B' before executing...", self.said("info"))
 
 
 class Others(Quiet):

@@ -106,9 +106,7 @@ for target, source, seconds in (("map", "moon", 0), ("map", "other", 0), ("map",
             heard(2, transform("map", "base", 2, 2.0), transform("island", "other", 2, 0.0)),
         ]
         out = self.said(text, System(arrivals))
-        self.assertEqual(
-            out[0], 'LookupException "moon" passed to lookupTransform argument source_frame does not exist.  True'
-        )
+        self.assertEqual(out[0], 'LookupException "moon" passed to lookupTransform argument source_frame does not exist.  True')
         self.assertEqual(
             out[1],
             "ConnectivityException Could not find a connection between 'map' and 'other' because they are not part of the same"
@@ -137,9 +135,7 @@ print(3.6 <= rospy.get_time() - START < 3.61)
 """
         arrivals = [heard(1.5, transform("map", "base", 1.5, 1.0)), heard(3.6, transform("map", "base", 3.6, 2.0))]
         out = self.said(text, System(arrivals))
-        self.assertEqual(
-            out, ["1.500 [1.0, 0.0, 0.0]", "3.500 canTransform: source_frame moon does not exist.", "True"]
-        )
+        self.assertEqual(out, ["1.500 [1.0, 0.0, 0.0]", "3.500 canTransform: source_frame moon does not exist.", "True"])
 
     def test_messages_in_other_frames(self):
         text = """

@@ -53,7 +53,12 @@ class Group:
         """Where the joints are now."""
         exchange = the_exchange()
         exchange.polled("joints")
-        found = [float(value) for value in exchange.state(self.device, "joints")]
+        try:
+            found = [float(value) for value in exchange.state(self.device, "joints")]
+        except ProtocolError as error:
+            raise MoveItCommanderException(
+                "the joints of group %s are not known: device %s does not tell them (%s)" % (self.name, self.device, error)
+            ) from None
         if len(found) != len(self.joints):
             raise MoveItCommanderException(
                 "group %s has %d joints, but its device %s has %d: correct the scenario's binding"

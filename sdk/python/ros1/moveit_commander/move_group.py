@@ -256,10 +256,10 @@ class MoveGroupCommander(Targets):
             ) from None
         if not wait:
             return True
-        (error,) = ended.get()
-        if error is not None:
-            rospy.loginfo("ABORTED: %s", error)
-        return error is None
+        (why,) = ended.get()
+        if why is not None:
+            rospy.loginfo("ABORTED: %s", why)
+        return why is None
 
     def stop(self) -> None:
         """Ends the motion of the group, and stays."""

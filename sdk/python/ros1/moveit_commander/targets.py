@@ -198,9 +198,7 @@ class Targets:
 
     def _check_tip(self, link: str) -> None:
         if link and link != self._tip:
-            raise MoveItCommanderException(
-                "group %s has no end-effector %s, but %s" % (self._group.name, link, self._tip)
-            )
+            raise MoveItCommanderException("group %s has no end-effector %s, but %s" % (self._group.name, link, self._tip))
 
     def set_pose_target(self, pose: Any, end_effector_link: str = "") -> None:
         """Where the end-effector is to go: a `Pose`, a `PoseStamped`, or a list of 6 or 7 numbers."""

@@ -6,7 +6,6 @@ introspection server (`SM_ROOT`), and if it has none `machine`; further ones `ma
 
 from __future__ import annotations
 
-import os
 import sys
 
 TYPE_CHECKING = False
@@ -23,8 +22,8 @@ def is_the_end(error: BaseException) -> bool:
 
 def _exchange() -> Any:
     """What tells hrdsl; None if it does not run this program."""
-    link = sys.modules.get("hrdsl.link")
-    if "HRDSL_BINDING" not in os.environ and getattr(link, "_link", None) is None:
+    link = getattr(sys.modules.get("hrdsl.link"), "_link", None)
+    if link is None or not link.is_ours():
         return None
     from hrdsl.exchange import the_exchange
 
