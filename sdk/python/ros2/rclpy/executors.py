@@ -211,7 +211,7 @@ class Executor:
         now = _world.now()
         ready = []
         for node in nodes:
-            for entity in node._waitables:
+            for entity in node._waitables_:
                 if self._is_ready(entity, now):
                     ready.append((entity, node))
         for node in nodes:
@@ -237,7 +237,7 @@ class Executor:
             for timer in node._timers:
                 if not timer._is_canceled and (deadline is None or timer._next < deadline) and self.can_execute(timer):
                     deadline = timer._next
-        quiet = [each for node in nodes for each in node._waitables if each._due is not None and self.can_execute(each)]
+        quiet = [each for node in nodes for each in node._waitables_ if each._due is not None and self.can_execute(each)]
         if quiet:
             deadline = min(each._due for each in quiet)
         if not self._bell.wait(deadline):

@@ -284,6 +284,6 @@ class ActionClient(Waitable):
         """Gives no more goals."""
         if not self._is_destroyed:
             self._is_destroyed = True
-            if self in self._node._waitables:
+            if self in self._node._waitables_:
                 self._node.remove_waitable(self)
             _world.close(self._port)

@@ -23,7 +23,7 @@ def _of_node(kind: str, name: str, namespace: str) -> Typed:
     found = {}
     for node in nodes:
         if (node.get_name(), node.get_namespace()) == (name, "/" + namespace.strip("/")):
-            for waitable in node._waitables:
+            for waitable in node._waitables_:
                 if waitable._port.kind == kind:
                     found[waitable._port.name] = [waitable._port.type_name]
     return sorted(found.items())

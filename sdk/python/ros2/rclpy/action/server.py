@@ -283,6 +283,6 @@ class ActionServer(Waitable):
             for handle in self._goal_handles.values():
                 handle.destroy()
             self._goal_handles.clear()
-            if self in self._node._waitables:
+            if self in self._node._waitables_:
                 self._node.remove_waitable(self)
             _world.close(self._port)
