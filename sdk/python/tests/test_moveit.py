@@ -244,8 +244,10 @@ tries(lambda: group.execute(plan))
     def test_one_that_is_stopped(self):
         text = """
 group = moveit_commander.MoveGroupCommander("arm")
+group.stop()  # nothing moves
 say(group.go([1.0, 0.0], wait=False))
 rospy.sleep(0.5)
+group.stop()
 group.stop()
 rospy.sleep(1)
 say(group.get_current_joint_values())

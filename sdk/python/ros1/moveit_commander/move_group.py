@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 
 import rospy
-from hrdsl.errors import ProtocolError
-from hrdsl.exchange import the_exchange
-from hrdsl.mailbox import Mailbox
-from moveit_commander import conversions, model, timing
+from moveit_commander import conversions, model, motion, timing
 from moveit_commander.exception import MoveItCommanderException
 from moveit_commander.targets import Targets, unsupported
 
@@ -246,14 +243,7 @@ class MoveGroupCommander(Targets):
                 )
                 return False
         times = [point.time_from_start.to_nsec() / 1e9 for point in trajectory.points]
-        ended: Any = Mailbox()
-        arguments = {"positions": postures, "times": times}
-        try:
-            the_exchange().act(self._group.device, "follow", arguments, lambda error: ended.put((error,)))
-        except ProtocolError as error:
-            raise MoveItCommanderException(
-                "device %s of group %s follows no trajectories: %s" % (self._group.device, self._group.name, error)
-            ) from None
+        ended = motion.follow(self._group, postures, times)
         if not wait:
             return True
         (why,) = ended.get()
@@ -263,11 +253,7 @@ class MoveGroupCommander(Targets):
 
     def stop(self) -> None:
         """Ends the motion of the group, and stays."""
-        device, exchange = self._group.device, the_exchange()
-        try:
-            exchange.act(device, "stop", {}, _ignore)
-        except ProtocolError:  # a device without that command stays where it is told to
-            exchange.act(device, "follow", {"positions": [self._group.positions()], "times": [0.0]}, _ignore)
+        motion.stop(self._group)
 
     # ── what there is not ──
 
@@ -324,7 +310,3 @@ _MISSING = (
     "get_jacobian_matrix get_interface_description get_path_constraints get_trajectory_constraints"
     " set_constraints_database construct_motion_plan_request limit_max_cartesian_link_speed"
 ).split()
-
-
-def _ignore(error: str | None) -> None:
-    """Who stops a motion does not wait for the end of that."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-
 from moveit_commander import conversions, model
 from moveit_commander.exception import MoveItCommanderException
 
@@ -147,6 +145,8 @@ class Targets:
 
     def get_random_joint_values(self) -> list[float]:
         """A posture somewhere within the bounds."""
+        import random
+
         return [random.uniform(max(joint.lower, -3.2), min(joint.upper, 3.2)) for joint in self._group.joints]
 
     def set_random_target(self) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import threading
 
 import smach
@@ -136,7 +135,7 @@ class Concurrence(Container):
     def _called_outcome(self, otherwise: Any) -> Any:
         assert self._outcome_cb is not None
         try:
-            said = self._outcome_cb(copy.copy(self._child_outcomes))
+            said = self._outcome_cb(dict(self._child_outcomes))
             if not said:
                 smach.logwarn("Outcome callback returned None, using outcome '%s'" % otherwise)
             elif said == str(said):
