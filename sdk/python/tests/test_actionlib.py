@@ -122,6 +122,16 @@ say(client.wait_for_result(rospy.Duration(3)), client.get_state(), client.get_re
 """
         self.assertEqual(self.said(text), ["3.000 False 0 None"])
 
+    def test_feedback_says_that_a_goal_is_active(self):
+        text = """
+rospy.init_node("counter")
+client = actionlib.SimpleActionClient("/count", CountAction)
+client.send_goal(CountGoal(2), active_cb=lambda: say("active"), feedback_cb=lambda feedback: say("at", feedback.at))
+say(client.wait_for_result(), client.get_state())
+"""
+        out = self.said(text, System(actions={"/count": counts}))  # by somebody who is not listed
+        self.assertEqual(out, ["0.500 active", "0.500 at 1", "1.000 True 3"])
+
     def test_a_loop_that_asks_for_the_state_lets_time_pass(self):
         text = """
 rospy.init_node("counter")
@@ -184,7 +194,7 @@ client.send_goal(CountGoal(2), feedback_cb=lambda feedback: 1 / 0)
 say(client.wait_for_result())
 """
         self.assertEqual(self.said(text, System(actions={"/count": counts}, others=[server()])), ["1.000 True"])
-        self.assertIn("bad callback", self.err)
+        self.assertIn("bad callback: ActionClient._feedback_cb for /count/feedback\n", self.err)
         self.assertIn("ZeroDivisionError", self.err)
 
 

@@ -374,8 +374,8 @@ class Telling(Quiet):
         self.exchange = Kept()
         self.addCleanup(setattr, _told, "_exchange", _told._exchange)
         _told._exchange = lambda: self.exchange
-        self.addCleanup(setattr, _told, "_outermost", 0)
-        _told._outermost = 0
+        _told._outermost.clear()
+        _told._told.clear()
 
     def test_machines_and_their_moves(self):
         inner = smach.StateMachine(outcomes=["got"])
@@ -414,12 +414,13 @@ class Telling(Quiet):
         self.assertEqual(self.exchange.told[6:], [("machine", "IDLE", "Says", "end", "end")])
 
     def test_further_machines_are_counted(self):
-        for name in ("machine", "machine#2"):
+        for label, name in (("A", "machine"), ("B", "machine#2"), ("A", "machine")):
             machine = smach.StateMachine(outcomes=["end"])
             with machine:
-                machine.add("A", Says("end"))
+                machine.add(label, Says("end"))
             machine.execute()
             self.assertEqual(self.exchange.told[-1][0], name)
+        self.assertEqual(len(self.exchange.told), 5)  # the last is the first again, and is not declared twice
 
 
 class Alone(unittest.TestCase):

@@ -264,6 +264,8 @@ class ActionClient:
         if machine is None:
             return
         if "feedback" in arrival:
+            if machine.state <= CommState.PENDING:  # then it has been accepted
+                self._statuses.put(weakref.ref(machine), GoalStatus.ACTIVE)
             self._feedbacks.put(machine, arrival["message"])
         elif "finished" in arrival:
             self._results.put(machine, arrival)
@@ -276,7 +278,9 @@ class ActionClient:
         if status == GoalStatus.ACTIVE:
             sent = machine.action_goal.goal_id.stamp.to_nsec()
             del machine
-            time.sleep(max(0, sent + _ACCEPTED_AFTER - rospy.Time.now().to_nsec()) / 1e9)
+            left = sent + _ACCEPTED_AFTER - rospy.Time.now().to_nsec()
+            if left > 0:
+                time.sleep(left / 1e9)
             machine = kept()
         if machine is not None:
             machine.update_status(status)

@@ -1,7 +1,8 @@
 """Tells hrdsl which machines there are and how they move, so that their states and transitions are covered.
 
 A machine within another is called by the labels that lead to it: `machine/GRASP`. The outermost is called as in its
-introspection server (`SM_ROOT`), and if it has none `machine`; further ones `machine#2` and so on, as they begin.
+introspection server (`SM_ROOT`), and if it has none `machine`; further ones `machine#2` and so on, as they begin. One that is
+built again in the same way has the same name.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_outermost = 0
+_outermost: dict[Any, str] = {}  # names by what is declared
+_told: dict[str, dict[str, Any]] = {}  # declarations by names
 
 
 def is_the_end(error: BaseException) -> bool:
@@ -36,12 +38,12 @@ def is_child(parent: Any, label: str, state: Any) -> None:
         state._told_name = "%s/%s" % (_name(parent), label)
 
 
-def _name(machine: Any) -> str:
-    global _outermost
-    if machine._told_name is None:
-        _outermost += 1
-        machine._told_name = "machine" if _outermost == 1 else "machine#%d" % _outermost
-    name: str = machine._told_name
+def _name(container: Any) -> str:
+    if container._told_name is None:
+        shape = (type(container).__name__, *map(str, container.get_children()), *map(str, container.get_internal_edges()))
+        count = len(_outermost) + 1
+        container._told_name = _outermost.setdefault(shape, "machine" if count == 1 else "machine#%d" % count)
+    name: str = container._told_name
     return name
 
 
@@ -56,15 +58,16 @@ def begins(machine: Any) -> None:
     for label, targets in machine._transitions.items():
         for outcome, target in targets.items():
             edges.append([str(label), str(outcome), str(target if _leads(machine, target) else outcome)])
-    exchange.tell(
-        {
-            "request": "machine",
-            "name": name,
-            "states": [str(label) for label in machine._states],
-            "transitions": edges,
-            "outcomes": [str(outcome) for outcome in machine.get_registered_outcomes()],
-        }
-    )
+    declared = {
+        "request": "machine",
+        "name": name,
+        "states": [str(label) for label in machine._states],
+        "transitions": edges,
+        "outcomes": [str(outcome) for outcome in machine.get_registered_outcomes()],
+    }
+    if _told.get(name) != declared:
+        _told[name] = declared
+        exchange.tell(declared)
 
 
 def _leads(machine: Any, target: Any) -> bool:
