@@ -361,6 +361,9 @@ class Kept:
     def __init__(self):
         self.told = []
 
+    def polled(self, kind):
+        pass
+
     def tell(self, message):
         self.told.append(message)
 

@@ -140,6 +140,20 @@ say(machine(state, "true", "false", "preempted").execute())
 
 
 class Machines(Case):
+    def test_who_looks_whether_to_end_lets_time_pass(self):
+        text = """
+def work(ud):
+    while not state.preempt_requested():
+        pass
+    state.service_preempt()
+    return "preempted"
+state = smach.CBState(work, outcomes=["preempted"])
+it = machine(state, "preempted")
+rospy.Timer(rospy.Duration(0.05), lambda event: it.request_preempt(), oneshot=True)
+print(it.execute(), round(rospy.get_time() - 1735689600, 2))
+"""
+        self.assertEqual(self.said(text), ["preempted 0.05"])
+
     def test_a_machine_serves_an_action_and_tells_how_it_moves(self):
         text = """
 class Count(smach.State):

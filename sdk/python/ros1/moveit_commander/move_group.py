@@ -112,8 +112,9 @@ class MoveGroupCommander(Targets):
 
     def _plan(self) -> tuple[int, Any]:
         target: list[float] | None = self._joint_target
+        begin = self._begin()
         if self._pose_target is not None:
-            target, why = self._group.reach(self._pose_target, self._tip)
+            target, why = self._group.reach(self._pose_target, begin)
             if target is None:
                 rospy.logwarn("group %s cannot reach its target: %s" % (self._group.name, why))
                 return _NO_POSTURE, self._trajectory([])
@@ -121,7 +122,7 @@ class MoveGroupCommander(Targets):
                 rospy.logerr("group %s has %d joints, not %d" % (self._group.name, len(self._group.joints), len(target)))
                 return _PLANNING_FAILED, self._trajectory([])
         assert target is not None
-        return _SUCCESS, self._trajectory(timing.line(self._begin(), target, *self._limits()))
+        return _SUCCESS, self._trajectory(timing.line(begin, target, *self._limits()))
 
     def _limits(self, speed: float | None = None, acceleration: float | None = None) -> tuple[list[float], list[float]]:
         speed = self._speed_factor if speed is None else speed
@@ -159,7 +160,7 @@ class MoveGroupCommander(Targets):
         places = self._straight([self._pose(pose) for pose in waypoints], float(eef_step))
         postures = [self._begin()]
         for place in places:
-            found, _ = self._group.reach(place, self._tip)
+            found, _ = self._group.reach(place, postures[-1])
             if found is None:
                 break
             postures.append(found)

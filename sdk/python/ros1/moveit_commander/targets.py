@@ -138,7 +138,7 @@ class Targets:
         raise MoveItCommanderException(_OUT_OF_BOUNDS)
 
     def _set_joints_for(self, pose: Any) -> None:
-        found, why = self._group.reach(self._pose(pose), self._tip)
+        found, why = self._group.reach(self._pose(pose), self._group.positions())
         if found is None:
             raise MoveItCommanderException("Error setting joint target. Is the IK solver functional? (%s)" % why)
         self._set_all(found)

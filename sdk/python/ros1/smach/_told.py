@@ -32,6 +32,13 @@ def _exchange() -> Any:
     return the_exchange()
 
 
+def polled() -> None:
+    """To be called where a program looks whether something has changed, so that a loop that looks lets time pass."""
+    exchange = _exchange()
+    if exchange is not None:
+        exchange.polled("smach")
+
+
 def is_child(parent: Any, label: str, state: Any) -> None:
     """The state is about to run within a container."""
     if hasattr(state, "_told_name") and state._told_name is None:

@@ -289,6 +289,7 @@ class StateMachine(Container):
 
     def is_running(self) -> bool:
         """Whether the machine is being executed."""
+        _told.polled()
         return self._is_running
 
     # ── soundness ──
