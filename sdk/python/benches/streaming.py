@@ -58,13 +58,13 @@ def cost(program: str, steps: int, env: "dict[str, str]") -> float:
 
 def main() -> None:
     sys.path.insert(0, TESTS)
-    from tables import binding
+    from tables import bound
 
     with tempfile.TemporaryDirectory() as folder:
         program = os.path.join(folder, "arm.py")
         with open(program, "w") as file:
             file.write(PROGRAM)
-        env = binding(folder, ["std_msgs"])
+        env = bound(folder, ["std_msgs"])
         whole, start = (min(cost(program, steps, env) for _ in range(3)) for steps in (30000, 0))
     print("%.2f s of processor time, of which %.3f s are the start and the end" % (whole, start))
 

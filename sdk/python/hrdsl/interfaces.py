@@ -19,53 +19,54 @@ _SPACES = {"messages": "msg", "services": "srv", "actions": "action"}
 
 
 class Interfaces:
-    """A table of definitions, and the classes made of it so far."""
+    """A table of definitions, and the classes made of it so far. In ROS 1 a message, a service and an action may have one name."""
 
     def __init__(self, table: dict[str, Any]) -> None:
         self.ros: int = table.get("ros", 1)
-        self.definitions: dict[str, dict[str, Any]] = {}  # by their names, as the table has them
-        self.spaces: dict[str, dict[str, str]] = {}  # names of definitions by `PACKAGE.SPACE` and their own
-        self._kinds: dict[str, str] = {}
-        self._classes: dict[str, Any] = {}
+        self.tables: dict[str, dict[str, dict[str, Any]]] = {}  # definitions by `messages`, `services`, `actions` and names
+        self.spaces: dict[str, dict[str, tuple[str, str]]] = {}  # the same two by `PACKAGE.SPACE` and names of classes
+        self._classes: dict[tuple[str, str], Any] = {}
         self._factory: Any = None
         for kind, space in _SPACES.items():
+            self.tables[kind] = {}
             for definition in table.get(kind, ()):
                 self._add(kind, definition.get("space", space), definition)
 
     def _add(self, kind: str, space: str, definition: dict[str, Any]) -> None:
         name = definition["name"]
-        self._kinds[name] = kind
-        self.definitions[name] = definition
+        self.tables[kind][name] = definition
         if self.ros != 1 or kind != "actions":  # which are no classes of their own in ROS 1
             package, _, own = name.partition("/")
-            self.spaces.setdefault("%s.%s" % (package, space), {})[own.rpartition("/")[2]] = name
+            self.spaces.setdefault("%s.%s" % (package, space), {})[own.rpartition("/")[2]] = (kind, name)
 
     def packages(self) -> set[str]:
         """Those that have definitions."""
         return {space.partition(".")[0] for space in self.spaces}
 
-    def find(self, name: str) -> str | None:
-        """The name in the table of `PACKAGE/NAME` or `PACKAGE/SPACE/NAME`."""
-        if name in self.definitions:
-            return name
+    def find(self, name: str) -> tuple[str, str] | None:
+        """What `PACKAGE/NAME` or `PACKAGE/SPACE/NAME` is in the tables: of several, a message before a service before an action."""
         parts = name.split("/")
-        if len(parts) == 3:
-            return self.spaces.get("%s.%s" % (parts[0], parts[1]), {}).get(parts[2])
-        for space in ("msg", "srv", "action"):
+        spaces = [parts[1]] if len(parts) == 3 else ["msg", "srv", "action"]
+        for space in spaces:
             found = self.spaces.get("%s.%s" % (parts[0], space), {}).get(parts[-1])
             if found is not None:
                 return found
-        return None
+        short = "%s/%s" % (parts[0], parts[-1])
+        return ("actions", short) if short in self.tables["actions"] and "action" in spaces else None
 
-    def class_of(self, name: str) -> Any:
-        """The class of a definition, by its name in the table; always the same."""
-        found = self._classes.get(name)
+    def message_class(self, name: str) -> Any:
+        """The class of a message, by its name in the table; always the same."""
+        return self.class_of("messages", name)
+
+    def class_of(self, kind: str, name: str) -> Any:
+        """The class of a definition, by its name in the table of this kind; always the same."""
+        found = self._classes.get((kind, name))
         if found is None:
             if self._factory is None:
                 self._factory = __import__(_FACTORIES[self.ros], fromlist=["make_class"])
-            kind = self._kinds[name]
             make = {"messages": "make_class", "services": "make_service", "actions": "make_action"}[kind]
-            found = self._classes[name] = getattr(self._factory, make)(self.definitions[name], self.class_of)
+            found = getattr(self._factory, make)(self.tables[kind][name], self.message_class)
+            self._classes[kind, name] = found
         return found
 
 
@@ -80,22 +81,22 @@ def interfaces() -> Interfaces:
     return _interfaces
 
 
-def definition(name: str) -> dict[str, Any]:
-    """The definition of a message, service or action; raises `LookupError`."""
-    known = interfaces()
-    found = known.find(name)
+def _found(name: str) -> tuple[str, str]:
+    found = interfaces().find(name)
     if found is None:
         raise LookupError("no definition of %s: the scenario's interfaces do not have it" % name)
-    return known.definitions[found]
+    return found
+
+
+def definition(name: str) -> dict[str, Any]:
+    """The definition of a message, service or action; raises `LookupError`."""
+    kind, full = _found(name)
+    return interfaces().tables[kind][full]
 
 
 def class_of(name: str) -> Any:
     """The class of a message, service or action; raises `LookupError`."""
-    known = interfaces()
-    found = known.find(name)
-    if found is None:
-        raise LookupError("no definition of %s: the scenario's interfaces do not have it" % name)
-    return known.class_of(found)
+    return interfaces().class_of(*_found(name))
 
 
 def install() -> None:
@@ -139,7 +140,7 @@ class _Finder:
         known, name = interfaces(), module.__name__
         if name.count(".") == 2:
             for own in _of_file(known, name):
-                setattr(module, own, known.class_of(known.spaces[name.rpartition(".")[0]][own]))
+                setattr(module, own, known.class_of(*known.spaces[name.rpartition(".")[0]][own]))
             return
         names = known.spaces.get(name)
         if names is None:
@@ -148,10 +149,9 @@ class _Finder:
         place.__all__ = sorted(names)
 
         def get(own: str) -> Any:
-            full = names.get(own)
-            if full is None:
+            if own not in names:
                 raise AttributeError("module %r has no attribute %r" % (name, own))
-            found = known.class_of(full)
+            found = known.class_of(*names[own])
             setattr(module, own, found)
             return found
 

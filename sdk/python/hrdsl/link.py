@@ -21,7 +21,7 @@ LONGEST = 1 << 20
 KEPT = 1 << 16
 
 _encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
-_decode = json.JSONDecoder().decode
+_scan = json.JSONDecoder().scan_once  # type: ignore[attr-defined, unused-ignore]
 _get_ident = _thread.get_ident
 
 
@@ -135,7 +135,7 @@ class Link:
             self._stop("the harness has gone: %s" % error)
         if not said:
             self._stop("the harness has gone")
-        answer: dict[str, Any] = _decode(said.decode("utf-8"))
+        answer: dict[str, Any] = _scan(said.decode("utf-8"), 0)[0]
         self.time = answer.get("t", self.time)
         if "refused" in answer:
             self._refused(answer["refused"])

@@ -31,9 +31,8 @@ if TYPE_CHECKING:
             """Whether the test is over, so that no wait ends any more."""
 
         def wait(self, until: int | None, give_up: int | None) -> bool:
-            """Lets time pass until `until`, or until something arrives, whose handlers may call `Scheduler.unpark`, or
-            until `give_up`, if nothing else happens any more at that instant: whether it was the last. Raises `Deadlock`
-            where nothing ends it, and `Stopped` when the test is over."""
+            """Lets time pass until `until`, or something arrives, whose handlers may call `Scheduler.unpark`, or `give_up`, if
+            nothing else happens at that instant: whether it was the last. Raises `Deadlock` if nothing can end it."""
 
         def can_arrive(self) -> bool:
             """Whether something can arrive that a thread waits for."""
@@ -358,8 +357,10 @@ class Scheduler:
                 continue
             until, give_up, gave_up = self._deadlines.first(), self._patience.first(), False
             try:
-                if self.watched and self.look is not None and self.look(self._is_timeless(until, give_up)):
-                    continue
+                is_timeless = until is None and give_up is None
+                if self.watched and self.look is not None:
+                    if self.look(is_timeless and not self.outside.can_arrive()):
+                        continue
                 gave_up = self.outside.wait(until, give_up)
             except Deadlock as found:
                 if not any(task.result is None for task in self.tasks.values()):
@@ -368,9 +369,6 @@ class Scheduler:
             except BaseException as error:
                 self._failed(error)
             self._expire(gave_up)
-
-    def _is_timeless(self, until: int | None, give_up: int | None) -> bool:
-        return until is None and give_up is None and not self.outside.can_arrive()
 
     def _found(self, found: Deadlock) -> None:
         from hrdsl import report

@@ -6,6 +6,8 @@ a constructor that takes keywords.
 
 from __future__ import annotations
 
+from types import FunctionType
+
 from rosidl_codec import Codec
 from rosidl_setters import blank_of, converter_of, prepared, setter_of, type_text
 
@@ -100,6 +102,7 @@ def make_class(definition: dict[str, Any], resolve: Resolve) -> type:
     for field in fields:
         if "default" in field:
             namespace[field["name"].upper() + "__DEFAULT"] = blank_of(field, resolve)[2]
+    namespace["__init__"] = _init_of(name)
     cls: Any = _OfMessages(name, (Message,), namespace)
     blanks = []
     for field in fields:
@@ -137,6 +140,13 @@ def _holder(definition: dict[str, Any], kind: str, held: dict[str, Any]) -> type
     package, space, name = definition["name"].split("/")
     module = "%s.%s.%s" % (package, space, _module_name(name))
     return type(name, (), {"__init__": refuse, "__module__": module, "_definition_": definition, "_kind_": kind, **held})
+
+
+def _init_of(name: str) -> FunctionType:
+    """The constructor, under the name that errors are to tell."""
+    made = FunctionType(Message.__init__.__code__, globals(), "__init__")
+    made.__qualname__ = name + ".__init__"
+    return made
 
 
 def _constant(constant: dict[str, Any]) -> Any:

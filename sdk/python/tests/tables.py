@@ -6,8 +6,10 @@ import json
 import os
 import re
 import sys
+import tempfile
+import textwrap
 
-from harness import ROOT
+from harness import ROOT, run
 
 sys.path[:0] = [ROOT, os.path.join(ROOT, "ros1")]
 
@@ -151,9 +153,22 @@ class _Maker:
         return "\n".join(lines)
 
 
-def binding(folder, packages, more=(), **keys):
+def bound(folder, of, more=(), **keys):
     """Writes a binding file, and says what the environment of a program needs."""
     path = os.path.join(folder, "binding.json")
     with open(path, "w") as file:
-        json.dump({"ros": 1, "interfaces": table(packages, **dict(more)), **keys}, file)
+        json.dump({"ros": 1, "interfaces": table(of, **dict(more)), **keys}, file)
     return {"HRDSL_BINDING": path, "HRDSL_MIDDLEWARE": "ros1"}
+
+
+def run_ros(text, packages=("std_msgs",), system=None, more=(), words=(), env=(), binding=(), files=()):
+    """Runs a program of ROS 1 of this text; `binding` is more of its binding file, and `files` are beside it."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, content in dict(files).items():
+            os.makedirs(os.path.join(folder, os.path.dirname(name)), exist_ok=True)
+            with open(os.path.join(folder, name), "w") as file:
+                file.write(content)
+        path = os.path.join(folder, "node.py")
+        with open(path, "w") as file:
+            file.write(textwrap.dedent(text))
+        return run([path, *words], system=system, env={**bound(folder, packages, more, **dict(binding)), **dict(env)})

@@ -1,11 +1,9 @@
 """`actionlib` between programs: clients whose servers are outside, servers that are called from outside, and both in one."""
 
-import tempfile
 import unittest
 
-import tables
-from harness import run_text
 from system import System
+from tables import run_ros
 
 SECOND = 10**9
 
@@ -35,10 +33,8 @@ def counts(goal):
 
 
 class Case(unittest.TestCase):
-    def said(self, text, system=None, **how):
-        with tempfile.TemporaryDirectory() as folder:
-            env = tables.binding(folder, ["actionlib_msgs", "std_msgs"], MORE)
-            done = run_text(IMPORTS + text, system=system, env=env, **how)
+    def said(self, text, system=None):
+        done = run_ros(IMPORTS + text, ["actionlib_msgs", "std_msgs"], system, MORE)
         self.assertEqual(done.code, 0, done.err)
         self.err, self.requests = done.err, done.requests
         return done.out.splitlines()
@@ -126,6 +122,16 @@ say(client.wait_for_result(rospy.Duration(3)), client.get_state(), client.get_re
 """
         self.assertEqual(self.said(text), ["3.000 False 0 None"])
 
+    def test_feedback_says_that_a_goal_is_active(self):
+        text = """
+rospy.init_node("counter")
+client = actionlib.SimpleActionClient("/count", CountAction)
+client.send_goal(CountGoal(2), active_cb=lambda: say("active"), feedback_cb=lambda feedback: say("at", feedback.at))
+say(client.wait_for_result(), client.get_state())
+"""
+        out = self.said(text, System(actions={"/count": counts}))  # by somebody who is not listed
+        self.assertEqual(out, ["0.500 active", "0.500 at 1", "1.000 True 3"])
+
     def test_a_loop_that_asks_for_the_state_lets_time_pass(self):
         text = """
 rospy.init_node("counter")
@@ -188,7 +194,7 @@ client.send_goal(CountGoal(2), feedback_cb=lambda feedback: 1 / 0)
 say(client.wait_for_result())
 """
         self.assertEqual(self.said(text, System(actions={"/count": counts}, others=[server()])), ["1.000 True"])
-        self.assertIn("bad callback", self.err)
+        self.assertIn("bad callback: ActionClient._feedback_cb for /count/feedback\n", self.err)
         self.assertIn("ZeroDivisionError", self.err)
 
 
@@ -281,9 +287,7 @@ rospy.spin()
         system = self.outside((SECOND, self.goal(1)), (2 * SECOND, self.goal(2)), (3 * SECOND, self.cancel(1)))
         system.end = 5 * SECOND
         out = self.said(text, system)
-        self.assertEqual(
-            out, ["1.000 goal 1 True False", "2.000 preempt", "2.000 goal 2 True False", "3.000 preempt"]
-        )
+        self.assertEqual(out, ["1.000 goal 1 True False", "2.000 preempt", "2.000 goal 2 True False", "3.000 preempt"])
         self.assertEqual([end for _, _, end in self.told()], ["canceled", "aborted"])
 
     def test_an_execution_that_says_nothing_or_fails(self):

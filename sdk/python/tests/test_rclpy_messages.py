@@ -83,7 +83,7 @@ tried(lambda: hash(String()))
                 "AssertionError: The 'data' field must be of type 'str'",
                 "AssertionError: The 'data' field must be of type 'bool'",
                 "AssertionError: Invalid arguments passed to constructor: other, value",
-                "TypeError: Message.__init__() takes 1 positional argument but 2 were given",
+                "TypeError: Float64.__init__() takes 1 positional argument but 2 were given",
                 "AssertionError: The 'linear' field must be a sub message of type 'Vector3'",
                 "AttributeError: 'Float64' object has no attribute 'dat'",
                 "AssertionError: The 'position' field must be a set or sequence and each value of type 'float' and each double in "

@@ -284,9 +284,7 @@ class Preemption(Quiet):
             machine.add("A", Does(ask), {"done": "B"})
             machine.add("B", Does(heed, ["done", "preempted"]))
         self.assertEqual(machine.execute(), "preempted")
-        self.assertIn(
-            "Last state 'A' did not service preempt. Preempting next state 'B' before executing...", self.said("info")
-        )
+        self.assertIn("Last state 'A' did not service preempt. Preempting next state 'B' before executing...", self.said("info"))
 
 
 class Others(Quiet):
@@ -363,6 +361,9 @@ class Kept:
     def __init__(self):
         self.told = []
 
+    def polled(self, kind):
+        pass
+
     def tell(self, message):
         self.told.append(message)
 
@@ -376,8 +377,8 @@ class Telling(Quiet):
         self.exchange = Kept()
         self.addCleanup(setattr, _told, "_exchange", _told._exchange)
         _told._exchange = lambda: self.exchange
-        self.addCleanup(setattr, _told, "_outermost", 0)
-        _told._outermost = 0
+        _told._outermost.clear()
+        _told._told.clear()
 
     def test_machines_and_their_moves(self):
         inner = smach.StateMachine(outcomes=["got"])
@@ -416,12 +417,13 @@ class Telling(Quiet):
         self.assertEqual(self.exchange.told[6:], [("machine", "IDLE", "Says", "end", "end")])
 
     def test_further_machines_are_counted(self):
-        for name in ("machine", "machine#2"):
+        for label, name in (("A", "machine"), ("B", "machine#2"), ("A", "machine")):
             machine = smach.StateMachine(outcomes=["end"])
             with machine:
-                machine.add("A", Says("end"))
+                machine.add(label, Says("end"))
             machine.execute()
             self.assertEqual(self.exchange.told[-1][0], name)
+        self.assertEqual(len(self.exchange.told), 5)  # the last is the first again, and is not declared twice
 
 
 class Alone(unittest.TestCase):

@@ -1,12 +1,10 @@
 """`tf`, `tf2_ros` and `tf2_geometry_msgs`: what is published of frames, and where they were to each other."""
 
 import math
-import tempfile
 import unittest
 
-import tables
-from harness import run_text
 from system import System
+from tables import run_ros
 
 SECOND = 10**9
 START = 1735689600  # of simulated time, since 1970
@@ -48,10 +46,8 @@ def heard(seconds, *transforms, topic="/tf"):
 
 
 class Case(unittest.TestCase):
-    def said(self, text, system=None, **how):
-        with tempfile.TemporaryDirectory() as folder:
-            packages = ["geometry_msgs", "tf2_msgs", "std_msgs", "sensor_msgs"]
-            done = run_text(IMPORTS + text, system=system, env=tables.binding(folder, packages), **how)
+    def said(self, text, system=None):
+        done = run_ros(IMPORTS + text, ["geometry_msgs", "tf2_msgs", "std_msgs", "sensor_msgs"], system)
         self.assertEqual(done.code, 0, done.err)
         self.err, self.requests = done.err, done.requests
         return done.out.splitlines()
@@ -110,9 +106,7 @@ for target, source, seconds in (("map", "moon", 0), ("map", "other", 0), ("map",
             heard(2, transform("map", "base", 2, 2.0), transform("island", "other", 2, 0.0)),
         ]
         out = self.said(text, System(arrivals))
-        self.assertEqual(
-            out[0], 'LookupException "moon" passed to lookupTransform argument source_frame does not exist.  True'
-        )
+        self.assertEqual(out[0], 'LookupException "moon" passed to lookupTransform argument source_frame does not exist.  True')
         self.assertEqual(
             out[1],
             "ConnectivityException Could not find a connection between 'map' and 'other' because they are not part of the same"
@@ -141,9 +135,7 @@ print(3.6 <= rospy.get_time() - START < 3.61)
 """
         arrivals = [heard(1.5, transform("map", "base", 1.5, 1.0)), heard(3.6, transform("map", "base", 3.6, 2.0))]
         out = self.said(text, System(arrivals))
-        self.assertEqual(
-            out, ["1.500 [1.0, 0.0, 0.0]", "3.500 canTransform: source_frame moon does not exist.", "True"]
-        )
+        self.assertEqual(out, ["1.500 [1.0, 0.0, 0.0]", "3.500 canTransform: source_frame moon does not exist.", "True"])
 
     def test_messages_in_other_frames(self):
         text = """

@@ -9,7 +9,6 @@ from actionlib.action_client import (
     ActionClient,
     ClientGoalHandle,
     CommState,
-    GoalStatus,
     TerminalState,
     get_name_of_constant,
 )
@@ -18,6 +17,7 @@ from actionlib.server_goal_handle import ServerGoalHandle
 from actionlib.simple_action_server import SimpleActionServer
 from actionlib.goal_id_generator import GoalIDGenerator
 from actionlib.exceptions import ActionException
+from actionlib_msgs.msg import GoalStatus
 
 __all__ = [
     "ActionClient",

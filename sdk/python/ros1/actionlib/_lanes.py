@@ -16,7 +16,7 @@ class Lane:
     """Calls a function for each thing that is put in, one after the other."""
 
     def __init__(self, name: str, function: Callable[..., Any]) -> None:
-        self._function = function
+        self._name, self._function = name, function
         self._items: Any = Mailbox()
         threading.Thread(target=self._run, name=name, daemon=True).start()
 
@@ -32,5 +32,6 @@ class Lane:
             except Exception:
                 import traceback
 
-                rospy.logerr("bad callback: %s\n%s" % (self._function, traceback.format_exc()))
+                what = "%s for %s" % (getattr(self._function, "__qualname__", self._function), self._name)
+                rospy.logerr("bad callback: %s\n%s" % (what, traceback.format_exc()))
             del args  # what nobody else has ends here, and not with the next item

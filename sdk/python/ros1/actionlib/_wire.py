@@ -34,9 +34,7 @@ class Spec:
 def encode(message: Any, expected: Any, name: str) -> bytes:
     """A message in JSON; `name` is the action's, for who reads that it does not fit."""
     if not isinstance(message, expected):
-        raise rospy.ROSSerializationException(
-            "action %s takes a %s, not a %s" % (name, expected._type, type(message).__name__)
-        )
+        raise rospy.ROSSerializationException("action %s takes a %s, not a %s" % (name, expected._type, type(message).__name__))
     try:
         text: str = expected._json(message)
     except genpy.SerializationError as error:

@@ -76,7 +76,7 @@ def _steps(state: int, status: int) -> tuple[int, ...]:
     """Through which states a goal goes when the server says its status: all that lie between are told, too."""
     if status == GoalStatus.ACTIVE:
         return (CommState.ACTIVE,) if state <= CommState.PENDING else ()
-    begun = () if state > CommState.PENDING else (CommState.ACTIVE,)
+    begun: tuple[int, ...] = () if state > CommState.PENDING else (CommState.ACTIVE,)
     if status == GoalStatus.REJECTED:
         begun = (CommState.PENDING,) if state == CommState.WAITING_FOR_GOAL_ACK else ()
     stopping = status in (GoalStatus.PREEMPTING, GoalStatus.PREEMPTED)
@@ -253,19 +253,19 @@ class ActionClient:
         now = rospy.Time.now()
         whole = self.ActionGoal()
         whole.header.stamp = now
-        whole.goal_id = GoalID(
-            stamp=now, id="%s-%i-%.3f" % (rospy.get_caller_id(), ActionClient._sent, now.to_sec())
-        )
+        whole.goal_id = GoalID(stamp=now, id="%s-%i-%.3f" % (rospy.get_caller_id(), ActionClient._sent, now.to_sec()))
         whole.goal = goal
         return whole
 
     def _hear(self, machine: CommStateMachine | None, arrival: dict[str, Any]) -> None:
         # Called while all threads of the program wait: it only hands on.
         if "feedback" not in arrival:
-            self._open.pop(arrival["finished"] if "finished" in arrival else arrival.get("answered"), None)
+            self._open.pop(arrival.get("finished", arrival.get("answered", 0)), None)
         if machine is None:
             return
         if "feedback" in arrival:
+            if machine.state <= CommState.PENDING:  # then it has been accepted
+                self._statuses.put(weakref.ref(machine), GoalStatus.ACTIVE)
             self._feedbacks.put(machine, arrival["message"])
         elif "finished" in arrival:
             self._results.put(machine, arrival)
@@ -278,7 +278,9 @@ class ActionClient:
         if status == GoalStatus.ACTIVE:
             sent = machine.action_goal.goal_id.stamp.to_nsec()
             del machine
-            time.sleep(max(0, sent + _ACCEPTED_AFTER - rospy.Time.now().to_nsec()) / 1e9)
+            left = sent + _ACCEPTED_AFTER - rospy.Time.now().to_nsec()
+            if left > 0:
+                time.sleep(left / 1e9)
             machine = kept()
         if machine is not None:
             machine.update_status(status)

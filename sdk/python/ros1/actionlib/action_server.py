@@ -37,7 +37,7 @@ class ActionServer:
         self,
         ns: str,
         ActionSpec: Any,
-        goal_cb: Callable[[Any], Any],
+        goal_cb: Any,
         cancel_cb: Callable[[Any], Any] = nop_cb,
         auto_start: bool = True,
     ) -> None:

@@ -69,9 +69,7 @@ class ServerGoalHandle:
         """The goal is reached."""
         self._end(GoalStatus.SUCCEEDED, _RUNNING, result, text, "succeeded", ("succeeded", "preempting or active"))
 
-    def _end(
-        self, end: int, allowed: tuple[int, ...], result: Any, text: str, word: str, states: tuple[str, str]
-    ) -> None:
+    def _end(self, end: int, allowed: tuple[int, ...], result: Any, text: str, word: str, states: tuple[str, str]) -> None:
         if self._is_missing("set status on"):
             return
         with self.action_server.lock:

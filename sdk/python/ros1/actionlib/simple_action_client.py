@@ -46,9 +46,7 @@ class SimpleActionClient:
         """Waits until there is a server, at most for a `rospy.Duration`; zero is for ever."""
         return self.action_client.wait_for_server(timeout)
 
-    def send_goal(
-        self, goal: Any, done_cb: Callback = None, active_cb: Callback = None, feedback_cb: Callback = None
-    ) -> None:
+    def send_goal(self, goal: Any, done_cb: Callback = None, active_cb: Callback = None, feedback_cb: Callback = None) -> None:
         """Gives a goal, and forgets the one before, which is not cancelled.
 
         Calls `active_cb()`, `feedback_cb(feedback)` and `done_cb(state, result)`, each in a thread of its own.

@@ -42,9 +42,7 @@ class SimpleActionServer:
         self.current_goal = ServerGoalHandle()
         self.next_goal = ServerGoalHandle()
         self.execute_thread: threading.Thread | None = None
-        self.action_server = ActionServer(
-            name, ActionSpec, self.internal_goal_callback, self.internal_preempt_callback, False
-        )
+        self.action_server = ActionServer(name, ActionSpec, self.internal_goal_callback, self.internal_preempt_callback, False)
         if execute_cb:
             rospy.core.add_shutdown_hook(self._wake)
             self.execute_thread = threading.Thread(target=self.executeLoop)
@@ -145,12 +143,8 @@ class SimpleActionServer:
         """A goal has come."""
         with self.execute_condition:
             try:
-                rospy.logdebug(
-                    "A new goal %s has been received by the single goal action server", goal.get_goal_id().id
-                )
-                waits = self.next_goal.get_goal() and (
-                    not self.current_goal.get_goal() or self.next_goal != self.current_goal
-                )
+                rospy.logdebug("A new goal %s has been received by the single goal action server", goal.get_goal_id().id)
+                waits = self.next_goal.get_goal() and (not self.current_goal.get_goal() or self.next_goal != self.current_goal)
                 if waits:
                     self.next_goal.set_canceled(None, _REPLACED)
                 self.next_goal = goal

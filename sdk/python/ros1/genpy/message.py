@@ -315,5 +315,5 @@ def _class(space: str, name: str) -> Any:
     for each in spaces:
         found = known.spaces.get("%s.%s" % (package, each), {}).get(own)
         if found is not None:
-            return known.class_of(found)
+            return known.class_of(*found)
     return None

@@ -23,9 +23,7 @@ def numbers(pose: Sequence[float]) -> list[float]:
 
         return given[:3] + list(rigid.quaternion(*given[3:]))
     if len(given) != 7:
-        raise MoveItCommanderException(
-            "Expected either 6 or 7 elements in list: (x,y,z,r,p,y) or (x,y,z,qx,qy,qz,qw)"
-        )
+        raise MoveItCommanderException("Expected either 6 or 7 elements in list: (x,y,z,r,p,y) or (x,y,z,qx,qy,qz,qw)")
     return given
 
 

@@ -53,7 +53,12 @@ class Group:
         """Where the joints are now."""
         exchange = the_exchange()
         exchange.polled("joints")
-        found = [float(value) for value in exchange.state(self.device, "joints")]
+        try:
+            found = [float(value) for value in exchange.state(self.device, "joints")]
+        except ProtocolError as error:
+            raise MoveItCommanderException(
+                "the joints of group %s are not known: device %s does not tell them (%s)" % (self.name, self.device, error)
+            ) from None
         if len(found) != len(self.joints):
             raise MoveItCommanderException(
                 "group %s has %d joints, but its device %s has %d: correct the scenario's binding"
@@ -73,9 +78,9 @@ class Group:
                 % (self.name, self.device, error)
             ) from None
 
-    def reach(self, pose: Sequence[float], tip: str) -> tuple[list[float] | None, str]:
-        """Joint values that bring the end-effector there, or None and why there are none."""
-        message: dict[str, Any] = {"request": "plan", "device": self.device, "to": list(pose[:3])}
+    def reach(self, pose: Sequence[float], begin: Sequence[float]) -> tuple[list[float] | None, str]:
+        """Joint values that bring the end-effector there, near to where the joints begin, or None and why there are none."""
+        message: dict[str, Any] = {"request": "plan", "device": self.device, "to": list(pose[:3]), "from": list(begin)}
         if len(pose) == 7:
             message["orientation"] = list(pose[3:])
         try:
@@ -85,7 +90,7 @@ class Group:
         if "value" not in answer:
             return None, str(answer.get("error", "there is no such posture"))
         if len(pose) == 7 and not answer.get("oriented"):
-            warn_once("hrdsl plans for the place of %s, and not for its orientation" % tip)
+            warn_once("hrdsl plans for the place of %s, and not for its orientation" % self.tip)
         return [float(value) for value in answer["value"]], ""
 
 

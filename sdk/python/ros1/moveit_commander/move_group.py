@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 
 import rospy
-from hrdsl.errors import ProtocolError
-from hrdsl.exchange import the_exchange
-from hrdsl.mailbox import Mailbox
-from moveit_commander import conversions, model, timing
+from moveit_commander import conversions, model, motion, timing
 from moveit_commander.exception import MoveItCommanderException
 from moveit_commander.targets import Targets, unsupported
 
@@ -115,8 +112,9 @@ class MoveGroupCommander(Targets):
 
     def _plan(self) -> tuple[int, Any]:
         target: list[float] | None = self._joint_target
+        begin = self._begin()
         if self._pose_target is not None:
-            target, why = self._group.reach(self._pose_target, self._tip)
+            target, why = self._group.reach(self._pose_target, begin)
             if target is None:
                 rospy.logwarn("group %s cannot reach its target: %s" % (self._group.name, why))
                 return _NO_POSTURE, self._trajectory([])
@@ -124,7 +122,7 @@ class MoveGroupCommander(Targets):
                 rospy.logerr("group %s has %d joints, not %d" % (self._group.name, len(self._group.joints), len(target)))
                 return _PLANNING_FAILED, self._trajectory([])
         assert target is not None
-        return _SUCCESS, self._trajectory(timing.line(self._begin(), target, *self._limits()))
+        return _SUCCESS, self._trajectory(timing.line(begin, target, *self._limits()))
 
     def _limits(self, speed: float | None = None, acceleration: float | None = None) -> tuple[list[float], list[float]]:
         speed = self._speed_factor if speed is None else speed
@@ -162,7 +160,7 @@ class MoveGroupCommander(Targets):
         places = self._straight([self._pose(pose) for pose in waypoints], float(eef_step))
         postures = [self._begin()]
         for place in places:
-            found, _ = self._group.reach(place, self._tip)
+            found, _ = self._group.reach(place, postures[-1])
             if found is None:
                 break
             postures.append(found)
@@ -246,28 +244,17 @@ class MoveGroupCommander(Targets):
                 )
                 return False
         times = [point.time_from_start.to_nsec() / 1e9 for point in trajectory.points]
-        ended: Any = Mailbox()
-        arguments = {"positions": postures, "times": times}
-        try:
-            the_exchange().act(self._group.device, "follow", arguments, lambda error: ended.put((error,)))
-        except ProtocolError as error:
-            raise MoveItCommanderException(
-                "device %s of group %s follows no trajectories: %s" % (self._group.device, self._group.name, error)
-            ) from None
+        ended = motion.follow(self._group, postures, times)
         if not wait:
             return True
-        (error,) = ended.get()
-        if error is not None:
-            rospy.loginfo("ABORTED: %s", error)
-        return error is None
+        (why,) = ended.get()
+        if why is not None:
+            rospy.loginfo("ABORTED: %s", why)
+        return why is None
 
     def stop(self) -> None:
         """Ends the motion of the group, and stays."""
-        device, exchange = self._group.device, the_exchange()
-        try:
-            exchange.act(device, "stop", {}, _ignore)
-        except ProtocolError:  # a device without that command stays where it is told to
-            exchange.act(device, "follow", {"positions": [self._group.positions()], "times": [0.0]}, _ignore)
+        motion.stop(self._group)
 
     # ── what there is not ──
 
@@ -324,7 +311,3 @@ _MISSING = (
     "get_jacobian_matrix get_interface_description get_path_constraints get_trajectory_constraints"
     " set_constraints_database construct_motion_plan_request limit_max_cartesian_link_speed"
 ).split()
-
-
-def _ignore(error: str | None) -> None:
-    """Who stops a motion does not wait for the end of that."""

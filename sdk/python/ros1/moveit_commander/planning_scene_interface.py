@@ -129,9 +129,7 @@ class PlanningSceneInterface:
         """Attaches a box that is made, or the object of this name."""
         self.attach_object(name if pose is None else self.make_box(name, pose, size), link, touch_links)
 
-    def attach_sphere(
-        self, link: str, name: str, pose: Any = None, radius: float = 1, touch_links: Any = None
-    ) -> None:
+    def attach_sphere(self, link: str, name: str, pose: Any = None, radius: float = 1, touch_links: Any = None) -> None:
         """Attaches a sphere that is made, or the object of this name."""
         self.attach_object(name if pose is None else self.make_sphere(name, pose, radius), link, touch_links)
 
@@ -192,9 +190,7 @@ class PlanningSceneInterface:
 
     def __getattr__(self, name: str) -> Any:
         if name in ("get_planning_scene", "apply_planning_scene", "make_mesh"):
-            raise NotImplementedError(
-                "PlanningSceneInterface.%s is not there in hrdsl: add and remove objects one by one" % name
-            )
+            raise NotImplementedError("PlanningSceneInterface.%s is not there in hrdsl: add and remove objects one by one" % name)
         raise AttributeError("%r object has no attribute %r" % (type(self).__name__, name))
 
     # ── messages ──

@@ -34,6 +34,7 @@ def current_state() -> Any:
     state = made.joint_state
     state.header.frame_id = model.planning_frame()
     state.header.stamp = rospy.Time.now()
+    made.multi_dof_joint_state.header.frame_id = model.planning_frame()
     values = _values()
     state.name, state.position = list(values), list(values.values())
     return made

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-
 from moveit_commander import conversions, model
 from moveit_commander.exception import MoveItCommanderException
 
@@ -140,13 +138,15 @@ class Targets:
         raise MoveItCommanderException(_OUT_OF_BOUNDS)
 
     def _set_joints_for(self, pose: Any) -> None:
-        found, why = self._group.reach(self._pose(pose), self._tip)
+        found, why = self._group.reach(self._pose(pose), self._group.positions())
         if found is None:
             raise MoveItCommanderException("Error setting joint target. Is the IK solver functional? (%s)" % why)
         self._set_all(found)
 
     def get_random_joint_values(self) -> list[float]:
         """A posture somewhere within the bounds."""
+        import random
+
         return [random.uniform(max(joint.lower, -3.2), min(joint.upper, 3.2)) for joint in self._group.joints]
 
     def set_random_target(self) -> None:
@@ -198,9 +198,7 @@ class Targets:
 
     def _check_tip(self, link: str) -> None:
         if link and link != self._tip:
-            raise MoveItCommanderException(
-                "group %s has no end-effector %s, but %s" % (self._group.name, link, self._tip)
-            )
+            raise MoveItCommanderException("group %s has no end-effector %s, but %s" % (self._group.name, link, self._tip))
 
     def set_pose_target(self, pose: Any, end_effector_link: str = "") -> None:
         """Where the end-effector is to go: a `Pose`, a `PoseStamped`, or a list of 6 or 7 numbers."""

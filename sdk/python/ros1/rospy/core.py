@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 
 from hrdsl.errors import Stopped
 from hrdsl.exchange import the_exchange
@@ -175,6 +176,11 @@ def signal_shutdown(reason: str) -> None:
         except Exception as error:
             sys.stderr.write("signal_shutdown hook error[%s]\n" % error)
     _hooks["internal"].clear()
+    if reason != "atexit":
+        try:
+            time.sleep(0.1)  # as rospy does, so that others come to their ends
+        except KeyboardInterrupt:
+            pass
 
 
 def _call(kind: str, *args: str) -> None:

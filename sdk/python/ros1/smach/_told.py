@@ -1,19 +1,20 @@
 """Tells hrdsl which machines there are and how they move, so that their states and transitions are covered.
 
 A machine within another is called by the labels that lead to it: `machine/GRASP`. The outermost is called as in its
-introspection server (`SM_ROOT`), and if it has none `machine`; further ones `machine#2` and so on, as they begin.
+introspection server (`SM_ROOT`), and if it has none `machine`; further ones `machine#2` and so on, as they begin. One that is
+built again in the same way has the same name.
 """
 
 from __future__ import annotations
 
-import os
 import sys
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_outermost = 0
+_outermost: dict[Any, str] = {}  # names by what is declared
+_told: dict[str, dict[str, Any]] = {}  # declarations by names
 
 
 def is_the_end(error: BaseException) -> bool:
@@ -23,12 +24,19 @@ def is_the_end(error: BaseException) -> bool:
 
 def _exchange() -> Any:
     """What tells hrdsl; None if it does not run this program."""
-    link = sys.modules.get("hrdsl.link")
-    if "HRDSL_BINDING" not in os.environ and getattr(link, "_link", None) is None:
+    link = getattr(sys.modules.get("hrdsl.link"), "_link", None)
+    if link is None or not link.is_ours():
         return None
     from hrdsl.exchange import the_exchange
 
     return the_exchange()
+
+
+def polled() -> None:
+    """To be called where a program looks whether something has changed, so that a loop that looks lets time pass."""
+    exchange = _exchange()
+    if exchange is not None:
+        exchange.polled("smach")
 
 
 def is_child(parent: Any, label: str, state: Any) -> None:
@@ -37,12 +45,12 @@ def is_child(parent: Any, label: str, state: Any) -> None:
         state._told_name = "%s/%s" % (_name(parent), label)
 
 
-def _name(machine: Any) -> str:
-    global _outermost
-    if machine._told_name is None:
-        _outermost += 1
-        machine._told_name = "machine" if _outermost == 1 else "machine#%d" % _outermost
-    name: str = machine._told_name
+def _name(container: Any) -> str:
+    if container._told_name is None:
+        shape = (type(container).__name__, *map(str, container.get_children()), *map(str, container.get_internal_edges()))
+        count = len(_outermost) + 1
+        container._told_name = _outermost.setdefault(shape, "machine" if count == 1 else "machine#%d" % count)
+    name: str = container._told_name
     return name
 
 
@@ -57,15 +65,16 @@ def begins(machine: Any) -> None:
     for label, targets in machine._transitions.items():
         for outcome, target in targets.items():
             edges.append([str(label), str(outcome), str(target if _leads(machine, target) else outcome)])
-    exchange.tell(
-        {
-            "request": "machine",
-            "name": name,
-            "states": [str(label) for label in machine._states],
-            "transitions": edges,
-            "outcomes": [str(outcome) for outcome in machine.get_registered_outcomes()],
-        }
-    )
+    declared = {
+        "request": "machine",
+        "name": name,
+        "states": [str(label) for label in machine._states],
+        "transitions": edges,
+        "outcomes": [str(outcome) for outcome in machine.get_registered_outcomes()],
+    }
+    if _told.get(name) != declared:
+        _told[name] = declared
+        exchange.tell(declared)
 
 
 def _leads(machine: Any, target: Any) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import threading
 
 import smach
@@ -97,9 +96,7 @@ class Concurrence(Container):
     def _run_all(self) -> None:
         for label in self._states:
             self._child_outcomes[label] = None
-            self._threads[label] = threading.Thread(
-                name="concurrent_split:%s" % label, target=self._state_runner, args=(label,)
-            )
+            self._threads[label] = threading.Thread(name="concurrent_split:%s" % label, target=self._state_runner, args=(label,))
         for thread in self._threads.values():
             thread.start()
         with self._done_cond:
@@ -138,15 +135,14 @@ class Concurrence(Container):
     def _called_outcome(self, otherwise: Any) -> Any:
         assert self._outcome_cb is not None
         try:
-            said = self._outcome_cb(copy.copy(self._child_outcomes))
+            said = self._outcome_cb(dict(self._child_outcomes))
             if not said:
                 smach.logwarn("Outcome callback returned None, using outcome '%s'" % otherwise)
             elif said == str(said):
                 return said
             else:
                 smach.logerr(
-                    "Outcome callback returned a non-string '%s', using default outcome '%s'"
-                    % (said, self._default_outcome)
+                    "Outcome callback returned a non-string '%s', using default outcome '%s'" % (said, self._default_outcome)
                 )
         except BaseException as error:
             if smach.is_the_end(error):
@@ -181,9 +177,7 @@ class Concurrence(Container):
                 except BaseException as error:
                     if smach.is_the_end(error):
                         raise
-                    raise smach.InvalidUserCodeError(
-                        "Could not execute child termination callback: " + trace()
-                    ) from error
+                    raise smach.InvalidUserCodeError("Could not execute child termination callback: " + trace()) from error
             if preempt_others or all(outcome is not None for outcome in self._child_outcomes.values()):
                 self._done_cond.notify_all()
 
@@ -234,9 +228,7 @@ class Concurrence(Container):
 
     def get_internal_edges(self) -> list[Any]:
         """(outcome, state, outcome of the container) as mapped."""
-        return [
-            (needed[label], label, mapped) for mapped, needed in self._outcome_map.items() for label in needed
-        ]
+        return [(needed[label], label, mapped) for mapped, needed in self._outcome_map.items() for label in needed]
 
     def check_consistency(self) -> None:
         """Raises if the map names an outcome that a state does not have."""

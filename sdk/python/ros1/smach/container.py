@@ -47,9 +47,7 @@ class Container(State):
     _construction_lock = threading.RLock()
     _context_kwargs: Any = []
 
-    def __init__(
-        self, outcomes: Iterable[str] = [], input_keys: list[str] = [], output_keys: list[str] = []
-    ) -> None:
+    def __init__(self, outcomes: Iterable[str] = [], input_keys: list[str] = [], output_keys: list[str] = []) -> None:
         State.__init__(self, outcomes, input_keys, output_keys)
         self.userdata = smach.UserData()
         self._start_cbs: Callbacks = []
@@ -192,12 +190,8 @@ class Container(State):
     @classmethod
     def _currently_opened_container(cls) -> Any:
         if not Container._construction_stack:
-            raise smach.InvalidStateError(
-                "Attempting to access the currently opened container, but no container is opened."
-            )
+            raise smach.InvalidStateError("Attempting to access the currently opened container, but no container is opened.")
         container = Container._construction_stack[-1]
         if not isinstance(container, cls):
-            raise smach.InvalidStateError(
-                "Attempting to call a %s construction method without having opened a %s." % (cls, cls)
-            )
+            raise smach.InvalidStateError("Attempting to call a %s construction method without having opened a %s." % (cls, cls))
         return container

@@ -57,9 +57,7 @@ class Iterator(Container):
         self._state_label, self._state = label, state
         outcomes = state.get_registered_outcomes()
         if loop_outcomes and break_outcomes:
-            smach.logwarn(
-                "Both loop_outcomes and break_outcomes were specified when constructing SMACH iterator container."
-            )
+            smach.logwarn("Both loop_outcomes and break_outcomes were specified when constructing SMACH iterator container.")
         if break_outcomes:
             self._break_outcomes = break_outcomes
             self._loop_outcomes += [outcome for outcome in outcomes if outcome not in break_outcomes]

@@ -38,4 +38,5 @@ def set_loggers(
     info: Callable[[str], Any], warn: Callable[[str], Any], debug: Callable[[str], Any], error: Callable[[str], Any]
 ) -> None:
     """Replaces the functions that get the messages."""
-    smach.loginfo, smach.logwarn, smach.logdebug, smach.logerr = info, warn, debug, error
+    place: Any = smach
+    place.loginfo, place.logwarn, place.logdebug, place.logerr = info, warn, debug, error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import smach
+from smach import _told
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -79,6 +80,7 @@ class State:
 
     def preempt_requested(self) -> bool:
         """Whether the state was asked to end."""
+        _told.polled()
         return self._preempt_requested
 
 

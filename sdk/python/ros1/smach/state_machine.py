@@ -57,8 +57,7 @@ class StateMachine(Container):
         self.check_state_spec(label, state, transitions)
         if label in self._states:
             raise smach.InvalidStateError(
-                "Attempting to add state with label \"%s\" to state machine, but this label is already being used."
-                % label
+                'Attempting to add state with label "%s" to state machine, but this label is already being used.' % label
             )
         smach.logdebug("Adding state '%s' to the state machine." % label)
         missing = {outcome: None for outcome in state.get_registered_outcomes() if outcome not in transitions}
@@ -125,8 +124,7 @@ class StateMachine(Container):
             self._set_current_state(self._initial_state_label)
             self._copy_input_keys(parent_ud, self.userdata)
             smach.loginfo(
-                "State machine starting in initial state '%s' with userdata: \n\t%s"
-                % (self._current_label, self.userdata.keys())
+                "State machine starting in initial state '%s' with userdata: \n\t%s" % (self._current_label, self.userdata.keys())
             )
             _told.begins(self)
             self.call_start_cbs()
@@ -143,9 +141,7 @@ class StateMachine(Container):
         """Runs the current state, and goes on to the next: the outcome of the machine, if it has ended."""
         label, state = self._current_label, self._current_state
         if label not in self._states:
-            raise smach.InvalidStateError(
-                "State '%s' does not exist. Available states are: %s" % (label, list(self._states))
-            )
+            raise smach.InvalidStateError("State '%s' does not exist. Available states are: %s" % (label, list(self._states)))
         if self.preempt_requested():
             self._hand_preemption_on()
         outcome = self._run(label, state)
@@ -188,9 +184,7 @@ class StateMachine(Container):
         except BaseException as error:
             if smach.is_the_end(error):
                 raise
-            raise smach.InvalidUserCodeError(
-                "Could not execute state '%s' of type '%s': %s" % (label, state, trace())
-            ) from error
+            raise smach.InvalidUserCodeError("Could not execute state '%s' of type '%s': %s" % (label, state, trace())) from error
         finally:
             self._state_transitioning_lock.acquire()
 
@@ -295,6 +289,7 @@ class StateMachine(Container):
 
     def is_running(self) -> bool:
         """Whether the machine is being executed."""
+        _told.polled()
         return self._is_running
 
     # ── soundness ──

@@ -14,9 +14,7 @@ _READ = (
     "Reading from SMACH userdata key '%s' but the only keys that were declared as input to this state were: %s."
     " This key needs to be declared as input to this state. "
 )
-_WRITTEN = (
-    "Writing to SMACH userdata key '%s' but the only keys that were declared as output from this state were: %s."
-)
+_WRITTEN = "Writing to SMACH userdata key '%s' but the only keys that were declared as output from this state were: %s."
 
 
 class UserData:
@@ -138,8 +136,8 @@ class Remapper:
         """Those keys of the container's that the state may read under the same name."""
         return [self._remap(key) for key in self._ud.keys() if key in self._input]
 
-    def __contains__(self, key: object) -> bool:
-        return key in self._input and self._remap(str(key)) in self._ud
+    def __contains__(self, key: Any) -> bool:
+        return key in self._input and self._remap(key) in self._ud
 
     def __getitem__(self, key: str) -> Any:
         if key not in self._input:

@@ -48,9 +48,7 @@ class ActionServerWrapper:
         self.userdata[result_key] = copy.copy(empty.action_result.result)
         self.userdata[feedback_key] = copy.copy(empty.action_feedback.feedback)
         self._server_name = server_name
-        self._action_server = SimpleActionServer(
-            server_name, action_spec, execute_cb=self.execute_cb, auto_start=False
-        )
+        self._action_server = SimpleActionServer(server_name, action_spec, execute_cb=self.execute_cb, auto_start=False)
         self._succeeded_outcomes = set(succeeded_outcomes)
         self._aborted_outcomes = set(aborted_outcomes)
         self._preempted_outcomes = set(preempted_outcomes)

@@ -36,8 +36,7 @@ class IntrospectionClient:
 
     def __init__(self) -> None:
         raise NotImplementedError(
-            "smach_ros.IntrospectionClient is not there in hrdsl: set the initial state of a machine by its own"
-            " set_initial_state"
+            "smach_ros.IntrospectionClient is not there in hrdsl: set the initial state of a machine by its own set_initial_state"
         )
 
     def get_servers(self) -> NoReturn:

@@ -119,9 +119,7 @@ class SimpleActionState(smach.State):
         self._activate_time = rospy.Time.now()
         self._status = SimpleActionState.ACTIVE
         with self._done_cond:
-            self._action_client.send_goal(
-                self._goal, self._goal_done_cb, self._goal_active_cb, self._goal_feedback_cb
-            )
+            self._action_client.send_goal(self._goal, self._goal_done_cb, self._goal_active_cb, self._goal_feedback_cb)
             if self._exec_timeout:
                 name = self._action_name + "/preempt_watchdog"
                 threading.Thread(name=name, target=self._execution_timer).start()

@@ -17,9 +17,7 @@ def set_preempt_handler(sc: Any) -> None:
     def handler() -> None:
         sc.request_preempt()
         while sc.is_running():
-            rospy.loginfo(
-                "Received shutdown request... sent preempt... waiting for state machine to terminate."
-            )
+            rospy.loginfo("Received shutdown request... sent preempt... waiting for state machine to terminate.")
             rospy.sleep(1.0)
 
     rospy.core.add_client_shutdown_hook(handler)

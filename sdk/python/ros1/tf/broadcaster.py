@@ -16,9 +16,7 @@ class TransformBroadcaster:
     def __init__(self, queue_size: int = 100) -> None:
         self.tf2_broadcaster = _Broadcaster()
 
-    def sendTransform(
-        self, translation: Sequence[float], rotation: Sequence[float], time: Any, child: str, parent: str
-    ) -> None:
+    def sendTransform(self, translation: Sequence[float], rotation: Sequence[float], time: Any, child: str, parent: str) -> None:
         """Tells that `child` was there, as seen from `parent`; the rotation is (x, y, z, w)."""
         sent = TransformStamped()
         sent.header.frame_id = parent

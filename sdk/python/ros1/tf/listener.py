@@ -39,15 +39,15 @@ class Transformer:
 
     def canTransform(self, target_frame: str, source_frame: str, time: Any) -> bool:
         """Whether `lookupTransform` knows."""
-        return self._buffer.can_transform(strip_leading_slash(target_frame), strip_leading_slash(source_frame), time)
+        target, source = strip_leading_slash(target_frame), strip_leading_slash(source_frame)
+        return bool(self._buffer.can_transform(target, source, time))
 
     def canTransformFull(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> bool:
         """Whether `lookupTransformFull` knows."""
-        names = map(strip_leading_slash, (target_frame, source_frame, fixed_frame))
-        target, source, fixed = names
-        return self._buffer.can_transform_full(target, target_time, source, source_time, fixed)
+        target, source, fixed = map(strip_leading_slash, (target_frame, source_frame, fixed_frame))
+        return bool(self._buffer.can_transform_full(target, target_time, source, source_time, fixed))
 
     def waitForTransform(
         self, target_frame: str, source_frame: str, time: Any, timeout: Any, polling_sleep_duration: Any = None

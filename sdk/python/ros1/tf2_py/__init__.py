@@ -184,9 +184,7 @@ class BufferCore:
             if wrong:
                 _say("Warning", wrong)
                 return False, ""
-        missing = [
-            "canTransform: %s %s does not exist." % (role, frame) for role, frame in names if frame not in self._frames
-        ]
+        missing = ["canTransform: %s %s does not exist." % (role, frame) for role, frame in names if frame not in self._frames]
         if missing:
             return False, " ".join(missing)
         try:

@@ -52,9 +52,7 @@ class BufferInterface:
         """The same, as seen from there at another time."""
         change = self.registration.get(type(object_stamped))
         header = object_stamped.header
-        place = self.lookup_transform_full(
-            target_frame, target_time, header.frame_id, header.stamp, fixed_frame, timeout
-        )
+        place = self.lookup_transform_full(target_frame, target_time, header.frame_id, header.stamp, fixed_frame, timeout)
         found = change(object_stamped, place)
         return convert(found, new_type) if new_type else found
 

@@ -13,9 +13,7 @@ if TYPE_CHECKING:
 class TransformListener:
     """Subscribes to `/tf` and `/tf_static` for a buffer."""
 
-    def __init__(
-        self, buffer: Any, queue_size: int | None = None, buff_size: int = 65536, tcp_nodelay: bool = False
-    ) -> None:
+    def __init__(self, buffer: Any, queue_size: int | None = None, buff_size: int = 65536, tcp_nodelay: bool = False) -> None:
         self.buffer = buffer
         self.tf_sub = rospy.Subscriber("/tf", TFMessage, self.callback, queue_size=queue_size)
         self.tf_static_sub = rospy.Subscriber("/tf_static", TFMessage, self.static_callback, queue_size=queue_size)

@@ -1,3 +1,6 @@
 """Refused: launch files."""
 
-raise NotImplementedError("launch_ros is not supported by hrdsl's rclpy: name the programs of the system in the scenario, with their arguments")
+raise NotImplementedError(
+    "launch_ros is not supported by hrdsl's rclpy: "
+    "name the programs of the system in the scenario, with their arguments"
+)

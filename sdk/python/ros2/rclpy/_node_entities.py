@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 class NodeEntities:
     """Publishers, subscriptions, clients, services, timers, guard conditions and actions."""
 
-    def _init_entities(self) -> None:
+    def _init_entities_(self) -> None:
         self._publishers: list[Publisher] = []
         self._subscriptions: list[Subscription] = []
         self._clients: list[Client] = []
         self._services: list[Service] = []
         self._timers: list[Timer] = []
         self._guards: list[GuardCondition] = []
-        self._waitables: list[Any] = []
+        self._waitables_: list[Any] = []
 
     def _wake_executor(self) -> None:
         raise NotImplementedError
@@ -62,9 +62,9 @@ class NodeEntities:
     @property
     def waitables(self) -> Iterator[Any]:
         """Its actions."""
-        yield from self._waitables
+        yield from self._waitables_
 
-    def _destroy(self, entities: list[Any], entity: Any) -> bool:
+    def _destroy_(self, entities: list[Any], entity: Any) -> bool:
         if entity not in entities:
             return False
         entities.remove(entity)
@@ -74,27 +74,27 @@ class NodeEntities:
 
     def destroy_publisher(self, publisher: Publisher) -> bool:
         """Destroys it; False if it is none of this node."""
-        return self._destroy(self._publishers, publisher)
+        return self._destroy_(self._publishers, publisher)
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
         """Destroys it; False if it is none of this node."""
-        return self._destroy(self._subscriptions, subscription)
+        return self._destroy_(self._subscriptions, subscription)
 
     def destroy_client(self, client: Client) -> bool:
         """Destroys it; False if it is none of this node."""
-        return self._destroy(self._clients, client)
+        return self._destroy_(self._clients, client)
 
     def destroy_service(self, service: Service) -> bool:
         """Destroys it; False if it is none of this node."""
-        return self._destroy(self._services, service)
+        return self._destroy_(self._services, service)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Destroys it; False if it is none of this node."""
-        return self._destroy(self._timers, timer)
+        return self._destroy_(self._timers, timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         """Destroys it; False if it is none of this node."""
-        return self._destroy(self._guards, guard)
+        return self._destroy_(self._guards, guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Destroys it; False if it is none of this node."""

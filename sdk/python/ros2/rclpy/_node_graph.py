@@ -51,26 +51,26 @@ class NodeGraph:
         """All services, with the names of their types."""
         return _typed(("server",))
 
-    def _full(self, name: str, is_service: bool) -> str:
+    def _full_(self, name: str, is_service: bool) -> str:
         full = _names.expanded(name, self.get_name(), self.get_namespace())
         validate_full_topic_name(full, is_service=is_service)
         return full
 
     def count_publishers(self, topic_name: str) -> int:
         """How many publishers a topic has."""
-        return _world.count("publisher", self._full(topic_name, False))
+        return _world.count("publisher", self._full_(topic_name, False))
 
     def count_subscribers(self, topic_name: str) -> int:
         """How many subscriptions a topic has."""
-        return _world.count("subscriber", self._full(topic_name, False))
+        return _world.count("subscriber", self._full_(topic_name, False))
 
     def count_clients(self, service_name: str) -> int:
         """How many clients a service has."""
-        return _world.count("client", self._full(service_name, True))
+        return _world.count("client", self._full_(service_name, True))
 
     def count_services(self, service_name: str) -> int:
         """How many servers a service has."""
-        return _world.count("server", self._full(service_name, True))
+        return _world.count("server", self._full_(service_name, True))
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """The nodes of this program."""
@@ -100,7 +100,7 @@ class NodeGraph:
             time.sleep(0.1)
         return True
 
-    def _of_node(self, node_name: str, node_namespace: str, kind: str, attribute: str) -> Typed:
+    def _of_node_(self, node_name: str, node_namespace: str, kind: str, attribute: str) -> Typed:
         found: dict[str, list[str]] = {}
         for node in nodes:
             if (node.get_name(), node.get_namespace()) == (node_name, "/" + node_namespace.strip("/")):
@@ -114,34 +114,34 @@ class NodeGraph:
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> Typed:
         """The topics that a node of this program publishes."""
-        return self._of_node(node_name, node_namespace, "publisher", "_publishers")
+        return self._of_node_(node_name, node_namespace, "publisher", "_publishers")
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> Typed:
         """The topics that a node of this program has subscribed to."""
-        return self._of_node(node_name, node_namespace, "subscriber", "_subscriptions")
+        return self._of_node_(node_name, node_namespace, "subscriber", "_subscriptions")
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> Typed:
         """The services of a node of this program."""
-        return self._of_node(node_name, node_namespace, "service", "_services")
+        return self._of_node_(node_name, node_namespace, "service", "_services")
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> Typed:
         """The services that a node of this program asks."""
-        return self._of_node(node_name, node_namespace, "client", "_clients")
+        return self._of_node_(node_name, node_namespace, "client", "_clients")
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[Any]:
         """The publishers of a topic; those of other programs without their profiles."""
-        return self._info("publisher", "_publishers", topic_name)
+        return self._info_("publisher", "_publishers", topic_name)
 
     def get_subscriptions_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[Any]:
         """The subscriptions of a topic; those of other programs without their profiles."""
-        return self._info("subscriber", "_subscriptions", topic_name)
+        return self._info_("subscriber", "_subscriptions", topic_name)
 
-    def _info(self, kind: str, attribute: str, topic_name: str) -> list[Any]:
+    def _info_(self, kind: str, attribute: str, topic_name: str) -> list[Any]:
         from rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 
-        full = self._full(topic_name, False)
+        full = self._full_(topic_name, False)
         end = TopicEndpointTypeEnum.PUBLISHER if kind == "publisher" else TopicEndpointTypeEnum.SUBSCRIPTION
         known = [(node, each) for node in nodes for each in getattr(node, attribute) if each._full_name == full]
         infos = []

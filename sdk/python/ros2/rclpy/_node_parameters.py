@@ -32,7 +32,7 @@ class NodeParameters:
     _on_set_parameters_callbacks: list[Any]
     _post_set_parameters_callbacks: list[Any]
 
-    def _init_parameters(self, overrides: dict[str, Any], allow_undeclared: bool) -> None:
+    def _init_parameters_(self, overrides: dict[str, Any], allow_undeclared: bool) -> None:
         self._parameters = {}
         self._descriptors = {}
         self._parameter_overrides = {name: Parameter(name, value=value) for name, value in overrides.items()}
@@ -60,17 +60,17 @@ class NodeParameters:
         line and from files come before values."""
         declared, descriptors = [], {}
         for index, given in enumerate(parameters):
-            parameter, descriptor = self._declaration(namespace, index, given, ignore_override)
+            parameter, descriptor = self._declaration_(namespace, index, given, ignore_override)
             declared.append(parameter)
             descriptors[parameter.name] = descriptor
         known = [parameter.name for parameter in declared if parameter.name in self._parameters]
         if known:
             raise ParameterAlreadyDeclaredException(known)
         for parameter in declared:
-            self._declare(parameter, descriptors)
+            self._declare_(parameter, descriptors)
         return [self._parameters[parameter.name] for parameter in declared]
 
-    def _declaration(
+    def _declaration_(
         self, namespace: str, index: int, given: tuple[Any, ...], ignore_override: bool
     ) -> tuple[Parameter, Any]:
         if not 1 <= len(given) <= 3:
@@ -96,8 +96,8 @@ class NodeParameters:
             value = self._parameter_overrides[name].value
         return Parameter(name, value=value), descriptor
 
-    def _declare(self, parameter: Parameter, descriptors: dict[str, Any]) -> None:
-        result = self._set_at_once([parameter], descriptors, keeps_unset=True)
+    def _declare_(self, parameter: Parameter, descriptors: dict[str, Any]) -> None:
+        result = self._set_at_once_([parameter], descriptors, keeps_unset=True)
         if result.successful:
             return
         if result.reason.startswith("Wrong parameter type"):
@@ -179,35 +179,38 @@ class NodeParameters:
         """Sets them one by one; the results say for each whether it was set, and why not."""
         results = []
         for parameter in parameter_list:
-            self._check_declared([parameter])
-            results.append(self._set_changed([parameter]))
+            self._check_declared_([parameter])
+            results.append(self._set_changed_([parameter]))
         return results
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> Any:
         """Sets all of them, or none."""
-        self._check_declared(parameter_list)
-        return self._set_changed(parameter_list)
+        self._check_declared_(parameter_list)
+        return self._set_changed_(parameter_list)
 
-    def _check_declared(self, parameters: list[Parameter]) -> None:
+    def _check_declared_(self, parameters: list[Parameter]) -> None:
         if not all(isinstance(parameter, Parameter) for parameter in parameters):
             raise TypeError("parameter must be instance of type '%r'" % Parameter)
         unknown = [parameter.name for parameter in parameters if parameter.name not in self._parameters]
         if unknown and not self._allow_undeclared_parameters:
             raise ParameterNotDeclaredException(unknown)
 
-    def _set_changed(self, parameters: list[Parameter]) -> Any:
+    def _set_changed_(self, parameters: list[Parameter]) -> Any:
         if self._pre_set_parameters_callbacks:
             changed: list[Parameter] = []
             for callback in self._pre_set_parameters_callbacks:
                 changed.extend(callback(parameters))
             if not changed:
-                reason = "parameter list cannot be empty, this might be due to pre_set_parameters_callback modifying the original parameters list."
+                reason = (
+                    "parameter list cannot be empty, this might be due to pre_set_parameters_callback modifying the "
+                    "original parameters list."
+                )
                 return SetParametersResult(successful=False, reason=reason)
-            self._check_declared(changed)
+            self._check_declared_(changed)
             parameters = changed
-        return self._set_at_once(parameters)
+        return self._set_at_once_(parameters)
 
-    def _set_at_once(
+    def _set_at_once_(
         self, parameters: list[Parameter], descriptors: dict[str, Any] | None = None, keeps_unset: bool = False
     ) -> Any:
         known = self._descriptors if descriptors is None else descriptors
@@ -236,12 +239,12 @@ class NodeParameters:
             is_new = self.get_parameter_or(parameter.name).type_ is Parameter.Type.NOT_SET
             (news if is_new else changes).append(parameter)
             self._parameters[parameter.name] = parameter
-        self._tell_of_parameters(news, changes, gone)
+        self._tell_of_parameters_(news, changes, gone)
         for callback in self._post_set_parameters_callbacks:
             callback(parameters)
         return SetParametersResult(successful=True)
 
-    def _tell_of_parameters(self, news: list[Parameter], changes: list[Parameter], gone: list[Parameter]) -> None:
+    def _tell_of_parameters_(self, news: list[Parameter], changes: list[Parameter], gone: list[Parameter]) -> None:
         raise NotImplementedError
 
     # ── callbacks ──

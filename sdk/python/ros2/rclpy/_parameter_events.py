@@ -19,9 +19,9 @@ def tell(node: Any, news: list[Any], changes: list[Any], gone: list[Any]) -> Non
 
     from rclpy.qos import qos_profile_parameter_events
 
-    if node._parameter_events is None:
-        node._parameter_events = node.create_publisher(ParameterEvent, TOPIC, qos_profile_parameter_events)
-    node._parameter_events.publish(
+    if node._parameter_events_ is None:
+        node._parameter_events_ = node.create_publisher(ParameterEvent, TOPIC, qos_profile_parameter_events)
+    node._parameter_events_.publish(
         ParameterEvent(
             stamp=node.get_clock().now().to_msg(),
             node=node.get_fully_qualified_name(),

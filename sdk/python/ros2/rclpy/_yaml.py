@@ -103,15 +103,19 @@ def _refuse(what: str, number: int) -> NoReturn:
 def _without_comment(line: str) -> str:
     if "#" not in line:
         return line
-    quote = ""
-    for place, letter in enumerate(line):
+    quote, place = "", 0
+    while place < len(line):
+        letter = line[place]
         if quote:
-            if letter == quote and not (quote == '"' and line[place - 1] == "\\"):
+            if quote == line[place : place + 2][1:] == letter == "'" or (letter == "\\" and quote == '"'):
+                place += 1  # a quote in the text, which does not end it
+            elif letter == quote:
                 quote = ""
         elif letter in "\"'" and (place == 0 or line[place - 1] in " [{,:-"):
             quote = letter
         elif letter == "#" and (place == 0 or line[place - 1] in " \t"):
             return line[:place]
+        place += 1
     return line
 
 

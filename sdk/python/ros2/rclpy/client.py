@@ -83,6 +83,9 @@ class Client:
     def _is_ready(self, now: int) -> bool:
         return bool(self._waiting)
 
+    def _is_async(self) -> bool:
+        return False
+
     def _take(self) -> tuple[Any, tuple[Any, ...]] | None:
         return (self._finish, self._waiting.popleft()) if self._waiting else None
 

@@ -108,15 +108,16 @@ class Context:
             raise RuntimeError("Context must be initialized before it can have a domain id")
         return self._domain_id
 
-    def _wait(self, until: int) -> None:
-        """Waits until then (simulated nanoseconds), or until the context ends."""
-        bell = Bell()
-        self._callbacks.append(bell.ring)
+    def _wait(self, until: int | None, bell: Bell | None = None) -> None:
+        """Waits until then (simulated nanoseconds), or until the bell rings or the context ends."""
+        bell = Bell() if bell is None else bell
+        ring = bell.ring
+        self._callbacks.append(ring)
         try:
             bell.wait(until)
         finally:
-            if bell.ring in self._callbacks:
-                self._callbacks.remove(bell.ring)
+            if ring in self._callbacks:
+                self._callbacks.remove(ring)
 
     def __enter__(self) -> Context:
         self.init()

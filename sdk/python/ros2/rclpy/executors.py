@@ -211,7 +211,7 @@ class Executor:
         now = _world.now()
         ready = []
         for node in nodes:
-            for entity in node._waitables:
+            for entity in node._waitables_:
                 if self._is_ready(entity, now):
                     ready.append((entity, node))
         for node in nodes:
@@ -237,7 +237,12 @@ class Executor:
             for timer in node._timers:
                 if not timer._is_canceled and (deadline is None or timer._next < deadline) and self.can_execute(timer):
                     deadline = timer._next
-        self._bell.wait(deadline)
+        quiet = [each for node in nodes for each in node._waitables_ if each._due is not None and self.can_execute(each)]
+        if quiet:
+            deadline = min(each._due for each in quiet)
+        if not self._bell.wait(deadline):
+            for each in quiet:
+                each._is_quiet = True
 
     def _make_handler(self, entity: Any, node: Node) -> Task:
         entity._executor_event = True
@@ -324,10 +329,10 @@ class MultiThreadedExecutor(Executor):
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         super().__init__(context=context)
-        from concurrent.futures import ThreadPoolExecutor
+        from rclpy._pool import Pool
 
         self._futures: list[Task] = []
-        self._executor = ThreadPoolExecutor(4 if num_threads is None else num_threads)
+        self._executor = Pool(4 if num_threads is None else num_threads)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Lets one callback run, or waits until the timeout."""

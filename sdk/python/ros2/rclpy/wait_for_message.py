@@ -18,10 +18,9 @@ def wait_for_message(
     subscription = node.create_subscription(msg_type, topic, lambda _: None, qos_profile)
     bell = Bell()
     subscription._wake = bell.ring
-    node.context.on_shutdown(bell.ring)
     nanos = timeout_sec_to_nsec(time_to_wait)
     try:
-        bell.wait(None if nanos < 0 else _world.now() + nanos)
+        node.context._wait(None if nanos < 0 else _world.now() + nanos, bell)
         if subscription._waiting and node.context.is_open():
             return True, subscription._next()[0]
         return False, None

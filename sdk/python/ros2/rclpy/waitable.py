@@ -17,6 +17,9 @@ class NumberOfEntities:
 class Waitable:
     """The base of such things. Those of a program's own wait for things of ROS's C library, and are refused."""
 
+    _due: int | None = None  # when something is to be done though nothing arrives
+    _is_quiet = False  # whether nothing arrived until then
+
     def __init__(self, callback_group: Any) -> None:
         self.callback_group = callback_group
         self.callback_group.add_entity(self)

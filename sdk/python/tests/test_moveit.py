@@ -1,0 +1,398 @@
+"""`moveit_commander` with an arm that follows what it is told: plans, motions, targets and what is refused."""
+
+import unittest
+
+from system import Refused, System
+from tables import run_ros
+
+SECOND = 10**9
+
+GROUPS = {
+    "arm": {
+        "device": "robot.arm",
+        "joints": [
+            {"name": "shoulder", "lower": -2.0, "upper": 2.0, "velocity": 1.0},
+            {"name": "elbow", "lower": -1.5, "upper": 1.5, "velocity": 0.5},
+        ],
+        "states": {"home": [0, 0], "up": {"shoulder": 1.0, "elbow": -0.5}},
+        "tip": "hand",
+    }
+}
+
+IMPORTS = """
+import sys
+import rospy, moveit_commander
+from moveit_commander import MoveItCommanderException
+
+def say(*what):
+    print("%.3f" % (rospy.get_time() - 1735689600), *what)
+
+def near(numbers):
+    return [round(number, 6) + 0.0 for number in numbers]
+
+def tries(*calls):
+    for call in calls:
+        try:
+            call()
+        except (MoveItCommanderException, NotImplementedError, RuntimeError) as error:
+            print(type(error).__name__, error)
+
+moveit_commander.roscpp_initialize(sys.argv)
+rospy.init_node("mover")
+"""
+
+
+class Arm(System):
+    """An arm that is where its trajectory ends, when that has ended."""
+
+    def __init__(self, tool=True, **how):
+        super().__init__(commands=self._command, states={"robot.arm": [0.0, 0.0]}, **how)
+        self._tool, self.followed, self._last = tool, [], None
+
+    def do_state(self, request):
+        if request["what"] == "joints":
+            return super().do_state(request)
+        if not self._tool:
+            raise Refused("no state `tool` of robot.arm")
+        return {"value": [0.5, 0.0, 0.25, 0.0, 0.0, 0.479425538604203, 0.8775825618903728]}
+
+    def do_plan(self, request):
+        x, y, z = request["to"]
+        if x > 1:
+            return {"ok": False, "error": "the place is out of reach"}
+        return {"value": [x, y]}
+
+    def _command(self, request):
+        if request["do"] != "follow":
+            raise Refused("no command `%s` of robot.arm" % request["do"])
+        if self._last is not None and self._last["until"] > self.time:
+            ended = {"ended": self._last["call"], "ok": False, "error": "another command was given"}
+            self._queue = [entry for entry in self._queue if entry[2].get("ended") != self._last["call"]]
+            self.mailbox.append(ended)
+        args = request["args"]
+        self.followed.append((self.time, args))
+        delay = round(args["times"][-1] * SECOND)
+        self._last = {"call": request["call"], "until": self.time + delay}
+        if args["positions"][-1] == [-2.0, 0.0]:
+            return delay // 2, "it hit something"
+        self.later(self.time + delay, lambda _: self.states.update({"robot.arm": args["positions"][-1]}))
+        return delay, None
+
+    def later(self, time, arrival):
+        super().later(time, _Step(arrival) if callable(arrival) else arrival)
+
+
+class _Step(dict):
+    """Something to be done, that also has no `ended`."""
+
+    def __init__(self, function):
+        super().__init__()
+        self._function = function
+
+    def __call__(self, system):
+        self._function(system)
+
+
+class Case(unittest.TestCase):
+    def said(self, text, system=None, **keys):
+        system = system or Arm()
+        packages = ["geometry_msgs", "moveit_msgs", "sensor_msgs", "shape_msgs", "trajectory_msgs", "std_msgs"]
+        binding = {"groups": GROUPS, "base_frame": "base", "frames": ["base", "link"], **keys}
+        done = run_ros(IMPORTS + text, packages, system, binding=binding)
+        self.assertEqual(done.code, 0, done.err)
+        self.out, self.err, self.requests = done.out, done.err, done.requests
+        return done.out.splitlines()
+
+
+class Plans(Case):
+    def test_a_straight_line_within_the_joints_speeds(self):
+        text = """
+group = moveit_commander.MoveGroupCommander("arm")
+group.set_joint_value_target([1.0, -0.5])
+success, plan, seconds, code = group.plan()
+points = plan.joint_trajectory.points
+print(success, seconds, code.val, plan.joint_trajectory.joint_names, plan.joint_trajectory.header.frame_id, len(points))
+for at in (0, 5, 10, -1):
+    point = points[at]
+    print("%.3f" % point.time_from_start.to_sec(), near(point.positions), near(point.velocities), near(point.accelerations))
+group.set_max_velocity_scaling_factor(0.1)
+group.set_max_acceleration_scaling_factor(0.5)
+print("%.3f" % group.plan([1.0, -0.5])[1].joint_trajectory.points[-1].time_from_start.to_sec())
+print(len(group.plan([0, 0])[1].joint_trajectory.points), type(points[0].positions).__name__)
+"""
+        self.assertEqual(
+            self.said(text),
+            [
+                "True 0.0 1 ['shoulder', 'elbow'] base 21",
+                "0.000 [0.0, 0.0] [0.0, 0.0] [1.0, -0.5]",
+                "0.500 [0.125, -0.0625] [0.5, -0.25] [1.0, -0.5]",
+                "1.000 [0.5, -0.25] [1.0, -0.5] [-1.0, 0.5]",
+                "2.000 [1.0, -0.5] [0.0, 0.0] [-1.0, 0.5]",
+                "10.200",
+                "1 tuple",
+            ],
+        )
+
+    def test_what_melodic_returns(self):
+        text = """
+group = moveit_commander.MoveGroupCommander("arm")
+group.set_named_target("up")
+plan = group.plan()
+print(near(plan.joint_trajectory.points[-1].positions), group.execute(plan), group.get_current_joint_values())
+group.set_position_target([2, 0, 0])
+print(len(group.plan().joint_trajectory.points))
+"""
+        self.assertEqual(self.said(text, moveit="melodic"), ["[1.0, -0.5] True [1.0, -0.5]", "0"])
+        self.assertIn("group arm cannot reach its target: the place is out of reach", self.out + self.err)
+
+    def test_targets_by_place(self):
+        text = """
+from geometry_msgs.msg import Pose, PoseStamped
+group = moveit_commander.MoveGroupCommander("arm")
+group.set_position_target([0.5, 0.25, 1.0])
+print(near(group.plan()[1].joint_trajectory.points[-1].positions))
+pose = PoseStamped()
+pose.header.frame_id = "base"
+pose.pose.position.x, pose.pose.orientation.w = 0.75, 1.0
+group.set_pose_target(pose)
+print(near(group.plan()[1].joint_trajectory.points[-1].positions))
+print(near(group.plan(pose.pose)[1].joint_trajectory.points[-1].positions))
+group.set_pose_target([2, 0, 0, 0, 0, 0])
+success, plan, _, code = group.plan()
+print(success, len(plan.joint_trajectory.points), code.val, group.go())
+group.clear_pose_targets()
+print(group.plan()[0])
+group.set_joint_value_target(pose)
+print(group.get_joint_value_target())
+pose.header.frame_id = "moon"
+tries(lambda: group.set_pose_target(pose), lambda: group.set_pose_target([1, 2]), lambda: group.set_pose_target([0] * 6, "foot"))
+"""
+        out = self.said(text)
+        self.assertEqual(
+            [line for line in out if "WARN" not in line],
+            [
+                "[0.5, 0.25]",
+                "[0.75, 0.0]",
+                "[0.75, 0.0]",
+                "False 0 -31 False",
+                "True",
+                "[0.75, 0.0]",
+                "MoveItCommanderException group arm plans in the frame base, not in moon: bring the pose there first, by tf",
+                "MoveItCommanderException Expected either 6 or 7 elements in list: (x,y,z,r,p,y) or (x,y,z,qx,qy,qz,qw)",
+                "MoveItCommanderException group arm has no end-effector foot, but hand",
+            ],
+        )
+        asked = [request for request in self.requests if request["request"] == "plan"]
+        self.assertEqual(asked[0], {"request": "plan", "device": "robot.arm", "to": [0.5, 0.25, 1.0], "from": [0.0, 0.0]})
+        self.assertEqual(asked[1]["orientation"], [0.0, 0.0, 0.0, 1.0])
+        self.assertEqual((self.out + self.err).count("and not for its orientation"), 1)
+
+    def test_a_path_of_the_hand(self):
+        text = """
+from moveit_commander.conversions import list_to_pose
+group = moveit_commander.MoveGroupCommander("arm")
+path, fraction = group.compute_cartesian_path([list_to_pose([0.9, 0, 0.25, 0, 0, 0, 1])], 0.1, 0.0)
+print(fraction, [near(point.positions) for point in path.joint_trajectory.points])
+path, fraction = group.compute_cartesian_path([list_to_pose([1.5, 0, 0.25, 0, 0, 0, 1])], 0.1, True)
+print(fraction)
+timed = group.retime_trajectory(group.get_current_state(), path, 0.5, 0.5)
+print(timed.joint_trajectory.points[-1].time_from_start > path.joint_trajectory.points[-1].time_from_start)
+"""
+        self.assertEqual(
+            self.said(text),
+            [
+                "1.0 [[0.0, 0.0], [0.6, 0.0], [0.7, 0.0], [0.8, 0.0], [0.9, 0.0]]",
+                "0.5",
+                "True",
+            ],
+        )
+
+
+class Motions(Case):
+    def test_it_returns_at_the_end(self):
+        text = """
+group = moveit_commander.MoveGroupCommander("arm")
+say(group.go([1.0, 0.0]), group.get_current_joint_values())
+say(group.go({"elbow": 1.0}, wait=True))
+plan = group.plan([0, 0])
+rospy.sleep(1)
+say(group.execute(plan[1], wait=True), group.execute(plan[1]))
+group.set_joint_value_target([-2.0, 0.0])
+say(group.go(wait=True))
+tries(lambda: group.execute(plan))
+"""
+        system = Arm()
+        out = self.said(text, system)
+        self.assertEqual(
+            [line for line in out if "INFO" not in line and "ERROR" not in line and line],
+            [
+                "2.000 True [1.0, 0.0]",
+                "4.500 True",
+                "8.000 True False",
+                "9.500 False",
+                "MoveItCommanderException execute takes a trajectory, and not a tuple: plan() returns (success, trajectory,"
+                " planning time, error code)",
+            ],
+        )
+        said = self.out + self.err
+        self.assertIn("Invalid Trajectory: start point deviates from current robot state more than 0.01", said)
+        self.assertIn("ABORTED: it hit something", said)
+        time, args = system.followed[0]
+        self.assertEqual((time, args["times"][:2], args["positions"][0]), (0, [0.0, 0.1], [0.0, 0.0]))
+        self.assertEqual((args["times"][-1], args["positions"][-1]), (2.0, [1.0, 0.0]))
+
+    def test_one_that_is_stopped(self):
+        text = """
+group = moveit_commander.MoveGroupCommander("arm")
+group.stop()  # nothing moves
+say(group.go([1.0, 0.0], wait=False))
+rospy.sleep(0.5)
+group.stop()
+group.stop()
+rospy.sleep(1)
+say(group.get_current_joint_values())
+"""
+        system = Arm()
+        self.assertEqual(self.said(text, system), ["0.000 True", "1.500 [0.0, 0.0]"])
+        self.assertEqual(system.followed[1][1], {"positions": [[0.0, 0.0]], "times": [0.0]})
+
+
+class Robots(Case):
+    def test_names_and_states(self):
+        text = """
+robot = moveit_commander.RobotCommander()
+print(robot.get_group_names(), robot.get_joint_names(), robot.get_joint_names("arm"), robot.get_link_names(), robot.get_planning_frame())
+print(robot.arm is robot.get_group("arm"), robot.shoulder.bounds(), robot.elbow.value(), robot.get_current_variable_values())
+state = robot.get_current_state()
+print(state.joint_state.name, near(state.joint_state.position))
+group = robot.get_group("arm")
+print(group.get_name(), group.get_active_joints(), group.get_end_effector_link(), group.get_planning_frame(), group.get_variable_count())
+pose = group.get_current_pose()
+print(pose.header.frame_id, near((pose.pose.position.x, pose.pose.position.z)), near(group.get_current_rpy()))
+print(robot.shoulder.move(0.5), group.get_current_joint_values())
+tries(lambda: robot.get_group("leg"), lambda: robot.get_joint("knee"), lambda: moveit_commander.MoveGroupCommander("leg"))
+try:
+    robot.leg
+except AttributeError as error:
+    print(error)
+moveit_commander.roscpp_shutdown()
+"""
+        self.assertEqual(
+            self.said(text),
+            [
+                "['arm'] ['shoulder', 'elbow'] ['shoulder', 'elbow'] ['base', 'link', 'hand'] base",
+                "True [-2.0, 2.0] 0.0 {'shoulder': 0.0, 'elbow': 0.0}",
+                "['shoulder', 'elbow'] [0.0, 0.0]",
+                "arm ['shoulder', 'elbow'] hand base 2",
+                "base [0.5, 0.25] [0.0, 0.0, 1.0]",
+                "True [0.5, 0.0]",
+                "MoveItCommanderException There is no group named leg",
+                "MoveItCommanderException There is no joint named knee",
+                "RuntimeError Group 'leg' was not found. (The scenario's binding has: arm.)",
+                "'RobotCommander' object has no attribute 'leg'",
+            ],
+        )
+
+    def test_a_pose_that_is_not_known(self):
+        text = """
+group = moveit_commander.MoveGroupCommander("arm")
+tries(lambda: group.get_current_pose())
+"""
+        out = self.said(text, Arm(tool=False))
+        self.assertIn("the pose of the end-effector of group arm is not known: device robot.arm does not tell it", out[0])
+
+
+class Targets(Case):
+    def test_joint_targets(self):
+        text = """
+from sensor_msgs.msg import JointState
+group = moveit_commander.MoveGroupCommander("arm")
+group.set_joint_value_target({"elbow": 0.5})
+group.set_joint_value_target("shoulder", 0.25)
+print(group.get_joint_value_target())
+group.set_joint_value_target(JointState(name=["elbow", "camera"], position=[-0.5, 1]))
+print(group.get_joint_value_target())
+tries(
+    lambda: group.set_joint_value_target([0.0, 1.6]),
+    lambda: group.set_joint_value_target([0.0]),
+    lambda: group.set_joint_value_target("knee", 1.0),
+    lambda: group.set_joint_value_target("elbow"),
+    lambda: group.set_joint_value_target(7),
+    lambda: group.set_named_target("down"),
+    lambda: group.set_max_velocity_scaling_factor(1.5),
+    lambda: group.set_rpy_target([0, 0, 0]),
+    lambda: group.get_jacobian_matrix([0, 0]),
+    lambda: group.pick("cup"),
+)
+group.remember_joint_values("here", [0.1, 0.2])
+group.set_named_target("here")
+print(group.get_named_targets(), group.get_named_target_values("up"), group.get_joint_value_target())
+print(group.get_goal_tolerance(), group.get_planning_time(), all(abs(value) <= 2 for value in group.get_random_joint_values()))
+"""
+        out = [line for line in self.said(text) if "ERROR" not in line]
+        bounds = "MoveItCommanderException Error setting joint target. Is the target within bounds?"
+        self.assertEqual(
+            out,
+            [
+                "[0.25, 0.5]",
+                "[0.25, -0.5]",
+                bounds,
+                bounds,
+                bounds,
+                "MoveItCommanderException Joint value expected when joint name specified",
+                "MoveItCommanderException Unsupported argument of type <class 'int'>",
+                "MoveItCommanderException Unable to set target down. Is the target within bounds? (Known targets: home, up.)",
+                "MoveItCommanderException Expected value in the range from 0 to 1 for scaling factor",
+                "NotImplementedError MoveGroupCommander.set_rpy_target is not there in hrdsl: set the angles of the joints"
+                " (set_joint_value_target)",
+                "NotImplementedError MoveGroupCommander.get_jacobian_matrix is not there in hrdsl: a plan is a straight line"
+                " between two postures",
+                "NotImplementedError MoveGroupCommander.pick is not there in hrdsl: move the group there, close the gripper and"
+                " attach the object",
+                "['home', 'up', 'here'] {'shoulder': 1.0, 'elbow': -0.5} [0.1, 0.2]",
+                "(0.0001, 0.0001, 0.001) 5.0 True",
+            ],
+        )
+        for why in ("elbow cannot be 1.6, but -1.5 to 1.5", "it has 2 joints, and 1 values", "it has no joint knee"):
+            self.assertIn("target of group arm: " + why, self.out + self.err)
+
+    def test_the_scene_is_kept(self):
+        text = """
+from geometry_msgs.msg import PoseStamped
+scene = moveit_commander.PlanningSceneInterface()
+pose = PoseStamped()
+pose.header.frame_id = "base"
+pose.pose.position.x = 1.0
+scene.add_box("table", pose, size=(1, 2, 0.1))
+scene.add_sphere("ball", pose, 0.1)
+print(scene.get_known_object_names(), list(scene.get_objects(["table"])["table"].primitives[0].dimensions))
+scene.attach_box("hand", "ball", touch_links=["finger"])
+print(scene.get_known_object_names(), list(scene.get_attached_objects()), scene.get_attached_objects()["ball"].link_name)
+print(scene.get_object_poses(["table"])["table"].position.x)
+scene.remove_attached_object("hand", "ball")
+scene.remove_world_object("table")
+print(moveit_commander.PlanningSceneInterface().get_known_object_names(), scene.get_attached_objects())
+scene.remove_world_object()
+print(scene.get_known_object_names())
+tries(lambda: scene.add_mesh("cup", pose, "cup.stl"), lambda: scene.apply_planning_scene(None))
+"""
+        out = [line for line in self.said(text) if "WARN" not in line]
+        self.assertEqual(
+            out,
+            [
+                "['table', 'ball'] [1.0, 2.0, 0.1]",
+                "['table'] ['ball'] hand",
+                "1.0",
+                "['ball'] {}",
+                "[]",
+                "MoveItCommanderException meshes are not read in hrdsl (cup.stl): add a box of the same size (add_box), since no"
+                " plan avoids objects anyway",
+                "NotImplementedError PlanningSceneInterface.apply_planning_scene is not there in hrdsl: add and remove objects"
+                " one by one",
+            ],
+        )
+        self.assertEqual((self.out + self.err).count("hrdsl checks no collisions"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

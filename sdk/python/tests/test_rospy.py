@@ -1,0 +1,545 @@
+"""Programs of ROS 1, and what they print."""
+
+import unittest
+
+from system import System
+from tables import run_ros
+
+SECOND = 10**9
+
+
+def topic(name, **message):
+    return {"topic": name, "message": message}
+
+
+class Case(unittest.TestCase):
+    def said(self, text, *args, **how):
+        finished = run_ros(text, *args, **how)
+        self.assertEqual((finished.code, finished.err), (0, ""), finished.err)
+        return finished.out.splitlines()
+
+
+class Nodes(Case):
+    def test_names_and_remappings(self):
+        text = """
+            import rospy, sys
+            from std_msgs.msg import String
+            rospy.Subscriber("early", String)
+            rospy.init_node("node")
+            print(rospy.get_name(), rospy.get_namespace(), rospy.get_caller_id())
+            for name in ("a", "/a", "~a", "a/b/", "", "other"):
+                print(repr(name), rospy.resolve_name(name))
+            print(rospy.myargv(), rospy.remap_name("other"), rospy.get_param("~speed"), rospy.get_param("~word"), rospy.get_param("~on"))
+            rospy.init_node("node")
+            try:
+                rospy.init_node("another")
+            except rospy.ROSException as error:
+                print(str(error)[:58])
+            """
+        words = ["__name:=arm", "__ns:=/left", "other:=/shared", "_speed:=1.5", "_word:=abc", "_on:=true", "early:=late", "file.txt"]
+        system = System()
+        said = self.said(text, words=words, system=system)
+        self.assertEqual(said[0], "/left/arm /left/ /left/arm")
+        self.assertEqual(said[1:7], ["'a' /left/a", "'/a' /a", "'~a' /left/arm/a", "'a/b/' /left/a/b", "'' /left/", "'other' /shared"])
+        self.assertTrue(said[7].endswith("node.py', 'file.txt'] /shared 1.5 abc True"), said[7])
+        self.assertEqual(said[8], "rospy.init_node() has already been called with different a")
+        self.assertEqual([port["name"] for port in system.ports.values()], ["/left/late"])
+
+    def test_wrong_beginnings(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            def tried(call):
+                try:
+                    print(call())
+                except (Exception, KeyboardInterrupt) as error:
+                    print(type(error).__name__, error)
+            pub = rospy.Publisher("a", Int8, queue_size=1)
+            tried(lambda: pub.publish(1))
+            tried(rospy.spin)
+            tried(rospy.Time.now)
+            tried(lambda: rospy.init_node("a/b"))
+            tried(lambda: rospy.init_node(""))
+            tried(lambda: rospy.Publisher("~a", Int8, queue_size=1))
+            rospy.init_node("node", anonymous=True)
+            tried(lambda: rospy.Publisher("", Int8))
+            tried(lambda: rospy.Publisher("a", int))
+            tried(lambda: rospy.Subscriber("a", Int8, queue_size=0))
+            tried(lambda: pub.publish(1, 2))
+            tried(lambda: pub.publish(data=1, date=2))
+            tried(lambda: pub.publish(1, data=2))
+            tried(lambda: pub.publish(1000))
+            pub.unregister()
+            tried(lambda: pub.publish(1))
+            print(rospy.get_name().startswith("/node_"))
+            """
+        self.assertEqual(
+            self.said(text),
+            [
+                "ROSException ROS node has not been initialized yet. Please call init_node() first",
+                "ROSInitException client code must call rospy.init_node() first",
+                "ROSInitException time is not initialized. Have you called init_node()?",
+                "ValueError namespaces are not allowed in node names",
+                "ValueError name must not be empty",
+                "ValueError ~name topics cannot be created before init_node() has been called",
+                "ValueError topic name is not a non-empty string",
+                "ValueError data_class [type] is not a message data class",
+                "ROSException queue size may not be set to zero",
+                "TypeError Invalid number of arguments, args should be ['data'] args are(1, 2)",
+                "AttributeError date is not an attribute of Int8",
+                "TypeError publish() can be called with arguments or keywords, but not both.",
+                "ROSSerializationException field data exceeds specified width [int8]",
+                "ROSException publish() to an unregistered() handle",
+                "True",
+            ],
+        )
+
+    def test_the_end_of_a_node(self):
+        text = """
+            import rospy, threading
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            pub = rospy.Publisher("a", Int8, queue_size=1)
+            rospy.on_shutdown(lambda: (print("client", rospy.is_shutdown()), pub.publish(7)))
+            def end():
+                rospy.sleep(2)
+                rospy.signal_shutdown("enough")
+                rospy.on_shutdown(lambda: print("late"))
+            threading.Thread(target=end).start()
+            rospy.spin()
+            print(rospy.get_time(), rospy.is_shutdown())
+            try:
+                rospy.wait_for_message("b", Int8)
+            except rospy.ROSInterruptException as error:
+                print(error)
+            """
+        system = System()
+        said = self.said(text, system=system)
+        self.assertEqual(said, ["client False", "1735689602.0 True", "rospy shutdown", "late"])
+        self.assertEqual(system.published, [(2 * SECOND, "/a", {"data": 7})])
+
+    def test_hooks_at_the_end_of_the_program_can_publish(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            pub = rospy.Publisher("a", Int8, queue_size=1)
+            rospy.on_shutdown(lambda: pub.publish(7))
+            rospy.on_shutdown(lambda: 1 / 0)
+            """
+        system = System()
+        finished = run_ros(text, system=system)
+        self.assertEqual(finished.code, 0)
+        self.assertIn("ZeroDivisionError", finished.err)
+        self.assertEqual(system.published, [(0, "/a", {"data": 7})])
+        self.assertEqual(finished.requests[-1], {"request": "done"})
+
+    def test_the_test_is_over(self):
+        text = """
+            import rospy
+            rospy.init_node("node")
+            rospy.on_shutdown(lambda: print("hook"))
+            while not rospy.is_shutdown():
+                try:
+                    rospy.sleep(1)
+                except:
+                    print("swallowed")
+            print("end", rospy.get_time())
+            """
+        self.assertEqual(self.said(text, system=System(end=7 * SECOND // 2)), ["swallowed", "end 1735689603.5", "hook"])
+
+
+class Topics(Case):
+    def test_callbacks(self):
+        text = """
+            import rospy, threading
+            from std_msgs.msg import Int8, String
+            def one(message):
+                print("one", message.data, rospy.get_time() % 60, threading.current_thread() is threading.main_thread())
+            def two(message, args):
+                print("two", message.data, args, message._connection_header["topic"])
+            def bad(message):
+                raise ValueError("bad value")
+            rospy.init_node("node")
+            first = rospy.Subscriber("a", Int8, one)
+            second = rospy.Subscriber("a", Int8, two, callback_args=(1, 2))
+            other = rospy.Subscriber("b", String, bad)
+            rospy.sleep(1.5)
+            first.unregister()
+            rospy.sleep(5)
+            second.unregister()
+            print(second.name, second.impl)
+            """
+        system = System([(SECOND, topic("/a", data=1)), (2 * SECOND, topic("/a", data=2)), (3 * SECOND, topic("/b", data="x"))])
+        finished = run_ros(text, system=system)
+        self.assertEqual(
+            finished.out.splitlines(),
+            ["one 1 1.0 False", "two 1 (1, 2) /a", "two 2 (1, 2) /a", "/a None"],
+        )
+        self.assertTrue(finished.err.startswith("[ERROR] [1735689603.000000]: bad callback: <function bad at 0x"), finished.err)
+        self.assertIn("ValueError: bad value", finished.err)
+        self.assertEqual([port["name"] for port in system.ports.values()], ["/b"])
+
+    def test_a_slow_callback_gets_the_newest(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            def slow(message):
+                print(message.data)
+                rospy.sleep(1)
+            rospy.init_node("node")
+            rospy.Subscriber("a", Int8, slow, queue_size=QUEUE)
+            rospy.sleep(8)
+            """
+        arrivals = [(SECOND + n * SECOND // 4, topic("/a", data=n)) for n in range(6)]
+        self.assertEqual(self.said(text.replace("QUEUE", "1"), system=System(arrivals)), ["0", "3", "5"])
+        self.assertEqual(self.said(text.replace("QUEUE", "None"), system=System(arrivals)), list("012345"))
+
+    def test_publishing(self):
+        text = """
+            import rospy
+            from geometry_msgs.msg import Twist, Vector3, PoseStamped
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+            pub.publish(Vector3(1, 0, 0), Vector3(0, 0, 0.5))
+            pub.publish(Twist())
+            pub.publish(linear=Vector3(x=2))
+            poses = rospy.Publisher("pose", PoseStamped, queue_size=1)
+            for _ in range(2):
+                poses.publish(PoseStamped())
+            rospy.Publisher("n", Int8, queue_size=1, latch=True).publish(3)
+            try:
+                pub.publish(Int8(1))
+            except TypeError as error:
+                print(error)
+            """
+        system = System()
+        said = self.said(text, ["std_msgs", "geometry_msgs"], system=system)
+        self.assertEqual(said, ["expected [geometry_msgs/Vector3] but got [std_msgs/Int8]"])
+        messages = [message for _, _, message in system.published]
+        zero = {"x": 0.0, "y": 0.0, "z": 0.0}
+        self.assertEqual(messages[0], {"linear": {"x": 1.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.5}})
+        self.assertEqual(messages[1:3], [{"linear": zero, "angular": zero}, {"linear": {**zero, "x": 2.0}, "angular": zero}])
+        self.assertEqual([message["header"]["seq"] for message in messages[3:5]], [1, 2])
+        self.assertEqual(system.latched, {"/n": {"data": 3}})
+
+    def test_a_program_hears_itself(self):
+        text = """
+            import rospy
+            from std_msgs.msg import String
+            rospy.init_node("node")
+            pub = rospy.Publisher("a", String, queue_size=1)
+            rospy.Subscriber("a", String, lambda message: print("heard", message.data))
+            print(pub.get_num_connections())
+            pub.publish("me")
+            print("published")
+            rospy.sleep(1)
+            """
+        self.assertEqual(self.said(text), ["1", "published", "heard me"])
+
+    def test_a_subscriber_made_at_every_poll_is_called_once(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            class Robot:
+                count = 0
+                def hear(self, message):
+                    self.count += 1
+                def poll(self):
+                    rospy.Subscriber("a", Int8, self.hear)
+                    rospy.Subscriber("a", Int8, lambda message: self.hear(message))
+                    rospy.sleep(0.1)
+            rospy.init_node("node")
+            robot = Robot()
+            for _ in range(100):
+                robot.poll()
+            print(robot.count)
+            kept = [rospy.Subscriber("b", Int8, robot.hear) for _ in range(3)]
+            rospy.sleep(5)
+            print(robot.count)
+            """
+        system = System([(SECOND, topic("/a", data=1)), (12 * SECOND, topic("/b", data=1))])
+        self.assertEqual(self.said(text, system=system), ["2", "5"])
+
+    def test_wait_for_message(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            print(rospy.wait_for_message("a", Int8).data, rospy.get_time() % 60)
+            print(rospy.wait_for_message("a", Int8, timeout=rospy.Duration(3)).data, rospy.get_time() % 60)
+            try:
+                rospy.wait_for_message("a", Int8, timeout=0.5)
+            except rospy.ROSException as error:
+                print(error, rospy.get_time() % 60)
+            """
+        system = System([(SECOND, topic("/a", data=1)), (3 * SECOND, topic("/a", data=2))])
+        said = ["1 1.0", "2 3.0", "timeout exceeded while waiting for message on topic a 3.5"]
+        self.assertEqual(self.said(text, system=system), said)
+
+    def test_connections_and_those_who_listen_to_them(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            class Listener(rospy.SubscribeListener):
+                def peer_subscribe(self, topic_name, topic_publish, peer_publish):
+                    print("came", topic_name, rospy.get_time() % 60)
+                    peer_publish(Int8(5))
+            rospy.init_node("node")
+            pub = rospy.Publisher("a", Int8, Listener(), queue_size=1)
+            while pub.get_num_connections() == 0:
+                rospy.sleep(0.5)
+            print(pub.get_num_connections(), rospy.get_time() % 60)
+            print(rospy.get_published_topics())
+            """
+        system = System([(SECOND + 5, lambda system: system.others_open("subscriber", "/a", "std_msgs/Int8"))])
+        said = ["came /a 1.0", "1 1.5", "[['/a', 'std_msgs/Int8']]"]
+        self.assertEqual(self.said(text, system=system), said)
+        self.assertEqual(system.published, [(SECOND + 5, "/a", {"data": 5})])
+
+    def test_a_second_subscriber_gets_what_is_latched_here(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            rospy.Publisher("a", Int8, queue_size=1, latch=True).publish(3)
+            first = rospy.Subscriber("a", Int8, lambda message: print("first", message.data))
+            rospy.sleep(1)
+            second = rospy.Subscriber("a", Int8, lambda message: print("second", message.data))
+            print("made")
+            rospy.sleep(1)
+            """
+        self.assertEqual(self.said(text), ["first 3", "second 3", "made"])
+
+    def test_what_is_no_message_of_the_type_is_told(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            rospy.Subscriber("a", Int8, lambda message: print(message.data))
+            rospy.sleep(3)
+            """
+        finished = run_ros(text, system=System([(0, topic("/a", date=1)), (SECOND, topic("/a", data=1))]))
+        self.assertEqual((finished.code, finished.out), (0, "1\n"))
+        told = "unable to receive a message on topic /a: no std_msgs/Int8: there is no field 'data'"
+        self.assertEqual(finished.err, "[ERROR] [1735689600.000000]: %s\n" % told)
+
+    def test_a_topic_of_another_type(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8, String
+            rospy.init_node("node")
+            rospy.Publisher("a", Int8, queue_size=1)
+            rospy.Subscriber("a", String)
+            """
+        finished = run_ros(text)
+        self.assertEqual(finished.code, 1)
+        self.assertIn("ProtocolError: the topic `/a` is of type `std_msgs/Int8`, not `std_msgs/String`", finished.err)
+
+    def test_any_message(self):
+        text = """
+            import rospy
+            from std_msgs.msg import String
+            rospy.init_node("node")
+            back = rospy.Publisher("b", String, queue_size=1)
+            def hear(message):
+                print(message._buff, String().deserialize(message._buff).data)
+                back.publish(message)
+            rospy.Subscriber("a", rospy.AnyMsg, hear)
+            rospy.sleep(1)
+            pub = rospy.Publisher("a", String, queue_size=1)
+            rospy.sleep(1)
+            pub.publish("hi")
+            rospy.sleep(1)
+            """
+        system = System()
+        self.assertEqual(self.said(text, system=system), ["b'\\x02\\x00\\x00\\x00hi' hi"])
+        self.assertEqual(system.published[-1], (2 * SECOND, "/b", {"data": "hi"}))
+
+
+class Times(Case):
+    def test_rates_and_timers(self):
+        text = """
+            import rospy
+            rospy.init_node("node")
+            rate = rospy.Rate(4)
+            for pause in (0, 0.1, 0.3, 0.9, 0):
+                rospy.sleep(pause)
+                rate.sleep()
+                print("%.6f" % (rospy.get_time() % 60), rate.remaining().to_sec())
+            def tick(event):
+                print("tick %.6f" % (event.current_real.to_sec() % 60), event.last_real is None, (event.current_real - event.current_expected).to_sec())
+            timer = rospy.Timer(rospy.Duration(0.5), tick)
+            rospy.Timer(rospy.Duration(0.75), lambda event: print("once"), oneshot=True)
+            rospy.sleep(1.2)
+            timer.shutdown()
+            rospy.sleep(rospy.Duration(-1))
+            rospy.sleep(2)
+            print(repr(rospy.Time.now()), rospy.Time.now() - rospy.Time(1735689600))
+            """
+        self.assertEqual(
+            self.said(text),
+            [
+                "0.250000 0.25", "0.500000 0.25", "0.800000 0.2", "1.700000 0.25", "1.950000 0.25", "tick 2.450000 True 0.0", "once",
+                "tick 2.950000 False 0.0",
+                "rospy.Time[1735689605150000000] 5150000000",
+            ],
+        )  # fmt: skip
+
+
+class Logs(Case):
+    TEXT = """
+        import rospy
+        IMPORT
+        rospy.logwarn("early %d", 1)
+        rospy.loginfo("never seen")
+        rospy.init_node("node", log_level=LEVEL)
+        for log in (rospy.logdebug, rospy.loginfo, rospy.logwarn, rospy.logerr, rospy.logfatal):
+            log("value %s of %d", "x", 5)
+            log("100 %")
+        for n in range(25):
+            rospy.loginfo_throttle(1, "throttled %d" % n)
+            rospy.loginfo_once("once %d" % n)
+            rospy.loginfo_throttle_identical(10, "identical %d" % (n // 20))
+            rospy.sleep(0.1)
+        """
+    OUT = [
+        "[INFO] [1735689600.000000]: value x of 5",
+        "[INFO] [1735689600.000000]: 100 %",
+        "[INFO] [1735689600.000000]: throttled 0",
+        "[INFO] [1735689600.000000]: once 0",
+        "[INFO] [1735689600.000000]: identical 0",
+        "[INFO] [1735689601.100000]: throttled 11",
+        "[INFO] [1735689602.000000]: identical 1",
+        "[INFO] [1735689602.200000]: throttled 22",
+    ]
+    ERR = ["early 1"] + [
+        "[%s] [1735689600.000000]: %s" % (level, text) for level in ("WARN", "ERROR", "FATAL") for text in ("value x of 5", "100 %")
+    ]
+
+    def test_levels_and_forms(self):
+        for more in ("", "import logging"):
+            finished = run_ros(self.TEXT.replace("IMPORT", more).replace("LEVEL", "None"))
+            self.assertEqual(finished.out.splitlines(), self.OUT)
+            self.assertEqual(finished.err.splitlines(), self.ERR)
+        finished = run_ros(self.TEXT.replace("IMPORT", "").replace("LEVEL", "rospy.DEBUG"))
+        self.assertEqual(finished.out.splitlines()[0], "[DEBUG] [1735689600.000000]: value x of 5")
+        finished = run_ros(self.TEXT.replace("IMPORT", "").replace("LEVEL", "rospy.ERROR"))
+        self.assertEqual((finished.out, finished.err.splitlines()), ("", self.ERR[:1] + self.ERR[3:]))
+
+    def test_logging_of_the_program(self):
+        text = """
+            import rospy
+            rospy.init_node("node")
+            import logging
+            logging.warning("to a file")
+            logging.getLogger("rosout").setLevel(logging.WARNING)
+            rospy.loginfo("too low")
+            rospy.logwarn("high enough", logger_name="part")
+            try:
+                1 / 0
+            except ArithmeticError:
+                rospy.logerr("failed", exc_info=True)
+            """
+        finished = run_ros(text)
+        self.assertEqual(finished.out, "")
+        lines = finished.err.splitlines()
+        self.assertEqual(lines[:2], ["[WARN] [1735689600.000000]: high enough", "[ERROR] [1735689600.000000]: failed"])
+        self.assertEqual(lines[-1], "ZeroDivisionError: division by zero")
+        form = {"ROSCONSOLE_FORMAT": "${node} ${severity} ${function} ${message}"}
+        text = "import rospy\nrospy.init_node('node')\ndef work():\n    rospy.loginfo('hi')\nwork()\n"
+        self.assertEqual(self.said(text, env=form), ["/node INFO work hi"])
+
+
+class Parameters(Case):
+    def test_a_tree(self):
+        text = """
+            import rospy
+            rospy.init_node("node")
+            def tried(call):
+                try:
+                    print(call())
+                except Exception as error:
+                    print(type(error).__name__, error)
+            print(rospy.get_param("/arm/speed"), rospy.get_param("arm"), rospy.get_param("~own"), rospy.get_param("no", 5))
+            tried(lambda: rospy.get_param("no"))
+            rospy.set_param("~gains", {"p": 1.5, "list": (1, 2)})
+            print(rospy.get_param("/node/gains/p"), rospy.get_param("~gains"), rospy.has_param("~gains/i"), rospy.has_param("~gains"))
+            print(rospy.search_param("speed"), rospy.search_param("gains/i"), rospy.search_param("nothing"))
+            rospy.delete_param("~gains")
+            tried(lambda: rospy.delete_param("~gains"))
+            tried(lambda: rospy.set_param("x", None))
+            tried(lambda: rospy.set_param("x", {1: 2}))
+            print(sorted(rospy.get_param_names()))
+            """
+        parameters = {"/arm/speed": 0.2, "/arm": {"speed": 0.2, "joints": ["a"]}, "/node/own": True, "speed": 3}
+        self.assertEqual(
+            self.said(text, binding={"parameters": parameters}),
+            [
+                "0.2 {'speed': 0.2, 'joints': ['a']} True 5",
+                "KeyError 'no'",
+                "1.5 {'p': 1.5, 'list': [1, 2]} False True",
+                "/speed /node/gains/i None",
+                "KeyError '~gains'",
+                "TypeError cannot marshal None unless allow_none is enabled",
+                "TypeError dictionary key must be string",
+                "['/arm/joints', '/arm/speed', '/node/own', '/speed']",
+            ],
+        )
+
+    def test_packages(self):
+        text = """
+            import rospkg, roslib, rosgraph, roslib.packages
+            roslib.load_manifest("robot")
+            print(rospkg.RosPack().get_path("robot"), rospkg.RosPack().list(), roslib.packages.get_pkg_dir("robot"))
+            try:
+                rospkg.RosPack().get_path("other")
+            except rospkg.ResourceNotFound as error:
+                print(error)
+            print(rosgraph.names.is_legal_name("a b"), rosgraph.names.ns_join("/a", "b"), rosgraph.is_master_online())
+            """
+        self.assertEqual(
+            self.said(text, binding={"packages": {"robot": "/opt/robot"}}),
+            ["/opt/robot ['robot'] /opt/robot", "other", "False /a/b True"],
+        )
+
+
+class Packages(Case):
+    def test_a_package_of_the_program_has_its_messages_beside(self):
+        text = """
+            import robot_msgs, table_simulator.msg, other_msgs.msg
+            from robot_msgs.tools import name
+            from robot_msgs.msg import Order
+            print(name, robot_msgs.__file__ is not None, Order(1), table_simulator.msg.State(), other_msgs.msg.Other._type)
+            """
+        more = {"robot_msgs__Order": "int8 number\n", "table_simulator__State": "bool done\n", "other_msgs__Other": ""}
+        files = {
+            "robot_msgs/__init__.py": "",
+            "robot_msgs/tools.py": "name = 'tools'\n",
+            "robot_msgs/msg/Order.msg": "int8 number\n",
+            "table_simulator/msg/State.msg": "bool done\n",
+        }
+        self.assertEqual(self.said(text, more=more, files=files), ["tools True number: 1 done: False other_msgs/Other"])
+
+    def test_arrays_of_numpy(self):
+        try:
+            import numpy  # noqa: F401
+        except ImportError:
+            self.skipTest("NumPy is not installed")
+        text = """
+            import numpy, rospy
+            from rospy.numpy_msg import numpy_msg
+            from sensor_msgs.msg import LaserScan
+            rospy.init_node("node")
+            pub = rospy.Publisher("a", numpy_msg(LaserScan), queue_size=1)
+            rospy.Subscriber("a", numpy_msg(LaserScan), lambda message: print(type(message.ranges).__name__, message.ranges * 2))
+            scan = LaserScan(ranges=numpy.array([1, 2.5], numpy.float32), angle_min=numpy.float64(0.5))
+            pub.publish(scan)
+            rospy.sleep(1)
+            """
+        self.assertEqual(self.said(text, ["sensor_msgs"]), ["ndarray [2. 5.]"])
+
+
+if __name__ == "__main__":
+    unittest.main()
