@@ -270,6 +270,36 @@ except tf.Exception as error:
         )
 
 
+class Refusals(Case):
+    def test_what_is_not_there(self):
+        text = """
+import tf_conversions
+rospy.init_node("listener")
+print(tf_conversions.transformations is tf.transformations)
+transformer = tf.Transformer()
+for wrong in (
+    lambda: tf2_ros.BufferClient("server"),
+    lambda: transformer.lookupTwist("a", "b", rospy.Time(), rospy.Duration(1)),
+    lambda: transformer.chain("a", rospy.Time(), "b", rospy.Time(), "c"),
+    lambda: tf_conversions.fromMsg(None),
+):
+    try:
+        wrong()
+    except NotImplementedError as error:
+        print(str(error).partition(":")[0])
+"""
+        self.assertEqual(
+            self.said(text),
+            [
+                "True",
+                "tf2_ros.BufferClient, which asks a server of transforms, is not there in hrdsl",
+                "tf.TransformListener.lookupTwist is not there in hrdsl",
+                "the chain of frames is not there in hrdsl",
+                "tf_conversions.fromMsg, which needs PyKDL, is not there in hrdsl",
+            ],
+        )
+
+
 class Broadcasters(Case):
     def test_they_publish(self):
         text = """
