@@ -31,7 +31,8 @@ def lookup(
     turning = rigid.place((0.0, 0.0, 0.0), rotation, turned)
     moving = rigid.place(_cross(place, turning), rotation, moved)
     # The point's own share is a sum of products, added to each direction, as in the original.
-    shifted = rigid.place(*transformer.lookupTransform(reference, at_point_of, wanted), place)
+    other, other_turned = transformer.lookupTransform(reference, at_point_of, wanted)
+    shifted = rigid.place(other, other_turned, place)
     share = sum(turn * (b - a) for turn, a, b in zip(turning, place, shifted))
     return (moving[0] + share, moving[1] + share, moving[2] + share), turning
 
