@@ -293,6 +293,14 @@ moveit_commander.roscpp_shutdown()
             ],
         )
 
+    def test_joints_without_bounds(self):
+        text = """
+group = moveit_commander.MoveGroupCommander("arm")
+print(group.go([30.0, -30.0]), near(group.get_current_joint_values()), all(abs(v) < 4 for v in group.get_random_joint_values()))
+"""
+        joints = [{"name": "a", "lower": None, "upper": None}, {"name": "b"}]
+        self.assertEqual(self.said(text, groups={"arm": {"device": "robot.arm", "joints": joints}}), ["True [30.0, -30.0] True"])
+
     def test_a_pose_that_is_not_known(self):
         text = """
 group = moveit_commander.MoveGroupCommander("arm")

@@ -279,6 +279,30 @@ print(n.get_clock().now())
         ]
         self.assertEqual(self.said(text, system), out)
 
+    def test_loops_that_only_look(self):
+        text = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int8
+rclpy.init()
+n = Node("n")
+got = []
+n.create_subscription(Int8, "x", got.append, 1)
+while rclpy.ok() and not got:
+    rclpy.spin_once(n, timeout_sec=0)
+print(got, n.get_clock().now().seconds_nanoseconds())
+got.clear()
+while rclpy.ok() and not got:
+    rclpy.spin_once(n, timeout_sec=0.1)
+print(got, n.get_clock().now().seconds_nanoseconds())
+"""
+        system = System([(at, {"topic": "/x", "message": {"data": 1}}) for at in (SECOND // 100, 3 * SECOND)])
+        out = [
+            "[std_msgs.msg.Int8(data=1)] (1735689600, 11000000)",
+            "[std_msgs.msg.Int8(data=1)] (1735689603, 0)",
+        ]
+        self.assertEqual(self.said(text, system), out)
+
 
 if __name__ == "__main__":
     unittest.main()

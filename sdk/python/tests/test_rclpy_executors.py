@@ -320,7 +320,7 @@ l.set_level(rclpy.logging.LoggingSeverity.DEBUG)
 l.debug("yes"); l.fatal("f"); l.warn("w")
 tried(lambda: l.info(3)); tried(lambda: l.info("x", other=1)); tried(lambda: l.get_child(""))
 l.get_child("c").info("child")
-print(l.get_effective_level(), l.is_enabled_for(10))
+print(l.get_effective_level().name, l.is_enabled_for(10))
 Node("n", namespace="/a/b").get_logger().info("deep")
 """
         err = [
@@ -342,7 +342,7 @@ Node("n", namespace="/a/b").get_logger().info("deep")
             "TypeError: parameter \"other\" is not one of the recognized logging options \"['throttle_duration_sec', "
             "'throttle_time_source_type', 'skip_first', 'once']\"",
             "ValueError: Child logger name must not be empty.",
-            "10 True",
+            "DEBUG True",
         ]
         self.assertEqual(self.said(text, err="\n".join(err) + "\n"), out)
 

@@ -108,6 +108,26 @@ tried(lambda: rclpy.spin(n))
         ]
         self.assertEqual(self.said(text, system), out)
 
+    def test_a_call_that_keeps_its_answer_from_coming(self):
+        text = """
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+rclpy.init()
+n = Node("n")
+n.create_service(Trigger, "t", lambda request, response: response)
+client = n.create_client(Trigger, "t")
+n.create_timer(1.0, lambda: print("never", client.call(Trigger.Request())))
+try:
+    rclpy.spin(n)
+finally:
+    print("cleaning up")
+    n.destroy_node()
+    rclpy.shutdown()
+    print("cleaned up")
+"""
+        self.assertEqual(self.said(text, System(end=5 * SECOND)), ["cleaning up", "cleaned up"])
+
 
 class Actions(Ros2Case):
     def test_a_server_and_a_client(self):

@@ -214,6 +214,28 @@ except tf2_ros.InvalidArgumentException as error:
             ],
         )
 
+    def test_how_fast_a_frame_moves_and_what_lies_between(self):
+        text = """
+rospy.init_node("listener")
+listener = tf.TransformListener()
+rospy.sleep(6)
+for part in listener.lookupTwist("base", "map", rospy.Time(0), rospy.Duration(2)):
+    print(near(part))
+print(listener.chain("map", rospy.Time(0), "tool", rospy.Time(0), "base"), listener.chain("tool", rospy.Time(0), "eye", rospy.Time(0), "base"))
+print(listener.chain("tool", rospy.Time(0), "eye", rospy.Time(0), "map"))
+"""
+        arrivals = [heard(n, transform("map", "base", n, 0.5 * n, 0.0, 0.0)) for n in range(1, 6)]
+        arrivals += [heard(1, transform("base", "tool", 0, 1.0), transform("base", "eye", 0, 1.0), topic="/tf_static")]
+        self.assertEqual(
+            self.said(text, System(arrivals)),
+            [
+                "[0.5, 0.0, 0.0]",
+                "[0.0, 0.0, 0.0]",
+                "['tool', 'base', 'map'] ['eye', 'base', 'tool']",
+                "['eye', 'base', 'map', 'base', 'tool']",
+            ],
+        )
+
     def test_what_is_wrong_with_a_transform(self):
         text = """
 rospy.init_node("listener")
@@ -266,6 +288,32 @@ except tf.Exception as error:
                 "TF_NAN_INPUT",
                 "TF_REPEATED_DATA",
                 "TF_OLD_DATA",
+            ],
+        )
+
+
+class Refusals(Case):
+    def test_what_is_not_there(self):
+        text = """
+import tf_conversions
+rospy.init_node("listener")
+print(tf_conversions.transformations is tf.transformations)
+transformer = tf.Transformer()
+for wrong in (
+    lambda: tf2_ros.BufferClient("server"),
+    lambda: tf_conversions.fromMsg(None),
+):
+    try:
+        wrong()
+    except NotImplementedError as error:
+        print(str(error).partition(":")[0])
+"""
+        self.assertEqual(
+            self.said(text),
+            [
+                "True",
+                "tf2_ros.BufferClient, which asks a server of transforms, is not there in hrdsl",
+                "tf_conversions.fromMsg, which needs PyKDL, is not there in hrdsl",
             ],
         )
 

@@ -4,6 +4,9 @@ A goal, its feedback and its result go over the ports of hrdsl (one for each cli
 topics that they take in ROS 1: who listens to those directly hears nothing.
 """
 
+import threading
+
+import rospy
 from actionlib.simple_action_client import SimpleActionClient, SimpleGoalState
 from actionlib.action_client import (
     ActionClient,
@@ -17,7 +20,7 @@ from actionlib.server_goal_handle import ServerGoalHandle
 from actionlib.simple_action_server import SimpleActionServer
 from actionlib.goal_id_generator import GoalIDGenerator
 from actionlib.exceptions import ActionException
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus
 
 __all__ = [
     "ActionClient",
@@ -25,6 +28,7 @@ __all__ = [
     "ActionServer",
     "ClientGoalHandle",
     "CommState",
+    "GoalID",
     "GoalIDGenerator",
     "GoalStatus",
     "ServerGoalHandle",
@@ -34,4 +38,7 @@ __all__ = [
     "TerminalState",
     "get_name_of_constant",
     "nop_cb",
+    # What `from actionlib import *` has always brought along, and programs use.
+    "rospy",
+    "threading",
 ]

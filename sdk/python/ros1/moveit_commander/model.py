@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from hrdsl.binding import binding
 from hrdsl.errors import ProtocolError
 from hrdsl.exchange import the_exchange
@@ -20,8 +22,9 @@ class Joint:
 
     def __init__(self, given: Mapping[str, Any]) -> None:
         self.name: str = given["name"]
-        self.lower = float(given.get("lower", "-inf"))
-        self.upper = float(given.get("upper", "inf"))
+        lower, upper = given.get("lower"), given.get("upper")  # which a joint that turns for ever does not have
+        self.lower = -math.inf if lower is None else float(lower)
+        self.upper = math.inf if upper is None else float(upper)
         self.speed = float(given.get("velocity") or _SPEED)
         self.acceleration = float(given.get("acceleration") or _ACCELERATION)
 

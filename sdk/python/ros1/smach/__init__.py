@@ -20,6 +20,7 @@ from smach.state_machine import StateMachine
 from smach.sequence import Sequence
 from smach.concurrence import Concurrence
 from smach.iterator import Iterator
+from smach import concurrence, container, exceptions, iterator, log, sequence, state, state_machine, user_data, util
 
 __all__ = [
     "CBInterface",
@@ -39,14 +40,24 @@ __all__ = [
     "StateMachine",
     "UserData",
     "cb_interface",
+    "concurrence",
+    "container",
+    "exceptions",
     "get_const",
     "has_smach_interface",
     "is_shutdown",
     "is_the_end",
+    "iterator",
+    "log",
     "logdebug",
     "logerr",
     "loginfo",
     "logwarn",
+    "sequence",
     "set_loggers",
     "set_shutdown_check",
+    "state",
+    "state_machine",
+    "user_data",
+    "util",
 ]

@@ -119,14 +119,27 @@ class Transformer:
         target, source, fixed = map(strip_leading_slash, (target_frame, source_frame, fixed_frame))
         return _place(self._buffer.lookup_transform_full(target, target_time, source, source_time, fixed))
 
-    def lookupTwist(self, *args: Any) -> Any:
-        """Refused."""
-        raise NotImplementedError(
-            "tf.TransformListener.lookupTwist is not there in hrdsl: look two transforms up and divide their difference"
-            " by the time between them"
+    def lookupTwist(self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any) -> Any:
+        """How fast a frame moves and turns as another sees it: (x, y, z) and (x, y, z), for each second."""
+        return self.lookupTwistFull(
+            tracking_frame, observation_frame, observation_frame, (0, 0, 0), tracking_frame, time, averaging_interval
         )
 
-    lookupTwistFull = lookupTwist
+    def lookupTwistFull(
+        self,
+        tracking_frame: str,
+        observation_frame: str,
+        reference_frame: str,
+        ref_point: Any,
+        reference_point_frame: str,
+        time: Any,
+        averaging_interval: Any,
+    ) -> Any:
+        """The same in the directions of a third frame, of a point of a fourth."""
+        from tf import twist
+
+        frames = tracking_frame, observation_frame, reference_frame, reference_point_frame
+        return twist.lookup(self, *frames, time, averaging_interval)
 
     def setUsingDedicatedThread(self, value: bool) -> None:
         """Whether some other thread calls `setTransform`, so that waiting makes sense."""

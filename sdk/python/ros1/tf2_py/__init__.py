@@ -315,9 +315,29 @@ class BufferCore:
         return list(self._frames)
 
     def _chain(self, target: str, target_time: Any, source: str, source_time: Any, fixed: str) -> list[str]:
-        raise NotImplementedError(
-            "the chain of frames is not there in hrdsl: ask `all_frames_as_string` which frame has which parent"
-        )
+        up = self._path(fixed, source, _nanoseconds(source_time))
+        down = self._path(target, fixed, _nanoseconds(target_time))
+        return up[:-1] + down if up[-1:] == down[:1] else up + down
+
+    def _path(self, target: str, source: str, stamp: int) -> list[str]:
+        """The frames on the way from one to the other; none, if they are the same."""
+        for frame in (target, source):
+            self._check("chain", frame)
+        if target == source:
+            return []
+        self._walk(target, source, stamp)
+        up, down = self._above(source, stamp), self._above(target, stamp)
+        meeting = next(frame for frame in up if frame in down)
+        return up[: up.index(meeting) + 1] + down[: down.index(meeting)][::-1]
+
+    def _above(self, frame: str, stamp: int) -> list[str]:
+        found = [frame]
+        while self._frames[found[-1]] is not None and len(found) < _DEEPEST:
+            try:
+                found.append(self._frames[found[-1]].get(stamp)[0])
+            except _cache.Missing:
+                break
+        return found
 
     def all_frames_as_string(self) -> str:
         """All frames with their parents, a line for each."""

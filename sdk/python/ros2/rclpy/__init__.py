@@ -7,6 +7,7 @@ in which rclpy runs them.
 from __future__ import annotations
 
 from rclpy.context import Context
+from rclpy.parameter import Parameter as Parameter
 from rclpy.signals import SignalHandlerOptions as SignalHandlerOptions
 from rclpy.signals import install_signal_handlers, uninstall_signal_handlers
 from rclpy.task import Future

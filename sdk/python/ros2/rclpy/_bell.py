@@ -27,15 +27,16 @@ class Bell:
                 if sleeper is not None:
                     unpark(sleeper)
 
-    def wait(self, deadline: int | None = None) -> bool:
-        """Waits until it rings, or has rung, or until the deadline (simulated nanoseconds), at whose very instant it is
-        still heard: whether it has rung."""
+    def wait(self, deadline: int | None = None, is_patient: bool = True) -> bool:
+        """Waits until it rings, or has rung, or until the deadline (simulated nanoseconds): whether it has rung. Who is
+        patient still hears it at the very instant of the deadline."""
         exchange = _world.exchange()
         me = exchange.scheduler.current()
+        park = exchange.park if is_patient or me is None else exchange.scheduler.park
         self._sleepers.append(me)
         try:
             while not self.is_rung:
-                if not exchange.park(self, deadline):
+                if not park(self, deadline):
                     break
         finally:
             self._sleepers.remove(me)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
-
+from rclpy._interfaces import ParameterDescriptor, SetParametersResult
 from rclpy._node_checks import check_descriptor
 from rclpy.exceptions import (
     InvalidParameterTypeException,

@@ -110,11 +110,11 @@ class Context:
 
     def _wait(self, until: int | None, bell: Bell | None = None) -> None:
         """Waits until then (simulated nanoseconds), or until the bell rings or the context ends."""
-        bell = Bell() if bell is None else bell
+        is_patient, bell = bell is not None, bell or Bell()
         ring = bell.ring
         self._callbacks.append(ring)
         try:
-            bell.wait(until)
+            bell.wait(until, is_patient)
         finally:
             if ring in self._callbacks:
                 self._callbacks.remove(ring)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from weakref import ref
 
 from rclpy import _arguments, _names, _world
+from rclpy import executors as _executors  # which programs find as `rclpy.executors`
 from rclpy._node_entities import NodeEntities
 from rclpy._node_graph import NodeGraph, nodes
 from rclpy._node_parameters import NodeParameters
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
 
 class Node(NodeEntities, NodeParameters, NodeGraph):
     """A node: what has publishers, subscriptions, timers, services, clients and parameters."""
+
+    PARAM_REL_TOL = 1e-6
 
     def __init__(
         self,

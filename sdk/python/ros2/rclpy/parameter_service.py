@@ -24,18 +24,31 @@ _SERVICES = {
 }
 
 
+class _Kind:
+    """A type of service whose classes are made when a request comes, which is rare."""
+
+    _kind_ = "Service"
+
+    def __init__(self, name: str) -> None:
+        self.__name__ = name
+        self._definition_ = {"name": "rcl_interfaces/srv/%s" % name}
+
+    def __getattr__(self, name: str) -> Any:
+        import rcl_interfaces.srv as services
+
+        return getattr(getattr(services, self.__name__), name)
+
+
 class ParameterService:
     """The six services of a node."""
 
     def __init__(self, node: Any) -> None:
-        import rcl_interfaces.srv as services
-
         self._node = ref(node)
         for name, kind in _SERVICES.items():
             callback = getattr(self, "_" + name)
             full = "%s/%s" % (node.get_name(), name)
             try:
-                node.create_service(getattr(services, kind), full, callback, qos_profile=qos_profile_parameters)
+                node.create_service(_Kind(kind), full, callback, qos_profile=qos_profile_parameters)
             except ProtocolError:  # another node has the same name, which is allowed
                 return
 

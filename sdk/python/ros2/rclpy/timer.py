@@ -13,14 +13,6 @@ if TYPE_CHECKING:
     from typing import Any, Callable
 
 
-class TimerInfo:
-    """When a timer's call was due, and when it came."""
-
-    def __init__(self, *, expected_call_time: Any, actual_call_time: Any) -> None:
-        self.expected_call_time = expected_call_time
-        self.actual_call_time = actual_call_time
-
-
 class Timer:
     """Runs a callback once in each period: at whole periods since it was made or reset, however late the last call was. Of
     calls that were missed one is made up for."""
