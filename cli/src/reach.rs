@@ -163,5 +163,5 @@ fn tidy(path: &Path) -> PathBuf {
             }
         }
     }
-    tidy
+    if tidy.as_os_str().is_empty() { PathBuf::from(".") } else { tidy }
 }

@@ -728,9 +728,9 @@ fn coverage_suites_and_tests() {
     assert_eq!(t.steps[3], TestStep::Wait { time: SECOND });
     assert_eq!((p.tests[1].name.as_str(), p.tests[1].provenance.method.word()), ("small.t2", "hand"));
 
-    let system = p.system.as_ref().unwrap();
-    assert_eq!(system.run, ["python3", "my robot.py"]);
-    assert_eq!((system.coverage.len(), system.limit, system.budget), (2, 60 * SECOND, 10 * SECOND));
+    let system = &p.systems[0];
+    assert_eq!(system.programs[0].run, ["python3", "my robot.py"]);
+    assert_eq!((system.coverage().len(), system.limit, system.budget), (2, 60 * SECOND, 10 * SECOND));
 }
 
 #[test]

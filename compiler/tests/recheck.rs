@@ -25,9 +25,11 @@ fn scenarios() -> Vec<(String, String)> {
 
 type Said = BTreeSet<(Span, DiagnosticCode, Severity, String)>;
 
-/// What is said of the whole, in one place of it: that there is no world or no name, and what `allow` allows.
+/// What is said of the whole, in one place of it: that there is no world or no name, what `allow` allows, what is wrong with a
+/// workspace of definitions, which is read before anything is checked.
 fn is_of_the_whole(name: &str, code: DiagnosticCode) -> bool {
-    code == DiagnosticCode::MISSING_DECLARATION || name.ends_with("allow_wrong.hri")
+    let codes = [DiagnosticCode::MISSING_DECLARATION, DiagnosticCode::BAD_DEFINITION];
+    codes.contains(&code) || name.ends_with("allow_wrong.hri")
 }
 
 /// What a whole check says of one declaration: its errors.

@@ -139,7 +139,7 @@ fn what_makes_no_sense_is_refused_in_the_words_of_the_declarations() {
         SystemAnswer::Refused { error, help } => format!("{error}; {}", help.clone().unwrap_or_default()),
         other => panic!("{other:?}"),
     };
-    let arm = "an arm can move_to(to, speed?), move_joints(to, speed?)";
+    let arm = "an arm can move_to(to, speed?), move_joints(to, speed?), follow(positions, times), aim(joint, to), stop";
     let expected = [
         "the world has no device `robot.leg`; devices it can command: robot.arm, robot.grip".to_owned(),
         format!("`robot.arm` is an arm, and cannot `wave`; {arm}"),

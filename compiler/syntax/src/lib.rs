@@ -26,6 +26,7 @@ mod print;
 mod recover;
 mod report;
 mod run;
+mod system;
 pub mod token;
 mod words;
 

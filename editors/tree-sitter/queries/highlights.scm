@@ -34,7 +34,8 @@
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
   "step" "gravity" "body" "joint" "arm" "gripper" "current" "signal" "rotated" "mass" "ghost" "graspable" "axis"
   "limits" "tip" "tool" "speed" "delay" "command" "expect" "run" "coverage" "limit" "budget" "cpu" "wall" "memory"
-  "output" "env" "online"
+  "output" "env" "online" "program" "ros1" "ros2" "messages" "topic" "service" "action" "group" "transition" "out"
+  "drives" "latched" "plans"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return

@@ -11,7 +11,6 @@ use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 use crate::{
     command::{CommandRequest, NotBegun},
     message::PlayerMessage,
-    system::seam::SystemAnswer,
     world::{CommandId, WorldBackend},
 };
 
@@ -107,36 +106,33 @@ impl<'p> WorldStage<'p> {
         Ok(id)
     }
 
-    /// What a device tells of itself.
+    /// What a device tells of itself, as numbers in SI units.
     ///
     /// # Errors
-    /// That there is no such device, or that it cannot tell this; and what to write instead.
-    pub fn state(&self, device: &str, what: &str) -> Result<SystemAnswer, (String, Option<String>)> {
+    /// That there is no such device, or that it cannot tell this.
+    pub fn state(&self, device: &str, what: &str) -> Result<Vec<f64>, NotBegun> {
         let found = self.device(device)?;
-        self.world.state(found.body, what).map(SystemAnswer::Numbers).ok_or_else(|| {
-            let known = "an arm can tell `joints`, `speeds` and `tool`, a gripper nothing";
-            (format!("`{device}` cannot tell its `{what}`"), Some(known.to_owned()))
+        self.world.state(found.body, what).ok_or_else(|| NotBegun::Refused {
+            error: format!("`{device}` cannot tell its `{what}`"),
+            help: Some("an arm can tell `joints`, `speeds` and `tool`, a gripper nothing".to_owned()),
         })
     }
 
-    /// The angles at which an arm's tool would be at a place; why there are none.
+    /// The angles at which an arm's tool would be at a place.
     ///
     /// # Errors
-    /// That there is no such arm.
-    pub fn plan(&self, device: &str, to: Vec3) -> Result<SystemAnswer, (String, Option<String>)> {
+    /// That there is no such arm, or that the place is out of its reach.
+    pub fn plan(&self, device: &str, to: Vec3) -> Result<Vec<f64>, NotBegun> {
         let found = self.device(device)?;
-        Ok(match self.world.plan(found.body, to) {
-            Ok(angles) => SystemAnswer::Numbers(angles),
-            Err(why) => SystemAnswer::Ended(Err(why)),
-        })
+        self.world.plan(found.body, to).map_err(NotBegun::Failed)
     }
 
-    fn device(&self, name: &str) -> Result<&'p Device, (String, Option<String>)> {
+    fn device(&self, name: &str) -> Result<&'p Device, NotBegun> {
         let devices = self.declared.map_or(&[][..], |world| &world.devices);
         devices.iter().find(|d| d.name == name).ok_or_else(|| {
             let names: Vec<&str> = devices.iter().map(|d| d.name.as_str()).collect();
             let help = (!names.is_empty()).then(|| format!("its devices: {}", names.join(", ")));
-            (format!("the world has no device `{name}`"), help)
+            NotBegun::Refused { error: format!("the world has no device `{name}`"), help }
         })
     }
 

@@ -26,6 +26,7 @@ fn launch(script: &str, coverage: bool) -> LaunchSpec {
         seed: 1,
         coverage: if coverage { vec![script.into()] } else { Vec::new() },
         env,
+        middleware: None,
         variables: Vec::new(),
         cells: CellSettings::probe(SupervisorCommand::program(env!("CARGO_BIN_EXE_hrdsl-cell")), &root, None)
             .expect("a cell"),

@@ -457,8 +457,8 @@ fn any_python_of_the_path_may_be_named() {
     let mut launch = launch(&[&word, "-c", "print('here')"]);
     launch.env = project.prepare_with(&word, &|_| {}).unwrap();
     assert_eq!(launch.env.version(), env.version());
-    assert_eq!(PythonEnv::interpreter_of(&launch.command), word);
-    assert_eq!(PythonEnv::interpreter_of(&["./robot".to_owned()]), "python3");
+    assert_eq!(PythonEnv::interpreter_of([launch.command.as_slice()]), word);
+    assert_eq!(PythonEnv::interpreter_of([["./robot".to_owned()].as_slice()]), "python3");
 }
 
 /// The last line of the output says what to do.

@@ -5,6 +5,7 @@ mod common;
 use std::{collections::BTreeMap, path::PathBuf};
 
 use common::{GRACE, launch, reply};
+use hrdsl_harness::SystemArrival;
 use hrdsl_ir::{Nanos, Value, value::nanos, value::seconds};
 use hrdsl_sut::{
     FinishedProcess, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer, SutProcess,
@@ -20,6 +21,14 @@ enum Person {
     SaysNothing,
 }
 
+/// Something that will arrive.
+#[derive(Clone, Copy, PartialEq)]
+enum Coming {
+    Event(&'static str),
+    /// The end of a command, by the program's number for it, and whether it succeeded.
+    Ended(u64, bool),
+}
+
 /// A harness in a few lines: time passes in sleeps, waits and motions; the person and the sensors are a script.
 struct Harness {
     time: Nanos,
@@ -28,14 +37,14 @@ struct Harness {
     holds: bool,
     arm_works: bool,
     /// Events to come, and those that came, in order of time.
-    queue: Vec<(Nanos, &'static str)>,
-    mailbox: Vec<(Nanos, &'static str)>,
+    queue: Vec<(Nanos, Coming)>,
+    mailbox: Vec<(Nanos, Coming)>,
     emitted: Vec<(Nanos, String, BTreeMap<String, ProtocolArgument>)>,
 }
 
 impl Harness {
     fn new(legs: &[Person]) -> Self {
-        let queue = vec![(nanos(10.0), "leg_request")];
+        let queue = vec![(nanos(10.0), Coming::Event("leg_request"))];
         let legs = legs.to_vec();
         Self {
             time: 0,
@@ -50,8 +59,12 @@ impl Harness {
     }
 
     fn soon(&mut self, after: f64, event: &'static str) {
-        self.queue.push((self.time + nanos(after), event));
-        self.queue.sort();
+        self.later(after, Coming::Event(event));
+    }
+
+    fn later(&mut self, after: f64, what: Coming) {
+        self.queue.push((self.time + nanos(after), what));
+        self.queue.sort_by_key(|(time, _)| *time);
     }
 
     fn pass(&mut self, until: Nanos) {
@@ -84,54 +97,53 @@ impl Harness {
         }
     }
 
-    fn wait_for(&mut self, events: &[String], timeout: Option<f64>) -> ReplyAnswer {
-        let until = self.time + timeout.map_or(nanos(300.0), nanos);
-        loop {
-            if let Some(at) = self.mailbox.iter().position(|(_, name)| events.iter().any(|e| e == name)) {
-                let (time, name) = self.mailbox.remove(at);
+    fn arrival(&self, (time, what): (Nanos, Coming)) -> SystemArrival {
+        match what {
+            Coming::Event(name) => {
                 let readings =
                     [("gaze", self.leg() != Person::LooksAway), ("pressure", self.holds), ("location", true)];
                 let args = readings.iter().filter(|_| name == "sensed");
                 let args = args.map(|&(k, v)| (k.to_owned(), Value::Bool(v))).collect();
-                return ReplyAnswer::Event { name: name.to_owned(), args, time };
+                SystemArrival::Event { name: name.to_owned(), args, time }
             }
-            match self.queue.first() {
-                Some(&(next, _)) if next <= until => self.pass(next),
-                _ => {
-                    self.pass(until);
-                    return ReplyAnswer::TimedOut;
-                }
+            Coming::Ended(call, works) => {
+                let how = if works { Ok(()) } else { Err("the planner finds no way".to_owned()) };
+                SystemArrival::Ended { call, how }
             }
         }
     }
 
+    fn wait(&mut self, until: Option<Nanos>, give_up: Option<Nanos>) -> ReplyAnswer {
+        let limit = until.iter().chain(&give_up).min().copied().unwrap_or(self.time + nanos(300.0));
+        while self.mailbox.is_empty() && self.time < limit {
+            let next = self.queue.first().map_or(limit, |(time, _)| (*time).min(limit));
+            self.pass(next);
+        }
+        let came = std::mem::take(&mut self.mailbox);
+        let arrivals: Vec<SystemArrival> = came.into_iter().map(|coming| self.arrival(coming)).collect();
+        ReplyAnswer::Arrived { gave_up: arrivals.is_empty() && give_up == Some(limit), arrivals }
+    }
+
     fn answer(&mut self, request: ProgramRequest) -> ReplyAnswer {
         match request {
-            ProgramRequest::Hello { .. } | ProgramRequest::Now | ProgramRequest::Done => ReplyAnswer::Ok,
-            ProgramRequest::Sleep { seconds } => {
-                self.pass(self.time + nanos(seconds));
-                ReplyAnswer::Ok
-            }
+            ProgramRequest::Hello { version, .. } => ReplyAnswer::Hello { version, program: "robot".into() },
+            // Of `drop` the program keeps the events itself, and asks whether there are such.
+            ProgramRequest::Now | ProgramRequest::Drop { .. } | ProgramRequest::Done => ReplyAnswer::Ok,
             ProgramRequest::Emit { event, args } => {
                 self.emitted(&event);
                 self.emitted.push((self.time, event, args));
                 ReplyAnswer::Ok
             }
-            ProgramRequest::WaitFor { events, timeout } => self.wait_for(&events, timeout),
-            ProgramRequest::Drop { events } => {
-                self.mailbox.retain(|(_, name)| !events.iter().any(|e| e == name));
-                ReplyAnswer::Ok
-            }
+            ProgramRequest::Wait { until, give_up } => self.wait(until, give_up),
             ProgramRequest::Read { signal } => {
                 assert_eq!(signal, "pressure");
                 ReplyAnswer::Value(Value::Bool(self.holds))
             }
-            ProgramRequest::Act { on, .. } => {
-                self.pass(self.time + nanos(1.5));
-                let fails = on == "robot.arm" && !self.arm_works;
-                ReplyAnswer::Acted(if fails { Err("the planner finds no way".into()) } else { Ok(()) })
+            ProgramRequest::Act { on, call: Some(call), wait: false, .. } => {
+                self.later(1.5, Coming::Ended(call, on != "robot.arm" || self.arm_works));
+                ReplyAnswer::Ok
             }
-            other => panic!("this harness speaks version 1 only: {other:?}"),
+            other => panic!("the SDK does not ask for this: {other:?}"),
         }
     }
 

@@ -73,9 +73,9 @@ class Arm(System):
         self.followed.append((self.time, args))
         delay = round(args["times"][-1] * SECOND)
         self._last = {"call": request["call"], "until": self.time + delay}
-        if args["positions"][-1] == [-2.0, 0.0]:
+        if args["positions"][-2:] == [-2.0, 0.0]:
             return delay // 2, "it hit something"
-        self.later(self.time + delay, lambda _: self.states.update({"robot.arm": args["positions"][-1]}))
+        self.later(self.time + delay, lambda _: self.states.update({"robot.arm": args["positions"][-2:]}))
         return delay, None
 
     def later(self, time, arrival):
@@ -238,8 +238,8 @@ tries(lambda: group.execute(plan))
         self.assertIn("Invalid Trajectory: start point deviates from current robot state more than 0.01", said)
         self.assertIn("ABORTED: it hit something", said)
         time, args = system.followed[0]
-        self.assertEqual((time, args["times"][:2], args["positions"][0]), (0, [0.0, 0.1], [0.0, 0.0]))
-        self.assertEqual((args["times"][-1], args["positions"][-1]), (2.0, [1.0, 0.0]))
+        self.assertEqual((time, args["times"][:2], args["positions"][:2]), (0, [0.0, 0.1], [0.0, 0.0]))
+        self.assertEqual((args["times"][-1], args["positions"][-2:]), (2.0, [1.0, 0.0]))
 
     def test_one_that_is_stopped(self):
         text = """
@@ -254,7 +254,7 @@ say(group.get_current_joint_values())
 """
         system = Arm()
         self.assertEqual(self.said(text, system), ["0.000 True", "1.500 [0.0, 0.0]"])
-        self.assertEqual(system.followed[1][1], {"positions": [[0.0, 0.0]], "times": [0.0]})
+        self.assertEqual(system.followed[1][1], {"positions": [0.0, 0.0], "times": [0.0]})
 
 
 class Robots(Case):

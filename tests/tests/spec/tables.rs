@@ -103,7 +103,10 @@ fn the_devices() {
 #[test]
 fn the_primitives() {
     let type_text = |ty: CommandType| {
-        let dim = UNITS.iter().find(|unit| unit.symbol == ty.unit.symbol()).unwrap().dim;
+        let dim = UNITS
+            .iter()
+            .find(|unit| unit.symbol == ty.unit.symbol())
+            .map_or(Dimension::NUMBER, |unit| unit.dim);
         match ty.count {
             NumberCount::One => type_of(dim).to_owned(),
             NumberCount::Array(n) => format!("{}[{n}]", type_of(dim)),

@@ -2,6 +2,7 @@
 
 mod determinism;
 mod run;
+mod schedules;
 
 use std::{
     collections::BTreeMap,
@@ -42,7 +43,7 @@ pub const SUPERVISE: &str = "supervise-cell";
 /// run.json, the tests, a recording of each, and what the program wrote in each.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --system with_rospy\n  hrdsl sim scenario.hri --check-determinism"
+    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --system with_rospy\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --schedules 20"
 )]
 pub struct SimArgs {
     /// The scenario.
@@ -76,6 +77,12 @@ pub struct SimArgs {
     /// Run the tests twice, and name the first event of each test that differs.
     #[arg(long)]
     check_determinism: bool,
+    /// Run the tests in so many other orders of the programs' threads, too, and name those that come to something else.
+    #[arg(long, value_name = "N", conflicts_with_all = ["debug", "schedule"])]
+    schedules: Option<u32>,
+    /// Let this number say in which order threads run that are ready; by default, first come first served.
+    #[arg(long, value_name = "K")]
+    schedule: Option<u32>,
     /// Keep the files that the program writes in each test, in `files/`.
     #[arg(long)]
     keep_files: bool,
@@ -133,6 +140,10 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     } else {
         None
     };
+    let races = match args.schedules {
+        Some(count) if !outcome.interrupted => Some(schedules::compare(&campaign, &tests, &outcome, count)?),
+        Some(_) | None => None,
+    };
     let interrupted = outcome.interrupted;
     let dir = campaign.dir.clone();
     let sources =
@@ -145,9 +156,13 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     if let Some(differences) = differences {
         terminal::print(&differences.text)?;
     }
+    let racy = races.as_ref().is_some_and(|races| races.tests > 0);
+    if let Some(races) = races {
+        terminal::print(&races.text)?;
+    }
     Ok(if interrupted {
         CommandExit::Interrupted
-    } else if !repeatable || !(results.is_clean() || args.exit_zero) {
+    } else if racy || !repeatable || !(results.is_clean() || args.exit_zero) {
         CommandExit::Findings
     } else {
         CommandExit::Ok
@@ -226,6 +241,10 @@ fn hidden(project: &Path, out: &Path, folder: &ResultsFolder) -> Vec<PathBuf> {
 fn variables(args: &SimArgs, system: &SystemUnderTest) -> Vec<(OsString, OsString)> {
     let given = |name: &String| Some((name.into(), std::env::var_os(name)?));
     let mut variables: Vec<_> = system.env.iter().filter_map(given).collect();
+    if let Some(schedule) = args.schedule {
+        variables.retain(|(name, _)| name != schedules::VARIABLE);
+        variables.push((schedules::VARIABLE.into(), schedule.to_string().into()));
+    }
     if args.debug {
         variables.push(("HRDSL_DEBUG".into(), "1".into()));
         variables.extend(std::env::var_os("TERM").map(|term| ("TERM".into(), term)));
@@ -369,6 +388,7 @@ fn rerun(args: &SimArgs, out: &Path) -> String {
     let times = times.iter().filter_map(|(name, t)| Some(format!("{name} {}ms", (*t)?.as_millis())));
     let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
     let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?)));
+    words.extend(args.schedule.map(|k| format!("--schedule {k}")));
     words.extend(args.system.iter().map(|name| format!("--system {name}")));
     words.extend(times.chain(sizes));
     words.push("--test".to_owned());

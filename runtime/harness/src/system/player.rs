@@ -17,6 +17,7 @@ use crate::{
     fault::SystemFault,
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext},
+    stage::WorldStage,
     world::CommandId,
 };
 
@@ -181,16 +182,10 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 }));
             }
             SystemRequest::State { device, what } => {
-                return Ok(Answer(match cx.stage.as_deref_mut() {
-                    Some(stage) => stage.state(&device, &what).unwrap_or_else(|(e, help)| refuse(e, help)),
-                    None => refuse("there is no world with devices", None),
-                }));
+                return Ok(Answer(asked(cx, |stage| stage.state(&device, &what))));
             }
             SystemRequest::Plan { device, to } => {
-                return Ok(Answer(match cx.stage.as_deref_mut() {
-                    Some(stage) => stage.plan(&device, to).unwrap_or_else(|(e, help)| refuse(e, help)),
-                    None => refuse("there is no world with devices", None),
-                }));
+                return Ok(Answer(asked(cx, |stage| stage.plan(&device, to))));
             }
             SystemRequest::Transition { from, to } => {
                 if let Some(binding) = &self.binding {
@@ -316,10 +311,25 @@ fn begin(request: &CommandRequest, cx: &mut PlayerContext<'_, '_>) -> Result<Com
     let Some(stage) = cx.stage.as_deref_mut() else {
         return Err(refuse("there is no world to act in", None));
     };
-    stage.command(request).map_err(|why| match why {
+    stage.command(request).map_err(said)
+}
+
+/// Asks the world for numbers.
+fn asked(
+    cx: &mut PlayerContext<'_, '_>,
+    ask: impl FnOnce(&WorldStage<'_>) -> Result<Vec<f64>, NotBegun>,
+) -> SystemAnswer {
+    match cx.stage.as_deref() {
+        Some(stage) => ask(stage).map_or_else(said, SystemAnswer::Numbers),
+        None => refuse("there is no world with devices", None),
+    }
+}
+
+fn said(why: NotBegun) -> SystemAnswer {
+    match why {
         NotBegun::Refused { error, help } => refuse(error, help),
         NotBegun::Failed(why) => SystemAnswer::Ended(Err(why)),
-    })
+    }
 }
 
 impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {

@@ -6,6 +6,7 @@ use std::{
     time::Duration,
 };
 
+use hrdsl_harness::SystemArrival;
 use hrdsl_sut::{
     CellSettings, EnvironmentNeeds, FinishedProcess, HarnessReply, LaunchSpec, ProgramLimits, ProgramRequest,
     PythonEnv, ReplyAnswer, StopFlag, SutProcess,
@@ -35,6 +36,7 @@ pub fn launch(words: &[&str]) -> LaunchSpec {
         seed: 17,
         coverage: Vec::new(),
         env: plain_environment(),
+        middleware: None,
         variables: Vec::new(),
         cells: cells(None),
         limits: ProgramLimits { budget: Duration::from_secs(20), ..ProgramLimits::default() },
@@ -54,18 +56,53 @@ pub fn reply(process: &mut SutProcess, time: i64, answer: ReplyAnswer) {
     process.reply(&HarnessReply { time, answer }).unwrap();
 }
 
-/// Runs a program to its normal end, with a harness whose sleeps pass time and who says yes to all else.
+/// A harness whose waits pass time, and whose commands end at once.
+#[derive(Default)]
+#[allow(dead_code, reason = "not every test file uses it")]
+pub struct YesHarness {
+    pub time: i64,
+    ended: Vec<u64>,
+}
+
+#[allow(dead_code, reason = "not every test file uses it")]
+impl YesHarness {
+    pub fn answer(&mut self, request: &ProgramRequest) -> ReplyAnswer {
+        match request {
+            ProgramRequest::Hello { version, .. } if *version > 1 => {
+                ReplyAnswer::Hello { version: *version, program: "robot".into() }
+            }
+            ProgramRequest::Sleep { seconds } => {
+                self.time += hrdsl_ir::value::nanos(*seconds);
+                ReplyAnswer::Ok
+            }
+            ProgramRequest::Act { wait: false, call: Some(call), .. } => {
+                self.ended.push(*call);
+                ReplyAnswer::Ok
+            }
+            ProgramRequest::Wait { until, give_up } => {
+                let ended = std::mem::take(&mut self.ended).into_iter();
+                let arrivals: Vec<SystemArrival> =
+                    ended.map(|call| SystemArrival::Ended { call, how: Ok(()) }).collect();
+                if arrivals.is_empty() {
+                    self.time = until.iter().chain(give_up).min().copied().unwrap_or(0).max(self.time);
+                }
+                ReplyAnswer::Arrived { gave_up: arrivals.is_empty() && until.is_none(), arrivals }
+            }
+            _ => ReplyAnswer::Ok,
+        }
+    }
+}
+
+/// Runs a program to its normal end, with a harness that says yes to everything.
 #[allow(dead_code, reason = "not every test file uses it")]
 pub fn run(launch: &LaunchSpec) -> (Vec<ProgramRequest>, FinishedProcess) {
     let mut process = SutProcess::spawn(launch).unwrap();
     let mut requests = Vec::new();
-    let mut time = 0;
+    let mut harness = YesHarness::default();
     while requests.last() != Some(&ProgramRequest::Done) {
         let request = process.next().unwrap();
-        if let ProgramRequest::Sleep { seconds } = request {
-            time += hrdsl_ir::value::nanos(seconds);
-        }
-        reply(&mut process, time, ReplyAnswer::Ok);
+        let answer = harness.answer(&request);
+        reply(&mut process, harness.time, answer);
         requests.push(request);
     }
     (requests, process.finish(GRACE))

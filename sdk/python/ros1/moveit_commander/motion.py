@@ -29,12 +29,17 @@ def follow(group: Group, postures: list[list[float]], times: list[float]) -> Any
 
     _running[device] = _running.get(device, 0) + 1
     try:
-        the_exchange().act(device, "follow", {"positions": postures, "times": times}, hear)
+        the_exchange().act(device, "follow", {"positions": _flat(postures), "times": times}, hear)
     except ProtocolError as error:
         _running[device] -= 1
         told = "device %s of group %s follows no trajectories: %s" % (device, group.name, error)
         raise MoveItCommanderException(told) from None
     return ended
+
+
+def _flat(postures: list[list[float]]) -> list[float]:
+    """Posture after posture, as the command takes them."""
+    return [angle for posture in postures for angle in posture]
 
 
 def stop(group: Group) -> None:
@@ -45,7 +50,7 @@ def stop(group: Group) -> None:
     try:
         exchange.act(group.device, "stop", {}, _ignore)
     except ProtocolError:  # a device without that command stays where it is told to
-        exchange.act(group.device, "follow", {"positions": [group.positions()], "times": [0.0]}, _ignore)
+        exchange.act(group.device, "follow", {"positions": group.positions(), "times": [0.0]}, _ignore)
 
 
 def _ignore(error: str | None) -> None:

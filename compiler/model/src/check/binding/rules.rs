@@ -109,7 +109,9 @@ impl<'a> Checker<'a> {
             None => (None, false),
         };
         let guard = condition.map(|e| {
-            self.known_fields(e, env);
+            if !self.known_fields(e, env) {
+                return TypedExpr::error(e.span);
+            }
             self.expr_of(e, InferredType::Bool, &mut env.env)
         });
         Some(MessageRule { guard, rising, effect: effect?, origin: entry.span })
@@ -157,7 +159,9 @@ impl<'a> Checker<'a> {
     }
 
     fn message_argument(&mut self, arg: &ast::ExprSyntax, ty: Type, env: &mut MessageEnv<'_>) -> TypedExpr {
-        self.known_fields(arg, env);
+        if !self.known_fields(arg, env) {
+            return TypedExpr::error(arg.span);
+        }
         let want = InferredType::of(ty);
         let value = match self.item_due(arg, want, &mut env.env) {
             ExprItem::One(value) => value,
@@ -238,9 +242,9 @@ impl<'a> Checker<'a> {
         Some(CommandArgument::Numbers(parts.iter().map(|p| self.message_argument(p, ty, env)).collect()))
     }
 
-    /// Says of a path that begins in the message where it leaves it.
-    fn known_fields(&mut self, e: &ast::ExprSyntax, env: &MessageEnv<'_>) {
-        let mut paths = Vec::new();
+    /// Whether all paths that begin in the message end in it; says where one leaves it.
+    fn known_fields(&mut self, e: &ast::ExprSyntax, env: &MessageEnv<'_>) -> bool {
+        let (mut paths, mut all_known) = (Vec::new(), true);
         collect_paths(e, &mut paths);
         for path in paths {
             let text: Vec<&str> = path.names.iter().map(|n| n.text.as_str()).collect();
@@ -254,11 +258,13 @@ impl<'a> Checker<'a> {
                     let known = inner.fields.iter().map(|(n, _)| n.as_str());
                     let issue = bindings::unknown_field(&name.text, &place_text(&steps), name.span, known);
                     self.report(issue);
+                    all_known = false;
                     break;
                 }
                 steps.push(MessageStep::Field(name.text.clone()));
             }
         }
+        all_known
     }
 }
 

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use hrdsl_ir::{
-    EventId, Nanos, Value,
+    EventId, EventPattern, Nanos, Value,
     binding::{GapRead, GapValue, MessageGap, MessageScalar, MessageTemplate, MiddlewareKind},
     value::SECOND,
 };
@@ -13,41 +13,66 @@ use crate::{stage::WorldStage, system::port::MessageText};
 /// What clocks of programs show at the beginning of a test, in seconds since 1970: 2025-01-01 00:00:00 UTC.
 const EPOCH: i64 = 1_735_689_600;
 
+/// When events last happened, each with its arguments.
+#[derive(Default)]
+pub(super) struct HeardEvents {
+    /// Of each event the last occurrence with each list of arguments, the newest last.
+    events: BTreeMap<EventId, Vec<(Vec<Value>, Nanos)>>,
+}
+
+impl HeardEvents {
+    pub fn add(&mut self, event: EventId, args: &[Value], now: Nanos) {
+        let known = self.events.entry(event).or_default();
+        known.retain(|(of, _)| of.as_slice() != args);
+        known.push((args.to_vec(), now));
+    }
+
+    /// The arguments of the last occurrence.
+    fn arguments(&self, event: EventId) -> Option<&[Value]> {
+        self.events.get(&event)?.last().map(|(args, _)| args.as_slice())
+    }
+
+    /// When one of these last happened.
+    pub fn last_of(&self, patterns: &[EventPattern]) -> Option<Nanos> {
+        let of = |p: &EventPattern| {
+            let known = self.events.get(&p.event)?;
+            known.iter().filter(|(args, _)| p.matches(p.event, args)).map(|(_, time)| *time).max()
+        };
+        patterns.iter().filter_map(of).max()
+    }
+}
+
 /// What the gaps of a message depend on.
 pub(super) struct GapContext<'a, 'p> {
     pub kind: MiddlewareKind,
-    pub heard: &'a BTreeMap<EventId, Vec<Value>>,
+    pub heard: &'a HeardEvents,
     pub now: Nanos,
     pub stage: Option<&'a mut WorldStage<'p>>,
 }
 
 impl GapContext<'_, '_> {
-    /// The message as JSON. `held` has for each gap when its events last happened.
+    /// The message as JSON.
     ///
     /// # Errors
     /// A value that its field cannot hold.
-    pub fn filled(
-        &mut self,
-        template: &MessageTemplate,
-        held: &[Option<Nanos>],
-    ) -> Result<MessageText, String> {
+    pub fn filled(&mut self, template: &MessageTemplate) -> Result<MessageText, String> {
         let mut text = template.text.first().cloned().unwrap_or_default();
         let pieces = template.text.iter().skip(1);
-        for ((gap, since), after) in template.gaps.iter().zip(held).zip(pieces) {
-            self.write(gap, *since, &mut text)?;
+        for (gap, after) in template.gaps.iter().zip(pieces) {
+            self.write(gap, &mut text)?;
             text.push_str(after);
         }
         Ok(text.into())
     }
 
-    fn write(&mut self, gap: &MessageGap, since: Option<Nanos>, text: &mut String) -> Result<(), String> {
+    fn write(&mut self, gap: &MessageGap, text: &mut String) -> Result<(), String> {
         let value = match &gap.value {
             GapValue::Now => {
                 self.time(text);
                 return Ok(());
             }
-            GapValue::Held { time, .. } => {
-                let holds = since.is_some_and(|since| {
+            GapValue::Held { events, time } => {
+                let holds = self.heard.last_of(events).is_some_and(|since| {
                     if *time == 0 { since == self.now } else { self.now < since.saturating_add(*time) }
                 });
                 Value::Bool(holds)
@@ -66,7 +91,7 @@ impl GapContext<'_, '_> {
                 self.stage.as_deref_mut().map_or(Value::Float(f64::NAN), |stage| stage.read(*signal))
             }
             GapRead::Argument { event, param, initial } => {
-                let args = self.heard.get(event);
+                let args = self.heard.arguments(*event);
                 args.and_then(|args| args.get(usize::from(*param))).copied().unwrap_or(*initial)
             }
         }
@@ -95,7 +120,7 @@ fn scalar(value: Value, field: MessageScalar, text: &mut String) -> Result<(), S
         }
         (MessageScalar::Float, Value::Float(x)) => float(x, text),
         (MessageScalar::Text, Value::Symbol(symbol)) => quoted(symbol.name(), text),
-        (MessageScalar::Text, Value::Text(words)) => quoted(&words.to_string(), text),
+        (MessageScalar::Text, Value::Text(words)) => quoted(words.as_str(), text),
         (MessageScalar::Int { lo, hi }, value) => {
             return Err(format!("a field of {lo}..{hi} cannot hold {value}"));
         }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Value,
-    binding::{GapRead, GapValue, MessageTemplate, MiddlewareBinding, TopicInput},
+    binding::{GapRead, GapValue, MessageGap, MessageTemplate, MiddlewareBinding, TopicInput},
 };
 
 use super::{
@@ -18,7 +18,7 @@ use super::{
     seam::SystemArrival,
 };
 use crate::{player::PlayerContext, world::CommandId};
-use fill::GapContext;
+use fill::{GapContext, HeardEvents};
 use rules::RuleState;
 
 /// So many messages wait for the scenario at most; it takes each at once.
@@ -46,8 +46,6 @@ enum BoundPort {
 /// When a topic that the scenario publishes is due.
 struct InputTimes {
     port: u64,
-    /// Of each gap: when one of its events last happened.
-    held: Vec<Option<Nanos>>,
     /// Between two messages of no rate: when what one says is over.
     until: Option<Nanos>,
     /// When the last one went.
@@ -60,8 +58,7 @@ pub(super) struct BindingNode<'p> {
     node: ProgramIndex,
     ports: BTreeMap<u64, BoundPort>,
     inputs: Vec<InputTimes>,
-    /// The arguments of the last occurrence of each event.
-    heard: BTreeMap<EventId, Vec<Value>>,
+    heard: HeardEvents,
     /// Goals that end with a command, by the number to answer by.
     goals: Vec<BoundGoal>,
     /// Commands whose end nobody is told of.
@@ -85,7 +82,7 @@ impl<'p> BindingNode<'p> {
             node,
             ports: BTreeMap::new(),
             inputs: Vec::new(),
-            heard: BTreeMap::new(),
+            heard: HeardEvents::default(),
             goals: Vec::new(),
             unattended: Vec::new(),
         }
@@ -103,8 +100,7 @@ impl<'p> BindingNode<'p> {
             let port =
                 self.open(graph, PortKind::Publisher, &input.topic, &input.interface, input.latched)?;
             self.ports.insert(port, BoundPort::Input);
-            let held = vec![None; input.message.gaps.len()];
-            self.inputs.push(InputTimes { port, held, until: None, sent: None });
+            self.inputs.push(InputTimes { port, until: None, sent: None });
         }
         for (at, output) in binding.outputs.iter().enumerate() {
             if !output.topic.contains('*') {
@@ -217,23 +213,17 @@ impl<'p> BindingNode<'p> {
         cx: &mut PlayerContext<'_, '_>,
     ) -> BindingOutcome {
         let binding = self.binding;
-        self.heard.insert(event, args.to_vec());
+        self.heard.add(event, args, cx.now);
         let mut out = Vec::new();
         for (at, input) in binding.inputs.iter().enumerate() {
-            let mut is_said = false;
-            for (gap, place) in input.message.gaps.iter().zip(0..) {
-                let speaks = match &gap.value {
-                    GapValue::Held { events, .. } => events.iter().any(|p| p.matches(event, args)),
-                    GapValue::Value { reads, .. } => {
-                        reads.iter().any(|r| matches!(r, GapRead::Argument { event: of, .. } if *of == event))
-                    }
-                    GapValue::Now => false,
-                };
-                is_said |= speaks;
-                if speaks && let Some(held) = self.inputs.get_mut(at).and_then(|i| i.held.get_mut(place)) {
-                    *held = Some(cx.now);
+            let speaks = |gap: &MessageGap| match &gap.value {
+                GapValue::Held { events, .. } => events.iter().any(|p| p.matches(event, args)),
+                GapValue::Value { reads, .. } => {
+                    reads.iter().any(|r| matches!(r, GapRead::Argument { event: of, .. } if *of == event))
                 }
-            }
+                GapValue::Now => false,
+            };
+            let is_said = input.message.gaps.iter().any(speaks);
             if is_said && input.period.is_none() {
                 out.extend(self.publish(at, graph, cx)?);
             }
@@ -251,10 +241,10 @@ impl<'p> BindingNode<'p> {
         let Some(times) = self.inputs.get(at) else { return Ok(Vec::new()) };
         let port = times.port;
         let until = match input.period {
-            None => held_until(&input.message, &times.held).filter(|until| *until > cx.now),
+            None => held_until(&input.message, &self.heard, cx.now),
             Some(_) => None,
         };
-        let message = self.filled(&input.message, &times.held, cx)?;
+        let message = self.filled(&input.message, cx)?;
         if let Some(times) = self.inputs.get_mut(at) {
             (times.sent, times.until) = (Some(cx.now), until);
         }
@@ -264,13 +254,12 @@ impl<'p> BindingNode<'p> {
     fn filled(
         &self,
         template: &MessageTemplate,
-        held: &[Option<Nanos>],
         cx: &mut PlayerContext<'_, '_>,
     ) -> Result<MessageText, String> {
         let kind = self.binding.kind;
         let mut context =
             GapContext { kind, heard: &self.heard, now: cx.now, stage: cx.stage.as_deref_mut() };
-        context.filled(template, held)
+        context.filled(template)
     }
 
     // ── what they say ──
@@ -331,7 +320,7 @@ impl<'p> BindingNode<'p> {
                 let Some(bound) = binding.services.get(*service) else { return Ok(Vec::new()) };
                 let done = rules::carry_out(program, &bound.rules, (&message, None), state, cx);
                 let answer = match done.map(|done| self.unattended.extend(done.commands)) {
-                    Ok(()) => Ok(self.filled(&bound.response, &vec![None; bound.response.gaps.len()], cx)?),
+                    Ok(()) => Ok(self.filled(&bound.response, cx)?),
                     Err(why) => Err(why),
                 };
                 graph.respond(node, call, answer)
@@ -341,7 +330,8 @@ impl<'p> BindingNode<'p> {
                 let Some(bound) = binding.actions.get(action) else { return Ok(Vec::new()) };
                 let done = match rules::carry_out(program, &bound.rules, (&message, None), state, cx) {
                     Ok(done) => done,
-                    Err(why) => return graph.respond(node, call, Err(why)),
+                    // A goal that makes no sense: there is nothing else to say it with.
+                    Err(_) => return self.finish(call, action, GoalEnd::Rejected, graph, cx),
                 };
                 let before = done.commands.len().saturating_sub(1);
                 self.unattended.extend(done.commands.iter().take(before));
@@ -371,7 +361,7 @@ impl<'p> BindingNode<'p> {
         cx: &mut PlayerContext<'_, '_>,
     ) -> BindingOutcome {
         let Some(bound) = self.binding.actions.get(action) else { return Ok(Vec::new()) };
-        let result = self.filled(&bound.result, &vec![None; bound.result.gaps.len()], cx)?;
+        let result = self.filled(&bound.result, cx)?;
         graph.finish(self.node, call, end, result)
     }
 
@@ -428,10 +418,10 @@ fn next_after(now: Nanos, sent: Option<Nanos>, period: Nanos) -> Nanos {
 }
 
 /// When the first of what holds is over.
-fn held_until(message: &MessageTemplate, held: &[Option<Nanos>]) -> Option<Nanos> {
-    let ends = message.gaps.iter().zip(held).filter_map(|(gap, since)| match &gap.value {
-        GapValue::Held { time, .. } if *time > 0 => Some(since.as_ref()?.saturating_add(*time)),
+fn held_until(message: &MessageTemplate, heard: &HeardEvents, now: Nanos) -> Option<Nanos> {
+    let ends = message.gaps.iter().filter_map(|gap| match &gap.value {
+        GapValue::Held { events, time } if *time > 0 => Some(heard.last_of(events)?.saturating_add(*time)),
         GapValue::Held { .. } | GapValue::Value { .. } | GapValue::Now => None,
     });
-    ends.min()
+    ends.filter(|end| *end > now).min()
 }

@@ -1,0 +1,2 @@
+import rospy
+from no_such_msgs.msg import Thing
