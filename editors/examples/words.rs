@@ -45,7 +45,8 @@ fn collect(value: &Value, text: &str, names: &mut BTreeMap<usize, usize>) {
             {
                 names.insert(start, end);
             }
-            fields.values().for_each(|v| collect(v, text, names));
+            // Which middleware is bound: a keyword, of which the tree keeps the text.
+            fields.iter().filter(|(field, _)| *field != "version").for_each(|(_, v)| collect(v, text, names));
         }
         Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
     }

@@ -13,6 +13,8 @@ const AROUND: &[(&[&str], &str, &str)] = &[
     (&["plan", "planon", "planf"], "agent A plays p {\n", "\n}"),
     (&["location", "edge"], "automaton A plays p {\n", "\n}"),
     (&["body"], "world {\n", "\n}"),
+    (&["ros1"], "system s {\n", "\n}"),
+    (&["topicin", "topicout"], "system s { ros1 {\n", "\n} }"),
 ];
 
 fn snippets() -> BTreeMap<String, Value> {

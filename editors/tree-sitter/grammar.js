@@ -918,8 +918,13 @@ module.exports = grammar({
       ),
 
     system_declaration: ($) =>
-      seq(keyword($, "system"), field("actor", $.identifier), field("body", $.system_body)),
-    system_body: ($) => block($, alias($._system_setting, $.setting)),
+      seq(
+        keyword($, "system"),
+        optional(seq(field("name", $.identifier), keyword($, "plays"))),
+        field("actor", $.identifier),
+        field("body", $.system_body),
+      ),
+    system_body: ($) => block($, choice(alias($._system_setting, $.setting), $.program, $.middleware)),
     _system_setting: ($) =>
       choice(
         seq(keyword($, "run"), field("value", $.string)),
@@ -929,6 +934,93 @@ module.exports = grammar({
         ),
         seq(keyword($, "env"), list(field("value", $.identifier))),
         keyword($, "online"),
+      ),
+    program: ($) => seq(keyword($, "program"), field("name", $.identifier), field("body", $.system_body)),
+
+    // ── What is bound to a middleware ──
+
+    middleware: ($) =>
+      seq(
+        field("version", choice(keyword($, "ros1"), keyword($, "ros2"))),
+        field("body", $.binding_body),
+      ),
+    binding_body: ($) =>
+      block($,
+        choice(
+          alias($._binding_setting, $.setting),
+          $.topic,
+          $.service,
+          $.action,
+          $.group,
+          $.transition,
+        ),
+      ),
+    _binding_setting: ($) => seq(keyword($, "messages"), field("value", $.string)),
+    topic: ($) =>
+      seq(
+        keyword($, "topic"),
+        field("name", $.string),
+        ":",
+        field("interface", $.interface),
+        choice($._topic_in, $._topic_out),
+        optional(field("entries", $.entries)),
+      ),
+    _topic_in: ($) =>
+      seq(
+        field("direction", keyword($, "in")),
+        optional(seq(keyword($, "at"), field("rate", $.expression))),
+        optional(keyword($, "latched")),
+      ),
+    _topic_out: ($) =>
+      seq(
+        field("direction", keyword($, "out")),
+        optional(seq(keyword($, "drives"), field("device", $._path))),
+      ),
+    service: ($) => seq(keyword($, "service"), $._served),
+    action: ($) => seq(keyword($, "action"), $._served),
+    _served: ($) =>
+      seq(
+        field("name", $.string),
+        ":",
+        field("interface", $.interface),
+        optional(field("entries", $.entries)),
+      ),
+    group: ($) =>
+      seq(keyword($, "group"), field("name", $.string), keyword($, "plans"), field("device", $._path)),
+    transition: ($) =>
+      seq(
+        keyword($, "transition"),
+        field("from", $.string),
+        "->",
+        field("to", $.string),
+        keyword($, "emit"),
+        field("emits", $.call),
+      ),
+    // `std_msgs/Bool`, `std_msgs/msg/Bool`
+    interface: ($) =>
+      seq(
+        optional(seq(field("package", $.identifier), "/", repeat(seq(field("kind", $.identifier), "/")))),
+        field("name", $.identifier),
+      ),
+    entries: ($) => block($, choice($.field_entry, $.emit_entry, $.command_entry)),
+    field_entry: ($) =>
+      seq(
+        field("field", choice($._path, $.index_expression, $.field_expression)),
+        "=",
+        field("value", $.expression),
+      ),
+    emit_entry: ($) =>
+      seq(
+        keyword($, "emit"),
+        field("emits", $.call),
+        optional(seq(keyword($, "when"), field("condition", $.expression))),
+      ),
+    command_entry: ($) =>
+      seq(
+        field("command", $.identifier),
+        field("device", $._path),
+        optional(field("arguments", $.arguments)),
+        optional(seq(keyword($, "when"), field("condition", $.expression))),
       ),
   },
 });

@@ -24,6 +24,11 @@
   (device_declaration)
   (world_declaration)
   (system_declaration)
+  (program)
+  (middleware)
+  (topic)
+  (service)
+  (action)
   (signal)
   (rule)
 ] @fold

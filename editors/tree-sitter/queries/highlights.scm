@@ -118,7 +118,20 @@
 (command name: (identifier) @function)
 (command primitive: (identifier) @function.builtin)
 (expectation measure: (identifier) @function.builtin)
+(system_declaration name: (identifier) @type)
 (system_declaration actor: (identifier) @type)
+(program name: (identifier) @type)
+(setting "messages" value: (string) @string.special.path)
+(topic name: (string) @string.special.path)
+(service name: (string) @string.special.path)
+(action name: (string) @string.special.path)
+(interface package: (identifier) @module)
+(interface kind: (identifier) @module)
+(interface name: (identifier) @type)
+(field_entry field: (identifier) @variable.member)
+(field_entry field: (path . (identifier) @variable.member))
+(field_entry field: (index_expression value: (identifier) @variable.member))
+(field_entry field: (index_expression value: (path . (identifier) @variable.member)))
 
 ; ── Names where they are used ──
 
@@ -129,6 +142,7 @@
 (template_type ["event" "actor" "cover" "agent"] @type.builtin)
 (call name: (identifier) @function.call)
 (rule command: (identifier) @function.method.call)
+(command_entry command: (identifier) @function.method.call)
 (call_expression function: (identifier) @function.call)
 (call_expression function: (path (identifier) @function.call .))
 (act_step action: (path (identifier) @function.method.call .))

@@ -13,6 +13,8 @@
   (world_body)
   (device_body)
   (system_body)
+  (binding_body)
+  (entries)
   (parameters)
   (arguments)
   (tuple)

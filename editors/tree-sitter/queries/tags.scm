@@ -19,7 +19,8 @@
 (suite_declaration name: (identifier) @name) @definition.class
 (test_declaration name: (_) @name) @definition.class
 (part_declaration name: (identifier) @name) @definition.class
-(system_declaration actor: (identifier) @name) @definition.class
+(system_declaration !name actor: (identifier) @name) @definition.class
+(system_declaration name: (identifier) @name) @definition.class
 
 (belief name: (identifier) @name) @definition.field
 (command name: (identifier) @name) @definition.method
@@ -35,6 +36,10 @@
 (current name: (identifier) @name) @definition.field
 (signal name: (identifier) @name) @definition.field
 (placement name: (identifier) @name) @definition.field
+(program name: (identifier) @name) @definition.field
+(topic name: (string (string_content) @name)) @definition.field
+(service name: (string (string_content) @name)) @definition.field
+(action name: (string (string_content) @name)) @definition.field
 
 ; Where they are used.
 
@@ -43,5 +48,6 @@
 (instance_declaration template: (identifier) @name) @reference.class
 (agent_declaration plays: (identifier) @name) @reference.interface
 (automaton_declaration plays: (identifier) @name) @reference.interface
+(system_declaration name: (_) actor: (identifier) @name) @reference.interface
 (party automaton: (identifier) @name) @reference.class
 (named_type name: (identifier) @name) @reference.type
