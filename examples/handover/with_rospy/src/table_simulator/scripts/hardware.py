@@ -8,10 +8,11 @@ import actionlib
 import moveit_commander
 import rospy
 from actionlib_msgs.msg import GoalStatus
+from control_msgs.msg import GripperCommandAction, GripperCommandGoal
 from std_msgs.msg import Empty, Float64
 from std_srvs.srv import Trigger
 
-from table_simulator.msg import GripAction, GripGoal, Readings, Voice
+from table_simulator.msg import Readings, Voice
 
 SET_POINT_RATE = 100  # Hz
 MAX_JOINT_SPEED = 1.0  # rad/s, as in joint_limits.yaml
@@ -21,6 +22,9 @@ ARRIVAL_TIMEOUT = 1.0  # s, from the last set-point
 PLACE_TOLERANCE = 0.005  # m
 JOINT_TOLERANCE = 0.01  # rad
 SETTLED_SPEED = 0.02  # rad/s
+
+GRIPPER_OPEN = 0.07  # m, between the fingers
+GRIPPER_CLOSED = 0.0
 
 
 class MotionError(Exception):
@@ -125,18 +129,22 @@ class Gripper(object):
     """The hand, as an action."""
 
     def __init__(self, action):
-        self.client = actionlib.SimpleActionClient(action, GripAction)
+        self.client = actionlib.SimpleActionClient(action, GripperCommandAction)
         self.client.wait_for_server()
 
     def open(self):
         """Whether the hand is open."""
-        self.client.send_goal_and_wait(GripGoal(close=False))
-        return self.client.get_state() == GoalStatus.SUCCEEDED
+        return self.command(GRIPPER_OPEN) == GoalStatus.SUCCEEDED
 
     def close(self):
-        """Whether the hand now holds something."""
-        self.client.send_goal_and_wait(GripGoal(close=True))
-        return self.client.get_result().holding
+        """Whether the hand now holds something: its fingers do not meet."""
+        self.command(GRIPPER_CLOSED)
+        return self.client.get_result().stalled
+
+    def command(self, position):
+        goal = GripperCommandGoal()
+        goal.command.position = position
+        return self.client.send_goal_and_wait(goal)
 
 
 class Inbox(object):

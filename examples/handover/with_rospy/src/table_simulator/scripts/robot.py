@@ -64,7 +64,7 @@ class Robot(object):
 
     def __init__(self):
         self.arm = Arm("body_arm")
-        self.gripper = Gripper("/gripper/grip")
+        self.gripper = Gripper("/gripper_controller/gripper_cmd")
         self.ears = Ears()
         self.sensors = Sensors()
         self.speech = rospy.Publisher("/robot/speech", String, queue_size=1, latch=True)
