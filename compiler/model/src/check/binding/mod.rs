@@ -115,14 +115,14 @@ impl<'a> Checker<'a> {
         let place = BindingPlace::input(topic.rate.is_some());
         let bound = self.entries(scope, place, Some(&message), Some(&message), &topic.entries)?;
         let said = bound.template.gaps.iter().any(|gap| gap.value.is_of_events());
-        if topic.rate.is_none() && topic.latched.is_none() && !said {
+        if topic.rate.is_none() && !topic.latched && !said {
             self.report(bindings::never_published(topic.name.span));
         }
         Some(TopicInput {
             topic: topic.name.text.clone(),
             interface: message.written(scope.library.version()),
             period: rate.map(|rate| nanos(1.0 / rate)),
-            latched: topic.latched.is_some(),
+            latched: topic.latched,
             message: bound.template,
             origin,
         })
