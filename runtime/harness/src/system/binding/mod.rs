@@ -227,7 +227,7 @@ impl<'p> BindingNode<'p> {
                     GapValue::Value { reads, .. } => {
                         reads.iter().any(|r| matches!(r, GapRead::Argument { event: of, .. } if *of == event))
                     }
-                    GapValue::Now => false,
+                    GapValue::Now | GapValue::Told { .. } | GapValue::Fixed(_) => false,
                 };
                 is_said |= speaks;
                 if speaks && let Some(held) = self.inputs.get_mut(at).and_then(|i| i.held.get_mut(place)) {
@@ -431,7 +431,11 @@ fn next_after(now: Nanos, sent: Option<Nanos>, period: Nanos) -> Nanos {
 fn held_until(message: &MessageTemplate, held: &[Option<Nanos>]) -> Option<Nanos> {
     let ends = message.gaps.iter().zip(held).filter_map(|(gap, since)| match &gap.value {
         GapValue::Held { time, .. } if *time > 0 => Some(since.as_ref()?.saturating_add(*time)),
-        GapValue::Held { .. } | GapValue::Value { .. } | GapValue::Now => None,
+        GapValue::Held { .. }
+        | GapValue::Value { .. }
+        | GapValue::Now
+        | GapValue::Told { .. }
+        | GapValue::Fixed(_) => None,
     });
     ends.min()
 }
