@@ -84,6 +84,20 @@ pub enum GapValue<E = Expr> {
     Value { value: E, reads: Vec<GapRead> },
     /// The time of the message, as clocks of the programs tell it.
     Now,
+    /// What a device tells of itself under a name, such as the `ranges` of a laser.
+    Told { device: DeviceId, what: String, numbers: ToldNumbers },
+    /// The same in every message, as JSON.
+    Fixed(String),
+}
+
+/// Which of the numbers that a device tells stand in a gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ToldNumbers {
+    /// All of them, as a sequence.
+    All,
+    /// The one at this place, counted from 0.
+    One(u16),
 }
 
 impl<E> GapValue<E> {
@@ -93,7 +107,7 @@ impl<E> GapValue<E> {
         match self {
             GapValue::Held { .. } => true,
             GapValue::Value { reads, .. } => reads.iter().any(|r| matches!(r, GapRead::Argument { .. })),
-            GapValue::Now => false,
+            GapValue::Now | GapValue::Told { .. } | GapValue::Fixed(_) => false,
         }
     }
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Unit,
-    world::{ArmId, DeviceCommandId, DeviceKindId, GripperId, SignalTerm, Vec3},
+    world::{ArmId, BaseId, DeviceCommandId, DeviceKindId, GripperId, LaserId, SignalTerm, Vec3},
 };
 
 /// What the world has of which devices can be made.
@@ -19,10 +19,13 @@ use crate::{
 pub enum DeviceSort {
     Arm,
     Gripper,
+    Base,
+    Laser,
 }
 
 impl DeviceSort {
-    pub const ALL: [DeviceSort; 2] = [DeviceSort::Arm, DeviceSort::Gripper];
+    pub const ALL: [DeviceSort; 4] =
+        [DeviceSort::Arm, DeviceSort::Gripper, DeviceSort::Base, DeviceSort::Laser];
 
     /// As the member of a world or part is written that makes one.
     #[must_use]
@@ -30,6 +33,8 @@ impl DeviceSort {
         match self {
             DeviceSort::Arm => "arm",
             DeviceSort::Gripper => "gripper",
+            DeviceSort::Base => "base",
+            DeviceSort::Laser => "laser",
         }
     }
 }
@@ -40,6 +45,8 @@ impl DeviceSort {
 pub enum DeviceBody {
     Arm(ArmId),
     Gripper(GripperId),
+    Base(BaseId),
+    Laser(LaserId),
 }
 
 impl DeviceBody {
@@ -48,6 +55,8 @@ impl DeviceBody {
         match self {
             DeviceBody::Arm(_) => DeviceSort::Arm,
             DeviceBody::Gripper(_) => DeviceSort::Gripper,
+            DeviceBody::Base(_) => DeviceSort::Base,
+            DeviceBody::Laser(_) => DeviceSort::Laser,
         }
     }
 }
@@ -197,7 +206,7 @@ impl DeviceMeasure {
     pub fn of(self, body: DeviceBody) -> Option<SignalTerm> {
         match (self, body) {
             (DeviceMeasure::Holds, DeviceBody::Gripper(gripper)) => Some(SignalTerm::HoldsAny(gripper)),
-            (DeviceMeasure::Holds, DeviceBody::Arm(_)) => None,
+            (DeviceMeasure::Holds, DeviceBody::Arm(_) | DeviceBody::Base(_) | DeviceBody::Laser(_)) => None,
         }
     }
 }
@@ -220,6 +229,10 @@ pub enum DevicePrimitive {
     CloseFingers,
     /// A gripper opens; what was held is let go.
     OpenFingers,
+    /// A base drives at a speed from now on, as one set-point of a stream.
+    DriveWheels,
+    /// A base comes to a stop.
+    StopWheels,
 }
 
 /// A parameter that a primitive takes.
@@ -241,6 +254,12 @@ const TIMES: &str = "times";
 const JOINT: &str = "joint";
 /// No joint goes faster.
 const SPEED: &str = "speed";
+/// How fast along the way the base looks.
+const FORWARD: &str = "forward";
+/// How fast about the vertical, to the left.
+const TURN: &str = "turn";
+/// How fast to the left, without turning.
+const SIDEWAYS: &str = "sideways";
 
 const fn param(name: &'static str, unit: Unit, count: NumberCount, optional: bool) -> PrimitiveParam {
     PrimitiveParam { name, ty: CommandType { unit, count }, optional }
@@ -249,7 +268,7 @@ const fn param(name: &'static str, unit: Unit, count: NumberCount, optional: boo
 const JOINT_SPEED: PrimitiveParam = param(SPEED, Unit::RadianPerSecond, NumberCount::One, true);
 
 impl DevicePrimitive {
-    pub const ALL: [DevicePrimitive; 7] = [
+    pub const ALL: [DevicePrimitive; 9] = [
         DevicePrimitive::ReachPoint,
         DevicePrimitive::ReachJoints,
         DevicePrimitive::FollowJoints,
@@ -257,6 +276,8 @@ impl DevicePrimitive {
         DevicePrimitive::StopJoints,
         DevicePrimitive::CloseFingers,
         DevicePrimitive::OpenFingers,
+        DevicePrimitive::DriveWheels,
+        DevicePrimitive::StopWheels,
     ];
 
     /// As it is written after `do`.
@@ -270,6 +291,8 @@ impl DevicePrimitive {
             DevicePrimitive::StopJoints => "stop_joints",
             DevicePrimitive::CloseFingers => "close_fingers",
             DevicePrimitive::OpenFingers => "open_fingers",
+            DevicePrimitive::DriveWheels => "drive_wheels",
+            DevicePrimitive::StopWheels => "stop_wheels",
         }
     }
 
@@ -288,6 +311,7 @@ impl DevicePrimitive {
             | DevicePrimitive::AimJoint
             | DevicePrimitive::StopJoints => DeviceSort::Arm,
             DevicePrimitive::CloseFingers | DevicePrimitive::OpenFingers => DeviceSort::Gripper,
+            DevicePrimitive::DriveWheels | DevicePrimitive::StopWheels => DeviceSort::Base,
         }
     }
 
@@ -316,12 +340,25 @@ impl DevicePrimitive {
                     ]
                 }
             }
-            DevicePrimitive::StopJoints | DevicePrimitive::CloseFingers | DevicePrimitive::OpenFingers => &[],
+            DevicePrimitive::DriveWheels => {
+                const {
+                    &[
+                        param(FORWARD, Unit::MetrePerSecond, NumberCount::One, false),
+                        param(TURN, Unit::RadianPerSecond, NumberCount::One, false),
+                        param(SIDEWAYS, Unit::MetrePerSecond, NumberCount::One, true),
+                    ]
+                }
+            }
+            DevicePrimitive::StopJoints
+            | DevicePrimitive::CloseFingers
+            | DevicePrimitive::OpenFingers
+            | DevicePrimitive::StopWheels => &[],
         }
     }
 
     fn call<'a>(self, arg: &dyn Fn(&str) -> Option<&'a [f64]>) -> Option<PrimitiveCall> {
-        let speed = || arg(SPEED).and_then(|numbers| numbers.first().copied());
+        let one = |name: &str| arg(name).and_then(|numbers| numbers.first().copied());
+        let speed = || one(SPEED);
         Some(match self {
             DevicePrimitive::ReachPoint => {
                 PrimitiveCall::ReachPoint { to: arg(TO)?.try_into().ok()?, speed: speed() }
@@ -333,12 +370,16 @@ impl DevicePrimitive {
                 positions: arg(POSITIONS)?.to_vec(),
                 times: arg(TIMES)?.to_vec(),
             },
-            DevicePrimitive::AimJoint => {
-                PrimitiveCall::AimJoint { joint: *arg(JOINT)?.first()?, to: *arg(TO)?.first()? }
-            }
+            DevicePrimitive::AimJoint => PrimitiveCall::AimJoint { joint: one(JOINT)?, to: one(TO)? },
             DevicePrimitive::StopJoints => PrimitiveCall::StopJoints,
             DevicePrimitive::CloseFingers => PrimitiveCall::CloseFingers,
             DevicePrimitive::OpenFingers => PrimitiveCall::OpenFingers,
+            DevicePrimitive::DriveWheels => PrimitiveCall::DriveWheels {
+                forward: one(FORWARD)?,
+                sideways: one(SIDEWAYS).unwrap_or(0.0),
+                turn: one(TURN)?,
+            },
+            DevicePrimitive::StopWheels => PrimitiveCall::StopWheels,
         })
     }
 }
@@ -367,6 +408,13 @@ pub enum PrimitiveCall {
     StopJoints,
     CloseFingers,
     OpenFingers,
+    /// Forward and to the left, m/s; about the vertical, to the left, rad/s.
+    DriveWheels {
+        forward: f64,
+        sideways: f64,
+        turn: f64,
+    },
+    StopWheels,
 }
 
 #[cfg(test)]

@@ -30,6 +30,10 @@ ids! {
     ArmId,
     /// Index into [`World::grippers`].
     GripperId,
+    /// Index into [`World::bases`].
+    BaseId,
+    /// Index into [`World::lasers`].
+    LaserId,
     /// Index into [`World::devices`].
     DeviceId,
     /// Index into [`World::device_kinds`].
@@ -55,7 +59,9 @@ pub struct World {
     pub joints: Vec<Joint>,
     pub arms: Vec<Arm>,
     pub grippers: Vec<Gripper>,
-    /// What the system can command: the arms, then the grippers.
+    pub bases: Vec<Base>,
+    pub lasers: Vec<Laser>,
+    /// What the system can command or read: the arms, then the grippers, the bases, the lasers.
     pub devices: Vec<Device>,
     /// What it can tell them.
     pub device_kinds: Vec<DeviceKind>,
@@ -177,6 +183,48 @@ pub struct Gripper {
     pub delay: Nanos,
     /// What it can hold.
     pub holds: Vec<BodyId>,
+}
+
+/// A kinematic body that drives on a level plane, with all that is joined to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Base {
+    pub name: String,
+    pub body: BodyId,
+    /// Forward and backward, m/s.
+    pub max_speed: f64,
+    /// To either side without turning, m/s; 0 of a base that cannot.
+    pub max_sideways: f64,
+    /// About the vertical, rad/s.
+    pub max_turn: f64,
+    /// Of the speed along the plane, m/s². The turn rate comes to its limit in the time in which the speed comes to its own.
+    pub acceleration: f64,
+    /// How long a set-point is in force; `None`: until the next.
+    pub timeout: Option<Nanos>,
+}
+
+/// A planar laser scanner: beams in the plane through its place, level in the frame of its body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Laser {
+    pub name: String,
+    pub body: BodyId,
+    /// Where the beams begin, in the body's own frame, m.
+    pub at: Vec3,
+    /// The angles of the first and the last beam from the body's x axis, to the left about its z axis, rad.
+    pub lo: f64,
+    pub hi: f64,
+    /// How many beams there are, at even angles.
+    pub beams: u16,
+    /// The nearest and the farthest surface that is measured, m.
+    pub nearest: f64,
+    pub farthest: f64,
+}
+
+impl Laser {
+    /// The angle from one beam to the next, rad; 0 of a single beam.
+    #[must_use]
+    pub fn increment(&self) -> f64 {
+        if self.beams < 2 { 0.0 } else { (self.hi - self.lo) / f64::from(self.beams - 1) }
+    }
 }
 
 /// A name for one of several bodies: the one that the gripper holds; or, if none, the first that no gripper has yet

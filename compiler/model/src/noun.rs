@@ -64,7 +64,9 @@ pub(crate) enum Noun {
     Joint,
     Arm,
     Gripper,
-    /// An arm or gripper.
+    Base,
+    Laser,
+    /// Any of these four.
     Device,
     /// Of which devices are.
     DeviceKind,
@@ -117,7 +119,6 @@ impl Noun {
             Noun::Cross => "cross products".to_owned(),
             Noun::Motion => "kinds of body".to_owned(),
             Noun::DeviceKind => "kinds of device".to_owned(),
-            Noun::Device => "arms and grippers".to_owned(),
             Noun::DeviceMeasure => "measurements of this kind of device".to_owned(),
             Noun::PartInstance => "parts of the world".to_owned(),
             Noun::Coordinate
@@ -155,6 +156,9 @@ impl Noun {
             | Noun::Joint
             | Noun::Arm
             | Noun::Gripper
+            | Noun::Base
+            | Noun::Laser
+            | Noun::Device
             | Noun::Command
             | Noun::Primitive
             | Noun::Current
@@ -230,7 +234,9 @@ impl fmt::Display for Noun {
             Noun::Joint => "joint",
             Noun::Arm => "arm",
             Noun::Gripper => "gripper",
-            Noun::Device => "arm or gripper",
+            Noun::Base => "base",
+            Noun::Laser => "laser",
+            Noun::Device => "device",
             Noun::DeviceKind => "kind of device",
             Noun::Command => "command",
             Noun::Primitive => "primitive",

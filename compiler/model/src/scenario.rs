@@ -31,8 +31,8 @@ pub use hrdsl_ir::{
     },
     test::{Test, TestStep},
     world::{
-        ArmId, Axis, BodyId, BodyMotion, BodyRef, BodyShape, CurrentBody, CurrentId, GripperId, JointId,
-        SignalId, SignalTerm,
+        ArmId, Axis, BaseId, BodyId, BodyMotion, BodyRef, BodyShape, CurrentBody, CurrentId, GripperId,
+        JointId, LaserId, SignalId, SignalTerm,
     },
 };
 

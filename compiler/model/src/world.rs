@@ -21,6 +21,8 @@ pub struct TypedWorld {
     pub joints: Vec<TypedJoint>,
     pub arms: Vec<TypedArm>,
     pub grippers: Vec<TypedGripper>,
+    pub bases: Vec<TypedBase>,
+    pub lasers: Vec<TypedLaser>,
     pub currents: Vec<CurrentBody>,
     pub signals: Vec<TypedSignal>,
     pub rules: Vec<TypedWorldRule>,
@@ -31,14 +33,16 @@ pub struct TypedWorld {
 }
 
 impl TypedWorld {
-    /// A device's place among all of the world: the arms, then the grippers.
+    /// A device's place among all of the world: the arms, then the grippers, the bases, the lasers.
     #[must_use]
     pub fn device_id(&self, body: DeviceBody) -> DeviceId {
-        let arms = u16::try_from(self.arms.len()).unwrap_or(u16::MAX);
-        DeviceId(match body {
-            DeviceBody::Arm(arm) => arm.0,
-            DeviceBody::Gripper(gripper) => arms.saturating_add(gripper.0),
-        })
+        let (before, own) = match body {
+            DeviceBody::Arm(arm) => (0, arm.0),
+            DeviceBody::Gripper(gripper) => (self.arms.len(), gripper.0),
+            DeviceBody::Base(base) => (self.arms.len() + self.grippers.len(), base.0),
+            DeviceBody::Laser(laser) => (self.arms.len() + self.grippers.len() + self.bases.len(), laser.0),
+        };
+        DeviceId(u16::try_from(before).unwrap_or(u16::MAX).saturating_add(own))
     }
 }
 
@@ -103,6 +107,34 @@ pub struct TypedGripper {
     pub reach: f64,
     /// Seconds.
     pub delay: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TypedBase {
+    pub name: String,
+    pub body: BodyId,
+    /// m/s
+    pub speed: f64,
+    /// m/s; 0 of a base that cannot.
+    pub sideways: f64,
+    /// rad/s
+    pub turn: f64,
+    /// m/s²
+    pub acceleration: f64,
+    /// Seconds.
+    pub timeout: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TypedLaser {
+    pub name: String,
+    pub body: BodyId,
+    pub at: [f64; 3],
+    /// rad
+    pub angles: (f64, f64),
+    pub beams: u16,
+    /// m
+    pub range: (f64, f64),
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -82,6 +82,10 @@ fn template(t: &MessageTemplate<TypedExpr>, signals: &mut SignalTable<'_>) -> Me
         value: match &gap.value {
             GapValue::Held { events, time } => GapValue::Held { events: events.clone(), time: *time },
             GapValue::Now => GapValue::Now,
+            GapValue::Told { device, what, numbers } => {
+                GapValue::Told { device: *device, what: what.clone(), numbers: *numbers }
+            }
+            GapValue::Fixed(json) => GapValue::Fixed(json.clone()),
             GapValue::Value { value, reads } => read_value(value, reads, signals),
         },
         scalar: gap.scalar,

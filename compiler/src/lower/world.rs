@@ -5,8 +5,8 @@ use hrdsl_ir::{
     device::{Device, DeviceBody, DeviceKind},
     value::nanos,
     world::{
-        Arm, ArmId, Axis, Body, BodyId, BodyRef, DeviceKindId, Gripper, GripperId, Joint, RuleTrigger,
-        Signal, SignalId, SignalTerm, World, WorldRule,
+        Arm, ArmId, Axis, Base, BaseId, Body, BodyId, BodyRef, DeviceKindId, Gripper, GripperId, Joint,
+        Laser, LaserId, RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
     },
 };
 use hrdsl_model::{self as model, VariableRef, world as from};
@@ -39,6 +39,8 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         joints: w.joints.iter().map(joint).collect(),
         arms: w.arms.iter().map(arm).collect(),
         grippers: w.grippers.iter().map(gripper).collect(),
+        bases: w.bases.iter().map(base).collect(),
+        lasers: w.lasers.iter().map(laser).collect(),
         currents: w.currents.clone(),
         devices: devices(w, kinds),
         device_kinds: kinds.to_vec(),
@@ -47,16 +49,35 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
     }
 }
 
-/// The arms, then the grippers.
+/// The arms, then the grippers, the bases, the lasers.
 fn devices(w: &from::TypedWorld, kinds: &[DeviceKind]) -> Vec<Device> {
     let arms = (0..).zip(&w.arms).map(|(i, a)| (&a.name, DeviceBody::Arm(ArmId(i))));
     let grippers = (0..).zip(&w.grippers).map(|(i, g)| (&g.name, DeviceBody::Gripper(GripperId(i))));
+    let bases = (0..).zip(&w.bases).map(|(i, b)| (&b.name, DeviceBody::Base(BaseId(i))));
+    let lasers = (0..).zip(&w.lasers).map(|(i, l)| (&l.name, DeviceBody::Laser(LaserId(i))));
     let device = |(name, body): (&String, DeviceBody)| {
         let kind = kinds.iter().position(|kind| kind.sort == body.sort())?;
         let kind = DeviceKindId(u16::try_from(kind).ok()?);
         Some(Device { name: name.clone(), kind, body })
     };
-    arms.chain(grippers).filter_map(device).collect()
+    arms.chain(grippers).chain(bases).chain(lasers).filter_map(device).collect()
+}
+
+fn base(b: &from::TypedBase) -> Base {
+    Base {
+        name: b.name.clone(),
+        body: b.body,
+        max_speed: b.speed,
+        max_sideways: b.sideways,
+        max_turn: b.turn,
+        acceleration: b.acceleration,
+        timeout: b.timeout.map(nanos),
+    }
+}
+
+fn laser(l: &from::TypedLaser) -> Laser {
+    let ((lo, hi), (nearest, farthest)) = (l.angles, l.range);
+    Laser { name: l.name.clone(), body: l.body, at: l.at, lo, hi, beams: l.beams, nearest, farthest }
 }
 
 /// In world coordinates: a turn about the vertical adds to the yaw, which is applied last.

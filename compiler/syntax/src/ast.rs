@@ -966,6 +966,8 @@ pub enum WorldMemberKind {
         reach: ExprSyntax,
         delay: ExprSyntax,
     },
+    Base(BaseSyntax),
+    Laser(LaserSyntax),
     /// `current leg in leg1, leg2 by robot.grip`
     Current {
         name: NameSyntax,
@@ -998,6 +1000,32 @@ pub struct BodySyntax {
     pub mass: Option<ExprSyntax>,
     pub ghost: bool,
     pub graspable: bool,
+}
+
+/// `base b: platform speed 0.5 m/s turn 1 rad/s acceleration 1 m/s^2`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BaseSyntax {
+    pub name: NameSyntax,
+    pub body: NameSyntax,
+    pub speed: ExprSyntax,
+    /// `sideways 0.3 m/s`: without turning, after `speed`
+    pub sideways: Option<ExprSyntax>,
+    pub turn: ExprSyntax,
+    pub acceleration: ExprSyntax,
+    /// `timeout 500 ms`: how long a set-point is in force, at the end
+    pub timeout: Option<ExprSyntax>,
+}
+
+/// `laser l: mast at (0 m, 0 m, 20 cm) angles -135 deg .. 135 deg beams 271 range 5 cm .. 10 m`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LaserSyntax {
+    pub name: NameSyntax,
+    pub body: NameSyntax,
+    /// In the body's own frame.
+    pub at: ExprSyntax,
+    pub angles: RangeSyntax,
+    pub beams: ExprSyntax,
+    pub range: RangeSyntax,
 }
 
 /// `on e(args) when c emit f(args)`, `on close robot.grip emit f`

@@ -53,7 +53,9 @@ pub struct TopicInSyntax {
     pub interface: InterfaceSyntax,
     /// `at 10 Hz`
     pub rate: Option<ExprSyntax>,
-    pub latched: Option<Span>,
+    /// `from robot.laser`: the device that tells what is in it
+    pub from: Option<PathSyntax>,
+    pub latched: bool,
     pub entries: Vec<BindingEntry>,
 }
 

@@ -627,6 +627,10 @@ part p(n:0..4){
   arm a:j,k tip palm tool(8cm,0m,0m)speed 0.2rad/s
   arm arm: hip_rotor, hip_flexor, shoulder_flexor, shoulder_abduction, humeral_rotation, elbow_flexor, wrist_pronation, wrist_abduction tip palm tool (8 cm, 0 cm, 0 cm) speed 0.2 rad/s
   gripper g:palm tool(8cm,0m,0m)reach 4cm delay 500ms
+  base b:palm speed 1m/s turn 1rad/s acceleration 1m/s^2
+  base wheels: the_platform_of_it speed 0.5 m/s sideways 0.25 m/s turn 90 deg/s acceleration 0.5 m/s^2 timeout 500 ms
+  laser l:palm at(0m,0m,0m)angles-90deg..90deg beams 181 range 5cm..10m
+  laser scanner: the_platform_of_it at (20 cm, 0 m, 0.5 * height) angles -135 deg .. 135 deg beams 271 range 5 cm .. 10 m
 }
 world{
 
@@ -654,9 +658,18 @@ command close do close_fingers expect holds else"the gripper closed on nothing"
   command open do   open_fingers expect not holds else "the gripper still holds something, and this is a long line";command wave do wave
 
 }
+device laser{}
 device arm{ command go ( to:length [3] ? ,speed : angular_speed ? )do reach_point
 command turn(to:[angle],speed:angular_speed)
   do reach_joints }
+"#
+    bindings r#"
+system robot{run"python3 robot.py" ros1{
+topic "/cmd_vel":geometry_msgs/Twist out drives robot.base
+topic"/scan":sensor_msgs/LaserScan in at 10Hz from robot.laser{header.frame_id="front_laser"}
+  topic "/joint_states" : sensor_msgs/JointState in at 20 Hz from robot.arm latched
+  topic "/a_topic_with_a_long_name/in_a_name_space" : nav_msgs/Odometry in at 20 Hz from a_part.of_the_robot.base latched
+}}
 "#
     functions r#"
 fn front()->0..4{return q[0]}

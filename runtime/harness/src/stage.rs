@@ -4,7 +4,7 @@ use hrdsl_ir::{
     EventId, EventPattern, Nanos, Program, Value,
     device::Device,
     expr::Expr,
-    world::{RuleTrigger, SignalId, Vec3, WorldAction, WorldRule},
+    world::{DeviceId, RuleTrigger, SignalId, Vec3, WorldAction, WorldRule},
 };
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
@@ -114,8 +114,19 @@ impl<'p> WorldStage<'p> {
         let found = self.device(device)?;
         self.world.state(found.body, what).ok_or_else(|| NotBegun::Refused {
             error: format!("`{device}` cannot tell its `{what}`"),
-            help: Some("an arm can tell `joints`, `speeds` and `tool`, a gripper nothing".to_owned()),
+            help: Some(
+                "an arm can tell `joints`, `speeds` and `tool`, a base `pose`, `orientation` and `velocity`, a laser \
+                 `ranges`, `angles` and `limits`, a gripper nothing"
+                    .to_owned(),
+            ),
         })
+    }
+
+    /// The same, of a device of the program by its number; `None`: it cannot tell this.
+    #[must_use]
+    pub fn told(&self, device: DeviceId, what: &str) -> Option<Vec<f64>> {
+        let device = self.declared?.devices.get(usize::from(device.0))?;
+        self.world.state(device.body, what)
     }
 
     /// The angles at which an arm's tool would be at a place.

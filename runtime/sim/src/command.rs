@@ -1,6 +1,6 @@
-//! What the system actor can ask of its arms and hands.
+//! What the system actor can ask of its arms, hands and bases.
 
-use hrdsl_ir::world::{ArmId, GripperId, Vec3};
+use hrdsl_ir::world::{ArmId, BaseId, GripperId, Vec3};
 
 /// A request to a motor or hand. It takes time; its end is told by [`Sim::finished`](crate::Sim::finished).
 #[derive(Clone, Debug, PartialEq)]
@@ -24,4 +24,8 @@ pub enum MotorCommand {
     OpenFingers { gripper: GripperId },
     /// After the hand's delay, takes the nearest body in reach. That there is none is not an error: ask whether it holds.
     CloseFingers { gripper: GripperId },
+    /// Lets a base drive from now on: forward and to the left (m/s), and about the vertical, to the left (rad/s).
+    DriveWheels { base: BaseId, forward: f64, sideways: f64, turn: f64 },
+    /// Brakes a base until it stands.
+    StopWheels { base: BaseId },
 }

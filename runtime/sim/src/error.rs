@@ -17,7 +17,7 @@ pub enum SimError {
     BadChild { joint: String },
     #[error("the gripper `{gripper}` cannot hold `{body}`, which is not a free dynamic body")]
     NotHoldable { gripper: String, body: String },
-    #[error("the body `{body}` is not kinematic, so that it cannot be moved by an action")]
+    #[error("the body `{body}` is not kinematic, so that neither an action nor a base moves it")]
     NotKinematic { body: String },
     #[error("{what} has no value: {error}")]
     Eval { what: String, error: EvalError },
@@ -30,6 +30,8 @@ pub enum CommandError {
     NoSuchArm,
     #[error("there is no such gripper")]
     NoSuchGripper,
+    #[error("there is no such base")]
+    NoSuchBase,
     /// Metres from the nearest place that the planner found.
     #[error("the place is out of reach, by {distance:.3} m")]
     Unreachable { distance: f64 },
@@ -50,7 +52,7 @@ pub enum CommandError {
     /// Something is in the way: metres from the place when the controller gave up.
     #[error("the arm did not arrive: it stopped {distance:.3} m from the place")]
     Missed { distance: f64 },
-    /// A later command to the same arm or gripper took its place.
+    /// A later command to the same device took its place.
     #[error("the command was replaced by a later one")]
     Replaced,
 }

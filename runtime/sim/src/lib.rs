@@ -1,4 +1,4 @@
-//! The physics world: bodies, arms, hands and sensors from data, stepped in simulated time.
+//! The physics world: bodies, devices and sensors from data, stepped in simulated time.
 //!
 //! # Steps
 //! 1. [`WorldSimulation::new`] builds the world of a scenario.
@@ -13,6 +13,7 @@
 //! - A hand that closes fixes what it takes by a rigid joint instead of by friction, where it is.
 //! - An arm touches neither itself nor people; palms do not touch what hands can hold. The planner knows no obstacles.
 //! - People are kinematic: nothing pushes them.
+//! - A base is kinematic: it drives as it is told, pushes what is loose, and stops before what is fixed.
 //! - A body farther than 20 m from the origin is lost, and stops there.
 //!
 //! # Determinism
@@ -22,28 +23,35 @@
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod arm;
+mod base;
 mod command;
 mod error;
 mod hand;
 mod kinematics;
+mod laser;
 mod math;
 mod mover;
 mod physics;
 mod profile;
+mod report;
+#[cfg(test)]
+mod samples;
 mod sense;
 mod world;
 
 use hrdsl_ir::world::{
-    ArmId, BodyId, BodyMotion, GripperId, Signal, SignalId, SignalTerm, Vec3, World, WorldAction, WorldPoint,
+    ArmId, BaseId, BodyId, BodyMotion, GripperId, Signal, SignalId, SignalTerm, Vec3, World, WorldAction,
+    WorldPoint,
 };
 use hrdsl_ir::{Expr, Nanos, Value};
 
 use arm::ArmControl;
+use base::{BaseControl, PlanarVelocity};
 pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
 use hand::HandSet;
 pub use hrdsl_harness::CommandId;
-use math::{BodyFrame, SpaceVector, arr};
+use math::{BodyFrame, SpaceVector};
 use mover::KinematicPath;
 use physics::{PhysicsAdapter, bad, index};
 use sense::SensorView;
@@ -59,6 +67,7 @@ pub struct WorldSimulation {
     physics: PhysicsAdapter,
     arms: Vec<ArmControl>,
     hands: HandSet,
+    bases: Vec<BaseControl>,
     /// By body.
     paths: Vec<Option<KinematicPath>>,
     now: Nanos,
@@ -92,6 +101,9 @@ impl WorldSimulation {
         let arms = world.arms.iter().map(|a| ArmControl::new(a, world, &physics));
         let arms = arms.collect::<Result<Vec<_>, _>>()?;
         let hands = HandSet::new(world, &physics)?;
+        let bases = world.bases.iter().map(|b| BaseControl::new(b, world, &physics));
+        let bases = bases.collect::<Result<Vec<_>, _>>()?;
+        world.lasers.iter().try_for_each(|laser| laser::check(laser, world))?;
         Ok(WorldSimulation {
             paths: vec![None; world.bodies.len()],
             world: world.clone(),
@@ -99,6 +111,7 @@ impl WorldSimulation {
             physics,
             arms,
             hands,
+            bases,
             now: 0,
             last: 0,
             next: Some(world.step),
@@ -132,6 +145,13 @@ impl WorldSimulation {
         for arm in &mut self.arms {
             arm.drive(self.last, next, &mut self.physics);
         }
+        for base in &mut self.bases {
+            // An action moves the body in its stead.
+            match &self.paths[index(base.body)] {
+                Some(path) => base.carried(&path.at(next)),
+                None => base.go_on(self.last, next, &mut self.physics),
+            }
+        }
         for (i, slot) in self.paths.iter_mut().enumerate() {
             if let Some(path) = slot {
                 self.physics.lead(physics::body_id(i), &path.at(next));
@@ -147,12 +167,14 @@ impl WorldSimulation {
             self.finished.extend(arm.check_arrival(next, &self.physics));
         }
         self.hands.update(next, &mut self.physics, &mut self.finished);
+        self.finished.extend(self.bases.iter_mut().filter_map(BaseControl::check_stopped));
         self.rest_or_go_on(next);
     }
 
     fn rest_or_go_on(&mut self, at: Nanos) {
         let busy = self.arms.iter().any(ArmControl::is_busy)
             || self.hands.is_busy()
+            || self.bases.iter().any(|base| base.is_busy(at))
             || self.paths.iter().any(Option::is_some);
         self.quiet = if busy || !self.physics.is_quiet() { 0 } else { self.quiet + self.world.step };
         if self.quiet >= REST_AFTER {
@@ -269,10 +291,10 @@ impl WorldSimulation {
 
     // ── The system actor ──
 
-    /// Begins a command of the system actor; one to the same arm or gripper that is still under way is replaced.
+    /// Begins a command of the system actor; one to the same device that is still under way is replaced.
     ///
     /// # Errors
-    /// If it cannot be begun: out of reach, beyond the limits, not a number, no such arm or gripper.
+    /// If it cannot be begun: out of reach, beyond the limits, not a number, no such device.
     pub fn command(&mut self, command: MotorCommand) -> Result<CommandId, CommandError> {
         let id = CommandId(self.commands);
         let replaced = match command {
@@ -316,6 +338,16 @@ impl WorldSimulation {
                 let hand = self.hand(gripper).ok_or(CommandError::NoSuchGripper)?;
                 self.hands.close(hand, self.now, Some(id), false)
             }
+            MotorCommand::DriveWheels { base, forward, sideways, turn } => {
+                let now = self.now;
+                let replaced = self.base_mut(base)?.drive(now, PlanarVelocity { forward, sideways, turn })?;
+                self.finished.push((id, Ok(())));
+                replaced
+            }
+            MotorCommand::StopWheels { base } => {
+                let now = self.now;
+                self.base_mut(base)?.stop(now, id)
+            }
         };
         self.commands += 1;
         self.replaced(replaced);
@@ -338,45 +370,12 @@ impl WorldSimulation {
         Some(usize::from(gripper.0)).filter(|at| *at < self.hands.count())
     }
 
+    fn base_mut(&mut self, base: BaseId) -> Result<&mut BaseControl, CommandError> {
+        self.bases.get_mut(usize::from(base.0)).ok_or(CommandError::NoSuchBase)
+    }
+
     fn replaced(&mut self, id: Option<CommandId>) {
         self.finished.extend(id.map(|id| (id, Err(CommandError::Replaced))));
-    }
-
-    /// The commands that have ended since the last call, in the order in which they did (arms before hands).
-    pub fn finished(&mut self) -> Vec<(CommandId, Result<(), CommandError>)> {
-        std::mem::take(&mut self.finished)
-    }
-
-    // ── For reports ──
-
-    /// `robot.arm`
-    #[must_use]
-    pub fn arm_named(&self, name: &str) -> Option<ArmId> {
-        id(self.arms.iter().position(|a| a.name == name)).map(ArmId)
-    }
-
-    /// `robot.grip`
-    #[must_use]
-    pub fn gripper_named(&self, name: &str) -> Option<GripperId> {
-        id(self.hands.named(name)).map(GripperId)
-    }
-
-    /// `robot.palm`
-    #[must_use]
-    pub fn body_named(&self, name: &str) -> Option<BodyId> {
-        id(self.world.bodies.iter().position(|b| b.name == name)).map(BodyId)
-    }
-
-    /// The measured angles of an arm's joints, rad; empty if there is no such arm.
-    #[must_use]
-    pub fn joint_positions(&self, arm: ArmId) -> Vec<f64> {
-        self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.positions(&self.physics))
-    }
-
-    /// Their measured speeds, rad/s.
-    #[must_use]
-    pub fn joint_speeds(&self, arm: ArmId) -> Vec<f64> {
-        self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.speeds(&self.physics))
     }
 
     /// The angles at which an arm's tool would be at a place in the world (m).
@@ -392,39 +391,10 @@ impl WorldSimulation {
         self.arms[at].plan(self.now, local)
     }
 
-    /// Where an arm's tool point is (m), and how its tip is turned: a unit quaternion x, y, z, w.
-    #[must_use]
-    pub fn tool_pose(&self, arm: ArmId) -> Option<[f64; 7]> {
-        let [x, y, z] = self.tool(arm)?;
-        let tip = self.world.arms.get(usize::from(arm.0))?.tip;
-        let (_, [i, j, k, w]) = self.pose(tip)?;
-        Some([x, y, z, i, j, k, w])
+    /// The commands that have ended since the last call, in the order in which they did (arms before hands, hands before bases).
+    pub fn finished(&mut self) -> Vec<(CommandId, Result<(), CommandError>)> {
+        std::mem::take(&mut self.finished)
     }
-
-    /// Where an arm's tool point is, m.
-    #[must_use]
-    pub fn tool(&self, arm: ArmId) -> Option<Vec3> {
-        Some(arr(self.arms.get(usize::from(arm.0))?.tool_at(&self.physics)))
-    }
-
-    /// What a gripper holds.
-    #[must_use]
-    pub fn holding(&self, gripper: GripperId) -> Option<BodyId> {
-        self.hands.held_by(self.hand(gripper)?)
-    }
-
-    /// A body's centre (m) and rotation, a unit quaternion x, y, z, w.
-    #[must_use]
-    pub fn pose(&self, body: BodyId) -> Option<(Vec3, [f64; 4])> {
-        self.world.bodies.get(index(body))?;
-        let frame = self.physics.pose(body);
-        let q = frame.turn;
-        Some((arr(frame.at), [q.i, q.j, q.k, q.w]))
-    }
-}
-
-fn id(at: Option<usize>) -> Option<u16> {
-    at.and_then(|at| u16::try_from(at).ok())
 }
 
 fn no_gripper(gripper: GripperId) -> SimError {

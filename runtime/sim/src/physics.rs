@@ -2,9 +2,10 @@
 //!
 //! A joint whose limits are both zero joins its child rigidly: the two are one body of the engine, with two shapes.
 
+mod surface;
+
 use hrdsl_ir::value::seconds;
 use hrdsl_ir::world::{Body, BodyId, BodyMotion, BodyShape, Joint, World};
-use rapier3d::parry;
 use rapier3d::prelude::*;
 
 use crate::{
@@ -222,51 +223,6 @@ impl PhysicsAdapter {
     pub fn speed(&self, body: BodyId) -> f64 {
         let centre = to_vector(self.pose(body).at);
         from_vector(self.world.bodies[self.parts[index(body)].handle].velocity_at_point(centre)).norm()
-    }
-
-    /// Between the surfaces; 0 if they touch or overlap.
-    pub fn distance(&self, a: BodyId, b: BodyId) -> f64 {
-        let (pa, pb) = (to_pose(&self.pose(a)), to_pose(&self.pose(b)));
-        // The engine knows how to measure between all shapes that a scenario can name.
-        parry::query::distance(&pa, self.shape(a), &pb, self.shape(b))
-            .map_or(f64::NAN, |d| f64::from(d.distance))
-    }
-
-    /// From a point to the body's surface; 0 within.
-    pub fn distance_to_point(&self, body: BodyId, point: SpaceVector) -> f64 {
-        f64::from(self.shape(body).distance_to_point(&to_pose(&self.pose(body)), to_vector(point), true))
-    }
-
-    fn shape(&self, body: BodyId) -> &dyn parry::shape::Shape {
-        self.world.colliders[self.parts[index(body)].collider].shape()
-    }
-
-    /// Whether a straight line from the centre of `a` meets `b` before any other solid body.
-    pub fn visible(&self, a: BodyId, b: BodyId) -> bool {
-        let from = self.pose(a).at;
-        let there = self.pose(b);
-        let third = there.turn * (half_length(self.parts[index(b)].shape) / 3.0);
-        [SpaceVector::zeros(), third, -third]
-            .iter()
-            .any(|offset| self.line_reaches(a, from, b, there.at + offset))
-    }
-
-    fn line_reaches(&self, a: BodyId, from: SpaceVector, b: BodyId, to: SpaceVector) -> bool {
-        let ray = Ray::new(to_vector(from), to_vector(to - from));
-        let Some(hit) = self.cast(b, &ray, 1.0) else { return false };
-        let own = self.root(a);
-        (0..self.parts.len()).all(|i| {
-            let part = &self.parts[i];
-            let other = body_id(i);
-            other == b
-                || part.ghost
-                || part.root == own
-                || self.cast(other, &ray, hit).is_none_or(|t| t >= hit)
-        })
-    }
-
-    fn cast(&self, body: BodyId, ray: &Ray, far: f32) -> Option<f32> {
-        self.shape(body).cast_ray(&to_pose(&self.pose(body)), ray, far, true)
     }
 
     /// A kinematic body will be there at the end of the next step.
@@ -490,24 +446,6 @@ fn shape_of(body: &Body) -> Result<SharedShape, SimError> {
 }
 
 const SQRT_HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
-
-/// From the centre to an end, along the longest axis.
-fn half_length(shape: BodyShape) -> SpaceVector {
-    match shape {
-        BodyShape::Box { size: [x, y, z] } => {
-            if x >= y && x >= z {
-                SpaceVector::x() * (x / 2.0)
-            } else if y >= z {
-                SpaceVector::y() * (y / 2.0)
-            } else {
-                SpaceVector::z() * (z / 2.0)
-            }
-        }
-        BodyShape::Sphere { radius } => SpaceVector::z() * radius,
-        BodyShape::Capsule { radius, length } => SpaceVector::z() * (length / 2.0 + radius),
-        BodyShape::Cylinder { length, .. } => SpaceVector::z() * (length / 2.0),
-    }
-}
 
 /// A rotation that takes the x axis to the given unit vector.
 fn x_to(axis: &SpaceVector) -> RotationQuat {

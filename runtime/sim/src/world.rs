@@ -37,7 +37,7 @@ impl SimWorld {
     }
 }
 
-/// What an arm or a hand is to do; `None`: it is for the other to do.
+/// What a device is to do; `None`: it is for one of another sort to do.
 fn meant(body: DeviceBody, call: &PrimitiveCall) -> Option<MotorCommand> {
     Some(match (body, call) {
         (DeviceBody::Arm(arm), PrimitiveCall::ReachPoint { to, speed }) => {
@@ -55,15 +55,22 @@ fn meant(body: DeviceBody, call: &PrimitiveCall) -> Option<MotorCommand> {
         (DeviceBody::Arm(arm), PrimitiveCall::StopJoints) => MotorCommand::StopJoints { arm },
         (DeviceBody::Gripper(gripper), PrimitiveCall::CloseFingers) => MotorCommand::CloseFingers { gripper },
         (DeviceBody::Gripper(gripper), PrimitiveCall::OpenFingers) => MotorCommand::OpenFingers { gripper },
-        // INVARIANT: the checker gives each kind of device the primitives of its own sort.
-        (DeviceBody::Arm(_), PrimitiveCall::CloseFingers | PrimitiveCall::OpenFingers)
-        | (
-            DeviceBody::Gripper(_),
+        (DeviceBody::Base(base), PrimitiveCall::DriveWheels { forward, sideways, turn }) => {
+            MotorCommand::DriveWheels { base, forward: *forward, sideways: *sideways, turn: *turn }
+        }
+        (DeviceBody::Base(base), PrimitiveCall::StopWheels) => MotorCommand::StopWheels { base },
+        // INVARIANT: the checker gives each kind of device the primitives of its own sort; a laser has none.
+        (
+            DeviceBody::Arm(_) | DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_),
             PrimitiveCall::ReachPoint { .. }
             | PrimitiveCall::ReachJoints { .. }
             | PrimitiveCall::FollowJoints { .. }
             | PrimitiveCall::AimJoint { .. }
-            | PrimitiveCall::StopJoints,
+            | PrimitiveCall::StopJoints
+            | PrimitiveCall::CloseFingers
+            | PrimitiveCall::OpenFingers
+            | PrimitiveCall::DriveWheels { .. }
+            | PrimitiveCall::StopWheels,
         ) => return None,
     })
 }
@@ -99,19 +106,30 @@ impl WorldBackend for SimWorld {
     }
 
     fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
-        let DeviceBody::Arm(arm) = device else { return None };
-        match what {
-            "joints" => Some(self.sim.joint_positions(arm)),
-            "speeds" => Some(self.sim.joint_speeds(arm)),
-            "tool" => self.sim.tool_pose(arm).map(Vec::from),
-            _ => None,
+        match (device, what) {
+            (DeviceBody::Arm(arm), "joints") => Some(self.sim.joint_positions(arm)),
+            (DeviceBody::Arm(arm), "speeds") => Some(self.sim.joint_speeds(arm)),
+            (DeviceBody::Arm(arm), "tool") => self.sim.tool_pose(arm).map(Vec::from),
+            (DeviceBody::Base(base), "pose") => self.sim.base_pose(base).map(Vec::from),
+            (DeviceBody::Base(base), "orientation") => self.sim.base_orientation(base).map(Vec::from),
+            (DeviceBody::Base(base), "velocity") => self.sim.base_velocity(base).map(Vec::from),
+            (DeviceBody::Laser(laser), "ranges") => self.sim.scan(laser),
+            (DeviceBody::Laser(laser), "angles") => self.sim.laser(laser).map(|l| vec![l.lo, l.hi]),
+            (DeviceBody::Laser(laser), "limits") => {
+                self.sim.laser(laser).map(|l| vec![l.nearest, l.farthest])
+            }
+            (DeviceBody::Arm(_) | DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_), _) => {
+                None
+            }
         }
     }
 
     fn plan(&self, device: DeviceBody, to: Vec3) -> Result<Vec<f64>, String> {
         match device {
             DeviceBody::Arm(arm) => self.sim.plan(arm, to).map_err(|e| e.to_string()),
-            DeviceBody::Gripper(_) => Err("a gripper plans nothing".to_owned()),
+            DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_) => {
+                Err(format!("a {} plans nothing", device.sort().name()))
+            }
         }
     }
 

@@ -107,6 +107,8 @@ pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> b
         | Noun::Joint
         | Noun::Arm
         | Noun::Gripper
+        | Noun::Base
+        | Noun::Laser
         | Noun::Device
         | Noun::Command
         | Noun::Current

@@ -132,6 +132,12 @@ pub(crate) fn no_way_to_drive(device: &str, interface: &str, ways: &str, span: S
 }
 
 /// HR0806
+pub(crate) fn no_source(device: &str, interface: &str, ways: &str, span: Span) -> Diagnostic {
+    let message = format!("a message of the type `{interface}` holds nothing that comes from this {device}");
+    bad_binding(span, message, format!("{ways}; in others, give values to the fields one by one"))
+}
+
+/// HR0806
 pub(crate) fn no_wildcard(span: Span) -> Diagnostic {
     let help = "write `*` in the topic where the joint's name stands: `/arm/*_controller/command`";
     bad_binding(span, "one number drives one joint, and the topic does not say which", help)

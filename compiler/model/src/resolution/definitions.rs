@@ -240,6 +240,8 @@ impl DefinitionReader {
                 WorldMemberKind::Joint { name, .. } => self.define("joint", name),
                 WorldMemberKind::Arm { name, .. } => self.define("arm", name),
                 WorldMemberKind::Gripper { name, .. } => self.define("gripper", name),
+                WorldMemberKind::Base(base) => self.define("base", &base.name),
+                WorldMemberKind::Laser(laser) => self.define("laser", &laser.name),
                 WorldMemberKind::Current { name, .. } => self.define("current body", name),
                 WorldMemberKind::Signal { name, ty, .. } => self.typed("signal", name, written(ty)),
                 WorldMemberKind::Step(_)

@@ -87,6 +87,8 @@ pub fn world(rule: WorldRule) -> World {
         joints: Vec::new(),
         arms: Vec::new(),
         grippers: Vec::new(),
+        bases: Vec::new(),
+        lasers: Vec::new(),
         devices: vec![
             Device { name: "arm".into(), kind: DeviceKindId(0), body: DeviceBody::Arm(ArmId(0)) },
             Device { name: "grip".into(), kind: DeviceKindId(1), body: DeviceBody::Gripper(GripperId(0)) },

@@ -121,6 +121,8 @@ pub fn table() -> World {
         joints: Vec::new(),
         arms: Vec::new(),
         grippers: Vec::new(),
+        bases: Vec::new(),
+        lasers: Vec::new(),
         devices: Vec::new(),
         device_kinds: Vec::new(),
         currents: Vec::new(),

@@ -2,7 +2,8 @@
 
 use hrdsl_ir::{
     binding::{CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep},
-    device::{DeviceBody, DeviceSort},
+    device::{CommandParam, DeviceBody, DeviceSort},
+    world::DeviceCommandId,
 };
 use hrdsl_messages::InterfaceName;
 use hrdsl_syntax::ast::{PathSyntax, TextSyntax};
@@ -21,7 +22,7 @@ struct DeviceDrive {
     says: &'static str,
 }
 
-const DRIVES: [DeviceDrive; 2] = [
+const DRIVES: [DeviceDrive; 4] = [
     DeviceDrive {
         sort: DeviceSort::Arm,
         package: "std_msgs",
@@ -35,6 +36,20 @@ const DRIVES: [DeviceDrive; 2] = [
         message: "JointTrajectory",
         command: "follow",
         says: "`trajectory_msgs/JointTrajectory` moves an arm",
+    },
+    DeviceDrive {
+        sort: DeviceSort::Base,
+        package: "geometry_msgs",
+        message: "Twist",
+        command: "drive",
+        says: "`geometry_msgs/Twist` drives a base",
+    },
+    DeviceDrive {
+        sort: DeviceSort::Base,
+        package: "geometry_msgs",
+        message: "TwistStamped",
+        command: "drive",
+        says: "`geometry_msgs/TwistStamped`, too",
     },
 ];
 
@@ -74,6 +89,7 @@ impl<'a> Checker<'a> {
                 Some(CommandArgument::Wildcard { names: joints }),
                 Some(CommandArgument::Sequence(vec![MessageStep::Field("data".to_owned())])),
             ],
+            "drive" => self.twist(body, command, drive.message == "TwistStamped"),
             _ => vec![
                 Some(CommandArgument::TrackPositions { names: joints }),
                 Some(CommandArgument::TrackTimes),
@@ -83,8 +99,29 @@ impl<'a> Checker<'a> {
         rules.rules.push(MessageRule { guard: None, rising: false, effect, origin: device.span });
     }
 
+    /// What a twist says of the parameters of `drive`: x looks forward, y to the left, z up.
+    fn twist(
+        &self,
+        body: DeviceBody,
+        command: DeviceCommandId,
+        stamped: bool,
+    ) -> Vec<Option<CommandArgument<TypedExpr>>> {
+        let params = self.command_params(body, command);
+        let argument = |param: &CommandParam| {
+            let (part, axis) = match param.name.as_str() {
+                "forward" => ("linear", "x"),
+                "sideways" => ("linear", "y"),
+                "turn" => ("angular", "z"),
+                _ => return None,
+            };
+            let path = stamped.then_some("twist").into_iter().chain([part, axis]);
+            Some(CommandArgument::Sequence(path.map(|s| MessageStep::Field(s.to_owned())).collect()))
+        };
+        params.iter().map(argument).collect()
+    }
+
     /// The joints of an arm, from its base, without the prefix of their part.
-    fn joint_names(&self, body: DeviceBody) -> Vec<String> {
+    pub(super) fn joint_names(&self, body: DeviceBody) -> Vec<String> {
         let (Some(world), DeviceBody::Arm(arm)) = (&self.s.world, body) else { return Vec::new() };
         let joints = world.arms.get(usize::from(arm.0)).map(|a| a.joints.as_slice()).unwrap_or_default();
         let name = |id: &crate::JointId| {

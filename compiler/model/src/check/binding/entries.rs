@@ -34,6 +34,9 @@ impl BindingPlace {
     }
 }
 
+/// What stands in fields, by their places: `pose.position.x`.
+pub(super) type FieldValues = BTreeMap<String, MessageGap<TypedExpr>>;
+
 /// What a block comes to.
 pub(super) struct BoundEntries {
     pub template: MessageTemplate<TypedExpr>,
@@ -50,6 +53,19 @@ impl<'a> Checker<'a> {
         written: Option<&InterfaceName>,
         entries: &[BindingEntry],
     ) -> Option<BoundEntries> {
+        self.entries_with(scope, place, read, written, entries, FieldValues::new())
+    }
+
+    /// The same; fields of which nothing else is said hold what is told.
+    pub(super) fn entries_with(
+        &mut self,
+        scope: BindingScope<'a>,
+        place: BindingPlace,
+        read: Option<&InterfaceName>,
+        written: Option<&InterfaceName>,
+        entries: &[BindingEntry],
+        told: FieldValues,
+    ) -> Option<BoundEntries> {
         let shape = |name: Option<&InterfaceName>| {
             name.map_or(Some(MessageShape { fields: Vec::new() }), |n| MessageShape::new(scope.library, n))
         };
@@ -58,7 +74,7 @@ impl<'a> Checker<'a> {
             self.report(bindings::too_large(span));
             return None;
         };
-        let mut values: BTreeMap<String, MessageGap<TypedExpr>> = BTreeMap::new();
+        let mut values = FieldValues::new();
         let mut env = MessageEnv::new(&heard);
         let mut rules = Vec::new();
         for entry in entries {
@@ -85,6 +101,9 @@ impl<'a> Checker<'a> {
                 }
                 Entry::Error => {}
             }
+        }
+        for (field, value) in told {
+            values.entry(field).or_insert(value);
         }
         let rules = MessageRules { reads: env.reads, rules };
         Some(BoundEntries { template: template(&said, values), rules })
@@ -141,10 +160,7 @@ fn names_at(shape: &MessageShape, path: &[MessageStep]) -> Vec<String> {
 }
 
 /// The text of the message around its values. The time in a header is that of the message, unless something else is said.
-fn template(
-    shape: &MessageShape,
-    mut values: BTreeMap<String, MessageGap<TypedExpr>>,
-) -> MessageTemplate<TypedExpr> {
+fn template(shape: &MessageShape, mut values: FieldValues) -> MessageTemplate<TypedExpr> {
     let mut gaps = Vec::new();
     let text = shape.text(&mut |path| {
         let place = place_text(path);

@@ -5,6 +5,7 @@ mod entries;
 mod gaps;
 mod rules;
 mod shape;
+mod sources;
 
 use hrdsl_ir::binding::{
     BoundAction, BoundService, MiddlewareBinding, MiddlewareKind, PlanningGroup, TopicInput, TopicOutput,
@@ -113,16 +114,18 @@ impl<'a> Checker<'a> {
         });
         let message = self.interface(scope, &topic.interface, InterfaceSpace::Msg)?;
         let place = BindingPlace::input(topic.rate.is_some());
-        let bound = self.entries(scope, place, Some(&message), Some(&message), &topic.entries)?;
+        let device = topic.from.as_ref();
+        let told = device.map(|device| self.source(scope, device, &message, rate)).unwrap_or_default();
+        let bound = self.entries_with(scope, place, Some(&message), Some(&message), &topic.entries, told)?;
         let said = bound.template.gaps.iter().any(|gap| gap.value.is_of_events());
-        if topic.rate.is_none() && topic.latched.is_none() && !said {
+        if topic.rate.is_none() && !topic.latched && !said {
             self.report(bindings::never_published(topic.name.span));
         }
         Some(TopicInput {
             topic: topic.name.text.clone(),
             interface: message.written(scope.library.version()),
             period: rate.map(|rate| nanos(1.0 / rate)),
-            latched: topic.latched.is_some(),
+            latched: topic.latched,
             message: bound.template,
             origin,
         })

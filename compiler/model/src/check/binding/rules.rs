@@ -211,7 +211,7 @@ impl<'a> Checker<'a> {
         Some(MessageEffect::Command { device, command: id, args })
     }
 
-    fn command_params(&self, body: DeviceBody, id: DeviceCommandId) -> Vec<CommandParam> {
+    pub(super) fn command_params(&self, body: DeviceBody, id: DeviceCommandId) -> Vec<CommandParam> {
         let kind = self.s.device_kinds.iter().find(|kind| kind.sort == body.sort());
         let command = kind.and_then(|kind| kind.commands.get(usize::from(id.0)));
         command.map(|c| c.params.clone()).unwrap_or_default()

@@ -39,7 +39,11 @@ impl TemplateArgument {
             TemplateArgument::Events(_) => kind == Noun::Event,
             TemplateArgument::Actor(_) => kind == Noun::Actor,
             TemplateArgument::Point(_) => kind == Noun::Point,
-            TemplateArgument::Thing(Noun::Arm | Noun::Gripper, _) if kind == Noun::Device => true,
+            TemplateArgument::Thing(Noun::Arm | Noun::Gripper | Noun::Base | Noun::Laser, _)
+                if kind == Noun::Device =>
+            {
+                true
+            }
             TemplateArgument::Thing(of, _) => *of == kind,
         }
     }

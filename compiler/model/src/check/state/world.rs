@@ -15,6 +15,8 @@ pub(crate) struct WorldNames {
     pub joints: NameTable,
     pub arms: NameTable,
     pub grippers: NameTable,
+    pub bases: NameTable,
+    pub lasers: NameTable,
     pub currents: NameTable,
     pub signals: NameTable,
     /// Instances of unknown parts: nothing is said about what they have.
@@ -24,12 +26,14 @@ pub(crate) struct WorldNames {
 }
 
 impl WorldNames {
-    fn tables(&self) -> [(Noun, &NameTable); 7] {
+    fn tables(&self) -> [(Noun, &NameTable); 9] {
         [
             (Noun::Body, &self.bodies),
             (Noun::Current, &self.currents),
             (Noun::Gripper, &self.grippers),
             (Noun::Arm, &self.arms),
+            (Noun::Base, &self.bases),
+            (Noun::Laser, &self.lasers),
             (Noun::Joint, &self.joints),
             (Noun::Signal, &self.signals),
             (Noun::PartInstance, &self.instances),
@@ -63,7 +67,7 @@ impl WorldNames {
     pub fn below(&self, noun: Noun, prefix: &str) -> Vec<String> {
         let fits = |n: Noun| match noun {
             Noun::Body if n == Noun::Current => true,
-            Noun::Device => matches!(n, Noun::Arm | Noun::Gripper),
+            Noun::Device => matches!(n, Noun::Arm | Noun::Gripper | Noun::Base | Noun::Laser),
             other => n == other,
         };
         let tables = self.tables().into_iter().filter(|(n, _)| fits(*n));

@@ -56,12 +56,15 @@ fn kind_word(text: &str) -> Option<Noun> {
         "place" => Noun::Body,
         "arm" => Noun::Arm,
         "gripper" => Noun::Gripper,
+        "base" => Noun::Base,
+        "laser" => Noun::Laser,
         _ => return None,
     })
 }
 
 /// What parameters of templates can be besides values.
-pub(in crate::check) const KIND_WORDS: [&str; 6] = ["event", "actor", "cover", "place", "arm", "gripper"];
+pub(in crate::check) const KIND_WORDS: [&str; 8] =
+    ["event", "actor", "cover", "place", "arm", "gripper", "base", "laser"];
 
 pub(in crate::check) fn is_kind_word(text: &str) -> bool {
     kind_word(text).is_some()

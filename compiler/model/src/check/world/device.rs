@@ -16,7 +16,7 @@ use crate::check::{
 };
 use crate::resolution::type_span;
 use crate::{
-    ArmId, GripperId, InferredType, Type,
+    ArmId, BaseId, GripperId, InferredType, LaserId, Type,
     noun::Noun,
     report::{devices, names},
     types::TypeLayout,
@@ -220,7 +220,7 @@ impl<'a> Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// Its place among all devices of the world: the arms, then the grippers.
+    /// Its place among all devices of the world.
     pub(in crate::check) fn device_id(&self, body: DeviceBody) -> DeviceId {
         self.s.world.as_ref().map_or(DeviceId(0), |world| world.device_id(body))
     }
@@ -230,6 +230,8 @@ fn body(sort: DeviceSort, id: u16) -> DeviceBody {
     match sort {
         DeviceSort::Arm => DeviceBody::Arm(ArmId(id)),
         DeviceSort::Gripper => DeviceBody::Gripper(GripperId(id)),
+        DeviceSort::Base => DeviceBody::Base(BaseId(id)),
+        DeviceSort::Laser => DeviceBody::Laser(LaserId(id)),
     }
 }
 
@@ -237,6 +239,8 @@ fn noun_of(sort: DeviceSort) -> Noun {
     match sort {
         DeviceSort::Arm => Noun::Arm,
         DeviceSort::Gripper => Noun::Gripper,
+        DeviceSort::Base => Noun::Base,
+        DeviceSort::Laser => Noun::Laser,
     }
 }
 

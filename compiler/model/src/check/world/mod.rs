@@ -1,6 +1,7 @@
-//! The world: bodies, joints, arms, grippers, signals and rules.
+//! The world: bodies, joints, devices, signals and rules.
 
 pub(in crate::check) mod device;
+mod mobile;
 pub(in crate::check) mod parts;
 pub(in crate::check) mod stimulus;
 
@@ -53,6 +54,8 @@ impl<'a> Checker<'a> {
             joints: Vec::new(),
             arms: Vec::new(),
             grippers: Vec::new(),
+            bases: Vec::new(),
+            lasers: Vec::new(),
             currents: Vec::new(),
             signals: Vec::new(),
             rules: Vec::new(),
@@ -61,11 +64,13 @@ impl<'a> Checker<'a> {
         });
         let placed = self.flatten(members, "", PartFrame::default(), None);
         // What is named first must exist first: by kind, not by place.
-        let passes: [fn(&mut Self, &PlacedMember<'a>); 7] = [
+        let passes: [fn(&mut Self, &PlacedMember<'a>); 9] = [
             Self::settings_and_bodies,
             Self::joint,
             Self::gripper,
             Self::arm,
+            Self::base,
+            Self::laser,
             Self::current,
             Self::signals,
             Self::rules,
@@ -143,6 +148,8 @@ impl<'a> Checker<'a> {
             | Member::Joint { .. }
             | Member::Arm { .. }
             | Member::Gripper { .. }
+            | Member::Base(_)
+            | Member::Laser(_)
             | Member::Current { .. }
             | Member::Signal { .. }
             | Member::Rule(_)
@@ -263,17 +270,28 @@ impl<'a> Checker<'a> {
     }
 
     fn limits(&mut self, limits: &ast::RangeSyntax) -> (f64, f64) {
-        let lo = self.quantity_of(&limits.lo, Dimension::ANGLE);
-        let Some(hi) = &limits.hi else {
-            self.report(bad_world(limits.span, "limits have two ends", "write `limits -90 deg .. 90 deg`"));
-            return (0.0, 0.0);
+        self.ends(limits, Dimension::ANGLE, "limits have two ends", "write `limits -90 deg .. 90 deg`")
+            .unwrap_or_default()
+    }
+
+    /// The two ends of a range of quantities, the lower first.
+    fn ends(
+        &mut self,
+        range: &ast::RangeSyntax,
+        dim: Dimension,
+        one: &str,
+        help: &str,
+    ) -> Option<(f64, f64)> {
+        let lo = self.quantity_of(&range.lo, dim);
+        let Some(hi) = &range.hi else {
+            self.report(bad_world(range.span, one, help));
+            return None;
         };
-        let hi = self.quantity_of(hi, Dimension::ANGLE);
-        let (Some(lo), Some(hi)) = (lo, hi) else { return (0.0, 0.0) };
+        let (lo, hi) = (lo?, self.quantity_of(hi, dim)?);
         if lo > hi {
-            self.report(types::empty_range(Value::Float(lo), Value::Float(hi), limits.span));
+            self.report(types::empty_range(Value::Float(lo), Value::Float(hi), range.span));
         }
-        (lo, hi)
+        Some((lo, hi))
     }
 
     fn arm(&mut self, p: &PlacedMember<'a>) {

@@ -64,6 +64,8 @@ impl<'a> Checker<'a> {
                 | Member::Joint { .. }
                 | Member::Arm { .. }
                 | Member::Gripper { .. }
+                | Member::Base(_)
+                | Member::Laser(_)
                 | Member::Current { .. }
                 | Member::Signal { .. }
                 | Member::Rule(_)

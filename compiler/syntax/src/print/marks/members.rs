@@ -323,6 +323,19 @@ impl TokenMarker<'_> {
                 self.expr(reach);
                 self.expr(delay);
             }
+            WorldMemberKind::Base(base) => {
+                self.expr(&base.speed);
+                self.maybe(base.sideways.as_ref());
+                self.expr(&base.turn);
+                self.expr(&base.acceleration);
+                self.maybe(base.timeout.as_ref());
+            }
+            WorldMemberKind::Laser(laser) => {
+                self.expr(&laser.at);
+                self.range(&laser.angles);
+                self.expr(&laser.beams);
+                self.range(&laser.range);
+            }
             WorldMemberKind::Signal { ty, value, .. } => {
                 self.ty(ty);
                 self.expr(value);

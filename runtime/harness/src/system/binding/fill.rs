@@ -4,8 +4,9 @@ use std::{collections::BTreeMap, fmt::Write as _};
 
 use hrdsl_ir::{
     EventId, EventPattern, Nanos, Value,
-    binding::{GapRead, GapValue, MessageGap, MessageScalar, MessageTemplate, MiddlewareKind},
+    binding::{GapRead, GapValue, MessageGap, MessageScalar, MessageTemplate, MiddlewareKind, ToldNumbers},
     value::SECOND,
+    world::DeviceId,
 };
 
 use crate::{stage::WorldStage, system::port::MessageText};
@@ -81,8 +82,37 @@ impl GapContext<'_, '_> {
                 let values: Vec<Value> = reads.iter().map(|read| self.read(read)).collect();
                 value.eval(&|i| values.get(usize::from(i)).copied()).map_err(|e| e.to_string())?
             }
+            GapValue::Told { device, what, numbers } => return self.told(*device, what, *numbers, text),
+            GapValue::Fixed(json) => {
+                text.push_str(json);
+                return Ok(());
+            }
         };
         scalar(value, gap.scalar, text)
+    }
+
+    /// What a device tells of itself at this moment.
+    fn told(
+        &self,
+        device: DeviceId,
+        what: &str,
+        numbers: ToldNumbers,
+        text: &mut String,
+    ) -> Result<(), String> {
+        let all = self.stage.as_deref().and_then(|stage| stage.told(device, what));
+        let all = all.ok_or_else(|| format!("the world does not tell the `{what}` of this device"))?;
+        match numbers {
+            ToldNumbers::All => {
+                text.push('[');
+                for (at, number) in all.iter().enumerate() {
+                    text.push_str(if at > 0 { "," } else { "" });
+                    float(*number, text);
+                }
+                text.push(']');
+            }
+            ToldNumbers::One(at) => float(all.get(usize::from(at)).copied().unwrap_or(f64::NAN), text),
+        }
+        Ok(())
     }
 
     fn read(&mut self, read: &GapRead) -> Value {

@@ -221,7 +221,7 @@ impl<'p> BindingNode<'p> {
                 GapValue::Value { reads, .. } => {
                     reads.iter().any(|r| matches!(r, GapRead::Argument { event: of, .. } if *of == event))
                 }
-                GapValue::Now => false,
+                GapValue::Now | GapValue::Told { .. } | GapValue::Fixed(_) => false,
             };
             let is_said = input.message.gaps.iter().any(speaks);
             if is_said && input.period.is_none() {
@@ -421,7 +421,11 @@ fn next_after(now: Nanos, sent: Option<Nanos>, period: Nanos) -> Nanos {
 fn held_until(message: &MessageTemplate, heard: &HeardEvents, now: Nanos) -> Option<Nanos> {
     let ends = message.gaps.iter().filter_map(|gap| match &gap.value {
         GapValue::Held { events, time } if *time > 0 => Some(heard.last_of(events)?.saturating_add(*time)),
-        GapValue::Held { .. } | GapValue::Value { .. } | GapValue::Now => None,
+        GapValue::Held { .. }
+        | GapValue::Value { .. }
+        | GapValue::Now
+        | GapValue::Told { .. }
+        | GapValue::Fixed(_) => None,
     });
     ends.filter(|end| *end > now).min()
 }

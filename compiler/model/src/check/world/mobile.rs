@@ -1,0 +1,104 @@
+//! What robots that drive have: bases, and the lasers by which they see their way.
+
+use std::f64::consts::TAU;
+
+use hrdsl_syntax::ast::{NameSyntax, WorldMemberKind as Member};
+
+use crate::check::{checker::Checker, world::parts::PlacedMember};
+use crate::{
+    BodyId, BodyMotion, Dimension,
+    noun::Noun,
+    report::{types, world::bad_world},
+    world::{TypedBase, TypedLaser},
+};
+
+use super::LENGTH;
+
+/// More than any scanner has.
+const MOST_BEAMS: i64 = 10_000;
+
+/// What the angles of a full turn may have too much, from being written in decimal radians.
+const ROUNDING: f64 = 1e-6;
+
+impl<'a> Checker<'a> {
+    pub(super) fn base(&mut self, p: &PlacedMember<'a>) {
+        let Member::Base(base) = &p.member.kind else { return };
+        let name = &base.name;
+        let body = self.local_body(&base.body, &p.prefix);
+        if let Some(body) = body {
+            self.drivable(&base.body, body);
+        }
+        let speed = self.more_than_zero(&base.speed, Dimension::SPEED, "the speed");
+        let sideways =
+            base.sideways.as_ref().map(|e| self.more_than_zero(e, Dimension::SPEED, "the speed sideways"));
+        let turn = self.more_than_zero(&base.turn, Dimension::ANGULAR_SPEED, "the speed of a turn");
+        let acceleration =
+            self.more_than_zero(&base.acceleration, Dimension::ACCELERATION, "the acceleration");
+        let timeout = base.timeout.as_ref().map(|e| self.time(e, "the timeout", false));
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.world.names.bases);
+        if issues.declare_as(table, Noun::Base, &full, name.span).is_some() {
+            self.world_mut().bases.push(TypedBase {
+                name: full,
+                body: body.unwrap_or(BodyId(0)),
+                speed: speed.unwrap_or(0.0),
+                sideways: sideways.flatten().unwrap_or(0.0),
+                turn: turn.unwrap_or(0.0),
+                acceleration: acceleration.unwrap_or(0.0),
+                // None at all and none that counts are the same.
+                timeout: timeout.flatten().filter(|t| *t > 0.0),
+            });
+        }
+    }
+
+    /// A base has a kinematic body to itself.
+    fn drivable(&mut self, name: &NameSyntax, body: BodyId) {
+        let world = self.world_mut();
+        let motion = world.bodies.get(usize::from(body.0)).map(|b| b.motion);
+        let taken = world.bases.iter().find(|b| b.body == body).map(|b| b.name.clone());
+        if matches!(motion, Some(BodyMotion::Fixed | BodyMotion::Dynamic)) {
+            let message = format!("a base drives a kinematic body, and `{}` is none", name.text);
+            self.report(bad_world(name.span, message, "declare the body as `kinematic`"));
+        }
+        if let Some(other) = taken {
+            let message = format!("`{}` is driven by the base `{other}` already", name.text);
+            self.report(bad_world(name.span, message, "give each base a body of its own"));
+        }
+    }
+
+    pub(super) fn laser(&mut self, p: &PlacedMember<'a>) {
+        let Member::Laser(laser) = &p.member.kind else { return };
+        let name = &laser.name;
+        let body = self.local_body(&laser.body, &p.prefix).unwrap_or(BodyId(0));
+        let at = self.vector(&laser.at, LENGTH).unwrap_or_default();
+        let help = "write `angles -135 deg .. 135 deg`";
+        let angles =
+            self.ends(&laser.angles, Dimension::ANGLE, "a scan goes from one angle to another", help);
+        if angles.is_some_and(|(lo, hi)| hi - lo > TAU + ROUNDING) {
+            self.report(types::must_be("the angle of a scan", "at most 360 deg", laser.angles.span));
+        }
+        let beams = self.count(&laser.beams, "the number of beams", 1);
+        if beams.is_some_and(|n| n > MOST_BEAMS) {
+            let rule = format!("at most {MOST_BEAMS}");
+            self.report(types::must_be("the number of beams", &rule, laser.beams.span));
+        }
+        let help = "write `range 10 cm .. 4 m`";
+        let range = self.ends(&laser.range, Dimension::LENGTH, "a range has two ends", help);
+        if range.is_some_and(|(lo, hi)| lo < 0.0 || lo == hi) {
+            let rule = "at least 0 m at its lower end, and more at its upper";
+            self.report(types::must_be("the range", rule, laser.range.span));
+        }
+        let full = format!("{}{}", p.prefix, name.text);
+        let (issues, table) = (&mut self.issues, &mut self.world.names.lasers);
+        if issues.declare_as(table, Noun::Laser, &full, name.span).is_some() {
+            self.world_mut().lasers.push(TypedLaser {
+                name: full,
+                body,
+                at,
+                angles: angles.unwrap_or_default(),
+                beams: beams.and_then(|n| u16::try_from(n).ok()).unwrap_or(1),
+                range: range.unwrap_or_default(),
+            });
+        }
+    }
+}

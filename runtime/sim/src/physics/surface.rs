@@ -1,0 +1,110 @@
+//! What depends on the surfaces of bodies: distances, lines of sight, beams, and what is in the way.
+
+use hrdsl_ir::world::{BodyId, BodyMotion, BodyShape};
+use rapier3d::parry::{self, bounding_volume::BoundingVolume};
+use rapier3d::prelude::*;
+
+use super::{PhysicsAdapter, body_id, index};
+use crate::math::{BodyFrame, SpaceVector, from_vector, to_pose, to_vector};
+
+impl PhysicsAdapter {
+    /// Between the surfaces; 0 if they touch or overlap.
+    pub fn distance(&self, a: BodyId, b: BodyId) -> f64 {
+        let (pa, pb) = (to_pose(&self.pose(a)), to_pose(&self.pose(b)));
+        // The engine knows how to measure between all shapes that a scenario can name.
+        parry::query::distance(&pa, self.shape(a), &pb, self.shape(b))
+            .map_or(f64::NAN, |d| f64::from(d.distance))
+    }
+
+    /// From a point to the body's surface; 0 within.
+    pub fn distance_to_point(&self, body: BodyId, point: SpaceVector) -> f64 {
+        f64::from(self.shape(body).distance_to_point(&to_pose(&self.pose(body)), to_vector(point), true))
+    }
+
+    fn shape(&self, body: BodyId) -> &dyn parry::shape::Shape {
+        self.world.colliders[self.parts[index(body)].collider].shape()
+    }
+
+    /// Whether a straight line from the centre of `a` meets `b` before any other solid body.
+    pub fn visible(&self, a: BodyId, b: BodyId) -> bool {
+        let from = self.pose(a).at;
+        let there = self.pose(b);
+        let third = there.turn * (half_length(self.parts[index(b)].shape) / 3.0);
+        [SpaceVector::zeros(), third, -third]
+            .iter()
+            .any(|offset| self.line_reaches(a, from, b, there.at + offset))
+    }
+
+    fn line_reaches(&self, a: BodyId, from: SpaceVector, b: BodyId, to: SpaceVector) -> bool {
+        let ray = Ray::new(to_vector(from), to_vector(to - from));
+        let Some(hit) = self.cast(b, &ray, 1.0) else { return false };
+        let own = self.root(a);
+        (0..self.parts.len()).all(|i| {
+            let part = &self.parts[i];
+            let other = body_id(i);
+            other == b
+                || part.ghost
+                || part.root == own
+                || self.cast(other, &ray, hit).is_none_or(|t| t >= hit)
+        })
+    }
+
+    fn cast(&self, body: BodyId, ray: &Ray, far: f32) -> Option<f32> {
+        self.shape(body).cast_ray(&to_pose(&self.pose(body)), ray, far, true)
+    }
+
+    /// All bodies that are no ghosts.
+    pub fn solids(&self) -> impl Iterator<Item = BodyId> + '_ {
+        (0..self.parts.len()).map(body_id).filter(|b| !self.parts[index(*b)].ghost)
+    }
+
+    /// Whether nothing moves the body, nor what it is rigidly one with.
+    pub fn is_fixed(&self, body: BodyId) -> bool {
+        self.motion(body) == BodyMotion::Fixed
+    }
+
+    /// How deep the body, if it were there, would be in the other, m; 0 if they do not overlap.
+    pub fn depth(&self, body: BodyId, there: &BodyFrame, other: BodyId) -> f64 {
+        let (own, at) = (self.shape(body), to_pose(there));
+        let (shape, place) = (self.shape(other), to_pose(&self.pose(other)));
+        if !own.compute_aabb(&at).intersects(&shape.compute_aabb(&place)) {
+            return 0.0;
+        }
+        // The engine knows how to measure between all shapes that a scenario can name.
+        let contact = parry::query::contact(&at, own, &place, shape, 0.0).ok().flatten();
+        contact.map_or(0.0, |c| f64::from(-c.dist).max(0.0))
+    }
+
+    /// A sphere around the body: its centre and its radius, m.
+    pub fn sphere_around(&self, body: BodyId) -> (SpaceVector, f64) {
+        let sphere = self.shape(body).compute_bounding_sphere(&to_pose(&self.pose(body)));
+        (from_vector(sphere.center), f64::from(sphere.radius))
+    }
+
+    /// How far it is to the body's surface (m) from a place in a direction of length 1, if it is not farther than so much.
+    pub fn ranger(&self, body: BodyId) -> impl Fn(SpaceVector, SpaceVector, f64) -> Option<f64> + '_ {
+        let (shape, pose) = (self.shape(body), to_pose(&self.pose(body)));
+        move |from, direction, far| {
+            let ray = Ray::new(to_vector(from), to_vector(direction));
+            shape.cast_ray(&pose, &ray, far as f32, true).map(f64::from)
+        }
+    }
+}
+
+/// From the centre to an end, along the longest axis.
+fn half_length(shape: BodyShape) -> SpaceVector {
+    match shape {
+        BodyShape::Box { size: [x, y, z] } => {
+            if x >= y && x >= z {
+                SpaceVector::x() * (x / 2.0)
+            } else if y >= z {
+                SpaceVector::y() * (y / 2.0)
+            } else {
+                SpaceVector::z() * (z / 2.0)
+            }
+        }
+        BodyShape::Sphere { radius } => SpaceVector::z() * radius,
+        BodyShape::Capsule { radius, length } => SpaceVector::z() * (length / 2.0 + radius),
+        BodyShape::Cylinder { length, .. } => SpaceVector::z() * (length / 2.0),
+    }
+}
