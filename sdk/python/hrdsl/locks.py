@@ -36,8 +36,9 @@ def _check(blocking: Any, timeout: Any) -> None:
 
 
 def after(timeout: float) -> int:
-    """The deadline of a wait that lasts so many seconds."""
-    return _s.outside.time + round(timeout * 1e9)
+    """The deadline of a wait that lasts so many seconds. What is left of a timeout after some waits may be less than a nanosecond, and
+    whoever waits for that would come again and again while no time passes."""
+    return _s.outside.time + (max(1, round(timeout * 1e9)) if timeout > 0 else 0)
 
 
 def _poll(try_: Callable[[], bool], timeout: float) -> bool:

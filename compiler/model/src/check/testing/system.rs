@@ -14,7 +14,10 @@ use crate::{
 impl Checker<'_> {
     pub(in crate::check) fn systems(&mut self) {
         let mut known: Vec<(String, Span)> = Vec::new();
-        for (item, span) in self.each_item() {
+        // The first is meant where none is named: one of the scenario's own comes before those of modules.
+        let mut items: Vec<_> = self.each_item().collect();
+        items.rotate_left(self.source.from_modules);
+        for (item, span) in items {
             let ItemSyntaxKind::System(system) = item else { continue };
             let name = system.name();
             if let Some((_, first)) = known.iter().find(|(n, _)| *n == name.text) {
