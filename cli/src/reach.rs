@@ -137,6 +137,11 @@ impl WorkspaceReader for DiskWorkspace<'_> {
         Ok(entries.filter_map(Result::ok).map(entry).collect())
     }
 
+    fn place(&self, folder: &str) -> String {
+        let place = self.folder.join(folder);
+        place.canonicalize().unwrap_or(place).display().to_string()
+    }
+
     fn text(&self, file: &str) -> Result<String, String> {
         let whole = self.reach.whole(&self.folder.join(file))?;
         if !fs::metadata(&whole).is_ok_and(|m| m.is_file()) {

@@ -3,6 +3,8 @@
 //! The scenario takes part in the middleware's graph like a further program: it publishes what the world shows, hears what the
 //! programs say, and serves what they ask.
 
+use std::collections::BTreeMap;
+
 use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +40,8 @@ pub struct MiddlewareBinding<E = Expr> {
     pub kind: MiddlewareKind,
     /// The table of all interfaces that the programs can use: JSON, as `spec/messages.md` describes it.
     pub interfaces: String,
+    /// Where the packages of the workspaces are, by name.
+    pub packages: BTreeMap<String, String>,
     pub inputs: Vec<TopicInput<E>>,
     pub outputs: Vec<TopicOutput<E>>,
     pub services: Vec<BoundService<E>>,

@@ -24,6 +24,7 @@ pub struct MessageLibrary {
     messages: BTreeMap<InterfaceName, KnownMessage>,
     services: BTreeMap<InterfaceName, KnownService>,
     actions: BTreeMap<InterfaceName, KnownAction>,
+    folders: BTreeMap<String, String>,
     faults: Vec<MessageFault>,
 }
 
@@ -42,6 +43,7 @@ pub struct MessageLibraryBuilder<'f> {
     version: RosVersion,
     files: &'f mut SourceFiles,
     packages: BTreeMap<String, Vec<ReadDefinition>>,
+    folders: BTreeMap<String, String>,
     faults: Vec<MessageFault>,
 }
 
@@ -49,7 +51,7 @@ impl<'f> MessageLibraryBuilder<'f> {
     /// Without any definition; `files` gets the texts that are read, so that faults have a place.
     #[must_use]
     pub fn new(version: RosVersion, files: &'f mut SourceFiles) -> Self {
-        Self { version, files, packages: BTreeMap::new(), faults: Vec::new() }
+        Self { version, files, packages: BTreeMap::new(), folders: BTreeMap::new(), faults: Vec::new() }
     }
 
     /// Adds a package whose definitions stand in one text, such as those of the standard library; `file` is shown in faults.
@@ -65,9 +67,10 @@ impl<'f> MessageLibraryBuilder<'f> {
     /// Adds the packages of a workspace; `place` is where its path is written.
     #[must_use]
     pub fn workspace(mut self, reader: &dyn WorkspaceReader, path: &str, place: Span) -> Self {
-        let (packages, faults) = read_workspace(self.version, self.files, reader, path, place);
-        self.faults.extend(faults);
-        self.packages.extend(packages);
+        let read = read_workspace(self.version, self.files, reader, path, place);
+        self.faults.extend(read.faults);
+        self.packages.extend(read.packages);
+        self.folders.extend(read.folders);
         self
     }
 
@@ -79,6 +82,7 @@ impl<'f> MessageLibraryBuilder<'f> {
             messages: BTreeMap::new(),
             services: BTreeMap::new(),
             actions: BTreeMap::new(),
+            folders: self.folders,
             faults: self.faults,
         };
         let mut implied = Vec::new();
@@ -153,6 +157,12 @@ impl MessageLibrary {
     #[must_use]
     pub fn faults(&self) -> &[MessageFault] {
         &self.faults
+    }
+
+    /// Where the packages of the workspaces are, by their names; those without definitions, too.
+    #[must_use]
+    pub fn package_folders(&self) -> &BTreeMap<String, String> {
+        &self.folders
     }
 
     /// All messages, the implied ones and the parts of services and actions among them, in the order of their names.

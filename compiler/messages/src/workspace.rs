@@ -28,6 +28,11 @@ pub trait WorkspaceReader {
     /// Why it cannot be read, as the end of a sentence: "there is no such folder".
     fn entries(&self, folder: &str) -> Result<Vec<WorkspaceEntry>, String>;
 
+    /// Where a folder is, as programs find it that run elsewhere.
+    fn place(&self, folder: &str) -> String {
+        folder.to_owned()
+    }
+
     /// The text of a file. More than [`MOST_BYTES`](crate::limits::MOST_BYTES) need not be read.
     ///
     /// # Errors
@@ -42,14 +47,24 @@ pub struct WorkspaceEntry {
     pub is_folder: bool,
 }
 
-/// The packages with their definitions, and what is wrong with the workspace.
+/// What a workspace holds.
+pub(crate) struct ReadWorkspace {
+    /// Packages with definitions.
+    pub packages: BTreeMap<String, Vec<ReadDefinition>>,
+    /// Where all packages are that have a name, those without definitions among them.
+    pub folders: BTreeMap<String, String>,
+    /// What is wrong with it.
+    pub faults: Vec<MessageFault>,
+}
+
+/// Reads the packages below a folder.
 pub(crate) fn read_workspace(
     version: RosVersion,
     files: &mut SourceFiles,
     reader: &dyn WorkspaceReader,
     path: &str,
     place: Span,
-) -> (BTreeMap<String, Vec<ReadDefinition>>, Vec<MessageFault>) {
+) -> ReadWorkspace {
     let search = WorkspaceSearch {
         version,
         files,
@@ -58,6 +73,7 @@ pub(crate) fn read_workspace(
         folders: 0,
         texts: 0,
         packages: BTreeMap::new(),
+        places: BTreeMap::new(),
         faults: Vec::new(),
     };
     search.read(path)
@@ -79,11 +95,12 @@ struct WorkspaceSearch<'a> {
     folders: usize,
     texts: usize,
     packages: BTreeMap<String, FoundPackage>,
+    places: BTreeMap<String, String>,
     faults: Vec<MessageFault>,
 }
 
 impl WorkspaceSearch<'_> {
-    fn read(mut self, path: &str) -> (BTreeMap<String, Vec<ReadDefinition>>, Vec<MessageFault>) {
+    fn read(mut self, path: &str) -> ReadWorkspace {
         let path = path.trim_end_matches('/');
         let source = format!("{path}/src");
         match self.entries(path) {
@@ -93,12 +110,12 @@ impl WorkspaceSearch<'_> {
             Some(_) => self.search(path.to_owned(), 0),
             None => {}
         }
-        if self.packages.is_empty() && self.faults.is_empty() {
+        if self.places.is_empty() && self.packages.is_empty() && self.faults.is_empty() {
             let help = "name the folder of a catkin or colcon workspace, or one that holds packages";
             self.faults.push(MessageFaultKind::EmptyWorkspace(path.to_owned()).at(self.place, help));
         }
         let packages = self.packages.into_iter().map(|(name, found)| (name, found.definitions)).collect();
-        (packages, self.faults)
+        ReadWorkspace { packages, folders: self.places, faults: self.faults }
     }
 
     /// Looks for packages in a folder and those below it, in the order of their names.
@@ -135,6 +152,7 @@ impl WorkspaceSearch<'_> {
             definitions.extend(paths.filter(|path| space_and_name(path).is_some()));
         }
         if definitions.is_empty() {
+            self.without_definitions(folder);
             return;
         }
         let Some((file, text)) = self.file(&format!("{folder}/{MANIFEST}")) else { return };
@@ -152,7 +170,20 @@ impl WorkspaceSearch<'_> {
         }
         let definitions =
             definitions.iter().filter_map(|path| self.definition(&name, folder, path)).collect();
+        self.places.entry(name.clone()).or_insert_with(|| self.reader.place(folder));
         self.packages.insert(name, FoundPackage { definitions, span, folder: folder.to_owned() });
+    }
+
+    /// Of a package of programs alone only the place matters; what is wrong with it is nobody's business here.
+    fn without_definitions(&mut self, folder: &str) {
+        self.texts += 1;
+        if self.texts > MOST_FILES {
+            return self.too_much("files of a workspace", MOST_FILES);
+        }
+        let Ok(text) = self.reader.text(&format!("{folder}/{MANIFEST}")) else { return };
+        if let Ok((name, _)) = package_name(self.version, FileId(0), &text) {
+            self.places.entry(name).or_insert_with(|| self.reader.place(folder));
+        }
     }
 
     /// A definition, by its path in the package.

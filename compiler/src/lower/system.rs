@@ -67,6 +67,7 @@ fn binding(b: &MiddlewareBinding<TypedExpr>, signals: &mut SignalTable<'_>) -> M
     MiddlewareBinding {
         kind: b.kind,
         interfaces: b.interfaces.clone(),
+        packages: b.packages.clone(),
         inputs,
         outputs: b.outputs.iter().map(output).collect(),
         services: b.services.iter().map(|s| service(s, signals)).collect(),

@@ -11,6 +11,7 @@ struct WrittenBinding<'a> {
     ros: u8,
     base_frame: &'static str,
     groups: BTreeMap<&'a str, WrittenGroup<'a>>,
+    packages: &'a BTreeMap<String, String>,
     interfaces: Option<Box<RawValue>>,
 }
 
@@ -28,6 +29,16 @@ struct WrittenJoint<'a> {
     upper: f64,
     /// rad/s
     velocity: f64,
+}
+
+/// Where a middleware's own tools would find modules of the workspace's packages: in ROS 1 below `src`, in ROS 2 in the package's
+/// folder.
+pub(crate) fn module_folders(binding: &MiddlewareBinding) -> Vec<String> {
+    let folder = |package: &String| match binding.kind {
+        hrdsl_ir::binding::MiddlewareKind::Ros1 => format!("{package}/src"),
+        hrdsl_ir::binding::MiddlewareKind::Ros2 => package.clone(),
+    };
+    binding.packages.values().map(folder).collect()
 }
 
 /// The text of that file.
@@ -53,6 +64,7 @@ pub(crate) fn binding_text(program: &Program, binding: &MiddlewareBinding) -> St
         ros,
         base_frame: "world",
         groups: groups.collect(),
+        packages: &binding.packages,
         interfaces: RawValue::from_string(binding.interfaces.clone()).ok(),
     };
     // INVARIANT: plain data has a text.

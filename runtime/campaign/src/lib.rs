@@ -43,7 +43,7 @@ use hrdsl_trace::{
 
 use hrdsl_testgen::step_text;
 
-use binding::binding_text;
+use binding::{binding_text, module_folders};
 pub use internal::{InternalError, guarded, record_panics};
 pub use tally::tally;
 
@@ -263,7 +263,11 @@ impl CampaignSetup<'_> {
         let Some(binding) = &self.system.binding else { return Ok(None) };
         let text = binding_text(self.program, binding);
         let file = self.env.kept(&text)?;
-        Ok(Some(LaunchMiddleware { name: binding.kind.name(), binding: file }))
+        Ok(Some(LaunchMiddleware {
+            name: binding.kind.name(),
+            binding: file,
+            modules: module_folders(binding),
+        }))
     }
 
     fn execute(

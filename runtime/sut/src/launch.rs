@@ -46,6 +46,8 @@ pub struct LaunchMiddleware {
     pub name: &'static str,
     /// A file of JSON (`spec/protocol.md`).
     pub binding: PathBuf,
+    /// Folders in which modules are searched for, before those that are installed.
+    pub modules: Vec<String>,
 }
 
 /// The variables of the harness's environment that every program gets. Others are named in the scenario.
@@ -154,8 +156,9 @@ impl LaunchSpec {
             command.extend(["--coverage".into(), OsString::from(file)]);
         }
         command.extend(script.iter().map(OsString::from));
+        let modules = self.middleware.iter().flat_map(|m| &m.modules);
         let variables = [
-            ("HRDSL_SYS_PATH", join(env.path.iter().map(OsString::from))),
+            ("HRDSL_SYS_PATH", join(modules.chain(&env.path).map(OsString::from))),
             ("HRDSL_COVERAGE_PACKAGE", env.coverage.clone().into_os_string()),
             ("HRDSL_COVERAGE_CACHE", env.analyses.clone().into_os_string()),
         ];

@@ -51,6 +51,7 @@ impl<'a> Checker<'a> {
         let mut binding = MiddlewareBinding {
             kind,
             interfaces: String::new(),
+            packages: library.package_folders().clone(),
             inputs: Vec::new(),
             outputs: Vec::new(),
             services: Vec::new(),
