@@ -778,6 +778,8 @@ module.exports = grammar({
           $.joint,
           $.arm,
           $.gripper,
+          $.base,
+          $.laser,
           $.current,
           $.signal,
           $.rule,
@@ -858,6 +860,36 @@ module.exports = grammar({
         field("reach", $.expression),
         keyword($, "delay"),
         field("delay", $.expression),
+      ),
+    base: ($) =>
+      seq(
+        keyword($, "base"),
+        field("name", $.identifier),
+        ":",
+        field("body", $.identifier),
+        keyword($, "speed"),
+        field("speed", $.expression),
+        optional(seq(keyword($, "sideways"), field("sideways", $.expression))),
+        keyword($, "turn"),
+        field("turn", $.expression),
+        keyword($, "acceleration"),
+        field("acceleration", $.expression),
+        optional(seq(keyword($, "timeout"), field("timeout", $.expression))),
+      ),
+    laser: ($) =>
+      seq(
+        keyword($, "laser"),
+        field("name", $.identifier),
+        ":",
+        field("body", $.identifier),
+        keyword($, "at"),
+        field("at", $.expression),
+        keyword($, "angles"),
+        field("angles", $.range),
+        keyword($, "beams"),
+        field("beams", $.expression),
+        keyword($, "range"),
+        field("range", $.range),
       ),
     current: ($) =>
       seq(
@@ -969,6 +1001,7 @@ module.exports = grammar({
       seq(
         field("direction", keyword($, "in")),
         optional(seq(keyword($, "at"), field("rate", $.expression))),
+        optional(seq(keyword($, "from"), field("device", $._path))),
         optional(keyword($, "latched")),
       ),
     _topic_out: ($) =>

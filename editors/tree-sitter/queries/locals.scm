@@ -39,6 +39,8 @@
 (joint name: (identifier) @local.definition)
 (arm name: (identifier) @local.definition)
 (gripper name: (identifier) @local.definition)
+(base name: (identifier) @local.definition)
+(laser name: (identifier) @local.definition)
 (current name: (identifier) @local.definition)
 (signal name: (identifier) @local.definition)
 

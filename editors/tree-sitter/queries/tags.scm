@@ -33,6 +33,8 @@
 (joint name: (identifier) @name) @definition.field
 (arm name: (identifier) @name) @definition.field
 (gripper name: (identifier) @name) @definition.field
+(base name: (identifier) @name) @definition.field
+(laser name: (identifier) @name) @definition.field
 (current name: (identifier) @name) @definition.field
 (signal name: (identifier) @name) @definition.field
 (placement name: (identifier) @name) @definition.field
