@@ -99,7 +99,7 @@ fn scan_with_a_laser(bencher: Bencher) {
         world.bodies.push(common::body("wall", BodyMotion::Fixed, shape, [x, y, 0.5], 1.0));
     }
     for i in 0..24 {
-        let (sin, cos) = (f64::from(i) * 0.26).sin_cos();
+        let (sin, cos) = libm::sincos(f64::from(i) * 0.26);
         let away = 1.0 + f64::from(i % 4);
         let post = BodyShape::Cylinder { radius: 0.1, length: 1.0 };
         let shape = if i % 2 == 0 { post } else { cuboid(0.3, 0.2, 1.0) };

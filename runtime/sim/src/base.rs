@@ -340,7 +340,7 @@ mod tests {
         sim.advance(SECOND);
         let [x0, y0, yaw] = sim.base_pose(BASE).expect("a base");
         // Around a point half a metre to the left of it.
-        let (cx, cy) = (x0 - 0.5 * yaw.sin(), y0 + 0.5 * yaw.cos());
+        let (cx, cy) = (x0 - 0.5 * libm::sin(yaw), y0 + 0.5 * libm::cos(yaw));
         let [x, y, _] = after(&mut sim, 2 * SECOND);
         assert!(((x - cx).hypot(y - cy) - 0.5).abs() < 1e-6);
     }
@@ -446,7 +446,7 @@ mod tests {
             let angle = sim.joint_positions(ArmId(0))[0];
             assert!(angle.abs() < 0.02, "{angle}");
             let [tx, ty, _] = sim.tool(ArmId(0)).expect("an arm");
-            assert!((tx - x - 0.4 * yaw.cos()).hypot(ty - y - 0.4 * yaw.sin()) < 0.02, "{tx} {ty}");
+            assert!((tx - x - 0.4 * libm::cos(yaw)).hypot(ty - y - 0.4 * libm::sin(yaw)) < 0.02, "{tx} {ty}");
         }
     }
 
