@@ -966,8 +966,8 @@ pub enum WorldMemberKind {
         reach: ExprSyntax,
         delay: ExprSyntax,
     },
-    Base(BaseSyntax),
-    Laser(LaserSyntax),
+    Base(Box<BaseSyntax>),
+    Laser(Box<LaserSyntax>),
     /// `current leg in leg1, leg2 by robot.grip`
     Current {
         name: NameSyntax,

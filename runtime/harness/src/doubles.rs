@@ -5,6 +5,7 @@ use std::{cell::RefCell, collections::VecDeque, rc::Rc};
 
 use hrdsl_ir::{
     Nanos, Value,
+    device::DeviceBody,
     world::{SignalId, WorldAction},
 };
 
@@ -23,6 +24,8 @@ pub struct ToldWorld {
     pub signals: Vec<(Nanos, SignalId, Value)>,
     /// By device and command: how long it takes, and how it ends. Others cannot be done.
     pub commands: Vec<(&'static str, &'static str, ToldCommand)>,
+    /// What devices tell of themselves from which time on: under which name, which numbers; in order.
+    pub states: Vec<(Nanos, DeviceBody, &'static str, Vec<f64>)>,
     /// What it was asked to do, each with the time.
     pub seen: Rc<RefCell<Vec<(Nanos, String)>>>,
     now: Nanos,
@@ -45,6 +48,13 @@ impl ToldWorld {
         commands: Vec<(&'static str, &'static str, ToldCommand)>,
     ) -> Self {
         Self { signals, commands, ..Self::default() }
+    }
+
+    /// The same, with devices that tell these [states](Self::states).
+    #[must_use]
+    pub fn with_states(mut self, states: Vec<(Nanos, DeviceBody, &'static str, Vec<f64>)>) -> Self {
+        self.states = states;
+        self
     }
 }
 
@@ -78,6 +88,11 @@ impl WorldBackend for ToldWorld {
         self.count += 1;
         self.under_way.push((self.now + told.takes, id, told.ends.clone()));
         Ok(id)
+    }
+
+    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+        let is = |s: &&(Nanos, DeviceBody, &str, Vec<f64>)| s.0 <= self.now && s.1 == device && s.2 == what;
+        self.states.iter().rev().find(is).map(|(_, _, _, numbers)| numbers.clone())
     }
 
     fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)> {

@@ -1,11 +1,11 @@
-//! What a physics step costs: with the arm moving, with nothing moving, at rest; and what the sensors and planner cost.
+//! What a physics step costs: with the arm moving, with nothing moving, at rest; and what sensors, lasers and the planner cost.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::{ARM, LEGS, OFFER, REST, STEP, move_to, named, number, run, settle, table, truth};
+use common::{ARM, LEGS, OFFER, REST, STEP, cuboid, move_to, named, number, run, settle, table, truth};
 use divan::Bencher;
-use hrdsl_ir::world::{BodyRef, SignalId, SignalTerm};
+use hrdsl_ir::world::{BodyId, BodyMotion, BodyRef, BodyShape, Laser, LaserId, SignalId, SignalTerm};
 use hrdsl_sim::{MotorCommand, WorldSimulation};
 
 fn main() {
@@ -80,4 +80,47 @@ fn read_a_signal(bencher: Bencher, what: &str) {
     };
     let sim = WorldSimulation::new(&world, &[signal]).expect("the world");
     bencher.bench_local(|| sim.read(SignalId(0)));
+}
+
+/// One scan of 360 beams among thirty bodies: walls around, posts and boxes within.
+#[divan::bench]
+fn scan_with_a_laser(bencher: Bencher) {
+    let mut world = table();
+    world.joints.clear();
+    world.arms.clear();
+    world.grippers.clear();
+    world.currents.clear();
+    world.bodies = vec![
+        common::body("ground", BodyMotion::Fixed, cuboid(12.0, 12.0, 0.1), [0.0, 0.0, -0.05], 1.0),
+        common::body("robot", BodyMotion::Kinematic, cuboid(0.4, 0.4, 0.3), [0.0, 0.0, 0.15], 1.0),
+    ];
+    for (x, y) in [(5.0, 0.0), (-5.0, 0.0), (0.0, 5.0), (0.0, -5.0)] {
+        let shape = if x == 0.0 { cuboid(10.0, 0.1, 1.0) } else { cuboid(0.1, 10.0, 1.0) };
+        world.bodies.push(common::body("wall", BodyMotion::Fixed, shape, [x, y, 0.5], 1.0));
+    }
+    for i in 0..24 {
+        let (sin, cos) = libm::sincos(f64::from(i) * 0.26);
+        let away = 1.0 + f64::from(i % 4);
+        let post = BodyShape::Cylinder { radius: 0.1, length: 1.0 };
+        let shape = if i % 2 == 0 { post } else { cuboid(0.3, 0.2, 1.0) };
+        world.bodies.push(common::body(
+            "thing",
+            BodyMotion::Fixed,
+            shape,
+            [away * cos, away * sin, 0.5],
+            1.0,
+        ));
+    }
+    world.lasers.push(Laser {
+        name: "laser".into(),
+        body: BodyId(1),
+        at: [0.0; 3],
+        lo: -std::f64::consts::PI,
+        hi: std::f64::consts::PI,
+        beams: 360,
+        nearest: 0.05,
+        farthest: 10.0,
+    });
+    let sim = WorldSimulation::new(&world, &[]).expect("the world");
+    bencher.bench_local(|| sim.scan(LaserId(0)));
 }

@@ -289,7 +289,7 @@ impl BaseControl {
 #[cfg(test)]
 mod tests {
     use hrdsl_ir::Expr;
-    use hrdsl_ir::world::{Joint, WorldAction, WorldPoint};
+    use hrdsl_ir::world::{Arm, ArmId, Joint, JointId, WorldAction, WorldPoint};
     use proptest::prelude::*;
 
     use super::*;
@@ -340,7 +340,7 @@ mod tests {
         sim.advance(SECOND);
         let [x0, y0, yaw] = sim.base_pose(BASE).expect("a base");
         // Around a point half a metre to the left of it.
-        let (cx, cy) = (x0 - 0.5 * yaw.sin(), y0 + 0.5 * yaw.cos());
+        let (cx, cy) = (x0 - 0.5 * libm::sin(yaw), y0 + 0.5 * libm::cos(yaw));
         let [x, y, _] = after(&mut sim, 2 * SECOND);
         assert!(((x - cx).hypot(y - cy) - 0.5).abs() < 1e-6);
     }
@@ -428,6 +428,26 @@ mod tests {
         assert!((0.595..0.6015).contains(&x), "{x}");
         let (mast, _) = sim.pose(child).expect("a mast");
         assert!((mast[0] - x - 0.3).abs() < 1e-5, "{mast:?}");
+    }
+
+    #[test]
+    fn an_arm_is_drawn_along_and_keeps_its_posture() {
+        let link = body("link", BodyMotion::Dynamic, cuboid(0.4, 0.05, 0.05), [0.2, 0.0, 0.5]);
+        let mut world = flat(vec![link]);
+        let (parent, child, tip) = (BodyId(1), BodyId(2), BodyId(2));
+        let (anchor, axis) = ([0.0, 0.0, 0.5], [0.0, 0.0, 1.0]);
+        world.joints.push(Joint { name: "hinge".into(), parent, child, anchor, axis, lo: -2.0, hi: 2.0 });
+        let (joints, tool) = (vec![JointId(0)], [0.2, 0.0, 0.0]);
+        world.arms.push(Arm { name: "arm".into(), joints, tip, tool, max_speed: 1.0 });
+        let mut sim = built(&world);
+        sim.command(drive(1.0, 0.0, 1.0)).expect("a base");
+        for _ in 0..20 {
+            let [x, y, yaw] = after(&mut sim, SECOND / 10);
+            let angle = sim.joint_positions(ArmId(0))[0];
+            assert!(angle.abs() < 0.02, "{angle}");
+            let [tx, ty, _] = sim.tool(ArmId(0)).expect("an arm");
+            assert!((tx - x - 0.4 * libm::cos(yaw)).hypot(ty - y - 0.4 * libm::sin(yaw)) < 0.02, "{tx} {ty}");
+        }
     }
 
     #[test]

@@ -21,6 +21,7 @@ pub const LIBRARY_PARTS: &[(&str, &str)] = &[
     ("proximity", "std.sensors"),
     ("speedometer", "std.sensors"),
     ("tiago", "std.robots.mobile"),
+    ("turtlebot", "std.robots.mobile"),
     ("watched", "std.sensors"),
 ];
 
