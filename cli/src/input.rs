@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{CompilationResult, InputFile, compile_with};
+use hrdsl_compiler::{CompilationResult, InputFile, compile_beside};
 use hrdsl_ir::Program;
 use hrdsl_source::{Diagnostic, FileId, SourceFiles, printable_line};
 
@@ -17,6 +17,18 @@ use crate::{fault::CommandFault, files::read, reach::DiskModules, render, termin
 /// # Errors
 /// A file that cannot be read.
 pub fn load(scenario: &Path, tests: &[PathBuf]) -> Result<CompilationResult, CommandFault> {
+    load_beside(scenario, tests, &[])
+}
+
+/// The same, with files that the scenario is to use besides, by their paths from its folder.
+///
+/// # Errors
+/// The same.
+pub fn load_beside(
+    scenario: &Path,
+    tests: &[PathBuf],
+    beside: &[&str],
+) -> Result<CompilationResult, CommandFault> {
     let text = read(scenario)?;
     let name = scenario.display().to_string();
     let mut files = Vec::new();
@@ -26,7 +38,8 @@ pub fn load(scenario: &Path, tests: &[PathBuf]) -> Result<CompilationResult, Com
         }
     }
     let tests: Vec<InputFile<'_>> = files.iter().map(|(name, text)| InputFile { name, text }).collect();
-    Ok(compile_with(InputFile { name: &name, text: &text }, &tests, &DiskModules::of(Some(scenario))))
+    let (input, modules) = (InputFile { name: &name, text: &text }, DiskModules::of(Some(scenario)));
+    Ok(compile_beside(input, &tests, beside, &modules))
 }
 
 fn expand(path: &Path) -> Result<Vec<PathBuf>, CommandFault> {

@@ -14,7 +14,7 @@ pub(crate) fn missing(file: &FileSyntax, loader: &dyn ModuleLoader) -> Vec<Diagn
     let members = systems.flat_map(|s| &s.members);
     let named = members.flat_map(|member| match &member.kind {
         Member::Program(program) => program.members.iter().filter_map(|m| covered(&m.kind)).collect(),
-        kind => covered(kind).into_iter().collect::<Vec<_>>(),
+        _ => covered(&member.kind).into_iter().collect::<Vec<_>>(),
     });
     let missing = named.flatten().filter(|f| loader.is_file(&f.text) == Some(false));
     missing

@@ -92,6 +92,17 @@ pub fn compile_with(
     tests: &[InputFile<'_>],
     loader: &dyn ModuleLoader,
 ) -> CompilationResult {
+    compile_beside(scenario, tests, &[], loader)
+}
+
+/// The same, as if the scenario used these files, too, after those that it names.
+#[must_use]
+pub fn compile_beside(
+    scenario: InputFile<'_>,
+    tests: &[InputFile<'_>],
+    beside: &[&str],
+    loader: &dyn ModuleLoader,
+) -> CompilationResult {
     let mut files = SourceFiles::default();
     let mut diagnostics = Vec::new();
     let mut ast = Vec::new();
@@ -102,6 +113,7 @@ pub fn compile_with(
         diagnostics.extend(issues);
     }
     let first_module = ast.len();
+    modules::also_use(&mut ast[0], beside);
     modules::load(&mut files, &mut ast, &mut diagnostics, loader);
     let devices = modules::load_devices(&mut files, &mut ast);
 

@@ -84,6 +84,16 @@ pub fn load(
     }
 }
 
+/// Lets a file use further ones, as if it said so at its end.
+pub fn also_use(file: &mut ast::FileSyntax, paths: &[&str]) {
+    let span = Span::default();
+    for path in paths {
+        let text = ast::TextSyntax { text: (*path).to_owned(), span };
+        let kind = ItemSyntaxKind::Use(ModuleSyntax::File(text));
+        file.items.push(ast::ItemSyntax { doc: String::new(), kind, span });
+    }
+}
+
 /// Adds the library's devices, which every scenario has, unless they are there; gives the module's place.
 pub fn load_devices(files: &mut SourceFiles, ast: &mut Vec<ast::FileSyntax>) -> Option<usize> {
     let text = hrdsl_stdlib::module(hrdsl_stdlib::DEVICES)?;

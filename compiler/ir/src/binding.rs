@@ -51,6 +51,20 @@ pub struct MiddlewareBinding<E = Expr> {
     pub origin: Span,
 }
 
+impl<E> MiddlewareBinding<E> {
+    /// The signals that messages of the scenario hold.
+    pub fn signals(&self) -> impl Iterator<Item = SignalId> {
+        let inputs = self.inputs.iter().map(|input| &input.message);
+        let answers = self.services.iter().map(|service| &service.response);
+        let results = self.actions.iter().map(|action| &action.result);
+        let gaps = inputs.chain(answers).chain(results).flat_map(|message| &message.gaps);
+        gaps.flat_map(|gap| gap.value.reads()).filter_map(|read| match read {
+            GapRead::Signal(signal) => Some(*signal),
+            GapRead::Argument { .. } => None,
+        })
+    }
+}
+
 /// A topic that the scenario publishes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TopicInput<E = Expr> {
@@ -105,6 +119,15 @@ pub enum ToldNumbers {
 }
 
 impl<E> GapValue<E> {
+    /// What its expression reads.
+    #[must_use]
+    pub fn reads(&self) -> &[GapRead] {
+        match self {
+            GapValue::Value { reads, .. } => reads,
+            GapValue::Held { .. } | GapValue::Now | GapValue::Told { .. } | GapValue::Fixed(_) => &[],
+        }
+    }
+
     /// Whether something that happens sets it.
     #[must_use]
     pub fn is_of_events(&self) -> bool {

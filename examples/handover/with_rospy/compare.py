@@ -2,7 +2,7 @@
 """Compares the results of two systems that were run on the same tests.
 
     hrdsl sim scenario.hri -o a
-    hrdsl sim scenario.hri --system with_rospy -o b
+    hrdsl sim scenario.hri --system with_rospy/system.hri -o b
     python3 with_rospy/compare.py a b [--tolerance SECONDS] [--all]
 
 A paragraph for each test whose verdicts differ: those requirements, and where the two recordings part, which is the first

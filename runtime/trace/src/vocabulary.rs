@@ -5,7 +5,11 @@
 
 use std::fmt::Write as _;
 
-use hrdsl_ir::{Program, Type};
+use hrdsl_ir::{
+    Program, Type,
+    binding::MiddlewareBinding,
+    world::{Signal, SignalId},
+};
 use sha2::{Digest, Sha256};
 
 /// The digest: sixteen hexadecimal digits, the beginning of the SHA-256 of [`listed`].
@@ -31,10 +35,21 @@ pub fn listed(program: &Program) -> String {
         let params = event.params.iter().map(|p| format!(" {}:{}", p.name, described(p.ty)));
         format!("event {}{}\n", event.name, params.collect::<String>())
     });
-    let signals = program.signals.iter().map(|s| format!("signal {}:{}\n", s.name, described(s.ty)));
+    let judged = program.signals.iter().zip(0..).filter(|(s, id)| !is_of_bindings(program, s, SignalId(*id)));
+    let signals = judged.map(|(s, _)| format!("signal {}:{}\n", s.name, described(s.ty)));
     let mut lines: Vec<String> = events.chain(signals).collect();
     lines.sort_unstable();
     lines.concat()
+}
+
+/// Whether only what is bound to a middleware reads it: no recording has it, whichever system was tested.
+fn is_of_bindings(program: &Program, signal: &Signal, id: SignalId) -> bool {
+    let rules = program.world.iter().flat_map(|world| &world.rules);
+    let bound = program.systems.iter().filter_map(|s| s.binding.as_ref());
+    !signal.recorded
+        && signal.to.is_empty()
+        && !rules.flat_map(|rule| &rule.signals).any(|read| *read == id)
+        && bound.flat_map(MiddlewareBinding::signals).any(|read| read == id)
 }
 
 fn described(ty: Type) -> String {

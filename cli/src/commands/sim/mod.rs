@@ -43,7 +43,7 @@ pub const SUPERVISE: &str = "supervise-cell";
 /// run.json, the tests, a recording of each, and what the program wrote in each.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --system with_rospy\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --schedules 20"
+    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --system with_rospy/system.hri\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --schedules 20"
 )]
 pub struct SimArgs {
     /// The scenario.
@@ -56,8 +56,8 @@ pub struct SimArgs {
     /// Only this test, as `SUITE.tNNN`; may be given several times.
     #[arg(long, value_name = "NAME")]
     test: Vec<String>,
-    /// Which of the scenario's systems is tested; by default the first.
-    #[arg(long, value_name = "NAME")]
+    /// Which of the scenario's systems is tested, or a file with another one; by default the first.
+    #[arg(long, value_name = "NAME|FILE")]
     system: Option<String>,
     /// How many concrete tests of each suite, instead of what the suite says.
     #[arg(short = 'n', long, value_name = "N")]
@@ -119,7 +119,9 @@ enum IsolationArg {
 /// A file, a suite or test that does not exist, a folder whose files would be lost, a model that cannot be run, or what the
 /// code needs cannot be installed.
 pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
-    let compilation = input::load(&args.file, &args.tests)?;
+    let beside = system_file(args)?;
+    let beside: Vec<&str> = beside.as_deref().into_iter().collect();
+    let compilation = input::load_beside(&args.file, &args.tests, &beside)?;
     let Some(program) = input::report_errors(&args.file, &compilation) else {
         return Ok(CommandExit::Errors);
     };
@@ -169,8 +171,28 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     })
 }
 
-/// The system of this name, or the first.
+/// The file of `--system FILE`, seen from the scenario's folder.
+fn system_file(args: &SimArgs) -> Result<Option<String>, CommandFault> {
+    let Some(file) = args.system.as_deref().filter(|name| is_file_name(name)) else { return Ok(None) };
+    let path = Path::new(file);
+    if !path.is_file() {
+        return Err(format!("--system: there is no file {}", terminal::shown(path)));
+    }
+    Ok(Some(relative(path, &files::folder(&args.file)).display().to_string()))
+}
+
+fn is_file_name(name: &str) -> bool {
+    name.ends_with(".hri")
+}
+
+/// The system of this name, or of that file, which was read last; or the first.
 fn chosen_system<'p>(program: &'p Program, name: Option<&str>) -> Result<&'p SystemUnderTest, CommandFault> {
+    let last = program.systems.last().map(|system| system.origin.file);
+    if let Some(name) = name.filter(|name| is_file_name(name)) {
+        let own = program.systems.first().is_some_and(|system| Some(system.origin.file) == last);
+        let found = program.systems.iter().find(|s| Some(s.origin.file) == last && !own);
+        return found.ok_or_else(|| format!("{name} has no `system`"));
+    }
     let Some(first) = program.systems.first() else {
         return Err("the scenario has no `system` block: there is nothing to run".to_owned());
     };
@@ -389,7 +411,10 @@ fn rerun(args: &SimArgs, out: &Path) -> String {
     let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
     let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?)));
     words.extend(args.schedule.map(|k| format!("--schedule {k}")));
-    words.extend(args.system.iter().map(|name| format!("--system {name}")));
+    let system = |name: &String| {
+        if is_file_name(name) { quoted(&relative(Path::new(name), out)) } else { name.clone() }
+    };
+    words.extend(args.system.iter().map(|name| format!("--system {}", system(name))));
     words.extend(times.chain(sizes));
     words.push("--test".to_owned());
     words.join(" ")

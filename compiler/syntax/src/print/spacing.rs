@@ -37,11 +37,8 @@ pub(super) fn blank(toks: &[PrintToken<'_>], at: usize) -> bool {
             return matches!(n.kind, TokenKind::Bang | TokenKind::BangBang);
         }
         TokenKind::Plus | TokenKind::Minus if p.mark.prefix => return false,
-        TokenKind::DotDot | TokenKind::Slash => {
-            if p.mark.tight || p.kind == TokenKind::DotDot {
-                return !p.mark.tight;
-            }
-        }
+        TokenKind::DotDot => return !p.mark.tight,
+        TokenKind::Slash if p.mark.tight => return false,
         _ => {}
     }
     match n.kind {

@@ -8,6 +8,7 @@ use super::{
     binding::BindingNode,
     graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
     mailbox::HeardEvent,
+    port::PortDeclaration,
     program::{RequestWait, ServedProgram},
     seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     vocabulary::{ActorVocabulary, refuse},
@@ -143,83 +144,101 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
         cx: &mut PlayerContext<'_, '_>,
     ) -> Result<RequestResponse, HarnessError> {
         use RequestResponse::{Answer, End, Wait};
-        let told = match request {
-            SystemRequest::Now => return Ok(Answer(SystemAnswer::Ok)),
-            SystemRequest::Done => return Ok(End),
-            SystemRequest::Sleep { time } => return Ok(Wait(RequestWait::Time(cx.now.saturating_add(time)))),
-            SystemRequest::Wait { until, give_up } => {
-                return Ok(Wait(RequestWait::Arrivals { until, give_up }));
-            }
-            SystemRequest::WaitFor { events, timeout } => {
-                return Ok(self.wait_for(index, &events, timeout, cx.now));
-            }
-            SystemRequest::Drop { events } => return Ok(Answer(self.drop_mail(index, &events))),
-            SystemRequest::Read { signal } => {
-                return Ok(Answer(self.vocabulary.read(&signal, cx.stage.as_deref_mut())));
-            }
-            SystemRequest::Emit { event, args } => {
-                return Ok(Answer(match self.vocabulary.emission(&event, &args) {
-                    Ok((event, args)) => {
-                        cx.out.push(PlayerMessage::Event { event, args });
-                        SystemAnswer::Ok
-                    }
-                    Err(answer) => answer,
-                }));
-            }
-            SystemRequest::Command(request) => {
-                return Ok(match begin(&request, cx) {
-                    Ok(id) => Wait(RequestWait::Command(id)),
-                    Err(answer) => Answer(answer),
-                });
-            }
-            SystemRequest::Begin { call, command } => {
-                return Ok(Answer(match begin(&command, cx) {
-                    Ok(id) => {
-                        self.programs[index].began(id, call);
-                        SystemAnswer::Ok
-                    }
-                    Err(answer) => answer,
-                }));
-            }
-            SystemRequest::State { device, what } => {
-                return Ok(Answer(asked(cx, |stage| stage.state(&device, &what))));
-            }
-            SystemRequest::Plan { device, to } => {
-                return Ok(Answer(asked(cx, |stage| stage.plan(&device, to))));
-            }
-            SystemRequest::Transition { from, to } => {
-                if let Some(binding) = &self.binding {
-                    let events = binding.transition(&from, &to);
-                    cx.out.extend(events.map(|(event, args)| PlayerMessage::Event { event, args }));
+        Ok(match request {
+            SystemRequest::Now => Answer(SystemAnswer::Ok),
+            SystemRequest::Done => End,
+            SystemRequest::Sleep { time } => Wait(RequestWait::Time(cx.now.saturating_add(time))),
+            SystemRequest::Wait { until, give_up } => Wait(RequestWait::Arrivals { until, give_up }),
+            SystemRequest::WaitFor { events, timeout } => self.wait_for(index, &events, timeout, cx.now),
+            SystemRequest::Drop { events } => Answer(self.drop_mail(index, &events)),
+            SystemRequest::Read { signal } => Answer(self.vocabulary.read(&signal, cx.stage.as_deref_mut())),
+            SystemRequest::Emit { event, args } => Answer(match self.vocabulary.emission(&event, &args) {
+                Ok((event, args)) => {
+                    cx.out.push(PlayerMessage::Event { event, args });
+                    SystemAnswer::Ok
                 }
-                return Ok(Answer(SystemAnswer::Ok));
+                Err(answer) => answer,
+            }),
+            SystemRequest::Command(request) => match begin(&request, cx) {
+                Ok(id) => Wait(RequestWait::Command(id)),
+                Err(answer) => Answer(answer),
+            },
+            SystemRequest::Begin { call, command } => Answer(match begin(&command, cx) {
+                Ok(id) => {
+                    self.programs[index].began(id, call);
+                    SystemAnswer::Ok
+                }
+                Err(answer) => answer,
+            }),
+            SystemRequest::State { device, what } => Answer(asked(cx, |stage| stage.state(&device, &what))),
+            SystemRequest::Plan { device, to } => Answer(asked(cx, |stage| stage.plan(&device, to))),
+            SystemRequest::Transition { from, to } => {
+                let events = self.binding.iter().flat_map(|binding| binding.transition(&from, &to));
+                cx.out.extend(events.map(|(event, args)| PlayerMessage::Event { event, args }));
+                Answer(SystemAnswer::Ok)
             }
             SystemRequest::List => {
                 let names: Vec<String> = self.programs.iter().map(|p| p.name.clone()).collect();
-                return Ok(Answer(SystemAnswer::Listed(self.graph.watch(index, &names))));
+                Answer(SystemAnswer::Listed(self.graph.watch(index, &names)))
             }
             SystemRequest::Open(declared) => {
-                let opened = self.graph.open(index, declared.clone());
-                match (opened, &mut self.binding) {
-                    (Ok(mut out), Some(binding)) => binding.opened(&declared, &mut self.graph).map(|more| {
-                        out.extend(more);
-                        out
-                    }),
-                    (opened, _) => opened,
-                }
+                let opened = self.opened(index, declared);
+                Answer(self.told(opened, cx)?)
             }
             SystemRequest::Close { port } => {
                 self.programs[index].mailbox.forget_port(port);
-                self.graph.close(index, port)
+                let closed = self.graph.close(index, port);
+                Answer(self.told(closed, cx)?)
             }
-            SystemRequest::Publish { port, message } => self.graph.publish(index, port, &message),
+            SystemRequest::Publish { port, message } => {
+                let published = self.graph.publish(index, port, &message);
+                Answer(self.told(published, cx)?)
+            }
+            request @ (SystemRequest::Call { .. }
+            | SystemRequest::Respond { .. }
+            | SystemRequest::Feedback { .. }
+            | SystemRequest::Finish { .. }
+            | SystemRequest::Cancel { .. }) => {
+                let called = self.called(index, request);
+                Answer(self.told(called, cx)?)
+            }
+        })
+    }
+
+    fn opened(&mut self, index: ProgramIndex, declared: PortDeclaration) -> GraphOutcome {
+        let mut out = self.graph.open(index, declared.clone())?;
+        if let Some(binding) = &mut self.binding {
+            out.extend(binding.opened(&declared, &mut self.graph)?);
+        }
+        Ok(out)
+    }
+
+    /// Calls of services and goals of actions; nothing else has such an outcome.
+    fn called(&mut self, index: ProgramIndex, request: SystemRequest) -> GraphOutcome {
+        match request {
             SystemRequest::Call { port, call, message } => self.graph.call(index, port, call, message),
             SystemRequest::Respond { call, answer } => self.graph.respond(index, call, answer),
             SystemRequest::Feedback { call, message } => self.graph.feedback(index, call, message),
             SystemRequest::Finish { call, end, message } => self.graph.finish(index, call, end, message),
             SystemRequest::Cancel { call } => self.graph.cancel(index, call),
-        };
-        Ok(Answer(self.told(told, cx)?))
+            SystemRequest::Now
+            | SystemRequest::Done
+            | SystemRequest::Sleep { .. }
+            | SystemRequest::Wait { .. }
+            | SystemRequest::WaitFor { .. }
+            | SystemRequest::Drop { .. }
+            | SystemRequest::Read { .. }
+            | SystemRequest::Emit { .. }
+            | SystemRequest::Command(_)
+            | SystemRequest::Begin { .. }
+            | SystemRequest::State { .. }
+            | SystemRequest::Plan { .. }
+            | SystemRequest::Transition { .. }
+            | SystemRequest::List
+            | SystemRequest::Open(_)
+            | SystemRequest::Close { .. }
+            | SystemRequest::Publish { .. } => Ok(Vec::new()),
+        }
     }
 
     /// Carries out what a request does to others.
