@@ -1,5 +1,4 @@
 //! Embeds the SDK and the client libraries of ROS: every file of Python below `sdk/python`, but for tests and benchmarks.
-#![expect(clippy::disallowed_methods, reason = "a build script reads and writes files")]
 
 use std::{env, error::Error, fmt::Write as _, fs, path::Path};
 

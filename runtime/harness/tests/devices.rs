@@ -48,6 +48,7 @@ fn scanning(what: &str) -> (Program, MiddlewareBinding) {
         origin: Span::default(),
     };
     let binding = MiddlewareBinding {
+        packages: std::collections::BTreeMap::new(),
         kind: MiddlewareKind::Ros1,
         interfaces: String::new(),
         inputs: vec![input],
