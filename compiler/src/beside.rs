@@ -13,7 +13,8 @@ pub(crate) fn missing(file: &FileSyntax, loader: &dyn ModuleLoader) -> Vec<Diagn
         .filter_map(|i| if let ItemSyntaxKind::System(s) = &i.kind { Some(s) } else { None });
     let members = systems.flat_map(|s| &s.members);
     let named = members.flat_map(|member| {
-        let inner = if let Member::Program(program) = &member.kind { program.members.as_slice() } else { &[] };
+        let inner =
+            if let Member::Program(program) = &member.kind { program.members.as_slice() } else { &[] };
         covered(&member.kind).into_iter().chain(inner.iter().filter_map(|m| covered(&m.kind)))
     });
     let missing = named.flatten().filter(|f| loader.is_file(&f.text) == Some(false));

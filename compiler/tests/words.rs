@@ -126,7 +126,7 @@ const KINDS: &[(&str, &str)] = &[
         "command of a device",
         "event told from robot
          device gripper { command @ do open_fingers; command @2 do close_fingers expect holds else \"it is empty\" }
-         device arm { command @(to: length[3]) do reach_point }
+         device arm { command @2(to: length[3]) do reach_point }
          world {
            body palm: kinematic sphere(4 cm) at (0 m, 0 m, 1 m)
            gripper hand: palm tool (0 m, 0 m, 0 m) reach 1 cm delay 1 s

@@ -115,6 +115,8 @@ impl LaunchSpec {
             ("HRDSL_SEED", self.seed.to_string()),
             ("PYTHONHASHSEED", (self.seed % (1 << 32)).to_string()),
             ("PYTHONIOENCODING", "utf-8:backslashreplace".to_owned()),
+            // Before the budget is used up, so that the program itself says where.
+            ("HRDSL_BUSY_SECONDS", (self.limits.budget.as_secs_f64() * 0.8).to_string()),
         ];
         let fixed = fixed.into_iter().map(|(name, value)| (name.into(), value.into()));
         let bound = self.middleware.iter().flat_map(|m| {

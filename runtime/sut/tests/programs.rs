@@ -49,6 +49,10 @@ fn a_good_program_is_answered() {
             ProgramRequest::Hello { version: 2, .. } => {
                 ReplyAnswer::Hello { version: 2, program: "robot".into() }
             }
+            // It looks whether something is there already.
+            ProgramRequest::Wait { until: Some(0), .. } => {
+                ReplyAnswer::Arrived { arrivals: Vec::new(), gave_up: false }
+            }
             ProgramRequest::Wait { .. } => {
                 let (arrivals, gave_up) = waits
                     .pop_front()
@@ -317,8 +321,13 @@ fn a_stop_ends_the_program_in_order() {
         let mut process = SutProcess::spawn(&launch).unwrap();
         hello(&mut process);
         let mut request = process.next().unwrap();
-        while !matches!(request, ProgramRequest::Wait { .. }) {
-            reply(&mut process, 0, ReplyAnswer::Ok);
+        while !matches!(request, ProgramRequest::Wait { until: None, .. }) {
+            let answer = match request {
+                // It looks whether something is there already.
+                ProgramRequest::Wait { .. } => ReplyAnswer::Arrived { arrivals: Vec::new(), gave_up: false },
+                _ => ReplyAnswer::Ok,
+            };
+            reply(&mut process, 0, answer);
             request = process.next().unwrap();
         }
         assert_eq!(request, ProgramRequest::Wait { until: None, give_up: None });

@@ -34,7 +34,7 @@ def busy(scheduler: Scheduler, task: Task, seconds: float) -> str:
     """Where the loop is, and which waits let the others run."""
     _, place = _wait_of(sys._current_frames().get(task.ident))
     return (
-        "hrdsl: %s: %s has computed for %g s of processor time while others wait to run; if this is a loop that waits for"
+        "hrdsl: %s: %s has computed for more than %g s of processor time while others wait to run; if this is a loop that waits for"
         " something, wait with time.sleep, Event.wait(timeout) or a queue (HRDSL_BUSY_SECONDS sets the limit)\n"
         % (place, name(scheduler, task), seconds)
     )

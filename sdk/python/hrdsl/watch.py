@@ -67,18 +67,21 @@ class Watcher:
             if used is None or (task.ident, self._scheduler.calls) != seen:
                 seen, since = (task.ident, self._scheduler.calls), used or 0.0
             elif used - since > self._budget and self._keeps_others(task):
-                self._found(task, used - since)
+                self._found(task)
                 break
         stopped.release()
 
     def _keeps_others(self, task: Task) -> bool:
         scheduler = self._scheduler
-        return bool(scheduler.ready) or any(other.ticket for other in list(scheduler.tasks.values()) if other is not task)
+        if scheduler.ready or any(other.ticket for other in list(scheduler.tasks.values()) if other is not task):
+            return True
+        # A message that a callback waits for comes when time passes, and not before.
+        return scheduler.outside.can_arrive()
 
-    def _found(self, task: Task, used: float) -> None:
+    def _found(self, task: Task) -> None:
         from hrdsl import report
 
-        sys.stderr.write(report.busy(self._scheduler, task, used))
+        sys.stderr.write(report.busy(self._scheduler, task, self._budget))
         self._scheduler.end(Busy)
         try:
             import ctypes

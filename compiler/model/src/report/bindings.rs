@@ -4,7 +4,7 @@ use hrdsl_ir::{binding::MessageScalar, device::CommandParam};
 use hrdsl_messages::{MessageFault, UnknownInterface};
 use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
-use super::names::with_nearest;
+use super::names::{replace, with_nearest};
 use crate::noun::Noun;
 
 /// HR0805: a definition with a fault, or a workspace.
@@ -22,7 +22,7 @@ pub(crate) fn fault(fault: &MessageFault) -> Diagnostic {
 pub(crate) fn unknown_interface(unknown: &UnknownInterface, span: Span) -> Diagnostic {
     let error = Diagnostic::error(DiagnosticCode::UNKNOWN_NAME, span, unknown.to_string());
     match &unknown.nearest {
-        Some(near) => error.help(format!("did you mean `{near}`?")),
+        Some(near) => replace(error.help(format!("did you mean `{near}`?")), &unknown.written, near),
         None => error.help("name the workspace that defines it: `messages \"PATH\"`"),
     }
 }

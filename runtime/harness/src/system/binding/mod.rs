@@ -119,7 +119,9 @@ impl<'p> BindingNode<'p> {
         }
         let mut out = Vec::new();
         for at in 0..self.inputs.len() {
-            if binding.inputs.get(at).is_some_and(|input| input.latched) {
+            // One that speaks of events has nothing to say before the first.
+            let has_news = |input: &TopicInput| input.message.gaps.iter().any(|gap| gap.value.is_of_events());
+            if binding.inputs.get(at).is_some_and(|input| input.latched && !has_news(input)) {
                 out.extend(self.publish(at, graph, cx)?);
             }
         }
