@@ -20,6 +20,34 @@ fn hello(process: &mut SutProcess) {
     reply(process, 0, ReplyAnswer::Hello { version: 2, program: "robot".into() });
 }
 
+/// What each wait is answered, and the rest as it is asked; time passes in waits.
+fn answer_of_the_test(
+    request: &ProgramRequest,
+    waits: &mut VecDeque<(Vec<SystemArrival>, bool)>,
+    time: &mut i64,
+) -> ReplyAnswer {
+    match request {
+        ProgramRequest::Hello { version: 2, .. } => {
+            ReplyAnswer::Hello { version: 2, program: "robot".into() }
+        }
+        // It looks whether something is there already.
+        ProgramRequest::Wait { until: Some(0), .. } => {
+            ReplyAnswer::Arrived { arrivals: Vec::new(), gave_up: false }
+        }
+        ProgramRequest::Wait { until, give_up } => {
+            let (arrivals, gave_up) = waits.pop_front().expect("no more waits than the test knows");
+            *time = until.or(*give_up).unwrap_or(*time).max(*time);
+            ReplyAnswer::Arrived { arrivals, gave_up }
+        }
+        ProgramRequest::Read { signal } => ReplyAnswer::Value(match signal.as_str() {
+            "pressure" => Value::Bool(false),
+            "height" => Value::Float(1.25),
+            _ => Value::Symbol(Symbol::intern("slow")),
+        }),
+        _ => ReplyAnswer::Ok,
+    }
+}
+
 #[test]
 fn a_good_program_is_answered() {
     let mut process = SutProcess::spawn(&launch(&["python3", "-u", "good.py", "one", "-m"])).unwrap();
@@ -45,28 +73,7 @@ fn a_good_program_is_answered() {
     let mut time = 500_000_000;
     while requests.last() != Some(&ProgramRequest::Done) {
         let request = process.next().unwrap();
-        let answer = match &request {
-            ProgramRequest::Hello { version: 2, .. } => {
-                ReplyAnswer::Hello { version: 2, program: "robot".into() }
-            }
-            // It looks whether something is there already.
-            ProgramRequest::Wait { until: Some(0), .. } => {
-                ReplyAnswer::Arrived { arrivals: Vec::new(), gave_up: false }
-            }
-            ProgramRequest::Wait { .. } => {
-                let (arrivals, gave_up) = waits
-                    .pop_front()
-                    .unwrap_or_else(|| panic!("one wait too many: {requests:?}, {request:?}"));
-                time = 2_000_000_000;
-                ReplyAnswer::Arrived { arrivals, gave_up }
-            }
-            ProgramRequest::Read { signal } => ReplyAnswer::Value(match signal.as_str() {
-                "pressure" => Value::Bool(false),
-                "height" => Value::Float(1.25),
-                _ => Value::Symbol(Symbol::intern("slow")),
-            }),
-            _ => ReplyAnswer::Ok,
-        };
+        let answer = answer_of_the_test(&request, &mut waits, &mut time);
         reply(&mut process, time, answer);
         requests.push(request);
     }
@@ -336,8 +343,7 @@ fn a_stop_ends_the_program_in_order() {
         }
         let finished = process.finish(GRACE);
         assert_eq!(finished.exit, ProgramExit::Code(0), "{}", finished.output);
-        let why = if by_reply { "the test is over" } else { "the harness has gone" };
-        assert_eq!(finished.output.stdout.text(), format!("stopped: {why}\ncleaning up\n"));
+        assert_eq!(finished.output.stdout.text(), "stopped: the test is over\ncleaning up\n");
         assert_eq!(finished.output.stderr.text(), "");
         assert!(finished.coverage.is_some());
     }
