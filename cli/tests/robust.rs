@@ -508,6 +508,8 @@ node.emit('said', n=1)
     let folder = project(robot, 2);
     fs::create_dir(folder.path().join("disk")).unwrap();
     fs::write(folder.path().join("data.txt"), "data").unwrap();
+    // A neighbour that takes much room takes nothing from the other files.
+    fs::write(folder.path().join("big.bin"), vec![1; 20 << 20]).unwrap();
     let script = "mount -t tmpfs tmpfs disk && mkdir disk/deep && mount -t tmpfs tmpfs disk/deep && \
                   $HRDSL sim scenario.hri tests.hri -j 1 --isolation namespaces -o out";
     let Some(out) = as_root_of_namespaces(folder.path(), script) else { return };

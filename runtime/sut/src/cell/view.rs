@@ -100,7 +100,8 @@ impl PrivateView {
             Self { mounts, covered, layers, own: own.to_vec(), overlays: Vec::new(), read_only: Vec::new() };
         let root = root();
         fs::create_dir(&root).map_err(|e| (SCRATCH.to_owned(), e))?;
-        memory("size=16m,mode=755".to_owned(), &root)?;
+        // Files of folders that are made anew are copied into it.
+        memory(format!("size={size},mode=755"), &root)?;
         view.folder(Path::new("/"))?;
         for folder in own {
             view.own_layer(folder)?;
@@ -174,13 +175,16 @@ impl PrivateView {
         Ok(())
     }
 
-    /// A file in a folder that was made anew: a copy in the program's own folders, elsewhere one that can be read. One that
-    /// cannot be either (another user's) is there, and empty.
+    /// A file in a folder that was made anew: a copy in the program's own folders, elsewhere, or where there is no room for it, one that
+    /// can be read. One that cannot be either (another user's) is there, and empty.
     fn file(&self, path: &Path, is_regular: bool) -> Result<(), ViewError> {
         let (host, target) = (self.host(path), inside(path));
         if is_regular && self.own.iter().any(|own| path.starts_with(own)) {
-            let _ = fs::copy(&host, &target);
-            return Ok(());
+            if fs::copy(&host, &target).is_ok() {
+                return Ok(());
+            }
+            // Half a file would be read as a whole one: what has no room can at least be read.
+            let _ = fs::remove_file(&target);
         }
         fs::write(&target, "").map_err(|e| (path.display().to_string(), e))?;
         let _ = bind_read_only(&host, &target);
