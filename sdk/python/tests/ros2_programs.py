@@ -11,6 +11,22 @@ from harness import run
 from system import System
 
 SECOND = 10**9
+
+#: The beginning of programs that try calls, and print what they give or raise.
+TRIED = """
+import rclpy, sys
+from rclpy.node import Node
+from rcl_interfaces.msg import *
+from rclpy.parameter import Parameter
+
+def tried(call):
+    try:
+        print(call())
+    except Exception as error:
+        print("%s: %s" % (type(error).__name__, error))
+
+"""
+
 _binding = None
 
 

@@ -2,22 +2,8 @@
 
 import unittest
 
-from ros2_programs import SECOND, Ros2Case
+from ros2_programs import SECOND, TRIED, Ros2Case
 from system import System
-
-TRIED = """
-import rclpy, sys
-from rclpy.node import Node
-from rcl_interfaces.msg import *
-from rclpy.parameter import Parameter
-
-def tried(call):
-    try:
-        print(call())
-    except Exception as error:
-        print("%s: %s" % (type(error).__name__, error))
-
-"""
 
 
 class Timers(Ros2Case):

@@ -2,21 +2,7 @@
 
 import unittest
 
-from ros2_programs import Ros2Case
-
-TRIED = """
-import rclpy, sys
-from rclpy.node import Node
-from rcl_interfaces.msg import *
-from rclpy.parameter import Parameter
-
-def tried(call):
-    try:
-        print(call())
-    except Exception as error:
-        print("%s: %s" % (type(error).__name__, error))
-
-"""
+from ros2_programs import TRIED, Ros2Case
 
 
 class Parameters(Ros2Case):
