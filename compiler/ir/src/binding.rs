@@ -200,6 +200,27 @@ pub enum MessageStep {
     Element(u32),
 }
 
+/// `pose.position.x`, `ranges[0]`
+#[must_use]
+pub fn place_text(path: &[MessageStep]) -> String {
+    let mut text = String::new();
+    for step in path {
+        match step {
+            MessageStep::Field(name) if text.is_empty() => text.push_str(name),
+            MessageStep::Field(name) => {
+                text.push('.');
+                text.push_str(name);
+            }
+            MessageStep::Element(at) => {
+                text.push('[');
+                text.push_str(&at.to_string());
+                text.push(']');
+            }
+        }
+    }
+    text
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MessageRule<E = Expr> {
     /// A boolean; `None`: always.

@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_ir::binding::{GapValue, MessageGap, MessageRules, MessageScalar, MessageStep, MessageTemplate};
+use hrdsl_ir::binding::{
+    GapValue, MessageGap, MessageRules, MessageScalar, MessageStep, MessageTemplate, place_text,
+};
 use hrdsl_messages::InterfaceName;
 use hrdsl_syntax::ast::{BindingEntry, BindingEntryKind as Entry, FieldSyntax};
 
 use super::{
     BindingScope,
     rules::MessageEnv,
-    shape::{FieldShape, MessageShape, place_text},
+    shape::{FieldShape, MessageShape},
 };
 use crate::check::checker::Checker;
 use crate::{TypedExpr, noun::Noun, report::bindings};

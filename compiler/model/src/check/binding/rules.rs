@@ -1,7 +1,9 @@
 //! What a message makes happen: events of the system's actor, commands to its devices.
 
 use hrdsl_ir::{
-    binding::{CommandArgument, MessageEffect, MessageRead, MessageRule, MessageScalar, MessageStep},
+    binding::{
+        CommandArgument, MessageEffect, MessageRead, MessageRule, MessageScalar, MessageStep, place_text,
+    },
     device::{CommandParam, DeviceBody, NumberCount},
     world::DeviceCommandId,
 };
@@ -12,7 +14,7 @@ use hrdsl_syntax::ast::{
 
 use super::{
     BindingScope,
-    shape::{FieldShape, MessageShape, place_text},
+    shape::{FieldShape, MessageShape},
 };
 use crate::check::{
     checker::Checker,

@@ -217,23 +217,3 @@ fn scalar(primitive: PrimitiveType, version: RosVersion) -> (MessageScalar, &'st
         | PrimitiveType::Uint64 => (MessageScalar::Float, "0.0"),
     }
 }
-
-/// `pose.position.x`, `ranges[0]`
-pub(super) fn place_text(path: &[MessageStep]) -> String {
-    let mut text = String::new();
-    for step in path {
-        match step {
-            MessageStep::Field(name) if text.is_empty() => text.push_str(name),
-            MessageStep::Field(name) => {
-                text.push('.');
-                text.push_str(name);
-            }
-            MessageStep::Element(at) => {
-                text.push('[');
-                text.push_str(&at.to_string());
-                text.push(']');
-            }
-        }
-    }
-    text
-}

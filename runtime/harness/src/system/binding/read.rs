@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Symbol, Type, Value,
-    binding::{MessageRead, MessageStep},
+    binding::{MessageRead, MessageStep, place_text},
 };
 use serde_json::Value as Json;
 
@@ -20,7 +20,7 @@ pub(super) fn at<'m>(message: &'m Json, path: &[MessageStep]) -> Result<&'m Json
             MessageStep::Field(name) => here.get(name),
             MessageStep::Element(at) => here.get(usize::try_from(*at).unwrap_or(usize::MAX)),
         };
-        here = next.ok_or_else(|| format!("the message has no `{}`", text_of(path)))?;
+        here = next.ok_or_else(|| format!("the message has no `{}`", place_text(path)))?;
     }
     Ok(here)
 }
@@ -45,15 +45,16 @@ pub(super) fn value(message: &Json, read: &MessageRead) -> Result<Value, String>
         Type::Enum(of) => match json.as_str() {
             Some(name) => {
                 let known: Option<Symbol> = of.symbol(name);
-                let none = || format!("`{}` is {name:?}, which `{of}` does not have", text_of(&read.path));
+                let none = || format!("`{}` is {name:?}, which `{of}` does not have", place_text(&read.path));
                 return known.map(Value::Symbol).ok_or_else(none);
             }
             None => None,
         },
         Type::List(_) => None,
     };
-    let wrong =
-        || format!("`{}` is {json}, which is of another type than the interface says", text_of(&read.path));
+    let wrong = || {
+        format!("`{}` is {json}, which is of another type than the interface says", place_text(&read.path))
+    };
     found.filter(|v| read.ty.admits(*v)).ok_or_else(wrong)
 }
 
@@ -81,17 +82,5 @@ pub(super) fn numbers(message: &Json, path: &[MessageStep]) -> Result<Vec<f64>, 
             number(json).map(|n| vec![n])
         }
     };
-    all.ok_or_else(|| format!("`{}` holds something else than numbers", text_of(path)))
-}
-
-fn text_of(path: &[MessageStep]) -> String {
-    let mut text = String::new();
-    for step in path {
-        match step {
-            MessageStep::Field(name) if text.is_empty() => text.push_str(name),
-            MessageStep::Field(name) => text.push_str(&format!(".{name}")),
-            MessageStep::Element(at) => text.push_str(&format!("[{at}]")),
-        }
-    }
-    text
+    all.ok_or_else(|| format!("`{}` holds something else than numbers", place_text(path)))
 }
