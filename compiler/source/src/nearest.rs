@@ -42,10 +42,13 @@ pub fn distance(a: &str, b: &str) -> usize {
 /// The candidate nearest to `name`, if one is near enough to have been meant; of equals the one that begins alike for
 /// longer, then the first. A difference of case alone is always near.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = (name.chars().count() * INDEL / 2).max(REPLACE);
+    let length = name.chars().count();
+    let limit = (length * INDEL / 2).max(REPLACE);
+    // Most names of a large scenario are told apart by their lengths, for which no table has to be made.
+    let could_be = |c: &str| c != name && c.chars().count().abs_diff(length) * INDEL <= limit;
     candidates
         .into_iter()
-        .filter(|c| *c != name)
+        .filter(|c| could_be(c))
         .map(|c| (if c.eq_ignore_ascii_case(name) { 1 } else { distance(name, c) }, c))
         .filter(|(d, _)| *d <= limit)
         .min_by_key(|(d, c)| (*d, Reverse(name.chars().zip(c.chars()).take_while(|(a, b)| a == b).count())))

@@ -199,7 +199,14 @@ fn say_hooked(
     }
 }
 
+/// The variable that names a folder whose SDK is used in the place of the one built in, by those who work on it.
+const OTHER_SDK: &str = "HRDSL_SDK";
+
 fn sdk(cache: &EnvironmentCache<'_>, probe: &ProbedInterpreter) -> Result<PathBuf, SutError> {
+    if let Some(folder) = variable(OTHER_SDK).filter(|folder| !folder.is_empty()) {
+        let what = format!("cannot find {folder}, which {OTHER_SDK} names");
+        return Path::new(&folder).canonicalize().map_err(SutError::io(what));
+    }
     let made_from: Vec<&str> =
         [probe.tag.as_str()].into_iter().chain(SDK.iter().flat_map(|&(name, text)| [name, text])).collect();
     let part = CachePart { kind: "sdk", key: PartsHasher::of(&made_from).finish(), what: "the SDK" };

@@ -265,10 +265,11 @@ impl Checker<'_> {
                 // It may be a function that could not be read.
                 return true;
             }
-            let event = hrdsl_source::nearest(text, self.events.table.names());
             // Short names are near to all others.
-            let near = meant.filter(|near| event.is_none() && near.len() > 2);
-            let Some(near) = near else { return false };
+            let Some(near) = meant.filter(|near| near.len() > 2) else { return false };
+            if hrdsl_source::nearest(text, self.events.table.names()).is_some() {
+                return false;
+            }
             let issue = names::unknown(Noun::Function, text, call.name.span, [near]);
             self.report(issue);
             return true;
