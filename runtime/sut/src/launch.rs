@@ -10,6 +10,7 @@ use crate::{
     environment::{PythonEnv, word::is_python},
     error::SutError,
     limits::{ProgramLimits, StopFlag},
+    start,
 };
 
 /// All that determines a run of the program under test.
@@ -61,7 +62,7 @@ struct StartCommand {
 
 /// How a command is started.
 enum CommandKind<'a> {
-    /// The interpreter's flags, and the script or `-m module` with its arguments.
+    /// The interpreter's flags, and the script, `-m module` or `-c code` with its arguments.
     Script {
         flags: &'a [String],
         script: &'a [String],
@@ -86,6 +87,9 @@ impl LaunchSpec {
         let Some(word) = self.command.first() else {
             return Err(absent("program", "an empty command".to_owned()));
         };
+        if let Some(advice) = start::advice(word, &self.command[1..], &dir) {
+            return Err(absent("program", advice));
+        }
         let mut start = match self.kind(word) {
             CommandKind::Script { flags, script } => self.script(word, flags, script)?,
             CommandKind::Interpreter => self.plain(self.interpreter(word)?.into_os_string()),
@@ -134,8 +138,8 @@ impl LaunchSpec {
         let mut at = 0;
         while let Some(flag) = words.get(at) {
             match flag.as_str() {
-                "-m" => return CommandKind::Script { flags: &words[..at], script: &words[at..] },
-                "-c" | "-" => return CommandKind::Interpreter,
+                "-m" | "-c" => return CommandKind::Script { flags: &words[..at], script: &words[at..] },
+                "-" => return CommandKind::Interpreter,
                 "-W" | "-X" => at += 2,
                 flag if flag.starts_with('-') => at += 1,
                 _ => return CommandKind::Script { flags: &words[..at], script: &words[at..] },
@@ -146,7 +150,7 @@ impl LaunchSpec {
 
     fn script(&self, word: &str, flags: &[String], script: &[String]) -> Result<StartCommand, SutError> {
         let file = self.dir.join(&script[0]);
-        if script[0] != "-m" && !file.is_file() {
+        if !matches!(script[0].as_str(), "-m" | "-c") && !file.is_file() {
             return Err(absent("script", file.display().to_string()));
         }
         let env = &self.env;

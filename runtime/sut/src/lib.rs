@@ -29,6 +29,7 @@ mod patience;
 mod pipes;
 mod process;
 mod protocol;
+mod start;
 
 pub use affinity::{PinnedCore, pin_to_free_core};
 pub use cell::CellSettings;

@@ -9,25 +9,72 @@ import sys
 LOOKED_AT = 5000
 NOT_OURS = ("__pycache__", "build", "hrdsl-out", "node_modules")
 
+#: The client libraries that a binding brings, by the binding.
+CLIENTS = {
+    "ros1": ("rospy", "smach", "smach_ros", "actionlib", "moveit_commander", "tf", "tf2_ros", "message_filters", "rospkg", "roslib"),
+    "ros2": ("rclpy", "ament_index_python", "message_filters", "sensor_msgs_py"),
+}
+
+#: Modules of ROS that are not there, and what to do instead.
+ABSENT = {
+    "cv_bridge": "the pixels of an image are in its `data`: `numpy.frombuffer(msg.data, numpy.uint8).reshape(msg.height, msg.width, -1)`",
+    "image_transport": "subscribe to the topic of the image itself",
+    "image_geometry": "compute with the matrices of `sensor_msgs/CameraInfo` yourself",
+    "laser_geometry": "compute the points from `angle_min`, `angle_increment` and `ranges` yourself",
+    "ros_numpy": "the values of a message are in its fields: `numpy.array(msg.ranges)`",
+    "ros2_numpy": "the values of a message are in its fields: `numpy.array(msg.ranges)`",
+    "PyKDL": "tf.transformations and the messages of geometry_msgs have what most programs use of it",
+    "dynamic_reconfigure.server": "nobody reconfigures; read parameters with rospy.get_param",
+    "dynamic_reconfigure.client": "nobody is reconfigured; set parameters with rospy.set_param",
+    "rosbag": "what others would say is the scenario's to publish",
+    "rosbag2_py": "what others would say is the scenario's to publish",
+    "roslaunch": "each node is a program of the system, with its own `run`",
+    "rosparam": "read and set parameters with rospy",
+    "rosnode": "ask rospy for topics and services",
+    "rostopic": "ask rospy for topics and services",
+    "rosservice": "ask rospy for topics and services",
+    "nav2_simple_commander": "bind the actions of navigation, and use rclpy.action",
+    "controller_manager": "bind the topic or the action of the controller",
+    "gazebo_ros": "the world is the scenario's",
+}
+
 
 def about(error: ImportError) -> str | None:
     """The line for a `ModuleNotFoundError`, or None."""
     if not error.name:
         return None
     name, _, inner = error.name.partition(".")
+    told = _of_ros(error.name) or _of_ros(name)
+    if told is not None:
+        return told
     if inner:
         return _inside(name, inner)
     if name in getattr(sys, "stdlib_module_names", ()):
         return "`%s` belongs to Python, but %s came without it: install it there" % (name, sys.executable)
     place = _in_project(name)
     if place is None:
-        return "put `%s` into requirements.txt beside the scenario (or the package that has it)" % name
+        told = "put `%s` into requirements.txt beside the scenario (or the package that has it)" % name
+        if "HRDSL_MIDDLEWARE" in os.environ:
+            told += ", or, if it is a package of a workspace, name its folder with `messages`"
+        return told
     project = _project_of(place)
     if project:
         return "`%s` is at %s: put `%s` into requirements.txt beside the scenario" % (name, place, project)
     folder = os.path.dirname(place) or "."
     advice = '`%s` is at %s, where no module is looked for: add `sys.path.append("%s")` before the import'
     return advice % (name, place, folder)
+
+
+def _of_ros(name: str) -> str | None:
+    """About a module that programs find where ROS is installed."""
+    if name in ABSENT:
+        return "`%s` is not there without ROS: %s" % (name, ABSENT[name])
+    bound = os.environ.get("HRDSL_MIDDLEWARE")
+    for middleware, names in CLIENTS.items():
+        if name in names and name not in CLIENTS.get(bound or "", ()):
+            told = "`%s` is there for programs of a system that has a block `%s { }`" % (name, middleware)
+            return told + (", and this one has `%s`" % bound if bound else "")
+    return None
 
 
 def _inside(name: str, inner: str) -> str | None:

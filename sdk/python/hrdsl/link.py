@@ -36,7 +36,7 @@ class Link:
         self._in = open(reply_fd, "rb")
         self._owner = os.getpid()
         self._lock = _thread.allocate_lock()
-        self._greeted = False
+        self.greeted = False  # whether there has been a `hello`
         self._stopped: str | None = None
         self._buffer: list[bytes] = []  # requests without replies that have not been written
         self._buffered = 0  # bytes of them
@@ -62,7 +62,7 @@ class Link:
 
     def hello(self, name: str) -> None:
         """Names the program, and agrees on the protocol's version."""
-        self._greeted = True
+        self.greeted = True
         answer = self.request({"request": "hello", "version": VERSION, "name": name})
         self.program = answer.get("program", self.program)
 
@@ -85,7 +85,7 @@ class Link:
 
     def tell(self, line: bytes, about: object) -> None:
         """Sends a request that has no reply, together with the next one that has; `about` is what an error calls it."""
-        if not self._greeted:
+        if not self.greeted:
             self.hello("program")
         if len(line) > LONGEST:
             raise ProtocolError(
@@ -113,7 +113,7 @@ class Link:
         self._check_owner()
         if self.before_request is not None:
             self.before_request()
-        if not self._greeted:
+        if not self.greeted:
             self.hello("program")
         with self._lock:
             if self._stopped is not None:

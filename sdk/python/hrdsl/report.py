@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from hrdsl.schedule import Scheduler, Task
 
 _OWN = os.path.dirname(os.path.abspath(__file__)) + os.sep
+_CLIENTS = tuple(os.path.join(os.path.dirname(_OWN[:-1]), name) + os.sep for name in ("ros1", "ros2"))
 _LIBRARY = os.path.dirname(os.path.abspath(os.__file__)) + os.sep
 
 
@@ -52,7 +53,7 @@ def name(scheduler: Scheduler, task: Task) -> str:
 def _wait_of(frame: FrameType | None) -> tuple[str, str]:
     """What the program's innermost line has called, and its place."""
     called = None
-    while frame is not None and frame.f_code.co_filename.startswith((_OWN, _LIBRARY, "<frozen")):
+    while frame is not None and frame.f_code.co_filename.startswith((_OWN, _LIBRARY, "<frozen", *_CLIENTS)):
         if _is_site(frame):
             break
         if frame.f_code.co_name == "run" and frame.f_code.co_filename.endswith("threading.py"):

@@ -1,6 +1,6 @@
 """Runs a script as `__main__` with simulated time, seeded chance and, if asked, coverage.
 
-    python -m hrdsl.run [--coverage FILE]... (script.py | -m module) args...
+    python -m hrdsl.run [--coverage FILE]... (script.py | -m module | -c code) args...
 
 The environment has HRDSL_SEED, the two descriptors of the protocol, and optionally HRDSL_SYS_PATH (folders to search
 for modules), HRDSL_MIDDLEWARE (`ros1` or `ros2`), HRDSL_BINDING (see `hrdsl.binding`), HRDSL_COVERAGE_FD (the descriptor
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
     from hrdsl.cover import Recorder
 
-USAGE = "usage: python -m hrdsl.run [--coverage FILE]... (script.py | -m module) args...\n"
+USAGE = "usage: python -m hrdsl.run [--coverage FILE]... (script.py | -m module | -c code) args...\n"
 
 
 def main(argv: list[str]) -> NoReturn:
     """Never returns: exits with 0 at a normal end or a stop, with 1 after an uncaught exception."""
-    files, module, words = _arguments(argv)
+    files, option, words = _arguments(argv)
     out = _coverage_descriptor()
     _search_path()
     for name in ("stdout", "stderr"):
@@ -55,7 +55,9 @@ def main(argv: list[str]) -> NoReturn:
     debug.install()
     status = 1
     try:
-        status, is_stopped = _status(lambda: _run(words, module, recorder))
+        status, is_stopped = _status(lambda: _run(words, option, recorder))
+        if status == 0 and not link.greeted and link.is_ours() and not is_stopped:
+            status = _status(lambda: _check_use(words, option))[0]
         if not is_stopped and link.is_ours():
             status = _status(_join_threads)[0] or status
         if link.is_ours():
@@ -82,20 +84,21 @@ def _save(recorder: Recorder, out: int) -> None:
         sys.stderr.write("hrdsl: coverage was not written: %r\n" % error)
 
 
-def _arguments(argv: list[str]) -> tuple[list[str], bool, list[str]]:
+def _arguments(argv: list[str]) -> tuple[list[str], str, list[str]]:
+    """The files for coverage, `-m` or `-c` if it is one of them, and the rest."""
     files: list[str] = []
-    module, rest = False, list(argv)
+    kind, rest = "", list(argv)
     while rest and rest[0].startswith("-"):
         option = rest.pop(0)
-        if option == "-m":
-            module = True
+        if option in ("-m", "-c"):
+            kind = option
             break
         if option != "--coverage" or not rest:
             _refuse()
         files.append(rest.pop(0))
     if not rest:
         _refuse()
-    return files, module, rest
+    return files, kind, rest
 
 
 def _coverage_descriptor() -> int | None:
@@ -130,18 +133,59 @@ def _terminated(number: int, frame: Any) -> None:
     raise Stopped("terminated")
 
 
-def _run(words: list[str], module: bool, recorder: Recorder | None) -> None:
+def _run(words: list[str], option: str, recorder: Recorder | None) -> None:
     sys.argv = list(words)
-    if not module:
-        _script(words[0], recorder)
-        return
-    import runpy
+    if option == "-c":
+        sys.argv[0] = option
+        _execute(compile(words[0], "<string>", "exec", dont_inherit=True), None, recorder)
+    elif not option:
+        path = os.path.abspath(words[0])
+        with open(path, "rb") as file:
+            text = file.read()
+        _execute(compile(text, path, "exec", dont_inherit=True), path, recorder)
+    else:
+        import runpy
 
-    sys.path.insert(0, os.getcwd())
+        sys.path.insert(0, os.getcwd())
+        _middleware()
+        if recorder is not None:
+            recorder.start()
+        runpy.run_module(words[0], run_name="__main__", alter_sys=True)
+
+
+def _execute(code: Any, path: str | None, recorder: Recorder | None) -> None:
+    """Runs code as `__main__`, which is at this path, or came as a word of the command."""
+    sys.path.insert(0, "" if path is None else os.path.dirname(path))
     _middleware()
+    script = type(sys)("__main__")
+    if path is not None:
+        script.__file__ = path
+    script.__dict__["__builtins__"] = builtins
+    sys.modules["__main__"] = script
     if recorder is not None:
         recorder.start()
-    runpy.run_module(words[0], run_name="__main__", alter_sys=True)
+    exec(code, script.__dict__)
+
+
+def _check_use(words: list[str], option: str) -> None:
+    """A program that was to be a node, and has ended without a word: a file that only defines what would be one says so."""
+    if option == "-c" or "HRDSL_MIDDLEWARE" not in os.environ:
+        return
+    path: str | None = words[0]
+    if option == "-m":
+        from importlib.util import find_spec
+
+        spec = find_spec(words[0])
+        path = spec.origin if spec else None
+    if path is None or not os.path.isfile(path):
+        return
+    with open(path, encoding="utf-8", errors="replace") as file:
+        text = file.read()
+    if "def main(" not in text or text.count("main(") > 1:
+        return
+    call = "python3 -c 'from %s import main; main()'" % words[0] if option else 'if __name__ == "__main__": main()'
+    told = "hrdsl: %s defines main(), and nobody calls it: %s"
+    sys.exit(told % (words[0], ("start it with `%s`" if option else "its last line would be `%s`") % call))
 
 
 def _middleware() -> None:
@@ -191,22 +235,6 @@ def _advise(error: ModuleNotFoundError) -> None:
         return
     if line:
         sys.stderr.write("hrdsl: %s\n" % line)
-
-
-def _script(path: str, recorder: Recorder | None) -> None:
-    path = os.path.abspath(path)
-    with open(path, "rb") as file:
-        text = file.read()
-    code = compile(text, path, "exec", dont_inherit=True)
-    sys.path.insert(0, os.path.dirname(path))
-    _middleware()
-    script = type(sys)("__main__")
-    script.__file__ = path
-    script.__dict__["__builtins__"] = builtins
-    sys.modules["__main__"] = script
-    if recorder is not None:
-        recorder.start()
-    exec(code, script.__dict__)
 
 
 def _join_threads() -> None:

@@ -218,6 +218,7 @@ def install(scheduler: Scheduler) -> Threads:
     when_imported("threading", lambda module: _threading(module, scheduler))
     when_imported("_queue", _queue)
     when_imported("queue", lambda module: _poll_queues(module, scheduler))
+    when_imported("concurrent.futures._base", _quiet_workers)
     return threads
 
 
@@ -310,6 +311,16 @@ def _signals(scheduler: Scheduler) -> None:
 def _queue(module: Any) -> None:
     locks.SimpleQueue.Empty = module.Empty
     module.SimpleQueue = locks.SimpleQueue
+
+
+def _quiet_workers(module: Any) -> None:
+    """The workers of an executor log what ends them, which is no fault of theirs when it is the end of the test."""
+
+    def is_fault(record: Any) -> bool:
+        kind = record.exc_info[0] if record.exc_info else None
+        return kind is None or not issubclass(kind, (Stopped, Deadlock, Busy))
+
+    module.LOGGER.addFilter(is_fault)
 
 
 def _poll_queues(module: Any, scheduler: Scheduler) -> None:

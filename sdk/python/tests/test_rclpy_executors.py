@@ -94,16 +94,22 @@ n.destroy_node()
         text = TRIED + """
 rclpy.init(args=["--ros-args", "-p", "use_sim_time:=true"])
 n = Node("n")
-print(n.get_clock().now(), n.get_clock().ros_time_is_active)
-n.create_timer(1.5, lambda: print(n.get_clock().now()))
+import time
+from rclpy.clock import JumpThreshold
+clock = n.get_clock()
+told = lambda jump: print(jump.clock_change.name, jump.delta.nanoseconds)
+clock.create_jump_callback(JumpThreshold(min_forward=None, min_backward=None), post_callback=told)
+print(clock.now().nanoseconds - time.time_ns(), clock.ros_time_is_active)
+n.create_timer(1.5, lambda: print(clock.now()))
 rclpy.spin_once(n)
 n.set_parameters([Parameter("use_sim_time", value=False)])
-print(n.get_clock().now())
+print(clock.now(), clock.ros_time_is_active)
 """
         out = [
-            "Time(nanoseconds=0, clock_type=ROS_TIME) True",
-            "Time(nanoseconds=1500000000, clock_type=ROS_TIME)",
+            "0 True",
             "Time(nanoseconds=1735689601500000000, clock_type=ROS_TIME)",
+            "ROS_TIME_DEACTIVATED 0",
+            "Time(nanoseconds=1735689601500000000, clock_type=ROS_TIME) False",
         ]
         self.assertEqual(self.said(text), out)
 
@@ -262,6 +268,71 @@ print(executor.get_nodes() == [n], executor.add_node(n), executor.shutdown())
             "True False True",
         ]
         self.assertEqual(self.said(text), out)
+
+    def test_futures_in_a_loop_of_asyncio(self):
+        text = """
+import asyncio, threading, time
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+from rclpy.task import Future
+from std_srvs.srv import Trigger
+
+class Asker(Node):
+    def __init__(self):
+        super().__init__("asker")
+        self.client = self.create_client(Trigger, "far")
+        self.create_timer(0.25, self.tick, callback_group=ReentrantCallbackGroup())
+        self.ticks = 0
+    async def tick(self):  # a coroutine of the executor, while a loop of asyncio runs around it
+        answer = await self.client.call_async(Trigger.Request())
+        self.ticks += 1
+        if self.ticks < 3:
+            print("tick", answer.message, round(time.monotonic(), 2))
+    async def ask(self, name):
+        answer = await self.client.call_async(Trigger.Request())
+        print(name, answer.message)
+        return name
+
+async def spinning(node):
+    while rclpy.ok():
+        rclpy.spin_once(node, timeout_sec=0.01)
+        await asyncio.sleep(0.001)
+
+async def run():
+    rclpy.init()
+    node = Asker()
+    spin = asyncio.get_running_loop().create_task(spinning(node))
+    print(await asyncio.gather(node.ask("one"), node.ask("two")))
+    later = Future()
+    threading.Thread(target=lambda: (time.sleep(0.7), later.set_result(7))).start()
+    print(await later, round(time.monotonic(), 1), await later)
+    try:
+        await asyncio.wait_for(Future(), 0.5)
+    except asyncio.TimeoutError:
+        print("timed out", round(time.monotonic(), 1))
+    failed = Future()
+    failed.set_exception(ValueError("no"))
+    try:
+        await failed
+    except ValueError as error:
+        print(repr(error))
+    spin.cancel()
+
+asyncio.run(run())
+"""
+        system = System(services={"/far": lambda message: {"success": True, "message": "yes"}}, end=100 * SECOND)
+        out = [
+            "one yes",
+            "two yes",
+            "['one', 'two']",
+            "tick yes 0.25",
+            "tick yes 0.5",
+            "7 0.7 7",
+            "timed out 1.2",
+            "ValueError('no')",
+        ]
+        self.assertEqual(self.said(text, system=system), out)
 
     def test_errors_leave_spin(self):
         text = TRIED + """

@@ -177,6 +177,68 @@ print(ask(GetParameters, "n/get_parameters", GetParameters.Request(names=["other
         self.assertEqual(self.said(text), out)
 
 
+class Clients(Ros2Case):
+    def test_of_another_node(self):
+        text = TRIED + """
+import os, tempfile
+from rclpy.parameter_client import AsyncParameterClient
+rclpy.init()
+asker, node = Node("asker", namespace="ns"), Node("node", namespace="ns")
+node.declare_parameter("speed", 1.0)
+node.declare_parameter("name", "arm", ParameterDescriptor(description="of the arm"))
+node.declare_parameter("gains.p", 2)
+client = AsyncParameterClient(asker, "node")
+nobody = AsyncParameterClient(asker, "/nobody")
+print(client.services_are_ready(), client.wait_for_services(1.0), nobody.services_are_ready())
+print(nobody.wait_for_services(timeout_sec=1.0), asker.get_clock().now().nanoseconds % 10**11)
+executor = rclpy.executors.SingleThreadedExecutor()
+executor.add_node(node)
+executor.add_node(asker)
+def done(future):
+    executor.spin_until_future_complete(future)
+    return future.result()
+print([value.double_value or value.string_value for value in done(client.get_parameters(["speed", "name"])).values])
+print(list(done(client.get_parameter_types(["speed", "name"])).types))
+print([each.description for each in done(client.describe_parameters(["name"])).descriptors])
+print(done(client.list_parameters(["gains"])).result.names, done(client.list_parameters(depth=1)).result.names)
+news = [Parameter("speed", value=3.0), Parameter("name", value="leg").to_parameter_msg(), Parameter("no", value=1)]
+print([(each.successful, each.reason) for each in done(client.set_parameters(news)).results])
+print(done(client.set_parameters_atomically(news)).result.successful, node.get_parameter("speed").value)
+heard = []
+done(client.set_parameters([Parameter("speed", value=4.0)], callback=heard.append))
+while not heard:
+    executor.spin_once(timeout_sec=0.1)
+print(node.get_parameter("speed").value, [future.done() for future in heard])
+text = "/**: {ros__parameters: {speed: 5.0}}\\nnode:\\n  ros__parameters:\\n    gains: {p: 6}\\n"
+path = os.path.join(tempfile.mkdtemp(), "load.yaml")
+with open(path, "w") as file:
+    file.write(text)
+done(client.load_parameter_file(path))
+print(node.get_parameter("speed").value, node.get_parameter("gains.p").value)
+done(client.load_parameter_file_atomically(path, use_wildcard=True))
+print(node.get_parameter("speed").value)
+tried(lambda: nobody.load_parameter_file(path))
+print([each.successful for each in done(client.delete_parameters(["name"])).results])
+os.remove(path)
+"""
+        out = [
+            "True True False",
+            "False 1000000000",
+            "[1.0, 'arm']",
+            "[3, 4]",
+            "['of the arm']",
+            "['gains.p'] ['use_sim_time', 'speed', 'name']",
+            "[(True, ''), (True, ''), (False, \"('Invalid access to undeclared parameter(s)', ['no'])\")]",
+            "False 3.0",
+            "4.0 [True]",
+            "4.0 6",
+            "5.0",
+            "RuntimeError: Param file does not contain parameters for /nobody,only for nodes: ['/**', 'node'] ",
+            "[False]",
+        ]
+        self.assertEqual(self.said(text), out)
+
+
 class Arguments(Ros2Case):
     def test_all_of_them(self):
         text = TRIED + """

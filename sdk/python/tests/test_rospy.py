@@ -298,6 +298,69 @@ class Topics(Case):
         self.assertEqual(self.said(text, system=system), said)
         self.assertEqual(system.published, [(SECOND + 5, "/a", {"data": 5})])
 
+    def test_who_listens_may_be_told_before_anything_is_published(self):
+        text = """
+            import rospy
+            from std_msgs.msg import String
+            class Listener(rospy.SubscribeListener):
+                def peer_subscribe(self, topic_name, topic_publish, peer_publish):
+                    print("came", topic_name, pub.name)
+                    topic_publish(String("all"))
+                    peer_publish(String("you"))
+                def peer_unsubscribe(self, topic_name, num_peers):
+                    print("went", topic_name, num_peers)
+            pub = rospy.Publisher("a", String, subscriber_listener=Listener(), queue_size=1, latch=True)
+            rospy.init_node("node")
+            pub.publish("hello")
+            rospy.sleep(1)
+            own = rospy.Subscriber("a", String)
+            rospy.sleep(1)
+            own.unregister()
+            rospy.sleep(1)
+            """
+        other = {"kind": "subscriber", "name": "/a", "type": "std_msgs/String", "program": "other"}
+        system = System(others=[other])
+        self.assertEqual(self.said(text, system=system), ["came /a /a", "came /a /a", "went /a 1"])
+        self.assertEqual([message["data"] for _, _, message in system.published], ["hello", "all", "you", "all", "you"])
+
+    def test_what_is_known_of_a_connection(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8
+            from std_srvs.srv import Trigger
+            def heard(message):
+                header = message._connection_header
+                print(message.data, header["topic"], header["type"], header["callerid"], "callerid" in header, "cookies" in header)
+                print(header.get("callerid"), header.get("cookies", "none"), header["latching"])
+            rospy.init_node("node")
+            rospy.Subscriber("a", Int8, heard)
+            rospy.sleep(1)
+            pub = rospy.Publisher("a", Int8, queue_size=1)
+            pub.publish(3)
+            rospy.sleep(1)
+            def serve(request):
+                print(request._connection_header["callerid"], request._connection_header["service"])
+                return True, ""
+            rospy.Service("own", Trigger, serve)
+            print(rospy.ServiceProxy("own", Trigger)()._connection_header["callerid"])
+            print(rospy.ServiceProxy("far", Trigger)()._connection_header["callerid"])
+            """
+        system = System(
+            [(SECOND // 2, topic("/a", data=2))], services={"/far": lambda message: {"success": True, "message": ""}}
+        )
+        system.others += [
+            {"kind": "publisher", "name": "/a", "type": "std_msgs/Int8", "program": "camera"},
+            {"kind": "server", "name": "/far", "type": "std_srvs/Trigger", "program": "camera"},
+        ]
+        said = self.said(text, system=system, packages=("std_msgs", "std_srvs"))
+        self.assertEqual(
+            said,
+            [
+                "2 /a std_msgs/Int8 /camera True False", "/camera none 0", "3 /a std_msgs/Int8 unknown True False", "unknown none 0",
+                "/node /own", "/node", "/camera",
+            ],
+        )  # fmt: skip
+
     def test_a_second_subscriber_gets_what_is_latched_here(self):
         text = """
             import rospy
@@ -485,6 +548,60 @@ class Parameters(Case):
                 "TypeError cannot marshal None unless allow_none is enabled",
                 "TypeError dictionary key must be string",
                 "['/arm/joints', '/arm/speed', '/node/own', '/speed']",
+            ],
+        )
+
+    def test_private_ones_of_the_command_line(self):
+        words = {
+            "a": "1e3", "b": "1.5e+3", "c": "0x10", "d": "010", "e": "1_000", "f": "Off", "g": "'yes'", "h": "[1, two, [3.0, ~]]",
+            "i": "{p: 1, 'q r': [on, \"x\\ty\"]}", "j": "a: b", "k": "-.inf", "l": "08", "m": "a b # c", "n": "[]", "o": "-7",
+        }  # fmt: skip
+        text = """
+            import rospy
+            rospy.init_node("node", argv=%r)
+            print(rospy.get_param("~"))
+            """
+        given = ["_%s:=%s" % pair for pair in words.items() if pair[0] not in "jh"] + ["_h:=[1, two, [3.0]]", "__log:=x", "_:=1", "plain"]
+        expected = {
+            "a": "1e3", "b": 1500.0, "c": 16, "d": 8, "e": 1000, "f": False, "g": "yes", "i": {"p": 1, "q r": [True, "x\ty"]},
+            "k": float("-inf"), "l": "08", "m": "a b", "n": [], "o": -7, "h": [1, "two", [3.0]],
+        }  # fmt: skip
+        self.assertEqual(self.said(text % given), [str(expected)])
+        for word, told in (
+            ("a: b", "a mapping stands between braces, a list between brackets: a: b"),
+            ("[1 2", "there is no ] where it is due: [1 2"),
+            ("{a}", "there is no colon behind a"),
+            ("'a' b", "there is something behind the value: 'a' b"),
+            ("'a", "a quote is never closed: 'a"),
+            ("&a 1", "& cannot begin a value here; put the value between quotes"),
+        ):
+            finished = run_ros(text % (["_x:=" + word],))
+            self.assertEqual(finished.code, 1)
+            self.assertIn("ROSInitException: invalid command-line parameters: %s\n" % told, finished.err)
+
+    def test_names_of_parameters(self):
+        text = """
+            import rospy
+            rospy.init_node("node")
+            print(rospy.search_param("gain"), rospy.search_param("far"), rospy.search_param("/gain"), rospy.search_param("own"))
+            rospy.set_param("gain", 3)
+            rospy.set_param("~gain", {"p": 1})
+            print(rospy.get_param("gain"), rospy.get_param("/left/gain"), rospy.get_param("~gain/p"), rospy.get_param_cached("/gain"))
+            print(rospy.search_param("gain"), rospy.has_param("~gain"), rospy.has_param("gain/p"), rospy.has_param("/left"))
+            rospy.delete_param("~gain/p")
+            print(sorted(rospy.get_param_names()), rospy.get_param("~gain"))
+            print(rospy.get_param("speed"), rospy.search_param("speed"))
+            """
+        parameters = {"/gain": 1, "/left/far": 2, "/fast": 9}
+        words = ["__ns:=left", "speed:=/fast", "_own:=1"]
+        self.assertEqual(
+            self.said(text, words=words, binding={"parameters": parameters}),
+            [
+                "/gain /left/far /gain /left/node/own",
+                "3 3 1 1",
+                "/left/node/gain True False True",
+                "['/fast', '/gain', '/left/far', '/left/gain', '/left/node/own'] {}",
+                "9 /fast",
             ],
         )
 

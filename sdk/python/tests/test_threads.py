@@ -6,6 +6,7 @@ import textwrap
 import unittest
 
 from harness import run_plain, run_text
+from system import System
 
 #: Programs may say what happens when, and in which thread.
 SAY = """
@@ -147,6 +148,21 @@ class Semantics(Case):
             barrier = threading.Barrier(1, action=lambda: print("passed"))
             print(barrier.wait(), barrier.n_waiting, barrier.broken)
             """
+        )
+
+    def test_workers_of_an_executor_end_with_the_test_in_silence(self):
+        text = """
+            import concurrent.futures
+            pool = concurrent.futures.ThreadPoolExecutor(2)
+            say(pool.submit(lambda: 7).result())
+            failed = pool.submit(lambda: 1 / 0)
+            say(repr(failed.exception()))
+            pool.submit(time.sleep, 100)
+            time.sleep(10)
+            """
+        self.assertEqual(
+            self.said(text, system=System(end=10**9)),
+            ["0.000 MainThread 7", "0.000 MainThread ZeroDivisionError('division by zero')"],
         )
 
     def test_an_exception_is_reported_as_by_the_interpreter(self):

@@ -9,7 +9,7 @@ import genpy
 import rosgraph.names
 from hrdsl.exchange import the_exchange
 from hrdsl.mailbox import Mailbox
-from rospy import core, log, names, params, rostime
+from rospy import core, log, names, rostime
 from rospy.core import signal_shutdown
 from rospy.exceptions import ROSException, ROSInitException, ROSInterruptException
 from rospy.graph import graph
@@ -118,7 +118,9 @@ def _private(argv: list[str]) -> dict[str, Any]:
             if rosgraph.names.is_legal_remap(arg):
                 source, target = (part.strip() for part in arg.split(":="))
                 if source and target and len(source) > 1 and source[0] == "_" and source[1] != "_":
-                    found[source[1:]] = params.value_of(target)
+                    from rospy import words  # which few programs need
+
+                    found[source[1:]] = words.value_of(target)
     except Exception as error:
         raise ROSInitException("invalid command-line parameters: %s" % error) from None
     return found

@@ -173,28 +173,3 @@ def delete_param(param_name: str) -> None:
 def has_param(param_name: str) -> bool:
     """Whether there is such a parameter."""
     return tree().has(resolve_name(param_name))
-
-
-def value_of(text: str) -> Any:
-    """What an argument `_name:=text` means, as YAML reads it."""
-    try:
-        import yaml  # type: ignore[import-untyped, unused-ignore]
-    except ImportError:
-        return _plain(text)
-    return yaml.safe_load(text)
-
-
-def _plain(text: str) -> Any:
-    import json
-
-    words = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False, "null": None, "~": None}
-    if text.lower() in words:
-        return words[text.lower()]
-    try:
-        return json.loads(text)
-    except ValueError:
-        pass
-    try:
-        return float(text) if "." in text else int(text, 0)
-    except ValueError:
-        return text

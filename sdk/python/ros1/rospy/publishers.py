@@ -95,15 +95,19 @@ class _PublisherImpl(topic.TopicImpl):
         self.is_latch = False
         self.seq = 0
         self._listeners: list[SubscribeListener] = []
+        self._is_watched = False
         self._has_header = data_class._has_header
         if data_class is AnyMsg:
             raise NotImplementedError("a publisher of AnyMsg on %s: name the type that it publishes" % name)
         self._json = data_class._json
         super().__init__(name, data_class, table)
 
-    def open(self) -> Port:
-        if self._listeners:
+    def connect(self) -> None:
+        super().connect()
+        if self._listeners and self.port is not None:
             self._watch()
+
+    def open(self) -> Port:
         return the_exchange().open("publisher", self.resolved_name, self.type, latched=self.is_latch)
 
     def enable_latch(self) -> None:
@@ -130,14 +134,18 @@ class _PublisherImpl(topic.TopicImpl):
 
     def add_subscriber_listener(self, listener: SubscribeListener) -> None:
         self._listeners.append(listener)
-        if self.port is not None and len(self._listeners) == 1:
+        if self.port is not None:
             self._watch()
 
     def _watch(self) -> None:
+        if self._is_watched:
+            return
+        self._is_watched = True
         threading.Thread(target=self._tell_listeners, name="listeners of %s" % self.resolved_name, daemon=True).start()
 
     def _tell_listeners(self) -> None:
         known: list[str] = []
+        the_exchange().scheduler.yield_()  # so that the program has the publisher in hand when it is told
         while not self.closed:
             now = graph.wait(lambda: self._peers(known), None)
             for _ in [peer for peer in now if peer not in known]:

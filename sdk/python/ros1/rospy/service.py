@@ -14,6 +14,7 @@ from rosgraph.names import is_legal_name
 from rospy import core
 from rospy.exceptions import ROSException, ROSInterruptException
 from rospy.graph import graph
+from rospy.header import ConnectionHeader
 from rospy.log import logerr
 from rospy.msg import args_kwds_to_message
 from rospy.names import resolve_name
@@ -40,6 +41,10 @@ class _Service:
         self.request_class = service_class._request_class
         self.response_class = service_class._response_class
         self.uri: str | None = None
+
+    def _header(self, other: str) -> ConnectionHeader:
+        cls = self.service_class
+        return ConnectionHeader(other, self.resolved_name, service=self.resolved_name, type=cls._type, md5sum=cls._md5sum)
 
 
 def wait_for_service(service: str, timeout: Any = None) -> None:
@@ -89,7 +94,9 @@ class ServiceProxy(_Service):
         answer = box.get()
         if "error" in answer:
             raise ServiceException(self._fault(answer["error"]))
-        return self.response_class._of_json(answer["message"])
+        response = self.response_class._of_json(answer["message"])
+        response._connection_header = self._header("server")
+        return response
 
     def _fault(self, error: str) -> str:
         if error.endswith("has no server"):
@@ -162,6 +169,7 @@ class ServiceImpl(_Service):
         exchange, number = the_exchange(), arrival["called"]
         try:
             request = self.request_class._of_json(arrival["message"])
+            request._connection_header = self._header("client")
             response = convert_return_to_response(self.handler(request), self.response_class)
             self.seq += 1
             answer = self.response_class._json(response).encode("ascii")

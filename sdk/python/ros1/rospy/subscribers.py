@@ -13,9 +13,10 @@ from hrdsl.mailbox import Mailbox
 from rospy import core, topic
 from rospy.exceptions import ROSException
 from rospy.graph import graph
+from rospy.header import ConnectionHeader
 from rospy.log import logerr
 from rospy.msg import AnyMsg
-from rospy.names import get_caller_id, resolve_name
+from rospy.names import resolve_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ class _SubscriberImpl(topic.TopicImpl):
         self.callbacks: list[_Callback] = []
         self._box = Mailbox()
         self._latched: Any = None  # the last message of a publisher that is known to be latched
-        self._header: dict[str, str] = {}
+        self._header = ConnectionHeader(self.others, name)
         super().__init__(name, data_class, table)
 
     def connect(self) -> None:
@@ -98,10 +99,15 @@ class _SubscriberImpl(topic.TopicImpl):
     def open(self) -> Port:
         type_name = self.type if self.type != "*" else graph.type_of(self.resolved_name) or "*"
         self._reads = self.data_class._of_json if self.type != "*" else _any_reader(type_name)
-        self._header = {
-            "topic": self.resolved_name, "type": type_name, "md5sum": self.data_class._md5sum, "callerid": get_caller_id(),
-            "latching": "0", "message_definition": self.data_class._full_text,
-        }  # fmt: skip
+        self._header = ConnectionHeader(
+            self.others,
+            self.resolved_name,
+            topic=self.resolved_name,
+            type=type_name,
+            md5sum=self.data_class._md5sum,
+            latching="0",
+            message_definition=self.data_class._full_text,
+        )
         port = the_exchange().open("subscriber", self.resolved_name, type_name, handler=self._box.put)
         threading.Thread(target=self._receive, name=self.resolved_name, daemon=True).start()
         return port

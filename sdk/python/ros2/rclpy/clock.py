@@ -1,7 +1,7 @@
 """Clocks. All of them tell simulated time; those of the date begin on 2025-01-01, steady ones at 0.
 
-A ROS clock tells the date, too, as without a simulator. With the parameter `use_sim_time` it begins at 0, as the clock of
-a simulator does; there is no topic `/clock`.
+A ROS clock tells the date, too, as without a simulator, and with the parameter `use_sim_time` no less: time is simulated
+in any case, and the stamps of messages count from where this clock does. There is no topic `/clock`.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class Clock:
         pre_callback: Callable[[], None] | None = None,
         post_callback: Callable[[TimeJump], None] | None = None,
     ) -> JumpHandle:
-        """Calls these before and after the clock jumps, which only a change of `use_sim_time` makes it do."""
+        """Calls these before and after a change of `use_sim_time`, by which this clock jumps over no time."""
         return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback)
 
     def sleep_until(self, until: Time, context: Any = None) -> bool:
@@ -121,9 +121,8 @@ class Clock:
             raise NotInitializedException()
         if until.clock_type != self._clock_type:
             raise ValueError("until's clock type does not match this clock's type")
-        begins = self._begins
-        context._wait(until.nanoseconds - begins)
-        return context.ok() and self._begins == begins
+        context._wait(until.nanoseconds - self._begins)
+        return bool(context.ok())
 
     def sleep_for(self, rel_time: Duration, context: Any = None) -> bool:
         """Waits for so long, or for the context's end: whether it was the former."""
@@ -133,26 +132,28 @@ class Clock:
 class ROSClock(Clock):
     """The clock of nodes."""
 
+    _is_active = False
+
     def __new__(cls) -> ROSClock:
         return super().__new__(cls, clock_type=ClockType.ROS_TIME)  # type: ignore[return-value]
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the time is a simulator's, by `use_sim_time`."""
-        return self._begins == 0
+        """Whether `use_sim_time` is set, which changes nothing of what it tells."""
+        return self._is_active
 
     def _set_ros_time_is_active(self, enabled: bool) -> None:
-        if enabled == self.ros_time_is_active:
+        if enabled == self._is_active:
             return
         heard = [each for each in self._jumps if each.threshold.on_clock_change]
         for each in heard:
             if each.pre_callback is not None:
                 each.pre_callback()
-        before, self._begins = self._begins, 0 if enabled else _world.EPOCH
+        self._is_active = enabled
         change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
         for each in heard:
             if each.post_callback is not None:
-                each.post_callback(TimeJump(change, Duration(nanoseconds=self._begins - before)))
+                each.post_callback(TimeJump(change, Duration()))
 
     def set_ros_time_override(self, time: Time) -> None:
         """Refused: time is the scenario's."""

@@ -154,3 +154,43 @@ def get_parameter_value(string_value: str) -> Any:
     from rclpy._yaml import parse_value
 
     return Parameter("", value=parse_value(string_value)).get_parameter_value()
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: str, use_wildcard: bool = False, target_nodes: list[str] | None = None, namespace: str = ""
+) -> dict[str, Any]:
+    """The parameters in a file, as messages by their names: those of these nodes, or of all; with the wildcard, those below
+    `/**`, too. Raises RuntimeError if there are none."""
+    from rclpy._yaml import parse
+
+    with open(parameter_file, encoding="utf-8") as file:
+        document = parse(file.read()) or {}
+    if not isinstance(document, dict):
+        raise RuntimeError("%s: there are no names of nodes" % parameter_file)
+    keys = ["/**"] if use_wildcard and "/**" in document else []
+    for node in target_nodes or ():
+        key = next((key for key in document if key.lstrip("/") == node.lstrip("/")), None)
+        if key is None:
+            told = "Param file does not contain parameters for %s,only for nodes: %s " % (node, list(document))
+            raise RuntimeError(told)
+        keys.append(key)
+    if not target_nodes:
+        keys += [key for key in document if key != "/**"]
+    if not keys:
+        raise RuntimeError("Param file does not contain selected parameters")
+    found: dict[str, Any] = {}
+    for key in keys:
+        below = document[key]
+        if not isinstance(below, dict) or not isinstance(below.get("ros__parameters"), dict):
+            raise RuntimeError("YAML file is not a valid ROS parameter file for node %s" % key)
+        _unpack(namespace, below["ros__parameters"], found)
+    return found
+
+
+def _unpack(prefix: str, values: dict[str, Any], found: dict[str, Any]) -> None:
+    for name, value in values.items():
+        full = "%s%s%s" % (prefix, PARAMETER_SEPARATOR_STRING if prefix else "", name)
+        if isinstance(value, dict):
+            _unpack(full, value, found)
+        else:
+            found[full] = Parameter(full, value=value).to_parameter_msg()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _thread
 import sys
 import threading
 from functools import partial
@@ -21,6 +22,16 @@ def is_coroutine_function(function: Any) -> bool:
         function = function.func if isinstance(function, partial) else function.__func__
     code = getattr(function, "__code__", None)
     return isinstance(code, CodeType) and bool(code.co_flags & _IS_COROUTINE)
+
+
+def _running_loop() -> Any:
+    """The loop of `asyncio` that runs in this thread, or None."""
+    events: Any = sys.modules.get("asyncio.events")
+    return None if events is None else events._get_running_loop()
+
+
+#: By threads in which an executor runs a coroutine: the loop of `asyncio` around that, or None.
+_stepping: dict[int, Any] = {}
 
 
 class Future:
@@ -43,9 +54,28 @@ class Future:
             print("The following exception was never retrieved: %s" % self._exception, file=sys.stderr)
 
     def __await__(self) -> Generator[Any, None, Any]:
+        if not self._done:
+            loop = _running_loop()
+            if loop is not None and loop is not _stepping.get(_thread.get_ident()):
+                yield from self._turn(loop)
         while not self._done:
             yield self
         return self.result()
+
+    def _turn(self, loop: Any) -> Any:
+        """Lets a coroutine that a loop of `asyncio` runs wait, whichever thread sets the result."""
+        turn = loop.create_future()
+
+        def end() -> None:
+            if not turn.done():
+                turn.set_result(None)
+
+        def wake() -> None:
+            if not loop.is_closed():
+                loop.call_soon_threadsafe(end)
+
+        self._wakes.append(wake)
+        return turn.__await__()
 
     def cancel(self) -> None:
         """Asks for the work not to be done, if it is not done yet."""
@@ -164,6 +194,9 @@ class Task(Future):
 
     def _step(self, coroutine: Any) -> None:
         self._awaits = None
+        ident = _thread.get_ident()
+        outer = _stepping.get(ident)
+        _stepping[ident] = _running_loop()
         try:
             awaited = coroutine.send(None)
         except StopIteration as end:
@@ -176,6 +209,8 @@ class Task(Future):
                 self._awaits = awaited
                 awaited._wakes.append(executor.wake)
             return
+        finally:
+            _stepping[ident] = outer
         self._handler = None
 
     def _run(self) -> None:

@@ -1,0 +1,1 @@
+"""Sensors: the messages, which come from the definitions, and clouds of points."""

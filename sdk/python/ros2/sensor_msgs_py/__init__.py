@@ -1,0 +1,1 @@
+"""What ROS 2 has for messages of sensors."""
