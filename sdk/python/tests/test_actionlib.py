@@ -92,9 +92,13 @@ client.send_goal(CountGoal(9), done_cb=lambda state, result: say("done", state, 
 rospy.sleep(0.5)
 client.cancel_all_goals()
 say(client.wait_for_result(), client.get_state())
+client.send_goal(CountGoal(9))
+rospy.sleep(0.5)
+client.cancel_goal()
+say(client.wait_for_result(), client.get_state())
 """
         out = self.said(text, System(actions={"/count": counts}, others=[server()]))
-        self.assertEqual(out, ["1.000 PREEMPTED", "1.500 done 2 0", "1.500 True 2"])
+        self.assertEqual(out, ["1.000 PREEMPTED", "1.500 done 2 0", "1.500 True 2", "2.000 True 2"])
 
     def test_rejected_and_aborted(self):
         text = """

@@ -13,7 +13,8 @@ COMES = [("/a", 10), ("/b", 40), ("/a", 40), ("/b", 57), ("/a", 60), ("/b", 58),
 
 SAYS = """
 def ms(stamp):
-    return (getattr(stamp, "secs", 0) or getattr(stamp, "sec", 0)) * 1000 + (getattr(stamp, "nsecs", 0) or getattr(stamp, "nanosec", 0)) // 1000000
+    seconds, nanoseconds = (stamp.secs, stamp.nsecs) if hasattr(stamp, "secs") else (stamp.sec, stamp.nanosec)
+    return seconds * 1000 + nanoseconds // 1000000
 def both(name):
     return lambda *messages: print(name, *[ms(m.header.stamp) for m in messages])
 a, b = subscriber("a"), subscriber("b")

@@ -266,7 +266,7 @@ print(robot.arm is robot.get_group("arm"), robot.shoulder.bounds(), robot.elbow.
 state = robot.get_current_state()
 print(state.joint_state.name, near(state.joint_state.position))
 group = robot.get_group("arm")
-print(group.get_name(), group.get_active_joints(), group.get_end_effector_link(), group.get_planning_frame(), group.get_variable_count())
+print(group.get_name(), group.get_active_joints() == group.get_joints()[:2], group.get_active_joints(), group.get_end_effector_link(), group.get_planning_frame(), group.get_variable_count())
 pose = group.get_current_pose()
 print(pose.header.frame_id, near((pose.pose.position.x, pose.pose.position.z)), near(group.get_current_rpy()))
 print(robot.shoulder.move(0.5), group.get_current_joint_values())
@@ -283,7 +283,7 @@ moveit_commander.roscpp_shutdown()
                 "['arm'] ['shoulder', 'elbow'] ['shoulder', 'elbow'] ['base', 'link', 'hand'] base",
                 "True [-2.0, 2.0] 0.0 {'shoulder': 0.0, 'elbow': 0.0}",
                 "['shoulder', 'elbow'] [0.0, 0.0]",
-                "arm ['shoulder', 'elbow'] hand base 2",
+                "arm True ['shoulder', 'elbow'] hand base 2",
                 "base [0.5, 0.25] [0.0, 0.0, 1.0]",
                 "True [0.5, 0.0]",
                 "MoveItCommanderException There is no group named leg",

@@ -117,6 +117,52 @@ tried(lambda: p.publish(String()))
         ]
         self.assertEqual(self.said(text), out)
 
+    def test_smaller_things(self):
+        text = TRIED + """
+import os, tempfile
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity, get_logger, set_logger_level
+from rclpy.parameter import parameter_dict_from_yaml_file
+from rclpy.qos import DurabilityPolicy, QoSPresetProfiles, ReliabilityPolicy
+from rclpy.time import Time
+rclpy.init()
+n = Node("n", namespace="left/arm")
+print(n.get_namespace(), n.get_fully_qualified_name())
+executor = SingleThreadedExecutor()
+print(executor.add_node(n), executor.get_nodes() == [n], executor.add_node(n))
+executor.remove_node(n)
+print(executor.get_nodes())
+profile = QoSPresetProfiles.SENSOR_DATA.value
+print(profile.reliability is ReliabilityPolicy.BEST_EFFORT, profile.durability is DurabilityPolicy.VOLATILE, profile.depth)
+clock = n.get_clock()
+begin = clock.now()
+print(clock.sleep_until(begin + rclpy.duration.Duration(seconds=1.5)), (clock.now() - begin).nanoseconds)
+print(Time.from_msg(clock.now().to_msg()) == clock.now())
+set_logger_level("quiet", LoggingSeverity.ERROR)
+get_logger("quiet").warning("nobody reads this")
+print(get_logger("quiet").get_effective_level().name)
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "p.yaml")
+    with open(path, "w") as file:
+        file.write("/**: {ros__parameters: {a: 1}}\\nn: {ros__parameters: {b: {c: x}}}\\nodd: 3\\n")
+    for how in ({}, {"use_wildcard": True, "target_nodes": ["/n"]}, {"target_nodes": ["n"], "namespace": "ns"}, {"target_nodes": ["odd"]}):
+        tried(lambda: sorted((name, value.value.type) for name, value in parameter_dict_from_yaml_file(path, **how).items()))
+"""
+        out = [
+            "/left/arm /left/arm/n",
+            "True True False",
+            "[]",
+            "True True 5",
+            "True 1500000000",
+            "True",
+            "ERROR",
+            "RuntimeError: YAML file is not a valid ROS parameter file for node odd",
+            "[('a', 2), ('b.c', 4)]",
+            "[('ns.b.c', 4)]",
+            "RuntimeError: YAML file is not a valid ROS parameter file for node odd",
+        ]
+        self.assertEqual(self.said(text), out)
+
     def test_what_is_refused(self):
         text = TRIED + """
 rclpy.init()

@@ -292,9 +292,12 @@ class Topics(Case):
                 rospy.sleep(0.5)
             print(pub.get_num_connections(), rospy.get_time() % 60)
             print(rospy.get_published_topics())
+            import rosgraph
+            master = rosgraph.Master("/node")
+            print(master.getPublishedTopics("/") == rospy.get_published_topics(), master.getTopicTypes(), rospy.get_rostime() == rospy.Time.now())
             """
         system = System([(SECOND + 5, lambda system: system.others_open("subscriber", "/a", "std_msgs/Int8"))])
-        said = ["came /a 1.0", "1 1.5", "[['/a', 'std_msgs/Int8']]"]
+        said = ["came /a 1.0", "1 1.5", "[['/a', 'std_msgs/Int8']]", "True [['/a', 'std_msgs/Int8']] True"]
         self.assertEqual(self.said(text, system=system), said)
         self.assertEqual(system.published, [(SECOND + 5, "/a", {"data": 5})])
 

@@ -60,14 +60,12 @@ class Starting(unittest.TestCase):
 
     def test_a_main_that_nobody_calls(self):
         for words, told in (
-            (["-m", "tea.brain"], "tea.brain defines main(), and nobody calls it: start it with `python3 -c 'from tea.brain import main; main()'`"),
-            (
-                ["tea/brain.py"],
-                'tea/brain.py defines main(), and nobody calls it: its last line would be `if __name__ == "__main__": main()`',
-            ),
+            (["-m", "tea.brain"], "start it with `python3 -c 'from tea.brain import main; main()'`"),
+            (["tea/brain.py"], 'its last line would be `if __name__ == "__main__": main()`'),
         ):
             finished = self.run_(*words)
-            self.assertEqual((finished.code, finished.out, finished.err), (1, "", "hrdsl: %s\n" % told))
+            told = "hrdsl: %s defines main(), and nobody calls it: %s\n" % (words[-1], told)
+            self.assertEqual((finished.code, finished.out, finished.err), (1, "", told))
 
     def test_those_that_do_as_they_should_end_in_silence(self):
         self.write("tea/brain.py", NODE + 'if __name__ == "__main__":\n    main()\n')
@@ -94,7 +92,7 @@ class Starting(unittest.TestCase):
             ("cv_bridge", "hrdsl: `cv_bridge` is not there without ROS: the pixels of an image are in its `data`"),
             ("rclpy", "hrdsl: `rclpy` is there for programs of a system that has a block `ros2 { }`, and this one has `ros1`"),
             ("dynamic_reconfigure.server", "hrdsl: `dynamic_reconfigure.server` is not there without ROS: "),
-            ("husky_msgs.msg", "husky_msgs` into requirements.txt beside the scenario (or the package that has it), or, if it is a package"),
+            ("husky_msgs.msg", "husky_msgs` into requirements.txt beside the scenario (or the package that has it), or, if it is a"),
         ):
             finished = run(["-c", "import %s" % name], env=self.environment)
             self.assertEqual(finished.code, 1)

@@ -163,6 +163,8 @@ import tf2_geometry_msgs
 buffer = listener._buffer
 print(buffer.transform(pose, "map").pose == found, tf2_ros.convert(pose, PoseStamped) == pose)
 print(near([buffer.transform(point, "map", rospy.Duration(1)).point.y]))
+way = buffer.lookup_transform("map", "base", at(1))
+print(tf2_geometry_msgs.do_transform_pose(pose, way).pose == found, near([tf2_geometry_msgs.do_transform_point(point, way).point.y]))
 try:
     buffer.transform(rotation, "map")
 except tf2_ros.TypeException as error:
@@ -179,6 +181,7 @@ except tf2_ros.TypeException as error:
                 "[2.0, 4.0, %s]" % half,
                 "True True",
                 "[4.0]",
+                "True [4.0]",
                 "ed (for messages of geometry_msgs, import tf2_geometry_msgs)",
             ],
         )
