@@ -393,6 +393,12 @@ fn other_programs_and_modules_speak_the_protocol_too() {
     assert_eq!(finished.output.stdout.text(), "before\n");
     let (requests, finished) = run(&launch(&["python3", "-m", "hello"]));
     assert_eq!((requests.len(), finished.exit), (2, ProgramExit::Code(0)));
+    let (requests, finished) =
+        run(&launch(&["python3", "-c", "import hello, time; print(time.monotonic())"]));
+    assert_eq!((requests.len(), finished.output.stdout.text().as_str()), (2, "0.0\n"));
+    let told =
+        SutProcess::spawn(&launch(&["ros2", "run", "tea_bot", "brain"])).map(drop).unwrap_err().to_string();
+    assert!(told.contains("each node is a program of its own"), "{told}");
     let by_hand =
         r#"printf '{"request":"done"}\n' >&$HRDSL_REQUEST_FD; read -r line <&$HRDSL_REPLY_FD; echo "$line""#;
     let (requests, finished) = run(&launch(&["bash", "-c", by_hand]));
