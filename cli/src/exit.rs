@@ -11,7 +11,7 @@ pub enum CommandExit {
     Errors = 1,
     /// The command line is wrong, or a file cannot be read or written.
     Usage = 2,
-    /// A requirement was violated, a query is not satisfied, or a test broke off.
+    /// A requirement was violated, a query is not satisfied, a test broke off, or a case of the conformance suite failed.
     Findings = 3,
     /// A requirement or query was not decided within the budget.
     Inconclusive = 4,
@@ -30,7 +30,7 @@ Exit codes:
      (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault
   2  the command line is wrong, or a file cannot be read or written
   3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism found a difference;
-     `prove`: a requirement is violated, or a query is not satisfied
+     `prove`: a requirement is violated, or a query is not satisfied; `conformance`: a case failed
   4  `prove`: something was not decided within the budget, and nothing else is wrong
   5  `sim`: interrupted; the results are those of the tests that had ended
   70 hrdsl itself is at fault: an internal error, which is worth a report";

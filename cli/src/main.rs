@@ -52,6 +52,7 @@ struct CommandLine {
 enum TopLevelCommand {
     Check(commands::check::CheckArgs),
     Completions(commands::completions::CompletionsArgs),
+    Conformance(commands::conformance::ConformanceArgs),
     Emit(commands::emit::EmitArgs),
     Explain(commands::explain::ExplainArgs),
     Export(commands::export::ExportArgs),
@@ -93,6 +94,7 @@ fn run() -> ExitCode {
     let result = allowed.and_then(|()| match cli.command {
         TopLevelCommand::Check(args) => commands::check::run(&args),
         TopLevelCommand::Completions(args) => commands::completions::run(&args, CommandLine::command()),
+        TopLevelCommand::Conformance(args) => commands::conformance::run(&args),
         TopLevelCommand::Emit(args) => commands::emit::run(&args),
         TopLevelCommand::Explain(args) => commands::explain::run(&args),
         TopLevelCommand::Export(args) => commands::export::run(&args),

@@ -93,3 +93,45 @@ programs! {
     polls: "a loop that polls nothing is found, with its line",
     imports: "a package of messages that nobody has is named, with what to do",
 }
+
+const RATIO: &str = r#"scenario ratio
+actor person : environment
+actor robot  : system
+event ordered(n: 0..9) from person to robot
+stimulus order(n: 0..9) by person { emit ordered(n) }
+system robot {
+  run "env python3 raw.py"
+  limit 5 s
+  ros1 { topic "/share": geometry_msgs/PointStamped in at 1 Hz { point.z = 1 / ordered.n } }
+}
+"#;
+
+/// Subscribes to a topic, and waits until the test is over.
+const SUBSCRIBES: &str = r#"import os
+replies = open(int(os.environ["HRDSL_REPLY_FD"]))
+def ask(line):
+    os.write(int(os.environ["HRDSL_REQUEST_FD"]), line + b"\n")
+    return replies.readline()
+ask(b'{"request":"hello","version":2,"name":"raw"}')
+ask(b'{"request":"open","port":1,"kind":"subscriber","name":"/share","type":"geometry_msgs/PointStamped"}')
+reply = ""
+while "stop" not in reply:
+    reply = ask(b'{"request":"wait"}')
+print(reply)
+"#;
+
+#[test]
+fn a_value_that_there_is_not_is_the_scenarios_fault_and_its_field_is_named() {
+    let test = "test ratio.t1 { seed 1; order(4); wait 1500 ms; order(0); wait 1 s }\n";
+    let folder = support::folder(&[("scenario.hri", RATIO), ("tests.hri", test), ("raw.py", SUBSCRIBES)]);
+    let done = hrdsl_in(folder.path(), "sim scenario.hri tests.hri -o out --exit-zero");
+    let results = fs::read_to_string(folder.path().join("out/results.json")).unwrap_or_default();
+    let results: Value =
+        serde_json::from_str(&results).unwrap_or_else(|_| panic!("{}", support::stderr(&done)));
+    let error = results["tests"][0]["error"].as_str().unwrap_or_default();
+    let expected = "the binding: the topic `/share`: `point.z`: ";
+    assert!(error.contains(expected), "{error}");
+    let mut output = fs::read_dir(folder.path().join("out/output")).unwrap();
+    let output = fs::read_to_string(output.next().unwrap().unwrap().path()).unwrap();
+    assert!(output.contains("\"reason\":\"the test has broken off: "), "{output}");
+}

@@ -299,11 +299,11 @@ impl CampaignSetup<'_> {
         let players: Vec<Box<dyn ActorPlayer + '_>> =
             vec![Box::new(ScriptPlayer::new(self.program, test)), Box::new(player)];
         let run = HarnessLoop::new(self.program, players, stage, declared.limit).run();
-        if !matches!(run.ended, RunTermination::Fault(_)) {
-            for (_, process) in &mut processes {
-                // It may have ended by itself: then nobody reads this.
-                let _ = process.reply(&HarnessReply { time: run.trace.end, answer: ReplyAnswer::Stop });
-            }
+        let reason = stop_reason(&run.ended, declared.limit);
+        for (_, process) in &mut processes {
+            // It may have ended by itself: then nobody reads this.
+            let answer = ReplyAnswer::Stop { reason: reason.clone() };
+            let _ = process.reply(&HarnessReply { time: run.trace.end, answer });
         }
         (run, finish(processes))
     }
@@ -339,6 +339,18 @@ struct CampaignSystem<'a> {
 
 fn finish(processes: Vec<(String, SutProcess)>) -> Vec<(String, FinishedProcess)> {
     processes.into_iter().map(|(name, process)| (name, process.finish(GRACE))).collect()
+}
+
+/// What programs are told when they have to end.
+fn stop_reason(ended: &RunTermination, limit: hrdsl_ir::Nanos) -> String {
+    match ended {
+        RunTermination::Quiescent => "the test is over: nothing is left that could happen".to_owned(),
+        RunTermination::Limit => format!("the test is over: it lasts {} s", seconds(limit)),
+        RunTermination::Fault(fault) => {
+            let fault = fault.to_string();
+            format!("the test has broken off: {}", fault.lines().next().unwrap_or_default())
+        }
+    }
 }
 
 /// A run that never began.

@@ -36,6 +36,11 @@ pub use script::ScriptPlayer;
 pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
 pub use system::player::SystemPlayer;
-pub use system::port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortListing};
-pub use system::seam::{RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest};
+pub use system::port::{
+    GoalEnd, MessageText, PortDeclaration, PortKind, PortListing, PortQos, QosDurability, QosPolicy,
+    QosReliability,
+};
+pub use system::seam::{
+    CanceledGoals, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,
+};
 pub use world::{CommandId, WorldBackend};

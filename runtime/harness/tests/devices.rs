@@ -4,7 +4,7 @@ mod common;
 
 use common::{ROBOT, program, system};
 use hrdsl_harness::{
-    ActorPlayer, HarnessLoop, HarnessRun, PortDeclaration, PortKind, SystemAnswer, SystemArrival,
+    ActorPlayer, HarnessLoop, HarnessRun, PortDeclaration, PortKind, PortQos, SystemAnswer, SystemArrival,
     SystemPlayer, SystemRequest, WorldStage,
     doubles::{ToldStep, ToldWorld},
 };
@@ -67,8 +67,8 @@ fn heard(what: &str) -> (Vec<(Nanos, String)>, HarnessRun) {
     let (program, binding) = scanning(what);
     let wait = || ToldStep::Then(SystemRequest::Wait { until: None, give_up: None });
     let (name, type_name) = ("/scan".to_owned(), "sensor_msgs/LaserScan".to_owned());
-    let (kind, latched, depth) = (PortKind::Subscriber, false, 1);
-    let declared = PortDeclaration { port: 5, kind, name, type_name, latched, depth };
+    let (kind, qos) = (PortKind::Subscriber, PortQos::default());
+    let declared = PortDeclaration { port: 5, kind, name, type_name, kept: 0, depth: 1, qos };
     let mut steps = vec![ToldStep::Then(SystemRequest::Open(declared))];
     steps.extend((0..9).map(|_| wait()));
     let (system, answers) = system(steps);

@@ -6,9 +6,9 @@ use std::{cell::RefCell, rc::Rc};
 
 use common::{ROBOT, ask, emit, go, program, sleep, system, told, wait};
 use hrdsl_harness::{
-    ActorPlayer, GoalEnd, HarnessError, HarnessLoop, HarnessRun, PortDeclaration, PortKind, RunTermination,
-    ScriptPlayer, SystemAnswer, SystemArrival, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest,
-    WorldStage,
+    ActorPlayer, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun, PortDeclaration, PortKind,
+    PortQos, QosDurability, QosPolicy, QosReliability, RunTermination, ScriptPlayer, SystemAnswer,
+    SystemArrival, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
     doubles::{ToldCommand, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{test::TestStep, value::SECOND};
@@ -39,7 +39,21 @@ fn open(port: u64, kind: PortKind, name: &str) -> SystemRequest {
 
 fn open_as(port: u64, kind: PortKind, name: &str, of: &str, latched: bool, depth: usize) -> SystemRequest {
     let (name, type_name) = (name.to_owned(), of.to_owned());
-    SystemRequest::Open(PortDeclaration { port, kind, name, type_name, latched, depth })
+    let (kept, qos) = (usize::from(latched), PortQos::default());
+    SystemRequest::Open(PortDeclaration { port, kind, name, type_name, kept, depth, qos })
+}
+
+/// A publisher or subscriber of ROS 2, at `/n`.
+fn open_with(
+    port: u64,
+    kind: PortKind,
+    depth: usize,
+    (reliability, durability): (QosReliability, QosDurability),
+) -> SystemRequest {
+    let qos = PortQos { reliability: Some(reliability), durability: Some(durability) };
+    let kept = if durability == QosDurability::TransientLocal { depth } else { 0 };
+    let (name, type_name) = ("/n".to_owned(), "std_msgs/msg/Int8".to_owned());
+    SystemRequest::Open(PortDeclaration { port, kind, name, type_name, kept, depth, qos })
 }
 
 fn publish(port: u64, text: &str) -> SystemRequest {
@@ -152,6 +166,72 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(said(&told[0]), expected);
 }
 
+/// Who subscribes late gets as much of what was published as both keep, if it asks for that.
+#[test]
+fn transient_local_messages_are_for_subscribers_that_are_so_too() {
+    use QosDurability::{TransientLocal, Volatile};
+    use QosReliability::Reliable;
+    let publisher = vec![
+        Then(open_with(1, Publisher, 3, (Reliable, TransientLocal))),
+        Then(publish(1, "1")),
+        Then(publish(1, "2")),
+        Then(publish(1, "3")),
+        Then(publish(1, "4")),
+        Then(sleep(1)),
+        Then(publish(1, "5")),
+        Then(SystemRequest::Done),
+    ];
+    let late = vec![
+        Then(open_with(1, Subscriber, 9, (Reliable, TransientLocal))),
+        Then(open_with(2, Subscriber, 2, (Reliable, TransientLocal))),
+        Then(open_with(3, Subscriber, 9, (Reliable, Volatile))),
+        Then(open_as(4, Subscriber, "/n", "std_msgs/msg/Int8", false, 9)),
+        Then(arrivals()),
+        Then(arrivals()),
+        Then(arrivals()),
+        Then(arrivals()),
+        Then(arrivals()),
+    ];
+    let (told, _) = run(Vec::new(), vec![publisher, late], None);
+    let kept = [(1, "2"), (1, "3"), (1, "4"), (2, "3"), (2, "4"), (4, "2"), (4, "3"), (4, "4")];
+    let messages =
+        |all: &[(u64, &str)]| arrived(all.iter().map(|(port, text)| message(*port, text)).collect());
+    let said = said(&told[1]);
+    assert_eq!(said[0], (0, 4, messages(&kept)));
+    let new: Vec<&SystemAnswer> = said[1..].iter().map(|(_, _, answer)| answer).collect();
+    assert_eq!(new, [&messages(&[(1, "5")]), &messages(&[(2, "5"), (3, "5"), (4, "5")])]);
+}
+
+#[test]
+fn who_requests_more_than_is_offered_hears_nothing_and_both_are_told() {
+    use QosDurability::{TransientLocal, Volatile};
+    use QosReliability::{BestEffort, Reliable};
+    let incompatible = |port, policy| SystemArrival::Incompatible { port, policy };
+    let publisher = vec![
+        Then(open_with(1, Publisher, 1, (BestEffort, Volatile))),
+        Then(sleep(1)),
+        Then(publish(1, "1")),
+        Then(arrivals()),
+    ];
+    let subscriber = vec![
+        Then(open_with(5, Subscriber, 9, (Reliable, Volatile))),
+        Then(open_with(6, Subscriber, 9, (BestEffort, TransientLocal))),
+        Then(open_with(7, Subscriber, 9, (BestEffort, Volatile))),
+        Then(open_as(8, Subscriber, "/n", "std_msgs/msg/Int8", false, 9)),
+        Then(arrivals()),
+        Then(sleep(2)),
+        Then(arrivals()),
+    ];
+    let (told, _) = run(Vec::new(), vec![publisher, subscriber], None);
+    let both = [QosPolicy::Reliability, QosPolicy::Durability];
+    assert_eq!(said(&told[0]), [(1, 3, arrived(both.map(|policy| incompatible(1, policy)).to_vec()))]);
+    let expected = [
+        (0, 4, arrived(vec![incompatible(5, both[0]), incompatible(6, both[1])])),
+        (2, 6, arrived(vec![message(7, "1"), message(8, "1")])),
+    ];
+    assert_eq!(said(&told[1]), expected);
+}
+
 #[test]
 fn a_service_answers_fails_or_is_not_there() {
     let client = vec![
@@ -201,39 +281,96 @@ fn an_action_gives_feedback_and_ends_or_is_canceled() {
     let server = vec![
         Then(open(1, ActionServer, "/move")),
         Then(arrivals()),
+        Then(SystemRequest::AnswerCancel { call: 1, granted: true, text: String::new() }),
+        Then(SystemRequest::Accept { call: 1, text: "on the way".into() }),
+        Then(SystemRequest::Accept { call: 1, text: String::new() }),
         Then(SystemRequest::Feedback { call: 1, message: "0.5".into() }),
         Then(sleep(1)),
-        Then(SystemRequest::Finish { call: 1, end: GoalEnd::Succeeded, message: "{}".into() }),
+        Then(finish(1, GoalEnd::Succeeded, "there")),
         Then(arrivals()),
         Then(arrivals()),
-        Then(SystemRequest::Finish { call: 2, end: GoalEnd::Canceled, message: "{}".into() }),
+        Then(SystemRequest::AnswerCancel { call: 2, granted: false, text: "nearly there".into() }),
+        Then(arrivals()),
+        Then(SystemRequest::AnswerCancel { call: 2, granted: true, text: String::new() }),
+        Then(finish(2, GoalEnd::Canceled, "")),
     ];
     let client = vec![
         Then(open(1, ActionClient, "/move")),
         Then(call(1, 7, "home")),
         Then(arrivals()),
         Then(arrivals()),
+        Then(arrivals()),
         Then(call(1, 7, "away")),
         Then(sleep(2)),
-        Then(SystemRequest::Cancel { call: 7 }),
+        Then(SystemRequest::Cancel(CanceledGoals::Own(7))),
         Then(arrivals()),
-        Then(SystemRequest::Cancel { call: 7 }),
+        Then(SystemRequest::Cancel(CanceledGoals::AllAt(1))),
+        Then(arrivals()),
+        Then(SystemRequest::Cancel(CanceledGoals::Own(7))),
+        Then(SystemRequest::Cancel(CanceledGoals::AllAt(1))),
+        Then(SystemRequest::Cancel(CanceledGoals::AllAt(2))),
     ];
     let (told, _) = run(Vec::new(), vec![server, client], None);
     let called = |call, text: &str| SystemArrival::Called { port: 1, call, message: text.into() };
+    let canceled = || arrived(vec![SystemArrival::Canceled { port: 1, call: 2 }]);
     let server = [
         (0, 1, arrived(vec![called(1, "home")])),
-        (1, 5, arrived(vec![called(2, "away")])),
-        (3, 6, arrived(vec![SystemArrival::Canceled { port: 1, call: 2 }])),
+        (0, 2, refused("nobody asks to cancel the goal 1")),
+        (0, 4, refused("the goal 1 was accepted before")),
+        (1, 8, arrived(vec![called(2, "away")])),
+        (3, 9, canceled()),
+        (3, 11, canceled()),
     ];
     assert_eq!(said(&told[0]), server);
-    let finished = |end| SystemArrival::Finished { call: 7, end, message: "{}".into() };
+    let answered =
+        |granted, text: &str| SystemArrival::CancelAnswered { call: 7, granted, text: text.into() };
+    let finished = |end, text: &str| {
+        let (message, text) = ("{}".into(), text.into());
+        SystemArrival::Finished { call: 7, end, message, text }
+    };
     let client = [
-        (0, 2, arrived(vec![SystemArrival::Feedback { call: 7, message: "0.5".into() }])),
-        (1, 3, arrived(vec![finished(GoalEnd::Succeeded)])),
-        (3, 7, arrived(vec![finished(GoalEnd::Canceled)])),
+        (0, 2, arrived(vec![SystemArrival::Accepted { call: 7, text: "on the way".into() }])),
+        (0, 3, arrived(vec![SystemArrival::Feedback { call: 7, message: "0.5".into() }])),
+        (1, 4, arrived(vec![finished(GoalEnd::Succeeded, "there")])),
+        (3, 8, arrived(vec![answered(false, "nearly there")])),
+        (3, 10, arrived(vec![answered(true, "")])),
+        (3, 13, refused("no port 2 is open")),
     ];
     assert_eq!(said(&told[1]), client);
+}
+
+fn finish(call: u64, end: GoalEnd, text: &str) -> SystemRequest {
+    SystemRequest::Finish { call, end, message: "{}".into(), text: text.into() }
+}
+
+#[test]
+fn only_a_goal_can_be_accepted_or_canceled() {
+    let server = vec![
+        Then(open(1, Server, "/add")),
+        Then(arrivals()),
+        Then(SystemRequest::Accept { call: 1, text: String::new() }),
+        Then(finish(1, GoalEnd::Aborted, "")),
+        Then(SystemRequest::Accept { call: 9, text: String::new() }),
+    ];
+    let client = vec![
+        Then(open(1, Client, "/add")),
+        Then(call(1, 5, "[]")),
+        Then(SystemRequest::Cancel(CanceledGoals::Own(5))),
+        Then(SystemRequest::Cancel(CanceledGoals::AllAt(1))),
+    ];
+    let (told, _) = run(Vec::new(), vec![server, client], None);
+    let expected = [
+        (0, 1, arrived(vec![SystemArrival::Called { port: 1, call: 1, message: "[]".into() }])),
+        (0, 2, refused("the call 1 asks a service, and is no goal")),
+        (0, 3, refused("the call 1 asks a service, and is no goal")),
+        (0, 4, refused("there is no call 9 to answer")),
+    ];
+    assert_eq!(said(&told[0]), expected);
+    let expected = [
+        (0, 2, refused("the call 5 asks a service, which cannot be canceled")),
+        (0, 3, refused("the port 1 is a client, not an action client")),
+    ];
+    assert_eq!(said(&told[1]), expected);
 }
 
 /// A wait for nothing in particular ends by what comes first; an event at the very instant at which it is given up still counts.

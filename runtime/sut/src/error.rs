@@ -17,20 +17,20 @@ pub enum SutError {
         looked_for: String,
     },
     /// The program ended although the test had not.
-    #[error("the program ended ({exit}) before the test was over{}{output}", silence(*spoke))]
+    #[error("the program ended ({exit}) before the test was over{silence}{output}")]
     Exited {
         exit: ProgramExit,
-        /// Whether it had ever made a request.
-        spoke: bool,
+        /// What is to be said of one that had never made a request.
+        silence: &'static str,
         output: Box<CapturedOutput>,
     },
     /// The program went over one of its limits while it was to `what`.
-    #[error("{}{}{output}", OverrunSentence(*overrun, what), silence(*spoke))]
+    #[error("{}{silence}{output}", OverrunSentence(*overrun, what))]
     Overrun {
         what: &'static str,
         overrun: LimitOverrun,
-        /// Whether it had ever made a request.
-        spoke: bool,
+        /// What is to be said of one that had never made a request.
+        silence: &'static str,
         output: Box<CapturedOutput>,
     },
     /// The campaign is to end.
@@ -84,7 +84,18 @@ impl fmt::Display for OverrunSentence<'_> {
     }
 }
 
-/// A program that never made a request may not know how to.
-fn silence(spoke: bool) -> &'static str {
-    if spoke { "" } else { "; it never spoke to the harness (does it make a `hrdsl.Node`?)" }
+/// A program that never made a request may not know how to: what it should have done, by the client library that it has.
+pub(crate) fn silence(middleware: Option<&str>, is_python: bool) -> &'static str {
+    match middleware {
+        Some("ros1") if is_python => {
+            "; it never spoke to the harness (does it make a node, by `rospy.init_node`?)"
+        }
+        Some("ros2") if is_python => {
+            "; it never spoke to the harness (does it make a node of `rclpy`, and spin it?)"
+        }
+        Some(_) | None if is_python => "; it never spoke to the harness (does it make a `hrdsl.Node`?)",
+        Some(_) | None => {
+            "; it never spoke to the harness (does it write requests to the descriptor in `HRDSL_REQUEST_FD`?)"
+        }
+    }
 }

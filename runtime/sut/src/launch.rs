@@ -8,7 +8,7 @@ use std::{
 use crate::{
     cell::{cells::CellSettings, message::CellOrder},
     environment::{PythonEnv, word::is_python},
-    error::SutError,
+    error::{SutError, silence},
     limits::{ProgramLimits, StopFlag},
     start,
 };
@@ -108,6 +108,12 @@ impl LaunchSpec {
             network: self.cells.network,
             terminal: self.cells.terminal,
         })
+    }
+
+    /// What is to be said of this program if it makes no request.
+    pub(crate) fn silence(&self) -> &'static str {
+        let is_of_python = self.command.first().is_some_and(|word| is_python(word));
+        silence(self.middleware.as_ref().map(|m| m.name), is_of_python)
     }
 
     /// What every program finds in its environment.

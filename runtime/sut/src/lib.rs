@@ -43,6 +43,6 @@ pub use lock_step::LockStep;
 pub use output::{CapturedOutput, CapturedStream};
 pub use process::{FinishedProcess, SutProcess};
 pub use protocol::{
-    HarnessReply, MessageRequest, PROTOCOL_VERSION, ProgramRequest, ProtocolArgument, RefusedLine,
-    ReplyAnswer, WrittenPortKind,
+    HarnessReply, MessageRequest, OpenRequest, PROTOCOL_VERSION, ProgramRequest, ProtocolArgument,
+    RefusedLine, ReplyAnswer,
 };

@@ -1,7 +1,7 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    CommandRequest, PortDeclaration, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault,
+    CanceledGoals, CommandRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault,
     SystemFaultKind, SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
@@ -90,12 +90,18 @@ fn meant(request: ProgramRequest) -> SystemRequest {
             }
         }
         ProgramRequest::Wait { until, give_up } => SystemRequest::Wait { until, give_up },
-        ProgramRequest::Open { port, kind, name, type_name, latched, depth } => {
-            SystemRequest::Open(PortDeclaration { port, kind: kind.into(), name, type_name, latched, depth })
-        }
+        ProgramRequest::Open(open) => SystemRequest::Open(open.into()),
         ProgramRequest::Close { port } => SystemRequest::Close { port },
         ProgramRequest::List => SystemRequest::List,
-        ProgramRequest::Cancel { call } => SystemRequest::Cancel { call },
+        // INVARIANT: `fault` refuses a request with neither, or with both.
+        ProgramRequest::Cancel { call: Some(call), .. } => SystemRequest::Cancel(CanceledGoals::Own(call)),
+        ProgramRequest::Cancel { call: None, port } => {
+            SystemRequest::Cancel(CanceledGoals::AllAt(port.unwrap_or_default()))
+        }
+        ProgramRequest::Accept { call, text } => SystemRequest::Accept { call, text },
+        ProgramRequest::AnswerCancel { call, granted, text } => {
+            SystemRequest::AnswerCancel { call, granted, text }
+        }
         ProgramRequest::State { device, what } => SystemRequest::State { device, what },
         ProgramRequest::Plan { device, to } => SystemRequest::Plan { device, to },
         ProgramRequest::Transition { label, next } => SystemRequest::Transition { from: label, to: next },
@@ -112,7 +118,9 @@ fn carried(request: MessageRequest) -> SystemRequest {
         MessageRequest::Call { port, call, message } => SystemRequest::Call { port, call, message },
         MessageRequest::Respond { call, answer } => SystemRequest::Respond { call, answer },
         MessageRequest::Feedback { call, message } => SystemRequest::Feedback { call, message },
-        MessageRequest::Finish { call, end, message } => SystemRequest::Finish { call, end, message },
+        MessageRequest::Finish { call, end, message, text } => {
+            SystemRequest::Finish { call, end, message, text }
+        }
     }
 }
 

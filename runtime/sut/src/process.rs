@@ -69,8 +69,8 @@ pub struct SutProcess {
     lines: u64,
     /// What goes with the next reply.
     refused: Vec<RefusedLine>,
-    /// Whether it has made a request.
-    spoke: bool,
+    /// What is to be said of it as long as it has made no request; then nothing.
+    silence: &'static str,
     /// Whether it has gone over a limit.
     overran: bool,
     coverage: Option<(File, Vec<String>)>,
@@ -142,7 +142,7 @@ impl SutProcess {
             version: 1,
             lines: 0,
             refused: Vec::new(),
-            spoke: false,
+            silence: launch.silence(),
             overran: false,
             coverage: memory.map(|file| (file, launch.coverage.clone())),
         })
@@ -169,12 +169,12 @@ impl SutProcess {
                         if let ProgramRequest::Hello { version, .. } = &request {
                             self.version = *version;
                         }
-                        self.spoke = true;
+                        self.silence = "";
                         return Ok(request);
                     }
                     ProtocolLine::Rubbish(why) => return Err(self.rubbish(&line, why)),
                     ProtocolLine::Refused { why: error, waits } => {
-                        self.spoke = true;
+                        self.silence = "";
                         refused += 1;
                         if refused > MOST_REFUSED {
                             let why = format!("{MOST_REFUSED} requests were refused, the last since {error}");
@@ -207,6 +207,9 @@ impl SutProcess {
     /// # Errors
     /// [`SutError::LimitOverrun`] if the program does not read its replies; [`SutError::Io`] if the system fails.
     pub fn reply(&mut self, reply: &HarnessReply) -> Result<(), SutError> {
+        if self.overran {
+            return Ok(()); // it has had its time, and may read nothing
+        }
         self.time = reply.time;
         self.outbox.clear();
         let refused = std::mem::take(&mut self.refused);
@@ -291,7 +294,7 @@ impl SutProcess {
 
     fn exited(&mut self) -> SutError {
         let exit = self.cell.ending().map_or(ProgramExit::Killed, |e| e.exit);
-        SutError::Exited { exit, spoke: self.spoke, output: Box::new(self.output()) }
+        SutError::Exited { exit, silence: self.silence, output: Box::new(self.output()) }
     }
 
     fn overrun(&self, what: PollTarget, overrun: LimitOverrun) -> SutError {
@@ -300,7 +303,7 @@ impl SutProcess {
             PollTarget::RoomToReply => "read its replies",
             PollTarget::End => "end",
         };
-        SutError::Overrun { what, overrun, spoke: self.spoke, output: Box::new(self.output()) }
+        SutError::Overrun { what, overrun, silence: self.silence, output: Box::new(self.output()) }
     }
 
     fn rubbish(&self, line: &[u8], why: String) -> SutError {

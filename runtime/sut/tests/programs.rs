@@ -339,11 +339,12 @@ fn a_stop_ends_the_program_in_order() {
         }
         assert_eq!(request, ProgramRequest::Wait { until: None, give_up: None });
         if by_reply {
-            reply(&mut process, 7, ReplyAnswer::Stop);
+            reply(&mut process, 7, ReplyAnswer::Stop { reason: "it is late".into() });
         }
+        let why = if by_reply { "it is late" } else { "the harness has gone" };
         let finished = process.finish(GRACE);
         assert_eq!(finished.exit, ProgramExit::Code(0), "{}", finished.output);
-        assert_eq!(finished.output.stdout.text(), "stopped: the test is over\ncleaning up\n");
+        assert_eq!(finished.output.stdout.text(), format!("stopped: {why}\ncleaning up\n"));
         assert_eq!(finished.output.stderr.text(), "");
         assert!(finished.coverage.is_some());
     }

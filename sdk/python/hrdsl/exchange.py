@@ -39,10 +39,12 @@ def the_exchange() -> Exchange:
 class Port:
     """A publisher, subscriber, server or client of this program."""
 
-    __slots__ = ("number", "kind", "name", "type_name", "_exchange", "_tell", "_publish", "_handler")
+    __slots__ = ("number", "kind", "name", "type_name", "on_incompatible", "_exchange", "_tell", "_publish", "_handler")
 
     def __init__(self, exchange: Exchange, number: int, kind: str, name: str, type_name: str, handler: Handler | None) -> None:
         self.number, self.kind, self.name, self.type_name = number, kind, name, type_name
+        #: Called with `reliability` or `durability` when one at the other side requests, or offers, what does not fit.
+        self.on_incompatible: Callable[[str], object] | None = None
         self._exchange: Exchange | None = exchange
         self._tell = exchange.link.tell
         self._publish = b'{"request":"publish","port":%d,"message":' % number
@@ -70,6 +72,12 @@ class Port:
             del exchange.calls[call.number]
             raise
         return call
+
+    def cancel_all(self) -> None:
+        """Asks the server of an action to end all goals that it has, whoever gave them."""
+        if self._exchange is None:
+            raise self._closed()
+        self._tell(b'{"request":"cancel","port":%d}\n' % self.number, self)
 
     def close(self) -> None:
         """Nothing arrives any more, and nothing can be sent."""
@@ -143,16 +151,20 @@ class Exchange:
         *,
         latched: bool = False,
         depth: int | None = None,
+        reliability: str | None = None,
+        durability: str | None = None,
         handler: Handler | None = None,
     ) -> Port:
         """Becomes a `publisher`, `subscriber`, `server`, `client`, `action_server` or `action_client`. What arrives at the
-        port goes to the handler. Raises `ProtocolError` if it is refused."""
+        port goes to the handler. The reliability is `reliable` or `best_effort`, the durability `volatile` or
+        `transient_local`; None fits all. Raises `ProtocolError` if it is refused."""
         port = Port(self, self.number(), kind, name, type_name, handler)
         message: dict[str, Any] = {"request": "open", "port": port.number, "kind": kind, "name": name, "type": type_name}
         if latched:
             message["latched"] = True
-        if depth is not None:
-            message["depth"] = depth
+        for key, value in (("depth", depth), ("reliability", reliability), ("durability", durability)):
+            if value is not None:
+                message[key] = value
         self.ports[port.number] = port
         try:
             self.link.request(message)
@@ -180,13 +192,23 @@ class Exchange:
         """Answers it with an error."""
         self._about_call(b'{"request":"respond","call":%d,"error":%s}\n', number, text)
 
+    def accept(self, number: int, text: str = "") -> None:
+        """Takes a goal on, with words for its client."""
+        self._about_call(b'{"request":"accept","call":%d,"text":%s}\n', number, text)
+
     def feedback(self, number: int, message: Message) -> None:
         """Tells how far a goal is."""
         self._about_call(b'{"request":"feedback","call":%d,"message":%s}\n', number, message)
 
-    def finish(self, number: int, end: str, message: Message) -> None:
+    def answer_cancel(self, number: int, granted: bool, text: str = "") -> None:
+        """Says whether a goal that is to end before it is reached will be canceled."""
+        line = b'{"request":"answer_cancel","call":%%d,"granted":%s,"text":%%s}\n' % (b"true" if granted else b"false")
+        self._about_call(line, number, text)
+
+    def finish(self, number: int, end: str, message: Message, text: str = "") -> None:
         """Ends a goal: it is `succeeded`, `aborted`, `canceled` or `rejected`."""
-        line = b'{"request":"finish","call":%%d,"end":"%s","message":%%s}\n' % end.encode("ascii")
+        words = (_encode(end).encode("ascii"), _encode(text).replace("%", "%%").encode("ascii"))
+        line = b'{"request":"finish","call":%%d,"end":%s,"text":%s,"message":%%s}\n' % words
         self._about_call(line, number, message)
 
     def _about_call(self, line: bytes, number: int, message: Message) -> None:
@@ -274,8 +296,9 @@ class Exchange:
             ended = self._commands.pop(arrival["ended"], None)
             if ended is not None:
                 ended(None if arrival.get("ok") else arrival.get("error") or "it failed")
-        elif "feedback" in arrival:
-            handler = self.calls.get(arrival["feedback"])
+        elif "feedback" in arrival or "accepted" in arrival or "cancel_answered" in arrival:
+            kind = next(kind for kind in ("feedback", "accepted", "cancel_answered") if kind in arrival)
+            handler = self.calls.get(arrival[kind])
             if handler is not None:
                 handler(arrival)
         elif "answered" in arrival or "finished" in arrival:
@@ -283,6 +306,10 @@ class Exchange:
             handler = self.calls.pop(number, None)
             if handler is not None:
                 handler(arrival)
+        elif "incompatible" in arrival:
+            port = self.ports.get(arrival["incompatible"])
+            if port is not None and port.on_incompatible is not None:
+                port.on_incompatible(arrival["policy"])
         elif "changed" in arrival:
             for watcher in self._watchers:
                 watcher()

@@ -56,6 +56,11 @@ class Link:
         """Whether the harness has ended the test."""
         return self._stopped is not None
 
+    @property
+    def why_stopped(self) -> str | None:
+        """Why it has."""
+        return self._stopped
+
     def is_ours(self) -> bool:
         """Whether this is the program itself, and no process forked from it."""
         return os.getpid() == self._owner
@@ -142,7 +147,7 @@ class Link:
         self._lines += len(self._told) + 1
         self._told.clear()
         if answer.get("stop"):
-            self._stop("the test is over")
+            self._stop(answer.get("reason", "the test is over"))
         return answer
 
     def _write(self, line: bytes) -> None:

@@ -50,7 +50,7 @@ class OverLink:
         link = self._link
         if until is None and give_up is None and not self.can_arrive():
             if link.stopped:
-                raise Stopped()
+                raise Stopped(link.why_stopped or "")
             raise Deadlock()
         if until is not None and until > _NEVER:
             until = _NEVER

@@ -379,7 +379,7 @@ class Scheduler:
     def _failed(self, error: BaseException) -> None:
         """Whose wait raises it: all waits if the test is over, else that which it is about."""
         if isinstance(error, Stopped) and self.outside.stopped:
-            self.ending = type(error)
+            self.ending = lambda: Stopped(error.why)
             return
         me = self.running
         if isinstance(error, Exception) and self.next_deadline() is not None:

@@ -10,6 +10,14 @@ class Refused(Exception):
     """Nothing happened."""
 
 
+def misfit(publisher, subscriber):
+    """The policy of which a subscriber requests more than a publisher offers."""
+    for policy, offered, requested in (("reliability", "best_effort", "reliable"), ("durability", "volatile", "transient_local")):
+        if publisher.get(policy) == offered and subscriber.get(policy) == requested:
+            return policy
+    return None
+
+
 class System:
     """Answers requests.
 
@@ -17,14 +25,15 @@ class System:
     published from outside, and a function is called with the system. `services` are functions from a message to a message by
     their names; `actions` functions from a goal to a list of (delay, feedback) and (delay, end, result); `commands` is a
     function from an `act` to (delay, error or None), `signals` and `states` have values by their names, and `latched` the
-    last messages of topics from outside. `events` are those that the actor hears; None: all. `end` is the end of the test."""
+    last messages of topics from outside. `events` are those that the actor hears; None: all. `end` is the end of the test.
+    Actions from outside do not say that they accept goals unless the system `accepts`."""
 
     def __init__(self, arrivals=(), services=(), actions=(), commands=None, signals=(), states=(), events=None,
-                 latched=(), end=None, others=()):  # fmt: skip
+                 latched=(), end=None, others=(), accepts=True):  # fmt: skip
         self.time, self.stopped, self.lines = 0, False, 0
         self.services, self.actions, self.signals, self.states = map(dict, (services, actions, signals, states))
         self.commands = commands or (lambda request: (0, None))
-        self.events, self.end, self.others = events, end, list(others)
+        self.events, self.end, self.others, self.accepts = events, end, list(others), accepts
         self.mailbox, self.refused, self.ports, self.calls, self.goals = [], [], {}, {}, {}
         self.latched, self.published, self.watched = dict(latched), [], False
         self._queue, self._number = [], 0
@@ -138,8 +147,15 @@ class System:
                 told = request["name"], port["type"], request["type"]
                 raise Refused("the topic `%s` is of type `%s`, not `%s`" % told)
         self._changed()
+        for number, port in self.ports.items():
+            if port["name"] == request["name"] and {port["kind"], request["kind"]} == {"publisher", "subscriber"}:
+                pair = (port, request) if port["kind"] == "publisher" else (request, port)
+                policy = misfit(*pair)
+                if policy is not None:
+                    self.mailbox += [{"incompatible": at, "policy": policy} for at in (request["port"], number)]
         self.ports[request["port"]] = request
-        if request["kind"] == "subscriber" and request["name"] in self.latched:
+        is_late = request["kind"] == "subscriber" and request.get("durability") != "volatile"
+        if is_late and request["name"] in self.latched:
             self.mailbox.append({"port": request["port"], "message": self.latched[request["name"]]})
         return {}
 
@@ -162,9 +178,11 @@ class System:
         """The numbers of the program's ports of this kind."""
         return [number for number, port in self.ports.items() if port["kind"] == kind and port["name"] == name]
 
-    def publish(self, name, message):
-        """From outside, or by the program."""
+    def publish(self, name, message, publisher=()):
+        """From outside, or by a port of the program."""
         for number in self.at("subscriber", name):
+            if misfit(dict(publisher), self.ports[number]) is not None:
+                continue
             depth = self.ports[number].get("depth", 1000)
             waiting = [m for m in self.mailbox if m.get("port") == number]
             if len(waiting) >= depth:
@@ -185,9 +203,9 @@ class System:
     def tell_publish(self, request):
         port = self._port(request)
         self.published.append((self.time, port["name"], request["message"]))
-        if port.get("latched"):
+        if port.get("latched") or port.get("durability") == "transient_local":
             self.latched[port["name"]] = request["message"]
-        self.publish(port["name"], request["message"])
+        self.publish(port["name"], request["message"], port)
 
     def tell_transition(self, request):
         pass
@@ -209,7 +227,10 @@ class System:
             self.mailbox.append({"answered": call, **told})
         elif name in self.actions:
             self.goals[call] = None
-            for delay, *what in self.actions[name](message):
+            steps = self.actions[name](message)
+            if self.accepts and [what[0] for _, *what in steps] != ["rejected"]:
+                self.mailbox.append({"accepted": call, "text": "it begins"})
+            for delay, *what in steps:
                 if len(what) == 1:
                     self.soon(delay, lambda _, w=what: self._goal_says(call, {"feedback": call, "message": w[0]}))
                 else:
@@ -250,15 +271,29 @@ class System:
         if call is not None:
             self.mailbox.append({"feedback": call, "message": request["message"]})
 
+    def tell_accept(self, request):
+        self._about_goal(request, "accepted")
+
+    def tell_answer_cancel(self, request):
+        self._about_goal(request, "cancel_answered", granted=request["granted"])
+
+    def _about_goal(self, request, kind, **members):
+        call = self.calls[request["call"]]
+        if call is not None:
+            text = {"text": request["text"]} if request.get("text") else {}
+            self.mailbox.append({kind: call, **members, **text})
+
     def tell_finish(self, request):
-        self._end(request, {"finished": 0, "end": request["end"], "message": request["message"]})
+        text = {"text": request["text"]} if request.get("text") else {}
+        self._end(request, {"finished": 0, "end": request["end"], "message": request["message"], **text})
 
     def tell_cancel(self, request):
-        call = request["call"]
-        if self.goals.get(call) is not None:
-            number = self.goals[call]
-            port = next(p for p, port in self.ports.items() if port["kind"] == "action_server")
-            self.mailbox.append({"canceled": number, "port": port})
-        elif call in self.goals:
-            self.mailbox.append({"finished": call, "end": "canceled", "message": None})
-            del self.goals[call]
+        for call in [request["call"]] if "call" in request else list(self.goals):
+            if self.goals.get(call) is not None:
+                number = self.goals[call]
+                port = next(p for p, port in self.ports.items() if port["kind"] == "action_server")
+                self.mailbox.append({"canceled": number, "port": port})
+            elif call in self.goals:
+                self.mailbox.append({"cancel_answered": call, "granted": True})
+                self.mailbox.append({"finished": call, "end": "canceled", "message": None, "text": "as asked"})
+                del self.goals[call]

@@ -60,7 +60,7 @@ say(client.wait_for_result(), client.get_state() == GoalStatus.SUCCEEDED, client
             out,
             [
                 "0.000 True True",
-                "0.001 active",
+                "0.000 active",
                 "0.200 0 False 1 None",
                 "0.500 at 1",
                 "1.000 at 2",
@@ -113,7 +113,7 @@ for to in (1, 2):
         out = self.said(text, system)
         self.assertEqual(
             out,
-            ["0.000 done 5 reached: 0", "0.000 True 5", "0.001 active", "1.000 done 4 reached: 1", "1.000 True 4"],
+            ["0.000 done 5 reached: 0", "0.000 True 5", "0.000 active", "1.000 done 4 reached: 1", "1.000 True 4"],
         )
         self.assertNotIn("rror", self.err)
 
@@ -133,7 +133,7 @@ client = actionlib.SimpleActionClient("/count", CountAction)
 client.send_goal(CountGoal(2), active_cb=lambda: say("active"), feedback_cb=lambda feedback: say("at", feedback.at))
 say(client.wait_for_result(), client.get_state())
 """
-        out = self.said(text, System(actions={"/count": counts}))  # by somebody who is not listed
+        out = self.said(text, System(actions={"/count": counts}, accepts=False))
         self.assertEqual(out, ["0.500 active", "0.500 at 1", "1.000 True 3"])
 
     def test_a_loop_that_asks_for_the_state_lets_time_pass(self):
@@ -165,12 +165,96 @@ say(kept[0] == kept[0], kept[0] != kept[1], len({*kept, kept[0]}))
         ending = ["WAITING_FOR_RESULT", "DONE"]
         self.assertEqual(
             out,
-            ["0.001 2 ACTIVE", "0.001 1 ACTIVE"]
+            ["0.000 2 ACTIVE", "0.000 1 ACTIVE"]
             + ["0.500 1 " + state for state in ending]
             + ["0.600 2 WAITING_FOR_CANCEL_ACK", "0.600 2 PREEMPTING"]
             + ["0.600 2 " + state for state in ending]
             + ["1.600 ['PREEMPTED', 'SUCCEEDED'] 1", "1.600 True True 2"],
         )
+
+    def test_a_goal_that_waits_is_pending_and_can_be_recalled(self):
+        text = """
+rospy.init_node("both")
+def on_cancel(handle):
+    say("server", GoalStatus.to_string(handle.get_goal_status().status))
+    if handle.get_goal().to == 1:
+        handle.set_canceled(CountResult(0), "never begun")
+    else:
+        handle.set_accepted("late")
+        handle.set_aborted(CountResult(5), "stopped")
+server = actionlib.ActionServer("/count", CountAction, lambda handle: None, on_cancel, False)
+server.start()
+client = actionlib.ActionClient("/count", CountAction)
+def tell(handle):
+    to = handle.comm_state_machine.action_goal.goal.to
+    status = GoalStatus.to_string(handle.get_goal_status())
+    say(to, actionlib.CommState.to_string(handle.get_comm_state()), status, handle.get_goal_status_text())
+kept = [client.send_goal(CountGoal(to), tell) for to in (1, 2)]
+rospy.sleep(1)
+for handle in kept:
+    handle.cancel()
+rospy.sleep(1)
+say([actionlib.TerminalState.to_string(handle.get_terminal_state()) for handle in kept], kept[1].get_result().reached)
+rospy.signal_shutdown("all done")
+"""
+        self.assertEqual(
+            self.said(text),
+            [
+                "0.200 1 PENDING PENDING ",
+                "0.200 2 PENDING PENDING ",
+                "1.000 1 WAITING_FOR_CANCEL_ACK PENDING ",
+                "1.000 2 WAITING_FOR_CANCEL_ACK PENDING ",
+                "1.000 server RECALLING",
+                "1.000 server RECALLING",
+                "1.000 1 RECALLING RECALLING ",
+                "1.000 2 RECALLING RECALLING ",
+                "1.000 2 PREEMPTING PREEMPTING late",
+                "1.000 1 WAITING_FOR_RESULT RECALLED never begun",
+                "1.000 1 DONE RECALLED never begun",
+                "1.000 2 WAITING_FOR_RESULT ABORTED stopped",
+                "1.000 2 DONE ABORTED stopped",
+                "2.000 ['RECALLED', 'ABORTED'] 5",
+            ],
+        )
+
+    def test_what_the_server_says_is_its_clients_to_read(self):
+        text = """
+rospy.init_node("both")
+def execute(goal):
+    rospy.sleep(1)
+    server.set_succeeded(CountResult(goal.to), "counted")
+server = actionlib.SimpleActionServer("/count", CountAction, execute, False)
+server.start()
+client = actionlib.SimpleActionClient("/count", CountAction)
+client.send_goal(CountGoal(1))
+say(client.get_state(), client.get_goal_status_text())
+rospy.sleep(0.5)
+say(client.get_state(), client.get_goal_status_text())
+client.wait_for_result()
+say(client.get_state(), client.get_goal_status_text())
+rospy.signal_shutdown("all done")
+"""
+        accepted = "This goal has been accepted by the simple action server"
+        self.assertEqual(self.said(text), ["0.000 0 ", "0.500 1 " + accepted, "1.000 3 counted"])
+
+    def test_all_goals_of_a_server_can_be_cancelled(self):
+        text = """
+rospy.init_node("both")
+kept = []
+def on_goal(handle):
+    handle.set_accepted()
+    kept.append(handle)
+server = actionlib.ActionServer("/count", CountAction, on_goal, lambda handle: handle.set_canceled(), False)
+server.start()
+clients = [actionlib.SimpleActionClient("/count", CountAction) for _ in range(2)]
+for client in clients:
+    client.send_goal(CountGoal(1))
+rospy.sleep(1)
+clients[1].cancel_all_goals()
+say([client.wait_for_result(rospy.Duration(1)) for client in clients], [client.get_state() for client in clients])
+rospy.signal_shutdown("all done")
+"""
+        self.assertEqual(self.said(text), ["1.000 [True, True] [2, 2]"])
 
     def test_what_fits_not(self):
         text = """

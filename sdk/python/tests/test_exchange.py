@@ -285,19 +285,54 @@ class Ports(Case):
             exchange, box = the_exchange(), Mailbox()
             port = exchange.open("action_client", "/go", "Go")
             port.call("home", box.put)
-            print(box.get(), exchange.time), print(box.get(), exchange.time)
+            for _ in range(3):
+                print(box.get(), exchange.time)
             call = port.call("away", box.put)
             call.cancel()
-            print(box.get(), exchange.time)
+            for _ in range(3):
+                print(box.get(), exchange.time)
             call.cancel()
+            port.cancel_all()
             """
         system = System(actions={"/go": lambda goal: [(10, 0.5), (20, "succeeded", goal)]})
         self.assertEqual(
             self.said(text, system),
             [
+                "{'accepted': 2, 'text': 'it begins'} 0",
                 "{'feedback': 2, 'message': 0.5} 10",
                 "{'finished': 2, 'end': 'succeeded', 'message': 'home'} 20",
-                "{'finished': 3, 'end': 'canceled', 'message': None} 20",
+                "{'accepted': 3, 'text': 'it begins'} 20",
+                "{'cancel_answered': 3, 'granted': True} 20",
+                "{'finished': 3, 'end': 'canceled', 'message': None, 'text': 'as asked'} 20",
+            ],
+        )
+
+    def test_the_server_of_an_action_says_what_becomes_of_goals(self):
+        text = """
+            from hrdsl.exchange import the_exchange
+            from hrdsl.mailbox import Mailbox
+            exchange, goals, told = the_exchange(), Mailbox(), Mailbox()
+            exchange.open("action_server", "/go", "Go", handler=goals.put)
+            port = exchange.open("action_client", "/go", "Go")
+            calls = [port.call(name, told.put) for name in ("home", "away")]
+            numbers = [goals.get()["called"], goals.get()["called"]]
+            exchange.accept(numbers[0], "50 % sure")
+            exchange.finish(numbers[1], "rejected", None, "100 % \\"wrong\\"")
+            calls[0].cancel()
+            print(goals.get())
+            exchange.answer_cancel(numbers[0], False, "nearly there")
+            exchange.finish(numbers[0], "succeeded", 3)
+            for _ in range(4):
+                print(told.get())
+            """
+        self.assertEqual(
+            self.said(text),
+            [
+                "{'canceled': 1, 'port': 1}",
+                "{'accepted': 3, 'text': '50 % sure'}",
+                "{'finished': 4, 'end': 'rejected', 'message': None, 'text': '100 % \"wrong\"'}",
+                "{'cancel_answered': 3, 'granted': False, 'text': 'nearly there'}",
+                "{'finished': 3, 'end': 'succeeded', 'message': 3}",
             ],
         )
 

@@ -276,24 +276,47 @@ from std_msgs.msg import String
 rclpy.init()
 n = Node("n")
 n.create_subscription(String, "scan", print, 10)
-n.create_publisher(String, "scan", qos_profile_sensor_data)
+publisher = n.create_publisher(String, "scan", qos_profile_sensor_data)
 told = SubscriptionEventCallbacks(incompatible_qos=lambda event: print("told", event.last_policy_kind.name))
 latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 n.create_publisher(String, "map", 10)
 n.create_subscription(String, "map", print, latched, event_callbacks=told)
+print("made")
+publisher.publish(String(data="lost"))
+publisher.publish(String(data="lost"))
+for _ in range(6):
+    rclpy.spin_once(n, timeout_sec=0.01)
+publisher.destroy()
+rclpy.spin_once(n, timeout_sec=0.01)
 """
         err = [
-            "[WARN] [1735689600.000000000] [n]: New publisher discovered on topic 'scan', offering incompatible QoS. "
-            "No messages will be received from it. Last incompatible policy: RELIABILITY",
             "[WARN] [1735689600.000000000] [n]: New subscription discovered on topic 'scan', requesting incompatible "
             "QoS. No messages will be sent to it. Last incompatible policy: RELIABILITY",
+            "[WARN] [1735689600.000000000] [n]: New publisher discovered on topic 'scan', offering incompatible QoS. "
+            "No messages will be received from it. Last incompatible policy: RELIABILITY",
             "[WARN] [1735689600.000000000] [n]: New subscription discovered on topic 'map', requesting incompatible "
             "QoS. No messages will be sent to it. Last incompatible policy: DURABILITY",
         ]
         out = [
+            "made",
             "told DURABILITY",
         ]
         self.assertEqual(self.said(text, err="\n".join(err) + "\n"), out)
+
+    def test_late_subscriptions_get_what_was_published_if_they_ask_for_it(self):
+        text = TRIED + """
+from rclpy.qos import *
+from std_msgs.msg import String
+rclpy.init()
+n = Node("n")
+latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+n.create_publisher(String, "map", latched).publish(String(data="old"))
+n.create_subscription(String, "map", lambda m: print("volatile", m.data), 10)
+n.create_subscription(String, "map", lambda m: print("latched", m.data), latched)
+for _ in range(3):
+    rclpy.spin_once(n, timeout_sec=0.01)
+"""
+        self.assertEqual(self.said(text), ["latched old"])
 
     def test_waiting_for_a_message(self):
         text = TRIED + """

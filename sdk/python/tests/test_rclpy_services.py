@@ -301,11 +301,15 @@ rclpy.spin_once(n, timeout_sec=0.5)
             "-1 False 0 8.0",
             "0 [] 8.0",
             "7 True 2 8.0",
-            "cancel 1 5",
+            "cancel 1 3",
             "5 [] 8.0",
             "False False",
         ]
-        self.assertEqual(self.said(text, system), out)
+        err = (
+            "hrdsl: action /none (example_interfaces/action/Fibonacci): a goal of n is never answered: "
+            "the action `/none` has no server\n"
+        )
+        self.assertEqual(self.said(text, system, err=err), out)
 
 
 if __name__ == "__main__":

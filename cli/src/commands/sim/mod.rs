@@ -293,7 +293,7 @@ fn limits(args: &SimArgs, system: &SystemUnderTest) -> ProgramLimits {
 
 /// Set by an interrupt or a request to terminate; at the second, the program ends at once. While somebody debugs,
 /// interrupts are for the debugger.
-fn stop_flag(debug: bool) -> Result<StopFlag, CommandFault> {
+pub(super) fn stop_flag(debug: bool) -> Result<StopFlag, CommandFault> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
     let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
@@ -390,7 +390,7 @@ fn cores() -> usize {
 }
 
 /// Where Python packages are kept: `$HRDSL_CACHE`, else the user's cache folder.
-fn cache() -> Result<PathBuf, CommandFault> {
+pub(super) fn cache() -> Result<PathBuf, CommandFault> {
     let var = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
     var("HRDSL_CACHE")
         .or_else(|| var("XDG_CACHE_HOME").map(|c| c.join("hrdsl")))

@@ -3,11 +3,11 @@
 //! The graph decides who gets a message, in which order, and nothing else. Messages are delivered to subscribers in the order in
 //! which those opened their ports, which is the same in every run.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use super::{
-    port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortListing},
-    seam::SystemArrival,
+    port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortListing, QosDurability, QosPolicy},
+    seam::{CanceledGoals, SystemArrival},
 };
 
 /// A program may have so many ports open, and so many calls under way.
@@ -28,8 +28,8 @@ pub(super) struct GraphDelivery {
 struct OpenPort {
     program: ProgramIndex,
     declared: PortDeclaration,
-    /// A latched publisher's last message.
-    last: Option<MessageText>,
+    /// A publisher's last messages, for those who subscribe later.
+    kept: VecDeque<MessageText>,
 }
 
 /// A request or goal that has no answer yet.
@@ -39,6 +39,16 @@ struct OpenCall {
     call: u64,
     server: ProgramIndex,
     server_port: u64,
+    /// Of a goal: how the server and its client get on; `None`: it asks a service.
+    goal: Option<OpenGoal>,
+}
+
+/// What has been said of a goal.
+#[derive(Clone, Copy, Default)]
+struct OpenGoal {
+    accepted: bool,
+    /// So many requests to cancel it have no answer.
+    cancels: usize,
 }
 
 /// The ports of all programs, in the order in which they were opened.
@@ -74,12 +84,19 @@ impl MessageGraph {
             return Err(format!("the {} `{}` has a server already", declared.kind.sort(), declared.name));
         }
         let mut out = self.changed();
-        if declared.kind == PortKind::Subscriber {
-            for message in self.at(&declared).filter_map(|p| p.last.clone()) {
-                out.push(message_to(program, &declared, message));
+        for other in self.at(&declared) {
+            if let Some(policy) = misfit(&declared, &other.declared) {
+                for (to, port) in [(program, declared.port), (other.program, other.declared.port)] {
+                    out.push(told(to, SystemArrival::Incompatible { port, policy }));
+                }
+            } else if declared.kind == PortKind::Subscriber
+                && declared.qos.durability != Some(QosDurability::Volatile)
+            {
+                let old = other.kept.iter().skip(other.kept.len().saturating_sub(declared.depth.max(1)));
+                out.extend(old.map(|message| message_to(program, &declared, message.clone())));
             }
         }
-        self.ports.push(OpenPort { program, declared, last: None });
+        self.ports.push(OpenPort { program, declared, kept: VecDeque::new() });
         Ok(out)
     }
 
@@ -124,12 +141,22 @@ impl MessageGraph {
     pub fn publish(&mut self, program: ProgramIndex, port: u64, message: &MessageText) -> GraphOutcome {
         let at = self.port(program, port)?;
         let publisher = self.of_kind(at, PortKind::Publisher)?.clone();
-        if let Some(own) = self.ports.get_mut(at).filter(|p| p.declared.latched) {
-            own.last = Some(message.clone());
+        if let Some(own) = self.ports.get_mut(at).filter(|p| p.declared.kept > 0) {
+            own.kept.push_back(message.clone());
+            if own.kept.len() > own.declared.kept {
+                own.kept.pop_front();
+            }
         }
-        let hears = |p: &&OpenPort| p.declared.kind == PortKind::Subscriber;
+        let hears = |p: &&OpenPort| {
+            p.declared.kind == PortKind::Subscriber && publisher.qos.lacks(p.declared.qos).is_none()
+        };
         let to = |p: &OpenPort| message_to(p.program, &p.declared, message.clone());
         Ok(self.at(&publisher).filter(hears).map(to).collect())
+    }
+
+    /// Whether something of this sort is open at a name.
+    pub fn has(&self, name: &str, sort: &str) -> bool {
+        self.ports.iter().any(|p| p.declared.name == name && p.declared.kind.sort() == sort)
     }
 
     /// Whether anybody subscribes to the topic of a publisher.
@@ -152,7 +179,7 @@ impl MessageGraph {
             PortKind::Client => PortKind::Server,
             PortKind::ActionClient => PortKind::ActionServer,
             PortKind::Publisher | PortKind::Subscriber | PortKind::Server | PortKind::ActionServer => {
-                return Err(format!("the port {port} is a {}, which calls nobody", client.kind));
+                return Err(format!("the port {port} is {}, which calls nobody", client.kind.noun()));
             }
         };
         if self.calls.values().filter(|c| c.client == program).count() >= MOST {
@@ -168,7 +195,8 @@ impl MessageGraph {
         };
         self.made += 1;
         let id = self.made;
-        self.calls.insert(id, OpenCall { client: program, call, server, server_port });
+        let goal = (wanted == PortKind::ActionServer).then(OpenGoal::default);
+        self.calls.insert(id, OpenCall { client: program, call, server, server_port, goal });
         Ok(vec![told(server, SystemArrival::Called { port: server_port, call: id, message })])
     }
 
@@ -185,32 +213,71 @@ impl MessageGraph {
         Ok(vec![out])
     }
 
-    /// A server of actions says how far a goal has come.
-    pub fn feedback(&mut self, program: ProgramIndex, call: u64, message: MessageText) -> GraphOutcome {
-        let open = self.served(program, call)?;
-        Ok(vec![told(open.client, SystemArrival::Feedback { call: open.call, message })])
+    /// A server of actions takes a goal on.
+    pub fn accept(&mut self, program: ProgramIndex, call: u64, text: String) -> GraphOutcome {
+        let (client, number, goal) = self.goal(program, call)?;
+        if std::mem::replace(&mut goal.accepted, true) {
+            return Err(format!("the goal {call} was accepted before"));
+        }
+        Ok(vec![told(client, SystemArrival::Accepted { call: number, text })])
     }
 
-    /// A server of actions ends a goal.
+    /// It says how far a goal has come.
+    pub fn feedback(&mut self, program: ProgramIndex, call: u64, message: MessageText) -> GraphOutcome {
+        let (client, number, _) = self.goal(program, call)?;
+        Ok(vec![told(client, SystemArrival::Feedback { call: number, message })])
+    }
+
+    /// It says whether it will cancel a goal.
+    pub fn answer_cancel(
+        &mut self,
+        program: ProgramIndex,
+        call: u64,
+        granted: bool,
+        text: String,
+    ) -> GraphOutcome {
+        let (client, number, goal) = self.goal(program, call)?;
+        goal.cancels =
+            goal.cancels.checked_sub(1).ok_or_else(|| format!("nobody asks to cancel the goal {call}"))?;
+        Ok(vec![told(client, SystemArrival::CancelAnswered { call: number, granted, text })])
+    }
+
+    /// It ends a goal.
     pub fn finish(
         &mut self,
         program: ProgramIndex,
         call: u64,
         end: GoalEnd,
-        message: MessageText,
+        (message, text): (MessageText, String),
     ) -> GraphOutcome {
-        let open = self.served(program, call)?;
-        let out = told(open.client, SystemArrival::Finished { call: open.call, end, message });
+        let (client, number, _) = self.goal(program, call)?;
         self.calls.remove(&call);
-        Ok(vec![out])
+        Ok(vec![told(client, SystemArrival::Finished { call: number, end, message, text })])
     }
 
-    /// A client wants its goal to end.
-    pub fn cancel(&mut self, program: ProgramIndex, call: u64) -> GraphOutcome {
-        let found = self.calls.iter().find(|(_, c)| c.client == program && c.call == call);
-        // It may have ended just before: that is no mistake of the client.
-        let Some((id, open)) = found else { return Ok(Vec::new()) };
-        Ok(vec![told(open.server, SystemArrival::Canceled { port: open.server_port, call: *id })])
+    /// A client wants goals to end. That there is none is no mistake: it may have ended just before.
+    pub fn cancel(&mut self, program: ProgramIndex, which: CanceledGoals) -> GraphOutcome {
+        let server = match which {
+            CanceledGoals::Own(_) => None,
+            CanceledGoals::AllAt(port) => {
+                let client = self.of_kind(self.port(program, port)?, PortKind::ActionClient)?;
+                let server = self.at(client).find(|p| p.declared.kind == PortKind::ActionServer);
+                Some(server.map(|p| (p.program, p.declared.port)))
+            }
+        };
+        let is_meant = |open: &OpenCall| match (which, server) {
+            (CanceledGoals::Own(call), _) => open.client == program && open.call == call,
+            (CanceledGoals::AllAt(_), server) => server == Some(Some((open.server, open.server_port))),
+        };
+        let mut out = Vec::new();
+        for (id, open) in self.calls.iter_mut().filter(|(_, open)| is_meant(open)) {
+            let Some(goal) = &mut open.goal else {
+                return Err(format!("the call {} asks a service, which cannot be canceled", open.call));
+            };
+            goal.cancels += 1;
+            out.push(told(open.server, SystemArrival::Canceled { port: open.server_port, call: *id }));
+        }
+        Ok(out)
     }
 
     // ── what is there ──
@@ -224,7 +291,7 @@ impl MessageGraph {
         let declared = self.ports.get(at).map(|p| &p.declared);
         let fits = declared.filter(|d| d.kind == kind);
         fits.ok_or_else(|| match declared {
-            Some(d) => format!("the port {} is a {}, not a {kind}", d.port, d.kind),
+            Some(d) => format!("the port {} is {}, not {}", d.port, d.kind.noun(), kind.noun()),
             None => "no such port".to_owned(),
         })
     }
@@ -240,6 +307,17 @@ impl MessageGraph {
         own.ok_or_else(|| format!("there is no call {call} to answer"))
     }
 
+    /// A goal that a program serves, with its client and the client's number for it.
+    fn goal(
+        &mut self,
+        program: ProgramIndex,
+        call: u64,
+    ) -> Result<(ProgramIndex, u64, &mut OpenGoal), String> {
+        self.served(program, call)?;
+        let goal = self.calls.get_mut(&call).and_then(|c| Some((c.client, c.call, c.goal.as_mut()?)));
+        goal.ok_or_else(|| format!("the call {call} asks a service, and is no goal"))
+    }
+
     fn fail(&mut self, why: &str, which: impl Fn(&OpenCall) -> bool) -> Vec<GraphDelivery> {
         let gone: Vec<u64> = self.calls.iter().filter(|(_, c)| which(c)).map(|(id, _)| *id).collect();
         let ended = |id: u64| {
@@ -252,6 +330,15 @@ impl MessageGraph {
 
     fn changed(&mut self) -> Vec<GraphDelivery> {
         std::mem::take(&mut self.watchers).into_iter().map(|to| told(to, SystemArrival::Changed)).collect()
+    }
+}
+
+/// Why nothing passes between two ports of a topic, if one publishes and the other subscribes.
+fn misfit(a: &PortDeclaration, b: &PortDeclaration) -> Option<QosPolicy> {
+    match (a.kind, b.kind) {
+        (PortKind::Publisher, PortKind::Subscriber) => a.qos.lacks(b.qos),
+        (PortKind::Subscriber, PortKind::Publisher) => b.qos.lacks(a.qos),
+        _ => None,
     }
 }
 

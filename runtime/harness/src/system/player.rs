@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value, binding::MiddlewareBinding};
 
 use super::{
-    binding::BindingNode,
+    binding::{BindingFault, BindingNode, BindingOutcome},
     graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
     mailbox::HeardEvent,
     port::PortDeclaration,
@@ -177,10 +177,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 cx.out.extend(events.map(|(event, args)| PlayerMessage::Event { event, args }));
                 Answer(SystemAnswer::Ok)
             }
-            SystemRequest::List => {
-                let names: Vec<String> = self.programs.iter().map(|p| p.name.clone()).collect();
-                Answer(SystemAnswer::Listed(self.graph.watch(index, &names)))
-            }
+            SystemRequest::List => Answer(self.listed(index)),
             SystemRequest::Open(declared) => {
                 let opened = self.opened(index, declared);
                 Answer(self.told(opened, cx)?)
@@ -196,19 +193,29 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             }
             request @ (SystemRequest::Call { .. }
             | SystemRequest::Respond { .. }
+            | SystemRequest::Accept { .. }
             | SystemRequest::Feedback { .. }
+            | SystemRequest::AnswerCancel { .. }
             | SystemRequest::Finish { .. }
-            | SystemRequest::Cancel { .. }) => {
+            | SystemRequest::Cancel(_)) => {
                 let called = self.called(index, request);
                 Answer(self.told(called, cx)?)
             }
         })
     }
 
+    fn listed(&mut self, index: ProgramIndex) -> SystemAnswer {
+        let names: Vec<String> = self.programs.iter().map(|p| p.name.clone()).collect();
+        SystemAnswer::Listed(self.graph.watch(index, &names))
+    }
+
     fn opened(&mut self, index: ProgramIndex, declared: PortDeclaration) -> GraphOutcome {
+        if let Some(binding) = &self.binding {
+            binding.refuses(&declared, &self.graph)?;
+        }
         let mut out = self.graph.open(index, declared.clone())?;
         if let Some(binding) = &mut self.binding {
-            out.extend(binding.opened(&declared, &mut self.graph)?);
+            out.extend(binding.opened(&declared, &mut self.graph).map_err(BindingFault::text)?);
         }
         Ok(out)
     }
@@ -218,9 +225,15 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
         match request {
             SystemRequest::Call { port, call, message } => self.graph.call(index, port, call, message),
             SystemRequest::Respond { call, answer } => self.graph.respond(index, call, answer),
+            SystemRequest::Accept { call, text } => self.graph.accept(index, call, text),
             SystemRequest::Feedback { call, message } => self.graph.feedback(index, call, message),
-            SystemRequest::Finish { call, end, message } => self.graph.finish(index, call, end, message),
-            SystemRequest::Cancel { call } => self.graph.cancel(index, call),
+            SystemRequest::AnswerCancel { call, granted, text } => {
+                self.graph.answer_cancel(index, call, granted, text)
+            }
+            SystemRequest::Finish { call, end, message, text } => {
+                self.graph.finish(index, call, end, (message, text))
+            }
+            SystemRequest::Cancel(which) => self.graph.cancel(index, which),
             SystemRequest::Now
             | SystemRequest::Done
             | SystemRequest::Sleep { .. }
@@ -269,7 +282,8 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             match &mut self.binding {
                 Some(binding) if binding.node() == to => match binding.take(arrival, &mut self.graph, cx) {
                     Ok(more) => waiting.extend(more),
-                    Err(why) => wrong = Err(why),
+                    Err(BindingFault::Message(why)) => wrong = Err(why),
+                    Err(BindingFault::Scenario(why)) => return Err(scenario_fault(&why)),
                 },
                 _ => {
                     let delivered = self.programs[to].deliver(arrival, depth, &self.vocabulary, cx.now);
@@ -284,15 +298,15 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
     fn bound(
         &mut self,
         cx: &mut PlayerContext<'_, '_>,
-        act: impl FnOnce(&mut BindingNode<'p>, &mut MessageGraph, &mut PlayerContext<'_, '_>) -> GraphOutcome,
+        act: impl FnOnce(&mut BindingNode<'p>, &mut MessageGraph, &mut PlayerContext<'_, '_>) -> BindingOutcome,
     ) -> Result<(), HarnessError> {
         let Some(binding) = &mut self.binding else { return Ok(()) };
         let outcome = act(binding, &mut self.graph, cx);
         let told = match outcome {
             Ok(deliveries) => self.deliver(deliveries, cx)?,
-            Err(why) => Err(why),
+            Err(fault) => Err(fault.text()),
         };
-        told.map_err(|why| HarnessError::Model(format!("the binding: {why}")))
+        told.map_err(|why| scenario_fault(&why))
     }
 
     fn wait_for(
@@ -324,6 +338,10 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             Err(answer) => answer,
         }
     }
+}
+
+fn scenario_fault(why: &str) -> HarnessError {
+    HarnessError::Model(format!("the binding: {why}"))
 }
 
 fn begin(request: &CommandRequest, cx: &mut PlayerContext<'_, '_>) -> Result<CommandId, SystemAnswer> {

@@ -26,6 +26,18 @@ impl PortKind {
             PortKind::ActionServer | PortKind::ActionClient => "action",
         }
     }
+
+    /// With its article, for sentences.
+    pub(super) fn noun(self) -> &'static str {
+        match self {
+            PortKind::Publisher => "a publisher",
+            PortKind::Subscriber => "a subscriber",
+            PortKind::Server => "a server",
+            PortKind::Client => "a client",
+            PortKind::ActionServer => "an action server",
+            PortKind::ActionClient => "an action client",
+        }
+    }
 }
 
 impl fmt::Display for PortKind {
@@ -51,10 +63,58 @@ pub struct PortDeclaration {
     pub name: String,
     /// `sensor_msgs/LaserScan`; compared, and not understood.
     pub type_name: String,
-    /// Of a publisher: its last message is given to those who subscribe later.
-    pub latched: bool,
+    /// Of a publisher: so many of its last messages are given to those who subscribe later.
+    pub kept: usize,
     /// Of a subscriber: so many messages wait for it at most; of more, the oldest are lost.
     pub depth: usize,
+    /// Of a publisher what it offers, of a subscriber what it requests.
+    pub qos: PortQos,
+}
+
+/// Qualities of service that decide who hears whom, as in ROS 2; what is not said fits everything.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PortQos {
+    pub reliability: Option<QosReliability>,
+    pub durability: Option<QosDurability>,
+}
+
+/// Whether messages may be lost on the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum QosReliability {
+    BestEffort,
+    Reliable,
+}
+
+/// Whether what was published before is for those who subscribe later.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum QosDurability {
+    Volatile,
+    TransientLocal,
+}
+
+/// Why a publisher and a subscriber do not fit together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum QosPolicy {
+    Reliability,
+    Durability,
+}
+
+impl PortQos {
+    /// The policy of which a subscriber requests more than this publisher offers, if there is one.
+    #[must_use]
+    pub fn lacks(self, requested: PortQos) -> Option<QosPolicy> {
+        if self.reliability == Some(QosReliability::BestEffort)
+            && requested.reliability == Some(QosReliability::Reliable)
+        {
+            Some(QosPolicy::Reliability)
+        } else if self.durability == Some(QosDurability::Volatile)
+            && requested.durability == Some(QosDurability::TransientLocal)
+        {
+            Some(QosPolicy::Durability)
+        } else {
+            None
+        }
+    }
 }
 
 /// How the goal of an action ended.

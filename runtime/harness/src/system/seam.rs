@@ -8,7 +8,7 @@ use std::{collections::BTreeMap, fmt};
 
 use hrdsl_ir::{Nanos, Value};
 
-use super::port::{GoalEnd, MessageText, PortDeclaration, PortListing};
+use super::port::{GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy};
 use crate::{argument::SystemArgument, command::CommandRequest, fault::SystemFault};
 
 /// Whatever plays the system actor.
@@ -95,19 +95,30 @@ pub enum SystemRequest {
         call: u64,
         answer: Result<MessageText, String>,
     },
+    /// Take a goal on.
+    Accept {
+        call: u64,
+        /// Why, or how, for the client.
+        text: String,
+    },
     Feedback {
         call: u64,
         message: MessageText,
+    },
+    /// Say whether a goal whose client wants it to end will be canceled.
+    AnswerCancel {
+        call: u64,
+        granted: bool,
+        text: String,
     },
     Finish {
         call: u64,
         end: GoalEnd,
         message: MessageText,
+        text: String,
     },
-    /// End a goal of one's own.
-    Cancel {
-        call: u64,
-    },
+    /// Ask for the end of a goal.
+    Cancel(CanceledGoals),
     /// Numbers that a device can tell of itself: the angles of its joints, the place of its tool.
     State {
         device: String,
@@ -125,6 +136,15 @@ pub enum SystemRequest {
     },
     /// It has come to its normal end.
     Done,
+}
+
+/// Which goals a client wants to end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CanceledGoals {
+    /// One of its own, by its number for it.
+    Own(u64),
+    /// All that the server of an action has, by the client's port.
+    AllAt(u64),
 }
 
 /// What the harness answers.
@@ -173,6 +193,11 @@ pub enum SystemArrival {
         port: u64,
         message: MessageText,
     },
+    /// To a publisher and a subscriber: nothing passes between them, since one requests more than the other offers.
+    Incompatible {
+        port: u64,
+        policy: QosPolicy,
+    },
     /// To a server: a request or a goal, and the number to answer by.
     Called {
         port: u64,
@@ -184,15 +209,26 @@ pub enum SystemArrival {
         call: u64,
         answer: Result<MessageText, String>,
     },
-    /// To a client of an action.
+    /// To a client of an action: the server has taken the goal on.
+    Accepted {
+        call: u64,
+        text: String,
+    },
     Feedback {
         call: u64,
         message: MessageText,
+    },
+    /// To a client that wants its goal to end: whether the server cancels it.
+    CancelAnswered {
+        call: u64,
+        granted: bool,
+        text: String,
     },
     Finished {
         call: u64,
         end: GoalEnd,
         message: MessageText,
+        text: String,
     },
     /// To a server of actions: the client wants the goal to end.
     Canceled {

@@ -1,23 +1,21 @@
 //! The lock-step protocol, versions 1 and 2, as data (`spec/protocol.md`): one JSON line each way.
 
+mod open;
 mod ports;
 mod reply;
 
 use std::{borrow::Cow, collections::BTreeMap, fmt};
 
-use hrdsl_harness::PortKind;
 use hrdsl_ir::{Nanos, Value};
 use serde::{Deserialize, Serialize};
 
+pub use open::OpenRequest;
 pub use ports::MessageRequest;
 pub(crate) use reply::ReplyLine;
 pub use reply::{HarnessReply, RefusedLine, ReplyAnswer};
 
 /// The newest version that this crate speaks; it speaks the older ones, too.
 pub const PROTOCOL_VERSION: u32 = 2;
-
-/// How many messages wait for a subscriber that does not say.
-const DEPTH: usize = 1_000;
 
 /// What the program asks for. Durations are in seconds, finite and not negative ([`Process::next`](crate::Process::next)
 /// refuses others).
@@ -80,25 +78,31 @@ pub enum ProgramRequest {
         give_up: Option<Nanos>,
     },
     /// Be a publisher, subscriber, server or client.
-    Open {
-        port: u64,
-        kind: WrittenPortKind,
-        name: String,
-        #[serde(rename = "type")]
-        type_name: String,
-        #[serde(default)]
-        latched: bool,
-        #[serde(default = "usual_depth")]
-        depth: usize,
-    },
+    Open(OpenRequest),
     Close {
         port: u64,
     },
     /// What is open in the system.
     List,
-    /// End a goal.
+    /// Ask for the end of a goal, or of all goals at an action: one of the two.
     Cancel {
+        #[serde(default)]
+        call: Option<u64>,
+        #[serde(default)]
+        port: Option<u64>,
+    },
+    /// Take a goal on.
+    Accept {
         call: u64,
+        #[serde(default)]
+        text: String,
+    },
+    /// Say whether a goal will be canceled.
+    AnswerCancel {
+        call: u64,
+        granted: bool,
+        #[serde(default)]
+        text: String,
     },
     /// What a device tells of itself, as numbers.
     State {
@@ -126,35 +130,6 @@ pub enum ProgramRequest {
 
 fn yes() -> bool {
     true
-}
-
-fn usual_depth() -> usize {
-    DEPTH
-}
-
-/// A [`PortKind`] as the protocol writes it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WrittenPortKind {
-    Publisher,
-    Subscriber,
-    Server,
-    Client,
-    ActionServer,
-    ActionClient,
-}
-
-impl From<WrittenPortKind> for PortKind {
-    fn from(kind: WrittenPortKind) -> Self {
-        match kind {
-            WrittenPortKind::Publisher => PortKind::Publisher,
-            WrittenPortKind::Subscriber => PortKind::Subscriber,
-            WrittenPortKind::Server => PortKind::Server,
-            WrittenPortKind::Client => PortKind::Client,
-            WrittenPortKind::ActionServer => PortKind::ActionServer,
-            WrittenPortKind::ActionClient => PortKind::ActionClient,
-        }
-    }
 }
 
 /// An argument of an event or a command, as the program wrote it: what it means, its declaration tells.
@@ -201,19 +176,22 @@ impl ProgramRequest {
             ProgramRequest::Act { wait: false, call: None, .. } => {
                 Some("act without wait needs the number of a `call`".to_owned())
             }
-            ProgramRequest::Open { name, type_name, .. } if name.is_empty() || type_name.is_empty() => {
-                Some("a port needs a `name` and a `type`".to_owned())
+            ProgramRequest::Cancel { call: None, port: None }
+            | ProgramRequest::Cancel { call: Some(_), port: Some(_) } => {
+                Some("cancel needs either a `call` or a `port`".to_owned())
             }
+            ProgramRequest::Open(open) => open.fault(),
             ProgramRequest::Now
             | ProgramRequest::Emit { .. }
             | ProgramRequest::Drop { .. }
             | ProgramRequest::Read { .. }
             | ProgramRequest::Act { .. }
             | ProgramRequest::Wait { .. }
-            | ProgramRequest::Open { .. }
             | ProgramRequest::Close { .. }
             | ProgramRequest::List
             | ProgramRequest::Cancel { .. }
+            | ProgramRequest::Accept { .. }
+            | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::State { .. }
             | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
@@ -228,10 +206,12 @@ impl ProgramRequest {
         match self {
             ProgramRequest::Act { wait: false, .. }
             | ProgramRequest::Wait { .. }
-            | ProgramRequest::Open { .. }
+            | ProgramRequest::Open(_)
             | ProgramRequest::Close { .. }
             | ProgramRequest::List
             | ProgramRequest::Cancel { .. }
+            | ProgramRequest::Accept { .. }
+            | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::State { .. }
             | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
@@ -254,6 +234,8 @@ impl ProgramRequest {
         match self {
             ProgramRequest::Close { .. }
             | ProgramRequest::Cancel { .. }
+            | ProgramRequest::Accept { .. }
+            | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine
             | ProgramRequest::Message(_) => true,
@@ -266,7 +248,7 @@ impl ProgramRequest {
             | ProgramRequest::Read { .. }
             | ProgramRequest::Act { .. }
             | ProgramRequest::Wait { .. }
-            | ProgramRequest::Open { .. }
+            | ProgramRequest::Open(_)
             | ProgramRequest::List
             | ProgramRequest::State { .. }
             | ProgramRequest::Plan { .. }
@@ -296,8 +278,19 @@ struct RequestHead<'l> {
 }
 
 /// The kinds of requests that have no reply of their own, from version 2 on.
-const ONE_WAY: [&str; 9] =
-    ["publish", "call", "respond", "feedback", "finish", "close", "cancel", "transition", "machine"];
+const ONE_WAY: [&str; 11] = [
+    "publish",
+    "call",
+    "respond",
+    "accept",
+    "feedback",
+    "answer_cancel",
+    "finish",
+    "close",
+    "cancel",
+    "transition",
+    "machine",
+];
 
 /// What a line means to a program that speaks this version.
 pub(crate) fn parse(line: &[u8], version: u32) -> ProtocolLine {
@@ -442,7 +435,10 @@ mod tests {
         assert_eq!(wire(ReplyAnswer::Value(Value::Bool(true))), r#"{"t":5,"value":true}"#);
         assert_eq!(wire(ReplyAnswer::Acted(Ok(()))), r#"{"t":5,"ok":true}"#);
         assert_eq!(wire(ReplyAnswer::Acted(Err("far".into()))), r#"{"t":5,"ok":false,"error":"far"}"#);
-        assert_eq!(wire(ReplyAnswer::Stop), r#"{"t":5,"stop":true}"#);
+        assert_eq!(
+            wire(ReplyAnswer::Stop { reason: "it is late".into() }),
+            r#"{"t":5,"stop":true,"reason":"it is late"}"#
+        );
         assert_eq!(
             wire(ReplyAnswer::Error { error: "no".into(), help: Some("yes".into()) }),
             r#"{"t":5,"error":"no","help":"yes"}"#

@@ -13,7 +13,7 @@ pub enum MessageRequest {
     Call { port: u64, call: u64, message: MessageText },
     Respond { call: u64, answer: Result<MessageText, String> },
     Feedback { call: u64, message: MessageText },
-    Finish { call: u64, end: GoalEnd, message: MessageText },
+    Finish { call: u64, end: GoalEnd, message: MessageText, text: String },
 }
 
 #[derive(Deserialize)]
@@ -52,6 +52,8 @@ struct FinishLine<'l> {
     end: WrittenGoalEnd,
     #[serde(borrow)]
     message: &'l RawValue,
+    #[serde(default)]
+    text: String,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -104,6 +106,7 @@ pub(super) fn parse(kind: &str, line: &[u8]) -> Option<serde_json::Result<Messag
                 WrittenGoalEnd::Rejected => GoalEnd::Rejected,
             },
             message: text(l.message),
+            text: l.text,
         }),
         _ => return None,
     })

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{PortListing, SystemArrival};
+use hrdsl_harness::{PortListing, QosPolicy, SystemArrival};
 use hrdsl_ir::{Nanos, Value};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 use serde_json::value::RawValue;
@@ -60,8 +60,8 @@ pub enum ReplyAnswer {
         /// What to write instead.
         help: Option<String>,
     },
-    /// To any request: the test is over.
-    Stop,
+    /// To any request: the test is over, and why.
+    Stop { reason: String },
 }
 
 #[derive(Serialize)]
@@ -109,7 +109,10 @@ impl Serialize for ReplyLine<'_> {
                     map.serialize_entry("help", help)?;
                 }
             }
-            ReplyAnswer::Stop => map.serialize_entry("stop", &true)?,
+            ReplyAnswer::Stop { reason } => {
+                map.serialize_entry("stop", &true)?;
+                map.serialize_entry("reason", reason)?;
+            }
         }
         if !self.refused.is_empty() {
             map.serialize_entry("refused", self.refused)?;
@@ -138,6 +141,10 @@ impl Serialize for WrittenArrival<'_> {
                 map.serialize_entry("port", port)?;
                 map.serialize_entry("message", raw(message)?)?;
             }
+            SystemArrival::Incompatible { port, policy } => {
+                map.serialize_entry("incompatible", port)?;
+                map.serialize_entry("policy", policy_word(*policy))?;
+            }
             SystemArrival::Called { port, call, message } => {
                 map.serialize_entry("called", call)?;
                 map.serialize_entry("port", port)?;
@@ -150,14 +157,24 @@ impl Serialize for WrittenArrival<'_> {
                     Err(error) => map.serialize_entry("error", error)?,
                 }
             }
+            SystemArrival::Accepted { call, text } => {
+                map.serialize_entry("accepted", call)?;
+                explanation(&mut map, text)?;
+            }
             SystemArrival::Feedback { call, message } => {
                 map.serialize_entry("feedback", call)?;
                 map.serialize_entry("message", raw(message)?)?;
             }
-            SystemArrival::Finished { call, end, message } => {
+            SystemArrival::CancelAnswered { call, granted, text } => {
+                map.serialize_entry("cancel_answered", call)?;
+                map.serialize_entry("granted", granted)?;
+                explanation(&mut map, text)?;
+            }
+            SystemArrival::Finished { call, end, message, text } => {
                 map.serialize_entry("finished", call)?;
                 map.serialize_entry("end", end_word(*end))?;
                 map.serialize_entry("message", raw(message)?)?;
+                explanation(&mut map, text)?;
             }
             SystemArrival::Canceled { port, call } => {
                 map.serialize_entry("canceled", call)?;
@@ -169,9 +186,21 @@ impl Serialize for WrittenArrival<'_> {
     }
 }
 
+/// What a server says about a goal, if it says something.
+fn explanation<M: SerializeMap>(map: &mut M, text: &str) -> Result<(), M::Error> {
+    if text.is_empty() { Ok(()) } else { map.serialize_entry("text", text) }
+}
+
 /// INVARIANT: a message came out of a line of JSON.
 fn raw<E: serde::ser::Error>(message: &str) -> Result<&RawValue, E> {
     serde_json::from_str(message).map_err(E::custom)
+}
+
+fn policy_word(policy: QosPolicy) -> &'static str {
+    match policy {
+        QosPolicy::Reliability => "reliability",
+        QosPolicy::Durability => "durability",
+    }
 }
 
 struct WrittenPort<'a>(&'a PortListing);

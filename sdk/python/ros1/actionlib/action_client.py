@@ -57,7 +57,7 @@ class TerminalState:
 
 GoalStatus.to_string = classmethod(get_name_of_constant)
 
-#: How the protocol calls ends.
+#: How the protocol calls the ends of goals that were accepted.
 _ENDS = {
     "succeeded": GoalStatus.SUCCEEDED,
     "aborted": GoalStatus.ABORTED,
@@ -67,22 +67,43 @@ _ENDS = {
 
 _ENDED = set(_ENDS.values()) | {GoalStatus.RECALLED, GoalStatus.LOST}
 
-#: The protocol does not tell that a server has accepted a goal: it is taken to have so many nanoseconds after it was sent,
-#: if it has neither rejected nor ended it.
-_ACCEPTED_AFTER = 1_000_000
+#: Statuses of goals that were never accepted.
+_NEVER_ACTIVE = (GoalStatus.REJECTED, GoalStatus.RECALLING, GoalStatus.RECALLED)
+
+#: A server of ROS 1 tells five times a second which goals it has: after so many nanoseconds a client knows that it has got
+#: one which it has neither accepted nor rejected.
+_KNOWN_AFTER = 200_000_000
 
 
-def _steps(state: int, status: int) -> tuple[int, ...]:
-    """Through which states a goal goes when the server says its status: all that lie between are told, too."""
+def _steps(state: int, status: int) -> tuple[int, ...] | None:
+    """Through which states a goal goes when the server says its status: all that lie between are told, too. None: no goal of
+    this state can get such a status."""
+    if state in (CommState.WAITING_FOR_RESULT, CommState.DONE):
+        return ()
+    if status == GoalStatus.PENDING:
+        return (CommState.PENDING,) if state == CommState.WAITING_FOR_GOAL_ACK else ()
     if status == GoalStatus.ACTIVE:
         return (CommState.ACTIVE,) if state <= CommState.PENDING else ()
-    begun: tuple[int, ...] = () if state > CommState.PENDING else (CommState.ACTIVE,)
-    if status == GoalStatus.REJECTED:
-        begun = (CommState.PENDING,) if state == CommState.WAITING_FOR_GOAL_ACK else ()
-    stopping = status in (GoalStatus.PREEMPTING, GoalStatus.PREEMPTED)
-    if status != GoalStatus.REJECTED and (stopping or state == CommState.WAITING_FOR_CANCEL_ACK):
-        begun += () if state == CommState.PREEMPTING else (CommState.PREEMPTING,)
-    return begun + ((CommState.WAITING_FOR_RESULT,) if status in _ENDED else ())
+    steps: list[int] = []
+    if status in _NEVER_ACTIVE:
+        if state in (CommState.ACTIVE, CommState.PREEMPTING):
+            return None
+        if state == CommState.WAITING_FOR_GOAL_ACK:
+            steps.append(CommState.PENDING)
+        recalls = status == GoalStatus.RECALLING or (
+            status == GoalStatus.RECALLED and state != CommState.WAITING_FOR_GOAL_ACK
+        )
+        if recalls and state != CommState.RECALLING:
+            steps.append(CommState.RECALLING)
+    else:
+        if state <= CommState.PENDING:
+            steps.append(CommState.ACTIVE)
+        stops = status in (GoalStatus.PREEMPTING, GoalStatus.PREEMPTED)
+        if state != CommState.PREEMPTING and (stops or state >= CommState.WAITING_FOR_CANCEL_ACK):
+            steps.append(CommState.PREEMPTING)
+    if status in _ENDED:
+        steps.append(CommState.WAITING_FOR_RESULT)
+    return tuple(steps)
 
 
 class CommStateMachine:
@@ -94,6 +115,9 @@ class CommStateMachine:
         self.transition_cb = transition_cb
         self.feedback_cb = feedback_cb
         self.call: Any = None  # of the protocol, once it is sent
+        self.is_lost = False  # nobody has got it
+        self.is_accepted = False
+        self.is_canceling = False
         self.state = CommState.WAITING_FOR_GOAL_ACK
         self.latest_goal_status = GoalStatus(goal_id=action_goal.goal_id, status=GoalStatus.PENDING)
         self.latest_result: Any = None
@@ -116,23 +140,27 @@ class CommStateMachine:
         if self.transition_cb:
             self.transition_cb(ClientGoalHandle(self))
 
-    def update_status(self, status: int) -> None:
+    def update_status(self, status: int, text: str = "") -> None:
         """The server says what it does with the goal."""
         if self.state == CommState.DONE:
             return
+        self.latest_goal_status = GoalStatus(goal_id=self.action_goal.goal_id, status=status, text=text)
         steps = _steps(self.state, status)
-        if steps or status in _ENDED:
-            self.latest_goal_status = GoalStatus(goal_id=self.action_goal.goal_id, status=status)
-        for state in steps:
+        if steps is None:
+            rospy.logerr(
+                "Invalid goal status transition from %s to %s"
+                % (CommState.to_string(self.state), GoalStatus.to_string(status))
+            )
+        for state in steps or ():
             self.transition_to(state)
 
-    def update_result(self, status: int, action_result: Any) -> None:
+    def update_result(self, status: int, text: str, action_result: Any) -> None:
         """The goal has ended."""
         if self.state == CommState.DONE:
             rospy.logerr("Got a result when we were already in the DONE state")
             return
         self.latest_result = action_result
-        self.update_status(status)
+        self.update_status(status, text)
         action_result.status = self.latest_goal_status
         self.transition_to(CommState.DONE)
 
@@ -158,12 +186,8 @@ class ClientGoalHandle:
         """Asks the server to end the goal."""
         machine = self.comm_state_machine
         machine.call.cancel()
-        if machine.state == CommState.DONE:
-            return  # the goal cannot come back to life
-        was = machine.state
-        machine.transition_to(CommState.WAITING_FOR_CANCEL_ACK)
-        if was != CommState.WAITING_FOR_GOAL_ACK:
-            machine.client._statuses.put(weakref.ref(machine), GoalStatus.PREEMPTING)
+        if machine.state != CommState.DONE:  # else the goal cannot come back to life
+            machine.transition_to(CommState.WAITING_FOR_CANCEL_ACK)
 
     def get_comm_state(self) -> int:
         """What the client knows of the goal (`CommState`)."""
@@ -177,7 +201,7 @@ class ClientGoalHandle:
         return status
 
     def get_goal_status_text(self) -> str:
-        """The server's explanation, which the protocol does not carry: always empty."""
+        """What the server said with the status."""
         return str(self.comm_state_machine.latest_goal_status.text)
 
     def get_result(self) -> Any:
@@ -222,6 +246,7 @@ class ActionClient:
     def _begin(self) -> None:
         # Not before they are needed: many programs make clients that they seldom use.
         self._statuses = Lane(self._name + "/status", self._status_cb)
+        self._news = Lane(self._name + "/goal", self._known_cb)
         self._results = Lane(self._name + "/result", self._result_cb)
         self._feedbacks = Lane(self._name + "/feedback", self._feedback_cb)
 
@@ -244,8 +269,7 @@ class ActionClient:
         kept = weakref.ref(machine)
         machine.call = self._port.call(message, lambda arrival: self._hear(kept(), arrival))
         self._open[machine.call.number] = machine.call, machine.action_goal.goal_id.stamp
-        if _wire.the_servers().has(self._name):
-            self._statuses.put(kept, GoalStatus.ACTIVE)
+        self._news.put(kept)
         return ClientGoalHandle(machine)
 
     def _action_goal(self, goal: Any) -> Any:
@@ -259,49 +283,71 @@ class ActionClient:
 
     def _hear(self, machine: CommStateMachine | None, arrival: dict[str, Any]) -> None:
         # Called while all threads of the program wait: it only hands on.
-        if "feedback" not in arrival:
+        if "finished" in arrival or "answered" in arrival:
             self._open.pop(arrival.get("finished", arrival.get("answered", 0)), None)
         if machine is None:
             return
-        if "feedback" in arrival:
-            if machine.state <= CommState.PENDING:  # then it has been accepted
-                self._statuses.put(weakref.ref(machine), GoalStatus.ACTIVE)
+        text = arrival.get("text", "")
+        if "accepted" in arrival:
+            machine.is_accepted = True
+            self._statuses.put(weakref.ref(machine), self._running(machine), text)
+        elif "feedback" in arrival:
+            if not machine.is_accepted:  # by a server that does not say so
+                machine.is_accepted = True
+                self._statuses.put(weakref.ref(machine), self._running(machine), text)
             self._feedbacks.put(machine, arrival["message"])
+        elif "cancel_answered" in arrival:
+            if arrival["granted"]:
+                machine.is_canceling = True
+                self._statuses.put(weakref.ref(machine), self._running(machine), text)
         elif "finished" in arrival:
             self._results.put(machine, arrival)
-        # Else nobody has got the goal, or who had it has gone: in ROS, too, the client is not told.
+        else:  # nobody has got the goal, or who had it has gone: in ROS, too, the client is not told
+            machine.is_lost = True
 
-    def _status_cb(self, kept: Callable[[], CommStateMachine | None], status: int) -> None:
+    @staticmethod
+    def _running(machine: CommStateMachine) -> int:
+        """The status of a goal that has not ended."""
+        if machine.is_accepted:
+            return int(GoalStatus.PREEMPTING if machine.is_canceling else GoalStatus.ACTIVE)
+        return int(GoalStatus.RECALLING if machine.is_canceling else GoalStatus.PENDING)
+
+    def _status_cb(self, kept: Callable[[], CommStateMachine | None], status: int, text: str) -> None:
+        machine = kept()
+        if machine is not None:
+            machine.update_status(status, text)
+
+    def _known_cb(self, kept: Callable[[], CommStateMachine | None]) -> None:
         machine = kept()
         if machine is None:
             return
-        if status == GoalStatus.ACTIVE:
-            sent = machine.action_goal.goal_id.stamp.to_nsec()
-            del machine
-            left = sent + _ACCEPTED_AFTER - rospy.Time.now().to_nsec()
-            if left > 0:
-                time.sleep(left / 1e9)
-            machine = kept()
-        if machine is not None:
-            machine.update_status(status)
+        known = machine.action_goal.goal_id.stamp.to_nsec() + _KNOWN_AFTER
+        del machine  # so that a goal whose handle nobody keeps is forgotten meanwhile
+        left = known - rospy.Time.now().to_nsec()
+        if left > 0:
+            time.sleep(left / 1e9)
+        machine = kept()
+        if machine is not None and machine.state == CommState.WAITING_FOR_GOAL_ACK and not machine.is_lost:
+            machine.update_status(GoalStatus.PENDING)
 
     def _result_cb(self, machine: CommStateMachine, arrival: dict[str, Any]) -> None:
         action_result = self.ActionResult()
         action_result.header.stamp = rospy.Time.now()
         action_result.result = _wire.decode(arrival["message"], self._spec.result)
-        machine.update_result(_ENDS[arrival["end"]], action_result)
+        status = _ENDS[arrival["end"]]
+        if status == GoalStatus.PREEMPTED and not machine.is_accepted:
+            status = GoalStatus.RECALLED
+        machine.update_result(status, arrival.get("text", ""), action_result)
 
     def _feedback_cb(self, machine: CommStateMachine, message: Any) -> None:
         machine.update_feedback(_wire.decode(message, self._spec.feedback))
 
     def cancel_all_goals(self) -> None:
-        """Asks the server to end all goals that this client gave. (Those of other clients go on: the protocol lets
-        nobody cancel what another has asked for.)"""
-        for call, _ in list(self._open.values()):
-            call.cancel()
+        """Asks the server to end all goals that it has, those of other clients, too."""
+        self._port.cancel_all()
 
     def cancel_goals_at_and_before_time(self, time: Any) -> None:
-        """Asks the server to end those that were given until then."""
+        """Asks the server to end those that this client gave until then."""
         for call, stamp in list(self._open.values()):
             if stamp <= time:
                 call.cancel()

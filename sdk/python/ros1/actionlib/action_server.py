@@ -91,7 +91,7 @@ class ActionServer:
                 self._port = None
 
     def publish_status(self) -> None:
-        """Does nothing: statuses go nowhere but to who asks the handles."""
+        """Does nothing: clients are told when a goal is accepted, is to be canceled, and ends."""
 
     def publish_result(self, tracker: StatusTracker, result: Any) -> None:
         """The goal has ended."""
@@ -99,7 +99,13 @@ class ActionServer:
         if tracker in self.status_list:
             self.status_list.remove(tracker)
             if not rospy.is_shutdown():
-                the_exchange().finish(tracker.number, _ENDS[tracker.status.status], message)
+                status = tracker.status
+                the_exchange().finish(tracker.number, _ENDS[status.status], message, status.text)
+
+    def publish_acceptance(self, tracker: StatusTracker) -> None:
+        """The goal is worked at from now on."""
+        if tracker in self.status_list and not rospy.is_shutdown():
+            the_exchange().accept(tracker.number, tracker.status.text)
 
     def publish_feedback(self, tracker: StatusTracker, feedback: Any) -> None:
         """Tells the client of a goal how it gets on."""
@@ -136,6 +142,8 @@ class ActionServer:
             for tracker in self.status_list:
                 if tracker.number == number:
                     handle = ServerGoalHandle(tracker, self)
-                    if handle.set_cancel_requested():
+                    is_new = handle.set_cancel_requested()
+                    the_exchange().answer_cancel(number, True, tracker.status.text)
+                    if is_new:
                         self.cancel_callback(handle)
                     return

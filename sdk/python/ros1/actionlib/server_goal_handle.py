@@ -50,6 +50,7 @@ class ServerGoalHandle:
                 return
             status.status = GoalStatus.ACTIVE if status.status == GoalStatus.PENDING else GoalStatus.PREEMPTING
             status.text = text
+            self.action_server.publish_acceptance(self.status_tracker)
 
     def set_canceled(self, result: Any = None, text: str = "") -> None:
         """The goal was given up because somebody asked for it."""

@@ -107,18 +107,18 @@ class SimpleActionClient:
         return int(GoalStatus.ACTIVE) if status == GoalStatus.PREEMPTING else status
 
     def get_goal_status_text(self) -> str:
-        """The server's explanation of the state: always empty, for the protocol does not carry it."""
+        """What the server said with the state."""
         if not self.gh:
             rospy.logerr("Called get_goal_status_text when no goal is running")
             return "ERROR: Called get_goal_status_text when no goal is running"
         return self.gh.get_goal_status_text()
 
     def cancel_all_goals(self) -> None:
-        """Asks the server to end all goals of this client."""
+        """Asks the server to end all goals that it has, those of other clients, too."""
         self.action_client.cancel_all_goals()
 
     def cancel_goals_at_and_before_time(self, time: Any) -> None:
-        """Asks the server to end those that were given until then."""
+        """Asks the server to end those that this client gave until then."""
         self.action_client.cancel_goals_at_and_before_time(time)
 
     def cancel_goal(self) -> None:

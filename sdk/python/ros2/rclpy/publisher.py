@@ -5,7 +5,7 @@ from __future__ import annotations
 from rclpy import _matching, _world
 from rclpy._rclpy_pybind11 import InvalidHandle
 from rclpy.duration import Duration
-from rclpy.qos import is_latched
+from rclpy.qos import options_of
 from rclpy.type_support import name_of
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -25,7 +25,7 @@ class Publisher:
         self._node = node
         self._encode = self._first_encode
         self._full_name = full_name
-        self._port = _world.open_port("publisher", full_name, type_name, latched=is_latched(qos_profile))
+        self._port = _world.open_port("publisher", full_name, type_name, **options_of(qos_profile))
         self._send = self._port.publish
         self._is_destroyed = False
         self._callbacks = callbacks

@@ -176,9 +176,17 @@ for _name in _POLICIES:
     setattr(QoSProfile, _name, _policy(_name))
 
 
-def is_latched(profile: QoSProfile) -> bool:
-    """Whether a publisher with this profile keeps its last message for those who subscribe later."""
-    return bool(profile._durability == DurabilityPolicy.TRANSIENT_LOCAL)  # type: ignore[attr-defined]
+_RELIABILITIES = {ReliabilityPolicy.RELIABLE: "reliable", ReliabilityPolicy.BEST_EFFORT: "best_effort"}
+_DURABILITIES = {DurabilityPolicy.VOLATILE: "volatile", DurabilityPolicy.TRANSIENT_LOCAL: "transient_local"}
+
+
+def options_of(profile: QoSProfile) -> dict[str, Any]:
+    """How a port with this profile is opened; what a profile leaves to the middleware fits everything."""
+    return {
+        "depth": depth_of(profile),
+        "reliability": _RELIABILITIES.get(profile._reliability),  # type: ignore[attr-defined]
+        "durability": _DURABILITIES.get(profile._durability),  # type: ignore[attr-defined]
+    }
 
 
 def depth_of(profile: QoSProfile) -> int | None:

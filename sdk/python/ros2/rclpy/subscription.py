@@ -6,7 +6,7 @@ from collections import deque
 from types import FunctionType, MethodType
 
 from rclpy import _matching, _world
-from rclpy.qos import depth_of
+from rclpy.qos import options_of
 from rclpy.type_support import decoded, name_of
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -43,10 +43,10 @@ class Subscription:
         self._full_name = full_name
         self._type_name = type_name
         self._wake: Callable[[], None] = node._wake_executor
-        depth = depth_of(qos_profile)
-        self._waiting: deque[tuple[Any, int]] = deque(maxlen=depth)
+        options = options_of(qos_profile)
+        self._waiting: deque[tuple[Any, int]] = deque(maxlen=options["depth"])
         self._wants_info = _wants_info(callback)
-        self._port = _world.open_port("subscriber", full_name, type_name, self._arrived, depth=depth)
+        self._port = _world.open_port("subscriber", full_name, type_name, self._arrived, **options)
         self._callbacks = callbacks
         _matching.opened(self)
 

@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, fmt::Write as _};
 
 use hrdsl_ir::{
     EventId, EventPattern, Nanos, Value,
-    binding::{GapRead, GapValue, MessageGap, MessageScalar, MessageTemplate, MiddlewareKind, ToldNumbers},
+    binding::{
+        GapRead, GapValue, MessageGap, MessageScalar, MessageStep, MessageTemplate, MiddlewareKind,
+        ToldNumbers, place_text,
+    },
     value::SECOND,
     world::DeviceId,
 };
@@ -55,12 +58,13 @@ impl GapContext<'_, '_> {
     /// The message as JSON.
     ///
     /// # Errors
-    /// A value that its field cannot hold.
+    /// The field, and the value that it cannot hold.
     pub fn filled(&mut self, template: &MessageTemplate) -> Result<MessageText, String> {
         let mut text = template.text.first().cloned().unwrap_or_default();
         let pieces = template.text.iter().skip(1);
         for (gap, after) in template.gaps.iter().zip(pieces) {
-            self.write(gap, &mut text)?;
+            self.write(gap, &mut text)
+                .map_err(|why| format!("`{}`: {why}", place_text(&open_place(&text))))?;
             text.push_str(after);
         }
         Ok(text.into())
@@ -137,6 +141,33 @@ impl GapContext<'_, '_> {
     }
 }
 
+/// Where the value stands that comes next in a JSON text which breaks off there.
+fn open_place(text: &str) -> Vec<MessageStep> {
+    let mut place = Vec::new();
+    let mut name = String::new();
+    let mut chars = text.chars();
+    while let Some(c) = chars.next() {
+        match (c, place.last_mut()) {
+            ('"', _) => {
+                name.clear();
+                while let Some(c) = chars.next().filter(|c| *c != '"') {
+                    name.push(c);
+                    if c == '\\' {
+                        name.extend(chars.next());
+                    }
+                }
+            }
+            ('{', _) => place.push(MessageStep::Field(String::new())),
+            ('[', _) => place.push(MessageStep::Element(0)),
+            ('}' | ']', _) => drop(place.pop()),
+            (':', Some(MessageStep::Field(field))) => *field = std::mem::take(&mut name),
+            (',', Some(MessageStep::Element(at))) => *at += 1,
+            _ => {}
+        }
+    }
+    place
+}
+
 /// A value as its field holds it.
 fn scalar(value: Value, field: MessageScalar, text: &mut String) -> Result<(), String> {
     match (field, value) {
@@ -179,4 +210,21 @@ fn float(x: f64, text: &mut String) {
 fn quoted(words: &str, text: &mut String) {
     // INVARIANT: text has a JSON form.
     text.push_str(&serde_json::to_string(words).unwrap_or_default());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_place_of_what_comes_next_is_read_from_the_text_before() {
+        for (text, place) in [
+            (r#"{"data":"#, "data"),
+            (r#"{"a":{"b":[1,{"c":2},"x:,{\""],"d":"#, "a.d"),
+            (r#"{"m":[[1,2],[3,"#, "m[1][1]"),
+            (r#"{"name":"a","points":[{"x":1,"y":"#, "points[0].y"),
+        ] {
+            assert_eq!(place_text(&open_place(text)), place, "{text}");
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! The scenario as a node of the system's middleware: it publishes what the world shows, hears what programs say, and serves what
 //! they ask, as the binding says.
 
+mod action_topics;
 mod fill;
 mod read;
 mod rules;
@@ -9,17 +10,19 @@ use std::collections::BTreeMap;
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Value,
-    binding::{GapRead, GapValue, MessageGap, MessageTemplate, MiddlewareBinding, TopicInput},
+    binding::{
+        GapRead, GapValue, MessageGap, MessageTemplate, MiddlewareBinding, MiddlewareKind, TopicInput,
+    },
 };
 
 use super::{
     graph::{GraphDelivery, MessageGraph, ProgramIndex},
-    port::{GoalEnd, MessageText, PortDeclaration, PortKind},
+    port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortQos},
     seam::SystemArrival,
 };
 use crate::{player::PlayerContext, world::CommandId};
 use fill::{GapContext, HeardEvents};
-use rules::RuleState;
+use rules::{RuleOutcome, RuleState};
 
 /// So many messages wait for the scenario at most; it takes each at once.
 const DEPTH: usize = 1;
@@ -71,8 +74,38 @@ struct BoundGoal {
     action: usize,
 }
 
-/// What goes to others; or why a message makes no sense.
-pub(super) type BindingOutcome = Result<Vec<GraphDelivery>, String>;
+/// How a goal ends, and the words that its client gets.
+struct GoalEnding {
+    call: u64,
+    action: usize,
+    end: GoalEnd,
+    text: String,
+}
+
+/// Why something cannot be done, and whose fault that is.
+pub(super) enum BindingFault {
+    /// Of who has sent a message, who is told.
+    Message(String),
+    /// Of the scenario.
+    Scenario(String),
+}
+
+impl BindingFault {
+    pub fn text(self) -> String {
+        match self {
+            BindingFault::Message(why) | BindingFault::Scenario(why) => why,
+        }
+    }
+}
+
+impl From<String> for BindingFault {
+    fn from(why: String) -> Self {
+        BindingFault::Message(why)
+    }
+}
+
+/// What goes to others, or why nothing does.
+pub(super) type BindingOutcome = Result<Vec<GraphDelivery>, BindingFault>;
 
 impl<'p> BindingNode<'p> {
     pub fn new(program: &'p Program, binding: &'p MiddlewareBinding, node: ProgramIndex) -> Self {
@@ -146,6 +179,14 @@ impl<'p> BindingNode<'p> {
             }
         }
         Ok(out)
+    }
+
+    /// Why a program must not open this port, if there is a reason in the middleware.
+    pub fn refuses(&self, declared: &PortDeclaration, graph: &MessageGraph) -> Result<(), String> {
+        match self.binding.kind {
+            MiddlewareKind::Ros1 => action_topics::refuse(declared, graph),
+            MiddlewareKind::Ros2 => Ok(()),
+        }
     }
 
     fn listen(
@@ -246,22 +287,24 @@ impl<'p> BindingNode<'p> {
             None => held_until(&input.message, &self.heard, cx.now),
             Some(_) => None,
         };
-        let message = self.filled(&input.message, cx)?;
+        let message = self.filled(&input.message, ("topic", &input.topic), cx)?;
         if let Some(times) = self.inputs.get_mut(at) {
             (times.sent, times.until) = (Some(cx.now), until);
         }
-        graph.publish(self.node, port, &message)
+        Ok(graph.publish(self.node, port, &message)?)
     }
 
+    /// A message of the scenario, at a name of this sort.
     fn filled(
         &self,
         template: &MessageTemplate,
+        (sort, name): (&str, &str),
         cx: &mut PlayerContext<'_, '_>,
-    ) -> Result<MessageText, String> {
+    ) -> Result<MessageText, BindingFault> {
         let kind = self.binding.kind;
         let mut context =
             GapContext { kind, heard: &self.heard, now: cx.now, stage: cx.stage.as_deref_mut() };
-        context.filled(template)
+        context.filled(template).map_err(|why| BindingFault::Scenario(format!("the {sort} `{name}`: {why}")))
     }
 
     // ── what they say ──
@@ -285,8 +328,11 @@ impl<'p> BindingNode<'p> {
             SystemArrival::Canceled { call, .. } => self.canceled(call, graph, cx),
             SystemArrival::Event { .. }
             | SystemArrival::Ended { .. }
+            | SystemArrival::Incompatible { .. }
             | SystemArrival::Answered { .. }
+            | SystemArrival::Accepted { .. }
             | SystemArrival::Feedback { .. }
+            | SystemArrival::CancelAnswered { .. }
             | SystemArrival::Finished { .. }
             | SystemArrival::Changed => Ok(Vec::new()),
         }
@@ -315,56 +361,67 @@ impl<'p> BindingNode<'p> {
         let (program, binding, node) = (self.program, self.binding, self.node);
         let message = match read::parse(text) {
             Ok(message) => message,
-            Err(why) => return graph.respond(node, call, Err(why)),
+            Err(why) => return Ok(graph.respond(node, call, Err(why))?),
         };
         match self.ports.get_mut(&port) {
             Some(BoundPort::Service { service, state }) => {
                 let Some(bound) = binding.services.get(*service) else { return Ok(Vec::new()) };
                 let done = rules::carry_out(program, &bound.rules, (&message, None), state, cx);
                 let answer = match done.map(|done| self.unattended.extend(done.commands)) {
-                    Ok(()) => Ok(self.filled(&bound.response, cx)?),
+                    Ok(()) => Ok(self.filled(&bound.response, ("service", &bound.service), cx)?),
                     Err(why) => Err(why),
                 };
-                graph.respond(node, call, answer)
+                Ok(graph.respond(node, call, answer)?)
             }
             Some(BoundPort::Action { action, state }) => {
                 let action = *action;
                 let Some(bound) = binding.actions.get(action) else { return Ok(Vec::new()) };
-                let done = match rules::carry_out(program, &bound.rules, (&message, None), state, cx) {
-                    Ok(done) => done,
-                    // A goal that makes no sense: there is nothing else to say it with.
-                    Err(_) => return self.finish(call, action, GoalEnd::Rejected, graph, cx),
-                };
-                let before = done.commands.len().saturating_sub(1);
-                self.unattended.extend(done.commands.iter().take(before));
-                if let Some(command) = done.commands.last() {
-                    self.goals.push(BoundGoal { command: *command, call, action });
-                    return Ok(Vec::new());
-                }
-                let end = if done.failed {
-                    GoalEnd::Aborted
-                } else if done.rules == 0 {
-                    GoalEnd::Rejected
-                } else {
-                    GoalEnd::Succeeded
-                };
-                self.finish(call, action, end, graph, cx)
+                let done = rules::carry_out(program, &bound.rules, (&message, None), state, cx);
+                self.begun_goal(call, action, done, graph, cx)
             }
             Some(BoundPort::Input | BoundPort::Output { .. }) | None => Ok(Vec::new()),
         }
     }
 
-    fn finish(
-        &self,
+    /// A goal whose rules were carried out: rejected, accepted and under way, or accepted and ended at once.
+    fn begun_goal(
+        &mut self,
         call: u64,
         action: usize,
-        end: GoalEnd,
+        done: Result<RuleOutcome, String>,
         graph: &mut MessageGraph,
         cx: &mut PlayerContext<'_, '_>,
     ) -> BindingOutcome {
+        let end = |end, text| GoalEnding { call, action, end, text };
+        let done = match done {
+            Ok(done) if done.rules > 0 => done,
+            Ok(_) => {
+                let why = "no rule of the scenario fits the goal".to_owned();
+                return self.finish(end(GoalEnd::Rejected, why), graph, cx);
+            }
+            Err(why) => return self.finish(end(GoalEnd::Rejected, why), graph, cx),
+        };
+        let before = done.commands.len().saturating_sub(1);
+        self.unattended.extend(done.commands.iter().take(before));
+        let mut out = graph.accept(self.node, call, String::new())?;
+        match (done.commands.last(), done.failed) {
+            (Some(command), _) => self.goals.push(BoundGoal { command: *command, call, action }),
+            (None, Some(why)) => out.extend(self.finish(end(GoalEnd::Aborted, why), graph, cx)?),
+            (None, None) => out.extend(self.finish(end(GoalEnd::Succeeded, String::new()), graph, cx)?),
+        }
+        Ok(out)
+    }
+
+    fn finish(
+        &self,
+        ending: GoalEnding,
+        graph: &mut MessageGraph,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> BindingOutcome {
+        let GoalEnding { call, action, end, text } = ending;
         let Some(bound) = self.binding.actions.get(action) else { return Ok(Vec::new()) };
-        let result = self.filled(&bound.result, cx)?;
-        graph.finish(self.node, call, end, result)
+        let result = self.filled(&bound.result, ("action", &bound.action), cx)?;
+        Ok(graph.finish(self.node, call, end, (result, text))?)
     }
 
     fn ended_goals(&mut self, graph: &mut MessageGraph, cx: &mut PlayerContext<'_, '_>) -> BindingOutcome {
@@ -376,8 +433,12 @@ impl<'p> BindingNode<'p> {
             let ended = cx.stage.as_deref_mut().and_then(|stage| stage.take_ended(goal.command));
             match ended {
                 Some(how) => {
-                    let end = if how.is_ok() { GoalEnd::Succeeded } else { GoalEnd::Aborted };
-                    out.extend(self.finish(goal.call, goal.action, end, graph, cx)?);
+                    let (end, text) = match how {
+                        Ok(()) => (GoalEnd::Succeeded, String::new()),
+                        Err(why) => (GoalEnd::Aborted, why),
+                    };
+                    let ending = GoalEnding { call: goal.call, action: goal.action, end, text };
+                    out.extend(self.finish(ending, graph, cx)?);
                 }
                 None => self.goals.push(goal),
             }
@@ -397,7 +458,10 @@ impl<'p> BindingNode<'p> {
         if let (Some(bound), Some(stage)) = (self.binding.actions.get(goal.action), cx.stage.as_deref_mut()) {
             rules::stop_devices(self.program, &bound.rules, stage);
         }
-        self.finish(call, goal.action, GoalEnd::Canceled, graph, cx)
+        let mut out = graph.answer_cancel(self.node, call, true, String::new())?;
+        let (end, text) = (GoalEnd::Canceled, String::new());
+        out.extend(self.finish(GoalEnding { call, action: goal.action, end, text }, graph, cx)?);
+        Ok(out)
     }
 
     /// What a transition of a program's state machine makes happen.
@@ -409,7 +473,8 @@ impl<'p> BindingNode<'p> {
 
 fn declaration(port: u64, kind: PortKind, name: &str, interface: &str, latched: bool) -> PortDeclaration {
     let (name, type_name) = (name.to_owned(), interface.to_owned());
-    PortDeclaration { port, kind, name, type_name, latched, depth: DEPTH }
+    let (kept, qos) = (usize::from(latched), PortQos::default());
+    PortDeclaration { port, kind, name, type_name, kept, depth: DEPTH, qos }
 }
 
 /// The next point of the grid, unless the message of this instant has not gone yet.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use hrdsl_ir::{
     EventId, Expr, Program, Type, Value,
-    binding::{CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep},
+    binding::{CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep, place_text},
     world::{DeviceCommandId, DeviceId},
 };
 use serde_json::Value as Json;
@@ -37,8 +37,8 @@ pub(super) struct RuleOutcome {
     pub rules: usize,
     /// The commands that were begun.
     pub commands: Vec<CommandId>,
-    /// Some command could not be begun as things are.
-    pub failed: bool,
+    /// Why some command could not be begun as things are.
+    pub failed: Option<String>,
 }
 
 /// Carries out the rules that a message fits.
@@ -112,7 +112,7 @@ impl HeardMessage<'_> {
                 match stage.command(&request) {
                     Ok(id) => outcome.commands.push(id),
                     // Nobody tells a publisher: it sees what the robot does.
-                    Err(NotBegun::Failed(_)) => outcome.failed = true,
+                    Err(NotBegun::Failed(why)) => outcome.failed = Some(why),
                     Err(NotBegun::Refused { error, .. }) => return Err(error),
                 }
             }
@@ -127,10 +127,25 @@ impl HeardMessage<'_> {
                 (Value::Int(n), Type::Float(_)) => Value::Float(n as f64),
                 (value, _) => value,
             };
-            let wrong = || format!("`{}` of `{}` cannot be {value}", param.name, event.name);
+            let wrong =
+                || format!("`{}` of `{}` cannot be {value}{}", param.name, event.name, self.origin(e));
             if param.ty.admits(value) { Ok(value) } else { Err(wrong()) }
         };
         args.iter().zip(&event.params).map(argument).collect()
+    }
+
+    /// Which fields a value was made of, for a sentence about it.
+    fn origin(&self, e: &Expr) -> String {
+        let mut fields = Vec::new();
+        e.each_var(&mut |i| {
+            if let Some(read) = self.rules.reads.get(usize::from(i)) {
+                let field = format!("`{}`", place_text(&read.path));
+                if !fields.contains(&field) {
+                    fields.push(field);
+                }
+            }
+        });
+        if fields.is_empty() { String::new() } else { format!(" (from {})", fields.join(", ")) }
     }
 
     fn request(

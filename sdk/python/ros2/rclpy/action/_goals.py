@@ -1,10 +1,4 @@
-"""What clients and servers of actions have in common.
-
-The protocol tells a client of feedback and of the end of its goal. That a server in a program has accepted a goal, or a
-request to cancel it, it tells by feedback that is no object: null when the goal is accepted, true and false when a request
-to cancel it is granted or not. Of a server in the world nothing of the kind comes: what it has not refused at the instant at
-which it was asked is accepted.
-"""
+"""What clients and servers of actions have in common: identifiers, states, and the messages that rosidl makes."""
 
 from __future__ import annotations
 

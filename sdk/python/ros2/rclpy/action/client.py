@@ -115,7 +115,7 @@ class ActionClient(Waitable):
         self._full_name = node.resolve_topic_name(action_name)
         self._what = "action %s (%s)" % (self._full_name, type_name)
         self._waiting: deque[tuple[_Goal, dict[str, Any]]] = deque()
-        self._doubtful: deque[_Goal] = deque()  # to be looked at when nothing more arrives at this instant
+        self._ended: deque[_Goal] = deque()  # whose ends somebody asks for again
         self.callback = self._execute
         self._port = _world.open_port("action_client", self._full_name, type_name)
         node.add_waitable(self)
@@ -137,22 +137,13 @@ class ActionClient(Waitable):
             self._waiting.append((made, arrival))
             self._node._wake_executor()
 
-        is_told = self._is_of_program()
         made.call = self._port.call(goal._codec_.encode(goal).encode("ascii"), arrived)
-        if not is_told:
-            self._doubt(made)
         self.add_future(made.sent)
         made.sent.add_done_callback(self.remove_future)
         return made.sent
 
-    def _is_of_program(self) -> bool:
-        return any(
-            port["kind"] == "action_server" and port["name"] == self._full_name and port.get("program")
-            for port in _world.ports()
-        )
-
-    def _doubt(self, goal: _Goal) -> None:
-        self._doubtful.append(goal)
+    def _answer_soon(self, goal: _Goal) -> None:
+        self._ended.append(goal)
         self._due = _world.now()
         self._node._wake_executor()
 
@@ -163,8 +154,8 @@ class ActionClient(Waitable):
         goal.cancels.append(future)
         if goal.end is None:
             goal.call.cancel()
-        if goal.end is not None or not self._is_of_program():
-            self._doubt(goal)
+        else:
+            self._answer_soon(goal)
         return future
 
     def _result(self, goal: _Goal) -> Future:
@@ -173,7 +164,7 @@ class ActionClient(Waitable):
         future.add_done_callback(self.remove_future)
         goal.results.append(future)
         if goal.end is not None:
-            self._doubt(goal)
+            self._answer_soon(goal)
         return future
 
     def server_is_ready(self) -> bool:
@@ -191,7 +182,7 @@ class ActionClient(Waitable):
     # ── what the executor asks ──
 
     def _is_ready(self, now: int) -> bool:
-        return bool(self._waiting) or (self._is_quiet and bool(self._doubtful))
+        return bool(self._waiting) or (self._is_quiet and bool(self._ended))
 
     def _is_async(self) -> bool:
         return True
@@ -199,9 +190,9 @@ class ActionClient(Waitable):
     def _take(self) -> Any:
         if self._waiting:
             return self._execute, self._waiting.popleft()
-        if self._doubtful:
-            goal = self._doubtful.popleft()
-            if not self._doubtful:
+        if self._ended:
+            goal = self._ended.popleft()
+            if not self._ended:
                 self._due, self._is_quiet = None, False
             return self._execute, (goal, None)
         return None
@@ -210,9 +201,13 @@ class ActionClient(Waitable):
         for future in self._futures:
             future._set_executor(self._node.executor)
         if arrival is None:
+            pass
+        elif "accepted" in arrival:
             self._accept(goal)
         elif "feedback" in arrival:
             await self._hear(goal, arrival["message"])
+        elif "cancel_answered" in arrival:
+            self._answer_cancels(goal, arrival["granted"])
         elif "finished" in arrival:
             self._finish(goal, arrival)
         elif "error" in arrival:  # on a robot nothing would come
@@ -226,11 +221,8 @@ class ActionClient(Waitable):
             goal.sent.set_result(goal.handle)
 
     async def _hear(self, goal: _Goal, message: Any) -> None:
-        if isinstance(message, bool):
-            self._answer_cancels(goal, message)
-            return
-        self._accept(goal)
-        if message is None or goal.feedback is None:
+        self._accept(goal)  # by a server that does not say so
+        if goal.feedback is None:
             return
         feedback = decoded(self._action_type.Feedback._codec_, message, self._what)
         title = _goals.title(self._action_type, "FeedbackMessage")
@@ -262,8 +254,6 @@ class ActionClient(Waitable):
             for future in results:
                 future.set_result(_goals.Told(title, status=goal.end[0], result=goal.end[1]))
             self._answer_cancels(goal, False)
-        elif goal.cancels and not self._is_of_program():
-            self._answer_cancels(goal, True)
 
     def _answer_cancels(self, goal: _Goal, is_granted: bool) -> None:
         from action_msgs.msg import GoalInfo

@@ -212,7 +212,7 @@ class ActionServer(Waitable):
             self._finish(call, "rejected", self._action_type.Result())
             return
         handle = self._goal_handles[call] = ServerGoalHandle(self, call, request)
-        self._tell(call, b"null")
+        _world.exchange().accept(call)
         await await_or_execute(self._handle_accepted_callback, handle)
 
     async def _cancel(self, call: int) -> None:
@@ -224,7 +224,7 @@ class ActionServer(Waitable):
         if granted and handle._status != _goals.CANCELING:
             handle._update_state(GoalEvent.CANCEL_GOAL)
         if call in self._goal_handles:
-            self._tell(call, b"true" if granted else b"false")
+            _world.exchange().answer_cancel(call, granted)
 
     async def _execute_goal(self, execute_callback: Any, handle: ServerGoalHandle) -> None:
         logger = self._node.get_logger()
