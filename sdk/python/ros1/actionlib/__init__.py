@@ -1,7 +1,7 @@
 """Actions: goals that a client gives a server, which tells how it gets on and how it ends.
 
 A goal, its feedback and its result go over the ports of hrdsl (one for each client and server), and not over the five
-topics that they take in ROS 1: who listens to those directly hears nothing.
+topics that they take in ROS 1: a program that opens one of those is refused.
 """
 
 import threading
