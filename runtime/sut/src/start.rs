@@ -82,20 +82,19 @@ mod tests {
 
     #[test]
     fn what_is_written_instead() {
-        let dir = tempfile::tempdir().expect("a folder");
+        let dir = tempfile::tempdir().unwrap();
         fs::write(
             dir.path().join("setup.cfg"),
             "[options.entry_points]\nconsole_scripts =\n  brew = tea_bot:brew\n",
         )
-        .expect("a file");
-        fs::write(dir.path().join("setup.py"), SETUP).expect("a file");
+        .unwrap();
+        fs::write(dir.path().join("setup.py"), SETUP).unwrap();
         for folder in ["tea_bot", "scripts"] {
-            fs::create_dir(dir.path().join(folder)).expect("a folder");
+            fs::create_dir(dir.path().join(folder)).unwrap();
         }
-        fs::write(dir.path().join("tea_bot/brain.py"), "if __name__ == '__main__':\n    main()\n")
-            .expect("a file");
-        fs::write(dir.path().join("tea_bot/kettle.py"), "def run(): ...\n").expect("a file");
-        fs::write(dir.path().join("scripts/pour"), "").expect("a file");
+        fs::write(dir.path().join("tea_bot/brain.py"), "if __name__ == '__main__':\n    main()\n").unwrap();
+        fs::write(dir.path().join("tea_bot/kettle.py"), "def run(): ...\n").unwrap();
+        fs::write(dir.path().join("scripts/pour"), "").unwrap();
         let told = |words: &[&str]| {
             let words: Vec<String> = words.iter().map(|&word| word.to_owned()).collect();
             advice(&words[0], &words[1..], dir.path()).unwrap_or_default()
