@@ -107,6 +107,19 @@ fn the_corridor_generates_by_all_methods() {
     assert!(said.contains("30 reached, 0 unreachable, 0 inconclusive"), "{said}");
 }
 
+#[test]
+fn the_delivery_generates_by_all_methods() {
+    let folder = tempfile::tempdir().unwrap();
+    let (files, said) = generated("delivery", folder.path());
+    assert_eq!(files.len(), 3);
+    for (name, text) in &files {
+        assert_eq!(tests(text), 24, "{name}");
+    }
+    assert_eq!(predicted(&files["by_agents.hri"]).len(), 10);
+    assert_eq!(predicted(&files["by_search.hri"]).len(), 10);
+    assert!(said.contains("72 reached, 0 unreachable, 0 inconclusive"), "{said}");
+}
+
 /// A copy of the corridor, with this change to its robot.
 fn corridor(folder: &Path, from: &str, to: &str) {
     let here = root().join("examples/corridor");
