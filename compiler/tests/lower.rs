@@ -8,6 +8,7 @@ use hrdsl_ir::{
         InitialFact, InternalAct, MessageSubject, Performative, PlanContext, PlanStep, PlanStepKind,
         TriggerOn,
     },
+    binding::{MessageEffect, MessageRead, TextOperand, place_text},
     coverage::{BinCondition, CoverpointId, CrossId},
     event::StimulusStep,
     expr::{BinaryOp, NumberFunction, UnaryOp},
@@ -991,4 +992,40 @@ fn clocks_are_shared_compared_and_set() {
             constraint(4, None, ClockOp::Lt, time(0, &[(2, more)])),
         ]
     );
+}
+
+#[test]
+fn texts_of_messages_are_compared_where_they_are_read() {
+    let p = program(
+        r#"
+event decided(same: bool) from robot
+system robot {
+  program brain { run "python3 robot.py" }
+  ros1 {
+    topic "/said" : diagnostic_msgs/KeyValue out {
+      emit decided(key == value) when value != "go" and (if key == "a" { value } else { "b" }) == "c"
+    }
+  }
+}
+"#,
+    );
+    let rules = &p.systems[0].binding.as_ref().unwrap().outputs[0].rules;
+    let MessageEffect::Emit { args, .. } = &rules.rules[0].effect else { panic!("{rules:?}") };
+    let guard = rules.rules[0].guard.as_ref().unwrap();
+    let text = |e: &Expr| {
+        let Expr::Var(at) = e else { panic!("{e:?}") };
+        let read = &rules.reads[usize::from(*at)];
+        let MessageRead { path, ty: Type::Text, same_as: Some(other) } = read else { panic!("{read:?}") };
+        match other {
+            TextOperand::Literal(text) => format!("{} == {text:?}", place_text(path)),
+            TextOperand::Place(other) => format!("{} == {}", place_text(path), place_text(other)),
+        }
+    };
+    assert_eq!(text(&args[0]), "key == value");
+    let Expr::Binary(BinaryOp::And, other, chosen) = guard else { panic!("{guard:?}") };
+    let Expr::Unary(UnaryOp::Not, same) = &**other else { panic!("{other:?}") };
+    assert_eq!(text(same), "value == \"go\"");
+    let Expr::If(condition, then, otherwise) = &**chosen else { panic!("{chosen:?}") };
+    assert_eq!((text(condition), text(then)), ("key == \"a\"".into(), "value == \"c\"".into()));
+    assert_eq!(**otherwise, Expr::bool(false));
 }

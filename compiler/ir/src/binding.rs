@@ -191,6 +191,19 @@ pub struct MessageRules<E = Expr> {
 pub struct MessageRead {
     pub path: Vec<MessageStep>,
     pub ty: Type,
+    /// Of text: what it is compared with. What is read is whether they are the same, since a text that became a value would be
+    /// kept for as long as the process lives.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub same_as: Option<TextOperand>,
+}
+
+/// What a text in a message is compared with.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TextOperand {
+    Literal(String),
+    /// The text at another place of the message.
+    Place(Vec<MessageStep>),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,11 +1,13 @@
 //! Systems: what their bindings read of the world becomes signals, and what they read of messages only that.
 
 use hrdsl_ir::{
-    Expr,
+    Expr, Type, Value,
     binding::{
         BoundAction, BoundService, CommandArgument, GapRead, GapValue, MessageEffect, MessageGap,
-        MessageRead, MessageRule, MessageRules, MessageTemplate, MiddlewareBinding, TopicInput, TopicOutput,
+        MessageRead, MessageRule, MessageRules, MessageTemplate, MiddlewareBinding, TextOperand, TopicInput,
+        TopicOutput,
     },
+    expr::{BinaryOp, UnaryOp},
     system::SystemUnderTest,
     world::SignalId,
 };
@@ -127,7 +129,7 @@ fn var<T: PartialEq>(kept: &mut Vec<T>, read: T) -> Expr {
 fn rules(r: &MessageRules<TypedExpr>) -> MessageRules {
     let mut kept: Vec<MessageRead> = Vec::new();
     let mut lower = |e: &TypedExpr| {
-        expr(e, &mut |source| match source {
+        let whole = expr(e, &mut |source| match source {
             LeafSource::Leaf(VariableRef::Local(at)) => match r.reads.get(usize::from(at)) {
                 Some(read) => var(&mut kept, read.clone()),
                 // INVARIANT: the checker numbers the locals by this list.
@@ -136,10 +138,55 @@ fn rules(r: &MessageRules<TypedExpr>) -> MessageRules {
             // INVARIANT: rules read nothing but the message.
             LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
             | LeafSource::Term(..) => Expr::bool(false),
-        })
+        });
+        with_texts_compared(whole, &mut kept)
     };
     let rules = r.rules.iter().map(|rule| rule_of(rule, &mut lower)).collect();
     MessageRules { reads: kept, rules }
+}
+
+/// The same expression, in which texts are compared where they are read, and are no values.
+fn with_texts_compared(e: Expr, reads: &mut Vec<MessageRead>) -> Expr {
+    match e {
+        Expr::Unary(op, a) => Expr::Unary(op, Box::new(with_texts_compared(*a, reads))),
+        Expr::Binary(op, a, b) => match (op, same_text(&a, &b, reads)) {
+            (BinaryOp::Eq, Some(same)) => same,
+            (BinaryOp::Ne, Some(same)) => Expr::Unary(UnaryOp::Not, Box::new(same)),
+            (_, _) => {
+                let a = with_texts_compared(*a, reads);
+                Expr::binary(op, a, with_texts_compared(*b, reads))
+            }
+        },
+        Expr::If(c, a, b) => {
+            let [c, a, b] = [c, a, b].map(|part| Box::new(with_texts_compared(*part, reads)));
+            Expr::If(c, a, b)
+        }
+        Expr::Call(f, args) => {
+            Expr::Call(f, args.into_iter().map(|arg| with_texts_compared(arg, reads)).collect())
+        }
+        // INVARIANT: rules have no lists and no functions, and constants and fields compare nothing.
+        Expr::Const(_) | Expr::Var(_) | Expr::List(..) | Expr::Element(_) | Expr::Apply(..) => e,
+    }
+}
+
+/// Whether two texts are the same; `None`: they are no texts.
+fn same_text(a: &Expr, b: &Expr, reads: &mut Vec<MessageRead>) -> Option<Expr> {
+    let text_at = |at: &u16| reads.get(usize::from(*at)).filter(|read| read.ty == Type::Text).cloned();
+    let (read, same_as) = match (a, b) {
+        (Expr::If(c, then, otherwise), other) | (other, Expr::If(c, then, otherwise)) => {
+            let then = same_text(then, other, reads)?;
+            let otherwise = same_text(otherwise, other, reads)?;
+            let c = with_texts_compared((**c).clone(), reads);
+            return Some(Expr::If(Box::new(c), Box::new(then), Box::new(otherwise)));
+        }
+        (Expr::Const(Value::Text(a)), Expr::Const(Value::Text(b))) => return Some(Expr::bool(a == b)),
+        (Expr::Var(at), Expr::Const(Value::Text(text))) | (Expr::Const(Value::Text(text)), Expr::Var(at)) => {
+            (text_at(at)?, TextOperand::Literal(text.as_str().to_owned()))
+        }
+        (Expr::Var(a), Expr::Var(b)) => (text_at(a)?, TextOperand::Place(text_at(b)?.path)),
+        (_, _) => return None,
+    };
+    Some(var(reads, MessageRead { same_as: Some(same_as), ..read }))
 }
 
 fn rule_of(rule: &MessageRule<TypedExpr>, lower: &mut dyn FnMut(&TypedExpr) -> Expr) -> MessageRule {

@@ -1,4 +1,5 @@
-//! What lock-step costs: a round trip of `node.now()`, and a whole process from start to finish.
+//! What lock-step costs: a round trip of `node.now()`, and a whole process from start to finish. At the end, how many round trips
+//! a second of processor time is enough for, which does not depend on what else the machine does.
 
 use std::{
     path::{Path, PathBuf},
@@ -12,6 +13,45 @@ use hrdsl_sut::{
 
 fn main() {
     divan::main();
+    // Not when the benchmarks are only listed or tried.
+    if std::env::args().any(|arg| arg == "--bench") {
+        for (name, coverage) in [("plain", false), ("under coverage", true)] {
+            let mut rates: Vec<f64> = (0..5).map(|_| round_trips_per_second(coverage)).collect();
+            rates.sort_by(f64::total_cmp);
+            println!(
+                "{:.0} round trips in a second of processor time, {name} ({:.0} to {:.0})",
+                rates[2], rates[0], rates[4]
+            );
+        }
+    }
+}
+
+/// Round trips in a second of processor time, of the harness and the program together; what its start and end cost is not
+/// counted. Both are on one core.
+fn round_trips_per_second(coverage: bool) -> f64 {
+    const ROUND_TRIPS: u32 = 40_000;
+    let _pinned = pin_to_free_core();
+    let cost = |round_trips: u32| {
+        let before = processor_time();
+        let mut process = SutProcess::spawn(&launch("ask_forever.py", coverage)).expect("a process");
+        for _ in 0..=round_trips {
+            answer(&mut process);
+        }
+        process.next().expect("a request");
+        process.reply(&HarnessReply { time: 0, answer: ReplyAnswer::Stop }).expect("a reply");
+        drop(process.finish(Duration::from_secs(10)));
+        processor_time() - before
+    };
+    f64::from(ROUND_TRIPS) / (cost(ROUND_TRIPS) - cost(0))
+}
+
+/// What this process and its children that have ended have used, in seconds.
+fn processor_time() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").expect("Linux");
+    // After the name of the program, which may have blanks: user and system time, then those of the children.
+    let (_, fields) = stat.rsplit_once(')').expect("a name");
+    let ticks = fields.split_whitespace().skip(11).take(4).map(|n| n.parse::<f64>().expect("a number"));
+    ticks.sum::<f64>() / 100.0
 }
 
 fn launch(script: &str, coverage: bool) -> LaunchSpec {

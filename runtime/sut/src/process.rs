@@ -28,7 +28,7 @@ use crate::{
     limits::{LimitOverrun, ProgramLimits, StopFlag},
     output::CapturedOutput,
     patience::{LOOK, WaitBudget},
-    pipes::{ProcessStream, coverage_file, pipes_for_child},
+    pipes::{LineBuffer, ProcessStream, coverage_file, pipes_for_child},
     protocol::{self, HarnessReply, ProgramRequest, ProtocolLine, RefusedLine, ReplyAnswer, ReplyLine},
 };
 
@@ -51,10 +51,7 @@ pub struct SutProcess {
     replies: Option<OwnedFd>,
     stdout: ProcessStream,
     stderr: ProcessStream,
-    /// Bytes from the program that are not yet read as requests.
-    inbox: Vec<u8>,
-    /// How many bytes of the inbox are known to have no line end.
-    scanned: usize,
+    inbox: LineBuffer,
     outbox: Vec<u8>,
     chunk: Box<[u8]>,
     limits: ProgramLimits,
@@ -130,8 +127,7 @@ impl SutProcess {
             replies: Some(replies),
             stdout,
             stderr,
-            inbox: Vec::new(),
-            scanned: 0,
+            inbox: LineBuffer::default(),
             outbox: Vec::new(),
             chunk: vec![0; 1 << 16].into_boxed_slice(),
             limits: launch.limits,
@@ -162,9 +158,9 @@ impl SutProcess {
         let mut patience = WaitBudget::new(self.limits.budget);
         let mut refused = 0_usize;
         loop {
-            if let Some(line) = self.take_line()? {
+            if self.inbox.advance() {
                 self.lines += 1;
-                match protocol::parse(&line, self.version) {
+                match protocol::parse(self.inbox.line(), self.version) {
                     ProtocolLine::Request(request) => {
                         if let ProgramRequest::Hello { version, .. } = &request {
                             self.version = *version;
@@ -172,13 +168,13 @@ impl SutProcess {
                         self.silence = "";
                         return Ok(request);
                     }
-                    ProtocolLine::Rubbish(why) => return Err(self.rubbish(&line, why)),
+                    ProtocolLine::Rubbish(why) => return Err(self.rubbish(self.inbox.line(), why)),
                     ProtocolLine::Refused { why: error, waits } => {
                         self.silence = "";
                         refused += 1;
                         if refused > MOST_REFUSED {
                             let why = format!("{MOST_REFUSED} requests were refused, the last since {error}");
-                            return Err(self.rubbish(&line, why));
+                            return Err(self.rubbish(self.inbox.line(), why));
                         }
                         let help = Some("see spec/protocol.md".to_owned());
                         if !waits {
@@ -193,10 +189,14 @@ impl SutProcess {
                     }
                 }
             }
+            if self.inbox.rest().len() > LONGEST_LINE {
+                let why = format!("a line longer than {LONGEST_LINE} bytes");
+                return Err(self.rubbish(self.inbox.rest(), why));
+            }
             match self.turn(PollTarget::Request, &mut patience)? {
                 PollOutcome::Something => {}
                 // What it wrote before it ended comes first.
-                PollOutcome::Ended if self.inbox.contains(&b'\n') => {}
+                PollOutcome::Ended if self.inbox.has_line() => {}
                 PollOutcome::Ended => return Err(self.exited()),
             }
         }
@@ -313,26 +313,6 @@ impl SutProcess {
 
     // ── the poll loop ──
 
-    /// The next whole line from the program, if it is here.
-    fn take_line(&mut self) -> Result<Option<Vec<u8>>, SutError> {
-        let Some(end) = self.inbox[self.scanned..].iter().position(|&b| b == b'\n') else {
-            self.scanned = self.inbox.len();
-            if self.scanned > LONGEST_LINE {
-                return Err(self.rubbish(&self.inbox, format!("a line longer than {LONGEST_LINE} bytes")));
-            }
-            return Ok(None);
-        };
-        let end = self.scanned + end;
-        self.scanned = 0;
-        let mut line = if end + 1 == self.inbox.len() {
-            std::mem::take(&mut self.inbox)
-        } else {
-            self.inbox.drain(..=end).collect()
-        };
-        line.truncate(end);
-        Ok(Some(line))
-    }
-
     /// Waits once, for a look's time at most; reads whatever there is, and watches the limits.
     fn turn(&mut self, what: PollTarget, patience: &mut WaitBudget) -> Result<PollOutcome, SutError> {
         let ready = self.poll(what).map_err(|e| SutError::io("cannot wait for the program")(e.into()))?;
@@ -399,7 +379,7 @@ impl SutProcess {
                 .filter(|_| what == PollTarget::RoomToReply)
                 .map(|fd| (fd.as_fd(), PollFlags::OUT)),
         ];
-        if self.inbox.len() > LONGEST_LINE && what != PollTarget::Request {
+        if self.inbox.rest().len() > LONGEST_LINE && what != PollTarget::Request {
             // Nobody takes lines now; the program waits.
             fds[0] = None;
         }
@@ -423,7 +403,7 @@ impl SutProcess {
         let Some(fd) = &self.requests else { return };
         match rustix::io::read(fd, &mut *self.chunk) {
             Ok(0) => self.requests = None,
-            Ok(n) => self.inbox.extend_from_slice(&self.chunk[..n]),
+            Ok(n) => self.inbox.push(&self.chunk[..n]),
             Err(Errno::AGAIN | Errno::INTR) => {}
             Err(_) => self.requests = None,
         }
@@ -434,8 +414,11 @@ impl SutProcess {
         while self.stdout.read(&mut self.chunk) {}
         while self.stderr.read(&mut self.chunk) {}
         let mut before = usize::MAX;
-        while self.requests.is_some() && before != self.inbox.len() && self.inbox.len() <= LONGEST_LINE {
-            before = self.inbox.len();
+        while self.requests.is_some()
+            && before != self.inbox.rest().len()
+            && self.inbox.rest().len() <= LONGEST_LINE
+        {
+            before = self.inbox.rest().len();
             self.read_requests();
         }
     }
@@ -445,7 +428,6 @@ impl SutProcess {
         let mut patience = WaitBudget::new(time);
         while self.cell.ending().is_none() && !self.cell.is_lost() {
             self.inbox.clear();
-            self.scanned = 0;
             match self.turn(PollTarget::End, &mut patience) {
                 Ok(PollOutcome::Something | PollOutcome::Ended) => {}
                 Err(_) => return false,

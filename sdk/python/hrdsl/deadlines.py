@@ -9,10 +9,8 @@ if TYPE_CHECKING:
     from hrdsl.schedule import Task
 
 
-def _heap() -> Any:
-    import _heapq  # not for programs with one thread that never waits
-
-    return _heapq
+#: `_heapq`, which programs do without that never wait for a time.
+_heap: Any = None
 
 
 class Deadlines:
@@ -25,22 +23,25 @@ class Deadlines:
 
     def push(self, deadline: int, task: Task) -> None:
         """The thread has just got its ticket."""
-        _heap().heappush(self.entries, (deadline, task.ticket, task))
+        global _heap
+        if _heap is None:
+            import _heapq as _heap
+        _heap.heappush(self.entries, (deadline, task.ticket, task))
 
     def first(self) -> int | None:
         """The first of those who still wait."""
         entries = self.entries
         while entries and entries[0][2].ticket != entries[0][1]:
-            _heap().heappop(entries)
+            _heap.heappop(entries)
         return entries[0][0] if entries else None
 
     def expire(self, time: int, tell: Callable[[Task, bool], object], tasks: int) -> None:
         """Tells the threads whose deadlines have come; now and then, forgets those that are not valid any more."""
         entries = self.entries
         while entries and entries[0][0] <= time:
-            _, ticket, task = _heap().heappop(entries)
+            _, ticket, task = _heap.heappop(entries)
             if task.ticket == ticket:
                 tell(task, False)
         if len(entries) > 64 + 4 * tasks:
             self.entries = [entry for entry in entries if entry[2].ticket == entry[1]]
-            _heap().heapify(self.entries)
+            _heap.heapify(self.entries)

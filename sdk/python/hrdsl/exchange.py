@@ -58,6 +58,10 @@ class Port:
             message = _encode(message).encode("ascii")
         self._tell(self._publish + message + b"}\n", self)
 
+    def line(self, message: bytes) -> bytes:
+        """The request that sends a message, for `Link.tell`."""
+        return self._publish + message + b"}\n"
+
     def call(self, message: Message, handler: Handler) -> Call:
         """Asks the service, or gives the action a goal; the handler gets what comes of it."""
         exchange = self._exchange
@@ -317,8 +321,7 @@ class Exchange:
 
 def _scheduler(link: _links.Link) -> Any:
     """Of a program that does not run through `hrdsl.run`: nothing is replaced, and threads that it starts wait one by one."""
-    from hrdsl.outside import OverLink
     from hrdsl.schedule import Scheduler
 
-    link.scheduler = Scheduler(OverLink(link))
+    link.scheduler = Scheduler(link)
     return link.scheduler

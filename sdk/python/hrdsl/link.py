@@ -6,7 +6,7 @@ import _thread
 import json
 import os
 
-from hrdsl.errors import ProtocolError, Stopped
+from hrdsl.errors import Deadlock, ProtocolError, Stopped
 
 TYPE_CHECKING = False  # as type checkers read it; `typing` takes longer to import than all of this package
 if TYPE_CHECKING:
@@ -20,21 +20,28 @@ LONGEST = 1 << 20
 #: So many bytes of requests without replies wait for one that has a reply.
 KEPT = 1 << 16
 
+#: Later than any time of the harness.
+_NEVER = (1 << 63) - 1
+
+#: So many bytes are read at once; a reply is rarely longer.
+_CHUNK = 1 << 14
+
 _encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 _scan = json.JSONDecoder().scan_once  # type: ignore[attr-defined, unused-ignore]
-_get_ident = _thread.get_ident
+_get_ident, _getpid, _read, _write = _thread.get_ident, os.getpid, os.read, os.write
 
 
 class Link:
-    """Sends requests one at a time and keeps the simulated time of the last reply."""
+    """Sends requests one at a time and keeps the simulated time of the last reply. To the scheduler of the program's threads it is
+    the world outside."""
 
     def __init__(self, request_fd: int, reply_fd: int) -> None:
         # Programs that the robot code starts must not hold the pipes open.
         os.set_inheritable(request_fd, False)
         os.set_inheritable(reply_fd, False)
         self._out = request_fd
-        self._in = open(reply_fd, "rb")
-        self._owner = os.getpid()
+        self._in = reply_fd
+        self._owner = _getpid()
         self._lock = _thread.allocate_lock()
         self.greeted = False  # whether there has been a `hello`
         self._stopped: str | None = None
@@ -73,49 +80,76 @@ class Link:
 
     def request(self, message: dict[str, Any]) -> dict[str, Any]:
         """Sends a request and waits for its reply; raises `Stopped` when the test is over."""
-        answer = self._ask(_line(message))
+        return self.ask(_encode(message).encode("ascii") + b"\n")
+
+    def ask(self, line: bytes) -> dict[str, Any]:
+        """The same, of a request that is written already."""
+        answer = self._ask(line)
         if self.faults:
             self._raise_fault()
         return answer
 
-    def wait(self, until: int | None, give_up: int | None) -> dict[str, Any]:
-        """The request `wait`. What was refused meanwhile is left in `faults`, so that no arrival is lost."""
-        if until is None:
-            limits = b"" if give_up is None else b',"give_up":%d' % give_up
-        elif give_up is None:
-            limits = b',"until":%d' % until
-        else:
-            limits = b',"until":%d,"give_up":%d' % (until, give_up)
-        return self._ask(b'{"request":"wait"%s}\n' % limits)
+    def now(self) -> int:
+        """The request `now`: simulated nanoseconds."""
+        self.ask(b'{"request":"now"}\n')
+        return self.time
+
+    def wait(self, until: int | None, give_up: int | None) -> bool:
+        """The request `wait`, and the handlers of what has arrived: whether it was given up. Raises `Deadlock` if nothing
+        can end it."""
+        limits = b"" if until is None else b',"until":%d' % min(until, _NEVER)
+        if give_up is not None:
+            limits += b',"give_up":%d' % min(give_up, _NEVER)
+        if not limits and not self.can_arrive():
+            raise Stopped(self.why_stopped or "") if self.stopped else Deadlock()
+        answer = self._ask(b'{"request":"wait"%s}\n' % limits)
+        arrivals = answer.get("arrivals")
+        if arrivals:
+            self._arrived(arrivals)
+        if self.faults:
+            self._hand_out_faults()
+        return "gave_up" in answer
+
+    def can_arrive(self) -> bool:
+        """Whether something can arrive that a thread waits for."""
+        return self.exchange is not None and self.exchange.expects()
+
+    def _arrived(self, arrivals: list[dict[str, Any]]) -> None:
+        if self.exchange is not None:
+            self.exchange.take(arrivals)
+        else:  # of events, which alone can arrive before, the newest are kept
+            self.backlog.extend(arrivals)
+            del self.backlog[:-1000]
 
     def tell(self, line: bytes, about: object) -> None:
         """Sends a request that has no reply, together with the next one that has; `about` is what an error calls it."""
+        size = len(line)
+        if size > KEPT or self._stopped is not None or not self.greeted:
+            self._check_told(size, about)
+        self._told.append((about, _get_ident()))
+        self._buffer.append(line)
+        self._buffered += size
+        if self._buffered > KEPT:
+            if _getpid() != self._owner:
+                raise _is_forked()
+            with self._lock:
+                self._write_rest(self._taken())
+
+    def _check_told(self, size: int, about: object) -> None:
         if not self.greeted:
             self.hello("program")
-        if len(line) > LONGEST:
+        if size > LONGEST:
             raise ProtocolError(
-                "%s: a message of %d bytes as JSON; a request has at most %d" % (about, len(line), LONGEST),
+                "%s: a message of %d bytes as JSON; a request has at most %d" % (about, size, LONGEST),
                 "send less at once, such as smaller images",
             )
         if self._stopped is not None:
             raise Stopped(self._stopped)
-        self._told.append((about, _get_ident()))
-        self._buffer.append(line)
-        self._buffered += len(line)
-        if self._buffered > KEPT:
-            self._check_owner()
-            with self._lock:
-                self._write(b"")
-
-    def _check_owner(self) -> None:
-        if os.getpid() != self._owner:
-            raise ProtocolError(
-                "a process forked from the program cannot make requests, nor wait (`time.sleep`)",
-                "leave those to the program's first process",
-            )
 
     def _ask(self, line: bytes) -> dict[str, Any]:
-        self._check_owner()
+        """What was refused meanwhile is left in `faults`, so that no arrival is lost."""
+        if _getpid() != self._owner:
+            raise _is_forked()
         if self.before_request is not None:
             self.before_request()
         if not self.greeted:
@@ -134,31 +168,47 @@ class Link:
 
     def _exchange(self, line: bytes) -> dict[str, Any]:
         try:
-            self._write(line)
-            said = self._in.readline()
+            if self._buffer:
+                self._buffer.append(line)
+                line = self._taken()
+            sent = _write(self._out, line)
+            if sent < len(line):
+                self._write_rest(line[sent:])
+            said = _read(self._in, _CHUNK)
+            if said[-1:] != b"\n":
+                said = self._read_on(said)
         except OSError as error:
             self._stop("the harness has gone: %s" % error)
-        if not said:
-            self._stop("the harness has gone")
-        answer: dict[str, Any] = _scan(said.decode("utf-8"), 0)[0]
-        self.time = answer.get("t", self.time)
+        answer: dict[str, Any] = _scan(said.decode(), 0)[0]
+        if "t" in answer:
+            self.time = answer["t"]
         if "refused" in answer:
             self._refused(answer["refused"])
         self._lines += len(self._told) + 1
         self._told.clear()
-        if answer.get("stop"):
+        if "stop" in answer and answer["stop"]:
             self._stop(answer.get("reason", "the test is over"))
         return answer
 
-    def _write(self, line: bytes) -> None:
-        if self._buffer:
-            self._buffer.append(line)
-            line = b"".join(self._buffer)
-            self._buffer.clear()
-            self._buffered = 0
-        sent = os.write(self._out, line)
-        while sent < len(line):
-            sent += os.write(self._out, line[sent:])
+    def _read_on(self, said: bytes) -> bytes:
+        """The rest of a reply that came in pieces."""
+        pieces = [said]
+        while pieces[-1][-1:] != b"\n":
+            if not pieces[-1]:
+                self._stop("the harness has gone")
+            pieces.append(_read(self._in, _CHUNK))
+        return b"".join(pieces)
+
+    def _taken(self) -> bytes:
+        """The lines that have not been written."""
+        lines = b"".join(self._buffer)
+        self._buffer.clear()
+        self._buffered = 0
+        return lines
+
+    def _write_rest(self, lines: bytes) -> None:
+        while lines:
+            lines = lines[_write(self._out, lines) :]
 
     def _refused(self, refused: list[dict[str, Any]]) -> None:
         for each in refused:
@@ -168,6 +218,14 @@ class Link:
             else:  # the program has written to the pipe itself
                 about, ident = "line %d" % each["line"], _get_ident()
             self.faults.append((ident, ProtocolError("%s: %s" % (about, each["error"]), each.get("help"))))
+
+    def _hand_out_faults(self) -> None:
+        """Of requests without a reply, to the threads that have made them; those that are not parked find out later."""
+        for fault in list(self.faults):
+            task = self.scheduler.tasks.get(fault[0]) or self.scheduler.main
+            if task.result is None:
+                self.faults.remove(fault)
+                self.scheduler.unpark(task, fault[1])
 
     def _raise_fault(self) -> None:
         me = _get_ident()
@@ -188,8 +246,11 @@ class Link:
             pass
 
 
-def _line(message: dict[str, Any]) -> bytes:
-    return _encode(message).encode("ascii") + b"\n"
+def _is_forked() -> ProtocolError:
+    return ProtocolError(
+        "a process forked from the program cannot make requests, nor wait (`time.sleep`)",
+        "leave those to the program's first process",
+    )
 
 
 _link: Link | None = None

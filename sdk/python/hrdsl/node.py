@@ -137,8 +137,7 @@ class Node:
 
     def now(self) -> float:
         """Simulated seconds since the start of the test."""
-        time: int = self._link.request({"request": "now"})["t"]
-        return time / 1e9
+        return self._link.now() / 1e9
 
     def sleep(self, seconds: float) -> None:
         """Lets simulated time pass."""

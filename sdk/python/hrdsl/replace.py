@@ -7,26 +7,30 @@ import sys
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
+    from functools import partial
     from types import ModuleType
     from typing import Any, Callable
+else:
+    from _functools import partial  # `functools` takes long to import
 
 #: Which of the functions of `os` take descriptors or no symbolic links: other modules look themselves up there.
 _ABILITIES = ("supports_dir_fd", "supports_effective_ids", "supports_fd", "supports_follow_symlinks")
 
 
-class Builtin:
+class Builtin(partial):  # type: ignore[type-arg]
     """A function in the place of a built-in one. Like that, and unlike one written in Python, it does not become a
     method of a class that has it as an attribute; and it is pickled by its name."""
 
-    def __init__(self, function: Callable[..., Any], real: Any, module: str) -> None:
-        self._function = function
+    def __new__(cls, function: Callable[..., Any], real: Any, module: str) -> Builtin:
+        self = super().__new__(cls, function)
         self.__name__: str = real.__name__
         self.__qualname__: str = real.__name__
         self.__module__ = module
         self.__doc__ = real.__doc__
+        return self
 
-    def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        return self._function(*args, **kwargs)
+    def __get__(self, instance: object, owner: object = None) -> Builtin:
+        return self
 
     def __repr__(self) -> str:
         return "<built-in function %s>" % self.__name__

@@ -119,11 +119,15 @@ class Scheduler:
         deadline. Only for the thread that `current` has returned."""
         me = self.running
         me.what, me.result = what, None
-        if deadline is not None:
-            self._set_deadline(me, deadline, is_patient)
-        else:
-            self.polls, me.has_yielded = 0, False
         try:
+            if deadline is None:
+                self.polls, me.has_yielded = 0, False
+            elif not (self.ready or self._deadlines.entries or self._patience.entries or self.watched) and not is_patient:
+                if self._wait_alone(me, deadline):
+                    me.what, me.result = None, True
+                    return False
+            else:
+                self._set_deadline(me, deadline, is_patient)
             self._hand_over(me)
         except BaseException:  # of a handler of signals, in the main thread
             self._seize(me)
@@ -134,6 +138,24 @@ class Scheduler:
             return result
         me.result = True
         raise result  # type: ignore[misc]
+
+    def _wait_alone(self, me: Task, deadline: int) -> bool:
+        """Of the only thread that waits for a time, while none is ready: whether nothing but its deadline has come. All else is
+        as when there are several."""
+        self.calls += 1
+        if self.ending is None and deadline > self.outside.time:
+            self.polls, me.has_yielded = 0, False
+            try:
+                self.outside.wait(deadline, None)
+            except BaseException as error:
+                self._set_deadline(me, deadline, False)
+                self._failed(error)
+                return False
+            if me.result is None and not self.ready and self.outside.time >= deadline:
+                return True
+        if me.result is None:
+            self._set_deadline(me, deadline, False)
+        return False
 
     def _set_deadline(self, me: Task, deadline: int, is_patient: bool) -> None:
         self._tickets += 1

@@ -39,7 +39,7 @@ class Harness(threading.Thread):
         os.close(self.its_write)
         self.join()
         self.lines.close()
-        self.link._in.close()
+        os.close(self.link._in)
         os.close(self.write)
 
 

@@ -195,6 +195,33 @@ class Topics(Case):
         self.assertEqual(self.said(text.replace("QUEUE", "1"), system=System(arrivals)), ["0", "3", "5"])
         self.assertEqual(self.said(text.replace("QUEUE", "None"), system=System(arrivals)), list("012345"))
 
+    def test_numbers_that_are_whole_messages(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Float32, Float64
+            early = rospy.Publisher("a", Float64, queue_size=1)
+            try:
+                early.publish(0.5)
+            except rospy.ROSException as error:
+                print(error)
+            rospy.init_node("node")
+            for value in (0.1, -0.0, 1e300, float("inf"), float("nan"), 3, True, Float64(2.5)):
+                early.publish(value)
+            rospy.Publisher("b", Float32, queue_size=1, latch=True).publish(0.1)
+            early.unregister()
+            try:
+                early.publish(0.5)
+            except rospy.ROSException as error:
+                print(error)
+            """
+        system = System()
+        said = self.said(text, system=system)
+        self.assertEqual(said[0], "ROS node has not been initialized yet. Please call init_node() first")
+        self.assertEqual(said[1], "publish() to an unregistered() handle")
+        numbers = [message["data"] for _, name, message in system.published if name == "/a"]
+        self.assertEqual(list(map(repr, numbers)), ["0.1", "-0.0", "1e+300", "'inf'", "'nan'", "3.0", "1.0", "2.5"])
+        self.assertEqual([message for _, name, message in system.published if name == "/b"], [{"data": 0.1}])
+
     def test_publishing(self):
         text = """
             import rospy

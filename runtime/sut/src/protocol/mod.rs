@@ -294,14 +294,15 @@ const ONE_WAY: [&str; 11] = [
 
 /// What a line means to a program that speaks this version.
 pub(crate) fn parse(line: &[u8], version: u32) -> ProtocolLine {
-    let head: Option<RequestHead<'_>> = serde_json::from_slice(line).ok();
-    let waits = version < 2 || !head.as_ref().is_some_and(|head| ONE_WAY.contains(&&*head.request));
-    let with_message = head.and_then(|head| ports::parse(&head.request, line));
-    let request = match with_message {
-        Some(request) => request.map(ProgramRequest::Message),
-        None => serde_json::from_slice::<ProgramRequest>(line),
+    // Of a list, serde would take the elements for the members.
+    let is_object = line.trim_ascii_start().starts_with(b"{");
+    let head: serde_json::Result<RequestHead<'_>> = if is_object {
+        serde_json::from_slice(line)
+    } else {
+        Err(serde::de::Error::custom("no JSON object"))
     };
-    let why = match request {
+    let waits = version < 2 || !head.as_ref().is_ok_and(|head| ONE_WAY.contains(&&*head.request));
+    let why = match head.and_then(|head| of_kind(&head.request, line)) {
         Ok(request) => match request.fault(version) {
             None => return ProtocolLine::Request(request),
             Some(why) => return ProtocolLine::Refused { why, waits },
@@ -313,7 +314,25 @@ pub(crate) fn parse(line: &[u8], version: u32) -> ProtocolLine {
             ProtocolLine::Refused { why, waits }
         }
         Ok(_) => ProtocolLine::Rubbish("no request".to_owned()),
-        Err(_) => ProtocolLine::Rubbish(why),
+        Err(error) => ProtocolLine::Rubbish(error.to_string()),
+    }
+}
+
+/// What is asked for most is read without the detour by which serde finds out the kind again.
+fn of_kind(kind: &str, line: &[u8]) -> serde_json::Result<ProgramRequest> {
+    #[derive(Deserialize)]
+    struct WaitLine {
+        until: Option<Nanos>,
+        give_up: Option<Nanos>,
+    }
+    match kind {
+        "now" => Ok(ProgramRequest::Now),
+        "wait" => serde_json::from_slice(line)
+            .map(|WaitLine { until, give_up }| ProgramRequest::Wait { until, give_up }),
+        _ => match ports::parse(kind, line) {
+            Some(request) => request.map(ProgramRequest::Message),
+            None => serde_json::from_slice(line),
+        },
     }
 }
 
@@ -333,6 +352,10 @@ mod tests {
     #[test]
     fn every_request_of_the_specification_is_understood() {
         assert_eq!(request(r#"{"request":"now"}"#), ProgramRequest::Now);
+        let wait = |until, give_up| ProgramRequest::Wait { until, give_up };
+        assert_eq!(request(r#"{"request":"wait"}"#), wait(None, None));
+        assert_eq!(request(r#"{"request":"wait","until":7,"more":1}"#), wait(Some(7), None));
+        assert_eq!(request(r#"{"until":null,"give_up":8,"request":"w\u0061it"}"#), wait(None, Some(8)));
         assert_eq!(request(r#"{"request":"sleep","seconds":2}"#), ProgramRequest::Sleep { seconds: 2.0 });
         assert_eq!(
             request(r#"{"request":"wait_for","events":["a","b"]}"#),
@@ -412,6 +435,7 @@ mod tests {
             (r#"{"request":1}"#, false),
             ("{}", false),
             ("[]", false),
+            (r#"["now"]"#, false),
             ("", false),
             ("Hello, world", false),
             ("\u{fffd}{", false),

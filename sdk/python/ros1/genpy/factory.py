@@ -35,6 +35,7 @@ def make_class(definition: dict[str, Any], resolve: Resolve) -> Any:
         "_md5sum": definition.get("md5", ""),
         "_full_text": _FullText(definition, resolve),
         "_has_header": any(f.name == "header" and f.type == "std_msgs/Header" and f.array is None for f in fields),
+        "_float_text": _float_text(fields),
         "_slot_types": [field.text() for field in fields],
         "_definition": definition,
     }
@@ -164,6 +165,12 @@ class _Field:
         if self.type in ("time", "duration"):
             return "RT(C%d, %s)" % (self.at, value)
         return "C%d._of_json(%s)" % (self.at, value) if self.cls is not None else value
+
+
+def _float_text(fields: list[_Field]) -> bytes | None:
+    if len(fields) == 1 and fields[0].array is None and fields[0].type in _FLOATS:
+        return b'{"%s":%%r}' % fields[0].name.encode("ascii")
+    return None
 
 
 def _functions(fields: list[_Field]) -> dict[str, Any]:

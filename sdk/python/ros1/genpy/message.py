@@ -40,6 +40,7 @@ class Message:
     _md5sum = ""
     _full_text = ""
     _has_header = False
+    _float_text: bytes | None = None  # if a float is all that it holds: its JSON, with a place for a finite one
     _slot_types: list[str] = []
     _definition: dict[str, Any] = {}
     _json: Callable[[Any], str]  # of a message

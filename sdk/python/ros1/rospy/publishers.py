@@ -67,16 +67,13 @@ class Publisher(topic.Topic):
         impl = self.impl
         if impl is None:
             raise ROSException("publish() to an unregistered() handle")
+        message = args[0] if len(args) == 1 and not kwds else None
+        if message.__class__ is float and impl.float_line is not None and message - message == 0.0:
+            impl.tell(impl.float_line % message, impl.port)
+            return
         if not core._client_ready:
             raise ROSException("ROS node has not been initialized yet. Please call init_node() first")
-        if len(args) == 1 and not kwds:
-            message = args[0]
-            kind = message.__class__
-            if kind is float:
-                message = self.data_class(message)
-            elif kind is not self.data_class:
-                message = self._message(args, kwds)
-        else:
+        if message.__class__ is not self.data_class:
             message = self._message(args, kwds)
         try:
             impl.publish(message)
@@ -100,6 +97,8 @@ class _PublisherImpl(topic.TopicImpl):
         if data_class is AnyMsg:
             raise NotImplementedError("a publisher of AnyMsg on %s: name the type that it publishes" % name)
         self._json = data_class._json
+        self.tell: Any = None  # once it is open
+        self.float_line: bytes | None = None  # of a message that is a finite number, such as a set-point: the request, but for that
         super().__init__(name, data_class, table)
 
     def connect(self) -> None:
@@ -108,7 +107,15 @@ class _PublisherImpl(topic.TopicImpl):
             self._watch()
 
     def open(self) -> Port:
-        return the_exchange().open("publisher", self.resolved_name, self.type, latched=self.is_latch)
+        port = the_exchange().open("publisher", self.resolved_name, self.type, latched=self.is_latch)
+        if self.data_class._float_text is not None:
+            self.tell = the_exchange().link.tell
+            self.float_line = port.line(self.data_class._float_text)
+        return port
+
+    def close(self) -> None:
+        self.float_line = None
+        super().close()
 
     def enable_latch(self) -> None:
         """Those who come later get the last message, too."""

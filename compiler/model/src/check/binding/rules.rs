@@ -57,7 +57,7 @@ impl<'s> MessageEnv<'s> {
         // Of the same place as another type it is found by its number alone.
         let name = place_text(&path);
         let name = if self.env.find(&name).is_some() { String::new() } else { name };
-        self.reads.push(MessageRead { path, ty });
+        self.reads.push(MessageRead { path, ty, same_as: None });
         let at = self.env.next_local();
         self.env.push_typed(&name, Span::default(), Noun::Field, ty);
         at

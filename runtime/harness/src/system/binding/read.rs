@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Symbol, Type, Value,
-    binding::{MessageRead, MessageStep, place_text},
+    binding::{MessageRead, MessageStep, TextOperand, place_text},
 };
 use serde_json::Value as Json;
 
@@ -27,6 +27,9 @@ pub(super) fn at<'m>(message: &'m Json, path: &[MessageStep]) -> Result<&'m Json
 
 /// The value that a rule reads.
 pub(super) fn value(message: &Json, read: &MessageRead) -> Result<Value, String> {
+    if let Some(other) = &read.same_as {
+        return same_text(message, &read.path, other).map(Value::Bool);
+    }
     let json = at(message, &read.path)?;
     let found = match read.ty {
         Type::Bool => match json {
@@ -41,7 +44,6 @@ pub(super) fn value(message: &Json, read: &MessageRead) -> Result<Value, String>
             Json::Null | Json::String(_) | Json::Array(_) | Json::Object(_) => None,
         },
         Type::Float(_) => number(json).map(Value::Float),
-        Type::Text => json.as_str().map(|s| Value::Text(hrdsl_ir::Text::new(s))),
         Type::Enum(of) => match json.as_str() {
             Some(name) => {
                 let known: Option<Symbol> = of.symbol(name);
@@ -50,12 +52,26 @@ pub(super) fn value(message: &Json, read: &MessageRead) -> Result<Value, String>
             }
             None => None,
         },
-        Type::List(_) => None,
+        // INVARIANT: text is compared, and rules do not read lists.
+        Type::Text | Type::List(_) => None,
     };
-    let wrong = || {
-        format!("`{}` is {json}, which is of another type than the interface says", place_text(&read.path))
+    found.filter(|v| read.ty.admits(*v)).ok_or_else(|| of_other_type(&read.path, json))
+}
+
+fn same_text(message: &Json, path: &[MessageStep], other: &TextOperand) -> Result<bool, String> {
+    let text = |path| {
+        let json = at(message, path)?;
+        json.as_str().ok_or_else(|| of_other_type(path, json))
     };
-    found.filter(|v| read.ty.admits(*v)).ok_or_else(wrong)
+    let expected = match other {
+        TextOperand::Literal(literal) => literal,
+        TextOperand::Place(place) => text(place)?,
+    };
+    Ok(text(path)? == expected)
+}
+
+fn of_other_type(path: &[MessageStep], json: &Json) -> String {
+    format!("`{}` is {json}, which is of another type than the interface says", place_text(path))
 }
 
 /// A number, or one of those that JSON does not have.
@@ -83,4 +99,32 @@ pub(super) fn numbers(message: &Json, path: &[MessageStep]) -> Result<Vec<f64>, 
         }
     };
     all.ok_or_else(|| format!("`{}` holds something else than numbers", place_text(path)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(name: &str) -> Vec<MessageStep> {
+        vec![MessageStep::Field(name.to_owned())]
+    }
+
+    fn compared(message: &str, other: TextOperand) -> Result<Value, String> {
+        let read = MessageRead { path: path("key"), ty: Type::Text, same_as: Some(other) };
+        value(&parse(message).unwrap(), &read)
+    }
+
+    #[test]
+    fn texts_are_compared_and_not_kept() {
+        let literal = |text: &str| TextOperand::Literal(text.to_owned());
+        let (go, same) = (r#"{"key":"go","value":"stop"}"#, r#"{"key":"é","value":"\u00e9"}"#);
+        assert_eq!(compared(go, literal("go")), Ok(Value::Bool(true)));
+        assert_eq!(compared(go, literal("g")), Ok(Value::Bool(false)));
+        assert_eq!(compared(go, TextOperand::Place(path("value"))), Ok(Value::Bool(false)));
+        assert_eq!(compared(same, TextOperand::Place(path("value"))), Ok(Value::Bool(true)));
+        let wrong = "`key` is 1, which is of another type than the interface says";
+        assert_eq!(compared(r#"{"key":1}"#, literal("go")), Err(wrong.to_owned()));
+        let absent = "the message has no `other`".to_owned();
+        assert_eq!(compared(go, TextOperand::Place(path("other"))), Err(absent));
+    }
 }
