@@ -29,6 +29,7 @@ pub use argument::SystemArgument;
 pub use clock::{TimeSource, VirtualClock};
 pub use command::{CheckedCommand, CommandRequest, NotBegun};
 pub use fault::{SystemFault, SystemFaultKind};
+pub use hrdsl_trace::{MachineDeclaration, MachineEdge, MachineStep};
 pub use message::PlayerMessage;
 pub use player::{ActorPlayer, HarnessError, PlayerContext, is_perceived};
 pub use run::{HarnessLoop, HarnessRun, RunTermination};
@@ -37,8 +38,8 @@ pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
 pub use system::player::SystemPlayer;
 pub use system::port::{
-    GoalEnd, MessageText, PortDeclaration, PortKind, PortListing, PortQos, QosDurability, QosPolicy,
-    QosReliability,
+    AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing, PortQos, PortUse,
+    QosDurability, QosPolicy, QosReliability, VainWait,
 };
 pub use system::seam::{
     CanceledGoals, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,

@@ -116,6 +116,8 @@ class Services(unittest.TestCase):
                 "service [/dark] responded with an error: b'broken'",
             ],
         )
+        light = {"request": "await", "kind": "client", "name": "/light"}
+        self.assertEqual(system.awaited, [{**light, "give_up": SECOND}, light])
 
     def test_called_from_outside(self):
         text = """

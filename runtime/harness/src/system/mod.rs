@@ -2,6 +2,7 @@
 
 mod binding;
 mod graph;
+mod history;
 mod mailbox;
 pub mod player;
 pub mod port;
