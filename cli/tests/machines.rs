@@ -36,7 +36,7 @@ fn the_machine_of_the_rospy_handover_is_covered_and_judged_again() {
     assert_eq!(states[0].1, 9, "every test enters the first");
     assert!(states.iter().any(|(_, tests)| *tests < 9), "and not all of them: {states:?}");
     let printed = stdout(&run);
-    assert!(printed.contains("State machine machine  1") && printed.contains(" of 14 states, "), "{printed}");
+    assert!(printed.contains("State machine TABLE  1") && printed.contains(" of 14 states, "), "{printed}");
     assert!(!printed.contains("Interfaces"), "everybody meets somebody: {printed}");
 
     // The recordings have all of it.

@@ -153,14 +153,14 @@ fn faults_are_said_with_their_line() {
     says(r#"{"t":"1","event":"leg_request"}"#, "`\"1\"` is not a time in seconds, at least 0");
     says(r#"{"t":-1,"event":"leg_request"}"#, "`-1` is not a time in seconds, at least 0");
     says(r#"{"event":"leg_request"}"#, "the step lacks its time `t`");
-    says(r#"{"t":1}"#, "the step has neither `event` nor `signal`");
+    says(r#"{"t":1}"#, "the step has neither `event` nor `signal` nor `machine`");
     says(r#"{"t":1,"signal":"gaze"}"#, "the sample lacks its `value`");
     says(r#"{"t":1,"signal":"gaze","value":true,"args":{}}"#, "a sample has `t`, `signal` and `value` only");
     says(r#"{"t":1,"event":"leg_request","value":1}"#, "an event has `t`, `event` and `args` only");
     says(r#"{"end":1,"t":1}"#, "the last line has `end`, `ended` and `error` only");
     says(
         r#"{"t":1,"evnt":"x"}"#,
-        "not a line of a recording: unknown field `evnt`, expected one of `t`, `event`, `args`, `signal`, `value`, `end`, `ended`, `error` (column 13)",
+        "not a line of a recording: unknown field `evnt`, expected one of `t`, `event`, `args`, `signal`, `value`, `machine`, `states`, `transitions`, `outcomes`, `from`, `outcome`, `to`, `end`, `ended`, `error` (column 13)",
     );
 }
 

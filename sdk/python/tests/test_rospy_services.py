@@ -117,7 +117,8 @@ class Services(unittest.TestCase):
             ],
         )
         light = {"request": "await", "kind": "client", "name": "/light"}
-        self.assertEqual(system.awaited, [{**light, "give_up": SECOND}, light])
+        again = {**light, "type": "std_srvs/SetBool", "give_up": 7 * SECOND}
+        self.assertEqual(system.awaited, [{**light, "give_up": SECOND}, light, again])
 
     def test_called_from_outside(self):
         text = """

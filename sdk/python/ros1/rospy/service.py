@@ -59,8 +59,7 @@ def _wait_for(service: str, timeout: Any, type_name: str | None) -> None:
         raise ValueError("timeout must be non-zero")
     name = resolve_name(service)
     deadline = the_exchange().time + round(timeout * 1e9) if timeout else None
-    if not graph.programs("server", name):
-        the_exchange().awaits("client", name, type_name, deadline)
+    the_exchange().awaits("client", name, type_name, deadline)
     there = graph.wait(lambda: core.is_shutdown() or graph.programs("server", name), deadline)
     if core.is_shutdown():
         raise ROSInterruptException("rospy shutdown")
