@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value};
 
-use crate::{fault::SystemFault, message::PlayerMessage, stage::WorldStage, system::port::PortHistory};
+use crate::{fault::SystemFault, message::PlayerMessage, port::PortHistory, stage::WorldStage};
 
 /// What a player is given when it is asked.
 pub struct PlayerContext<'a, 'p> {

@@ -9,8 +9,8 @@ use crate::{
     clock::{TimeSource, VirtualClock},
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext, is_perceived},
+    port::PortHistory,
     stage::WorldStage,
-    system::port::PortHistory,
 };
 
 /// At most so many events at one instant: more is a model in which time cannot pass.

@@ -9,11 +9,11 @@ use hrdsl_ir::Nanos;
 
 use super::{
     history::GraphHistory,
-    port::{
-        AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing,
-        QosDurability, QosPolicy,
-    },
     seam::{CanceledGoals, SystemArrival},
+};
+use crate::port::{
+    AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing, QosDurability,
+    QosPolicy,
 };
 
 /// A program may have so many ports open, and so many calls under way.

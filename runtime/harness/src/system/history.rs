@@ -4,10 +4,8 @@ use std::collections::{BTreeMap, BTreeSet, btree_map::Entry};
 
 use hrdsl_ir::{Nanos, value::SECOND};
 
-use super::{
-    graph::ProgramIndex,
-    port::{AwaitedPort, PortDeclaration, PortHistory, PortKind, PortUse, VainWait},
-};
+use super::graph::ProgramIndex;
+use crate::port::{AwaitedPort, PortDeclaration, PortHistory, PortKind, PortUse, VainWait};
 
 /// So many names are kept at most: a program that makes up ever new ones shows what it does long before.
 const MOST: usize = 10_000;
@@ -92,7 +90,7 @@ impl GraphHistory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::port::PortQos;
+    use crate::port::PortQos;
 
     fn port(kind: PortKind, name: &str) -> PortDeclaration {
         let (name, type_name) = (name.to_owned(), "pkg/Type".to_owned());

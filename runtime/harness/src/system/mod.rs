@@ -5,7 +5,6 @@ mod graph;
 mod history;
 mod mailbox;
 pub mod player;
-pub mod port;
 mod program;
 pub mod seam;
 mod vocabulary;

@@ -9,7 +9,6 @@ use super::{
     binding::{BindingFault, BindingNode, BindingOutcome},
     graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
     mailbox::HeardEvent,
-    port::{PortDeclaration, PortHistory},
     program::{RequestWait, ServedProgram},
     seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     vocabulary::{ActorVocabulary, refuse},
@@ -19,6 +18,7 @@ use crate::{
     fault::SystemFault,
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext},
+    port::{PortDeclaration, PortHistory},
     stage::WorldStage,
     world::CommandId,
 };

@@ -9,8 +9,12 @@ use std::{collections::BTreeMap, fmt};
 use hrdsl_ir::{Nanos, Value};
 use hrdsl_trace::MachineStep;
 
-use super::port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy};
-use crate::{argument::SystemArgument, command::CommandRequest, fault::SystemFault};
+use crate::{
+    argument::SystemArgument,
+    command::CommandRequest,
+    fault::SystemFault,
+    port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
+};
 
 /// Whatever plays the system actor.
 pub trait SystemActor {
