@@ -28,8 +28,6 @@ const LONG: &[(&str, usize)] = &[
     ("runtime/bdi/src/cycle.rs", 507),
     ("runtime/bdi/src/query.rs", 521),
     ("runtime/bdi/src/step.rs", 523),
-    ("runtime/report/src/fixture.rs", 529),
-    ("runtime/report/src/terminal.rs", 534),
     ("runtime/sut/tests/environment.rs", 541),
     ("runtime/ta/src/network/code.rs", 1024),
     ("runtime/ta/src/network/compile.rs", 817),

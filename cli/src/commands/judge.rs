@@ -13,7 +13,8 @@ use hrdsl_runtime::{
     judge::{JudgedRecording, judge_recording},
     report,
     results::{
-        BinName, BinResult, CampaignResults, RequirementResult, RunEnd, TestName, TestResult, VerdictResult,
+        BinName, BinResult, CampaignResults, MachineCoverage, MachineResult, RequirementResult, RunEnd,
+        TestName, TestResult, VerdictResult,
     },
 };
 use serde::Serialize;
@@ -53,6 +54,8 @@ struct JudgementDocument<'a> {
     scenario: &'a str,
     requirements: &'a [RequirementResult],
     bins: &'a [BinResult],
+    #[serde(skip_serializing_if = "<[MachineResult]>::is_empty")]
+    machines: &'a [MachineResult],
     tests: Vec<JudgedTest<'a>>,
 }
 
@@ -65,6 +68,8 @@ struct JudgedTest<'a> {
     duration: f64,
     verdicts: &'a [VerdictResult],
     bins: &'a [BinName],
+    #[serde(skip_serializing_if = "<[MachineCoverage]>::is_empty")]
+    machines: &'a [MachineCoverage],
 }
 
 /// # Errors
@@ -78,7 +83,7 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
     let mut refused = 0_usize;
     for path in paths(&args.recordings)? {
         match judged(program, &path, args.changed) {
-            Ok(result) => tests.push(FinishedTest { result, executed: Vec::new() }),
+            Ok(test) => tests.push(test),
             Err(why) => {
                 terminal::say_line(format_args!("error: {}: {why}", terminal::shown(&path)));
                 refused += 1;
@@ -86,7 +91,7 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
         }
     }
     let planned = tests.len() + refused;
-    let outcome = CampaignOutcome { tests, planned, interrupted: false };
+    let outcome = CampaignOutcome { tests, planned, ..CampaignOutcome::default() };
     let results = tally(program, 0, &[], outcome, &BTreeMap::new(), String::new());
     if args.json {
         terminal::print_data(&json(&results)?)?;
@@ -126,16 +131,16 @@ fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFault> {
 }
 
 /// What a recording shows, as the result of its test.
-fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, CommandFault> {
+fn judged(program: &Program, path: &Path, changed: bool) -> Result<FinishedTest, CommandFault> {
     let file = File::open(path).map_err(|e| e.to_string())?;
     let judged = judge_recording(program, BufReader::new(file), changed).map_err(|e| e.to_string())?;
     let duration = judged.duration();
-    let JudgedRecording { recorded, judgement } = judged;
+    let JudgedRecording { recorded, judgement, machines } = judged;
     // What is no test is called as its file is.
     let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let name = TestName::from(recorded.header.test.unwrap_or_else(stem));
     let suite = name.within(&program.name).rsplit_once('.').map_or("recordings", |(suite, _)| suite).into();
-    Ok(TestResult {
+    let result = TestResult {
         name,
         suite,
         seed: recorded.header.seed.unwrap_or(0),
@@ -150,7 +155,8 @@ fn judged(program: &Program, path: &Path, changed: bool) -> Result<TestResult, C
         duration,
         judgement,
         ..TestResult::default()
-    })
+    };
+    Ok(FinishedTest { result, machines, ..FinishedTest::default() })
 }
 
 fn json(results: &CampaignResults) -> Result<String, CommandFault> {
@@ -164,6 +170,7 @@ fn json(results: &CampaignResults) -> Result<String, CommandFault> {
             duration: *duration,
             verdicts: &judgement.verdicts,
             bins: &judgement.bins,
+            machines: &judgement.machines,
         }
     }
     let document = JudgementDocument {
@@ -172,6 +179,7 @@ fn json(results: &CampaignResults) -> Result<String, CommandFault> {
         scenario: &results.scenario,
         requirements: &results.requirements,
         bins: &results.bins,
+        machines: &results.machines,
         tests: results.tests.iter().map(test).collect(),
     };
     files::json(&document)

@@ -2,7 +2,9 @@
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod binding;
+mod interfaces;
 mod internal;
+mod machines;
 mod tally;
 
 use std::{
@@ -16,8 +18,8 @@ use std::{
 };
 
 use hrdsl_harness::{
-    ActorPlayer, HarnessError, HarnessLoop, HarnessRun, RunTermination, ScriptPlayer, SystemFault,
-    SystemFaultKind, SystemPlayer, WorldStage,
+    ActorPlayer, HarnessError, HarnessLoop, HarnessRun, PortHistory, RunTermination, ScriptPlayer,
+    SystemFault, SystemFaultKind, SystemPlayer, WorldStage,
 };
 use hrdsl_ir::{
     Program,
@@ -26,7 +28,9 @@ use hrdsl_ir::{
     value::seconds,
 };
 use hrdsl_judge::TraceJudge;
-use hrdsl_results::{CoverageRatios, OutputSummary, RunEnd, RunMark, TestName, TestResult, TraceJudgement};
+use hrdsl_results::{
+    CoverageRatios, InterfaceWarning, OutputSummary, RunEnd, RunMark, TestName, TestResult, TraceJudgement,
+};
 use hrdsl_sim::SimWorld;
 pub use hrdsl_sut::{
     CapturedOutput, CellSettings, HookedPackage, PreparationStep, ProgramLimits, PythonEnv, StopFlag,
@@ -37,7 +41,7 @@ use hrdsl_sut::{
     ReplyAnswer, SutError, SutProcess,
 };
 use hrdsl_trace::{
-    Trace,
+    MachineDeclaration, Trace,
     record::{self, RecordingEnd, RecordingHeader},
 };
 
@@ -97,6 +101,10 @@ pub struct ProgramOutput {
 pub struct FinishedTest {
     pub result: TestResult,
     pub executed: Vec<FileCoverage>,
+    /// What its programs opened to speak with each other.
+    pub ports: PortHistory,
+    /// What their state machines consist of.
+    pub machines: Vec<MachineDeclaration>,
 }
 
 /// What a campaign came to.
@@ -106,6 +114,8 @@ pub struct CampaignOutcome {
     pub tests: Vec<FinishedTest>,
     pub planned: usize,
     pub interrupted: bool,
+    /// Names of the middleware at which somebody was alone in every test.
+    pub warnings: Vec<InterfaceWarning>,
 }
 
 /// A test that was run, and what wall time has to do with it.
@@ -193,11 +203,10 @@ impl CampaignSetup<'_> {
         });
         let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
         let interrupted = self.stop.is_set() && results.iter().any(Option::is_none);
-        Ok(CampaignOutcome {
-            tests: results.into_iter().flatten().collect(),
-            planned: tests.len(),
-            interrupted,
-        })
+        let planned = tests.len();
+        let tests: Vec<FinishedTest> = results.into_iter().flatten().collect();
+        let warnings = interfaces::warnings(self.system.binding.as_ref(), &tests);
+        Ok(CampaignOutcome { tests, planned, interrupted, warnings })
     }
 
     fn next_test(&self, tests: &[Test], next: &AtomicUsize) -> Option<usize> {
@@ -240,7 +249,7 @@ impl CampaignSetup<'_> {
         };
         let ending = ending(&run, &finished);
         let recording = record::write(self.program, &header, &run.trace, &ending);
-        let judgement = judge(self.program, &run.trace, ending.kind);
+        let (judgement, machines) = judge(self.program, &run.trace, ending.kind);
         let fault = match &run.ended {
             RunTermination::Fault(HarnessError::System(fault)) => Some(fault.kind),
             RunTermination::Fault(
@@ -254,7 +263,8 @@ impl CampaignSetup<'_> {
             output: f.output.clone(),
         };
         let output = finished.iter().map(output).collect();
-        let finished = test_result(self.program, test, &run, (ending, judgement), finished);
+        let finished =
+            FinishedTest { machines, ..test_result(self.program, test, run, (ending, judgement), finished) };
         TestAttempt { finished, recording, output, fault }
     }
 
@@ -355,14 +365,15 @@ fn stop_reason(ended: &RunTermination, limit: hrdsl_ir::Nanos) -> String {
 
 /// A run that never began.
 fn failed(fault: HarnessError) -> HarnessRun {
-    HarnessRun { trace: Trace::default(), ended: RunTermination::Fault(fault) }
+    let (trace, ports) = (Trace::default(), PortHistory::default());
+    HarnessRun { trace, ended: RunTermination::Fault(fault), ports }
 }
 
 /// What is known about a test when its run is over.
 fn test_result(
     program: &Program,
     test: &Test,
-    run: &HarnessRun,
+    run: HarnessRun,
     (ending, judgement): (RecordingEnd, TraceJudgement),
     finished: Vec<(String, FinishedProcess)>,
 ) -> FinishedTest {
@@ -377,6 +388,7 @@ fn test_result(
         ended: ending.kind,
         error: ending.error,
         marks: if others { vec![RunMark::OtherProcesses] } else { Vec::new() },
+        waits: interfaces::unserved_waits(&run.ports),
         duration: seconds(run.trace.end),
         judgement,
         predicted: test.provenance.predicts.clone(),
@@ -385,10 +397,10 @@ fn test_result(
         steps: test.steps.iter().map(|s| step_text(program, s)).collect(),
         output,
     };
-    FinishedTest { result, executed }
+    FinishedTest { result, executed, ports: run.ports, ..FinishedTest::default() }
 }
 
-fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> TraceJudgement {
+fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> (TraceJudgement, Vec<MachineDeclaration>) {
     let mut judge = TraceJudge::new(program);
     trace.replay(&mut judge);
     judge.finish(ended)

@@ -10,7 +10,7 @@ use hrdsl_results::{
 
 use hrdsl_testgen::GeneratedSuite;
 
-use crate::{CampaignOutcome, FinishedTest};
+use crate::{CampaignOutcome, FinishedTest, machines::machines};
 
 /// Puts the results of a campaign together. `sources` are the texts of the measured files, by name; `rerun` is the command that
 /// runs one test again, up to its name.
@@ -23,7 +23,7 @@ pub fn tally(
     sources: &BTreeMap<String, String>,
     rerun: String,
 ) -> CampaignResults {
-    let CampaignOutcome { tests, planned, interrupted } = outcome;
+    let CampaignOutcome { tests, planned, interrupted, warnings } = outcome;
     let suites = suites(generated, &tests);
     let place: SuiteOrder<'_> = suites.iter().enumerate().map(|(i, s)| (&s.name, i)).collect();
     CampaignResults {
@@ -38,7 +38,9 @@ pub fn tally(
         requirements: requirements(program, &tests, &place),
         bins: bins(program, generated, &tests, &place),
         code: code(&tests, sources, &place),
+        machines: machines(&tests, suites.len(), |t| place.get(&t.result.suite).copied().unwrap_or(0)),
         suites,
+        warnings,
         tests: tests.into_iter().map(|t| t.result).collect(),
     }
 }

@@ -79,7 +79,7 @@ impl TraceObserver for CoverageCollector {
     fn step(&mut self, _: usize, step: &TraceStep) {
         match &step.what {
             TraceStepKind::Event { event, args } => self.event(*event, args),
-            TraceStepKind::Sample { .. } => {}
+            TraceStepKind::Sample { .. } | TraceStepKind::Machine(_) => {}
         }
     }
 

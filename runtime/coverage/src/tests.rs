@@ -6,10 +6,12 @@ use hrdsl_ir::{
     monitor::Assumption,
     world::SignalId,
 };
-use hrdsl_trace::{Trace, TraceObserver, TraceStep, TraceStepKind};
+use hrdsl_trace::{
+    MachineDeclaration, MachineEdge, MachineStep, Trace, TraceObserver, TraceStep, TraceStepKind,
+};
 use proptest::prelude::*;
 
-use crate::{CoverageCollector, TestCoverage, assume::AssumptionChecker};
+use crate::{CoverageCollector, MachineCollector, TestCoverage, assume::AssumptionChecker};
 
 const ASK: u16 = 0;
 const DECIDED: u16 = 1;
@@ -200,4 +202,50 @@ proptest! {
         events.iter().enumerate().for_each(|(i, e)| collector.step(i, &ask(e.0)));
         prop_assert_eq!(collector.finish().numbers[0] as usize, times.len());
     }
+}
+
+// ── state machines ──
+
+fn edge([from, outcome, to]: [&str; 3]) -> MachineEdge {
+    MachineEdge { from: from.into(), outcome: outcome.into(), to: to.into() }
+}
+
+fn moved(what: [&str; 3]) -> MachineStep {
+    MachineStep::Moved { machine: "M".into(), edge: edge(what) }
+}
+
+#[test]
+fn states_are_entered_and_transitions_taken() {
+    let declared = MachineDeclaration {
+        machine: "M".into(),
+        states: ["A", "B", "C"].map(String::from).into(),
+        transitions: [["A", "go", "B"], ["B", "back", "A"], ["B", "stop", "end"]].map(edge).into(),
+        outcomes: vec!["end".into()],
+    };
+    let mut collector = MachineCollector::default();
+    let begun = MachineStep::Begun { machine: "M".into(), state: "A".into() };
+    for step in [MachineStep::Declared(declared.clone()), begun, moved(["A", "go", "B"])] {
+        collector.step(&step);
+    }
+    let hits = collector.clone().finish();
+    assert_eq!(hits.len(), 1);
+    assert_eq!(hits[0].declared, declared);
+    assert_eq!(hits[0].entered.iter().collect::<Vec<_>>(), ["A", "B"]);
+    assert_eq!(hits[0].taken.iter().collect::<Vec<_>>(), [&edge(["A", "go", "B"])]);
+    // An outcome is no state, and a declaration that comes again adds what is new.
+    collector.step(&moved(["B", "stop", "end"]));
+    collector.step(&MachineStep::Declared(MachineDeclaration { states: vec!["D".into()], ..declared }));
+    let hits = collector.finish();
+    assert_eq!(hits[0].declared.states, ["A", "B", "C", "D"]);
+    assert_eq!(hits[0].entered.len(), 2);
+    assert_eq!(hits[0].taken.len(), 2);
+}
+
+#[test]
+fn what_was_not_declared_is_from_then_on() {
+    let mut collector = MachineCollector::default();
+    collector.step(&moved(["X", "slip", "Y"]));
+    let hits = collector.finish();
+    assert_eq!((hits[0].declared.states.clone(), hits[0].entered.len()), (vec!["X".into(), "Y".into()], 2));
+    assert_eq!(hits[0].declared.transitions, [edge(["X", "slip", "Y"])]);
 }

@@ -18,6 +18,7 @@ pub mod doubles;
 mod fault;
 mod message;
 mod player;
+mod port;
 mod run;
 mod script;
 mod stage;
@@ -29,17 +30,18 @@ pub use argument::SystemArgument;
 pub use clock::{TimeSource, VirtualClock};
 pub use command::{CheckedCommand, CommandRequest, NotBegun};
 pub use fault::{SystemFault, SystemFaultKind};
+pub use hrdsl_trace::{MachineDeclaration, MachineEdge, MachineStep};
 pub use message::PlayerMessage;
 pub use player::{ActorPlayer, HarnessError, PlayerContext, is_perceived};
+pub use port::{
+    AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing, PortQos, PortUse,
+    QosDurability, QosPolicy, QosReliability, VainWait,
+};
 pub use run::{HarnessLoop, HarnessRun, RunTermination};
 pub use script::ScriptPlayer;
 pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
 pub use system::player::SystemPlayer;
-pub use system::port::{
-    GoalEnd, MessageText, PortDeclaration, PortKind, PortListing, PortQos, QosDurability, QosPolicy,
-    QosReliability,
-};
 pub use system::seam::{
     CanceledGoals, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,
 };

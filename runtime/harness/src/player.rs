@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value};
 
-use crate::{fault::SystemFault, message::PlayerMessage, stage::WorldStage};
+use crate::{fault::SystemFault, message::PlayerMessage, port::PortHistory, stage::WorldStage};
 
 /// What a player is given when it is asked.
 pub struct PlayerContext<'a, 'p> {
@@ -39,6 +39,11 @@ pub trait ActorPlayer {
     fn next_wake(&self) -> Option<Nanos>;
     /// It will do nothing more, whatever happens.
     fn is_finished(&self) -> bool;
+    /// What its programs opened to speak with each other, in a run that ends now.
+    fn ports(&self, end: Nanos) -> PortHistory {
+        let _ = end;
+        PortHistory::default()
+    }
 }
 
 /// Why a run could not go on.

@@ -9,6 +9,7 @@ use crate::{
     clock::{TimeSource, VirtualClock},
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext, is_perceived},
+    port::PortHistory,
     stage::WorldStage,
 };
 
@@ -29,6 +30,8 @@ pub enum RunTermination {
 pub struct HarnessRun {
     pub trace: Trace,
     pub ended: RunTermination,
+    /// What the system's programs opened to speak with each other.
+    pub ports: PortHistory,
 }
 
 /// The loop's state.
@@ -87,7 +90,9 @@ impl<'p> HarnessLoop<'p> {
             stage.sample(self.now, &mut self.trace);
         }
         self.trace.end = self.now;
-        HarnessRun { trace: self.trace, ended }
+        let system = self.players.iter().find(|p| plays_the_system(self.program, p.actors()));
+        let ports = system.map(|p| p.ports(self.now)).unwrap_or_default();
+        HarnessRun { trace: self.trace, ended, ports }
     }
 
     fn run_loop(&mut self) -> Result<RunTermination, HarnessError> {
@@ -187,6 +192,10 @@ impl<'p> HarnessLoop<'p> {
                 if let Some(stage) = &mut self.stage {
                     stage.act(&action, &vars).map_err(HarnessError::World)?;
                 }
+            }
+            PlayerMessage::Machine(step) => {
+                let what = TraceStepKind::Machine(Box::new(step));
+                self.trace.steps.push(TraceStep { time: self.now, what });
             }
         }
         Ok(())

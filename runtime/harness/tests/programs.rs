@@ -6,9 +6,10 @@ use std::{cell::RefCell, rc::Rc};
 
 use common::{ROBOT, ask, emit, go, program, sleep, system, told, wait};
 use hrdsl_harness::{
-    ActorPlayer, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun, PortDeclaration, PortKind,
-    PortQos, QosDurability, QosPolicy, QosReliability, RunTermination, ScriptPlayer, SystemAnswer,
-    SystemArrival, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
+    ActorPlayer, AwaitedPort, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun,
+    MachineDeclaration, MachineEdge, MachineStep, PortDeclaration, PortKind, PortQos, QosDurability,
+    QosPolicy, QosReliability, RunTermination, ScriptPlayer, SystemAnswer, SystemArrival, SystemFault,
+    SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
     doubles::{ToldCommand, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{test::TestStep, value::SECOND};
@@ -488,4 +489,69 @@ fn programs_are_served_in_their_order() {
         order.borrow_mut().push(heard);
     }
     assert_eq!(*order.borrow(), vec![vec!["1", "2", "3"]; 3]);
+}
+
+/// What was open in a run is known when it is over, also of programs that have closed it or have ended.
+#[test]
+fn the_run_tells_who_had_which_port_and_who_waited_in_vain() {
+    let awaits = |kind, name: &str, give_up: Option<i64>| {
+        let give_up = give_up.map(|t| t * SECOND);
+        SystemRequest::Await(AwaitedPort { kind, name: name.to_owned(), type_name: None, give_up })
+    };
+    let a = vec![
+        Then(open(1, Subscriber, "/scan")),
+        Then(SystemRequest::Close { port: 1 }),
+        Then(open(1, Subscriber, "/scan")),
+        Then(awaits(Client, "/plan", None)),
+        Then(awaits(Client, "/served", None)),
+        Then(awaits(ActionClient, "/short", Some(3))),
+        Then(arrivals()),
+    ];
+    let b = vec![Then(sleep(2)), Then(open(9, Server, "/served")), Then(SystemRequest::Done)];
+    let (_, run) = run(vec![wait(9)], vec![a, b], None);
+    let uses: Vec<(PortKind, &str, Option<&str>)> =
+        run.ports.uses.iter().map(|u| (u.kind, u.name.as_str(), u.program.as_deref())).collect();
+    let expected = [
+        (Subscriber, "/scan", Some("a")),
+        (Server, "/served", Some("b")),
+        (Client, "/plan", Some("a")),
+        (Client, "/served", Some("a")),
+        (ActionClient, "/short", Some("a")),
+    ];
+    assert_eq!(uses, expected);
+    let waits: Vec<(&str, &str, i64)> =
+        run.ports.waits.iter().map(|w| (w.program.as_str(), w.name.as_str(), w.since)).collect();
+    assert_eq!(waits, [("a", "/plan", 0)]);
+}
+
+/// Each step of a machine is a step of the trace; of several programs, each machine is called by its own first.
+#[test]
+fn state_machines_are_written_down() {
+    let edge = MachineEdge { from: "A".into(), outcome: "go".into(), to: "B".into() };
+    let declared = MachineDeclaration {
+        machine: "M".into(),
+        states: vec!["A".into(), "B".into()],
+        transitions: vec![edge.clone()],
+        outcomes: Vec::new(),
+    };
+    let a = vec![
+        Then(SystemRequest::Machine(MachineStep::Declared(declared))),
+        Then(SystemRequest::Machine(MachineStep::Begun { machine: "M".into(), state: "A".into() })),
+        Then(sleep(2)),
+        Then(SystemRequest::Machine(MachineStep::Moved { machine: "M".into(), edge })),
+        Then(emit("done")),
+    ];
+    let shown = |run: &HarnessRun| -> Vec<String> {
+        let scenario = program();
+        let text = |s: &hrdsl_trace::TraceStep| {
+            let (_, what) = hrdsl_trace::print::who_did_what(&scenario, &s.what);
+            format!("{} {what}", s.time / SECOND)
+        };
+        run.trace.steps.iter().map(text).collect()
+    };
+    let (_, alone) = run(Vec::new(), vec![a.clone()], None);
+    let steps = ["0 M has 2 states and 1 transitions", "0 M begins in A", "2 M: A -go-> B", "2 done"];
+    assert_eq!(shown(&alone), steps);
+    let (_, of_two) = run(Vec::new(), vec![a, vec![Then(sleep(1))]], None);
+    assert_eq!(shown(&of_two)[2], "2 a/M: A -go-> B");
 }

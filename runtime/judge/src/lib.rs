@@ -6,18 +6,20 @@
 //! # Steps
 //! 1. [`TraceJudge::new`] readies the requirements' monitors and the coverpoints;
 //! 2. the trace is shown to it, step by step ([`TraceObserver`]), in memory that does not grow with the trace;
-//! 3. [`TraceJudge::finish`] gives the [`TraceJudgement`].
+//! 3. [`TraceJudge::finish`] gives the [`TraceJudgement`], and what the state machines of the system consist of.
 //!
 //! [`judge_recording`] does all three with a recording, which it reads in one pass.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod recording;
 
-use hrdsl_coverage::CoverageCollector;
+use hrdsl_coverage::{CoverageCollector, MachineCollector, MachineHits};
 use hrdsl_ir::{Nanos, Program, value::seconds};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict, SeenStep};
-use hrdsl_results::{FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult, WitnessStep};
-use hrdsl_trace::{RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
+use hrdsl_results::{
+    FirstFailure, MachineCoverage, TraceJudgement, VerdictOutcome, VerdictResult, WitnessStep,
+};
+use hrdsl_trace::{MachineDeclaration, RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
 
 pub use recording::{JudgeError, JudgedRecording, judge_recording};
 
@@ -27,40 +29,62 @@ pub struct TraceJudge<'p> {
     program: &'p Program,
     checker: MonitorRunner,
     collector: CoverageCollector,
+    machines: MachineCollector,
 }
 
 impl<'p> TraceJudge<'p> {
     #[must_use]
     pub fn new(program: &'p Program) -> Self {
-        Self { program, checker: MonitorRunner::new(program), collector: CoverageCollector::new(program) }
+        Self {
+            program,
+            checker: MonitorRunner::new(program),
+            collector: CoverageCollector::new(program),
+            machines: MachineCollector::default(),
+        }
     }
 
-    /// The judgement on a run that ended like this. A run that broke off can show a violation, but nothing else.
+    /// The judgement on a run that ended like this, and what the state machines in it consist of. A run that broke off can show
+    /// a violation, and what was executed, but nothing else.
     #[must_use]
-    pub fn finish(self, ended: RunEnd) -> TraceJudgement {
+    pub fn finish(self, ended: RunEnd) -> (TraceJudgement, Vec<MachineDeclaration>) {
+        let (machines, declared) = self.machines.finish().into_iter().map(machine_coverage).unzip();
         let verdicts = self.checker.verdicts();
         let mut judgement = TraceJudgement {
             verdicts: verdicts.iter().map(|v| verdict_result(self.program, v)).collect(),
             bins: self.collector.finish().cross_names(&self.program.coverage),
+            machines,
         };
         if ended == RunEnd::Error {
             judgement.break_off();
         }
-        judgement
+        (judgement, declared)
     }
 }
 
 impl TraceObserver for TraceJudge<'_> {
     fn step(&mut self, index: usize, step: &TraceStep) {
         self.checker.step(index, step);
-        if let TraceStepKind::Event { event, args } = &step.what {
-            self.collector.event(*event, args);
+        match &step.what {
+            TraceStepKind::Event { event, args } => self.collector.event(*event, args),
+            TraceStepKind::Machine(step) => self.machines.step(step),
+            TraceStepKind::Sample { .. } => {}
         }
     }
 
     fn end(&mut self, time: Nanos) {
         self.checker.end(time);
     }
+}
+
+fn machine_coverage(hits: MachineHits) -> (MachineCoverage, MachineDeclaration) {
+    let MachineHits { declared, entered, taken } = hits;
+    let transitions = declared.transitions.iter().filter(|t| taken.contains(t));
+    let coverage = MachineCoverage {
+        machine: declared.machine.clone(),
+        states: declared.states.iter().filter(|s| entered.contains(*s)).cloned().collect(),
+        transitions: transitions.map(ToString::to_string).collect(),
+    };
+    (coverage, declared)
 }
 
 #[expect(clippy::indexing_slicing, reason = "the verdicts are of this program's monitors")]

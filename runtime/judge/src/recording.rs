@@ -5,7 +5,7 @@ use std::io::BufRead;
 use hrdsl_ir::{Program, value::seconds};
 use hrdsl_results::TraceJudgement;
 use hrdsl_trace::{
-    RunEnd,
+    MachineDeclaration, RunEnd,
     parse::{OpenRecording, ReadError, RecordingSummary},
     record::RecordingHeader,
     vocabulary,
@@ -19,6 +19,8 @@ use crate::TraceJudge;
 pub struct JudgedRecording {
     pub recorded: RecordingSummary,
     pub judgement: TraceJudgement,
+    /// What the state machines in it consist of.
+    pub machines: Vec<MachineDeclaration>,
 }
 
 impl JudgedRecording {
@@ -64,8 +66,8 @@ pub fn judge_recording(
     }
     let mut judge = TraceJudge::new(program);
     let recorded = recording.replay(program, &mut judge)?;
-    let judgement = judge.finish(recorded.ending.kind);
-    Ok(JudgedRecording { recorded, judgement })
+    let (judgement, machines) = judge.finish(recorded.ending.kind);
+    Ok(JudgedRecording { recorded, judgement, machines })
 }
 
 /// Whether a recording is of this scenario as it is now. Recordings by other programs need not have a vocabulary.

@@ -132,6 +132,7 @@ impl TraceObserver for MonitorRunner {
                     self.sampled[reader] = Some(at);
                 }
             }
+            TraceStepKind::Machine(_) => {}
         }
     }
 

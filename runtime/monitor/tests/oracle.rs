@@ -184,7 +184,7 @@ fn traces() -> impl Strategy<Value = Trace> {
 fn events(trace: &Trace) -> Vec<(usize, Nanos, u16)> {
     let only = |(i, s): (usize, &TraceStep)| match &s.what {
         TraceStepKind::Event { event, .. } => Some((i, s.time, event.0)),
-        TraceStepKind::Sample { .. } => None,
+        TraceStepKind::Sample { .. } | TraceStepKind::Machine(_) => None,
     };
     trace.steps.iter().enumerate().filter_map(only).collect()
 }
@@ -193,7 +193,7 @@ fn events(trace: &Trace) -> Vec<(usize, Nanos, u16)> {
 fn samples(trace: &Trace) -> Vec<(usize, Nanos, f64)> {
     let only = |(i, s): (usize, &TraceStep)| match s.what {
         TraceStepKind::Sample { signal: SignalId(0), value } => Some((i, s.time, value.as_f64().unwrap())),
-        TraceStepKind::Sample { .. } | TraceStepKind::Event { .. } => None,
+        TraceStepKind::Sample { .. } | TraceStepKind::Event { .. } | TraceStepKind::Machine(_) => None,
     };
     trace.steps.iter().enumerate().filter_map(only).collect()
 }
@@ -352,6 +352,7 @@ proptest! {
         let foreign = |s: &TraceStep| match &s.what {
             TraceStepKind::Event { event, .. } => event.0 == 3,
             TraceStepKind::Sample { signal, .. } => signal.0 == 1,
+            TraceStepKind::Machine(_) => false,
         };
         let mut bare = trace.clone();
         bare.steps.retain(|s| !foreign(s));

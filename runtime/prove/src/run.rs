@@ -31,7 +31,7 @@ pub(crate) fn keeps_assumptions(program: &Program, witness: &WitnessRun) -> bool
         .iter()
         .filter_map(|s| match &s.what {
             TraceStepKind::Event { event, args } => Some((s.time, *event, args.clone())),
-            TraceStepKind::Sample { .. } => None,
+            TraceStepKind::Sample { .. } | TraceStepKind::Machine(_) => None,
         })
         .collect();
     AssumptionChecker::allows(program, &events)

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use hrdsl_results::{
-    BinResult, CampaignResults, CoverageRatios, FirstFailure, GoalStatus, RequirementKind, RequirementResult,
-    TestName, TestResult, VerdictOutcome as Outcome, VerdictResult, VerdictTally,
+    BinResult, CampaignResults, CoverageRatios, FirstFailure, GoalStatus, InterfaceWarning, MachineResult,
+    RequirementKind, RequirementResult, TestName, TestResult, UnservedWait, VerdictOutcome as Outcome,
+    VerdictResult, VerdictTally,
 };
 
 use crate::text;
@@ -216,6 +217,50 @@ pub fn short<'a>(results: &CampaignResults, name: &'a TestName) -> &'a str {
     name.within(&results.scenario)
 }
 
+/// The names of the middleware at which somebody was alone, without mere notes.
+pub fn warnings(results: &CampaignResults) -> Vec<&InterfaceWarning> {
+    results.warnings.iter().filter(|w| !w.is_note()).collect()
+}
+
+/// What must be known about a run: its marks, and what was awaited in it in vain.
+pub fn notes(test: &TestResult) -> Vec<String> {
+    let marks = test.marks.iter().map(|mark| mark.sentence().to_owned());
+    marks.chain(test.waits.iter().map(UnservedWait::sentence)).collect()
+}
+
+/// Whether everything of a state machine was reached.
+pub fn is_whole(machine: &MachineResult) -> bool {
+    unreached(machine).is_empty()
+}
+
+/// The state machines as far as the tests of one suite reached them.
+pub fn machines_of(results: &CampaignResults, suite: &str) -> Vec<MachineResult> {
+    let Some(at) = results.suites.iter().position(|s| s.name == *suite) else { return Vec::new() };
+    let own = |hits: &[u32]| hits.get(at).copied().into_iter().collect();
+    let mut machines = results.machines.clone();
+    for machine in &mut machines {
+        machine.states.iter_mut().for_each(|s| s.hits = own(&s.hits));
+        machine.transitions.iter_mut().for_each(|t| t.hits = own(&t.hits));
+    }
+    machines
+}
+
+/// `7 of 8 states, 11 of 15 transitions`; without transitions, the states alone.
+pub fn machine_in_short(machine: &MachineResult) -> String {
+    let ((states, all_states), (taken, all)) = (machine.states_reached(), machine.transitions_reached());
+    let states = format!("{states} of {}", text::count(all_states, "state"));
+    if all == 0 { states } else { format!("{states}, {taken} of {}", text::count(all, "transition")) }
+}
+
+/// What of a state machine no test reached: states, then transitions, each with the word for it.
+pub fn unreached(machine: &MachineResult) -> Vec<(&'static str, String)> {
+    let is_missed = |hits: &[u32]| hits.iter().all(|n| *n == 0);
+    let states = machine.states.iter().filter(|s| is_missed(&s.hits));
+    let transitions = machine.transitions.iter().filter(|t| is_missed(&t.hits));
+    let states = states.map(|s| ("never entered", s.state.clone()));
+    states.chain(transitions.map(|t| ("never taken", t.name()))).collect()
+}
+
 /// The first place of each test's name.
 pub fn places(results: &CampaignResults) -> BTreeMap<&TestName, usize> {
     results.tests.iter().enumerate().rev().map(|(i, t)| (&t.name, i)).collect()
@@ -247,6 +292,23 @@ pub fn gaps(results: &CampaignResults) -> Vec<String> {
                 suite.name
             ));
         }
+    }
+    for machine in results.machines.iter().filter(|m| !is_whole(m)) {
+        let ((states, all_states), (taken, all)) = (machine.states_reached(), machine.transitions_reached());
+        gaps.push(format!(
+            "{} of {all_states} states and {} of {all} transitions of the state machine {} were reached by no test.",
+            all_states - states,
+            all - taken,
+            machine.machine
+        ));
+    }
+    let alone = warnings(results).len();
+    if alone > 0 {
+        let verb = if alone == 1 { "was" } else { "were" };
+        gaps.push(format!(
+            "{} of the middleware {verb} used by one side only: whatever depends on them did not happen.",
+            text::count(alone, "name")
+        ));
     }
     let code = code(results);
     if code.lines < code.lines_total {

@@ -1,12 +1,17 @@
 //! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
 
+mod model;
+mod system;
+
 use hrdsl_results::{
-    AgentCoverage, BinName, BinResult, CampaignResults, CodeFile, CoverItemKind, CoverageRatios, FORMAT,
-    FirstFailure, GoalReport, GoalStatus, KindCoverage, ModelCoverage, OutputSummary, RequirementKind,
-    RequirementResult, RunEnd, RunMark, SmallestMargin, SuiteExplanation, SuiteInfo, TestExplanation,
-    TestMethod, TestResult, TraceJudgement, UncoveredGoal, UnreachedItem, VERSION, VerdictOutcome as Outcome,
-    VerdictResult, VerdictTally, WitnessStep,
+    BinName, BinResult, CampaignResults, CodeFile, CoverageRatios, FORMAT, FirstFailure, GoalReport,
+    GoalStatus, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark, SmallestMargin,
+    SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION, VerdictOutcome as Outcome, VerdictResult,
+    VerdictTally, WitnessStep,
 };
+
+pub(crate) use model::model;
+pub(crate) use system::{machines, wait, warnings};
 
 const SUITES: [(&str, TestMethod); 3] = [
     ("bdi_tests", TestMethod::Agents),
@@ -160,6 +165,8 @@ pub fn campaign(per_suite: usize) -> CampaignResults {
         suites: (0..SUITES.len()).map(|s| suite(s, &of(s).collect::<Vec<_>>())).collect(),
         bins: BINS.iter().map(|b| bin(b, &tests)).collect(),
         code: vec![code(&tests)],
+        machines: Vec::new(),
+        warnings: Vec::new(),
         interrupted: false,
         planned: tests.len(),
         rerun: "hrdsl sim ../scenario.hri tests --test".into(),
@@ -198,12 +205,14 @@ fn test(s: usize, i: usize) -> TestFixture {
         judgement: TraceJudgement {
             verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
             bins,
+            machines: Vec::new(),
         },
         predicted,
         because: because(s, i),
         code: ratios(&executed),
         steps: steps(s, i),
         marks: if i % 29 == 6 { vec![RunMark::DependsOnLoad] } else { Vec::new() },
+        waits: Vec::new(),
         output: OutputSummary {
             stdout_bytes: 120,
             stderr_bytes: if error.is_some() { 42 } else { 0 },
@@ -438,53 +447,6 @@ fn suite(s: usize, tests: &[&TestFixture]) -> SuiteInfo {
         code_accumulated: (1..=tests.len()).map(line_percent).collect(),
         code_per_test: tests.iter().map(|t| t.result.code.line_percent()).collect(),
     }
-}
-
-/// What the agents of the first suite reached.
-pub(crate) fn model() -> (ModelCoverage, SuiteExplanation) {
-    let reached = [2, 1, 0, 0, 0, 0, 0, 1, 0];
-    let all = [3, 2, 0, 0, 0, 0, 0, 2, 0];
-    let kinds = CoverItemKind::ALL.into_iter().zip(reached).zip(all);
-    let unreached =
-        |kind, item: &str, reason: &str| UnreachedItem { kind, item: item.into(), reason: reason.into() };
-    let before = "`+!leg` came twice: twice a plan before it was selected (`leg#1` twice)";
-    let human = AgentCoverage {
-        agent: "Human".into(),
-        kinds: kinds.map(|((kind, reached), all)| KindCoverage { kind, reached, all }).collect(),
-        unreached: vec![
-            unreached(CoverItemKind::Selected, "plan Human.leg#2", before),
-            unreached(
-                CoverItemKind::Completed,
-                "plan Human.leg#1 completed",
-                "it was selected twice and failed twice",
-            ),
-            unreached(
-                CoverItemKind::Edge,
-                "edge Human.table#1 -> leg#2 (step 1)",
-                "for this step others were selected (`leg#1` twice)",
-            ),
-        ],
-    };
-    let test = |name: &str, because: &str, first: &[&str], only: &[&str]| TestExplanation {
-        test: format!("bdi_tests.{name}"),
-        because: vec![because.into()],
-        reaches: 2,
-        first: first.iter().map(|s| (*s).into()).collect(),
-        only: only.iter().map(|s| (*s).into()).collect(),
-    };
-    let uncovered = |goal: &str, reason: &str| UncoveredGoal { goal: goal.into(), reason: reason.into() };
-    let released = "bin human_robot.1 leg, released";
-    let explanation = SuiteExplanation {
-        tests: vec![
-            test("t001", "wants(0)", &["plan Human.table#1", "plan Human.leg#1"], &[]),
-            test("t002", "wants(1)", &[released], &[released]),
-        ],
-        uncovered: vec![
-            uncovered("plan Human.leg#2", before),
-            uncovered("bin human_robot.4 legs, bored", "`asked` was 0, 1, needs 4"),
-        ],
-    };
-    (ModelCoverage { runs: 2, goals_reached: 3, goals: 5, agents: vec![human] }, explanation)
 }
 
 fn bin(bin: &str, tests: &[TestFixture]) -> BinResult {

@@ -4,6 +4,9 @@
 //! escaped as it is written, in one place ([`environment`]), so that nothing can be forgotten.
 
 mod code;
+mod drawing;
+mod interfaces;
+mod machines;
 mod model;
 mod pieces;
 mod tests_list;
@@ -44,6 +47,8 @@ fn environment() -> Result<Environment<'static>, minijinja::Error> {
     environment.add_template("page.html", include_str!("html/page.html"))?;
     environment.add_template("parts.html", include_str!("html/parts.html"))?;
     environment.add_global("style", Value::from_safe_string(include_str!("html/page.css").to_owned()));
+    let machines = Value::from_safe_string(include_str!("html/machines.css").to_owned());
+    environment.add_global("machine_style", machines);
     environment.add_global("script", Value::from_safe_string(include_str!("html/page.js").to_owned()));
     Ok(environment)
 }
@@ -86,7 +91,9 @@ struct ReportPage {
     bins_total: usize,
     goals: Vec<SuiteGoals>,
     models: Vec<model::AgentSuiteSection>,
+    machines: Vec<machines::MachineSection>,
     code: Option<code::CodeSection>,
+    interfaces: Option<interfaces::InterfaceSection>,
     list: tests_list::TestList,
 }
 
@@ -222,7 +229,9 @@ impl ReportPage {
             bins_total: results.bins.len(),
             goals: results.suites.iter().filter(|s| !s.goals.is_empty()).map(goals).collect(),
             models: model::all(results),
+            machines: machines::all(results, &link),
             code: code::code(results),
+            interfaces: interfaces::section(results, &link),
             list: tests_list::list(results),
         }
     }

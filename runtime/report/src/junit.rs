@@ -60,6 +60,9 @@ fn test_suite(results: &CampaignResults, name: &str) -> TestSuite {
             format!("{missing} of {} tests missing", results.planned),
         ));
     }
+    for warning in facts::warnings(results) {
+        suite.add_property(Property::new("hrdsl.warning", text::line(&warning.sentence())));
+    }
     if let Some(info) = results.suites.iter().find(|s| s.name == name) {
         suite.add_property(Property::new("hrdsl.method", text::line(info.method.word())));
         if let Some(number) = info.abstract_tests {
@@ -74,6 +77,10 @@ fn test_suite(results: &CampaignResults, name: &str) -> TestSuite {
                 let name = format!("hrdsl.model.{}", text::line(&agent.agent));
                 suite.add_property(Property::new(name, tallies.join(", ")));
             }
+        }
+        for machine in facts::machines_of(results, &info.name) {
+            let name = format!("hrdsl.machine.{}", text::line(&machine.machine));
+            suite.add_property(Property::new(name, facts::machine_in_short(&machine)));
         }
         if info.code.lines_total > 0 {
             suite.add_property(Property::new(
@@ -100,8 +107,8 @@ fn test_case(results: &CampaignResults, test: &TestResult) -> TestCase {
     let verdict = |v: &VerdictResult| format!("{}: {}", text::line(&v.requirement), v.outcome.word());
     let verdicts: Vec<String> = test.judgement.verdicts.iter().map(verdict).collect();
     case.add_property(Property::new("hrdsl.verdicts", verdicts.join(", ")));
-    for mark in &test.marks {
-        case.add_property(Property::new("hrdsl.mark", mark.sentence()));
+    for note in facts::notes(test) {
+        case.add_property(Property::new("hrdsl.mark", text::line(&note)));
     }
     if !test.output.stderr_end.is_empty() {
         case.set_system_err(text::clean(&test.output.stderr_end));
@@ -220,6 +227,21 @@ mod tests {
         let xml = junit(&results);
         assert!(xml.contains("name=\"hrdsl.model_goals\" value=\"3/5\""));
         assert!(xml.contains("name=\"hrdsl.model.Human\" value=\"plans 2/3, done 1/2, edges 1/2\""));
+    }
+
+    #[test]
+    fn machines_and_warnings_are_properties_of_suites_and_waits_of_tests() {
+        let mut results = fixture::campaign(2);
+        (results.machines, results.warnings) = (fixture::machines(), fixture::warnings());
+        results.tests[0].waits = vec![fixture::wait()];
+        let xml = junit(&results);
+        let has =
+            |name: &str, value: &str| xml.matches(&format!("name=\"{name}\" value=\"{value}\"")).count();
+        assert_eq!(has("hrdsl.machine.SM_ROOT", "2 of 3 states, 2 of 4 transitions"), 1);
+        assert_eq!(has("hrdsl.machine.SM_ROOT", "1 of 3 states, 0 of 4 transitions"), 1);
+        assert_eq!(has("hrdsl.warning", "brain subscribes to /scann, which nobody publishes"), 3);
+        let wait = "brain waited from 1.50 s to the end for the service /plan, which nobody serves";
+        assert_eq!(has("hrdsl.mark", wait), 1);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The summary for a terminal: requirements, first violations, bins, code and errors, in aligned columns.
 
-use std::fmt::Write as _;
+mod page;
+mod system;
 
 use hrdsl_results::{
     BinResult, CampaignResults, CoverItemKind, CoverageRatios, RequirementResult, RunMark, SuiteInfo,
@@ -11,9 +12,9 @@ use crate::{
     facts::{self, BinStatus, ShownOutcome},
     model, text,
 };
+use page::{LABEL, StyledSpan, TerminalPage, TerminalStyle, left, right};
+use system::{interfaces, machines};
 
-/// Room for a label at the start of a line, at the least.
-const LABEL: usize = 20;
 /// Bins and errors that are listed, at most.
 const BINS: usize = 16;
 const ERRORS: usize = 3;
@@ -23,22 +24,24 @@ const GOALS: usize = 5;
 /// The results on at most `width` columns, with ANSI colours if `color`.
 #[must_use]
 pub fn summary(results: &CampaignResults, width: usize, color: bool) -> String {
-    let mut page = TerminalPage { out: String::new(), width: width.max(40), color };
+    let mut page = TerminalPage::new(width, color);
     header(&mut page, results);
     requirements(&mut page, results);
     violations(&mut page, results);
     bins(&mut page, results);
     models(&mut page, results);
+    machines(&mut page, results);
     code(&mut page, results);
     errors(&mut page, results);
     marks(&mut page, results);
+    interfaces(&mut page, results);
     page.out
 }
 
 /// The verdicts and bins of recordings, as [`summary`] shows those of a campaign.
 #[must_use]
 pub fn summary_of_recordings(results: &CampaignResults, width: usize, color: bool) -> String {
-    let mut page = TerminalPage { out: String::new(), width: width.max(40), color };
+    let mut page = TerminalPage::new(width, color);
     let scenario = text::line(&results.scenario);
     page.line(&[
         StyledSpan(scenario, TerminalStyle::Bold),
@@ -48,98 +51,9 @@ pub fn summary_of_recordings(results: &CampaignResults, width: usize, color: boo
     requirements(&mut page, results);
     violations(&mut page, results);
     bins(&mut page, results);
+    machines(&mut page, results);
     errors(&mut page, results);
     page.out
-}
-
-/// Colours; each comes with a symbol or word that says the same.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum TerminalStyle {
-    Plain,
-    Bold,
-    Dim,
-    Good,
-    Bad,
-    Warn,
-}
-
-impl TerminalStyle {
-    fn code(self) -> &'static str {
-        match self {
-            TerminalStyle::Plain => "",
-            TerminalStyle::Bold => "1",
-            TerminalStyle::Dim => "2",
-            TerminalStyle::Good => "36",
-            TerminalStyle::Bad => "1;31",
-            TerminalStyle::Warn => "33",
-        }
-    }
-
-    fn of(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Pass => TerminalStyle::Good,
-            Outcome::Fail => TerminalStyle::Bad,
-            Outcome::Vacuous => TerminalStyle::Dim,
-            Outcome::Inconclusive | Outcome::Error => TerminalStyle::Warn,
-        }
-    }
-}
-
-/// A piece of a line. Its text is clean.
-struct StyledSpan(String, TerminalStyle);
-
-fn left(text: &str, width: usize, style: TerminalStyle) -> StyledSpan {
-    let text = text::cut(text, width);
-    StyledSpan(format!("{text:<width$}"), style)
-}
-
-fn right(text: &str, width: usize, style: TerminalStyle) -> StyledSpan {
-    let text = text::cut(text, width);
-    StyledSpan(format!("{text:>width$}"), style)
-}
-
-struct TerminalPage {
-    out: String,
-    width: usize,
-    color: bool,
-}
-
-impl TerminalPage {
-    fn line(&mut self, cells: &[StyledSpan]) {
-        let used = cells.iter().rposition(|c| !c.0.trim_end().is_empty()).map_or(0, |last| last + 1);
-        let mut room = self.width;
-        for (i, StyledSpan(text, style)) in cells[..used].iter().enumerate() {
-            let text = text::cut(text, room);
-            room -= text.chars().count();
-            let text = if i + 1 == used { text.trim_end() } else { &text };
-            if self.color && *style != TerminalStyle::Plain && !text.trim().is_empty() {
-                let _ = write!(self.out, "\u{1b}[{}m{text}\u{1b}[0m", style.code());
-            } else {
-                self.out.push_str(text);
-            }
-        }
-        self.out.push('\n');
-    }
-
-    /// The command that runs a test again, whole: it is there to be copied.
-    fn command(&mut self, results: &CampaignResults, test: &TestResult) {
-        if let Some(command) = results.rerun_of(test) {
-            let command = format!("  {}", text::line(&command));
-            let all = command.chars().count();
-            let width = std::mem::replace(&mut self.width, all);
-            self.line(&[StyledSpan(command, TerminalStyle::Dim)]);
-            self.width = width;
-        }
-    }
-
-    /// How many columns of a width fit beside the least label.
-    fn fit(&self, column: usize) -> usize {
-        (self.width.saturating_sub(LABEL) / column).max(1)
-    }
-
-    fn label(&self, columns: usize, column: usize) -> usize {
-        self.width.saturating_sub(columns * column).max(8)
-    }
 }
 
 fn header(page: &mut TerminalPage, results: &CampaignResults) {
@@ -589,6 +503,31 @@ Model of bdi_tests  3/5 goals reached
 ○ bin human_robot.4 legs, bored  `asked` was 0, 1, needs 4
 ";
         assert!(text.contains(expected), "{text}");
+    }
+
+    #[test]
+    fn what_was_not_reached_and_where_nobody_met_is_said() {
+        let mut results = fixture::campaign(2);
+        (results.machines, results.warnings) = (fixture::machines(), fixture::warnings());
+        let text = summary(&results, 80, false);
+        let machines = "
+State machine SM_ROOT  2 of 3 states, 2 of 4 transitions
+○ never entered  LOST
+○ never taken  GIVE -failed-> LOST
+○ never taken  LOST -given_up-> stuck
+State machine SM_ROOT/GIVE  1 of 1 state, 1 of 1 transition
+";
+        assert!(text.contains(machines), "{text}");
+        let interfaces = "
+Interfaces  where nobody met in any test
+! brain subscribes to /scann, which nobody publishes  12 tests
+  did you mean /scan? If not, add to the binding: topic \"/scann\": sensor_msgs/LaserScan in { … }
+! no program uses the service /gripper, which the binding serves  12 tests
+";
+        assert!(text.ends_with(interfaces), "{text}");
+        assert!(!text.contains("/debug"), "a note is for the page");
+        let recordings = summary_of_recordings(&results, 80, false);
+        assert!(recordings.contains(machines) && !recordings.contains("Interfaces"), "{recordings}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use hrdsl_ir::coverage::BinName;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::names::RequirementName;
+use crate::{machine::MachineCoverage, names::RequirementName};
 
 /// What a trace says about the requirements, and what it covers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -14,6 +14,9 @@ pub struct TraceJudgement {
     /// The cross-product bins that were hit, in order.
     #[schemars(with = "Vec<String>")]
     pub bins: Vec<BinName>,
+    /// What was reached of the system's state machines.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub machines: Vec<MachineCoverage>,
 }
 
 /// What a run says about a requirement.

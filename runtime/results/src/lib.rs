@@ -7,11 +7,14 @@
 //! # Map
 //! - [`CampaignResults`] is the file `results.json`; [`CampaignResults::to_json`] writes it, [`CampaignResults::from_json`] reads it back.
 //! - [`TestResult`] is one test: how its run ended, and the [`TraceJudgement`] on it.
-//! - [`RequirementResult`], [`BinResult`], [`SuiteInfo`] and [`CodeFile`] add up the tests.
+//! - [`RequirementResult`], [`BinResult`], [`SuiteInfo`], [`CodeFile`], [`MachineResult`] and [`InterfaceWarning`] add up the
+//!   tests.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod code;
+mod interface;
 mod judgement;
+mod machine;
 mod names;
 mod schema;
 mod suite;
@@ -25,7 +28,9 @@ use thiserror::Error;
 pub use code::{CodeFile, CoverageRatios};
 pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::CoverItemKind, test::TestMethod};
 pub use hrdsl_trace::RunEnd;
+pub use interface::{InterfaceFault, InterfaceRole, InterfaceWarning, UnservedWait};
 pub use judgement::{FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult, WitnessStep};
+pub use machine::{MachineCoverage, MachineResult, MachineStateResult, MachineTransitionResult};
 pub use names::{GoalName, RequirementName, SuiteName, TestName};
 pub use suite::{
     AgentCoverage, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteExplanation, SuiteInfo,
@@ -64,6 +69,12 @@ pub struct CampaignResults {
     pub suites: Vec<SuiteInfo>,
     pub bins: Vec<BinResult>,
     pub code: Vec<CodeFile>,
+    /// The state machines of the system under test.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub machines: Vec<MachineResult>,
+    /// Names of the middleware at which somebody was alone in every test.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<InterfaceWarning>,
     /// In the order in which they were given.
     pub tests: Vec<TestResult>,
 }
@@ -159,6 +170,8 @@ mod tests {
             suites: Vec::new(),
             bins: Vec::new(),
             code: Vec::new(),
+            machines: Vec::new(),
+            warnings: Vec::new(),
             tests: Vec::new(),
         }
     }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     code::CoverageRatios,
+    interface::UnservedWait,
     judgement::TraceJudgement,
     names::{SuiteName, TestName},
     schema,
@@ -27,6 +28,9 @@ pub struct TestResult {
     /// What must be known about the run to trust it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub marks: Vec<RunMark>,
+    /// What programs waited for in vain until the test was over.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub waits: Vec<UnservedWait>,
     /// Simulated seconds.
     pub duration: f64,
     #[serde(flatten)]

@@ -1,8 +1,8 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    CanceledGoals, CommandRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault,
-    SystemFaultKind, SystemRequest,
+    AwaitedPort, CanceledGoals, CommandRequest, MachineDeclaration, MachineEdge, MachineStep, RequestTicket,
+    SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
@@ -93,6 +93,9 @@ fn meant(request: ProgramRequest) -> SystemRequest {
         ProgramRequest::Open(open) => SystemRequest::Open(open.into()),
         ProgramRequest::Close { port } => SystemRequest::Close { port },
         ProgramRequest::List => SystemRequest::List,
+        ProgramRequest::Await { kind, name, type_name, give_up } => {
+            SystemRequest::Await(AwaitedPort { kind: kind.into(), name, type_name, give_up })
+        }
         // INVARIANT: `fault` refuses a request with neither, or with both.
         ProgramRequest::Cancel { call: Some(call), .. } => SystemRequest::Cancel(CanceledGoals::Own(call)),
         ProgramRequest::Cancel { call: None, port } => {
@@ -104,9 +107,19 @@ fn meant(request: ProgramRequest) -> SystemRequest {
         }
         ProgramRequest::State { device, what } => SystemRequest::State { device, what },
         ProgramRequest::Plan { device, to } => SystemRequest::Plan { device, to },
-        ProgramRequest::Transition { label, next } => SystemRequest::Transition { from: label, to: next },
-        // What a machine consists of matters to nobody here.
-        ProgramRequest::Machine => SystemRequest::Now,
+        ProgramRequest::Transition { machine, label, outcome, next } => SystemRequest::Machine(match label {
+            Some(from) => {
+                let edge = MachineEdge { from, outcome: outcome.unwrap_or_default(), to: next };
+                MachineStep::Moved { machine, edge }
+            }
+            None => MachineStep::Begun { machine, state: next },
+        }),
+        ProgramRequest::Machine { name, states, transitions, outcomes } => {
+            let edge = |(from, outcome, to)| MachineEdge { from, outcome, to };
+            let transitions = transitions.into_iter().map(edge).collect();
+            let declared = MachineDeclaration { machine: name, states, transitions, outcomes };
+            SystemRequest::Machine(MachineStep::Declared(declared))
+        }
         ProgramRequest::Message(request) => carried(request),
         ProgramRequest::Done => SystemRequest::Done,
     }

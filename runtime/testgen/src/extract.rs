@@ -192,7 +192,7 @@ pub fn covered(program: &Program, trace: &Trace) -> TestCoverage {
 pub fn keeps_assumptions(program: &Program, trace: &Trace) -> bool {
     let events = trace.steps.iter().filter_map(|s| match &s.what {
         TraceStepKind::Event { event, args } => Some((s.time, *event, args.clone())),
-        TraceStepKind::Sample { .. } => None,
+        TraceStepKind::Sample { .. } | TraceStepKind::Machine(_) => None,
     });
     let events: Vec<_> = events.collect();
     hrdsl_coverage::assume::AssumptionChecker::allows(program, &events)

@@ -9,6 +9,7 @@
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 pub mod decimal;
+mod machine;
 pub mod parse;
 pub mod print;
 pub mod record;
@@ -16,6 +17,8 @@ pub mod vocabulary;
 
 use hrdsl_ir::{EventId, Nanos, Value, world::SignalId};
 use serde::{Deserialize, Serialize};
+
+pub use machine::{MachineDeclaration, MachineEdge, MachineStep};
 
 /// One run's timestamped events and samples, in order of time; steps of the same instant in the order they happened.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,6 +40,8 @@ pub enum TraceStepKind {
     Event { event: EventId, args: Vec<Value> },
     /// A signal has this value from now on; it is recorded when it changes.
     Sample { signal: SignalId, value: Value },
+    /// A state machine of the system was declared, begun or has moved. No requirement reads it.
+    Machine(Box<MachineStep>),
 }
 
 /// How a run ended.

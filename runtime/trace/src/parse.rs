@@ -212,6 +212,10 @@ impl<'a> StepReader<'a> {
         }
         let Some(time) = line.t else { return Err(LineProblem::Form("the step lacks its time `t`")) };
         let time = self.pass(time.get())?;
+        if line.has_machine() {
+            let what = TraceStepKind::Machine(Box::new(line.machine_step()?));
+            return Ok(Some(TraceStep { time, what }));
+        }
         let what = match (line.event, line.args, line.signal, line.value) {
             (Some(event), args, None, None) => self.event(&event, args.map(|a| a.0).unwrap_or_default())?,
             (None, None, Some(signal), Some(value)) => self.sample(&signal, &value)?,
@@ -220,7 +224,9 @@ impl<'a> StepReader<'a> {
             (None, _, Some(_), Some(_)) => {
                 return Err(LineProblem::Form("a sample has `t`, `signal` and `value` only"));
             }
-            (None, _, None, _) => return Err(LineProblem::Form("the step has neither `event` nor `signal`")),
+            (None, _, None, _) => {
+                return Err(LineProblem::Form("the step has neither `event` nor `signal` nor `machine`"));
+            }
         };
         Ok(Some(TraceStep { time, what }))
     }

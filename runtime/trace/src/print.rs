@@ -6,6 +6,8 @@ use crate::{TraceStep, TraceStepKind, record};
 
 /// What stands in the column of the actors when a signal is sampled.
 const SIGNAL: &str = "signal";
+/// What stands there when a state machine moves.
+const MACHINE: &str = "machine";
 
 /// One step as a line: the time to the millisecond, who did it, and what.
 ///
@@ -21,12 +23,13 @@ pub fn line(program: &Program, step: &TraceStep) -> String {
     format!("{:>8} s  {who:<width$}  {what}", milliseconds(step.time))
 }
 
-/// The line's last two columns: the actor (or `signal`), and what it did (or its value).
+/// The line's last two columns: the actor (or `signal`, or `machine`), and what it did (or its value).
 #[must_use]
 pub fn who_did_what<'p>(program: &'p Program, what: &TraceStepKind) -> (&'p str, String) {
     match what {
         TraceStepKind::Event { event, args } => (maker(program, *event), event_text(program, *event, args)),
         TraceStepKind::Sample { signal, value } => (SIGNAL, sample(program, *signal, *value)),
+        TraceStepKind::Machine(step) => (MACHINE, step.to_string()),
     }
 }
 

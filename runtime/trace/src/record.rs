@@ -4,12 +4,17 @@ use std::fmt::Write as _;
 
 use hrdsl_ir::{EventId, Nanos, Program, Value, world::SignalId};
 
-use crate::{RunEnd, Trace, TraceStep, TraceStepKind, decimal, vocabulary};
+use crate::{
+    MachineDeclaration, MachineEdge, MachineStep, RunEnd, Trace, TraceStep, TraceStepKind, decimal,
+    vocabulary,
+};
 
 /// What kind of file this is: the header's `hrdsl`.
 pub const KIND: &str = "trace";
-/// The version of the format that this module writes; [`parse`](crate::parse) reads it and those before it.
-pub const VERSION: u64 = 2;
+/// The newest version of the format; [`parse`](crate::parse) reads it and those before it.
+pub const VERSION: u64 = 3;
+/// The version of recordings without steps of state machines, which older readers can read, too.
+const WITHOUT_MACHINES: u64 = 2;
 
 /// Where a recording comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -42,7 +47,8 @@ pub struct RecordingEnd {
 /// The whole recording of a trace; every line ends with a line break.
 #[must_use]
 pub fn write(program: &Program, header: &RecordingHeader, trace: &Trace, ending: &RecordingEnd) -> String {
-    let mut text = header_line(header) + "\n";
+    let has_machines = trace.steps.iter().any(|step| matches!(step.what, TraceStepKind::Machine(_)));
+    let mut text = header_line(header, if has_machines { VERSION } else { WITHOUT_MACHINES }) + "\n";
     for step in &trace.steps {
         text.push_str(&step_line(program, step));
         text.push('\n');
@@ -53,9 +59,8 @@ pub fn write(program: &Program, header: &RecordingHeader, trace: &Trace, ending:
 }
 
 /// The first line, without a line break.
-#[must_use]
-pub fn header_line(header: &RecordingHeader) -> String {
-    let mut line = format!("{{\"hrdsl\":{},\"version\":{VERSION},\"scenario\":", text(KIND));
+fn header_line(header: &RecordingHeader, version: u64) -> String {
+    let mut line = format!("{{\"hrdsl\":{},\"version\":{version},\"scenario\":", text(KIND));
     line.push_str(&text(&header.scenario));
     for (key, value) in [("vocabulary", &header.vocabulary), ("test", &header.test)] {
         if let Some(value) = value {
@@ -71,8 +76,7 @@ pub fn header_line(header: &RecordingHeader) -> String {
 }
 
 /// The line of one step, without a line break.
-#[must_use]
-pub fn step_line(program: &Program, step: &TraceStep) -> String {
+fn step_line(program: &Program, step: &TraceStep) -> String {
     let mut line = format!("{{\"t\":{}", decimal::seconds(step.time));
     match &step.what {
         TraceStepKind::Event { event, args } => {
@@ -92,14 +96,41 @@ pub fn step_line(program: &Program, step: &TraceStep) -> String {
             let name = text(signal_name(program, *signal));
             let _ = write!(line, ",\"signal\":{name},\"value\":{}", value(*sampled));
         }
+        TraceStepKind::Machine(step) => line.push_str(&machine_text(step)),
     }
     line.push('}');
     line
 }
 
+/// What a step of a state machine has besides its time.
+fn machine_text(step: &MachineStep) -> String {
+    match step {
+        MachineStep::Declared(MachineDeclaration { machine, states, transitions, outcomes }) => {
+            let edge = |e: &MachineEdge| texts([&e.from, &e.outcome, &e.to]);
+            let edges: Vec<String> = transitions.iter().map(edge).collect();
+            let (machine, edges) = (text(machine), edges.join(","));
+            let (states, outcomes) = (texts(states), texts(outcomes));
+            format!(
+                ",\"machine\":{machine},\"states\":{states},\"transitions\":[{edges}],\"outcomes\":{outcomes}"
+            )
+        }
+        MachineStep::Begun { machine, state } => {
+            format!(",\"machine\":{},\"to\":{}", text(machine), text(state))
+        }
+        MachineStep::Moved { machine, edge: MachineEdge { from, outcome, to } } => {
+            let (machine, from, outcome, to) = (text(machine), text(from), text(outcome), text(to));
+            format!(",\"machine\":{machine},\"from\":{from},\"outcome\":{outcome},\"to\":{to}")
+        }
+    }
+}
+
+fn texts<'t>(all: impl IntoIterator<Item = &'t String>) -> String {
+    let all: Vec<String> = all.into_iter().map(|one| text(one)).collect();
+    format!("[{}]", all.join(","))
+}
+
 /// The last line, without a line break.
-#[must_use]
-pub fn end_line(time: Nanos, ending: &RecordingEnd) -> String {
+fn end_line(time: Nanos, ending: &RecordingEnd) -> String {
     let mut line = format!("{{\"end\":{},\"ended\":{}", decimal::seconds(time), text(ending.kind.word()));
     if let Some(error) = &ending.error {
         line.push_str(",\"error\":");

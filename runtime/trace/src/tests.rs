@@ -8,7 +8,7 @@ use hrdsl_ir::{
 use proptest::prelude::*;
 
 use crate::{
-    RunEnd, Trace, TraceStep, TraceStepKind, decimal,
+    MachineDeclaration, MachineEdge, MachineStep, RunEnd, Trace, TraceStep, TraceStepKind, decimal,
     parse::{LineProblem, OpenRecording, RecordingSummary, parse},
     print,
     record::{self, RecordingEnd, RecordingHeader},
@@ -153,14 +153,14 @@ fn faults_are_said_with_their_line() {
     says(r#"{"t":"1","event":"leg_request"}"#, "`\"1\"` is not a time in seconds, at least 0");
     says(r#"{"t":-1,"event":"leg_request"}"#, "`-1` is not a time in seconds, at least 0");
     says(r#"{"event":"leg_request"}"#, "the step lacks its time `t`");
-    says(r#"{"t":1}"#, "the step has neither `event` nor `signal`");
+    says(r#"{"t":1}"#, "the step has neither `event` nor `signal` nor `machine`");
     says(r#"{"t":1,"signal":"gaze"}"#, "the sample lacks its `value`");
     says(r#"{"t":1,"signal":"gaze","value":true,"args":{}}"#, "a sample has `t`, `signal` and `value` only");
     says(r#"{"t":1,"event":"leg_request","value":1}"#, "an event has `t`, `event` and `args` only");
     says(r#"{"end":1,"t":1}"#, "the last line has `end`, `ended` and `error` only");
     says(
         r#"{"t":1,"evnt":"x"}"#,
-        "not a line of a recording: unknown field `evnt`, expected one of `t`, `event`, `args`, `signal`, `value`, `end`, `ended`, `error` (column 13)",
+        "not a line of a recording: unknown field `evnt`, expected one of `t`, `event`, `args`, `signal`, `value`, `machine`, `states`, `transitions`, `outcomes`, `from`, `outcome`, `to`, `end`, `ended`, `error` (column 13)",
     );
 }
 
@@ -212,6 +212,33 @@ fn the_last_line_says_how_the_run_ended() {
 }
 
 #[test]
+fn only_recordings_with_state_machines_are_of_version_3() {
+    let begun = MachineStep::Begun { machine: "M".into(), state: "A".into() };
+    let steps = vec![TraceStep { time: 0, what: TraceStepKind::Machine(Box::new(begun)) }];
+    for (trace, version) in [(Trace::default(), 2), (Trace { steps, end: 1 }, 3)] {
+        let text = record::write(&program(), &RecordingHeader::default(), &trace, &RecordingEnd::default());
+        assert!(text.starts_with(&format!("{{\"hrdsl\":\"trace\",\"version\":{version},")), "{text}");
+    }
+}
+
+#[test]
+fn steps_of_state_machines_are_whole() {
+    let whole = "a step of a state machine has `t`, `machine` and what it did only";
+    let form = "a state machine has `states`, `transitions` and `outcomes`, or goes `from` a state by an `outcome` `to` another, \
+                or begins with a state `to` which it goes";
+    for (line, says) in [
+        (r#"{"t":1,"machine":"M"}"#, form),
+        (r#"{"t":1,"machine":"M","from":"A","to":"B"}"#, form),
+        (r#"{"t":1,"machine":"M","states":[],"to":"B"}"#, form),
+        (r#"{"t":1,"to":"B"}"#, whole),
+        (r#"{"t":1,"machine":"M","to":"B","value":1}"#, whole),
+        (r#"{"end":1,"machine":"M"}"#, "the last line has `end`, `ended` and `error` only"),
+    ] {
+        assert_eq!(fault(&[HEADER, line]), (2, says.to_owned()), "{line}");
+    }
+}
+
+#[test]
 fn a_line_that_is_no_text_is_named() {
     let read = |bytes: &[u8]| {
         let mut trace = Trace::default();
@@ -248,7 +275,7 @@ fn headers_are_checked() {
         fault(&[r#"{"hrdsl":"report","version":1,"scenario":"s"}"#]).1,
         LineProblem::NoHeader.to_string()
     );
-    for (version, says) in [(0, "version 0"), (3, "version 3; versions 1 to 2 can be read")] {
+    for (version, says) in [(0, "version 0"), (4, "version 4; versions 1 to 3 can be read")] {
         let found = fault(&[&format!(r#"{{"hrdsl":"trace","version":{version},"scenario":"s"}}"#)]).1;
         assert!(found.contains(says), "{found}");
     }
@@ -395,7 +422,21 @@ fn whats() -> BoxedStrategy<TraceStepKind> {
     let of_signal = (0u16..).zip(&program.signals).map(|(id, signal)| {
         values(signal.ty).prop_map(move |value| TraceStepKind::Sample { signal: SignalId(id), value }).boxed()
     });
-    prop::strategy::Union::new(of_event.chain(of_signal)).boxed()
+    let of_machine = machine_steps().prop_map(|step| TraceStepKind::Machine(Box::new(step))).boxed();
+    prop::strategy::Union::new(of_event.chain(of_signal).chain([of_machine])).boxed()
+}
+
+fn machine_steps() -> impl Strategy<Value = MachineStep> {
+    let texts = || prop::collection::vec(any::<String>(), 0..3);
+    let edge = || any::<[String; 3]>().prop_map(|[from, outcome, to]| MachineEdge { from, outcome, to });
+    let declared = (any::<String>(), texts(), prop::collection::vec(edge(), 0..3), texts()).prop_map(
+        |(machine, states, transitions, outcomes)| {
+            MachineStep::Declared(MachineDeclaration { machine, states, transitions, outcomes })
+        },
+    );
+    let begun = any::<[String; 2]>().prop_map(|[machine, state]| MachineStep::Begun { machine, state });
+    let moved = (any::<String>(), edge()).prop_map(|(machine, edge)| MachineStep::Moved { machine, edge });
+    prop_oneof![declared, begun, moved]
 }
 
 fn traces() -> impl Strategy<Value = Trace> {

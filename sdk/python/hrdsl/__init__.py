@@ -20,5 +20,6 @@ beside events:
 
 from hrdsl.errors import ProtocolError, Stopped
 from hrdsl.node import Arm, Device, Event, Gripper, Motion, Node
+from hrdsl.states import StateMachine
 
-__all__ = ["Arm", "Device", "Event", "Gripper", "Motion", "Node", "ProtocolError", "Stopped"]
+__all__ = ["Arm", "Device", "Event", "Gripper", "Motion", "Node", "ProtocolError", "StateMachine", "Stopped"]

@@ -177,6 +177,16 @@ class Exchange:
             raise
         return port
 
+    def awaits(self, kind: str, name: str, type_name: str | None = None, give_up: int | None = None) -> None:
+        """Tells that the program waits, until `give_up` (nanoseconds) at most, for somebody at a name, where it is of this
+        kind itself: a `client` for a server, a `subscriber` for a publisher."""
+        message: dict[str, Any] = {"request": "await", "kind": kind, "name": name}
+        if type_name is not None:
+            message["type"] = type_name
+        if give_up is not None:
+            message["give_up"] = give_up
+        self.tell(message)
+
     def listing(self) -> list[dict[str, str]]:
         """All open ports of the system: `kind`, `name`, `type` and `program` of each."""
         ports: list[dict[str, str]] = self.link.request({"request": "list"})["ports"]
@@ -248,6 +258,14 @@ class Exchange:
         """How a device is now: its `joints`, as positions in radians or metres."""
         value: list[float] = self.link.request({"request": "state", "device": device, "what": what})["value"]
         return value
+
+    def declare(self, machine: str, states: list[str], transitions: list[list[str]], outcomes: list[str]) -> None:
+        """Tells what a state machine consists of: its transitions are lists of a state, an outcome of it and what is next."""
+        self.tell({"request": "machine", "name": machine, "states": states, "transitions": transitions, "outcomes": outcomes})
+
+    def begin(self, machine: str, state: str) -> None:
+        """Tells that a state machine begins, in this state."""
+        self.tell({"request": "transition", "machine": machine, "next": state})
 
     def transition(self, machine: str, label: str, state: str, outcome: str, next: str) -> None:
         """Tells that a state machine has moved."""

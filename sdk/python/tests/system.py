@@ -35,6 +35,7 @@ class System:
         self.commands = commands or (lambda request: (0, None))
         self.events, self.end, self.others, self.accepts = events, end, list(others), accepts
         self.mailbox, self.refused, self.ports, self.calls, self.goals = [], [], {}, {}, {}
+        self.awaited = []
         self.latched, self.published, self.watched = dict(latched), [], False
         self._queue, self._number = [], 0
         for time, arrival in arrivals:
@@ -206,6 +207,9 @@ class System:
         if port.get("latched") or port.get("durability") == "transient_local":
             self.latched[port["name"]] = request["message"]
         self.publish(port["name"], request["message"], port)
+
+    def tell_await(self, request):
+        self.awaited.append(request)
 
     def tell_transition(self, request):
         pass

@@ -80,8 +80,11 @@ say(client.wait_for_server())
 say(client.send_goal_and_wait(CountGoal(1)))
 """
         later = [(2 * SECOND, lambda system: system.others_open("action_server", "/count", "counting/Count"))]
-        out = self.said(text, System(later, actions={"/count": counts}))
+        system = System(later, actions={"/count": counts})
+        out = self.said(text, system)
         self.assertEqual(out, ["1.500 False", "2.000 True", "2.500 3"])
+        count = {"request": "await", "kind": "action_client", "name": "/count", "type": "counting/Count"}
+        self.assertEqual(system.awaited, [{**count, "give_up": 3 * SECOND // 2}, count])
 
     def test_who_waits_too_long_cancels(self):
         text = """

@@ -54,6 +54,37 @@ class Messages(unittest.TestCase):
             self.addCleanup(sys.modules.pop, "hrdsl.runner")
         return harness, hrdsl.Node("test")
 
+    def test_a_state_machine_tells_what_it_is_and_does(self):
+        harness, node = self.node(System())
+        states = {"WAIT": {"asked": "GIVE"}, "GIVE": {"given": "WAIT", "lost": "stuck"}}
+        machine = hrdsl.StateMachine("arm", states, ["stuck"])
+        machine.begin("WAIT")
+        self.assertEqual((machine.take("asked"), machine.state), ("GIVE", "GIVE"))
+        for wrong, why in (
+            (lambda: machine.take("asked"), "arm has no outcome asked in GIVE; it has given, lost"),
+            (lambda: machine.begin("GONE"), "arm has no state GONE; it has WAIT, GIVE"),
+            (lambda: hrdsl.StateMachine("leg", {"A": {"ok": "B"}}), "leg: ok leads from A to B, which is no state and no outcome"),
+        ):
+            with self.assertRaisesRegex(ValueError, why):
+                wrong()
+        self.assertEqual((machine.take("lost"), machine.state), ("stuck", None))
+        with self.assertRaisesRegex(ValueError, "arm is in no state: begin it"):
+            machine.take("lost")
+        node.sleep(1)
+        told = [request for request in harness.requests if request["request"] in ("machine", "transition")]
+        edges = [["WAIT", "asked", "GIVE"], ["GIVE", "given", "WAIT"], ["GIVE", "lost", "stuck"]]
+        declared = {"request": "machine", "name": "arm", "states": ["WAIT", "GIVE"], "transitions": edges, "outcomes": ["stuck"]}
+        step = {"request": "transition", "machine": "arm"}
+        self.assertEqual(
+            told,
+            [
+                declared,
+                {**step, "next": "WAIT"},
+                {**step, "label": "WAIT", "state": "", "outcome": "asked", "next": "GIVE"},
+                {**step, "label": "GIVE", "state": "", "outcome": "lost", "next": "stuck"},
+            ],
+        )
+
     def test_a_motion_is_begun_and_waited_for(self):
         harness, node = self.node(System(commands=lambda request: (1500000000, None)))
         self.assertIs(node.arm("robot.arm").move_to((1, 2, 3)), True)

@@ -304,6 +304,8 @@ class Topics(Case):
         system = System([(SECOND, topic("/a", data=1)), (3 * SECOND, topic("/a", data=2))])
         said = ["1 1.0", "2 3.0", "timeout exceeded while waiting for message on topic a 3.5"]
         self.assertEqual(self.said(text, system=system), said)
+        a = {"request": "await", "kind": "subscriber", "name": "/a", "type": "std_msgs/Int8"}
+        self.assertEqual(system.awaited, [a, {**a, "give_up": 4 * SECOND}, {**a, "give_up": 7 * SECOND // 2}])
 
     def test_connections_and_those_who_listen_to_them(self):
         text = """

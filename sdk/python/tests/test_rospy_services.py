@@ -116,6 +116,9 @@ class Services(unittest.TestCase):
                 "service [/dark] responded with an error: b'broken'",
             ],
         )
+        light = {"request": "await", "kind": "client", "name": "/light"}
+        again = {**light, "type": "std_srvs/SetBool", "give_up": 7 * SECOND}
+        self.assertEqual(system.awaited, [{**light, "give_up": SECOND}, light, again])
 
     def test_called_from_outside(self):
         text = """

@@ -364,8 +364,11 @@ class Kept:
     def polled(self, kind):
         pass
 
-    def tell(self, message):
-        self.told.append(message)
+    def declare(self, machine, states, transitions, outcomes):
+        self.told.append({"machine": machine, "states": states, "transitions": transitions, "outcomes": outcomes})
+
+    def begin(self, *what):
+        self.told.append(what)
 
     def transition(self, *what):
         self.told.append(what)
@@ -393,20 +396,20 @@ class Telling(Quiet):
             self.exchange.told,
             [
                 {
-                    "request": "machine",
-                    "name": "machine",
+                    "machine": "machine",
                     "states": ["IDLE", "GRASP"],
                     "transitions": [["IDLE", "go", "GRASP"], ["IDLE", "end", "end"], ["GRASP", "got", "IDLE"]],
                     "outcomes": ["end"],
                 },
-                ("machine", "IDLE", "Says", "go", "GRASP"),
                 {
-                    "request": "machine",
-                    "name": "machine/GRASP",
+                    "machine": "machine/GRASP",
                     "states": ["REACH"],
                     "transitions": [["REACH", "got", "got"]],
                     "outcomes": ["got"],
                 },
+                ("machine", "IDLE"),
+                ("machine", "IDLE", "Says", "go", "GRASP"),
+                ("machine/GRASP", "REACH"),
                 ("machine/GRASP", "REACH", "Says", "got", "got"),
                 ("machine", "GRASP", "StateMachine", "got", "IDLE"),
                 ("machine", "IDLE", "Says", "end", "end"),
@@ -414,7 +417,41 @@ class Telling(Quiet):
         )
         outer["IDLE"].left = ["end"]
         outer.execute()
-        self.assertEqual(self.exchange.told[6:], [("machine", "IDLE", "Says", "end", "end")])
+        self.assertEqual(self.exchange.told[8:], [("machine", "IDLE"), ("machine", "IDLE", "Says", "end", "end")])
+
+    def test_what_is_never_entered_is_declared_through_every_container(self):
+        def machine(label):
+            made = smach.StateMachine(outcomes=["end"])
+            with made:
+                made.add(label, Says("end"))
+            return made
+
+        both = smach.Concurrence(outcomes=["end"], default_outcome="end")
+        with both:
+            both.add("LEFT", machine("L"))
+            both.add("RIGHT", Says("end"))
+        each = smach.Iterator(["end"], [], [], [1, 2], "item", "end")
+        with each:
+            each.set_contained_state("ITEM", machine("I"), loop_outcomes=["end"])
+        outer = smach.StateMachine(outcomes=["end"])
+        with outer:
+            outer.add("START", Says("end"), {"end": "end"})
+            outer.add("BOTH", both)
+            outer.add("EACH", each)
+        outer.execute()
+        declared = [(told["machine"], told["states"]) for told in self.exchange.told if isinstance(told, dict)]
+        self.assertEqual(
+            declared,
+            [
+                ("machine", ["START", "BOTH", "EACH"]),
+                ("machine/BOTH", ["LEFT", "RIGHT"]),
+                ("machine/BOTH/LEFT", ["L"]),
+                ("machine/EACH", ["ITEM"]),
+                ("machine/EACH/ITEM", ["I"]),
+            ],
+        )
+        both.execute()
+        self.assertEqual(sorted(self.exchange.told[-4:])[:2], [("machine/BOTH", "LEFT"), ("machine/BOTH", "RIGHT")])
 
     def test_further_machines_are_counted(self):
         for label, name in (("A", "machine"), ("B", "machine#2"), ("A", "machine")):
@@ -423,7 +460,8 @@ class Telling(Quiet):
                 machine.add(label, Says("end"))
             machine.execute()
             self.assertEqual(self.exchange.told[-1][0], name)
-        self.assertEqual(len(self.exchange.told), 5)  # the last is the first again, and is not declared twice
+        # Each begins and ends; the last is the first again, and is not declared twice.
+        self.assertEqual(len(self.exchange.told), 8)
 
 
 class Alone(unittest.TestCase):

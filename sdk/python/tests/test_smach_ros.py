@@ -198,15 +198,17 @@ rospy.spin()
         self.assertEqual(
             [[request["request"], request.get("label"), request.get("end"), request.get("next")] for request in told],
             [
+                ["transition", None, None, "COUNT"],
                 ["transition", "COUNT", None, "REST"],
                 ["feedback", None, None, None],
                 ["transition", "REST", None, "done"],
                 ["finish", None, "succeeded", None],
+                ["transition", None, None, "COUNT"],
                 ["transition", "COUNT", None, "preempted"],
                 ["finish", None, "canceled", None],
             ],
         )
-        self.assertEqual(told[1]["message"], {"at": 1})
+        self.assertEqual(told[2]["message"], {"at": 1})
 
 
 if __name__ == "__main__":

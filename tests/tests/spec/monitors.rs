@@ -59,6 +59,7 @@ fn as_json(trace: &Trace) -> Json {
     let step = |s: &TraceStep| match &s.what {
         TraceStepKind::Event { event, args } => json!([s.time, event, args]),
         TraceStepKind::Sample { signal, value } => json!([s.time, { "signal": signal }, value]),
+        TraceStepKind::Machine(step) => json!([s.time, step.to_string()]),
     };
     json!({ "steps": trace.steps.iter().map(step).collect::<Vec<_>>(), "end": trace.end })
 }

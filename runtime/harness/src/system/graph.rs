@@ -5,9 +5,15 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
+use hrdsl_ir::Nanos;
+
 use super::{
-    port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortListing, QosDurability, QosPolicy},
+    history::GraphHistory,
     seam::{CanceledGoals, SystemArrival},
+};
+use crate::port::{
+    AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing, QosDurability,
+    QosPolicy,
 };
 
 /// A program may have so many ports open, and so many calls under way.
@@ -60,6 +66,7 @@ pub(super) struct MessageGraph {
     made: u64,
     /// Programs that are to be told of the next change.
     watchers: Vec<ProgramIndex>,
+    history: GraphHistory,
 }
 
 /// What a request does to others; or why it makes no sense.
@@ -96,6 +103,7 @@ impl MessageGraph {
                 out.extend(old.map(|message| message_to(program, &declared, message.clone())));
             }
         }
+        self.history.opened(program, &declared);
         self.ports.push(OpenPort { program, declared, kept: VecDeque::new() });
         Ok(out)
     }
@@ -120,6 +128,7 @@ impl MessageGraph {
             mine.into_iter().flat_map(|port| self.close(program, port).unwrap_or_default()).collect();
         self.calls.retain(|_, call| call.client != program);
         self.watchers.retain(|watcher| *watcher != program);
+        self.history.left(program);
         out.retain(|delivery| delivery.to != program);
         out
     }
@@ -136,6 +145,16 @@ impl MessageGraph {
             program: names.get(p.program).cloned().unwrap_or_default(),
         };
         self.ports.iter().map(listing).collect()
+    }
+
+    /// A program waits until somebody is there.
+    pub fn await_port(&mut self, program: ProgramIndex, awaited: AwaitedPort, now: Nanos) {
+        self.history.awaited(program, awaited, now);
+    }
+
+    /// What was open in the whole run that ends now.
+    pub fn history(&self, names: &[String], end: Nanos) -> PortHistory {
+        self.history.told(names, end)
     }
 
     pub fn publish(&mut self, program: ProgramIndex, port: u64, message: &MessageText) -> GraphOutcome {

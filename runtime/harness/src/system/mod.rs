@@ -2,9 +2,9 @@
 
 mod binding;
 mod graph;
+mod history;
 mod mailbox;
 pub mod player;
-pub mod port;
 mod program;
 pub mod seam;
 mod vocabulary;

@@ -3,12 +3,12 @@
 use std::collections::VecDeque;
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value, binding::MiddlewareBinding};
+use hrdsl_trace::{MachineDeclaration, MachineStep};
 
 use super::{
     binding::{BindingFault, BindingNode, BindingOutcome},
     graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
     mailbox::HeardEvent,
-    port::PortDeclaration,
     program::{RequestWait, ServedProgram},
     seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     vocabulary::{ActorVocabulary, refuse},
@@ -18,6 +18,7 @@ use crate::{
     fault::SystemFault,
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext},
+    port::{PortDeclaration, PortHistory},
     stage::WorldStage,
     world::CommandId,
 };
@@ -172,12 +173,15 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             }),
             SystemRequest::State { device, what } => Answer(asked(cx, |stage| stage.state(&device, &what))),
             SystemRequest::Plan { device, to } => Answer(asked(cx, |stage| stage.plan(&device, to))),
-            SystemRequest::Transition { from, to } => {
-                let events = self.binding.iter().flat_map(|binding| binding.transition(&from, &to));
-                cx.out.extend(events.map(|(event, args)| PlayerMessage::Event { event, args }));
+            SystemRequest::Machine(step) => {
+                self.machine(index, step, cx);
                 Answer(SystemAnswer::Ok)
             }
             SystemRequest::List => Answer(self.listed(index)),
+            SystemRequest::Await(awaited) => {
+                self.graph.await_port(index, awaited, cx.now);
+                Answer(SystemAnswer::Ok)
+            }
             SystemRequest::Open(declared) => {
                 let opened = self.opened(index, declared);
                 Answer(self.told(opened, cx)?)
@@ -205,8 +209,30 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
     }
 
     fn listed(&mut self, index: ProgramIndex) -> SystemAnswer {
-        let names: Vec<String> = self.programs.iter().map(|p| p.name.clone()).collect();
+        let names = self.names();
         SystemAnswer::Listed(self.graph.watch(index, &names))
+    }
+
+    /// Writes down what a state machine does, and then makes happen what that means. Of several programs, the machine is called
+    /// by its program first.
+    fn machine(&self, index: ProgramIndex, mut step: MachineStep, cx: &mut PlayerContext<'_, '_>) {
+        if let Some(program) = self.programs.get(index).filter(|_| self.programs.len() > 1) {
+            let (MachineStep::Declared(MachineDeclaration { machine, .. })
+            | MachineStep::Begun { machine, .. }
+            | MachineStep::Moved { machine, .. }) = &mut step;
+            *machine = format!("{}/{machine}", program.name);
+        }
+        let mut meant = Vec::new();
+        if let MachineStep::Moved { edge, .. } = &step {
+            let events = self.binding.iter().flat_map(|binding| binding.transition(&edge.from, &edge.to));
+            meant.extend(events.map(|(event, args)| PlayerMessage::Event { event, args }));
+        }
+        cx.out.push(PlayerMessage::Machine(step));
+        cx.out.extend(meant);
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.programs.iter().map(|p| p.name.clone()).collect()
     }
 
     fn opened(&mut self, index: ProgramIndex, declared: PortDeclaration) -> GraphOutcome {
@@ -246,8 +272,9 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             | SystemRequest::Begin { .. }
             | SystemRequest::State { .. }
             | SystemRequest::Plan { .. }
-            | SystemRequest::Transition { .. }
+            | SystemRequest::Machine(_)
             | SystemRequest::List
+            | SystemRequest::Await(_)
             | SystemRequest::Open(_)
             | SystemRequest::Close { .. }
             | SystemRequest::Publish { .. } => Ok(Vec::new()),
@@ -412,5 +439,9 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
 
     fn is_finished(&self) -> bool {
         self.programs.iter().all(|p| p.ended)
+    }
+
+    fn ports(&self, end: Nanos) -> PortHistory {
+        self.graph.history(&self.names(), end)
     }
 }

@@ -7,9 +7,14 @@
 use std::{collections::BTreeMap, fmt};
 
 use hrdsl_ir::{Nanos, Value};
+use hrdsl_trace::MachineStep;
 
-use super::port::{GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy};
-use crate::{argument::SystemArgument, command::CommandRequest, fault::SystemFault};
+use crate::{
+    argument::SystemArgument,
+    command::CommandRequest,
+    fault::SystemFault,
+    port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
+};
 
 /// Whatever plays the system actor.
 pub trait SystemActor {
@@ -80,6 +85,8 @@ pub enum SystemRequest {
     },
     /// What is open, and an arrival when that changes.
     List,
+    /// It waits until somebody is at a name; that is all it says.
+    Await(AwaitedPort),
     Publish {
         port: u64,
         message: MessageText,
@@ -129,11 +136,8 @@ pub enum SystemRequest {
         device: String,
         to: [f64; 3],
     },
-    /// A state machine of its own has gone from one state to another.
-    Transition {
-        from: String,
-        to: String,
-    },
+    /// A state machine of its own was declared, was begun or has moved.
+    Machine(MachineStep),
     /// It has come to its normal end.
     Done,
 }

@@ -174,3 +174,40 @@ fn model_coverage_is_a_section_with_reasons() {
         assert!(page.contains(text), "{text}");
     }
 }
+
+#[test]
+fn machines_and_interfaces_are_sections() {
+    let mut results = fixture::campaign(3);
+    let plain = html(&results);
+    assert!(!plain.contains("<h2>State machines</h2>") && !plain.contains("<h2>Interfaces</h2>"));
+    (results.machines, results.warnings) = (fixture::machines(), fixture::warnings());
+    results.machines[1].states[0].state = "<b>REACH</b>".into();
+    results.tests[0].waits = vec![fixture::wait()];
+    let page = html(&results);
+    assert_eq!(unbalanced(&page), None);
+    for text in [
+        "<a href=\"#machines\">State machines</a>",
+        "<span class=\"id\">SM_ROOT&#x2f;GIVE</span>",
+        "2 of 3 states, 2 of 4 transitions <span class=\"note\">ends with stuck</span>",
+        "<span class=\"id\">LOST</span> <small class=\"standing o\">never entered</small>",
+        "<span class=\"id\">GIVE</span> <small class=\"standing o\">never taken</small></th><td class=\"id\">failed</td>",
+        "&lt;b&gt;REACH",
+        "<svg class=\"machine\" viewBox=",
+        "<title>GIVE -given-&gt; WAIT</title>",
+        "<title>GIVE -failed-&gt; LOST: never taken</title>",
+        "<g class=\"node missed\"><title>LOST: never reached</title>",
+        "1 of 3 states and 2 of 4 transitions of the state machine SM_ROOT were reached by no test.",
+        "2 names of the middleware were used by one side only",
+        "brain subscribes to &#x2f;scann, which nobody publishes",
+        "Did you mean <code>&#x2f;scan</code>?",
+        "<code>topic &quot;&#x2f;scann&quot;: sensor_msgs&#x2f;LaserScan in { … }</code>",
+        "Topics that nobody subscribes to <small>1</small>",
+        "brain waited from 1.50 s to the end for the service &#x2f;plan, which nobody serves",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    for link in page.split("href=\"#").skip(1) {
+        let target = link.split('"').next().unwrap();
+        assert_eq!(page.matches(&format!(" id=\"{target}\"")).count(), 1, "{target}");
+    }
+}

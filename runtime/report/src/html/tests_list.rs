@@ -49,7 +49,7 @@ struct TestEntry {
     /// The command that runs it again; empty unless something is wrong.
     again: String,
     /// What must be known to trust it.
-    notes: Vec<&'static str>,
+    notes: Vec<String>,
     /// The last lines that the program complained.
     stderr: String,
     /// Where its output is; empty if there was none.
@@ -150,7 +150,7 @@ fn test(results: &CampaignResults, index: usize, test: &TestResult) -> TestEntry
             .rerun_of(test)
             .filter(|_| test.error.is_some() || test.has_failed())
             .unwrap_or_default(),
-        notes: test.marks.iter().map(|m| m.sentence()).collect(),
+        notes: facts::notes(test),
         stderr: text::clean(&test.output.stderr_end),
         output: if test.output.stdout_bytes + test.output.stderr_bytes > 0 {
             format!("output/{}.txt", test.name.file_stem())

@@ -84,6 +84,15 @@ pub enum ProgramRequest {
     },
     /// What is open in the system.
     List,
+    /// The program waits until somebody serves this name, or publishes there.
+    Await {
+        kind: WrittenPortKind,
+        name: String,
+        #[serde(default, rename = "type")]
+        type_name: Option<String>,
+        #[serde(default)]
+        give_up: Option<Nanos>,
+    },
     /// Ask for the end of a goal, or of all goals at an action: one of the two.
     Cancel {
         #[serde(default)]
@@ -114,13 +123,22 @@ pub enum ProgramRequest {
         device: String,
         to: [f64; 3],
     },
-    /// A state machine has gone from the state `label` to the state `next`.
+    /// A state machine has gone from the state `label` to the state `next`; without `label` it begins there.
     Transition {
-        label: String,
+        machine: String,
+        #[serde(default)]
+        label: Option<String>,
+        #[serde(default)]
+        outcome: Option<String>,
         next: String,
     },
-    /// A state machine begins, with these states and transitions.
-    Machine,
+    /// What a state machine consists of.
+    Machine {
+        name: String,
+        states: Vec<String>,
+        transitions: Vec<(String, String, String)>,
+        outcomes: Vec<String>,
+    },
     /// With a message in it.
     #[serde(skip)]
     Message(MessageRequest),
@@ -189,13 +207,14 @@ impl ProgramRequest {
             | ProgramRequest::Wait { .. }
             | ProgramRequest::Close { .. }
             | ProgramRequest::List
+            | ProgramRequest::Await { .. }
             | ProgramRequest::Cancel { .. }
             | ProgramRequest::Accept { .. }
             | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::State { .. }
             | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
-            | ProgramRequest::Machine
+            | ProgramRequest::Machine { .. }
             | ProgramRequest::Message(_)
             | ProgramRequest::Done => None,
         }
@@ -209,13 +228,14 @@ impl ProgramRequest {
             | ProgramRequest::Open(_)
             | ProgramRequest::Close { .. }
             | ProgramRequest::List
+            | ProgramRequest::Await { .. }
             | ProgramRequest::Cancel { .. }
             | ProgramRequest::Accept { .. }
             | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::State { .. }
             | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
-            | ProgramRequest::Machine
+            | ProgramRequest::Machine { .. }
             | ProgramRequest::Message(_) => 2,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
@@ -233,11 +253,12 @@ impl ProgramRequest {
     pub(crate) fn is_one_way(&self) -> bool {
         match self {
             ProgramRequest::Close { .. }
+            | ProgramRequest::Await { .. }
             | ProgramRequest::Cancel { .. }
             | ProgramRequest::Accept { .. }
             | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::Transition { .. }
-            | ProgramRequest::Machine
+            | ProgramRequest::Machine { .. }
             | ProgramRequest::Message(_) => true,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
@@ -278,7 +299,7 @@ struct RequestHead<'l> {
 }
 
 /// The kinds of requests that have no reply of their own, from version 2 on.
-const ONE_WAY: [&str; 11] = [
+const ONE_WAY: [&str; 12] = [
     "publish",
     "call",
     "respond",
@@ -288,6 +309,7 @@ const ONE_WAY: [&str; 11] = [
     "finish",
     "close",
     "cancel",
+    "await",
     "transition",
     "machine",
 ];
@@ -380,6 +402,41 @@ mod tests {
         assert_eq!((on.as_str(), command.as_str(), wait), ("robot.arm", "move_to", true));
         assert_eq!(args["to"], ProtocolArgument::Numbers(vec![0.0, 1.0, 2.5]));
         assert_eq!(args["speed"], ProtocolArgument::Scalar(Value::Float(0.2)));
+    }
+
+    #[test]
+    fn what_is_told_without_a_reply_is_understood() {
+        let edges = r#"[["A","go","B"]]"#;
+        let line = format!(
+            r#"{{"request":"machine","name":"M","states":["A","B"],"transitions":{edges},"outcomes":[]}}"#
+        );
+        let machine = ProgramRequest::Machine {
+            name: "M".into(),
+            states: vec!["A".into(), "B".into()],
+            transitions: vec![("A".into(), "go".into(), "B".into())],
+            outcomes: Vec::new(),
+        };
+        let begun =
+            ProgramRequest::Transition { machine: "M".into(), label: None, outcome: None, next: "A".into() };
+        let waits = ProgramRequest::Await {
+            kind: WrittenPortKind::Client,
+            name: "/plan".into(),
+            type_name: None,
+            give_up: Some(5),
+        };
+        for (line, expected) in [
+            (line.as_str(), machine),
+            (r#"{"request":"transition","machine":"M","next":"A"}"#, begun),
+            (r#"{"request":"await","kind":"client","name":"/plan","give_up":5}"#, waits),
+        ] {
+            let found = request(line);
+            assert!(found.is_one_way(), "{line}");
+            assert_eq!(found, expected);
+        }
+        assert!(matches!(
+            parse(br#"{"request":"machine","name":"M"}"#, 2),
+            ProtocolLine::Refused { waits: false, .. }
+        ));
     }
 
     #[test]

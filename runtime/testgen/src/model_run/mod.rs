@@ -176,7 +176,7 @@ impl<'p> ModelCast<'p, '_> {
 }
 
 fn told(company: &AgentCompany<'_>, run: HarnessRun, detail: LogDetail) -> ModelRun {
-    let HarnessRun { trace, ended } = run;
+    let HarnessRun { trace, ended, .. } = run;
     let society = &company.society;
     let names: Vec<&str> = society.names().collect();
     let mut warnings: Vec<String> = Vec::new();

@@ -9,7 +9,7 @@ use serde::{
 use serde_json::{Value as Json, value::RawValue};
 
 use super::problem::LineProblem;
-use crate::{RunEnd, record::RecordingEnd};
+use crate::{MachineDeclaration, MachineEdge, MachineStep, RunEnd, record::RecordingEnd};
 
 /// The first line. Other programs may say more in it, which is skipped.
 #[derive(Deserialize)]
@@ -34,6 +34,13 @@ pub(super) struct StepLine<'a> {
     #[serde(borrow)]
     pub signal: Option<Cow<'a, str>>,
     pub value: Option<Json>,
+    pub machine: Option<String>,
+    pub states: Option<Vec<String>>,
+    pub transitions: Option<Vec<(String, String, String)>>,
+    pub outcomes: Option<Vec<String>>,
+    pub from: Option<String>,
+    pub outcome: Option<String>,
+    pub to: Option<String>,
     #[serde(borrow)]
     pub end: Option<&'a RawValue>,
     #[serde(borrow)]
@@ -56,13 +63,51 @@ impl<'a> StepLine<'a> {
         serde_json::from_str(text).map_err(|error| problem(&error))
     }
 
+    /// Whether there is anything of a state machine.
+    pub fn has_machine(&self) -> bool {
+        self.machine.is_some()
+            || self.states.is_some()
+            || self.transitions.is_some()
+            || self.outcomes.is_some()
+            || self.from.is_some()
+            || self.outcome.is_some()
+            || self.to.is_some()
+    }
+
+    /// The step of a state machine; fails if there is more or less than that.
+    pub fn machine_step(self) -> Result<MachineStep, LineProblem> {
+        let other =
+            self.event.is_some() || self.args.is_some() || self.signal.is_some() || self.value.is_some();
+        let Some(machine) = self.machine.filter(|_| !other) else {
+            return Err(LineProblem::Form(
+                "a step of a state machine has `t`, `machine` and what it did only",
+            ));
+        };
+        match (self.states, self.transitions, self.outcomes, self.from, self.outcome, self.to) {
+            (Some(states), Some(transitions), Some(outcomes), None, None, None) => {
+                let edge = |(from, outcome, to)| MachineEdge { from, outcome, to };
+                let transitions = transitions.into_iter().map(edge).collect();
+                Ok(MachineStep::Declared(MachineDeclaration { machine, states, transitions, outcomes }))
+            }
+            (None, None, None, None, None, Some(state)) => Ok(MachineStep::Begun { machine, state }),
+            (None, None, None, Some(from), Some(outcome), Some(to)) => {
+                Ok(MachineStep::Moved { machine, edge: MachineEdge { from, outcome, to } })
+            }
+            _ => Err(LineProblem::Form(
+                "a state machine has `states`, `transitions` and `outcomes`, or goes `from` a state by an `outcome` `to` another, \
+                 or begins with a state `to` which it goes",
+            )),
+        }
+    }
+
     /// How the run ended; fails if there is anything of a step.
     pub fn ending(self) -> Result<RecordingEnd, LineProblem> {
         let more = self.t.is_some()
             || self.event.is_some()
             || self.args.is_some()
             || self.signal.is_some()
-            || self.value.is_some();
+            || self.value.is_some()
+            || self.has_machine();
         if more {
             return Err(LineProblem::Form("the last line has `end`, `ended` and `error` only"));
         }

@@ -62,9 +62,12 @@ class Servers:
             self._names = {port["name"] for port in the_exchange().listing() if port["kind"] == "action_server"}
         return name in self._names
 
-    def wait(self, name: str, timeout: Any) -> bool:
+    def wait(self, name: str, type_name: str, timeout: Any) -> bool:
         """Waits until there is one, at most for a duration; zero is for ever."""
         deadline = rospy.get_rostime() + timeout
+        if not self.has(name):
+            give_up = the_exchange().time + timeout.to_nsec() if timeout != rospy.Duration(0.0) else None
+            the_exchange().awaits("action_client", name, type_name, give_up)
         while not rospy.is_shutdown():
             if self.has(name):
                 return True

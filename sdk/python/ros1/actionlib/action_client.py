@@ -354,7 +354,7 @@ class ActionClient:
 
     def wait_for_server(self, timeout: Any = rospy.Duration(0.0)) -> bool:
         """Waits until there is a server, at most for a `rospy.Duration`; zero is for ever."""
-        return _wire.the_servers().wait(self._name, timeout)
+        return _wire.the_servers().wait(self._name, self._spec.type, timeout)
 
     def wait_for_action_server_to_start(self, timeout: Any = rospy.Duration(0.0)) -> bool:
         """The former name of `wait_for_server`."""

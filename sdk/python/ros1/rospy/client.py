@@ -162,7 +162,10 @@ def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
         subscriber = Subscriber(topic, topic_type, box.put)
         if isinstance(timeout, genpy.Duration):
             timeout = timeout.to_sec()
-        message = None if core.is_shutdown() else box.get(None if timeout is None else max(1, round(timeout * 1e9)))
+        patience = None if timeout is None else max(1, round(timeout * 1e9))
+        give_up = None if patience is None else the_exchange().time + patience
+        the_exchange().awaits("subscriber", subscriber.resolved_name, subscriber.type, give_up)
+        message = None if core.is_shutdown() else box.get(patience)
     finally:
         core._spinning.remove(box)
         if subscriber is not None:

@@ -49,12 +49,17 @@ class _Service:
 
 def wait_for_service(service: str, timeout: Any = None) -> None:
     """Waits until there is such a service; raises `ROSException` after the timeout (seconds, or a `Duration`)."""
+    _wait_for(service, timeout, None)
+
+
+def _wait_for(service: str, timeout: Any, type_name: str | None) -> None:
     if isinstance(timeout, genpy.Duration):
         timeout = timeout.to_sec()
     if timeout == 0.0:
         raise ValueError("timeout must be non-zero")
     name = resolve_name(service)
     deadline = the_exchange().time + round(timeout * 1e9) if timeout else None
+    the_exchange().awaits("client", name, type_name, deadline)
     there = graph.wait(lambda: core.is_shutdown() or graph.programs("server", name), deadline)
     if core.is_shutdown():
         raise ROSInterruptException("rospy shutdown")
@@ -75,7 +80,7 @@ class ServiceProxy(_Service):
 
     def wait_for_service(self, timeout: Any = None) -> None:
         """Waits until the service is there."""
-        wait_for_service(self.resolved_name, timeout=timeout)
+        _wait_for(self.resolved_name, timeout, self.service_class._type)
 
     def __call__(self, *args: Any, **kwds: Any) -> Any:
         return self.call(*args, **kwds)

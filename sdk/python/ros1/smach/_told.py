@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _outermost: dict[Any, str] = {}  # names by what is declared
-_told: dict[str, dict[str, Any]] = {}  # declarations by names
+_told: dict[str, tuple[list[str], list[list[str]], list[str]]] = {}  # declarations by names
 
 
 def is_the_end(error: BaseException) -> bool:
@@ -54,27 +54,38 @@ def _name(container: Any) -> str:
     return name
 
 
-def begins(machine: Any) -> None:
-    """The machine is executed; the first time, what it declares is told."""
-    name = _name(machine)
-    exchange = None if machine._is_told else _exchange()
-    if exchange is None:
+def begins(container: Any) -> None:
+    """The container is executed, in its initial states; the first time, what it declares is told before, and what those in it
+    declare, which may never be entered."""
+    name = _name(container)
+    exchange = _exchange()
+    if exchange is not None:
+        _declare(container, exchange)
+        for label in container.get_initial_states():
+            exchange.begin(name, str(label))
+
+
+def _declare(container: Any, exchange: Any) -> None:
+    if container._is_told:
         return
-    machine._is_told = True
+    container._is_told = True
     edges = []
-    for label, targets in machine._transitions.items():
+    for label, targets in getattr(container, "_transitions", {}).items():
         for outcome, target in targets.items():
-            edges.append([str(label), str(outcome), str(target if _leads(machine, target) else outcome)])
-    declared = {
-        "request": "machine",
-        "name": name,
-        "states": [str(label) for label in machine._states],
-        "transitions": edges,
-        "outcomes": [str(outcome) for outcome in machine.get_registered_outcomes()],
-    }
+            edges.append([str(label), str(outcome), str(target if _leads(container, target) else outcome)])
+    try:
+        children = container.get_children()
+    except NotImplementedError:  # a container of the program's own that does not say
+        children = {}
+    name = _name(container)
+    declared = ([str(label) for label in children], edges, [str(outcome) for outcome in container.get_registered_outcomes()])
     if _told.get(name) != declared:
         _told[name] = declared
-        exchange.tell(declared)
+        exchange.declare(name, *declared)
+    for label, child in children.items():
+        is_child(container, label, child)
+        if hasattr(child, "_is_told"):
+            _declare(child, exchange)
 
 
 def _leads(machine: Any, target: Any) -> bool:

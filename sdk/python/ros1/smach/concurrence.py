@@ -76,6 +76,7 @@ class Concurrence(Container):
         self._child_outcomes = {}
         self._copy_input_keys(parent_ud, self.userdata)
         smach.loginfo("Concurrence starting with userdata: \n\t%s" % (self.userdata.keys(),))
+        _told.begins(self)
         self.call_start_cbs()
         self._run_all()
         if self._user_code_exception:

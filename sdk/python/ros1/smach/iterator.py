@@ -70,8 +70,8 @@ class Iterator(Container):
         """Runs the state for each item, and returns the last outcome, mapped."""
         self._is_running = True
         self._copy_input_keys(parent_ud, self.userdata)
+        _told.begins(self)
         self.call_start_cbs()
-        _told.is_child(self, self._state_label, self._state)
         outcome = self._iterate()
         if outcome in self._final_outcome_map:
             outcome = self._final_outcome_map[outcome]

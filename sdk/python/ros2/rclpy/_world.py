@@ -90,3 +90,9 @@ def close(port: Any) -> None:
     """Closes a port; when the test is over, nobody cares."""
     graph_changed()
     silently(port.close)
+
+
+def awaits(kind: str, name: str, type_name: str, seconds: float | None) -> None:
+    """Tells that the program waits for somebody at this name, for so long at most."""
+    give_up = None if seconds is None or seconds == float("inf") else now() + round(seconds * 1e9)
+    exchange().awaits(kind, name, type_name, give_up)

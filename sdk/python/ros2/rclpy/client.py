@@ -114,7 +114,11 @@ class Client:
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Looks every quarter of a second whether there is a server, until the timeout: whether there is."""
         left = float("inf") if timeout_sec is None else timeout_sec
+        is_told = False
         while self.context.is_open() and not self.service_is_ready() and left > 0.0:
+            if not is_told:
+                is_told = True
+                _world.awaits("client", self._full_name, self._type_name, left)
             time.sleep(0.25)
             left -= 0.25
         return self.service_is_ready()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rclpy import _world
 from rclpy._bell import Bell
+from rclpy.type_support import name_of
 from rclpy.utilities import timeout_sec_to_nsec
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -19,6 +20,7 @@ def wait_for_message(
     bell = Bell()
     subscription._wake = bell.ring
     nanos = timeout_sec_to_nsec(time_to_wait)
+    _world.awaits("subscriber", subscription.topic_name, name_of(msg_type, "Message"), None if nanos < 0 else nanos / 1e9)
     try:
         node.context._wait(None if nanos < 0 else _world.now() + nanos, bell)
         if subscription._waiting and node.context.is_open():

@@ -1,7 +1,7 @@
 //! The topics over which goals go in ROS 1: here they do not, so that whoever spoke over these would neither be heard nor hear
 //! anything. That is told, whichever end comes first.
 
-use crate::system::{graph::MessageGraph, port::PortDeclaration};
+use crate::{port::PortDeclaration, system::graph::MessageGraph};
 
 /// The last parts of their names, below that of the action.
 const TOPICS: [&str; 5] = ["goal", "cancel", "status", "feedback", "result"];

@@ -12,7 +12,7 @@ use hrdsl_ir::{
     world::DeviceId,
 };
 
-use crate::{stage::WorldStage, system::port::MessageText};
+use crate::{port::MessageText, stage::WorldStage};
 
 /// What clocks of programs show at the beginning of a test, in seconds since 1970: 2025-01-01 00:00:00 UTC.
 const EPOCH: i64 = 1_735_689_600;

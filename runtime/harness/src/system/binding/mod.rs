@@ -17,10 +17,13 @@ use hrdsl_ir::{
 
 use super::{
     graph::{GraphDelivery, MessageGraph, ProgramIndex},
-    port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortQos},
     seam::SystemArrival,
 };
-use crate::{player::PlayerContext, world::CommandId};
+use crate::{
+    player::PlayerContext,
+    port::{GoalEnd, MessageText, PortDeclaration, PortKind, PortQos},
+    world::CommandId,
+};
 use fill::{GapContext, HeardEvents};
 use rules::{RuleOutcome, RuleState};
 

@@ -117,6 +117,7 @@ class ActionClient(Waitable):
         self._waiting: deque[tuple[_Goal, dict[str, Any]]] = deque()
         self._ended: deque[_Goal] = deque()  # whose ends somebody asks for again
         self.callback = self._execute
+        self._type_name = type_name
         self._port = _world.open_port("action_client", self._full_name, type_name)
         node.add_waitable(self)
 
@@ -174,7 +175,11 @@ class ActionClient(Waitable):
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Looks every quarter of a second whether there is a server, until the timeout: whether there is."""
         left = float("inf") if timeout_sec is None else timeout_sec
+        is_told = False
         while self._node.context.is_open() and not self.server_is_ready() and left > 0.0:
+            if not is_told:
+                is_told = True
+                _world.awaits("action_client", self._full_name, self._type_name, left)
             time.sleep(0.25)
             left -= 0.25
         return self.server_is_ready()

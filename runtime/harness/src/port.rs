@@ -2,6 +2,8 @@
 
 use std::{fmt, sync::Arc};
 
+use hrdsl_ir::Nanos;
+
 /// A message as its maker wrote it: the text of a JSON value, which nobody here looks into.
 pub type MessageText = Arc<str>;
 
@@ -36,6 +38,19 @@ impl PortKind {
             PortKind::Client => "a client",
             PortKind::ActionServer => "an action server",
             PortKind::ActionClient => "an action client",
+        }
+    }
+
+    /// What it takes at the same name for one of this kind to be of use.
+    #[must_use]
+    pub fn counterpart(self) -> Self {
+        match self {
+            PortKind::Publisher => PortKind::Subscriber,
+            PortKind::Subscriber => PortKind::Publisher,
+            PortKind::Server => PortKind::Client,
+            PortKind::Client => PortKind::Server,
+            PortKind::ActionServer => PortKind::ActionClient,
+            PortKind::ActionClient => PortKind::ActionServer,
         }
     }
 }
@@ -134,4 +149,45 @@ pub struct PortListing {
     pub type_name: String,
     /// The program that has it.
     pub program: String,
+}
+
+/// A program waits until its counterpart is there: a server, or somebody who publishes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AwaitedPort {
+    /// What the program is to the name.
+    pub kind: PortKind,
+    pub name: String,
+    /// None: it does not say.
+    pub type_name: Option<String>,
+    /// When it stops waiting; `None`: never.
+    pub give_up: Option<Nanos>,
+}
+
+/// What was open in a run at some time, and what was awaited in vain until its end.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PortHistory {
+    /// In order; each once, however often it was opened.
+    pub uses: Vec<PortUse>,
+    pub waits: Vec<VainWait>,
+}
+
+/// A program had a port of this kind at this name, or waited for its counterpart.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct PortUse {
+    pub kind: PortKind,
+    pub name: String,
+    /// `None`: the scenario's own.
+    pub program: Option<String>,
+    /// `None`: it did not say.
+    pub type_name: Option<String>,
+}
+
+/// A program waited until the run was over for a counterpart that never came.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VainWait {
+    pub program: String,
+    /// What the program was to the name.
+    pub kind: PortKind,
+    pub name: String,
+    pub since: Nanos,
 }
