@@ -63,6 +63,8 @@ pub struct CampaignSetup<'a> {
     /// The scenario's folder: where the program under test is started.
     pub dir: PathBuf,
     pub env: PythonEnv,
+    /// The campaign's own seed, from which the programs' hashes of texts follow; all other chance is of each test's seed.
+    pub seed: u64,
     pub cells: CellSettings,
     pub limits: ProgramLimits,
     /// Variables that the program gets besides the default ones.
@@ -318,6 +320,7 @@ impl CampaignSetup<'_> {
             command: program.run.clone(),
             dir: self.dir.clone(),
             seed: test.seed,
+            hash_seed: hash_seed(self.seed),
             coverage: program.coverage.clone(),
             env: self.env.clone(),
             middleware: system.middleware.clone(),
@@ -335,6 +338,11 @@ impl CampaignSetup<'_> {
 struct CampaignSystem<'a> {
     declared: &'a SystemUnderTest,
     middleware: Option<LaunchMiddleware>,
+}
+
+/// Python takes seeds of 32 bits.
+fn hash_seed(seed: u64) -> u32 {
+    u32::try_from(seed & u64::from(u32::MAX)).unwrap_or_default()
 }
 
 fn finish(processes: Vec<(String, SutProcess)>) -> Vec<(String, FinishedProcess)> {

@@ -24,6 +24,7 @@ fn launch(script: &str, coverage: bool) -> LaunchSpec {
         command: vec!["python3".into(), script.into()],
         dir: root.join("tests/programs"),
         seed: 1,
+        hash_seed: 1,
         coverage: if coverage { vec![script.into()] } else { Vec::new() },
         env,
         middleware: None,

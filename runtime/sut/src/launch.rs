@@ -21,8 +21,10 @@ pub struct LaunchSpec {
     pub command: Vec<String>,
     /// The folder in which it runs; the words and `coverage` are relative to it.
     pub dir: PathBuf,
-    /// The test's seed: of the program's random numbers and hashes.
+    /// The test's seed: of the program's random numbers.
     pub seed: u64,
+    /// The seed of the hashes of texts, which Python takes at its start: the same in all tests of a campaign.
+    pub hash_seed: u32,
     /// The Python files whose coverage is measured; empty: none.
     pub coverage: Vec<String>,
     pub env: PythonEnv,
@@ -123,7 +125,7 @@ impl LaunchSpec {
             ("LANG", "C.UTF-8".to_owned()),
             ("TZ", "UTC".to_owned()),
             ("HRDSL_SEED", self.seed.to_string()),
-            ("PYTHONHASHSEED", (self.seed % (1 << 32)).to_string()),
+            ("PYTHONHASHSEED", self.hash_seed.to_string()),
             ("PYTHONIOENCODING", "utf-8:backslashreplace".to_owned()),
             // Before the budget is used up, so that the program itself says where.
             ("HRDSL_BUSY_SECONDS", (self.limits.budget.as_secs_f64() * 0.8).to_string()),

@@ -156,6 +156,7 @@ impl<'a> ConformanceRun<'a> {
             system: &system,
             dir: self.dir.clone(),
             env,
+            seed: 0,
             cells: self.cells.clone(),
             limits: ProgramLimits::default(),
             variables: Vec::new(),

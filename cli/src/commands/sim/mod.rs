@@ -236,6 +236,7 @@ fn prepared<'p>(
         system,
         dir,
         env,
+        seed: args.seed,
         cells,
         limits: limits(args, system),
         variables: variables(args, system),
@@ -410,6 +411,8 @@ fn rerun(args: &SimArgs, out: &Path) -> String {
     let times = times.iter().filter_map(|(name, t)| Some(format!("{name} {}ms", (*t)?.as_millis())));
     let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
     let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?)));
+    // The hashes of texts follow from it.
+    words.extend((args.seed != 0).then(|| format!("--seed {}", args.seed)));
     words.extend(args.schedule.map(|k| format!("--schedule {k}")));
     let system = |name: &String| {
         if is_file_name(name) { quoted(&relative(Path::new(name), out)) } else { name.clone() }
