@@ -28,13 +28,11 @@ _get_ident = _thread.get_ident
 class Link:
     """Sends requests one at a time and keeps the simulated time of the last reply."""
 
-    def __init__(self, request_fd: int, reply_fd: int) -> None:
-        # Programs that the robot code starts must not hold the pipes open.
-        os.set_inheritable(request_fd, False)
-        os.set_inheritable(reply_fd, False)
-        self._out = request_fd
-        self._in = open(reply_fd, "rb")
-        self._owner = os.getpid()
+    def __init__(self) -> None:
+        """Without a connection: code that runs before the test is known cannot make requests."""
+        self._out = -1
+        self._in: Any = None
+        self._owner: int | None = None
         self._lock = _thread.allocate_lock()
         self.greeted = False  # whether there has been a `hello`
         self._stopped: str | None = None
@@ -50,6 +48,15 @@ class Link:
         self.scheduler: Any = None  # of this process
         self.on_end: list[Callable[[], object]] = []  # called when the program has come to its end, before it says so
         self.before_request: Callable[[], object] | None = None  # called before each
+
+    def connect(self, request_fd: int, reply_fd: int) -> None:
+        """Makes the connection, of this process."""
+        # Programs that the robot code starts must not hold the pipes open.
+        os.set_inheritable(request_fd, False)
+        os.set_inheritable(reply_fd, False)
+        self._out = request_fd
+        self._in = open(reply_fd, "rb")
+        self._owner = os.getpid()
 
     @property
     def stopped(self) -> bool:
@@ -108,6 +115,8 @@ class Link:
                 self._write(b"")
 
     def _check_owner(self) -> None:
+        if self._owner is None:
+            raise ProtocolError("no request can be made before the program begins")
         if os.getpid() != self._owner:
             raise ProtocolError(
                 "a process forked from the program cannot make requests, nor wait (`time.sleep`)",
@@ -195,16 +204,24 @@ def _line(message: dict[str, Any]) -> bytes:
 _link: Link | None = None
 
 
+def unconnected() -> Link:
+    """The one connection of this process, before it is made."""
+    global _link
+    _link = Link()
+    return _link
+
+
 def the_link() -> Link:
     """The one connection of this process, made at the first use."""
-    global _link
-    if _link is None:
-        try:
-            fds = int(os.environ.pop("HRDSL_REQUEST_FD")), int(os.environ.pop("HRDSL_REPLY_FD"))
-        except (KeyError, ValueError):
-            raise _no_harness() from None
-        _link = Link(*fds)
-    return _link
+    if _link is not None:
+        return _link
+    try:
+        fds = int(os.environ.pop("HRDSL_REQUEST_FD")), int(os.environ.pop("HRDSL_REPLY_FD"))
+    except (KeyError, ValueError):
+        raise _no_harness() from None
+    link = unconnected()
+    link.connect(*fds)
+    return link
 
 
 def _no_harness() -> ProtocolError:
