@@ -11,8 +11,8 @@ use common::{GRACE, environment, launch, reply, run};
 use hrdsl_harness::SystemArrival;
 use hrdsl_ir::{Symbol, Value};
 use hrdsl_sut::{
-    FileCoverage, HarnessReply, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer, SutError,
-    SutProcess,
+    FileCoverage, HarnessReply, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer,
+    SutError, SutProcess,
 };
 
 fn hello(process: &mut SutProcess) {

@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_runtime::campaign::{
-    CampaignSetup, CellSettings, ProgramLimits, ProgramOutput, PythonEnv, StopFlag, SupervisorCommand,
-    prepare,
+    CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, StopFlag,
+    SupervisorCommand, prepare,
 };
 use serde_json::Value;
 
@@ -161,6 +161,7 @@ impl<'a> ConformanceRun<'a> {
             limits: ProgramLimits::default(),
             variables: Vec::new(),
             keep: None,
+            forks: ForkPlan::default(),
             jobs: 1,
             stop: self.stop.clone(),
         };
