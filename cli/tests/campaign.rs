@@ -101,6 +101,22 @@ fn a_campaign_is_repeatable_to_the_byte_with_any_number_of_workers() {
 }
 
 #[test]
+fn a_campaign_is_the_same_whether_interpreters_are_forked_or_started_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let dirs = ["--jobs 2", "--jobs 1 --no-fork"].map(|how| (how, folder.path().join(&how[7..8])));
+    for (how, dir) in &dirs {
+        let mut more = vec!["-n", "2", "--exit-zero"];
+        more.extend(how.split(' '));
+        expect_code(&sim(&handover(), dir, &more), 0);
+    }
+    let [forked, anew] = dirs.map(|(_, dir)| tree(&dir));
+    assert_eq!(forked.keys().collect::<Vec<_>>(), anew.keys().collect::<Vec<_>>());
+    for (name, bytes) in &forked {
+        assert!(*bytes == anew[name], "{name} differs");
+    }
+}
+
+#[test]
 fn tests_from_a_file_run_as_those_that_were_generated() {
     let folder = tempfile::tempdir().unwrap();
     let [a, b, tests] = ["a", "b", "tests"].map(|d| folder.path().join(d));

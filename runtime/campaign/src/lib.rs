@@ -2,6 +2,7 @@
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod binding;
+mod forks;
 mod interfaces;
 mod internal;
 mod machines;
@@ -48,6 +49,8 @@ use hrdsl_trace::{
 use hrdsl_testgen::step_text;
 
 use binding::{binding_text, module_folders};
+pub use forks::ForkPlan;
+use forks::WorkerServers;
 pub use internal::{InternalError, guarded, record_panics};
 pub use tally::tally;
 
@@ -67,6 +70,8 @@ pub struct CampaignSetup<'a> {
     /// The scenario's folder: where the program under test is started.
     pub dir: PathBuf,
     pub env: PythonEnv,
+    /// The campaign's own seed, from which the programs' hashes of texts follow; all other chance is of each test's seed.
+    pub seed: u64,
     pub cells: CellSettings,
     pub limits: ProgramLimits,
     /// Variables that the program gets besides the default ones.
@@ -74,6 +79,8 @@ pub struct CampaignSetup<'a> {
     /// The folder in which each test's files are kept, in a folder of the test's
     /// [`file_stem`](TestName::file_stem).
     pub keep: Option<PathBuf>,
+    /// How the programs' interpreters are started.
+    pub forks: ForkPlan,
     /// Workers; at least one.
     pub jobs: usize,
     /// Set when the campaign is to end before its last test.
@@ -177,8 +184,9 @@ impl CampaignSetup<'_> {
                 scope.spawn(|| {
                     // A speed-up, and one processor for the program whatever the number of workers.
                     let _pinned = hrdsl_sut::pin_to_free_core();
+                    let mut servers = WorkerServers::default();
                     while let Some(test) = self.next_test(tests, &next) {
-                        let attempt = self.run_one(system, &tests[test]);
+                        let attempt = self.run_one(system, &tests[test], &mut servers);
                         match attempt.fault {
                             Some(SystemFaultKind::Interrupted) => return,
                             Some(SystemFaultKind::WallTime) => {
@@ -195,8 +203,9 @@ impl CampaignSetup<'_> {
         std::thread::scope(|scope| {
             scope.spawn(|| {
                 let _pinned = hrdsl_sut::pin_to_free_core();
+                let mut servers = WorkerServers::default();
                 for (index, first) in again {
-                    let attempt = self.run_again(system, &tests[index], first);
+                    let attempt = self.run_again(system, &tests[index], first, &mut servers);
                     finish(index, attempt);
                 }
             });
@@ -215,11 +224,17 @@ impl CampaignSetup<'_> {
     }
 
     /// Runs a test once more that wall time has ended.
-    fn run_again(&self, system: &CampaignSystem<'_>, test: &Test, first: TestAttempt) -> TestAttempt {
+    fn run_again(
+        &self,
+        system: &CampaignSystem<'_>,
+        test: &Test,
+        first: TestAttempt,
+        servers: &mut WorkerServers,
+    ) -> TestAttempt {
         if self.stop.is_set() {
             return first;
         }
-        let mut second = self.run_one(system, test);
+        let mut second = self.run_one(system, test, servers);
         match second.fault {
             Some(SystemFaultKind::Interrupted) => first,
             Some(SystemFaultKind::WallTime) => second,
@@ -231,8 +246,8 @@ impl CampaignSetup<'_> {
     }
 
     /// Runs and judges one test. A fault of hrdsl itself breaks off this test alone.
-    fn run_one(&self, system: &CampaignSystem<'_>, test: &Test) -> TestAttempt {
-        guarded(|| self.judged(test, self.execute(system, test))).unwrap_or_else(|fault| {
+    fn run_one(&self, system: &CampaignSystem<'_>, test: &Test, servers: &mut WorkerServers) -> TestAttempt {
+        guarded(|| self.judged(test, self.execute(system, test, servers))).unwrap_or_else(|fault| {
             self.judged(test, (failed(HarnessError::Internal(fault.to_string())), Vec::new()))
         })
     }
@@ -284,6 +299,7 @@ impl CampaignSetup<'_> {
         &self,
         system: &CampaignSystem<'_>,
         test: &Test,
+        servers: &mut WorkerServers,
     ) -> (HarnessRun, Vec<(String, FinishedProcess)>) {
         let declared = system.declared;
         let stage = match SimWorld::new(self.program) {
@@ -291,8 +307,11 @@ impl CampaignSetup<'_> {
             Err(why) => return (failed(HarnessError::World(why.to_string())), Vec::new()),
         };
         let mut processes: Vec<(String, SutProcess)> = Vec::new();
-        for program in &declared.programs {
-            match SutProcess::spawn(&self.launch(system, program, test)) {
+        if self.forks.is_fresh {
+            servers.0.clear();
+        }
+        for (number, program) in declared.programs.iter().enumerate() {
+            match self.start(number, &self.launch(system, program, test.seed, Some(test)), servers) {
                 Ok(process) => processes.push((program.name.clone(), process)),
                 Err(error) => {
                     let finished = finish(processes);
@@ -318,16 +337,23 @@ impl CampaignSetup<'_> {
         (run, finish(processes))
     }
 
-    fn launch(&self, system: &CampaignSystem<'_>, program: &SystemProgram, test: &Test) -> LaunchSpec {
+    fn launch(
+        &self,
+        system: &CampaignSystem<'_>,
+        program: &SystemProgram,
+        seed: u64,
+        test: Option<&Test>,
+    ) -> LaunchSpec {
         let several = system.declared.programs.len() > 1;
         let folder = |folder: &PathBuf| {
-            let folder = folder.join(TestName::from(test.name.as_str()).file_stem());
-            if several { folder.join(&program.name) } else { folder }
+            let folder = folder.join(TestName::from(test?.name.as_str()).file_stem());
+            Some(if several { folder.join(&program.name) } else { folder })
         };
         LaunchSpec {
             command: program.run.clone(),
             dir: self.dir.clone(),
-            seed: test.seed,
+            seed,
+            hash_seed: hash_seed(self.seed),
             coverage: program.coverage.clone(),
             env: self.env.clone(),
             middleware: system.middleware.clone(),
@@ -335,7 +361,7 @@ impl CampaignSetup<'_> {
             cells: self.cells.clone(),
             limits: self.limits,
             output_kept: OUTPUT_KEPT,
-            keep: self.keep.as_ref().map(folder),
+            keep: self.keep.as_ref().and_then(folder),
             stop: self.stop.clone(),
         }
     }
@@ -345,6 +371,11 @@ impl CampaignSetup<'_> {
 struct CampaignSystem<'a> {
     declared: &'a SystemUnderTest,
     middleware: Option<LaunchMiddleware>,
+}
+
+/// Python takes seeds of 32 bits.
+fn hash_seed(seed: u64) -> u32 {
+    u32::try_from(seed & u64::from(u32::MAX)).unwrap_or_default()
 }
 
 fn finish(processes: Vec<(String, SutProcess)>) -> Vec<(String, FinishedProcess)> {

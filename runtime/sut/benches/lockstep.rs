@@ -7,8 +7,8 @@ use std::{
 };
 
 use hrdsl_sut::{
-    CellSettings, EnvironmentNeeds, HarnessReply, LaunchSpec, ProgramLimits, ProgramRequest, PythonEnv,
-    ReplyAnswer, StopFlag, SutProcess, cell::SupervisorCommand, pin_to_free_core,
+    CellSettings, EnvironmentNeeds, FinishedProcess, ForkServer, HarnessReply, LaunchSpec, ProgramLimits,
+    ProgramRequest, PythonEnv, ReplyAnswer, StopFlag, SutProcess, cell::SupervisorCommand, pin_to_free_core,
 };
 
 fn main() {
@@ -64,6 +64,7 @@ fn launch(script: &str, coverage: bool) -> LaunchSpec {
         command: vec!["python3".into(), script.into()],
         dir: root.join("tests/programs"),
         seed: 1,
+        hash_seed: 1,
         coverage: if coverage { vec![script.into()] } else { Vec::new() },
         env,
         middleware: None,
@@ -99,13 +100,47 @@ fn thousand_round_trips(bencher: divan::Bencher, pinned: bool) {
     });
 }
 
-/// From the start of a program that only says hello to its end; with and without coverage.
+/// From the start of a program that only says hello to its end, in an interpreter of its own; with and without coverage.
 #[divan::bench(args = [false, true], sample_count = 30)]
 fn start_to_finish(bencher: divan::Bencher, coverage: bool) {
     let launch = launch("hello.py", coverage);
+    bencher.bench_local(|| finish(SutProcess::spawn(&launch).expect("a process")));
+}
+
+/// The same, forked by a server.
+#[divan::bench(args = [false, true], sample_count = 100)]
+fn fork_to_finish(bencher: divan::Bencher, coverage: bool) {
+    let launch = launch("hello.py", coverage);
+    let mut server = server(&launch);
+    bencher.bench_local(|| finish(SutProcess::fork(&launch, &mut server).expect("a process")));
+}
+
+/// From the order for a fork to its first request: what a test waits for before it begins.
+#[divan::bench(args = [false, true], sample_count = 100)]
+fn fork_to_hello(bencher: divan::Bencher, coverage: bool) {
+    let launch = launch("hello.py", coverage);
+    let mut server = server(&launch);
     bencher.bench_local(|| {
-        let mut process = SutProcess::spawn(&launch).expect("a process");
-        while answer(&mut process) != ProgramRequest::Done {}
-        process.finish(Duration::from_secs(10))
+        let mut process = SutProcess::fork(&launch, &mut server).expect("a process");
+        answer(&mut process);
+        process
     });
+}
+
+/// What a worker does once: an interpreter with its imports, that waits for tests.
+#[divan::bench(args = [false, true], sample_count = 20)]
+fn start_a_server(bencher: divan::Bencher, coverage: bool) {
+    let launch = launch("hello.py", coverage);
+    let modules = ForkServer::find_modules(&launch).expect("a fork server");
+    bencher.bench_local(|| ForkServer::start(&launch, &modules).expect("a fork server"));
+}
+
+fn server(launch: &LaunchSpec) -> ForkServer {
+    let modules = ForkServer::find_modules(launch).expect("a fork server");
+    ForkServer::start(launch, &modules).expect("a fork server")
+}
+
+fn finish(mut process: SutProcess) -> FinishedProcess {
+    while answer(&mut process) != ProgramRequest::Done {}
+    process.finish(Duration::from_secs(10))
 }

@@ -2,11 +2,17 @@
 
 use std::{
     ffi::OsString,
+    os::fd::OwnedFd,
     path::{Path, PathBuf},
 };
 
+use rustix::fs::{Mode, OFlags, open};
+
 use crate::{
-    cell::{cells::CellSettings, message::CellOrder},
+    cell::{
+        cells::CellSettings,
+        message::{CellIsolation, CellOrder},
+    },
     environment::{PythonEnv, word::is_python},
     error::{SutError, silence},
     limits::{ProgramLimits, StopFlag},
@@ -21,8 +27,10 @@ pub struct LaunchSpec {
     pub command: Vec<String>,
     /// The folder in which it runs; the words and `coverage` are relative to it.
     pub dir: PathBuf,
-    /// The test's seed: of the program's random numbers and hashes.
+    /// The test's seed: of the program's random numbers.
     pub seed: u64,
+    /// The seed of the hashes of texts, which Python takes at its start: the same in all tests of a campaign.
+    pub hash_seed: u32,
     /// The Python files whose coverage is measured; empty: none.
     pub coverage: Vec<String>,
     pub env: PythonEnv,
@@ -74,16 +82,12 @@ enum CommandKind<'a> {
 
 impl LaunchSpec {
     /// The order for a cell in which the program runs. `descriptors` are the variables that tell the numbers of those that
-    /// go with it.
+    /// go with it, before the folder for files if there is one.
     pub(crate) fn order(&self, descriptors: Vec<String>) -> Result<CellOrder, SutError> {
         if !self.dir.is_dir() {
             return Err(absent("folder of the program", self.dir.display().to_string()));
         }
         let dir = self.dir.canonicalize().map_err(SutError::io("cannot find the folder of the program"))?;
-        if let Some(folder) = &self.keep {
-            let what = || format!("cannot make {}", folder.display());
-            std::fs::create_dir_all(folder).map_err(SutError::io(what()))?;
-        }
         let Some(word) = self.command.first() else {
             return Err(absent("program", "an empty command".to_owned()));
         };
@@ -104,7 +108,7 @@ impl LaunchSpec {
             hidden: self.cells.hidden.iter().map(|f| f.clone().into_os_string()).collect(),
             descriptors,
             memory: self.limits.memory,
-            keep: self.keep.as_ref().map(|f| f.clone().into_os_string()),
+            keep: self.keep.is_some(),
             network: self.cells.network,
             terminal: self.cells.terminal,
         })
@@ -116,6 +120,43 @@ impl LaunchSpec {
         silence(self.middleware.as_ref().map(|m| m.name), is_of_python)
     }
 
+    /// The order for the program's own cell, if a fork server makes it: the program is there, and has its descriptors.
+    pub(crate) fn forked_order(&self) -> Result<CellOrder, SutError> {
+        let order = self.order(Vec::new())?;
+        Ok(CellOrder { command: Vec::new(), env: Vec::new(), ..order })
+    }
+
+    /// The order for a fork server's cell, which finds the modules to import beforehand unless they are given.
+    pub(crate) fn server_order(&self, preload: Option<&[String]>) -> Result<CellOrder, SutError> {
+        let mut order = self.order(vec!["HRDSL_FORK_SERVER".to_owned()])?;
+        order.env.retain(|(name, _)| name != "HRDSL_SEED");
+        let workspaces = self.middleware.iter().flat_map(|m| m.modules.iter().cloned());
+        let own: Vec<String> =
+            [order.dir.to_string_lossy().into_owned()].into_iter().chain(workspaces).collect();
+        let modules = serde_json::json!({ "own": own, "preload": preload }).to_string();
+        order.env.push(("HRDSL_FORK_MODULES".into(), modules.into()));
+        Ok(CellOrder { keep: false, ..order })
+    }
+
+    /// Whether a fork server can run it: a script of Python, in namespaces, at which nobody debugs.
+    #[must_use]
+    pub fn can_fork(&self) -> bool {
+        let is_script = self.command.first().is_some_and(|word| match self.kind(word) {
+            CommandKind::Script { .. } => true,
+            CommandKind::Interpreter | CommandKind::Other => false,
+        });
+        is_script && self.cells.isolation == CellIsolation::Namespaces && !self.cells.terminal
+    }
+
+    /// The folder for the files that it writes, if they are to be kept.
+    pub(crate) fn kept_folder(&self) -> Result<Option<OwnedFd>, SutError> {
+        let Some(folder) = &self.keep else { return Ok(None) };
+        let what = || format!("cannot make {}", folder.display());
+        std::fs::create_dir_all(folder).map_err(SutError::io(what()))?;
+        let opened = open(folder, OFlags::PATH | OFlags::CLOEXEC, Mode::empty());
+        Ok(Some(opened.map_err(|e| SutError::io(what())(e.into()))?))
+    }
+
     /// What every program finds in its environment.
     fn variables(&self) -> Vec<(OsString, OsString)> {
         let given = DEFAULT_VARIABLES.iter().filter_map(|name| Some((name.into(), std::env::var_os(name)?)));
@@ -123,7 +164,7 @@ impl LaunchSpec {
             ("LANG", "C.UTF-8".to_owned()),
             ("TZ", "UTC".to_owned()),
             ("HRDSL_SEED", self.seed.to_string()),
-            ("PYTHONHASHSEED", (self.seed % (1 << 32)).to_string()),
+            ("PYTHONHASHSEED", self.hash_seed.to_string()),
             ("PYTHONIOENCODING", "utf-8:backslashreplace".to_owned()),
             // Before the budget is used up, so that the program itself says where.
             ("HRDSL_BUSY_SECONDS", (self.limits.budget.as_secs_f64() * 0.8).to_string()),

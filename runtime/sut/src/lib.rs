@@ -5,7 +5,8 @@
 //! 1. [`PythonEnv::prepare`] installs, once, what robot code in Python needs: the SDK, coverage.py, its requirements.
 //! 2. [`CellSettings::probe`] finds out how the machine can keep the programs of several tests apart.
 //! 3. [`SutProcess::spawn`] starts the program of a [`LaunchSpec`] in a [`cell`] of its own, with its output captured in bounded
-//!    memory. [`SutProcess::next`] waits for the program's [`ProgramRequest`], within the [`ProgramLimits`].
+//!    memory, or [`SutProcess::fork`] lets a [`ForkServer`] fork it, which has imported beforehand what it will.
+//!    [`SutProcess::next`] waits for the program's [`ProgramRequest`], within the [`ProgramLimits`].
 //! 4. [`SutProcess::reply`] answers it with a [`HarnessReply`], which carries the simulated time.
 //! 5. [`SutProcess::finish`] ends the program and gives its exit, output and code coverage ([`FileCoverage`]).
 //!
@@ -21,6 +22,7 @@ mod coverage;
 mod environment;
 mod error;
 mod exit;
+mod fork_server;
 mod launch;
 mod limits;
 mod lock_step;
@@ -37,6 +39,7 @@ pub use coverage::FileCoverage;
 pub use environment::{EnvironmentNeeds, HookedPackage, PreparationStep, PythonEnv};
 pub use error::SutError;
 pub use exit::ProgramExit;
+pub use fork_server::ForkServer;
 pub use launch::{DEFAULT_VARIABLES, LaunchMiddleware, LaunchSpec};
 pub use limits::{LimitOverrun, ProgramLimits, StopFlag};
 pub use lock_step::LockStep;

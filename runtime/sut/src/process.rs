@@ -24,6 +24,7 @@ use crate::{
     coverage::{self, FileCoverage},
     error::SutError,
     exit::ProgramExit,
+    fork_server::ForkServer,
     launch::LaunchSpec,
     limits::{LimitOverrun, ProgramLimits, StopFlag},
     output::CapturedOutput,
@@ -107,8 +108,21 @@ impl SutProcess {
     /// [`SutError::Absent`] if something to run does not exist; [`SutError::Environment`] if the command asks for an
     /// interpreter that was not prepared; [`SutError::Io`] if the system refuses pipes, a cell or a process.
     pub fn spawn(launch: &LaunchSpec) -> Result<Self, SutError> {
+        Self::spawn_with(launch, None)
+    }
+
+    /// Lets a fork server, which was started for such a launch, make the cell and the program.
+    ///
+    /// # Errors
+    /// As [`spawn`](Self::spawn); [`SutError::Io`], too, if the server has ended and cannot be started again.
+    pub fn fork(launch: &LaunchSpec, server: &mut ForkServer) -> Result<Self, SutError> {
+        Self::spawn_with(launch, Some(server))
+    }
+
+    fn spawn_with(launch: &LaunchSpec, server: Option<&mut ForkServer>) -> Result<Self, SutError> {
         let io = || SutError::io("cannot make pipes");
         let (requests, its_requests, its_replies, replies) = pipes_for_child().map_err(io())?;
+        let kept = if server.is_none() { launch.kept_folder()? } else { None };
         let mut descriptors = vec![its_requests.as_fd(), its_replies.as_fd()];
         let mut names = vec!["HRDSL_REQUEST_FD", "HRDSL_REPLY_FD"];
         let measures = !launch.coverage.is_empty();
@@ -117,8 +131,13 @@ impl SutProcess {
             descriptors.push(memory.as_fd());
             names.push("HRDSL_COVERAGE_FD");
         }
-        let order = launch.order(names.into_iter().map(str::to_owned).collect())?;
-        let mut cell = CellHandle::start(&launch.cells.supervisor, &order, &descriptors)?;
+        let mut cell = if let Some(server) = server {
+            server.cell(launch, &descriptors)?
+        } else {
+            let order = launch.order(names.into_iter().map(str::to_owned).collect())?;
+            descriptors.extend(kept.as_ref().map(AsFd::as_fd));
+            CellHandle::start(&launch.cells.supervisor, &order, &descriptors)?
+        };
         let stdout = ProcessStream::new(cell.stdout.take(), launch.output_kept);
         let stderr = ProcessStream::new(cell.stderr.take(), launch.output_kept);
         Ok(Self {

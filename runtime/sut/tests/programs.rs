@@ -11,8 +11,8 @@ use common::{GRACE, environment, launch, reply, run};
 use hrdsl_harness::SystemArrival;
 use hrdsl_ir::{Symbol, Value};
 use hrdsl_sut::{
-    FileCoverage, HarnessReply, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer, SutError,
-    SutProcess,
+    FileCoverage, HarnessReply, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer,
+    SutError, SutProcess,
 };
 
 fn hello(process: &mut SutProcess) {
@@ -271,20 +271,24 @@ fn repeatable_rows() -> BTreeMap<String, String> {
 #[test]
 fn each_row_of_the_table_of_sources_is_repeatable() {
     let mut launch = launch(&["python3", "-W", "ignore", "repeatable.py"]);
-    let mut read = |seed| {
+    let read = |launch: &mut LaunchSpec, seed| {
         launch.seed = seed;
-        let (_, finished) = run(&launch);
+        let (_, finished) = run(launch);
         let text = finished.output.stdout.text();
         let lines = text.lines().map(|line| line.split_once(": ").expect("a row and what it read"));
         lines.map(|(name, read)| (name.to_owned(), read.to_owned())).collect::<BTreeMap<_, _>>()
     };
-    let (first, again, other) = (read(17), read(17), read(18));
+    let (first, again, other) = (read(&mut launch, 17), read(&mut launch, 17), read(&mut launch, 18));
+    launch.hash_seed = 18;
+    let hashed = read(&mut launch, 17);
     let rows = repeatable_rows();
     assert_eq!(first.keys().collect::<Vec<_>>(), rows.keys().collect::<Vec<_>>(), "the page and the program");
     for (name, by) in &rows {
         assert_eq!(first[name], again[name], "{name}");
         assert_eq!(first[name] != other[name], by == "seed", "{name}, with another seed");
     }
+    let hashes = "hashes of texts, and the order of sets";
+    assert_ne!(first[hashes], hashed[hashes], "with another seed of the campaign");
 }
 
 #[test]

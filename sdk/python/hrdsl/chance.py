@@ -9,42 +9,60 @@ from hrdsl.replace import put, when_imported
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, Callable
 
 #: What `uuid.getnode` says: a locally administered address, of no machine.
 NODE = 0x020000000001
 
 
-def install(seed: int) -> None:
+def install(seed: int) -> Chance:
     """Replaces the sources of entropy, for this process."""
-    chance = _Chance(seed)
+    chance = Chance(seed)
     system = [module for module in map(sys.modules.get, ("posix", "nt")) if module]
     put("urandom", chance.urandom, os, *system)
     put("getrandom", lambda size, flags=0: chance.urandom(size), os, *system)
     when_imported("_random", chance.generators)
-    when_imported("random", lambda module: module.seed(seed))
+    when_imported("random", lambda module: module.seed(chance.seed))
     when_imported("_ssl", chance.openssl)
     when_imported("uuid", chance.uuids)
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(before=chance.before_fork, after_in_child=chance.after_fork)
+    return chance
 
 
-class _Chance:
+class Chance:
     """What stands for the system's entropy, in two streams: one for those who ask for entropy, one for generators that
     are given no seed. The first of those is that of the module `random`, so who imports it changes nothing else."""
 
     def __init__(self, seed: int) -> None:
-        # Not the test's own seed, with which the numbers would be those of the module `random`.
-        self._seeds = [(stream << 64) + seed for stream in (1, 2)]
+        self.seed = seed
+        self.on_draw: Callable[[], object] | None = None  # called before each
         self._kind: Any = None  # the generator as it is
         self._replacement: Any = None  # and in its place
         self._sources: list[Any] = []
 
+    def begin(self, seed: int) -> None:
+        """The program begins with this seed, in a process that was forked for it: modules that were imported before find what
+        they would have found now."""
+        self.seed = seed
+        self._sources = []
+        random: Any = sys.modules.get("random")
+        if random is not None:
+            self.bits(256, 1)  # which its own generator takes at its import
+            random.seed(seed)
+        numpy: Any = sys.modules.get("numpy.random")
+        if numpy is not None:
+            numpy.set_state(numpy.MT19937().state)
+
     def bits(self, count: int, stream: int = 0) -> int:
+        """A number of so many random bits."""
+        if self.on_draw is not None:
+            self.on_draw()
         if not self._sources:
             import _random  # noqa: F401  (calls `generators`)
 
-            self._sources = [self._kind(seed) for seed in self._seeds]
+            # Not the test's own seed, with which the numbers would be those of the module `random`.
+            self._sources = [self._kind((stream << 64) + self.seed) for stream in (1, 2)]
         drawn: int = self._sources[stream].getrandbits(count)
         return drawn
 

@@ -38,22 +38,30 @@ class Recorder:
         self._fallback: Any = None
         self._lock = _thread.allocate_lock()
         self._dispositions: dict[str, Any] = {}
+        self._bits: int | None = None
 
-    def start(self) -> None:
-        """Starts to record, in this thread and those to come."""
+    def prepare(self) -> None:
+        """Does what can be done before the program begins."""
         self._module = _tracer_module(self._package)
-        self._bits: int = (self._module and self._packing()) or 0
-        if not self._bits:
+        self._bits = (self._module and self._packing()) or 0
+        if self._bits:
+            import threading
+
+            self._threading = threading
+        else:
             coverage = self._import()
             self._fallback = coverage.Coverage(
                 branch=True, include=list(self._files), data_file=None, config_file=False, messages=False
             )
+
+    def start(self) -> None:
+        """Starts to record, in this thread and those to come."""
+        if self._bits is None:
+            self.prepare()
+        if self._fallback is not None:
             self._fallback.start()
             return
-        import threading
-
-        self._threading = threading
-        threading.settrace(self._in_new_thread)
+        self._threading.settrace(self._in_new_thread)
         self._trace(self._data)
 
     def stop(self) -> None:
@@ -88,7 +96,7 @@ class Recorder:
             return {path: data.arcs(path) or () for path in self._files}
         found: dict[str, Any] = {}
         for name, packed in self._data.items():
-            found.setdefault(self._seen[name], set()).update(_unpack(arc, self._bits) for arc in packed)
+            found.setdefault(self._seen[name], set()).update(_unpack(arc, self._bits or 0) for arc in packed)
         return found
 
     # ── the tracer ──

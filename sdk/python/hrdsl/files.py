@@ -21,8 +21,9 @@ _AHEAD = 3600 * 10**9
 _COARSE = 5  # Linux: the clock from which files get their times
 
 
-def install(link: Link, now: Callable[[], int]) -> None:
-    """`now` is the simulated time of day in nanoseconds."""
+def install(link: Link, now: Callable[[], int]) -> Callable[[], None]:
+    """`now` is the simulated time of day in nanoseconds. What it returns is to be called when the program begins, if that is
+    later."""
     times = _Times(now)
     for name in ("stat", "lstat", "fstat"):
         _with_times(name, times)
@@ -32,6 +33,7 @@ def install(link: Link, now: Callable[[], int]) -> None:
     setattr(os, "DirEntry", _Scan.entry)
     if sys.platform == "linux" and _kernel() < (6, 13):
         link.before_request = times.settle
+    return times.begin
 
 
 def _with_times(name: str, times: _Times) -> None:
@@ -63,9 +65,13 @@ class _Times:
         self._now = now
         self._clock = _file_clock()
         self._sleep = time.sleep
-        self._start = self._clock()
         self._first_seen: dict[tuple[int, int, int], int] = {}
         self._newest = 0
+        self.begin()
+
+    def begin(self) -> None:
+        """What is changed from now on is changed by the program."""
+        self._start = self._clock()
 
     def shown(self, real: os.stat_result) -> os.stat_result:
         reduced: Any = real.__reduce__()

@@ -35,13 +35,11 @@ class Link:
     """Sends requests one at a time and keeps the simulated time of the last reply. To the scheduler of the program's threads it is
     the world outside."""
 
-    def __init__(self, request_fd: int, reply_fd: int) -> None:
-        # Programs that the robot code starts must not hold the pipes open.
-        os.set_inheritable(request_fd, False)
-        os.set_inheritable(reply_fd, False)
-        self._out = request_fd
-        self._in = reply_fd
-        self._owner = _getpid()
+    def __init__(self) -> None:
+        """Without a connection: code that runs before the test is known cannot make requests."""
+        self._out = -1
+        self._in = -1
+        self._owner: int | None = None
         self._lock = _thread.allocate_lock()
         self.greeted = False  # whether there has been a `hello`
         self._stopped: str | None = None
@@ -57,6 +55,15 @@ class Link:
         self.scheduler: Any = None  # of this process
         self.on_end: list[Callable[[], object]] = []  # called when the program has come to its end, before it says so
         self.before_request: Callable[[], object] | None = None  # called before each
+
+    def connect(self, request_fd: int, reply_fd: int) -> None:
+        """Makes the connection, of this process."""
+        # Programs that the robot code starts must not hold the pipes open.
+        os.set_inheritable(request_fd, False)
+        os.set_inheritable(reply_fd, False)
+        self._out = request_fd
+        self._in = reply_fd
+        self._owner = _getpid()
 
     @property
     def stopped(self) -> bool:
@@ -131,7 +138,7 @@ class Link:
         self._buffered += size
         if self._buffered > KEPT:
             if _getpid() != self._owner:
-                raise _is_forked()
+                raise self._not_ours()
             with self._lock:
                 self._write_rest(self._taken())
 
@@ -149,7 +156,7 @@ class Link:
     def _ask(self, line: bytes) -> dict[str, Any]:
         """What was refused meanwhile is left in `faults`, so that no arrival is lost."""
         if _getpid() != self._owner:
-            raise _is_forked()
+            raise self._not_ours()
         if self.before_request is not None:
             self.before_request()
         if not self.greeted:
@@ -161,6 +168,14 @@ class Link:
         if "error" in answer and "ok" not in answer:
             raise ProtocolError(answer["error"], answer.get("help"))
         return answer
+
+    def _not_ours(self) -> ProtocolError:
+        if self._owner is None:
+            return ProtocolError("no request can be made before the program begins")
+        return ProtocolError(
+            "a process forked from the program cannot make requests, nor wait (`time.sleep`)",
+            "leave those to the program's first process",
+        )
 
     def sleep(self, seconds: float) -> None:
         """Lets simulated time pass."""
@@ -246,26 +261,27 @@ class Link:
             pass
 
 
-def _is_forked() -> ProtocolError:
-    return ProtocolError(
-        "a process forked from the program cannot make requests, nor wait (`time.sleep`)",
-        "leave those to the program's first process",
-    )
-
-
 _link: Link | None = None
+
+
+def unconnected() -> Link:
+    """The one connection of this process, before it is made."""
+    global _link
+    _link = Link()
+    return _link
 
 
 def the_link() -> Link:
     """The one connection of this process, made at the first use."""
-    global _link
-    if _link is None:
-        try:
-            fds = int(os.environ.pop("HRDSL_REQUEST_FD")), int(os.environ.pop("HRDSL_REPLY_FD"))
-        except (KeyError, ValueError):
-            raise _no_harness() from None
-        _link = Link(*fds)
-    return _link
+    if _link is not None:
+        return _link
+    try:
+        fds = int(os.environ.pop("HRDSL_REQUEST_FD")), int(os.environ.pop("HRDSL_REPLY_FD"))
+    except (KeyError, ValueError):
+        raise _no_harness() from None
+    link = unconnected()
+    link.connect(*fds)
+    return link
 
 
 def _no_harness() -> ProtocolError:

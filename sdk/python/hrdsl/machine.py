@@ -17,17 +17,18 @@ if TYPE_CHECKING:
 CORES = frozenset({0})
 
 
-def install(elapsed: Callable[[], float]) -> None:
-    """Replaces what tells of cores, load and resources used; `elapsed` is simulated time in seconds."""
+def install(elapsed: Callable[[], float]) -> Callable[[], None]:
+    """Replaces what tells of cores, load and resources used; `elapsed` is simulated time in seconds. What it returns is to be
+    called when the program begins in a process that was forked for it."""
     for name in ("cpu_count", "process_cpu_count"):
         put(name, lambda: len(CORES), os)
     put("getloadavg", lambda: (0.0, 0.0, 0.0), os)
     _affinity()
     _system_values()
-    _thread_numbers()
     if hasattr(os, "times"):
         put("times", lambda: os.times_result((elapsed(), 0.0, 0.0, 0.0, elapsed())), os)
     when_imported("resource", lambda module: _usage(module, elapsed))
+    return _thread_numbers()
 
 
 def _affinity() -> None:
@@ -54,7 +55,7 @@ def _system_values() -> None:
     real = put("sysconf", lambda name: len(CORES) if name in cores else real(name), os)
 
 
-def _thread_numbers() -> None:
+def _thread_numbers() -> Callable[[], None]:
     """Threads are numbered from 1, in the order in which they are started."""
     numbers: dict[int, int] = {}
     count = itertools.count(1)
@@ -65,8 +66,17 @@ def _thread_numbers() -> None:
             numbers[thread] = next(count)
         return numbers[thread]
 
+    def begin() -> None:
+        nonlocal count
+        numbers.clear()
+        count = itertools.count(1)
+        threading: Any = sys.modules.get("threading")
+        if threading is not None:
+            threading.main_thread()._set_native_id()
+
     modules = [_thread] + [sys.modules[name] for name in ("threading",) if name in sys.modules]
     real = put("get_native_id", get_native_id, *modules)
+    return begin
 
 
 def _usage(module: Any, elapsed: Callable[[], float]) -> None:

@@ -5,7 +5,8 @@
 The environment has HRDSL_SEED, the two descriptors of the protocol, and optionally HRDSL_SYS_PATH (folders to search
 for modules), HRDSL_MIDDLEWARE (`ros1` or `ros2`), HRDSL_BINDING (see `hrdsl.binding`), HRDSL_COVERAGE_FD (the descriptor
 that coverage is written to), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py) and HRDSL_COVERAGE_CACHE. With
-HRDSL_DEBUG=1 the debugger gets the terminal, and there is no coverage.
+HRDSL_DEBUG=1 the debugger gets the terminal, and there is no coverage. With HRDSL_FORK_SERVER it is not a run, but a server that
+forks runs (see `hrdsl.forkserver`).
 """
 
 from __future__ import annotations
@@ -24,56 +25,84 @@ if TYPE_CHECKING:
     from typing import Any, Callable, NoReturn
 
     from hrdsl.cover import Recorder
+    from hrdsl.link import Link
 
 USAGE = "usage: python -m hrdsl.run [--coverage FILE]... (script.py | -m module | -c code) args...\n"
 
 
 def main(argv: list[str]) -> NoReturn:
     """Never returns: exits with 0 at a normal end or a stop, with 1 after an uncaught exception."""
-    files, option, words = _arguments(argv)
-    out = _coverage_descriptor()
-    _search_path()
-    for name in ("stdout", "stderr"):
-        stream = getattr(sys, name)
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(line_buffering=True)
-    try:
-        link = _links.the_link()
-    except ProtocolError as error:
-        sys.exit("hrdsl: %s" % error)
-    # Whoever started the harness may ignore some, as `nohup` does; the program is not to depend on it.
-    _signal.signal(_signal.SIGINT, _signal.default_int_handler)
-    _signal.signal(_signal.SIGHUP, _signal.SIG_DFL)
-    _signal.signal(_signal.SIGTERM, _terminated)
-    recorder = None
-    if files and out is not None and not debug.is_wanted():  # the debugger traces, too
-        from hrdsl.cover import Recorder
+    words = _arguments(argv)
+    if "HRDSL_FORK_SERVER" in os.environ:
+        from hrdsl import forkserver
 
-        environment = os.environ.get
-        recorder = Recorder(files, environment("HRDSL_COVERAGE_PACKAGE"), environment("HRDSL_COVERAGE_CACHE"))
-    scheduler = virtual.install(link, int(os.environ.get("HRDSL_SEED", "0")))
-    debug.install()
-    status = 1
-    try:
-        status, is_stopped = _status(lambda: _run(words, option, recorder))
-        if status == 0 and not link.greeted and link.is_ours() and not is_stopped:
-            status = _status(lambda: _check_use(words, option))[0]
-        if not is_stopped and link.is_ours():
-            status = _status(_join_threads)[0] or status
-        if link.is_ours():
-            for call in link.on_end:
-                status = _status(call)[0] or status
-        if scheduler.failed:
-            status = status or 1
-        if status == 0 and link.is_ours() and not link.stopped:
-            link.done()
-    finally:
-        scheduler.close()
-        if link.is_ours():  # not in a process that the program has forked
-            _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
-            if recorder is not None and out is not None:
-                _save(recorder, out)
-    sys.exit(status)
+        run = PreparedRun(words, _links.unconnected())
+        out, seed = forkserver.serve(run)
+        run.simulation.begin(seed)
+    else:
+        out = _coverage_descriptor()
+        try:
+            link = _links.the_link()
+        except ProtocolError as error:
+            sys.exit("hrdsl: %s" % error)
+        run = PreparedRun(words, link, out is not None)
+    run.run(out)
+
+
+class PreparedRun:
+    """A run of the program, made ready as far as that is possible before anything is known of the test."""
+
+    def __init__(self, arguments: tuple[list[str], str, list[str]], link: Link, measures: bool = True) -> None:
+        """Replaces what the program sees of time, chance and the machine. `arguments` are the files whose coverage is measured,
+        `-m` or `-c` if the program is a module or code, and its words."""
+        self.files, self.option, self.words = arguments
+        self.link = link
+        _search_path()
+        for name in ("stdout", "stderr"):
+            stream = getattr(sys, name)
+            if hasattr(stream, "reconfigure"):
+                stream.reconfigure(line_buffering=True)
+        self.recorder: Recorder | None = None
+        if self.files and measures and not debug.is_wanted():  # the debugger traces, too
+            from hrdsl.cover import Recorder
+
+            environment = os.environ.get
+            self.recorder = Recorder(self.files, environment("HRDSL_COVERAGE_PACKAGE"), environment("HRDSL_COVERAGE_CACHE"))
+        self.simulation = virtual.Simulation(link, int(os.environ.get("HRDSL_SEED", "0")))
+        debug.install()
+        sys.argv = list(self.words)
+        if self.option == "-c":
+            sys.argv[0] = self.option
+        _middleware()
+
+    def run(self, out: int | None) -> NoReturn:
+        """Runs the program in this process, and ends it; coverage goes to the descriptor `out`."""
+        # Whoever started the harness may ignore some, as `nohup` does; the program is not to depend on it.
+        _signal.signal(_signal.SIGINT, _signal.default_int_handler)
+        _signal.signal(_signal.SIGHUP, _signal.SIG_DFL)
+        _signal.signal(_signal.SIGTERM, _terminated)
+        link, scheduler = self.link, self.simulation.scheduler
+        status = 1
+        try:
+            status, is_stopped = _status(lambda: _run(self.words, self.option, self.recorder))
+            if status == 0 and not link.greeted and link.is_ours() and not is_stopped:
+                status = _status(lambda: _check_use(self.words, self.option))[0]
+            if not is_stopped and link.is_ours():
+                status = _status(_join_threads)[0] or status
+            if link.is_ours():
+                for call in link.on_end:
+                    status = _status(call)[0] or status
+            if scheduler.failed:
+                status = status or 1
+            if status == 0 and link.is_ours() and not link.stopped:
+                link.done()
+        finally:
+            scheduler.close()
+            if link.is_ours():  # not in a process that the program has forked
+                _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
+                if self.recorder is not None and out is not None:
+                    _save(self.recorder, out)
+        sys.exit(status)
 
 
 def _save(recorder: Recorder, out: int) -> None:
@@ -134,9 +163,7 @@ def _terminated(number: int, frame: Any) -> None:
 
 
 def _run(words: list[str], option: str, recorder: Recorder | None) -> None:
-    sys.argv = list(words)
     if option == "-c":
-        sys.argv[0] = option
         _execute(compile(words[0], "<string>", "exec", dont_inherit=True), None, recorder)
     elif not option:
         path = os.path.abspath(words[0])
@@ -147,7 +174,6 @@ def _run(words: list[str], option: str, recorder: Recorder | None) -> None:
         import runpy
 
         sys.path.insert(0, os.getcwd())
-        _middleware()
         if recorder is not None:
             recorder.start()
         runpy.run_module(words[0], run_name="__main__", alter_sys=True)
@@ -156,7 +182,6 @@ def _run(words: list[str], option: str, recorder: Recorder | None) -> None:
 def _execute(code: Any, path: str | None, recorder: Recorder | None) -> None:
     """Runs code as `__main__`, which is at this path, or came as a word of the command."""
     sys.path.insert(0, "" if path is None else os.path.dirname(path))
-    _middleware()
     script = type(sys)("__main__")
     if path is not None:
         script.__file__ = path
@@ -189,10 +214,11 @@ def _check_use(words: list[str], option: str) -> None:
 
 
 def _middleware() -> None:
-    """Puts what stands for the client libraries of ROS where they are found after the program's own modules."""
+    """Puts what stands for the client libraries of ROS where they are found after the program's own modules, whose folder comes
+    before it."""
     name = os.environ.get("HRDSL_MIDDLEWARE")
     if name:
-        sys.path.insert(1, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), name))
+        sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), name))
     if name or "HRDSL_BINDING" in os.environ:
         from hrdsl import interfaces
 

@@ -268,6 +268,12 @@ class Scheduler:
         self.watched.clear()
         self._ended = None
 
+    def begin_anew(self) -> None:
+        """The program begins, in a process that was forked for it: what was imported before has not polled."""
+        self.polls = self.calls = 0
+        self.main.has_yielded = False
+        self._polled_at = -1
+
     def end(self, error: Callable[[], BaseException]) -> None:
         """Ends the program by a fault: all waits raise it, that of the main thread first."""
         self.ending, self.failed, self._main_first = error, True, True

@@ -23,15 +23,25 @@ SECOND = 10**9  # an integer, since dividing integers rounds once
 EPOCH = 1735689600 * SECOND
 
 
-def install(link: Link, seed: int) -> Scheduler:
-    """Replaces what the standard library tells of time, chance and the machine, for this process, and what waits."""
-    scheduler = outside.install(link)
-    files.install(link, lambda: EPOCH + link.time)  # before the clocks, as it needs the real one
-    chance.install(seed)
-    machine.install(lambda: link.time / SECOND)
-    _clocks(scheduler, link)
-    dates.install(lambda: (EPOCH + link.time) / SECOND)
-    return scheduler
+class Simulation:
+    """What is replaced in this process."""
+
+    def __init__(self, link: Link, seed: int) -> None:
+        """Replaces what the standard library tells of time, chance and the machine, for this process, and what waits."""
+        self.scheduler = outside.install(link)
+        self._begin_files = files.install(link, lambda: EPOCH + link.time)  # before the clocks, as it needs the real one
+        self.chance = chance.install(seed)
+        self._begin_threads = machine.install(lambda: link.time / SECOND)
+        _clocks(self.scheduler, link)
+        dates.install(lambda: (EPOCH + link.time) / SECOND)
+
+    def begin(self, seed: int) -> None:
+        """To be called where the program begins later than this was made, in a process that was forked for it: nothing of what
+        was done before shows."""
+        self.scheduler.begin_anew()
+        self._begin_files()
+        self._begin_threads()
+        self.chance.begin(seed)
 
 
 def _clocks(scheduler: Scheduler, link: Link) -> None:

@@ -24,7 +24,8 @@ class Harness(threading.Thread):
         read, its_write = os.pipe()
         its_read, self.write = os.pipe()
         self.lines, self.answer, self.requests = os.fdopen(read), answer, []
-        self.link = link.Link(its_write, its_read)
+        self.link = link.Link()
+        self.link.connect(its_write, its_read)
         self.its_write = its_write
         self.start()
 

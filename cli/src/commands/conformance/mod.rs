@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_runtime::campaign::{
-    CampaignSetup, CellSettings, ProgramLimits, ProgramOutput, PythonEnv, StopFlag, SupervisorCommand,
-    prepare,
+    CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, StopFlag,
+    SupervisorCommand, prepare,
 };
 use serde_json::Value;
 
@@ -156,10 +156,12 @@ impl<'a> ConformanceRun<'a> {
             system: &system,
             dir: self.dir.clone(),
             env,
+            seed: 0,
             cells: self.cells.clone(),
             limits: ProgramLimits::default(),
             variables: Vec::new(),
             keep: None,
+            forks: ForkPlan::default(),
             jobs: 1,
             stop: self.stop.clone(),
         };

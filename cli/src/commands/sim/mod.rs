@@ -1,6 +1,7 @@
 //! `hrdsl sim`: the tests against the code under test, and the reports.
 
 mod determinism;
+mod rerun;
 mod run;
 mod schedules;
 
@@ -14,8 +15,8 @@ use std::{
 use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{
-        CampaignSetup, CellIsolation, CellSettings, ProgramLimits, StopFlag, SupervisorCommand, prepare,
-        tally,
+        CampaignSetup, CellIsolation, CellSettings, ForkPlan, ProgramLimits, StopFlag, SupervisorCommand,
+        prepare, tally,
     },
     report,
     results::CampaignResults,
@@ -89,6 +90,9 @@ pub struct SimArgs {
     /// Let `breakpoint()` in the program under test have the terminal; of one test, named by --test.
     #[arg(long, requires = "test", conflicts_with_all = ["check_determinism", "jobs"])]
     debug: bool,
+    /// Start the program's interpreter anew for each test, instead of once for each worker; the results are the same.
+    #[arg(long)]
+    no_fork: bool,
     /// How tests are kept apart [default: namespaces where the system allows them, otherwise copies].
     #[arg(long, value_enum, value_name = "HOW")]
     isolation: Option<IsolationArg>,
@@ -151,7 +155,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let sources =
         system.coverage().into_iter().filter_map(|f| files::read(&dir.join(&f)).ok().map(|text| (f, text)));
     let sources = sources.collect::<BTreeMap<_, _>>();
-    let results = tally(program, args.seed, &generated, outcome, &sources, rerun(args, &out));
+    let results = tally(program, args.seed, &generated, outcome, &sources, rerun::words(args, &out));
     publish(&results, &campaign, folder)?;
     summarise(&results, &campaign, &out, begun.elapsed())?;
     let repeatable = differences.as_ref().is_none_or(|d| d.tests == 0);
@@ -178,7 +182,7 @@ fn system_file(args: &SimArgs) -> Result<Option<String>, CommandFault> {
     if !path.is_file() {
         return Err(format!("--system: there is no file {}", terminal::shown(path)));
     }
-    Ok(Some(relative(path, &files::folder(&args.file)).display().to_string()))
+    Ok(Some(rerun::relative(path, &files::folder(&args.file)).display().to_string()))
 }
 
 fn is_file_name(name: &str) -> bool {
@@ -231,18 +235,26 @@ fn prepared<'p>(
     for complaint in env.analyse(&dir, &system.coverage()).map_err(|e| e.to_string())? {
         terminal::say_line(format_args!("warning: {}", complaint.trim_start_matches("hrdsl: ")));
     }
-    Ok(CampaignSetup {
+    let mut campaign = CampaignSetup {
         program,
         system,
         dir,
         env,
+        seed: args.seed,
         cells,
         limits: limits(args, system),
         variables: variables(args, system),
         keep: args.keep_files.then(|| folder.staging().join("files")).map(absolute).transpose()?,
         jobs: if args.debug { 1 } else { args.jobs.map_or_else(cores, usize::from) },
+        forks: ForkPlan::default(),
         stop: stop_flag(args.debug)?,
-    })
+    };
+    for complaint in campaign.plan_forks(args.no_fork)? {
+        terminal::say_line(format_args!(
+            "note: the program is started anew for each test, which takes longer: {complaint}"
+        ));
+    }
+    Ok(campaign)
 }
 
 /// Folders that the programs must not see: what is in them depends on the tests that have already run.
@@ -398,43 +410,6 @@ pub(super) fn cache() -> Result<PathBuf, CommandFault> {
         .ok_or_else(|| "no folder for the cache: set HRDSL_CACHE".to_owned())
 }
 
-/// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
-/// wherever both lie.
-fn rerun(args: &SimArgs, out: &Path) -> String {
-    let mut words = vec!["hrdsl sim".to_owned(), quoted(&relative(&args.file, out))];
-    if args.tests.is_empty() {
-        words.push("tests".to_owned());
-    }
-    words.extend(args.tests.iter().map(|t| quoted(&relative(t, out))));
-    let times = [("--cpu-limit", args.cpu_limit), ("--wall-limit", args.wall_limit)];
-    let times = times.iter().filter_map(|(name, t)| Some(format!("{name} {}ms", (*t)?.as_millis())));
-    let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
-    let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?)));
-    words.extend(args.schedule.map(|k| format!("--schedule {k}")));
-    let system = |name: &String| {
-        if is_file_name(name) { quoted(&relative(Path::new(name), out)) } else { name.clone() }
-    };
-    words.extend(args.system.iter().map(|name| format!("--system {}", system(name))));
-    words.extend(times.chain(sizes));
-    words.push("--test".to_owned());
-    words.join(" ")
-}
-
-/// A path as it is seen from a folder.
-fn relative(path: &Path, from: &Path) -> PathBuf {
-    let (Ok(path), Ok(from)) = (path.canonicalize(), from.canonicalize()) else { return path.to_owned() };
-    let common = path.components().zip(from.components()).take_while(|(a, b)| a == b).count();
-    let up = from.components().skip(common).map(|_| std::path::Component::ParentDir);
-    up.chain(path.components().skip(common)).collect()
-}
-
-/// A word for a shell.
-fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = |c: char| c.is_alphanumeric() || "/._-+=:@%,".contains(c);
-    if text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
-}
-
 /// On what a campaign ran: the one file of the results that differs between machines and versions.
 #[derive(Serialize)]
 struct RunInfo<'a> {
@@ -491,7 +466,7 @@ fn summarise(
         wall.as_secs_f64()
     );
     let again = if !results.is_clean() {
-        format!("to run one test again: (cd {} && {} NAME)\n", quoted(out), results.rerun)
+        format!("to run one test again: (cd {} && {} NAME)\n", rerun::quoted(out), results.rerun)
     } else {
         String::new()
     };

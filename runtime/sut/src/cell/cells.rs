@@ -67,7 +67,7 @@ impl CellSettings {
             hidden: Vec::new(),
             descriptors: Vec::new(),
             memory: ProgramLimits::default().memory,
-            keep: None,
+            keep: false,
             network: self.network,
             terminal: self.terminal,
         };

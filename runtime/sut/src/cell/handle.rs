@@ -19,7 +19,7 @@ use rustix::{
     },
 };
 
-use super::message::{CellEnding, CellIsolation, CellOrder, CellReport, CellRequest, CellUsage};
+use super::message::{CellEnding, CellIsolation, CellOrder, CellReport, CellRequest, CellUsage, SERVER};
 use crate::error::SutError;
 
 /// How long the supervisor may take to make a cell, and to end it: it only guards.
@@ -50,7 +50,8 @@ impl SupervisorCommand {
 /// A cell with a running program. When it is dropped, everything in it is killed.
 #[derive(Debug)]
 pub struct CellHandle {
-    supervisor: Child,
+    /// `None` if a fork server has made the cell.
+    supervisor: Option<Child>,
     /// Does not block. `None` once the supervisor is gone.
     control: Option<OwnedFd>,
     inbox: Vec<u8>,
@@ -95,15 +96,33 @@ impl CellHandle {
         order: &CellOrder,
         descriptors: &[BorrowedFd<'_>],
     ) -> Result<Self, CellRefusal> {
-        let refusal = |what: &str, why: String| CellRefusal { absent: false, what: what.to_owned(), why };
-        let (ours, theirs) = socketpair(AddressFamily::UNIX, SocketType::STREAM, SocketFlags::CLOEXEC, None)
-            .map_err(|e| refusal("a socket", e.to_string()))?;
-        let mut command = Command::new(&supervisor.program);
-        command.args(&supervisor.words);
-        command.arg(match order.isolation {
+        let kind = match order.isolation {
             CellIsolation::Namespaces => "namespaces",
             CellIsolation::Copies => "copies",
-        });
+        };
+        Self::start_as(kind, supervisor, order, descriptors)
+    }
+
+    /// Starts a fork server in a cell of its own.
+    pub(crate) fn start_server(
+        supervisor: &SupervisorCommand,
+        order: &CellOrder,
+        descriptors: &[BorrowedFd<'_>],
+    ) -> Result<Self, CellRefusal> {
+        Self::start_as(SERVER, supervisor, order, descriptors)
+    }
+
+    fn start_as(
+        kind: &str,
+        supervisor: &SupervisorCommand,
+        order: &CellOrder,
+        descriptors: &[BorrowedFd<'_>],
+    ) -> Result<Self, CellRefusal> {
+        let refusal = |what: &str, why: String| CellRefusal { absent: false, what: what.to_owned(), why };
+        let (ours, theirs) = control_sockets()?;
+        let mut command = Command::new(&supervisor.program);
+        command.args(&supervisor.words);
+        command.arg(kind);
         command.arg(if order.network { "network" } else { "loopback" });
         command.stdin(Stdio::from(theirs)).stdout(Stdio::piped()).stderr(Stdio::piped()).env_clear();
         // Where copies are made.
@@ -117,21 +136,45 @@ impl CellHandle {
             .map_err(|e| refusal("its supervisor", format!("{}: {e}", supervisor.program.display())))?;
         // The command holds the other end of the socket.
         drop(command);
-        let mut cell = Self {
-            stdout: child.stdout.take().map(Into::into),
-            stderr: child.stderr.take().map(Into::into),
-            supervisor: child,
-            control: Some(ours),
+        let (stdout, stderr) = (child.stdout.take().map(Into::into), child.stderr.take().map(Into::into));
+        Self::of(Some(child), ours, stdout, stderr).begin(order, descriptors)
+    }
+
+    /// A cell that a fork server makes: with its end of the connection, to which the supervisor has the other, and what the program
+    /// writes. The descriptors are not the program's, which has its own already.
+    pub(crate) fn of_fork(
+        control: OwnedFd,
+        (stdout, stderr): (OwnedFd, OwnedFd),
+        order: &CellOrder,
+        descriptors: &[BorrowedFd<'_>],
+    ) -> Result<Self, CellRefusal> {
+        Self::of(None, control, Some(stdout), Some(stderr)).begin(order, descriptors)
+    }
+
+    fn of(
+        supervisor: Option<Child>,
+        control: OwnedFd,
+        stdout: Option<OwnedFd>,
+        stderr: Option<OwnedFd>,
+    ) -> Self {
+        Self {
+            stdout,
+            stderr,
+            supervisor,
+            control: Some(control),
             inbox: Vec::new(),
             fixed_addresses: false,
             moved: Vec::new(),
             read_only: Vec::new(),
             usage: None,
             ending: None,
-        };
+        }
+    }
+
+    fn begin(mut self, order: &CellOrder, descriptors: &[BorrowedFd<'_>]) -> Result<Self, CellRefusal> {
         // That it cannot be sent is said by what is received, or by nothing being received.
-        let _ = cell.send_order(order, descriptors);
-        cell.await_start()
+        let _ = self.send_order(order, descriptors);
+        self.await_start()
     }
 
     fn send_order(&mut self, order: &CellOrder, descriptors: &[BorrowedFd<'_>]) -> io::Result<()> {
@@ -280,9 +323,19 @@ impl Drop for CellHandle {
         let _ = self.await_end(PATIENCE);
         self.control = None;
         // It has said its last, or will never say it.
+        let Some(supervisor) = &mut self.supervisor else { return };
         if self.ending.is_none() {
-            let _ = self.supervisor.kill();
+            let _ = supervisor.kill();
         }
-        let _ = self.supervisor.wait();
+        let _ = supervisor.wait();
     }
+}
+
+/// The harness's end of a connection, and the supervisor's.
+pub(crate) fn control_sockets() -> Result<(OwnedFd, OwnedFd), CellRefusal> {
+    socketpair(AddressFamily::UNIX, SocketType::STREAM, SocketFlags::CLOEXEC, None).map_err(|e| CellRefusal {
+        absent: false,
+        what: "a socket".to_owned(),
+        why: e.to_string(),
+    })
 }

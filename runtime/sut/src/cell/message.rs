@@ -9,6 +9,9 @@ use crate::exit::ProgramExit;
 /// The folder of a cell's own home and temporary files: the same path in every cell.
 pub const CELL_FOLDER: &str = "/tmp/.hrdsl-cell";
 
+/// The word of a cell in which a fork server runs.
+pub(crate) const SERVER: &str = "fork-server";
+
 /// How a cell keeps its program apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -24,7 +27,8 @@ pub enum CellIsolation {
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct CellOrder {
     pub isolation: CellIsolation,
-    /// The program and its arguments; empty: the cell is made and ends at once, to see whether it can be.
+    /// The program and its arguments; empty: the cell is made and ends at once, to see whether it can be, unless the program is
+    /// there already.
     pub command: Vec<OsString>,
     /// The program's whole environment, but for what the supervisor adds (`HOME`, `TMPDIR`, descriptors).
     pub env: Vec<(OsString, OsString)>,
@@ -36,8 +40,8 @@ pub(crate) struct CellOrder {
     pub descriptors: Vec<String>,
     /// Bytes of private memory for each process, and of files in memory for the cell.
     pub memory: u64,
-    /// Where to put the files that the program wrote.
-    pub keep: Option<OsString>,
+    /// Whether the files that the program writes are kept: then the last descriptor is the folder for them.
+    pub keep: bool,
     /// Whether the machine's network is the program's, too.
     pub network: bool,
     /// Whether the program keeps the terminal, for a debugger.

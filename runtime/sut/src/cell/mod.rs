@@ -14,9 +14,13 @@
 //! 4. When the program ends, when it is told to, or when the harness is gone, it kills every process of the cell, keeps the
 //!    changed files if they were asked for (`keep.rs`), and ends.
 //!
+//! A *fork server* has a cell of its own (`supervisor.rs`, with the word of `SERVER`), which can be read only. It forks the first
+//! process of each program's cell and the program, and the first process becomes the supervisor: so steps 3 and 4 are the same.
+//!
 //! The harness's death closes the supervisor's only connection, so nothing has to be cleaned up by who was killed.
 
 pub(crate) mod cells;
+mod control;
 mod copies;
 mod descendants;
 pub(crate) mod handle;
@@ -27,6 +31,7 @@ mod namespaces;
 mod rights;
 mod supervisor;
 mod view;
+mod watch;
 
 pub use cells::CellSettings;
 pub use handle::SupervisorCommand;

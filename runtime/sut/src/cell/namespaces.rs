@@ -11,15 +11,18 @@ use rustix::{
 
 use super::rights;
 
+/// Those of a cell, but for that of users.
+pub(super) fn flags(network: bool) -> CloneFlags {
+    let flags = CloneFlags::CLONE_NEWNS | CloneFlags::CLONE_NEWPID | CloneFlags::CLONE_NEWIPC;
+    if network { flags } else { flags | CloneFlags::CLONE_NEWNET }
+}
+
 /// Enters new namespaces; the processes started from here on are in them, the first of them as their first process.
 ///
 /// # Errors
 /// What the kernel refused.
 pub(super) fn enter(network: bool) -> Result<(), (&'static str, io::Error)> {
-    let mut flags = CloneFlags::CLONE_NEWNS | CloneFlags::CLONE_NEWPID | CloneFlags::CLONE_NEWIPC;
-    if !network {
-        flags |= CloneFlags::CLONE_NEWNET;
-    }
+    let flags = flags(network);
     let (user, group) = (getuid(), getgid());
     // Who may do so without a namespace of users keeps all users' names for the files that it sees.
     if user.is_root() && unshare(flags).is_ok() {

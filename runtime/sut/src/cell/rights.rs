@@ -40,6 +40,11 @@ const BEYOND_THE_CELL: [CapabilitySet; 26] = [
     CapabilitySet::WAKE_ALARM,
 ];
 
+/// A bit for each of them, as capabilities(7) numbers them.
+pub(super) fn beyond_the_cell() -> u64 {
+    BEYOND_THE_CELL.into_iter().fold(CapabilitySet::empty(), |all, right| all | right).bits()
+}
+
 /// Lets this process keep its rights in new namespaces when it starts itself again: otherwise all but root lose them.
 pub(super) fn keep() -> Result<(), Errno> {
     let own = capabilities(None)?;

@@ -2,14 +2,13 @@
 //!
 //! There are two of it: the one that the harness starts waits; its child does the rest. With namespaces, the first enters them
 //! and the child is the first process in them. With copies, the first has the cell's folder, and cleans up if the program
-//! kills its parent.
+//! kills its parent. In the cell of a fork's program there is only the second, which the fork server has forked.
 
 use std::{
     ffi::OsString,
-    io::{self, Write},
-    mem::MaybeUninit,
+    io,
     os::{
-        fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd},
+        fd::{AsFd, AsRawFd, OwnedFd},
         unix::process::CommandExt,
     },
     path::{Path, PathBuf},
@@ -25,35 +24,38 @@ use nix::{
     unistd::Pid,
 };
 use rustix::{
-    event::{PollFd, PollFlags, poll},
     fs::{Mode, OFlags, open},
-    io::Errno,
-    net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg},
+    io::{FdFlags, fcntl_setfd},
     process::{
         DumpableBehavior, set_child_subreaper, set_dumpable_behavior, set_parent_process_death_signal,
     },
 };
 
 use super::{
+    control::ControlSocket,
     copies::{CellFolder, ProjectCopy},
     descendants,
     keep::keep,
     limits,
-    message::{CELL_FOLDER, CellEnding, CellIsolation, CellOrder, CellReport, CellRequest, KeptFiles},
+    message::{CELL_FOLDER, CellEnding, CellOrder, CellReport, KeptFiles, SERVER},
     namespaces, rights,
-    view::PrivateView,
+    view::{PrivateView, make_read_only},
+    watch::ProgramWatch,
 };
 use crate::exit::ProgramExit;
 
 /// The word with which the supervisor starts itself again, inside the cell.
 const INSIDE: &str = "inside";
+/// The word with which the first process of a cell, which a fork server has forked, becomes its supervisor; then come the number of
+/// its child, the program, and of a descriptor on which that waits.
+const FORKED: &str = "forked";
 
 /// Runs a cell; what [`Supervisor`](super::Supervisor) starts must call this, with its remaining arguments, before anything
 /// else. Standard input is the connection to the harness.
 #[must_use]
 pub fn supervise(args: &[OsString]) -> ExitCode {
     let Some(control) = std::io::stdin().as_fd().try_clone_to_owned().ok() else { return ExitCode::FAILURE };
-    let mut control = ControlSocket { socket: control, inbox: Vec::new() };
+    let mut control = ControlSocket::new(control);
     let words: Vec<&str> = args.iter().filter_map(|a| a.to_str()).collect();
     // A debugger on the terminal is interrupted there; whoever supervises it goes on.
     let interrupts = SigSet::from(Signal::SIGINT);
@@ -61,9 +63,15 @@ pub fn supervise(args: &[OsString]) -> ExitCode {
     let result = match words[..] {
         ["namespaces", "network"] => enter_and_wait(true, args),
         ["namespaces", _] => enter_and_wait(false, args),
+        [SERVER, "network"] => enter_and_wait(true, args),
+        [SERVER, _] => enter_and_wait(false, args),
         ["copies", _] => adopt_and_wait(args),
-        ["copies", _, INSIDE] => run(&mut control, false),
-        ["namespaces", _, INSIDE] => run(&mut control, true),
+        ["copies", _, INSIDE] => run(&mut control, &CellProgram::InCopy),
+        ["namespaces", _, INSIDE] => run(&mut control, &CellProgram::InNamespaces),
+        [SERVER, _, INSIDE] => run(&mut control, &CellProgram::Server),
+        ["namespaces", _, FORKED, program, go] => forked(program, go)
+            .ok_or_else(|| SetupRefusal::of("a forked program", io::ErrorKind::InvalidInput.into()))
+            .and_then(|program| run(&mut control, &program)),
         _ => Err(SetupRefusal::of("the supervisor", io::ErrorKind::InvalidInput.into())),
     };
     match result {
@@ -135,88 +143,58 @@ fn again(args: &[OsString]) -> Command {
     command
 }
 
-/// The supervisor's end of the connection.
-struct ControlSocket {
-    socket: OwnedFd,
-    inbox: Vec<u8>,
+/// What runs in a cell, and how it comes there.
+enum CellProgram {
+    InNamespaces,
+    InCopy,
+    /// Forks programs, each into a cell of its own.
+    Server,
+    /// Has been forked by such a server, and waits for a byte on the descriptor.
+    Forked {
+        program: Pid,
+        go: OwnedFd,
+    },
 }
 
-impl ControlSocket {
-    /// The harness may be gone; then the next look at the socket says so.
-    fn report(&mut self, report: &CellReport) {
-        if let Ok(mut line) = serde_json::to_vec(report) {
-            line.push(b'\n');
-            let _ = std::fs::File::from(match self.socket.try_clone() {
-                Ok(socket) => socket,
-                Err(_) => return,
-            })
-            .write_all(&line);
+impl CellProgram {
+    fn is_server(&self) -> bool {
+        match self {
+            CellProgram::Server => true,
+            CellProgram::InNamespaces | CellProgram::InCopy | CellProgram::Forked { .. } => false,
         }
     }
 
-    /// The order, and the program's descriptors; `None` if the harness is gone.
-    fn order(&mut self) -> io::Result<Option<(CellOrder, Vec<OwnedFd>)>> {
-        let mut descriptors = Vec::new();
-        loop {
-            if let Some(line) = self.take_line() {
-                return Ok(Some((serde_json::from_slice(&line)?, descriptors)));
-            }
-            let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(8))];
-            let mut ancillary = RecvAncillaryBuffer::new(&mut space);
-            let mut chunk = [0; 4096];
-            let mut parts = [io::IoSliceMut::new(&mut chunk)];
-            // Inherited by the program, since they are not closed at its start.
-            let got = recvmsg(&self.socket, &mut parts, &mut ancillary, RecvFlags::empty())?;
-            for message in ancillary.drain() {
-                if let RecvAncillaryMessage::ScmRights(rights) = message {
-                    descriptors.extend(rights);
-                }
-            }
-            if got.bytes == 0 {
-                return Ok(None);
-            }
-            self.inbox.extend_from_slice(&chunk[..got.bytes]);
+    /// Whether its supervisor is the first process of a namespace, in which there are no others.
+    fn is_alone(&self) -> bool {
+        match self {
+            CellProgram::InCopy => false,
+            CellProgram::InNamespaces | CellProgram::Server | CellProgram::Forked { .. } => true,
         }
     }
+}
 
-    fn take_line(&mut self) -> Option<Vec<u8>> {
-        let end = self.inbox.iter().position(|b| *b == b'\n')?;
-        let mut line: Vec<u8> = self.inbox.drain(..=end).collect();
-        line.pop();
-        Some(line)
-    }
-
-    /// Reads what there is; whether the harness is still there.
-    fn read(&mut self) -> bool {
-        let mut chunk = [0; 256];
-        match rustix::io::read(&self.socket, &mut chunk) {
-            Ok(0) => false,
-            Ok(n) => {
-                self.inbox.extend_from_slice(&chunk[..n]);
-                true
-            }
-            Err(Errno::INTR | Errno::AGAIN) => true,
-            Err(_) => false,
-        }
-    }
+/// Takes over the program that waits in this cell already.
+fn forked(program: &str, go: &str) -> Option<CellProgram> {
+    let program = Pid::from_raw(program.parse().ok()?);
+    let go: i32 = go.parse().ok()?;
+    // Opened anew rather than believed: whoever starts this process could have written any number.
+    let go = open(format!("/proc/self/fd/{go}"), OFlags::WRONLY | OFlags::CLOEXEC, Mode::empty()).ok()?;
+    Some(CellProgram::Forked { program, go })
 }
 
 /// Where the program runs, and what is left of it.
 enum CellPlace {
+    /// The machine itself, to be read only.
+    Machine,
     Namespaces(PrivateView),
     Copy(ProjectCopy),
 }
 
 /// Makes the cell, runs the program in it, and ends it.
-fn run(control: &mut ControlSocket, alone: bool) -> Result<(), SetupRefusal> {
-    if alone {
-        // The outer supervisor is its only parent, and has one thread.
-        set_parent_process_death_signal(Some(rustix::process::Signal::KILL))
-            .map_err(|e| SetupRefusal::of("its end", e.into()))?;
-    } else {
-        adopt()?;
-    }
-    let Some((order, descriptors)) = control.order().map_err(|e| SetupRefusal::of("the order", e))? else {
+fn run(control: &mut ControlSocket, program: &CellProgram) -> Result<(), SetupRefusal> {
+    inherit(program)?;
+    let Some((order, mut descriptors)) = control.order().map_err(|e| SetupRefusal::of("the order", e))?
+    else {
         return Ok(());
     };
     if !order.terminal {
@@ -227,42 +205,136 @@ fn run(control: &mut ControlSocket, alone: bool) -> Result<(), SetupRefusal> {
     chlds.thread_block().map_err(|e| SetupRefusal::of("signals", e.into()))?;
     let ended = SignalFd::with_flags(&chlds, SfdFlags::SFD_CLOEXEC | SfdFlags::SFD_NONBLOCK)
         .map_err(|e| SetupRefusal::of("signals", e.into()))?;
-    let keep_to =
-        order.keep.as_ref().map(|to| open(Path::new(to), OFlags::PATH | OFlags::CLOEXEC, Mode::empty()));
-    let keep_to = keep_to.transpose().map_err(|e| SetupRefusal::of("the folder for files", e.into()))?;
-    let place = make(&order)?;
+    let keep_to = if order.keep { descriptors.pop() } else { None };
+    if let Some(folder) = &keep_to {
+        fcntl_setfd(folder, FdFlags::CLOEXEC)
+            .map_err(|e| SetupRefusal::of("the folder for files", e.into()))?;
+    }
+    let place = make(program, &order)?;
     let fixed_addresses = limits::fix_addresses();
     limits::limit_resources(order.memory);
     // What this process has open (folders of the machine among them) is not for the program to find in /proc.
     set_dumpable_behavior(DumpableBehavior::NotDumpable)
         .map_err(|e| SetupRefusal::of("a supervisor of its own", e.into()))?;
-    rights::give_up().map_err(|e| SetupRefusal::of("the program's rights", e.into()))?;
-    let child = if order.command.is_empty() { None } else { Some(start(&order, &place, &descriptors)?) };
+    if !program.is_server() {
+        rights::give_up().map_err(|e| SetupRefusal::of("the program's rights", e.into()))?;
+    }
+    let child = begin(program, &order, &place, &descriptors)?;
     drop(descriptors);
     control.report(&started(fixed_addresses, &place, &order));
-    let Some(child) = child else { return Ok(()) };
-    let mut watch = ProgramWatch { control, ended, others: false, main: None };
-    let there = watch.wait(&child);
-    let usage = descendants::usage();
-    watch.others |= descendants::end_all(alone);
-    if there {
-        let kept = keep_to.as_ref().map(|to| keep_files(&place, &order, to));
-        let ending = CellEnding {
-            exit: watch.main.unwrap_or(ProgramExit::Killed),
-            others: watch.others,
-            cpu: usage.cpu.max(descendants::usage().cpu),
-            kept,
-        };
-        control.report(&CellReport::Ended(ending));
+    if let Some(child) = child {
+        let mut watch = ProgramWatch::new(control, ended);
+        let is_there = watch.wait(child);
+        end(&mut watch, is_there, program, |to| keep_files(&place, &order, to), keep_to.as_ref());
     }
     Ok(())
 }
 
-fn make(order: &CellOrder) -> Result<CellPlace, SetupRefusal> {
+/// Sees to it that nothing of the cell is left when this process, or the one above it, has ended.
+fn inherit(program: &CellProgram) -> Result<(), SetupRefusal> {
+    match program {
+        // The outer supervisor is its only parent, and has one thread.
+        CellProgram::InNamespaces | CellProgram::Server => {
+            set_parent_process_death_signal(Some(rustix::process::Signal::KILL))
+                .map_err(|e| SetupRefusal::of("its end", e.into()))
+        }
+        CellProgram::InCopy => adopt(),
+        // Its parent has ended already; it ends with the namespace around its own.
+        CellProgram::Forked { .. } => Ok(()),
+    }
+}
+
+/// Ends what is left in the cell, and tells the harness, if that is there. What a server has forked goes on without it.
+fn end(
+    watch: &mut ProgramWatch<'_>,
+    is_there: bool,
+    program: &CellProgram,
+    keep: impl Fn(&OwnedFd) -> KeptFiles,
+    keep_to: Option<&OwnedFd>,
+) {
+    let usage = descendants::usage();
+    if !program.is_server() {
+        watch.others |= descendants::end_all(program.is_alone());
+    }
+    if is_there {
+        let ending = CellEnding {
+            exit: watch.main.unwrap_or(ProgramExit::Killed),
+            others: watch.others,
+            cpu: usage.cpu.max(descendants::usage().cpu),
+            kept: keep_to.map(keep),
+        };
+        watch.control.report(&CellReport::Ended(ending));
+    }
+    if program.is_server() {
+        if is_there && watch.main.is_some() {
+            watch.wait_for_harness();
+        }
+        descendants::end_all(true);
+    }
+}
+
+/// Lets the program begin; none, if the order has none.
+fn begin(
+    program: &CellProgram,
+    order: &CellOrder,
+    place: &CellPlace,
+    descriptors: &[OwnedFd],
+) -> Result<Option<Pid>, SetupRefusal> {
+    if let CellProgram::Forked { program, go } = program {
+        rustix::io::write(go, b"+").map_err(|e| SetupRefusal::of("the forked program", e.into()))?;
+        return Ok(Some(*program));
+    }
+    if order.command.is_empty() {
+        return Ok(None);
+    }
+    let for_forks = match program {
+        CellProgram::Server => Some(ForkedCells::make()?),
+        CellProgram::InNamespaces | CellProgram::InCopy | CellProgram::Forked { .. } => None,
+    };
+    let child = start(order, place, descriptors, for_forks.as_ref())?;
+    Ok(Some(Pid::from_raw(child.id().cast_signed())))
+}
+
+/// What a fork server must have to make cells.
+struct ForkedCells {
+    /// This program; inherited by the server.
+    supervisor: OwnedFd,
+}
+
+impl ForkedCells {
+    fn make() -> Result<Self, SetupRefusal> {
+        let supervisor = open("/proc/self/exe", OFlags::PATH, Mode::empty())
+            .map_err(|e| SetupRefusal::of("a fork server", e.into()))?;
+        Ok(Self { supervisor })
+    }
+
+    /// What it is told.
+    fn text(&self, network: bool) -> String {
+        let own = std::env::args_os().take_while(|word| word != SERVER);
+        let network_word = if network { "network" } else { "loopback" };
+        let more = ["namespaces", network_word, FORKED].map(OsString::from);
+        let words: Vec<String> = own.chain(more).map(|word| word.to_string_lossy().into_owned()).collect();
+        serde_json::json!({
+            "supervisor": self.supervisor.as_raw_fd(),
+            "words": words,
+            "namespaces": namespaces::flags(network).bits(),
+            "beyond": rights::beyond_the_cell(),
+        })
+        .to_string()
+    }
+}
+
+fn make(program: &CellProgram, order: &CellOrder) -> Result<CellPlace, SetupRefusal> {
     let dir = PathBuf::from(&order.dir);
     let hidden: Vec<PathBuf> = order.hidden.iter().map(PathBuf::from).collect();
-    match order.isolation {
-        CellIsolation::Namespaces => {
+    match program {
+        CellProgram::Server => {
+            // Its forks lay their views over the machine's folders, and an overlay over another may be one too many.
+            make_read_only()
+                .map_err(|(what, why)| SetupRefusal::of(format!("{what}, to be read only"), why))?;
+            Ok(CellPlace::Machine)
+        }
+        CellProgram::InNamespaces | CellProgram::Forked { .. } => {
             if !order.network {
                 namespaces::bring_up_loopback().map_err(|e| SetupRefusal::of("the loopback interface", e))?;
             }
@@ -276,7 +348,7 @@ fn make(order: &CellOrder) -> Result<CellPlace, SetupRefusal> {
             }
             Ok(CellPlace::Namespaces(view))
         }
-        CellIsolation::Copies => {
+        CellProgram::InCopy => {
             let copy = ProjectCopy::make(std::env::temp_dir(), &dir, &hidden)
                 .map_err(|e| SetupRefusal::of(format!("a copy of {}", dir.display()), e))?;
             Ok(CellPlace::Copy(copy))
@@ -286,6 +358,7 @@ fn make(order: &CellOrder) -> Result<CellPlace, SetupRefusal> {
 
 fn started(fixed_addresses: bool, place: &CellPlace, order: &CellOrder) -> CellReport {
     let (moved, read_only) = match place {
+        CellPlace::Machine => (Vec::new(), Vec::new()),
         CellPlace::Namespaces(view) => {
             (Vec::new(), view.read_only.iter().map(|p| p.clone().into_os_string()).collect())
         }
@@ -302,16 +375,21 @@ fn started(fixed_addresses: bool, place: &CellPlace, order: &CellOrder) -> CellR
     CellReport::Started { fixed_addresses, moved, read_only }
 }
 
-fn start(order: &CellOrder, place: &CellPlace, descriptors: &[OwnedFd]) -> Result<Child, SetupRefusal> {
+fn start(
+    order: &CellOrder,
+    place: &CellPlace,
+    descriptors: &[OwnedFd],
+    for_forks: Option<&ForkedCells>,
+) -> Result<Child, SetupRefusal> {
     let (dir, home, temporary) = match place {
-        CellPlace::Namespaces(_) => {
+        CellPlace::Machine | CellPlace::Namespaces(_) => {
             let own = Path::new(CELL_FOLDER);
             (PathBuf::from(&order.dir), own.join("home"), own.join("tmp"))
         }
         CellPlace::Copy(copy) => (copy.project(), copy.home(), copy.temporary()),
     };
     let word = |w: &OsString| match place {
-        CellPlace::Namespaces(_) => w.clone(),
+        CellPlace::Machine | CellPlace::Namespaces(_) => w.clone(),
         CellPlace::Copy(copy) => copy.moved(Path::new(w)).into_os_string(),
     };
     let words: Vec<OsString> = order.command.iter().map(word).collect();
@@ -321,6 +399,9 @@ fn start(order: &CellOrder, place: &CellPlace, descriptors: &[OwnedFd]) -> Resul
     command.env("HOME", home).env("TMPDIR", temporary);
     for (name, descriptor) in order.descriptors.iter().zip(descriptors) {
         command.env(name, descriptor.as_raw_fd().to_string());
+    }
+    if let Some(cells) = for_forks {
+        command.env("HRDSL_FORK_CELL", cells.text(order.network));
     }
     command.stdin(Stdio::null());
     if !order.terminal {
@@ -339,74 +420,6 @@ fn start(order: &CellOrder, place: &CellPlace, descriptors: &[OwnedFd]) -> Resul
     })
 }
 
-/// Waits for the program's end and for what the harness asks.
-struct ProgramWatch<'c> {
-    control: &'c mut ControlSocket,
-    ended: SignalFd,
-    /// Whether there was ever another process.
-    others: bool,
-    /// How the program ended.
-    main: Option<ProgramExit>,
-}
-
-impl ProgramWatch<'_> {
-    /// Returns when the program has ended or is to end; whether the harness is still there.
-    fn wait(&mut self, child: &Child) -> bool {
-        loop {
-            self.reap(child);
-            if self.main.is_some() {
-                return true;
-            }
-            let control: BorrowedFd<'_> = self.control.socket.as_fd();
-            let mut fds = [PollFd::new(&control, PollFlags::IN), PollFd::new(&self.ended, PollFlags::IN)];
-            match poll(&mut fds, None) {
-                Ok(_) | Err(Errno::INTR) => {}
-                Err(_) => return false,
-            }
-            let (asked, ended) = (!fds[0].revents().is_empty(), !fds[1].revents().is_empty());
-            if ended {
-                while let Ok(Some(_)) = self.ended.read_signal() {}
-            }
-            if asked && !self.control.read() {
-                return false;
-            }
-            while let Some(line) = self.control.take_line() {
-                match serde_json::from_slice(&line) {
-                    Ok(CellRequest::Usage) => self.control.report(&CellReport::Usage(descendants::usage())),
-                    Ok(CellRequest::Terminate) => descendants::signal_all(Signal::SIGTERM),
-                    Ok(CellRequest::Kill) => return true,
-                    Err(_) => return false,
-                }
-            }
-        }
-    }
-
-    /// Waits for whoever has ended: the program, or what it left behind.
-    fn reap(&mut self, child: &Child) {
-        let look = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
-        while let Ok(status) = waitid(Id::All, look) {
-            let (pid, exit) = if let WaitStatus::Exited(pid, code) = status {
-                (pid, ProgramExit::Code(code))
-            } else if let WaitStatus::Signaled(pid, signal, _) = status {
-                (pid, ProgramExit::Signal(signal as i32))
-            } else {
-                return;
-            };
-            if pid.as_raw().unsigned_abs() == child.id() {
-                // While it is not yet waited for, the kernel still tells.
-                self.others |= descendants::had_children(pid.as_raw());
-                self.main = Some(exit);
-            } else {
-                self.others = true;
-            }
-            let _ = waitid(Id::Pid(pid), WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG);
-            if self.main.is_some() {
-                return;
-            }
-        }
-    }
-}
-
 /// Copies out what the program wrote. `to` was opened before the root changed: the harness's folder is not the one of the
 /// same path in here.
 fn keep_files(place: &CellPlace, order: &CellOrder, to: &OwnedFd) -> KeptFiles {
@@ -414,6 +427,7 @@ fn keep_files(place: &CellPlace, order: &CellOrder, to: &OwnedFd) -> KeptFiles {
     let to = PathBuf::from(format!("/proc/self/fd/{}", to.as_raw_fd()));
     let own = Path::new(CELL_FOLDER);
     match place {
+        CellPlace::Machine => KeptFiles::default(),
         CellPlace::Namespaces(view) => keep(&view.written(), dir, &to, order.memory, &|_| true),
         CellPlace::Copy(copy) => {
             let folders = [

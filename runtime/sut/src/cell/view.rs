@@ -305,6 +305,23 @@ impl PrivateView {
     }
 }
 
+/// Lets nothing on the machine be written to in this namespace, but for what goes to the kernel.
+pub(super) fn make_read_only() -> Result<(), ViewError> {
+    mount_change("/", MountPropagationFlags::REC | MountPropagationFlags::PRIVATE)
+        .map_err(|e| ("/".to_owned(), e.into()))?;
+    for (at, kind) in mounts().map_err(|e| ("/proc/self/mountinfo".to_owned(), e))? {
+        if kind == "proc" || KERNEL.contains(&kind.as_str()) {
+            continue;
+        }
+        match read_only(&at) {
+            // One that another covers, or of another user, which cannot be written to anyway.
+            Ok(()) | Err(Errno::NOENT | Errno::ACCESS) => {}
+            Err(e) => return Err((at.display().to_string(), e.into())),
+        }
+    }
+    Ok(())
+}
+
 /// Binds a file or folder so that it can only be read. A remount (below) must repeat what the kernel has locked of the mount that it
 /// comes from, which is not told: so it is tried.
 fn bind_read_only(source: &Path, target: &Path) -> Result<(), Errno> {

@@ -34,6 +34,7 @@ pub fn launch(words: &[&str]) -> LaunchSpec {
         command: words.iter().map(|&w| w.to_owned()).collect(),
         dir: PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/programs"),
         seed: 17,
+        hash_seed: 17,
         coverage: Vec::new(),
         env: plain_environment(),
         middleware: None,

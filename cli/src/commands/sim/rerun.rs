@@ -1,0 +1,44 @@
+//! The command that runs one test of a campaign again.
+
+use std::path::{Path, PathBuf};
+
+use super::{SimArgs, is_file_name};
+
+/// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
+/// wherever both lie.
+pub fn words(args: &SimArgs, out: &Path) -> String {
+    let mut words = vec!["hrdsl sim".to_owned(), quoted(&relative(&args.file, out))];
+    if args.tests.is_empty() {
+        words.push("tests".to_owned());
+    }
+    words.extend(args.tests.iter().map(|t| quoted(&relative(t, out))));
+    let times = [("--cpu-limit", args.cpu_limit), ("--wall-limit", args.wall_limit)];
+    let times = times.iter().filter_map(|(name, t)| Some(format!("{name} {}ms", (*t)?.as_millis())));
+    let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
+    let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?)));
+    // The hashes of texts follow from it.
+    words.extend((args.seed != 0).then(|| format!("--seed {}", args.seed)));
+    words.extend(args.schedule.map(|k| format!("--schedule {k}")));
+    let system = |name: &String| {
+        if is_file_name(name) { quoted(&relative(Path::new(name), out)) } else { name.clone() }
+    };
+    words.extend(args.system.iter().map(|name| format!("--system {}", system(name))));
+    words.extend(times.chain(sizes));
+    words.push("--test".to_owned());
+    words.join(" ")
+}
+
+/// A path as it is seen from a folder.
+pub fn relative(path: &Path, from: &Path) -> PathBuf {
+    let (Ok(path), Ok(from)) = (path.canonicalize(), from.canonicalize()) else { return path.to_owned() };
+    let common = path.components().zip(from.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(common).map(|_| std::path::Component::ParentDir);
+    up.chain(path.components().skip(common)).collect()
+}
+
+/// A word for a shell.
+pub fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:@%,".contains(c);
+    if text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}
