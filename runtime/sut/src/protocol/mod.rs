@@ -9,7 +9,7 @@ use std::{borrow::Cow, collections::BTreeMap, fmt};
 use hrdsl_ir::{Nanos, Value};
 use serde::{Deserialize, Serialize};
 
-pub use open::OpenRequest;
+pub use open::{OpenRequest, WrittenPortKind};
 pub use ports::MessageRequest;
 pub(crate) use reply::ReplyLine;
 pub use reply::{HarnessReply, RefusedLine, ReplyAnswer};
