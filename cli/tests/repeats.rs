@@ -31,9 +31,10 @@ struct RepeatedSystem {
     test: usize,
 }
 
-const SYSTEMS: [RepeatedSystem; 4] = [
+const SYSTEMS: [RepeatedSystem; 5] = [
     RepeatedSystem { example: "corridor", file: None, suite: "by_agents", test: 7 },
     RepeatedSystem { example: "corridor", file: Some("with_rclpy/system.hri"), suite: "by_agents", test: 7 },
+    RepeatedSystem { example: "delivery", file: None, suite: "by_agents", test: 1 },
     RepeatedSystem { example: "handover", file: None, suite: "random_tests", test: 1 },
     RepeatedSystem {
         example: "handover",
