@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
-"""Crosses a corridor piece by piece, and asks whoever is in the way to step aside.
-
-The base of this robot is not simulated: `moving` says that it would drive the next piece now.
-"""
+"""Crosses a corridor piece by piece, and asks whoever is in the way to step aside."""
 
 import hrdsl
 
 PIECES = 4  # of the way
 PIECE = 1.0  # seconds for each
+SPEED = 0.2  # m/s
 ASKS = 2
 PATIENCE = 4.0  # seconds after asking
 CLOSING_TIME = 40.0  # seconds without a trip
@@ -18,6 +16,7 @@ class Porter:
 
     def __init__(self, node):
         self.node = node
+        self.wheels = node.device("robot.wheels")
 
     def run(self):
         state = self.home
@@ -36,9 +35,20 @@ class Porter:
         return self.driving if self.pieces < PIECES else self.arriving
 
     def driving(self):
-        self.pieces += 1
         self.node.emit("moving")
-        self.node.sleep(PIECE)
+        end = self.node.now() + PIECE
+        while self.node.now() < end:
+            if self.node.read("someone"):
+                return self.braking
+            self.wheels.command("drive", forward=SPEED, turn=0.0)  # the base stops by itself if it hears nothing
+            self.node.sleep(0.1)
+        self.wheels.command("stop")
+        self.pieces += 1
+        return self.looking
+
+    def braking(self):
+        self.wheels.command("stop")
+        self.node.sleep(1.0)  # who runs across is gone then
         return self.looking
 
     def asking(self):
