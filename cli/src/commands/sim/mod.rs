@@ -134,7 +134,10 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     if args.debug && tests.len() != 1 {
         return Err(format!("--debug runs one test, and {} are chosen; name one with --test", tests.len()));
     }
-    let campaign = prepared(args, program, system, &out, &folder)?;
+    let campaign = CampaignSetup {
+        interfaces: input::interface_table(&compilation, system)?,
+        ..prepared(args, program, system, &out, &folder)?
+    };
     let begun = Instant::now();
     let outcome = run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
     let differences = if args.check_determinism && !outcome.interrupted {
@@ -178,7 +181,7 @@ fn system_file(args: &SimArgs) -> Result<Option<String>, CommandFault> {
     if !path.is_file() {
         return Err(format!("--system: there is no file {}", terminal::shown(path)));
     }
-    Ok(Some(relative(path, &files::folder(&args.file)).display().to_string()))
+    Ok(Some(files::relative(path, &files::folder(&args.file)).display().to_string()))
 }
 
 fn is_file_name(name: &str) -> bool {
@@ -234,6 +237,7 @@ fn prepared<'p>(
     Ok(CampaignSetup {
         program,
         system,
+        interfaces: String::new(),
         dir,
         env,
         cells,
@@ -401,31 +405,23 @@ pub(super) fn cache() -> Result<PathBuf, CommandFault> {
 /// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
 /// wherever both lie.
 fn rerun(args: &SimArgs, out: &Path) -> String {
-    let mut words = vec!["hrdsl sim".to_owned(), quoted(&relative(&args.file, out))];
+    let mut words = vec!["hrdsl sim".to_owned(), quoted(&files::relative(&args.file, out))];
     if args.tests.is_empty() {
         words.push("tests".to_owned());
     }
-    words.extend(args.tests.iter().map(|t| quoted(&relative(t, out))));
+    words.extend(args.tests.iter().map(|t| quoted(&files::relative(t, out))));
     let times = [("--cpu-limit", args.cpu_limit), ("--wall-limit", args.wall_limit)];
     let times = times.iter().filter_map(|(name, t)| Some(format!("{name} {}ms", (*t)?.as_millis())));
     let sizes = [("--memory-limit", args.memory_limit), ("--output-limit", args.output_limit)];
     let sizes = sizes.iter().filter_map(|(name, size)| Some(format!("{name} {}", (*size)?)));
     words.extend(args.schedule.map(|k| format!("--schedule {k}")));
     let system = |name: &String| {
-        if is_file_name(name) { quoted(&relative(Path::new(name), out)) } else { name.clone() }
+        if is_file_name(name) { quoted(&files::relative(Path::new(name), out)) } else { name.clone() }
     };
     words.extend(args.system.iter().map(|name| format!("--system {}", system(name))));
     words.extend(times.chain(sizes));
     words.push("--test".to_owned());
     words.join(" ")
-}
-
-/// A path as it is seen from a folder.
-fn relative(path: &Path, from: &Path) -> PathBuf {
-    let (Ok(path), Ok(from)) = (path.canonicalize(), from.canonicalize()) else { return path.to_owned() };
-    let common = path.components().zip(from.components()).take_while(|(a, b)| a == b).count();
-    let up = from.components().skip(common).map(|_| std::path::Component::ParentDir);
-    up.chain(path.components().skip(common)).collect()
 }
 
 /// A word for a shell.
