@@ -90,6 +90,15 @@ pub fn json(document: &impl serde::Serialize) -> Result<String, CommandFault> {
     serde_json::to_string_pretty(document).map(|text| text + "\n").map_err(|e| format!("cannot print: {e}"))
 }
 
+/// A path as it is seen from a folder.
+#[must_use]
+pub fn relative(path: &Path, from: &Path) -> PathBuf {
+    let (Ok(path), Ok(from)) = (path.canonicalize(), from.canonicalize()) else { return path.to_owned() };
+    let common = path.components().zip(from.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(common).map(|_| std::path::Component::ParentDir);
+    up.chain(path.components().skip(common)).collect()
+}
+
 /// The folder of a scenario, where its robot code is.
 #[must_use]
 pub fn folder(scenario: &Path) -> PathBuf {

@@ -7,10 +7,23 @@ use std::{
 };
 
 use hrdsl_compiler::{CompilationResult, InputFile, compile_beside};
-use hrdsl_ir::Program;
+use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_source::{Diagnostic, FileId, SourceFiles, printable_line};
 
 use crate::{fault::CommandFault, files::read, reach::DiskModules, render, terminal};
+
+/// The table of interfaces that the programs of a system can use, as JSON; empty without a middleware.
+///
+/// # Errors
+/// None that is known: the table holds nothing that JSON cannot say.
+pub fn interface_table(
+    compilation: &CompilationResult,
+    system: &SystemUnderTest,
+) -> Result<String, CommandFault> {
+    let table = system.binding.as_ref().and_then(|binding| compilation.interface_table(binding.kind));
+    let text = table.map(|table| serde_json::to_string(&table)).transpose();
+    Ok(text.map_err(|e| e.to_string())?.unwrap_or_default())
+}
 
 /// Compiles a scenario and files of tests; a folder stands for the `.hri` files in it.
 ///

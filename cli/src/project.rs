@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{CompilationResult, InputFile, ast, compile_with, parse};
+use hrdsl_compiler::{CompilationResult, InputFile, ast, compile_beside, parse};
 use hrdsl_ir::Program;
 use hrdsl_source::FileId;
 
@@ -23,6 +23,8 @@ pub enum SourceKind {
     Scenario,
     /// Tests in the vocabulary of a scenario.
     Tests,
+    /// Systems that play an actor of a scenario.
+    System,
     /// Declarations that scenarios use.
     Module,
 }
@@ -33,10 +35,15 @@ pub enum SourceKind {
 pub fn kind_of(file: &ast::FileSyntax) -> SourceKind {
     let is_test = |item: &ast::ItemSyntax| matches!(item.kind, ast::ItemSyntaxKind::Test(_));
     let is_unread = |item: &ast::ItemSyntax| matches!(item.kind, ast::ItemSyntaxKind::Error);
+    let is_system = |item: &ast::ItemSyntax| matches!(item.kind, ast::ItemSyntaxKind::System(_));
     if file.items.iter().any(is_test) && file.items.iter().all(|item| is_test(item) || is_unread(item)) {
         SourceKind::Tests
     } else if file.scenario.is_some() {
         SourceKind::Scenario
+    } else if file.items.iter().any(is_system)
+        && file.items.iter().all(|item| is_system(item) || is_unread(item))
+    {
+        SourceKind::System
     } else {
         SourceKind::Module
     }
@@ -55,11 +62,13 @@ pub struct ProjectSource {
     named: bool,
 }
 
-/// What is compiled together: a scenario (or module) and the files of tests that belong to it, by index in the sources.
+/// What is compiled together: a scenario (or module), and the files of tests and of systems that belong to it, by index in the
+/// sources.
 #[derive(Clone, Debug)]
 pub struct CompilationUnit {
     pub head: usize,
     pub tests: Vec<usize>,
+    pub systems: Vec<usize>,
 }
 
 /// What became of a unit.
@@ -125,8 +134,15 @@ impl CheckedProject {
     pub fn compile(&self, unit: &CompilationUnit) -> CompilationResult {
         let input = |i: usize| InputFile { name: &self.sources[i].name, text: &self.sources[i].text };
         let tests: Vec<InputFile<'_>> = unit.tests.iter().map(|i| input(*i)).collect();
-        let disk = DiskModules::of(self.sources[unit.head].path.as_deref());
-        compile_with(input(unit.head), &tests, &disk)
+        let head = self.sources[unit.head].path.as_deref();
+        let folder = head.map_or(PathBuf::from("."), files::folder);
+        let system = |i: &usize| {
+            let path = self.sources[*i].path.as_ref()?;
+            Some(files::relative(path, &folder).display().to_string())
+        };
+        let systems: Vec<String> = unit.systems.iter().filter_map(system).collect();
+        let systems: Vec<&str> = systems.iter().map(String::as_str).collect();
+        compile_beside(input(unit.head), &tests, &systems, &DiskModules::of(head))
     }
 
     /// The source that is this file of a compilation; `None` for the modules that come with hrdsl.
@@ -140,7 +156,11 @@ impl CheckedProject {
 impl ProjectSource {
     fn new(path: Option<PathBuf>, text: String, named: bool) -> Self {
         let name = path.as_ref().map_or("<stdin>".to_owned(), |p| p.display().to_string());
-        let kind = kind_of(&parse(FileId(0), &text).0);
+        let kind = match kind_of(&parse(FileId(0), &text).0) {
+            // Without a place it cannot be seen from a scenario's folder.
+            SourceKind::System if path.is_none() => SourceKind::Module,
+            kind => kind,
+        };
         Self { path, name, text, kind, named }
     }
 
@@ -191,8 +211,9 @@ pub fn walk(root: &Path) -> Result<Vec<PathBuf>, CommandFault> {
 }
 
 fn units(sources: &[ProjectSource]) -> Result<Vec<CompilationUnit>, CommandFault> {
+    let belongs = |s: &ProjectSource| matches!(s.kind, SourceKind::Tests | SourceKind::System);
     let head = |(i, s): (usize, &ProjectSource)| {
-        (s.kind != SourceKind::Tests).then(|| CompilationUnit { head: i, tests: Vec::new() })
+        (!belongs(s)).then(|| CompilationUnit { head: i, tests: Vec::new(), systems: Vec::new() })
     };
     let mut units: Vec<CompilationUnit> = sources.iter().enumerate().filter_map(head).collect();
     let scenarios: Vec<(usize, PathBuf)> = sources
@@ -201,16 +222,21 @@ fn units(sources: &[ProjectSource]) -> Result<Vec<CompilationUnit>, CommandFault
         .filter(|(_, s)| s.kind == SourceKind::Scenario)
         .map(|(i, s)| (i, s.folder()))
         .collect();
-    for (i, source) in sources.iter().enumerate().filter(|(_, s)| s.kind == SourceKind::Tests) {
+    for (i, source) in sources.iter().enumerate().filter(|(_, s)| belongs(s)) {
         let owner = owner(source, sources, &scenarios)?;
-        units.iter_mut().filter(|u| u.head == owner).for_each(|u| u.tests.push(i));
+        for unit in units.iter_mut().filter(|u| u.head == owner) {
+            match source.kind {
+                SourceKind::System => unit.systems.push(i),
+                SourceKind::Tests | SourceKind::Scenario | SourceKind::Module => unit.tests.push(i),
+            }
+        }
     }
     Ok(units)
 }
 
-/// The scenario that tests belong to: the only one that was named, otherwise the nearest in the folders above.
+/// The scenario that tests or systems belong to: the only one that was named, otherwise the nearest in the folders above.
 fn owner(
-    tests: &ProjectSource,
+    file: &ProjectSource,
     sources: &[ProjectSource],
     scenarios: &[(usize, PathBuf)],
 ) -> Result<usize, CommandFault> {
@@ -218,7 +244,8 @@ fn owner(
     if let [only] = named[..] {
         return Ok(only);
     }
-    let own = tests.folder();
+    let holds = if file.kind == SourceKind::System { "a system" } else { "tests" };
+    let own = file.folder();
     for folder in own.ancestors() {
         let here: Vec<usize> = scenarios.iter().filter(|(_, f)| f == folder).map(|(i, _)| *i).collect();
         match (here[..].iter().find(|i| sources[**i].is_called("scenario.hri")), &here[..]) {
@@ -227,17 +254,18 @@ fn owner(
             (None, several) => {
                 let names: Vec<&str> = several.iter().map(|i| sources[*i].name.as_str()).collect();
                 return Err(format!(
-                    "{} holds tests, and it is not clear of which scenario: {}; name the scenario, as in `hrdsl check {} {}`",
-                    tests.name,
+                    "{} holds {holds}, and it is not clear of which scenario: {}; name the scenario, as in `hrdsl check {} {}`",
+                    file.name,
                     names.join(", "),
                     names[0],
-                    tests.name
+                    file.name
                 ));
             }
         }
     }
+    let whose = if file.kind == SourceKind::System { "its" } else { "their" };
     Err(format!(
-        "{} holds tests, and their scenario is not among the files; name it, as in `hrdsl check scenario.hri {}`",
-        tests.name, tests.name
+        "{} holds {holds}, and {whose} scenario is not among the files; name it, as in `hrdsl check scenario.hri {}`",
+        file.name, file.name
     ))
 }

@@ -44,6 +44,34 @@ fn folders_are_searched_and_tests_go_to_the_nearest_scenario() {
 }
 
 #[test]
+fn systems_are_checked_with_their_scenario() {
+    let folder = folder(&[
+        ("a/scenario.hri", &scenario("a", "ask")),
+        ("a/ros/system.hri", "system with_ros plays robot { run \"python3 a.py\" }\n"),
+        ("a/ros/wrong.txt", "system with_ros plays robto { run \"python3 a.py\" }\n"),
+    ]);
+    expect_code(&hrdsl_in(folder.path(), "check ."), 0);
+    expect_code(&hrdsl_in(folder.path(), "check a/scenario.hri a/ros/system.hri"), 0);
+    let out = hrdsl_in(folder.path(), "check --format json a/ros/system.hri a/scenario.hri");
+    let document: serde_json::Value = serde_json::from_str(&stdout(&out)).unwrap();
+    let file = &document["files"][1];
+    assert_eq!((file["kind"].as_str(), file["with"].as_str()), (Some("system"), Some("a/scenario.hri")));
+
+    let alone = hrdsl_in(folder.path(), "check a/ros/system.hri");
+    expect_code(&alone, 2);
+    assert!(stderr(&alone).contains("`hrdsl check scenario.hri a/ros/system.hri`"), "{}", stderr(&alone));
+
+    fs::copy(folder.path().join("a/ros/wrong.txt"), folder.path().join("a/ros/system.hri")).unwrap();
+    let out = hrdsl_in(folder.path(), "check a");
+    expect_code(&out, 1);
+    assert!(
+        stderr(&out).contains("a/ros/system.hri:1:23") && stderr(&out).contains("`robot`"),
+        "{}",
+        stderr(&out)
+    );
+}
+
+#[test]
 fn tests_go_to_the_only_scenario_that_was_named() {
     let folder = folder(&[
         ("a/scenario.hri", &scenario("a", "ask")),

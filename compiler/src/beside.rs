@@ -6,10 +6,10 @@ use hrdsl_syntax::ast::{FileSyntax, ItemSyntaxKind, SystemMemberKind as Member, 
 use crate::ModuleLoader;
 
 /// The files whose coverage is to be measured, and that are no files beside the scenario.
-pub(crate) fn missing(file: &FileSyntax, loader: &dyn ModuleLoader) -> Vec<Diagnostic> {
-    let systems = file
-        .items
+pub(crate) fn missing(files: &[FileSyntax], loader: &dyn ModuleLoader) -> Vec<Diagnostic> {
+    let systems = files
         .iter()
+        .flat_map(|file| &file.items)
         .filter_map(|i| if let ItemSyntaxKind::System(s) = &i.kind { Some(s) } else { None });
     let members = systems.flat_map(|s| &s.members);
     let named = members.flat_map(|member| {

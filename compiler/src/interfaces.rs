@@ -1,6 +1,9 @@
 //! The definitions of ROS interfaces that a scenario's systems use: the standard packages, and the workspaces that are named.
 
-use hrdsl_messages::{MessageLibrary, MessageLibraryBuilder, RosVersion, WorkspaceEntry, WorkspaceReader};
+use hrdsl_messages::{
+    InterfaceName, InterfaceTable, MessageLibrary, MessageLibraryBuilder, RosVersion, WorkspaceEntry,
+    WorkspaceReader,
+};
 use hrdsl_source::{SourceFiles, Span};
 use hrdsl_syntax::ast::{self, BindingMemberKind, ItemSyntaxKind, SystemMemberKind};
 
@@ -77,4 +80,22 @@ fn named(ast: &[ast::FileSyntax]) -> (Vec<RosVersion>, Vec<NamedWorkspace>) {
         }
     }
     (versions, workspaces)
+}
+
+/// All definitions in which nothing is wrong.
+pub(crate) fn table(library: &MessageLibrary) -> Option<InterfaceTable> {
+    let all: Vec<InterfaceName> = library
+        .messages()
+        .map(|(name, _)| name)
+        .chain(library.services().map(|(name, _)| name))
+        .chain(library.actions().map(|(name, _)| name))
+        .cloned()
+        .collect();
+    let sound = library.closure(&all).or_else(|_| {
+        let sound = |name: &&InterfaceName| library.closure(std::slice::from_ref(*name)).is_ok();
+        let names: Vec<InterfaceName> = all.iter().filter(sound).cloned().collect();
+        library.closure(&names)
+    });
+    // INVARIANT: what has just been looked at is sound.
+    sound.ok()
 }

@@ -19,8 +19,8 @@ pub mod pages;
 mod recheck;
 mod spoken;
 
-use hrdsl_ir::Program;
-use hrdsl_messages::MessageLibrary;
+use hrdsl_ir::{Program, binding::MiddlewareKind};
+use hrdsl_messages::{InterfaceTable, MessageLibrary, RosVersion};
 pub use hrdsl_messages::{WorkspaceEntry, WorkspaceReader};
 use hrdsl_model::{KnownSources, Scenario};
 use hrdsl_source::{Diagnostic, FileId, SourceFiles};
@@ -67,6 +67,18 @@ impl CompilationResult {
     #[must_use]
     pub fn is_module(&self) -> bool {
         modules::is_module(&self.ast[0])
+    }
+
+    /// The table of all interfaces that programs on a middleware can use, as `spec/messages.md` describes it; `None`: no system
+    /// uses this middleware.
+    #[must_use]
+    pub fn interface_table(&self, middleware: MiddlewareKind) -> Option<InterfaceTable> {
+        let version = match middleware {
+            MiddlewareKind::Ros1 => RosVersion::Ros1,
+            MiddlewareKind::Ros2 => RosVersion::Ros2,
+        };
+        let library = self.interfaces.iter().find(|library| library.version() == version);
+        library.and_then(interfaces::table)
     }
 
     /// How many declarations the first file has.
@@ -135,7 +147,7 @@ pub fn compile_beside(
     if !alone && !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(hrdsl_model::lint(&resolved));
         spoken::doubt(&files, &ast, &mut diagnostics);
-        diagnostics.extend(beside::missing(&ast[0], loader));
+        diagnostics.extend(beside::missing(&ast, loader));
     }
     allow::apply(&ast, &mut diagnostics);
     diagnostics.sort_by_key(|d| (d.span(), d.code));

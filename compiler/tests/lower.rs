@@ -1015,7 +1015,9 @@ system robot {
     let text = |e: &Expr| {
         let Expr::Var(at) = e else { panic!("{e:?}") };
         let read = &rules.reads[usize::from(*at)];
-        let MessageRead { path, ty: Type::Text, same_as: Some(other) } = read else { panic!("{read:?}") };
+        let MessageRead { path, length: false, ty: Type::Text, same_as: Some(other) } = read else {
+            panic!("{read:?}")
+        };
         match other {
             TextOperand::Literal(text) => format!("{} == {text:?}", place_text(path)),
             TextOperand::Place(other) => format!("{} == {}", place_text(path), place_text(other)),

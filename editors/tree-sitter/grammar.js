@@ -780,6 +780,7 @@ module.exports = grammar({
           $.gripper,
           $.base,
           $.laser,
+          $.posture,
           $.current,
           $.signal,
           $.rule,
@@ -891,6 +892,15 @@ module.exports = grammar({
         keyword($, "range"),
         field("range", $.range),
       ),
+    posture: ($) =>
+      seq(
+        keyword($, "posture"),
+        field("name", $.identifier),
+        ":",
+        field("arm", $._path),
+        keyword($, "at"),
+        field("angles", $.expression),
+      ),
     current: ($) =>
       seq(
         keyword($, "current"),
@@ -984,6 +994,7 @@ module.exports = grammar({
           $.service,
           $.action,
           $.group,
+          $.ros_parameter,
           $.transition,
         ),
       ),
@@ -1019,7 +1030,17 @@ module.exports = grammar({
         optional(field("entries", $.entries)),
       ),
     group: ($) =>
-      seq(keyword($, "group"), field("name", $.string), keyword($, "plans"), field("device", $._path)),
+      seq(
+        keyword($, "group"),
+        field("name", $.string),
+        keyword($, "plans"),
+        field("device", $._path),
+        optional(seq(keyword($, "acceleration"), field("acceleration", $.expression))),
+        optional(seq(keyword($, "tip"), field("tip", $.string))),
+        optional(field("entries", $.entries)),
+      ),
+    ros_parameter: ($) =>
+      seq(keyword($, "parameter"), field("name", $.string), "=", field("value", $.expression)),
     transition: ($) =>
       seq(
         keyword($, "transition"),
@@ -1035,13 +1056,15 @@ module.exports = grammar({
         optional(seq(field("package", $.identifier), "/", repeat(seq(field("kind", $.identifier), "/")))),
         field("name", $.identifier),
       ),
-    entries: ($) => block($, choice($.field_entry, $.emit_entry, $.command_entry)),
+    entries: ($) => block($, choice($.field_entry, $.joint_entry, $.emit_entry, $.command_entry)),
     field_entry: ($) =>
       seq(
         field("field", choice($._path, $.index_expression, $.field_expression)),
         "=",
         field("value", $.expression),
+        optional(seq(keyword($, "when"), field("condition", $.expression))),
       ),
+    joint_entry: ($) => seq(field("part", $.string), "=", field("joint", $.identifier)),
     emit_entry: ($) =>
       seq(
         keyword($, "emit"),

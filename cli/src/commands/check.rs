@@ -20,6 +20,7 @@ use crate::{
 Examples:
   hrdsl check examples/handover/scenario.hri
   hrdsl check scenario.hri tests/*.hri
+  hrdsl check scenario.hri with_rospy/system.hri
   hrdsl check . --deny warnings
   hrdsl check scenario.hri --diff
   hrdsl check scenario.hri --fix

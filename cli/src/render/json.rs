@@ -89,9 +89,12 @@ pub fn document(project: &CheckedProject, checked: &[CheckedUnit]) -> Result<Str
         let source = &project.sources[i];
         JsonFile { path: &source.name, kind: source.kind, with: &project.sources[head].name }
     };
-    let files = checked
-        .iter()
-        .flat_map(|c| std::iter::once(c.unit.head).chain(c.unit.tests.clone()).map(|i| file(i, c.unit.head)));
+    let of_unit = |c: &CheckedUnit| {
+        let head = c.unit.head;
+        let all = std::iter::once(head).chain(c.unit.tests.clone()).chain(c.unit.systems.clone());
+        all.map(move |i| (i, head))
+    };
+    let files = checked.iter().flat_map(of_unit).map(|(i, head)| file(i, head));
     let said =
         || checked.iter().flat_map(|c| c.compilation.diagnostics.iter().map(|d| (&c.compilation.files, d)));
     let errors = said().filter(|(_, d)| d.is_error()).count();

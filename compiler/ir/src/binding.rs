@@ -38,8 +38,6 @@ impl MiddlewareKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MiddlewareBinding<E = Expr> {
     pub kind: MiddlewareKind,
-    /// The table of all interfaces that the programs can use: JSON, as `spec/messages.md` describes it.
-    pub interfaces: String,
     /// Where the packages of the workspaces are, by name.
     pub packages: BTreeMap<String, String>,
     pub inputs: Vec<TopicInput<E>>,
@@ -47,6 +45,8 @@ pub struct MiddlewareBinding<E = Expr> {
     pub services: Vec<BoundService<E>>,
     pub actions: Vec<BoundAction<E>>,
     pub groups: Vec<PlanningGroup>,
+    /// With which the programs begin: JSON by names from the root.
+    pub parameters: BTreeMap<String, String>,
     pub transitions: Vec<TransitionRule>,
     pub origin: Span,
 }
@@ -57,8 +57,8 @@ impl<E> MiddlewareBinding<E> {
         let inputs = self.inputs.iter().map(|input| &input.message);
         let answers = self.services.iter().map(|service| &service.response);
         let results = self.actions.iter().map(|action| &action.result);
-        let gaps = inputs.chain(answers).chain(results).flat_map(|message| &message.gaps);
-        gaps.flat_map(|gap| gap.value.reads()).filter_map(|read| match read {
+        let gaps = inputs.chain(answers).chain(results).flat_map(MessageTemplate::leaves);
+        gaps.flat_map(GapValue::reads).filter_map(|read| match read {
             GapRead::Signal(signal) => Some(*signal),
             GapRead::Argument { .. } => None,
         })
@@ -86,6 +86,26 @@ pub struct MessageTemplate<E = Expr> {
     pub gaps: Vec<MessageGap<E>>,
 }
 
+impl<E> MessageTemplate<E> {
+    /// All that stands in its gaps, those of what stands there, too.
+    #[must_use]
+    pub fn leaves(&self) -> Vec<&GapValue<E>> {
+        let mut all = Vec::new();
+        self.collect(&mut all);
+        all
+    }
+
+    fn collect<'t>(&'t self, all: &mut Vec<&'t GapValue<E>>) {
+        self.gaps.iter().for_each(|gap| gap.value.collect(all));
+    }
+
+    /// Whether something that happens sets a part of it.
+    #[must_use]
+    pub fn is_of_events(&self) -> bool {
+        self.leaves().iter().any(|value| value.is_of_events())
+    }
+}
+
 /// What stands in a gap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MessageGap<E = Expr> {
@@ -106,6 +126,18 @@ pub enum GapValue<E = Expr> {
     Told { device: DeviceId, what: String, numbers: ToldNumbers },
     /// The same in every message, as JSON.
     Fixed(String),
+    /// Several values at once: those of a row, or of a message in the message.
+    Whole(MessageTemplate<E>),
+    /// What stands in the first case that holds; in none, this JSON.
+    Chosen { cases: Vec<GapCase<E>>, otherwise: String },
+}
+
+/// What stands in a gap under a condition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GapCase<E = Expr> {
+    /// One of [`MessageRules::conditions`]; `None`: always.
+    pub condition: Option<u16>,
+    pub gap: MessageGap<E>,
 }
 
 /// Which of the numbers that a device tells stand in a gap.
@@ -119,23 +151,45 @@ pub enum ToldNumbers {
 }
 
 impl<E> GapValue<E> {
-    /// What its expression reads.
+    fn collect<'v>(&'v self, all: &mut Vec<&'v GapValue<E>>) {
+        match self {
+            GapValue::Whole(template) => template.collect(all),
+            GapValue::Chosen { cases, .. } => cases.iter().for_each(|case| case.gap.value.collect(all)),
+            GapValue::Held { .. }
+            | GapValue::Value { .. }
+            | GapValue::Now
+            | GapValue::Told { .. }
+            | GapValue::Fixed(_) => all.push(self),
+        }
+    }
+
+    /// What its expression reads, if it is one.
     #[must_use]
     pub fn reads(&self) -> &[GapRead] {
         match self {
             GapValue::Value { reads, .. } => reads,
-            GapValue::Held { .. } | GapValue::Now | GapValue::Told { .. } | GapValue::Fixed(_) => &[],
+            GapValue::Held { .. }
+            | GapValue::Now
+            | GapValue::Told { .. }
+            | GapValue::Fixed(_)
+            | GapValue::Whole(_)
+            | GapValue::Chosen { .. } => &[],
         }
     }
 
-    /// Whether something that happens sets it.
+    /// Whether this occurrence of an event sets it.
     #[must_use]
-    pub fn is_of_events(&self) -> bool {
-        match self {
-            GapValue::Held { .. } => true,
-            GapValue::Value { reads, .. } => reads.iter().any(|r| matches!(r, GapRead::Argument { .. })),
-            GapValue::Now | GapValue::Told { .. } | GapValue::Fixed(_) => false,
-        }
+    pub fn is_set_by(&self, event: EventId, args: &[crate::Value]) -> bool {
+        let is_argument =
+            |read: &GapRead| matches!(read, GapRead::Argument { event: of, .. } if *of == event);
+        let holds =
+            matches!(self, GapValue::Held { events, .. } if events.iter().any(|p| p.matches(event, args)));
+        holds || self.reads().iter().any(is_argument)
+    }
+
+    fn is_of_events(&self) -> bool {
+        let is_argument = |read: &GapRead| matches!(read, GapRead::Argument { .. });
+        matches!(self, GapValue::Held { .. }) || self.reads().iter().any(is_argument)
     }
 }
 
@@ -166,6 +220,8 @@ pub enum MessageScalar {
     Text,
     /// Seconds and nanoseconds.
     Time,
+    /// An angle about the vertical, as a quaternion.
+    Heading,
 }
 
 /// A topic that the scenario hears.
@@ -184,12 +240,16 @@ pub struct MessageRules<E = Expr> {
     /// What the rules read of the message: `Expr::Var(i)` is `reads[i]`.
     pub reads: Vec<MessageRead>,
     pub rules: Vec<MessageRule<E>>,
+    /// On which fields of the answer depend, as truth values.
+    pub conditions: Vec<E>,
 }
 
-/// A place in a message.
+/// What is read at a place in a message.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MessageRead {
     pub path: Vec<MessageStep>,
+    /// How many elements the sequence there has, instead of what stands there.
+    pub length: bool,
     pub ty: Type,
     /// Of text: what it is compared with. What is read is whether they are the same, since a text that became a value would be
     /// kept for as long as the process lives.
@@ -273,6 +333,8 @@ pub enum CommandArgument<E = Expr> {
     TrackPositions { names: Vec<String> },
     /// Of a joint trajectory, the time of each point.
     TrackTimes,
+    /// The angles of the arm's posture of this name.
+    Posture(E),
 }
 
 /// A service that the scenario serves; it answers at once.
@@ -296,10 +358,16 @@ pub struct BoundAction<E = Expr> {
 }
 
 /// A name under which the programs plan the motions of an arm.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanningGroup {
     pub name: String,
     pub device: DeviceId,
+    /// What the programs call the joints, from the base to the tip.
+    pub joints: Vec<String>,
+    /// What they call the link that is brought to places.
+    pub tip: String,
+    /// Of each joint, rad/s²; `None`: that of the arm.
+    pub acceleration: Option<f64>,
 }
 
 /// What a transition of a program's state machine means.

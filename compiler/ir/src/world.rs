@@ -168,6 +168,16 @@ pub struct Arm {
     pub tool: Vec3,
     /// The controller's limit on each joint's speed, rad/s, unless the program asks for less.
     pub max_speed: f64,
+    /// In the order of the text; each name once.
+    pub postures: Vec<NamedPosture>,
+}
+
+/// Angles of an arm's joints that have a name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NamedPosture {
+    pub name: String,
+    /// From the base to the tip, rad.
+    pub angles: Vec<f64>,
 }
 
 /// A hand: it holds what is within reach when it closes.
@@ -306,6 +316,34 @@ pub enum SignalTerm {
     JointSpeed(ArmId),
     /// `speed(b)`: m/s
     Speed(BodyRef),
+    /// `heading(b)`: of its own x axis about the vertical, rad, -π..π
+    Heading(BodyRef),
+    /// A part of the unit quaternion by which it is turned, whose w is not negative.
+    Orientation(BodyRef, QuaternionPart),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum QuaternionPart {
+    X,
+    Y,
+    Z,
+    W,
+}
+
+impl QuaternionPart {
+    pub const ALL: [QuaternionPart; 4] =
+        [QuaternionPart::X, QuaternionPart::Y, QuaternionPart::Z, QuaternionPart::W];
+
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            QuaternionPart::X => "x",
+            QuaternionPart::Y => "y",
+            QuaternionPart::Z => "z",
+            QuaternionPart::W => "w",
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -68,6 +68,7 @@ pub(crate) enum Noun {
     Laser,
     /// Any of these four.
     Device,
+    Posture,
     /// Of which devices are.
     DeviceKind,
     /// What a device can be told.
@@ -158,6 +159,7 @@ impl Noun {
             | Noun::Gripper
             | Noun::Base
             | Noun::Laser
+            | Noun::Posture
             | Noun::Device
             | Noun::Command
             | Noun::Primitive
@@ -237,6 +239,7 @@ impl fmt::Display for Noun {
             Noun::Base => "base",
             Noun::Laser => "laser",
             Noun::Device => "device",
+            Noun::Posture => "posture",
             Noun::DeviceKind => "kind of device",
             Noun::Command => "command",
             Noun::Primitive => "primitive",

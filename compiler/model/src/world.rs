@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     device::DeviceBody,
-    world::{DeviceCommandId, DeviceId},
+    world::{DeviceCommandId, DeviceId, NamedPosture},
 };
 use hrdsl_source::Span;
 use serde::Serialize;
@@ -97,6 +97,7 @@ pub struct TypedArm {
     pub tip: BodyId,
     pub tool: [f64; 3],
     pub speed: f64,
+    pub postures: Vec<NamedPosture>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

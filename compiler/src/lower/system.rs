@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     Expr, Type, Value,
     binding::{
-        BoundAction, BoundService, CommandArgument, GapRead, GapValue, MessageEffect, MessageGap,
+        BoundAction, BoundService, CommandArgument, GapCase, GapRead, GapValue, MessageEffect, MessageGap,
         MessageRead, MessageRule, MessageRules, MessageTemplate, MiddlewareBinding, TextOperand, TopicInput,
         TopicOutput,
     },
@@ -68,32 +68,41 @@ fn binding(b: &MiddlewareBinding<TypedExpr>, signals: &mut SignalTable<'_>) -> M
     };
     MiddlewareBinding {
         kind: b.kind,
-        interfaces: b.interfaces.clone(),
         packages: b.packages.clone(),
         inputs,
         outputs: b.outputs.iter().map(output).collect(),
         services: b.services.iter().map(|s| service(s, signals)).collect(),
         actions: b.actions.iter().map(|a| action(a, signals)).collect(),
         groups: b.groups.clone(),
+        parameters: b.parameters.clone(),
         transitions: b.transitions.clone(),
         origin: b.origin,
     }
 }
 
 fn template(t: &MessageTemplate<TypedExpr>, signals: &mut SignalTable<'_>) -> MessageTemplate {
-    let gap = |gap: &MessageGap<TypedExpr>| MessageGap {
-        value: match &gap.value {
-            GapValue::Held { events, time } => GapValue::Held { events: events.clone(), time: *time },
-            GapValue::Now => GapValue::Now,
-            GapValue::Told { device, what, numbers } => {
-                GapValue::Told { device: *device, what: what.clone(), numbers: *numbers }
-            }
-            GapValue::Fixed(json) => GapValue::Fixed(json.clone()),
-            GapValue::Value { value, reads } => read_value(value, reads, signals),
-        },
-        scalar: gap.scalar,
+    MessageTemplate { text: t.text.clone(), gaps: t.gaps.iter().map(|g| gap(g, signals)).collect() }
+}
+
+fn gap(gap: &MessageGap<TypedExpr>, signals: &mut SignalTable<'_>) -> MessageGap {
+    let value = match &gap.value {
+        GapValue::Held { events, time } => GapValue::Held { events: events.clone(), time: *time },
+        GapValue::Now => GapValue::Now,
+        GapValue::Told { device, what, numbers } => {
+            GapValue::Told { device: *device, what: what.clone(), numbers: *numbers }
+        }
+        GapValue::Fixed(json) => GapValue::Fixed(json.clone()),
+        GapValue::Value { value, reads } => read_value(value, reads, signals),
+        GapValue::Whole(whole) => GapValue::Whole(template(whole, signals)),
+        GapValue::Chosen { cases, otherwise } => {
+            let case = |case: &GapCase<TypedExpr>| GapCase {
+                condition: case.condition,
+                gap: self::gap(&case.gap, signals),
+            };
+            GapValue::Chosen { cases: cases.iter().map(case).collect(), otherwise: otherwise.clone() }
+        }
     };
-    MessageTemplate { text: t.text.clone(), gaps: t.gaps.iter().map(gap).collect() }
+    MessageGap { value, scalar: gap.scalar }
 }
 
 /// Only what the expression reads is kept, arguments of events and signals alike.
@@ -142,7 +151,8 @@ fn rules(r: &MessageRules<TypedExpr>) -> MessageRules {
         with_texts_compared(whole, &mut kept)
     };
     let rules = r.rules.iter().map(|rule| rule_of(rule, &mut lower)).collect();
-    MessageRules { reads: kept, rules }
+    let conditions = r.conditions.iter().map(&mut lower).collect();
+    MessageRules { reads: kept, rules, conditions }
 }
 
 /// The same expression, in which texts are compared where they are read, and are no values.
@@ -206,6 +216,7 @@ fn rule_of(rule: &MessageRule<TypedExpr>, lower: &mut dyn FnMut(&TypedExpr) -> E
                         CommandArgument::TrackPositions { names: names.clone() }
                     }
                     CommandArgument::TrackTimes => CommandArgument::TrackTimes,
+                    CommandArgument::Posture(name) => CommandArgument::Posture(lower(name)),
                 })
             };
             let args = args.iter().map(argument).collect();

@@ -30,6 +30,7 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         tip: a.tip,
         tool: a.tool,
         max_speed: a.speed,
+        postures: a.postures.clone(),
     };
     World {
         step: nanos(w.step),
@@ -132,7 +133,8 @@ fn type_of(t: SignalTerm) -> Type {
         SignalTerm::Distance(..) | SignalTerm::Range(..) | SignalTerm::Coordinate(..) => {
             Type::Float(Unit::Metre)
         }
-        SignalTerm::Angle(..) => Type::Float(Unit::Radian),
+        SignalTerm::Angle(..) | SignalTerm::Heading(_) => Type::Float(Unit::Radian),
+        SignalTerm::Orientation(..) => Type::Float(Unit::None),
         SignalTerm::Visible(..) | SignalTerm::Holds(..) | SignalTerm::HoldsAny(_) => Type::Bool,
         SignalTerm::JointSpeed(_) => Type::Float(Unit::RadianPerSecond),
         SignalTerm::Speed(_) => Type::Float(Unit::MetrePerSecond),
@@ -163,6 +165,8 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
         SignalTerm::HoldsAny(g) => format!("holds({})", gripper(g)),
         SignalTerm::JointSpeed(a) => format!("joint_speed({})", world.arms[usize::from(a.0)].name),
         SignalTerm::Speed(b) => format!("speed({})", body(b)),
+        SignalTerm::Heading(b) => format!("heading({})", body(b)),
+        SignalTerm::Orientation(b, part) => format!("orientation({}).{}", body(b), part.name()),
     }
 }
 

@@ -8,8 +8,8 @@ pub use hrdsl_source::{BinaryOp, LocationKind, UnaryOp};
 use serde::Serialize;
 
 pub use crate::binding::{
-    BindingEntry, BindingEntryKind, BindingMember, BindingMemberKind, FieldSyntax, InterfaceSyntax,
-    MiddlewareSyntax, ServedSyntax, TopicInSyntax, TopicOutSyntax,
+    BindingEntry, BindingEntryKind, BindingMember, BindingMemberKind, ElementSyntax, FieldSyntax,
+    GroupSyntax, InterfaceSyntax, MiddlewareSyntax, ServedSyntax, TopicInSyntax, TopicOutSyntax,
 };
 use crate::pattern::RequirementPattern;
 pub use crate::system::{ProgramSyntax, SystemMember, SystemMemberKind, SystemSyntax};
@@ -968,6 +968,7 @@ pub enum WorldMemberKind {
     },
     Base(Box<BaseSyntax>),
     Laser(Box<LaserSyntax>),
+    Posture(Box<PostureSyntax>),
     /// `current leg in leg1, leg2 by robot.grip`
     Current {
         name: NameSyntax,
@@ -1026,6 +1027,15 @@ pub struct LaserSyntax {
     pub angles: RangeSyntax,
     pub beams: ExprSyntax,
     pub range: RangeSyntax,
+}
+
+/// `posture home: arm at [0 deg, 90 deg]`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PostureSyntax {
+    pub name: NameSyntax,
+    pub arm: PathSyntax,
+    /// Of its joints, from the base to the tip.
+    pub angles: ExprSyntax,
 }
 
 /// `on e(args) when c emit f(args)`, `on close robot.grip emit f`

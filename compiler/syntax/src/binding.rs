@@ -33,9 +33,11 @@ pub enum BindingMemberKind {
     /// `action "/play_motion" : play_motion_msgs/PlayMotion { … }`
     Action(ServedSyntax),
     /// `group "body_arm" plans robot.arm`
-    Group {
+    Group(GroupSyntax),
+    /// `parameter "/brew_time" = 2.5`
+    Parameter {
         name: TextSyntax,
-        device: PathSyntax,
+        value: ExprSyntax,
     },
     /// `transition "Receive1" -> "Timeout1" emit timed_out`
     Transition {
@@ -77,6 +79,18 @@ pub struct ServedSyntax {
     pub entries: Vec<BindingEntry>,
 }
 
+/// A name under which programs plan the motions of an arm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GroupSyntax {
+    pub name: TextSyntax,
+    pub device: PathSyntax,
+    /// `acceleration 2 rad/s^2`
+    pub acceleration: Option<ExprSyntax>,
+    /// `tip "gripper_link"`
+    pub tip: Option<TextSyntax>,
+    pub entries: Vec<BindingEntry>,
+}
+
 /// `std_msgs/Int8`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct InterfaceSyntax {
@@ -101,10 +115,16 @@ pub struct BindingEntry {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BindingEntryKind {
-    /// `pose.position.x = robot_x`
+    /// `pose.position.x = robot_x`, `success = true when data`
     Field {
         field: FieldSyntax,
         value: ExprSyntax,
+        when: Option<ExprSyntax>,
+    },
+    /// `"shoulder" = shoulder_flexor`: what the programs call a joint
+    Joint {
+        part: TextSyntax,
+        joint: NameSyntax,
     },
     /// `emit decided(true) when data == 1`
     Emit {
@@ -121,10 +141,17 @@ pub enum BindingEntryKind {
     Error,
 }
 
-/// `pose.position.x`, `ranges[0]`
+/// `pose.position.x`, `ranges[0]`, `people[0].position.x`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FieldSyntax {
     pub path: PathSyntax,
-    /// Which element of an array.
-    pub index: Option<ExprSyntax>,
+    /// An element of it, one of that, and so on.
+    pub elements: Vec<ElementSyntax>,
+}
+
+/// `[0].position.x`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ElementSyntax {
+    pub index: ExprSyntax,
+    pub names: Vec<NameSyntax>,
 }

@@ -671,6 +671,21 @@ topic"/scan":sensor_msgs/LaserScan in at 10Hz from robot.laser{header.frame_id="
   topic "/a_topic_with_a_long_name/in_a_name_space" : nav_msgs/Odometry in at 20 Hz from a_part.of_the_robot.base latched
 }}
 "#
+    binding_values r#"
+part crane{posture   home:arm at[ 0 deg,- 90deg ]
+posture up :robot . arm at [turn]}
+system robot{run"python3 robot.py" ros1{
+topic "/c/*":std_msgs/Float64 out drives crane.arm{"slew"=turn;"luff"   =wrist}
+topic "/p":geometry_msgs/PoseArray in at 1Hz{poses [ 0 ] . position . x=1;data=[1,2 ,3]
+covariance[ 7 ]=length( a )}
+  service "/s":std_srvs/SetBool{success=true when data;success=false}
+topic "/scan":sensor_msgs/LaserScan out{emit near when length(ranges)>3&&ranges [3]<0.4
+  emit far(points[ 0 ].x)}
+group "c" plans crane.arm   acceleration 2rad/s^2 tip"hook"{"slew"=turn
+"luff"=wrist}
+parameter   "/a"=[1,2]
+}}
+"#
     functions r#"
 fn front()->0..4{return q[0]}
 fn pop()->0..4{var first:0..4=q[0];var i:0..5;while i<4{q[i]=q[i+1];i+=1}q[4]=0;len-=1;return first}

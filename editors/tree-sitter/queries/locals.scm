@@ -41,6 +41,7 @@
 (gripper name: (identifier) @local.definition)
 (base name: (identifier) @local.definition)
 (laser name: (identifier) @local.definition)
+(posture name: (identifier) @local.definition)
 (current name: (identifier) @local.definition)
 (signal name: (identifier) @local.definition)
 

@@ -35,6 +35,7 @@
 (gripper name: (identifier) @name) @definition.field
 (base name: (identifier) @name) @definition.field
 (laser name: (identifier) @name) @definition.field
+(posture name: (identifier) @name) @definition.field
 (current name: (identifier) @name) @definition.field
 (signal name: (identifier) @name) @definition.field
 (placement name: (identifier) @name) @definition.field

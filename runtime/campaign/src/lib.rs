@@ -67,6 +67,8 @@ pub struct CampaignSetup<'a> {
     pub program: &'a Program,
     /// Which of the program's systems is tested.
     pub system: &'a SystemUnderTest,
+    /// The table of interfaces that its programs can use, as JSON; empty without a middleware.
+    pub interfaces: String,
     /// The scenario's folder: where the program under test is started.
     pub dir: PathBuf,
     pub env: PythonEnv,
@@ -286,7 +288,7 @@ impl CampaignSetup<'_> {
     /// What programs find out about their middleware.
     fn middleware(&self) -> Result<Option<LaunchMiddleware>, SutError> {
         let Some(binding) = &self.system.binding else { return Ok(None) };
-        let text = binding_text(self.program, binding);
+        let text = binding_text(self.program, binding, &self.interfaces);
         let file = self.env.kept(&text)?;
         Ok(Some(LaunchMiddleware {
             name: binding.kind.name(),

@@ -50,12 +50,12 @@ fn scanning(what: &str) -> (Program, MiddlewareBinding) {
     let binding = MiddlewareBinding {
         packages: std::collections::BTreeMap::new(),
         kind: MiddlewareKind::Ros1,
-        interfaces: String::new(),
         inputs: vec![input],
         outputs: Vec::new(),
         services: Vec::new(),
         actions: Vec::new(),
         groups: Vec::new(),
+        parameters: std::collections::BTreeMap::new(),
         transitions: Vec::new(),
         origin: Span::default(),
     };

@@ -1,6 +1,6 @@
 //! Sensors: the value of every primitive term, now.
 
-use hrdsl_ir::world::{Axis, BodyId, BodyRef, CurrentBody, Signal, SignalTerm, World};
+use hrdsl_ir::world::{Axis, BodyId, BodyRef, CurrentBody, QuaternionPart, Signal, SignalTerm, World};
 use hrdsl_ir::{Type, Value};
 
 use crate::{
@@ -73,6 +73,22 @@ impl SensorView<'_> {
             SignalTerm::HoldsAny(g) => Value::Bool(self.hands.held_by(usize::from(g.0)).is_some()),
             SignalTerm::JointSpeed(a) => Value::Float(self.arms[usize::from(a.0)].speed(self.physics)),
             SignalTerm::Speed(b) => Value::Float(self.physics.speed(self.body(b))),
+            SignalTerm::Heading(b) => {
+                let ahead = self.physics.pose(self.body(b)).x_axis();
+                Value::Float(libm::atan2(ahead.y, ahead.x))
+            }
+            SignalTerm::Orientation(b, part) => {
+                let turn = self.physics.pose(self.body(b)).turn;
+                let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
+                Value::Float(
+                    sign * match part {
+                        QuaternionPart::X => turn.i,
+                        QuaternionPart::Y => turn.j,
+                        QuaternionPart::Z => turn.k,
+                        QuaternionPart::W => turn.w,
+                    },
+                )
+            }
         }
     }
 }
@@ -113,7 +129,10 @@ pub(crate) fn check_term(
             check_body(a, world, &what)?;
             check_body(b, world, &what)
         }
-        SignalTerm::Coordinate(b, _) | SignalTerm::Speed(b) => check_body(b, world, &what),
+        SignalTerm::Coordinate(b, _)
+        | SignalTerm::Speed(b)
+        | SignalTerm::Heading(b)
+        | SignalTerm::Orientation(b, _) => check_body(b, world, &what),
         SignalTerm::Holds(g, b) => {
             gripper(g.0)?;
             check_body(b, world, &what)

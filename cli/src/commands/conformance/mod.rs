@@ -5,7 +5,7 @@ mod compare;
 
 use std::path::PathBuf;
 
-use hrdsl_compiler::{InputFile, compile};
+use hrdsl_compiler::{CompilationResult, InputFile, compile};
 use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_runtime::campaign::{
     CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, StopFlag,
@@ -18,7 +18,7 @@ use self::{
     compare::{CaseDifference, of_events, of_output, skipped},
 };
 use super::sim;
-use crate::{exit::CommandExit, fault::CommandFault, files, installing::InstallProgress, terminal};
+use crate::{exit::CommandExit, fault::CommandFault, files, input, installing::InstallProgress, terminal};
 
 /// So many of the last lines that a driver wrote on standard error are shown.
 const LAST_LINES: usize = 10;
@@ -138,7 +138,7 @@ impl<'a> ConformanceRun<'a> {
 
     /// Runs a case.
     fn verdict(&mut self, case: &ConformanceCase) -> Result<CaseVerdict, CommandFault> {
-        let program = compiled(case)?;
+        let (program, compilation) = compiled(case)?;
         let mut system = program
             .systems
             .first()
@@ -154,6 +154,7 @@ impl<'a> ConformanceRun<'a> {
         let campaign = CampaignSetup {
             program: &program,
             system: &system,
+            interfaces: input::interface_table(&compilation, &system)?,
             dir: self.dir.clone(),
             env,
             seed: 0,
@@ -187,14 +188,15 @@ impl<'a> ConformanceRun<'a> {
     }
 }
 
-fn compiled(case: &ConformanceCase) -> Result<Program, CommandFault> {
+fn compiled(case: &ConformanceCase) -> Result<(Program, CompilationResult), CommandFault> {
     let (scenario, tests) = (case.scenario(), case.tests());
     let scenario = InputFile { name: "scenario.hri", text: &scenario };
-    let compilation = compile(scenario, &[InputFile { name: "tests.hri", text: &tests }]);
-    compilation.program.ok_or_else(|| {
+    let mut compilation = compile(scenario, &[InputFile { name: "tests.hri", text: &tests }]);
+    let program = compilation.program.take().ok_or_else(|| {
         let first = compilation.diagnostics.iter().find(|d| d.is_error()).map(|d| d.message.clone());
         format!("the case {} has an error: {}", case.name, first.unwrap_or_default())
-    })
+    })?;
+    Ok((program, compilation))
 }
 
 /// The events of a recording that the system under test has made.

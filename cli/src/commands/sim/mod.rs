@@ -138,7 +138,10 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     if args.debug && tests.len() != 1 {
         return Err(format!("--debug runs one test, and {} are chosen; name one with --test", tests.len()));
     }
-    let campaign = prepared(args, program, system, &out, &folder)?;
+    let campaign = CampaignSetup {
+        interfaces: input::interface_table(&compilation, system)?,
+        ..prepared(args, program, system, &out, &folder)?
+    };
     let begun = Instant::now();
     let outcome = run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
     let differences = if args.check_determinism && !outcome.interrupted {
@@ -182,7 +185,7 @@ fn system_file(args: &SimArgs) -> Result<Option<String>, CommandFault> {
     if !path.is_file() {
         return Err(format!("--system: there is no file {}", terminal::shown(path)));
     }
-    Ok(Some(rerun::relative(path, &files::folder(&args.file)).display().to_string()))
+    Ok(Some(files::relative(path, &files::folder(&args.file)).display().to_string()))
 }
 
 fn is_file_name(name: &str) -> bool {
@@ -238,6 +241,7 @@ fn prepared<'p>(
     let mut campaign = CampaignSetup {
         program,
         system,
+        interfaces: String::new(),
         dir,
         env,
         seed: args.seed,

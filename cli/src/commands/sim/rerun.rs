@@ -1,8 +1,9 @@
 //! The command that runs one test of a campaign again.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::{SimArgs, is_file_name};
+use crate::files::relative;
 
 /// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
 /// wherever both lie.
@@ -26,14 +27,6 @@ pub fn words(args: &SimArgs, out: &Path) -> String {
     words.extend(times.chain(sizes));
     words.push("--test".to_owned());
     words.join(" ")
-}
-
-/// A path as it is seen from a folder.
-pub fn relative(path: &Path, from: &Path) -> PathBuf {
-    let (Ok(path), Ok(from)) = (path.canonicalize(), from.canonicalize()) else { return path.to_owned() };
-    let common = path.components().zip(from.components()).take_while(|(a, b)| a == b).count();
-    let up = from.components().skip(common).map(|_| std::path::Component::ParentDir);
-    up.chain(path.components().skip(common)).collect()
 }
 
 /// A word for a shell.

@@ -109,6 +109,7 @@ pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> b
         | Noun::Gripper
         | Noun::Base
         | Noun::Laser
+        | Noun::Posture
         | Noun::Device
         | Noun::Command
         | Noun::Current

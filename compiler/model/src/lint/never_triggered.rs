@@ -110,6 +110,8 @@ fn range(scenario: &Scenario, e: &TypedExpr, depth: u32) -> Option<(f64, f64)> {
             | SignalTerm::Speed(_)
             | SignalTerm::JointSpeed(_) => (0.0, infinite),
             SignalTerm::Angle(..) => (0.0, std::f64::consts::PI),
+            SignalTerm::Heading(_) => (-std::f64::consts::PI, std::f64::consts::PI),
+            SignalTerm::Orientation(..) => (-1.0, 1.0),
             SignalTerm::Coordinate(..) => (-infinite, infinite),
             SignalTerm::Visible(..) | SignalTerm::Holds(..) | SignalTerm::HoldsAny(_) => return None,
         },

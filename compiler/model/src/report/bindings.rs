@@ -49,11 +49,32 @@ pub(crate) fn several_values(field: &str, parts: &[String], span: Span) -> Diagn
     }
 }
 
-/// HR0201: an array, or nothing that is there.
+/// HR0201: an array or a sequence, which is given one value.
 pub(crate) fn not_one_value(field: &str, span: Span) -> Diagnostic {
-    let message = format!("`{field}` is not one value");
+    let message = format!("`{field}` holds a row of values");
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message).help(format!(
+        "write all of them, as `{field} = [a, b]`, or name one, counted from 0: `{field}[0] = a`"
+    ))
+}
+
+/// HR0201: the same, which a rule reads.
+pub(crate) fn unread_sequence(field: &str, span: Span) -> Diagnostic {
+    let message = format!("`{field}` holds a row of values");
     Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
-        .help("of an array of a fixed length, name an element, counted from 0: `field[0] = …`")
+        .help(format!("name one, counted from 0: `{field}[0]`; `length({field})` says how many there are"))
+}
+
+/// HR0201
+pub(crate) fn unread_time(field: &str, span: Span) -> Diagnostic {
+    let message = format!("`{field}` is a time, which rules cannot read");
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
+        .help("a rule is carried out at the time at which the message is published")
+}
+
+/// HR0201
+pub(crate) fn no_sequence(span: Span) -> Diagnostic {
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, "only a row of values has a length")
+        .help("name a field of the message with an array or a sequence: `length(ranges) > 3`")
 }
 
 /// HR0201: a value that a field cannot hold.
@@ -64,6 +85,7 @@ pub(crate) fn does_not_fit(value: &str, field: MessageScalar, span: Span) -> Dia
         MessageScalar::Float => "a number",
         MessageScalar::Text => "text",
         MessageScalar::Time => "a time, which is set by itself in the header",
+        MessageScalar::Heading => "an orientation: an angle about the vertical, or the name of a body",
     };
     let message = format!("the field holds {holds}, but this is {value}");
     Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message)
@@ -141,4 +163,72 @@ pub(crate) fn no_source(device: &str, interface: &str, ways: &str, span: Span) -
 pub(crate) fn no_wildcard(span: Span) -> Diagnostic {
     let help = "write `*` in the topic where the joint's name stands: `/arm/*_controller/command`";
     bad_binding(span, "one number drives one joint, and the topic does not say which", help)
+}
+
+/// HR0806
+pub(crate) fn no_joints(span: Span) -> Diagnostic {
+    let help = "write it in a topic that drives an arm or comes from one, or in a group";
+    bad_binding(span, "only an arm has joints to be named", help)
+}
+
+/// HR0806
+pub(crate) fn joints_only(span: Span) -> Diagnostic {
+    let help = "write what the programs call its joints: `\"shoulder\" = shoulder_flexor`";
+    bad_binding(span, "a group has nothing but the names of joints", help)
+}
+
+/// HR0806
+pub(crate) fn bad_joint_text(span: Span) -> Diagnostic {
+    bad_binding(
+        span,
+        "a joint's name has a character at least, and no `/`",
+        "write the name that the programs use",
+    )
+}
+
+/// HR0105
+pub(crate) fn joints_missing(joints: &[&str], span: Span) -> Diagnostic {
+    let all: Vec<String> = joints.iter().map(|joint| format!("`{joint}`")).collect();
+    let message = format!("the programs' names of these joints are missing: {}", all.join(", "));
+    let first = joints.first().copied().unwrap_or_default();
+    super::names::missing(span, message, &format!("name all joints, or none: `\"NAME\" = {first}`"))
+}
+
+/// HR0102
+pub(crate) fn joint_named_twice(joint: &str, span: Span, first: Span) -> Diagnostic {
+    let message = format!("the joint `{joint}` has a name already");
+    Diagnostic::error(DiagnosticCode::DUPLICATE_NAME, span, message)
+        .help("give it one name")
+        .label(first, "it is named here first")
+}
+
+/// HR0806
+pub(crate) fn no_condition(span: Span) -> Diagnostic {
+    let help = "a `when` belongs to a field of an answer, where it speaks of the request or the goal; write `if C { a } else { b }`";
+    bad_binding(span, "no message is answered here", help)
+}
+
+/// HR0806
+pub(crate) fn no_postures(span: Span) -> Diagnostic {
+    let help = "declare them beside the arm, or in the world: `posture home: robot.arm at [0 deg, 90 deg]`";
+    bad_binding(span, "this device has no postures", help)
+}
+
+/// HR0201: a message in a message, which is neither a body nor written out.
+pub(crate) fn no_whole(field: &str, parts: &[String], body: bool, span: Span) -> Diagnostic {
+    let message = format!("`{field}` holds several values");
+    let error = Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, message);
+    match (parts.first(), body) {
+        (Some(part), true) => {
+            error.help(format!("name a body, as `{field} = robot.palm`, or one value: `{field}.{part} = …`"))
+        }
+        (Some(part), false) => error.help(format!("name one of them, such as `{field}.{part}`")),
+        (None, _) => error,
+    }
+}
+
+/// HR0806
+pub(crate) fn no_parameters(span: Span) -> Diagnostic {
+    let help = "hand it over behind the command: `--ros-args -p NAME:=VALUE`, or `--params-file FILE`";
+    bad_binding(span, "in ROS 2 each node has parameters of its own", help)
 }

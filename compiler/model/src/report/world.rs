@@ -7,6 +7,12 @@ pub(crate) fn bad_world(span: Span, message: impl Into<String>, help: impl Into<
     Diagnostic::error(DiagnosticCode::BAD_WORLD, span, message).help(help)
 }
 
+/// HR0201: a posture whose angles are no list.
+pub(crate) fn no_angles(span: Span) -> Diagnostic {
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, "a posture is a list of angles")
+        .help("write the angle of each joint, from the base to the tip: `[0 deg, 90 deg]`")
+}
+
 /// The parts of the library, and the modules that they are in. A test compares them with the library.
 pub const LIBRARY_PARTS: &[(&str, &str)] = &[
     ("adult", "std.person"),

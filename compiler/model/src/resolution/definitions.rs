@@ -242,6 +242,7 @@ impl DefinitionReader {
                 WorldMemberKind::Gripper { name, .. } => self.define("gripper", name),
                 WorldMemberKind::Base(base) => self.define("base", &base.name),
                 WorldMemberKind::Laser(laser) => self.define("laser", &laser.name),
+                WorldMemberKind::Posture(posture) => self.define("posture", &posture.name),
                 WorldMemberKind::Current { name, .. } => self.define("current body", name),
                 WorldMemberKind::Signal { name, ty, .. } => self.typed("signal", name, written(ty)),
                 WorldMemberKind::Step(_)

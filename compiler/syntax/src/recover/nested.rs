@@ -52,8 +52,9 @@ impl RecoveringParser<'_, '_> {
             BindingMemberKind::TopicIn(topic) => &mut topic.entries,
             BindingMemberKind::TopicOut(topic) => &mut topic.entries,
             BindingMemberKind::Service(served) | BindingMemberKind::Action(served) => &mut served.entries,
+            BindingMemberKind::Group(group) => &mut group.entries,
             BindingMemberKind::Messages(_)
-            | BindingMemberKind::Group { .. }
+            | BindingMemberKind::Parameter { .. }
             | BindingMemberKind::Transition { .. }
             | BindingMemberKind::Error => return kind,
         };

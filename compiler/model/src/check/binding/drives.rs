@@ -6,9 +6,9 @@ use hrdsl_ir::{
     world::DeviceCommandId,
 };
 use hrdsl_messages::InterfaceName;
-use hrdsl_syntax::ast::{PathSyntax, TextSyntax};
+use hrdsl_syntax::ast::TopicOutSyntax;
 
-use super::BindingScope;
+use super::scope::BindingScope;
 use crate::check::checker::Checker;
 use crate::{TypedExpr, report::bindings};
 
@@ -58,11 +58,11 @@ impl<'a> Checker<'a> {
     pub(super) fn driven(
         &mut self,
         scope: BindingScope<'a>,
-        topic: &TextSyntax,
-        device: &PathSyntax,
+        topic: &TopicOutSyntax,
         message: &InterfaceName,
         rules: &mut MessageRules<TypedExpr>,
     ) {
+        let Some(device) = &topic.drives else { return };
         let sorts: Vec<DeviceSort> = DRIVES.iter().map(|d| d.sort).collect();
         let Some(body) = self.device_of(device, &sorts, "") else { return };
         let is = |d: &&DeviceDrive| {
@@ -76,14 +76,14 @@ impl<'a> Checker<'a> {
             self.report(issue);
             return;
         };
-        if drive.command == "aim" && !topic.text.contains('*') {
-            self.report(bindings::no_wildcard(topic.span));
+        if drive.command == "aim" && !topic.name.text.contains('*') {
+            self.report(bindings::no_wildcard(topic.name.span));
             return;
         }
         let kind = self.s.device_kinds.iter().find(|kind| kind.sort == body.sort());
         // INVARIANT: the library declares the commands above; a test compiles a drive of each.
         let Some(command) = kind.and_then(|kind| kind.command(drive.command)) else { return };
-        let joints = self.joint_names(body);
+        let joints = self.joint_texts(device, body, &topic.entries);
         let args = match drive.command {
             "aim" => vec![
                 Some(CommandArgument::Wildcard { names: joints }),
@@ -118,16 +118,5 @@ impl<'a> Checker<'a> {
             Some(CommandArgument::Sequence(path.map(|s| MessageStep::Field(s.to_owned())).collect()))
         };
         params.iter().map(argument).collect()
-    }
-
-    /// The joints of an arm, from its base, without the prefix of their part.
-    pub(super) fn joint_names(&self, body: DeviceBody) -> Vec<String> {
-        let (Some(world), DeviceBody::Arm(arm)) = (&self.s.world, body) else { return Vec::new() };
-        let joints = world.arms.get(usize::from(arm.0)).map(|a| a.joints.as_slice()).unwrap_or_default();
-        let name = |id: &crate::JointId| {
-            let name = world.joints.get(usize::from(id.0)).map_or("", |j| j.name.as_str());
-            name.rsplit('.').next().unwrap_or(name).to_owned()
-        };
-        joints.iter().map(name).collect()
     }
 }

@@ -5,10 +5,12 @@ use hrdsl_ir::value::nanos;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, CallSyntax, ExprSyntaxKind as Syntax};
 
-use super::{BindingScope, entries::BindingPlace};
+use super::scope::{BindingPlace, BindingScope};
 use crate::check::{checker::Checker, state::scope::ExprEnv};
 use crate::{
-    ActorId, EventId, InferredType, Type, TypedExpr, Value, VariableRef, noun::Noun, report::bindings,
+    ActorId, Dimension, EventId, InferredType, Type, TypedExpr, Value, VariableRef,
+    noun::Noun,
+    report::{bindings, names},
 };
 
 impl<'a> Checker<'a> {
@@ -31,11 +33,49 @@ impl<'a> Checker<'a> {
             return self.held(scope, scalar, value, 0);
         }
         let (mut env, reads) = self.heard_arguments(scope.actor);
+        self.known_arguments(scope.actor, value, &env)?;
         let value = self.expr(value, &mut env);
+        self.read_value(value, scalar, &reads)
+    }
+
+    /// Whether all arguments of events are there that a value names; says so if not.
+    fn known_arguments(&mut self, actor: ActorId, value: &ast::ExprSyntax, env: &ExprEnv) -> Option<()> {
+        let mut paths = Vec::new();
+        paths_in(value, &mut paths);
+        let mut known = Some(());
+        for path in paths {
+            let [event, param, ..] = path.names.as_slice() else { continue };
+            let is_argument = env.place_of(&format!("{}.{}", event.text, param.text)).is_some();
+            if is_argument || self.kind_of(&event.text) != Some(Noun::Event) {
+                continue;
+            }
+            known = None;
+            let id = self.event(Noun::Event, event, None)?;
+            let params: Vec<String> =
+                self.s.events.get(usize::from(id.0)).map_or_else(Vec::new, |event| {
+                    event.params.iter().map(|param| param.name.clone()).collect()
+                });
+            if params.contains(&param.text) {
+                self.perceives(actor, id, event.span, false);
+            } else {
+                let near = params.iter().map(String::as_str);
+                self.report(names::unknown(Noun::Parameter, &param.text, param.span, near));
+            }
+        }
+        known
+    }
+
+    /// What a field of this kind holds, as an expression over `reads`.
+    pub(super) fn read_value(
+        &mut self,
+        value: TypedExpr,
+        scalar: MessageScalar,
+        reads: &[GapRead],
+    ) -> Option<GapValue<TypedExpr>> {
         let value = self.fitting(value, scalar)?;
         let mut is_read = false;
         value.each_leaf(&mut |leaf| is_read |= matches!(leaf, VariableRef::Local(_)));
-        Some(GapValue::Value { value, reads: if is_read { reads } else { Vec::new() } })
+        Some(GapValue::Value { value, reads: if is_read { reads.to_vec() } else { Vec::new() } })
     }
 
     /// `held(leg_request, 5 s)`
@@ -69,7 +109,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Signals, measurements, and `EVENT.PARAMETER` of what the actor hears.
-    fn heard_arguments(&self, actor: ActorId) -> (ExprEnv, Vec<GapRead>) {
+    pub(super) fn heard_arguments(&self, actor: ActorId) -> (ExprEnv, Vec<GapRead>) {
         let (mut env, mut reads) = (ExprEnv::measured(""), Vec::new());
         for (event, id) in self.s.events.iter().zip(0u16..) {
             let hears = event.stimulus.is_none()
@@ -94,7 +134,8 @@ impl<'a> Checker<'a> {
             (_, InferredType::Unknown) => return None,
             (MessageScalar::Bool | MessageScalar::Int { .. }, InferredType::Bool)
             | (MessageScalar::Float, InferredType::Int | InferredType::Float(_))
-            | (MessageScalar::Text, InferredType::Text | InferredType::Enum(_)) => true,
+            | (MessageScalar::Text, InferredType::Text | InferredType::Enum(_))
+            | (MessageScalar::Heading, InferredType::Float(Dimension::ANGLE)) => true,
             (MessageScalar::Int { lo, hi }, InferredType::Int) => {
                 self.in_range(&value, Type::Int { lo, hi });
                 true
@@ -104,7 +145,8 @@ impl<'a> Checker<'a> {
                 | MessageScalar::Int { .. }
                 | MessageScalar::Float
                 | MessageScalar::Text
-                | MessageScalar::Time,
+                | MessageScalar::Time
+                | MessageScalar::Heading,
                 _,
             ) => false,
         };
@@ -112,6 +154,23 @@ impl<'a> Checker<'a> {
             self.report(bindings::does_not_fit(&value.ty.to_string(), scalar, value.span));
         }
         fits.then_some(value)
+    }
+}
+
+/// All names with their parts in an expression.
+fn paths_in<'e>(e: &'e ast::ExprSyntax, all: &mut Vec<&'e ast::PathSyntax>) {
+    match &e.kind {
+        Syntax::Path(path) => all.push(path),
+        Syntax::Call { args: parts, .. } | Syntax::Tuple(parts) => {
+            parts.iter().for_each(|part| paths_in(part, all));
+        }
+        Syntax::Unary { operand, .. } => paths_in(operand, all),
+        Syntax::Binary { left, right, .. } => [left, right].into_iter().for_each(|part| paths_in(part, all)),
+        Syntax::If { condition, then, otherwise } => {
+            [condition, then, otherwise].into_iter().for_each(|part| paths_in(part, all));
+        }
+        Syntax::Index { of, .. } | Syntax::Field { of, .. } => paths_in(of, all),
+        _ => {}
     }
 }
 

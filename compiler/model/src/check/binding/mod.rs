@@ -2,14 +2,22 @@
 
 mod drives;
 mod entries;
+mod fields;
 mod gaps;
+mod groups;
+mod joints;
+mod parameters;
+mod places;
 mod rules;
+mod scope;
 mod shape;
 mod sources;
+mod wholes;
+
+use std::collections::BTreeMap;
 
 use hrdsl_ir::binding::{
-    BoundAction, BoundService, MiddlewareBinding, MiddlewareKind, PlanningGroup, TopicInput, TopicOutput,
-    TransitionRule,
+    BoundAction, BoundService, MiddlewareBinding, MiddlewareKind, TopicInput, TopicOutput, TransitionRule,
 };
 use hrdsl_ir::value::nanos;
 use hrdsl_messages::{InterfaceName, InterfaceSpace, MessageLibrary};
@@ -20,18 +28,11 @@ use hrdsl_syntax::ast::{
 };
 
 use crate::check::{checker::Checker, state::scope::ExprEnv};
-use crate::{ActorId, Dimension, TypedExpr, Value, noun::Noun, report::bindings};
-use entries::BindingPlace;
+use crate::{ActorId, Dimension, TypedExpr, Value, report::bindings};
+use scope::{BindingPlace, BindingScope};
 
 /// Messages faster than this are more than any scenario samples.
 const HIGHEST_RATE: f64 = 10_000.0;
-
-/// What is being bound: for whom, and to which definitions.
-#[derive(Clone, Copy)]
-pub(super) struct BindingScope<'a> {
-    pub actor: ActorId,
-    pub library: &'a MessageLibrary,
-}
 
 impl<'a> Checker<'a> {
     /// `None` where the definitions are not there: they were not asked for.
@@ -50,20 +51,19 @@ impl<'a> Checker<'a> {
         }
         let mut binding = MiddlewareBinding {
             kind,
-            interfaces: String::new(),
             packages: library.package_folders().clone(),
             inputs: Vec::new(),
             outputs: Vec::new(),
             services: Vec::new(),
             actions: Vec::new(),
             groups: Vec::new(),
+            parameters: BTreeMap::new(),
             transitions: Vec::new(),
             origin,
         };
         for member in &middleware.members {
             self.binding_member(scope, member, &mut binding);
         }
-        binding.interfaces = table(library);
         Some(binding)
     }
 
@@ -79,11 +79,8 @@ impl<'a> Checker<'a> {
             Member::TopicOut(topic) => binding.outputs.extend(self.topic_out(scope, topic, origin)),
             Member::Service(served) => binding.services.extend(self.bound_service(scope, served, origin)),
             Member::Action(served) => binding.actions.extend(self.bound_action(scope, served, origin)),
-            Member::Group { name, device } => {
-                if let Some(device) = self.arm_named(device) {
-                    binding.groups.push(PlanningGroup { name: name.text.clone(), device });
-                }
-            }
+            Member::Group(group) => binding.groups.extend(self.planning_group(group)),
+            Member::Parameter { name, value } => self.parameter(name, value, binding),
             Member::Transition { from, to, emit } => {
                 let mut env = ExprEnv::constants();
                 if let Some((event, args)) = self.emission(scope.actor, emit, &mut env) {
@@ -114,12 +111,13 @@ impl<'a> Checker<'a> {
             Some(rate)
         });
         let message = self.interface(scope, &topic.interface, InterfaceSpace::Msg)?;
+        let said_before = self.issues.list.len();
         let place = BindingPlace::input(topic.rate.is_some());
-        let device = topic.from.as_ref();
-        let told = device.map(|device| self.source(scope, device, &message, rate)).unwrap_or_default();
+        let told = self.source(scope, topic, &message, rate);
+        let place = BindingPlace { joints: topic.from.is_some(), ..place };
         let bound = self.entries_with(scope, place, Some(&message), Some(&message), &topic.entries, told)?;
-        let said = bound.template.gaps.iter().any(|gap| gap.value.is_of_events());
-        if topic.rate.is_none() && !topic.latched && !said {
+        let has_fault = self.issues.list.len() > said_before;
+        if topic.rate.is_none() && !topic.latched && !bound.template.is_of_events() && !has_fault {
             self.report(bindings::never_published(topic.name.span));
         }
         Some(TopicInput {
@@ -140,11 +138,10 @@ impl<'a> Checker<'a> {
     ) -> Option<TopicOutput<TypedExpr>> {
         self.binding_name(&topic.name, true);
         let message = self.interface(scope, &topic.interface, InterfaceSpace::Msg)?;
-        let bound = self.entries(scope, BindingPlace::OUTPUT, Some(&message), None, &topic.entries)?;
+        let place = BindingPlace { joints: topic.drives.is_some(), ..BindingPlace::OUTPUT };
+        let bound = self.entries(scope, place, Some(&message), None, &topic.entries)?;
         let mut rules = bound.rules;
-        if let Some(device) = &topic.drives {
-            self.driven(scope, &topic.name, device, &message, &mut rules);
-        }
+        self.driven(scope, topic, &message, &mut rules);
         Some(TopicOutput {
             topic: topic.name.text.clone(),
             interface: message.written(scope.library.version()),
@@ -232,12 +229,6 @@ impl<'a> Checker<'a> {
             self.report(bindings::bad_name(&name.text, wild, name.span));
         }
     }
-
-    /// The device of a group of joints.
-    fn arm_named(&mut self, device: &hrdsl_syntax::ast::PathSyntax) -> Option<hrdsl_ir::world::DeviceId> {
-        let arm = self.world_name(Noun::Arm, &device.names, "")?;
-        Some(hrdsl_ir::world::DeviceId(arm))
-    }
 }
 
 fn kind_of(library: &MessageLibrary) -> MiddlewareKind {
@@ -245,22 +236,4 @@ fn kind_of(library: &MessageLibrary) -> MiddlewareKind {
         hrdsl_messages::RosVersion::Ros1 => MiddlewareKind::Ros1,
         hrdsl_messages::RosVersion::Ros2 => MiddlewareKind::Ros2,
     }
-}
-
-/// All definitions in which nothing is wrong, as JSON.
-fn table(library: &MessageLibrary) -> String {
-    let all: Vec<InterfaceName> = library
-        .messages()
-        .map(|(name, _)| name)
-        .chain(library.services().map(|(name, _)| name))
-        .chain(library.actions().map(|(name, _)| name))
-        .cloned()
-        .collect();
-    let table = library.closure(&all).or_else(|_| {
-        let sound = |name: &&InterfaceName| library.closure(std::slice::from_ref(*name)).is_ok();
-        let names: Vec<InterfaceName> = all.iter().filter(sound).cloned().collect();
-        library.closure(&names)
-    });
-    // INVARIANT: what has just been looked at is sound; a table of plain data has a text.
-    table.ok().and_then(|table| serde_json::to_string(&table).ok()).unwrap_or_default()
 }

@@ -13,7 +13,8 @@ use hrdsl_syntax::ast::{
 };
 
 use super::{
-    BindingScope,
+    places::{WrittenStep, steps_of},
+    scope::{BindingPlace, BindingScope},
     shape::{FieldShape, MessageShape},
 };
 use crate::check::{
@@ -23,7 +24,7 @@ use crate::check::{
 use crate::{
     ActorId, Dimension, EventId, InferredType, Type, TypedExpr, TypedExprKind, VariableRef,
     noun::Noun,
-    report::{bindings, types},
+    report::{bindings, names, types},
     types::TypeLayout,
     world::TypedRuleTrigger,
 };
@@ -33,58 +34,66 @@ pub(super) struct MessageEnv<'s> {
     pub env: ExprEnv,
     /// By the number of the local.
     pub reads: Vec<MessageRead>,
-    shape: &'s MessageShape,
+    pub shape: &'s MessageShape,
 }
 
 impl<'s> MessageEnv<'s> {
     pub fn new(shape: &'s MessageShape) -> Self {
-        let mut this =
-            Self { env: ExprEnv { noun: Some(Noun::Field), ..ExprEnv::default() }, reads: Vec::new(), shape };
+        let env = ExprEnv { noun: Some(Noun::Field), ..ExprEnv::default() };
+        let mut this = Self { env, reads: Vec::new(), shape };
         for (path, scalar) in shape.scalars() {
-            let ty = match scalar {
-                MessageScalar::Bool => Type::Bool,
-                MessageScalar::Int { lo, hi } => Type::Int { lo, hi },
-                MessageScalar::Float => Type::Float(hrdsl_ir::Unit::None),
-                MessageScalar::Text => Type::Text,
-                MessageScalar::Time => continue,
-            };
-            this.add(path, ty);
+            this.read(path, scalar);
         }
         this
     }
 
-    fn add(&mut self, path: Vec<MessageStep>, ty: Type) -> u16 {
-        // Of the same place as another type it is found by its number alone.
+    /// The name of what is read at a place; `None`: it is a time.
+    pub fn read(&mut self, path: Vec<MessageStep>, scalar: MessageScalar) -> Option<String> {
+        let ty = match scalar {
+            MessageScalar::Bool => Type::Bool,
+            MessageScalar::Int { lo, hi } => Type::Int { lo, hi },
+            MessageScalar::Float => Type::Float(hrdsl_ir::Unit::None),
+            MessageScalar::Text => Type::Text,
+            MessageScalar::Time | MessageScalar::Heading => return None,
+        };
         let name = place_text(&path);
-        let name = if self.env.find(&name).is_some() { String::new() } else { name };
-        self.reads.push(MessageRead { path, ty, same_as: None });
+        if self.env.find(&name).is_none() {
+            self.add(&name, MessageRead { path, length: false, ty, same_as: None });
+        }
+        Some(name)
+    }
+
+    /// The name of how long the sequence at a place is.
+    pub fn read_length(&mut self, path: Vec<MessageStep>) -> String {
+        let name = format!("length({})", place_text(&path));
+        if self.env.find(&name).is_none() {
+            let ty = Type::Int { lo: 0, hi: i64::from(u32::MAX) };
+            self.add(&name, MessageRead { path, length: true, ty, same_as: None });
+        }
+        name
+    }
+
+    fn add(&mut self, name: &str, read: MessageRead) -> u16 {
         let at = self.env.next_local();
-        self.env.push_typed(&name, Span::default(), Noun::Field, ty);
+        self.env.push_typed(name, Span::default(), Noun::Field, read.ty);
+        self.reads.push(read);
         at
+    }
+
+    /// Whether the first step is a field of the message: other names are for the scenario to know.
+    pub fn begins_in(&self, steps: &[WrittenStep<'_>]) -> bool {
+        let Some(WrittenStep::Field(first)) = steps.first() else { return false };
+        self.shape.fields.iter().any(|(name, _)| *name == first.text)
     }
 
     /// A field with text, as a value of an enumeration.
     fn as_enumeration(&mut self, value: &TypedExpr, ty: Type) -> Option<TypedExpr> {
         let TypedExprKind::Leaf(VariableRef::Local(at)) = value.kind else { return None };
         let path = self.reads.get(usize::from(at))?.path.clone();
-        let at = self.add(path, ty);
+        // Of the same place as another type it is found by its number alone.
+        let at = self.add("", MessageRead { path, length: false, ty, same_as: None });
         let kind = TypedExprKind::Leaf(VariableRef::Local(at));
         Some(TypedExpr { kind, ty: InferredType::of(ty), span: value.span })
-    }
-
-    /// The sequence of numbers that a path names.
-    fn sequence(&self, path: &PathSyntax) -> Option<Vec<MessageStep>> {
-        let steps: Vec<MessageStep> = path.names.iter().map(|n| MessageStep::Field(n.text.clone())).collect();
-        match self.shape.at(&steps)? {
-            FieldShape::Sequence { numbers: true } => Some(steps),
-            FieldShape::Array(elements) => {
-                let number = |e: &FieldShape| {
-                    matches!(e, FieldShape::Scalar(MessageScalar::Float | MessageScalar::Int { .. }, _))
-                };
-                elements.iter().all(number).then_some(steps)
-            }
-            FieldShape::Sequence { .. } | FieldShape::Scalar(..) | FieldShape::Message(_) => None,
-        }
     }
 }
 
@@ -103,20 +112,35 @@ impl<'a> Checker<'a> {
             Entry::Command { command, device, args, when } => {
                 (self.message_command((command, device), args.as_deref(), entry.span, env), when)
             }
-            Entry::Field { .. } | Entry::Error => return None,
+            Entry::Field { .. } | Entry::Joint { .. } | Entry::Error => return None,
         };
         let (condition, rising) = match when.as_ref().map(|w| (w, rising(w))) {
             Some((_, Some(inner))) => (Some(inner), true),
             Some((whole, None)) => (Some(whole), false),
             None => (None, false),
         };
-        let guard = condition.map(|e| {
-            if !self.known_fields(e, env) {
-                return TypedExpr::error(e.span);
-            }
-            self.expr_of(e, InferredType::Bool, &mut env.env)
+        let guard = condition.map(|e| match self.placed(e, env) {
+            Some(e) => self.expr_of(&e, InferredType::Bool, &mut env.env),
+            None => TypedExpr::error(e.span),
         });
         Some(MessageRule { guard, rising, effect: effect?, origin: entry.span })
+    }
+
+    /// What a field of an answer asks of the message that is answered.
+    pub(super) fn field_condition(
+        &mut self,
+        place: BindingPlace,
+        when: &ast::ExprSyntax,
+        env: &mut MessageEnv<'_>,
+    ) -> TypedExpr {
+        if !place.rules {
+            self.report(bindings::no_condition(when.span));
+            return TypedExpr::error(when.span);
+        }
+        match self.placed(when, env) {
+            Some(e) => self.expr_of(&e, InferredType::Bool, &mut env.env),
+            None => TypedExpr::error(when.span),
+        }
     }
 
     /// `emit decided(true)`, where arguments are constants.
@@ -146,10 +170,15 @@ impl<'a> Checker<'a> {
         let event = self.event(Noun::Event, &emit.name, None)?;
         self.owns(actor, event, emit);
         let fields = self.fields_of(event);
+        let args = match &emit.args {
+            Some(args) => Some(self.all_placed(args, env)?),
+            None => None,
+        };
+        let emit = CallSyntax { args, ..emit.clone() };
         let given = emit.args.as_deref().unwrap_or_default();
         let scalars = fields.iter().all(|(_, layout)| matches!(layout, TypeLayout::Scalar(_)));
         if given.len() != fields.len() || !scalars {
-            let args = self.args(Noun::Event, emit, &fields, &mut env.env);
+            let args = self.args(Noun::Event, &emit, &fields, &mut env.env);
             return Some((event, args));
         }
         let mut args = Vec::new();
@@ -160,10 +189,8 @@ impl<'a> Checker<'a> {
         Some((event, args))
     }
 
+    /// An argument in which the places of the message are names already.
     fn message_argument(&mut self, arg: &ast::ExprSyntax, ty: Type, env: &mut MessageEnv<'_>) -> TypedExpr {
-        if !self.known_fields(arg, env) {
-            return TypedExpr::error(arg.span);
-        }
         let want = InferredType::of(ty);
         let value = match self.item_due(arg, want, &mut env.env) {
             ExprItem::One(value) => value,
@@ -207,8 +234,11 @@ impl<'a> Checker<'a> {
             self.report(types::arity(Noun::Command, &command.text, &names, given.len(), span));
             return None;
         }
-        let args: Vec<_> =
-            params.iter().zip(given).map(|(param, arg)| self.command_argument(param, arg, env)).collect();
+        let args: Vec<_> = params
+            .iter()
+            .zip(given)
+            .map(|(param, arg)| self.command_argument(body, param, arg, env))
+            .collect();
         let device = self.device_id(body);
         Some(MessageEffect::Command { device, command: id, args })
     }
@@ -221,15 +251,21 @@ impl<'a> Checker<'a> {
 
     fn command_argument(
         &mut self,
+        body: DeviceBody,
         param: &CommandParam,
         arg: &ast::ExprSyntax,
         env: &mut MessageEnv<'_>,
     ) -> Option<CommandArgument<TypedExpr>> {
         if param.ty.count != NumberCount::One
-            && let Syntax::Path(path) = &arg.kind
-            && let Some(steps) = env.sequence(path)
+            && let Some(steps) = steps_of(arg).filter(|steps| env.begins_in(steps))
         {
-            return Some(CommandArgument::Sequence(steps));
+            let path = self.place(env.shape, &steps)?;
+            if env.shape.at(&path).is_some_and(FieldShape::is_numbers) {
+                return Some(CommandArgument::Sequence(path));
+            }
+        }
+        if let (NumberCount::List, Some(name)) = (param.ty.count, posture(arg)) {
+            return self.posture_argument(body, name, arg.span, env);
         }
         let parts: &[ast::ExprSyntax] = match (&arg.kind, param.ty.count) {
             (_, NumberCount::One) => std::slice::from_ref(arg),
@@ -241,50 +277,45 @@ impl<'a> Checker<'a> {
             }
         };
         let ty = Type::Float(param.ty.unit);
+        let parts = self.all_placed(parts, env)?;
         Some(CommandArgument::Numbers(parts.iter().map(|p| self.message_argument(p, ty, env)).collect()))
     }
 
-    /// Whether all paths that begin in the message end in it; says where one leaves it.
-    fn known_fields(&mut self, e: &ast::ExprSyntax, env: &MessageEnv<'_>) -> bool {
-        let (mut paths, mut all_known) = (Vec::new(), true);
-        collect_paths(e, &mut paths);
-        for path in paths {
-            let text: Vec<&str> = path.names.iter().map(|n| n.text.as_str()).collect();
-            if path.names.len() < 2 || env.env.find(&text.join(".")).is_some() {
-                continue;
-            }
-            let mut steps = vec![MessageStep::Field(text[0].to_owned())];
-            for name in &path.names[1..] {
-                let Some(FieldShape::Message(inner)) = env.shape.at(&steps) else { break };
-                if inner.fields.iter().all(|(n, _)| *n != name.text) {
-                    let known = inner.fields.iter().map(|(n, _)| n.as_str());
-                    let issue = bindings::unknown_field(&name.text, &place_text(&steps), name.span, known);
-                    self.report(issue);
-                    all_known = false;
-                    break;
-                }
-                steps.push(MessageStep::Field(name.text.clone()));
+    /// The angles of a posture of the arm, by a name that the message says, or that stands here.
+    fn posture_argument(
+        &mut self,
+        body: DeviceBody,
+        name: &ast::ExprSyntax,
+        span: Span,
+        env: &mut MessageEnv<'_>,
+    ) -> Option<CommandArgument<TypedExpr>> {
+        let (Some(world), DeviceBody::Arm(arm)) = (&self.s.world, body) else {
+            self.report(bindings::no_postures(span));
+            return None;
+        };
+        let postures = world.arms.get(usize::from(arm.0)).map(|arm| arm.postures.clone()).unwrap_or_default();
+        if postures.is_empty() {
+            self.report(bindings::no_postures(span));
+            return None;
+        }
+        let name = self.placed(name, env)?;
+        let value = self.expr_of(&name, InferredType::Text, &mut env.env);
+        if let Some(crate::Value::Text(text)) = value.constant() {
+            if !postures.iter().any(|posture| posture.name == text.as_str()) {
+                let near = postures.iter().map(|posture| posture.name.as_str());
+                self.report(names::unknown(Noun::Posture, text.as_str(), name.span, near));
+                return None;
             }
         }
-        all_known
+        Some(CommandArgument::Posture(value))
     }
 }
 
-/// All names with their parts, in operators and arguments.
-fn collect_paths<'e>(e: &'e ast::ExprSyntax, all: &mut Vec<&'e PathSyntax>) {
-    match &e.kind {
-        Syntax::Path(path) => all.push(path),
-        Syntax::Call { args, .. } => args.iter().for_each(|a| collect_paths(a, all)),
-        Syntax::Unary { operand, .. } => collect_paths(operand, all),
-        Syntax::Binary { left, right, .. } => {
-            collect_paths(left, all);
-            collect_paths(right, all);
-        }
-        Syntax::If { condition, then, otherwise } => {
-            [condition, then, otherwise].into_iter().for_each(|part| collect_paths(part, all));
-        }
-        _ => {}
-    }
+/// The name in `posture(…)`.
+fn posture(arg: &ast::ExprSyntax) -> Option<&ast::ExprSyntax> {
+    let Syntax::Call { callee, args } = &arg.kind else { return None };
+    let ([name], [of]) = (callee.names.as_slice(), args.as_slice()) else { return None };
+    (name.text == "posture").then_some(of)
 }
 
 /// The condition of `rising(…)`.

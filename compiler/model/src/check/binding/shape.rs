@@ -9,8 +9,10 @@ use hrdsl_messages::{
 const MOST_SCALARS: usize = 100_000;
 
 /// A message, taken apart.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct MessageShape {
+    /// `None`: there is no message.
+    pub interface: Option<InterfaceName>,
     pub fields: Vec<(String, FieldShape)>,
 }
 
@@ -22,9 +24,10 @@ pub(super) enum FieldShape {
     Message(MessageShape),
     /// As many as there are.
     Array(Vec<FieldShape>),
-    /// Any number of them; empty at first. Of numbers, or of something else.
+    /// Any number of these, or at most so many; empty at first.
     Sequence {
-        numbers: bool,
+        of: Box<FieldShape>,
+        most: Option<u32>,
     },
 }
 
@@ -43,7 +46,7 @@ impl MessageShape {
         field.at(rest)
     }
 
-    /// All single values, with their places.
+    /// All single values that are named by fields alone, with their places.
     pub fn scalars(&self) -> Vec<(Vec<MessageStep>, MessageScalar)> {
         let mut all = Vec::new();
         self.collect(&mut Vec::new(), &mut all);
@@ -58,28 +61,44 @@ impl MessageShape {
         }
     }
 
-    /// JSON, with what `gap` gives at its places left out: the text before the first of them goes with it, and so on.
-    pub fn text(&self, gap: &mut dyn FnMut(&[MessageStep]) -> bool) -> Vec<String> {
+    /// JSON, with what is a gap left out: the text before the first of them goes with it, and so on.
+    pub fn text(&self, gaps: &mut dyn MessageGaps) -> Vec<String> {
         let mut pieces = vec![String::new()];
-        self.write(&mut Vec::new(), gap, &mut pieces);
+        self.write(&mut Vec::new(), gaps, &mut pieces);
         pieces
     }
 
-    fn write(
-        &self,
-        path: &mut Vec<MessageStep>,
-        gap: &mut dyn FnMut(&[MessageStep]) -> bool,
-        pieces: &mut Vec<String>,
-    ) {
+    fn write(&self, path: &mut Vec<MessageStep>, gaps: &mut dyn MessageGaps, pieces: &mut Vec<String>) {
         add(pieces, "{");
         for (at, (name, field)) in self.fields.iter().enumerate() {
             let comma = if at > 0 { "," } else { "" };
             add(pieces, &format!("{comma}\"{name}\":"));
             path.push(MessageStep::Field(name.clone()));
-            field.write(path, gap, pieces);
+            field.write(path, gaps, pieces);
             path.pop();
         }
         add(pieces, "}");
+    }
+}
+
+/// Where the text of a message has gaps.
+pub(super) trait MessageGaps {
+    /// Whether there is one at this place; asked once for each, in the order of the text.
+    fn is_gap(&mut self, path: &[MessageStep]) -> bool;
+    /// How many elements are written of the sequence at this place.
+    fn length(&self, path: &[MessageStep]) -> u32;
+}
+
+/// The text of a message, or of a part of one, without gaps.
+struct NoGaps;
+
+impl MessageGaps for NoGaps {
+    fn is_gap(&mut self, _: &[MessageStep]) -> bool {
+        false
+    }
+
+    fn length(&self, _: &[MessageStep]) -> u32 {
+        0
     }
 }
 
@@ -97,6 +116,7 @@ impl FieldShape {
             (Some((MessageStep::Element(at), rest)), FieldShape::Array(elements)) => {
                 elements.get(usize::try_from(*at).ok()?)?.at(rest)
             }
+            (Some((MessageStep::Element(_), rest)), FieldShape::Sequence { of, .. }) => of.at(rest),
             (Some(_), _) => None,
         }
     }
@@ -105,60 +125,84 @@ impl FieldShape {
         match self {
             FieldShape::Scalar(scalar, _) => all.push((path.clone(), *scalar)),
             FieldShape::Message(message) => message.collect(path, all),
-            FieldShape::Array(elements) => {
-                for (at, element) in (0u32..).zip(elements) {
-                    path.push(MessageStep::Element(at));
-                    element.collect(path, all);
-                    path.pop();
-                }
-            }
-            FieldShape::Sequence { .. } => {}
+            FieldShape::Array(_) | FieldShape::Sequence { .. } => {}
         }
     }
 
-    fn write(
-        &self,
-        path: &mut Vec<MessageStep>,
-        gap: &mut dyn FnMut(&[MessageStep]) -> bool,
-        pieces: &mut Vec<String>,
-    ) {
-        if gap(path) {
+    /// JSON, with all values at their defaults.
+    pub fn default_text(&self) -> String {
+        let mut pieces = vec![String::new()];
+        self.write(&mut Vec::new(), &mut NoGaps, &mut pieces);
+        pieces.concat()
+    }
+
+    /// The last index that an element can have; `None`: it has no elements.
+    pub fn last_index(&self) -> Option<i64> {
+        match self {
+            FieldShape::Array(elements) => i64::try_from(elements.len()).ok().map(|n| n - 1),
+            FieldShape::Sequence { most, .. } => Some(i64::from(most.unwrap_or(u32::MAX)) - 1),
+            FieldShape::Scalar(..) | FieldShape::Message(_) => None,
+        }
+    }
+
+    /// Whether all that it holds are numbers, in a row.
+    pub fn is_numbers(&self) -> bool {
+        let is_number = |shape: &FieldShape| {
+            matches!(shape, FieldShape::Scalar(MessageScalar::Float | MessageScalar::Int { .. }, _))
+        };
+        match self {
+            FieldShape::Array(elements) => elements.iter().all(is_number),
+            FieldShape::Sequence { of, .. } => is_number(of),
+            FieldShape::Scalar(..) | FieldShape::Message(_) => false,
+        }
+    }
+
+    fn write(&self, path: &mut Vec<MessageStep>, gaps: &mut dyn MessageGaps, pieces: &mut Vec<String>) {
+        if gaps.is_gap(path) {
             pieces.push(String::new());
             return;
         }
         match self {
-            FieldShape::Scalar(_, default) => add(pieces, default),
-            FieldShape::Message(message) => message.write(path, gap, pieces),
-            FieldShape::Array(elements) => {
-                add(pieces, "[");
-                for (at, element) in (0u32..).zip(elements) {
-                    add(pieces, if at > 0 { "," } else { "" });
-                    path.push(MessageStep::Element(at));
-                    element.write(path, gap, pieces);
-                    path.pop();
-                }
-                add(pieces, "]");
+            FieldShape::Array(elements) => write_row(elements.iter(), path, gaps, pieces),
+            FieldShape::Sequence { of, .. } => {
+                let length = usize::try_from(gaps.length(path)).unwrap_or(usize::MAX);
+                write_row(std::iter::repeat_n(&**of, length), path, gaps, pieces);
             }
-            FieldShape::Sequence { .. } => add(pieces, "[]"),
+            FieldShape::Scalar(_, default) => add(pieces, default),
+            FieldShape::Message(message) => message.write(path, gaps, pieces),
         }
     }
+}
+
+fn write_row<'s>(
+    elements: impl Iterator<Item = &'s FieldShape>,
+    path: &mut Vec<MessageStep>,
+    gaps: &mut dyn MessageGaps,
+    pieces: &mut Vec<String>,
+) {
+    add(pieces, "[");
+    for (at, element) in (0u32..).zip(elements) {
+        add(pieces, if at > 0 { "," } else { "" });
+        path.push(MessageStep::Element(at));
+        element.write(path, gaps, pieces);
+        path.pop();
+    }
+    add(pieces, "]");
 }
 
 fn shape(library: &MessageLibrary, name: &InterfaceName, left: &mut usize) -> Option<MessageShape> {
     let definition = &library.message(name)?.definition;
     let field = |f: &MessageField| Some((f.name.clone(), field_shape(library, f, left)?));
-    Some(MessageShape { fields: definition.fields.iter().map(field).collect::<Option<_>>()? })
+    let fields = definition.fields.iter().map(field).collect::<Option<_>>()?;
+    Some(MessageShape { interface: Some(name.clone()), fields })
 }
 
 fn field_shape(library: &MessageLibrary, field: &MessageField, left: &mut usize) -> Option<FieldShape> {
-    let numbers = match &field.of.element {
-        FieldElement::Primitive(primitive) => {
-            !primitive.is_text() && !matches!(primitive, PrimitiveType::Time | PrimitiveType::Duration)
-        }
-        FieldElement::BoundedText(..) | FieldElement::Message(_) => false,
-    };
+    let mut sequence =
+        |most| Some(FieldShape::Sequence { of: Box::new(element_shape(library, field, left)?), most });
     match field.of.count {
-        ElementCount::Any | ElementCount::AtMost(_) => Some(FieldShape::Sequence { numbers }),
+        ElementCount::Any => sequence(None),
+        ElementCount::AtMost(most) => sequence(Some(most)),
         ElementCount::Exactly(n) => {
             let elements = (0..n).map(|_| element_shape(library, field, left));
             Some(FieldShape::Array(elements.collect::<Option<_>>()?))

@@ -5,9 +5,9 @@ use hrdsl_ir::{
     device::{DeviceBody, DeviceSort},
 };
 use hrdsl_messages::InterfaceName;
-use hrdsl_syntax::ast::PathSyntax;
+use hrdsl_syntax::ast::TopicInSyntax;
 
-use super::{BindingScope, entries::FieldValues};
+use super::{fields::FieldValues, scope::BindingScope};
 use crate::check::checker::Checker;
 use crate::{TypedExpr, report::bindings, world::TypedLaser};
 
@@ -46,10 +46,11 @@ impl<'a> Checker<'a> {
     pub(super) fn source(
         &mut self,
         scope: BindingScope<'a>,
-        device: &PathSyntax,
+        topic: &TopicInSyntax,
         message: &InterfaceName,
         rate: Option<f64>,
     ) -> FieldValues {
+        let Some(device) = &topic.from else { return FieldValues::new() };
         let sorts: Vec<DeviceSort> = SOURCES.iter().map(|s| s.sort).collect();
         let Some(body) = self.device_of(device, &sorts, "") else { return FieldValues::new() };
         let is = |s: &&DeviceSource| {
@@ -64,7 +65,7 @@ impl<'a> Checker<'a> {
         }
         let mut fields = ToldFields { device: self.device_id(body), fields: FieldValues::new() };
         match body {
-            DeviceBody::Arm(_) => fields.arm(self.joint_names(body)),
+            DeviceBody::Arm(_) => fields.arm(self.joint_texts(device, body, &topic.entries)),
             DeviceBody::Base(_) => fields.base(),
             DeviceBody::Laser(id) => {
                 let lasers = self.s.world.as_ref().map_or(&[][..], |world| &world.lasers);

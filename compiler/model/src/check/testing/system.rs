@@ -75,8 +75,8 @@ impl Checker<'_> {
             Member::Online => resolved.online = true,
             Member::Middleware(middleware) => {
                 if let Some(first) = &resolved.binding {
-                    let first = first.origin;
-                    self.report(names::twice("middleware", member.span, first));
+                    let (kind, first) = (first.kind.name(), first.origin);
+                    self.report(systems::second_binding(&middleware.version.text, member.span, kind, first));
                     return;
                 }
                 resolved.binding = self.middleware(middleware, resolved.actor, member.span);

@@ -15,7 +15,8 @@ use crate::{
     report::{names, types},
 };
 
-const MEASURES: [&str; 7] = ["distance", "range", "angle", "visible", "holds", "joint_speed", "speed"];
+const MEASURES: [&str; 8] =
+    ["distance", "range", "angle", "visible", "holds", "joint_speed", "speed", "heading"];
 
 impl Checker<'_> {
     /// A declared signal.
@@ -146,6 +147,9 @@ impl Checker<'_> {
             }
             "speed" => {
                 (SignalTerm::Speed(self.body_arg(&args[0], prefix)?), InferredType::Float(Dimension::SPEED))
+            }
+            "heading" => {
+                (SignalTerm::Heading(self.body_arg(&args[0], prefix)?), InferredType::Float(Dimension::ANGLE))
             }
             _ => {
                 let (a, b) = (self.body_arg(&args[0], prefix), self.body_arg(&args[1], prefix));

@@ -3,6 +3,7 @@
 pub(in crate::check) mod device;
 mod mobile;
 pub(in crate::check) mod parts;
+mod posture;
 pub(in crate::check) mod stimulus;
 
 use hrdsl_source::Span;
@@ -64,11 +65,12 @@ impl<'a> Checker<'a> {
         });
         let placed = self.flatten(members, "", PartFrame::default(), None);
         // What is named first must exist first: by kind, not by place.
-        let passes: [fn(&mut Self, &PlacedMember<'a>); 9] = [
+        let passes: [fn(&mut Self, &PlacedMember<'a>); 10] = [
             Self::settings_and_bodies,
             Self::joint,
             Self::gripper,
             Self::arm,
+            Self::posture,
             Self::base,
             Self::laser,
             Self::current,
@@ -150,6 +152,7 @@ impl<'a> Checker<'a> {
             | Member::Gripper { .. }
             | Member::Base(_)
             | Member::Laser(_)
+            | Member::Posture(_)
             | Member::Current { .. }
             | Member::Signal { .. }
             | Member::Rule(_)
@@ -213,7 +216,12 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn more_than_zero(&mut self, e: &ast::ExprSyntax, dim: Dimension, what: &str) -> Option<f64> {
+    pub(in crate::check) fn more_than_zero(
+        &mut self,
+        e: &ast::ExprSyntax,
+        dim: Dimension,
+        what: &str,
+    ) -> Option<f64> {
         let x = self.quantity_of(e, dim)?;
         if x <= 0.0 {
             let rule = format!("more than 0 {}", dim.symbol().unwrap_or_default());
@@ -311,7 +319,8 @@ impl<'a> Checker<'a> {
         let (issues, table) = (&mut self.issues, &mut self.world.names.arms);
         if issues.declare_as(table, Noun::Arm, &full, name.span).is_some() {
             let tip = tip_id.unwrap_or(BodyId(0));
-            self.world_mut().arms.push(TypedArm { name: full, joints: ids, tip, tool, speed });
+            let postures = Vec::new();
+            self.world_mut().arms.push(TypedArm { name: full, joints: ids, tip, tool, speed, postures });
         }
     }
 

@@ -66,6 +66,7 @@ impl<'a> Checker<'a> {
                 | Member::Gripper { .. }
                 | Member::Base(_)
                 | Member::Laser(_)
+                | Member::Posture(_)
                 | Member::Current { .. }
                 | Member::Signal { .. }
                 | Member::Rule(_)

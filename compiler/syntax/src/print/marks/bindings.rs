@@ -50,8 +50,14 @@ impl TokenMarker<'_> {
                 self.interface(&served.interface);
                 self.entries(served.interface.span.end, &served.entries);
             }
+            BindingMemberKind::Parameter { value, .. } => self.expr(value),
             BindingMemberKind::Transition { emit, .. } => self.call(emit),
-            BindingMemberKind::Messages(_) | BindingMemberKind::Group { .. } | BindingMemberKind::Error => {}
+            BindingMemberKind::Group(group) => {
+                self.maybe(group.acceleration.as_ref());
+                let settings = group.acceleration.as_ref().map(|e| e.span.end);
+                self.entries(settings.unwrap_or(group.device.span.end), &group.entries);
+            }
+            BindingMemberKind::Messages(_) | BindingMemberKind::Error => {}
         }
     }
 
@@ -76,10 +82,10 @@ impl TokenMarker<'_> {
     fn entry(&mut self, entry: &BindingEntry) {
         self.start(entry.span.start);
         let when = match &entry.kind {
-            BindingEntryKind::Field { field, value } => {
-                self.maybe(field.index.as_ref());
+            BindingEntryKind::Field { field, value, when } => {
+                field.elements.iter().for_each(|element| self.expr(&element.index));
                 self.expr(value);
-                return;
+                when
             }
             BindingEntryKind::Emit { emit, when } => {
                 self.call(emit);
@@ -89,7 +95,7 @@ impl TokenMarker<'_> {
                 self.args(device.span.end, args.as_deref().unwrap_or_default());
                 when
             }
-            BindingEntryKind::Error => return,
+            BindingEntryKind::Joint { .. } | BindingEntryKind::Error => return,
         };
         self.maybe(when.as_ref() as Option<&ExprSyntax>);
     }

@@ -336,6 +336,7 @@ impl TokenMarker<'_> {
                 self.expr(&laser.beams);
                 self.range(&laser.range);
             }
+            WorldMemberKind::Posture(posture) => self.expr(&posture.angles),
             WorldMemberKind::Signal { ty, value, .. } => {
                 self.ty(ty);
                 self.expr(value);

@@ -51,6 +51,8 @@ pub(super) struct GapContext<'a, 'p> {
     pub kind: MiddlewareKind,
     pub heard: &'a HeardEvents,
     pub now: Nanos,
+    /// Which of the conditions hold on which fields depend.
+    pub conditions: &'a [bool],
     pub stage: Option<&'a mut WorldStage<'p>>,
 }
 
@@ -60,14 +62,22 @@ impl GapContext<'_, '_> {
     /// # Errors
     /// The field, and the value that it cannot hold.
     pub fn filled(&mut self, template: &MessageTemplate) -> Result<MessageText, String> {
-        let mut text = template.text.first().cloned().unwrap_or_default();
+        let mut text = String::new();
+        match self.template(template, &mut text) {
+            Ok(()) => Ok(text.into()),
+            // The text breaks off where the value would stand.
+            Err(why) => Err(format!("`{}`: {why}", place_text(&open_place(&text)))),
+        }
+    }
+
+    fn template(&mut self, template: &MessageTemplate, text: &mut String) -> Result<(), String> {
+        text.push_str(template.text.first().map_or("", String::as_str));
         let pieces = template.text.iter().skip(1);
         for (gap, after) in template.gaps.iter().zip(pieces) {
-            self.write(gap, &mut text)
-                .map_err(|why| format!("`{}`: {why}", place_text(&open_place(&text))))?;
+            self.write(gap, text)?;
             text.push_str(after);
         }
-        Ok(text.into())
+        Ok(())
     }
 
     fn write(&mut self, gap: &MessageGap, text: &mut String) -> Result<(), String> {
@@ -90,6 +100,18 @@ impl GapContext<'_, '_> {
             GapValue::Fixed(json) => {
                 text.push_str(json);
                 return Ok(());
+            }
+            GapValue::Whole(whole) => return self.template(whole, text),
+            GapValue::Chosen { cases, otherwise } => {
+                let holds = |at: u16| self.conditions.get(usize::from(at)).copied().unwrap_or(false);
+                let chosen = cases.iter().find(|case| case.condition.is_none_or(holds));
+                return match chosen {
+                    Some(case) => self.write(&case.gap, text),
+                    None => {
+                        text.push_str(otherwise);
+                        Ok(())
+                    }
+                };
             }
         };
         scalar(value, gap.scalar, text)
@@ -182,14 +204,29 @@ fn scalar(value: Value, field: MessageScalar, text: &mut String) -> Result<(), S
         (MessageScalar::Float, Value::Float(x)) => float(x, text),
         (MessageScalar::Text, Value::Symbol(symbol)) => quoted(symbol.name(), text),
         (MessageScalar::Text, Value::Text(words)) => quoted(words.as_str(), text),
+        (MessageScalar::Heading, Value::Float(angle)) => heading(angle, text),
         (MessageScalar::Int { lo, hi }, value) => {
             return Err(format!("a field of {lo}..{hi} cannot hold {value}"));
         }
-        (MessageScalar::Bool | MessageScalar::Float | MessageScalar::Text | MessageScalar::Time, value) => {
-            return Err(format!("a field cannot hold {value}"));
-        }
+        (
+            MessageScalar::Bool
+            | MessageScalar::Float
+            | MessageScalar::Text
+            | MessageScalar::Time
+            | MessageScalar::Heading,
+            value,
+        ) => return Err(format!("a field cannot hold {value}")),
     }
     Ok(())
+}
+
+/// A turn about the vertical, to the left.
+fn heading(angle: f64, text: &mut String) {
+    text.push_str("{\"x\":0.0,\"y\":0.0,\"z\":");
+    float(libm::sin(angle / 2.0), text);
+    text.push_str(",\"w\":");
+    float(libm::cos(angle / 2.0), text);
+    text.push('}');
 }
 
 /// What JSON has no number for is text.

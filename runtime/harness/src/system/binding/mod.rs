@@ -10,9 +10,7 @@ use std::collections::BTreeMap;
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Value,
-    binding::{
-        GapRead, GapValue, MessageGap, MessageTemplate, MiddlewareBinding, MiddlewareKind, TopicInput,
-    },
+    binding::{GapValue, MessageTemplate, MiddlewareBinding, MiddlewareKind, TopicInput},
 };
 
 use super::{
@@ -75,6 +73,8 @@ struct BoundGoal {
     command: CommandId,
     call: u64,
     action: usize,
+    /// Which of the conditions the goal met on which the result depends.
+    conditions: Vec<bool>,
 }
 
 /// How a goal ends, and the words that its client gets.
@@ -83,6 +83,8 @@ struct GoalEnding {
     action: usize,
     end: GoalEnd,
     text: String,
+    /// Which of the conditions the goal met on which the result depends.
+    conditions: Vec<bool>,
 }
 
 /// Why something cannot be done, and whose fault that is.
@@ -156,8 +158,7 @@ impl<'p> BindingNode<'p> {
         let mut out = Vec::new();
         for at in 0..self.inputs.len() {
             // One that speaks of events has nothing to say before the first.
-            let has_news = |input: &TopicInput| input.message.gaps.iter().any(|gap| gap.value.is_of_events());
-            if binding.inputs.get(at).is_some_and(|input| input.latched && !has_news(input)) {
+            if binding.inputs.get(at).is_some_and(|input| input.latched && !input.message.is_of_events()) {
                 out.extend(self.publish(at, graph, cx)?);
             }
         }
@@ -262,14 +263,8 @@ impl<'p> BindingNode<'p> {
         self.heard.add(event, args, cx.now);
         let mut out = Vec::new();
         for (at, input) in binding.inputs.iter().enumerate() {
-            let speaks = |gap: &MessageGap| match &gap.value {
-                GapValue::Held { events, .. } => events.iter().any(|p| p.matches(event, args)),
-                GapValue::Value { reads, .. } => {
-                    reads.iter().any(|r| matches!(r, GapRead::Argument { event: of, .. } if *of == event))
-                }
-                GapValue::Now | GapValue::Told { .. } | GapValue::Fixed(_) => false,
-            };
-            let is_said = input.message.gaps.iter().any(speaks);
+            let speaks = |value: &&GapValue| value.is_set_by(event, args);
+            let is_said = input.message.leaves().iter().any(speaks);
             if is_said && input.period.is_none() {
                 out.extend(self.publish(at, graph, cx)?);
             }
@@ -290,7 +285,7 @@ impl<'p> BindingNode<'p> {
             None => held_until(&input.message, &self.heard, cx.now),
             Some(_) => None,
         };
-        let message = self.filled(&input.message, ("topic", &input.topic), cx)?;
+        let message = self.filled(&input.message, ("topic", &input.topic), &[], cx)?;
         if let Some(times) = self.inputs.get_mut(at) {
             (times.sent, times.until) = (Some(cx.now), until);
         }
@@ -302,11 +297,11 @@ impl<'p> BindingNode<'p> {
         &self,
         template: &MessageTemplate,
         (sort, name): (&str, &str),
+        conditions: &[bool],
         cx: &mut PlayerContext<'_, '_>,
     ) -> Result<MessageText, BindingFault> {
-        let kind = self.binding.kind;
-        let mut context =
-            GapContext { kind, heard: &self.heard, now: cx.now, stage: cx.stage.as_deref_mut() };
+        let (kind, heard, stage) = (self.binding.kind, &self.heard, cx.stage.as_deref_mut());
+        let mut context = GapContext { kind, heard, now: cx.now, conditions, stage };
         context.filled(template).map_err(|why| BindingFault::Scenario(format!("the {sort} `{name}`: {why}")))
     }
 
@@ -370,8 +365,12 @@ impl<'p> BindingNode<'p> {
             Some(BoundPort::Service { service, state }) => {
                 let Some(bound) = binding.services.get(*service) else { return Ok(Vec::new()) };
                 let done = rules::carry_out(program, &bound.rules, (&message, None), state, cx);
-                let answer = match done.map(|done| self.unattended.extend(done.commands)) {
-                    Ok(()) => Ok(self.filled(&bound.response, ("service", &bound.service), cx)?),
+                let answer = match done {
+                    Ok(done) => {
+                        self.unattended.extend(done.commands);
+                        let at = ("service", bound.service.as_str());
+                        Ok(self.filled(&bound.response, at, &done.conditions, cx)?)
+                    }
                     Err(why) => Err(why),
                 };
                 Ok(graph.respond(node, call, answer)?)
@@ -395,23 +394,28 @@ impl<'p> BindingNode<'p> {
         graph: &mut MessageGraph,
         cx: &mut PlayerContext<'_, '_>,
     ) -> BindingOutcome {
-        let end = |end, text| GoalEnding { call, action, end, text };
+        let ending = |end, text, conditions| GoalEnding { call, action, end, text, conditions };
         let done = match done {
             Ok(done) if done.rules > 0 => done,
-            Ok(_) => {
+            Ok(done) => {
                 let why = "no rule of the scenario fits the goal".to_owned();
-                return self.finish(end(GoalEnd::Rejected, why), graph, cx);
+                return self.finish(ending(GoalEnd::Rejected, why, done.conditions), graph, cx);
             }
-            Err(why) => return self.finish(end(GoalEnd::Rejected, why), graph, cx),
+            Err(why) => return self.finish(ending(GoalEnd::Rejected, why, Vec::new()), graph, cx),
         };
         let before = done.commands.len().saturating_sub(1);
         self.unattended.extend(done.commands.iter().take(before));
         let mut out = graph.accept(self.node, call, String::new())?;
-        match (done.commands.last(), done.failed) {
-            (Some(command), _) => self.goals.push(BoundGoal { command: *command, call, action }),
-            (None, Some(why)) => out.extend(self.finish(end(GoalEnd::Aborted, why), graph, cx)?),
-            (None, None) => out.extend(self.finish(end(GoalEnd::Succeeded, String::new()), graph, cx)?),
-        }
+        let conditions = done.conditions;
+        let ending = match (done.commands.last(), done.failed) {
+            (Some(command), _) => {
+                self.goals.push(BoundGoal { command: *command, call, action, conditions });
+                return Ok(out);
+            }
+            (None, Some(why)) => ending(GoalEnd::Aborted, why, conditions),
+            (None, None) => ending(GoalEnd::Succeeded, String::new(), conditions),
+        };
+        out.extend(self.finish(ending, graph, cx)?);
         Ok(out)
     }
 
@@ -421,9 +425,9 @@ impl<'p> BindingNode<'p> {
         graph: &mut MessageGraph,
         cx: &mut PlayerContext<'_, '_>,
     ) -> BindingOutcome {
-        let GoalEnding { call, action, end, text } = ending;
+        let GoalEnding { call, action, end, text, conditions } = ending;
         let Some(bound) = self.binding.actions.get(action) else { return Ok(Vec::new()) };
-        let result = self.filled(&bound.result, ("action", &bound.action), cx)?;
+        let result = self.filled(&bound.result, ("action", &bound.action), &conditions, cx)?;
         Ok(graph.finish(self.node, call, end, (result, text))?)
     }
 
@@ -440,7 +444,8 @@ impl<'p> BindingNode<'p> {
                         Ok(()) => (GoalEnd::Succeeded, String::new()),
                         Err(why) => (GoalEnd::Aborted, why),
                     };
-                    let ending = GoalEnding { call: goal.call, action: goal.action, end, text };
+                    let BoundGoal { call, action, conditions, .. } = goal;
+                    let ending = GoalEnding { call, action, end, text, conditions };
                     out.extend(self.finish(ending, graph, cx)?);
                 }
                 None => self.goals.push(goal),
@@ -456,14 +461,17 @@ impl<'p> BindingNode<'p> {
         graph: &mut MessageGraph,
         cx: &mut PlayerContext<'_, '_>,
     ) -> BindingOutcome {
-        let Some(at) = self.goals.iter().position(|goal| goal.call == call) else { return Ok(Vec::new()) };
+        let Some(at) = self.goals.iter().position(|goal| goal.call == call) else {
+            return Ok(Vec::new());
+        };
         let goal = self.goals.remove(at);
         if let (Some(bound), Some(stage)) = (self.binding.actions.get(goal.action), cx.stage.as_deref_mut()) {
             rules::stop_devices(self.program, &bound.rules, stage);
         }
         let mut out = graph.answer_cancel(self.node, call, true, String::new())?;
         let (end, text) = (GoalEnd::Canceled, String::new());
-        out.extend(self.finish(GoalEnding { call, action: goal.action, end, text }, graph, cx)?);
+        let BoundGoal { action, conditions, .. } = goal;
+        out.extend(self.finish(GoalEnding { call, action, end, text, conditions }, graph, cx)?);
         Ok(out)
     }
 
@@ -489,13 +497,15 @@ fn next_after(now: Nanos, sent: Option<Nanos>, period: Nanos) -> Nanos {
 
 /// When the first of what holds is over.
 fn held_until(message: &MessageTemplate, heard: &HeardEvents, now: Nanos) -> Option<Nanos> {
-    let ends = message.gaps.iter().filter_map(|gap| match &gap.value {
+    let ends = message.leaves().into_iter().filter_map(|value| match value {
         GapValue::Held { events, time } if *time > 0 => Some(heard.last_of(events)?.saturating_add(*time)),
         GapValue::Held { .. }
         | GapValue::Value { .. }
         | GapValue::Now
         | GapValue::Told { .. }
-        | GapValue::Fixed(_) => None,
+        | GapValue::Fixed(_)
+        | GapValue::Whole(_)
+        | GapValue::Chosen { .. } => None,
     });
     ends.filter(|end| *end > now).min()
 }

@@ -15,11 +15,20 @@ pub(super) fn parse(text: &str) -> Result<Json, String> {
 /// What lies at a place.
 pub(super) fn at<'m>(message: &'m Json, path: &[MessageStep]) -> Result<&'m Json, String> {
     let mut here = message;
-    for step in path {
+    for (done, step) in path.iter().enumerate() {
         let next = match step {
             MessageStep::Field(name) => here.get(name),
             MessageStep::Element(at) => here.get(usize::try_from(*at).unwrap_or(usize::MAX)),
         };
+        if let (None, MessageStep::Element(_), Json::Array(all), Some((_, whole))) =
+            (next, step, here, path.get(..=done).and_then(<[MessageStep]>::split_last))
+        {
+            let (element, whole) = (place_text(path), place_text(whole));
+            return Err(match all.len() {
+                1 => format!("there is no `{element}`: `{whole}` has 1 element"),
+                n => format!("there is no `{element}`: `{whole}` has {n} elements"),
+            });
+        }
         here = next.ok_or_else(|| format!("the message has no `{}`", place_text(path)))?;
     }
     Ok(here)
@@ -31,6 +40,10 @@ pub(super) fn value(message: &Json, read: &MessageRead) -> Result<Value, String>
         return same_text(message, &read.path, other).map(Value::Bool);
     }
     let json = at(message, &read.path)?;
+    if read.length {
+        let length = json.as_array().and_then(|all| i64::try_from(all.len()).ok());
+        return length.map(Value::Int).ok_or_else(|| format!("`{}` is no sequence", place_text(&read.path)));
+    }
     let found = match read.ty {
         Type::Bool => match json {
             Json::Bool(b) => Some(Value::Bool(*b)),
@@ -110,7 +123,7 @@ mod tests {
     }
 
     fn compared(message: &str, other: TextOperand) -> Result<Value, String> {
-        let read = MessageRead { path: path("key"), ty: Type::Text, same_as: Some(other) };
+        let read = MessageRead { path: path("key"), length: false, ty: Type::Text, same_as: Some(other) };
         value(&parse(message).unwrap(), &read)
     }
 

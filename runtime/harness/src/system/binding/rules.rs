@@ -1,11 +1,12 @@
 //! What a message makes happen: the rules of a topic, a service or an action, carried out.
 
-use std::collections::BTreeMap;
+use std::{cell::RefCell, collections::BTreeMap};
 
 use hrdsl_ir::{
     EventId, Expr, Program, Type, Value,
     binding::{CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep, place_text},
-    world::{DeviceCommandId, DeviceId},
+    device::DeviceBody,
+    world::{DeviceCommandId, DeviceId, World},
 };
 use serde_json::Value as Json;
 
@@ -39,6 +40,8 @@ pub(super) struct RuleOutcome {
     pub commands: Vec<CommandId>,
     /// Why some command could not be begun as things are.
     pub failed: Option<String>,
+    /// Which of the conditions hold on which the answer depends.
+    pub conditions: Vec<bool>,
 }
 
 /// Carries out the rules that a message fits.
@@ -65,6 +68,9 @@ pub(super) fn carry_out(
             heard.carry_out(rule, &mut outcome, cx)?;
         }
     }
+    for condition in &rules.conditions {
+        outcome.conditions.push(heard.eval(condition)?.as_bool() == Some(true));
+    }
     Ok(outcome)
 }
 
@@ -77,21 +83,21 @@ struct HeardMessage<'a> {
 }
 
 impl HeardMessage<'_> {
-    /// Only what the expression reads is looked up in the message.
+    /// Only what the value depends on is looked up in the message: `length(data) > 2 and data[2] > 0` reads no element that is not
+    /// there.
     fn eval(&self, e: &Expr) -> Result<Value, String> {
-        let mut reads = BTreeMap::new();
-        let mut wrong = None;
-        e.each_var(&mut |i| {
-            if let Some(read) = self.rules.reads.get(usize::from(i)) {
-                match read::value(self.json, read) {
-                    Ok(value) => drop(reads.insert(i, value)),
-                    Err(why) => wrong = Some(why),
-                }
+        let wrong = RefCell::new(None);
+        let read = |i: u16| match read::value(self.json, self.rules.reads.get(usize::from(i))?) {
+            Ok(value) => Some(value),
+            Err(why) => {
+                wrong.replace(Some(why));
+                None
             }
-        });
-        match wrong {
+        };
+        let value = e.eval(&read);
+        match wrong.into_inner() {
             Some(why) => Err(why),
-            None => e.eval(&|i| reads.get(&i).copied()).map_err(|e| e.to_string()),
+            None => value.map_err(|e| e.to_string()),
         }
     }
 
@@ -172,6 +178,7 @@ impl HeardMessage<'_> {
                 }
                 CommandArgument::TrackPositions { names } => self.track_positions(names)?,
                 CommandArgument::TrackTimes => self.track_times()?,
+                CommandArgument::Posture(name) => self.posture(world, device, name)?,
             };
             let argument = match (param.ty.count, numbers.as_slice()) {
                 (hrdsl_ir::device::NumberCount::One, [one]) => SystemArgument::Scalar(Value::Float(*one)),
@@ -181,6 +188,21 @@ impl HeardMessage<'_> {
         }
         let device = world.device(device).name.clone();
         Ok(Some(CommandRequest { device, command: declared.name.clone(), args: given }))
+    }
+
+    /// The angles of the posture that the message names.
+    fn posture(&self, world: &World, device: DeviceId, name: &Expr) -> Result<Vec<f64>, String> {
+        let device = world.device(device);
+        let DeviceBody::Arm(arm) = device.body else {
+            return Err(format!("`{}` has no postures", device.name));
+        };
+        let Value::Text(name) = self.eval(name)? else { return Err("a posture's name is a text".to_owned()) };
+        let known = world.arms.get(usize::from(arm.0)).map(|arm| arm.postures.as_slice()).unwrap_or_default();
+        let found = known.iter().find(|posture| posture.name == name.as_str());
+        found.map(|posture| posture.angles.clone()).ok_or_else(|| {
+            let all: Vec<String> = known.iter().map(|posture| format!("`{}`", posture.name)).collect();
+            format!("`{}` has no posture `{}`: it has {}", device.name, name.as_str(), all.join(", "))
+        })
     }
 
     fn points(&self) -> Result<&[Json], String> {
@@ -236,7 +258,8 @@ pub(super) fn knows(rules: &MessageRules, part: &str) -> bool {
             CommandArgument::Numbers(_)
             | CommandArgument::Sequence(_)
             | CommandArgument::TrackPositions { .. }
-            | CommandArgument::TrackTimes => true,
+            | CommandArgument::TrackTimes
+            | CommandArgument::Posture(_) => true,
         }),
     })
 }
