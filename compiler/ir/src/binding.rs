@@ -334,7 +334,7 @@ pub enum CommandArgument<E = Expr> {
     /// Of a joint trajectory, the time of each point.
     TrackTimes,
     /// The angles of the arm's posture of this name.
-    Posture(E),
+    Posture(TextOperand),
 }
 
 /// A service that the scenario serves; it answers at once.

@@ -216,7 +216,7 @@ fn rule_of(rule: &MessageRule<TypedExpr>, lower: &mut dyn FnMut(&TypedExpr) -> E
                         CommandArgument::TrackPositions { names: names.clone() }
                     }
                     CommandArgument::TrackTimes => CommandArgument::TrackTimes,
-                    CommandArgument::Posture(name) => CommandArgument::Posture(lower(name)),
+                    CommandArgument::Posture(name) => CommandArgument::Posture(name.clone()),
                 })
             };
             let args = args.iter().map(argument).collect();

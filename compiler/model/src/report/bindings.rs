@@ -232,3 +232,9 @@ pub(crate) fn no_parameters(span: Span) -> Diagnostic {
     let help = "hand it over behind the command: `--ros-args -p NAME:=VALUE`, or `--params-file FILE`";
     bad_binding(span, "in ROS 2 each node has parameters of its own", help)
 }
+
+/// HR0201
+pub(crate) fn no_posture_name(span: Span) -> Diagnostic {
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, "a posture is named by a text")
+        .help("name a field with text, or write it: `posture(\"home\")`")
+}

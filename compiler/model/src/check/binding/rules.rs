@@ -2,7 +2,8 @@
 
 use hrdsl_ir::{
     binding::{
-        CommandArgument, MessageEffect, MessageRead, MessageRule, MessageScalar, MessageStep, place_text,
+        CommandArgument, MessageEffect, MessageRead, MessageRule, MessageScalar, MessageStep, TextOperand,
+        place_text,
     },
     device::{CommandParam, DeviceBody, NumberCount},
     world::DeviceCommandId,
@@ -298,16 +299,22 @@ impl<'a> Checker<'a> {
             self.report(bindings::no_postures(span));
             return None;
         }
-        let name = self.placed(name, env)?;
-        let value = self.expr_of(&name, InferredType::Text, &mut env.env);
-        if let Some(crate::Value::Text(text)) = value.constant() {
-            if !postures.iter().any(|posture| posture.name == text.as_str()) {
-                let near = postures.iter().map(|posture| posture.name.as_str());
-                self.report(names::unknown(Noun::Posture, text.as_str(), name.span, near));
+        if let Some(steps) = steps_of(name).filter(|steps| env.begins_in(steps)) {
+            let path = self.place(env.shape, &steps)?;
+            if !matches!(env.shape.at(&path), Some(FieldShape::Scalar(MessageScalar::Text, _))) {
+                self.report(bindings::no_posture_name(name.span));
                 return None;
             }
+            return Some(CommandArgument::Posture(TextOperand::Place(path)));
         }
-        Some(CommandArgument::Posture(value))
+        let value = self.expr_of(name, InferredType::Text, &mut ExprEnv::constants());
+        let Some(crate::Value::Text(text)) = value.constant() else { return None };
+        if !postures.iter().any(|posture| posture.name == text.as_str()) {
+            let near = postures.iter().map(|posture| posture.name.as_str());
+            self.report(names::unknown(Noun::Posture, text.as_str(), name.span, near));
+            return None;
+        }
+        Some(CommandArgument::Posture(TextOperand::Literal(text.as_str().to_owned())))
     }
 }
 

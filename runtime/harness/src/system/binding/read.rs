@@ -72,15 +72,20 @@ pub(super) fn value(message: &Json, read: &MessageRead) -> Result<Value, String>
 }
 
 fn same_text(message: &Json, path: &[MessageStep], other: &TextOperand) -> Result<bool, String> {
-    let text = |path| {
-        let json = at(message, path)?;
-        json.as_str().ok_or_else(|| of_other_type(path, json))
-    };
-    let expected = match other {
-        TextOperand::Literal(literal) => literal,
-        TextOperand::Place(place) => text(place)?,
-    };
-    Ok(text(path)? == expected)
+    Ok(text_at(message, path)? == text(message, other)?)
+}
+
+/// A text, which stands in the message or in the scenario.
+pub(super) fn text<'m>(message: &'m Json, of: &'m TextOperand) -> Result<&'m str, String> {
+    match of {
+        TextOperand::Literal(literal) => Ok(literal),
+        TextOperand::Place(place) => text_at(message, place),
+    }
+}
+
+fn text_at<'m>(message: &'m Json, path: &[MessageStep]) -> Result<&'m str, String> {
+    let json = at(message, path)?;
+    json.as_str().ok_or_else(|| of_other_type(path, json))
 }
 
 fn of_other_type(path: &[MessageStep], json: &Json) -> String {

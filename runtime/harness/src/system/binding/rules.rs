@@ -4,7 +4,9 @@ use std::{cell::RefCell, collections::BTreeMap};
 
 use hrdsl_ir::{
     EventId, Expr, Program, Type, Value,
-    binding::{CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep, place_text},
+    binding::{
+        CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep, TextOperand, place_text,
+    },
     device::DeviceBody,
     world::{DeviceCommandId, DeviceId, World},
 };
@@ -191,17 +193,17 @@ impl HeardMessage<'_> {
     }
 
     /// The angles of the posture that the message names.
-    fn posture(&self, world: &World, device: DeviceId, name: &Expr) -> Result<Vec<f64>, String> {
+    fn posture(&self, world: &World, device: DeviceId, name: &TextOperand) -> Result<Vec<f64>, String> {
         let device = world.device(device);
         let DeviceBody::Arm(arm) = device.body else {
             return Err(format!("`{}` has no postures", device.name));
         };
-        let Value::Text(name) = self.eval(name)? else { return Err("a posture's name is a text".to_owned()) };
+        let name = read::text(self.json, name)?;
         let known = world.arms.get(usize::from(arm.0)).map(|arm| arm.postures.as_slice()).unwrap_or_default();
-        let found = known.iter().find(|posture| posture.name == name.as_str());
+        let found = known.iter().find(|posture| posture.name == name);
         found.map(|posture| posture.angles.clone()).ok_or_else(|| {
             let all: Vec<String> = known.iter().map(|posture| format!("`{}`", posture.name)).collect();
-            format!("`{}` has no posture `{}`: it has {}", device.name, name.as_str(), all.join(", "))
+            format!("`{}` has no posture `{}`: it has {}", device.name, name, all.join(", "))
         })
     }
 
