@@ -254,12 +254,12 @@ mod tests {
     }
 
     fn binding(inputs: &[&str], outputs: &[&str]) -> MiddlewareBinding {
-        let rules = || MessageRules { reads: Vec::new(), rules: Vec::new() };
+        let rules = || MessageRules { reads: Vec::new(), rules: Vec::new(), conditions: Vec::new() };
         let (interface, origin) = ("std_msgs/msg/Int8".to_owned(), Span::default());
         MiddlewareBinding {
             kind: MiddlewareKind::Ros2,
-            interfaces: String::new(),
             packages: BTreeMap::new(),
+            parameters: BTreeMap::new(),
             inputs: inputs
                 .iter()
                 .map(|topic| TopicInput {

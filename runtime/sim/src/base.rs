@@ -438,7 +438,7 @@ mod tests {
         let (anchor, axis) = ([0.0, 0.0, 0.5], [0.0, 0.0, 1.0]);
         world.joints.push(Joint { name: "hinge".into(), parent, child, anchor, axis, lo: -2.0, hi: 2.0 });
         let (joints, tool) = (vec![JointId(0)], [0.2, 0.0, 0.0]);
-        world.arms.push(Arm { name: "arm".into(), joints, tip, tool, max_speed: 1.0 });
+        world.arms.push(Arm { name: "arm".into(), joints, tip, tool, max_speed: 1.0, postures: Vec::new() });
         let mut sim = built(&world);
         sim.command(drive(1.0, 0.0, 1.0)).expect("a base");
         for _ in 0..20 {

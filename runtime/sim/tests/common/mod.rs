@@ -91,6 +91,7 @@ impl Maker {
             tip: palm,
             tool: [0.08, 0.0, 0.0],
             max_speed: 0.2,
+            postures: Vec::new(),
         });
         self.gripper("robot.grip", palm, [0.08, 0.0, 0.0], 0.04, 500_000_000);
     }
