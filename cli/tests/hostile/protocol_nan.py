@@ -3,7 +3,8 @@
 import os
 import hrdsl
 node = hrdsl.Node('robot')
+replies = open(node._link._in, 'rb', buffering=0, closefd=False)
 out = node._link._out
 os.write(out, b'{"request":"sleep","seconds":NaN}\n')
-node._link._in.readline()
+replies.readline()
 node.now()

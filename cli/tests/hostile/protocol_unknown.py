@@ -3,7 +3,8 @@
 import os
 import hrdsl
 node = hrdsl.Node('robot')
+replies = open(node._link._in, 'rb', buffering=0, closefd=False)
 out = node._link._out
 while True:
     os.write(out, b'{"request":"fly"}\n')
-    node._link._in.readline()
+    replies.readline()

@@ -85,6 +85,8 @@ def _title(frame: FrameType | None) -> str:
 
 
 def _holder(scheduler: Scheduler, task: Task, what: str) -> str:
+    if what.endswith("program"):
+        return " for its other threads"  # for which of them first is no order that a program has chosen
     waited = task.what
     if not isinstance(waited, (locks.lock, locks.RLock)):
         return ""
@@ -97,4 +99,4 @@ def _holder(scheduler: Scheduler, task: Task, what: str) -> str:
         by = "a thread that has ended"
     else:
         by = "itself" if owner is task else name(scheduler, owner)
-    return " for %s" % by if what.endswith((".join", "program")) else ", held by %s" % by
+    return " for %s" % by if what.endswith(".join") else ", held by %s" % by

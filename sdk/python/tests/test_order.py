@@ -113,7 +113,7 @@ class Faults(Case):
         self.assertRegex(finished.err, r"MainThread waits in Lock at .*program.py:4, held by itself\n$")
         finished = run_text("import threading\nthreading.Thread(target=threading.Event().wait, name='t').start()")
         self.assertEqual(finished.code, 1)
-        self.assertIn("thread MainThread waits in the end of the program for thread t\n", finished.err)
+        self.assertIn("thread MainThread waits in the end of the program for its other threads\n", finished.err)
         self.assertIn("thread t waits in Event.wait\n", finished.err)
         self.assertNotIn({"request": "done"}, finished.requests)
         finished = run_text("import threading\ntry:\n    threading.Event().wait()\nexcept BaseException:\n    pass")
