@@ -156,11 +156,10 @@ impl CheckedProject {
 impl ProjectSource {
     fn new(path: Option<PathBuf>, text: String, named: bool) -> Self {
         let name = path.as_ref().map_or("<stdin>".to_owned(), |p| p.display().to_string());
-        let kind = match kind_of(&parse(FileId(0), &text).0) {
-            // Without a place it cannot be seen from a scenario's folder.
-            SourceKind::System if path.is_none() => SourceKind::Module,
-            kind => kind,
-        };
+        let said = kind_of(&parse(FileId(0), &text).0);
+        // Without a place a system cannot be seen from a scenario's folder.
+        let is_lost = path.is_none() && matches!(said, SourceKind::System);
+        let kind = if is_lost { SourceKind::Module } else { said };
         Self { path, name, text, kind, named }
     }
 

@@ -38,7 +38,9 @@ fn round_trips_per_second(coverage: bool) -> f64 {
             answer(&mut process);
         }
         process.next().expect("a request");
-        process.reply(&HarnessReply { time: 0, answer: ReplyAnswer::Stop }).expect("a reply");
+        process
+            .reply(&HarnessReply { time: 0, answer: ReplyAnswer::Stop { reason: "the end".to_owned() } })
+            .expect("a reply");
         drop(process.finish(Duration::from_secs(10)));
         processor_time() - before
     };

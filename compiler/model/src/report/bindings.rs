@@ -191,7 +191,7 @@ pub(crate) fn joints_missing(joints: &[&str], span: Span) -> Diagnostic {
     let all: Vec<String> = joints.iter().map(|joint| format!("`{joint}`")).collect();
     let message = format!("the programs' names of these joints are missing: {}", all.join(", "));
     let first = joints.first().copied().unwrap_or_default();
-    super::names::missing(span, message, &format!("name all joints, or none: `\"NAME\" = {first}`"))
+    super::names::missing(span, message, format!("name all joints, or none: `\"NAME\" = {first}`"))
 }
 
 /// HR0102

@@ -173,10 +173,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             }),
             SystemRequest::State { device, what } => Answer(asked(cx, |stage| stage.state(&device, &what))),
             SystemRequest::Plan { device, to } => Answer(asked(cx, |stage| stage.plan(&device, to))),
-            SystemRequest::Machine(step) => {
-                self.machine(index, step, cx);
-                Answer(SystemAnswer::Ok)
-            }
+            SystemRequest::Machine(step) => Answer(self.machine(index, step, cx)),
             SystemRequest::List => Answer(self.listed(index)),
             SystemRequest::Await(awaited) => {
                 self.graph.await_port(index, awaited, cx.now);
@@ -215,7 +212,12 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
 
     /// Writes down what a state machine does, and then makes happen what that means. Of several programs, the machine is called
     /// by its program first.
-    fn machine(&self, index: ProgramIndex, mut step: MachineStep, cx: &mut PlayerContext<'_, '_>) {
+    fn machine(
+        &self,
+        index: ProgramIndex,
+        mut step: MachineStep,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> SystemAnswer {
         if let Some(program) = self.programs.get(index).filter(|_| self.programs.len() > 1) {
             let (MachineStep::Declared(MachineDeclaration { machine, .. })
             | MachineStep::Begun { machine, .. }
@@ -229,6 +231,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
         }
         cx.out.push(PlayerMessage::Machine(step));
         cx.out.extend(meant);
+        SystemAnswer::Ok
     }
 
     fn names(&self) -> Vec<String> {
