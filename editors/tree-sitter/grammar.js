@@ -132,7 +132,9 @@ module.exports = grammar({
     event_name: ($) => seq(field("name", $.identifier), optional(field("parameters", $.parameters))),
 
     parameters: ($) => seq("(", listed($.parameter), ")"),
-    parameter: ($) => seq(field("name", $.identifier), ":", field("type", $.type)),
+    // Where something goes, or is brought, is called `to`.
+    parameter: ($) =>
+      seq(field("name", choice($.identifier, alias($._keyword_to, $.identifier))), ":", field("type", $.type)),
 
     type: ($) => choice($.named_type, $.template_type, $.range_type, $.array_type, $.list_type),
     named_type: ($) => field("name", $.identifier),
@@ -946,10 +948,7 @@ module.exports = grammar({
         field("primitive", $.identifier),
         optional($.expectation),
       ),
-    command_parameters: ($) => seq("(", listed(seq(alias($.command_parameter, $.parameter), optional("?"))), ")"),
-    // Where something is brought is called `to`.
-    command_parameter: ($) =>
-      seq(field("name", choice($.identifier, alias($._keyword_to, $.identifier))), ":", field("type", $.type)),
+    command_parameters: ($) => seq("(", listed(seq($.parameter, optional("?"))), ")"),
     expectation: ($) =>
       seq(
         keyword($, "expect"),
