@@ -721,12 +721,14 @@ fn coverage_suites_and_tests() {
         ("search", &[hrdsl_ir::coverage::BinName::new("x", "some")][..])
     );
     let args = |b| vec![Value::Bool(b)];
-    assert_eq!(t.steps[0], TestStep::Do { event: EventId(2), args: args(true), samples: vec![] });
+    let steps = &t.scripts[0].steps;
+    let done = |args, samples| TestStep::Do { event: EventId(2), args, samples, meanwhile: false };
+    assert_eq!(steps[0], done(args(true), vec![]));
     let samples = vec![Value::Float(1.5)];
-    assert_eq!(t.steps[1], TestStep::Do { event: EventId(2), args: args(false), samples });
+    assert_eq!(steps[1], done(args(false), samples));
     let events = vec![pattern(1, &[TRUE]), pattern(0, &[])];
-    assert_eq!(t.steps[2], TestStep::Await { events, within: 3 * SECOND });
-    assert_eq!(t.steps[3], TestStep::Wait { time: SECOND });
+    assert_eq!(steps[2], TestStep::Await { events, within: 3 * SECOND });
+    assert_eq!(steps[3], TestStep::Wait { time: SECOND });
     assert_eq!((p.tests[1].name.as_str(), p.tests[1].provenance.method.word()), ("small.t2", "hand"));
 
     let system = &p.systems[0];

@@ -750,7 +750,9 @@ module.exports = grammar({
 
     test_declaration: ($) => seq(keyword($, "test"), field("name", $._path), field("body", $.test_body)),
     test_body: ($) =>
-      block($, choice(alias($._test_setting, $.setting), $.stimulus_step, $.await_step, $.wait_step)),
+      block($, choice(alias($._test_setting, $.setting), $.script, $.stimulus_step, $.await_step, $.wait_step)),
+    script: ($) => seq(field("actor", $.identifier), field("body", $.script_body)),
+    script_body: ($) => block($, choice($.stimulus_step, $.await_step, $.wait_step)),
     _test_setting: ($) =>
       choice(
         seq(keyword($, "seed"), field("value", $.expression)),
@@ -758,7 +760,12 @@ module.exports = grammar({
         seq(keyword($, "because"), field("value", $.string)),
         seq(keyword($, "predicts"), field("value", $.string)),
       ),
-    stimulus_step: ($) => seq(field("stimulus", $.call), optional(seq(keyword($, "with"), list($.sampled)))),
+    stimulus_step: ($) =>
+      seq(
+        optional(keyword($, "meanwhile")),
+        field("stimulus", $.call),
+        optional(seq(keyword($, "with"), list($.sampled))),
+      ),
     sampled: ($) => seq(field("name", $.identifier), "=", field("value", $.expression)),
 
     // ── World and system ──

@@ -86,6 +86,7 @@ fn a_search_reaches_each_value_after_the_warm_up() {
     );
     assert_eq!(of("Unreachable"), ["value Robot.heard = never"]);
     for test in &made.tests {
-        assert_eq!(test.steps[0], TestStep::Wait { time: 2_500_000_000 }, "{:?}", test.steps);
+        let steps = &test.scripts[0].steps;
+        assert_eq!(steps[0], TestStep::Wait { time: 2_500_000_000 }, "{steps:?}");
     }
 }

@@ -335,8 +335,8 @@ fn tests_with_records_are_written_and_read_to_the_same_bytes() {
     assert!(written.contains("odd("), "{written}");
     let again = program(&text, &[&written]);
     assert_eq!(write(&again, &again.tests[1..]), written);
-    let steps = |p: &Program| p.tests.iter().map(|t| t.steps.clone()).collect::<Vec<_>>();
-    assert_eq!(steps(&again), tests.iter().map(|t| t.steps.clone()).collect::<Vec<_>>());
+    let steps = |p: &Program| p.tests.iter().map(|t| t.scripts.clone()).collect::<Vec<_>>();
+    assert_eq!(steps(&again), tests.iter().map(|t| t.scripts.clone()).collect::<Vec<_>>());
     let by_hand = write(&p, &tests[..1]);
     for step in [
         "moved((1.0 m, 2.0 m, 0.0 rad))",

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     coverage::BinName,
-    event::{EventId, EventPattern},
+    event::{ActorId, EventId, EventPattern},
     value::{Nanos, Value},
 };
 
@@ -16,8 +16,25 @@ pub struct Test {
     pub name: String,
     pub seed: u64,
     pub provenance: TestProvenance,
-    pub steps: Vec<TestStep>,
+    /// One that plays all environment actors, or one for each actor that does something; they run at once.
+    pub scripts: Vec<TestScript>,
     pub origin: Span,
+}
+
+/// What is done in a test, one step after the other.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TestScript {
+    /// None: it plays all environment actors, and is the only script of its test.
+    pub actor: Option<ActorId>,
+    pub steps: Vec<TestStep>,
+}
+
+impl TestScript {
+    /// The only script of a test, of all environment actors.
+    #[must_use]
+    pub fn of_all(steps: Vec<TestStep>) -> Vec<Self> {
+        vec![Self { actor: None, steps }]
+    }
 }
 
 /// Where a test came from.
@@ -77,6 +94,8 @@ pub enum TestStep {
         event: EventId,
         args: Vec<Value>,
         samples: Vec<Value>,
+        /// The next step begins at once, and the stimulus goes on beside it.
+        meanwhile: bool,
     },
     /// Go on when one of the events has happened since the last await ended (or the test began), or when the time,
     /// counted from the start of this step, is over.

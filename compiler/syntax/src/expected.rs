@@ -77,7 +77,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_none: &["INT"],
         names: true,
         members: None,
-        covers: &["seed", "method", "because", "predicts", "await", "wait"],
+        covers: &["seed", "method", "because", "predicts", "meanwhile", "await", "wait"],
         says: &["a step such as `await` or `wait`"],
     },
     TerminalGroup {

@@ -29,6 +29,7 @@ mod run;
 mod system;
 pub mod token;
 mod words;
+mod world;
 
 #[allow(clippy::all, clippy::pedantic, unused, missing_docs, reason = "lalrpop writes it")]
 mod grammar {

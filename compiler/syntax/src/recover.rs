@@ -273,7 +273,11 @@ impl RecoveringParser<'_, '_> {
             TokenKind::Plan if M::START == TokenKind::StartAgentMember => self.plan(&range),
             TokenKind::Fn if M::START == TokenKind::StartAutomatonMember => self.function(&range),
             TokenKind::If if M::START == TokenKind::StartStimulusStep => self.condition(&range),
-            _ if M::START == TokenKind::StartSystemMember || M::START == TokenKind::StartBindingMember => {
+            _ if matches!(
+                M::START,
+                TokenKind::StartSystemMember | TokenKind::StartBindingMember | TokenKind::StartTestMember
+            ) =>
+            {
                 self.nested(M::START, &range)
             }
             _ => None,

@@ -57,6 +57,7 @@ fn lacks_its_rest(tokens: &[Lexeme], at: usize, does: bool) -> bool {
         | TokenKind::Method
         | TokenKind::Because
         | TokenKind::Predicts
+        | TokenKind::Meanwhile
         | TokenKind::With => next.kind == TokenKind::LParen || follows,
         TokenKind::If => {
             let step = at.checked_sub(1).is_none_or(|i| {
@@ -185,9 +186,11 @@ impl TestLineTracker {
                 | TokenKind::Method
                 | TokenKind::Because
                 | TokenKind::Predicts
+                | TokenKind::Meanwhile
                 | TokenKind::With
         );
         let step = step && alone || tokens[at].kind == TokenKind::Imply && tokens[at].first;
-        self.test && self.braces == 1 && step && starts
+        // Of the test, or of an actor's block.
+        self.test && matches!(self.braces, 1 | 2) && step && starts
     }
 }

@@ -618,6 +618,9 @@ test a.b{
   wait 10s
   look(true) with offset = 15 cm, distance = 55 cm, angle = 20 deg, another = 1 m, one_more = 2 m, and_the_last = 3 m
 }
+test together{child{meanwhile   sing;run(true)
+await a within 3s}dog{wait 1s}
+  cat{}}
 "#
     world r#"
 part p(n:0..4){

@@ -264,6 +264,23 @@ fn a_missing_keyword_costs_its_own_declaration() {
 }
 
 #[test]
+fn a_broken_step_costs_itself_in_an_actors_block() {
+    let text =
+        "test t { seed 1\n  child { run(; wait 3 s\n    meanwhile wait 3 s\n    sing }\n  dog { bark }\n}\n";
+    let (file, diagnostics) = parse(FileId(0), text);
+    assert_eq!((errors(&file), diagnostics.len()), (0, 2), "{diagnostics:#?}");
+    let ItemSyntaxKind::Test(test) = &file.items[0].kind else { panic!("{file:?}") };
+    let blocks = test.members.iter().filter_map(|member| match &member.kind {
+        TestMemberKind::Script { actor, members } => {
+            let broken = members.iter().filter(|m| m.kind == TestMemberKind::Error).count();
+            Some((actor.text.as_str(), members.len(), broken))
+        }
+        _ => None,
+    });
+    assert_eq!(blocks.collect::<Vec<_>>(), [("child", 4, 2), ("dog", 1, 0)]);
+}
+
+#[test]
 fn every_sort_of_block_recovers() {
     let text = r#"
 stimulus s by p { emit a; hold; emit b; if x { emit; emit c } else { hold 1 s } emit d }

@@ -221,6 +221,11 @@ test a.b {
   ask look(true)
   go with n = 3 ask()
 }
+test together {
+  child { meanwhile sing; run(true) with x = 1 m }
+  dog { await run(_) within 3 s wait 1 s }
+  cat { }
+}
 "#
     world r#"
 part p {

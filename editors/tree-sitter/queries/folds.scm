@@ -20,6 +20,7 @@
   (cross_declaration)
   (suite_declaration)
   (test_declaration)
+  (script)
   (part_declaration)
   (device_declaration)
   (world_declaration)

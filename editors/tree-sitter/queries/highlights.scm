@@ -31,11 +31,12 @@
   "do" "emit" "within" "sample" "hold" "belief" "goal" "plan" "rule" "clock" "location" "invariant" "select" "after"
   "causes" "forbids" "precedes" "until" "never" "globally" "at" "most" "count" "bins" "bin" "ignore" "agents" "search"
   "random" "of" "choose" "one" "any" "per" "where" "explore" "stop" "minimise" "witness" "delays" "tests" "warmup"
-  "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts" "with"
-  "step" "gravity" "body" "joint" "arm" "gripper" "base" "laser" "posture" "current" "signal" "rotated" "mass" "ghost"
-  "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams"
-  "range" "command" "expect" "run" "coverage" "limit" "budget" "cpu" "wall" "memory" "output" "env" "online" "program"
-  "ros1" "ros2" "messages" "topic" "service" "action" "group" "parameter" "transition" "out" "drives" "latched" "plans"
+  "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts"
+  "meanwhile" "with" "step" "gravity" "body" "joint" "arm" "gripper" "base" "laser" "posture" "current" "signal"
+  "rotated" "mass" "ghost" "graspable" "axis" "limits" "tip" "tool" "speed" "delay" "sideways" "turn" "acceleration"
+  "timeout" "angles" "beams" "range" "command" "expect" "run" "coverage" "limit" "budget" "cpu" "wall" "memory"
+  "output" "env" "online" "program" "ros1" "ros2" "messages" "topic" "service" "action" "group" "parameter"
+  "transition" "out" "drives" "latched" "plans"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return
@@ -108,6 +109,7 @@
 (choose belief: (identifier) @function)
 (test_declaration name: (identifier) @type)
 (test_declaration name: (path (identifier) @type))
+(script actor: (identifier) @type)
 (sampled name: (identifier) @variable.parameter)
 (part_declaration name: (identifier) @type)
 (placement part: (identifier) @type)

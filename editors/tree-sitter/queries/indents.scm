@@ -10,6 +10,7 @@
   (cross_body)
   (suite_body)
   (test_body)
+  (script_body)
   (world_body)
   (device_body)
   (system_body)

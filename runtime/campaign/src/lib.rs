@@ -46,7 +46,7 @@ use hrdsl_trace::{
     record::{self, RecordingEnd, RecordingHeader},
 };
 
-use hrdsl_testgen::step_text;
+use hrdsl_testgen::step_lines;
 
 use binding::{binding_text, module_folders};
 pub use forks::ForkPlan;
@@ -327,8 +327,9 @@ impl CampaignSetup<'_> {
         });
         let player = SystemPlayer::of_programs(self.program, declared.actor, programs)
             .with_binding(declared.binding.as_ref());
-        let players: Vec<Box<dyn ActorPlayer + '_>> =
-            vec![Box::new(ScriptPlayer::new(self.program, test)), Box::new(player)];
+        let mut players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(player)];
+        players
+            .extend(ScriptPlayer::all(self.program, test).map(|p| Box::new(p) as Box<dyn ActorPlayer + '_>));
         let run = HarnessLoop::new(self.program, players, stage, declared.limit).run();
         let reason = stop_reason(&run.ended, declared.limit);
         for (_, process) in &mut processes {
@@ -427,7 +428,7 @@ fn test_result(
         predicted: test.provenance.predicts.clone(),
         because: test.provenance.because.clone(),
         code: ratios(&executed),
-        steps: test.steps.iter().map(|s| step_text(program, s)).collect(),
+        steps: step_lines(program, test),
         output,
     };
     FinishedTest { result, executed, ports: run.ports, ..FinishedTest::default() }

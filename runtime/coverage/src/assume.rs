@@ -18,27 +18,47 @@ struct AssumptionWatch {
     assumption: Assumption,
     /// Times of the latest events, oldest first; never more than `at_most`.
     latest: VecDeque<Nanos>,
+    /// The most that ever were in one window.
+    peak: u64,
 }
 
 impl AssumptionChecker {
     /// All assumptions of the program, at the start of a test.
     #[must_use]
     pub fn new(program: &Program) -> Self {
-        let watch = |a: &Assumption| AssumptionWatch { assumption: a.clone(), latest: VecDeque::new() };
+        let watch =
+            |a: &Assumption| AssumptionWatch { assumption: a.clone(), latest: VecDeque::new(), peak: 0 };
         Self { watches: program.assumptions.iter().map(watch).collect() }
     }
 
     /// The first assumption, as an index into [`Program::assumptions`], that this event would violate, in addition to
     /// those recorded. It records nothing itself. Times must not go backwards; an earlier time counts as the latest seen.
     pub fn would_violate(&mut self, time: Nanos, event: EventId, args: &[Value]) -> Option<usize> {
-        self.watches.iter_mut().position(|watch| watch.counts(event, args) && watch.is_full(time))
+        self.would_violate_beside(&[], time, event, args)
+    }
+
+    /// The same, beside other sequences of which nobody knows when they happen: any window may hold the most that each of them
+    /// ever has in one.
+    pub fn would_violate_beside(
+        &mut self,
+        others: &[&Self],
+        time: Nanos,
+        event: EventId,
+        args: &[Value],
+    ) -> Option<usize> {
+        self.watches.iter_mut().enumerate().position(|(at, watch)| {
+            let beside = others.iter().filter_map(|other| other.watches.get(at)).map(|w| w.peak).sum();
+            watch.counts(event, args) && watch.is_full(time, beside)
+        })
     }
 
     /// Takes note of an event that happens.
     pub fn record(&mut self, time: Nanos, event: EventId, args: &[Value]) {
         for watch in self.watches.iter_mut().filter(|watch| watch.counts(event, args)) {
             let time = watch.latest.back().map_or(time, |last| time.max(*last));
+            watch.forget(time);
             watch.latest.push_back(time);
+            watch.peak = watch.peak.max(watch.latest.len() as u64);
             if watch.latest.len() as u64 > u64::from(watch.assumption.at_most) {
                 watch.latest.pop_front();
             }
@@ -72,13 +92,18 @@ impl AssumptionWatch {
         self.assumption.events.iter().any(|p| p.matches(event, args))
     }
 
-    /// Whether one more event at this time would be too many. Forgets those that no later window can hold.
-    fn is_full(&mut self, time: Nanos) -> bool {
+    /// Whether one more event at this time would be too many, if a window holds so many others. Forgets those that no later
+    /// window can hold.
+    fn is_full(&mut self, time: Nanos, others: u64) -> bool {
+        self.forget(time);
+        self.latest.len() as u64 + others >= u64::from(self.assumption.at_most)
+    }
+
+    fn forget(&mut self, time: Nanos) {
         if let Some(within) = self.assumption.within {
             while self.latest.front().is_some_and(|first| time.saturating_sub(*first) > within) {
                 self.latest.pop_front();
             }
         }
-        self.latest.len() as u64 >= u64::from(self.assumption.at_most)
     }
 }

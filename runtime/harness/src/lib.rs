@@ -38,7 +38,7 @@ pub use port::{
     QosDurability, QosPolicy, QosReliability, VainWait,
 };
 pub use run::{HarnessLoop, HarnessRun, RunTermination};
-pub use script::ScriptPlayer;
+pub use script::{ScriptPlayer, script_rng};
 pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
 pub use system::player::SystemPlayer;

@@ -1,8 +1,8 @@
-//! The player of a test: it does the test's stimuli, awaits and waits, in order.
+//! The players of a test: each does the stimuli, awaits and waits of one script, in order.
 
 use hrdsl_ir::{
     ActorId, EventId, EventPattern, Nanos, Program, Role, Value,
-    test::{Test, TestStep},
+    test::{Test, TestScript, TestStep},
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -14,12 +14,14 @@ use crate::{
 
 pub struct ScriptPlayer<'p> {
     program: &'p Program,
-    test: &'p Test,
+    script: &'p TestScript,
     actors: Vec<ActorId>,
     rng: ChaCha8Rng,
     /// The step under way, or the next.
     at: usize,
     state: ScriptState,
+    /// Stimuli that go on beside the steps after them.
+    beside: Vec<StimulusPerformance>,
     /// What was heard since the last await ended.
     heard: Vec<(EventId, Vec<Value>)>,
 }
@@ -27,29 +29,59 @@ pub struct ScriptPlayer<'p> {
 enum ScriptState {
     Ready,
     Performing(StimulusPerformance),
-    Awaiting { until: Nanos },
-    Waiting { until: Nanos },
+    Awaiting {
+        until: Nanos,
+    },
+    Waiting {
+        until: Nanos,
+    },
+    /// Only what goes on beside is left.
     Finished,
 }
 
+/// Where the samples of a test's script are drawn from: a stream of random numbers for each script.
+#[must_use]
+pub fn script_rng(seed: u64, script: usize) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(script as u64);
+    rng
+}
+
 impl<'p> ScriptPlayer<'p> {
-    /// The script plays all environment actors at once and hears whatever any of them hears.
-    #[must_use]
-    pub fn new(program: &'p Program, test: &'p Test) -> Self {
-        let actors = program.actors_of(Role::Environment).collect();
-        let rng = ChaCha8Rng::seed_from_u64(test.seed);
-        Self { program, test, actors, rng, at: 0, state: ScriptState::Ready, heard: Vec::new() }
+    /// The players of all scripts of a test, in their order. A script without an actor plays all environment actors at once, and
+    /// hears whatever any of them hears.
+    pub fn all(program: &'p Program, test: &'p Test) -> impl Iterator<Item = Self> {
+        test.scripts.iter().enumerate().map(move |(at, script)| Self {
+            program,
+            script,
+            actors: match script.actor {
+                Some(actor) => vec![actor],
+                None => program.actors_of(Role::Environment).collect(),
+            },
+            rng: script_rng(test.seed, at),
+            at: 0,
+            state: ScriptState::Ready,
+            beside: Vec::new(),
+            heard: Vec::new(),
+        })
     }
 
     fn begin(&mut self, step: &'p TestStep, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         self.state = match step {
-            TestStep::Do { event, args, samples } => {
+            TestStep::Do { event, args, samples, meanwhile } => {
                 let drawn = if samples.is_empty() {
                     draw_samples(self.program, *event, args, &mut self.rng)?
                 } else {
                     samples.clone()
                 };
-                ScriptState::Performing(StimulusPerformance::begin(self.program, *event, args, &drawn, cx)?)
+                let begun = StimulusPerformance::begin(self.program, *event, args, &drawn, cx)?;
+                if *meanwhile {
+                    self.beside.push(begun);
+                    self.at += 1;
+                    ScriptState::Ready
+                } else {
+                    ScriptState::Performing(begun)
+                }
             }
             TestStep::Await { within, .. } => ScriptState::Awaiting { until: cx.now + within },
             TestStep::Wait { time } => ScriptState::Waiting { until: cx.now + time },
@@ -59,11 +91,15 @@ impl<'p> ScriptPlayer<'p> {
 
     /// Goes on as far as it can now.
     fn go_on(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
+        self.beside.retain_mut(|performance| {
+            performance.go_on(cx);
+            !performance.is_done(cx.now)
+        });
         loop {
             let over = match &mut self.state {
                 ScriptState::Finished => return Ok(()),
                 ScriptState::Ready => {
-                    let Some(step) = self.test.steps.get(self.at) else {
+                    let Some(step) = self.script.steps.get(self.at) else {
                         self.state = ScriptState::Finished;
                         return Ok(());
                     };
@@ -93,7 +129,7 @@ impl<'p> ScriptPlayer<'p> {
     }
 
     fn awaited_was_heard(&self) -> bool {
-        let Some(TestStep::Await { events, .. }) = self.test.steps.get(self.at) else { return false };
+        let Some(TestStep::Await { events, .. }) = self.script.steps.get(self.at) else { return false };
         let matches = |(event, args): &(EventId, Vec<Value>)| {
             events.iter().any(|p: &EventPattern| p.matches(*event, args))
         };
@@ -124,15 +160,16 @@ impl ActorPlayer for ScriptPlayer<'_> {
     }
 
     fn next_wake(&self) -> Option<Nanos> {
-        match &self.state {
+        let step = match &self.state {
             ScriptState::Ready => Some(0),
             ScriptState::Performing(performance) => Some(performance.until),
             ScriptState::Awaiting { until } | ScriptState::Waiting { until } => Some(*until),
             ScriptState::Finished => None,
-        }
+        };
+        self.beside.iter().map(|performance| performance.until).chain(step).min()
     }
 
     fn is_finished(&self) -> bool {
-        matches!(self.state, ScriptState::Finished)
+        matches!(self.state, ScriptState::Finished) && self.beside.is_empty()
     }
 }

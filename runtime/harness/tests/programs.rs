@@ -6,10 +6,10 @@ use std::{cell::RefCell, rc::Rc};
 
 use common::{ROBOT, ask, emit, go, program, sleep, system, told, wait};
 use hrdsl_harness::{
-    ActorPlayer, AwaitedPort, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun,
-    MachineDeclaration, MachineEdge, MachineStep, PortDeclaration, PortKind, PortQos, QosDurability,
-    QosPolicy, QosReliability, RunTermination, ScriptPlayer, SystemAnswer, SystemArrival, SystemFault,
-    SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
+    AwaitedPort, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun, MachineDeclaration,
+    MachineEdge, MachineStep, PortDeclaration, PortKind, PortQos, QosDurability, QosPolicy, QosReliability,
+    RunTermination, SystemAnswer, SystemArrival, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest,
+    WorldStage,
     doubles::{ToldCommand, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{test::TestStep, value::SECOND};
@@ -25,10 +25,7 @@ fn run(
     let (scenario, test) = (program(), common::test(test));
     let (systems, answers): (Vec<ToldSystem>, Vec<_>) = programs.into_iter().map(system).unzip();
     let named = ('a'..).map(String::from).zip(systems);
-    let players: Vec<Box<dyn ActorPlayer + '_>> = vec![
-        Box::new(ScriptPlayer::new(&scenario, &test)),
-        Box::new(SystemPlayer::of_programs(&scenario, ROBOT, named)),
-    ];
+    let players = common::players(&scenario, &test, SystemPlayer::of_programs(&scenario, ROBOT, named));
     let stage = world.map(|world| WorldStage::new(&scenario, Box::new(world)));
     let run = HarnessLoop::new(&scenario, players, stage, 60 * SECOND).run();
     (answers.iter().map(told).collect(), run)

@@ -179,7 +179,7 @@ impl AgentRunInput<'_> {
         }
         let covered = extract::covered(self.program, &trace);
         let test = AbstractTest {
-            steps: extract::steps(self.program, &self.awaits, &trace, self.suite.settings.patience),
+            scripts: extract::scripts(self.program, &self.awaits, &trace, self.suite.settings.patience),
             because: vec![set.text.join(", ")],
             predicts: covered.cross_names(&self.program.coverage),
             reaches: self.goals.reached(&measured, &covered),

@@ -1,6 +1,9 @@
 //! Equal abstract tests become one: the first keeps its place and takes over the others' reasons.
 
-use hrdsl_ir::{ArgPattern, Value, test::TestStep};
+use hrdsl_ir::{
+    ArgPattern, Value,
+    test::{TestScript, TestStep},
+};
 use indexmap::IndexMap;
 
 use crate::harvest::AbstractTest;
@@ -12,7 +15,7 @@ const ORIGINS: usize = 3;
 pub fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
     let mut seen: IndexMap<TestIdentity, AbstractTest> = IndexMap::new();
     for test in tests {
-        match seen.entry(identity(&test.steps)) {
+        match seen.entry(identity(&test.scripts)) {
             indexmap::map::Entry::Vacant(slot) => {
                 slot.insert(test);
             }
@@ -41,10 +44,21 @@ pub fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
 /// A number for each thing that makes a test what it is.
 type TestIdentity = Vec<(u8, u64)>;
 
-/// Equal for equal steps alone: the kind of each step, and how many parts a list of parts has, come before the parts.
-fn identity(steps: &[TestStep]) -> TestIdentity {
-    const KIND: u8 = u8::MAX;
+/// Marks a part that says what kind the next ones are of, or how many they are.
+const KIND: u8 = u8::MAX;
+
+/// Equal for equal scripts alone: the kind of each step, and how many parts a list of parts has, come before the parts.
+fn identity(scripts: &[TestScript]) -> TestIdentity {
     let mut parts = TestIdentity::new();
+    for script in scripts {
+        let actor = script.actor.map_or(u64::MAX, |actor| u64::from(actor.0));
+        parts.extend([(KIND, actor), (KIND, script.steps.len() as u64)]);
+        add_steps(&mut parts, &script.steps);
+    }
+    parts
+}
+
+fn add_steps(parts: &mut TestIdentity, steps: &[TestStep]) {
     let count = |n: usize| (KIND, n as u64);
     let values = |parts: &mut TestIdentity, values: &[Value]| {
         parts.push(count(values.len()));
@@ -52,10 +66,10 @@ fn identity(steps: &[TestStep]) -> TestIdentity {
     };
     for step in steps {
         match step {
-            TestStep::Do { event, args, samples } => {
-                parts.extend([(KIND, 0), (KIND, u64::from(event.0))]);
-                values(&mut parts, args);
-                values(&mut parts, samples);
+            TestStep::Do { event, args, samples, meanwhile } => {
+                parts.extend([(KIND, 0), (KIND, u64::from(event.0)), (KIND, u64::from(*meanwhile))]);
+                values(parts, args);
+                values(parts, samples);
             }
             TestStep::Await { events, within } => {
                 parts.extend([(KIND, 1), (KIND, within.unsigned_abs()), count(events.len())]);
@@ -70,12 +84,11 @@ fn identity(steps: &[TestStep]) -> TestIdentity {
             TestStep::Wait { time } => parts.extend([(KIND, 2), (KIND, time.unsigned_abs())]),
         }
     }
-    parts
 }
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::{EventId, EventPattern};
+    use hrdsl_ir::{ActorId, EventId, EventPattern};
 
     use super::*;
     use crate::tests::test;
@@ -94,7 +107,9 @@ mod tests {
             event: EventId(event),
             args: args.to_vec(),
             samples: samples.to_vec(),
+            meanwhile: false,
         };
+        let beside = TestStep::Do { event: EventId(1), args: vec![], samples: vec![], meanwhile: true };
         let awaits = |args: &[ArgPattern], within| TestStep::Await {
             events: vec![EventPattern { event: EventId(1), args: args.to_vec() }],
             within,
@@ -103,6 +118,7 @@ mod tests {
         let all = [
             vec![],
             vec![done(1, &[], &[])],
+            vec![beside],
             vec![done(2, &[], &[])],
             vec![done(1, &[one], &[])],
             vec![done(1, &[], &[one])],
@@ -115,6 +131,13 @@ mod tests {
             vec![awaits(&[ArgPattern::Is(one)], 5)],
             vec![TestStep::Wait { time: 5 }],
         ];
+        let step = || TestStep::Wait { time: 5 };
+        let of = |actor, steps| TestScript { actor: Some(ActorId(actor)), steps };
+        let mut all: Vec<Vec<TestScript>> = all.into_iter().map(TestScript::of_all).collect();
+        all.push(vec![of(0, vec![step()])]);
+        all.push(vec![of(1, vec![step()])]);
+        all.push(vec![of(0, vec![step()]), of(1, vec![])]);
+        all.push(vec![of(0, vec![]), of(1, vec![step()])]);
         for (i, a) in all.iter().enumerate() {
             for (j, b) in all.iter().enumerate() {
                 assert_eq!(identity(a) == identity(b), i == j, "{a:?} {b:?}");

@@ -1,9 +1,9 @@
 //! From what happened in a model to an abstract test: the environment's stimuli, and what they waited for.
 //!
 //! A stimulus that followed an event which its actor's model waits for becomes "await that event, then the stimulus";
-//! what is left of the time between becomes a wait.
+//! what is left of the time between becomes a wait. Where several actors do something, each gets a script of its own.
 
-use std::convert::Infallible;
+use std::{collections::BTreeMap, convert::Infallible};
 
 use hrdsl_coverage::{CoverageCollector, TestCoverage};
 use hrdsl_ir::{
@@ -13,7 +13,7 @@ use hrdsl_ir::{
     expr::Expr,
     suite::PlayerRef,
     ta::{ReceiveArg, SyncLabel},
-    test::TestStep,
+    test::{TestScript, TestStep},
     value::nanos,
 };
 use hrdsl_trace::{Trace, TraceStepKind};
@@ -21,6 +21,8 @@ use hrdsl_trace::{Trace, TraceStepKind};
 /// The groups of events that an actor's model waits for at once.
 pub struct AwaitGroups {
     groups: Vec<AwaitGroup>,
+    /// Whose stimuli take their time in the model: in an automaton's run they take none.
+    timed: Vec<ActorId>,
 }
 
 struct AwaitGroup {
@@ -34,11 +36,13 @@ impl AwaitGroups {
     /// What the models that play environment actors wait for.
     #[must_use]
     pub fn of(program: &Program, players: &[PlayerRef]) -> Self {
-        let mut groups = Vec::new();
+        let (mut groups, mut timed) = (Vec::new(), Vec::new());
         for player in players {
             match player {
                 PlayerRef::Agent(id) => {
-                    groups.extend(of_agent(program, &program.agents[id.0 as usize]));
+                    let agent = &program.agents[id.0 as usize];
+                    groups.extend(of_agent(program, agent));
+                    timed.push(agent.actor);
                 }
                 PlayerRef::Automaton(id) => {
                     let automaton = &program.automata[id.0 as usize];
@@ -51,18 +55,23 @@ impl AwaitGroups {
                 }
             }
         }
-        groups.retain_mut(|group| {
-            group.events.retain(|p| program.actor(program.event(p.event).from).role == Role::System);
-            !group.events.is_empty() && program.actor(group.actor).role == Role::Environment
+        // What an actor does itself is not awaited by a test.
+        groups.retain_mut(|group: &mut AwaitGroup| {
+            group.events.retain(|p| program.event(p.event).from != group.actor);
+            program.actor(group.actor).role == Role::Environment
         });
-        Self { groups }
+        Self { groups, timed }
     }
 
-    /// The first group of this actor that waits for such an event.
-    fn group(&self, actor: ActorId, what: &TraceStepKind) -> Option<&AwaitGroup> {
-        let TraceStepKind::Event { event, args } = what else { return None };
-        let waits = |g: &&AwaitGroup| g.actor == actor && g.events.iter().any(|p| p.matches(*event, args));
-        self.groups.iter().find(waits)
+    /// Those of one actor, with what only some events can be awaited of.
+    fn of_actor(&self, actor: ActorId, awaited: impl Fn(EventId) -> bool) -> Vec<AwaitGroup> {
+        let own = self.groups.iter().filter(|group| group.actor == actor);
+        let awaited = own.map(|group| AwaitGroup {
+            actor,
+            events: group.events.iter().filter(|p| awaited(p.event)).cloned().collect(),
+            within: group.within,
+        });
+        awaited.filter(|group| !group.events.is_empty()).collect()
     }
 }
 
@@ -122,44 +131,110 @@ fn received(sync: &SyncLabel) -> Option<EventPattern> {
     }
 }
 
-/// The test that stimulates what the trace shows. `patience` bounds each await for which the model gives no time.
+/// A stimulus of a trace.
+struct DoneStimulus<'t> {
+    /// Of its step in the trace.
+    index: usize,
+    time: Nanos,
+    event: EventId,
+    args: &'t [Value],
+}
+
+/// The test that stimulates what the trace shows: one script, or one for each actor that does something, if they are several.
+/// `patience` bounds each await for which the model gives no time.
 #[must_use]
-pub fn steps(program: &Program, awaits: &AwaitGroups, trace: &Trace, patience: Nanos) -> Vec<TestStep> {
-    let mut out = Vec::new();
-    // When the script is free again, as far as the model's time goes, and the first trace step it has not looked at.
-    let mut free: Nanos = 0;
-    let mut looked = 0;
+pub fn scripts(program: &Program, awaits: &AwaitGroups, trace: &Trace, patience: Nanos) -> Vec<TestScript> {
+    let mut done: BTreeMap<ActorId, Vec<DoneStimulus<'_>>> = BTreeMap::new();
     for (index, step) in trace.steps.iter().enumerate() {
         let TraceStepKind::Event { event, args } = &step.what else { continue };
         let declared = program.event(*event);
-        if !declared.is_stimulus() || program.actor(declared.from).role != Role::Environment {
-            continue;
+        if declared.is_stimulus() && program.actor(declared.from).role == Role::Environment {
+            let stimulus = DoneStimulus { index, time: step.time, event: *event, args };
+            done.entry(declared.from).or_default().push(stimulus);
         }
-        let between = trace.steps[looked..index].iter().rev();
-        let awaited = between.filter_map(|s| Some((s.time, awaits.group(declared.from, &s.what)?))).next();
-        if let Some((time, group)) = awaited {
-            let within = group.within.unwrap_or(patience);
-            out.push(TestStep::Await { events: group.events.clone(), within });
-            free = free.max(time);
-            looked = index;
-        }
-        if step.time > free {
-            out.push(TestStep::Wait { time: step.time - free });
-        }
-        out.push(TestStep::Do { event: *event, args: args.clone(), samples: Vec::new() });
-        free = step.time + duration(program, *event, args);
     }
-    out
+    let is_system = |event: EventId| program.actor(program.event(event).from).role == Role::System;
+    let alone = done.len() <= 1;
+    let script = |(actor, done): (&ActorId, &Vec<DoneStimulus<'_>>)| {
+        // What an actor who acts alone hears of the environment, it has done itself.
+        let groups = awaits.of_actor(*actor, |event| !alone || is_system(event));
+        let is_timed = awaits.timed.contains(actor);
+        let steps = ScriptExtractor { program, trace, groups, patience, is_timed }.steps(done);
+        TestScript { actor: Some(*actor).filter(|_| !alone), steps }
+    };
+    if done.is_empty() { TestScript::of_all(Vec::new()) } else { done.iter().map(script).collect() }
 }
 
-/// How long a stimulus holds at most: the sum of its holds, with its samples at the upper ends of their ranges, so that a
-/// model's time that a sampled hold takes up is not waited a second time.
-fn duration(program: &Program, event: EventId, args: &[Value]) -> Nanos {
+/// Makes the script of one actor.
+struct ScriptExtractor<'a> {
+    program: &'a Program,
+    trace: &'a Trace,
+    /// What its model waits for.
+    groups: Vec<AwaitGroup>,
+    patience: Nanos,
+    /// Its stimuli take their time in the model.
+    is_timed: bool,
+}
+
+impl ScriptExtractor<'_> {
+    fn steps(&self, done: &[DoneStimulus<'_>]) -> Vec<TestStep> {
+        let mut out = Vec::new();
+        // When the script is free again, as far as the model's time goes, and the first trace step it has not looked at.
+        let mut free: Nanos = 0;
+        let mut looked = 0;
+        for (at, stimulus) in done.iter().enumerate() {
+            let (event, args) = (stimulus.event, stimulus.args);
+            let between = self.trace.steps[looked..stimulus.index].iter().rev();
+            if let Some((time, group)) = between.filter_map(|s| Some((s.time, self.group(&s.what)?))).next() {
+                let within = group.within.unwrap_or(self.patience);
+                out.push(TestStep::Await { events: group.events.clone(), within });
+                free = free.max(time);
+                looked = stimulus.index;
+            }
+            if stimulus.time > free {
+                out.push(TestStep::Wait { time: stimulus.time - free });
+            }
+            let [shortest, longest] =
+                [SampleEnd::Lower, SampleEnd::Upper].map(|end| self.held(stimulus, end));
+            let next = done.get(at + 1).map(|next| next.time);
+            let meanwhile =
+                self.is_timed && next.is_some_and(|next| next < stimulus.time + shortest.min(longest));
+            out.push(TestStep::Do { event, args: args.to_vec(), samples: Vec::new(), meanwhile });
+            // A model's time that a sampled hold takes up is not waited a second time.
+            free = stimulus.time + if meanwhile { 0 } else { longest };
+        }
+        out
+    }
+
+    /// The first group that waits for such an event.
+    fn group(&self, what: &TraceStepKind) -> Option<&AwaitGroup> {
+        let TraceStepKind::Event { event, args } = what else { return None };
+        self.groups.iter().find(|group| group.events.iter().any(|p| p.matches(*event, args)))
+    }
+
+    fn held(&self, stimulus: &DoneStimulus<'_>, end: SampleEnd) -> Nanos {
+        held(self.program, stimulus.event, stimulus.args, end)
+    }
+}
+
+/// An end of the ranges that samples are drawn from.
+#[derive(Clone, Copy)]
+enum SampleEnd {
+    Lower,
+    Upper,
+}
+
+/// How long a stimulus holds: the sum of its holds, with its samples at this end of their ranges.
+fn held(program: &Program, event: EventId, args: &[Value], end: SampleEnd) -> Nanos {
     let mut vars = args.to_vec();
     for sample in program.event(event).stimulus.iter().flat_map(|s| &s.samples) {
+        let range = match end {
+            SampleEnd::Lower => &sample.lo,
+            SampleEnd::Upper => &sample.hi,
+        };
         // A range without a value is found where it is drawn from.
-        let Ok(highest) = sample.hi.eval(&|i| vars.get(i as usize).copied()) else { return 0 };
-        vars.push(highest);
+        let Ok(value) = range.eval(&|i| vars.get(i as usize).copied()) else { return 0 };
+        vars.push(value);
     }
     let eval = |e: &Expr| e.eval(&|i| vars.get(i as usize).copied()).ok();
     let hold = |step: &StimulusStep| match step {
@@ -282,7 +357,8 @@ mod tests {
             agents: vec![agent],
             ..Program::default()
         };
-        let groups = AwaitGroups::of(&program, &[PlayerRef::Agent(AgentId(0))]).groups;
+        let groups =
+            AwaitGroups::of(&program, &[PlayerRef::Agent(AgentId(0))]).of_actor(ActorId(0), |_| true);
         let found: Vec<(u16, Option<Nanos>)> =
             groups.iter().map(|g| (g.events[0].event.0, g.within)).collect();
         // What the person makes itself is not awaited by a test; a time that depends on a variable is not known.

@@ -1,15 +1,15 @@
 //! Abstract tests, and what there is to say about them.
 
 use hrdsl_bdi::choose::BeliefSet;
-use hrdsl_ir::{coverage::BinName, test::TestStep};
+use hrdsl_ir::{coverage::BinName, test::TestScript};
 use hrdsl_results::{GoalName, GoalReport, ModelCoverage};
 
 use crate::goals;
 
-/// An abstract test: steps without samples.
+/// An abstract test: scripts without samples.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AbstractTest {
-    pub steps: Vec<TestStep>,
+    pub scripts: Vec<TestScript>,
     pub because: Vec<String>,
     pub predicts: Vec<BinName>,
     /// Which of the suite's goals the run reached.

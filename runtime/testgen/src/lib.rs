@@ -31,7 +31,7 @@ mod write;
 use hrdsl_ir::{
     Program,
     suite::{DelayChoice, Suite, SuiteMethod, WitnessKind},
-    test::{Test, TestMethod, TestProvenance, TestStep},
+    test::{Test, TestMethod, TestProvenance, TestScript, TestStep},
 };
 use hrdsl_prove::ProofOptions;
 use hrdsl_results::{GoalReport, GoalStatus, ModelCoverage, SuiteExplanation, UncoveredGoal};
@@ -40,7 +40,7 @@ pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
 pub use harvest::{AbstractTest, AbstractTests, AgentFindings, TestOrigin};
 pub use hrdsl_bdi::choose::BeliefSet;
-pub use write::{step_text, write};
+pub use write::{step_lines, write};
 
 /// A generated suite.
 #[derive(Clone, Debug)]
@@ -206,19 +206,19 @@ fn make_concrete(
                     because: test.because.clone(),
                     predicts: test.predicts.clone(),
                 },
-                steps: warmed_up(suite, concrete::concretise(program, &test.steps, seed)?),
+                scripts: warmed_up(suite, concrete::concretise(program, &test.scripts, seed)?),
                 origin: suite.origin,
             })
         })
         .collect()
 }
 
-fn warmed_up(suite: &Suite, mut steps: Vec<TestStep>) -> Vec<TestStep> {
+fn warmed_up(suite: &Suite, mut scripts: Vec<TestScript>) -> Vec<TestScript> {
     let time = suite.settings.warmup;
     if time > 0 {
-        steps.insert(0, TestStep::Wait { time });
+        scripts.iter_mut().for_each(|script| script.steps.insert(0, TestStep::Wait { time }));
     }
-    steps
+    scripts
 }
 
 #[cfg(test)]
@@ -230,7 +230,7 @@ mod tests {
 
     pub fn test(wait: i64, because: &str, reaches: &[usize]) -> AbstractTest {
         AbstractTest {
-            steps: vec![TestStep::Wait { time: wait }],
+            scripts: TestScript::of_all(vec![TestStep::Wait { time: wait }]),
             because: vec![because.into()],
             reaches: reaches.iter().copied().collect(),
             ..AbstractTest::default()

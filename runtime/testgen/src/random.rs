@@ -2,13 +2,15 @@
 
 use hrdsl_coverage::assume::AssumptionChecker;
 use hrdsl_ir::{
-    EventId, Expr, Nanos, Program, Type, Value,
+    ActorId, Event, EventId, Expr, Nanos, Program, Type, Value,
     event::StimulusStep,
     suite::{Suite, SuiteMethod},
-    test::TestStep,
+    test::{TestScript, TestStep},
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+
+use hrdsl_harness::is_perceived;
 
 use crate::{
     extract,
@@ -24,35 +26,40 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
     else {
         return Err(format!("suite `{}` is not by random", suite.name));
     };
-    let mut choices: Vec<TestStep> = Vec::new();
+    let mut actors: Vec<ActorId> = stimuli.iter().map(|event| program.event(*event).from).collect();
+    actors.sort_unstable();
+    actors.dedup();
+    let mut harvest = AbstractTests::default();
+    let mut choices: Vec<RandomChoice> = Vec::new();
     for event in stimuli {
-        choices.extend(instances(program, *event)?);
+        let actor = program.event(*event).from;
+        choices.extend(instances(program, *event)?.into_iter().map(|step| RandomChoice { step, actor }));
     }
-    choices.extend(
-        awaits.iter().map(|e| TestStep::Await { events: vec![e.clone()], within: suite.settings.patience }),
-    );
+    for pattern in awaits {
+        let step = TestStep::Await { events: vec![pattern.clone()], within: suite.settings.patience };
+        let waiting = listeners(program, &actors, pattern.event);
+        if waiting.is_empty() {
+            let name = &program.event(pattern.event).name;
+            let note = format!("nobody with a stimulus in the suite hears `{name}`: it is not awaited");
+            harvest.notes.push(note);
+        }
+        choices.extend(waiting.into_iter().map(|actor| RandomChoice { step: step.clone(), actor }));
+    }
     if choices.is_empty() {
         return Err(format!("suite `{}` has no stimuli to draw from", suite.name));
     }
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut harvest = AbstractTests::default();
     for _ in 0..count {
         let length = rng.random_range(*length_lo..=*length_hi.max(length_lo));
-        let mut draw = RandomSequence {
-            program,
-            assumptions: AssumptionChecker::new(program),
-            steps: Vec::new(),
-            time: 0,
-        };
+        let mut draw = RandomSequences::new(program, &actors);
         for _ in 0..length {
             let pause = if pause_lo < pause_hi { rng.random_range(*pause_lo..=*pause_hi) } else { *pause_lo };
-            // Tenths of a second: a person's pauses, readable in the test's text.
-            draw.pause(pause / 100_000_000 * 100_000_000);
             let choice = &choices[rng.random_range(0..choices.len())];
-            draw.step(choice);
+            // Tenths of a second: a person's pauses, readable in the test's text.
+            draw.add(choice, pause / 100_000_000 * 100_000_000);
         }
         harvest.tests.push(AbstractTest {
-            steps: draw.steps,
+            scripts: draw.finish(),
             because: vec![format!("{length} steps drawn at random")],
             ..AbstractTest::default()
         });
@@ -60,36 +67,96 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
     Ok(harvest)
 }
 
-/// A sequence under construction. Its times are lower bounds: that is what an assumption's window must be judged by.
-struct RandomSequence<'p> {
+/// Which of the actors can wait for an event. An actor alone has the script of all, which hears what any of them hears.
+fn listeners(program: &Program, actors: &[ActorId], event: EventId) -> Vec<ActorId> {
+    let is_alone = actors.len() <= 1;
+    // What its own stimuli make an actor does not hear; what the world makes in its name it does.
+    let declared = program.event(event);
+    let own =
+        declared.is_stimulus() || program.events.iter().any(|e| e.from == declared.from && emits(e, event));
+    let hears = |actor: &&ActorId| {
+        is_alone || is_perceived(program, **actor, event) && !(own && declared.from == **actor)
+    };
+    actors.iter().filter(hears).copied().collect()
+}
+
+/// Whether a stimulus may emit an event.
+fn emits(stimulus: &Event, event: EventId) -> bool {
+    let mut open: Vec<&StimulusStep> = stimulus.stimulus.iter().flat_map(|s| &s.steps).collect();
+    while let Some(step) = open.pop() {
+        match step {
+            StimulusStep::Emit { event: emitted, .. } if *emitted == event => return true,
+            StimulusStep::If { then, otherwise, .. } => open.extend(then.iter().chain(otherwise)),
+            StimulusStep::Emit { .. } | StimulusStep::Hold { .. } | StimulusStep::Act(_) => {}
+        }
+    }
+    false
+}
+
+/// A step that may be drawn, and whose it is.
+struct RandomChoice {
+    step: TestStep,
+    actor: ActorId,
+}
+
+/// The sequences of a test under construction, one for each actor.
+struct RandomSequences<'p> {
     program: &'p Program,
+    sequences: Vec<RandomSequence>,
+}
+
+/// What one actor does. Its times are lower bounds: that is what an assumption's window must be judged by.
+struct RandomSequence {
+    actor: ActorId,
     assumptions: AssumptionChecker,
     steps: Vec<TestStep>,
     time: Nanos,
 }
 
-impl RandomSequence<'_> {
-    fn pause(&mut self, time: Nanos) {
-        if time > 0 {
-            self.time += time;
-            self.steps.push(TestStep::Wait { time });
-        }
+impl<'p> RandomSequences<'p> {
+    fn new(program: &'p Program, actors: &[ActorId]) -> Self {
+        let sequence = |actor: &ActorId| RandomSequence {
+            actor: *actor,
+            assumptions: AssumptionChecker::new(program),
+            steps: Vec::new(),
+            time: 0,
+        };
+        Self { program, sequences: actors.iter().map(sequence).collect() }
     }
 
-    /// Adds the step, unless it would break an assumption.
-    fn step(&mut self, step: &TestStep) {
-        if let TestStep::Do { event, args, .. } = step {
+    /// Adds a pause, and the step unless it would break an assumption.
+    fn add(&mut self, choice: &RandomChoice, pause: Nanos) {
+        let Some(at) = self.sequences.iter().position(|s| s.actor == choice.actor) else { return };
+        let (before, rest) = self.sequences.split_at_mut(at);
+        let Some((own, after)) = rest.split_first_mut() else { return };
+        if pause > 0 {
+            own.time += pause;
+            own.steps.push(TestStep::Wait { time: pause });
+        }
+        if let TestStep::Do { event, args, .. } = &choice.step {
             let made = makes(self.program, *event, args);
-            let breaks =
-                |(e, a): &(EventId, Vec<Value>)| self.assumptions.would_violate(self.time, *e, a).is_some();
-            if made.iter().any(breaks) {
+            let others: Vec<&AssumptionChecker> =
+                before.iter().chain(after.iter()).map(|s| &s.assumptions).collect();
+            let mut breaks = |(e, a): &(EventId, Vec<Value>)| {
+                own.assumptions.would_violate_beside(&others, own.time, *e, a).is_some()
+            };
+            if made.iter().any(&mut breaks) {
                 return;
             }
             for (event, args) in &made {
-                self.assumptions.record(self.time, *event, args);
+                own.assumptions.record(own.time, *event, args);
             }
         }
-        self.steps.push(step.clone());
+        own.steps.push(choice.step.clone());
+    }
+
+    /// A script for each actor that has a step, or one of all if there is one actor.
+    fn finish(self) -> Vec<TestScript> {
+        if self.sequences.len() <= 1 {
+            return TestScript::of_all(self.sequences.into_iter().flat_map(|s| s.steps).collect());
+        }
+        let drawn = self.sequences.into_iter().filter(|s| !s.steps.is_empty());
+        drawn.map(|s| TestScript { actor: Some(s.actor), steps: s.steps }).collect()
     }
 }
 
@@ -110,7 +177,8 @@ fn instances(program: &Program, event: EventId) -> Result<Vec<TestStep>, String>
         };
         tuples = tuples.iter().flat_map(extend).collect();
     }
-    Ok(tuples.into_iter().map(|args| TestStep::Do { event, args, samples: Vec::new() }).collect())
+    let step = |args| TestStep::Do { event, args, samples: Vec::new(), meanwhile: false };
+    Ok(tuples.into_iter().map(step).collect())
 }
 
 /// The stimulus itself and the events that it makes whose arguments do not depend on samples.
@@ -163,7 +231,7 @@ mod tests {
         };
         let drawn = harvest(&program, &suite, 1, 3).unwrap();
         let mut seen: Vec<String> =
-            drawn.tests[0].steps.iter().map(|s| super::super::write::step_text(&program, s)).collect();
+            drawn.tests[0].scripts[0].steps.iter().map(|s| crate::write::step_text(&program, s)).collect();
         seen.sort();
         seen.dedup();
         let all = ["crawl, false", "crawl, true", "fast, false", "fast, true", "slow, false", "slow, true"];

@@ -69,7 +69,7 @@ fn test(
 ) -> AbstractTest {
     let trace = run.witness.trace();
     AbstractTest {
-        steps: extract::steps(program, awaits, &trace, suite.settings.patience),
+        scripts: extract::scripts(program, awaits, &trace, suite.settings.patience),
         because: vec![format!("witness of {}", named.name)],
         predicts: extract::covered(program, &trace).cross_names(&program.coverage),
         ..AbstractTest::default()

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use hrdsl_ir::{
     EventPattern, Nanos, Program, Type, Unit, Value,
     event::ArgPattern,
-    test::{Test, TestStep},
+    test::{Test, TestScript, TestStep},
 };
 use hrdsl_trace::decimal;
 
@@ -32,10 +32,31 @@ fn write_test(out: &mut String, program: &Program, test: &Test) {
     for bin in &test.provenance.predicts {
         let _ = writeln!(out, "  predicts {}", quoted(bin.as_str()));
     }
-    for step in &test.steps {
-        let _ = writeln!(out, "  {}", step_text(program, step));
+    for script in &test.scripts {
+        let name = script.actor.map(|actor| &program.actor(actor).name);
+        if let Some(name) = name {
+            let _ = writeln!(out, "  {name} {{");
+        }
+        let indent = if name.is_some() { "    " } else { "  " };
+        for step in &script.steps {
+            let _ = writeln!(out, "{indent}{}", step_text(program, step));
+        }
+        if name.is_some() {
+            out.push_str("  }\n");
+        }
     }
     out.push_str("}\n");
+}
+
+/// All steps of a test, each after the name of its actor where actors have scripts of their own: `person: ask_leg`.
+#[must_use]
+pub fn step_lines(program: &Program, test: &Test) -> Vec<String> {
+    let of = |script: &TestScript| {
+        let whose = script.actor.map_or_else(String::new, |actor| format!("{}: ", program.actor(actor).name));
+        let lines = script.steps.iter().map(|step| format!("{whose}{}", step_text(program, step)));
+        lines.collect::<Vec<_>>()
+    };
+    test.scripts.iter().flat_map(of).collect()
 }
 
 fn quoted(text: &str) -> String {
@@ -43,13 +64,13 @@ fn quoted(text: &str) -> String {
 }
 
 /// One step as it is written.
-#[must_use]
-pub fn step_text(program: &Program, step: &TestStep) -> String {
+pub(crate) fn step_text(program: &Program, step: &TestStep) -> String {
     match step {
-        TestStep::Do { event, args, samples } => {
+        TestStep::Do { event, args, samples, meanwhile } => {
             let declared = program.event(*event);
             let args = declared.params.iter().zip(args).map(|(p, v)| (p.name.as_str(), value_text(p.ty, *v)));
-            let mut text = call(&declared.name, args);
+            let mut text = if *meanwhile { "meanwhile ".to_owned() } else { String::new() };
+            text.push_str(&call(&declared.name, args));
             let names = declared.stimulus.iter().flat_map(|s| &s.samples);
             let with: Vec<String> =
                 names.zip(samples).map(|(s, v)| format!("{} = {}", s.name, value_text(s.ty, *v))).collect();
@@ -144,7 +165,8 @@ mod tests {
     fn written(names: &[&str]) -> String {
         let params: Vec<(&str, Type)> = names.iter().map(|n| (*n, METRE)).collect();
         let args = (1..=names.len()).map(|n| Value::Float(n as f64)).collect();
-        step_text(&program(&params), &TestStep::Do { event: EventId(0), args, samples: Vec::new() })
+        let step = TestStep::Do { event: EventId(0), args, samples: Vec::new(), meanwhile: false };
+        step_text(&program(&params), &step)
     }
 
     #[test]
@@ -181,8 +203,8 @@ mod tests {
         let program = program(&[("how.pace", pace), ("how.push", push), ("on", Type::Bool)]);
         let fast = Value::Symbol(Symbol::intern("fast"));
         let args = vec![fast, Value::Float(-0.5), Value::Bool(true)];
-        let step = TestStep::Do { event: EventId(0), args, samples: Vec::new() };
-        assert_eq!(step_text(&program, &step), "go((fast, -0.5 m/s^2), true)");
+        let step = TestStep::Do { event: EventId(0), args, samples: Vec::new(), meanwhile: true };
+        assert_eq!(step_text(&program, &step), "meanwhile go((fast, -0.5 m/s^2), true)");
         let args = vec![ArgPattern::Is(fast), ArgPattern::Any, ArgPattern::Any];
         let step = TestStep::Await { events: vec![EventPattern { event: EventId(0), args }], within: 0 };
         assert_eq!(step_text(&program, &step), "await go((fast, _), _) within 0 s");

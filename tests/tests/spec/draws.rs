@@ -20,23 +20,29 @@ use crate::page::{read, split};
 
 const SCENARIO: &str = "scenario draws
     actor person : environment
+    actor child  : environment
     stimulus act(kind: 0..6) by person {
       sample number in -3 .. 40
       sample near in if kind > 3 { -10 cm .. 20 cm } else { 0 m .. 0 m }
       sample turn in 0 rad .. 3 rad
       hold near / 1 m * 1 s
     }
-    suite chance by random { stimuli act length 3..9 pause 0 s .. 10 s tests 12 }";
+    stimulus run(far: bool) by child {
+      sample speed in 0 m/s .. 2 m/s
+      hold 1 s
+    }
+    suite chance by random { stimuli act length 3..9 pause 0 s .. 10 s tests 12 }
+    suite chances by random { stimuli act, run length 3..9 pause 0 s .. 10 s tests 12 }";
 
 /// What hrdsl draws, a line for each number.
-fn drawn(seed: u64) -> (String, Vec<u64>) {
+fn drawn(seed: u64, suite: usize) -> (String, Vec<u64>) {
     let compilation = compile(InputFile { name: "draws", text: SCENARIO }, &[]);
     let program = compilation.program.expect("the scenario compiles");
-    let generated = generate(&program, &program.suites[0], None, seed).unwrap();
+    let generated = generate(&program, &program.suites[suite], None, seed).unwrap();
     let (mut lines, mut seeds) = (String::new(), Vec::new());
     for test in &generated.tests {
         seeds.push(test.seed);
-        for step in &test.steps {
+        for step in test.scripts.iter().flat_map(|script| &script.steps) {
             match step {
                 TestStep::Wait { time } => {
                     let _ = writeln!(lines, "{time}");
@@ -46,9 +52,8 @@ fn drawn(seed: u64) -> (String, Vec<u64>) {
                         let _ = match value {
                             Value::Int(n) => writeln!(lines, "{n}"),
                             Value::Float(x) => writeln!(lines, "{:016x}", x.to_bits()),
-                            Value::Bool(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => {
-                                panic!("{value:?}")
-                            }
+                            Value::Bool(b) => writeln!(lines, "{b}"),
+                            Value::Symbol(_) | Value::Text(_) | Value::List(_) => panic!("{value:?}"),
                         };
                     }
                 }
@@ -79,6 +84,34 @@ for own in seeds:
         print(hexed(samples.sample(0.0, 3.0)))
 ";
 
+/// The same of two actors, each with a script.
+const BY_THE_PAGE_FOR_TWO: &str = "
+import struct, sys
+seed, seeds = int(sys.argv[1]), [int(s) for s in sys.argv[2:]]
+chance = Generator(seed)
+hexed = lambda x: '%016x' % struct.unpack('>Q', struct.pack('>d', x))[0]
+for own in seeds:
+    scripts = [], []
+    for _ in range(chance.whole(3, 9, 32)):
+        pause = chance.whole(0, 10 * 10**9, 64) // 10**8 * 10**8
+        choice = chance.whole(0, 8, 32)
+        scripts[choice > 6].append((pause, choice))
+    stream = 0
+    for script in scripts:
+        samples = Generator(own, stream)
+        stream += bool(script)
+        for pause, choice in script:
+            if pause: print(pause)
+            if choice > 6:
+                print('true' if choice == 8 else 'false')
+                print(hexed(samples.sample(0.0, 2.0)))
+                continue
+            print(choice)
+            print(samples.sample(-3, 40))
+            print(hexed(samples.sample(-0.1, 0.2) if choice > 3 else samples.sample(0.0, 0.0)))
+            print(hexed(samples.sample(0.0, 3.0)))
+";
+
 /// The programs of the page, followed by one more; what it prints.
 fn by_the_page(more: &str, args: &[String]) -> String {
     let blocks = split(&read("spec/randomness.md")).0.into_iter().filter(|b| b.info == "python");
@@ -103,10 +136,12 @@ fn compare(what: &str, expected: &str, got: &str) {
 #[test]
 fn the_page_draws_what_the_generators_draw() {
     for seed in [0, 1, 77, 18_000_000] {
-        let (expected, seeds) = drawn(seed);
-        let args: Vec<String> = std::iter::once(seed).chain(seeds).map(|s| s.to_string()).collect();
-        compare(&format!("seed {seed}"), &expected, &by_the_page(BY_THE_PAGE, &args));
-        assert!(expected.lines().count() > 100);
+        for (suite, page) in [BY_THE_PAGE, BY_THE_PAGE_FOR_TWO].into_iter().enumerate() {
+            let (expected, seeds) = drawn(seed, suite);
+            let args: Vec<String> = std::iter::once(seed).chain(seeds).map(|s| s.to_string()).collect();
+            compare(&format!("seed {seed}, suite {suite}"), &expected, &by_the_page(page, &args));
+            assert!(expected.lines().count() > 100);
+        }
     }
 }
 

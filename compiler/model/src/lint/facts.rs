@@ -301,7 +301,7 @@ impl<'a> ScenarioFacts<'a> {
                 self.waits_for(span, vec![WantedFact::of(pattern)]);
             }
         }
-        for step in scenario.tests.iter().flat_map(|t| &t.steps) {
+        for step in scenario.tests.iter().flat_map(|t| &t.scripts).flat_map(|script| &script.steps) {
             match step {
                 TestStep::Do { event, args, .. } => self.makes(*event, args.iter().copied().map(Some)),
                 TestStep::Await { events, .. } => events.iter().for_each(|p| self.reads(p.event)),

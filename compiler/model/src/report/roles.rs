@@ -39,6 +39,13 @@ pub(crate) fn not_its_event(event: &str, owner: &str, player: &str, span: Span) 
         .help(format!("only what plays `{owner}` can do it; to react to it, use `on {event}`"))
 }
 
+/// HR0302: a step in the block of another actor.
+pub(crate) fn not_its_step(event: &str, owner: &str, actor: &str, span: Span) -> Diagnostic {
+    let message = format!("`{event}` is done by `{owner}`, but this is the block of `{actor}`");
+    Diagnostic::error(DiagnosticCode::NOT_ITS_EVENT, span, message)
+        .help(format!("move it to the block of `{owner}`; to wait for it here, write `await {event}`"))
+}
+
 /// HR0302: the event of an `emit` in a stimulus of another actor.
 pub(crate) fn emits_for_other(event: &str, owner: &str, actor: &str, span: Span) -> Diagnostic {
     let message = format!("`{event}` is made by `{owner}`, but the stimulus is by `{actor}`");

@@ -1,11 +1,12 @@
-//! Members of a system that have a block of their own: programs, middleware, and what is bound to it.
+//! Members that have a block of their own: programs and middleware of a system, what is bound to it, and what an actor
+//! does in a test.
 
 use std::ops::Range;
 
 use super::{RecoveringParser, report, run};
 use crate::ast::{
     BindingEntry, BindingMember, BindingMemberKind, MiddlewareSyntax, ProgramSyntax, SystemMember,
-    SystemMemberKind,
+    SystemMemberKind, TestMember, TestMemberKind,
 };
 use crate::context::ParsedUnit;
 use crate::token::TokenKind;
@@ -30,8 +31,20 @@ impl RecoveringParser<'_, '_> {
             ParsedUnit::BindingMember(BindingMember { kind, .. }) => {
                 ParsedUnit::BindingMember(BindingMember { kind: self.binding_block(kind, block), span })
             }
+            ParsedUnit::TestMember(TestMember { kind, .. }) => {
+                ParsedUnit::TestMember(TestMember { kind: self.test_block(kind, block), span })
+            }
             other => other,
         })
+    }
+
+    fn test_block(&mut self, kind: TestMemberKind, block: Range<usize>) -> TestMemberKind {
+        match kind {
+            TestMemberKind::Script { actor, .. } => {
+                TestMemberKind::Script { actor, members: self.members(block) }
+            }
+            other => other,
+        }
     }
 
     fn system_block(&mut self, kind: SystemMemberKind, block: Range<usize>) -> SystemMemberKind {

@@ -16,7 +16,7 @@ use hrdsl_ir::{
         DeviceSort, NumberCount,
     },
     event::{Stimulus, StimulusStep},
-    test::{Test, TestProvenance, TestStep},
+    test::{Test, TestProvenance, TestScript, TestStep},
     value::SECOND,
     world::{
         ArmId, DeviceCommandId, DeviceId, DeviceKindId, GripperId, RuleTrigger, Signal, SignalId, World,
@@ -128,11 +128,18 @@ pub fn kinds() -> Vec<DeviceKind> {
 }
 
 pub fn test(steps: Vec<TestStep>) -> Test {
-    Test { name: "t".into(), seed: 1, provenance: TestProvenance::default(), steps, origin: Span::default() }
+    let scripts = TestScript::of_all(steps);
+    Test {
+        name: "t".into(),
+        seed: 1,
+        provenance: TestProvenance::default(),
+        scripts,
+        origin: Span::default(),
+    }
 }
 
 pub fn ask(n: i64) -> TestStep {
-    TestStep::Do { event: EventId(0), args: vec![Value::Int(n)], samples: Vec::new() }
+    TestStep::Do { event: EventId(0), args: vec![Value::Int(n)], samples: Vec::new(), meanwhile: false }
 }
 
 pub fn wait(seconds: i64) -> TestStep {
@@ -177,6 +184,17 @@ pub fn system(steps: Vec<ToldStep>) -> (ToldSystem, Answers) {
     (system, answers)
 }
 
+/// The players of a test's scripts, and of the system.
+pub fn players<'p>(
+    program: &'p Program,
+    test: &'p Test,
+    system: impl ActorPlayer + 'p,
+) -> Vec<Box<dyn ActorPlayer + 'p>> {
+    let mut players: Vec<Box<dyn ActorPlayer + 'p>> = vec![Box::new(system)];
+    players.extend(ScriptPlayer::all(program, test).map(|p| Box::new(p) as Box<dyn ActorPlayer + 'p>));
+    players
+}
+
 /// Runs a test against a system in a world, for at most a minute.
 pub fn run(
     steps: Vec<TestStep>,
@@ -185,10 +203,7 @@ pub fn run(
     clock: Option<ToldClock>,
 ) -> (Vec<String>, HarnessRun) {
     let (program, test) = (program(), test(steps));
-    let players: Vec<Box<dyn ActorPlayer + '_>> = vec![
-        Box::new(ScriptPlayer::new(&program, &test)),
-        Box::new(SystemPlayer::new(&program, ROBOT, system)),
-    ];
+    let players = players(&program, &test, SystemPlayer::new(&program, ROBOT, system));
     let stage = world.map(|world| WorldStage::new(&program, Box::new(world)));
     let mut harness = HarnessLoop::new(&program, players, stage, 60 * SECOND);
     if let Some(clock) = clock {

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     coverage::BinName,
-    test::{TestMethod, TestProvenance},
+    test::{TestMethod, TestProvenance, TestScript},
     value::nanos,
 };
 use hrdsl_source::Span;
@@ -10,14 +10,14 @@ use hrdsl_syntax::ast::{self, CallSyntax, ItemSyntaxKind, NameSyntax, TestMember
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
-    checker::Checker,
+    checker::{Checker, NOBODY},
     state::{scope::ExprEnv, table::NameTable},
     value::measure::text,
 };
 use crate::{
-    InferredType, Test, TestStep, Value,
+    ActorId, InferredType, Role, Test, TestStep, Value,
     noun::Noun,
-    report::{names, scenario_tests::bad_test, types},
+    report::{names, roles, scenario_tests::bad_test, types},
 };
 
 impl Checker<'_> {
@@ -58,11 +58,11 @@ impl Checker<'_> {
             name: format!("{prefix}{short}"),
             seed: 0,
             provenance: TestProvenance { suite, ..TestProvenance::default() },
-            steps: Vec::new(),
+            scripts: Vec::new(),
             origin: span,
         };
         if self.source.looks_at(CheckPhase::Tests, span) {
-            test.members.iter().for_each(|member| self.test_member(&member.kind, &mut resolved));
+            self.test_members(&test.members, &mut resolved);
         }
         let (issues, noun) = (&mut self.issues, Noun::Test);
         if issues.declare_as(table, noun, &full, test.name.span).is_some() {
@@ -70,7 +70,66 @@ impl Checker<'_> {
         }
     }
 
-    fn test_member(&mut self, member: &Member, test: &mut Test) {
+    /// Steps of the test itself are the script of all; where actors have blocks, there are none.
+    fn test_members(&mut self, members: &[ast::TestMember], test: &mut Test) {
+        let mut steps = Vec::new();
+        let mut first = None;
+        for member in members {
+            match &member.kind {
+                Member::Script { actor, members } => self.script(actor, members, test),
+                kind => {
+                    if let Some(step) = self.script_step(kind, None) {
+                        first.get_or_insert(member.span);
+                        steps.push(step);
+                    }
+                    self.test_header(kind, test);
+                }
+            }
+        }
+        if test.scripts.is_empty() {
+            test.scripts = TestScript::of_all(steps);
+        } else if let Some(span) = first {
+            let help = "put it into the block of the actor that does it, or waits";
+            self.report(bad_test(span, "a step beside the blocks of actors", help));
+        }
+    }
+
+    /// `person { … }`
+    fn script(&mut self, name: &NameSyntax, members: &[ast::TestMember], test: &mut Test) {
+        let actor = self.actor(name);
+        if let Some(actor) = actor
+            && self.role_of(actor) == Role::System
+        {
+            let message = format!("`{}` is the system: the code under test plays it", name.text);
+            self.report(bad_test(name.span, message, "a test says what the environment does"));
+        }
+        if actor.is_some() && test.scripts.iter().any(|script| script.actor == actor) {
+            let message = format!("`{}` has a block already", name.text);
+            self.report(bad_test(name.span, message, "put all that it does into one block"));
+        }
+        let mut steps = Vec::new();
+        for member in members {
+            match &member.kind {
+                Member::Do { .. } | Member::Await { .. } | Member::Wait(_) => {
+                    steps.extend(self.script_step(&member.kind, actor));
+                }
+                Member::Seed(_) | Member::Method(_) | Member::Because(_) | Member::Predicts(_) => {
+                    let message = "this is said of the test, not of an actor";
+                    self.report(bad_test(member.span, message, "move it before the blocks"));
+                }
+                Member::Script { .. } => {
+                    let message = "a block of an actor within another";
+                    self.report(bad_test(member.span, message, "put it after the other block"));
+                }
+                Member::Error => {}
+            }
+        }
+        if actor.is_some() {
+            test.scripts.push(TestScript { actor, steps });
+        }
+    }
+
+    fn test_header(&mut self, member: &Member, test: &mut Test) {
         match member {
             Member::Seed(e) => test.seed = self.seed(e),
             Member::Method(name) => {
@@ -84,17 +143,39 @@ impl Checker<'_> {
                 self.predicted(text);
                 test.provenance.predicts.extend(BinName::parse(&text.text));
             }
-            Member::Do { call, with } => test.steps.extend(self.test_do(call, with)),
+            Member::Do { .. }
+            | Member::Await { .. }
+            | Member::Wait(_)
+            | Member::Script { .. }
+            | Member::Error => {}
+        }
+    }
+
+    /// A step, of this actor if it stands in an actor's block.
+    fn script_step(&mut self, member: &Member, actor: Option<ActorId>) -> Option<TestStep> {
+        match member {
+            Member::Do { call, with, meanwhile } => self.test_do(call, with, *meanwhile, actor),
             Member::Await { events, within } => {
-                let events = self.patterns(events);
+                let patterns = self.patterns_with(events, &mut ExprEnv::constants());
+                if let Some(actor) = actor {
+                    for (pattern, span) in &patterns {
+                        self.perceives(actor, pattern.event, *span, true);
+                    }
+                }
+                let events = patterns.into_iter().map(|(pattern, _)| pattern).collect();
                 let within = nanos(self.time(within, "the time to wait", true).unwrap_or(1.0));
-                test.steps.push(TestStep::Await { events, within });
+                Some(TestStep::Await { events, within })
             }
             Member::Wait(e) => {
                 let time = nanos(self.time(e, "the time to wait", false).unwrap_or(0.0));
-                test.steps.push(TestStep::Wait { time });
+                Some(TestStep::Wait { time })
             }
-            Member::Error => {}
+            Member::Seed(_)
+            | Member::Method(_)
+            | Member::Because(_)
+            | Member::Predicts(_)
+            | Member::Script { .. }
+            | Member::Error => None,
         }
     }
 
@@ -125,8 +206,23 @@ impl Checker<'_> {
         }
     }
 
-    fn test_do(&mut self, call: &CallSyntax, with: &[(NameSyntax, ast::ExprSyntax)]) -> Option<TestStep> {
+    fn test_do(
+        &mut self,
+        call: &CallSyntax,
+        with: &[(NameSyntax, ast::ExprSyntax)],
+        meanwhile: bool,
+        actor: Option<ActorId>,
+    ) -> Option<TestStep> {
         let event = self.test_stimulus(&call.name)?;
+        let by = self.s.events[usize::from(event.0)].from;
+        if let Some(actor) = actor
+            && by != actor
+            && by != NOBODY
+            && actor != NOBODY
+        {
+            let (by, actor) = (self.actor_name(by), self.actor_name(actor));
+            self.report(roles::not_its_step(&call.name.text, by, actor, call.name.span));
+        }
         let fields = self.fields_of(event);
         let args = self.args(Noun::Stimulus, call, &fields, &mut ExprEnv::constants());
         for arg in &args {
@@ -136,7 +232,8 @@ impl Checker<'_> {
         }
         let samples = self.samples(event, call, with)?;
         let args: Option<Vec<Value>> = args.iter().map(crate::TypedExpr::constant).collect();
-        Some(TestStep::Do { event, args: args.filter(|a| a.len() == self.arity_of(event))?, samples })
+        let args = args.filter(|a| a.len() == self.arity_of(event))?;
+        Some(TestStep::Do { event, args, samples, meanwhile })
     }
 
     /// The values of the second tier: of every sample, or of none.

@@ -4,7 +4,7 @@ use crate::ast::{
     AccessSyntax, AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, AutomatonSyntax,
     DeviceMember, DeviceMemberKind, EdgeActionKind, EdgeSyntax, FormulaSyntax, FunctionSyntax, PlanSyntax,
     QuerySyntax, RuleTriggerSyntax, StatementSyntax, StatementSyntaxKind, StepSyntax, StepSyntaxKind,
-    SuiteMemberKind, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
+    SuiteMemberKind, TestMember, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
 };
 use crate::print::marks::{BlockKind, TokenMarker};
 use crate::token::TokenKind;
@@ -272,16 +272,21 @@ impl TokenMarker<'_> {
         }
     }
 
-    pub(super) fn test_member(&mut self, kind: &TestMemberKind) {
-        match kind {
+    pub(super) fn test_member(&mut self, member: &TestMember) {
+        self.start(member.span.start);
+        match &member.kind {
             TestMemberKind::Seed(expr) | TestMemberKind::Wait(expr) => self.expr(expr),
-            TestMemberKind::Do { call, with } => {
+            TestMemberKind::Do { call, with, .. } => {
                 self.call(call);
                 with.iter().for_each(|(_, value)| self.expr(value));
             }
             TestMemberKind::Await { events, within } => {
                 self.calls(events);
                 self.expr(within);
+            }
+            TestMemberKind::Script { members, .. } => {
+                self.block(member.span.start, BlockKind::Members);
+                members.iter().for_each(|m| self.test_member(m));
             }
             TestMemberKind::Method(_)
             | TestMemberKind::Because(_)

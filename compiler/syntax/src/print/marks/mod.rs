@@ -186,10 +186,7 @@ impl TokenMarker<'_> {
             system.members.iter().for_each(|m| self.system_member(m));
         }
         if let ItemSyntaxKind::Test(test) = kind {
-            for member in &test.members {
-                self.start(member.span.start);
-                self.test_member(&member.kind);
-            }
+            test.members.iter().for_each(|m| self.test_member(m));
         }
     }
 

@@ -1,0 +1,210 @@
+//! The abstract syntax tree of worlds and devices.
+
+use hrdsl_source::Span;
+use serde::Serialize;
+
+use crate::ast::{
+    AllowSyntax, CallSyntax, ExprSyntax, NameSyntax, ParamSyntax, PathSyntax, RangeSyntax, TextSyntax,
+    TypeExpr,
+};
+
+/// `part bert2 { … }`: a reusable piece of world, in its own coordinates.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PartSyntax {
+    pub name: NameSyntax,
+    pub params: Option<Vec<ParamSyntax>>,
+    pub members: Vec<WorldMember>,
+}
+
+/// `world { … }`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorldSyntax {
+    pub members: Vec<WorldMember>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorldMember {
+    pub doc: String,
+    pub kind: WorldMemberKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WorldMemberKind {
+    /// `step 10 ms`
+    Step(ExprSyntax),
+    /// `sample 50 ms`
+    Sample(ExprSyntax),
+    /// `gravity (0, 0, -9.81)`: m/s², bare numbers
+    Gravity(ExprSyntax),
+    /// `part robot = bert2 at (0 m, 0 m, 0 m)`; turned about z by `rotated (0 deg, 0 deg, 90 deg)`
+    Part {
+        name: NameSyntax,
+        of: NameSyntax,
+        args: Option<Vec<ExprSyntax>>,
+        at: ExprSyntax,
+        rotated: Option<ExprSyntax>,
+    },
+    Body(BodySyntax),
+    /// `joint j: parent -> child at (…) axis (0, 0, 1) limits -60 deg .. 60 deg`
+    Joint {
+        name: NameSyntax,
+        parent: NameSyntax,
+        child: NameSyntax,
+        at: ExprSyntax,
+        axis: ExprSyntax,
+        limits: RangeSyntax,
+    },
+    /// `arm a: j1, j2 tip palm tool (8 cm, 0 m, 0 m) speed 0.2 rad/s`
+    Arm {
+        name: NameSyntax,
+        joints: Vec<NameSyntax>,
+        tip: NameSyntax,
+        tool: ExprSyntax,
+        speed: ExprSyntax,
+    },
+    /// `gripper g: palm tool (8 cm, 0 m, 0 m) reach 4 cm delay 500 ms`
+    Gripper {
+        name: NameSyntax,
+        palm: NameSyntax,
+        tool: ExprSyntax,
+        reach: ExprSyntax,
+        delay: ExprSyntax,
+    },
+    Base(Box<BaseSyntax>),
+    Laser(Box<LaserSyntax>),
+    Posture(Box<PostureSyntax>),
+    /// `current leg in leg1, leg2 by robot.grip`
+    Current {
+        name: NameSyntax,
+        of: Vec<PathSyntax>,
+        by: PathSyntax,
+    },
+    /// `signal gaze: bool to robot = …`
+    Signal {
+        name: NameSyntax,
+        ty: TypeExpr,
+        to: Vec<NameSyntax>,
+        value: ExprSyntax,
+    },
+    Rule(RuleSyntax),
+    Allow(AllowSyntax),
+    Error,
+}
+
+/// `body palm: dynamic box(4 cm, 8 cm, 8 cm) at (…) rotated (…) mass 0.4 kg ghost graspable`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodySyntax {
+    pub name: NameSyntax,
+    /// `fixed`, `dynamic`, `kinematic`
+    pub motion: NameSyntax,
+    /// `box`, `sphere`, `capsule`, `cylinder`
+    pub shape: NameSyntax,
+    pub sizes: Vec<ExprSyntax>,
+    pub at: ExprSyntax,
+    pub rotated: Option<ExprSyntax>,
+    pub mass: Option<ExprSyntax>,
+    pub ghost: bool,
+    pub graspable: bool,
+}
+
+/// `base b: platform speed 0.5 m/s turn 1 rad/s acceleration 1 m/s^2`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BaseSyntax {
+    pub name: NameSyntax,
+    pub body: NameSyntax,
+    pub speed: ExprSyntax,
+    /// `sideways 0.3 m/s`: without turning, after `speed`
+    pub sideways: Option<ExprSyntax>,
+    pub turn: ExprSyntax,
+    pub acceleration: ExprSyntax,
+    /// `timeout 500 ms`: how long a set-point is in force, at the end
+    pub timeout: Option<ExprSyntax>,
+}
+
+/// `laser l: mast at (0 m, 0 m, 20 cm) angles -135 deg .. 135 deg beams 271 range 5 cm .. 10 m`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LaserSyntax {
+    pub name: NameSyntax,
+    pub body: NameSyntax,
+    /// In the body's own frame.
+    pub at: ExprSyntax,
+    pub angles: RangeSyntax,
+    pub beams: ExprSyntax,
+    pub range: RangeSyntax,
+}
+
+/// `posture home: arm at [0 deg, 90 deg]`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PostureSyntax {
+    pub name: NameSyntax,
+    pub arm: PathSyntax,
+    /// Of its joints, from the base to the tip.
+    pub angles: ExprSyntax,
+}
+
+/// `on e(args) when c emit f(args)`, `on close robot.grip emit f`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RuleSyntax {
+    pub on: RuleTriggerSyntax,
+    pub when: Option<ExprSyntax>,
+    pub emit: CallSyntax,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RuleTriggerSyntax {
+    Event(CallSyntax),
+    /// The system told a device to do this.
+    Commanded {
+        command: NameSyntax,
+        device: PathSyntax,
+    },
+}
+
+/// `device gripper { … }`: what all devices of a kind can be told
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DeviceSyntax {
+    pub kind: NameSyntax,
+    pub members: Vec<DeviceMember>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DeviceMember {
+    pub doc: String,
+    pub kind: DeviceMemberKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DeviceMemberKind {
+    Command(DeviceCommandSyntax),
+    Error,
+}
+
+/// `command close do close_fingers expect holds else "the gripper closed on nothing"`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DeviceCommandSyntax {
+    pub name: NameSyntax,
+    pub params: Vec<CommandParamSyntax>,
+    pub primitive: NameSyntax,
+    pub expect: Option<ExpectationSyntax>,
+}
+
+/// `speed: angular_speed?`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CommandParamSyntax {
+    pub param: ParamSyntax,
+    /// `?`: may be left out
+    pub optional: bool,
+}
+
+/// `expect not holds else "the gripper still holds something"`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExpectationSyntax {
+    pub negated: bool,
+    pub measure: NameSyntax,
+    pub otherwise: TextSyntax,
+}
