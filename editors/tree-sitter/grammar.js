@@ -844,6 +844,9 @@ module.exports = grammar({
         field("axis", $.expression),
         keyword($, "limits"),
         field("limits", $.range),
+        optional(seq(keyword($, "effort"), field("effort", $.expression))),
+        optional(seq(keyword($, "speed"), field("speed", $.expression))),
+        optional(seq(keyword($, "rotor"), field("rotor", $.expression))),
       ),
     arm: ($) =>
       seq(
@@ -857,6 +860,7 @@ module.exports = grammar({
         field("tool", $.expression),
         keyword($, "speed"),
         field("speed", $.expression),
+        optional(seq(keyword($, "contact"), field("contact", $.expression))),
       ),
     gripper: ($) =>
       seq(
@@ -864,12 +868,14 @@ module.exports = grammar({
         field("name", $.identifier),
         ":",
         field("palm", $.identifier),
+        optional(seq(keyword($, "fingers"), list(field("finger", $.identifier)))),
         keyword($, "tool"),
         field("tool", $.expression),
         keyword($, "reach"),
         field("reach", $.expression),
         keyword($, "delay"),
         field("delay", $.expression),
+        optional(seq(keyword($, "force"), field("force", $.expression))),
       ),
     base: ($) =>
       seq(

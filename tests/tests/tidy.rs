@@ -22,7 +22,7 @@ const LONG: &[(&str, usize)] = &[
     ("compiler/model/src/check/automata/query.rs", 525),
     ("compiler/model/src/check/value/expr.rs", 646),
     ("compiler/model/src/lint/applicable.rs", 568),
-    ("compiler/syntax/src/ast.rs", 913),
+    ("compiler/syntax/src/ast.rs", 759),
     ("compiler/syntax/tests/format.rs", 734),
     ("compiler/tests/lower.rs", 1035),
     ("runtime/bdi/src/cycle.rs", 507),

@@ -46,6 +46,7 @@ pub enum Unit {
     Pascal,
     Hertz,
     NewtonMetre,
+    KilogramSquareMetre,
     Byte,
 }
 
@@ -67,6 +68,7 @@ impl Unit {
             Unit::Pascal => "Pa",
             Unit::Hertz => "Hz",
             Unit::NewtonMetre => "Nm",
+            Unit::KilogramSquareMetre => "kgm^2",
             Unit::Byte => "B",
         }
     }
@@ -301,6 +303,7 @@ mod tests {
             (Unit::Pascal, "Pa", "\"pascal\""),
             (Unit::Hertz, "Hz", "\"hertz\""),
             (Unit::NewtonMetre, "Nm", "\"newton_metre\""),
+            (Unit::KilogramSquareMetre, "kgm^2", "\"kilogram_square_metre\""),
         ];
         for (unit, symbol, data) in written {
             assert_eq!((unit.symbol(), serde_json::to_string(&unit).unwrap().as_str()), (symbol, data));

@@ -142,19 +142,49 @@ pub enum BodyShape {
     },
 }
 
-/// A revolute joint; its zero is the bodies' starting poses.
+/// A joint with one degree of freedom; its zero is the bodies' starting poses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
     pub name: String,
     pub parent: BodyId,
     pub child: BodyId,
+    pub motion: JointMotion,
     /// The joint's place at the start, in the world.
     pub anchor: Vec3,
     /// A unit vector at the start, in the world.
     pub axis: Vec3,
-    /// Radians.
+    /// Radians of a hinge, metres of a slider.
     pub lo: f64,
     pub hi: f64,
+    pub drive: JointDrive,
+}
+
+impl Joint {
+    /// Whether it cannot move: it makes its two bodies one.
+    #[must_use]
+    pub fn is_rigid(&self) -> bool {
+        self.lo == 0.0 && self.hi == 0.0
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JointMotion {
+    /// About its axis.
+    Hinge,
+    /// Along its axis.
+    Slider,
+}
+
+/// What moves a joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JointDrive {
+    /// The greatest torque (N·m), or force of a slider (N), of its motor; `None`: as much as is needed.
+    pub effort: Option<f64>,
+    /// The greatest speed that its motor is asked for, rad/s or m/s; `None`: that of its arm.
+    pub speed: Option<f64>,
+    /// The inertia of a hinge's rotor about the joint's axis, as a gear multiplies it, kg·m².
+    pub rotor: f64,
 }
 
 /// A chain of joints under motor control, from the base to the tip, with a small kinematic planner.
@@ -166,8 +196,10 @@ pub struct Arm {
     pub tip: BodyId,
     /// The point of the tip that is brought there, in the tip's own frame.
     pub tool: Vec3,
-    /// The controller's limit on each joint's speed, rad/s, unless the program asks for less.
+    /// The controller's limit on each joint's speed, rad/s (m/s of a slider), unless the program asks for less.
     pub max_speed: f64,
+    /// It stops when what it meets presses it harder than this, N; `None`: it does not feel contacts.
+    pub contact_limit: Option<f64>,
     /// In the order of the text; each name once.
     pub postures: Vec<NamedPosture>,
 }
@@ -180,17 +212,22 @@ pub struct NamedPosture {
     pub angles: Vec<f64>,
 }
 
-/// A hand: it holds what is within reach when it closes.
+/// A hand: it holds what its fingers close on, or, without fingers of its own, what is within reach when it closes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gripper {
     pub name: String,
     pub palm: BodyId,
+    /// Sliders that move fingers: closed at their upper limits, open at their lower. None: a hand that is one body.
+    pub fingers: Vec<JointId>,
     /// The point between the fingers, in the palm's frame.
     pub tool: Vec3,
-    /// A body is taken if the distance from that point to its surface is at most this.
+    /// A hand without fingers takes a body if the distance from that point to its surface is at most this; any hand loses one that
+    /// comes to be farther than this and some more.
     pub reach: f64,
-    /// Time from the command until it holds, or lets go.
+    /// Time from the command until it holds, or lets go; in which fingers go all their way.
     pub delay: Nanos,
+    /// With how much each finger presses, N. What it holds bears as much as friction on both sides does.
+    pub force: f64,
     /// What it can hold.
     pub holds: Vec<BodyId>,
 }

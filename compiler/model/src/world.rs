@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     device::DeviceBody,
-    world::{DeviceCommandId, DeviceId, NamedPosture},
+    world::{DeviceCommandId, DeviceId, JointDrive, JointMotion, NamedPosture},
 };
 use hrdsl_source::Span;
 use serde::Serialize;
@@ -86,8 +86,11 @@ pub struct TypedJoint {
     pub anchor: [f64; 3],
     /// Not zero; not yet of length 1.
     pub axis: [f64; 3],
+    pub motion: JointMotion,
+    /// rad of a hinge, m of a slider
     pub lo: f64,
     pub hi: f64,
+    pub drive: JointDrive,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -97,6 +100,8 @@ pub struct TypedArm {
     pub tip: BodyId,
     pub tool: [f64; 3],
     pub speed: f64,
+    /// N
+    pub contact: Option<f64>,
     pub postures: Vec<NamedPosture>,
 }
 
@@ -104,10 +109,13 @@ pub struct TypedArm {
 pub struct TypedGripper {
     pub name: String,
     pub palm: BodyId,
+    pub fingers: Vec<JointId>,
     pub tool: [f64; 3],
     pub reach: f64,
     /// Seconds.
     pub delay: f64,
+    /// N
+    pub force: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -19,9 +19,11 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
     let gripper = |g: &from::TypedGripper| Gripper {
         name: g.name.clone(),
         palm: g.palm,
+        fingers: g.fingers.clone(),
         tool: g.tool,
         reach: g.reach,
         delay: nanos(g.delay),
+        force: g.force,
         holds: graspable.clone(),
     };
     let arm = |a: &from::TypedArm| Arm {
@@ -30,6 +32,7 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         tip: a.tip,
         tool: a.tool,
         max_speed: a.speed,
+        contact_limit: a.contact,
         postures: a.postures.clone(),
     };
     World {
@@ -102,10 +105,12 @@ fn joint(j: &from::TypedJoint) -> Joint {
         name: j.name.clone(),
         parent: j.parent,
         child: j.child,
+        motion: j.motion,
         anchor: j.frame.place(j.anchor),
         axis: axis.map(|x| x / length),
         lo: j.lo,
         hi: j.hi,
+        drive: j.drive,
     }
 }
 

@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::ast::{CallSyntax, ExprSyntax, NameSyntax, PathSyntax, TextSyntax};
+use crate::expr::{CallSyntax, ExprSyntax, NameSyntax, PathSyntax, TextSyntax};
 
 /// `ros1 { topic "/scan" : sensor_msgs/LaserScan in at 10 Hz { … } }`
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -17,6 +17,7 @@ pub mod ast;
 mod binding;
 mod context;
 mod expected;
+mod expr;
 mod heads;
 mod lex;
 mod outline;

@@ -3,7 +3,10 @@
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::ast::{ExprSyntax, MiddlewareSyntax, NameSyntax, TextSyntax};
+use crate::{
+    binding::MiddlewareSyntax,
+    expr::{ExprSyntax, NameSyntax, TextSyntax},
+};
 
 /// `system robot { run "python3 robot.py" … }`, `system with_rospy plays robot { … }`
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::ast::{
+use crate::expr::{
     AllowSyntax, CallSyntax, ExprSyntax, NameSyntax, ParamSyntax, PathSyntax, RangeSyntax, TextSyntax,
     TypeExpr,
 };
@@ -47,31 +47,9 @@ pub enum WorldMemberKind {
         rotated: Option<ExprSyntax>,
     },
     Body(BodySyntax),
-    /// `joint j: parent -> child at (…) axis (0, 0, 1) limits -60 deg .. 60 deg`
-    Joint {
-        name: NameSyntax,
-        parent: NameSyntax,
-        child: NameSyntax,
-        at: ExprSyntax,
-        axis: ExprSyntax,
-        limits: RangeSyntax,
-    },
-    /// `arm a: j1, j2 tip palm tool (8 cm, 0 m, 0 m) speed 0.2 rad/s`
-    Arm {
-        name: NameSyntax,
-        joints: Vec<NameSyntax>,
-        tip: NameSyntax,
-        tool: ExprSyntax,
-        speed: ExprSyntax,
-    },
-    /// `gripper g: palm tool (8 cm, 0 m, 0 m) reach 4 cm delay 500 ms`
-    Gripper {
-        name: NameSyntax,
-        palm: NameSyntax,
-        tool: ExprSyntax,
-        reach: ExprSyntax,
-        delay: ExprSyntax,
-    },
+    Joint(Box<JointSyntax>),
+    Arm(Box<ArmSyntax>),
+    Gripper(Box<GripperSyntax>),
     Base(Box<BaseSyntax>),
     Laser(Box<LaserSyntax>),
     Posture(Box<PostureSyntax>),
@@ -107,6 +85,43 @@ pub struct BodySyntax {
     pub mass: Option<ExprSyntax>,
     pub ghost: bool,
     pub graspable: bool,
+}
+
+/// `joint j: parent -> child at (…) axis (0, 0, 1) limits -60 deg .. 60 deg effort 40 Nm speed 1 rad/s rotor 0.1 kgm^2`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JointSyntax {
+    pub name: NameSyntax,
+    pub parent: NameSyntax,
+    pub child: NameSyntax,
+    pub at: ExprSyntax,
+    pub axis: ExprSyntax,
+    pub limits: RangeSyntax,
+    pub effort: Option<ExprSyntax>,
+    pub speed: Option<ExprSyntax>,
+    pub rotor: Option<ExprSyntax>,
+}
+
+/// `arm a: j1, j2 tip palm tool (8 cm, 0 m, 0 m) speed 0.2 rad/s contact 60 N`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmSyntax {
+    pub name: NameSyntax,
+    pub joints: Vec<NameSyntax>,
+    pub tip: NameSyntax,
+    pub tool: ExprSyntax,
+    pub speed: ExprSyntax,
+    pub contact: Option<ExprSyntax>,
+}
+
+/// `gripper g: palm fingers left, right tool (8 cm, 0 m, 0 m) reach 4 cm delay 500 ms force 40 N`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GripperSyntax {
+    pub name: NameSyntax,
+    pub palm: NameSyntax,
+    pub fingers: Vec<NameSyntax>,
+    pub tool: ExprSyntax,
+    pub reach: ExprSyntax,
+    pub delay: ExprSyntax,
+    pub force: Option<ExprSyntax>,
 }
 
 /// `base b: platform speed 0.5 m/s turn 1 rad/s acceleration 1 m/s^2`

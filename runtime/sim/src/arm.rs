@@ -1,118 +1,79 @@
-//! The arm's controller: plans a posture, generates the ramp that its motors follow, and tells when it has arrived.
+//! The arm's controller: has a way planned, lets the motors follow it as far as they can, and tells when it has arrived, or why
+//! not.
 
 use hrdsl_ir::Nanos;
-use hrdsl_ir::value::{nanos, seconds};
-use hrdsl_ir::world::{Arm, BodyId, JointId, Vec3, World};
+use hrdsl_ir::value::seconds;
+use hrdsl_ir::world::{Arm, BodyId, JointId, JointMotion, Vec3, World};
 
 use hrdsl_harness::CommandId;
+use nalgebra::DVector;
 
 use crate::{
+    clearance::{ArmClearance, ArmFigure},
     error::{CommandError, SimError},
     kinematics::{KinematicChain, KinematicLink},
     math::{SpaceVector, v3},
-    physics::{PhysicsAdapter, bad, index},
-    profile::{MotionProfile, brake_time, braking},
+    motion::{ArmGoal, ArmMotion, ArmPath},
+    physics::{ArmDynamics, PhysicsAdapter, bad, index},
+    planner::{NoRoute, RoutePlanner},
+    profile::{brake_time, braking},
+    route::{JointRoute, JointTrack},
 };
 
 /// How near the tool must come to its place, m.
 const ARRIVED: f64 = 0.005;
-/// How near each joint must come to its angle where angles were asked for, rad.
+/// How near each joint must come to its position where positions were asked for, rad or m.
 const ARRIVED_JOINT: f64 = 0.01;
-/// Below this an arm counts as standing, rad/s.
+/// Below this an arm counts as standing, rad/s or m/s.
 const SETTLED: f64 = 0.02;
-/// How long after its ramp an arm may take to arrive.
-const PATIENCE: Nanos = 1_000_000_000;
+/// For how long an arm may fail to follow, or to arrive, s.
+const PATIENCE: f64 = 1.0;
+/// How far a joint may lag behind its aim: from half of it on the aim waits, rad and m. So a motor that is blocked pushes with no
+/// more than its effort, and does not leap when it comes free.
+const LAG: f64 = 0.04;
+const SLIDER_LAG: f64 = 0.01;
+
+/// How rigid an arm is: the frequency of its controlled joints, 1/s; and the most that this is of the frequency of the steps, so
+/// that they are stable.
+const RIGID: f64 = 25.0;
+const RIGID_OF_STEPS: f64 = 0.25;
+/// Below this rate an arm counts as held up, and its errors are not made good.
+const HELD_UP: f64 = 0.2;
+/// How fast lasting errors are made good, as a part of that.
+const LEARNING: f64 = 0.3;
 
 pub(crate) struct ArmControl {
     pub name: String,
     joints: Vec<JointId>,
     tip: BodyId,
     tool: SpaceVector,
-    base: BodyId,
-    max_speed: f64,
+    figure: ArmFigure,
+    /// Of each joint, rad/s or m/s.
+    speeds: Vec<f64>,
+    /// How far each joint may lag behind.
+    lags: Vec<f64>,
+    contact_limit: Option<f64>,
     chain: KinematicChain,
     /// The motors' aim while no motion is under way.
     rest: Vec<f64>,
     /// Where set-points want the joints; the motors' aim follows no faster than the arm may.
     aimed: Vec<f64>,
     motion: Option<ArmMotion>,
+    dynamics: ArmDynamics,
+    /// What the joints are wanted to have, at the end of the last step, rad/s or m/s.
+    pace: Vec<f64>,
+    /// The accelerations that make good lasting errors, rad/s² or m/s²; and as they were when the arm was last free.
+    lasting: Vec<f64>,
+    lasting_free: Vec<f64>,
 }
 
-struct ArmMotion {
-    id: CommandId,
-    goal: ArmGoal,
-    start: Nanos,
-    /// Where the arm was and how fast it went when the motion was asked for.
-    from: Vec<f64>,
-    speed: Vec<f64>,
-    /// From when on it goes to its goal: at once, or after it has come to a stop.
-    go: Nanos,
-    stop: Vec<f64>,
-    to: Vec<f64>,
-    path: ArmPath,
-}
-
-/// How an arm goes to its goal.
-enum ArmPath {
-    Ramp(MotionProfile),
-    Track(JointTrack),
-}
-
-/// Postures, each at its time in seconds; between two of them each joint goes at an even speed.
-pub(crate) struct JointTrack {
-    points: Vec<(f64, Vec<f64>)>,
-}
-
-impl JointTrack {
-    /// Angles and speeds at a time, for an arm that begins at `from`.
-    fn at(&self, t: f64, from: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let next = self.points.partition_point(|(time, _)| *time <= t);
-        let Some((end, to)) = self.points.get(next) else {
-            let last = self.points.last().map_or(from, |(_, angles)| angles);
-            return (last.to_vec(), vec![0.0; from.len()]);
-        };
-        let (begin, before) = match next.checked_sub(1).and_then(|at| self.points.get(at)) {
-            Some((time, angles)) => (*time, angles.as_slice()),
-            None => (0.0, from),
-        };
-        let part = (t - begin) / (end - begin);
-        let angle = before.iter().zip(to).map(|(a, b)| a + part * (b - a));
-        let speed = before.iter().zip(to).map(|(a, b)| (b - a) / (end - begin));
-        (angle.collect(), speed.collect())
-    }
-}
-
-enum ArmGoal {
-    Place(SpaceVector),
-    Joints,
-}
-
-impl ArmMotion {
-    /// Angles and speeds aimed at.
-    fn at(&self, time: Nanos) -> (Vec<f64>, Vec<f64>) {
-        if time < self.go {
-            let (travel, rate) = braking(seconds(time - self.start));
-            let angle = self.from.iter().zip(&self.speed).map(|(q, v)| q + v * travel);
-            return (angle.collect(), self.speed.iter().map(|v| v * rate).collect());
-        }
-        let t = seconds(time - self.go);
-        let profile = match &self.path {
-            ArmPath::Ramp(profile) => profile,
-            ArmPath::Track(track) => return track.at(t, &self.from),
-        };
-        let (part, rate) = (profile.at(t), profile.speed(t));
-        let angle = self.stop.iter().zip(&self.to).map(|(a, b)| a + part * (b - a));
-        let speed = self.stop.iter().zip(&self.to).map(|(a, b)| rate * (b - a));
-        (angle.collect(), speed.collect())
-    }
-
-    fn end(&self) -> Nanos {
-        let length = match &self.path {
-            ArmPath::Ramp(profile) => profile.length(),
-            ArmPath::Track(track) => track.points.last().map_or(0.0, |(time, _)| *time),
-        };
-        self.go + nanos(length)
-    }
+/// What an arm and its planner are told of the moment.
+pub(crate) struct ArmMoment<'a> {
+    pub physics: &'a PhysicsAdapter,
+    /// What the arm's hands hold.
+    pub held: Vec<BodyId>,
+    /// Whether the planner knows of a body.
+    pub is_known: Box<dyn Fn(BodyId) -> bool + 'a>,
 }
 
 impl ArmControl {
@@ -124,7 +85,7 @@ impl ArmControl {
         if !(arm.max_speed.is_finite() && arm.max_speed > 0.0) {
             return Err(SimError::BadNumber { what: format!("the speed of arm `{}`", arm.name) });
         }
-        let mut links = Vec::new();
+        let (mut links, mut speeds, mut lags) = (Vec::new(), Vec::new(), Vec::new());
         let mut end: Option<BodyId> = None;
         for id in &arm.joints {
             let at = usize::from(id.0);
@@ -133,46 +94,92 @@ impl ArmControl {
                 return Err(SimError::NotAChain { arm: arm.name.clone(), joint: joint.name.clone() });
             }
             end = Some(joint.child);
+            if joint.is_rigid() {
+                return Err(SimError::NotAChain { arm: arm.name.clone(), joint: joint.name.clone() });
+            }
             let axis = v3(joint.axis).normalize();
-            links.push(KinematicLink { anchor: v3(joint.anchor), axis, lo: joint.lo, hi: joint.hi });
+            let (motion, anchor) = (joint.motion, v3(joint.anchor));
+            links.push(KinematicLink { motion, anchor, axis, lo: joint.lo, hi: joint.hi });
+            speeds.push(joint.drive.speed.map_or(arm.max_speed, |v| v.min(arm.max_speed)));
+            lags.push(if motion == JointMotion::Slider { SLIDER_LAG } else { LAG });
         }
         if end.is_none_or(|e| physics.root(e) != physics.root(arm.tip)) {
             return Err(SimError::TipNotOnArm { arm: arm.name.clone() });
         }
         let tool = v3(arm.tool);
         let chain = KinematicChain { links, tool: physics.start(arm.tip).point(tool) };
+        let numbers: Vec<usize> = arm.joints.iter().map(|id| usize::from(id.0)).collect();
+        let base = world.joints[numbers[0]].parent;
         Ok(ArmControl {
             name: arm.name.clone(),
             joints: arm.joints.clone(),
             tip: arm.tip,
             tool,
-            base: world.joints[usize::from(arm.joints[0].0)].parent,
-            max_speed: arm.max_speed,
+            figure: ArmFigure::new(&numbers, base, physics),
+            speeds,
+            lags,
+            contact_limit: arm.contact_limit,
             rest: vec![0.0; chain.links.len()],
             aimed: vec![0.0; chain.links.len()],
             chain,
             motion: None,
+            dynamics: ArmDynamics::new(&numbers, physics),
+            pace: vec![0.0; numbers.len()],
+            lasting: vec![0.0; numbers.len()],
+            lasting_free: vec![0.0; numbers.len()],
         })
     }
 
-    /// Plans a motion of the tool to a place.
-    pub fn plan(&self, now: Nanos, target: Vec3) -> Result<Vec<f64>, CommandError> {
-        let found = self.chain.plan(&self.stop(now), v3(target));
-        if KinematicChain::arrives(&found) {
-            Ok(found.joints)
-        } else {
-            Err(CommandError::Unreachable { distance: found.error })
+    /// Plans a way of the tool to a place.
+    pub fn plan_place(
+        &self,
+        target: Vec3,
+        limit: Option<f64>,
+        at: &ArmMoment<'_>,
+    ) -> Result<JointRoute, CommandError> {
+        let speeds = self.speeds_within(limit);
+        let local = self.relative(at.physics, v3(target));
+        let route = self.planner(&speeds, at).to_place(&self.stop(), local);
+        route.map_err(|why| self.no_route(why, at.physics))
+    }
+
+    /// Plans a way to a posture.
+    pub fn plan_posture(
+        &self,
+        posture: &[f64],
+        limit: Option<f64>,
+        at: &ArmMoment<'_>,
+    ) -> Result<JointRoute, CommandError> {
+        let speeds = self.speeds_within(limit);
+        let route = self.planner(&speeds, at).to_posture(&self.stop(), posture);
+        route.map_err(|why| self.no_route(why, at.physics))
+    }
+
+    fn planner<'a>(&'a self, speeds: &'a [f64], at: &ArmMoment<'a>) -> RoutePlanner<'a> {
+        let clearance = ArmClearance::new(&self.figure, &self.chain, at.physics, &at.held, &*at.is_known);
+        RoutePlanner { chain: &self.chain, clearance, speeds }
+    }
+
+    fn no_route(&self, why: NoRoute, physics: &PhysicsAdapter) -> CommandError {
+        match why {
+            NoRoute::Unreachable(distance) => CommandError::Unreachable { distance },
+            NoRoute::Obstructed(a, b) => {
+                CommandError::Obstructed { by: physics.name(b).to_owned(), part: physics.name(a).to_owned() }
+            }
         }
     }
 
+    fn speeds_within(&self, limit: Option<f64>) -> Vec<f64> {
+        self.speeds.iter().map(|v| limit.map_or(*v, |l| v.min(l))).collect()
+    }
+
     /// The place, as it would be if the arm's base were where it was at the start.
-    pub fn relative(&self, physics: &PhysicsAdapter, target: Vec3) -> Vec3 {
-        let now = physics.pose(self.base);
-        let start = physics.start(self.base);
-        if physics.motion(self.base) == hrdsl_ir::world::BodyMotion::Fixed {
+    fn relative(&self, physics: &PhysicsAdapter, target: SpaceVector) -> SpaceVector {
+        let base = self.figure.base;
+        if physics.is_fixed(base) {
             return target;
         }
-        crate::math::arr(start.point(now.inverse().point(v3(target))))
+        physics.start(base).point(physics.pose(base).inverse().point(target))
     }
 
     pub fn check(&self, positions: &[f64], world: &World) -> Result<(), CommandError> {
@@ -189,26 +196,14 @@ impl ArmControl {
         Ok(())
     }
 
-    /// Begins a motion; what the arm was doing is given up, and its command is returned.
-    pub fn go(
-        &mut self,
-        now: Nanos,
-        id: CommandId,
-        to: Vec<f64>,
-        place: Option<Vec3>,
-        limit: Option<f64>,
-    ) -> Option<CommandId> {
-        let limit = limit.map_or(self.max_speed, |l| l.min(self.max_speed));
-        let (from, speed) = self.aim(now);
-        let moving = speed.iter().any(|v| *v != 0.0);
-        let go = if moving { now + nanos(brake_time()) } else { now };
-        let stop = self.stop(now);
-        let travel = stop.iter().zip(&to).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-        let profile = MotionProfile::new(travel, limit);
+    /// Begins to go along a way; what the arm was doing is given up, and its command is returned.
+    pub fn go(&mut self, id: CommandId, route: JointRoute, place: Option<Vec3>) -> Option<CommandId> {
         let goal = place.map_or(ArmGoal::Joints, |p| ArmGoal::Place(v3(p)));
-        let path = ArmPath::Ramp(profile);
-        let next = ArmMotion { id, goal, start: now, from, speed, go, stop, to, path };
-        self.motion.replace(next).map(|old| old.id)
+        self.begin(ArmMotion::new(id, goal, self.aim(), ArmPath::along(route)))
+    }
+
+    fn begin(&mut self, motion: ArmMotion) -> Option<CommandId> {
+        self.motion.replace(motion).map(|old| old.id)
     }
 
     /// A trajectory, if it can be followed: as many angles as joints for each time, within their limits, times that grow.
@@ -238,24 +233,19 @@ impl ArmControl {
     }
 
     /// Begins to follow a trajectory at once; what the arm was doing is given up, and its command is returned.
-    pub fn follow(&mut self, now: Nanos, id: CommandId, track: JointTrack) -> Option<CommandId> {
-        let (from, speed) = self.aim(now);
-        let to = track.points.last().map_or_else(|| from.clone(), |(_, angles)| angles.clone());
-        let (goal, path, stop) = (ArmGoal::Joints, ArmPath::Track(track), from.clone());
-        let next = ArmMotion { id, goal, start: now, from, speed, go: now, stop, to, path };
-        self.motion.replace(next).map(|old| old.id)
+    pub fn follow(&mut self, id: CommandId, track: JointTrack) -> Option<CommandId> {
+        self.begin(ArmMotion::new(id, ArmGoal::Joints, self.aim(), ArmPath::Track(track)))
     }
 
     /// Brakes; what the arm was doing is given up, and its command is returned.
-    pub fn halt(&mut self, now: Nanos, id: CommandId) -> Option<CommandId> {
-        let stop = self.stop(now);
-        self.go(now, id, stop, None, None)
+    pub fn halt(&mut self, id: CommandId) -> Option<CommandId> {
+        let route = JointRoute::new(vec![self.stop()], &self.speeds);
+        self.go(id, route, None)
     }
 
     /// Lets one motor aim at an angle; what the arm was doing is given up, and its command is returned.
     pub fn aim_joint(
         &mut self,
-        now: Nanos,
         joint: f64,
         to: f64,
         world: &World,
@@ -267,7 +257,7 @@ impl ArmControl {
         if !to.is_finite() {
             return Err(CommandError::NotFinite);
         }
-        let (aim, _) = self.aim(now);
+        let (aim, _) = self.aim();
         let mut posture = if self.motion.is_some() { aim.clone() } else { self.aimed.clone() };
         // INVARIANT: a whole number below the number of joints.
         posture[joint as usize] = to;
@@ -281,52 +271,100 @@ impl ArmControl {
     }
 
     /// Where the arm would stand if it were stopped now.
-    fn stop(&self, now: Nanos) -> Vec<f64> {
-        let (from, speed) = self.aim(now);
+    fn stop(&self) -> Vec<f64> {
+        let (from, speed) = self.aim();
         let (travel, _) = braking(brake_time());
-        from.iter().zip(&speed).map(|(q, v)| q + v * travel).collect()
+        let limits = self.chain.links.iter().map(|link| (link.lo, link.hi));
+        from.iter().zip(&speed).zip(limits).map(|((q, v), (lo, hi))| (q + v * travel).clamp(lo, hi)).collect()
     }
 
-    fn aim(&self, time: Nanos) -> (Vec<f64>, Vec<f64>) {
+    /// The posture and the speeds aimed at.
+    fn aim(&self) -> (Vec<f64>, Vec<f64>) {
         match &self.motion {
-            Some(m) => m.at(time),
+            Some(motion) => (motion.aim(), motion.speed()),
             None => (self.rest.clone(), vec![0.0; self.rest.len()]),
         }
     }
 
+    /// How much of its pace the aim keeps, 0 to 1: all of it while every joint follows.
+    fn rate(&self, aim: &[f64], physics: &PhysicsAdapter) -> f64 {
+        let measured = self.joints.iter().map(|id| physics.joint_position(usize::from(id.0)));
+        let behind = measured.zip(aim).zip(&self.lags).map(|((q, aim), lag)| (aim - q).abs() / lag);
+        let most = behind.fold(0.0, f64::max);
+        (2.0 - 2.0 * most).clamp(0.0, 1.0)
+    }
+
     /// Sets the motors for the step from `now` to `next`.
-    ///
-    /// The speed is the mean over the step, and the angle that of its middle: the solver divides the step, and would be
-    /// pulled ahead or back by the angle at either end.
     pub fn drive(&mut self, now: Nanos, next: Nanos, physics: &mut PhysicsAdapter) {
         let h = seconds(next - now);
-        if self.motion.is_none() {
-            let most = self.max_speed * h;
-            for ((id, q), aimed) in self.joints.iter().zip(&mut self.rest).zip(&self.aimed) {
-                let step = (aimed - *q).clamp(-most, most);
-                physics.drive(usize::from(id.0), *q + step / 2.0, step / h);
-                *q += step;
+        let (a, _) = self.aim();
+        let rate = self.rate(&a, physics);
+        let b = match &mut self.motion {
+            Some(motion) => {
+                motion.pass(h, rate);
+                motion.aim()
             }
-            return;
+            None => {
+                let most = self.speeds.iter().map(|v| v * h * rate);
+                let rest = self.rest.iter().zip(&self.aimed).zip(most);
+                self.rest = rest.map(|((q, aimed), most)| q + (aimed - q).clamp(-most, most)).collect();
+                self.rest.clone()
+            }
+        };
+        self.steer(&a, &b, (h, rate), physics);
+    }
+
+    /// Computed torque (Luh, Walker and Paul 1980): the accelerations that bring the joints from `a` to `b` in the time `h`, with
+    /// those that make good their errors, and of these the torques.
+    fn steer(&mut self, a: &[f64], b: &[f64], (h, rate): (f64, f64), physics: &mut PhysicsAdapter) {
+        let (positions, speeds) = (self.positions(physics), self.speeds(physics));
+        let (n, rigid) = (self.joints.len(), RIGID.min(RIGID_OF_STEPS / h));
+        let mut wanted = DVector::zeros(n);
+        for i in 0..n {
+            let pace = (b[i] - a[i]) / h;
+            let (error, slip) = (a[i] - positions[i], self.pace[i] - speeds[i]);
+            wanted[i] =
+                (pace - self.pace[i]) / h + rigid * rigid * error + 2.0 * rigid * slip + self.lasting[i];
+            self.pace[i] = pace;
         }
-        let (a, _) = self.aim(now);
-        let (b, _) = self.aim(next);
-        for ((id, a), b) in self.joints.iter().zip(&a).zip(&b) {
-            physics.drive(usize::from(id.0), (a + b) / 2.0, (b - a) / h);
+        if rate == 1.0 {
+            self.lasting_free.clone_from(&self.lasting);
+        }
+        let equation = self.dynamics.equation(physics);
+        let efforts = &equation.inertia * wanted + equation.bias;
+        for (i, id) in self.joints.iter().enumerate() {
+            let done = physics.drive(usize::from(id.0), efforts[i]);
+            // An arm that is held up, or a motor that can do no more, has nothing to learn from it.
+            if done == efforts[i] && rate > HELD_UP {
+                self.lasting[i] += LEARNING * rigid.powi(3) * (a[i] - positions[i]) * h;
+            }
         }
     }
 
-    /// Ends the motion if it has arrived, or does not in time.
+    /// Ends the motion if it has arrived, does not in time, is blocked, or presses harder than it may.
     pub fn check_arrival(
         &mut self,
-        now: Nanos,
+        held: &[BodyId],
         physics: &PhysicsAdapter,
     ) -> Option<(CommandId, Result<(), CommandError>)> {
+        let stopped =
+            self.contact_limit.and_then(|limit| self.pressed(held, physics).filter(|p| p.1 > limit));
+        if let Some((body, force)) = stopped {
+            self.hold(physics);
+            let by = physics.name(body).to_owned();
+            return self.motion.take().map(|m| (m.id, Err(CommandError::Pressed { by, force })));
+        }
         let motion = self.motion.as_ref()?;
-        if now < motion.end() {
+        if motion.stuck > PATIENCE {
+            let by = self.pressed(held, physics).map(|(body, _)| physics.name(body).to_owned());
+            self.hold(physics);
+            return self.motion.take().map(|m| (m.id, Err(CommandError::Blocked { by })));
+        }
+        if !motion.is_over() {
             return None;
         }
         let settled = self.speed(physics) < SETTLED;
+        let end = motion.end();
         let (there, distance) = match motion.goal {
             ArmGoal::Place(place) => {
                 let distance = (self.tool_at(physics) - place).norm();
@@ -334,39 +372,70 @@ impl ArmControl {
             }
             ArmGoal::Joints => {
                 let angles = self.positions(physics);
-                let off = angles.iter().zip(&motion.to).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-                (off <= ARRIVED_JOINT, (self.tool_at(physics) - self.chain.tool_at(&motion.to)).norm())
+                let off = angles.iter().zip(&end).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+                (off <= ARRIVED_JOINT, (self.chain.tool_at(&angles) - self.chain.tool_at(&end)).norm())
             }
         };
         let result = if there && settled {
             Ok(())
-        } else if now >= motion.end() + PATIENCE {
+        } else if motion.overdue() >= PATIENCE {
             Err(CommandError::Missed { distance })
         } else {
             return None;
         };
         let id = motion.id;
-        self.rest.clone_from(&motion.to);
-        self.aimed.clone_from(&motion.to);
+        if result.is_ok() {
+            self.rest.clone_from(&end);
+            self.aimed = end;
+        } else {
+            self.hold(physics);
+        }
         self.motion = None;
         Some((id, result))
+    }
+
+    /// The motors keep the arm where it is.
+    fn hold(&mut self, physics: &PhysicsAdapter) {
+        let limits = self.chain.links.iter().map(|link| (link.lo, link.hi));
+        self.rest =
+            self.positions(physics).into_iter().zip(limits).map(|(q, (lo, hi))| q.clamp(lo, hi)).collect();
+        self.aimed.clone_from(&self.rest);
+        self.lasting.clone_from(&self.lasting_free);
+    }
+
+    /// What presses the arm, or what it holds, hardest that is neither of it nor held by it, and by how much, N.
+    fn pressed(&self, held: &[BodyId], physics: &PhysicsAdapter) -> Option<(BodyId, f64)> {
+        let own = self.figure.bodies.iter().map(|(body, _)| *body).chain(held.iter().copied());
+        let pressings = own.flat_map(|body| physics.pressings(body));
+        let others = pressings.filter(|p| !self.figure.has(p.other) && !held.contains(&p.other));
+        others.max_by(|a, b| a.force.total_cmp(&b.force)).map(|p| (p.other, p.force))
+    }
+
+    /// Whether it moves a body.
+    pub fn moves(&self, body: BodyId) -> bool {
+        self.figure.has(body)
     }
 
     pub fn is_busy(&self) -> bool {
         self.motion.is_some() || self.aimed != self.rest
     }
 
-    /// Measured, rad.
+    /// Measured, rad or m.
     pub fn positions(&self, physics: &PhysicsAdapter) -> Vec<f64> {
-        self.joints.iter().map(|id| physics.joint_angle(usize::from(id.0))).collect()
+        self.joints.iter().map(|id| physics.joint_position(usize::from(id.0))).collect()
     }
 
-    /// Measured, rad/s.
+    /// Measured, rad/s or m/s.
     pub fn speeds(&self, physics: &PhysicsAdapter) -> Vec<f64> {
         self.joints.iter().map(|id| physics.joint_speed(usize::from(id.0))).collect()
     }
 
-    /// The largest measured speed of a joint, rad/s.
+    /// What the motors did over the last step, N·m or N.
+    pub fn efforts(&self, physics: &PhysicsAdapter) -> Vec<f64> {
+        self.joints.iter().map(|id| physics.joint_effort(usize::from(id.0))).collect()
+    }
+
+    /// The largest measured speed of a joint, rad/s or m/s.
     pub fn speed(&self, physics: &PhysicsAdapter) -> f64 {
         self.joints.iter().fold(0.0, |m, id| m.max(physics.joint_speed(usize::from(id.0)).abs()))
     }

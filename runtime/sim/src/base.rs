@@ -289,11 +289,11 @@ impl BaseControl {
 #[cfg(test)]
 mod tests {
     use hrdsl_ir::Expr;
-    use hrdsl_ir::world::{Arm, ArmId, Joint, JointId, WorldAction, WorldPoint};
+    use hrdsl_ir::world::{Arm, ArmId, JointId, WorldAction, WorldPoint};
     use proptest::prelude::*;
 
     use super::*;
-    use crate::samples::{BASE, SECOND, after, body, built, cuboid, drive, flat};
+    use crate::samples::{BASE, SECOND, after, body, built, cuboid, drive, flat, upright_joint};
     use crate::{MotorCommand, WorldSimulation};
 
     fn velocity(sim: &WorldSimulation) -> [f64; 3] {
@@ -420,8 +420,7 @@ mod tests {
         let mast = body("mast", BodyMotion::Dynamic, cuboid(0.1, 0.1, 0.4), [0.3, 0.0, 0.5]);
         let mut world = flat(vec![wall(1.0), mast]);
         let (parent, child) = (BodyId(1), BodyId(3));
-        let (anchor, axis) = ([0.0, 0.0, 0.3], [0.0, 0.0, 1.0]);
-        world.joints.push(Joint { name: "weld".into(), parent, child, anchor, axis, lo: 0.0, hi: 0.0 });
+        world.joints.push(upright_joint(parent, child, [0.0, 0.0, 0.3], (0.0, 0.0)));
         let mut sim = built(&world);
         sim.command(drive(0.5, 0.0, 0.0)).expect("a base");
         let [x, ..] = after(&mut sim, 4 * SECOND);
@@ -435,10 +434,10 @@ mod tests {
         let link = body("link", BodyMotion::Dynamic, cuboid(0.4, 0.05, 0.05), [0.2, 0.0, 0.5]);
         let mut world = flat(vec![link]);
         let (parent, child, tip) = (BodyId(1), BodyId(2), BodyId(2));
-        let (anchor, axis) = ([0.0, 0.0, 0.5], [0.0, 0.0, 1.0]);
-        world.joints.push(Joint { name: "hinge".into(), parent, child, anchor, axis, lo: -2.0, hi: 2.0 });
+        world.joints.push(upright_joint(parent, child, [0.0, 0.0, 0.5], (-2.0, 2.0)));
         let (joints, tool) = (vec![JointId(0)], [0.2, 0.0, 0.0]);
-        world.arms.push(Arm { name: "arm".into(), joints, tip, tool, max_speed: 1.0, postures: Vec::new() });
+        let (max_speed, contact_limit, postures) = (1.0, None, Vec::new());
+        world.arms.push(Arm { name: "arm".into(), joints, tip, tool, max_speed, contact_limit, postures });
         let mut sim = built(&world);
         sim.command(drive(1.0, 0.0, 1.0)).expect("a base");
         for _ in 0..20 {

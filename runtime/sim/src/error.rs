@@ -19,6 +19,9 @@ pub enum SimError {
     NotHoldable { gripper: String, body: String },
     #[error("the body `{body}` is not kinematic, so that neither an action nor a base moves it")]
     NotKinematic { body: String },
+    /// Metres.
+    #[error("`{body}` starts inside `{other}`, by {depth:.3} m: put them apart")]
+    StartsInside { body: String, other: String, depth: f64 },
     #[error("{what} has no value: {error}")]
     Eval { what: String, error: EvalError },
 }
@@ -49,7 +52,16 @@ pub enum CommandError {
     BadSpeed,
     #[error("a place or position must be a finite number")]
     NotFinite,
-    /// Something is in the way: metres from the place when the controller gave up.
+    /// No way was found that touches nothing.
+    #[error("there is no free way: `{part}` would touch `{by}`")]
+    Obstructed { part: String, by: String },
+    /// The motors could not go on.
+    #[error("the arm is blocked{}", by.as_ref().map_or_else(String::new, |by| format!(" by `{by}`")))]
+    Blocked { by: Option<String> },
+    /// The arm stops on contact.
+    #[error("the arm stopped: `{by}` presses it with {force:.0} N")]
+    Pressed { by: String, force: f64 },
+    /// Metres from the place when the controller gave up.
     #[error("the arm did not arrive: it stopped {distance:.3} m from the place")]
     Missed { distance: f64 },
     /// A later command to the same device took its place.

@@ -1,11 +1,16 @@
 //! Grippers: which hand holds what, and which of the hands the physics follows.
 //!
+//! Fingers close until they meet something or each other. A body that is pressed from two sides is held: a rigid joint stands for the
+//! friction, since friction alone creeps in the engine's steps, and bears what friction would. Beyond that the body slips: it moves
+//! freely between the fingers until it is slow again.
+//!
 //! A body may be held by several hands. A hand on a dynamic palm (a robot's) is fixed to what it holds by a joint. A hand
 //! on a kinematic palm (a person's) is so fixed only while no dynamic hand, and no kinematic one before it, holds the
 //! same body: a moved hand would otherwise win against any motor. Meanwhile it holds in name; when the others let go,
 //! the body is fixed to it where it is.
 
 use hrdsl_ir::Nanos;
+use hrdsl_ir::value::seconds;
 use hrdsl_ir::world::{BodyId, BodyMotion, Gripper, World};
 use rapier3d::prelude::ImpulseJointHandle;
 
@@ -28,12 +33,41 @@ pub(crate) struct GripperHand {
     delay: Nanos,
     holds: Vec<BodyId>,
     dynamic: bool,
+    force: f64,
+    fingers: Vec<Finger>,
+    /// All bodies that can press what it holds.
+    parts: Vec<BodyId>,
     phase: GripPhase,
     /// Takes the first thing it can from now on.
     grasping: bool,
     held: Option<BodyId>,
     joint: Option<ImpulseJointHandle>,
+    /// For how many steps the joint has borne more than it can.
+    overloaded: u32,
 }
+
+struct Finger {
+    joint: usize,
+    body: BodyId,
+    /// m/s
+    speed: f64,
+}
+
+/// How near its end a finger counts as there, m.
+const END: f64 = 1e-3;
+/// The least time for the way of fingers, s.
+const MIN_STROKE: f64 = 0.05;
+/// For how long, beyond twice the time of their way, fingers are waited for.
+const LONGEST_PUSH: Nanos = 500_000_000;
+
+/// What friction is between fingers and what they hold.
+const FRICTION: f64 = 0.8;
+/// How far the pads of fingers reach from the middle of what they hold, m: their lever against its turning.
+const PAD: f64 = 0.02;
+/// For how many steps more than it can bear makes a body slip: impacts are shorter.
+const SLIPS_AFTER: u32 = 3;
+/// How slow a body must be in the hand to be held, m/s.
+const STILL: f64 = 0.05;
 
 enum GripPhase {
     Open,
@@ -61,6 +95,18 @@ impl GripperHand {
         if !(gripper.reach.is_finite() && gripper.reach >= 0.0 && gripper.delay >= 0) {
             return Err(SimError::BadNumber { what: format!("reach or delay of {}", what()) });
         }
+        if !(gripper.force.is_finite() && gripper.force > 0.0) {
+            return Err(SimError::BadNumber { what: format!("the force of {}", what()) });
+        }
+        let mut fingers = Vec::new();
+        for id in &gripper.fingers {
+            let at = usize::from(id.0);
+            let joint = world.joints.get(at).ok_or_else(|| bad(what(), "joint", at))?;
+            let time = seconds(gripper.delay).max(MIN_STROKE);
+            fingers.push(Finger { joint: at, body: joint.child, speed: (joint.hi - joint.lo) / time });
+        }
+        let roots = fingers.iter().map(|f| f.body).chain([gripper.palm]).map(|b| physics.root(b));
+        let parts = roots.flat_map(|root| physics.one_with(root)).filter(|b| !physics.is_ghost(*b)).collect();
         Ok(GripperHand {
             name: gripper.name.clone(),
             palm: gripper.palm,
@@ -69,10 +115,14 @@ impl GripperHand {
             delay: gripper.delay,
             holds: gripper.holds.clone(),
             dynamic: physics.motion(gripper.palm) == BodyMotion::Dynamic,
+            force: gripper.force,
+            fingers,
+            parts,
             phase: GripPhase::Open,
             grasping: false,
             held: None,
             joint: None,
+            overloaded: 0,
         })
     }
 
@@ -80,8 +130,41 @@ impl GripperHand {
         physics.distance_to_point(body, physics.pose(self.palm).point(self.tool))
     }
 
-    /// The nearest body in reach; of equally near ones the first.
+    /// Moves the fingers: 1 closes, −1 opens.
+    fn run_fingers(&self, direction: f64, physics: &mut PhysicsAdapter) {
+        for finger in &self.fingers {
+            physics.run_at(finger.joint, finger.speed * direction, self.force);
+        }
+    }
+
+    /// Whether all fingers are at an end of their way.
+    fn fingers_are_at_end(&self, closed: bool, physics: &PhysicsAdapter) -> bool {
+        self.fingers.iter().all(|finger| {
+            let (lo, hi) = physics.joint_limits(finger.joint);
+            let end = if closed { hi } else { lo };
+            (physics.joint_position(finger.joint) - end).abs() < END
+        })
+    }
+
+    /// What the hand would hold.
     fn choose(&self, physics: &PhysicsAdapter) -> Option<BodyId> {
+        if self.fingers.is_empty() { self.nearest(physics) } else { self.pressed(physics) }
+    }
+
+    /// What is touched from two sides, by a finger at least, and lies still in the hand.
+    fn pressed(&self, physics: &PhysicsAdapter) -> Option<BodyId> {
+        self.holds.iter().copied().find(|body| {
+            let touches = |part: &&BodyId| physics.pressings(**part).any(|p| p.other == *body);
+            let mut sides: Vec<BodyId> =
+                self.parts.iter().filter(touches).map(|part| physics.root(*part)).collect();
+            sides.dedup();
+            let of_finger = |side: &BodyId| self.fingers.iter().any(|f| physics.root(f.body) == *side);
+            sides.len() > 1 && sides.iter().any(of_finger) && physics.slip(self.palm, *body) < STILL
+        })
+    }
+
+    /// The nearest body in reach; of equally near ones the first.
+    fn nearest(&self, physics: &PhysicsAdapter) -> Option<BodyId> {
         let mut best: Option<(f64, BodyId)> = None;
         for body in &self.holds {
             let d = self.distance(*body, physics);
@@ -90,6 +173,24 @@ impl GripperHand {
             }
         }
         best.map(|(_, body)| body)
+    }
+
+    /// Whether a hand that closes is done: it holds something, its fingers met, or they push in vain.
+    fn has_closed(&self, now: Nanos, until: Nanos, physics: &PhysicsAdapter) -> bool {
+        if self.fingers.is_empty() {
+            return now >= until;
+        }
+        let in_vain = now >= until + self.delay + LONGEST_PUSH;
+        in_vain || self.pressed(physics).is_some() || self.fingers_are_at_end(true, physics)
+    }
+
+    fn has_opened(&self, now: Nanos, until: Nanos, physics: &PhysicsAdapter) -> bool {
+        let in_vain = now >= until + self.delay + LONGEST_PUSH;
+        if self.fingers.is_empty() {
+            now >= until
+        } else {
+            in_vain || self.fingers_are_at_end(false, physics)
+        }
     }
 
     fn is_busy(&self) -> bool {
@@ -105,9 +206,11 @@ pub(crate) struct HandSet {
 }
 
 impl HandSet {
-    pub fn new(world: &World, physics: &PhysicsAdapter) -> Result<HandSet, SimError> {
+    pub fn new(world: &World, physics: &mut PhysicsAdapter) -> Result<HandSet, SimError> {
         let hands = world.grippers.iter().map(|g| GripperHand::new(g, world, physics));
-        Ok(HandSet { hands: hands.collect::<Result<_, _>>()?, taken: vec![false; world.bodies.len()] })
+        let hands = hands.collect::<Result<Vec<_>, _>>()?;
+        hands.iter().for_each(|hand| hand.run_fingers(-1.0, physics));
+        Ok(HandSet { hands, taken: vec![false; world.bodies.len()] })
     }
 
     pub fn named(&self, name: &str) -> Option<usize> {
@@ -120,6 +223,11 @@ impl HandSet {
 
     pub fn held_by(&self, hand: usize) -> Option<BodyId> {
         self.hands[hand].held
+    }
+
+    /// What some of the hands hold.
+    pub fn held_by_any(&self, hands: &[usize]) -> Vec<BodyId> {
+        hands.iter().filter_map(|hand| self.hands[*hand].held).collect()
     }
 
     pub fn was_taken(&self, body: BodyId) -> bool {
@@ -137,17 +245,31 @@ impl HandSet {
         now: Nanos,
         id: Option<CommandId>,
         grasping: bool,
+        physics: &mut PhysicsAdapter,
     ) -> Option<CommandId> {
         let h = &mut self.hands[hand];
         h.grasping = grasping;
+        h.run_fingers(1.0, physics);
         let until = now + h.delay;
         replace(&mut h.phase, GripPhase::Closing { until, id })
     }
 
     /// Tells a hand to open; gives the command that this one replaces.
-    pub fn open(&mut self, hand: usize, now: Nanos, id: Option<CommandId>) -> Option<CommandId> {
+    pub fn open(
+        &mut self,
+        hand: usize,
+        now: Nanos,
+        id: Option<CommandId>,
+        physics: &mut PhysicsAdapter,
+    ) -> Option<CommandId> {
         let h = &mut self.hands[hand];
         h.grasping = false;
+        if !h.fingers.is_empty() {
+            // Fingers that part no longer hold.
+            h.run_fingers(-1.0, physics);
+            self.release(hand, physics);
+        }
+        let h = &mut self.hands[hand];
         let until = now + h.delay;
         replace(&mut h.phase, GripPhase::Opening { until, id })
     }
@@ -156,26 +278,45 @@ impl HandSet {
     pub fn update(&mut self, now: Nanos, physics: &mut PhysicsAdapter, finished: &mut FinishedCommands) {
         for i in 0..self.hands.len() {
             match self.hands[i].phase {
-                GripPhase::Closing { until, id } if now >= until => {
-                    self.hands[i].phase = GripPhase::Closed;
+                GripPhase::Closing { until, id } => {
+                    if self.hands[i].has_closed(now, until, physics) {
+                        self.hands[i].phase = GripPhase::Closed;
+                        self.take(i, physics);
+                        finished.extend(id.map(|id| (id, Ok(()))));
+                    }
+                }
+                GripPhase::Opening { until, id } => {
+                    if self.hands[i].has_opened(now, until, physics) {
+                        self.hands[i].phase = GripPhase::Open;
+                        self.release(i, physics);
+                        finished.extend(id.map(|id| (id, Ok(()))));
+                    }
+                }
+                // What slipped, or was pressed late, is held when it lies still.
+                GripPhase::Closed if self.hands[i].grasping || !self.hands[i].fingers.is_empty() => {
                     self.take(i, physics);
-                    finished.extend(id.map(|id| (id, Ok(()))));
                 }
-                GripPhase::Opening { until, id } if now >= until => {
-                    self.hands[i].phase = GripPhase::Open;
-                    self.release(i, physics);
-                    finished.extend(id.map(|id| (id, Ok(()))));
-                }
-                GripPhase::Closed if self.hands[i].grasping => self.take(i, physics),
-                GripPhase::Open
-                | GripPhase::Closed
-                | GripPhase::Closing { .. }
-                | GripPhase::Opening { .. } => {}
+                GripPhase::Open | GripPhase::Closed => {}
             }
+            self.let_slip(i, physics);
             let hand = &self.hands[i];
             if hand.held.is_some_and(|b| hand.distance(b, physics) > hand.reach + SLACK) {
                 self.release(i, physics);
             }
+        }
+    }
+
+    /// What is heavier than friction can bear leaves the hand.
+    fn let_slip(&mut self, hand: usize, physics: &mut PhysicsAdapter) {
+        let held = &mut self.hands[hand];
+        let Some(joint) = held.joint else { return };
+        let (force, torque) = physics.borne(joint);
+        let bears = 2.0 * FRICTION * held.force;
+        held.overloaded = if force > bears || torque > bears * PAD { held.overloaded + 1 } else { 0 };
+        if held.overloaded >= SLIPS_AFTER {
+            held.overloaded = 0;
+            self.release(hand, physics);
+            self.hands[hand].run_fingers(1.0, physics);
         }
     }
 
@@ -184,6 +325,8 @@ impl HandSet {
             return;
         }
         if let Some(body) = self.hands[hand].choose(physics) {
+            // From here on the joint stands for the fingers' force, which they keep up.
+            self.hands[hand].run_fingers(0.0, physics);
             self.hands[hand].held = Some(body);
             self.taken[index(body)] = true;
             self.rejoin(body, physics);
@@ -205,7 +348,6 @@ impl HandSet {
         let holders = || (0..self.hands.len()).filter(|&i| self.hands[i].held == Some(body));
         let motorised = holders().any(|i| self.hands[i].dynamic);
         let first = holders().next();
-        physics.set_held(body, first.is_some(), motorised);
         for (i, hand) in self.hands.iter_mut().enumerate() {
             let leads = hand.held == Some(body) && if motorised { hand.dynamic } else { first == Some(i) };
             if leads && hand.joint.is_none() {

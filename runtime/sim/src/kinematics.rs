@@ -1,17 +1,19 @@
-//! The planner: from a place for the tool point to a posture of the arm, by damped least squares.
+//! From a place for the tool point to postures of the arm, by damped least squares.
 //!
 //! Every iteration solves (J Jᵀ + λ² I) y = e for the remaining way e and steps by Jᵀ y (Nakamura and Hanafusa 1986,
 //! Wampler 1986). Two weaker wishes guide what the place leaves open: the direction that was up in the tip's frame at the
 //! start stays up, so that what is held is carried upright; and, in the null space, the posture stays near the present one
 //! and, weaker, near the arm's starting posture, so that postures do not drift from one motion to the next.
 
+use hrdsl_ir::world::JointMotion;
 use nalgebra::{DMatrix, DVector};
 
-use crate::math::{BodyFrame, RotationQuat, SpaceVector, about};
+use crate::math::{BodyFrame, RotationQuat, SpaceVector, about, angle_between};
 
 /// A joint as the planner sees it, in the world at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KinematicLink {
+    pub motion: JointMotion,
     pub anchor: SpaceVector,
     pub axis: SpaceVector,
     pub lo: f64,
@@ -34,12 +36,39 @@ pub(crate) struct ArmPosture {
     pub error: f64,
 }
 
+/// What is thought of a posture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PostureFit {
+    Free,
+    /// Something is near.
+    Narrow,
+    Refused,
+}
+
+/// A posture that arrives, and is not refused.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct AllowedPosture {
+    pub joints: Vec<f64>,
+    /// Of the palm from upright, rad.
+    pub tilt: f64,
+    pub is_narrow: bool,
+}
+
+/// The postures that were found for a place.
+pub(crate) struct FoundPostures {
+    pub allowed: Vec<AllowedPosture>,
+    /// One that arrives, and was refused.
+    pub refused: Option<Vec<f64>>,
+    /// Metres from the place of the nearest.
+    pub error: f64,
+}
+
 /// Where the tool is in a posture, and what each joint's motion does to it.
 struct ForwardKinematics {
     tool: SpaceVector,
     up: SpaceVector,
-    /// Axis and anchor of each joint.
-    joints: Vec<(SpaceVector, SpaceVector)>,
+    /// Motion, axis and anchor of each joint.
+    joints: Vec<(JointMotion, SpaceVector, SpaceVector)>,
 }
 
 /// Good enough: far below what the physics can keep.
@@ -50,66 +79,89 @@ const TILT: f64 = 0.15;
 const MARGIN: f64 = 0.02;
 const RESTARTS: u32 = 12;
 
+impl KinematicLink {
+    /// The frame of what hangs on this joint, from that of what it hangs on.
+    fn moved(&self, frame: &BodyFrame, by: f64) -> BodyFrame {
+        match self.motion {
+            JointMotion::Hinge => {
+                let anchor = frame.point(self.anchor);
+                let turn = frame.turn * about(self.axis, by);
+                BodyFrame::new(anchor - turn * self.anchor, turn)
+            }
+            JointMotion::Slider => BodyFrame::new(frame.at + frame.turn * self.axis * by, frame.turn),
+        }
+    }
+}
+
 impl KinematicChain {
     fn forward(&self, q: &[f64]) -> ForwardKinematics {
         let mut frame = BodyFrame::new(SpaceVector::zeros(), RotationQuat::identity());
         let mut joints = Vec::with_capacity(q.len());
         for (link, angle) in self.links.iter().zip(q) {
-            let anchor = frame.point(link.anchor);
-            joints.push((frame.turn * link.axis, anchor));
-            let turn = frame.turn * about(link.axis, *angle);
-            frame = BodyFrame::new(anchor - turn * link.anchor, turn);
+            joints.push((link.motion, frame.turn * link.axis, frame.point(link.anchor)));
+            frame = link.moved(&frame, *angle);
         }
         ForwardKinematics { tool: frame.point(self.tool), up: frame.turn * SpaceVector::z(), joints }
     }
 
+    /// How what hangs on the base, and on each joint, is moved from where it is at zero: one frame more than joints.
+    pub fn frames(&self, q: &[f64], base: &BodyFrame) -> Vec<BodyFrame> {
+        let mut frames = Vec::with_capacity(q.len() + 1);
+        frames.push(*base);
+        for (link, angle) in self.links.iter().zip(q) {
+            frames.push(link.moved(&frames[frames.len() - 1], *angle));
+        }
+        frames
+    }
+
     /// The tool point, in the world if the base is where it was at the start.
-    #[cfg_attr(not(test), allow(dead_code))]
     pub fn tool_at(&self, q: &[f64]) -> SpaceVector {
         self.forward(q).tool
     }
 
-    /// The posture nearest to `from` that was found to bring the tool to `target`.
+    /// Postures that bring the tool to `target`, and what is thought of them.
     ///
-    /// Tried in order: from the present posture; then, if that does not arrive, from the middle of the limits and a fixed
-    /// sequence of postures, of which the one with the shortest way is taken; then, if none arrives, from these postures
-    /// whatever becomes of the palm.
-    pub fn plan(&self, from: &[f64], target: SpaceVector) -> ArmPosture {
-        let first = self.descend(from, from, target);
-        if first.error <= CONVERGED {
-            return first;
+    /// Tried in order: from the present posture, and if that arrives and is free, no further; from the middle of the limits
+    /// and a fixed sequence of postures; then, if none arrives and is allowed, from these postures whatever becomes of the palm.
+    pub fn postures(
+        &self,
+        from: &[f64],
+        target: SpaceVector,
+        fit: &dyn Fn(&[f64]) -> PostureFit,
+    ) -> FoundPostures {
+        let mut found = FoundPostures { allowed: Vec::new(), refused: None, error: f64::INFINITY };
+        self.add(&mut found, self.descend(from, from, target), fit);
+        if found.allowed.iter().any(|posture| !posture.is_narrow) {
+            return found;
         }
-        let travel =
-            |p: &ArmPosture| p.joints.iter().zip(from).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-        let mut best = first;
-        for n in 0..=RESTARTS {
-            let found = self.descend(&self.seed(n), from, target);
-            let arrives = found.error <= CONVERGED;
-            let better = if best.error <= CONVERGED {
-                arrives && travel(&found) < travel(&best)
-            } else {
-                found.error < best.error
-            };
-            if better {
-                best = found;
-            }
+        // Each with its own posture to stay near: the same one would lead to where the first led.
+        for seed in (0..=RESTARTS).map(|n| self.seed(n)) {
+            let near: Vec<f64> = from.iter().zip(&seed).map(|(a, b)| (a + b) / 2.0).collect();
+            self.add(&mut found, self.descend(&near, &near, target), fit);
         }
         // To keep the palm upright on the way leads now and then to a limit that the place itself does not ask for.
         for n in 0..=RESTARTS {
-            if best.error <= CONVERGED {
+            if !found.allowed.is_empty() {
                 break;
             }
-            let found = self.approach(self.within(&self.seed(n)), 160, target);
-            if found.error < best.error {
-                best = found;
-            }
+            self.add(&mut found, self.approach(self.within(&self.seed(n)), 160, target), fit);
         }
-        best
+        found
     }
 
-    /// Whether a posture of [`plan`](Self::plan) arrives.
-    pub fn arrives(posture: &ArmPosture) -> bool {
-        posture.error <= CONVERGED
+    fn add(&self, found: &mut FoundPostures, posture: ArmPosture, fit: &dyn Fn(&[f64]) -> PostureFit) {
+        found.error = found.error.min(posture.error);
+        if posture.error > CONVERGED {
+            return;
+        }
+        let fit = fit(&posture.joints);
+        if fit == PostureFit::Refused {
+            found.refused.get_or_insert(posture.joints);
+            return;
+        }
+        let tilt = angle_between(&self.forward(&posture.joints).up, &SpaceVector::z());
+        let is_narrow = fit == PostureFit::Narrow;
+        found.allowed.push(AllowedPosture { joints: posture.joints, tilt, is_narrow });
     }
 
     /// The middle of the limits, then points of Halton's sequence.
@@ -202,10 +254,11 @@ fn task(now: &ForwardKinematics, target: SpaceVector, upright: bool) -> (DMatrix
     }
     let mut error = DVector::zeros(rows);
     error.rows_mut(0, 3).copy_from(&step);
-    for (i, (axis, anchor)) in now.joints.iter().enumerate() {
-        let v = axis.cross(&(now.tool - anchor));
+    for (i, (motion, axis, anchor)) in now.joints.iter().enumerate() {
+        let turns = *motion == JointMotion::Hinge;
+        let v = if turns { axis.cross(&(now.tool - anchor)) } else { *axis };
         jacobian.view_mut((0, i), (3, 1)).copy_from(&v);
-        if upright {
+        if upright && turns {
             let t = axis.cross(&now.up) * TILT;
             jacobian[(3, i)] = t.x;
             jacobian[(4, i)] = t.y;
@@ -265,8 +318,14 @@ mod tests {
 
     /// Shoulder yaw, shoulder pitch, elbow pitch; two links of 0.4 m, stretched along x.
     fn three() -> KinematicChain {
-        let link =
-            |x: f64, axis| KinematicLink { anchor: SpaceVector::new(x, 0.0, 1.0), axis, lo: -2.5, hi: 2.5 };
+        let motion = JointMotion::Hinge;
+        let link = |x: f64, axis| KinematicLink {
+            motion,
+            anchor: SpaceVector::new(x, 0.0, 1.0),
+            axis,
+            lo: -2.5,
+            hi: 2.5,
+        };
         KinematicChain {
             links: vec![
                 link(0.0, SpaceVector::z()),
@@ -298,8 +357,9 @@ mod tests {
 
     #[test]
     fn what_is_out_of_reach_gives_the_nearest() {
-        let found = three().plan(&[0.0, 0.3, 0.3], SpaceVector::new(2.0, 0.0, 1.0));
-        assert!(!KinematicChain::arrives(&found));
+        let found =
+            three().postures(&[0.0, 0.3, 0.3], SpaceVector::new(2.0, 0.0, 1.0), &|_| PostureFit::Free);
+        assert!(found.allowed.is_empty() && found.refused.is_none());
         assert!((found.error - 1.2).abs() < 0.01, "{}", found.error);
     }
 
@@ -308,8 +368,37 @@ mod tests {
     fn a_place_that_only_a_tilted_palm_reaches_is_reached() {
         let chain = three();
         let joints = [0.532_975_126_504_515_5, 0.510_019_768_580_971_8, 2.030_049_297_275_211_6];
-        let found = chain.plan(&[0.0, 0.1, 0.5], chain.tool_at(&joints));
-        assert!(KinematicChain::arrives(&found), "{found:?}");
+        let found = chain.postures(&[0.0, 0.1, 0.5], chain.tool_at(&joints), &|_| PostureFit::Free);
+        assert!(!found.allowed.is_empty(), "{}", found.error);
+    }
+
+    #[test]
+    fn what_is_not_allowed_is_not_found() {
+        let chain = three();
+        let target = chain.tool_at(&[0.4, 0.2, 1.0]);
+        for side in [-1.0, 1.0] {
+            let fit = |q: &[f64]| if q[2] * side > 0.0 { PostureFit::Free } else { PostureFit::Refused };
+            let found = chain.postures(&[0.0, 0.1, 0.5], target, &fit);
+            assert!(!found.allowed.is_empty() && found.allowed.iter().all(|p| p.joints[2] * side > 0.0));
+        }
+        let found = chain.postures(&[0.0, 0.1, 0.5], target, &|_| PostureFit::Refused);
+        assert!(found.allowed.is_empty() && found.refused.is_some());
+    }
+
+    #[test]
+    fn a_slider_goes_along_its_axis() {
+        let mut chain = three();
+        chain.links[0] = KinematicLink {
+            motion: JointMotion::Slider,
+            anchor: SpaceVector::zeros(),
+            axis: SpaceVector::z(),
+            lo: 0.0,
+            hi: 0.5,
+        };
+        let tool = chain.tool_at(&[0.3, 0.0, 0.0]);
+        assert!((tool - SpaceVector::new(0.8, 0.0, 1.3)).norm() < 1e-12);
+        let found = chain.postures(&[0.0, 0.3, 0.3], SpaceVector::new(0.75, 0.0, 1.4), &|_| PostureFit::Free);
+        assert!(!found.allowed.is_empty(), "{}", found.error);
     }
 
     #[test]
@@ -323,10 +412,10 @@ mod tests {
         fn reaches_what_forward_kinematics_reaches(a in -2.0f64..2.0, b in -1.2f64..1.2, c in 0.3f64..2.2) {
             let chain = three();
             let target = chain.tool_at(&[a, b, c]);
-            let found = chain.plan(&[0.0, 0.1, 0.5], target);
-            prop_assert!(KinematicChain::arrives(&found), "{found:?}");
-            prop_assert!((chain.tool_at(&found.joints) - target).norm() < 2e-4);
-            for (q, l) in found.joints.iter().zip(&chain.links) {
+            let found = chain.postures(&[0.0, 0.1, 0.5], target, &|_| PostureFit::Free);
+            prop_assert!(!found.allowed.is_empty(), "{}", found.error);
+            prop_assert!((chain.tool_at(&found.allowed[0].joints) - target).norm() < 2e-4);
+            for (q, l) in found.allowed[0].joints.iter().zip(&chain.links) {
                 prop_assert!((l.lo..=l.hi).contains(q));
             }
         }

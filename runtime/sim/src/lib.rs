@@ -24,16 +24,20 @@
 
 mod arm;
 mod base;
+mod clearance;
 mod command;
 mod error;
 mod hand;
 mod kinematics;
 mod laser;
 mod math;
+mod motion;
 mod mover;
 mod physics;
+mod planner;
 mod profile;
 mod report;
+mod route;
 #[cfg(test)]
 mod samples;
 mod sense;
@@ -45,7 +49,7 @@ use hrdsl_ir::world::{
 };
 use hrdsl_ir::{Expr, Nanos, Value};
 
-use arm::ArmControl;
+use arm::{ArmControl, ArmMoment};
 use base::{BaseControl, PlanarVelocity};
 pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
@@ -66,6 +70,8 @@ pub struct WorldSimulation {
     signals: Vec<Signal>,
     physics: PhysicsAdapter,
     arms: Vec<ArmControl>,
+    /// By arm: the hands that it moves.
+    arm_hands: Vec<Vec<usize>>,
     hands: HandSet,
     bases: Vec<BaseControl>,
     /// By body.
@@ -97,10 +103,15 @@ impl WorldSimulation {
             }
         }
         sense::check(world, signals)?;
-        let physics = PhysicsAdapter::new(world)?;
+        let mut physics = PhysicsAdapter::new(world)?;
         let arms = world.arms.iter().map(|a| ArmControl::new(a, world, &physics));
         let arms = arms.collect::<Result<Vec<_>, _>>()?;
-        let hands = HandSet::new(world, &physics)?;
+        let hands = HandSet::new(world, &mut physics)?;
+        let moved = |arm: &ArmControl| {
+            let palms = world.grippers.iter().enumerate().filter(|(_, g)| arm.moves(g.palm));
+            palms.map(|(i, _)| i).collect::<Vec<usize>>()
+        };
+        let arm_hands = arms.iter().map(moved).collect();
         let bases = world.bases.iter().map(|b| BaseControl::new(b, world, &physics));
         let bases = bases.collect::<Result<Vec<_>, _>>()?;
         world.lasers.iter().try_for_each(|laser| laser::check(laser, world))?;
@@ -110,6 +121,7 @@ impl WorldSimulation {
             signals: signals.to_vec(),
             physics,
             arms,
+            arm_hands,
             hands,
             bases,
             now: 0,
@@ -142,6 +154,7 @@ impl WorldSimulation {
     }
 
     fn step(&mut self, next: Nanos) {
+        self.physics.release_motors();
         for arm in &mut self.arms {
             arm.drive(self.last, next, &mut self.physics);
         }
@@ -163,8 +176,9 @@ impl WorldSimulation {
         self.physics.step();
         self.last = next;
         self.now = self.now.max(next);
-        for arm in &mut self.arms {
-            self.finished.extend(arm.check_arrival(next, &self.physics));
+        for (i, arm) in self.arms.iter_mut().enumerate() {
+            let held = self.hands.held_by_any(&self.arm_hands[i]);
+            self.finished.extend(arm.check_arrival(&held, &self.physics));
         }
         self.hands.update(next, &mut self.physics, &mut self.finished);
         self.finished.extend(self.bases.iter_mut().filter_map(BaseControl::check_stopped));
@@ -248,12 +262,12 @@ impl WorldSimulation {
             }
             WorldAction::Grasp { gripper } => {
                 let hand = self.hand(*gripper).ok_or_else(|| no_gripper(*gripper))?;
-                let replaced = self.hands.close(hand, self.now, None, true);
+                let replaced = self.hands.close(hand, self.now, None, true, &mut self.physics);
                 self.replaced(replaced);
             }
             WorldAction::LetGo { gripper } => {
                 let hand = self.hand(*gripper).ok_or_else(|| no_gripper(*gripper))?;
-                let replaced = self.hands.open(hand, self.now, None);
+                let replaced = self.hands.open(hand, self.now, None, &mut self.physics);
                 self.replaced(replaced);
             }
         }
@@ -303,9 +317,8 @@ impl WorldSimulation {
                 if target.iter().any(|x| !x.is_finite()) {
                     return Err(CommandError::NotFinite);
                 }
-                let local = self.arms[at].relative(&self.physics, target);
-                let posture = self.arms[at].plan(self.now, local)?;
-                self.arms[at].go(self.now, id, posture, Some(target), max_speed)
+                let route = self.arms[at].plan_place(target, max_speed, &self.moment(at))?;
+                self.arms[at].go(id, route, Some(target))
             }
             MotorCommand::ReachJoints { arm, positions, max_speed } => {
                 let at = self.arm(arm, max_speed)?;
@@ -313,30 +326,31 @@ impl WorldSimulation {
                     return Err(CommandError::NotFinite);
                 }
                 self.arms[at].check(&positions, &self.world)?;
-                self.arms[at].go(self.now, id, positions, None, max_speed)
+                let route = self.arms[at].plan_posture(&positions, max_speed, &self.moment(at))?;
+                self.arms[at].go(id, route, None)
             }
             MotorCommand::FollowJoints { arm, positions, times } => {
                 let at = self.arm(arm, None)?;
                 let track = self.arms[at].track(&positions, &times, &self.world)?;
-                self.arms[at].follow(self.now, id, track)
+                self.arms[at].follow(id, track)
             }
             MotorCommand::AimJoint { arm, joint, to } => {
                 let at = self.arm(arm, None)?;
-                let replaced = self.arms[at].aim_joint(self.now, joint, to, &self.world)?;
+                let replaced = self.arms[at].aim_joint(joint, to, &self.world)?;
                 self.finished.push((id, Ok(())));
                 replaced
             }
             MotorCommand::StopJoints { arm } => {
                 let at = self.arm(arm, None)?;
-                self.arms[at].halt(self.now, id)
+                self.arms[at].halt(id)
             }
             MotorCommand::OpenFingers { gripper } => {
                 let hand = self.hand(gripper).ok_or(CommandError::NoSuchGripper)?;
-                self.hands.open(hand, self.now, Some(id))
+                self.hands.open(hand, self.now, Some(id), &mut self.physics)
             }
             MotorCommand::CloseFingers { gripper } => {
                 let hand = self.hand(gripper).ok_or(CommandError::NoSuchGripper)?;
-                self.hands.close(hand, self.now, Some(id), false)
+                self.hands.close(hand, self.now, Some(id), false, &mut self.physics)
             }
             MotorCommand::DriveWheels { base, forward, sideways, turn } => {
                 let now = self.now;
@@ -378,17 +392,31 @@ impl WorldSimulation {
         self.finished.extend(id.map(|id| (id, Err(CommandError::Replaced))));
     }
 
-    /// The angles at which an arm's tool would be at a place in the world (m).
+    /// The posture in which an arm would have its tool at a place in the world (m), at the end of a way that is free.
     ///
     /// # Errors
-    /// That it is out of reach.
+    /// That it is out of reach, or that there is no free way.
     pub fn plan(&self, arm: ArmId, target: Vec3) -> Result<Vec<f64>, CommandError> {
         let at = self.arm(arm, None)?;
         if target.iter().any(|x| !x.is_finite()) {
             return Err(CommandError::NotFinite);
         }
-        let local = self.arms[at].relative(&self.physics, target);
-        self.arms[at].plan(self.now, local)
+        let (arm, moment) = (&self.arms[at], self.moment(at));
+        arm.plan_place(target, None, &moment).map(|route| route.end().to_vec())
+    }
+
+    /// What the planner of an arm knows: everything but where people are.
+    fn moment(&self, arm: usize) -> ArmMoment<'_> {
+        let bases = &self.bases;
+        let is_known = move |body: BodyId| {
+            let root = self.physics.root(body);
+            self.physics.motion(root) != BodyMotion::Kinematic || bases.iter().any(|b| b.body == root)
+        };
+        ArmMoment {
+            physics: &self.physics,
+            held: self.hands.held_by_any(&self.arm_hands[arm]),
+            is_known: Box::new(is_known),
+        }
     }
 
     /// The commands that have ended since the last call, in the order in which they did (arms before hands, hands before bases).

@@ -80,6 +80,12 @@ impl WorldSimulation {
         self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.speeds(&self.physics))
     }
 
+    /// The torques (N·m) or forces (N) of an arm's motors over the last step.
+    #[must_use]
+    pub fn efforts(&self, arm: ArmId) -> Vec<f64> {
+        self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.efforts(&self.physics))
+    }
+
     /// Where an arm's tool point is (m), and how its tip is turned: a unit quaternion x, y, z, w.
     #[must_use]
     pub fn tool_pose(&self, arm: ArmId) -> Option<[f64; 7]> {

@@ -16,6 +16,12 @@ pub(crate) fn cuboid(x: f64, y: f64, z: f64) -> BodyShape {
     BodyShape::Box { size: [x, y, z] }
 }
 
+/// A hinge about the vertical.
+pub(crate) fn upright_joint(parent: BodyId, child: BodyId, anchor: Vec3, (lo, hi): (f64, f64)) -> Joint {
+    let (name, motion, axis) = ("hinge".into(), JointMotion::Hinge, [0.0, 0.0, 1.0]);
+    Joint { name, parent, child, motion, anchor, axis, lo, hi, drive: JointDrive::default() }
+}
+
 /// A round platform of 20 cm in radius on the ground at the origin, which drives at 1 m/s and turns at 2 rad/s; then what else there
 /// is.
 pub(crate) fn flat(more: Vec<Body>) -> World {

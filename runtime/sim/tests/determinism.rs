@@ -92,7 +92,7 @@ fn rest_waits_for_what_is_under_way() {
     settle(&mut sim);
     let id = sim.command(MotorCommand::CloseFingers { gripper: GRIP }).unwrap();
     let (time, result) = wait(&mut sim, id, |_| {});
-    assert!(result.is_ok() && (0.5..=0.51).contains(&time), "{time}");
+    assert!(result.is_ok() && (0.4..=0.51).contains(&time), "{time}");
     settle(&mut sim);
     let slow = WorldAction::Move {
         body: named(&world, "person.hand"),

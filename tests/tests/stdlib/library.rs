@@ -92,9 +92,9 @@ fn module(path: &'static str, text: &str) -> Module {
 fn member(kind: &Member) -> Option<(&'static str, String)> {
     Some(match kind {
         Member::Body(body) => ("body", body.name.text.clone()),
-        Member::Joint { name, .. } => ("joint", name.text.clone()),
-        Member::Arm { name, .. } => ("arm", name.text.clone()),
-        Member::Gripper { name, .. } => ("gripper", name.text.clone()),
+        Member::Joint(joint) => ("joint", joint.name.text.clone()),
+        Member::Arm(arm) => ("arm", arm.name.text.clone()),
+        Member::Gripper(gripper) => ("gripper", gripper.name.text.clone()),
         Member::Base(base) => ("base", base.name.text.clone()),
         Member::Laser(laser) => ("laser", laser.name.text.clone()),
         Member::Posture(posture) => ("posture", posture.name.text.clone()),

@@ -237,9 +237,9 @@ impl DefinitionReader {
             match &member.kind {
                 WorldMemberKind::Part { name, .. } => self.define("part of the world", name),
                 WorldMemberKind::Body(body) => self.define("body", &body.name),
-                WorldMemberKind::Joint { name, .. } => self.define("joint", name),
-                WorldMemberKind::Arm { name, .. } => self.define("arm", name),
-                WorldMemberKind::Gripper { name, .. } => self.define("gripper", name),
+                WorldMemberKind::Joint(joint) => self.define("joint", &joint.name),
+                WorldMemberKind::Arm(arm) => self.define("arm", &arm.name),
+                WorldMemberKind::Gripper(gripper) => self.define("gripper", &gripper.name),
                 WorldMemberKind::Base(base) => self.define("base", &base.name),
                 WorldMemberKind::Laser(laser) => self.define("laser", &laser.name),
                 WorldMemberKind::Posture(posture) => self.define("posture", &posture.name),

@@ -58,6 +58,22 @@ impl PhysicsAdapter {
         (0..self.parts.len()).map(body_id).filter(|b| !self.parts[index(*b)].ghost)
     }
 
+    pub fn is_ghost(&self, body: BodyId) -> bool {
+        self.parts[index(body)].ghost
+    }
+
+    /// The box around the body, if it were there.
+    pub fn aabb(&self, body: BodyId, there: &Pose) -> parry::bounding_volume::Aabb {
+        self.shape(body).compute_aabb(there)
+    }
+
+    /// How far two bodies would be apart, if they were there, m; negative: how deep in each other. `None`: farther than `far`.
+    pub fn gap(&self, a: BodyId, at: &Pose, b: BodyId, there: &Pose, far: f32) -> Option<f32> {
+        // The engine knows how to measure between all shapes that a scenario can name.
+        let contact = parry::query::contact(at, self.shape(a), there, self.shape(b), far).ok().flatten();
+        contact.map(|c| c.dist)
+    }
+
     /// Whether nothing moves the body, nor what it is rigidly one with.
     pub fn is_fixed(&self, body: BodyId) -> bool {
         self.motion(body) == BodyMotion::Fixed

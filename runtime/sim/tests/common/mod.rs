@@ -31,6 +31,17 @@ pub fn cuboid(x: f64, y: f64, z: f64) -> BodyShape {
     BodyShape::Box { size: [x, y, z] }
 }
 
+/// What moves a joint of the robot.
+fn drive_of(joint: &str) -> JointDrive {
+    let effort = match joint {
+        "robot.hip_rotor" | "robot.hip_flexor" => 150.0,
+        "robot.shoulder_flexor" | "robot.shoulder_abduction" => 80.0,
+        "robot.humeral_rotation" | "robot.elbow_flexor" => 40.0,
+        _ => 12.0,
+    };
+    JointDrive { effort: Some(effort), speed: None, rotor: 0.1 }
+}
+
 struct Maker {
     world: World,
 }
@@ -49,7 +60,18 @@ impl Maker {
 
     fn joint(&mut self, name: &str, parent: BodyId, child: BodyId, at: Vec3, axis: Vec3, limits: (f64, f64)) {
         let (lo, hi) = (deg(limits.0), deg(limits.1));
-        self.world.joints.push(Joint { name: name.into(), parent, child, anchor: at, axis, lo, hi });
+        let (motion, drive) = (JointMotion::Hinge, drive_of(name));
+        self.world.joints.push(Joint {
+            name: name.into(),
+            parent,
+            child,
+            motion,
+            anchor: at,
+            axis,
+            lo,
+            hi,
+            drive,
+        });
     }
 
     fn bert2(&mut self) {
@@ -69,10 +91,22 @@ impl Maker {
         }
         let wrist = self.ghost("robot.wrist", 0.03, [0.30, -0.22, 0.76], 0.4);
         let palm = self.body("robot.palm", Dynamic, cuboid(0.04, 0.08, 0.08), [0.38, -0.22, 0.76], 0.4);
-        for (name, y) in [("robot.finger_left", -0.185), ("robot.finger_right", -0.255)] {
+        for (name, y, inwards) in [("robot.finger_left", -0.18, -1.0), ("robot.finger_right", -0.26, 1.0)] {
             let finger = self.body(name, Dynamic, cuboid(0.08, 0.01, 0.03), [0.44, y, 0.76], 0.05);
-            self.world.bodies[finger.0 as usize].ghost = true;
-            self.joint(name, palm, finger, [0.40, y, 0.76], [0.0, 0.0, 1.0], (0.0, 0.0));
+            let drive = JointDrive { effort: Some(40.0), speed: None, rotor: 0.1 };
+            let (motion, anchor, axis) = (JointMotion::Slider, [0.40, y, 0.76], [0.0, inwards, 0.0]);
+            let (name, parent, child) = (name.into(), palm, finger);
+            self.world.joints.push(Joint {
+                name,
+                parent,
+                child,
+                motion,
+                anchor,
+                axis,
+                lo: 0.0,
+                hi: 0.03,
+                drive,
+            });
         }
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
         let (no_x, no_y) = ([-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]);
@@ -91,9 +125,11 @@ impl Maker {
             tip: palm,
             tool: [0.08, 0.0, 0.0],
             max_speed: 0.2,
+            contact_limit: None,
             postures: Vec::new(),
         });
         self.gripper("robot.grip", palm, [0.08, 0.0, 0.0], 0.04, 500_000_000);
+        self.world.grippers[0].fingers = vec![JointId(0), JointId(1)];
     }
 
     fn person(&mut self) {
@@ -108,7 +144,8 @@ impl Maker {
 
     fn gripper(&mut self, name: &str, palm: BodyId, tool: Vec3, reach: f64, delay: Nanos) {
         let name = name.into();
-        self.world.grippers.push(Gripper { name, palm, tool, reach, delay, holds: Vec::new() });
+        let (force, fingers, holds) = (40.0, Vec::new(), Vec::new());
+        self.world.grippers.push(Gripper { name, palm, fingers, tool, reach, delay, force, holds });
     }
 }
 

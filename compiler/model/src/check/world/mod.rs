@@ -1,5 +1,6 @@
 //! The world: bodies, joints, devices, signals and rules.
 
+mod arms;
 pub(in crate::check) mod device;
 mod mobile;
 pub(in crate::check) mod parts;
@@ -18,13 +19,10 @@ use crate::check::{
     world::parts::PlacedMember,
 };
 use crate::{
-    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, Dimension, GripperId, InferredType, JointId, Value,
+    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, Dimension, GripperId, InferredType, Value,
     noun::Noun,
     report::{names, types, world::bad_world},
-    world::{
-        PartFrame, TypedArm, TypedBody, TypedGripper, TypedJoint, TypedRuleTrigger, TypedSignal, TypedWorld,
-        TypedWorldRule,
-    },
+    world::{PartFrame, TypedBody, TypedRuleTrigger, TypedSignal, TypedWorld, TypedWorldRule},
 };
 
 const LENGTH: InferredType = InferredType::Float(Dimension::LENGTH);
@@ -147,9 +145,9 @@ impl<'a> Checker<'a> {
             }
             Member::Body(body) => self.body(p, body),
             Member::Part { .. }
-            | Member::Joint { .. }
-            | Member::Arm { .. }
-            | Member::Gripper { .. }
+            | Member::Joint(_)
+            | Member::Arm(_)
+            | Member::Gripper(_)
             | Member::Base(_)
             | Member::Laser(_)
             | Member::Posture(_)
@@ -231,59 +229,12 @@ impl<'a> Checker<'a> {
         Some(x)
     }
 
-    fn local_body(&mut self, name: &NameSyntax, prefix: &str) -> Option<BodyId> {
+    pub(super) fn local_body(&mut self, name: &NameSyntax, prefix: &str) -> Option<BodyId> {
         self.world_name(Noun::Body, std::slice::from_ref(name), prefix).map(BodyId)
     }
 
-    fn joint(&mut self, p: &PlacedMember<'a>) {
-        let Member::Joint { name, parent, child, at, axis, limits } = &p.member.kind else { return };
-        let bodies = (self.local_body(parent, &p.prefix), self.local_body(child, &p.prefix));
-        if parent.text == child.text {
-            let message = format!("the joint `{}` joins a body to itself", name.text);
-            self.report(bad_world(child.span, message, "name another body"));
-        }
-        let anchor = self.vector(at, LENGTH).unwrap_or_default();
-        let direction = self.vector(axis, NUMBER);
-        if direction == Some([0.0; 3]) {
-            self.report(bad_world(axis.span, "an axis has a direction", "write `axis (0, 0, 1)`"));
-        }
-        let (lo, hi) = self.limits(limits);
-        let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.joints);
-        if issues.declare_as(table, Noun::Joint, &full, name.span).is_some() {
-            self.world_mut().joints.push(TypedJoint {
-                name: full,
-                parent: bodies.0.unwrap_or(BodyId(0)),
-                child: bodies.1.unwrap_or(BodyId(0)),
-                frame: p.frame,
-                anchor,
-                axis: direction.unwrap_or([0.0, 0.0, 1.0]),
-                lo,
-                hi,
-            });
-        }
-    }
-
-    fn gripper(&mut self, p: &PlacedMember<'a>) {
-        let Member::Gripper { name, palm, tool, reach, delay } = &p.member.kind else { return };
-        let palm = self.local_body(palm, &p.prefix).unwrap_or(BodyId(0));
-        let tool = self.vector(tool, LENGTH).unwrap_or_default();
-        let reach = self.more_than_zero(reach, Dimension::LENGTH, "the reach").unwrap_or(0.0);
-        let delay = self.time(delay, "the delay", false).unwrap_or(0.0);
-        let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.grippers);
-        if issues.declare_as(table, Noun::Gripper, &full, name.span).is_some() {
-            self.world_mut().grippers.push(TypedGripper { name: full, palm, tool, reach, delay });
-        }
-    }
-
-    fn limits(&mut self, limits: &ast::RangeSyntax) -> (f64, f64) {
-        self.ends(limits, Dimension::ANGLE, "limits have two ends", "write `limits -90 deg .. 90 deg`")
-            .unwrap_or_default()
-    }
-
     /// The two ends of a range of quantities, the lower first.
-    fn ends(
+    pub(super) fn ends(
         &mut self,
         range: &ast::RangeSyntax,
         dim: Dimension,
@@ -300,28 +251,6 @@ impl<'a> Checker<'a> {
             self.report(types::empty_range(Value::Float(lo), Value::Float(hi), range.span));
         }
         Some((lo, hi))
-    }
-
-    fn arm(&mut self, p: &PlacedMember<'a>) {
-        let Member::Arm { name, joints, tip, tool, speed } = &p.member.kind else { return };
-        let ids: Vec<JointId> = joints
-            .iter()
-            .filter_map(|j| self.world_name(Noun::Joint, std::slice::from_ref(j), &p.prefix))
-            .map(JointId)
-            .collect();
-        let tip_id = self.local_body(tip, &p.prefix);
-        if let (true, Some(tip_id)) = (ids.len() == joints.len(), tip_id) {
-            self.chain(&ids, joints, tip, tip_id);
-        }
-        let tool = self.vector(tool, LENGTH).unwrap_or_default();
-        let speed = self.more_than_zero(speed, Dimension::ANGULAR_SPEED, "the speed").unwrap_or(0.0);
-        let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.arms);
-        if issues.declare_as(table, Noun::Arm, &full, name.span).is_some() {
-            let tip = tip_id.unwrap_or(BodyId(0));
-            let postures = Vec::new();
-            self.world_mut().arms.push(TypedArm { name: full, joints: ids, tip, tool, speed, postures });
-        }
     }
 
     fn current(&mut self, p: &PlacedMember<'a>) {
@@ -341,27 +270,6 @@ impl<'a> Checker<'a> {
     }
 
     /// An arm's joints follow each other from the base to the tip.
-    fn chain(&mut self, ids: &[JointId], names: &[NameSyntax], tip: &NameSyntax, tip_id: BodyId) {
-        let joints: Vec<(BodyId, BodyId)> = {
-            let world = self.world_mut();
-            ids.iter().map(|j| &world.joints[usize::from(j.0)]).map(|j| (j.parent, j.child)).collect()
-        };
-        for (pair, name) in joints.windows(2).zip(&names[1..]) {
-            if pair[0].1 != pair[1].0 {
-                let message = format!("the joint `{}` does not follow the one before it", name.text);
-                self.report(bad_world(
-                    name.span,
-                    message,
-                    "name the joints in order, from the base to the tip",
-                ));
-            }
-        }
-        if joints.last().is_some_and(|last| last.1 != tip_id) {
-            let message = format!("the arm's last joint does not move `{}`", tip.text);
-            self.report(bad_world(tip.span, message, "the tip is the child of the last joint"));
-        }
-    }
-
     fn signals(&mut self, p: &PlacedMember<'a>) {
         let Member::Signal { name, ty, to, value } = &p.member.kind else { return };
         self.check_free(&ExprEnv::constants(), Noun::Signal, name);

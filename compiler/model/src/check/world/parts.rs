@@ -61,9 +61,9 @@ impl<'a> Checker<'a> {
                 | Member::Sample(_)
                 | Member::Gravity(_)
                 | Member::Body(_)
-                | Member::Joint { .. }
-                | Member::Arm { .. }
-                | Member::Gripper { .. }
+                | Member::Joint(_)
+                | Member::Arm(_)
+                | Member::Gripper(_)
                 | Member::Base(_)
                 | Member::Laser(_)
                 | Member::Posture(_)

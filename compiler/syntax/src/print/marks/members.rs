@@ -314,19 +314,24 @@ impl TokenMarker<'_> {
                 self.maybe(body.rotated.as_ref());
                 self.maybe(body.mass.as_ref());
             }
-            WorldMemberKind::Joint { at, axis, limits, .. } => {
-                self.expr(at);
-                self.expr(axis);
-                self.range(limits);
+            WorldMemberKind::Joint(joint) => {
+                self.expr(&joint.at);
+                self.expr(&joint.axis);
+                self.range(&joint.limits);
+                self.maybe(joint.effort.as_ref());
+                self.maybe(joint.speed.as_ref());
+                self.maybe(joint.rotor.as_ref());
             }
-            WorldMemberKind::Arm { tool, speed, .. } => {
-                self.expr(tool);
-                self.expr(speed);
+            WorldMemberKind::Arm(arm) => {
+                self.expr(&arm.tool);
+                self.expr(&arm.speed);
+                self.maybe(arm.contact.as_ref());
             }
-            WorldMemberKind::Gripper { tool, reach, delay, .. } => {
-                self.expr(tool);
-                self.expr(reach);
-                self.expr(delay);
+            WorldMemberKind::Gripper(gripper) => {
+                self.expr(&gripper.tool);
+                self.expr(&gripper.reach);
+                self.expr(&gripper.delay);
+                self.maybe(gripper.force.as_ref());
             }
             WorldMemberKind::Base(base) => {
                 self.expr(&base.speed);

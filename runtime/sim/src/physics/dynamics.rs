@@ -1,0 +1,146 @@
+//! The dynamics of an arm as its controller knows them: which torques give its joints which accelerations.
+//!
+//! For joints with axes z and anchors p, and bodies with masses m, centres c and inertias I, the torques of accelerations q̈ are
+//! M q̈ + h (Siciliano et al., *Robotics*, 2009, section 7.2): M is the sum of m JᵥᵀJᵥ + JωᵀI Jω over the bodies, where the columns of
+//! Jᵥ are z × (c − p) and those of Jω are z; h is what weight and the present speeds ask for. What the arm carries that is not of
+//! it, the controller does not know.
+
+use hrdsl_ir::world::JointMotion;
+use nalgebra::{DMatrix, DVector, Matrix3};
+use rapier3d::prelude::*;
+
+use super::{PhysicsAdapter, joints::DrivenJoint};
+use crate::math::{SpaceVector, from_vector};
+
+/// The numbers of an arm's joints, from the base to the tip, and its bodies with how many of the joints move each.
+#[derive(Clone, Debug)]
+pub(crate) struct ArmDynamics {
+    joints: Vec<usize>,
+    bodies: Vec<(RigidBodyHandle, usize)>,
+}
+
+/// A joint, now.
+struct MovingAxis {
+    motion: JointMotion,
+    axis: SpaceVector,
+    anchor: SpaceVector,
+    speed: f64,
+}
+
+/// How what hangs on a joint moves without any acceleration of the joints themselves.
+#[derive(Clone, Copy)]
+struct LinkMotion {
+    at: SpaceVector,
+    turn: SpaceVector,
+    turn_rate: SpaceVector,
+    rate: SpaceVector,
+}
+
+/// What the dynamics say of one moment.
+pub(crate) struct ArmEquation {
+    pub inertia: DMatrix<f64>,
+    pub bias: DVector<f64>,
+}
+
+impl ArmDynamics {
+    pub fn new(joints: &[usize], physics: &PhysicsAdapter) -> ArmDynamics {
+        let driven = |j: &usize| physics.joints[*j].as_ref();
+        let mut bodies: Vec<(RigidBodyHandle, usize)> = Vec::new();
+        for joint in joints.iter().filter_map(driven) {
+            for handle in &joint.carried {
+                match bodies.iter_mut().find(|(known, _)| known == handle) {
+                    Some((_, above)) => *above += 1,
+                    None => bodies.push((*handle, 1)),
+                }
+            }
+        }
+        ArmDynamics { joints: joints.to_vec(), bodies }
+    }
+
+    /// Torques (N·m) and forces (N) that give accelerations, and those that only keep up what is.
+    pub fn equation(&self, physics: &PhysicsAdapter) -> ArmEquation {
+        let axes: Vec<MovingAxis> = self
+            .joints
+            .iter()
+            .filter_map(|j| physics.joints[*j].as_ref().map(|d| (j, d)))
+            .map(|(j, d)| physics.moving_axis(*j, d))
+            .collect();
+        let links = link_motions(&axes, -from_vector(physics.world.gravity));
+        let n = axes.len();
+        let mut equation = ArmEquation { inertia: DMatrix::zeros(n, n), bias: DVector::zeros(n) };
+        for (handle, above) in &self.bodies {
+            let Some(link) = links.get(above - 1) else { continue };
+            equation.add(&axes[..*above], link, &physics.world.bodies[*handle]);
+        }
+        equation
+    }
+}
+
+impl ArmEquation {
+    fn add(&mut self, axes: &[MovingAxis], link: &LinkMotion, body: &RigidBody) {
+        let (mass, centre) = (f64::from(body.mass()), from_vector(body.center_of_mass()));
+        let inertia = world_inertia(body);
+        let arm = centre - link.at;
+        let rate = link.rate + link.turn_rate.cross(&arm) + link.turn.cross(&link.turn.cross(&arm));
+        let force = rate * mass;
+        let torque = inertia * link.turn_rate + link.turn.cross(&(inertia * link.turn));
+        let columns: Vec<(SpaceVector, SpaceVector)> = axes
+            .iter()
+            .map(|a| match a.motion {
+                JointMotion::Hinge => (a.axis.cross(&(centre - a.anchor)), a.axis),
+                JointMotion::Slider => (a.axis, SpaceVector::zeros()),
+            })
+            .collect();
+        for (i, (v, w)) in columns.iter().enumerate() {
+            self.bias[i] += v.dot(&force) + w.dot(&torque);
+            let (mv, iw) = (v * mass, inertia * w);
+            for (j, (u, x)) in columns.iter().enumerate().take(i + 1) {
+                let m = mv.dot(u) + iw.dot(x);
+                self.inertia[(i, j)] += m;
+                if i != j {
+                    self.inertia[(j, i)] += m;
+                }
+            }
+        }
+    }
+}
+
+impl PhysicsAdapter {
+    fn moving_axis(&self, joint: usize, driven: &DrivenJoint) -> MovingAxis {
+        let (axis, anchor) = self.axis_now(driven);
+        MovingAxis { motion: driven.motion, axis, anchor, speed: self.joint_speed(joint) }
+    }
+}
+
+/// `against` is the acceleration that stands for the weight: everything is as if the base rose with it.
+fn link_motions(axes: &[MovingAxis], against: SpaceVector) -> Vec<LinkMotion> {
+    let zero = SpaceVector::zeros();
+    let mut last = LinkMotion { at: zero, turn: zero, turn_rate: zero, rate: against };
+    let mut links = Vec::with_capacity(axes.len());
+    for (i, a) in axes.iter().enumerate() {
+        if i == 0 {
+            last.at = a.anchor;
+        }
+        let way = a.anchor - last.at;
+        let mut rate = last.rate + last.turn_rate.cross(&way) + last.turn.cross(&last.turn.cross(&way));
+        let (mut turn, mut turn_rate) = (last.turn, last.turn_rate);
+        match a.motion {
+            JointMotion::Hinge => {
+                turn += a.axis * a.speed;
+                turn_rate += last.turn.cross(&(a.axis * a.speed));
+            }
+            JointMotion::Slider => rate += last.turn.cross(&(a.axis * (2.0 * a.speed))),
+        }
+        last = LinkMotion { at: a.anchor, turn, turn_rate, rate };
+        links.push(last);
+    }
+    links
+}
+
+fn world_inertia(body: &RigidBody) -> Matrix3<f64> {
+    let local = body.mass_properties().local_mprops.reconstruct_inertia_matrix();
+    let turn = crate::math::from_pose(body.position()).turn.to_rotation_matrix();
+    let column = |i: usize| from_vector(local.col(i));
+    let local = Matrix3::from_columns(&[column(0), column(1), column(2)]);
+    turn.matrix() * local * turn.matrix().transpose()
+}

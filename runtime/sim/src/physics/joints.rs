@@ -1,0 +1,208 @@
+//! Joints of the engine: their motors, whose torque is limited, and what they measure.
+
+use hrdsl_ir::world::{BodyId, BodyMotion, Joint, JointMotion, World};
+use rapier3d::prelude::*;
+
+use super::{PhysicsAdapter, index, pairs::JointGraph};
+use crate::math::{
+    BodyFrame, RotationQuat, SpaceVector, about, angle_between, from_pose, from_vector, to_pose, to_vector,
+    twist, v3,
+};
+
+/// How a motor that keeps a speed answers to an error of it, N·s/m or N·m·s/rad.
+const FIRM: f32 = 1e5;
+/// The effort of a motor without a limit, N·m or N.
+const UNLIMITED: f64 = 1e9;
+
+/// A joint of the engine.
+pub(crate) struct DrivenJoint {
+    handle: ImpulseJointHandle,
+    parent: RigidBodyHandle,
+    child: RigidBodyHandle,
+    pub(super) motion: JointMotion,
+    /// At the start, in the world.
+    axis: SpaceVector,
+    anchor: SpaceVector,
+    parent_start: BodyFrame,
+    child_start: BodyFrame,
+    /// What it carries: bodies on the child's side.
+    pub(super) carried: Vec<RigidBodyHandle>,
+    /// The most that its motor can do, and what it does.
+    limit: f64,
+    effort: f64,
+}
+
+/// A rotor's inertia, as it is added to the body that it turns: about all axes, since the links between two axes of one shoulder
+/// or wrist would otherwise be so much lighter than their neighbours that the solver could not hold them together.
+pub(super) fn rotor_inertia(joint: &Joint) -> Mat3 {
+    Mat3::from_diagonal(Vector::splat(joint.drive.rotor as f32))
+}
+
+impl PhysicsAdapter {
+    pub(super) fn add_joint(&mut self, joint: &Joint, world: &World, graph: &JointGraph) -> DrivenJoint {
+        let axis = v3(joint.axis).normalize();
+        let anchor = v3(joint.anchor);
+        let frame = BodyFrame::new(anchor, x_to(&axis));
+        let (parent, child) = (self.root(joint.parent), self.root(joint.child));
+        let (p, c) = (&self.parts[index(parent)], &self.parts[index(child)]);
+        let (locked, moving) = match joint.motion {
+            JointMotion::Hinge => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
+            JointMotion::Slider => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
+        };
+        let mut data = GenericJointBuilder::new(locked)
+            .local_frame1(to_pose(&p.start.inverse().then(&frame)))
+            .local_frame2(to_pose(&c.start.inverse().then(&frame)))
+            .contacts_enabled(false)
+            .build();
+        data.set_limits(moving, [joint.lo as f32, joint.hi as f32]);
+        let (parent_start, child_start) = (p.start, c.start);
+        let (parent_handle, child_handle) = (p.handle, c.handle);
+        let handle = self.world.insert_impulse_joint(parent_handle, child_handle, data);
+        let beyond = graph.beyond(joint, parent, child);
+        let dynamic = beyond.into_iter().filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
+        let carried: Vec<RigidBodyHandle> = dynamic.map(|b| self.parts[index(b)].handle).collect();
+        DrivenJoint {
+            handle,
+            parent: parent_handle,
+            child: child_handle,
+            motion: joint.motion,
+            axis,
+            anchor,
+            parent_start,
+            child_start,
+            carried,
+            limit: joint.drive.effort.unwrap_or(UNLIMITED),
+            effort: 0.0,
+        }
+    }
+
+    // ── What joints measure ──
+
+    /// The measured angle (rad) or way (m) from the start.
+    pub fn joint_position(&self, joint: usize) -> f64 {
+        let Some(driven) = &self.joints[joint] else { return 0.0 };
+        let pose = |h: RigidBodyHandle| from_pose(self.world.bodies[h].position());
+        let moved = |pose: BodyFrame, start: &BodyFrame| pose.then(&start.inverse());
+        let parent = moved(pose(driven.parent), &driven.parent_start);
+        let child = moved(pose(driven.child), &driven.child_start);
+        match driven.motion {
+            JointMotion::Hinge => twist(&(parent.turn.inverse() * child.turn), &driven.axis),
+            JointMotion::Slider => {
+                let way = child.point(driven.anchor) - parent.point(driven.anchor);
+                way.dot(&(parent.turn * driven.axis))
+            }
+        }
+    }
+
+    /// The measured speed about or along the axis, rad/s or m/s.
+    pub fn joint_speed(&self, joint: usize) -> f64 {
+        let Some(driven) = &self.joints[joint] else { return 0.0 };
+        let (p, c) = (&self.world.bodies[driven.parent], &self.world.bodies[driven.child]);
+        let parent = from_pose(p.position()).then(&driven.parent_start.inverse());
+        let axis = parent.turn * driven.axis;
+        match driven.motion {
+            JointMotion::Hinge => (from_vector(c.angvel()) - from_vector(p.angvel())).dot(&axis),
+            JointMotion::Slider => {
+                let at = to_vector(parent.point(driven.anchor));
+                (from_vector(c.velocity_at_point(at)) - from_vector(p.velocity_at_point(at))).dot(&axis)
+            }
+        }
+    }
+
+    /// The torque (N·m) or force (N) of its motor over the last step.
+    pub fn joint_effort(&self, joint: usize) -> f64 {
+        self.joints[joint].as_ref().map_or(0.0, |driven| driven.effort)
+    }
+
+    // ── Motors ──
+
+    /// Lets a motor turn (N·m) or push (N) as hard as it is told, and can, over the next step; gives what it does.
+    pub fn drive(&mut self, joint: usize, effort: f64) -> f64 {
+        let Some(driven) = &mut self.joints[joint] else { return 0.0 };
+        driven.effort = effort.clamp(-driven.limit, driven.limit);
+        let Some(driven) = &self.joints[joint] else { return 0.0 };
+        let (axis, _) = self.axis_now(driven);
+        // A slider is pushed through its middle, so that the solver need not keep it from tilting.
+        let at = self.world.bodies[driven.child].center_of_mass();
+        let pull = to_vector(axis * driven.effort);
+        let (effort, motion) = (driven.effort, driven.motion);
+        for (body, pull) in [(driven.child, pull), (driven.parent, -pull)] {
+            let body = &mut self.world.bodies[body];
+            match motion {
+                JointMotion::Hinge => body.add_torque(pull, false),
+                JointMotion::Slider => body.add_force_at_point(pull, at, false),
+            }
+        }
+        effort
+    }
+
+    /// Lets a motor go at a speed (m/s or rad/s) from now on, with no more than this force or torque (N or N·m).
+    pub fn run_at(&mut self, joint: usize, speed: f64, force: f64) {
+        let Some(driven) = &self.joints[joint] else { return };
+        let moving = match driven.motion {
+            JointMotion::Hinge => JointAxis::AngX,
+            JointMotion::Slider => JointAxis::LinX,
+        };
+        if let Some(joint) = self.world.impulse_joints.get_mut(driven.handle, true) {
+            joint.data.set_motor_model(moving, MotorModel::ForceBased);
+            joint.data.set_motor(moving, 0.0, speed as f32, 0.0, FIRM);
+            joint.data.set_motor_max_force(moving, force as f32);
+        }
+    }
+
+    /// Where a joint ends, rad or m.
+    pub fn joint_limits(&self, joint: usize) -> (f64, f64) {
+        let found = self.joints[joint].as_ref().and_then(|d| self.world.impulse_joints.get(d.handle));
+        let limits = found.map(|joint| {
+            let axis = if joint.data.locked_axes.contains(JointAxesMask::LIN_X) {
+                JointAxis::AngX
+            } else {
+                JointAxis::LinX
+            };
+            joint.data.limits[axis as usize]
+        });
+        limits.map_or((0.0, 0.0), |l| (f64::from(l.min), f64::from(l.max)))
+    }
+
+    /// Takes back what the motors did in the last step.
+    pub fn release_motors(&mut self) {
+        let ends = self.joints.iter().flatten().flat_map(|driven| [driven.parent, driven.child]);
+        for handle in ends {
+            let body = &mut self.world.bodies[handle];
+            body.reset_torques(false);
+            body.reset_forces(false);
+        }
+    }
+
+    /// The axis and the anchor of a joint, where they are now.
+    pub(super) fn axis_now(&self, driven: &DrivenJoint) -> (SpaceVector, SpaceVector) {
+        let parent =
+            from_pose(self.world.bodies[driven.parent].position()).then(&driven.parent_start.inverse());
+        (parent.turn * driven.axis, parent.point(driven.anchor))
+    }
+
+    /// The body that leads those that a joint carries first.
+    pub fn child_of(&self, joint: usize) -> BodyId {
+        let child = self.joints[joint].as_ref().map(|driven| driven.child);
+        // INVARIANT: arms have joints that can move, each with a child.
+        let at = self.parts.iter().position(|part| Some(part.handle) == child).unwrap_or_default();
+        self.parts[at].root
+    }
+
+    /// The bodies that a joint carries, by the body of the scenario that leads each.
+    pub fn carried_by(&self, joint: usize) -> Vec<BodyId> {
+        let Some(driven) = &self.joints[joint] else { return Vec::new() };
+        let carried = |part: &&super::PhysicsBody| driven.carried.contains(&part.handle);
+        let mut roots: Vec<BodyId> = self.parts.iter().filter(carried).map(|part| part.root).collect();
+        roots.dedup();
+        roots
+    }
+}
+
+/// A rotation that takes the x axis to the given unit vector.
+fn x_to(axis: &SpaceVector) -> RotationQuat {
+    let turn = SpaceVector::x().cross(axis);
+    let angle = angle_between(&SpaceVector::x(), axis);
+    let over = if turn.norm() < 1e-9 { SpaceVector::z() } else { turn.normalize() };
+    about(over, angle)
+}
