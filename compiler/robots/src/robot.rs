@@ -130,10 +130,13 @@ fn expanded(
     expanded
 }
 
-/// Whether a word of xacro is in it; a dollar sign alone may be part of a name.
+/// Whether a word of xacro is in it, or something that it replaces.
 fn is_xacro(element: &XmlElement) -> bool {
     element.name.starts_with("xacro:")
-        || element.attributes.iter().any(|a| a.name.starts_with("xacro:") || a.value.contains("${"))
+        || element
+            .attributes
+            .iter()
+            .any(|a| a.name.starts_with("xacro:") || a.value.contains("${") || a.value.contains("$("))
         || element.elements().any(is_xacro)
 }
 

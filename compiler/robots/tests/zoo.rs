@@ -108,13 +108,24 @@ fn the_robots_of_a_folder_are_read() {
     let mut packages = PackageTable::new();
     packages.search(&reader, &mut files, &root, place.into());
     let (mut found, mut words) = (Vec::new(), BTreeMap::<String, usize>::new());
-    below(Path::new(&*root), &[".urdf", ".urdf.xacro"], &mut found);
+    below(Path::new(&*root), &[".urdf", ".xacro"], &mut found);
     let mut refused = Vec::new();
+    // `NAME:=VALUE NAME:=VALUE`
+    let given = env::var("HRDSL_ROBOTS_ARGUMENTS").unwrap_or_default();
+    let arguments: Vec<(String, String)> = given
+        .split_whitespace()
+        .filter_map(|pair| pair.split_once(":="))
+        .map(|(name, value)| (name.to_owned(), value.to_owned()))
+        .collect();
     for path in &found {
         let mut files = SourceFiles::default();
         let place = Span::new(files.add("the test", ""), 0, 0);
         let path = path.to_string_lossy();
-        let request = RobotRequest { meshes: MeshChoice::All, ..RobotRequest::new(&path, place, &packages) };
+        let request = RobotRequest {
+            arguments: &arguments,
+            meshes: MeshChoice::All,
+            ..RobotRequest::new(&path, place, &packages)
+        };
         let reading = read_robot(&request, &mut files, &reader);
         let short = path.strip_prefix(&*root).unwrap().trim_start_matches('/').replace('/', "__");
         for fault in &reading.faults {
@@ -135,10 +146,10 @@ fn the_robots_of_a_folder_are_read() {
             fs::write(out.join(format!("{short}.json")), json(robot)).unwrap();
             fs::write(out.join(format!("{short}.meshes")), mesh_json(&reading)).unwrap();
         }
-        if let (Some(out), true) = (&out, path.ends_with(".xacro")) {
-            if let Ok(text) = expanded_text(&request, &mut files, &reader) {
-                fs::write(out.join(format!("{short}.expanded")), text).unwrap();
-            }
+        if let (Some(out), true) = (&out, path.ends_with(".xacro"))
+            && let Ok(text) = expanded_text(&request, &mut files, &reader)
+        {
+            fs::write(out.join(format!("{short}.expanded")), text).unwrap();
         }
     }
     println!(

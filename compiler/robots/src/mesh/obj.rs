@@ -25,9 +25,9 @@ pub(crate) fn read_obj(bytes: &[u8]) -> Result<TriangleMesh, String> {
             }
             Some("f") => {
                 let corners = words.map(|word| corner(word, &points)).collect::<Option<Vec<RobotVector>>>();
-                let corners = corners.filter(|corners| corners.len() >= 3);
-                let corners = corners
-                    .ok_or_else(|| format!("line {at}: a face is three points and more, by number"))?;
+                // Of two points it is a line, which has no area.
+                let corners =
+                    corners.ok_or_else(|| format!("line {at}: a face names points by their numbers"))?;
                 builder.polygon(&corners).map_err(|reason| format!("line {at}: {reason}"))?;
             }
             Some(_) | None => {}

@@ -155,7 +155,8 @@ mod tests {
             let length = libm::sqrt(x * x + y * y + z * z);
             if length > 1e-6 {
                 let turned = RigidTransform::about_axis([x / length, y / length, z / length], angle);
-                prop_assert!(near(&RigidTransform { translation: xyz, ..turned }, &pose));
+                let turned = RigidTransform { translation: xyz, ..turned };
+                prop_assert!(near(&turned, &pose));
             }
         }
     }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use hrdsl_source::Severity;
+
 use super::model::{UrdfGeometry, UrdfInertial, UrdfLink, UrdfMesh, UrdfOrigin, UrdfShape};
 use crate::{
     fault::{RobotFault, RobotFaultKind, RobotPlace, say},
@@ -42,7 +44,7 @@ impl LinkReader<'_> {
                 Some(color)
             }
             Some(Err(fault)) => {
-                say(&mut self.faults, RobotFault { severity: hrdsl_source::Severity::Warning, ..fault });
+                say(&mut self.faults, RobotFault { severity: Severity::Warning, ..fault });
                 None
             }
             Some(Ok(None)) | None => name.and_then(|name| self.colors.get(&name).copied()),
@@ -62,7 +64,12 @@ impl LinkReader<'_> {
             self.kept(read)
         });
         let collisions = element.all("collision").filter_map(|shape| self.kept_shape(shape)).collect();
+        let before = self.faults.len();
         let visuals = element.all("visual").filter_map(|shape| self.kept_shape(shape)).collect();
+        // What is only seen keeps nothing from moving.
+        for fault in self.faults.iter_mut().skip(before) {
+            fault.severity = Severity::Warning;
+        }
         Some(UrdfLink {
             name: name.value.clone(),
             inertial,

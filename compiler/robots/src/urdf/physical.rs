@@ -21,15 +21,21 @@ pub(crate) fn check_bodies(robot: &UrdfRobot, faults: &mut Vec<RobotFault>) {
         let mass = masses.get(group.0).copied().unwrap_or_default();
         // Said once of what is one body: at its first link, that which the joint moves.
         if moves && group.0 == at && mass <= NEARLY_NOTHING {
-            let help = "write `<inertial><mass value=\"…\"/><inertia ixx=\"…\" iyy=\"…\" izz=\"…\"/></inertial>` in it";
-            let kind = RobotFaultKind::NoInertial(link.name.clone());
+            let write = "write `<inertial><mass value=\"…\"/><inertia ixx=\"…\" iyy=\"…\" izz=\"…\"/></inertial>` in it";
             let carries = below.get(group.0).is_some_and(|mass| *mass > NEARLY_NOTHING);
-            if carries {
-                let help = format!("{help}; it moves for now as if what hangs on it had all the mass");
-                say(faults, kind.warned(link.place, help));
-            } else {
-                say(faults, kind.warned(link.place, help));
-            }
+            let kind = RobotFaultKind::NoInertial(link.name.clone());
+            say(
+                faults,
+                if carries {
+                    // Joints one after the other, as at a shoulder, are often joined by mere frames.
+                    kind.warned(
+                        link.place,
+                        format!("{write}, or be content that only what hangs on it has a mass"),
+                    )
+                } else {
+                    kind.at(link.place, format!("{write}, or make its joint `type=\"fixed\"`"))
+                },
+            );
         }
         let Some(inertial) = &link.inertial else { continue };
         if inertial.mass <= 0.0 {

@@ -1,5 +1,7 @@
 //! `transmission`: which motor moves which joint, and by what ratio.
 
+use hrdsl_source::Severity;
+
 use super::{
     joint::PlacedName,
     model::{UrdfActuator, UrdfJointId, UrdfTransmission, UrdfTransmissionJoint},
@@ -16,7 +18,7 @@ pub(crate) fn read_transmission(
     joints: &NumberOf,
     faults: &mut Vec<RobotFault>,
 ) -> Option<UrdfTransmission> {
-    let name = element.needs_name("name").map_err(|fault| say(faults, fault)).ok()?;
+    let name = kept(element.needs_name("name").map(Some), faults)?;
     let kind = match (element.child("type"), element.attribute("type")) {
         (Some(child), _) => child.text().trim().to_owned(),
         // The older form of PR2's.
@@ -55,8 +57,9 @@ pub(crate) fn read_transmission(
     Some(read)
 }
 
+/// Nothing in a transmission keeps the robot from moving: it is written for controllers.
 fn kept<T>(read: Result<Option<T>, RobotFault>, faults: &mut Vec<RobotFault>) -> Option<T> {
-    read.map_err(|fault| say(faults, fault)).ok().flatten()
+    read.map_err(|fault| say(faults, RobotFault { severity: Severity::Warning, ..fault })).ok().flatten()
 }
 
 fn interfaces(element: &XmlElement) -> Vec<String> {

@@ -223,6 +223,10 @@ impl ExprParser {
         let mut expr = self.atom()?;
         loop {
             if self.takes("(") {
+                if matches!(&expr, XacroExpr::Name(name) if name == "dict") {
+                    expr = self.named_pairs()?;
+                    continue;
+                }
                 let arguments = self.arguments()?;
                 expr = XacroExpr::Call(Box::new(expr), arguments);
             } else if self.takes("[") {
@@ -240,6 +244,24 @@ impl ExprParser {
                 return Ok(expr);
             }
         }
+    }
+
+    /// `dict(a=1, b=2)`
+    fn named_pairs(&mut self) -> Parsed {
+        let mut pairs = Vec::new();
+        while !self.takes(")") {
+            let Some(ExprWord::Name(name)) = self.peek().cloned() else {
+                return not_done("`dict` of anything but `name=value`", "write `dict(a=1, b=2)`");
+            };
+            self.at += 1;
+            self.needs("=")?;
+            pairs.push((XacroExpr::Value(XacroValue::text(name)?), self.ternary()?));
+            if !self.takes(",") {
+                self.needs(")")?;
+                break;
+            }
+        }
+        Ok(XacroExpr::Dict(pairs))
     }
 
     fn arguments(&mut self) -> Evaluated<Vec<XacroExpr>> {
