@@ -72,9 +72,6 @@ impl<'a> BlockReader<'a> {
             let Some((key, length)) = key_of(line)? else {
                 return fault(line.at, "a `key: value` is missing");
             };
-            if pairs.iter().any(|(other, _)| *other == key) {
-                return fault(line.at, "this key is there twice");
-            }
             let rest = line.text.get(length..).unwrap_or_default();
             let said = rest.trim_start();
             self.next += 1;
@@ -88,7 +85,11 @@ impl<'a> BlockReader<'a> {
                 let by = line.text.len() - said.len();
                 self.inline(YamlLine { indent: line.indent + by, text: said, at: line.at + by })?
             };
-            pairs.push((key, value));
+            // Of two values of one key the later counts, as for the readers that descriptions are written for.
+            match pairs.iter_mut().find(|(other, _)| *other == key) {
+                Some((_, old)) => *old = value,
+                None => pairs.push((key, value)),
+            }
         }
         match self.peek() {
             Some(line) if line.indent > indent => fault(line.at, "this line belongs to none above it"),
@@ -225,7 +226,6 @@ mod tests {
             ("a: &x 1\n", 3, "anchors"),
             ("a: [1, 2\n", 8, "missing"),
             ("a: 1\n  b: 2\n", 7, "belongs to none"),
-            ("a: 1\na: 2\n", 5, "twice"),
             ("a:\n\tb: 1\n", 3, "tab"),
             ("<<: *a\n", 0, "merging"),
             ("a: 'b\n", 3, "end"),
