@@ -41,89 +41,91 @@ fn expanded(inside: &str, others: &[(&str, &str)]) -> String {
     }
 }
 
+/// What stands in `<robot>`, and what it comes to.
+const EXPANSIONS: &[(&str, &str)] = &[
+    // Properties are evaluated when they are first asked for.
+    (
+        "<xacro:property name='a' value='${b * 2}'/><xacro:property name='b' value='3'/><x v='${a}'/>",
+        "<x v=\"6\"/>",
+    ),
+    (
+        "<xacro:property name='a' value='1'/><xacro:property name='b' value='${a}' lazy_eval='false'/><xacro:property name='a' value='2'/><x v='${b}'/>",
+        "<x v=\"1\"/>",
+    ),
+    (
+        "<xacro:property name='a' default='1'/><xacro:property name='a' default='2'/><x v='${a}'/>",
+        "<x v=\"1\"/>",
+    ),
+    (
+        "<xacro:property name='a' value='1'/><xacro:property name='a' remove='true'/><xacro:property name='a' default='2'/><x v='${a}'/>",
+        "<x v=\"2\"/>",
+    ),
+    ("<xacro:property name='n' value='0.10'/><x v='${n} m' w='$${n}'/>", "<x v=\"0.1 m\" w=\"${n}\"/>"),
+    // Scopes.
+    (
+        "<xacro:macro name='m'><xacro:property name='a' value='2'/><xacro:property name='p' value='3' scope='parent'/><xacro:property name='g' value='4' scope='global'/></xacro:macro><xacro:property name='a' value='1'/><xacro:m/><x v='${a}${p}${g}'/>",
+        "<x v=\"134\"/>",
+    ),
+    // Macros, with defaults, forwarded properties and blocks.
+    (
+        "<xacro:macro name='m' params='a b:=2 c:=^|3 *o **i'><x v='${a}${b}${c}'><xacro:insert_block name='o'/><xacro:insert_block name='i'/></x></xacro:macro><xacro:property name='c' value='9'/><xacro:m a='1'><o v='${c}'/><i><j/><k/></i></xacro:m>",
+        "<x v=\"129\"><o v=\"9\"/><j/><k/></x>",
+    ),
+    (
+        "<xacro:property name='block'><a v='${n}'/><b/></xacro:property><xacro:property name='n' value='5'/><xacro:insert_block name='block'/>",
+        "<a v=\"5\"/><b/>",
+    ),
+    (
+        "<xacro:macro name='count' params='n'><xacro:if value='${n > 0}'><x v='${n}'/><xacro:count n='${n - 1}'/></xacro:if></xacro:macro><xacro:count n='3'/>",
+        "<x v=\"3\"/><x v=\"2\"/><x v=\"1\"/>",
+    ),
+    (
+        "<xacro:macro name='m'><x/></xacro:macro><xacro:property name='which' value='m'/><xacro:call macro='${which}'/>",
+        "<x/>",
+    ),
+    // Conditions.
+    (
+        "<xacro:if value='true'><a/></xacro:if><xacro:unless value='1'><b/></xacro:unless><xacro:if value='${1 == 2 or not 3 &lt; 2}'><c/></xacro:if>",
+        "<a/><c/>",
+    ),
+    // Elements and attributes by name.
+    (
+        "<x><xacro:attribute name='v' value='${1 + 1}'/></x><xacro:element xacro:name='y${1}' w='2'/>",
+        "<x v=\"2\"/><y1 w=\"2\"/>",
+    ),
+    // Substitutions.
+    (
+        "<xacro:arg name='given' default='1'/><xacro:arg name='other' default='2'/><x v='$(arg given)$(arg other)' w='${$(arg given) + 1}'/>",
+        "<x v=\"72\" w=\"8\"/>",
+    ),
+    (
+        "<x v='$(find pkg)/a' w='$(env SIDE) $(optenv NONE right) $(eval given * 2)'/>",
+        "<x v=\"p/a\" w=\"left right 14\"/>",
+    ),
+    // Expressions.
+    (
+        "<x v='${[1, 2.5, \"a\"]}' w='${7 // -2} ${7 % -2} ${-7 / 2} ${2 ** -1} ${2 ** 3 ** 2}'/>",
+        "<x v=\"[1, 2.5, 'a']\" w=\"-4 -1 -3.5 0.5 512\"/>",
+    ),
+    (
+        "<x v='${round(2.5)} ${round(2.675, 2)} ${int(-3.9)} ${float(1)} ${str(1) + \"b\"} ${abs(-2)} ${min(3, 1)} ${max([1, 4])}'/>",
+        "<x v=\"2 2.67 -3 1.0 1b 2 1 4\"/>",
+    ),
+    (
+        "<x v='${radians(180) == pi} ${math.floor(2.7)} ${1 &lt; 2 &lt; 3} ${\"b\" in \"abc\"} ${1 if 0 else 2} ${0 or \"x\"} ${None is None}'/>",
+        "<x v=\"True 2 True True 2 x True\"/>",
+    ),
+    (
+        "<x v='${[i * 2 for i in range(4) if i != 1]} ${\"a-b\".split(\"-\")[1]} ${\"abc\"[::-1]} ${dict(a=1).get(\"b\", 3)}'/>",
+        "<x v=\"[0, 4, 6] b cba 3\"/>",
+    ),
+    ("<x v='${1e16} ${1e-5} ${0.1 + 0.2} ${10 / 5}'/>", "<x v=\"1e+16 1e-05 0.30000000000000004 2.0\"/>"),
+];
+
 #[test]
 fn xacro_is_expanded_as_xacro_does() {
-    let cases = [
-        // Properties are evaluated when they are first asked for.
-        (
-            "<xacro:property name='a' value='${b * 2}'/><xacro:property name='b' value='3'/><x v='${a}'/>",
-            "<x v=\"6\"/>",
-        ),
-        (
-            "<xacro:property name='a' value='1'/><xacro:property name='b' value='${a}' lazy_eval='false'/><xacro:property name='a' value='2'/><x v='${b}'/>",
-            "<x v=\"1\"/>",
-        ),
-        (
-            "<xacro:property name='a' default='1'/><xacro:property name='a' default='2'/><x v='${a}'/>",
-            "<x v=\"1\"/>",
-        ),
-        (
-            "<xacro:property name='a' value='1'/><xacro:property name='a' remove='true'/><xacro:property name='a' default='2'/><x v='${a}'/>",
-            "<x v=\"2\"/>",
-        ),
-        ("<xacro:property name='n' value='0.10'/><x v='${n} m' w='$${n}'/>", "<x v=\"0.1 m\" w=\"${n}\"/>"),
-        // Scopes.
-        (
-            "<xacro:macro name='m'><xacro:property name='a' value='2'/><xacro:property name='p' value='3' scope='parent'/><xacro:property name='g' value='4' scope='global'/></xacro:macro><xacro:property name='a' value='1'/><xacro:m/><x v='${a}${p}${g}'/>",
-            "<x v=\"134\"/>",
-        ),
-        // Macros, with defaults, forwarded properties and blocks.
-        (
-            "<xacro:macro name='m' params='a b:=2 c:=^|3 *o **i'><x v='${a}${b}${c}'><xacro:insert_block name='o'/><xacro:insert_block name='i'/></x></xacro:macro><xacro:property name='c' value='9'/><xacro:m a='1'><o v='${c}'/><i><j/><k/></i></xacro:m>",
-            "<x v=\"129\"><o v=\"9\"/><j/><k/></x>",
-        ),
-        (
-            "<xacro:property name='block'><a v='${n}'/><b/></xacro:property><xacro:property name='n' value='5'/><xacro:insert_block name='block'/>",
-            "<a v=\"5\"/><b/>",
-        ),
-        (
-            "<xacro:macro name='count' params='n'><xacro:if value='${n > 0}'><x v='${n}'/><xacro:count n='${n - 1}'/></xacro:if></xacro:macro><xacro:count n='3'/>",
-            "<x v=\"3\"/><x v=\"2\"/><x v=\"1\"/>",
-        ),
-        (
-            "<xacro:macro name='m'><x/></xacro:macro><xacro:property name='which' value='m'/><xacro:call macro='${which}'/>",
-            "<x/>",
-        ),
-        // Conditions.
-        (
-            "<xacro:if value='true'><a/></xacro:if><xacro:unless value='1'><b/></xacro:unless><xacro:if value='${1 == 2 or not 3 &lt; 2}'><c/></xacro:if>",
-            "<a/><c/>",
-        ),
-        // Elements and attributes by name.
-        (
-            "<x><xacro:attribute name='v' value='${1 + 1}'/></x><xacro:element xacro:name='y${1}' w='2'/>",
-            "<x v=\"2\"/><y1 w=\"2\"/>",
-        ),
-        // Substitutions.
-        (
-            "<xacro:arg name='given' default='1'/><xacro:arg name='other' default='2'/><x v='$(arg given)$(arg other)' w='${$(arg given) + 1}'/>",
-            "<x v=\"72\" w=\"8\"/>",
-        ),
-        (
-            "<x v='$(find pkg)/a' w='$(env SIDE) $(optenv NONE right) $(eval given * 2)'/>",
-            "<x v=\"p/a\" w=\"left right 14\"/>",
-        ),
-        // Expressions.
-        (
-            "<x v='${[1, 2.5, \"a\"]}' w='${7 // -2} ${7 % -2} ${-7 / 2} ${2 ** -1} ${2 ** 3 ** 2}'/>",
-            "<x v=\"[1, 2.5, 'a']\" w=\"-4 -1 -3.5 0.5 512\"/>",
-        ),
-        (
-            "<x v='${round(2.5)} ${round(2.675, 2)} ${int(-3.9)} ${float(1)} ${str(1) + \"b\"} ${abs(-2)} ${min(3, 1)} ${max([1, 4])}'/>",
-            "<x v=\"2 2.67 -3 1.0 1b 2 1 4\"/>",
-        ),
-        (
-            "<x v='${radians(180) == pi} ${math.floor(2.7)} ${1 &lt; 2 &lt; 3} ${\"b\" in \"abc\"} ${1 if 0 else 2} ${0 or \"x\"} ${None is None}'/>",
-            "<x v=\"True 2 True True 2 x True\"/>",
-        ),
-        (
-            "<x v='${[i * 2 for i in range(4) if i != 1]} ${\"a-b\".split(\"-\")[1]} ${\"abc\"[::-1]} ${dict(a=1).get(\"b\", 3)}'/>",
-            "<x v=\"[0, 4, 6] b cba 3\"/>",
-        ),
-        ("<x v='${1e16} ${1e-5} ${0.1 + 0.2} ${10 / 5}'/>", "<x v=\"1e+16 1e-05 0.30000000000000004 2.0\"/>"),
-    ];
-    for (source, expected) in cases {
-        assert_eq!(expanded(source, &[]), expected, "{source}");
+    for (source, expected) in EXPANSIONS {
+        assert_eq!(expanded(source, &[]), *expected, "{source}");
     }
 }
 

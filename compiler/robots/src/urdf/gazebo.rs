@@ -2,7 +2,7 @@
 
 use super::{
     model::{UrdfLinkId, UrdfOrigin, UrdfRangeSensor, UrdfRobot, UrdfScan},
-    read::NumberOf,
+    names::NumberOf,
 };
 use crate::{
     fault::{RobotFault, RobotFaultKind, RobotPlace, say},

@@ -5,6 +5,7 @@ use hrdsl_source::nearest;
 use super::{
     link::read_origin,
     model::{UrdfDynamics, UrdfJointKind, UrdfLimits, UrdfOrigin, UrdfSafety},
+    names::PlacedName,
 };
 use crate::{
     fault::{RobotFault, RobotFaultKind, RobotPlace, say},
@@ -13,7 +14,7 @@ use crate::{
 };
 
 /// A joint as it is written: what it joins is known by name.
-pub(crate) struct WrittenJoint {
+pub(crate) struct DescribedJoint {
     pub name: String,
     pub place: RobotPlace,
     pub kind: UrdfJointKind,
@@ -23,31 +24,18 @@ pub(crate) struct WrittenJoint {
     pub axis: RobotVector,
     pub limits: Option<UrdfLimits>,
     pub dynamics: UrdfDynamics,
-    pub mimic: Option<WrittenMimic>,
+    pub mimic: Option<DescribedMimic>,
     pub safety: Option<UrdfSafety>,
 }
 
-/// A name, and where it stands.
-#[derive(Clone, Debug)]
-pub(crate) struct PlacedName {
-    pub name: String,
-    pub place: RobotPlace,
-}
-
-pub(crate) struct WrittenMimic {
+pub(crate) struct DescribedMimic {
     pub joint: PlacedName,
     pub multiplier: f64,
     pub offset: f64,
 }
 
-impl PlacedName {
-    pub fn of(element: &XmlElement, attribute: &XmlAttribute) -> Self {
-        Self { name: attribute.value.clone(), place: element.place_of(attribute) }
-    }
-}
-
 /// Reads a joint; `None` if there is too little of it to be one.
-pub(crate) fn read_joint(element: &XmlElement, faults: &mut Vec<RobotFault>) -> Option<WrittenJoint> {
+pub(crate) fn read_joint(element: &XmlElement, faults: &mut Vec<RobotFault>) -> Option<DescribedJoint> {
     let mut reader = JointReader { faults };
     let read = reader.joint(element);
     reader.kept(read)
@@ -62,7 +50,7 @@ impl JointReader<'_> {
         read.map_err(|fault| say(self.faults, fault)).ok()
     }
 
-    fn joint(&mut self, element: &XmlElement) -> Result<WrittenJoint, RobotFault> {
+    fn joint(&mut self, element: &XmlElement) -> Result<DescribedJoint, RobotFault> {
         let name = element.needs_name("name")?;
         let kind = joint_kind(element)?;
         let end = |which: &'static str| -> Result<PlacedName, RobotFault> {
@@ -83,7 +71,7 @@ impl JointReader<'_> {
         let safety = self.kept(read).flatten();
         let place = element.place_of(name);
         let name = name.value.clone();
-        Ok(WrittenJoint { name, place, kind, parent, child, origin, axis, limits, dynamics, mimic, safety })
+        Ok(DescribedJoint { name, place, kind, parent, child, origin, axis, limits, dynamics, mimic, safety })
     }
 
     fn limits(
@@ -198,9 +186,9 @@ fn read_dynamics(element: &XmlElement) -> Result<UrdfDynamics, RobotFault> {
     Ok(UrdfDynamics { damping, friction: not_negative("friction", "the friction")? })
 }
 
-fn read_mimic(element: &XmlElement) -> Result<Option<WrittenMimic>, RobotFault> {
+fn read_mimic(element: &XmlElement) -> Result<Option<DescribedMimic>, RobotFault> {
     let Some(mimic) = element.child("mimic") else { return Ok(None) };
-    Ok(Some(WrittenMimic {
+    Ok(Some(DescribedMimic {
         joint: PlacedName::of(mimic, mimic.needs_name("joint")?),
         multiplier: mimic.number("multiplier")?.unwrap_or(1.0),
         offset: mimic.number("offset")?.unwrap_or_default(),

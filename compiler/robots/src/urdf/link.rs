@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// The colours of a robot's materials, by their names.
-pub(crate) type Colors = BTreeMap<String, [f64; 4]>;
+pub(crate) type MaterialColors = BTreeMap<String, [f64; 4]>;
 
 /// What links need to know of the description that they stand in.
 pub(crate) struct LinkReader<'a> {
@@ -21,7 +21,7 @@ pub(crate) struct LinkReader<'a> {
     pub file: &'a str,
     pub packages: &'a PackageTable,
     pub reader: &'a dyn RobotReader,
-    pub colors: Colors,
+    pub colors: MaterialColors,
     pub faults: Vec<RobotFault>,
 }
 

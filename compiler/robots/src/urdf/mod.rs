@@ -7,6 +7,7 @@ pub(crate) mod kinematics;
 pub(crate) mod link;
 pub(crate) mod meshes;
 pub(crate) mod model;
+pub(crate) mod names;
 pub(crate) mod physical;
 pub(crate) mod read;
 pub(crate) mod transmission;

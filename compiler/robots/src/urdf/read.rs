@@ -2,26 +2,22 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_source::{Span, nearest};
-
 use super::{
     check::tree_of,
     gazebo::read_gazebo,
-    joint::{PlacedName, WrittenJoint, read_joint},
+    joint::{DescribedJoint, read_joint},
     link::LinkReader,
     model::{UrdfJoint, UrdfJointId, UrdfLink, UrdfLinkId, UrdfMimic, UrdfRobot},
+    names::{NumberOf, number_of, numbered},
     physical::check_bodies,
     transmission::read_transmission,
 };
 use crate::{
-    fault::{RobotFault, RobotFaultKind, RobotPlace, say},
+    fault::{RobotFault, RobotFaultKind, say},
     files::{package::PackageTable, reader::RobotReader},
     limits::MOST_LINKS,
     xml::XmlElement,
 };
-
-/// Numbers of links or joints, by their names.
-pub(crate) type NumberOf = BTreeMap<String, (usize, Span)>;
 
 /// Reads a description; no robot if its links are no tree.
 pub(crate) fn read_urdf(
@@ -39,7 +35,7 @@ pub(crate) fn read_urdf(
     let before = faults.len();
     let links = read_links(root, file, packages, reader, faults);
     let link_numbers = numbered(links.iter().map(|link| (link.name.as_str(), link.place)), "link", faults);
-    let written: Vec<WrittenJoint> =
+    let written: Vec<DescribedJoint> =
         root.all("joint").filter_map(|element| read_joint(element, faults)).collect();
     let joint_numbers =
         numbered(written.iter().map(|joint| (joint.name.as_str(), joint.place)), "joint", faults);
@@ -96,43 +92,8 @@ fn read_links(
     links
 }
 
-/// The numbers of what has names, each of which must be there once.
-fn numbered<'a>(
-    all: impl Iterator<Item = (&'a str, RobotPlace)>,
-    what: &'static str,
-    faults: &mut Vec<RobotFault>,
-) -> NumberOf {
-    let mut numbers = NumberOf::new();
-    for (at, (name, place)) in all.enumerate() {
-        if let Some((_, first)) = numbers.get(name) {
-            let kind = RobotFaultKind::DuplicateName { what, name: name.to_owned() };
-            say(faults, kind.at(place, "give one of them another name").clashes(*first));
-        } else {
-            numbers.insert(name.to_owned(), (at, place.span));
-        }
-    }
-    numbers
-}
-
-/// The number of what a name stands for, or a fault with the nearest name.
-pub(crate) fn number_of(
-    wanted: &PlacedName,
-    what: &'static str,
-    numbers: &NumberOf,
-) -> Result<usize, RobotFault> {
-    numbers.get(&wanted.name).map(|(at, _)| *at).ok_or_else(|| {
-        let near = nearest(&wanted.name, numbers.keys().map(String::as_str));
-        let help = match near {
-            Some(near) => format!("write `{near}`"),
-            None => format!("declare it: `<{what} name=\"{}\" …>`", wanted.name),
-        };
-        let kind = RobotFaultKind::UnknownName { what, name: wanted.name.clone() };
-        kind.at(wanted.place, help)
-    })
-}
-
 fn joined(
-    written: Vec<WrittenJoint>,
+    written: Vec<DescribedJoint>,
     links: &NumberOf,
     joints: &NumberOf,
     faults: &mut Vec<RobotFault>,

@@ -3,9 +3,8 @@
 use hrdsl_source::Severity;
 
 use super::{
-    joint::PlacedName,
     model::{UrdfActuator, UrdfJointId, UrdfTransmission, UrdfTransmissionJoint},
-    read::{NumberOf, number_of},
+    names::{NumberOf, PlacedName, number_of},
 };
 use crate::{
     fault::{RobotFault, RobotFaultKind, say},

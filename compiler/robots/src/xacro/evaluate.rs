@@ -6,8 +6,8 @@ use super::{
     functions::{call, global, global_names, is_outer},
     methods::call_method,
     operate::{arithmetic, compare, equal},
-    syntax::{Arithmetic, XacroExpr},
-    value::{Evaluated, XacroValue, wrong},
+    syntax::{XacroArithmetic, XacroExpr},
+    value::{EvalResult, XacroValue, wrong},
     written::written,
 };
 use crate::limits::MOST_VALUE_SIZE;
@@ -15,16 +15,16 @@ use crate::limits::MOST_VALUE_SIZE;
 /// Where names have their values.
 pub(super) trait ExprNames {
     /// What the first of names that follow each other by points stands for, and how many it takes: a namespace takes two.
-    fn lookup(&mut self, path: &[String]) -> Evaluated<Option<(XacroValue, usize)>>;
+    fn lookup(&mut self, path: &[String]) -> EvalResult<Option<(XacroValue, usize)>>;
 
     /// Calls a function of xacro's own.
-    fn outer(&mut self, name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue>;
+    fn outer(&mut self, name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue>;
 
     /// All names that there are.
     fn all_names(&self) -> Vec<String>;
 }
 
-pub(super) fn evaluate(expr: &XacroExpr, names: &mut dyn ExprNames) -> Evaluated<XacroValue> {
+pub(super) fn evaluate(expr: &XacroExpr, names: &mut dyn ExprNames) -> EvalResult<XacroValue> {
     ExprEvaluator { names, locals: Vec::new(), steps: 0 }.value(expr)
 }
 
@@ -36,7 +36,7 @@ struct ExprEvaluator<'n> {
 }
 
 impl ExprEvaluator<'_> {
-    fn value(&mut self, expr: &XacroExpr) -> Evaluated<XacroValue> {
+    fn value(&mut self, expr: &XacroExpr) -> EvalResult<XacroValue> {
         self.steps += 1;
         if self.steps > MOST_VALUE_SIZE {
             return wrong("it takes too many steps", "compute less");
@@ -92,11 +92,11 @@ impl ExprEvaluator<'_> {
         }
     }
 
-    fn all(&mut self, items: &[XacroExpr]) -> Evaluated<Vec<XacroValue>> {
+    fn all(&mut self, items: &[XacroExpr]) -> EvalResult<Vec<XacroValue>> {
         items.iter().map(|item| self.value(item)).collect()
     }
 
-    fn dict(&mut self, pairs: &[(XacroExpr, XacroExpr)]) -> Evaluated<XacroValue> {
+    fn dict(&mut self, pairs: &[(XacroExpr, XacroExpr)]) -> EvalResult<XacroValue> {
         let mut all: Vec<(XacroValue, XacroValue)> = Vec::new();
         for (key, value) in pairs {
             let (key, value) = (self.value(key)?, self.value(value)?);
@@ -108,10 +108,10 @@ impl ExprEvaluator<'_> {
         XacroValue::dict(all)
     }
 
-    fn signed(&mut self, inner: &XacroExpr, sign: &str) -> Evaluated<XacroValue> {
+    fn signed(&mut self, inner: &XacroExpr, sign: &str) -> EvalResult<XacroValue> {
         let value = self.value(inner)?;
         match (sign, value.whole(), value.number()) {
-            ("-", Some(_), _) => arithmetic(Arithmetic::Subtract, &XacroValue::Int(0), &value),
+            ("-", Some(_), _) => arithmetic(XacroArithmetic::Subtract, &XacroValue::Int(0), &value),
             ("-", None, Some(number)) => Ok(XacroValue::Float(-number)),
             (_, Some(number), _) => Ok(XacroValue::Int(number)),
             (_, None, Some(number)) => Ok(XacroValue::Float(number)),
@@ -122,7 +122,7 @@ impl ExprEvaluator<'_> {
     }
 
     /// A name, or names with points between them.
-    fn reference(&mut self, expr: &XacroExpr) -> Evaluated<XacroValue> {
+    fn reference(&mut self, expr: &XacroExpr) -> EvalResult<XacroValue> {
         let Some(path) = path_of(expr) else {
             let XacroExpr::Attribute(of, name) = expr else { return wrong("a name is missing", "write one") };
             let of = self.value(of)?;
@@ -135,7 +135,7 @@ impl ExprEvaluator<'_> {
         Ok(value)
     }
 
-    fn resolved(&mut self, path: &[String]) -> Evaluated<(XacroValue, usize)> {
+    fn resolved(&mut self, path: &[String]) -> EvalResult<(XacroValue, usize)> {
         let Some(first) = path.first() else { return wrong("a name is missing", "write one") };
         if let Some((_, value)) = self.locals.iter().rev().find(|(name, _)| name == first) {
             return Ok((value.clone(), 1));
@@ -156,7 +156,7 @@ impl ExprEvaluator<'_> {
         wrong(format!("nothing is called `{first}`"), help)
     }
 
-    fn slice(&mut self, of: &XacroExpr, parts: &[Option<Box<XacroExpr>>; 3]) -> Evaluated<XacroValue> {
+    fn slice(&mut self, of: &XacroExpr, parts: &[Option<Box<XacroExpr>>; 3]) -> EvalResult<XacroValue> {
         let of = self.value(of)?;
         let mut bounds = [None; 3];
         for (bound, part) in bounds.iter_mut().zip(parts) {
@@ -171,7 +171,7 @@ impl ExprEvaluator<'_> {
         sliced(&of, bounds)
     }
 
-    fn call(&mut self, callee: &XacroExpr, arguments: &[XacroExpr]) -> Evaluated<XacroValue> {
+    fn call(&mut self, callee: &XacroExpr, arguments: &[XacroExpr]) -> EvalResult<XacroValue> {
         if let Some(path) = path_of(callee) {
             let is_local =
                 path.first().is_some_and(|first| self.locals.iter().any(|(name, _)| name == first));
@@ -202,7 +202,7 @@ impl ExprEvaluator<'_> {
         names: &[String],
         over: &XacroExpr,
         condition: Option<&XacroExpr>,
-    ) -> Evaluated<XacroValue> {
+    ) -> EvalResult<XacroValue> {
         let values = self.value(over)?.iterated()?;
         let before = self.locals.len();
         let mut found = Vec::new();
@@ -252,7 +252,7 @@ fn path_of(expr: &XacroExpr) -> Option<Vec<String>> {
 }
 
 /// `value.name`: the key of a dictionary.
-fn member(of: &XacroValue, name: &str) -> Evaluated<XacroValue> {
+fn member(of: &XacroValue, name: &str) -> EvalResult<XacroValue> {
     match of {
         XacroValue::Dict(_) => indexed(of, &XacroValue::text(name)?),
         XacroValue::None
@@ -268,7 +268,7 @@ fn member(of: &XacroValue, name: &str) -> Evaluated<XacroValue> {
     }
 }
 
-fn indexed(of: &XacroValue, at: &XacroValue) -> Evaluated<XacroValue> {
+fn indexed(of: &XacroValue, at: &XacroValue) -> EvalResult<XacroValue> {
     let place = |length: usize| {
         let number = at.whole()?;
         let from_start = if number < 0 { number.checked_add(length as i64)? } else { number };
@@ -311,7 +311,7 @@ fn indexed(of: &XacroValue, at: &XacroValue) -> Evaluated<XacroValue> {
     }
 }
 
-fn sliced(of: &XacroValue, [from, to, by]: [Option<i64>; 3]) -> Evaluated<XacroValue> {
+fn sliced(of: &XacroValue, [from, to, by]: [Option<i64>; 3]) -> EvalResult<XacroValue> {
     let by = by.unwrap_or(1);
     if by == 0 {
         return wrong("a slice has the step 0", "write another");

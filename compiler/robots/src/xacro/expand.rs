@@ -9,7 +9,7 @@ use super::{
     parse::parse_expression,
     scope::{ScopeId, TOP, XacroScopes, XacroSymbol},
     text::{TextPiece, XacroText, pieces},
-    value::{EvalFault, Evaluated, XacroValue, wrong},
+    value::{EvalFault, EvalResult, XacroValue, wrong},
     written::{literal, written},
 };
 use crate::{
@@ -38,7 +38,7 @@ pub(crate) fn expand_xacro(
     files: &mut SourceFiles,
     warnings: &mut Vec<RobotFault>,
 ) -> Result<XmlElement, RobotFault> {
-    let mut expander = Expander {
+    let mut expander = XacroExpander {
         request,
         files,
         warnings,
@@ -53,9 +53,9 @@ pub(crate) fn expand_xacro(
     expander.element(root, TOP)
 }
 
-pub(super) type Expanded<T> = Result<T, RobotFault>;
+pub(super) type ExpandResult<T> = Result<T, RobotFault>;
 
-pub(super) struct Expander<'a> {
+pub(super) struct XacroExpander<'a> {
     pub request: &'a XacroRequest<'a>,
     pub files: &'a mut SourceFiles,
     pub warnings: &'a mut Vec<RobotFault>,
@@ -71,7 +71,7 @@ pub(super) struct Expander<'a> {
     pub call: Option<Span>,
 }
 
-impl Expander<'_> {
+impl XacroExpander<'_> {
     /// The file that is being read.
     pub fn file(&self) -> &str {
         self.stack.last().map(String::as_str).unwrap_or_default()
@@ -85,8 +85,8 @@ impl Expander<'_> {
     pub fn deeper<T>(
         &mut self,
         place: RobotPlace,
-        expand: impl FnOnce(&mut Self) -> Expanded<T>,
-    ) -> Expanded<T> {
+        expand: impl FnOnce(&mut Self) -> ExpandResult<T>,
+    ) -> ExpandResult<T> {
         if self.depth >= MOST_EXPANSION_DEPTH {
             let kind = RobotFaultKind::TooMuch {
                 what: "macros and includes within each other",
@@ -101,7 +101,7 @@ impl Expander<'_> {
     }
 
     /// An element that is no word of xacro: its attributes and what is in it.
-    fn element(&mut self, element: &XmlElement, scope: ScopeId) -> Expanded<XmlElement> {
+    fn element(&mut self, element: &XmlElement, scope: ScopeId) -> ExpandResult<XmlElement> {
         let place = self.placed(element.place);
         self.elements += 1;
         if self.elements > MOST_ELEMENTS {
@@ -123,7 +123,7 @@ impl Expander<'_> {
         nodes: &[XmlNode],
         scope: ScopeId,
         attributes: &mut Vec<XmlAttribute>,
-    ) -> Expanded<Vec<XmlNode>> {
+    ) -> ExpandResult<Vec<XmlNode>> {
         let mut expanded = Vec::new();
         for node in nodes {
             match node {
@@ -145,7 +145,7 @@ impl Expander<'_> {
         scope: ScopeId,
         attributes: &mut Vec<XmlAttribute>,
         expanded: &mut Vec<XmlNode>,
-    ) -> Expanded<()> {
+    ) -> ExpandResult<()> {
         let Some(word) = element.name.strip_prefix("xacro:") else {
             expanded.push(XmlNode::Element(self.element(element, scope)?));
             return Ok(());
@@ -179,7 +179,7 @@ impl Expander<'_> {
     }
 
     /// `<xacro:arg name="…" default="…"/>`
-    fn argument(&mut self, element: &XmlElement, scope: ScopeId) -> Expanded<()> {
+    fn argument(&mut self, element: &XmlElement, scope: ScopeId) -> ExpandResult<()> {
         let name = &element.needs_name("name")?.value;
         if !self.arguments.contains_key(name) {
             let default = element.needs("default")?;
@@ -189,7 +189,7 @@ impl Expander<'_> {
         Ok(())
     }
 
-    fn condition(&mut self, element: &XmlElement, scope: ScopeId) -> Expanded<bool> {
+    fn condition(&mut self, element: &XmlElement, scope: ScopeId) -> ExpandResult<bool> {
         let attribute = element.needs("value")?;
         let place = self.placed(element.place_of(attribute));
         let value = self.value(XacroText { text: &attribute.value, place }, scope)?;
@@ -199,7 +199,7 @@ impl Expander<'_> {
         })
     }
 
-    fn insert_block(&mut self, element: &XmlElement, scope: ScopeId) -> Expanded<Vec<XmlNode>> {
+    fn insert_block(&mut self, element: &XmlElement, scope: ScopeId) -> ExpandResult<Vec<XmlNode>> {
         let attribute = element.needs_name("name")?;
         let name = &attribute.value;
         let place = element.place_of(attribute);
@@ -231,14 +231,14 @@ impl Expander<'_> {
         element: &XmlElement,
         attribute: &XmlAttribute,
         scope: ScopeId,
-    ) -> Expanded<String> {
+    ) -> ExpandResult<String> {
         let place = self.placed(element.place_of(attribute));
         let value = self.value(XacroText { text: &attribute.value, place }, scope)?;
         Ok(written(&value))
     }
 
     /// The value that a text comes to: that of its expression, if it is nothing else.
-    pub fn value(&mut self, text: XacroText, scope: ScopeId) -> Expanded<XacroValue> {
+    pub fn value(&mut self, text: XacroText, scope: ScopeId) -> ExpandResult<XacroValue> {
         let found = pieces(text.text).map_err(|fault| fault.at(text.place))?;
         if let [TextPiece::Plain(_)] | [] = found.as_slice() {
             // Also `$${`, of which a dollar sign goes.
@@ -267,7 +267,7 @@ impl Expander<'_> {
         Ok(value)
     }
 
-    fn piece(&mut self, text: XacroText, piece: &TextPiece, scope: ScopeId) -> Expanded<XacroValue> {
+    fn piece(&mut self, text: XacroText, piece: &TextPiece, scope: ScopeId) -> ExpandResult<XacroValue> {
         match piece {
             TextPiece::Plain(range) => {
                 XacroValue::text(text.part(range.clone()).text).map_err(|fault| fault.at(text.place))
@@ -288,20 +288,20 @@ impl Expander<'_> {
     }
 
     /// What stands in braces or parentheses, itself expanded.
-    fn inner(&mut self, inside: XacroText, scope: ScopeId) -> Expanded<String> {
+    fn inner(&mut self, inside: XacroText, scope: ScopeId) -> ExpandResult<String> {
         if !inside.text.contains('$') {
             return Ok(inside.text.to_owned());
         }
         self.deeper(inside.place, |expander| Ok(written(&expander.value(inside, scope)?)))
     }
 
-    pub fn expression(&mut self, source: &str, scope: ScopeId) -> Evaluated<XacroValue> {
+    pub fn expression(&mut self, source: &str, scope: ScopeId) -> EvalResult<XacroValue> {
         let expr = parse_expression(source)?;
         evaluate(&expr, &mut ScopedNames { expander: self, scope })
     }
 
     /// The value of the property of this name, evaluated if nobody asked for it before.
-    pub fn property_value(&mut self, scope: ScopeId, name: &str) -> Evaluated<Option<XacroValue>> {
+    pub fn property_value(&mut self, scope: ScopeId, name: &str) -> EvalResult<Option<XacroValue>> {
         let Some((home, symbol)) = self.scopes.symbol(scope, name) else { return Ok(None) };
         match symbol {
             XacroSymbol::Value(value) => Ok(Some(value)),
@@ -347,12 +347,12 @@ pub(super) fn truth(value: &XacroValue) -> Option<bool> {
 
 /// The names that an expression in a scope sees.
 struct ScopedNames<'e, 'a> {
-    expander: &'e mut Expander<'a>,
+    expander: &'e mut XacroExpander<'a>,
     scope: ScopeId,
 }
 
 impl ExprNames for ScopedNames<'_, '_> {
-    fn lookup(&mut self, path: &[String]) -> Evaluated<Option<(XacroValue, usize)>> {
+    fn lookup(&mut self, path: &[String]) -> EvalResult<Option<(XacroValue, usize)>> {
         let Some((first, rest)) = path.split_first() else { return Ok(None) };
         if let Some(value) = self.expander.property_value(self.scope, first)? {
             return Ok(Some((value, 1)));
@@ -370,7 +370,7 @@ impl ExprNames for ScopedNames<'_, '_> {
         }
     }
 
-    fn outer(&mut self, name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+    fn outer(&mut self, name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue> {
         self.expander.outer(name, arguments)
     }
 

@@ -2,8 +2,8 @@
 
 use super::{
     operate::{arithmetic, order},
-    syntax::Arithmetic,
-    value::{Evaluated, XacroValue, not_done, wrong},
+    syntax::XacroArithmetic,
+    value::{EvalResult, XacroValue, not_done, wrong},
     written::{number, represented, whole, written},
 };
 use crate::limits::MOST_VALUE_SIZE;
@@ -99,14 +99,14 @@ pub(super) fn is_outer(name: &str) -> bool {
     OUTER.contains(&name)
 }
 
-fn wrong_arguments<T>(name: &str, arguments: &[XacroValue]) -> Evaluated<T> {
+fn wrong_arguments<T>(name: &str, arguments: &[XacroValue]) -> EvalResult<T> {
     let nouns: Vec<&str> = arguments.iter().map(XacroValue::noun).collect();
     let given = if nouns.is_empty() { "nothing".to_owned() } else { nouns.join(", ") };
     wrong(format!("`{name}` cannot be taken of {given}"), "look at its arguments")
 }
 
 /// Calls a function that needs to know nothing but its arguments.
-pub(super) fn call(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+pub(super) fn call(name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     let numbers: Option<Vec<f64>> = arguments.iter().map(XacroValue::number).collect();
     if let (Some(numbers), false) = (numbers, arguments.is_empty())
         && let Some(result) = of_numbers(name, &numbers)
@@ -117,8 +117,8 @@ pub(super) fn call(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue
         ("min" | "max", _) => extreme(name, arguments),
         ("round", _) => round(arguments),
         ("divmod", [a, b]) => {
-            let parts =
-                [Arithmetic::FloorDivide, Arithmetic::Modulo].map(|operator| arithmetic(operator, a, b));
+            let parts = [XacroArithmetic::FloorDivide, XacroArithmetic::Modulo]
+                .map(|operator| arithmetic(operator, a, b));
             let [quotient, rest] = parts;
             XacroValue::tuple(vec![quotient?, rest?])
         }
@@ -141,7 +141,7 @@ pub(super) fn call(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue
 }
 
 /// Functions of `math`: of numbers only.
-fn of_numbers(name: &str, numbers: &[f64]) -> Option<Evaluated<XacroValue>> {
+fn of_numbers(name: &str, numbers: &[f64]) -> Option<EvalResult<XacroValue>> {
     const DEGREES: f64 = 180.0 / std::f64::consts::PI;
     const RADIANS: f64 = std::f64::consts::PI / 180.0;
     let outside = || Some(wrong(format!("`{name}` is not defined there"), "look at its argument"));
@@ -164,7 +164,7 @@ fn of_numbers(name: &str, numbers: &[f64]) -> Option<Evaluated<XacroValue>> {
         ("isinf", [x]) => return Some(Ok(XacroValue::Bool(x.is_infinite()))),
         ("isfinite", [x]) => return Some(Ok(XacroValue::Bool(x.is_finite()))),
         ("pow", [x, y]) => {
-            return Some(arithmetic(Arithmetic::Power, &XacroValue::Float(*x), &XacroValue::Float(*y)));
+            return Some(arithmetic(XacroArithmetic::Power, &XacroValue::Float(*x), &XacroValue::Float(*y)));
         }
         ("sin", [x]) => libm::sin(*x),
         ("cos", [x]) => libm::cos(*x),
@@ -198,7 +198,7 @@ fn of_numbers(name: &str, numbers: &[f64]) -> Option<Evaluated<XacroValue>> {
     })
 }
 
-fn whole_of(number: f64) -> Evaluated<XacroValue> {
+fn whole_of(number: f64) -> EvalResult<XacroValue> {
     // From 2^63 on no 64 bits hold it.
     if number.abs() < 9.2e18 {
         Ok(XacroValue::Int(number as i64))
@@ -210,7 +210,7 @@ fn whole_of(number: f64) -> Evaluated<XacroValue> {
     }
 }
 
-fn to_whole(arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+fn to_whole(arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     match arguments {
         [] => Ok(XacroValue::Int(0)),
         [XacroValue::Text(text)] => match whole(text.trim()) {
@@ -226,7 +226,7 @@ fn to_whole(arguments: &[XacroValue]) -> Evaluated<XacroValue> {
     }
 }
 
-fn to_number(arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+fn to_number(arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     match arguments {
         [] => Ok(XacroValue::Float(0.0)),
         [XacroValue::Text(text)] => match number(text.trim()) {
@@ -239,7 +239,7 @@ fn to_number(arguments: &[XacroValue]) -> Evaluated<XacroValue> {
 }
 
 /// Half to even, as Python rounds; with a number of digits it stays a number with a point.
-fn round(arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+fn round(arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     match arguments {
         [XacroValue::Float(number)] | [XacroValue::Float(number), XacroValue::None] => {
             whole_of(libm::rint(*number))
@@ -266,7 +266,7 @@ fn round(arguments: &[XacroValue]) -> Evaluated<XacroValue> {
 }
 
 /// Of several values, or of one list.
-fn extreme(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+fn extreme(name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     let values = match arguments {
         [one] => one.iterated()?,
         many => many.to_vec(),
@@ -284,7 +284,7 @@ fn extreme(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
     Ok(best)
 }
 
-fn of_lists(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+fn of_lists(name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     match (name, arguments) {
         ("len", [XacroValue::Text(text)]) => Ok(XacroValue::Int(text.chars().count() as i64)),
         ("len", [one]) => Ok(XacroValue::Int(one.iterated()?.len() as i64)),
@@ -296,7 +296,7 @@ fn of_lists(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
         ("sum", [one]) => {
             let mut sum = XacroValue::Int(0);
             for value in one.iterated()? {
-                sum = arithmetic(Arithmetic::Add, &sum, &value)?;
+                sum = arithmetic(XacroArithmetic::Add, &sum, &value)?;
             }
             Ok(sum)
         }
@@ -310,15 +310,15 @@ fn of_lists(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
             let pairs = (0..)
                 .zip(one.iterated()?)
                 .map(|(at, value)| XacroValue::tuple(vec![XacroValue::Int(at), value]));
-            XacroValue::list(pairs.collect::<Evaluated<_>>()?)
+            XacroValue::list(pairs.collect::<EvalResult<_>>()?)
         }
         ("zip", [one, other]) => {
             let pairs = one.iterated()?.into_iter().zip(other.iterated()?);
-            XacroValue::list(pairs.map(|(a, b)| XacroValue::tuple(vec![a, b])).collect::<Evaluated<_>>()?)
+            XacroValue::list(pairs.map(|(a, b)| XacroValue::tuple(vec![a, b])).collect::<EvalResult<_>>()?)
         }
         ("range", _) => range(arguments),
         ("map", [XacroValue::Function(of), list]) if !is_outer(of) && &**of != "map" => XacroValue::list(
-            list.iterated()?.into_iter().map(|value| call(of, &[value])).collect::<Evaluated<_>>()?,
+            list.iterated()?.into_iter().map(|value| call(of, &[value])).collect::<EvalResult<_>>()?,
         ),
         _ if FUNCTIONS.contains(&name) => wrong_arguments(name, arguments),
         _ => not_done(format!("function `{name}`"), "compute it otherwise"),
@@ -326,7 +326,7 @@ fn of_lists(name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
 }
 
 /// By insertion: comparing may fail, which the sorts of the standard library do not provide for.
-fn sorted(values: Vec<XacroValue>) -> Evaluated<XacroValue> {
+fn sorted(values: Vec<XacroValue>) -> EvalResult<XacroValue> {
     const MOST_SORTED: usize = 2000;
     if values.len() > MOST_SORTED {
         return wrong(format!("a list of more than {MOST_SORTED} values is sorted"), "sort a shorter one");
@@ -345,7 +345,7 @@ fn sorted(values: Vec<XacroValue>) -> Evaluated<XacroValue> {
     XacroValue::list(in_order)
 }
 
-fn range(arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+fn range(arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     let numbers: Option<Vec<i64>> = arguments.iter().map(XacroValue::whole).collect();
     let (from, to, by) = match numbers.as_deref() {
         Some([to]) => (0, *to, 1),

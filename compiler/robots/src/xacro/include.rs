@@ -3,9 +3,9 @@
 use hrdsl_source::Span;
 
 use super::{
-    expand::{Expanded, Expander},
+    expand::{ExpandResult, XacroExpander},
     scope::ScopeId,
-    value::{EvalFault, Evaluated, XacroValue},
+    value::{EvalFault, EvalResult, XacroValue},
     yaml::value_of,
 };
 use crate::{
@@ -18,8 +18,8 @@ use crate::{
     yaml::read_yaml,
 };
 
-impl Expander<'_> {
-    pub(super) fn include(&mut self, element: &XmlElement, scope: ScopeId) -> Expanded<Vec<XmlNode>> {
+impl XacroExpander<'_> {
+    pub(super) fn include(&mut self, element: &XmlElement, scope: ScopeId) -> ExpandResult<Vec<XmlNode>> {
         let attribute = element.needs_name("filename")?;
         let place = self.placed(element.place_of(attribute));
         let written = self.text_of(element, attribute, scope)?;
@@ -52,7 +52,7 @@ impl Expander<'_> {
     }
 
     /// `xacro.load_yaml(path)`
-    pub(super) fn load_yaml(&mut self, written: &str) -> Evaluated<XacroValue> {
+    pub(super) fn load_yaml(&mut self, written: &str) -> EvalResult<XacroValue> {
         let path = joined(folder_of(self.file()), written);
         // Whoever evaluates the expression knows its place.
         let nowhere = RobotPlace::default();

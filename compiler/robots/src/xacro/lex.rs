@@ -1,6 +1,6 @@
 //! Expressions as words: numbers, texts, names, signs.
 
-use super::value::{Evaluated, XacroValue, not_done, wrong};
+use super::value::{EvalResult, XacroValue, not_done, wrong};
 
 /// How many words an expression may have: its tree is gone through by calls.
 const MOST_WORDS: usize = 800;
@@ -18,7 +18,7 @@ const SIGNS: [&str; 32] = [
     "{", "}", ",", ":", ".", "<", ">", "=", "&", "|", "^", "~", "@",
 ];
 
-pub(super) fn words(text: &str) -> Evaluated<Vec<ExprWord>> {
+pub(super) fn words(text: &str) -> EvalResult<Vec<ExprWord>> {
     let mut words = Vec::new();
     let mut rest = text.trim_start();
     while let Some(first) = rest.chars().next() {
@@ -47,7 +47,7 @@ fn digit_follows(text: &str) -> bool {
     text.chars().nth(1).is_some_and(|c| c.is_ascii_digit())
 }
 
-fn number(text: &str) -> Evaluated<(ExprWord, usize)> {
+fn number(text: &str) -> EvalResult<(ExprWord, usize)> {
     if let Some(hex) = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         let length = hex.find(|c: char| !c.is_ascii_hexdigit()).unwrap_or(hex.len());
         let value = i64::from_str_radix(hex.get(..length).unwrap_or_default(), 16);
@@ -87,7 +87,7 @@ fn number(text: &str) -> Evaluated<(ExprWord, usize)> {
     }
 }
 
-fn quoted(text: &str) -> Evaluated<(ExprWord, usize)> {
+fn quoted(text: &str) -> EvalResult<(ExprWord, usize)> {
     let mut chars = text.char_indices();
     let open = chars.next().map_or('\'', |(_, c)| c);
     let mut said = String::new();
@@ -113,7 +113,7 @@ fn quoted(text: &str) -> Evaluated<(ExprWord, usize)> {
     wrong("a text has no end", format!("write {open} behind it"))
 }
 
-fn name(text: &str) -> Evaluated<(ExprWord, usize)> {
+fn name(text: &str) -> EvalResult<(ExprWord, usize)> {
     let length = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
     let name = text.get(..length).unwrap_or_default();
     let quote_follows = text.get(length..).is_some_and(|rest| rest.starts_with(['"', '\'']));

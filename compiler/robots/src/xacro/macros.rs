@@ -3,7 +3,7 @@
 use hrdsl_source::nearest;
 
 use super::{
-    expand::{Expanded, Expander, as_literal},
+    expand::{ExpandResult, XacroExpander, as_literal},
     parameters::{MacroParameter, parameters},
     scope::{ScopeId, XacroMacro, XacroSymbol},
     text::XacroText,
@@ -14,8 +14,8 @@ use crate::{
     xml::{XmlElement, XmlNode},
 };
 
-impl Expander<'_> {
-    pub(super) fn define_macro(&mut self, element: &XmlElement, scope: ScopeId) -> Expanded<()> {
+impl XacroExpander<'_> {
+    pub(super) fn define_macro(&mut self, element: &XmlElement, scope: ScopeId) -> ExpandResult<()> {
         let written = element.needs_name("name")?;
         let name = written.value.strip_prefix("xacro:").unwrap_or(&written.value);
         let place = self.placed(element.place_of(written));
@@ -39,7 +39,7 @@ impl Expander<'_> {
         element: &XmlElement,
         word: &str,
         scope: ScopeId,
-    ) -> Expanded<Vec<XmlNode>> {
+    ) -> ExpandResult<Vec<XmlNode>> {
         if word == "call" {
             let name = self.text_of(element, element.needs("macro")?, scope)?;
             let mut call = element.clone();
@@ -49,7 +49,7 @@ impl Expander<'_> {
         self.call_named(element, word, scope)
     }
 
-    fn call_named(&mut self, element: &XmlElement, name: &str, scope: ScopeId) -> Expanded<Vec<XmlNode>> {
+    fn call_named(&mut self, element: &XmlElement, name: &str, scope: ScopeId) -> ExpandResult<Vec<XmlNode>> {
         let place = self.placed(element.place);
         let Some((home, definition)) = self.resolved_macro(name, scope) else {
             let names = self.scopes.macro_names(scope);
@@ -89,7 +89,7 @@ impl Expander<'_> {
     }
 
     /// The elements that are given, expanded where the macro is called.
-    fn blocks(&mut self, element: &XmlElement, scope: ScopeId) -> Expanded<Vec<XmlElement>> {
+    fn blocks(&mut self, element: &XmlElement, scope: ScopeId) -> ExpandResult<Vec<XmlElement>> {
         let nodes = self.children(&element.children, scope, &mut Vec::new())?;
         let elements = nodes.into_iter().filter_map(|node| match node {
             XmlNode::Element(element) => Some(element),
@@ -105,7 +105,7 @@ impl Expander<'_> {
         scope: ScopeId,
         inner: ScopeId,
         left: &mut Vec<MacroParameter>,
-    ) -> Expanded<()> {
+    ) -> ExpandResult<()> {
         for attribute in &element.attributes {
             let place = self.placed(element.place_of(attribute));
             let Some(at) = left.iter().position(|parameter| parameter.name == attribute.name) else {
@@ -128,7 +128,7 @@ impl Expander<'_> {
         place: RobotPlace,
         inner: ScopeId,
         left: &mut Vec<MacroParameter>,
-    ) -> Expanded<()> {
+    ) -> ExpandResult<()> {
         let mut blocks = blocks.into_iter();
         for parameter in left.extract_if(.., |parameter| parameter.is_block()) {
             let Some(block) = blocks.next() else {
@@ -159,7 +159,7 @@ impl Expander<'_> {
         scope: ScopeId,
         inner: ScopeId,
         left: Vec<MacroParameter>,
-    ) -> Expanded<()> {
+    ) -> ExpandResult<()> {
         for parameter in left {
             let forwarded: Option<XacroValue> = if parameter.forwards {
                 self.property_value(scope, &parameter.name).map_err(|fault| fault.at(place))?

@@ -2,12 +2,12 @@
 
 use super::{
     operate::equal,
-    value::{Evaluated, XacroValue, not_done, wrong},
+    value::{EvalResult, XacroValue, not_done, wrong},
     written::written,
 };
 use crate::limits::MOST_VALUE_SIZE;
 
-pub(super) fn call_method(of: &XacroValue, name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+pub(super) fn call_method(of: &XacroValue, name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     match of {
         XacroValue::Text(text) => of_text(text, name, arguments),
         XacroValue::Dict(pairs) => of_dict(pairs.as_slice(), name, arguments),
@@ -31,13 +31,13 @@ pub(super) fn call_method(of: &XacroValue, name: &str, arguments: &[XacroValue])
     }
 }
 
-fn of_text(text: &str, name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+fn of_text(text: &str, name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue> {
     let texts: Option<Vec<&str>> = arguments
         .iter()
         .map(|argument| if let XacroValue::Text(text) = argument { Some(&**text) } else { None })
         .collect();
     let list = |parts: Vec<&str>| {
-        XacroValue::list(parts.into_iter().map(XacroValue::text).collect::<Evaluated<_>>()?)
+        XacroValue::list(parts.into_iter().map(XacroValue::text).collect::<EvalResult<_>>()?)
     };
     match (name, texts.as_deref()) {
         ("split", Some([])) => list(text.split_whitespace().collect()),
@@ -88,7 +88,7 @@ fn of_dict(
     pairs: &[(XacroValue, XacroValue)],
     name: &str,
     arguments: &[XacroValue],
-) -> Evaluated<XacroValue> {
+) -> EvalResult<XacroValue> {
     let find = |key: &XacroValue| pairs.iter().find(|(k, _)| equal(k, key)).map(|(_, value)| value.clone());
     match (name, arguments) {
         ("get", [key]) => Ok(find(key).unwrap_or(XacroValue::None)),
@@ -97,7 +97,7 @@ fn of_dict(
         ("values", []) => XacroValue::list(pairs.iter().map(|(_, value)| value.clone()).collect()),
         ("items", []) => {
             let items = pairs.iter().map(|(key, value)| XacroValue::tuple(vec![key.clone(), value.clone()]));
-            XacroValue::list(items.collect::<Evaluated<_>>()?)
+            XacroValue::list(items.collect::<EvalResult<_>>()?)
         }
         _ => not_done(format!("method `{name}` of a dictionary, or its arguments,"), "compute it otherwise"),
     }

@@ -1,14 +1,18 @@
-//! Arithmetic and comparison, with Python's rules for whole numbers, numbers and texts.
+//! XacroArithmetic and comparison, with Python's rules for whole numbers, numbers and texts.
 
 use std::cmp::Ordering;
 
 use super::{
-    syntax::{Arithmetic, Comparison},
-    value::{EvalFault, Evaluated, XacroValue, wrong},
+    syntax::{XacroArithmetic, XacroComparison},
+    value::{EvalFault, EvalResult, XacroValue, wrong},
 };
 use crate::{fault::RobotFaultKind, limits::MOST_VALUE_SIZE};
 
-pub(super) fn arithmetic(operator: Arithmetic, a: &XacroValue, b: &XacroValue) -> Evaluated<XacroValue> {
+pub(super) fn arithmetic(
+    operator: XacroArithmetic,
+    a: &XacroValue,
+    b: &XacroValue,
+) -> EvalResult<XacroValue> {
     if let (Some(x), Some(y)) = (a.whole(), b.whole()) {
         return whole(operator, x, y);
     }
@@ -16,14 +20,16 @@ pub(super) fn arithmetic(operator: Arithmetic, a: &XacroValue, b: &XacroValue) -
         return float(operator, x, y).map(XacroValue::Float);
     }
     match (operator, a, b) {
-        (Arithmetic::Add, XacroValue::Text(x), XacroValue::Text(y)) => XacroValue::text(format!("{x}{y}")),
-        (Arithmetic::Add, XacroValue::List(x), XacroValue::List(y)) => {
+        (XacroArithmetic::Add, XacroValue::Text(x), XacroValue::Text(y)) => {
+            XacroValue::text(format!("{x}{y}"))
+        }
+        (XacroArithmetic::Add, XacroValue::List(x), XacroValue::List(y)) => {
             XacroValue::list(x.iter().chain(y.iter()).cloned().collect())
         }
-        (Arithmetic::Add, XacroValue::Tuple(x), XacroValue::Tuple(y)) => {
+        (XacroArithmetic::Add, XacroValue::Tuple(x), XacroValue::Tuple(y)) => {
             XacroValue::tuple(x.iter().chain(y.iter()).cloned().collect())
         }
-        (Arithmetic::Multiply, many, count) | (Arithmetic::Multiply, count, many)
+        (XacroArithmetic::Multiply, many, count) | (XacroArithmetic::Multiply, count, many)
             if count.whole().is_some() && many.whole().is_none() =>
         {
             repeated(many, count.whole().unwrap_or_default())
@@ -40,9 +46,9 @@ pub(super) fn arithmetic(operator: Arithmetic, a: &XacroValue, b: &XacroValue) -
     }
 }
 
-fn repeated(many: &XacroValue, count: i64) -> Evaluated<XacroValue> {
+fn repeated(many: &XacroValue, count: i64) -> EvalResult<XacroValue> {
     let count = usize::try_from(count).unwrap_or_default();
-    let all = |items: &[XacroValue]| -> Evaluated<Vec<XacroValue>> {
+    let all = |items: &[XacroValue]| -> EvalResult<Vec<XacroValue>> {
         if items.len().saturating_mul(count) > MOST_VALUE_SIZE {
             return too_much("values of a list");
         }
@@ -66,31 +72,33 @@ fn repeated(many: &XacroValue, count: i64) -> Evaluated<XacroValue> {
     }
 }
 
-fn too_much<T>(what: &'static str) -> Evaluated<T> {
+fn too_much<T>(what: &'static str) -> EvalResult<T> {
     let kind = RobotFaultKind::TooMuch { what, limit: MOST_VALUE_SIZE };
     Err(EvalFault::new(kind, "repeat it less often"))
 }
 
-fn by_zero<T>() -> Evaluated<T> {
+fn by_zero<T>() -> EvalResult<T> {
     wrong("something is divided by 0", "ask before: `a / b if b else 0`")
 }
 
-fn whole(operator: Arithmetic, a: i64, b: i64) -> Evaluated<XacroValue> {
+fn whole(operator: XacroArithmetic, a: i64, b: i64) -> EvalResult<XacroValue> {
     let result = match operator {
-        Arithmetic::Add => a.checked_add(b),
-        Arithmetic::Subtract => a.checked_sub(b),
-        Arithmetic::Multiply => a.checked_mul(b),
-        Arithmetic::Divide | Arithmetic::FloorDivide | Arithmetic::Modulo if b == 0 => return by_zero(),
-        Arithmetic::Divide => return Ok(XacroValue::Float(a as f64 / b as f64)),
-        Arithmetic::FloorDivide => a.checked_rem(b).map(|rest| {
+        XacroArithmetic::Add => a.checked_add(b),
+        XacroArithmetic::Subtract => a.checked_sub(b),
+        XacroArithmetic::Multiply => a.checked_mul(b),
+        XacroArithmetic::Divide | XacroArithmetic::FloorDivide | XacroArithmetic::Modulo if b == 0 => {
+            return by_zero();
+        }
+        XacroArithmetic::Divide => return Ok(XacroValue::Float(a as f64 / b as f64)),
+        XacroArithmetic::FloorDivide => a.checked_rem(b).map(|rest| {
             let quotient = (a - rest) / b;
             quotient - i64::from(rest != 0 && (rest < 0) != (b < 0))
         }),
-        Arithmetic::Modulo => {
+        XacroArithmetic::Modulo => {
             a.checked_rem(b).map(|rest| if rest != 0 && (rest < 0) != (b < 0) { rest + b } else { rest })
         }
-        Arithmetic::Power if b < 0 => return float(operator, a as f64, b as f64).map(XacroValue::Float),
-        Arithmetic::Power => match (a, u32::try_from(b)) {
+        XacroArithmetic::Power if b < 0 => return float(operator, a as f64, b as f64).map(XacroValue::Float),
+        XacroArithmetic::Power => match (a, u32::try_from(b)) {
             (0 | 1, _) => Some(if b == 0 { 1 } else { a }),
             (-1, _) => Some(if b % 2 == 0 { 1 } else { -1 }),
             (_, Ok(exponent)) => a.checked_pow(exponent),
@@ -103,16 +111,18 @@ fn whole(operator: Arithmetic, a: i64, b: i64) -> Evaluated<XacroValue> {
     }
 }
 
-fn float(operator: Arithmetic, a: f64, b: f64) -> Evaluated<f64> {
+fn float(operator: XacroArithmetic, a: f64, b: f64) -> EvalResult<f64> {
     Ok(match operator {
-        Arithmetic::Add => a + b,
-        Arithmetic::Subtract => a - b,
-        Arithmetic::Multiply => a * b,
-        Arithmetic::Divide | Arithmetic::FloorDivide | Arithmetic::Modulo if b == 0.0 => return by_zero(),
-        Arithmetic::Divide => a / b,
-        Arithmetic::FloorDivide => floor_and_rest(a, b).0,
-        Arithmetic::Modulo => floor_and_rest(a, b).1,
-        Arithmetic::Power => {
+        XacroArithmetic::Add => a + b,
+        XacroArithmetic::Subtract => a - b,
+        XacroArithmetic::Multiply => a * b,
+        XacroArithmetic::Divide | XacroArithmetic::FloorDivide | XacroArithmetic::Modulo if b == 0.0 => {
+            return by_zero();
+        }
+        XacroArithmetic::Divide => a / b,
+        XacroArithmetic::FloorDivide => floor_and_rest(a, b).0,
+        XacroArithmetic::Modulo => floor_and_rest(a, b).1,
+        XacroArithmetic::Power => {
             if a == 0.0 && b < 0.0 {
                 return by_zero();
             }
@@ -174,7 +184,7 @@ pub(super) fn equal(a: &XacroValue, b: &XacroValue) -> bool {
 }
 
 /// Which comes first; texts by their characters, lists by their first difference.
-pub(super) fn order(a: &XacroValue, b: &XacroValue) -> Evaluated<Option<Ordering>> {
+pub(super) fn order(a: &XacroValue, b: &XacroValue) -> EvalResult<Option<Ordering>> {
     if let (Some(x), Some(y)) = (a.whole(), b.whole()) {
         return Ok(Some(x.cmp(&y)));
     }
@@ -198,22 +208,22 @@ pub(super) fn order(a: &XacroValue, b: &XacroValue) -> Evaluated<Option<Ordering
     }
 }
 
-pub(super) fn compare(comparison: Comparison, a: &XacroValue, b: &XacroValue) -> Evaluated<bool> {
+pub(super) fn compare(comparison: XacroComparison, a: &XacroValue, b: &XacroValue) -> EvalResult<bool> {
     Ok(match comparison {
-        Comparison::Equal => equal(a, b),
-        Comparison::NotEqual => !equal(a, b),
-        Comparison::Less => order(a, b)? == Some(Ordering::Less),
-        Comparison::LessOrEqual => matches!(order(a, b)?, Some(Ordering::Less | Ordering::Equal)),
-        Comparison::Greater => order(a, b)? == Some(Ordering::Greater),
-        Comparison::GreaterOrEqual => matches!(order(a, b)?, Some(Ordering::Greater | Ordering::Equal)),
-        Comparison::In => contains(b, a)?,
-        Comparison::NotIn => !contains(b, a)?,
-        Comparison::Is => same(a, b)?,
-        Comparison::IsNot => !same(a, b)?,
+        XacroComparison::Equal => equal(a, b),
+        XacroComparison::NotEqual => !equal(a, b),
+        XacroComparison::Less => order(a, b)? == Some(Ordering::Less),
+        XacroComparison::LessOrEqual => matches!(order(a, b)?, Some(Ordering::Less | Ordering::Equal)),
+        XacroComparison::Greater => order(a, b)? == Some(Ordering::Greater),
+        XacroComparison::GreaterOrEqual => matches!(order(a, b)?, Some(Ordering::Greater | Ordering::Equal)),
+        XacroComparison::In => contains(b, a)?,
+        XacroComparison::NotIn => !contains(b, a)?,
+        XacroComparison::Is => same(a, b)?,
+        XacroComparison::IsNot => !same(a, b)?,
     })
 }
 
-fn contains(all: &XacroValue, one: &XacroValue) -> Evaluated<bool> {
+fn contains(all: &XacroValue, one: &XacroValue) -> EvalResult<bool> {
     match (all, one) {
         (XacroValue::Text(text), XacroValue::Text(part)) => Ok(text.contains(&**part)),
         (XacroValue::List(items) | XacroValue::Tuple(items), one) => {
@@ -228,7 +238,7 @@ fn contains(all: &XacroValue, one: &XacroValue) -> Evaluated<bool> {
 }
 
 /// Python compares identities; only those that are values can be told apart by a description.
-fn same(a: &XacroValue, b: &XacroValue) -> Evaluated<bool> {
+fn same(a: &XacroValue, b: &XacroValue) -> EvalResult<bool> {
     match (a, b) {
         (XacroValue::None, XacroValue::None) => Ok(true),
         (XacroValue::Bool(x), XacroValue::Bool(y)) => Ok(x == y),

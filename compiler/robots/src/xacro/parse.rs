@@ -2,8 +2,8 @@
 
 use super::{
     lex::{ExprWord, words},
-    syntax::{Arithmetic, Comparison, XacroExpr},
-    value::{Evaluated, XacroValue, not_done, wrong},
+    syntax::{XacroArithmetic, XacroComparison, XacroExpr},
+    value::{EvalResult, XacroValue, not_done, wrong},
 };
 use crate::limits::MOST_NESTING;
 
@@ -13,7 +13,7 @@ pub(super) const KEYWORDS: [&str; 12] =
 /// Signs of Python that nothing in a description needs.
 const NOT_DONE: [&str; 7] = ["&", "|", "^", "~", "<<", ">>", "@"];
 
-pub(super) fn parse_expression(text: &str) -> Evaluated<XacroExpr> {
+pub(super) fn parse_expression(text: &str) -> EvalResult<XacroExpr> {
     let mut parser = ExprParser { words: words(text)?, at: 0, depth: 0 };
     if parser.words.is_empty() {
         return wrong("nothing stands in it", "write an expression between the braces");
@@ -46,7 +46,7 @@ struct ExprParser {
     depth: usize,
 }
 
-type Parsed = Evaluated<XacroExpr>;
+type ParsedExpr = EvalResult<XacroExpr>;
 
 impl ExprParser {
     fn peek(&self) -> Option<&ExprWord> {
@@ -73,7 +73,7 @@ impl ExprParser {
         takes
     }
 
-    fn needs(&mut self, sign: &str) -> Evaluated<()> {
+    fn needs(&mut self, sign: &str) -> EvalResult<()> {
         if self.takes(sign) {
             Ok(())
         } else {
@@ -82,7 +82,7 @@ impl ExprParser {
     }
 
     /// Goes one level down.
-    fn nested(&mut self, parse: impl FnOnce(&mut Self) -> Parsed) -> Parsed {
+    fn nested(&mut self, parse: impl FnOnce(&mut Self) -> ParsedExpr) -> ParsedExpr {
         self.depth += 1;
         if self.depth > MOST_NESTING {
             return wrong(
@@ -95,7 +95,7 @@ impl ExprParser {
         parsed
     }
 
-    fn ternary(&mut self) -> Parsed {
+    fn ternary(&mut self) -> ParsedExpr {
         self.nested(|parser| {
             let yes = parser.or()?;
             if !parser.takes_name("if") {
@@ -110,7 +110,7 @@ impl ExprParser {
         })
     }
 
-    fn or(&mut self) -> Parsed {
+    fn or(&mut self) -> ParsedExpr {
         let mut left = self.and()?;
         while self.takes_name("or") {
             left = XacroExpr::Or(Box::new(left), Box::new(self.and()?));
@@ -118,7 +118,7 @@ impl ExprParser {
         Ok(left)
     }
 
-    fn and(&mut self) -> Parsed {
+    fn and(&mut self) -> ParsedExpr {
         let mut left = self.not()?;
         while self.takes_name("and") {
             left = XacroExpr::And(Box::new(left), Box::new(self.not()?));
@@ -126,14 +126,14 @@ impl ExprParser {
         Ok(left)
     }
 
-    fn not(&mut self) -> Parsed {
+    fn not(&mut self) -> ParsedExpr {
         if self.takes_name("not") {
             return self.nested(|parser| Ok(XacroExpr::Not(Box::new(parser.not()?))));
         }
         self.comparison()
     }
 
-    fn comparison(&mut self) -> Parsed {
+    fn comparison(&mut self) -> ParsedExpr {
         let left = self.sum()?;
         let mut others = Vec::new();
         while let Some(comparison) = self.comparison_sign() {
@@ -142,41 +142,41 @@ impl ExprParser {
         Ok(if others.is_empty() { left } else { XacroExpr::Compare(Box::new(left), others) })
     }
 
-    fn comparison_sign(&mut self) -> Option<Comparison> {
-        const SIGNS: [(&str, Comparison); 6] = [
-            ("==", Comparison::Equal),
-            ("!=", Comparison::NotEqual),
-            ("<=", Comparison::LessOrEqual),
-            (">=", Comparison::GreaterOrEqual),
-            ("<", Comparison::Less),
-            (">", Comparison::Greater),
+    fn comparison_sign(&mut self) -> Option<XacroComparison> {
+        const SIGNS: [(&str, XacroComparison); 6] = [
+            ("==", XacroComparison::Equal),
+            ("!=", XacroComparison::NotEqual),
+            ("<=", XacroComparison::LessOrEqual),
+            (">=", XacroComparison::GreaterOrEqual),
+            ("<", XacroComparison::Less),
+            (">", XacroComparison::Greater),
         ];
         if let Some((_, comparison)) = SIGNS.iter().find(|(sign, _)| self.sees(sign)) {
             self.at += 1;
             return Some(*comparison);
         }
         if self.takes_name("in") {
-            return Some(Comparison::In);
+            return Some(XacroComparison::In);
         }
         if self.takes_name("is") {
-            return Some(if self.takes_name("not") { Comparison::IsNot } else { Comparison::Is });
+            return Some(if self.takes_name("not") { XacroComparison::IsNot } else { XacroComparison::Is });
         }
         let before = self.at;
         if self.takes_name("not") {
             if self.takes_name("in") {
-                return Some(Comparison::NotIn);
+                return Some(XacroComparison::NotIn);
             }
             self.at = before;
         }
         None
     }
 
-    fn sum(&mut self) -> Parsed {
+    fn sum(&mut self) -> ParsedExpr {
         let mut left = self.product()?;
         loop {
             let operator = match self.peek() {
-                Some(ExprWord::Sign("+")) => Arithmetic::Add,
-                Some(ExprWord::Sign("-")) => Arithmetic::Subtract,
+                Some(ExprWord::Sign("+")) => XacroArithmetic::Add,
+                Some(ExprWord::Sign("-")) => XacroArithmetic::Subtract,
                 _ => return Ok(left),
             };
             self.at += 1;
@@ -184,14 +184,14 @@ impl ExprParser {
         }
     }
 
-    fn product(&mut self) -> Parsed {
+    fn product(&mut self) -> ParsedExpr {
         let mut left = self.unary()?;
         loop {
             let operator = match self.peek() {
-                Some(ExprWord::Sign("*")) => Arithmetic::Multiply,
-                Some(ExprWord::Sign("/")) => Arithmetic::Divide,
-                Some(ExprWord::Sign("//")) => Arithmetic::FloorDivide,
-                Some(ExprWord::Sign("%")) => Arithmetic::Modulo,
+                Some(ExprWord::Sign("*")) => XacroArithmetic::Multiply,
+                Some(ExprWord::Sign("/")) => XacroArithmetic::Divide,
+                Some(ExprWord::Sign("//")) => XacroArithmetic::FloorDivide,
+                Some(ExprWord::Sign("%")) => XacroArithmetic::Modulo,
                 _ => return Ok(left),
             };
             self.at += 1;
@@ -199,7 +199,7 @@ impl ExprParser {
         }
     }
 
-    fn unary(&mut self) -> Parsed {
+    fn unary(&mut self) -> ParsedExpr {
         if self.takes("-") {
             return self.nested(|parser| Ok(XacroExpr::Negative(Box::new(parser.unary()?))));
         }
@@ -210,16 +210,16 @@ impl ExprParser {
     }
 
     /// Binds tighter than a sign before it, and less tight than one behind it: `-a ** -b`.
-    fn power(&mut self) -> Parsed {
+    fn power(&mut self) -> ParsedExpr {
         let base = self.postfix()?;
         if !self.takes("**") {
             return Ok(base);
         }
         let exponent = self.nested(Self::unary)?;
-        Ok(XacroExpr::Binary(Arithmetic::Power, Box::new(base), Box::new(exponent)))
+        Ok(XacroExpr::Binary(XacroArithmetic::Power, Box::new(base), Box::new(exponent)))
     }
 
-    fn postfix(&mut self) -> Parsed {
+    fn postfix(&mut self) -> ParsedExpr {
         let mut expr = self.atom()?;
         loop {
             if self.takes("(") {
@@ -247,7 +247,7 @@ impl ExprParser {
     }
 
     /// `dict(a=1, b=2)`
-    fn named_pairs(&mut self) -> Parsed {
+    fn named_pairs(&mut self) -> ParsedExpr {
         let mut pairs = Vec::new();
         while !self.takes(")") {
             let Some(ExprWord::Name(name)) = self.peek().cloned() else {
@@ -264,7 +264,7 @@ impl ExprParser {
         Ok(XacroExpr::Dict(pairs))
     }
 
-    fn arguments(&mut self) -> Evaluated<Vec<XacroExpr>> {
+    fn arguments(&mut self) -> EvalResult<Vec<XacroExpr>> {
         let mut arguments = Vec::new();
         while !self.takes(")") {
             let first = self.ternary()?;
@@ -286,7 +286,7 @@ impl ExprParser {
         Ok(arguments)
     }
 
-    fn index(&mut self, of: XacroExpr) -> Parsed {
+    fn index(&mut self, of: XacroExpr) -> ParsedExpr {
         let mut parts: [Option<Box<XacroExpr>>; 3] = [None, None, None];
         let mut colons = 0;
         for slot in &mut parts {
@@ -307,7 +307,7 @@ impl ExprParser {
         }
     }
 
-    fn atom(&mut self) -> Parsed {
+    fn atom(&mut self) -> ParsedExpr {
         let Some(word) = self.peek().cloned() else {
             return wrong("it breaks off", "write the rest of it");
         };
@@ -345,7 +345,7 @@ impl ExprParser {
         }
     }
 
-    fn parenthesis(&mut self) -> Parsed {
+    fn parenthesis(&mut self) -> ParsedExpr {
         if self.takes(")") {
             return Ok(XacroExpr::Tuple(Vec::new()));
         }
@@ -361,7 +361,7 @@ impl ExprParser {
         Ok(inside)
     }
 
-    fn rest_of_tuple(&mut self, first: XacroExpr, ends: &[&str]) -> Parsed {
+    fn rest_of_tuple(&mut self, first: XacroExpr, ends: &[&str]) -> ParsedExpr {
         let mut items = vec![first];
         while self.takes(",") {
             if self.peek().is_none() || ends.iter().any(|end| self.sees(end)) {
@@ -372,7 +372,7 @@ impl ExprParser {
         Ok(XacroExpr::Tuple(items))
     }
 
-    fn list(&mut self) -> Parsed {
+    fn list(&mut self) -> ParsedExpr {
         let mut items = Vec::new();
         while !self.takes("]") {
             let item = self.ternary()?;
@@ -390,7 +390,7 @@ impl ExprParser {
         Ok(XacroExpr::List(items))
     }
 
-    fn each(&mut self, item: XacroExpr) -> Parsed {
+    fn each(&mut self, item: XacroExpr) -> ParsedExpr {
         self.at += 1;
         let mut names = Vec::new();
         let in_parentheses = self.takes("(");
@@ -415,7 +415,7 @@ impl ExprParser {
         Ok(XacroExpr::Each { item: Box::new(item), names, over, condition })
     }
 
-    fn dict(&mut self) -> Parsed {
+    fn dict(&mut self) -> ParsedExpr {
         let mut pairs = Vec::new();
         while !self.takes("}") {
             let key = self.ternary()?;

@@ -1,7 +1,7 @@
 //! `xacro:property`: values and blocks, and the scopes that they are put into.
 
 use super::{
-    expand::{Expanded, Expander, as_literal, truth},
+    expand::{ExpandResult, XacroExpander, as_literal, truth},
     functions::global,
     parse::KEYWORDS,
     scope::{ScopeId, TOP, XacroSymbol},
@@ -14,8 +14,8 @@ use crate::{
     xml::{XmlAttribute, XmlElement},
 };
 
-impl Expander<'_> {
-    pub(super) fn property(&mut self, element: &XmlElement, scope: ScopeId) -> Expanded<()> {
+impl XacroExpander<'_> {
+    pub(super) fn property(&mut self, element: &XmlElement, scope: ScopeId) -> ExpandResult<()> {
         let written_name = element.needs_name("name")?;
         let place = self.placed(element.place_of(written_name));
         let name = self.text_of(element, written_name, scope)?;
@@ -80,7 +80,7 @@ impl Expander<'_> {
         scope: ScopeId,
         target: ScopeId,
         lazy: bool,
-    ) -> Expanded<()> {
+    ) -> ExpandResult<()> {
         let place = self.placed(element.place_of(attribute));
         let symbol = if lazy {
             match literal(&attribute.value) {
@@ -95,7 +95,7 @@ impl Expander<'_> {
     }
 
     /// An attribute that is true or false.
-    fn flag(&mut self, element: &XmlElement, name: &str, scope: ScopeId) -> Expanded<Option<bool>> {
+    fn flag(&mut self, element: &XmlElement, name: &str, scope: ScopeId) -> ExpandResult<Option<bool>> {
         let Some(attribute) = element.attribute(name) else { return Ok(None) };
         let place: RobotPlace = self.placed(element.place_of(attribute));
         let value: XacroValue = self.value(XacroText { text: &attribute.value, place }, scope)?;

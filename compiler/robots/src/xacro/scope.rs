@@ -34,7 +34,7 @@ struct XacroScope {
 #[derive(Clone, Debug)]
 pub(super) enum XacroSymbol {
     Value(XacroValue),
-    /// Evaluated when it is first asked for.
+    /// EvalResult when it is first asked for.
     Text(Rc<str>, RobotPlace),
     /// That is being done.
     Busy,

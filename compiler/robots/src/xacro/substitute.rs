@@ -4,10 +4,10 @@ use hrdsl_source::nearest;
 
 use super::{
     evaluate::{ExprNames, evaluate},
-    expand::{Expander, as_literal},
+    expand::{XacroExpander, as_literal},
     parse::parse_expression,
     scope::ScopeId,
-    value::{EvalFault, Evaluated, XacroValue, not_done, wrong},
+    value::{EvalFault, EvalResult, XacroValue, not_done, wrong},
     written::written,
 };
 use crate::{
@@ -17,9 +17,9 @@ use crate::{
 
 const COMMANDS: [&str; 6] = ["arg", "find", "env", "optenv", "dirname", "eval"];
 
-impl Expander<'_> {
+impl XacroExpander<'_> {
     /// The text between `$(` and `)`.
-    pub(super) fn substitution(&mut self, inside: &str, _: ScopeId) -> Evaluated<XacroValue> {
+    pub(super) fn substitution(&mut self, inside: &str, _: ScopeId) -> EvalResult<XacroValue> {
         let inside = inside.trim();
         let (command, rest) = inside.split_once(char::is_whitespace).unwrap_or((inside, ""));
         let rest = rest.trim();
@@ -59,7 +59,7 @@ impl Expander<'_> {
         self.request.environment.iter().find(|(known, _)| known == name).map(|(_, value)| value.clone())
     }
 
-    fn argument_value(&self, name: &str) -> Evaluated<String> {
+    fn argument_value(&self, name: &str) -> EvalResult<String> {
         self.arguments.get(name).cloned().ok_or_else(|| {
             let help = match nearest(name, self.arguments.keys().map(String::as_str)) {
                 Some(near) => format!("write `$(arg {near})`"),
@@ -71,7 +71,7 @@ impl Expander<'_> {
         })
     }
 
-    fn package_folder(&self, name: &str) -> Evaluated<XacroValue> {
+    fn package_folder(&self, name: &str) -> EvalResult<XacroValue> {
         match self.request.packages.found_from(name, self.file(), self.request.reader) {
             Some(folder) => XacroValue::text(folder),
             None => {
@@ -82,7 +82,7 @@ impl Expander<'_> {
     }
 
     /// Calls a function that needs the files or the arguments.
-    pub(super) fn outer(&mut self, name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+    pub(super) fn outer(&mut self, name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue> {
         match (name, arguments) {
             ("load_yaml", [XacroValue::Text(path)]) => self.load_yaml(path),
             ("abs_filename", [XacroValue::Text(path)]) => {
@@ -101,17 +101,17 @@ impl Expander<'_> {
 
 /// The names that `$(eval …)` sees: the arguments, and functions that do as the other commands.
 struct ArgumentNames<'e, 'a> {
-    expander: &'e mut Expander<'a>,
+    expander: &'e mut XacroExpander<'a>,
 }
 
 impl ExprNames for ArgumentNames<'_, '_> {
-    fn lookup(&mut self, path: &[String]) -> Evaluated<Option<(XacroValue, usize)>> {
+    fn lookup(&mut self, path: &[String]) -> EvalResult<Option<(XacroValue, usize)>> {
         let value = path.first().and_then(|name| self.expander.arguments.get(name));
         let Some(value) = value else { return Ok(None) };
         Ok(Some((as_literal(XacroValue::text(value)?), 1)))
     }
 
-    fn outer(&mut self, name: &str, arguments: &[XacroValue]) -> Evaluated<XacroValue> {
+    fn outer(&mut self, name: &str, arguments: &[XacroValue]) -> EvalResult<XacroValue> {
         self.expander.outer(name, arguments).map(as_literal)
     }
 

@@ -12,9 +12,9 @@ pub(super) enum XacroExpr {
     Not(Box<XacroExpr>),
     Negative(Box<XacroExpr>),
     Positive(Box<XacroExpr>),
-    Binary(Arithmetic, Box<XacroExpr>, Box<XacroExpr>),
+    Binary(XacroArithmetic, Box<XacroExpr>, Box<XacroExpr>),
     /// `a < b <= c`
-    Compare(Box<XacroExpr>, Vec<(Comparison, XacroExpr)>),
+    Compare(Box<XacroExpr>, Vec<(XacroComparison, XacroExpr)>),
     And(Box<XacroExpr>, Box<XacroExpr>),
     Or(Box<XacroExpr>, Box<XacroExpr>),
     If {
@@ -36,7 +36,7 @@ pub(super) enum XacroExpr {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Arithmetic {
+pub(super) enum XacroArithmetic {
     Add,
     Subtract,
     Multiply,
@@ -46,7 +46,7 @@ pub(super) enum Arithmetic {
     Power,
 }
 
-impl Arithmetic {
+impl XacroArithmetic {
     pub fn sign(self) -> &'static str {
         match self {
             Self::Add => "+",
@@ -61,7 +61,7 @@ impl Arithmetic {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Comparison {
+pub(super) enum XacroComparison {
     Equal,
     NotEqual,
     Less,

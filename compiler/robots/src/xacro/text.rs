@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use hrdsl_source::Span;
 
-use super::value::{Evaluated, wrong};
+use super::value::{EvalResult, wrong};
 use crate::fault::RobotPlace;
 
 /// A text, and where it stands.
@@ -38,7 +38,7 @@ pub(super) enum TextPiece {
     Substitution(Range<usize>),
 }
 
-pub(super) fn pieces(text: &str) -> Evaluated<Vec<TextPiece>> {
+pub(super) fn pieces(text: &str) -> EvalResult<Vec<TextPiece>> {
     let mut found = Vec::new();
     let mut at = 0;
     while let Some(rest) = text.get(at..).filter(|rest| !rest.is_empty()) {

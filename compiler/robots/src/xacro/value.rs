@@ -16,7 +16,7 @@ pub(super) struct EvalFault {
     pub place: Option<RobotPlace>,
 }
 
-pub(super) type Evaluated<T> = Result<T, EvalFault>;
+pub(super) type EvalResult<T> = Result<T, EvalFault>;
 
 impl EvalFault {
     pub fn new(kind: RobotFaultKind, help: impl Into<Box<str>>) -> Self {
@@ -35,12 +35,12 @@ impl From<RobotFault> for EvalFault {
 }
 
 /// A fault of an expression that its own message explains.
-pub(super) fn wrong<T>(reason: impl Into<String>, help: impl Into<Box<str>>) -> Evaluated<T> {
+pub(super) fn wrong<T>(reason: impl Into<String>, help: impl Into<Box<str>>) -> EvalResult<T> {
     Err(EvalFault::new(RobotFaultKind::BadExpression(reason.into()), help))
 }
 
 /// Something of xacro or Python that is not done here.
-pub(super) fn not_done<T>(what: impl Into<String>, help: impl Into<Box<str>>) -> Evaluated<T> {
+pub(super) fn not_done<T>(what: impl Into<String>, help: impl Into<Box<str>>) -> EvalResult<T> {
     Err(EvalFault::new(RobotFaultKind::NotDone(what.into()), help))
 }
 
@@ -68,7 +68,7 @@ pub(super) struct XacroItems<T> {
 }
 
 impl<T> XacroItems<T> {
-    fn new(items: Vec<T>, measure: impl Fn(&T) -> (usize, usize)) -> Evaluated<Self> {
+    fn new(items: Vec<T>, measure: impl Fn(&T) -> (usize, usize)) -> EvalResult<Self> {
         let (mut size, mut depth) = (1_usize, 0);
         for item in &items {
             let (inside, below) = measure(item);
@@ -92,7 +92,7 @@ impl<T> XacroItems<T> {
 }
 
 impl XacroValue {
-    pub fn text(text: impl AsRef<str>) -> Evaluated<Self> {
+    pub fn text(text: impl AsRef<str>) -> EvalResult<Self> {
         let text = text.as_ref();
         if text.len() > MOST_VALUE_SIZE {
             let kind = RobotFaultKind::TooMuch { what: "bytes of a text", limit: MOST_VALUE_SIZE };
@@ -101,15 +101,15 @@ impl XacroValue {
         Ok(Self::Text(Rc::from(text)))
     }
 
-    pub fn list(items: Vec<Self>) -> Evaluated<Self> {
+    pub fn list(items: Vec<Self>) -> EvalResult<Self> {
         XacroItems::new(items, Self::measure).map(Self::List)
     }
 
-    pub fn tuple(items: Vec<Self>) -> Evaluated<Self> {
+    pub fn tuple(items: Vec<Self>) -> EvalResult<Self> {
         XacroItems::new(items, Self::measure).map(Self::Tuple)
     }
 
-    pub fn dict(pairs: Vec<(Self, Self)>) -> Evaluated<Self> {
+    pub fn dict(pairs: Vec<(Self, Self)>) -> EvalResult<Self> {
         let measure = |(key, value): &(Self, Self)| {
             let ((a, b), (c, d)) = (key.measure(), value.measure());
             (a.saturating_add(c), b.max(d))
@@ -188,7 +188,7 @@ impl XacroValue {
     }
 
     /// The values that a loop over it goes through.
-    pub fn iterated(&self) -> Evaluated<Vec<XacroValue>> {
+    pub fn iterated(&self) -> EvalResult<Vec<XacroValue>> {
         match self {
             Self::List(items) | Self::Tuple(items) => Ok(items.as_slice().to_vec()),
             Self::Dict(pairs) => Ok(pairs.iter().map(|(key, _)| key.clone()).collect()),

@@ -3,7 +3,7 @@
 use super::{
     evaluate::{ExprNames, evaluate},
     parse::parse_expression,
-    value::{Evaluated, XacroValue, not_done, wrong},
+    value::{EvalResult, XacroValue, not_done, wrong},
 };
 use crate::yaml::value::YamlValue;
 
@@ -21,11 +21,11 @@ const UNITS: [(&str, f64); 6] = [
 struct NoNames;
 
 impl ExprNames for NoNames {
-    fn lookup(&mut self, _: &[String]) -> Evaluated<Option<(XacroValue, usize)>> {
+    fn lookup(&mut self, _: &[String]) -> EvalResult<Option<(XacroValue, usize)>> {
         Ok(None)
     }
 
-    fn outer(&mut self, name: &str, _: &[XacroValue]) -> Evaluated<XacroValue> {
+    fn outer(&mut self, name: &str, _: &[XacroValue]) -> EvalResult<XacroValue> {
         not_done(format!("`{name}` in a YAML file"), "write the number")
     }
 
@@ -34,17 +34,17 @@ impl ExprNames for NoNames {
     }
 }
 
-pub(super) fn value_of(yaml: &YamlValue) -> Evaluated<XacroValue> {
+pub(super) fn value_of(yaml: &YamlValue) -> EvalResult<XacroValue> {
     match yaml {
         YamlValue::Null => Ok(XacroValue::None),
         YamlValue::Bool(value) => Ok(XacroValue::Bool(*value)),
         YamlValue::Int(value) => Ok(XacroValue::Int(*value)),
         YamlValue::Float(value) => Ok(XacroValue::Float(*value)),
         YamlValue::Text(text) => XacroValue::text(text),
-        YamlValue::List(items) => XacroValue::list(items.iter().map(value_of).collect::<Evaluated<_>>()?),
+        YamlValue::List(items) => XacroValue::list(items.iter().map(value_of).collect::<EvalResult<_>>()?),
         YamlValue::Map(pairs) => {
             let pairs = pairs.iter().map(|(key, value)| Ok((value_of(key)?, value_of(value)?)));
-            XacroValue::dict(pairs.collect::<Evaluated<_>>()?)
+            XacroValue::dict(pairs.collect::<EvalResult<_>>()?)
         }
         YamlValue::Tagged(tag, text) => match (tag.as_str(), UNITS.iter().find(|(unit, _)| unit == tag)) {
             (_, Some((_, factor))) => {

@@ -7,5 +7,5 @@ mod tree;
 mod write;
 
 pub(crate) use numbers::{number_in, numbers_in};
-pub(crate) use read::{Declared, depth_of, read_xml};
+pub(crate) use read::{DeclaredText, depth_of, read_xml};
 pub(crate) use tree::{XmlAttribute, XmlElement, XmlNode, XmlText};

@@ -15,14 +15,14 @@ use crate::{
 const MOST_PREFIXES: usize = 16;
 
 /// A text in which all prefixes are declared: included files of xacro often do without, as its own reader lets them.
-pub(crate) struct Declared<'t> {
+pub(crate) struct DeclaredText<'t> {
     pub text: Cow<'t, str>,
     /// Where declarations were put in, and how many bytes.
     at: usize,
     added: usize,
 }
 
-impl<'t> Declared<'t> {
+impl<'t> DeclaredText<'t> {
     pub fn new(text: &'t str) -> Self {
         let mut declared = Self { text: Cow::Borrowed(text), at: 0, added: 0 };
         for _ in 0..MOST_PREFIXES {
@@ -76,7 +76,7 @@ pub(crate) fn read_xml(file: FileId, text: &str) -> Result<XmlElement, RobotFaul
         let kind = RobotFaultKind::TooMuch { what: "elements within elements", limit: MOST_XML_DEPTH };
         return Err(kind.at(Span::new(file, 0, 0), "name a description of a robot"));
     }
-    let declared = Declared::new(text);
+    let declared = DeclaredText::new(text);
     let document = Document::parse(&declared.text).map_err(|error| {
         let place = error.pos();
         let at = declared.original(byte_of(&declared.text, place.row, place.col));
@@ -127,7 +127,7 @@ fn tag_end(text: &str) -> (&str, &str) {
 
 struct TreeReader<'a> {
     file: FileId,
-    declared: &'a Declared<'a>,
+    declared: &'a DeclaredText<'a>,
     elements: usize,
 }
 

@@ -2,7 +2,11 @@
 
 use roxmltree::Node;
 
-use super::{super::builder::MeshBuilder, all, first, matrix::AffineMap, text_of};
+use super::{
+    super::builder::MeshBuilder,
+    matrix::AffineMap,
+    nodes::{all, first, text_of},
+};
 use crate::space::transform::RobotVector;
 
 /// Numbers with blanks between them, all finite.

@@ -2,6 +2,7 @@
 
 mod geometry;
 mod matrix;
+mod nodes;
 mod scene;
 
 use roxmltree::{Document, Node};
@@ -10,7 +11,8 @@ use super::{
     builder::MeshBuilder,
     model::{MeshAxis, TriangleMesh},
 };
-use crate::xml::Declared;
+use crate::xml::DeclaredText;
+use nodes::{first, text_of};
 use scene::place_scene;
 
 pub(crate) fn read_collada(bytes: &[u8]) -> Result<TriangleMesh, String> {
@@ -18,7 +20,7 @@ pub(crate) fn read_collada(bytes: &[u8]) -> Result<TriangleMesh, String> {
     if crate::xml::depth_of(text) > crate::limits::MOST_XML_DEPTH {
         return Err("its elements lie too deep in each other".to_owned());
     }
-    let declared = Declared::new(text);
+    let declared = DeclaredText::new(text);
     let document = Document::parse(&declared.text).map_err(|error| error.to_string())?;
     let root = document.root_element();
     if root.tag_name().name() != "COLLADA" {
@@ -27,20 +29,6 @@ pub(crate) fn read_collada(bytes: &[u8]) -> Result<TriangleMesh, String> {
     let mut builder = MeshBuilder::default();
     place_scene(root, unit(root)?, &mut builder)?;
     Ok(builder.finish(up_axis(root)))
-}
-
-/// The children of this name, whatever the prefix.
-fn all<'a, 'i: 'a>(node: Node<'a, 'i>, name: &'a str) -> impl Iterator<Item = Node<'a, 'i>> + 'a {
-    node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
-}
-
-fn first<'a, 'i: 'a>(node: Node<'a, 'i>, name: &'a str) -> Option<Node<'a, 'i>> {
-    all(node, name).next()
-}
-
-/// The text of an element, in pieces if comments lie between.
-fn text_of(node: Node) -> String {
-    node.children().filter(Node::is_text).filter_map(|text| text.text()).collect()
 }
 
 /// Metres for one unit of the file.

@@ -6,10 +6,9 @@ use roxmltree::Node;
 
 use super::{
     super::builder::MeshBuilder,
-    all, first,
     geometry::{numbers, triangles_of},
     matrix::AffineMap,
-    text_of,
+    nodes::{all, first, text_of},
 };
 use crate::limits::{MOST_SCENE_NODES, MOST_XML_DEPTH};
 
