@@ -5,6 +5,7 @@ import difflib
 import os
 import queue
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -24,7 +25,15 @@ class Master:
                             "PYTHONDONTWRITEBYTECODE": "1", "PYTHONIOENCODING": "utf-8"}  # fmt: skip
         command = ["roscore", "-p", str(port)]
         self._process = subprocess.Popen(command, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        time.sleep(4)
+        self._wait(port)
+
+    def _wait(self, port):
+        for _ in range(100):
+            with socket.socket() as asked:
+                if asked.connect_ex(("127.0.0.1", port)) == 0:
+                    break
+            time.sleep(0.3)
+        time.sleep(4)  # for the node that keeps the log
 
     def run(self, name):
         """What the program prints on standard output and, if it is to be compared, on standard error."""
