@@ -67,6 +67,8 @@ def _clocks(scheduler: Scheduler, link: Link) -> None:
     def sleep(seconds: float) -> None:
         if seconds < 0:
             raise ValueError("sleep length must be non-negative")
+        if seconds != seconds:
+            raise ValueError("Invalid value NaN (not a number)")
         scheduler.sleep(seconds)
 
     for name in ("monotonic", "perf_counter", "process_time", "thread_time"):

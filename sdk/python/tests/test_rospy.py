@@ -602,7 +602,7 @@ class Parameters(Case):
         for word, told in (
             ("a: b", "a mapping stands between braces, a list between brackets: a: b"),
             ("[1 2", "there is no ] where it is due: [1 2"),
-            ("{a}", "there is no colon behind a"),
+            ("{a b", "there is no } where it is due: {a b"),
             ("'a' b", "there is something behind the value: 'a' b"),
             ("'a", "a quote is never closed: 'a"),
             ("&a 1", "& cannot begin a value here; put the value between quotes"),

@@ -85,7 +85,7 @@ print(listener.getLatestCommonTime("map", "tool") == at(2), listener.allFramesAs
                 + " "
                 + str([round(2 + 0.5 * math.cos(1), 6), round(4 + 0.5 * math.sin(1), 6), 0.0]),
                 "True False ['base', 'tool']",
-                "True False",
+                "1 0",
                 "True Frame base exists with parent map.",
             ],
         )
@@ -211,8 +211,8 @@ except tf2_ros.InvalidArgumentException as error:
                 "[7.25]",
                 "0",
                 "[2.0] base base True",
-                "False True",
-                "True True",
+                "0 1",
+                "1 1",
                 "Invalid argument \"/map\" passed to lookupTransform argument target_frame in tf2 frame_ids cannot start with a '/' like: ",
             ],
         )

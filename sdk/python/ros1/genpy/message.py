@@ -206,7 +206,9 @@ def strify_message(
     if kind in (int, float, bool):
         return _number(val, fixed_numeric_width)
     if isinstance(val, str):
-        return _quoted(val) if val else "''"
+        from genpy import yaml_text
+
+        return yaml_text.quoted(val) if val else "''"
     if isinstance(val, TVal):
         return _time(val, indent, time_offset, fixed_numeric_width)
     if kind in (list, tuple):
@@ -248,46 +250,12 @@ def _list(values: Any, indent: str, options: Any) -> str:
     if type(first) in (int, float) and options[3] is not None:
         return "[" + ", ".join(strify_message(value, indent, *options) for value in values) + "]"
     if isinstance(first, str):
-        return "".join("\n%s- %s" % (indent, _plain(value)) for value in values)
+        from genpy import yaml_text
+
+        return "".join("\n%s%s" % (indent, line) for line in yaml_text.items(values))
     if type(first) in (int, float, bool):
         return str(list(values))
     return "".join("\n%s- %s" % (indent, strify_message(value, indent + "  ", *options)) for value in values)
-
-
-def _quoted(text: str) -> str:
-    """As YAML quotes it."""
-    import json
-
-    return json.dumps(text) if text.isprintable() and text.isascii() else _escaped(text)
-
-
-def _escaped(text: str) -> str:
-    names = {'"': '\\"', "\\": "\\\\", "\0": "\\0", "\a": "\\a", "\b": "\\b", "\t": "\\t", "\n": "\\n", "\v": "\\v",
-             "\f": "\\f", "\r": "\\r", "\x1b": "\\e", "\x85": "\\N", "\xa0": "\\_"}  # fmt: skip
-    parts = []
-    for letter in text:
-        code = ord(letter)
-        if letter in names:
-            parts.append(names[letter])
-        elif 0x20 <= code < 0x7F:
-            parts.append(letter)
-        else:
-            parts.append("\\x%02X" % code if code <= 0xFF else "\\u%04X" % code if code <= 0xFFFF else "\\U%08X" % code)
-    return '"%s"' % "".join(parts)
-
-
-def _plain(text: str) -> str:
-    """As YAML writes an element of a list: without quotes where it can be."""
-    import re
-
-    if re.fullmatch(r"[A-Za-z_/][\w/. -]*", text) and text == text.strip() and not _is_word(text):
-        return text
-    return "'%s'" % text.replace("'", "''") if text.isprintable() else _escaped(text)
-
-
-def _is_word(text: str) -> bool:
-    """Whether it means something else in YAML."""
-    return text.lower() in ("y", "n", "yes", "no", "true", "false", "on", "off", "null", "~")
 
 
 # ── by name ──

@@ -58,14 +58,11 @@ def truth(value: Any) -> str:
 
 
 def text(value: Any) -> str:
-    """A string, or bytes of UTF-8."""
+    """A string."""
     if value.__class__ is str:
         return encode_basestring_ascii(value)
-    if isinstance(value, (bytes, bytearray)):
-        return encode_basestring_ascii(value.decode("utf-8", "replace"))
-    if isinstance(value, str):
-        return encode_basestring_ascii(str(value))
-    raise TypeError("object of type '%s' has no len()" % type(value).__name__)
+    len(value)  # what has no length is another error than what cannot be encoded
+    return encode_basestring_ascii(value.encode("utf-8").decode("utf-8"))
 
 
 def time(value: Any) -> str:
@@ -76,10 +73,8 @@ def time(value: Any) -> str:
 def numbers(values: Any, kind: str, count: int | None) -> str:
     """An array of numbers."""
     code = CODES[kind]
-    if isinstance(values, (bytes, bytearray)) and code == "B":
-        if count is not None and len(values) != count:
-            raise _struct.error("expected %d bytes" % count)
-        return "[%s]" % ",".join(map(str, values))
+    if kind in ("uint8", "char") and isinstance(values, (bytes, bytearray, str)):
+        return "[%s]" % ",".join(map(str, packed_bytes(values, count)))
     length = len(values) if count is None else count
     form = "<%d%s" % (length, code)
     found = _unpack(form, _pack(form, *values))
@@ -89,6 +84,22 @@ def numbers(values: Any, kind: str, count: int | None) -> str:
         return _dumps(found)
     except ValueError:  # some are not finite
         return "[%s]" % ",".join(map(real, found))
+
+
+class Unwritten(ValueError):
+    """Bytes that cannot be written, with what was given in their place."""
+
+    def __init__(self, told: str, given: Any) -> None:
+        super().__init__(told)
+        self.given = given
+
+
+def packed_bytes(values: Any, count: int | None) -> bytes:
+    """An array of bytes that is given as such; a text is none."""
+    try:
+        return _struct.pack("%ds" % (len(values) if count is None else count), values)
+    except Unpackable as error:
+        raise Unwritten(str(error), values) from None
 
 
 def array(values: Any, one: Callable[[Any], str], count: int | None) -> str:
@@ -102,7 +113,9 @@ def failed(message: Any, error: Exception) -> NoReturn:
     """Says which field does not fit."""
     if isinstance(error, OverflowError):
         raise error
-    message._check_types(ValueError("%s: '%s' when writing '%s'" % (type(error), error, message)))
+    kind: Any = Unpackable if isinstance(error, Unwritten) else type(error)
+    given = error.given if isinstance(error, Unwritten) else message
+    message._check_types(ValueError("%s: '%s' when writing '%s'" % (kind, error, given)))
     raise SerializationError(str(error))
 
 

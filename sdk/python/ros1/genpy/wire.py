@@ -6,25 +6,29 @@ import _struct
 
 from genpy.message import DeserializationError
 from genpy.rostime import Duration, Time
-from genpy.values import CODES, failed
+from genpy.values import CODES, Unpackable, failed, packed_bytes
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    Setter = tuple[Any, str, Any]
+
+_TIMES = {"time": ("II", Time), "duration": ("ii", Duration)}
 
 
 def write(message: Any, file: Any) -> None:
     """Writes all fields."""
     try:
         parts: list[bytes] = []
-        _write(message, parts)
-    except (_struct.error, TypeError, ValueError) as error:
+        _write(message, message._definition, parts)
+    except (Unpackable, TypeError, ValueError) as error:
         failed(message, error)
     file.write(b"".join(parts))
 
 
-def _write(message: Any, parts: list[bytes]) -> None:
-    for field in message._definition["fields"]:
+def _write(message: Any, definition: dict[str, Any], parts: list[bytes]) -> None:
+    for field in definition["fields"]:
         value, kind, array = getattr(message, field["name"]), field["type"], field.get("array")
         if array is None:
             _write_one(value, kind, parts)
@@ -32,12 +36,12 @@ def _write(message: Any, parts: list[bytes]) -> None:
         count = array["exactly"] if isinstance(array, dict) else None
         if count is None:
             parts.append(_struct.pack("<I", len(value)))
-        elif len(value) != count:
-            raise ValueError("Expecting %s items but found %s" % (count, len(value)))
-        if isinstance(value, bytes):
-            parts.append(value)
+        if kind in ("uint8", "char") and isinstance(value, (bytes, bytearray, str)):
+            parts.append(packed_bytes(value, count))
         elif kind in CODES:
-            parts.append(_struct.pack("<%d%s" % (len(value), CODES[kind]), *value))
+            parts.append(_struct.pack("<%d%s" % (len(value) if count is None else count, CODES[kind]), *value))
+        elif count is not None and len(value) != count:
+            raise ValueError("Expecting %s items but found %s" % (count, len(value)))
         else:
             for element in value:
                 _write_one(element, kind, parts)
@@ -47,65 +51,105 @@ def _write_one(value: Any, kind: str, parts: list[bytes]) -> None:
     if kind in CODES:
         parts.append(_struct.pack("<" + CODES[kind], value))
     elif kind == "string":
-        data = value.encode("utf-8") if isinstance(value, str) else value
+        len(value)  # what has no length is another error than what cannot be encoded
+        data = value.encode("utf-8")
         parts.append(_struct.pack("<I", len(data)) + data)
-    elif kind in ("time", "duration"):
-        parts.append(_struct.pack("<II" if kind == "time" else "<ii", value.secs, value.nsecs))
+    elif kind in _TIMES:
+        parts.append(_struct.pack("<" + _TIMES[kind][0], value.secs, value.nsecs))
     else:
-        _write(value, parts)
+        from hrdsl.interfaces import class_of
+
+        _write(value, class_of(kind)._definition, parts)
 
 
 def read(message: Any, data: bytes) -> Any:
     """Fills the message from bytes, and returns it."""
+    reader = _Reader(data)
     try:
-        _read(message, bytes(data), 0)
-    except (_struct.error, IndexError) as error:
+        reader.message(message)
+        reader.flush()
+    except Unpackable as error:
         raise DeserializationError(error) from None
     return message
 
 
-def _read(message: Any, data: bytes, at: int) -> int:
-    for field in message._definition["fields"]:
-        kind, array = field["type"], field.get("array")
-        if array is None:
-            value, at = _read_one(message, field, data, at)
-        else:
-            count = array["exactly"] if isinstance(array, dict) else None
-            if count is None:
-                (count,) = _struct.unpack_from("<I", data, at)
-                at += 4
-            if kind in CODES:
-                form = "<%d%s" % (count, CODES[kind])
-                found = _struct.unpack_from(form, data, at)
-                at += _struct.calcsize(form)
-                value = bytes(found) if kind in ("uint8", "char") else [bool(v) for v in found] if kind == "bool" else found
+class _Reader:
+    """Reads fields. Numbers that follow each other are read together, as `genpy` does, and so are missed together."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data, self._at = data, 0
+        self._form = "<"
+        self._setters: list[Setter] = []  # whose value is which attribute, and how it is made of the number
+
+    def _take(self, count: int) -> bytes:
+        self._at += count
+        return self._data[self._at - count : self._at]
+
+    def _unpack(self, form: str) -> tuple[Any, ...]:
+        return _struct.unpack(form, self._take(_struct.calcsize(form)))
+
+    def _later(self, code: str, of: Any, name: str, convert: Any = None) -> None:
+        self._form += code
+        self._setters.append((of, name, convert))
+
+    def flush(self) -> None:
+        """Reads the numbers that are due."""
+        form, setters = self._form, self._setters
+        self._form, self._setters = "<", []
+        if setters:
+            for (of, name, convert), value in zip(setters, self._unpack(form)):
+                setattr(of, name, value if convert is None else convert(value))
+
+    def message(self, message: Any) -> None:
+        for field in message._definition["fields"]:
+            if "array" in field:
+                self.flush()
+                setattr(message, field["name"], self._array(field))
             else:
-                value = []
-                for _ in range(count):
-                    one, at = _read_one(message, field, data, at)
-                    value.append(one)
-        setattr(message, field["name"], value)
-    return at
+                self._one(message, field["name"], field["type"])
+
+    def _one(self, message: Any, name: str, kind: str) -> None:
+        if kind in CODES:
+            self._later(CODES[kind], message, name, bool if kind == "bool" else None)
+        elif kind == "string":
+            self.flush()
+            setattr(message, name, self._string())
+        elif kind in _TIMES:
+            codes, cls = _TIMES[kind]
+            time: Any = cls()
+            setattr(message, name, time)
+            self._later(codes[0], time, "secs")
+            self._later(codes[1], time, "nsecs")
+        else:
+            from hrdsl.interfaces import class_of
+
+            inner = class_of(kind)()
+            setattr(message, name, inner)
+            self.message(inner)
+
+    def _string(self) -> str:
+        (length,) = self._unpack("<I")
+        return self._take(length).decode("utf-8", "replace")
+
+    def _array(self, field: dict[str, Any]) -> Any:
+        kind, array = field["type"], field["array"]
+        count = array["exactly"] if isinstance(array, dict) else self._unpack("<I")[0]
+        if kind in ("uint8", "char"):
+            return self._take(count)
+        if kind in CODES:
+            found = self._unpack("<%d%s" % (count, CODES[kind]))
+            return [bool(value) for value in found] if kind == "bool" else found
+        holder = _Holder()
+        values = []
+        for _ in range(count):
+            self._one(holder, "value", kind)
+            self.flush()
+            values.append(holder.value)
+        return values
 
 
-def _read_one(message: Any, field: dict[str, Any], data: bytes, at: int) -> tuple[Any, int]:
-    kind = field["type"]
-    if kind in CODES:
-        form = "<" + CODES[kind]
-        (value,) = _struct.unpack_from(form, data, at)
-        return bool(value) if kind == "bool" else value, at + _struct.calcsize(form)
-    if kind == "string":
-        (length,) = _struct.unpack_from("<I", data, at)
-        if at + 4 + length > len(data):
-            raise IndexError("the string is cut off")
-        return data[at + 4 : at + 4 + length].decode("utf-8", "replace"), at + 4 + length
-    if kind in ("time", "duration"):
-        secs, nsecs = _struct.unpack_from("<II" if kind == "time" else "<ii", data, at)
-        return (Time if kind == "time" else Duration)(secs, nsecs), at + 8
-    from hrdsl.interfaces import class_of
-
-    inner = class_of(kind)()
-    return inner, _read(inner, data, at)
+class _Holder:
+    value: Any
 
 
 def with_numpy(message: Any, numpy: Any) -> Any:

@@ -122,7 +122,7 @@ def _private(argv: list[str]) -> dict[str, Any]:
 
                     found[source[1:]] = words.value_of(target)
     except Exception as error:
-        raise ROSInitException("invalid command-line parameters: %s" % error) from None
+        raise ROSInitException("invalid command-line parameters: %s" % error)
     return found
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import _thread
+import atexit
 import sys
 import time
 
@@ -197,8 +199,12 @@ def _call(kind: str, *args: str) -> None:
 
 
 def at_end() -> None:
-    """The program has come to its end by itself."""
-    signal_shutdown("atexit")
+    """The program has come to its end by itself: what it has registered for that is called while time can still pass, and the
+    node is ended in its turn."""
+    atexit._run_exitfuncs()
+
+
+atexit.register(signal_shutdown, "atexit")
 
 
 def wait_for_shutdown() -> None:
@@ -219,6 +225,10 @@ def register_signals() -> None:
     import _signal  # type: ignore[import-not-found]  # without the enumerations of `signal`
 
     def end(number: int, frame: Any) -> None:
-        signal_shutdown("signal-%d" % number)
+        scheduler = the_exchange().scheduler
+        if scheduler.running is scheduler.main and scheduler.main.result is not None:
+            signal_shutdown("signal-%d" % number)
+        else:  # it waits, and cannot wait for the hooks as well
+            _thread.start_new_thread(signal_shutdown, ("signal-%d" % number,))
 
     _signal.signal(_signal.SIGINT, end)

@@ -82,8 +82,10 @@ class Tree:
 
     def search(self, ns: str, key: str) -> str | None:
         """The first that is there, from a namespace up; only the first part of the key must be."""
-        if not key or is_private(key):
-            raise ROSException("cannot search for parameter: invalid key")
+        if not key:
+            return None
+        if is_private(key):
+            raise ROSException("cannot search for parameter: Internal failure: invalid key")
         if is_global(key):
             return key if self.has(key) else None
         parts = _parts(ns)
@@ -113,6 +115,8 @@ def _copied(value: Any) -> Any:
         return value
     if value is None:
         raise TypeError("cannot marshal None unless allow_none is enabled")
+    if hasattr(value, "__dict__") and not isinstance(value, (type, bool, int, float, str, bytes, list, tuple, dict)):
+        return _copied(dict(value.__dict__))  # an object is sent as its attributes
     raise TypeError("cannot marshal %s objects" % type(value))
 
 

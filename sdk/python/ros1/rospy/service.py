@@ -7,8 +7,9 @@ import threading
 import time
 
 import genpy
-from hrdsl.errors import Deadlock, Stopped
+from hrdsl.errors import Deadlock, ProtocolError, Stopped
 from hrdsl.exchange import the_exchange
+from hrdsl.interfaces import class_of
 from hrdsl.mailbox import Mailbox
 from rosgraph.names import is_legal_name
 from rospy import core
@@ -17,7 +18,7 @@ from rospy.graph import graph
 from rospy.header import ConnectionHeader
 from rospy.log import logerr
 from rospy.msg import args_kwds_to_message
-from rospy.names import resolve_name
+from rospy.names import get_caller_id, resolve_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ class ServiceProxy(_Service):
             told = request.__class__, self.request_class
             raise TypeError("request object type [%s] does not match service type [%s]" % told)
         if self._port is None:
-            self._port = the_exchange().open("client", self.resolved_name, self.service_class._type)
+            self._port = self._open()
         box = Mailbox()
         self.seq += 1
         self._port.call(self.request_class._json(request).encode("ascii"), box.put)
@@ -102,6 +103,17 @@ class ServiceProxy(_Service):
         response = self.response_class._of_json(answer["message"])
         response._connection_header = self._header("server")
         return response
+
+    def _open(self) -> Any:
+        try:
+            return the_exchange().open("client", self.resolved_name, self.service_class._type)
+        except ProtocolError as error:
+            types = {port["type"] for port in graph.ports() if port["kind"] == "server" and port["name"] == self.resolved_name}
+            if len(types) != 1 or self.service_class._type in types:
+                raise
+            sums = get_caller_id(), self.service_class._md5sum, class_of(*types)._md5sum
+            told = "unable to connect to service: remote error reported: request from [%s]: md5sums do not match: [%s] vs. [%s]"
+            raise ServiceException(told % sums) from error
 
     def _fault(self, error: str) -> str:
         if error.endswith("has no server"):

@@ -9,6 +9,7 @@ import weakref
 
 import genpy
 from hrdsl.exchange import the_exchange
+from hrdsl.interfaces import class_of
 from hrdsl.mailbox import Mailbox
 from rospy import core, topic
 from rospy.exceptions import ROSException
@@ -99,15 +100,17 @@ class _SubscriberImpl(topic.TopicImpl):
     def open(self) -> Port:
         type_name = self.type if self.type != "*" else graph.type_of(self.resolved_name) or "*"
         self._reads = self.data_class._of_json if self.type != "*" else _any_reader(type_name)
+        cls = self.data_class if self.type != "*" else class_of(type_name)
         self._header = ConnectionHeader(
             self.others,
             self.resolved_name,
             topic=self.resolved_name,
             type=type_name,
-            md5sum=self.data_class._md5sum,
+            md5sum=cls._md5sum,
             latching="0",
-            message_definition=self.data_class._full_text,
+            message_definition=cls._full_text,
         )
+        self._latched_header = self._header.with_latching()
         port = the_exchange().open("subscriber", self.resolved_name, type_name, handler=self._box.put)
         threading.Thread(target=self._receive, name=self.resolved_name, daemon=True).start()
         return port
@@ -163,9 +166,10 @@ class _SubscriberImpl(topic.TopicImpl):
             except genpy.DeserializationError as error:
                 logerr("unable to receive a message on topic %s: %s" % (self.resolved_name, error))
                 continue
-            message._connection_header = self._header
             publisher = topic.publishers.get(self.name)
-            if arrival.get("latched") or publisher is not None and publisher.is_latch:
+            is_latched = arrival.get("latched") or publisher is not None and publisher.is_latch
+            message._connection_header = self._latched_header if is_latched else self._header
+            if is_latched:
                 self._latched = message
             for callback in self.callbacks:
                 self._invoke(message, callback.call, callback.args)
@@ -203,8 +207,6 @@ def _is_same(one: Any, other: Any) -> bool:
 def _any_reader(type_name: str) -> Callable[[Any], AnyMsg]:
     """Of messages that become bytes."""
     import io
-
-    from hrdsl.interfaces import class_of
 
     cls = class_of(type_name)
 

@@ -20,8 +20,9 @@ def sleep(duration: Any) -> None:
     """Lets time pass: seconds, or a `Duration`; less than nothing is nothing."""
     if isinstance(duration, genpy.Duration):
         duration = duration.to_sec()
-    if duration >= 0:
-        time.sleep(duration)
+    if duration < 0:
+        return
+    time.sleep(duration)
 
 
 class Rate:

@@ -85,7 +85,13 @@ class _Reader:
                 found, self._place = self._text[begin : self._place], len(self._text)
                 return found.strip()
             self._place += 1
+            while self._text[self._place : self._place + 1] == ":" and not self._is_colon():
+                self._place += 1
         return self._text[begin : self._place].strip()
+
+    def _is_colon(self) -> bool:
+        """Whether the colon here is one between a key and its value, and not one within a word."""
+        return self._text[self._place + 1 : self._place + 2] in ("", " ", "\t", "\n", ",", "[", "]", "{", "}")
 
     def _next(self, end: str) -> bool:
         """Whether there is one more before this bracket, which is passed over."""
@@ -110,10 +116,11 @@ class _Reader:
         self._place += 1
         while self.rest()[:1] != "}":
             key = self.value(":,}")
-            if self.rest()[:1] != ":":
-                raise ValueError("there is no colon behind %s" % key)
-            self._place += 1
-            found[key] = self.value(",}")
+            if self.rest()[:1] == ":":
+                self._place += 1
+                found[key] = self.value(",}")
+            else:
+                found[key] = None
             if not self._next("}"):
                 return found
         self._place += 1

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 def read_points(cloud: Any, field_names: Any = None, skip_nans: bool = False, uvs: Any = ()) -> Iterator[Any]:
     """The points, each a tuple of its fields in the order of their places in the bytes, row by row or at these pairs of column
     and row."""
+    if getattr(cloud, "_type", None) != PointCloud2._type:
+        raise AssertionError("cloud is not a sensor_msgs.msg.PointCloud2")
     known = {field.name for field in cloud.fields}
     for name in field_names or ():
         if name not in known:
@@ -30,7 +32,7 @@ def read_points_list(cloud: Any, field_names: Any = None, skip_nans: bool = Fals
     if field_names is not None:
         wanted = [name for name in wanted if name in field_names]
     point = namedtuple("Point", wanted)  # type: ignore[misc]
-    return [point(*values) for values in read_points(cloud, field_names, skip_nans, uvs)]
+    return [point._make(values) for values in read_points(cloud, field_names, skip_nans, uvs)]
 
 
 def create_cloud(header: Any, fields: Any, points: Iterable[Any]) -> Any:

@@ -37,17 +37,19 @@ class Transformer:
         """Takes a `geometry_msgs.msg.TransformStamped`."""
         self._buffer.set_transform(transform, authority)
 
-    def canTransform(self, target_frame: str, source_frame: str, time: Any) -> bool:
-        """Whether `lookupTransform` knows."""
+    def canTransform(self, target_frame: str, source_frame: str, time: Any) -> int:
+        """Whether `lookupTransform` knows, as 1 or 0."""
         target, source = strip_leading_slash(target_frame), strip_leading_slash(source_frame)
-        return bool(self._buffer.can_transform(target, source, time))
+        found: int = self._buffer.can_transform(target, source, time)
+        return found
 
     def canTransformFull(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
-    ) -> bool:
-        """Whether `lookupTransformFull` knows."""
+    ) -> int:
+        """Whether `lookupTransformFull` knows, as 1 or 0."""
         target, source, fixed = map(strip_leading_slash, (target_frame, source_frame, fixed_frame))
-        return bool(self._buffer.can_transform_full(target, target_time, source, source_time, fixed))
+        found: int = self._buffer.can_transform_full(target, target_time, source, source_time, fixed)
+        return found
 
     def waitForTransform(
         self, target_frame: str, source_frame: str, time: Any, timeout: Any, polling_sleep_duration: Any = None

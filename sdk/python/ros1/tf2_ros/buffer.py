@@ -43,9 +43,9 @@ class Buffer(tf2_py.BufferCore, BufferInterface):
     def can_transform(
         self, target_frame: str, source_frame: str, time: Any, timeout: Any = _NONE, return_debug_tuple: bool = False
     ) -> Any:
-        """Whether that is known, at the latest after the timeout; with `return_debug_tuple`, also why not."""
+        """Whether that is known, at the latest after the timeout, as 1 or 0; with `return_debug_tuple`, also why not."""
         found = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
-        return found if return_debug_tuple else found[0]
+        return (int(found[0]), found[1]) if return_debug_tuple else int(found[0])
 
     def can_transform_full(
         self,
@@ -63,7 +63,7 @@ class Buffer(tf2_py.BufferCore, BufferInterface):
             return self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
 
         found = self._wait(ask, timeout)
-        return found if return_debug_tuple else found[0]
+        return (int(found[0]), found[1]) if return_debug_tuple else int(found[0])
 
     def _wait(self, ask: Callable[[], tuple[bool, str]], timeout: Any) -> tuple[bool, str]:
         found = ask()
