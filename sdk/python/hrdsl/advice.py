@@ -12,7 +12,7 @@ NOT_OURS = ("__pycache__", "build", "hrdsl-out", "node_modules")
 #: The client libraries that a binding brings, by the binding.
 CLIENTS = {
     "ros1": ("rospy", "smach", "smach_ros", "actionlib", "moveit_commander", "tf", "tf2_ros", "message_filters", "rospkg", "roslib"),
-    "ros2": ("rclpy", "ament_index_python", "message_filters", "sensor_msgs_py"),
+    "ros2": ("rclpy", "ament_index_python", "tf2_ros", "message_filters", "sensor_msgs_py"),
 }
 
 #: Modules of ROS that are not there, and what to do instead.
