@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 
 # Of a project's files and folders: a search must not take longer than the test.
@@ -12,7 +13,7 @@ NOT_OURS = ("__pycache__", "build", "hrdsl-out", "node_modules")
 #: The client libraries that a binding brings, by the binding.
 CLIENTS = {
     "ros1": ("rospy", "smach", "smach_ros", "actionlib", "moveit_commander", "tf", "tf2_ros", "message_filters", "rospkg", "roslib"),
-    "ros2": ("rclpy", "ament_index_python", "message_filters", "sensor_msgs_py"),
+    "ros2": ("rclpy", "ament_index_python", "tf2_ros", "message_filters", "sensor_msgs_py"),
 }
 
 #: Modules of ROS that are not there, and what to do instead.
@@ -40,10 +41,13 @@ ABSENT = {
 
 
 def about(error: ImportError) -> str | None:
-    """The line for a `ModuleNotFoundError`, or None."""
+    """The line for what was not found, or None."""
     if not error.name:
         return None
     name, _, inner = error.name.partition(".")
+    if not isinstance(error, ModuleNotFoundError):  # `from name import wanted`
+        wanted = re.match("cannot import name '([^']*)'", str(error))
+        return _beside_definitions(name, wanted.group(1)) if wanted and error.path is None and not inner else None
     told = _of_ros(error.name) or _of_ros(name)
     if told is not None:
         return told
@@ -61,8 +65,23 @@ def about(error: ImportError) -> str | None:
     if project:
         return "`%s` is at %s: put `%s` into requirements.txt beside the scenario" % (name, place, project)
     folder = os.path.dirname(place) or "."
-    advice = '`%s` is at %s, where no module is looked for: add `sys.path.append("%s")` before the import'
-    return advice % (name, place, folder)
+    advice = '`%s` is at %s, where no module is looked for: add `sys.path.append("%s")` before the import, or %s'
+    return advice % (name, place, folder, _on_path(folder))
+
+
+def _on_path(folder: str) -> str:
+    """How modules of a folder are found by code that stays as it is."""
+    return "`env PYTHONPATH` to the system, and start it with `PYTHONPATH=%s hrdsl sim`" % folder
+
+
+def _beside_definitions(package: str, module: str) -> str | None:
+    """About a module of a package of which only the interfaces were found."""
+    for inner in ("/%s.py" % module, "/%s/__init__.py" % module):
+        place = _in_project(package, inner)
+        if place is not None:
+            told = "`%s` is at %s, where no module is looked for: add %s"
+            return told % (package, place, _on_path(os.path.dirname(place) or "."))
+    return None
 
 
 def _of_ros(name: str) -> str | None:
@@ -81,6 +100,8 @@ def _inside(name: str, inner: str) -> str | None:
     """About a module of a package that was found."""
     package = sys.modules.get(name)
     place = getattr(package, "__file__", None)
+    if place is None and not list(getattr(package, "__path__", ("",))):
+        return _beside_definitions(name, inner.replace(".", "/"))
     if place:
         return "`%s` at %s has no module `%s`: is it the one you mean, and new enough?" % (name, place, inner)
     # A folder without code of its own is taken for a package, as the folder of a project may be.
@@ -92,8 +113,8 @@ def _inside(name: str, inner: str) -> str | None:
     return None
 
 
-def _in_project(name: str) -> str | None:
-    """The path of a module or package below the scenario's folder."""
+def _in_project(name: str, inner: str = "") -> str | None:
+    """The path of a module or package below the scenario's folder; of a package that has an inner file, if one is named."""
     looked_at = 0
     for folder, folders, files in os.walk("."):
         if "pyvenv.cfg" in files:
@@ -103,6 +124,10 @@ def _in_project(name: str) -> str | None:
         if looked_at > LOOKED_AT:
             return None
         folders[:] = sorted(f for f in folders if not f.startswith(".") and f not in NOT_OURS)
+        if inner:
+            if name in folders and os.path.isfile(os.path.join(folder, name) + inner):
+                return os.path.relpath(os.path.join(folder, name))
+            continue
         if name + ".py" in files:
             return os.path.relpath(os.path.join(folder, name + ".py"))
         if name in folders and any(f.endswith(".py") for f in os.listdir(os.path.join(folder, name))):

@@ -247,12 +247,12 @@ def _status(run: Callable[[], None]) -> tuple[int, bool]:
         while trace is not None and trace.tb_frame.f_globals.get("__name__") == __name__:
             trace = trace.tb_next  # the script's own frames only
         sys.excepthook(type(error), error.with_traceback(trace), trace)
-        if isinstance(error, ModuleNotFoundError):
+        if isinstance(error, ImportError):
             _advise(error)
         return 1, False
 
 
-def _advise(error: ModuleNotFoundError) -> None:
+def _advise(error: ImportError) -> None:
     try:
         from hrdsl import advice
 

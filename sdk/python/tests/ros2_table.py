@@ -12,7 +12,7 @@ PRIMITIVE = set(
 #: What the tests use, beside what rclpy needs itself.
 PACKAGES = (
     "action_msgs builtin_interfaces example_interfaces geometry_msgs nav_msgs rcl_interfaces sensor_msgs std_msgs std_srvs "
-    "trajectory_msgs unique_identifier_msgs"
+    "tf2_msgs trajectory_msgs unique_identifier_msgs"
 ).split()
 
 #: A package of the tests' own.

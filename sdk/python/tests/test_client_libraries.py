@@ -45,7 +45,7 @@ group = moveit_commander.MoveGroupCommander("arm")
 """
 
 ROS2 = LOOKS + """
-import rclpy, rclpy.qos_event, rclpy.time
+import launch, launch_ros.actions, rclpy, rclpy.qos_event, rclpy.time, ros2cli.node.strategy, ros2topic.api, tf2_ros
 from std_msgs.msg import String
 rclpy.init()
 node = rclpy.create_node("node")

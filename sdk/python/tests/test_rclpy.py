@@ -170,8 +170,6 @@ n = Node("n")
 from std_msgs.msg import String
 tried(lambda: n.create_subscription(String, "a", print, 1, raw=True))
 tried(lambda: __import__("rclpy.lifecycle"))
-tried(lambda: __import__("tf2_ros"))
-tried(lambda: __import__("launch"))
 tried(lambda: n.handle)
 """
         out = [
@@ -179,11 +177,44 @@ tried(lambda: n.handle)
             "subscribe without `raw`",
             "NotImplementedError: rclpy.lifecycle is not supported by hrdsl's rclpy: use rclpy.node.Node, and do in "
             "its constructor what on_configure and on_activate do",
-            "NotImplementedError: tf2_ros is not supported by hrdsl's rclpy: publish and subscribe to what you need "
-            "of them yourself for now",
-            "NotImplementedError: launch is not supported by hrdsl's rclpy: name the programs of the system in the "
-            "scenario, with their arguments",
             "NotImplementedError: Node.handle is not supported by hrdsl's rclpy: use the methods of the node",
+        ]
+        self.assertEqual(self.said(text), out)
+
+    def test_what_is_refused_at_its_use(self):
+        text = TRIED + """
+import launch, launch_ros.actions, ros2cli.node.strategy, ros2topic.api
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from typing import List, Optional
+
+def generate_launch_description(more: Optional[List[launch_ros.actions.Node]] = None) -> launch.LaunchDescription:
+    return launch.LaunchDescription([launch_ros.actions.Node(package="a", executable="b")])
+
+class Own(launch.actions.Action):
+    pass
+
+tried(generate_launch_description)
+tried(lambda: PythonLaunchDescriptionSource("a"))
+tried(lambda: launch.substitutions.LaunchConfiguration("a"))
+tried(Own)
+tried(lambda: ros2topic.api.get_topic_names_and_types(node=None))
+tried(lambda: ros2cli.node.strategy.NodeStrategy([]))
+tried(lambda: launch.actions)
+tried(lambda: launch.LaunchService)
+tried(lambda: (hasattr(launch, "__all__"), hasattr(launch.LaunchService, "__doc__")))
+"""
+        refused = "NotImplementedError: %s is not supported by hrdsl's rclpy: %s"
+        programs = "name the programs of the system in the scenario, with their arguments"
+        out = [
+            refused % ("launch_ros.actions.Node", programs),
+            refused % ("launch.launch_description_sources.PythonLaunchDescriptionSource", programs),
+            refused % ("launch.substitutions.LaunchConfiguration", programs),
+            refused % ("launch.actions.Action", programs),
+            refused % ("ros2topic.api.get_topic_names_and_types", "ask the node for topics and their types"),
+            refused % ("ros2cli.node.strategy.NodeStrategy", "ask the node for topics and services"),
+            "<module 'launch.actions'>",
+            "<launch.LaunchService, which is refused>",
+            "(False, True)",
         ]
         self.assertEqual(self.said(text), out)
 

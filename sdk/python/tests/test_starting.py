@@ -100,6 +100,31 @@ class Starting(unittest.TestCase):
         finished = run(["-c", "import rospy"], env={"HRDSL_SYS_PATH": ""})
         self.assertIn("`rospy` is there for programs of a system that has a block `ros1 { }`\n", finished.err)
 
+    def test_modules_of_a_package_that_lie_elsewhere(self):
+        os.makedirs("lib/dynamic_reconfigure")
+        self.write("lib/dynamic_reconfigure/__init__.py", "")
+        self.write("lib/dynamic_reconfigure/names.py", "BREW = 1")
+        told = (
+            "hrdsl: `dynamic_reconfigure` is at lib/dynamic_reconfigure, where no module is looked for: add `env PYTHONPATH` to "
+            "the system, and start it with `PYTHONPATH=lib hrdsl sim`\n"
+        )
+        for text in ("from dynamic_reconfigure import names", "import dynamic_reconfigure.names"):
+            finished = self.run_("-c", text)
+            self.assertEqual((finished.code, finished.err[-len(told) :]), (1, told))
+            self.assertEqual(self.run_("-c", text + "\nimport dynamic_reconfigure.msg", PYTHONPATH="lib").err, "")
+        finished = self.run_("-c", "from dynamic_reconfigure import other")
+        self.assertNotIn("hrdsl: ", finished.err)
+        finished = self.run_("-c", "from dynamic_reconfigure.msg import Other")
+        self.assertNotIn("hrdsl: ", finished.err)
+        self.write("tea/brain.py", "import kettle")
+        self.write("lib/kettle.py", "")
+        finished = self.run_("tea/brain.py")
+        told = (
+            'hrdsl: `kettle` is at lib/kettle.py, where no module is looked for: add `sys.path.append("lib")` before the import, '
+            "or `env PYTHONPATH` to the system, and start it with `PYTHONPATH=lib hrdsl sim`"
+        )
+        self.assertEqual(finished.err.splitlines()[-1], told)
+
     def test_a_deadlock_is_told_at_the_line_of_the_program(self):
         self.write("knot.py", KNOT)
         finished = self.run_("knot.py")

@@ -11,7 +11,7 @@ import unittest
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [ROOT, os.path.join(ROOT, "ros1")]
 
-from tf2_py import rigid  # noqa: E402
+from hrdsl.frames import rigid  # noqa: E402
 
 HAS_NUMPY = importlib.util.find_spec("numpy") is not None
 

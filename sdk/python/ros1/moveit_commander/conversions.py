@@ -19,7 +19,7 @@ def numbers(pose: Sequence[float]) -> list[float]:
     """[x, y, z, qx, qy, qz, qw] of a list of 7, or of 6: [x, y, z, roll, pitch, yaw]."""
     given = [float(number) for number in pose]
     if len(given) == 6:
-        from tf2_py import rigid
+        from hrdsl.frames import rigid
 
         return given[:3] + list(rigid.quaternion(*given[3:]))
     if len(given) != 7:

@@ -42,7 +42,7 @@ class MoveGroupCommander(Targets):
 
     def get_current_rpy(self, end_effector_link: str = "") -> list[float]:
         """How the end-effector is turned now: [roll, pitch, yaw]."""
-        from tf2_py import rigid
+        from hrdsl.frames import rigid
 
         self._check_tip(end_effector_link)
         return list(rigid.euler(rigid.rows(self._group.tool()[3:])))
@@ -260,7 +260,7 @@ class MoveGroupCommander(Targets):
 
     def shift_pose_target(self, axis: int, value: float, end_effector_link: str = "") -> None:
         """Moves the pose to reach along an axis (0, 1, 2), or turns it about one (3, 4, 5)."""
-        from tf2_py import rigid
+        from hrdsl.frames import rigid
 
         self._check_tip(end_effector_link)
         if not 0 <= axis < 6:

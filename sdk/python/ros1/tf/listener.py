@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import geometry_msgs.msg
 import tf2_ros
-from tf2_py import rigid
+from hrdsl.frames import rigid
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from tf2_py import rigid
+from hrdsl.frames import rigid
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

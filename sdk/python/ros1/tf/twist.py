@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import rospy
-from tf2_py import rigid
+from hrdsl.frames import rigid
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tf2_ros
 from geometry_msgs.msg import PointStamped, PoseStamped, Vector3Stamped, WrenchStamped
-from tf2_py import rigid
+from hrdsl.frames import rigid
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

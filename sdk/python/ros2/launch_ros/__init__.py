@@ -1,6 +1,19 @@
-"""Refused: launch files."""
+"""Refused at its use: launch files."""
 
-raise NotImplementedError(
-    "launch_ros is not supported by hrdsl's rclpy: "
-    "name the programs of the system in the scenario, with their arguments"
+from rclpy import _stand_ins
+
+_stand_ins.install(
+    __name__,
+    "name the programs of the system in the scenario, with their arguments",
+    (
+        "actions",
+        "descriptions",
+        "event_handlers",
+        "events",
+        "events.lifecycle",
+        "parameter_descriptions",
+        "parameters_type",
+        "substitutions",
+        "utilities",
+    ),
 )

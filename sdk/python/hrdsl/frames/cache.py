@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 
-from tf2_py import rigid
+from hrdsl.frames import rigid
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
