@@ -4,14 +4,14 @@ use hrdsl_ir::{
     EventId, EventPattern, Nanos, Program, Value,
     device::Device,
     expr::Expr,
-    world::{DeviceId, RuleTrigger, SignalId, Vec3, WorldAction, WorldRule},
+    world::{DeviceId, RuleTrigger, SignalId, WorldAction, WorldRule},
 };
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
 use crate::{
     command::{CommandRequest, NotBegun},
     message::PlayerMessage,
-    world::{CommandId, WorldBackend},
+    world::{ArmTarget, CommandId, WorldBackend},
 };
 
 /// The world of one run.
@@ -129,13 +129,15 @@ impl<'p> WorldStage<'p> {
         self.world.state(device.body, what)
     }
 
-    /// The angles at which an arm's tool would be at a place.
+    /// The posture in which an arm would be at a target; with `way`, all corners of a free way there, one after the other.
     ///
     /// # Errors
-    /// That there is no such arm, or that the place is out of its reach.
-    pub fn plan(&self, device: &str, to: Vec3) -> Result<Vec<f64>, NotBegun> {
+    /// That there is no such arm, or no such way.
+    pub fn plan(&self, device: &str, to: &ArmTarget, way: bool) -> Result<Vec<f64>, NotBegun> {
         let found = self.device(device)?;
-        self.world.plan(found.body, to).map_err(NotBegun::Failed)
+        let corners = self.world.plan(found.body, to).map_err(NotBegun::Failed)?;
+        let skipped = if way { 0 } else { corners.len().saturating_sub(1) };
+        Ok(corners.into_iter().skip(skipped).flatten().collect())
     }
 
     fn device(&self, name: &str) -> Result<&'p Device, NotBegun> {

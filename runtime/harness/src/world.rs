@@ -38,17 +38,27 @@ pub trait WorldBackend {
         None
     }
 
-    /// The angles at which an arm's tool would be at a place in the world; nothing moves.
+    /// The corners of a free way of an arm to a target, from the posture in which it is to the one in which it would be there;
+    /// nothing moves.
     ///
     /// # Errors
-    /// Why there are none.
-    fn plan(&self, device: DeviceBody, to: Vec3) -> Result<Vec<f64>, String> {
+    /// Why there is none.
+    fn plan(&self, device: DeviceBody, to: &ArmTarget) -> Result<Vec<Vec<f64>>, String> {
         let _ = (device, to);
         Err("this device plans nothing".to_owned())
     }
 
     /// The commands that have ended since the last call, in the order in which they did, and why those failed that did.
     fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)>;
+}
+
+/// Where an arm is to be.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ArmTarget {
+    /// The place of its tool point, m.
+    Place(Vec3),
+    /// The positions of its joints, from the base to the tip, rad or m.
+    Posture(Vec<f64>),
 }
 
 /// A command under way.

@@ -9,12 +9,13 @@
 //! [`SimWorld`] is such a world for the harness.
 //!
 //! # What is idealised
-//! - Arms compensate their own weight and that of what they carry; each link has a motor's rotor inertia.
-//! - A hand that closes fixes what it takes by a rigid joint instead of by friction, where it is.
-//! - An arm touches neither itself nor people; palms do not touch what hands can hold. The planner knows no obstacles.
+//! - Links of an arm are joined by constraints that are solved step by step: they hang apart by up to a millimetre.
+//! - A motor's rotor is added to its link's inertia about all axes.
+//! - What a hand holds is fixed to the palm by a joint that bears as much as friction would, and slips beyond.
+//! - An arm's planner knows exactly where everything is but people.
 //! - People are kinematic: nothing pushes them.
 //! - A base is kinematic: it drives as it is told, pushes what is loose, and stops before what is fixed.
-//! - A body farther than 20 m from the origin is lost, and stops there.
+//! - A body farther than 20 m from all that there was at the start is lost, and stops there.
 //!
 //! # Determinism
 //! The same calls give the same bits, on every platform with IEEE 754 arithmetic. The physics runs on a grid of steps
@@ -54,7 +55,7 @@ use base::{BaseControl, PlanarVelocity};
 pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
 use hand::HandSet;
-pub use hrdsl_harness::CommandId;
+pub use hrdsl_harness::{ArmTarget, CommandId};
 use math::{BodyFrame, SpaceVector};
 use mover::KinematicPath;
 use physics::{PhysicsAdapter, bad, index};
@@ -392,17 +393,28 @@ impl WorldSimulation {
         self.finished.extend(id.map(|id| (id, Err(CommandError::Replaced))));
     }
 
-    /// The posture in which an arm would have its tool at a place in the world (m), at the end of a way that is free.
+    /// The corners of a free way of an arm to a target, from the posture in which it would stop now.
     ///
     /// # Errors
-    /// That it is out of reach, or that there is no free way.
-    pub fn plan(&self, arm: ArmId, target: Vec3) -> Result<Vec<f64>, CommandError> {
+    /// That the target is out of reach or beyond limits, or that there is no free way.
+    pub fn plan(&self, arm: ArmId, to: &ArmTarget) -> Result<Vec<Vec<f64>>, CommandError> {
         let at = self.arm(arm, None)?;
-        if target.iter().any(|x| !x.is_finite()) {
+        let (arm, moment) = (&self.arms[at], self.moment(at));
+        let numbers = match to {
+            ArmTarget::Place(place) => &place[..],
+            ArmTarget::Posture(posture) => posture,
+        };
+        if numbers.iter().any(|x| !x.is_finite()) {
             return Err(CommandError::NotFinite);
         }
-        let (arm, moment) = (&self.arms[at], self.moment(at));
-        arm.plan_place(target, None, &moment).map(|route| route.end().to_vec())
+        let route = match to {
+            ArmTarget::Place(place) => arm.plan_place(*place, None, &moment)?,
+            ArmTarget::Posture(posture) => {
+                arm.check(posture, &self.world)?;
+                arm.plan_posture(posture, None, &moment)?
+            }
+        };
+        Ok(route.points_where(|_| true).collect())
     }
 
     /// What the planner of an arm knows: everything but where people are.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{CheckedCommand, CommandId, WorldBackend};
+use hrdsl_harness::{ArmTarget, CheckedCommand, CommandId, WorldBackend};
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
@@ -124,7 +124,7 @@ impl WorldBackend for SimWorld {
         }
     }
 
-    fn plan(&self, device: DeviceBody, to: Vec3) -> Result<Vec<f64>, String> {
+    fn plan(&self, device: DeviceBody, to: &ArmTarget) -> Result<Vec<Vec<f64>>, String> {
         match device {
             DeviceBody::Arm(arm) => self.sim.plan(arm, to).map_err(|e| e.to_string()),
             DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_) => {

@@ -57,6 +57,8 @@ class Arm(System):
         return {"value": [0.5, 0.0, 0.25, 0.0, 0.0, 0.479425538604203, 0.8775825618903728]}
 
     def do_plan(self, request):
+        if "joints" in request:
+            return {"value": request["joints"]}
         x, y, z = request["to"]
         if x > 1:
             return {"ok": False, "error": "the place is out of reach"}
@@ -183,7 +185,7 @@ tries(lambda: group.set_pose_target(pose), lambda: group.set_pose_target([1, 2])
             ],
         )
         asked = [request for request in self.requests if request["request"] == "plan"]
-        self.assertEqual(asked[0], {"request": "plan", "device": "robot.arm", "to": [0.5, 0.25, 1.0], "from": [0.0, 0.0]})
+        self.assertEqual(asked[0], {"request": "plan", "device": "robot.arm", "to": [0.5, 0.25, 1.0], "way": True})
         self.assertEqual(asked[1]["orientation"], [0.0, 0.0, 0.0, 1.0])
         self.assertEqual((self.out + self.err).count("and not for its orientation"), 1)
 

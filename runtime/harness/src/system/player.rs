@@ -172,7 +172,9 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 Err(answer) => answer,
             }),
             SystemRequest::State { device, what } => Answer(asked(cx, |stage| stage.state(&device, &what))),
-            SystemRequest::Plan { device, to } => Answer(asked(cx, |stage| stage.plan(&device, to))),
+            SystemRequest::Plan { device, to, way } => {
+                Answer(asked(cx, |stage| stage.plan(&device, &to, way)))
+            }
             SystemRequest::Machine(step) => Answer(self.machine(index, step, cx)),
             SystemRequest::List => Answer(self.listed(index)),
             SystemRequest::Await(awaited) => {

@@ -14,6 +14,7 @@ use crate::{
     command::CommandRequest,
     fault::SystemFault,
     port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
+    world::ArmTarget,
 };
 
 /// Whatever plays the system actor.
@@ -131,10 +132,11 @@ pub enum SystemRequest {
         device: String,
         what: String,
     },
-    /// The angles at which an arm's tool would be at a place.
+    /// The posture in which an arm would be at a target; with `way`, all corners of a free way there, one after the other.
     Plan {
         device: String,
-        to: [f64; 3],
+        to: ArmTarget,
+        way: bool,
     },
     /// A state machine of its own was declared, was begun or has moved.
     Machine(MachineStep),

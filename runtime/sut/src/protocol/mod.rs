@@ -118,10 +118,15 @@ pub enum ProgramRequest {
         device: String,
         what: String,
     },
-    /// The angles at which an arm's tool would be at a place.
+    /// The posture in which an arm's tool would be at a place, or the way to it or to a posture.
     Plan {
         device: String,
-        to: [f64; 3],
+        #[serde(default)]
+        to: Option<[f64; 3]>,
+        #[serde(default)]
+        joints: Option<Vec<f64>>,
+        #[serde(default)]
+        way: bool,
     },
     /// A state machine has gone from the state `label` to the state `next`; without `label` it begins there.
     Transition {
@@ -199,6 +204,9 @@ impl ProgramRequest {
                 Some("cancel needs either a `call` or a `port`".to_owned())
             }
             ProgramRequest::Open(open) => open.fault(),
+            ProgramRequest::Plan { to: None, joints: None, .. } => {
+                Some("plan needs a place `to` go, or `joints`".to_owned())
+            }
             ProgramRequest::Now
             | ProgramRequest::Emit { .. }
             | ProgramRequest::Drop { .. }

@@ -83,19 +83,40 @@ class Group:
 
     def reach(self, pose: Sequence[float], begin: Sequence[float]) -> tuple[list[float] | None, str]:
         """Joint values that bring the end-effector there, near to where the joints begin, or None and why there are none."""
-        message: dict[str, Any] = {"request": "plan", "device": self.device, "to": list(pose[:3]), "from": list(begin)}
+        message: dict[str, Any] = {"to": list(pose[:3]), "from": list(begin)}
         if len(pose) == 7:
             message["orientation"] = list(pose[3:])
+        found, why = self._ask(message)
+        if found is not None and len(pose) == 7:
+            warn_once("hrdsl plans for the place of %s, and not for its orientation" % self.tip)
+        return found, why
+
+    def way(self, target: dict[str, Any], begin: Sequence[float]) -> tuple[list[list[float]] | None, str]:
+        """The corners of a way that is free, from where the joints are to a place (`to`) or to values (`joints`); or None and why
+        there is none. From where the joints are not, the way is straight."""
+        found, why = self._ask({**target, "way": True})
+        if found is None:
+            return None, why
+        count = len(self.joints)
+        corners = [found[at : at + count] for at in range(0, len(found), count)]
+        if len(found) % count or not corners:
+            return None, "the arm has another number of joints than group %s" % self.name
+        if max(abs(a - b) for a, b in zip(corners[0], begin)) > ELSEWHERE:
+            corners = [list(begin), corners[-1]]
+        return [list(begin), *corners[1:]] if len(corners) > 1 else [list(begin), corners[0]], ""
+
+    def _ask(self, message: dict[str, Any]) -> tuple[list[float] | None, str]:
         try:
-            answer = the_exchange().link.request(message)
+            answer = the_exchange().link.request({"request": "plan", "device": self.device, **message})
         except ProtocolError as error:
             return None, str(error)
         if "value" not in answer:
             return None, str(answer.get("error", "there is no such posture"))
-        if len(pose) == 7 and not answer.get("oriented"):
-            warn_once("hrdsl plans for the place of %s, and not for its orientation" % self.tip)
         return [float(value) for value in answer["value"]], ""
 
+
+#: How far joints may be from where they are said to begin (rad or m), so that a way from where they are is meant.
+ELSEWHERE = 0.02
 
 _warned: set[str] = set()
 

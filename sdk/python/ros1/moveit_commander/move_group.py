@@ -18,7 +18,7 @@ __all__ = ["MoveGroupCommander"]
 #: As far as a joint may stand from where a trajectory begins.
 _START_TOLERANCE = 0.01
 
-_SUCCESS, _PLANNING_FAILED, _NO_POSTURE = 1, -1, -31
+_SUCCESS, _NO_POSTURE = 1, -31
 
 
 class MoveGroupCommander(Targets):
@@ -111,18 +111,18 @@ class MoveGroupCommander(Targets):
             self.set_joint_value_target(joints)
 
     def _plan(self) -> tuple[int, Any]:
-        target: list[float] | None = self._joint_target
         begin = self._begin()
+        target: dict[str, Any] = {"joints": self._joint_target}
         if self._pose_target is not None:
-            target, why = self._group.reach(self._pose_target, begin)
-            if target is None:
-                rospy.logwarn("group %s cannot reach its target: %s" % (self._group.name, why))
-                return _NO_POSTURE, self._trajectory([])
-            if len(target) != len(self._group.joints):
-                rospy.logerr("group %s has %d joints, not %d" % (self._group.name, len(self._group.joints), len(target)))
-                return _PLANNING_FAILED, self._trajectory([])
-        assert target is not None
-        return _SUCCESS, self._trajectory(timing.line(begin, target, *self._limits()))
+            target = {"to": list(self._pose_target[:3])}
+            if len(self._pose_target) == 7:
+                target["orientation"] = list(self._pose_target[3:])
+                model.warn_once("hrdsl plans for the place of %s, and not for its orientation" % self._group.tip)
+        corners, why = self._group.way(target, begin)
+        if corners is None:
+            rospy.logwarn("group %s cannot reach its target: %s" % (self._group.name, why))
+            return _NO_POSTURE, self._trajectory([])
+        return _SUCCESS, self._trajectory(timing.lines(corners, *self._limits()))
 
     def _limits(self, speed: float | None = None, acceleration: float | None = None) -> tuple[list[float], list[float]]:
         speed = self._speed_factor if speed is None else speed

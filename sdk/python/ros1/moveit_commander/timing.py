@@ -108,6 +108,16 @@ def line(start: Posture, target: Posture, speeds: Posture, accelerations: Postur
     return points
 
 
+def lines(postures: Sequence[Posture], speeds: Posture, accelerations: Posture) -> list[Point]:
+    """The straight ways from each of these postures to the next, with a rest at each."""
+    points: list[Point] = []
+    for start, target in zip(postures, postures[1:]):
+        begun = points.pop().time if points else 0.0
+        for point in line(start, target, speeds, accelerations):
+            points.append(Point(begun + point.time, point.positions, point.velocities, point.accelerations))
+    return points
+
+
 def through(postures: Sequence[Posture], speeds: Posture, accelerations: Posture) -> list[Point]:
     """The way through these postures, with a point at each that differs from the one before."""
     way = _Way(postures, speeds, accelerations)

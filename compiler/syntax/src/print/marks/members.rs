@@ -2,9 +2,9 @@
 
 use crate::ast::{
     AccessSyntax, AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, AutomatonSyntax,
-    DeviceMember, DeviceMemberKind, EdgeActionKind, EdgeSyntax, FormulaSyntax, FunctionSyntax, PlanSyntax,
-    QuerySyntax, RuleTriggerSyntax, StatementSyntax, StatementSyntaxKind, StepSyntax, StepSyntaxKind,
-    SuiteMemberKind, TestMember, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
+    DeviceMember, DeviceMemberKind, EdgeActionKind, EdgeSyntax, FormulaSyntax, FunctionSyntax, JointSyntax,
+    PlanSyntax, QuerySyntax, RuleTriggerSyntax, StatementSyntax, StatementSyntaxKind, StepSyntax,
+    StepSyntaxKind, SuiteMemberKind, TestMember, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
 };
 use crate::print::marks::{BlockKind, TokenMarker};
 use crate::token::TokenKind;
@@ -297,6 +297,15 @@ impl TokenMarker<'_> {
 
     // ── World ──
 
+    fn joint(&mut self, joint: &JointSyntax) {
+        self.expr(&joint.at);
+        self.expr(&joint.axis);
+        self.range(&joint.limits);
+        for clause in [&joint.effort, &joint.speed, &joint.rotor] {
+            self.maybe(clause.as_ref());
+        }
+    }
+
     pub(super) fn world_member(&mut self, member: &WorldMember) {
         self.start(member.span.start);
         match &member.kind {
@@ -314,14 +323,7 @@ impl TokenMarker<'_> {
                 self.maybe(body.rotated.as_ref());
                 self.maybe(body.mass.as_ref());
             }
-            WorldMemberKind::Joint(joint) => {
-                self.expr(&joint.at);
-                self.expr(&joint.axis);
-                self.range(&joint.limits);
-                self.maybe(joint.effort.as_ref());
-                self.maybe(joint.speed.as_ref());
-                self.maybe(joint.rotor.as_ref());
-            }
+            WorldMemberKind::Joint(joint) => self.joint(joint),
             WorldMemberKind::Arm(arm) => {
                 self.expr(&arm.tool);
                 self.expr(&arm.speed);
