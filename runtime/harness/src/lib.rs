@@ -19,6 +19,7 @@ mod fault;
 mod message;
 mod player;
 mod port;
+mod recorder;
 mod run;
 mod script;
 mod stage;

@@ -194,6 +194,9 @@ impl<'p> HarnessLoop<'p> {
                 }
             }
             PlayerMessage::Machine(step) => {
+                if let Some(stage) = &mut self.stage {
+                    stage.settle(self.now, &mut self.trace);
+                }
                 let what = TraceStepKind::Machine(Box::new(step));
                 self.trace.steps.push(TraceStep { time: self.now, what });
             }

@@ -6,11 +6,12 @@ use hrdsl_ir::{
     expr::Expr,
     world::{DeviceId, RuleTrigger, SignalId, Vec3, WorldAction, WorldRule},
 };
-use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
+use hrdsl_trace::Trace;
 
 use crate::{
     command::{CommandRequest, NotBegun},
     message::PlayerMessage,
+    recorder::SignalRecorder,
     world::{CommandId, WorldBackend},
 };
 
@@ -20,11 +21,7 @@ pub struct WorldStage<'p> {
     /// What it has, as it was declared.
     declared: Option<&'p hrdsl_ir::world::World>,
     rules: &'p [WorldRule],
-    /// The signals that are recorded, with what was last recorded of each.
-    recorded: Vec<(SignalId, Option<Value>)>,
-    sample: Nanos,
-    /// The period in which the signals were last sampled by the clock.
-    sampled: Nanos,
+    recorder: SignalRecorder<'p>,
     /// Commands that ended and that their maker has not yet been told of.
     ended: Vec<(CommandId, Result<(), String>)>,
     /// Events set off by commands.
@@ -36,18 +33,22 @@ impl<'p> WorldStage<'p> {
     /// rules, and signals are recorded at events only.
     #[must_use]
     pub fn new(program: &'p Program, world: Box<dyn WorldBackend + 'p>) -> Self {
-        let numbered = program.signals.iter().zip(0u16..);
-        let recorded = numbered.filter(|(s, _)| s.recorded).map(|(_, i)| (SignalId(i), None)).collect();
         Self {
             world,
             declared: program.world.as_ref(),
             rules: program.world.as_ref().map_or(&[], |world| &world.rules),
-            recorded,
-            sample: program.world.as_ref().map_or(Nanos::MAX, |world| world.sample.max(1)),
-            sampled: 0,
+            recorder: SignalRecorder::new(program),
             ended: Vec::new(),
             answers: Vec::new(),
         }
+    }
+
+    /// The same, with every instant recorded at which a signal that is judged at each step has changed: for those who want to
+    /// compare.
+    #[must_use]
+    pub fn recording_everything(mut self) -> Self {
+        self.recorder.write_everything();
+        self
     }
 
     /// When it next changes by itself; `None`: at rest.
@@ -60,24 +61,17 @@ impl<'p> WorldStage<'p> {
     pub fn advance(&mut self, to: Nanos, trace: &mut Trace) {
         self.world.advance(to);
         self.ended.extend(self.world.take_ended());
-        // The physics steps from when the world was last stirred: not on the sampling period's grid.
-        if to / self.sample > self.sampled {
-            self.sampled = to / self.sample;
-            self.sample(to, trace);
-        }
+        self.recorder.pass(to, self.world.as_mut(), trace);
     }
 
     /// Records the signals that have changed.
     pub fn sample(&mut self, now: Nanos, trace: &mut Trace) {
-        for (signal, last) in &mut self.recorded {
-            let value = on_grid(self.world.read(*signal));
-            if last.is_none_or(|last| last.key() != value.key()) {
-                *last = Some(value);
-                trace
-                    .steps
-                    .push(TraceStep { time: now, what: TraceStepKind::Sample { signal: *signal, value } });
-            }
-        }
+        self.recorder.sample(now, self.world.as_mut(), trace);
+    }
+
+    /// Records what is still to be said of instants before this one.
+    pub fn settle(&mut self, now: Nanos, trace: &mut Trace) {
+        self.recorder.settle(now, trace);
     }
 
     #[must_use]
@@ -186,19 +180,5 @@ impl<'p> WorldStage<'p> {
             }
         }
         out
-    }
-}
-
-/// Recorded floats lie on a grid of 10⁻⁶ of their SI unit: below what the physics is good for.
-fn on_grid(value: Value) -> Value {
-    match value {
-        // Adding zero makes a negative zero positive.
-        Value::Float(x) if x.abs() < 1e9 => Value::Float((x * 1e6).round() / 1e6 + 0.0),
-        Value::Float(_)
-        | Value::Bool(_)
-        | Value::Int(_)
-        | Value::Symbol(_)
-        | Value::Text(_)
-        | Value::List(_) => value,
     }
 }

@@ -76,6 +76,8 @@ pub struct WorldSimulation {
     next: Option<Nanos>,
     /// For how long nothing has moved.
     quiet: Nanos,
+    /// How many physics steps there were. Whatever is measured changes in these alone.
+    steps: u64,
     commands: u64,
     finished: Vec<(CommandId, Result<(), CommandError>)>,
 }
@@ -116,6 +118,7 @@ impl WorldSimulation {
             last: 0,
             next: Some(world.step),
             quiet: 0,
+            steps: 0,
             commands: 0,
             finished: Vec::new(),
         })
@@ -125,6 +128,12 @@ impl WorldSimulation {
     #[must_use]
     pub fn now(&self) -> Nanos {
         self.now
+    }
+
+    /// How many physics steps there were. Signals and measurements change in these alone.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
     }
 
     /// When the world next changes by itself: at the next physics step, or never while everything rests.
@@ -161,6 +170,7 @@ impl WorldSimulation {
             }
         }
         self.physics.step();
+        self.steps += 1;
         self.last = next;
         self.now = self.now.max(next);
         for arm in &mut self.arms {

@@ -88,6 +88,10 @@ impl WorldBackend for SimWorld {
         self.sim.read(signal)
     }
 
+    fn changes(&self) -> Option<u64> {
+        Some(self.sim.steps())
+    }
+
     fn act(&mut self, action: &WorldAction, vars: &[Value]) -> Result<(), String> {
         self.sim.act(action, &|i| vars.get(usize::from(i)).copied()).map_err(|e| e.to_string())
     }
