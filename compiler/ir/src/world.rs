@@ -275,6 +275,13 @@ pub enum RuleTrigger {
         device: DeviceId,
         command: DeviceCommandId,
     },
+    /// A boolean over the rule's signals, as its guard is, became true, or ceased to be; it counts as true as soon as it has
+    /// held for so long.
+    Edge {
+        rising: bool,
+        condition: Expr,
+        held: Nanos,
+    },
 }
 
 /// A named quantity of the world, read by the robot code, by rules, and by requirements.

@@ -112,12 +112,17 @@ fn joint(j: &from::TypedJoint) -> Joint {
 fn rule(r: &from::TypedWorldRule, world: &from::TypedWorld, signals: &mut SignalTable<'_>) -> WorldRule {
     let mut reader = SignalReader { signals, read: Vec::new(), recorded: false };
     let guard = r.guard.as_ref().map(|g| reader.expr(g));
+    let condition = r.condition().map(|c| reader.expr(c));
     let args = r.args.iter().map(|a| reader.expr(a)).collect();
     WorldRule {
         on: match &r.on {
             from::TypedRuleTrigger::Event(p) => RuleTrigger::Event(p.clone()),
             from::TypedRuleTrigger::Commanded { device, command } => {
                 RuleTrigger::Commanded { device: world.device_id(*device), command: *command }
+            }
+            from::TypedRuleTrigger::Edge { rising, held, .. } => {
+                let condition = condition.unwrap_or_else(|| Expr::bool(false));
+                RuleTrigger::Edge { rising: *rising, condition, held: nanos(*held) }
             }
         },
         guard,

@@ -15,6 +15,7 @@ mod argument;
 mod clock;
 mod command;
 pub mod doubles;
+mod edge;
 mod fault;
 mod message;
 mod player;

@@ -10,6 +10,7 @@ use hrdsl_trace::Trace;
 
 use crate::{
     command::{CommandRequest, NotBegun},
+    edge::EdgeWatch,
     message::PlayerMessage,
     recorder::SignalRecorder,
     world::{CommandId, WorldBackend},
@@ -21,10 +22,12 @@ pub struct WorldStage<'p> {
     /// What it has, as it was declared.
     declared: Option<&'p hrdsl_ir::world::World>,
     rules: &'p [WorldRule],
+    /// Of those rules that wait for conditions, in their order.
+    edges: Vec<EdgeWatch<'p>>,
     recorder: SignalRecorder<'p>,
     /// Commands that ended and that their maker has not yet been told of.
     ended: Vec<(CommandId, Result<(), String>)>,
-    /// Events set off by commands.
+    /// Events set off by commands and by conditions.
     answers: Vec<PlayerMessage>,
 }
 
@@ -32,11 +35,13 @@ impl<'p> WorldStage<'p> {
     /// The world of a program on stage, with the rules and signals that the program says; without a `world` block it has no
     /// rules, and signals are recorded at events only.
     #[must_use]
-    pub fn new(program: &'p Program, world: Box<dyn WorldBackend + 'p>) -> Self {
+    pub fn new(program: &'p Program, mut world: Box<dyn WorldBackend + 'p>) -> Self {
+        let rules = program.world.as_ref().map_or(&[][..], |world| &world.rules);
         Self {
+            edges: rules.iter().filter_map(|rule| EdgeWatch::new(rule, world.as_mut())).collect(),
             world,
             declared: program.world.as_ref(),
-            rules: program.world.as_ref().map_or(&[], |world| &world.rules),
+            rules,
             recorder: SignalRecorder::new(program),
             ended: Vec::new(),
             answers: Vec::new(),
@@ -54,7 +59,7 @@ impl<'p> WorldStage<'p> {
     /// When it next changes by itself; `None`: at rest.
     #[must_use]
     pub fn next_wake(&self) -> Option<Nanos> {
-        self.world.next_wake()
+        self.edges.iter().filter_map(EdgeWatch::next_wake).chain(self.world.next_wake()).min()
     }
 
     /// Time passes.
@@ -62,6 +67,11 @@ impl<'p> WorldStage<'p> {
         self.world.advance(to);
         self.ended.extend(self.world.take_ended());
         self.recorder.pass(to, self.world.as_mut(), trace);
+        for edge in &mut self.edges {
+            if edge.look(to, self.world.as_mut()) {
+                self.answers.extend(answer(edge.rule, self.world.as_mut()));
+            }
+        }
     }
 
     /// Records the signals that have changed.
@@ -156,7 +166,7 @@ impl<'p> WorldStage<'p> {
     pub fn hear(&mut self, event: EventId, args: &[Value]) -> Vec<PlayerMessage> {
         self.fire(&|on| match on {
             RuleTrigger::Event(pattern) => EventPattern::matches(pattern, event, args),
-            RuleTrigger::Commanded { .. } => false,
+            RuleTrigger::Commanded { .. } | RuleTrigger::Edge { .. } => false,
         })
     }
 
@@ -166,19 +176,17 @@ impl<'p> WorldStage<'p> {
     }
 
     fn fire(&mut self, is_set_off: &dyn Fn(&RuleTrigger) -> bool) -> Vec<PlayerMessage> {
-        let mut out = Vec::new();
-        for rule in self.rules {
-            if !is_set_off(&rule.on) {
-                continue;
-            }
-            let values: Vec<Value> = rule.signals.iter().map(|s| self.world.read(*s)).collect();
-            let eval = |e: &Expr| e.eval(&|i| values.get(i as usize).copied()).ok();
-            let holds = rule.guard.as_ref().is_none_or(|g| eval(g) == Some(Value::Bool(true)));
-            let args: Option<Vec<Value>> = rule.args.iter().map(eval).collect();
-            if let (true, Some(args)) = (holds, args) {
-                out.push(PlayerMessage::Event { event: rule.event, args });
-            }
-        }
-        out
+        let set_off = self.rules.iter().filter(|rule| is_set_off(&rule.on));
+        let world = self.world.as_mut();
+        set_off.filter_map(|rule| answer(rule, world)).collect()
     }
+}
+
+/// What a rule that is set off makes happen, if its guard holds.
+fn answer(rule: &WorldRule, world: &mut dyn WorldBackend) -> Option<PlayerMessage> {
+    let values: Vec<Value> = rule.signals.iter().map(|s| world.read(*s)).collect();
+    let eval = |e: &Expr| e.eval(&|i| values.get(i as usize).copied()).ok();
+    let holds = rule.guard.as_ref().is_none_or(|g| eval(g) == Some(Value::Bool(true)));
+    let args: Option<Vec<Value>> = rule.args.iter().map(eval).collect();
+    args.filter(|_| holds).map(|args| PlayerMessage::Event { event: rule.event, args })
 }

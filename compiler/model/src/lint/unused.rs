@@ -409,7 +409,7 @@ fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<UnusedName<'a>>) {
     };
     world.signals.iter().for_each(|s| mark(&s.value));
     for rule in &world.rules {
-        rule.guard.iter().chain(&rule.args).for_each(&mut mark);
+        rule.condition().into_iter().chain(&rule.guard).chain(&rule.args).for_each(&mut mark);
     }
     for requirement in &scenario.requirements {
         requirement.pattern.condition().into_iter().for_each(&mut mark);
