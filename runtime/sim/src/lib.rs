@@ -31,6 +31,7 @@ mod kinematics;
 mod laser;
 mod math;
 mod mover;
+mod past;
 mod physics;
 mod profile;
 mod report;
@@ -53,6 +54,7 @@ use hand::HandSet;
 pub use hrdsl_harness::CommandId;
 use math::{BodyFrame, SpaceVector};
 use mover::KinematicPath;
+use past::SignalPast;
 use physics::{PhysicsAdapter, bad, index};
 use sense::SensorView;
 pub use world::SimWorld;
@@ -64,6 +66,7 @@ const REST_AFTER: Nanos = 300_000_000;
 pub struct WorldSimulation {
     world: World,
     signals: Vec<Signal>,
+    past: SignalPast,
     physics: PhysicsAdapter,
     arms: Vec<ArmControl>,
     hands: HandSet,
@@ -106,7 +109,8 @@ impl WorldSimulation {
         let bases = world.bases.iter().map(|b| BaseControl::new(b, world, &physics));
         let bases = bases.collect::<Result<Vec<_>, _>>()?;
         world.lasers.iter().try_for_each(|laser| laser::check(laser, world))?;
-        Ok(WorldSimulation {
+        let mut sim = WorldSimulation {
+            past: SignalPast::new(signals),
             paths: vec![None; world.bodies.len()],
             world: world.clone(),
             signals: signals.to_vec(),
@@ -121,7 +125,16 @@ impl WorldSimulation {
             steps: 0,
             commands: 0,
             finished: Vec::new(),
-        })
+        };
+        sim.remember(0);
+        Ok(sim)
+    }
+
+    /// Takes down what later differences are of.
+    fn remember(&mut self, now: Nanos) {
+        let read = |s: SignalId| self.read(s).as_f64().unwrap_or(f64::NAN);
+        let values: Vec<f64> = self.past.signals().map(read).collect();
+        self.past.note(now, &values);
     }
 
     /// The simulated time.
@@ -178,6 +191,7 @@ impl WorldSimulation {
         }
         self.hands.update(next, &mut self.physics, &mut self.finished);
         self.finished.extend(self.bases.iter_mut().filter_map(BaseControl::check_stopped));
+        self.remember(next);
         self.rest_or_go_on(next);
     }
 
@@ -187,8 +201,11 @@ impl WorldSimulation {
             || self.bases.iter().any(|base| base.is_busy(at))
             || self.paths.iter().any(Option::is_some);
         self.quiet = if busy || !self.physics.is_quiet() { 0 } else { self.quiet + self.world.step };
-        if self.quiet >= REST_AFTER {
+        // Differences to what was change as long as that is still in motion.
+        if self.quiet >= REST_AFTER.max(self.past.longest()) {
             self.physics.freeze();
+            self.remember(at);
+            self.past.rest();
             self.next = None;
         } else {
             self.next = Some(at + self.world.step);
@@ -209,6 +226,9 @@ impl WorldSimulation {
             hands: &self.hands,
             arms: &self.arms,
             currents: &self.world.currents,
+            signals: &self.signals,
+            past: &self.past,
+            now: self.last,
         }
     }
 
@@ -227,7 +247,7 @@ impl WorldSimulation {
     /// The value of a measurement at the last physics step; of what the world does not have, not a number.
     #[must_use]
     pub fn measure(&self, term: &SignalTerm) -> Value {
-        let exists = sense::check_term(term, &self.world, String::new).is_ok();
+        let exists = sense::check_term(term, &self.world, self.signals.len(), String::new).is_ok();
         if exists { self.view().term(term) } else { Value::Float(f64::NAN) }
     }
 

@@ -2,6 +2,7 @@
 //!
 //! A joint whose limits are both zero joins its child rigidly: the two are one body of the engine, with two shapes.
 
+mod contact;
 mod surface;
 
 use hrdsl_ir::value::seconds;
