@@ -124,6 +124,7 @@ fn dictionary() -> String {
         "visible",
         "holds",
         "joint_speed",
+        "rising",
         "fixed",
         "dynamic",
         "kinematic",

@@ -312,6 +312,13 @@ pub enum RuleTrigger {
         device: DeviceId,
         command: DeviceCommandId,
     },
+    /// A boolean over the rule's signals, as its guard is, became true, or ceased to be; it counts as true as soon as it has
+    /// held for so long.
+    Edge {
+        rising: bool,
+        condition: Expr,
+        held: Nanos,
+    },
 }
 
 /// A named quantity of the world, read by the robot code, by rules, and by requirements.
@@ -351,8 +358,28 @@ pub enum SignalTerm {
     HoldsAny(GripperId),
     /// `joint_speed(arm)`: the largest speed of its joints, rad/s
     JointSpeed(ArmId),
+    /// `joint_speed(joint)`: about its axis, rad/s
+    JointRate(JointId),
+    /// `joint_angle(joint)`: from the start, rad
+    JointAngle(JointId),
+    /// `torque(joint)`: of its motor, about its axis, Nm
+    Torque(JointId),
     /// `speed(b)`: m/s
     Speed(BodyRef),
+    /// `touches(a, b)`: whether one presses on the other, or their surfaces touch or overlap, bool
+    Touches(BodyRef, BodyRef),
+    /// `force(a, b)`: how hard they press on each other, N
+    Force(BodyRef, BodyRef),
+    /// `force(b)`: how hard all others press on it, N
+    ForceOn(BodyRef),
+    /// `weight(b)`: how hard others press down on it, N
+    Weight(BodyRef),
+    /// `tilt(b)`: between the vertical and where its direction points that was vertical at the start, rad, 0..π
+    Tilt(BodyRef),
+    /// `height(b)`: of its lowest point above z = 0, m
+    Height(BodyRef),
+    /// `delta(signal, time)`: what it is less what it was so long ago, or at the start; in its own unit
+    Delta(SignalId, Nanos),
     /// `heading(b)`: of its own x axis about the vertical, rad, -π..π
     Heading(BodyRef),
     /// A part of the unit quaternion by which it is turned, whose w is not negative.

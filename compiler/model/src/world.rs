@@ -171,7 +171,27 @@ pub struct TypedWorldRule {
 #[serde(rename_all = "snake_case")]
 pub enum TypedRuleTrigger {
     Event(EventPattern),
-    Commanded { device: DeviceBody, command: DeviceCommandId },
+    Commanded {
+        device: DeviceBody,
+        command: DeviceCommandId,
+    },
+    Edge {
+        rising: bool,
+        condition: TypedExpr,
+        /// Seconds.
+        held: f64,
+    },
+}
+
+impl TypedWorldRule {
+    /// The condition that it waits for.
+    #[must_use]
+    pub fn condition(&self) -> Option<&TypedExpr> {
+        match &self.on {
+            TypedRuleTrigger::Edge { condition, .. } => Some(condition),
+            TypedRuleTrigger::Event(_) | TypedRuleTrigger::Commanded { .. } => None,
+        }
+    }
 }
 
 impl PartFrame {

@@ -117,12 +117,17 @@ fn joint(j: &from::TypedJoint) -> Joint {
 fn rule(r: &from::TypedWorldRule, world: &from::TypedWorld, signals: &mut SignalTable<'_>) -> WorldRule {
     let mut reader = SignalReader { signals, read: Vec::new(), recorded: false };
     let guard = r.guard.as_ref().map(|g| reader.expr(g));
+    let condition = r.condition().map(|c| reader.expr(c));
     let args = r.args.iter().map(|a| reader.expr(a)).collect();
     WorldRule {
         on: match &r.on {
             from::TypedRuleTrigger::Event(p) => RuleTrigger::Event(p.clone()),
             from::TypedRuleTrigger::Commanded { device, command } => {
                 RuleTrigger::Commanded { device: world.device_id(*device), command: *command }
+            }
+            from::TypedRuleTrigger::Edge { rising, held, .. } => {
+                let condition = condition.unwrap_or_else(|| Expr::bool(false));
+                RuleTrigger::Edge { rising: *rising, condition, held: nanos(*held) }
             }
         },
         guard,
@@ -133,15 +138,27 @@ fn rule(r: &from::TypedWorldRule, world: &from::TypedWorld, signals: &mut Signal
     }
 }
 
-fn type_of(t: SignalTerm) -> Type {
+fn type_of(t: SignalTerm, world: Option<&from::TypedWorld>) -> Type {
     match t {
-        SignalTerm::Distance(..) | SignalTerm::Range(..) | SignalTerm::Coordinate(..) => {
-            Type::Float(Unit::Metre)
+        SignalTerm::Distance(..)
+        | SignalTerm::Range(..)
+        | SignalTerm::Coordinate(..)
+        | SignalTerm::Height(_) => Type::Float(Unit::Metre),
+        SignalTerm::Angle(..) | SignalTerm::Heading(_) | SignalTerm::Tilt(_) | SignalTerm::JointAngle(_) => {
+            Type::Float(Unit::Radian)
         }
-        SignalTerm::Angle(..) | SignalTerm::Heading(_) => Type::Float(Unit::Radian),
+        SignalTerm::Force(..) | SignalTerm::ForceOn(_) | SignalTerm::Weight(_) => Type::Float(Unit::Newton),
+        SignalTerm::Torque(_) => Type::Float(Unit::NewtonMetre),
+        SignalTerm::Delta(of, _) => {
+            let of = world.and_then(|world| world.signals.get(usize::from(of.0)));
+            of.map_or(Type::Float(Unit::None), |of| of.ty)
+        }
         SignalTerm::Orientation(..) => Type::Float(Unit::None),
-        SignalTerm::Visible(..) | SignalTerm::Holds(..) | SignalTerm::HoldsAny(_) => Type::Bool,
-        SignalTerm::JointSpeed(_) => Type::Float(Unit::RadianPerSecond),
+        SignalTerm::Visible(..)
+        | SignalTerm::Touches(..)
+        | SignalTerm::Holds(..)
+        | SignalTerm::HoldsAny(_) => Type::Bool,
+        SignalTerm::JointSpeed(_) | SignalTerm::JointRate(_) => Type::Float(Unit::RadianPerSecond),
         SignalTerm::Speed(_) => Type::Float(Unit::MetrePerSecond),
     }
 }
@@ -153,6 +170,7 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
         BodyRef::Current(id) => world.currents[usize::from(id.0)].name.as_str(),
     };
     let gripper = |g: model::GripperId| world.grippers[usize::from(g.0)].name.as_str();
+    let joint = |j: model::JointId| world.joints[usize::from(j.0)].name.as_str();
     match term {
         SignalTerm::Distance(a, b) => format!("distance({}, {})", body(a), body(b)),
         SignalTerm::Range(a, b) => format!("range({}, {})", body(a), body(b)),
@@ -169,6 +187,19 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
         SignalTerm::Holds(g, b) => format!("holds({}, {})", gripper(g), body(b)),
         SignalTerm::HoldsAny(g) => format!("holds({})", gripper(g)),
         SignalTerm::JointSpeed(a) => format!("joint_speed({})", world.arms[usize::from(a.0)].name),
+        SignalTerm::JointRate(j) => format!("joint_speed({})", joint(j)),
+        SignalTerm::JointAngle(j) => format!("joint_angle({})", joint(j)),
+        SignalTerm::Torque(j) => format!("torque({})", joint(j)),
+        SignalTerm::Touches(a, b) => format!("touches({}, {})", body(a), body(b)),
+        SignalTerm::Force(a, b) => format!("force({}, {})", body(a), body(b)),
+        SignalTerm::ForceOn(b) => format!("force({})", body(b)),
+        SignalTerm::Weight(b) => format!("weight({})", body(b)),
+        SignalTerm::Tilt(b) => format!("tilt({})", body(b)),
+        SignalTerm::Height(b) => format!("height({})", body(b)),
+        SignalTerm::Delta(of, over) => {
+            let of = &world.signals[usize::from(of.0)].name;
+            format!("delta({of}, {} s)", hrdsl_ir::value::seconds(over))
+        }
         SignalTerm::Speed(b) => format!("speed({})", body(b)),
         SignalTerm::Heading(b) => format!("heading({})", body(b)),
         SignalTerm::Orientation(b, part) => format!("orientation({}).{}", body(b), part.name()),
@@ -207,7 +238,7 @@ impl<'a> SignalTable<'a> {
         let name = self.world.map_or_else(String::new, |world| written(term, world));
         self.list.push(Signal {
             name,
-            ty: type_of(term),
+            ty: type_of(term, self.world),
             to: Vec::new(),
             terms: vec![term],
             value: Expr::Var(0),

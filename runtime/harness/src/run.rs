@@ -116,6 +116,7 @@ impl<'p> HarnessLoop<'p> {
             if self.now >= self.limit && due.is_none_or(|due| due > self.limit) {
                 return Ok(RunTermination::Limit);
             }
+            self.deliver()?;
             self.wake_players()?;
         }
     }
@@ -194,6 +195,9 @@ impl<'p> HarnessLoop<'p> {
                 }
             }
             PlayerMessage::Machine(step) => {
+                if let Some(stage) = &mut self.stage {
+                    stage.settle(self.now, &mut self.trace);
+                }
                 let what = TraceStepKind::Machine(Box::new(step));
                 self.trace.steps.push(TraceStep { time: self.now, what });
             }
@@ -230,7 +234,7 @@ impl<'p> HarnessLoop<'p> {
         }
     }
 
-    /// Rules of the world that were set off by commands, not by events.
+    /// Rules of the world that were set off by commands and conditions, not by events.
     fn answer_of_the_world(&mut self) -> Result<(), HarnessError> {
         let Some(stage) = &mut self.stage else { return Ok(()) };
         for message in stage.take_answers() {

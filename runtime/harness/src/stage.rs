@@ -6,11 +6,13 @@ use hrdsl_ir::{
     expr::Expr,
     world::{DeviceId, RuleTrigger, SignalId, WorldAction, WorldRule},
 };
-use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
+use hrdsl_trace::Trace;
 
 use crate::{
     command::{CommandRequest, NotBegun},
+    edge::EdgeWatch,
     message::PlayerMessage,
+    recorder::SignalRecorder,
     world::{ArmTarget, CommandId, WorldBackend},
 };
 
@@ -20,14 +22,12 @@ pub struct WorldStage<'p> {
     /// What it has, as it was declared.
     declared: Option<&'p hrdsl_ir::world::World>,
     rules: &'p [WorldRule],
-    /// The signals that are recorded, with what was last recorded of each.
-    recorded: Vec<(SignalId, Option<Value>)>,
-    sample: Nanos,
-    /// The period in which the signals were last sampled by the clock.
-    sampled: Nanos,
+    /// Of those rules that wait for conditions, in their order.
+    edges: Vec<EdgeWatch<'p>>,
+    recorder: SignalRecorder<'p>,
     /// Commands that ended and that their maker has not yet been told of.
     ended: Vec<(CommandId, Result<(), String>)>,
-    /// Events set off by commands.
+    /// Events set off by commands and by conditions.
     answers: Vec<PlayerMessage>,
 }
 
@@ -35,49 +35,53 @@ impl<'p> WorldStage<'p> {
     /// The world of a program on stage, with the rules and signals that the program says; without a `world` block it has no
     /// rules, and signals are recorded at events only.
     #[must_use]
-    pub fn new(program: &'p Program, world: Box<dyn WorldBackend + 'p>) -> Self {
-        let numbered = program.signals.iter().zip(0u16..);
-        let recorded = numbered.filter(|(s, _)| s.recorded).map(|(_, i)| (SignalId(i), None)).collect();
+    pub fn new(program: &'p Program, mut world: Box<dyn WorldBackend + 'p>) -> Self {
+        let rules = program.world.as_ref().map_or(&[][..], |world| &world.rules);
         Self {
+            edges: rules.iter().filter_map(|rule| EdgeWatch::new(rule, world.as_mut())).collect(),
             world,
             declared: program.world.as_ref(),
-            rules: program.world.as_ref().map_or(&[], |world| &world.rules),
-            recorded,
-            sample: program.world.as_ref().map_or(Nanos::MAX, |world| world.sample.max(1)),
-            sampled: 0,
+            rules,
+            recorder: SignalRecorder::new(program),
             ended: Vec::new(),
             answers: Vec::new(),
         }
     }
 
+    /// The same, with every instant recorded at which a signal that is judged at each step has changed: for those who want to
+    /// compare.
+    #[must_use]
+    pub fn recording_everything(mut self) -> Self {
+        self.recorder.write_everything();
+        self
+    }
+
     /// When it next changes by itself; `None`: at rest.
     #[must_use]
     pub fn next_wake(&self) -> Option<Nanos> {
-        self.world.next_wake()
+        self.edges.iter().filter_map(EdgeWatch::next_wake).chain(self.world.next_wake()).min()
     }
 
     /// Time passes.
     pub fn advance(&mut self, to: Nanos, trace: &mut Trace) {
         self.world.advance(to);
         self.ended.extend(self.world.take_ended());
-        // The physics steps from when the world was last stirred: not on the sampling period's grid.
-        if to / self.sample > self.sampled {
-            self.sampled = to / self.sample;
-            self.sample(to, trace);
+        self.recorder.pass(to, self.world.as_mut(), trace);
+        for edge in &mut self.edges {
+            if edge.look(to, self.world.as_mut()) {
+                self.answers.extend(answer(edge.rule, self.world.as_mut()));
+            }
         }
     }
 
     /// Records the signals that have changed.
     pub fn sample(&mut self, now: Nanos, trace: &mut Trace) {
-        for (signal, last) in &mut self.recorded {
-            let value = on_grid(self.world.read(*signal));
-            if last.is_none_or(|last| last.key() != value.key()) {
-                *last = Some(value);
-                trace
-                    .steps
-                    .push(TraceStep { time: now, what: TraceStepKind::Sample { signal: *signal, value } });
-            }
-        }
+        self.recorder.sample(now, self.world.as_mut(), trace);
+    }
+
+    /// Records what is still to be said of instants before this one.
+    pub fn settle(&mut self, now: Nanos, trace: &mut Trace) {
+        self.recorder.settle(now, trace);
     }
 
     #[must_use]
@@ -164,7 +168,7 @@ impl<'p> WorldStage<'p> {
     pub fn hear(&mut self, event: EventId, args: &[Value]) -> Vec<PlayerMessage> {
         self.fire(&|on| match on {
             RuleTrigger::Event(pattern) => EventPattern::matches(pattern, event, args),
-            RuleTrigger::Commanded { .. } => false,
+            RuleTrigger::Commanded { .. } | RuleTrigger::Edge { .. } => false,
         })
     }
 
@@ -174,33 +178,17 @@ impl<'p> WorldStage<'p> {
     }
 
     fn fire(&mut self, is_set_off: &dyn Fn(&RuleTrigger) -> bool) -> Vec<PlayerMessage> {
-        let mut out = Vec::new();
-        for rule in self.rules {
-            if !is_set_off(&rule.on) {
-                continue;
-            }
-            let values: Vec<Value> = rule.signals.iter().map(|s| self.world.read(*s)).collect();
-            let eval = |e: &Expr| e.eval(&|i| values.get(i as usize).copied()).ok();
-            let holds = rule.guard.as_ref().is_none_or(|g| eval(g) == Some(Value::Bool(true)));
-            let args: Option<Vec<Value>> = rule.args.iter().map(eval).collect();
-            if let (true, Some(args)) = (holds, args) {
-                out.push(PlayerMessage::Event { event: rule.event, args });
-            }
-        }
-        out
+        let set_off = self.rules.iter().filter(|rule| is_set_off(&rule.on));
+        let world = self.world.as_mut();
+        set_off.filter_map(|rule| answer(rule, world)).collect()
     }
 }
 
-/// Recorded floats lie on a grid of 10⁻⁶ of their SI unit: below what the physics is good for.
-fn on_grid(value: Value) -> Value {
-    match value {
-        // Adding zero makes a negative zero positive.
-        Value::Float(x) if x.abs() < 1e9 => Value::Float((x * 1e6).round() / 1e6 + 0.0),
-        Value::Float(_)
-        | Value::Bool(_)
-        | Value::Int(_)
-        | Value::Symbol(_)
-        | Value::Text(_)
-        | Value::List(_) => value,
-    }
+/// What a rule that is set off makes happen, if its guard holds.
+fn answer(rule: &WorldRule, world: &mut dyn WorldBackend) -> Option<PlayerMessage> {
+    let values: Vec<Value> = rule.signals.iter().map(|s| world.read(*s)).collect();
+    let eval = |e: &Expr| e.eval(&|i| values.get(i as usize).copied()).ok();
+    let holds = rule.guard.as_ref().is_none_or(|g| eval(g) == Some(Value::Bool(true)));
+    let args: Option<Vec<Value>> = rule.args.iter().map(eval).collect();
+    args.filter(|_| holds).map(|args| PlayerMessage::Event { event: rule.event, args })
 }

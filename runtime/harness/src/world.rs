@@ -19,6 +19,11 @@ pub trait WorldBackend {
     /// The present value of a signal, in the SI unit of its type.
     fn read(&mut self, signal: SignalId) -> Value;
 
+    /// A number that is another one whenever a signal may have another value; `None`: nobody knows, and they are read each time.
+    fn changes(&self) -> Option<u64> {
+        None
+    }
+
     /// Begins an environment actor's action; `vars` are the values of its variables. Does not wait for its end.
     ///
     /// # Errors

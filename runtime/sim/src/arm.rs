@@ -139,7 +139,7 @@ impl ArmControl {
     ) -> Result<JointRoute, CommandError> {
         let speeds = self.speeds_within(limit);
         let local = self.relative(at.physics, v3(target));
-        let route = self.planner(&speeds, at).to_place(&self.stop(), local);
+        let route = self.planner(&speeds, at).reach_place(&self.stop(), local);
         route.map_err(|why| self.no_route(why, at.physics))
     }
 
@@ -151,7 +151,7 @@ impl ArmControl {
         at: &ArmMoment<'_>,
     ) -> Result<JointRoute, CommandError> {
         let speeds = self.speeds_within(limit);
-        let route = self.planner(&speeds, at).to_posture(&self.stop(), posture);
+        let route = self.planner(&speeds, at).reach_posture(&self.stop(), posture);
         route.map_err(|why| self.no_route(why, at.physics))
     }
 

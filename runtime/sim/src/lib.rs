@@ -34,6 +34,7 @@ mod laser;
 mod math;
 mod motion;
 mod mover;
+mod past;
 mod physics;
 mod planner;
 mod profile;
@@ -45,7 +46,7 @@ mod sense;
 mod world;
 
 use hrdsl_ir::world::{
-    ArmId, BaseId, BodyId, BodyMotion, GripperId, Signal, SignalId, SignalTerm, Vec3, World, WorldAction,
+    ArmId, BaseId, BodyId, BodyMotion, GripperId, Signal, SignalId, SignalTerm, World, WorldAction,
     WorldPoint,
 };
 use hrdsl_ir::{Expr, Nanos, Value};
@@ -58,6 +59,7 @@ use hand::HandSet;
 pub use hrdsl_harness::{ArmTarget, CommandId};
 use math::{BodyFrame, SpaceVector};
 use mover::KinematicPath;
+use past::SignalPast;
 use physics::{PhysicsAdapter, bad, index};
 use sense::SensorView;
 pub use world::SimWorld;
@@ -69,6 +71,7 @@ const REST_AFTER: Nanos = 300_000_000;
 pub struct WorldSimulation {
     world: World,
     signals: Vec<Signal>,
+    past: SignalPast,
     physics: PhysicsAdapter,
     arms: Vec<ArmControl>,
     /// By arm: the hands that it moves.
@@ -83,6 +86,8 @@ pub struct WorldSimulation {
     next: Option<Nanos>,
     /// For how long nothing has moved.
     quiet: Nanos,
+    /// How many physics steps there were. Whatever is measured changes in these alone.
+    steps: u64,
     commands: u64,
     finished: Vec<(CommandId, Result<(), CommandError>)>,
 }
@@ -116,7 +121,8 @@ impl WorldSimulation {
         let bases = world.bases.iter().map(|b| BaseControl::new(b, world, &physics));
         let bases = bases.collect::<Result<Vec<_>, _>>()?;
         world.lasers.iter().try_for_each(|laser| laser::check(laser, world))?;
-        Ok(WorldSimulation {
+        let mut sim = WorldSimulation {
+            past: SignalPast::new(signals),
             paths: vec![None; world.bodies.len()],
             world: world.clone(),
             signals: signals.to_vec(),
@@ -129,15 +135,31 @@ impl WorldSimulation {
             last: 0,
             next: Some(world.step),
             quiet: 0,
+            steps: 0,
             commands: 0,
             finished: Vec::new(),
-        })
+        };
+        sim.remember(0);
+        Ok(sim)
+    }
+
+    /// Takes down what later differences are of.
+    fn remember(&mut self, now: Nanos) {
+        let read = |s: SignalId| self.read(s).as_f64().unwrap_or(f64::NAN);
+        let values: Vec<f64> = self.past.signals().map(read).collect();
+        self.past.note(now, &values);
     }
 
     /// The simulated time.
     #[must_use]
     pub fn now(&self) -> Nanos {
         self.now
+    }
+
+    /// How many physics steps there were. Signals and measurements change in these alone.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
     }
 
     /// When the world next changes by itself: at the next physics step, or never while everything rests.
@@ -175,6 +197,7 @@ impl WorldSimulation {
             }
         }
         self.physics.step();
+        self.steps += 1;
         self.last = next;
         self.now = self.now.max(next);
         for (i, arm) in self.arms.iter_mut().enumerate() {
@@ -183,6 +206,7 @@ impl WorldSimulation {
         }
         self.hands.update(next, &mut self.physics, &mut self.finished);
         self.finished.extend(self.bases.iter_mut().filter_map(BaseControl::check_stopped));
+        self.remember(next);
         self.rest_or_go_on(next);
     }
 
@@ -192,8 +216,11 @@ impl WorldSimulation {
             || self.bases.iter().any(|base| base.is_busy(at))
             || self.paths.iter().any(Option::is_some);
         self.quiet = if busy || !self.physics.is_quiet() { 0 } else { self.quiet + self.world.step };
-        if self.quiet >= REST_AFTER {
+        // Differences to what was change as long as that is still in motion.
+        if self.quiet >= REST_AFTER.max(self.past.longest()) {
             self.physics.freeze();
+            self.remember(at);
+            self.past.rest();
             self.next = None;
         } else {
             self.next = Some(at + self.world.step);
@@ -214,6 +241,9 @@ impl WorldSimulation {
             hands: &self.hands,
             arms: &self.arms,
             currents: &self.world.currents,
+            signals: &self.signals,
+            past: &self.past,
+            now: self.last,
         }
     }
 
@@ -232,7 +262,7 @@ impl WorldSimulation {
     /// The value of a measurement at the last physics step; of what the world does not have, not a number.
     #[must_use]
     pub fn measure(&self, term: &SignalTerm) -> Value {
-        let exists = sense::check_term(term, &self.world, String::new).is_ok();
+        let exists = sense::check_term(term, &self.world, self.signals.len(), String::new).is_ok();
         if exists { self.view().term(term) } else { Value::Float(f64::NAN) }
     }
 

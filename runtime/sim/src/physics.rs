@@ -2,10 +2,10 @@
 //!
 //! A joint whose limits are both zero joins its child rigidly: the two are one body of the engine, with two shapes.
 
+mod contact;
 mod dynamics;
 mod joints;
 mod pairs;
-mod pressing;
 mod surface;
 
 use hrdsl_ir::value::seconds;
@@ -127,7 +127,7 @@ impl PhysicsAdapter {
             builder = builder.can_sleep(false);
         }
         let rotors = moved.filter(|j| j.motion == JointMotion::Hinge && j.drive.rotor > 0.0);
-        let inertia = rotors.map(|j| joints::rotor_inertia(j)).reduce(|a, b| a + b);
+        let inertia = rotors.map(joints::rotor_inertia).reduce(|a, b| a + b);
         if let Some(inertia) = inertia {
             builder = builder.additional_mass_properties(MassProperties::with_inertia_matrix(
                 Vector::ZERO,

@@ -52,7 +52,7 @@ pub(crate) struct RoutePlanner<'a> {
 
 impl RoutePlanner<'_> {
     /// A way of the tool to a place, from a posture.
-    pub fn to_place(&mut self, from: &[f64], target: SpaceVector) -> Result<JointRoute, NoRoute> {
+    pub fn reach_place(&mut self, from: &[f64], target: SpaceVector) -> Result<JointRoute, NoRoute> {
         self.clearance.allow_start(from);
         let mut found = self.chain.postures(from, target, &|q| {
             if self.clearance.goal_conflict(q).is_some() {
@@ -86,7 +86,7 @@ impl RoutePlanner<'_> {
     }
 
     /// A way to a posture.
-    pub fn to_posture(&mut self, from: &[f64], to: &[f64]) -> Result<JointRoute, NoRoute> {
+    pub fn reach_posture(&mut self, from: &[f64], to: &[f64]) -> Result<JointRoute, NoRoute> {
         self.clearance.allow_start(from);
         if let Some((a, b)) = self.clearance.goal_conflict(to) {
             return Err(NoRoute::Obstructed(a, b));

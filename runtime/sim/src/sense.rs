@@ -1,13 +1,16 @@
 //! Sensors: the value of every primitive term, now.
 
-use hrdsl_ir::world::{Axis, BodyId, BodyRef, CurrentBody, QuaternionPart, Signal, SignalTerm, World};
-use hrdsl_ir::{Type, Value};
+use hrdsl_ir::world::{
+    Axis, BodyId, BodyRef, CurrentBody, QuaternionPart, Signal, SignalId, SignalTerm, World,
+};
+use hrdsl_ir::{Nanos, Type, Value};
 
 use crate::{
     arm::ArmControl,
     error::SimError,
     hand::HandSet,
     mover::sight_angle,
+    past::SignalPast,
     physics::{PhysicsAdapter, bad, index},
 };
 
@@ -17,6 +20,10 @@ pub(crate) struct SensorView<'a> {
     pub hands: &'a HandSet,
     pub arms: &'a [ArmControl],
     pub currents: &'a [CurrentBody],
+    pub signals: &'a [Signal],
+    pub past: &'a SignalPast,
+    /// The time of the last physics step.
+    pub now: Nanos,
 }
 
 impl SensorView<'_> {
@@ -47,6 +54,13 @@ impl SensorView<'_> {
         })
     }
 
+    /// By how much a signal has changed in the time before now.
+    fn delta(&self, of: SignalId, over: Nanos) -> f64 {
+        let signal = self.signals.get(usize::from(of.0));
+        let now = signal.and_then(|s| self.signal(s).as_f64()).unwrap_or(f64::NAN);
+        now - self.past.at(of, self.now - over).unwrap_or(now)
+    }
+
     pub fn term(&self, term: &SignalTerm) -> Value {
         match *term {
             SignalTerm::Distance(a, b) => Value::Float(self.physics.distance(self.body(a), self.body(b))),
@@ -72,6 +86,16 @@ impl SensorView<'_> {
             }
             SignalTerm::HoldsAny(g) => Value::Bool(self.hands.held_by(usize::from(g.0)).is_some()),
             SignalTerm::JointSpeed(a) => Value::Float(self.arms[usize::from(a.0)].speed(self.physics)),
+            SignalTerm::JointRate(j) => Value::Float(self.physics.joint_speed(usize::from(j.0))),
+            SignalTerm::JointAngle(j) => Value::Float(self.physics.joint_position(usize::from(j.0))),
+            SignalTerm::Torque(j) => Value::Float(self.physics.joint_effort(usize::from(j.0))),
+            SignalTerm::Touches(a, b) => Value::Bool(self.physics.touches(self.body(a), self.body(b))),
+            SignalTerm::Force(a, b) => Value::Float(self.physics.force_between(self.body(a), self.body(b))),
+            SignalTerm::ForceOn(b) => Value::Float(self.physics.force_on(self.body(b))),
+            SignalTerm::Weight(b) => Value::Float(self.physics.load_on(self.body(b))),
+            SignalTerm::Tilt(b) => Value::Float(self.physics.tilt(self.body(b))),
+            SignalTerm::Height(b) => Value::Float(self.physics.lowest(self.body(b))),
+            SignalTerm::Delta(of, over) => Value::Float(self.delta(of, over)),
             SignalTerm::Speed(b) => Value::Float(self.physics.speed(self.body(b))),
             SignalTerm::Heading(b) => {
                 let ahead = self.physics.pose(self.body(b)).x_axis();
@@ -105,19 +129,21 @@ pub(crate) fn check(world: &World, signals: &[Signal]) -> Result<(), SimError> {
             exists(index(*body), world.bodies.len(), "body", what)?;
         }
     }
-    for signal in signals {
+    // A difference is of a signal before, so that none is of itself.
+    for (at, signal) in signals.iter().enumerate() {
         let what = || format!("signal `{}`", signal.name);
         for term in &signal.terms {
-            check_term(term, world, what)?;
+            check_term(term, world, at, what)?;
         }
     }
     Ok(())
 }
 
-/// Checks that what a measurement is of exists.
+/// Checks that what a measurement is of exists, where there are so many signals.
 pub(crate) fn check_term(
     term: &SignalTerm,
     world: &World,
+    signals: usize,
     what: impl Fn() -> String,
 ) -> Result<(), SimError> {
     let gripper = |i: u16| exists(usize::from(i), world.grippers.len(), "gripper", &what);
@@ -125,6 +151,8 @@ pub(crate) fn check_term(
         SignalTerm::Distance(a, b)
         | SignalTerm::Range(a, b)
         | SignalTerm::Angle(a, b)
+        | SignalTerm::Touches(a, b)
+        | SignalTerm::Force(a, b)
         | SignalTerm::Visible(a, b) => {
             check_body(a, world, &what)?;
             check_body(b, world, &what)
@@ -132,6 +160,10 @@ pub(crate) fn check_term(
         SignalTerm::Coordinate(b, _)
         | SignalTerm::Speed(b)
         | SignalTerm::Heading(b)
+        | SignalTerm::ForceOn(b)
+        | SignalTerm::Weight(b)
+        | SignalTerm::Tilt(b)
+        | SignalTerm::Height(b)
         | SignalTerm::Orientation(b, _) => check_body(b, world, &what),
         SignalTerm::Holds(g, b) => {
             gripper(g.0)?;
@@ -139,6 +171,10 @@ pub(crate) fn check_term(
         }
         SignalTerm::HoldsAny(g) => gripper(g.0),
         SignalTerm::JointSpeed(a) => exists(usize::from(a.0), world.arms.len(), "arm", &what),
+        SignalTerm::JointRate(j) | SignalTerm::JointAngle(j) | SignalTerm::Torque(j) => {
+            exists(usize::from(j.0), world.joints.len(), "joint", &what)
+        }
+        SignalTerm::Delta(of, _) => exists(usize::from(of.0), signals, "signal", &what),
     }
 }
 

@@ -7,7 +7,7 @@ use hrdsl_harness::{ArmTarget, CheckedCommand, CommandId, WorldBackend};
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
-    world::{SignalId, SignalTerm, Vec3, WorldAction},
+    world::{SignalId, SignalTerm, WorldAction},
 };
 
 use crate::{WorldSimulation, command::MotorCommand, error::SimError};
@@ -86,6 +86,10 @@ impl WorldBackend for SimWorld {
 
     fn read(&mut self, signal: SignalId) -> Value {
         self.sim.read(signal)
+    }
+
+    fn changes(&self) -> Option<u64> {
+        Some(self.sim.steps())
     }
 
     fn act(&mut self, action: &WorldAction, vars: &[Value]) -> Result<(), String> {

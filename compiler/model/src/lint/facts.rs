@@ -284,7 +284,7 @@ impl<'a> ScenarioFacts<'a> {
             self.makes_exprs(rule.event, &rule.args);
             match &rule.on {
                 TypedRuleTrigger::Event(pattern) => self.waits_for(rule.span, vec![WantedFact::of(pattern)]),
-                TypedRuleTrigger::Commanded { .. } => {}
+                TypedRuleTrigger::Commanded { .. } | TypedRuleTrigger::Edge { .. } => {}
             }
         }
     }

@@ -104,17 +104,7 @@ fn range(scenario: &Scenario, e: &TypedExpr, depth: u32) -> Option<(f64, f64)> {
     let (lo, hi) = match &e.kind {
         TypedExprKind::Const(value) => value.as_f64().map(|x| (x, x))?,
         TypedExprKind::Leaf(leaf) => range(scenario, signal(scenario, leaf, depth)?, depth + 1)?,
-        TypedExprKind::Term(term) => match term {
-            SignalTerm::Distance(..)
-            | SignalTerm::Range(..)
-            | SignalTerm::Speed(_)
-            | SignalTerm::JointSpeed(_) => (0.0, infinite),
-            SignalTerm::Angle(..) => (0.0, std::f64::consts::PI),
-            SignalTerm::Heading(_) => (-std::f64::consts::PI, std::f64::consts::PI),
-            SignalTerm::Orientation(..) => (-1.0, 1.0),
-            SignalTerm::Coordinate(..) => (-infinite, infinite),
-            SignalTerm::Visible(..) | SignalTerm::Holds(..) | SignalTerm::HoldsAny(_) => return None,
-        },
+        TypedExprKind::Term(term) => range_of_term(term)?,
         TypedExprKind::Unary(UnaryOp::Neg, a) => of(a).map(|(lo, hi)| (-hi, -lo))?,
         TypedExprKind::Binary(BinaryOp::Add, a, b) => {
             let (a, b) = (of(a)?, of(b)?);
@@ -157,4 +147,31 @@ fn range(scenario: &Scenario, e: &TypedExpr, depth: u32) -> Option<(f64, f64)> {
         | TypedExprKind::Error => return None,
     };
     (!lo.is_nan() && !hi.is_nan()).then_some((lo, hi))
+}
+
+/// The numbers that a measurement lies between.
+fn range_of_term(term: &SignalTerm) -> Option<(f64, f64)> {
+    let infinite = f64::INFINITY;
+    Some(match term {
+        SignalTerm::Distance(..)
+        | SignalTerm::Range(..)
+        | SignalTerm::Speed(_)
+        | SignalTerm::JointSpeed(_)
+        | SignalTerm::Force(..)
+        | SignalTerm::ForceOn(_)
+        | SignalTerm::Weight(_) => (0.0, infinite),
+        SignalTerm::Angle(..) | SignalTerm::Tilt(_) => (0.0, std::f64::consts::PI),
+        SignalTerm::Heading(_) => (-std::f64::consts::PI, std::f64::consts::PI),
+        SignalTerm::Orientation(..) => (-1.0, 1.0),
+        SignalTerm::Coordinate(..)
+        | SignalTerm::Height(_)
+        | SignalTerm::JointAngle(_)
+        | SignalTerm::JointRate(_)
+        | SignalTerm::Torque(_)
+        | SignalTerm::Delta(..) => (-infinite, infinite),
+        SignalTerm::Visible(..)
+        | SignalTerm::Touches(..)
+        | SignalTerm::Holds(..)
+        | SignalTerm::HoldsAny(_) => return None,
+    })
 }

@@ -10,8 +10,8 @@ use super::{
 };
 use crate::{
     ActorId, AutomatonId, AutomatonVar, FunctionEffects, MessageSubject, NetworkId, Performative, PlayerRef,
-    Role, Scenario, TypedAgent, TypedAutomaton, TypedContext, TypedExpr, TypedExprKind, TypedMethod,
-    TypedStepKind, TypedSync, TypedTime, TypedUpdate, VariableRef, leaves,
+    Role, Scenario, SignalTerm, TypedAgent, TypedAutomaton, TypedContext, TypedExpr, TypedExprKind,
+    TypedMethod, TypedStepKind, TypedSync, TypedTime, TypedUpdate, VariableRef, leaves,
 };
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
@@ -400,7 +400,8 @@ fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<UnusedName<'a>>) {
     let mut read: Vec<bool> = world.signals.iter().map(|s| s.to.iter().any(is_code)).collect();
     let mut mark = |e: &TypedExpr| {
         e.each(&mut |part| {
-            if let TypedExprKind::Leaf(VariableRef::Signal(s)) = part.kind
+            if let TypedExprKind::Leaf(VariableRef::Signal(s))
+            | TypedExprKind::Term(SignalTerm::Delta(s, _)) = part.kind
                 && let Some(read) = read.get_mut(usize::from(s.0))
             {
                 *read = true;
@@ -409,7 +410,7 @@ fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<UnusedName<'a>>) {
     };
     world.signals.iter().for_each(|s| mark(&s.value));
     for rule in &world.rules {
-        rule.guard.iter().chain(&rule.args).for_each(&mut mark);
+        rule.condition().into_iter().chain(&rule.guard).chain(&rule.args).for_each(&mut mark);
     }
     for requirement in &scenario.requirements {
         requirement.pattern.condition().into_iter().for_each(&mut mark);

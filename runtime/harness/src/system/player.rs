@@ -1,6 +1,6 @@
 //! The player of the system actor: answers what its programs ask, lets time pass while they wait, and carries their messages.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Value, binding::MiddlewareBinding};
 use hrdsl_trace::{MachineDeclaration, MachineStep};
@@ -14,6 +14,7 @@ use super::{
     vocabulary::{ActorVocabulary, refuse},
 };
 use crate::{
+    argument::SystemArgument,
     command::{CommandRequest, NotBegun},
     fault::SystemFault,
     message::PlayerMessage,
@@ -153,13 +154,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             SystemRequest::WaitFor { events, timeout } => self.wait_for(index, &events, timeout, cx.now),
             SystemRequest::Drop { events } => Answer(self.drop_mail(index, &events)),
             SystemRequest::Read { signal } => Answer(self.vocabulary.read(&signal, cx.stage.as_deref_mut())),
-            SystemRequest::Emit { event, args } => Answer(match self.vocabulary.emission(&event, &args) {
-                Ok((event, args)) => {
-                    cx.out.push(PlayerMessage::Event { event, args });
-                    SystemAnswer::Ok
-                }
-                Err(answer) => answer,
-            }),
+            SystemRequest::Emit { event, args } => Answer(self.emitted(&event, &args, cx)),
             SystemRequest::Command(request) => match begin(&request, cx) {
                 Ok(id) => Wait(RequestWait::Command(id)),
                 Err(answer) => Answer(answer),
@@ -205,6 +200,21 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 Answer(self.told(called, cx)?)
             }
         })
+    }
+
+    fn emitted(
+        &self,
+        event: &str,
+        args: &BTreeMap<String, SystemArgument>,
+        cx: &mut PlayerContext<'_, '_>,
+    ) -> SystemAnswer {
+        match self.vocabulary.emission(event, args) {
+            Ok((event, args)) => {
+                cx.out.push(PlayerMessage::Event { event, args });
+                SystemAnswer::Ok
+            }
+            Err(answer) => answer,
+        }
     }
 
     fn listed(&mut self, index: ProgramIndex) -> SystemAnswer {

@@ -5,7 +5,7 @@ use rapier3d::parry::{self, bounding_volume::BoundingVolume};
 use rapier3d::prelude::*;
 
 use super::{PhysicsAdapter, body_id, index};
-use crate::math::{BodyFrame, SpaceVector, from_vector, to_pose, to_vector};
+use crate::math::{BodyFrame, SpaceVector, angle_between, from_vector, to_pose, to_vector};
 
 impl PhysicsAdapter {
     /// Between the surfaces; 0 if they touch or overlap.
@@ -95,6 +95,26 @@ impl PhysicsAdapter {
     pub fn sphere_around(&self, body: BodyId) -> (SpaceVector, f64) {
         let sphere = self.shape(body).compute_bounding_sphere(&to_pose(&self.pose(body)));
         (from_vector(sphere.center), f64::from(sphere.radius))
+    }
+
+    /// How far the direction that was vertical at the start has been tipped from it, rad.
+    pub fn tilt(&self, body: BodyId) -> f64 {
+        let upright = self.start(body).turn.inverse() * SpaceVector::z();
+        angle_between(&(self.pose(body).turn * upright), &SpaceVector::z())
+    }
+
+    /// The height of the body's lowest point above z = 0, m.
+    pub fn lowest(&self, body: BodyId) -> f64 {
+        let BodyFrame { at, turn } = self.pose(body);
+        let up = turn.inverse() * SpaceVector::z();
+        let round = |radius: f64| radius * (1.0 - up.z * up.z).max(0.0).sqrt();
+        let below = match self.parts[index(body)].shape {
+            BodyShape::Box { size: [x, y, z] } => (x * up.x.abs() + y * up.y.abs() + z * up.z.abs()) / 2.0,
+            BodyShape::Sphere { radius } => radius,
+            BodyShape::Capsule { radius, length } => radius + length / 2.0 * up.z.abs(),
+            BodyShape::Cylinder { radius, length } => round(radius) + length / 2.0 * up.z.abs(),
+        };
+        at.z - below
     }
 
     /// How far it is to the body's surface (m) from a place in a direction of length 1, if it is not farther than so much.

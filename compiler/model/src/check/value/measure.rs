@@ -9,14 +9,30 @@ use crate::check::{
     value::expr::FUNCTIONS,
 };
 use crate::{
-    ArmId, Axis, BodyRef, Dimension, GripperId, InferredType, SignalId, SignalTerm, TypedExpr, TypedExprKind,
+    Axis, BodyRef, Dimension, GripperId, InferredType, SignalId, SignalTerm, TypedExpr, TypedExprKind,
     VariableRef,
     noun::Noun,
     report::{names, types},
 };
 
-const MEASURES: [&str; 8] =
-    ["distance", "range", "angle", "visible", "holds", "joint_speed", "speed", "heading"];
+const MEASURES: [&str; 16] = [
+    "distance",
+    "range",
+    "angle",
+    "visible",
+    "holds",
+    "joint_speed",
+    "speed",
+    "heading",
+    "touches",
+    "force",
+    "weight",
+    "torque",
+    "joint_angle",
+    "tilt",
+    "height",
+    "delta",
+];
 
 impl Checker<'_> {
     /// A declared signal.
@@ -119,8 +135,8 @@ impl Checker<'_> {
             return TypedExpr::error(span);
         };
         let want = match name.as_str() {
-            "distance" | "range" | "angle" | "visible" => 2..=2,
-            "holds" => 1..=2,
+            "distance" | "range" | "angle" | "visible" | "touches" | "delta" => 2..=2,
+            "holds" | "force" => 1..=2,
             _ => 1..=1,
         };
         if !want.contains(&args.len()) {
@@ -133,10 +149,9 @@ impl Checker<'_> {
     fn term(&mut self, name: &str, args: &[ast::ExprSyntax], prefix: &str, span: Span) -> Option<TypedExpr> {
         let length = InferredType::Float(Dimension::LENGTH);
         let (what, ty) = match name {
-            "joint_speed" => {
-                let arm = self.world_arg(Noun::Arm, &args[0], prefix)?;
-                (SignalTerm::JointSpeed(ArmId(arm)), InferredType::Float(Dimension::ANGULAR_SPEED))
-            }
+            "joint_speed" | "joint_angle" | "torque" => self.of_joint(name, &args[0], prefix)?,
+            "delta" => self.delta(&args[0], &args[1], prefix)?,
+            "touches" | "force" | "weight" => self.contact(name, args, prefix)?,
             "holds" => {
                 let gripper = self.world_arg(Noun::Gripper, &args[0], prefix).map(GripperId);
                 let body = args.get(1).map(|a| self.body_arg(a, prefix));
@@ -145,11 +160,14 @@ impl Checker<'_> {
                     None => (SignalTerm::HoldsAny(gripper?), InferredType::Bool),
                 }
             }
-            "speed" => {
-                (SignalTerm::Speed(self.body_arg(&args[0], prefix)?), InferredType::Float(Dimension::SPEED))
-            }
-            "heading" => {
-                (SignalTerm::Heading(self.body_arg(&args[0], prefix)?), InferredType::Float(Dimension::ANGLE))
+            "speed" | "heading" | "tilt" | "height" => {
+                let body = self.body_arg(&args[0], prefix)?;
+                match name {
+                    "speed" => (SignalTerm::Speed(body), InferredType::Float(Dimension::SPEED)),
+                    "heading" => (SignalTerm::Heading(body), InferredType::Float(Dimension::ANGLE)),
+                    "tilt" => (SignalTerm::Tilt(body), InferredType::Float(Dimension::ANGLE)),
+                    _ => (SignalTerm::Height(body), length),
+                }
             }
             _ => {
                 let (a, b) = (self.body_arg(&args[0], prefix), self.body_arg(&args[1], prefix));
@@ -176,7 +194,12 @@ impl Checker<'_> {
         }
     }
 
-    fn world_arg(&mut self, noun: Noun, arg: &ast::ExprSyntax, prefix: &str) -> Option<u16> {
+    pub(in crate::check) fn world_arg(
+        &mut self,
+        noun: Noun,
+        arg: &ast::ExprSyntax,
+        prefix: &str,
+    ) -> Option<u16> {
         match &arg.kind {
             Syntax::Path(path) => self.world_name(noun, &path.names, prefix),
             _ => {

@@ -2,6 +2,7 @@
 
 pub(super) mod args;
 pub(super) mod combine;
+pub(super) mod contact;
 pub(super) mod due;
 pub(super) mod element;
 pub(super) mod expr;

@@ -2,6 +2,7 @@
 
 mod arms;
 pub(in crate::check) mod device;
+mod edge;
 mod mobile;
 pub(in crate::check) mod parts;
 mod posture;
@@ -296,6 +297,7 @@ impl<'a> Checker<'a> {
     fn rules(&mut self, p: &PlacedMember<'a>) {
         let Member::Rule(rule) = &p.member.kind else { return };
         let on = match &rule.on {
+            SyntaxRuleOn::Event(call) if self.is_edge(call) => self.edge_of(call, &p.prefix),
             SyntaxRuleOn::Event(call) => {
                 let mut patterns = self.patterns(std::slice::from_ref(call)).into_iter();
                 let first = patterns.next();

@@ -1,0 +1,59 @@
+//! Rules that wait for a condition: `on rising(C)`, `on falling(C, D)`.
+
+use hrdsl_syntax::ast;
+
+use crate::{
+    InferredType, TypedExprKind,
+    check::{checker::Checker, state::scope::ExprEnv},
+    noun::Noun,
+    report::{types, world::bad_world},
+    world::TypedRuleTrigger,
+};
+
+const RISING: &str = "rising";
+const FALLING: &str = "falling";
+
+impl Checker<'_> {
+    /// Whether a rule waits for a condition. A scenario that has an event of this name means the event.
+    pub(super) fn is_edge(&self, call: &ast::CallSyntax) -> bool {
+        let name = call.name.text.as_str();
+        (name == RISING || name == FALLING)
+            && self.events.table.get(name).is_none()
+            && self.given(name).is_none()
+    }
+
+    pub(super) fn edge_of(&mut self, call: &ast::CallSyntax, prefix: &str) -> Option<TypedRuleTrigger> {
+        let name = &call.name.text;
+        let args = call.args.as_deref().unwrap_or_default();
+        let (condition, held) = match args {
+            [condition] => (condition, None),
+            [condition, held] => (condition, Some(held)),
+            [] | [_, _, _, ..] => {
+                let issue = types::counts(Noun::Function, name, 1, args.len(), call.span);
+                let help = format!(
+                    "write `{name}(CONDITION)`, or `{name}(CONDITION, TIME)`: it has held for so long"
+                );
+                self.report(issue.help(help));
+                return None;
+            }
+        };
+        let mut env = ExprEnv::measured(prefix);
+        let condition = self.expr_of(condition, InferredType::Bool, &mut env);
+        let held = held.map_or(Some(0.0), |e| self.time(e, "how long it has held", false))?;
+        let mut reads = false;
+        condition.each(&mut |part| {
+            reads |=
+                matches!(part.kind, TypedExprKind::Leaf(_) | TypedExprKind::Term(_) | TypedExprKind::Error);
+        });
+        if !reads {
+            let message = "the condition measures nothing, and never changes";
+            self.report(bad_world(
+                condition.span,
+                message,
+                "compare a measurement: `distance(a, b) < 50 cm`",
+            ));
+            return None;
+        }
+        Some(TypedRuleTrigger::Edge { rising: name == RISING, condition, held })
+    }
+}

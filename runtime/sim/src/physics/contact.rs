@@ -1,0 +1,75 @@
+//! Contacts: which bodies press on each other, and how hard, as the solver found it in the last step.
+//!
+//! The solver gives an impulse at each point of a contact, along its normal; over the time of the step it is a force. Friction,
+//! which acts across the normal, is not counted. Bodies that the physics lets pass through each other never press.
+
+use hrdsl_ir::world::BodyId;
+use rapier3d::prelude::*;
+
+use super::{PhysicsAdapter, body_id, index};
+use crate::math::{SpaceVector, from_vector};
+
+/// A contact of one body with another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pressing {
+    pub other: BodyId,
+    /// Along the surfaces' normals, N.
+    pub force: f64,
+}
+
+impl PhysicsAdapter {
+    /// What presses a body, and how hard.
+    pub fn pressings(&self, body: BodyId) -> impl Iterator<Item = Pressing> + '_ {
+        let own = self.parts[index(body)].collider;
+        self.world.contact_pairs_with(own).filter_map(move |pair| {
+            let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
+            let force = self.push(pair).norm();
+            let number = usize::try_from(self.world.colliders[other].user_data).ok()?;
+            (force > 0.0).then_some(Pressing { other: body_id(number), force })
+        })
+    }
+
+    /// Whether two surfaces are in contact: one presses on the other, or they touch or overlap.
+    pub fn touches(&self, a: BodyId, b: BodyId) -> bool {
+        self.force_between(a, b) > 0.0 || self.distance(a, b) <= 0.0
+    }
+
+    /// How hard two bodies press on each other, N.
+    pub fn force_between(&self, a: BodyId, b: BodyId) -> f64 {
+        let (a, b) = (self.parts[index(a)].collider, self.parts[index(b)].collider);
+        self.world.narrow_phase.contact_pair(a, b).map_or(0.0, |pair| self.push(pair).norm())
+    }
+
+    /// How hard all others press on the body: the sum over them, whatever the directions, N.
+    pub fn force_on(&self, body: BodyId) -> f64 {
+        self.pushes(body).map(|push| push.norm()).sum()
+    }
+
+    /// How hard others press down on the body: the vertical parts of what comes from above, N.
+    pub fn load_on(&self, body: BodyId) -> f64 {
+        self.pushes(body).map(|push| (-push.z).max(0.0)).sum()
+    }
+
+    /// The forces on the body, of each other one.
+    fn pushes(&self, body: BodyId) -> impl Iterator<Item = SpaceVector> + '_ {
+        let own = self.parts[index(body)].collider;
+        let others = (0..self.parts.len()).map(body_id).map(|other| self.parts[index(other)].collider);
+        // In the order of the bodies: what floats add up to must not depend on the engine's own order.
+        others.filter(move |other| *other != own).filter_map(move |other| {
+            let pair = self.world.narrow_phase.contact_pair(own, other)?;
+            let push = self.push(pair);
+            Some(if pair.collider1 == own { -push } else { push })
+        })
+    }
+
+    /// The force on the second of a pair; its opposite is on the first.
+    fn push(&self, pair: &ContactPair) -> SpaceVector {
+        let seconds = f64::from(self.world.integration_parameters.dt);
+        let mut sum = SpaceVector::zeros();
+        for manifold in pair.solver_manifolds().iter().filter(|m| m.data.num_active_contacts() > 0) {
+            let impulse: f64 = manifold.points.iter().map(|point| f64::from(point.data.impulse)).sum();
+            sum += from_vector(manifold.data.normal) * impulse;
+        }
+        sum / seconds
+    }
+}
