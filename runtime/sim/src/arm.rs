@@ -14,7 +14,7 @@ use crate::{
     kinematics::{KinematicChain, KinematicLink},
     math::{SpaceVector, v3},
     motion::{ArmGoal, ArmMotion, ArmPath},
-    physics::{ArmDynamics, PhysicsAdapter, bad, index},
+    physics::{PhysicsAdapter, bad, dynamics::ArmDynamics, index},
     planner::{NoRoute, RoutePlanner},
     profile::{brake_time, braking},
     route::{JointRoute, JointTrack},

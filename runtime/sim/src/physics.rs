@@ -3,7 +3,7 @@
 //! A joint whose limits are both zero joins its child rigidly: the two are one body of the engine, with two shapes.
 
 mod contact;
-mod dynamics;
+pub(crate) mod dynamics;
 mod joints;
 mod pairs;
 mod surface;
@@ -16,7 +16,6 @@ use crate::{
     error::SimError,
     math::{BodyFrame, from_pose, from_rpy, from_vector, to_pose, to_vector, v3},
 };
-pub(crate) use dynamics::ArmDynamics;
 use joints::DrivenJoint;
 use pairs::{ExemptPairs, JointGraph};
 

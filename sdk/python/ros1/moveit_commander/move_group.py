@@ -303,7 +303,7 @@ class MoveGroupCommander(Targets):
 
     def __getattr__(self, name: str) -> Any:
         if name in _MISSING:
-            unsupported(name, "a plan is a straight line between two postures")
+            unsupported(name, "a plan is the way that hrdsl's own planner finds")
         raise AttributeError("%r object has no attribute %r" % (type(self).__name__, name))
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PlanningSceneInterface"]
 
-_NOT_AVOIDED = "hrdsl checks no collisions: objects of the planning scene are kept, and no plan avoids them"
+_NOT_AVOIDED = "plans avoid what is in the scenario's world: objects of the planning scene are kept, and no plan avoids them"
 
 #: One scene for all, as move_group has it: messages by the objects' names.
 _world: dict[str, Any] = {}
