@@ -37,8 +37,10 @@ const SLIDER_LAG: f64 = 0.01;
 /// that they are stable.
 const RIGID: f64 = 25.0;
 const RIGID_OF_STEPS: f64 = 0.25;
-/// Over how long the pace of set-points is smoothed, s.
-const SMOOTHING: f64 = 0.1;
+/// How fast the aim comes to set-points, 1/s: they come between steps, now none in one and now two, and their joint goes evenly.
+const SMOOTHING: f64 = 10.0;
+/// How near it must be to be there, rad or m.
+const THERE: f64 = 1e-6;
 /// Below this rate an arm counts as held up, and its errors are not made good.
 const HELD_UP: f64 = 0.2;
 /// How fast lasting errors are made good, as a part of that.
@@ -307,9 +309,11 @@ impl ArmControl {
                 motion.aim()
             }
             None => {
-                let most = self.speeds.iter().map(|v| v * h * rate);
-                let rest = self.rest.iter().zip(&self.aimed).zip(most);
-                self.rest = rest.map(|((q, aimed), most)| q + (aimed - q).clamp(-most, most)).collect();
+                let part = (SMOOTHING * h).min(1.0);
+                for ((q, aimed), speed) in self.rest.iter_mut().zip(&self.aimed).zip(&self.speeds) {
+                    let (left, most) = (aimed - *q, speed * h * rate);
+                    *q = if left.abs() < THERE { *aimed } else { *q + (left * part).clamp(-most, most) };
+                }
                 self.rest.clone()
             }
         };
@@ -321,16 +325,9 @@ impl ArmControl {
     fn steer(&mut self, a: &[f64], b: &[f64], (h, rate): (f64, f64), physics: &mut PhysicsAdapter) {
         let (positions, speeds) = (self.positions(physics), self.speeds(physics));
         let (n, rigid) = (self.joints.len(), RIGID.min(RIGID_OF_STEPS / h));
-        let follows = self.motion.is_some();
         let mut wanted = DVector::zeros(n);
         for i in 0..n {
-            let asked = (b[i] - a[i]) / h;
-            // Set-points come between steps, now none in one and now two: their pace is that of a while.
-            let pace = if follows {
-                asked
-            } else {
-                self.pace[i] + (asked - self.pace[i]) * (h / SMOOTHING).min(1.0)
-            };
+            let pace = (b[i] - a[i]) / h;
             let (error, slip) = (a[i] - positions[i], self.pace[i] - speeds[i]);
             wanted[i] =
                 (pace - self.pace[i]) / h + rigid * rigid * error + 2.0 * rigid * slip + self.lasting[i];
