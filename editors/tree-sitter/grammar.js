@@ -749,10 +749,11 @@ module.exports = grammar({
       ),
 
     test_declaration: ($) => seq(keyword($, "test"), field("name", $._path), field("body", $.test_body)),
-    test_body: ($) =>
-      block($, choice(alias($._test_setting, $.setting), $.script, $.stimulus_step, $.await_step, $.wait_step)),
+    test_body: ($) => block($, $._test_member),
     script: ($) => seq(field("actor", $.identifier), field("body", $.script_body)),
-    script_body: ($) => block($, choice($.stimulus_step, $.await_step, $.wait_step)),
+    script_body: ($) => block($, $._test_member),
+    _test_member: ($) =>
+      choice(alias($._test_setting, $.setting), $.script, $.stimulus_step, $.await_step, $.wait_step),
     _test_setting: ($) =>
       choice(
         seq(keyword($, "seed"), field("value", $.expression)),
@@ -762,10 +763,14 @@ module.exports = grammar({
       ),
     stimulus_step: ($) =>
       seq(
-        optional(keyword($, "meanwhile")),
-        field("stimulus", $.call),
+        choice(
+          seq(optional(keyword($, "meanwhile")), field("stimulus", $.call)),
+          // A stimulus of this name.
+          field("stimulus", alias($._call_of_meanwhile, $.call)),
+        ),
         optional(seq(keyword($, "with"), list($.sampled))),
       ),
+    _call_of_meanwhile: ($) => seq(field("name", alias(keyword($, "meanwhile"), $.identifier)), field("arguments", $.arguments)),
     sampled: ($) => seq(field("name", $.identifier), "=", field("value", $.expression)),
 
     // ── World and system ──
