@@ -289,8 +289,7 @@ impl<E> WorldAction<E> {
     fn lower(&self, f: LowerExpr<'_, E>) -> WorldAction {
         match self {
             WorldAction::Move { body, to, over } => {
-                let to = WorldPoint { of: to.of, offset: to.offset.each_ref().map(f) };
-                WorldAction::Move { body: *body, to, over: f(over) }
+                WorldAction::Move { body: *body, to: to.lower(f), over: f(over) }
             }
             WorldAction::Look { body, at, offset, distance, angle } => WorldAction::Look {
                 body: *body,
@@ -301,7 +300,19 @@ impl<E> WorldAction<E> {
             },
             WorldAction::Grasp { gripper } => WorldAction::Grasp { gripper: *gripper },
             WorldAction::LetGo { gripper } => WorldAction::LetGo { gripper: *gripper },
+            WorldAction::Walk { figure, along, speed } => WorldAction::Walk {
+                figure: *figure,
+                along: along.iter().map(|point| point.lower(f)).collect(),
+                speed: f(speed),
+            },
+            WorldAction::Turn { figure, to } => WorldAction::Turn { figure: *figure, to: to.lower(f) },
         }
+    }
+}
+
+impl<E> WorldPoint<E> {
+    fn lower(&self, f: LowerExpr<'_, E>) -> WorldPoint {
+        WorldPoint { of: self.of, offset: self.offset.each_ref().map(f) }
     }
 }
 

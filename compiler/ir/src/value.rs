@@ -46,6 +46,7 @@ pub enum Unit {
     Pascal,
     Hertz,
     NewtonMetre,
+    NewtonPerMetre,
     KilogramSquareMetre,
     Byte,
 }
@@ -68,6 +69,7 @@ impl Unit {
             Unit::Pascal => "Pa",
             Unit::Hertz => "Hz",
             Unit::NewtonMetre => "Nm",
+            Unit::NewtonPerMetre => "N/m",
             Unit::KilogramSquareMetre => "kgm^2",
             Unit::Byte => "B",
         }
@@ -303,6 +305,7 @@ mod tests {
             (Unit::Pascal, "Pa", "\"pascal\""),
             (Unit::Hertz, "Hz", "\"hertz\""),
             (Unit::NewtonMetre, "Nm", "\"newton_metre\""),
+            (Unit::NewtonPerMetre, "N/m", "\"newton_per_metre\""),
             (Unit::KilogramSquareMetre, "kgm^2", "\"kilogram_square_metre\""),
         ];
         for (unit, symbol, data) in written {

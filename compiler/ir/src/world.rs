@@ -34,6 +34,8 @@ ids! {
     BaseId,
     /// Index into [`World::lasers`].
     LaserId,
+    /// Index into [`World::figures`].
+    FigureId,
     /// Index into [`World::devices`].
     DeviceId,
     /// Index into [`World::device_kinds`].
@@ -61,6 +63,7 @@ pub struct World {
     pub grippers: Vec<Gripper>,
     pub bases: Vec<Base>,
     pub lasers: Vec<Laser>,
+    pub figures: Vec<Figure>,
     /// What the system can command or read: the arms, then the grippers, the bases, the lasers.
     pub devices: Vec<Device>,
     /// What it can tell them.
@@ -105,8 +108,10 @@ pub struct Body {
     /// Where it starts, in the world.
     pub position: Vec3,
     pub rotation: Vec3,
-    /// Kilograms; of no effect on bodies that are not dynamic.
+    /// Kilograms; of no effect on bodies that are neither dynamic nor guided.
     pub mass: f64,
+    /// The spring constant of its surface against what can move, N/m; `None`: it does not yield.
+    pub stiffness: Option<f64>,
     /// Ghosts collide with nothing but are seen by distances and contacts.
     pub ghost: bool,
 }
@@ -118,6 +123,8 @@ pub enum BodyMotion {
     Dynamic,
     /// Moved by actions only; pushes dynamic bodies.
     Kinematic,
+    /// Drawn by a spring to where actions send it, and pushed by what it meets: the body of somebody alive.
+    Guided,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -274,6 +281,39 @@ impl Laser {
     }
 }
 
+/// Somebody with a trunk on legs: guided bodies that go where one of them is sent, and keep their balance, or fall.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    pub name: String,
+    pub pelvis: BodyId,
+    pub trunk: BodyId,
+    pub head: BodyId,
+    /// About which the trunk leans, at the start, in the world.
+    pub hip: Vec3,
+    /// On the trunk or on the pelvis: arms and legs.
+    pub limbs: Vec<Limb>,
+    /// Of its walk, m/s.
+    pub speed: f64,
+    /// About the vertical, rad/s.
+    pub turn: f64,
+    /// Of all of it, kg: the masses of its bodies are those that a contact feels.
+    pub mass: f64,
+}
+
+/// An arm or a leg: two bones between three pivots, and perhaps a hand.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Limb {
+    pub name: String,
+    /// The trunk or the pelvis of its figure.
+    pub of: BodyId,
+    pub upper: BodyId,
+    pub lower: BodyId,
+    /// What ends it, and goes to places.
+    pub end: Option<BodyId>,
+    /// The shoulder, the elbow and the wrist, or the hip, the knee and the ankle, at the start, in the world.
+    pub pivots: [Vec3; 3],
+}
+
 /// A name for one of several bodies: the one that the gripper holds; or, if none, the first that no gripper has yet
 /// taken; or the last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -372,6 +412,9 @@ pub enum SignalTerm {
     Force(BodyRef, BodyRef),
     /// `force(b)`: how hard all others press on it, N
     ForceOn(BodyRef),
+    /// `transient_force(a)`, `transient_force(a, b)`, `quasistatic_force(a)`, `quasistatic_force(a, b)`: how hard others, or
+    /// one, press on what yields, in contacts of this kind, N
+    Pressed { body: BodyRef, by: Option<BodyRef>, phase: ContactPhase },
     /// `weight(b)`: how hard others press down on it, N
     Weight(BodyRef),
     /// `tilt(b)`: between the vertical and where its direction points that was vertical at the start, rad, 0..π
@@ -384,6 +427,16 @@ pub enum SignalTerm {
     Heading(BodyRef),
     /// A part of the unit quaternion by which it is turned, whose w is not negative.
     Orientation(BodyRef, QuaternionPart),
+}
+
+/// Which of the two kinds of ISO/TS 15066, 5.5.2, a contact is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactPhase {
+    /// A blow: what is hit can recoil.
+    Transient,
+    /// It lasts, or what is pressed is clamped.
+    QuasiStatic,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -430,13 +483,13 @@ pub struct WorldPoint<E = Expr> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WorldAction<E = Expr> {
-    /// `move(b, to, over)`: a kinematic body goes to the point on a straight line, in the given seconds; the body keeps
-    /// its rotation.
+    /// `move(b, to, over)`: a kinematic or guided body goes to the point on a straight line, in the given seconds; the body
+    /// keeps its rotation. Of a figure it is the head, a hand, or the pelvis, which stands for all of it.
     Move { body: BodyId, to: WorldPoint<E>, over: E },
-    /// `look(b, at, offset, distance, angle)`: a kinematic body goes, in half a second, to look at a target. The line of
+    /// `look(b, at, offset, distance, angle)`: such a body goes, in half a second, to look at a target. The line of
     /// sight runs level through the target's centre, along the body's own x axis at the start of the run. The body goes
     /// to that end of it where it is now, then `offset` to the left as seen from the target, at its present height but
-    /// no lower than the target and no more than 10 cm above it, so that `range` is exactly `distance`. It turns
+    /// no lower than the target and no more than 10 cm above it (of a figure, see `spec/world.md`), so that `range` is exactly `distance`. It turns
     /// its x axis to the target and then, about the vertical and to its left, until `angle` is what was asked for.
     /// All of this for where the target is at the time of the action. Metres and radians.
     Look { body: BodyId, at: BodyRef, offset: E, distance: E, angle: E },
@@ -444,4 +497,8 @@ pub enum WorldAction<E = Expr> {
     Grasp { gripper: GripperId },
     /// `let_go(g)`
     LetGo { gripper: GripperId },
+    /// `walk_to(f, …, speed)`: a figure turns to each of the points in turn, and walks there, at no more than this speed, m/s.
+    Walk { figure: FigureId, along: Vec<WorldPoint<E>>, speed: E },
+    /// `turn_to(f, at)`: a figure turns on the spot until it faces the point.
+    Turn { figure: FigureId, to: WorldPoint<E> },
 }

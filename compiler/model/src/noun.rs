@@ -68,6 +68,8 @@ pub(crate) enum Noun {
     Laser,
     /// Any of these four.
     Device,
+    Limb,
+    Figure,
     Posture,
     /// Of which devices are.
     DeviceKind,
@@ -159,6 +161,8 @@ impl Noun {
             | Noun::Gripper
             | Noun::Base
             | Noun::Laser
+            | Noun::Limb
+            | Noun::Figure
             | Noun::Posture
             | Noun::Device
             | Noun::Command
@@ -239,6 +243,8 @@ impl fmt::Display for Noun {
             Noun::Base => "base",
             Noun::Laser => "laser",
             Noun::Device => "device",
+            Noun::Limb => "limb",
+            Noun::Figure => "figure",
             Noun::Posture => "posture",
             Noun::DeviceKind => "kind of device",
             Noun::Command => "command",

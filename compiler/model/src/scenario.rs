@@ -31,7 +31,7 @@ pub use hrdsl_ir::{
     },
     test::{Test, TestStep},
     world::{
-        ArmId, Axis, BaseId, BodyId, BodyMotion, BodyRef, BodyShape, CurrentBody, CurrentId, GripperId,
+        ArmId, Axis, BaseId, BodyId, BodyMotion, BodyRef, BodyShape, CurrentBody, CurrentId, FigureId, GripperId,
         JointId, LaserId, SignalId, SignalTerm,
     },
 };

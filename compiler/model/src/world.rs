@@ -23,6 +23,8 @@ pub struct TypedWorld {
     pub grippers: Vec<TypedGripper>,
     pub bases: Vec<TypedBase>,
     pub lasers: Vec<TypedLaser>,
+    pub limbs: Vec<TypedLimb>,
+    pub figures: Vec<TypedFigure>,
     pub currents: Vec<CurrentBody>,
     pub signals: Vec<TypedSignal>,
     pub rules: Vec<TypedWorldRule>,
@@ -72,6 +74,8 @@ pub struct TypedBody {
     pub position: [f64; 3],
     pub rotation: [f64; 3],
     pub mass: f64,
+    /// N/m
+    pub stiffness: Option<f64>,
     pub ghost: bool,
     pub graspable: bool,
     pub span: Span,
@@ -132,6 +136,33 @@ pub struct TypedBase {
     pub acceleration: f64,
     /// Seconds.
     pub timeout: Option<f64>,
+}
+
+/// An arm or a leg, in the coordinates of its part, which are those of its figure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TypedLimb {
+    pub name: String,
+    pub of: BodyId,
+    pub upper: BodyId,
+    pub lower: BodyId,
+    pub end: Option<BodyId>,
+    pub pivots: [[f64; 3]; 3],
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TypedFigure {
+    pub name: String,
+    pub pelvis: BodyId,
+    pub trunk: BodyId,
+    pub head: BodyId,
+    pub hip: [f64; 3],
+    /// By their places among the world's.
+    pub limbs: Vec<usize>,
+    /// m/s, rad/s, kg
+    pub speed: f64,
+    pub turn: f64,
+    pub mass: f64,
+    pub frame: PartFrame,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -5,8 +5,8 @@ use hrdsl_ir::{
     device::{Device, DeviceBody, DeviceKind},
     value::nanos,
     world::{
-        Arm, ArmId, Axis, Base, BaseId, Body, BodyId, BodyRef, DeviceKindId, Gripper, GripperId, Joint,
-        Laser, LaserId, RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
+        Arm, ArmId, Axis, Base, BaseId, Body, BodyId, BodyRef, ContactPhase, DeviceKindId, Figure, Gripper, GripperId, Joint,
+        Laser, LaserId, Limb, RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
     },
 };
 use hrdsl_model::{self as model, VariableRef, world as from};
@@ -45,6 +45,7 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         grippers: w.grippers.iter().map(gripper).collect(),
         bases: w.bases.iter().map(base).collect(),
         lasers: w.lasers.iter().map(laser).collect(),
+        figures: w.figures.iter().map(|f| figure(f, w)).collect(),
         currents: w.currents.clone(),
         devices: devices(w, kinds),
         device_kinds: kinds.to_vec(),
@@ -79,6 +80,29 @@ fn base(b: &from::TypedBase) -> Base {
     }
 }
 
+fn figure(f: &from::TypedFigure, world: &from::TypedWorld) -> Figure {
+    let place = |at: [f64; 3]| f.frame.place(at);
+    let limb = |l: &from::TypedLimb| Limb {
+        name: l.name.clone(),
+        of: l.of,
+        upper: l.upper,
+        lower: l.lower,
+        end: l.end,
+        pivots: l.pivots.map(place),
+    };
+    Figure {
+        name: f.name.clone(),
+        pelvis: f.pelvis,
+        trunk: f.trunk,
+        head: f.head,
+        hip: place(f.hip),
+        limbs: f.limbs.iter().filter_map(|at| world.limbs.get(*at)).map(limb).collect(),
+        speed: f.speed,
+        turn: f.turn,
+        mass: f.mass,
+    }
+}
+
 fn laser(l: &from::TypedLaser) -> Laser {
     let ((lo, hi), (nearest, farthest)) = (l.angles, l.range);
     Laser { name: l.name.clone(), body: l.body, at: l.at, lo, hi, beams: l.beams, nearest, farthest }
@@ -94,6 +118,7 @@ fn body(b: &from::TypedBody) -> Body {
         position: b.frame.place(b.position),
         rotation: [roll, pitch, yaw + b.frame.yaw],
         mass: b.mass,
+        stiffness: b.stiffness,
         ghost: b.ghost,
     }
 }
@@ -147,7 +172,7 @@ fn type_of(t: SignalTerm, world: Option<&from::TypedWorld>) -> Type {
         SignalTerm::Angle(..) | SignalTerm::Heading(_) | SignalTerm::Tilt(_) | SignalTerm::JointAngle(_) => {
             Type::Float(Unit::Radian)
         }
-        SignalTerm::Force(..) | SignalTerm::ForceOn(_) | SignalTerm::Weight(_) => Type::Float(Unit::Newton),
+        SignalTerm::Force(..) | SignalTerm::ForceOn(_) | SignalTerm::Weight(_) | SignalTerm::Pressed { .. } => Type::Float(Unit::Newton),
         SignalTerm::Torque(_) => Type::Float(Unit::NewtonMetre),
         SignalTerm::Delta(of, _) => {
             let of = world.and_then(|world| world.signals.get(usize::from(of.0)));
@@ -193,6 +218,14 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
         SignalTerm::Touches(a, b) => format!("touches({}, {})", body(a), body(b)),
         SignalTerm::Force(a, b) => format!("force({}, {})", body(a), body(b)),
         SignalTerm::ForceOn(b) => format!("force({})", body(b)),
+        SignalTerm::Pressed { body: b, by, phase } => {
+            let name = match phase {
+                ContactPhase::Transient => "transient_force",
+                ContactPhase::QuasiStatic => "quasistatic_force",
+            };
+            let by = by.map_or_else(String::new, |by| format!(", {}", body(by)));
+            format!("{name}({}{by})", body(b))
+        }
         SignalTerm::Weight(b) => format!("weight({})", body(b)),
         SignalTerm::Tilt(b) => format!("tilt({})", body(b)),
         SignalTerm::Height(b) => format!("height({})", body(b)),

@@ -19,7 +19,8 @@ use crate::pattern::RequirementPattern;
 pub use crate::system::{ProgramSyntax, SystemMember, SystemMemberKind, SystemSyntax};
 pub use crate::world::{
     ArmSyntax, BaseSyntax, BodySyntax, CommandParamSyntax, DeviceCommandSyntax, DeviceMember,
-    DeviceMemberKind, DeviceSyntax, ExpectationSyntax, GripperSyntax, JointSyntax, LaserSyntax, PartSyntax,
+    DeviceMemberKind, DeviceSyntax, ExpectationSyntax, FigureSyntax, GripperSyntax, JointSyntax, LaserSyntax,
+    LimbSyntax, PartSyntax,
     PostureSyntax, RuleSyntax, RuleTriggerSyntax, WorldMember, WorldMemberKind, WorldSyntax,
 };
 

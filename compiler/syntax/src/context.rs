@@ -71,6 +71,7 @@ pub(crate) enum EdgePart {
 pub(crate) enum BodyPart {
     Rotated(ExprSyntax, Span),
     Mass(ExprSyntax, Span),
+    Stiffness(ExprSyntax, Span),
     Ghost(Span),
     Graspable(Span),
 }
@@ -399,8 +400,8 @@ impl<'t> ParseContext<'t> {
         at: ExprSyntax,
         parts: Vec<BodyPart>,
     ) -> BodySyntax {
-        let (rotated, mass, ghost, graspable) = (None, None, false, false);
-        let mut body = BodySyntax { name, motion, shape, sizes, at, rotated, mass, ghost, graspable };
+        let (rotated, mass, stiffness, ghost, graspable) = (None, None, None, false, false);
+        let mut body = BodySyntax { name, motion, shape, sizes, at, rotated, mass, stiffness, ghost, graspable };
         for part in parts {
             match part {
                 BodyPart::Rotated(expr, span) => {
@@ -410,6 +411,10 @@ impl<'t> ParseContext<'t> {
                 BodyPart::Mass(expr, span) => {
                     self.once(body.mass.is_none(), "`mass`", "a body", span);
                     body.mass.get_or_insert(expr);
+                }
+                BodyPart::Stiffness(expr, span) => {
+                    self.once(body.stiffness.is_none(), "`stiffness`", "a body", span);
+                    body.stiffness.get_or_insert(expr);
                 }
                 BodyPart::Ghost(span) => {
                     self.once(!body.ghost, "`ghost`", "a body", span);

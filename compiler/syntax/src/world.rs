@@ -52,6 +52,8 @@ pub enum WorldMemberKind {
     Gripper(Box<GripperSyntax>),
     Base(Box<BaseSyntax>),
     Laser(Box<LaserSyntax>),
+    Limb(Box<LimbSyntax>),
+    Figure(Box<FigureSyntax>),
     Posture(Box<PostureSyntax>),
     /// `current leg in leg1, leg2 by robot.grip`
     Current {
@@ -71,11 +73,11 @@ pub enum WorldMemberKind {
     Error,
 }
 
-/// `body palm: dynamic box(4 cm, 8 cm, 8 cm) at (…) rotated (…) mass 0.4 kg ghost graspable`
+/// `body palm: dynamic box(4 cm, 8 cm, 8 cm) at (…) rotated (…) mass 0.4 kg stiffness 75 N/mm ghost graspable`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BodySyntax {
     pub name: NameSyntax,
-    /// `fixed`, `dynamic`, `kinematic`
+    /// `fixed`, `dynamic`, `kinematic`, `guided`
     pub motion: NameSyntax,
     /// `box`, `sphere`, `capsule`, `cylinder`
     pub shape: NameSyntax,
@@ -83,6 +85,7 @@ pub struct BodySyntax {
     pub at: ExprSyntax,
     pub rotated: Option<ExprSyntax>,
     pub mass: Option<ExprSyntax>,
+    pub stiffness: Option<ExprSyntax>,
     pub ghost: bool,
     pub graspable: bool,
 }
@@ -148,6 +151,27 @@ pub struct LaserSyntax {
     pub angles: RangeSyntax,
     pub beams: ExprSyntax,
     pub range: RangeSyntax,
+}
+
+/// `limb l: trunk -> upper_arm -> forearm -> hand at SHOULDER, ELBOW, WRIST`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LimbSyntax {
+    pub name: NameSyntax,
+    /// What it hangs on, its two bones, and perhaps what ends it.
+    pub bodies: Vec<NameSyntax>,
+    pub pivots: Vec<ExprSyntax>,
+}
+
+/// `figure f: pelvis -> trunk -> head at HIP limbs l, r speed 1.4 m/s turn 120 deg/s mass 75 kg`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FigureSyntax {
+    pub name: NameSyntax,
+    pub bodies: Vec<NameSyntax>,
+    pub hip: ExprSyntax,
+    pub limbs: Vec<NameSyntax>,
+    pub speed: ExprSyntax,
+    pub turn: ExprSyntax,
+    pub mass: ExprSyntax,
 }
 
 /// `posture home: arm at [0 deg, 90 deg]`

@@ -17,8 +17,14 @@ pub enum SimError {
     BadChild { joint: String },
     #[error("the gripper `{gripper}` cannot hold `{body}`, which is not a free dynamic body")]
     NotHoldable { gripper: String, body: String },
-    #[error("the body `{body}` is not kinematic, so that neither an action nor a base moves it")]
+    #[error("the body `{body}` is neither kinematic nor guided, so that no action moves it")]
+    NotMoved { body: String },
+    #[error("the body `{body}` is not kinematic, so that no base moves it")]
     NotKinematic { body: String },
+    #[error("the body `{body}` of a figure is not guided")]
+    NotGuided { body: String },
+    #[error("`{body}` goes where its figure goes: send the head, a hand or the pelvis")]
+    GoesAlong { body: String },
     /// Metres.
     #[error("`{body}` starts inside `{other}`, by {depth:.3} m: put them apart")]
     StartsInside { body: String, other: String, depth: f64 },

@@ -33,6 +33,7 @@ pub(crate) struct GripperHand {
     delay: Nanos,
     holds: Vec<BodyId>,
     dynamic: bool,
+    guided: bool,
     force: f64,
     fingers: Vec<Finger>,
     /// All bodies that can press what it holds.
@@ -68,6 +69,10 @@ const PAD: f64 = 0.02;
 const SLIPS_AFTER: u32 = 3;
 /// How slow a body must be in the hand to be held, m/s.
 const STILL: f64 = 0.05;
+
+/// How fast a person's hand goes on to take hold of something, m/s, and how near it must come, m.
+const REACHES: f64 = 0.3;
+const TOUCHES: f64 = 4e-3;
 
 enum GripPhase {
     Open,
@@ -115,6 +120,7 @@ impl GripperHand {
             delay: gripper.delay,
             holds: gripper.holds.clone(),
             dynamic: physics.motion(gripper.palm) == BodyMotion::Dynamic,
+            guided: physics.motion(gripper.palm) == BodyMotion::Guided,
             force: gripper.force,
             fingers,
             parts,
@@ -148,7 +154,11 @@ impl GripperHand {
 
     /// What the hand would hold.
     fn choose(&self, physics: &PhysicsAdapter) -> Option<BodyId> {
-        if self.fingers.is_empty() { self.nearest(physics) } else { self.pressed(physics) }
+        if !self.fingers.is_empty() {
+            return self.pressed(physics);
+        }
+        // A person's hand holds what it touches.
+        self.nearest(physics).filter(|body| !self.guided || physics.distance(self.palm, *body) <= TOUCHES)
     }
 
     /// What is touched from two sides, by a finger at least, and lies still in the hand.
@@ -173,6 +183,22 @@ impl GripperHand {
             }
         }
         best.map(|(_, body)| body)
+    }
+
+    /// How much farther a person's hand goes, which has been told to take hold and does not touch anything yet.
+    fn reaches(&self, step: Nanos, physics: &PhysicsAdapter) -> Option<(BodyId, SpaceVector)> {
+        let is_taking = matches!(self.phase, GripPhase::Closing { .. }) || self.grasping;
+        if !self.guided || !is_taking || self.held.is_some() {
+            return None;
+        }
+        let body = self.nearest(physics)?;
+        let far = physics.distance(self.palm, body);
+        let palm = physics.pose(self.palm).at;
+        let way = physics.nearest_point(body, palm) - palm;
+        (far > 0.0 && way.norm() > 0.0).then(|| {
+            let size = far.min(REACHES * seconds(step));
+            (self.palm, way * (size / way.norm()))
+        })
     }
 
     /// Whether a hand that closes is done: it holds something, its fingers met, or they push in vain.
@@ -275,7 +301,16 @@ impl HandSet {
     }
 
     /// What the hands do at the end of a step, in the order of the grippers.
-    pub fn update(&mut self, now: Nanos, physics: &mut PhysicsAdapter, finished: &mut FinishedCommands) {
+    ///
+    /// Gives the palms of people that are to go on towards what they would hold, and by how much, m.
+    pub fn update(
+        &mut self,
+        now: Nanos,
+        step: Nanos,
+        physics: &mut PhysicsAdapter,
+        finished: &mut FinishedCommands,
+    ) -> Vec<(BodyId, SpaceVector)> {
+        let mut reaching = Vec::new();
         for i in 0..self.hands.len() {
             match self.hands[i].phase {
                 GripPhase::Closing { until, id } => {
@@ -303,7 +338,9 @@ impl HandSet {
             if hand.held.is_some_and(|b| hand.distance(b, physics) > hand.reach + SLACK) {
                 self.release(i, physics);
             }
+            reaching.extend(self.hands[i].reaches(step, physics));
         }
+        reaching
     }
 
     /// What is heavier than friction can bear leaves the hand.
@@ -328,6 +365,7 @@ impl HandSet {
             // From here on the joint stands for the fingers' force, which they keep up.
             self.hands[hand].run_fingers(0.0, physics);
             self.hands[hand].held = Some(body);
+            physics.hold(self.hands[hand].palm, body, true);
             self.taken[index(body)] = true;
             self.rejoin(body, physics);
         }
@@ -336,9 +374,10 @@ impl HandSet {
     fn release(&mut self, hand: usize, physics: &mut PhysicsAdapter) {
         let hand = &mut self.hands[hand];
         if let Some(joint) = hand.joint.take() {
-            physics.detach(joint);
+            physics.detach(hand.palm, joint);
         }
         if let Some(body) = hand.held.take() {
+            physics.hold(hand.palm, body, false);
             self.rejoin(body, physics);
         }
     }
@@ -356,7 +395,7 @@ impl HandSet {
                 && !leads
                 && let Some(joint) = hand.joint.take()
             {
-                physics.detach(joint);
+                physics.detach(hand.palm, joint);
             }
         }
     }

@@ -28,6 +28,7 @@ mod base;
 mod clearance;
 mod command;
 mod error;
+mod figure;
 mod hand;
 mod kinematics;
 mod laser;
@@ -46,7 +47,7 @@ mod sense;
 mod world;
 
 use hrdsl_ir::world::{
-    ArmId, BaseId, BodyId, BodyMotion, GripperId, Signal, SignalId, SignalTerm, World, WorldAction,
+    ArmId, BaseId, BodyId, BodyMotion, FigureId, GripperId, Signal, SignalId, SignalTerm, World, WorldAction,
     WorldPoint,
 };
 use hrdsl_ir::{Expr, Nanos, Value};
@@ -55,10 +56,11 @@ use arm::{ArmControl, ArmMoment};
 use base::{BaseControl, PlanarVelocity};
 pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
+use figure::FigureControl;
 use hand::HandSet;
 pub use hrdsl_harness::{ArmTarget, CommandId};
 use math::{BodyFrame, SpaceVector};
-use mover::KinematicPath;
+use mover::{KinematicPath, LookRequest};
 use past::SignalPast;
 use physics::{PhysicsAdapter, bad, index};
 use sense::SensorView;
@@ -78,6 +80,7 @@ pub struct WorldSimulation {
     arm_hands: Vec<Vec<usize>>,
     hands: HandSet,
     bases: Vec<BaseControl>,
+    figures: Vec<FigureControl>,
     /// By body.
     paths: Vec<Option<KinematicPath>>,
     now: Nanos,
@@ -120,6 +123,8 @@ impl WorldSimulation {
         let arm_hands = arms.iter().map(moved).collect();
         let bases = world.bases.iter().map(|b| BaseControl::new(b, world, &physics));
         let bases = bases.collect::<Result<Vec<_>, _>>()?;
+        let figures = world.figures.iter().map(|f| FigureControl::new(f, world, &physics));
+        let figures = figures.collect::<Result<Vec<_>, _>>()?;
         world.lasers.iter().try_for_each(|laser| laser::check(laser, world))?;
         let mut sim = WorldSimulation {
             past: SignalPast::new(signals),
@@ -131,6 +136,7 @@ impl WorldSimulation {
             arm_hands,
             hands,
             bases,
+            figures,
             now: 0,
             last: 0,
             next: Some(world.step),
@@ -188,6 +194,9 @@ impl WorldSimulation {
                 None => base.go_on(self.last, next, &mut self.physics),
             }
         }
+        for figure in &mut self.figures {
+            figure.drive(self.last, next, &mut self.physics);
+        }
         for (i, slot) in self.paths.iter_mut().enumerate() {
             if let Some(path) = slot {
                 self.physics.lead(physics::body_id(i), &path.at(next));
@@ -204,7 +213,10 @@ impl WorldSimulation {
             let held = self.hands.held_by_any(&self.arm_hands[i]);
             self.finished.extend(arm.check_arrival(&held, &self.physics));
         }
-        self.hands.update(next, &mut self.physics, &mut self.finished);
+        let reaching = self.hands.update(next, self.world.step, &mut self.physics, &mut self.finished);
+        for (hand, by) in reaching {
+            self.reach_on(hand, by);
+        }
         self.finished.extend(self.bases.iter_mut().filter_map(BaseControl::check_stopped));
         self.remember(next);
         self.rest_or_go_on(next);
@@ -213,6 +225,7 @@ impl WorldSimulation {
     fn rest_or_go_on(&mut self, at: Nanos) {
         let busy = self.arms.iter().any(ArmControl::is_busy)
             || self.hands.is_busy()
+            || self.figures.iter().any(FigureControl::is_busy)
             || self.bases.iter().any(|base| base.is_busy(at))
             || self.paths.iter().any(Option::is_some);
         self.quiet = if busy || !self.physics.is_quiet() { 0 } else { self.quiet + self.world.step };
@@ -275,21 +288,22 @@ impl WorldSimulation {
     pub fn act(&mut self, action: &WorldAction, var: VariableLookup<'_>) -> Result<(), SimError> {
         match action {
             WorldAction::Move { body, to, over } => {
-                let from = self.kinematic(*body)?;
+                let from = self.moved(*body)?;
                 let to = self.place(to, var)?;
                 let over = number(over, var, "the time of a move")?;
-                self.send(*body, from, BodyFrame::new(to, from.turn), over);
+                self.send(*body, from, BodyFrame::new(to, from.turn), over)?;
             }
             WorldAction::Look { body, at, offset, distance, angle } => {
-                let from = self.kinematic(*body)?;
+                let from = self.moved(*body)?;
                 sense::check_body(*at, &self.world, || "a look".into())?;
                 let target = self.physics.pose(self.view().body(*at)).at;
                 let offset = number(offset, var, "the offset of a look")?;
                 let distance = number(distance, var, "the distance of a look")?.max(0.0);
                 let angle = number(angle, var, "the angle of a look")?.abs();
                 let facing = self.physics.start(*body).x_axis();
-                let to = mover::look(&from, facing, target, offset, distance, angle);
-                self.send(*body, from, to, mover::LOOK_TIME);
+                let bows = self.figures.iter().any(|figure| figure.has(*body));
+                let to = mover::look(&from, facing, &LookRequest { target, offset, distance, angle, bows });
+                self.send(*body, from, to, mover::LOOK_TIME)?;
             }
             WorldAction::Grasp { gripper } => {
                 let hand = self.hand(*gripper).ok_or_else(|| no_gripper(*gripper))?;
@@ -301,27 +315,58 @@ impl WorldSimulation {
                 let replaced = self.hands.open(hand, self.now, None, &mut self.physics);
                 self.replaced(replaced);
             }
+            WorldAction::Walk { figure, along, speed } => {
+                let along = along.iter().map(|to| self.place(to, var)).collect::<Result<Vec<_>, _>>()?;
+                let speed = number(speed, var, "the speed of a walk")?;
+                if speed <= 0.0 {
+                    return Err(SimError::BadNumber { what: "the speed of a walk".into() });
+                }
+                let along: Vec<[f64; 2]> = along.iter().map(|to| [to.x, to.y]).collect();
+                self.figure(*figure)?.walk_along(&along, speed);
+            }
+            WorldAction::Turn { figure, to } => {
+                let to = self.place(to, var)?;
+                self.figure(*figure)?.turn_to([to.x, to.y]);
+            }
         }
         self.wake();
         Ok(())
     }
 
-    /// Where a kinematic body is at this moment, on its way.
-    fn kinematic(&self, body: BodyId) -> Result<BodyFrame, SimError> {
+    fn figure(&mut self, figure: FigureId) -> Result<&mut FigureControl, SimError> {
+        let at = usize::from(figure.0);
+        self.figures.get_mut(at).ok_or_else(|| bad("an action".into(), "figure", at))
+    }
+
+    /// Where a kinematic or guided body is at this moment, on its way.
+    fn moved(&self, body: BodyId) -> Result<BodyFrame, SimError> {
         let Some(data) = self.world.bodies.get(index(body)) else {
             return Err(bad("an action".into(), "body", index(body)));
         };
-        if data.motion != BodyMotion::Kinematic {
-            return Err(SimError::NotKinematic { body: data.name.clone() });
+        if !matches!(data.motion, BodyMotion::Kinematic | BodyMotion::Guided) {
+            return Err(SimError::NotMoved { body: data.name.clone() });
         }
         Ok(match &self.paths[index(body)] {
             Some(path) => path.at(self.now),
-            None => self.physics.pose(body),
+            None => self.physics.aim(body),
         })
     }
 
-    fn send(&mut self, body: BodyId, from: BodyFrame, to: BodyFrame, over: f64) {
+    fn send(&mut self, body: BodyId, from: BodyFrame, to: BodyFrame, over: f64) -> Result<(), SimError> {
+        if let Some(figure) = self.figures.iter_mut().find(|figure| figure.has(body)) {
+            return figure.send(body, to, over, &self.physics);
+        }
         self.paths[index(body)] = Some(KinematicPath::new(from, to, self.now, over));
+        Ok(())
+    }
+
+    /// A hand that would take hold of something goes on towards it.
+    fn reach_on(&mut self, hand: BodyId, by: SpaceVector) {
+        let aim = self.physics.aim(hand);
+        let to = BodyFrame::new(aim.at + by, aim.turn);
+        // INVARIANT: hands can be sent.
+        let _ = self.send(hand, aim, to, 0.0);
+        self.wake();
     }
 
     fn place(&self, point: &WorldPoint, var: VariableLookup<'_>) -> Result<SpaceVector, SimError> {
@@ -452,7 +497,10 @@ impl WorldSimulation {
         let bases = &self.bases;
         let is_known = move |body: BodyId| {
             let root = self.physics.root(body);
-            self.physics.motion(root) != BodyMotion::Kinematic || bases.iter().any(|b| b.body == root)
+            match self.physics.motion(root) {
+                BodyMotion::Fixed | BodyMotion::Dynamic => true,
+                BodyMotion::Kinematic | BodyMotion::Guided => bases.iter().any(|b| b.body == root),
+            }
         };
         ArmMoment {
             physics: &self.physics,

@@ -10,6 +10,20 @@ use crate::profile::smooth;
 pub(crate) const LOOK_TIME: f64 = 0.5;
 /// How far above its target a looking body stays at most, m.
 const LOOK_HEIGHT: f64 = 0.1;
+/// The same of a figure, of how far the target is: who looks down more steeply bows less.
+const LOOK_STEEP: f64 = 0.7;
+
+/// What is asked of a look.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LookRequest {
+    pub target: SpaceVector,
+    /// m, m and rad
+    pub offset: f64,
+    pub distance: f64,
+    pub angle: f64,
+    /// Whether all of a figure bows to it.
+    pub bows: bool,
+}
 
 /// A motion from one pose to another, on a straight line, smooth at both ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,16 +63,10 @@ impl KinematicPath {
 ///
 /// `facing` is the body's own x axis at the start of the run. The line of sight is level and along it; the body goes to
 /// that end of the line where it is now, seen from the target, then `offset` to the left as seen from the target. Its
-/// height is its present one, but at least the target's and at most 10 cm above it; the distance between the centres is
-/// exact. It turns its x axis to the target, then about the vertical, to its left, until the angle is the one asked for.
-pub(crate) fn look(
-    now: &BodyFrame,
-    facing: SpaceVector,
-    target: SpaceVector,
-    offset: f64,
-    distance: f64,
-    angle: f64,
-) -> BodyFrame {
+/// height is its present one, but at least the target's, and at most 10 cm above it, or, of a figure, seven tenths of the distance that
+/// the offset leaves; the distance between the centres is exact. It turns its x axis to the target, then about the vertical, to its left, until the angle is the one asked for.
+pub(crate) fn look(now: &BodyFrame, facing: SpaceVector, request: &LookRequest) -> BodyFrame {
+    let LookRequest { target, offset, distance, angle, bows } = *request;
     let here = now.at - target;
     let level = |v: SpaceVector| SpaceVector::new(v.x, v.y, 0.0);
     let line = [level(facing), level(here), SpaceVector::x()].into_iter().find(|v| v.norm() > 1e-6);
@@ -67,7 +75,8 @@ pub(crate) fn look(
     let left = SpaceVector::z().cross(&line);
     let offset = offset.clamp(-distance, distance);
     let rest = distance * distance - offset * offset;
-    let height = here.z.clamp(0.0, LOOK_HEIGHT).min(rest.sqrt());
+    let most = if bows { LOOK_STEEP * rest.sqrt() } else { LOOK_HEIGHT };
+    let height = here.z.clamp(0.0, most).min(rest.sqrt());
     let away = (rest - height * height).max(0.0).sqrt();
     let at = target + line * away + left * offset + SpaceVector::z() * height;
     BodyFrame::new(at, face(target - at, angle))
@@ -103,15 +112,17 @@ mod tests {
         #[test]
         fn a_look_is_as_asked(
             offset in -0.4f64..0.4, distance in 0.5f64..0.8, angle in 0.0f64..1.5,
-            x in 0.7f64..1.5, y in -0.5f64..0.5, z in 0.5f64..1.6,
+            x in 0.7f64..1.5, y in -0.5f64..0.5, z in 0.5f64..1.6, bows: bool,
         ) {
             let head = BodyFrame::new(SpaceVector::new(x, y, z), from_rpy([0.0, 0.0, 2.8]));
             let target = SpaceVector::new(0.48, 0.17, 0.705);
-            let there = look(&head, -SpaceVector::x(), target, offset, distance, angle);
+            let request = LookRequest { target, offset, distance, angle, bows };
+            let there = look(&head, -SpaceVector::x(), &request);
             let offset_there = there.at - target;
             prop_assert!((offset_there.norm() - distance).abs() < 1e-9);
             prop_assert!((offset_there.y - offset).abs() < 1e-9, "left of the line is +y here");
-            prop_assert!(offset_there.x > 0.0 && (-1e-9..=0.1 + 1e-9).contains(&offset_there.z));
+            let most = if bows { 0.7 * distance } else { 0.1 };
+            prop_assert!(offset_there.x > 0.0 && (-1e-9..=most + 1e-9).contains(&offset_there.z));
             prop_assert!((sight_angle(&there, target) - angle).abs() < 1e-6);
         }
     }

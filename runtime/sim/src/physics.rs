@@ -4,9 +4,11 @@
 
 mod contact;
 pub(crate) mod dynamics;
+mod guide;
 mod joints;
 mod pairs;
 mod surface;
+mod yielding;
 
 use hrdsl_ir::value::seconds;
 use hrdsl_ir::world::{Body, BodyId, BodyMotion, BodyShape, JointMotion, World};
@@ -16,8 +18,10 @@ use crate::{
     error::SimError,
     math::{BodyFrame, from_pose, from_rpy, from_vector, to_pose, to_vector, v3},
 };
+use guide::BodyGuide;
 use joints::DrivenJoint;
 use pairs::{ExemptPairs, JointGraph};
+use yielding::YieldingPair;
 
 /// One body of the scenario.
 struct PhysicsBody {
@@ -34,12 +38,27 @@ struct PhysicsBody {
     shape: BodyShape,
 }
 
+impl PhysicsBody {
+    /// Whether forces move it.
+    fn gives_way(&self) -> bool {
+        match self.motion {
+            BodyMotion::Dynamic | BodyMotion::Guided => true,
+            BodyMotion::Fixed | BodyMotion::Kinematic => false,
+        }
+    }
+}
+
 pub(crate) struct PhysicsAdapter {
     world: PhysicsWorld,
     parts: Vec<PhysicsBody>,
+    /// By body: what draws those that are guided.
+    guides: Vec<Option<BodyGuide>>,
+    yielding: Vec<YieldingPair>,
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     joints: Vec<Option<DrivenJoint>>,
     exempt: ExemptPairs,
+    /// The time of the last part of a step, s, and how often the solver divided it.
+    part: (f64, usize),
     /// The corners of the box outside of which a body is lost, m.
     scene: (Vector, Vector),
 }
@@ -64,8 +83,11 @@ impl PhysicsAdapter {
         let mut physics = PhysicsAdapter {
             world: engine,
             parts: Vec::new(),
+            guides: Vec::new(),
+            yielding: Vec::new(),
             joints: Vec::new(),
             exempt: ExemptPairs::default(),
+            part: (seconds(world.step), SUBSTEPS),
             scene: (Vector::ZERO, Vector::ZERO),
         };
         physics.add_bodies(world, &roots)?;
@@ -74,7 +96,9 @@ impl PhysicsAdapter {
             let driven = if joint.is_rigid() { None } else { Some(physics.add_joint(joint, world, &graph)) };
             physics.joints.push(driven);
         }
-        physics.exempt_overlaps(world, &graph)?;
+        let figure_of = figure_of(world);
+        physics.exempt_overlaps(world, &graph, &figure_of)?;
+        physics.find_yielding(world, &figure_of);
         physics.scene = physics.surroundings();
         Ok(physics)
     }
@@ -91,9 +115,10 @@ impl PhysicsAdapter {
             let motion = world.bodies[index(root)].motion;
             let start = start_of(body);
             let local = start_of(&world.bodies[index(root)]).inverse().then(&start);
+            let is_moved = matches!(motion, BodyMotion::Dynamic | BodyMotion::Guided);
             let collider = ColliderBuilder::new(shape_of(body)?)
                 .position(to_pose(&local))
-                .mass(if motion == BodyMotion::Dynamic { checked_mass(body)? } else { 0.0 })
+                .mass(if is_moved { checked_mass(body)? } else { 0.0 })
                 .friction(0.8)
                 .sensor(body.ghost)
                 .user_data(i as u128);
@@ -101,6 +126,8 @@ impl PhysicsAdapter {
             let collider = self.world.colliders.insert_with_parent(collider, handle, bodies);
             let (ghost, shape) = (body.ghost, body.shape);
             let name = body.name.clone();
+            let guided = motion == BodyMotion::Guided && index(root) == i;
+            self.guides.push(guided.then(|| BodyGuide::new(body.mass, body.stiffness, start)));
             self.parts.push(PhysicsBody { name, handle, collider, local, start, root, motion, ghost, shape });
         }
         Ok(())
@@ -113,6 +140,8 @@ impl PhysicsAdapter {
             BodyMotion::Fixed => RigidBodyBuilder::fixed(),
             BodyMotion::Dynamic => RigidBodyBuilder::dynamic(),
             BodyMotion::Kinematic => RigidBodyBuilder::kinematic_position_based(),
+            // Its own muscles bear its weight.
+            BodyMotion::Guided => RigidBodyBuilder::dynamic().gravity_scale(0.0),
         };
         let start = start_of(body);
         let mut builder = builder.pose(to_pose(&start));
@@ -175,8 +204,11 @@ impl PhysicsAdapter {
         from_vector(at(body) - at(frame)).norm()
     }
 
-    /// A kinematic body will be there at the end of the next step.
+    /// A kinematic body will be there at the end of the next step; a guided one is to be there.
     pub fn lead(&mut self, body: BodyId, to: &BodyFrame) {
+        if self.motion(body) == BodyMotion::Guided {
+            return self.guide(body, to);
+        }
         let handle = self.parts[index(body)].handle;
         self.world.bodies[handle].set_next_kinematic_position(to_pose(to));
     }
@@ -192,27 +224,35 @@ impl PhysicsAdapter {
             .contacts_enabled(false)
             .build();
         let (parent, child) = (p.handle, b.handle);
+        let mass = f64::from(self.world.bodies[child].mass());
+        self.load(palm, mass);
         self.world.insert_impulse_joint(parent, child, data)
+    }
+
+    /// A palm presses what it holds no more; when it does not hold it any longer, it can.
+    pub fn hold(&mut self, palm: BodyId, body: BodyId, holds: bool) {
+        self.suspend(palm, body, holds);
     }
 
     /// The force (N) and the torque (N·m) that a joint between bodies bears, as the solver last found them.
     pub fn borne(&self, joint: ImpulseJointHandle) -> (f64, f64) {
         let Some(found) = self.world.impulse_joints.get(joint) else { return (0.0, 0.0) };
-        let part = f64::from(self.world.integration_parameters.dt) / SUBSTEPS as f64;
+        let part = self.part.0 / self.part.1 as f64;
         let norm = |axes: [usize; 3]| {
             axes.iter().map(|i| f64::from(found.impulses[*i]).powi(2)).sum::<f64>().sqrt() / part
         };
         (norm([0, 1, 2]), norm([3, 4, 5]))
     }
 
-    pub fn detach(&mut self, joint: ImpulseJointHandle) {
+    pub fn detach(&mut self, palm: BodyId, joint: ImpulseJointHandle) {
+        self.load(palm, 0.0);
         self.world.remove_impulse_joint(joint);
     }
 
     // ── Time ──
 
     pub fn step(&mut self) {
-        self.world.step_with_events(&self.exempt, &());
+        self.step_parts();
         self.stop_lost();
     }
 
@@ -272,6 +312,20 @@ pub(crate) fn body_id(i: usize) -> BodyId {
 
 pub(crate) fn bad(what: String, kind: &'static str, index: usize) -> SimError {
     SimError::BadReference { what, kind, index }
+}
+
+/// For each body the figure that it is of.
+fn figure_of(world: &World) -> Vec<Option<usize>> {
+    let mut figures = vec![None; world.bodies.len()];
+    for (i, figure) in world.figures.iter().enumerate() {
+        let limbs = figure.limbs.iter().flat_map(|limb| [limb.upper, limb.lower].into_iter().chain(limb.end));
+        for body in [figure.pelvis, figure.trunk, figure.head].into_iter().chain(limbs) {
+            if let Some(slot) = figures.get_mut(index(body)) {
+                *slot = Some(i);
+            }
+        }
+    }
+    figures
 }
 
 fn start_of(body: &Body) -> BodyFrame {

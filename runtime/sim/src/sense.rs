@@ -92,6 +92,9 @@ impl SensorView<'_> {
             SignalTerm::Touches(a, b) => Value::Bool(self.physics.touches(self.body(a), self.body(b))),
             SignalTerm::Force(a, b) => Value::Float(self.physics.force_between(self.body(a), self.body(b))),
             SignalTerm::ForceOn(b) => Value::Float(self.physics.force_on(self.body(b))),
+            SignalTerm::Pressed { body, by, phase } => {
+                Value::Float(self.physics.pressed(self.body(body), by.map(|by| self.body(by)), phase))
+            }
             SignalTerm::Weight(b) => Value::Float(self.physics.load_on(self.body(b))),
             SignalTerm::Tilt(b) => Value::Float(self.physics.tilt(self.body(b))),
             SignalTerm::Height(b) => Value::Float(self.physics.lowest(self.body(b))),
@@ -168,6 +171,10 @@ pub(crate) fn check_term(
         SignalTerm::Holds(g, b) => {
             gripper(g.0)?;
             check_body(b, world, &what)
+        }
+        SignalTerm::Pressed { body, by, .. } => {
+            check_body(body, world, &what)?;
+            by.map_or(Ok(()), |by| check_body(by, world, &what))
         }
         SignalTerm::HoldsAny(g) => gripper(g.0),
         SignalTerm::JointSpeed(a) => exists(usize::from(a.0), world.arms.len(), "arm", &what),

@@ -19,6 +19,7 @@ fn empty() -> World {
         grippers: Vec::new(),
         bases: Vec::new(),
         lasers: Vec::new(),
+        figures: Vec::new(),
         devices: Vec::new(),
         device_kinds: Vec::new(),
         currents: Vec::new(),

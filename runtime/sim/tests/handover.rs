@@ -162,7 +162,7 @@ fn actions_that_cannot_be_are_refused() {
     let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     let leg1 = leg(&world, 1);
     let action = WorldAction::Move { body: leg1, to: at(None, REST), over: Expr::float(1.0) };
-    assert_eq!(sim.act(&action, &none), Err(SimError::NotKinematic { body: "leg1".into() }));
+    assert_eq!(sim.act(&action, &none), Err(SimError::NotMoved { body: "leg1".into() }));
     let hand = named(&world, "person.hand");
     let action = WorldAction::Move { body: hand, to: at(None, REST), over: Expr::Var(0) };
     assert!(matches!(sim.act(&action, &none), Err(SimError::Eval { .. })));

@@ -97,6 +97,8 @@ fn member(kind: &Member) -> Option<(&'static str, String)> {
         Member::Gripper(gripper) => ("gripper", gripper.name.text.clone()),
         Member::Base(base) => ("base", base.name.text.clone()),
         Member::Laser(laser) => ("laser", laser.name.text.clone()),
+        Member::Limb(limb) => ("limb", limb.name.text.clone()),
+        Member::Figure(figure) => ("figure", figure.name.text.clone()),
         Member::Posture(posture) => ("posture", posture.name.text.clone()),
         Member::Current { name, .. } => ("current", name.text.clone()),
         Member::Signal { name, .. } => ("signal", name.text.clone()),

@@ -109,6 +109,8 @@ pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> b
         | Noun::Gripper
         | Noun::Base
         | Noun::Laser
+        | Noun::Limb
+        | Noun::Figure
         | Noun::Posture
         | Noun::Device
         | Noun::Command

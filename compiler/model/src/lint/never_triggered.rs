@@ -159,6 +159,7 @@ fn range_of_term(term: &SignalTerm) -> Option<(f64, f64)> {
         | SignalTerm::JointSpeed(_)
         | SignalTerm::Force(..)
         | SignalTerm::ForceOn(_)
+        | SignalTerm::Pressed { .. }
         | SignalTerm::Weight(_) => (0.0, infinite),
         SignalTerm::Angle(..) | SignalTerm::Tilt(_) => (0.0, std::f64::consts::PI),
         SignalTerm::Heading(_) => (-std::f64::consts::PI, std::f64::consts::PI),

@@ -242,6 +242,8 @@ impl DefinitionReader {
                 WorldMemberKind::Gripper(gripper) => self.define("gripper", &gripper.name),
                 WorldMemberKind::Base(base) => self.define("base", &base.name),
                 WorldMemberKind::Laser(laser) => self.define("laser", &laser.name),
+                WorldMemberKind::Limb(limb) => self.define("limb", &limb.name),
+                WorldMemberKind::Figure(figure) => self.define("figure", &figure.name),
                 WorldMemberKind::Posture(posture) => self.define("posture", &posture.name),
                 WorldMemberKind::Current { name, .. } => self.define("current body", name),
                 WorldMemberKind::Signal { name, ty, .. } => self.typed("signal", name, written(ty)),

@@ -1,7 +1,8 @@
 //! Contacts: which bodies press on each other, and how hard, as the solver found it in the last step.
 //!
 //! The solver gives an impulse at each point of a contact, along its normal; over the time of the step it is a force. Friction,
-//! which acts across the normal, is not counted. Bodies that the physics lets pass through each other never press.
+//! which acts across the normal, is not counted. Where a surface yields, it is the greatest force of the step. Bodies that the physics
+//! lets pass through each other never press.
 
 use hrdsl_ir::world::BodyId;
 use rapier3d::prelude::*;
@@ -21,12 +22,14 @@ impl PhysicsAdapter {
     /// What presses a body, and how hard.
     pub fn pressings(&self, body: BodyId) -> impl Iterator<Item = Pressing> + '_ {
         let own = self.parts[index(body)].collider;
-        self.world.contact_pairs_with(own).filter_map(move |pair| {
+        let rigid = self.world.contact_pairs_with(own).filter_map(move |pair| {
             let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
             let force = self.push(pair).norm();
             let number = usize::try_from(self.world.colliders[other].user_data).ok()?;
             (force > 0.0).then_some(Pressing { other: body_id(number), force })
-        })
+        });
+        let yielding = self.yielding_pushes(body);
+        rigid.chain(yielding.map(|(other, push)| Pressing { other, force: push.norm() }))
     }
 
     /// Whether two surfaces are in contact: one presses on the other, or they touch or overlap.
@@ -36,8 +39,9 @@ impl PhysicsAdapter {
 
     /// How hard two bodies press on each other, N.
     pub fn force_between(&self, a: BodyId, b: BodyId) -> f64 {
+        let yielding: f64 = self.yielding_pushes(a).filter(|(other, _)| *other == b).map(|(_, push)| push.norm()).sum();
         let (a, b) = (self.parts[index(a)].collider, self.parts[index(b)].collider);
-        self.world.narrow_phase.contact_pair(a, b).map_or(0.0, |pair| self.push(pair).norm())
+        yielding + self.world.narrow_phase.contact_pair(a, b).map_or(0.0, |pair| self.push(pair).norm())
     }
 
     /// How hard all others press on the body: the sum over them, whatever the directions, N.
@@ -51,7 +55,16 @@ impl PhysicsAdapter {
     }
 
     /// The forces on the body, of each other one.
-    fn pushes(&self, body: BodyId) -> impl Iterator<Item = SpaceVector> + '_ {
+    pub(super) fn pushes(&self, body: BodyId) -> impl Iterator<Item = SpaceVector> + '_ {
+        self.rigid_pushes(body).chain(self.yielding_pushes(body).map(|(_, push)| push))
+    }
+
+    /// What rigid bodies do to it together, N.
+    pub fn borne_by_rigid(&self, body: BodyId) -> SpaceVector {
+        self.rigid_pushes(body).sum()
+    }
+
+    fn rigid_pushes(&self, body: BodyId) -> impl Iterator<Item = SpaceVector> + '_ {
         let own = self.parts[index(body)].collider;
         let others = (0..self.parts.len()).map(body_id).map(|other| self.parts[index(other)].collider);
         // In the order of the bodies: what floats add up to must not depend on the engine's own order.
@@ -64,12 +77,11 @@ impl PhysicsAdapter {
 
     /// The force on the second of a pair; its opposite is on the first.
     fn push(&self, pair: &ContactPair) -> SpaceVector {
-        let seconds = f64::from(self.world.integration_parameters.dt);
         let mut sum = SpaceVector::zeros();
         for manifold in pair.solver_manifolds().iter().filter(|m| m.data.num_active_contacts() > 0) {
             let impulse: f64 = manifold.points.iter().map(|point| f64::from(point.data.impulse)).sum();
             sum += from_vector(manifold.data.normal) * impulse;
         }
-        sum / seconds
+        sum / self.part.0
     }
 }

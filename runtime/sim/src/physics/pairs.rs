@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_ir::world::{BodyId, BodyMotion, Joint, World};
+use hrdsl_ir::world::{BodyId, Joint, World};
 use rapier3d::parry;
 use rapier3d::prelude::*;
 
@@ -56,18 +56,25 @@ impl JointGraph {
 #[derive(Default)]
 pub(super) struct ExemptPairs {
     pairs: BTreeSet<(u128, u128)>,
+    /// Those that touch in another way than the engine's.
+    yielding: BTreeSet<(u128, u128)>,
 }
 
 impl ExemptPairs {
     fn has(&self, a: u128, b: u128) -> bool {
         self.pairs.contains(&(a.min(b), a.max(b)))
     }
+
+    pub fn yields(&mut self, a: usize, b: usize) {
+        self.yielding.insert((a.min(b) as u128, a.max(b) as u128));
+    }
 }
 
 impl PhysicsHooks for ExemptPairs {
     fn filter_contact_pair(&self, context: &PairFilterContext<'_>) -> Option<SolverFlags> {
         let number = |handle: ColliderHandle| context.colliders[handle].user_data;
-        let exempt = self.has(number(context.collider1), number(context.collider2));
+        let (a, b) = (number(context.collider1), number(context.collider2));
+        let exempt = self.has(a, b) || self.yielding.contains(&(a.min(b), a.max(b)));
         (!exempt).then_some(SolverFlags::COMPUTE_RIGID_IMPULSES)
     }
 }
@@ -77,21 +84,27 @@ impl PhysicsAdapter {
     ///
     /// # Errors
     /// If other bodies do, of which one can move.
-    pub(super) fn exempt_overlaps(&mut self, world: &World, graph: &JointGraph) -> Result<(), SimError> {
+    pub(super) fn exempt_overlaps(
+        &mut self,
+        world: &World,
+        graph: &JointGraph,
+        figure_of: &[Option<usize>],
+    ) -> Result<(), SimError> {
         for a in 0..self.parts.len() {
             for b in a + 1..self.parts.len() {
                 if self.parts[a].ghost || self.parts[b].ghost || self.parts[a].root == self.parts[b].root {
                     continue;
                 }
+                if figure_of[a].is_some() && figure_of[a] == figure_of[b] {
+                    self.exempt(a, b);
+                    continue;
+                }
                 let depth = self.start_depth(a, b);
                 if graph.figures[a] == graph.figures[b] {
                     if depth > -NEAR {
-                        self.exempt.pairs.insert((a as u128, b as u128));
-                        self.filter(a);
-                        self.filter(b);
+                        self.exempt(a, b);
                     }
-                } else if depth > SUNK && [a, b].iter().any(|i| self.parts[*i].motion == BodyMotion::Dynamic)
-                {
+                } else if depth > SUNK && [a, b].iter().any(|i| self.parts[*i].gives_way()) {
                     let name = |i: usize| world.bodies[i].name.clone();
                     return Err(SimError::StartsInside {
                         body: name(a),
@@ -104,7 +117,13 @@ impl PhysicsAdapter {
         Ok(())
     }
 
-    fn filter(&mut self, part: usize) {
+    fn exempt(&mut self, a: usize, b: usize) {
+        self.exempt.pairs.insert((a as u128, b as u128));
+        self.filter(a);
+        self.filter(b);
+    }
+
+    pub(super) fn filter(&mut self, part: usize) {
         let collider = &mut self.world.colliders[self.parts[part].collider];
         collider.set_active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS);
     }
@@ -120,11 +139,10 @@ impl PhysicsAdapter {
     /// Whether two bodies could touch.
     pub fn may_touch(&self, a: BodyId, b: BodyId) -> bool {
         let (pa, pb) = (&self.parts[index(a)], &self.parts[index(b)]);
-        let moves = |p: &super::PhysicsBody| p.motion == BodyMotion::Dynamic;
         !pa.ghost
             && !pb.ghost
             && pa.root != pb.root
-            && (moves(pa) || moves(pb))
+            && (pa.gives_way() || pb.gives_way())
             && !self.exempt.has(index(a) as u128, index(b) as u128)
             && !self.are_neighbours(pa.root, pb.root)
     }

@@ -21,6 +21,12 @@ impl PhysicsAdapter {
         f64::from(self.shape(body).distance_to_point(&to_pose(&self.pose(body)), to_vector(point), true))
     }
 
+    /// The point of a body that is nearest to another.
+    pub fn nearest_point(&self, body: BodyId, point: SpaceVector) -> SpaceVector {
+        let found = self.shape(body).project_point(&to_pose(&self.pose(body)), to_vector(point), true);
+        from_vector(found.point)
+    }
+
     fn shape(&self, body: BodyId) -> &dyn parry::shape::Shape {
         self.world.colliders[self.parts[index(body)].collider].shape()
     }

@@ -17,6 +17,8 @@ pub(crate) struct WorldNames {
     pub grippers: NameTable,
     pub bases: NameTable,
     pub lasers: NameTable,
+    pub limbs: NameTable,
+    pub figures: NameTable,
     pub currents: NameTable,
     pub signals: NameTable,
     /// Instances of unknown parts: nothing is said about what they have.
@@ -26,7 +28,7 @@ pub(crate) struct WorldNames {
 }
 
 impl WorldNames {
-    fn tables(&self) -> [(Noun, &NameTable); 9] {
+    fn tables(&self) -> [(Noun, &NameTable); 11] {
         [
             (Noun::Body, &self.bodies),
             (Noun::Current, &self.currents),
@@ -34,6 +36,8 @@ impl WorldNames {
             (Noun::Arm, &self.arms),
             (Noun::Base, &self.bases),
             (Noun::Laser, &self.lasers),
+            (Noun::Limb, &self.limbs),
+            (Noun::Figure, &self.figures),
             (Noun::Joint, &self.joints),
             (Noun::Signal, &self.signals),
             (Noun::PartInstance, &self.instances),

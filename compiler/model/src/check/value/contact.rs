@@ -1,6 +1,9 @@
 //! Measurements of contacts, of joints and of the past.
 
-use hrdsl_ir::{value::nanos, world::JointMotion};
+use hrdsl_ir::{
+    value::nanos,
+    world::{ContactPhase, JointMotion},
+};
 use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax};
 
 use crate::{
@@ -56,8 +59,26 @@ impl Checker<'_> {
             ("force", [a, b]) => (SignalTerm::Force(*a, *b), force),
             ("force", [a]) => (SignalTerm::ForceOn(*a), force),
             ("weight", [a]) => (SignalTerm::Weight(*a), force),
+            ("transient_force" | "quasistatic_force", [a, by @ ..]) => {
+                let transient = name == "transient_force";
+                let phase = if transient { ContactPhase::Transient } else { ContactPhase::QuasiStatic };
+                if !self.yields(*a) && !by.first().is_some_and(|by| self.yields(*by)) {
+                    let message = format!("`{name}` is of what yields, and this has no stiffness");
+                    let help = "measure a body with a `stiffness`, such as those of `std.person`; or `force`";
+                    self.report(bad_world(args[0].span, message, help));
+                    return None;
+                }
+                (SignalTerm::Pressed { body: *a, by: by.first().copied(), phase }, force)
+            }
             _ => return None,
         })
+    }
+
+    /// Whether a body's surface does; of a current nobody says.
+    fn yields(&self, body: BodyRef) -> bool {
+        let BodyRef::Body(id) = body else { return true };
+        let declared = self.s.world.as_ref().and_then(|w| w.bodies.get(usize::from(id.0)));
+        declared.is_none_or(|body| body.stiffness.is_some())
     }
 
     fn solid_arg(&mut self, name: &str, arg: &ast::ExprSyntax, prefix: &str) -> Option<BodyRef> {

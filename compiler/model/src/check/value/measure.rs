@@ -15,7 +15,7 @@ use crate::{
     report::{names, types},
 };
 
-const MEASURES: [&str; 16] = [
+const MEASURES: [&str; 18] = [
     "distance",
     "range",
     "angle",
@@ -27,6 +27,8 @@ const MEASURES: [&str; 16] = [
     "touches",
     "force",
     "weight",
+    "transient_force",
+    "quasistatic_force",
     "torque",
     "joint_angle",
     "tilt",
@@ -136,7 +138,7 @@ impl Checker<'_> {
         };
         let want = match name.as_str() {
             "distance" | "range" | "angle" | "visible" | "touches" | "delta" => 2..=2,
-            "holds" | "force" => 1..=2,
+            "holds" | "force" | "transient_force" | "quasistatic_force" => 1..=2,
             _ => 1..=1,
         };
         if !want.contains(&args.len()) {
@@ -151,7 +153,7 @@ impl Checker<'_> {
         let (what, ty) = match name {
             "joint_speed" | "joint_angle" | "torque" => self.of_joint(name, &args[0], prefix)?,
             "delta" => self.delta(&args[0], &args[1], prefix)?,
-            "touches" | "force" | "weight" => self.contact(name, args, prefix)?,
+            "touches" | "force" | "weight" | "transient_force" | "quasistatic_force" => self.contact(name, args, prefix)?,
             "holds" => {
                 let gripper = self.world_arg(Noun::Gripper, &args[0], prefix).map(GripperId);
                 let body = args.get(1).map(|a| self.body_arg(a, prefix));

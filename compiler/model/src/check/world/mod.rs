@@ -3,6 +3,7 @@
 mod arms;
 pub(in crate::check) mod device;
 mod edge;
+mod figure;
 mod mobile;
 pub(in crate::check) mod parts;
 mod posture;
@@ -56,6 +57,8 @@ impl<'a> Checker<'a> {
             grippers: Vec::new(),
             bases: Vec::new(),
             lasers: Vec::new(),
+            limbs: Vec::new(),
+            figures: Vec::new(),
             currents: Vec::new(),
             signals: Vec::new(),
             rules: Vec::new(),
@@ -64,7 +67,7 @@ impl<'a> Checker<'a> {
         });
         let placed = self.flatten(members, "", PartFrame::default(), None);
         // What is named first must exist first: by kind, not by place.
-        let passes: [fn(&mut Self, &PlacedMember<'a>); 10] = [
+        let passes: [fn(&mut Self, &PlacedMember<'a>); 12] = [
             Self::settings_and_bodies,
             Self::joint,
             Self::gripper,
@@ -72,6 +75,8 @@ impl<'a> Checker<'a> {
             Self::posture,
             Self::base,
             Self::laser,
+            Self::limb,
+            Self::figure,
             Self::current,
             Self::signals,
             Self::rules,
@@ -151,6 +156,8 @@ impl<'a> Checker<'a> {
             | Member::Gripper(_)
             | Member::Base(_)
             | Member::Laser(_)
+            | Member::Limb(_)
+            | Member::Figure(_)
             | Member::Posture(_)
             | Member::Current { .. }
             | Member::Signal { .. }
@@ -161,17 +168,21 @@ impl<'a> Checker<'a> {
     }
 
     fn body(&mut self, p: &PlacedMember<'a>, body: &'a ast::BodySyntax) {
-        let motion = match self.choice(Noun::Motion, &body.motion, &["fixed", "dynamic", "kinematic"]) {
+        let motion = match self.choice(Noun::Motion, &body.motion, &["fixed", "dynamic", "kinematic", "guided"]) {
             Some(1) => BodyMotion::Dynamic,
             Some(2) => BodyMotion::Kinematic,
+            Some(3) => BodyMotion::Guided,
             Some(_) | None => BodyMotion::Fixed,
         };
         let shape = self.shape(body);
         let position = self.vector(&body.at, LENGTH).unwrap_or_default();
         let rotation = body.rotated.as_ref().and_then(|r| self.vector(r, ANGLE)).unwrap_or_default();
         let mass = body.mass.as_ref().and_then(|m| self.more_than_zero(m, Dimension::MASS, "a mass"));
-        if motion == BodyMotion::Dynamic && body.mass.is_none() {
-            let message = format!("the dynamic body `{}` has no mass", body.name.text);
+        let stiffness =
+            body.stiffness.as_ref().and_then(|k| self.more_than_zero(k, Dimension::STIFFNESS, "a stiffness"));
+        let is_moved = matches!(motion, BodyMotion::Dynamic | BodyMotion::Guided);
+        if is_moved && body.mass.is_none() {
+            let message = format!("the {} body `{}` has no mass", body.motion.text, body.name.text);
             self.report(bad_world(body.name.span, message, "add `mass 1 kg`"));
         }
         let name = format!("{}{}", p.prefix, body.name.text);
@@ -185,6 +196,7 @@ impl<'a> Checker<'a> {
                 position,
                 rotation,
                 mass: mass.unwrap_or(0.0),
+                stiffness,
                 ghost: body.ghost,
                 graspable: body.graspable,
                 span: p.member.span,

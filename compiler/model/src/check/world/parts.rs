@@ -66,6 +66,8 @@ impl<'a> Checker<'a> {
                 | Member::Gripper(_)
                 | Member::Base(_)
                 | Member::Laser(_)
+                | Member::Limb(_)
+                | Member::Figure(_)
                 | Member::Posture(_)
                 | Member::Current { .. }
                 | Member::Signal { .. }

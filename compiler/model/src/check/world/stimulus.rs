@@ -11,14 +11,14 @@ use crate::check::{
     value::measure::text,
 };
 use crate::{
-    ActorId, BinaryOp, BodyMotion, BodyRef, Dimension, EventId, GripperId, InferredType, Type, TypedExpr,
+    ActorId, BinaryOp, BodyMotion, BodyRef, Dimension, EventId, FigureId, GripperId, InferredType, Type, TypedExpr,
     TypedPoint, TypedSample, TypedStimulus, TypedStimulusStep, TypedWorldAction, Value,
     noun::Noun,
     report::{names, roles, types, world},
     types::TypeLayout,
 };
 
-const ACTIONS: [&str; 4] = ["move_to", "look_at", "grasp", "let_go"];
+const ACTIONS: [&str; 6] = ["move_to", "look_at", "grasp", "let_go", "walk_to", "turn_to"];
 
 impl Checker<'_> {
     pub(in crate::check) fn stimuli(&mut self) {
@@ -206,10 +206,13 @@ impl Checker<'_> {
             self.report(names::missing(action.span, "an action needs something that acts", help));
             return None;
         }
-        let want = [2, 4, 0, 0][chosen];
-        if args.len() != want {
+        let want = [2, 4, 0, 0, 2, 1][chosen];
+        // A walk can go on to more points.
+        let is_walk = chosen == 4 && args.len() > want;
+        if args.len() != want && !is_walk {
             let issue = types::counts(Noun::Action, &action.text, want, args.len(), span);
-            let usage = ["POINT, TIME", "BODY, OFFSET, DISTANCE, ANGLE", "", ""][chosen];
+            let usage =
+                ["POINT, TIME", "BODY, OFFSET, DISTANCE, ANGLE", "", "", "POINT, SPEED", "POINT"][chosen];
             self.report(issue.help(format!("write `{}.{}({usage})`", text(of), action.text)));
             return None;
         }
@@ -231,13 +234,41 @@ impl Checker<'_> {
             2 => self
                 .world_name(Noun::Gripper, of, "")
                 .map(|g| TypedWorldAction::Grasp { gripper: GripperId(g) }),
-            _ => self
+            3 => self
                 .world_name(Noun::Gripper, of, "")
                 .map(|g| TypedWorldAction::LetGo { gripper: GripperId(g) }),
+            4 => {
+                let figure = self.figure_named(of);
+                let (speed, points) = args.split_last()?;
+                let along: Vec<Option<TypedPoint>> = points.iter().map(|p| self.point(p, env)).collect();
+                let speed = self.expr_of(speed, InferredType::Float(Dimension::SPEED), env);
+                let along = along.into_iter().collect::<Option<_>>();
+                Some(TypedWorldAction::Walk { figure: figure?, along: along?, speed })
+            }
+            _ => {
+                let (figure, to) = (self.figure_named(of), self.point(&args[0], env));
+                Some(TypedWorldAction::Turn { figure: figure?, to: to? })
+            }
         }
     }
 
-    /// A kinematic body.
+    /// A figure by its name, or by that of a part that has one: `guest` for `guest.self`.
+    fn figure_named(&mut self, of: &[NameSyntax]) -> Option<FigureId> {
+        let prefix = format!("{}.", text(of));
+        let own = self.world.names.below(Noun::Figure, &prefix);
+        if let [one] = own.as_slice()
+            && self.world.names.is_instance(&text(of))
+        {
+            let full = format!("{prefix}{one}");
+            if let Some(last) = of.last() {
+                self.refer(last, self.world.names.instances.span_of(&text(of)));
+            }
+            return self.world.names.figures.get(&full).map(FigureId);
+        }
+        self.world_name(Noun::Figure, of, "").map(FigureId)
+    }
+
+    /// A kinematic or guided body.
     fn movable(&mut self, names: &[NameSyntax]) -> Option<crate::BodyId> {
         let id = match self.body_ref(names, "")? {
             BodyRef::Body(id) => Some(id),
@@ -245,17 +276,16 @@ impl Checker<'_> {
         };
         let body = id.and_then(|id| self.s.world.as_ref()?.bodies.get(usize::from(id.0)));
         match body {
-            Some(body) if body.motion == BodyMotion::Kinematic => id,
+            Some(body) if is_moved(body.motion) => id,
             Some(_) | None => {
                 let span = names[0].span.to(names[names.len() - 1].span);
-                let message = format!("`{}` is not kinematic: actions cannot move it", text(names));
+                let message = format!("`{}` is neither kinematic nor guided: actions cannot move it", text(names));
                 let world = self.s.world.as_ref();
-                let kinematic =
-                    world.iter().flat_map(|w| &w.bodies).filter(|b| b.motion == BodyMotion::Kinematic);
-                let near: Vec<&str> = kinematic.map(|b| b.name.as_str()).collect();
+                let moved = world.iter().flat_map(|w| &w.bodies).filter(|b| is_moved(b.motion));
+                let near: Vec<&str> = moved.map(|b| b.name.as_str()).collect();
                 let help = match near.as_slice() {
-                    [] => "declare the body as `kinematic`".to_owned(),
-                    _ => format!("the kinematic bodies are: `{}`", near.join("`, `")),
+                    [] => "declare the body as `kinematic`, or as `guided` if it is somebody's".to_owned(),
+                    _ => format!("actions move: `{}`", near.join("`, `")),
                 };
                 self.report(world::bad_world(span, message, help));
                 None
@@ -332,6 +362,13 @@ impl Checker<'_> {
             issue.help = not_a_point(e.span).help;
         }
         <[TypedExpr; 3]>::try_from(parts).ok()
+    }
+}
+
+fn is_moved(motion: BodyMotion) -> bool {
+    match motion {
+        BodyMotion::Kinematic | BodyMotion::Guided => true,
+        BodyMotion::Fixed | BodyMotion::Dynamic => false,
     }
 }
 

@@ -322,6 +322,7 @@ impl TokenMarker<'_> {
                 self.expr(&body.at);
                 self.maybe(body.rotated.as_ref());
                 self.maybe(body.mass.as_ref());
+                self.maybe(body.stiffness.as_ref());
             }
             WorldMemberKind::Joint(joint) => self.joint(joint),
             WorldMemberKind::Arm(arm) => {
@@ -341,6 +342,12 @@ impl TokenMarker<'_> {
                 self.expr(&base.turn);
                 self.expr(&base.acceleration);
                 self.maybe(base.timeout.as_ref());
+            }
+            WorldMemberKind::Limb(limb) => limb.pivots.iter().for_each(|pivot| self.expr(pivot)),
+            WorldMemberKind::Figure(figure) => {
+                for clause in [&figure.hip, &figure.speed, &figure.turn, &figure.mass] {
+                    self.expr(clause);
+                }
             }
             WorldMemberKind::Laser(laser) => {
                 self.expr(&laser.at);

@@ -1,0 +1,180 @@
+//! Guided bodies: what draws the body of somebody alive to where it is to be.
+//!
+//! A spring with a damper, whose force is limited, and a force that gives the body the acceleration of its aim: a body that nothing
+//! touches is where it is to be, to the precision of the engine; one that is pushed gives way, with the mass that a contact feels. It
+//! turns as it is to, as long as nothing keeps it from that.
+
+use hrdsl_ir::world::BodyId;
+use rapier3d::prelude::*;
+
+use super::{PhysicsAdapter, index};
+use crate::math::{BodyFrame, RotationQuat, SpaceVector, from_pose, from_vector, to_vector};
+
+/// How fast a body is drawn back, 1/s: four times a second, if its surface is not soft.
+const FREQUENCY: f64 = 25.0;
+/// How stiff its spring is beside its surface: a blow is over before the spring takes part in it.
+const BESIDE_SURFACE: f64 = 0.05;
+/// Of what is critical.
+const DAMPING: f64 = 0.7;
+/// With how much a body is drawn at most, N, and how much more for each kg: a hand pushes with less than a trunk.
+const STRENGTH: f64 = 60.0;
+const STRENGTH_PER_MASS: f64 = 8.0;
+/// Nearer than this it is there, m, and slower than this it stands, m/s.
+const THERE: f64 = 1e-6;
+const STILL: f64 = 1e-5;
+/// The fastest turn, rad/s.
+const FASTEST_TURN: f64 = 20.0;
+
+/// What draws one body.
+pub(super) struct BodyGuide {
+    mass: f64,
+    spring: f64,
+    damper: f64,
+    strength: f64,
+    /// Where it was to be when the step began, and is to be at its end.
+    from: BodyFrame,
+    to: BodyFrame,
+    /// The speed of its aim in the last step, m/s.
+    pace: SpaceVector,
+    /// What it carries, kg.
+    load: f64,
+}
+
+/// A part of a step: how much of the step is over when it begins, its time, and that of the step, s.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepPart {
+    pub done: f64,
+    pub h: f64,
+    pub dt: f64,
+}
+
+impl BodyGuide {
+    pub fn new(mass: f64, stiffness: Option<f64>, start: BodyFrame) -> Self {
+        let own = mass * FREQUENCY * FREQUENCY;
+        let spring = stiffness.map_or(own, |k| own.min(BESIDE_SURFACE * k));
+        BodyGuide {
+            mass,
+            spring,
+            damper: 2.0 * DAMPING * (spring * mass).sqrt(),
+            strength: STRENGTH + STRENGTH_PER_MASS * mass,
+            from: start,
+            to: start,
+            pace: SpaceVector::zeros(),
+            load: 0.0,
+        }
+    }
+
+    /// The impulse over a part of a step, N·s.
+    fn impulse(&self, body: &RigidBody, weight: SpaceVector, part: StepPart) -> SpaceVector {
+        let pace = (self.to.at - self.from.at) / part.dt;
+        let (before, ahead) = if part.done == 0.0 { (self.pace, pace - self.pace) } else { (pace, SpaceVector::zeros()) };
+        let aim = self.from.at + (self.to.at - self.from.at) * part.done;
+        let (at, speed) = (from_pose(body.position()).at, from_vector(body.linvel()));
+        let (behind, slow) = (aim - at, before - speed);
+        // What is there and stands is left alone, so that it can rest.
+        if behind.norm() < THERE && slow.norm() < STILL && ahead.norm() == 0.0 && self.load == 0.0 {
+            return SpaceVector::zeros();
+        }
+        let pull = behind * self.spring + slow * self.damper;
+        let size = pull.norm();
+        let pull = if size > self.strength { pull * (self.strength / size) } else { pull };
+        ahead * (self.mass + self.load) + (pull - weight * self.load) * part.h
+    }
+
+    /// The turn that brings it to its aim at the end of the step, rad/s.
+    fn turn(&self, body: &RigidBody, part: StepPart) -> SpaceVector {
+        let left = (1.0 - part.done) * part.dt;
+        let turn = turn_between(&from_pose(body.position()).turn, &self.to.turn) / left;
+        let size = turn.norm();
+        if size > FASTEST_TURN { turn * (FASTEST_TURN / size) } else { turn }
+    }
+}
+
+impl PhysicsAdapter {
+    /// A guided body is to be there at the end of the next step.
+    pub(super) fn guide(&mut self, body: BodyId, to: &BodyFrame) {
+        if let Some(guide) = &mut self.guides[index(body)] {
+            guide.to = *to;
+        }
+    }
+
+    /// How far a guided body is from where it is to be, m; null of others.
+    pub fn strayed(&self, body: BodyId) -> SpaceVector {
+        let aim = self.guides[index(body)].as_ref();
+        aim.map_or_else(SpaceVector::zeros, |guide| self.pose(body).at - guide.from.at)
+    }
+
+    /// Where a guided body is to be; of another where it is.
+    pub fn aim(&self, body: BodyId) -> BodyFrame {
+        self.guides[index(body)].as_ref().map_or_else(|| self.pose(body), |guide| guide.from)
+    }
+
+    /// A guided body carries so much from now on, kg.
+    pub(super) fn load(&mut self, body: BodyId, mass: f64) {
+        if let Some(guide) = &mut self.guides[index(body)] {
+            guide.load = mass;
+        }
+    }
+
+    /// Draws all guided bodies for a part of a step.
+    pub(super) fn draw_guided(&mut self, part: StepPart) {
+        let weight = from_vector(self.world.gravity);
+        for (guide, own) in self.guides.iter().zip(&self.parts) {
+            let Some(guide) = guide else { continue };
+            let body = &mut self.world.bodies[own.handle];
+            let (impulse, turn) = (guide.impulse(body, weight, part), guide.turn(body, part));
+            if turn.norm() > 0.0 || body.angvel() != AngVector::ZERO {
+                body.set_angvel(to_vector(turn), true);
+            }
+            if impulse.norm() > 0.0 {
+                body.apply_impulse(to_vector(impulse), true);
+            }
+        }
+    }
+
+    /// The step is over: where the bodies were to be is where the next one begins.
+    pub(super) fn end_guided(&mut self, dt: f64) {
+        for guide in self.guides.iter_mut().flatten() {
+            guide.pace = (guide.to.at - guide.from.at) / dt;
+            guide.from = guide.to;
+        }
+    }
+
+    /// Nothing draws these bodies any more, and each has the mass that is given with it, kg: they fall.
+    pub fn let_fall(&mut self, bodies: &[(BodyId, f64)]) {
+        for (id, mass) in bodies {
+            self.guides[index(*id)] = None;
+            let part = &self.parts[index(*id)];
+            self.world.colliders[part.collider].set_mass(*mass as f32);
+            let body = &mut self.world.bodies[part.handle];
+            body.set_gravity_scale(1.0, true);
+        }
+    }
+
+    /// How much room a body takes, m³.
+    pub fn volume(&self, body: BodyId) -> f64 {
+        f64::from(self.world.colliders[self.parts[index(body)].collider].shape().mass_properties(1.0).mass())
+    }
+
+    /// Joins two bodies at a point in the world, so that they turn freely about it.
+    pub fn join_at(&mut self, first: BodyId, point: SpaceVector, second: BodyId) {
+        let local = |body: BodyId| to_vector(self.pose(body).inverse().point(point));
+        let joint = SphericalJointBuilder::new()
+            .local_anchor1(local(first))
+            .local_anchor2(local(second))
+            .contacts_enabled(false)
+            .build();
+        let (a, b) = (self.parts[index(first)].handle, self.parts[index(second)].handle);
+        self.world.insert_impulse_joint(a, b, joint);
+    }
+}
+
+/// The rotation vector that turns one rotation into the other, rad.
+fn turn_between(from: &RotationQuat, to: &RotationQuat) -> SpaceVector {
+    let between = to * from.inverse();
+    let (w, v) = (between.w, SpaceVector::new(between.i, between.j, between.k));
+    let (w, v) = if w < 0.0 { (-w, -v) } else { (w, v) };
+    let size = v.norm();
+    // Below this the engine's own precision turns nothing.
+    if size < 1e-7 { SpaceVector::zeros() } else { v * (2.0 * libm::atan2(size, w) / size) }
+}

@@ -1,0 +1,302 @@
+//! Contacts with what yields: the surfaces of people are springs, and the force of a blow is that of ISO/TS 15066.
+//!
+//! A body with a stiffness meets whatever can move as a mass on a spring: its surface gives way by δ, and pushes back with k δ (ISO/TS
+//! 15066:2016, Annex A, equation A.5, where E = F²/2k). A blow at the speed v of two masses whose reduced mass is μ comes to v √(k μ).
+//! When the surface springs back, it gives less than it took: unloading is stiffer, by a constant factor (Walton and Braun 1986), so
+//! that a body leaves as [`RESTITUTION`] says, and the peak is as without it. The force acts on the middle of what yields, and
+//! friction across it.
+//!
+//! Blows last for few milliseconds: a step in which such bodies meet is divided, as finely as stiffness and masses ask for.
+
+use hrdsl_ir::world::{BodyId, BodyMotion, ContactPhase, World};
+use rapier3d::parry::{self, bounding_volume::Aabb, bounding_volume::BoundingVolume};
+use rapier3d::prelude::*;
+
+use super::{PhysicsAdapter, SUBSTEPS, body_id, guide::StepPart, index};
+use crate::math::{SpaceVector, from_vector, to_vector};
+
+/// The speed after a blow, of that before: an assumption; peaks do not depend on it.
+const RESTITUTION: f64 = 0.5;
+/// How fast a dent comes back while something is still pressed into it, s: an assumption, too.
+const RECOVERY: f64 = 0.1;
+/// What friction is on all surfaces.
+const FRICTION: f64 = 0.8;
+/// How far bodies may be apart to count as near, besides what they can do in a step, m.
+const NEAR: f64 = 2e-3;
+/// Which part of 1/ω a part of a step may last: in a blow, and when surfaces hardly move any more.
+const FINE: f64 = 0.15;
+const COARSE: f64 = 0.5;
+/// Below this speed of approach it is no blow, m/s.
+const SLOW: f64 = 0.02;
+/// The most parts of a step.
+const MOST_PARTS: f64 = 64.0;
+/// What lasts longer is quasi-static (ISO/TS 15066:2016, 5.5.4), s.
+const TRANSIENT: f64 = 0.5;
+/// What begins again within this time is the same contact, s.
+const SAME: f64 = 0.1;
+
+/// A body that yields, and one that can move and may meet it.
+pub(super) struct YieldingPair {
+    soft: usize,
+    other: usize,
+    /// N/m; of two bodies that yield, both springs in series.
+    stiffness: f64,
+    /// A hand does not press what it holds.
+    is_suspended: bool,
+    contact: Option<YieldingContact>,
+}
+
+/// Two surfaces that press on each other.
+#[derive(Clone, Copy, Debug)]
+struct YieldingContact {
+    /// How deep the surface has been pressed in, m.
+    deepest: f64,
+    /// On the body that yields, of length 1.
+    normal: SpaceVector,
+    /// The greatest force in the last step, N; and the impulse over it, N·s.
+    peak: f64,
+    impulse: f64,
+    /// For how long they have met, and for how long they have been apart since, s.
+    age: f64,
+    parted: f64,
+}
+
+impl YieldingContact {
+    /// The force of a surface that is pressed in by so much, N.
+    fn force_at(&self, depth: f64, stiffness: f64) -> f64 {
+        let back = stiffness / (RESTITUTION * RESTITUTION);
+        let dent = self.deepest * (1.0 - RESTITUTION * RESTITUTION);
+        if depth >= self.deepest { stiffness * depth } else { (back * (depth - dent)).max(0.0) }
+    }
+}
+
+/// What is found of a pair before its surfaces meet.
+struct NearPair {
+    at: usize,
+    /// The frequency of its masses on its spring, 1/s.
+    frequency: f64,
+    /// m/s
+    approach: f64,
+}
+
+impl PhysicsAdapter {
+    /// Finds what yields, and what it may meet: everything that can move and is not of the same figure.
+    pub(super) fn find_yielding(&mut self, world: &World, figure_of: &[Option<usize>]) {
+        for (i, body) in world.bodies.iter().enumerate() {
+            let Some(stiffness) = body.stiffness.filter(|_| !body.ghost) else { continue };
+            for j in 0..world.bodies.len() {
+                let root = index(self.parts[j].root);
+                let is_own = i == j || (figure_of[i].is_some() && figure_of[i] == figure_of[j]);
+                let is_met = world.bodies[j].stiffness.is_some() && j < i;
+                if is_own || is_met || self.parts[j].ghost || world.bodies[root].motion == BodyMotion::Fixed {
+                    continue;
+                }
+                let stiffness = world.bodies[j].stiffness.map_or(stiffness, |k| 1.0 / (1.0 / k + 1.0 / stiffness));
+                let (soft, other, contact) = (i, j, None);
+                self.yielding.push(YieldingPair { soft, other, stiffness, is_suspended: false, contact });
+                self.exempt.yields(i, j);
+                self.filter(i);
+                self.filter(j);
+            }
+        }
+    }
+
+    /// A hand holds a body, or no longer: meanwhile it does not press it.
+    pub(super) fn suspend(&mut self, a: BodyId, b: BodyId, is_suspended: bool) {
+        let (a, b) = (index(a), index(b));
+        for pair in &mut self.yielding {
+            if (pair.soft, pair.other) == (a, b) || (pair.soft, pair.other) == (b, a) {
+                pair.is_suspended = is_suspended;
+                pair.contact = None;
+            }
+        }
+    }
+
+    /// Does a step, in as many parts as the bodies that meet ask for.
+    pub(super) fn step_parts(&mut self) {
+        let dt = f64::from(self.world.integration_parameters.dt);
+        let near = self.near_pairs(dt);
+        let parts = near.iter().map(|pair| pair.parts(dt)).fold(1.0, f64::max);
+        let h = dt / parts;
+        self.part = (h, (SUBSTEPS as f64 / parts).ceil() as usize);
+        if parts > 1.0 {
+            self.world.integration_parameters.dt = h as f32;
+            self.world.integration_parameters.num_solver_iterations = self.part.1;
+        }
+        let mut done = 0.0;
+        while done < parts {
+            self.draw_guided(StepPart { done: done / parts, h, dt });
+            for pair in &near {
+                self.press(pair.at, h);
+            }
+            self.world.step_with_events(&self.exempt, &());
+            done += 1.0;
+        }
+        self.end_guided(dt);
+        self.world.integration_parameters.dt = dt as f32;
+        self.world.integration_parameters.num_solver_iterations = SUBSTEPS;
+    }
+
+    /// The pairs that may touch within a step.
+    fn near_pairs(&mut self, dt: f64) -> Vec<NearPair> {
+        if self.yielding.is_empty() {
+            return Vec::new();
+        }
+        let boxes: Vec<Aabb> = (0..self.parts.len()).map(|i| self.box_in_step(i, dt)).collect();
+        let mut near = Vec::new();
+        for at in 0..self.yielding.len() {
+            let pair = &mut self.yielding[at];
+            let (soft, other) = (pair.soft, pair.other);
+            if let Some(contact) = &mut pair.contact {
+                (contact.peak, contact.impulse) = (0.0, 0.0);
+                contact.parted += dt;
+            }
+            pair.contact = pair.contact.filter(|contact| contact.parted < SAME);
+            if pair.is_suspended || !boxes[soft].intersects(&boxes[other]) {
+                continue;
+            }
+            let reach = NEAR + (self.speed_of(soft) + self.speed_of(other)) * dt;
+            let Some(found) = self.closest(soft, other, reach) else { continue };
+            let pair = &self.yielding[at];
+            let (a, b) = (&self.world.bodies[self.parts[soft].handle], &self.world.bodies[self.parts[other].handle]);
+            let inverse = |body: &RigidBody| if body.is_dynamic() { 1.0 / f64::from(body.mass()) } else { 0.0 };
+            let approach = from_vector(a.linvel() - b.velocity_at_point(found.point2)).dot(&from_vector(found.normal1));
+            let frequency = (pair.stiffness * (inverse(a) + inverse(b))).sqrt();
+            near.push(NearPair { at, frequency, approach });
+        }
+        near
+    }
+
+    /// Where a body can be within a step.
+    fn box_in_step(&self, part: usize, dt: f64) -> Aabb {
+        let around = self.world.colliders[self.parts[part].collider].compute_aabb();
+        around.loosened((NEAR / 2.0 + self.speed_of(part) * dt) as f32)
+    }
+
+    /// No point of a body's surface is faster, m/s.
+    fn speed_of(&self, part: usize) -> f64 {
+        let own = &self.parts[part];
+        let body = &self.world.bodies[own.handle];
+        let collider = &self.world.colliders[own.collider];
+        let centre = collider.position().translation;
+        let radius = collider.shape().compute_local_bounding_sphere().radius();
+        f64::from(body.velocity_at_point(centre).length() + body.angvel().length() * radius)
+    }
+
+    fn closest(&self, a: usize, b: usize, far: f64) -> Option<parry::query::Contact> {
+        let collider = |i: usize| &self.world.colliders[self.parts[i].collider];
+        let (a, b) = (collider(a), collider(b));
+        // The engine knows how to measure between all shapes that a scenario can name.
+        parry::query::contact(a.position(), a.shape(), b.position(), b.shape(), far as f32).ok().flatten()
+    }
+
+    /// Lets the surfaces of a pair press on each other for a part of a step.
+    fn press(&mut self, at: usize, h: f64) {
+        let (soft, other) = (self.yielding[at].soft, self.yielding[at].other);
+        let Some(found) = self.closest(soft, other, 0.0).filter(|c| c.dist < 0.0) else {
+            // A dent is gone when the surfaces have parted.
+            if let Some(contact) = &mut self.yielding[at].contact {
+                contact.deepest = 0.0;
+            }
+            return;
+        };
+        let normal = -from_vector(found.normal1);
+        let depth = -f64::from(found.dist);
+        let pair = &mut self.yielding[at];
+        let new = YieldingContact { deepest: 0.0, normal, peak: 0.0, impulse: 0.0, age: 0.0, parted: 0.0 };
+        let contact = pair.contact.get_or_insert(new);
+        let force = contact.force_at(depth, pair.stiffness);
+        // What was pressed in more deeply comes back.
+        contact.deepest = depth.max(contact.deepest - (contact.deepest - depth) * (h / RECOVERY).min(1.0));
+        contact.peak = contact.peak.max(force);
+        contact.impulse += force * h;
+        contact.normal = normal;
+        contact.age += h;
+        contact.parted = 0.0;
+        self.push_apart((soft, other), found.point2, normal * force, h);
+    }
+
+    /// The force on the body that yields, and its opposite on the other; with the friction that goes with it.
+    fn push_apart(&mut self, (soft, other): (usize, usize), point: Vector, force: SpaceVector, h: f64) {
+        let (a, b) = (self.parts[soft].handle, self.parts[other].handle);
+        let (one, two) = (&self.world.bodies[a], &self.world.bodies[b]);
+        let yields = self.guides[other].is_some();
+        let there = if yields { two.linvel() } else { two.velocity_at_point(point) };
+        let slip = from_vector(one.linvel() - there);
+        let size = force.norm();
+        let across = if size > 0.0 { slip - force * (slip.dot(&force) / (size * size)) } else { SpaceVector::zeros() };
+        let mass = |body: &RigidBody| if body.is_dynamic() { f64::from(body.mass()) } else { f64::INFINITY };
+        let stops = mass(one).min(mass(two)) / 2.0;
+        let rub = across.norm();
+        let friction = if rub > 0.0 { across * (-(FRICTION * size * h).min(stops * rub) / rub) } else { SpaceVector::zeros() };
+        let impulse = force * h + friction;
+        self.world.bodies[a].apply_impulse(to_vector(impulse), true);
+        let two = &mut self.world.bodies[b];
+        if yields {
+            two.apply_impulse(to_vector(-impulse), true);
+        } else if two.is_dynamic() {
+            two.apply_impulse_at_point(to_vector(-impulse), point, true);
+        }
+    }
+
+    // ── What is measured ──
+
+    /// The force on a body of each that it meets in such a contact: the greatest of the last step, N.
+    pub(super) fn yielding_pushes(&self, body: BodyId) -> impl Iterator<Item = (BodyId, SpaceVector)> + '_ {
+        let own = index(body);
+        self.yielding.iter().filter_map(move |pair| {
+            let contact = pair.contact.filter(|c| c.peak > 0.0)?;
+            let push = contact.normal * contact.peak;
+            if pair.soft == own {
+                Some((body_id(pair.other), push))
+            } else if pair.other == own {
+                Some((body_id(pair.soft), -push))
+            } else {
+                None
+            }
+        })
+    }
+
+    /// How hard others, or one of them, press on what yields in contacts of a kind, N.
+    pub fn pressed(&self, body: BodyId, by: Option<BodyId>, phase: ContactPhase) -> f64 {
+        let own = index(body);
+        let of = self.yielding.iter().filter(|pair| {
+            let other = if pair.soft == own { pair.other } else { pair.soft };
+            (pair.soft == own || pair.other == own) && by.is_none_or(|by| index(by) == other)
+        });
+        let of_phase = of.filter_map(|pair| pair.contact.map(|contact| (pair, contact))).filter(|(pair, contact)| {
+            let lasts = contact.age > TRANSIENT || self.is_clamped(pair.soft, contact);
+            lasts == (phase == ContactPhase::QuasiStatic)
+        });
+        of_phase.map(|(_, contact)| contact.peak).sum()
+    }
+
+    /// Whether something else presses a body against a contact, half as hard at least.
+    fn is_clamped(&self, soft: usize, contact: &YieldingContact) -> bool {
+        let against = self.pushes(body_id(soft)).map(|push| (-push.dot(&contact.normal)).max(0.0)).sum::<f64>();
+        against > contact.peak / 2.0
+    }
+
+    /// The level part of what pressed on a body in such contacts over the last step, N·s.
+    pub fn level_impulse(&self, body: BodyId) -> SpaceVector {
+        let own = index(body);
+        let mut sum = SpaceVector::zeros();
+        for pair in &self.yielding {
+            let Some(contact) = &pair.contact else { continue };
+            if pair.soft == own {
+                sum += contact.normal * contact.impulse;
+            } else if pair.other == own {
+                sum -= contact.normal * contact.impulse;
+            }
+        }
+        SpaceVector::new(sum.x, sum.y, 0.0)
+    }
+}
+
+impl NearPair {
+    /// How many parts of a step it asks for.
+    fn parts(&self, dt: f64) -> f64 {
+        let fine = if self.approach > SLOW { FINE } else { COARSE };
+        (dt * self.frequency / fine).ceil().clamp(1.0, MOST_PARTS)
+    }
+}
