@@ -11,12 +11,21 @@ use hrdsl_harness::CommandId;
 use crate::{
     error::{CommandError, SimError},
     math::{BodyFrame, SpaceVector, about, wrap},
-    physics::{PhysicsAdapter, bad, index},
+    physics::{PhysicsAdapter, bad, index, wheels::RollingBase},
 };
 
 /// How deep a base may come to be in what is fixed, m: more than the engine's single precision makes of bodies that touch, such as
 /// a base and the ground.
 const TOUCHING: f64 = 1e-3;
+
+/// How much faster than it goes a dynamic base may want to go, m/s and rad/s.
+const SLIPS: f64 = 0.1;
+const TURN_SLIPS: f64 = 0.3;
+/// Below this a dynamic base stands, m/s and rad/s.
+const STANDS: f64 = 0.01;
+const TURN_STANDS: f64 = 0.02;
+/// Tipped farther than this, a base lies on its side, rad: 50°.
+const FALLEN: f64 = 0.87;
 
 /// A velocity in the frame of the base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,11 +67,17 @@ pub(crate) struct BaseControl {
     /// At the last step.
     pose: PlanarPose,
     velocity: PlanarVelocity,
+    /// As a dynamic base was measured to move.
+    moves: PlanarVelocity,
     /// The one that was in force when the last step began, and those that came after it.
     asked: Vec<VelocitySetPoint>,
     /// Which pairs of its own solid bodies and fixed ones may touch, and how deep, m.
     obstacles: Vec<(BodyId, BodyId, f64)>,
     stopping: Option<CommandId>,
+    /// Of a base that can be pushed and toppled.
+    wheels: Option<RollingBase>,
+    /// It has tipped over, for good.
+    has_fallen: bool,
 }
 
 impl PlanarVelocity {
@@ -94,6 +109,20 @@ impl PlanarVelocity {
         next
     }
 
+    /// Itself, but no farther from another than wheels that slip may be.
+    fn near(self, other: PlanarVelocity) -> PlanarVelocity {
+        let keep = |own: f64, other: f64, most: f64| own.clamp(other - most, other + most);
+        PlanarVelocity {
+            forward: keep(self.forward, other.forward, SLIPS),
+            sideways: keep(self.sideways, other.sideways, SLIPS),
+            turn: keep(self.turn, other.turn, TURN_SLIPS),
+        }
+    }
+
+    fn is_small(self) -> bool {
+        self.forward.abs() < STANDS && self.sideways.abs() < STANDS && self.turn.abs() < TURN_STANDS
+    }
+
     fn middle(self, other: PlanarVelocity) -> PlanarVelocity {
         PlanarVelocity {
             forward: (self.forward + other.forward) / 2.0,
@@ -118,14 +147,18 @@ impl PlanarPose {
 }
 
 impl BaseControl {
-    pub fn new(base: &Base, world: &World, physics: &PhysicsAdapter) -> Result<BaseControl, SimError> {
+    pub fn new(base: &Base, world: &World, physics: &mut PhysicsAdapter) -> Result<BaseControl, SimError> {
         let what = || format!("base `{}`", base.name);
         let Some(body) = world.bodies.get(index(base.body)) else {
             return Err(bad(what(), "body", index(base.body)));
         };
-        if body.motion != BodyMotion::Kinematic {
-            return Err(SimError::NotKinematic { body: body.name.clone() });
-        }
+        let rolls = match body.motion {
+            BodyMotion::Kinematic => false,
+            BodyMotion::Dynamic => true,
+            BodyMotion::Fixed | BodyMotion::Guided => {
+                return Err(SimError::NotDriven { body: body.name.clone() });
+            }
+        };
         let positive = [base.max_speed, base.max_turn, base.acceleration];
         if positive.iter().any(|x| !(x.is_finite() && *x > 0.0))
             || !(base.max_sideways.is_finite() && base.max_sideways >= 0.0)
@@ -146,11 +179,16 @@ impl BaseControl {
             height: start.at.z,
             pose: PlanarPose { x: start.at.x, y: start.at.y, yaw: wrap(yaw) },
             velocity: PlanarVelocity::default(),
+            moves: PlanarVelocity::default(),
             asked: Vec::new(),
             obstacles: Vec::new(),
             stopping: None,
+            wheels: rolls.then(|| physics.on_wheels(base.body, world)),
+            has_fallen: false,
         };
-        control.obstacles = control.find_obstacles(physics);
+        if !rolls {
+            control.obstacles = control.find_obstacles(physics);
+        }
         Ok(control)
     }
 
@@ -206,6 +244,9 @@ impl BaseControl {
     pub fn go_on(&mut self, from: Nanos, to: Nanos, physics: &mut PhysicsAdapter) {
         let in_force = self.asked.iter().rposition(|a| a.at <= from).unwrap_or(0);
         self.asked.drain(..in_force);
+        if self.wheels.is_some() {
+            return self.roll_on(from, to, physics);
+        }
         if !self.is_busy(from) && self.wanted(to) == PlanarVelocity::default() {
             return;
         }
@@ -219,6 +260,55 @@ impl BaseControl {
         }
         (self.pose, self.velocity) = self.unblocked(pose, velocity, physics);
         physics.lead(self.body, &self.frame(self.pose));
+    }
+
+    /// Lets the wheels of a dynamic base bring it to the velocity that it is to have at the end of the step.
+    fn roll_on(&mut self, from: Nanos, to: Nanos, physics: &mut PhysicsAdapter) {
+        let Some(wheels) = self.wheels.clone() else { return };
+        if !self.has_fallen && physics.tilt(self.body) > FALLEN {
+            self.has_fallen = true;
+            physics.off_wheels(&wheels);
+        }
+        if self.has_fallen {
+            self.velocity = PlanarVelocity::default();
+            return;
+        }
+        // From where it really is: wheels that slipped take up their speed again.
+        let measured = self.measured(&wheels, physics);
+        let (mut velocity, mut at) = (self.velocity.near(measured), from);
+        for until in self.changes(from, to).into_iter().chain([to]) {
+            let t = seconds(until - at);
+            let aim = self.wanted(at);
+            velocity = velocity.towards(aim, self.acceleration * t, self.angular_acceleration * t);
+            at = until;
+        }
+        self.velocity = velocity;
+        let h = seconds(to - from);
+        let yaw = self.heading(physics) + velocity.turn * h / 2.0;
+        let ahead = SpaceVector::new(libm::cos(yaw), libm::sin(yaw), 0.0);
+        let left = SpaceVector::new(-ahead.y, ahead.x, 0.0);
+        physics.roll(&wheels, ahead * velocity.forward + left * velocity.sideways, velocity.turn, h);
+    }
+
+    fn measured(&self, wheels: &RollingBase, physics: &PhysicsAdapter) -> PlanarVelocity {
+        let (velocity, turn) = physics.rolling_velocity(wheels);
+        let yaw = self.heading(physics);
+        let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+        let (forward, sideways) = (velocity.x * cos + velocity.y * sin, velocity.y * cos - velocity.x * sin);
+        PlanarVelocity { forward, sideways, turn }
+    }
+
+    fn heading(&self, physics: &PhysicsAdapter) -> f64 {
+        let x = (physics.pose(self.body).turn * self.upright.turn.inverse()) * SpaceVector::x();
+        libm::atan2(x.y, x.x)
+    }
+
+    /// After a step: takes down where a dynamic base has come to.
+    pub fn look(&mut self, physics: &PhysicsAdapter) {
+        let Some(wheels) = &self.wheels else { return };
+        let at = physics.pose(self.body).at;
+        self.moves = self.measured(wheels, physics);
+        self.pose = PlanarPose { x: at.x, y: at.y, yaw: self.heading(physics) };
     }
 
     /// The way as far as it is free: if not all of it, the turn alone, or the way alone, or none. What is blocked of the velocity is
@@ -265,7 +355,7 @@ impl BaseControl {
 
     /// A command to stop has ended when it stands.
     pub fn check_stopped(&mut self) -> Option<(CommandId, Result<(), CommandError>)> {
-        let stands = self.velocity == PlanarVelocity::default();
+        let stands = self.velocity == PlanarVelocity::default() && self.velocity().is_small();
         let id = if stands { self.stopping.take() } else { None };
         id.map(|id| (id, Ok(())))
     }
@@ -281,8 +371,9 @@ impl BaseControl {
         self.pose
     }
 
+    /// As it really moves.
     pub fn velocity(&self) -> PlanarVelocity {
-        self.velocity
+        if self.wheels.is_some() { self.moves } else { self.velocity }
     }
 }
 

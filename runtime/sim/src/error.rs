@@ -19,8 +19,8 @@ pub enum SimError {
     NotHoldable { gripper: String, body: String },
     #[error("the body `{body}` is neither kinematic nor guided, so that no action moves it")]
     NotMoved { body: String },
-    #[error("the body `{body}` is not kinematic, so that no base moves it")]
-    NotKinematic { body: String },
+    #[error("the body `{body}` is neither kinematic nor dynamic, so that no base moves it")]
+    NotDriven { body: String },
     #[error("the body `{body}` of a figure is not guided")]
     NotGuided { body: String },
     #[error("`{body}` goes where its figure goes: send the head, a hand or the pelvis")]

@@ -61,6 +61,8 @@ pub(crate) struct FigureControl {
     /// Its pelvis was sent somewhere, and all of it goes along.
     carried: Option<KinematicPath>,
     head: PartAim,
+    /// It has walked up to something, and faces it.
+    reaching: bool,
     /// By limb; of legs none.
     hands: Vec<Option<PartAim>>,
     balance: Balance,
@@ -108,6 +110,7 @@ impl FigureControl {
             walk: None,
             carried: None,
             head: here(build.head_at_rest()),
+            reaching: false,
             hands,
             balance: Balance::new(figure.mass, build.hip, gravity),
             pushed: SpaceVector::zeros(),
@@ -147,8 +150,7 @@ impl FigureControl {
         let (from, to) = (self.unpushed(physics.aim(body)), self.unpushed(to));
         if body == self.build.head {
             let far = level(to.at - from.at).norm();
-            self.walk = None;
-            self.carried = None;
+            (self.walk, self.carried, self.reaching) = (None, None, false);
             let over = over.max(far * PEAK / self.speed);
             self.head = PartAim { in_world: true, path: KinematicPath::new(from, to, self.clock, over) };
         } else if body == self.build.pelvis || body == self.build.trunk {
@@ -164,8 +166,36 @@ impl FigureControl {
             };
             let over = over.max((to.at - from.at).norm() * PEAK / SWIFT);
             *slot = PartAim { in_world: true, path: KinematicPath::new(from, to, self.clock, over) };
+            if let Some(at) = hand {
+                self.step_up(at, to.at, physics);
+            }
         }
         Ok(())
+    }
+
+    /// Whoever reaches for what is too far off, and looks at nothing meanwhile, walks up to it and bows.
+    fn step_up(&mut self, hand: usize, place: SpaceVector, physics: &PhysicsAdapter) {
+        let own = self.stance_frame();
+        let limb = &self.build.limbs[hand];
+        let upright = self.build.reaches(limb, (self.build.hip, 0.0), own.inverse().point(place));
+        if upright || self.head.in_world {
+            return;
+        }
+        let way = level(place - own.at);
+        if way.norm() < 1e-6 {
+            return;
+        }
+        let (hip, lean, ahead, aside) = self.build.step_up(limb, place.z - self.ground);
+        // The shoulder is to come up to the place on the way from here: so the feet pass beside it.
+        let (far, off) = (way.norm(), aside.clamp(-way.norm(), way.norm()));
+        let heading = libm::atan2(way.y, way.x) - libm::asin(off / far);
+        let turn = about(SpaceVector::z(), heading);
+        let feet = level(place) - turn * SpaceVector::new(ahead, aside, 0.0) + SpaceVector::z() * self.ground;
+        let there = BodyFrame::new(feet + turn * self.build.head_at(hip, lean), turn);
+        let from = self.unpushed(physics.aim(self.build.head));
+        let over = level(there.at - from.at).norm() * PEAK / self.speed;
+        (self.walk, self.carried, self.reaching) = (None, None, true);
+        self.head = PartAim { in_world: true, path: KinematicPath::new(from, there, self.clock, over.max(GATHERS)) };
     }
 
     /// Walks along points, m.
@@ -255,7 +285,8 @@ impl FigureControl {
             let head = self.head.path.at(self.clock);
             let looks = head.x_axis();
             let aside = wrap(libm::atan2(looks.y, looks.x) - self.stance.heading);
-            let turn = (aside.abs() - NECK).clamp(0.0, self.turn * passed);
+            let neck = if self.reaching { 0.0 } else { NECK };
+            let turn = (aside.abs() - neck).clamp(0.0, self.turn * passed);
             self.stance.heading = wrap(self.stance.heading + turn.copysign(aside));
             let (_, _, ahead, _) = self.build.bow(head.at.z - self.ground);
             self.stance.x = head.at.x - ahead * libm::cos(self.stance.heading);

@@ -121,7 +121,7 @@ impl WorldSimulation {
             palms.map(|(i, _)| i).collect::<Vec<usize>>()
         };
         let arm_hands = arms.iter().map(moved).collect();
-        let bases = world.bases.iter().map(|b| BaseControl::new(b, world, &physics));
+        let bases = world.bases.iter().map(|b| BaseControl::new(b, world, &mut physics));
         let bases = bases.collect::<Result<Vec<_>, _>>()?;
         let figures = world.figures.iter().map(|f| FigureControl::new(f, world, &physics));
         let figures = figures.collect::<Result<Vec<_>, _>>()?;
@@ -206,6 +206,9 @@ impl WorldSimulation {
             }
         }
         self.physics.step();
+        for base in &mut self.bases {
+            base.look(&self.physics);
+        }
         self.steps += 1;
         self.last = next;
         self.now = self.now.max(next);

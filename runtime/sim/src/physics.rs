@@ -8,6 +8,7 @@ mod guide;
 mod joints;
 mod pairs;
 mod surface;
+pub(crate) mod wheels;
 mod yielding;
 
 use hrdsl_ir::value::seconds;

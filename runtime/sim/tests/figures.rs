@@ -75,17 +75,35 @@ fn who_looks_closely_bows_with_the_whole_body() {
 fn a_hand_goes_as_far_as_the_arm_does() {
     let mut scene = alone("", &[
         ("near", "host.hand.move_to((60 cm, 20 cm, 1.1 m), 1 s)"),
+        ("look", "host.head.look_at(floor, 0 cm, 1 m, 0 deg)"),
         ("far_off", "host.hand.move_to((-2 m, 0 m, 1 m), 1 s)"),
     ]);
     scene.act("near");
     scene.go_on(2.0, |_| {});
     assert!(far(scene.at("host.hand"), [0.6, 0.2, 1.1]) < 1e-4, "{:?}", scene.at("host.hand"));
+    // Who looks at something does not walk off to reach something else.
+    scene.act("look");
+    scene.go_on(1.0, |_| {});
+    let before = scene.at("host.pelvis");
     scene.act("far_off");
     scene.go_on(3.0, |_| {});
-    let shoulder = [1.0, 0.2227, 1.376];
-    let reach = far(scene.at("host.hand"), shoulder);
+    assert!(far(scene.at("host.pelvis"), before) < 1e-3);
     let arm = 1.72 * (0.17 + 0.2);
-    assert!((reach - arm).abs() < 0.01, "{reach} {arm}");
+    let reach = far(scene.at("host.hand"), scene.at("host.trunk"));
+    assert!(reach < arm + 0.35 && reach > arm - 0.35, "{reach} {arm}");
+}
+
+#[test]
+fn who_reaches_for_what_is_far_off_walks_up_to_it_and_bows() {
+    for (x, y, z) in [(-1.5, 0.5, 0.5), (-1.0, -2.0, 1.2), (3.0, 1.0, 0.2)] {
+        let reach = format!("host.hand.move_to(({x} m, {y} m, {z} m), 1 s)");
+        let mut scene = alone("", &[("reach", &reach)]);
+        scene.act("reach");
+        scene.go_on(8.0, |_| {});
+        let hand = scene.at("host.hand");
+        assert!(far(hand, [x, y, z]) < 5e-3, "{hand:?} {:?}", [x, y, z]);
+        assert_eq!(scene.sim.next_wake(), None, "the world rests");
+    }
 }
 
 #[test]

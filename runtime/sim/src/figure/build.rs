@@ -16,6 +16,11 @@ const FARTHEST_LEAN: f64 = 1.22;
 const LEAST_HIP: f64 = 0.1;
 /// How low the hip goes, of its height.
 const LOWEST_HIP: f64 = 0.35;
+/// How many postures between upright and bowed are looked at.
+const BOWS: i32 = 20;
+/// How much of an arm's length is reached with ease, and how much of that downwards.
+const EASY_REACH: f64 = 0.9;
+const STEEP_REACH: f64 = 0.85;
 /// How much a limb that can reach no farther is still bent, m.
 const BENT: f64 = 1e-3;
 /// How far a middle pivot is from the straight line if it says how the limb bends, m.
@@ -122,6 +127,36 @@ impl FigureBuild {
         };
         let (ahead, up) = (length * libm::sin(lean + drawn), length * libm::cos(lean + drawn));
         (hip, lean, ahead, hip + up)
+    }
+
+    /// Whether a hand reaches a place, as the figure stands; both in its own frame, for this lean and height of the hip.
+    pub fn reaches(&self, limb: &LimbBuild, (hip, lean): (f64, f64), place: SpaceVector) -> bool {
+        (place - self.shoulder(limb, hip, lean)).norm() <= limb.lengths[0] + limb.lengths[1]
+    }
+
+    /// How to reach a place at a height above the ground with a hand: the height of the hip and the lean, and how far the place is then
+    /// ahead of the feet, and to the left of them. The figure bows no more than it must.
+    pub fn step_up(&self, limb: &LimbBuild, height: f64) -> (f64, f64, f64, f64) {
+        let reach = EASY_REACH * (limb.lengths[0] + limb.lengths[1]);
+        let bows = (0..=BOWS).map(|i| f64::from(i) / f64::from(BOWS));
+        let leans = bows.clone().map(|part| (self.hip, part * FARTHEST_LEAN));
+        let crouches = bows.map(|part| (self.hip * (1.0 - part * (1.0 - LOWEST_HIP)), FARTHEST_LEAN));
+        let low_enough = |(hip, lean): &(f64, f64)| self.shoulder(limb, *hip, *lean).z - height <= STEEP_REACH * reach;
+        let lowest = (self.hip * LOWEST_HIP, FARTHEST_LEAN);
+        let (hip, lean) = leans.chain(crouches).find(low_enough).unwrap_or(lowest);
+        let shoulder = self.shoulder(limb, hip, lean);
+        let below = (shoulder.z - height).clamp(-reach, reach);
+        (hip, lean, shoulder.x + (reach * reach - below * below).sqrt(), shoulder.y)
+    }
+
+    /// In the figure's frame.
+    fn shoulder(&self, limb: &LimbBuild, hip: f64, lean: f64) -> SpaceVector {
+        SpaceVector::z() * hip + about(SpaceVector::y(), lean) * limb.root
+    }
+
+    /// Where the head is in the figure's frame, for a height of the hip and a lean.
+    pub fn head_at(&self, hip: f64, lean: f64) -> SpaceVector {
+        SpaceVector::z() * hip + about(SpaceVector::y(), lean) * self.head_local.at
     }
 
     /// The frames of the hip and of the lean about it.

@@ -54,6 +54,11 @@ impl PhysicsAdapter {
         self.pushes(body).map(|push| (-push.z).max(0.0)).sum()
     }
 
+    /// How hard others press up on the body: the vertical parts of what comes from below, N.
+    pub(super) fn load_from_below(&self, body: BodyId) -> f64 {
+        self.rigid_pushes(body).map(|push| push.z.max(0.0)).sum()
+    }
+
     /// The forces on the body, of each other one.
     pub(super) fn pushes(&self, body: BodyId) -> impl Iterator<Item = SpaceVector> + '_ {
         self.rigid_pushes(body).chain(self.yielding_pushes(body).map(|(_, push)| push))

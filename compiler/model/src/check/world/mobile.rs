@@ -51,14 +51,15 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A base has a kinematic body to itself.
+    /// A base has a kinematic or dynamic body to itself.
     fn drivable(&mut self, name: &NameSyntax, body: BodyId) {
         let world = self.world_mut();
         let motion = world.bodies.get(usize::from(body.0)).map(|b| b.motion);
         let taken = world.bases.iter().find(|b| b.body == body).map(|b| b.name.clone());
-        if matches!(motion, Some(BodyMotion::Fixed | BodyMotion::Dynamic)) {
-            let message = format!("a base drives a kinematic body, and `{}` is none", name.text);
-            self.report(bad_world(name.span, message, "declare the body as `kinematic`"));
+        if matches!(motion, Some(BodyMotion::Fixed | BodyMotion::Guided)) {
+            let message = format!("a base drives a dynamic or kinematic body, and `{}` is neither", name.text);
+            let help = "declare the body as `dynamic`, or as `kinematic` if nothing is to push it";
+            self.report(bad_world(name.span, message, help));
         }
         if let Some(other) = taken {
             let message = format!("`{}` is driven by the base `{other}` already", name.text);
