@@ -112,7 +112,7 @@ impl<'p> HarnessLoop<'p> {
             let Some(time) = self.clock.advance(self.now, due, self.limit) else {
                 return Ok(RunTermination::Quiescent);
             };
-            self.pass_time(time.clamp(self.now, self.limit.max(self.now)));
+            self.pass_time(time.clamp(self.now, self.limit.max(self.now)))?;
             if self.now >= self.limit && due.is_none_or(|due| due > self.limit) {
                 return Ok(RunTermination::Limit);
             }
@@ -121,14 +121,18 @@ impl<'p> HarnessLoop<'p> {
         }
     }
 
-    fn pass_time(&mut self, to: Nanos) {
+    fn pass_time(&mut self, to: Nanos) -> Result<(), HarnessError> {
         if to > self.now {
             self.at_this_instant = 0;
         }
         self.now = to;
         if let Some(stage) = &mut self.stage {
             stage.advance(to, &mut self.trace);
+            if let Some(fault) = stage.fault() {
+                return Err(HarnessError::World(fault));
+            }
         }
+        Ok(())
     }
 
     /// Wakes whoever asked for this time, or whose command to the world has ended: first for what ends by itself (a

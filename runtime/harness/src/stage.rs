@@ -74,6 +74,12 @@ impl<'p> WorldStage<'p> {
         }
     }
 
+    /// Why the world cannot go on.
+    #[must_use]
+    pub fn fault(&self) -> Option<String> {
+        self.world.fault()
+    }
+
     /// Records the signals that have changed.
     pub fn sample(&mut self, now: Nanos, trace: &mut Trace) {
         self.recorder.sample(now, self.world.as_mut(), trace);

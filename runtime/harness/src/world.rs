@@ -16,6 +16,11 @@ pub trait WorldBackend {
     /// Time has come to this.
     fn advance(&mut self, to: Nanos);
 
+    /// Why it cannot go on: what it says from now on means nothing. The run ends as an error.
+    fn fault(&self) -> Option<String> {
+        None
+    }
+
     /// The present value of a signal, in the SI unit of its type.
     fn read(&mut self, signal: SignalId) -> Value;
 

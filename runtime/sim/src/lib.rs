@@ -162,6 +162,12 @@ impl WorldSimulation {
         self.now
     }
 
+    /// Why the world cannot go on: the physics has failed, and what it says means nothing any more.
+    #[must_use]
+    pub fn fault(&self) -> Option<&str> {
+        self.physics.fault()
+    }
+
     /// How many physics steps there were. Signals and measurements change in these alone.
     #[must_use]
     pub fn steps(&self) -> u64 {

@@ -4,6 +4,7 @@
 
 mod contact;
 pub(crate) mod dynamics;
+mod energy;
 mod guide;
 mod joints;
 mod pairs;
@@ -19,6 +20,7 @@ use crate::{
     error::SimError,
     math::{BodyFrame, from_pose, from_rpy, from_vector, to_pose, to_vector, v3},
 };
+use energy::EnergyWatch;
 use guide::BodyGuide;
 use joints::DrivenJoint;
 use pairs::{ExemptPairs, JointGraph};
@@ -58,6 +60,11 @@ pub(crate) struct PhysicsAdapter {
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     joints: Vec<Option<DrivenJoint>>,
     exempt: ExemptPairs,
+    energy: EnergyWatch,
+    /// Where kinematic bodies will be at the end of the next step.
+    led: Vec<(RigidBodyHandle, Pose)>,
+    /// The time of a step, s.
+    step: f64,
     /// The time of the last part of a step, s, and how often the solver divided it.
     part: (f64, usize),
     /// The corners of the box outside of which a body is lost, m.
@@ -88,6 +95,9 @@ impl PhysicsAdapter {
             yielding: Vec::new(),
             joints: Vec::new(),
             exempt: ExemptPairs::default(),
+            energy: EnergyWatch::default(),
+            led: Vec::new(),
+            step: seconds(world.step),
             part: (seconds(world.step), SUBSTEPS),
             scene: (Vector::ZERO, Vector::ZERO),
         };
@@ -210,8 +220,27 @@ impl PhysicsAdapter {
         if self.motion(body) == BodyMotion::Guided {
             return self.guide(body, to);
         }
-        let handle = self.parts[index(body)].handle;
-        self.world.bodies[handle].set_next_kinematic_position(to_pose(to));
+        self.led.push((self.parts[index(body)].handle, to_pose(to)));
+    }
+
+    /// Leads kinematic bodies for a part of a step, of which so much will be over then.
+    fn lead_on(&mut self, done: f64) {
+        for (handle, to) in &self.led {
+            let body = &mut self.world.bodies[*handle];
+            let left = (1.0 - done) * self.step;
+            // Of the way that is left, as much as this part has of the time.
+            let next = if done < 1.0 {
+                let (now, part) = (body.position(), (self.part.0 / (left + self.part.0)) as f32);
+                Pose::from_parts(
+                    now.translation.lerp(to.translation, part),
+                    // Without angles, whose functions differ between platforms.
+                    now.rotation.lerp(to.rotation, part),
+                )
+            } else {
+                *to
+            };
+            body.set_next_kinematic_position(next);
+        }
     }
 
     /// Fixes a body to a palm where it is now.
@@ -254,6 +283,7 @@ impl PhysicsAdapter {
 
     pub fn step(&mut self) {
         self.step_parts();
+        self.watch_energy();
         self.stop_lost();
     }
 

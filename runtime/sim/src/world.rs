@@ -84,6 +84,10 @@ impl WorldBackend for SimWorld {
         self.sim.advance(to);
     }
 
+    fn fault(&self) -> Option<String> {
+        self.sim.fault().map(str::to_owned)
+    }
+
     fn read(&mut self, signal: SignalId) -> Value {
         self.sim.read(signal)
     }

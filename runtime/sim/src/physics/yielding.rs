@@ -129,10 +129,12 @@ impl PhysicsAdapter {
             for pair in &near {
                 self.press(pair.at, h);
             }
+            self.lead_on((done + 1.0) / parts);
             self.world.step_with_events(&self.exempt, &());
             done += 1.0;
         }
         self.end_guided(dt);
+        self.led.clear();
         self.world.integration_parameters.dt = dt as f32;
         self.world.integration_parameters.num_solver_iterations = SUBSTEPS;
     }

@@ -149,9 +149,9 @@ impl Maker {
     }
 }
 
-/// Robot, person, a stand with four legs on it, a box for what is discarded.
-pub fn table() -> World {
-    let world = World {
+/// Nothing at all.
+pub fn empty() -> World {
+    World {
         step: STEP,
         sample: 50_000_000,
         gravity: [0.0, 0.0, -9.81],
@@ -167,8 +167,12 @@ pub fn table() -> World {
         currents: Vec::new(),
         rules: Vec::new(),
         origin: Span::default(),
-    };
-    let mut m = Maker { world };
+    }
+}
+
+/// Robot, person, a stand with four legs on it, a box for what is discarded.
+pub fn table() -> World {
+    let mut m = Maker { world: empty() };
     m.body("floor", BodyMotion::Fixed, cuboid(6.0, 6.0, 0.10), [0.0, 0.0, -0.05], 1.0);
     m.body("stand", BodyMotion::Fixed, cuboid(0.20, 0.40, 0.4305), [0.3, -0.42, 0.21525], 1.0);
     m.bert2();

@@ -1,0 +1,176 @@
+//! Random worlds: whatever is in them, nothing explodes, everything stays a number, and each run is the same as the one before.
+//!
+//! `HRDSL_WORLDS=1000 cargo test -p hrdsl-sim --test random_worlds` tries so many.
+
+mod common;
+
+use common::{SECOND, body};
+use hrdsl_ir::Expr;
+use hrdsl_ir::world::*;
+use hrdsl_sim::{MotorCommand, SimError, WorldSimulation};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+
+/// What is put into a world: a shape, where, how heavy, of which kind.
+#[derive(Clone, Debug)]
+struct Thing {
+    shape: BodyShape,
+    at: Vec3,
+    turn: Vec3,
+    mass: f64,
+    kind: u8,
+}
+
+/// A chain of hinges on a post: directions, lengths, efforts.
+#[derive(Clone, Debug)]
+struct Chain {
+    at: Vec3,
+    links: Vec<(u8, f64, f64)>,
+}
+
+#[derive(Clone, Debug)]
+struct Recipe {
+    things: Vec<Thing>,
+    chains: Vec<Chain>,
+    base: Option<(bool, f64)>,
+    goals: Vec<(Vec3, f64)>,
+    moves: Vec<(usize, Vec3, f64)>,
+}
+
+fn shape() -> impl Strategy<Value = BodyShape> {
+    let m = 0.03f64..0.5;
+    prop_oneof![
+        (m.clone(), m.clone(), m.clone()).prop_map(|(x, y, z)| BodyShape::Box { size: [x, y, z] }),
+        (0.02f64..0.3).prop_map(|radius| BodyShape::Sphere { radius }),
+        (0.02f64..0.2, m.clone()).prop_map(|(radius, length)| BodyShape::Capsule { radius, length }),
+        (0.02f64..0.2, m).prop_map(|(radius, length)| BodyShape::Cylinder { radius, length }),
+    ]
+}
+
+fn place(far: f64) -> impl Strategy<Value = Vec3> {
+    (-far..far, -far..far, 0.4..2.5f64).prop_map(|(x, y, z)| [x, y, z])
+}
+
+fn recipe() -> impl Strategy<Value = Recipe> {
+    let thing = (shape(), place(2.0), [-3.0f64..3.0, -3.0..3.0, -3.0..3.0], 0.05f64..80.0, 0u8..5)
+        .prop_map(|(shape, at, turn, mass, kind)| Thing { shape, at, turn, mass, kind });
+    let chain = (place(1.5), proptest::collection::vec((0u8..3, 0.1f64..0.4, 5.0f64..150.0), 1..5))
+        .prop_map(|(at, links)| Chain { at, links });
+    (
+        proptest::collection::vec(thing, 0..10),
+        proptest::collection::vec(chain, 0..3),
+        proptest::option::of((any::<bool>(), 2.0f64..60.0)),
+        proptest::collection::vec((place(2.0), 0.1f64..2.0), 1..6),
+        proptest::collection::vec((0usize..10, place(2.0), 0.2f64..2.0), 0..4),
+    )
+        .prop_map(|(things, chains, base, goals, moves)| Recipe { things, chains, base, goals, moves })
+}
+
+/// Adds a chain, with a motor in each hinge, as an arm.
+fn add_chain(world: &mut World, chain: &Chain) {
+    let id = |world: &World| BodyId(u16::try_from(world.bodies.len() - 1).expect("few bodies"));
+    let number = world.arms.len();
+    world.bodies.push(body(&format!("post{number}"), BodyMotion::Fixed, BodyShape::Sphere { radius: 0.02 }, chain.at, 1.0));
+    let (mut parent, mut at, mut joints) = (id(world), chain.at, Vec::new());
+    for (i, (axis, length, effort)) in chain.links.iter().enumerate() {
+        let shape = BodyShape::Capsule { radius: 0.02, length: length - 0.06 };
+        let middle = [at[0] + length / 2.0, at[1], at[2]];
+        let mut link = body(&format!("link{number}_{i}"), BodyMotion::Dynamic, shape, middle, 0.5 + length);
+        link.rotation = [0.0, std::f64::consts::FRAC_PI_2, 0.0];
+        world.bodies.push(link);
+        let (child, name) = (id(world), format!("joint{number}_{i}"));
+        let axis = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]][usize::from(*axis)];
+        let drive = JointDrive { effort: Some(*effort), speed: None, rotor: 0.05 };
+        let (motion, anchor, lo, hi) = (JointMotion::Hinge, at, -2.0, 2.0);
+        world.joints.push(Joint { name, parent, child, motion, anchor, axis, lo, hi, drive });
+        joints.push(JointId(u16::try_from(world.joints.len() - 1).expect("few joints")));
+        (parent, at) = (child, [at[0] + length, at[1], at[2]]);
+    }
+    let (name, tip, tool) = (format!("arm{number}"), parent, [0.0, 0.0, 0.05]);
+    let (max_speed, contact_limit, postures) = (1.0, None, Vec::new());
+    world.arms.push(Arm { name, joints, tip, tool, max_speed, contact_limit, postures });
+}
+
+fn world(recipe: &Recipe) -> World {
+    let mut world = common::empty();
+    world.bodies.push(body("floor", BodyMotion::Fixed, common::cuboid(10.0, 10.0, 0.1), [0.0, 0.0, -0.05], 1.0));
+    for (i, thing) in recipe.things.iter().enumerate() {
+        let motion = match thing.kind {
+            0 => BodyMotion::Fixed,
+            1 => BodyMotion::Kinematic,
+            2 => BodyMotion::Guided,
+            _ => BodyMotion::Dynamic,
+        };
+        let mut made = body(&format!("thing{i}"), motion, thing.shape, thing.at, thing.mass);
+        made.rotation = thing.turn;
+        made.stiffness = (motion == BodyMotion::Guided).then_some(50e3);
+        world.bodies.push(made);
+    }
+    recipe.chains.iter().for_each(|chain| add_chain(&mut world, chain));
+    if let Some((rolls, mass)) = recipe.base {
+        let motion = if rolls { BodyMotion::Dynamic } else { BodyMotion::Kinematic };
+        let shape = BodyShape::Cylinder { radius: 0.2, length: 0.2 };
+        world.bodies.push(body("base", motion, shape, [0.0, 0.0, 0.1], mass));
+        let body = BodyId(u16::try_from(world.bodies.len() - 1).expect("few bodies"));
+        let (max_speed, max_sideways, max_turn, acceleration) = (1.0, 0.0, 2.0, 2.0);
+        let (name, timeout) = ("base".into(), None);
+        world.bases.push(Base { name, body, max_speed, max_sideways, max_turn, acceleration, timeout });
+    }
+    world
+}
+
+/// Everything that can be seen of a run, as bits.
+fn run(recipe: &Recipe) -> Result<Vec<u64>, SimError> {
+    let world = world(recipe);
+    let mut sim = WorldSimulation::new(&world, &[])?;
+    let mut seen = Vec::new();
+    for (i, (goal, v)) in recipe.goals.iter().enumerate() {
+        for arm in 0..world.arms.len() {
+            let arm = ArmId(u16::try_from(arm).expect("few arms"));
+            // Out of reach, or in the way of something: both are answers.
+            let _ = sim.command(MotorCommand::ReachPoint { arm, target: *goal, max_speed: None });
+        }
+        if !world.bases.is_empty() {
+            let (forward, sideways, turn) = (goal[0] / 2.0, 0.0, v - 1.0);
+            sim.command(MotorCommand::DriveWheels { base: BaseId(0), forward, sideways, turn }).expect("a base");
+        }
+        if let Some((of, to, over)) = recipe.moves.get(i) {
+            let at = 1 + of % recipe.things.len().max(1);
+            let to = WorldPoint { of: None, offset: to.map(Expr::float) };
+            let body = BodyId(u16::try_from(at).expect("few bodies"));
+            let _ = sim.act(&WorldAction::Move { body, to, over: Expr::float(*over) }, &common::none);
+        }
+        sim.advance(sim.now() + SECOND);
+        assert_eq!(sim.fault(), None, "{recipe:?}");
+        for at in 0..world.bodies.len() {
+            let (place, turn) = sim.pose(BodyId(u16::try_from(at).expect("few bodies"))).expect("a body");
+            for x in place.iter().chain(&turn) {
+                assert!(x.is_finite(), "{recipe:?}");
+                seen.push(x.to_bits());
+            }
+        }
+    }
+    Ok(seen)
+}
+
+#[test]
+fn nothing_explodes_and_nothing_differs() {
+    let cases = std::env::var("HRDSL_WORLDS").ok().and_then(|n| n.parse().ok()).unwrap_or(60);
+    let mut runner = TestRunner::new_with_rng(
+        Config { cases, failure_persistence: None, ..Config::default() },
+        proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha),
+    );
+    let refused = std::cell::Cell::new(0);
+    let result = runner.run(&recipe(), |recipe| {
+        match run(&recipe) {
+            Ok(seen) => prop_assert_eq!(run(&recipe).expect("as before"), seen),
+            // Things that are drawn inside each other are an error that names them.
+            Err(SimError::StartsInside { .. }) => refused.set(refused.get() + 1),
+            Err(other) => prop_assert!(false, "{}", other),
+        }
+        Ok(())
+    });
+    result.unwrap_or_else(|e| panic!("{e}"));
+    println!("{cases} worlds, {} of them refused since things are inside each other", refused.get());
+    assert!(refused.get() * 2 < cases);
+}
