@@ -178,7 +178,12 @@ impl FigureControl {
         let own = self.stance_frame();
         let limb = &self.build.limbs[hand];
         let upright = self.build.reaches(limb, (self.build.hip, 0.0), own.inverse().point(place));
-        if upright || self.head.in_world {
+        if upright && self.reaching {
+            // What is near again is taken standing.
+            self.reaching = false;
+            gather_part(&mut self.head, &own, self.build.head_at_rest(), self.clock);
+        }
+        if upright || (self.head.in_world && !self.reaching) {
             return;
         }
         let way = level(place - own.at);
@@ -217,8 +222,7 @@ impl FigureControl {
 
     /// Head and hands go along again, as they are when it stands.
     fn gather(&mut self) {
-        self.carried = None;
-        self.walk = None;
+        (self.walk, self.carried, self.reaching) = (None, None, false);
         let frame = self.stance_frame();
         let rest = self.build.head_at_rest();
         gather_part(&mut self.head, &frame, rest, self.clock);
