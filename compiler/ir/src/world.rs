@@ -10,6 +10,7 @@ use crate::{
     device::{Device, DeviceCommand, DeviceKind},
     event::{ActorId, EventId},
     expr::Expr,
+    sensor::ImperfectSensor,
     value::{Nanos, Type},
 };
 
@@ -66,6 +67,9 @@ pub struct World {
     /// What it can tell them.
     pub device_kinds: Vec<DeviceKind>,
     pub currents: Vec<CurrentBody>,
+    /// Those signals and devices that are read otherwise than they are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<ImperfectSensor>,
     pub rules: Vec<WorldRule>,
     pub origin: Span,
 }
@@ -380,6 +384,8 @@ pub enum SignalTerm {
     Height(BodyRef),
     /// `delta(signal, time)`: what it is less what it was so long ago, or at the start; in its own unit
     Delta(SignalId, Nanos),
+    /// `reading(signal)`: what the system could read of it, in its own type
+    Reading(SignalId),
     /// `heading(b)`: of its own x axis about the vertical, rad, -π..π
     Heading(BodyRef),
     /// A part of the unit quaternion by which it is turned, whose w is not negative.

@@ -53,6 +53,7 @@ pub(crate) fn flat(more: Vec<Body>) -> World {
         devices: Vec::new(),
         device_kinds: Vec::new(),
         currents: Vec::new(),
+        sensors: Vec::new(),
         rules: Vec::new(),
         origin: Span::default(),
     }

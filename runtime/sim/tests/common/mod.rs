@@ -164,6 +164,7 @@ pub fn table() -> World {
         devices: Vec::new(),
         device_kinds: Vec::new(),
         currents: Vec::new(),
+        sensors: Vec::new(),
         rules: Vec::new(),
         origin: Span::default(),
     };

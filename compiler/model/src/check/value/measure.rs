@@ -15,7 +15,7 @@ use crate::{
     report::{names, types},
 };
 
-const MEASURES: [&str; 16] = [
+const MEASURES: [&str; 17] = [
     "distance",
     "range",
     "angle",
@@ -32,6 +32,7 @@ const MEASURES: [&str; 16] = [
     "tilt",
     "height",
     "delta",
+    "reading",
 ];
 
 impl Checker<'_> {
@@ -151,6 +152,7 @@ impl Checker<'_> {
         let (what, ty) = match name {
             "joint_speed" | "joint_angle" | "torque" => self.of_joint(name, &args[0], prefix)?,
             "delta" => self.delta(&args[0], &args[1], prefix)?,
+            "reading" => self.reading(&args[0], prefix)?,
             "touches" | "force" | "weight" => self.contact(name, args, prefix)?,
             "holds" => {
                 let gripper = self.world_arg(Noun::Gripper, &args[0], prefix).map(GripperId);
