@@ -72,9 +72,7 @@ impl WorldSimulation {
             (DeviceBody::Base(base), "velocity") => self.base_velocity(base).map(Vec::from),
             (DeviceBody::Laser(laser), "ranges") => self.scan(laser),
             (DeviceBody::Laser(laser), "angles") => self.laser(laser).map(|l| vec![l.lo, l.hi]),
-            (DeviceBody::Laser(laser), "limits") => {
-                self.laser(laser).map(|l| vec![l.nearest, l.farthest])
-            }
+            (DeviceBody::Laser(laser), "limits") => self.laser(laser).map(|l| vec![l.nearest, l.farthest]),
             (DeviceBody::Arm(_) | DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_), _) => {
                 None
             }
@@ -149,7 +147,10 @@ impl WorldSimulation {
                 Some(arm.carried(base, (joints, measured)).then(tool))
             }
             (
-                SensorSource::Signal(_) | SensorSource::Arm(_) | SensorSource::Base(_) | SensorSource::Laser(_),
+                SensorSource::Signal(_)
+                | SensorSource::Arm(_)
+                | SensorSource::Base(_)
+                | SensorSource::Laser(_),
                 SensedTruth::Signal(_)
                 | SensedTruth::Ranges(_)
                 | SensedTruth::Base { .. }

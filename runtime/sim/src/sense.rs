@@ -11,8 +11,8 @@ use crate::{
     hand::HandSet,
     mover::sight_angle,
     past::SignalPast,
-    sensor::{SensedTruth, SensorBank},
     physics::{PhysicsAdapter, bad, index},
+    sensor::{SensedTruth, SensorBank},
 };
 
 /// What sensors can see of the world.
@@ -200,7 +200,9 @@ pub(crate) fn check_term(
         SignalTerm::JointRate(j) | SignalTerm::JointAngle(j) | SignalTerm::Torque(j) => {
             exists(usize::from(j.0), world.joints.len(), "joint", &what)
         }
-        SignalTerm::Delta(of, _) | SignalTerm::Reading(of) => exists(usize::from(of.0), signals, "signal", &what),
+        SignalTerm::Delta(of, _) | SignalTerm::Reading(of) => {
+            exists(usize::from(of.0), signals, "signal", &what)
+        }
     }
 }
 

@@ -133,7 +133,9 @@ impl SensorBank {
         let line = self.line(source)?;
         let (number, mut draws) = line.sample(now)?;
         let time = line.time_of(number, now);
-        let seen = if time >= self.since { line.believed(truth(source)) } else { line.past_at(time)? };
+        // Where nothing has changed yet, it is as it is at the start.
+        let is_present = time >= self.since || line.past.is_empty();
+        let seen = if is_present { line.believed(truth(source)) } else { line.past_at(time)? };
         Some((line.misread(seen, &mut draws, corrected), time))
     }
 
@@ -223,7 +225,8 @@ impl SensorLine {
     fn sample(&self, now: Nanos) -> Option<(i64, SampleDraws)> {
         let newest = self.newest(now);
         // A laser loses single beams.
-        let dropout = if matches!(self.data.source, SensorSource::Laser(_)) { 0.0 } else { self.data.dropout };
+        let dropout =
+            if matches!(self.data.source, SensorSource::Laser(_)) { 0.0 } else { self.data.dropout };
         if dropout >= 1.0 {
             return None;
         }
@@ -320,18 +323,20 @@ impl SensorLine {
             SensedTruth::Ranges(ranges) => {
                 SensedTruth::Ranges(ranges.into_iter().map(|range| self.beam(range, draws)).collect())
             }
-            SensedTruth::Base { pose: [x, y, yaw], velocity: [forward, sideways, turn] } => SensedTruth::Base {
-                pose: [
-                    x + draws.gaussian(noise(Unit::Metre)),
-                    y + draws.gaussian(noise(Unit::Metre)),
-                    wrap(yaw + draws.gaussian(noise(Unit::Radian))),
-                ],
-                velocity: [
-                    forward + draws.gaussian(noise(Unit::MetrePerSecond)),
-                    sideways + draws.gaussian(noise(Unit::MetrePerSecond)),
-                    turn + draws.gaussian(noise(Unit::RadianPerSecond)),
-                ],
-            },
+            SensedTruth::Base { pose: [x, y, yaw], velocity: [forward, sideways, turn] } => {
+                SensedTruth::Base {
+                    pose: [
+                        x + draws.gaussian(noise(Unit::Metre)),
+                        y + draws.gaussian(noise(Unit::Metre)),
+                        wrap(yaw + draws.gaussian(noise(Unit::Radian))),
+                    ],
+                    velocity: [
+                        forward + draws.gaussian(noise(Unit::MetrePerSecond)),
+                        sideways + draws.gaussian(noise(Unit::MetrePerSecond)),
+                        turn + draws.gaussian(noise(Unit::RadianPerSecond)),
+                    ],
+                }
+            }
             SensedTruth::Arm { .. } => self.misread_arm(truth, draws, corrected),
         }
     }

@@ -135,7 +135,9 @@ mod tests {
     fn level_tops_have_an_outline() {
         let box_ = BodyShape::Box { size: [2.0, 4.0, 6.0] };
         let top = placed(box_, [0.0, 0.0, FRAC_PI_2]).top().expect("level");
-        assert!(top.is_under([3.0, 2.9, 0.0]) && !top.is_under([1.0, 3.1, 0.0]) && !top.is_under([3.1, 2.0, 0.0]));
+        assert!(
+            top.is_under([3.0, 2.9, 0.0]) && !top.is_under([1.0, 3.1, 0.0]) && !top.is_under([3.1, 2.0, 0.0])
+        );
         let side = placed(box_, [0.0, FRAC_PI_2, 0.0]).top().expect("on its side");
         assert!(side.is_under([4.0, 4.0, 0.0]) && !side.is_under([4.1, 2.0, 0.0]));
         assert!(placed(box_, [0.1, 0.0, 0.0]).top().is_none());

@@ -196,7 +196,8 @@ impl<'w> PlacementSolver<'w> {
             let own = OwnExtent { shapes: &own, yaw: if facing.is_some() { rotation[2] } else { 0.0 } };
             if let Some((on, top)) = on.as_ref().zip(top.as_ref()) {
                 let offset = on.turn(spec.offset.unwrap_or_default());
-                place = [top.middle[0] + offset[0], top.middle[1] + offset[1], on.reach(UP) + own.reach(DOWN)];
+                place =
+                    [top.middle[0] + offset[0], top.middle[1] + offset[1], on.reach(UP) + own.reach(DOWN)];
             }
             if let Some((of, (side, _, by))) = beside.as_ref().zip(spec.beside.as_ref()) {
                 let away = of.turn(*side);

@@ -7,8 +7,8 @@ use hrdsl_syntax::ast::{self, NameSyntax, WorldMember, WorldMemberKind as Member
 
 use crate::check::{
     checker::Checker,
-    world::placement::{angles, outright},
     state::{issues::too_many, item::ExprItem, scope::ExprEnv, template::TemplateArguments},
+    world::placement::{angles, outright},
 };
 use crate::{
     Dimension, InferredType,

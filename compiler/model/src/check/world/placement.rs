@@ -1,6 +1,5 @@
 //! Places of bodies and parts that are said by others: on something, beside it, facing it.
 
-use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, ExprSyntaxKind, PathSyntax, PlaceSide, PlaceSyntax, TurnSyntax, WorldMemberKind as Member,
 };
@@ -61,7 +60,8 @@ fn place_of(member: &Member) -> Option<(&ast::NameSyntax, &PlaceSyntax, Option<&
 impl<'a> Checker<'a> {
     /// Brings to its place what is placed by something else, with all that is in it.
     pub(super) fn place_by_others(&mut self, placed: &mut [PlacedMember<'a>]) {
-        let relative = |p: &PlacedMember<'_>| place_of(&p.member.kind).is_some_and(|(_, p, t)| is_relative(p, t));
+        let relative =
+            |p: &PlacedMember<'_>| place_of(&p.member.kind).is_some_and(|(_, p, t)| is_relative(p, t));
         if !placed.iter().any(relative) {
             return;
         }
@@ -103,7 +103,13 @@ impl<'a> Checker<'a> {
             let inner = world.parts[id].inner;
             (ThingKind::Part(id), inner.at, [0.0, 0.0, inner.yaw])
         };
-        Some(PlacedThing::new(ThingName { full, span: name.span }, p.prefix.clone(), kind, (at, rotation), spec))
+        Some(PlacedThing::new(
+            ThingName { full, span: name.span },
+            p.prefix.clone(),
+            kind,
+            (at, rotation),
+            spec,
+        ))
     }
 
     /// What is said of a place; `None`: part of it makes no sense.
@@ -142,7 +148,8 @@ impl<'a> Checker<'a> {
         let span = first.span.to(last.span);
         let names = &self.world.names;
         if !names.is_instance(&full) && names.bodies.get(&full).is_none() {
-            return self.no_landmark(path, &full, (prefix, span));
+            self.world_name(Noun::Body, &path.names, prefix);
+            return None;
         }
         self.refer_in_world(&path.names, &full);
         if !full.starts_with(prefix) {
@@ -151,19 +158,6 @@ impl<'a> Checker<'a> {
             return None;
         }
         Some(ThingName { full, span })
-    }
-
-    fn no_landmark(&mut self, path: &PathSyntax, full: &str, (prefix, span): (&str, Span)) -> Option<ThingName> {
-        match self.world.names.kind_of(full) {
-            Some(kind) => {
-                let message = format!("`{full}` is {}, and nothing is placed by it", kind.with_article());
-                self.report(bad_world(span, message, "name a body, or a part of the world"));
-            }
-            None => {
-                self.world_name(Noun::Body, &path.names, prefix);
-            }
-        }
-        None
     }
 
     /// `(10 cm, -20 cm)`

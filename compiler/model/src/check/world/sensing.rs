@@ -131,7 +131,11 @@ impl Checker<'_> {
             Clause::Every => {
                 let period = self.time(value, "the time between two samples", true);
                 if period.is_some_and(|t| t < LEAST_PERIOD) {
-                    self.report(types::must_be("the time between two samples", "at least 0.1 ms", value.span));
+                    self.report(types::must_be(
+                        "the time between two samples",
+                        "at least 0.1 ms",
+                        value.span,
+                    ));
                 } else {
                     sensor.every = period.map(nanos);
                 }
@@ -294,7 +298,11 @@ impl Checker<'_> {
             && self.depends_on_a_reading(value)
         {
             let message = "a signal that is made of readings is as they are, and has no faults of its own";
-            self.report(bad_world(first.span, message, "leave them out, or name the signal itself: the truth"));
+            self.report(bad_world(
+                first.span,
+                message,
+                "leave them out, or name the signal itself: the truth",
+            ));
         }
     }
 }
