@@ -25,6 +25,7 @@ pub mod ta;
 pub mod test;
 pub mod value;
 pub mod world;
+mod world_ids;
 
 use serde::{Deserialize, Serialize};
 

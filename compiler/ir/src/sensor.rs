@@ -6,9 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Unit,
-    device::DeviceBody,
     value::Nanos,
-    world::{ArmId, BaseId, LaserId, SignalId, World},
+    world_ids::{ArmId, BaseId, LaserId, SignalId},
 };
 
 /// A signal or a device that is read late, now and then, or wrongly.
@@ -73,17 +72,6 @@ impl SensorSource {
         }
     }
 
-    /// What is read of a device; `None`: it tells nothing.
-    #[must_use]
-    pub fn of_device(body: DeviceBody) -> Option<Self> {
-        match body {
-            DeviceBody::Arm(arm) => Some(SensorSource::Arm(arm)),
-            DeviceBody::Base(base) => Some(SensorSource::Base(base)),
-            DeviceBody::Laser(laser) => Some(SensorSource::Laser(laser)),
-            DeviceBody::Gripper(_) => None,
-        }
-    }
-
     /// Its place among those of its sort.
     #[must_use]
     pub fn index(self) -> usize {
@@ -93,17 +81,6 @@ impl SensorSource {
             SensorSource::Base(id) => id.0,
             SensorSource::Laser(id) => id.0,
         })
-    }
-
-    /// Whether a world has it, where there are so many signals.
-    #[must_use]
-    pub fn exists(self, world: &World, signals: usize) -> bool {
-        match self {
-            SensorSource::Signal(id) => usize::from(id.0) < signals,
-            SensorSource::Arm(id) => usize::from(id.0) < world.arms.len(),
-            SensorSource::Base(id) => usize::from(id.0) < world.bases.len(),
-            SensorSource::Laser(id) => usize::from(id.0) < world.lasers.len(),
-        }
     }
 }
 

@@ -6,6 +6,11 @@
 use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
+pub use crate::world_ids::{
+    ArmId, BaseId, BodyId, CurrentId, DeviceCommandId, DeviceId, DeviceKindId, GripperId, JointId, LaserId,
+    SignalId,
+};
+
 use crate::{
     device::{Device, DeviceCommand, DeviceKind},
     event::{ActorId, EventId},
@@ -13,39 +18,6 @@ use crate::{
     sensor::ImperfectSensor,
     value::{Nanos, Type},
 };
-
-macro_rules! ids {
-    ($($(#[$doc:meta])* $name:ident),* $(,)?) => { $(
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-        pub struct $name(pub u16);
-    )* };
-}
-
-ids! {
-    /// Index into [`World::bodies`].
-    BodyId,
-    /// Index into [`World::joints`].
-    JointId,
-    /// Index into [`World::arms`].
-    ArmId,
-    /// Index into [`World::grippers`].
-    GripperId,
-    /// Index into [`World::bases`].
-    BaseId,
-    /// Index into [`World::lasers`].
-    LaserId,
-    /// Index into [`World::devices`].
-    DeviceId,
-    /// Index into [`World::device_kinds`].
-    DeviceKindId,
-    /// Index into [`DeviceKind::commands`].
-    DeviceCommandId,
-    /// Index into [`World::currents`].
-    CurrentId,
-    /// Index into [`Program::signals`](crate::Program::signals).
-    SignalId,
-}
 
 pub type Vec3 = [f64; 3];
 

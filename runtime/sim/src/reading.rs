@@ -58,7 +58,7 @@ impl WorldSimulation {
     /// When that was so which the system can read of a device at this time; `None`: it is so now, or there is nothing to read.
     #[must_use]
     pub fn sampled_at(&self, device: DeviceBody) -> Option<Nanos> {
-        self.sensed(SensorSource::of_device(device)?)?.map(|(_, time)| time)
+        self.sensed(device.source()?)?.map(|(_, time)| time)
     }
 
     /// What is true of a device, by name; `None`: it has no such state.
@@ -87,7 +87,7 @@ impl WorldSimulation {
         if matches!(device, DeviceBody::Laser(_)) && what != "ranges" {
             return Some(exact);
         }
-        let Some(source) = SensorSource::of_device(device) else { return Some(exact) };
+        let Some(source) = device.source() else { return Some(exact) };
         let Some(sensed) = self.sensed(source) else { return Some(exact) };
         let Some((seen, _)) = sensed else { return Some(vec![f64::NAN; exact.len()]) };
         Some(match (seen, what) {

@@ -381,7 +381,13 @@ fn check(sensor: &ImperfectSensor, world: &World, signals: &[Signal]) -> Result<
     let is_probability = |p: f64| (0.0..=1.0).contains(&p);
     let deviations = sensor.noise.iter().map(|noise| noise.deviation);
     let drifts = sensor.drift.iter().flat_map(|drift| [drift.way, drift.turn]);
-    if !sensor.source.exists(world, signals.len()) {
+    let count = match sensor.source {
+        SensorSource::Signal(_) => signals.len(),
+        SensorSource::Arm(_) => world.arms.len(),
+        SensorSource::Base(_) => world.bases.len(),
+        SensorSource::Laser(_) => world.lasers.len(),
+    };
+    if sensor.source.index() >= count {
         return Err(bad("a sensor".into(), sensor.source.sort(), sensor.source.index()));
     }
     let is_good = sensor.late >= 0
