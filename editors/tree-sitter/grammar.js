@@ -812,10 +812,31 @@ module.exports = grammar({
         "=",
         field("part", $.identifier),
         optional(field("arguments", $.arguments)),
-        keyword($, "at"),
-        field("at", $.expression),
-        optional(seq(keyword($, "rotated"), field("rotated", $.expression))),
+        $._place,
+        optional(choice($._rotated, $._facing)),
       ),
+    _place: ($) =>
+      choice(
+        seq(keyword($, "at"), field("at", $.expression)),
+        seq(
+          keyword($, "on"),
+          field("on", $._path),
+          optional(choice(seq(keyword($, "at"), field("at", $.expression)), $._beside)),
+        ),
+        $._beside,
+      ),
+    _beside: ($) =>
+      seq(
+        choice(
+          ...["left", "right", "ahead"].map((word) => seq(keyword($, word), keyword($, "of"))),
+          keyword($, "behind"),
+        ),
+        field("beside", $._path),
+        keyword($, "by"),
+        field("distance", $.expression),
+      ),
+    _rotated: ($) => seq(keyword($, "rotated"), field("rotated", $.expression)),
+    _facing: ($) => seq(keyword($, "facing"), field("facing", $._path)),
     body: ($) =>
       seq(
         keyword($, "body"),
@@ -824,11 +845,11 @@ module.exports = grammar({
         field("motion", $.identifier),
         field("shape", $.identifier),
         field("sizes", $.arguments),
-        keyword($, "at"),
-        field("at", $.expression),
+        $._place,
         repeat(
           choice(
-            seq(keyword($, "rotated"), field("rotated", $.expression)),
+            $._rotated,
+            $._facing,
             seq(keyword($, "mass"), field("mass", $.expression)),
             keyword($, "ghost"),
             keyword($, "graspable"),
@@ -866,6 +887,7 @@ module.exports = grammar({
         keyword($, "speed"),
         field("speed", $.expression),
         optional(seq(keyword($, "contact"), field("contact", $.expression))),
+        repeat($.sensing),
       ),
     gripper: ($) =>
       seq(
@@ -896,6 +918,7 @@ module.exports = grammar({
         keyword($, "acceleration"),
         field("acceleration", $.expression),
         optional(seq(keyword($, "timeout"), field("timeout", $.expression))),
+        repeat($.sensing),
       ),
     laser: ($) =>
       seq(
@@ -911,6 +934,12 @@ module.exports = grammar({
         field("beams", $.expression),
         keyword($, "range"),
         field("range", $.range),
+        repeat($.sensing),
+      ),
+    sensing: ($) =>
+      seq(
+        choice(...["every", "late", "noise", "drift", "dropout", "flip"].map((word) => keyword($, word))),
+        list(field("value", $.expression)),
       ),
     posture: ($) =>
       seq(
@@ -940,6 +969,7 @@ module.exports = grammar({
         list(field("to", $.identifier)),
         "=",
         field("value", $.expression),
+        repeat($.sensing),
       ),
     rule: ($) =>
       seq(

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Unit,
+    sensor::SensorSource,
     world::{ArmId, BaseId, DeviceCommandId, DeviceKindId, GripperId, LaserId, SignalTerm, Vec3},
 };
 
@@ -57,6 +58,17 @@ impl DeviceBody {
             DeviceBody::Gripper(_) => DeviceSort::Gripper,
             DeviceBody::Base(_) => DeviceSort::Base,
             DeviceBody::Laser(_) => DeviceSort::Laser,
+        }
+    }
+
+    /// What a sensor reads of it; `None`: it tells nothing.
+    #[must_use]
+    pub fn source(self) -> Option<SensorSource> {
+        match self {
+            DeviceBody::Arm(arm) => Some(SensorSource::Arm(arm)),
+            DeviceBody::Base(base) => Some(SensorSource::Base(base)),
+            DeviceBody::Laser(laser) => Some(SensorSource::Laser(laser)),
+            DeviceBody::Gripper(_) => None,
         }
     }
 }

@@ -18,12 +18,14 @@ pub mod expr;
 pub mod list;
 pub mod lowering;
 pub mod monitor;
+pub mod sensor;
 pub mod suite;
 pub mod system;
 pub mod ta;
 pub mod test;
 pub mod value;
 pub mod world;
+mod world_ids;
 
 use serde::{Deserialize, Serialize};
 

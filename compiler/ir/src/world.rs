@@ -6,47 +6,18 @@
 use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
+pub use crate::world_ids::{
+    ArmId, BaseId, BodyId, CurrentId, DeviceCommandId, DeviceId, DeviceKindId, FigureId, GripperId, JointId,
+    LaserId, SignalId,
+};
+
 use crate::{
     device::{Device, DeviceCommand, DeviceKind},
     event::{ActorId, EventId},
     expr::Expr,
+    sensor::ImperfectSensor,
     value::{Nanos, Type},
 };
-
-macro_rules! ids {
-    ($($(#[$doc:meta])* $name:ident),* $(,)?) => { $(
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-        pub struct $name(pub u16);
-    )* };
-}
-
-ids! {
-    /// Index into [`World::bodies`].
-    BodyId,
-    /// Index into [`World::joints`].
-    JointId,
-    /// Index into [`World::arms`].
-    ArmId,
-    /// Index into [`World::grippers`].
-    GripperId,
-    /// Index into [`World::bases`].
-    BaseId,
-    /// Index into [`World::lasers`].
-    LaserId,
-    /// Index into [`World::figures`].
-    FigureId,
-    /// Index into [`World::devices`].
-    DeviceId,
-    /// Index into [`World::device_kinds`].
-    DeviceKindId,
-    /// Index into [`DeviceKind::commands`].
-    DeviceCommandId,
-    /// Index into [`World::currents`].
-    CurrentId,
-    /// Index into [`Program::signals`](crate::Program::signals).
-    SignalId,
-}
 
 pub type Vec3 = [f64; 3];
 
@@ -69,6 +40,9 @@ pub struct World {
     /// What it can tell them.
     pub device_kinds: Vec<DeviceKind>,
     pub currents: Vec<CurrentBody>,
+    /// Those signals and devices that are read otherwise than they are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<ImperfectSensor>,
     pub rules: Vec<WorldRule>,
     pub origin: Span,
 }
@@ -423,6 +397,8 @@ pub enum SignalTerm {
     Height(BodyRef),
     /// `delta(signal, time)`: what it is less what it was so long ago, or at the start; in its own unit
     Delta(SignalId, Nanos),
+    /// `reading(signal)`: what the system could read of it, in its own type
+    Reading(SignalId),
     /// `heading(b)`: of its own x axis about the vertical, rad, -π..π
     Heading(BodyRef),
     /// A part of the unit quaternion by which it is turned, whose w is not negative.

@@ -31,8 +31,8 @@ pub use hrdsl_ir::{
     },
     test::{Test, TestStep},
     world::{
-        ArmId, Axis, BaseId, BodyId, BodyMotion, BodyRef, BodyShape, CurrentBody, CurrentId, FigureId, GripperId,
-        JointId, LaserId, SignalId, SignalTerm,
+        ArmId, Axis, BaseId, BodyId, BodyMotion, BodyRef, BodyShape, CurrentBody, CurrentId, FigureId,
+        GripperId, JointId, LaserId, SignalId, SignalTerm,
     },
 };
 

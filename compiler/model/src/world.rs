@@ -2,6 +2,7 @@
 
 use hrdsl_ir::{
     device::DeviceBody,
+    sensor::ImperfectSensor,
     world::{DeviceCommandId, DeviceId, JointDrive, JointMotion, NamedPosture},
 };
 use hrdsl_source::Span;
@@ -26,6 +27,8 @@ pub struct TypedWorld {
     pub limbs: Vec<TypedLimb>,
     pub figures: Vec<TypedFigure>,
     pub currents: Vec<CurrentBody>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<ImperfectSensor>,
     pub signals: Vec<TypedSignal>,
     pub rules: Vec<TypedWorldRule>,
     /// The parts that are put into it; what they are made of is in the lists above.
@@ -54,6 +57,8 @@ pub struct PartInstance {
     /// `left.hand`
     pub name: String,
     pub frame: PartFrame,
+    /// Where it is in the part that it is in.
+    pub inner: PartFrame,
     pub span: Span,
 }
 

@@ -3,10 +3,11 @@
 use hrdsl_ir::{
     Expr, Span, Type, Unit,
     device::{Device, DeviceBody, DeviceKind},
+    sensor::SensorSource,
     value::nanos,
     world::{
-        Arm, ArmId, Axis, Base, BaseId, Body, BodyId, BodyRef, ContactPhase, DeviceKindId, Figure, Gripper, GripperId, Joint,
-        Laser, LaserId, Limb, RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
+        Arm, ArmId, Axis, Base, BaseId, Body, BodyId, BodyRef, ContactPhase, DeviceKindId, Figure, Gripper,
+        GripperId, Joint, Laser, LaserId, Limb, RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
     },
 };
 use hrdsl_model::{self as model, VariableRef, world as from};
@@ -47,6 +48,7 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         lasers: w.lasers.iter().map(laser).collect(),
         figures: w.figures.iter().map(|f| figure(f, w)).collect(),
         currents: w.currents.clone(),
+        sensors: w.sensors.clone(),
         devices: devices(w, kinds),
         device_kinds: kinds.to_vec(),
         rules: w.rules.iter().map(|r| rule(r, w, signals)).collect(),
@@ -172,9 +174,12 @@ fn type_of(t: SignalTerm, world: Option<&from::TypedWorld>) -> Type {
         SignalTerm::Angle(..) | SignalTerm::Heading(_) | SignalTerm::Tilt(_) | SignalTerm::JointAngle(_) => {
             Type::Float(Unit::Radian)
         }
-        SignalTerm::Force(..) | SignalTerm::ForceOn(_) | SignalTerm::Weight(_) | SignalTerm::Pressed { .. } => Type::Float(Unit::Newton),
+        SignalTerm::Force(..)
+        | SignalTerm::ForceOn(_)
+        | SignalTerm::Weight(_)
+        | SignalTerm::Pressed { .. } => Type::Float(Unit::Newton),
         SignalTerm::Torque(_) => Type::Float(Unit::NewtonMetre),
-        SignalTerm::Delta(of, _) => {
+        SignalTerm::Delta(of, _) | SignalTerm::Reading(of) => {
             let of = world.and_then(|world| world.signals.get(usize::from(of.0)));
             of.map_or(Type::Float(Unit::None), |of| of.ty)
         }
@@ -233,6 +238,7 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
             let of = &world.signals[usize::from(of.0)].name;
             format!("delta({of}, {} s)", hrdsl_ir::value::seconds(over))
         }
+        SignalTerm::Reading(of) => format!("reading({})", world.signals[usize::from(of.0)].name),
         SignalTerm::Speed(b) => format!("speed({})", body(b)),
         SignalTerm::Heading(b) => format!("heading({})", body(b)),
         SignalTerm::Orientation(b, part) => format!("orientation({}).{}", body(b), part.name()),
@@ -264,8 +270,12 @@ impl<'a> SignalTable<'a> {
 
     /// The signal that measures just this term; a new one, named as the term is written, if there is none.
     pub fn of_term(&mut self, term: SignalTerm, span: Span) -> usize {
+        // What is measured in its own place is exact, even in what the system reads.
+        let sensors = self.world.map_or(&[][..], |world| &world.sensors);
+        let is_exact = |at: u16| sensors.iter().all(|s| s.source != SensorSource::Signal(SignalId(at)));
         let is = |s: &Signal| s.terms == [term] && s.value == Expr::Var(0);
-        if let Some(at) = self.list.iter().position(is) {
+        let found = self.list.iter().zip(0u16..).position(|(s, at)| is(s) && is_exact(at));
+        if let Some(at) = found {
             return at;
         }
         let name = self.world.map_or_else(String::new, |world| written(term, world));

@@ -18,10 +18,10 @@ pub use crate::expr::{
 use crate::pattern::RequirementPattern;
 pub use crate::system::{ProgramSyntax, SystemMember, SystemMemberKind, SystemSyntax};
 pub use crate::world::{
-    ArmSyntax, BaseSyntax, BodySyntax, CommandParamSyntax, DeviceCommandSyntax, DeviceMember,
+    ArmSyntax, BaseSyntax, BesideSyntax, BodySyntax, CommandParamSyntax, DeviceCommandSyntax, DeviceMember,
     DeviceMemberKind, DeviceSyntax, ExpectationSyntax, FigureSyntax, GripperSyntax, JointSyntax, LaserSyntax,
-    LimbSyntax, PartSyntax,
-    PostureSyntax, RuleSyntax, RuleTriggerSyntax, WorldMember, WorldMemberKind, WorldSyntax,
+    LimbSyntax, PartSyntax, PlaceSide, PlaceSyntax, PostureSyntax, RuleSyntax, RuleTriggerSyntax,
+    SensorClause, SensorClauseKind, TurnSyntax, WorldMember, WorldMemberKind, WorldSyntax,
 };
 
 /// One file: a scenario, a stdlib module (no `scenario` line), or a file of tests.

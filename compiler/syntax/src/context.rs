@@ -6,9 +6,9 @@ use crate::ast::{
     AccessSyntax, AgentMember, AutomatonMember, AutomatonMemberKind, BinSyntax, BinaryOp, BindingEntry,
     BindingMember, BodySyntax, CallSyntax, ChannelSyntax, ChannelSyntaxKind, CrossMember, DeviceMember,
     EdgeAction, EdgeSyntax, EventName, ExprSyntax, ExprSyntaxKind, InstanceSyntax, ItemSyntaxKind,
-    LiteralSyntax, NameSyntax, ParamSyntax, PartySyntax, PathSyntax, RangeSyntax, StatementSyntax,
-    StepSyntax, StepSyntaxKind, StimulusStepSyntax, SuiteMember, SystemMember, TemplateSyntaxKind,
-    TestMember, TextSyntax, TypeExpr, UnaryOp, WorldMember,
+    LiteralSyntax, NameSyntax, ParamSyntax, PartySyntax, PathSyntax, PlaceSyntax, RangeSyntax,
+    StatementSyntax, StepSyntax, StepSyntaxKind, StimulusStepSyntax, SuiteMember, SystemMember,
+    TemplateSyntaxKind, TestMember, TextSyntax, TurnSyntax, TypeExpr, UnaryOp, WorldMember,
 };
 use crate::token::Lexeme;
 
@@ -70,6 +70,7 @@ pub(crate) enum EdgePart {
 /// One of the properties of a body that may come in any order.
 pub(crate) enum BodyPart {
     Rotated(ExprSyntax, Span),
+    Facing(PathSyntax, Span),
     Mass(ExprSyntax, Span),
     Stiffness(ExprSyntax, Span),
     Ghost(Span),
@@ -393,20 +394,23 @@ impl<'t> ParseContext<'t> {
 
     pub(crate) fn body(
         &mut self,
-        name: NameSyntax,
-        motion: NameSyntax,
-        shape: NameSyntax,
+        (name, motion, shape): (NameSyntax, NameSyntax, NameSyntax),
         sizes: Vec<ExprSyntax>,
-        at: ExprSyntax,
+        place: PlaceSyntax,
         parts: Vec<BodyPart>,
     ) -> BodySyntax {
-        let (rotated, mass, stiffness, ghost, graspable) = (None, None, None, false, false);
-        let mut body = BodySyntax { name, motion, shape, sizes, at, rotated, mass, stiffness, ghost, graspable };
+        let (turn, mass, stiffness, ghost, graspable) = (None, None, None, false, false);
+        let mut body =
+            BodySyntax { name, motion, shape, sizes, place, turn, mass, stiffness, ghost, graspable };
         for part in parts {
             match part {
                 BodyPart::Rotated(expr, span) => {
-                    self.once(body.rotated.is_none(), "`rotated`", "a body", span);
-                    body.rotated.get_or_insert(expr);
+                    self.once(body.turn.is_none(), "`rotated` or `facing`", "a body", span);
+                    body.turn.get_or_insert(TurnSyntax::Rotated(expr));
+                }
+                BodyPart::Facing(path, span) => {
+                    self.once(body.turn.is_none(), "`rotated` or `facing`", "a body", span);
+                    body.turn.get_or_insert(TurnSyntax::Facing(path));
                 }
                 BodyPart::Mass(expr, span) => {
                     self.once(body.mass.is_none(), "`mass`", "a body", span);

@@ -3,7 +3,7 @@
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 use logos::Logos;
 
-use crate::token::{KeywordClass, Lexeme, TokenKind};
+use crate::token::{KeywordClass, KeywordTrait, Lexeme, TokenKind};
 use crate::words;
 
 /// The tokens of a file, and what was found on the way.
@@ -383,8 +383,12 @@ impl LexemeJoiner<'_> {
         let Some(unit) = self.raw.get(i + 1).filter(|t| !t.first) else { return 0 };
         let after = self.raw.get(i + 2).filter(|t| !t.first);
         if unit.kind == TokenKind::Percent {
-            // `50 %` is a quantity, `7 % 2` a remainder.
-            return usize::from(!after.is_some_and(|t| t.kind.starts_operand()));
+            // `50 %` is a quantity, `7 % 2` a remainder; in `2 % late 50 ms` a clause follows.
+            let of_clause = self.raw.get(i + 3).is_some_and(|t| {
+                !t.first && matches!(t.kind, TokenKind::Int | TokenKind::Float | TokenKind::Ident)
+            });
+            let clause = after.is_some_and(|t| of_clause && t.kind.is(KeywordTrait::Sensing));
+            return usize::from(clause || !after.is_some_and(|t| t.kind.starts_operand()));
         }
         if unit.kind != TokenKind::Ident || self.counts_events() {
             return 0;

@@ -28,6 +28,8 @@ pub enum KeywordTrait {
     Response,
     /// In a requirement an event may follow, as the first of a part of its own.
     BeforeEvent,
+    /// Starts a clause of a sensor.
+    Sensing,
     /// At the level of declarations a name follows.
     WantsName,
     // Starts a member, or a step, of such a block.

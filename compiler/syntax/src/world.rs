@@ -43,8 +43,8 @@ pub enum WorldMemberKind {
         name: NameSyntax,
         of: NameSyntax,
         args: Option<Vec<ExprSyntax>>,
-        at: ExprSyntax,
-        rotated: Option<ExprSyntax>,
+        place: PlaceSyntax,
+        turn: Option<TurnSyntax>,
     },
     Body(BodySyntax),
     Joint(Box<JointSyntax>),
@@ -67,6 +67,8 @@ pub enum WorldMemberKind {
         ty: TypeExpr,
         to: Vec<NameSyntax>,
         value: ExprSyntax,
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        sensing: Vec<SensorClause>,
     },
     Rule(RuleSyntax),
     Allow(AllowSyntax),
@@ -82,12 +84,50 @@ pub struct BodySyntax {
     /// `box`, `sphere`, `capsule`, `cylinder`
     pub shape: NameSyntax,
     pub sizes: Vec<ExprSyntax>,
-    pub at: ExprSyntax,
-    pub rotated: Option<ExprSyntax>,
+    pub place: PlaceSyntax,
+    pub turn: Option<TurnSyntax>,
     pub mass: Option<ExprSyntax>,
     pub stiffness: Option<ExprSyntax>,
     pub ghost: bool,
     pub graspable: bool,
+}
+
+/// Where something starts: `at (…)`, `on table at (…)`, `left of robot by 30 cm`, `on table behind cup by 5 cm`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlaceSyntax {
+    /// What it stands on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<PathSyntax>,
+    /// A place; on something, two lengths from the middle of its top.
+    pub at: Option<ExprSyntax>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beside: Option<BesideSyntax>,
+}
+
+/// `left of robot by 30 cm`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BesideSyntax {
+    pub side: PlaceSide,
+    pub of: PathSyntax,
+    pub by: ExprSyntax,
+}
+
+/// A side of something, as it looks itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PlaceSide {
+    Left,
+    Right,
+    Ahead,
+    Behind,
+}
+
+/// `rotated (0 deg, 0 deg, 90 deg)`, `facing robot`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TurnSyntax {
+    Rotated(ExprSyntax),
+    Facing(PathSyntax),
 }
 
 /// `joint j: parent -> child at (…) axis (0, 0, 1) limits -60 deg .. 60 deg effort 40 Nm speed 1 rad/s rotor 0.1 kgm^2`
@@ -113,6 +153,8 @@ pub struct ArmSyntax {
     pub tool: ExprSyntax,
     pub speed: ExprSyntax,
     pub contact: Option<ExprSyntax>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensing: Vec<SensorClause>,
 }
 
 /// `gripper g: palm fingers left, right tool (8 cm, 0 m, 0 m) reach 4 cm delay 500 ms force 40 N`
@@ -139,6 +181,8 @@ pub struct BaseSyntax {
     pub acceleration: ExprSyntax,
     /// `timeout 500 ms`: how long a set-point is in force, at the end
     pub timeout: Option<ExprSyntax>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensing: Vec<SensorClause>,
 }
 
 /// `laser l: mast at (0 m, 0 m, 20 cm) angles -135 deg .. 135 deg beams 271 range 5 cm .. 10 m`
@@ -151,6 +195,49 @@ pub struct LaserSyntax {
     pub angles: RangeSyntax,
     pub beams: ExprSyntax,
     pub range: RangeSyntax,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensing: Vec<SensorClause>,
+}
+
+/// `every 100 ms`, `late 50 ms`, `noise 5 mm`: in what a sensor is worse than the truth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SensorClause {
+    pub kind: SensorClauseKind,
+    /// One; of `noise` and `drift` one for each dimension.
+    pub values: Vec<ExprSyntax>,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SensorClauseKind {
+    /// The time from one sample to the next.
+    Every,
+    /// The time from a sample until it can be read.
+    Late,
+    /// Standard deviations.
+    Noise,
+    /// Standard deviations after a metre and after a radian.
+    Drift,
+    /// The probability that a sample is missing.
+    Dropout,
+    /// The probability that a truth is the other one.
+    Flip,
+}
+
+impl SensorClauseKind {
+    /// The word that begins the clause.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            SensorClauseKind::Every => "every",
+            SensorClauseKind::Late => "late",
+            SensorClauseKind::Noise => "noise",
+            SensorClauseKind::Drift => "drift",
+            SensorClauseKind::Dropout => "dropout",
+            SensorClauseKind::Flip => "flip",
+        }
+    }
 }
 
 /// `limb l: trunk -> upper_arm -> forearm -> hand at SHOULDER, ELBOW, WRIST`

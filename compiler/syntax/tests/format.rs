@@ -654,6 +654,31 @@ world{
 }
 system robot{run "python3 robot.py" coverage "a.py","b.py";limit 300s;budget 10s}
 "#
+    sensors r#"
+part p{
+  base b:palm speed 1m/s turn 1rad/s acceleration 1m/s^2 every 20ms drift 2cm,1deg
+  base wheels: the_platform_of_it speed 0.5 m/s sideways 0.25 m/s turn 90 deg/s acceleration 0.5 m/s^2 timeout 500 ms noise 1cm,0.5deg , 1cm/s
+  arm a:j,k tip palm tool(8cm,0m,0m)speed 0.2rad/s noise 0.1deg late 5ms
+  laser l:palm at(0m,0m,0m)angles-90deg..90deg beams 181 range 5cm..10m dropout 0.5% late LAG noise 1cm
+}
+world{
+  signal near:bool to robot=distance(a,b)<10cm flip 1% every 100ms late 50ms
+  signal a_name_that_is_rather_long: length to robot, person = distance(person.hand, robot.palm) every 50 ms late 20 ms noise 5 mm
+   dropout 2 %
+  signal n:0..9 to robot=if x{7%late}else{7%2}
+}
+"#
+    places r#"
+world{
+  body a:fixed box(1m,1m,1m)on table at(10cm,-20cm)mass 1kg
+  body b:fixed box(1m,1m,1m)left of a.b by 5cm facing robot ghost
+  body c:fixed box(1m,1m,1m)on table behind a by D
+  part left=p(1)ahead of right by 1m facing left
+  part right=p right of behind by 1m rotated(0deg,0deg,1deg)
+  part behind=p behind ahead by 1m
+  part ahead=p on a facing b
+}
+"#
     devices r#"
 /// A hand.
 device   gripper{/// Closes.

@@ -34,9 +34,10 @@
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts"
   "meanwhile" "with" "step" "gravity" "body" "joint" "arm" "gripper" "base" "laser" "posture" "current" "signal"
   "rotated" "mass" "ghost" "graspable" "axis" "limits" "effort" "rotor" "contact" "fingers" "force" "tip" "tool"
-  "speed" "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams" "range" "command" "expect" "run"
-  "coverage" "limit" "budget" "cpu" "wall" "memory" "output" "env" "online" "program" "ros1" "ros2" "messages" "topic"
-  "service" "action" "group" "parameter" "transition" "out" "drives" "latched" "plans"
+  "speed" "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams" "range" "every" "late" "noise" "drift"
+  "dropout" "flip" "facing" "left" "right" "ahead" "behind" "command" "expect" "run" "coverage" "limit" "budget" "cpu"
+  "wall" "memory" "output" "env" "online" "program" "ros1" "ros2" "messages" "topic" "service" "action" "group"
+  "parameter" "transition" "out" "drives" "latched" "plans"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return

@@ -102,6 +102,17 @@ static bool before_arrow(TSLexer *lexer) {
   return lexer->lookahead == '>';
 }
 
+// Whether a word begins a clause of a sensor: `late 50 ms`.
+static bool starts_sensing(TSLexer *lexer, const Word *word) {
+  static const char *const WORDS[] = {"every", "late", "noise", "drift", "dropout", "flip"};
+  for (unsigned i = 0; i < sizeof WORDS / sizeof *WORDS; i++) {
+    if (!equals(word, WORDS[i])) continue;
+    take_blanks(lexer);
+    return is_digit(lexer->lookahead) || is_letter(lexer->lookahead);
+  }
+  return false;
+}
+
 // After `50 %`: an operand on the same line makes it a remainder.
 static bool before_operand(TSLexer *lexer) {
   take_blanks(lexer);
@@ -109,6 +120,7 @@ static bool before_operand(TSLexer *lexer) {
   if (is_digit(next) || next == '(' || next == '[' || next == '"' || next == '~') return true;
   if (!is_letter(lexer->lookahead)) return false;
   Word word = take_word(lexer);
+  if (starts_sensing(lexer, &word)) return false;
   const Keyword *keyword = keyword_of(&word);
   return keyword == NULL || keyword->class == CLASS_SOFT || equals(&word, "true") || equals(&word, "false");
 }

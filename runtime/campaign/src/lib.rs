@@ -304,7 +304,7 @@ impl CampaignSetup<'_> {
         servers: &mut WorkerServers,
     ) -> (HarnessRun, Vec<(String, FinishedProcess)>) {
         let declared = system.declared;
-        let stage = match SimWorld::new(self.program) {
+        let stage = match SimWorld::new(self.program, test.seed) {
             Ok(world) => world.map(|world| WorldStage::new(self.program, Box::new(world))),
             Err(why) => return (failed(HarnessError::World(why.to_string())), Vec::new()),
         };

@@ -90,9 +90,10 @@ impl<'p> WorldStage<'p> {
         self.recorder.settle(now, trace);
     }
 
+    /// What the system can read of a signal.
     #[must_use]
-    pub fn read(&mut self, signal: SignalId) -> Value {
-        self.world.read(signal)
+    pub fn reading(&mut self, signal: SignalId) -> Value {
+        self.world.reading(signal)
     }
 
     /// An environment actor's action.
@@ -137,6 +138,19 @@ impl<'p> WorldStage<'p> {
     pub fn told(&self, device: DeviceId, what: &str) -> Option<Vec<f64>> {
         let device = self.declared?.devices.get(usize::from(device.0))?;
         self.world.state(device.body, what)
+    }
+
+    /// Whether something is read otherwise than it is.
+    #[must_use]
+    pub fn has_sensors(&self) -> bool {
+        self.declared.is_some_and(|world| !world.sensors.is_empty())
+    }
+
+    /// When that was so which a device tells; `None`: it is so now.
+    #[must_use]
+    pub fn sampled_at(&self, device: DeviceId) -> Option<Nanos> {
+        let device = self.declared?.devices.get(usize::from(device.0))?;
+        self.world.sampled_at(device.body)
     }
 
     /// The posture in which an arm would be at a target; with `way`, all corners of a free way there, one after the other.

@@ -24,6 +24,11 @@ pub trait WorldBackend {
     /// The present value of a signal, in the SI unit of its type.
     fn read(&mut self, signal: SignalId) -> Value;
 
+    /// What the system can read of it, which may be late, or wrong: an imperfect sensor.
+    fn reading(&mut self, signal: SignalId) -> Value {
+        self.read(signal)
+    }
+
     /// A number that is another one whenever a signal may have another value; `None`: nobody knows, and they are read each time.
     fn changes(&self) -> Option<u64> {
         None
@@ -42,9 +47,15 @@ pub trait WorldBackend {
     /// Why it cannot be done as things are.
     fn command(&mut self, command: &CheckedCommand<'_>) -> Result<CommandId, String>;
 
-    /// What a device tells of itself now, in SI units; `None`: it cannot tell this.
+    /// What a device tells the system of itself, in SI units; `None`: it cannot tell this.
     fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
         let _ = (device, what);
+        None
+    }
+
+    /// When that was so which it tells; `None`: it is so now.
+    fn sampled_at(&self, device: DeviceBody) -> Option<Nanos> {
+        let _ = device;
         None
     }
 

@@ -12,7 +12,7 @@ use crate::{
     clearance::{ArmClearance, ArmFigure},
     error::{CommandError, SimError},
     kinematics::{KinematicChain, KinematicLink},
-    math::{SpaceVector, v3},
+    math::{BodyFrame, SpaceVector, v3},
     motion::{ArmGoal, ArmMotion, ArmPath},
     physics::{PhysicsAdapter, bad, dynamics::ArmDynamics, index},
     planner::{NoRoute, RoutePlanner},
@@ -444,6 +444,18 @@ impl ArmControl {
     /// The largest measured speed of a joint, rad/s or m/s.
     pub fn speed(&self, physics: &PhysicsAdapter) -> f64 {
         self.joints.iter().fold(0.0, |m, id| m.max(physics.joint_speed(usize::from(id.0)).abs()))
+    }
+
+    /// How what the arm hangs on was moved from where it was at the start.
+    pub fn moved(&self, physics: &PhysicsAdapter) -> BodyFrame {
+        let base = self.figure.base;
+        physics.pose(base).then(&physics.start(base).inverse())
+    }
+
+    /// The motion that takes what hangs on the last joint from where it is with some positions to where it would be with others.
+    pub fn carried(&self, base: &BodyFrame, (from, to): (&[f64], &[f64])) -> BodyFrame {
+        let last = |q: &[f64]| self.chain.frames(q, base).pop().unwrap_or(*base);
+        last(to).then(&last(from).inverse())
     }
 
     pub fn tool_at(&self, physics: &PhysicsAdapter) -> SpaceVector {

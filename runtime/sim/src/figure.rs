@@ -97,8 +97,11 @@ impl FigureControl {
         let (build, at) = FigureBuild::new(figure, physics);
         let ahead = at.x_axis();
         let stance = PlanarStance { x: at.at.x, y: at.at.y, heading: libm::atan2(ahead.y, ahead.x) };
-        let here = |place: BodyFrame| PartAim { in_world: false, path: KinematicPath::new(place, place, 0, 0.0) };
-        let hand = |limb: &build::LimbBuild| limb.is_arm.then(|| here(BodyFrame::new(limb.rest, about(SpaceVector::z(), 0.0))));
+        let here =
+            |place: BodyFrame| PartAim { in_world: false, path: KinematicPath::new(place, place, 0, 0.0) };
+        let hand = |limb: &build::LimbBuild| {
+            limb.is_arm.then(|| here(BodyFrame::new(limb.rest, about(SpaceVector::z(), 0.0))))
+        };
         let hands = build.limbs.iter().map(hand).collect();
         let gravity = v3(world.gravity).norm().max(1e-3);
         Ok(FigureControl {
@@ -146,7 +149,13 @@ impl FigureControl {
     ///
     /// # Errors
     /// That it is another of its bodies, which goes where the others take it.
-    pub fn send(&mut self, body: BodyId, to: BodyFrame, over: f64, physics: &PhysicsAdapter) -> Result<(), SimError> {
+    pub fn send(
+        &mut self,
+        body: BodyId,
+        to: BodyFrame,
+        over: f64,
+        physics: &PhysicsAdapter,
+    ) -> Result<(), SimError> {
         let (from, to) = (self.unpushed(physics.aim(body)), self.unpushed(to));
         if body == self.build.head {
             let far = level(to.at - from.at).norm();
@@ -200,7 +209,8 @@ impl FigureControl {
         let from = self.unpushed(physics.aim(self.build.head));
         let over = level(there.at - from.at).norm() * PEAK / self.speed;
         (self.walk, self.carried, self.reaching) = (None, None, true);
-        self.head = PartAim { in_world: true, path: KinematicPath::new(from, there, self.clock, over.max(GATHERS)) };
+        self.head =
+            PartAim { in_world: true, path: KinematicPath::new(from, there, self.clock, over.max(GATHERS)) };
     }
 
     /// Walks along points, m.
@@ -322,7 +332,10 @@ impl FigureControl {
             let bodies = self.build.limb(limb, &posture, end + held_back, moved);
             for (body, frame) in bodies.into_iter().take(if limb.end.is_some() { 3 } else { 2 }) {
                 let is_hand = Some(body) == limb.end;
-                aims.push((body, if is_hand { BodyFrame::new(frame.at - held_back, frame.turn) } else { frame }));
+                aims.push((
+                    body,
+                    if is_hand { BodyFrame::new(frame.at - held_back, frame.turn) } else { frame },
+                ));
             }
         }
         for (body, frame) in aims {

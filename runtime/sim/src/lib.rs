@@ -25,6 +25,7 @@
 
 mod arm;
 mod base;
+mod chance;
 mod clearance;
 mod command;
 mod error;
@@ -35,15 +36,18 @@ mod laser;
 mod math;
 mod motion;
 mod mover;
+mod odometer;
 mod past;
 mod physics;
 mod planner;
 mod profile;
+mod reading;
 mod report;
 mod route;
 #[cfg(test)]
 mod samples;
 mod sense;
+mod sensor;
 mod world;
 
 use hrdsl_ir::world::{
@@ -64,6 +68,7 @@ use mover::{KinematicPath, LookRequest};
 use past::SignalPast;
 use physics::{PhysicsAdapter, bad, index};
 use sense::SensorView;
+use sensor::SensorBank;
 pub use world::SimWorld;
 
 /// How long nothing may have moved before the world counts as at rest.
@@ -74,6 +79,7 @@ pub struct WorldSimulation {
     world: World,
     signals: Vec<Signal>,
     past: SignalPast,
+    sensors: SensorBank,
     physics: PhysicsAdapter,
     arms: Vec<ArmControl>,
     /// By arm: the hands that it moves.
@@ -128,6 +134,7 @@ impl WorldSimulation {
         world.lasers.iter().try_for_each(|laser| laser::check(laser, world))?;
         let mut sim = WorldSimulation {
             past: SignalPast::new(signals),
+            sensors: SensorBank::default(),
             paths: vec![None; world.bodies.len()],
             world: world.clone(),
             signals: signals.to_vec(),
@@ -146,7 +153,7 @@ impl WorldSimulation {
             finished: Vec::new(),
         };
         sim.remember(0);
-        Ok(sim)
+        sim.seeded(0)
     }
 
     /// Takes down what later differences are of.
@@ -174,14 +181,16 @@ impl WorldSimulation {
         self.steps
     }
 
-    /// When the world next changes by itself: at the next physics step, or never while everything rests.
+    /// When the world next changes by itself: at the next physics step, or never while everything rests; and what is judged of
+    /// its sensors.
     #[must_use]
     pub fn next_wake(&self) -> Option<Nanos> {
-        self.next
+        self.next.into_iter().chain(self.sensors.next_arrival(self.now, self.next.is_none())).min()
     }
 
     /// Brings the world to a time; does nothing if that is past.
     pub fn advance(&mut self, to: Nanos) {
+        self.sensors.pass(self.now, to, self.next.is_none());
         while let Some(next) = self.next.filter(|n| *n <= to) {
             self.step(next);
         }
@@ -189,6 +198,7 @@ impl WorldSimulation {
     }
 
     fn step(&mut self, next: Nanos) {
+        self.before_change(next);
         self.physics.release_motors();
         for arm in &mut self.arms {
             arm.drive(self.last, next, &mut self.physics);
@@ -227,6 +237,7 @@ impl WorldSimulation {
             self.reach_on(hand, by);
         }
         self.finished.extend(self.bases.iter_mut().filter_map(BaseControl::check_stopped));
+        self.after_change(next);
         self.remember(next);
         self.rest_or_go_on(next);
     }
@@ -265,7 +276,9 @@ impl WorldSimulation {
             currents: &self.world.currents,
             signals: &self.signals,
             past: &self.past,
+            sensors: &self.sensors,
             now: self.last,
+            clock: self.now,
         }
     }
 

@@ -9,7 +9,16 @@ pub(crate) const SECOND: Nanos = 1_000_000_000;
 pub(crate) const BASE: BaseId = BaseId(0);
 
 pub(crate) fn body(name: &str, motion: BodyMotion, shape: BodyShape, position: Vec3) -> Body {
-    Body { name: name.into(), motion, shape, position, rotation: [0.0; 3], mass: 1.0, stiffness: None, ghost: false }
+    Body {
+        name: name.into(),
+        motion,
+        shape,
+        position,
+        rotation: [0.0; 3],
+        mass: 1.0,
+        stiffness: None,
+        ghost: false,
+    }
 }
 
 pub(crate) fn cuboid(x: f64, y: f64, z: f64) -> BodyShape {
@@ -54,6 +63,7 @@ pub(crate) fn flat(more: Vec<Body>) -> World {
         devices: Vec::new(),
         device_kinds: Vec::new(),
         currents: Vec::new(),
+        sensors: Vec::new(),
         rules: Vec::new(),
         origin: Span::default(),
     }

@@ -3,7 +3,7 @@
 use hrdsl_ir::world::{
     Axis, BodyId, BodyRef, CurrentBody, QuaternionPart, Signal, SignalId, SignalTerm, World,
 };
-use hrdsl_ir::{Nanos, Type, Value};
+use hrdsl_ir::{Nanos, Type, Value, sensor::SensorSource};
 
 use crate::{
     arm::ArmControl,
@@ -12,6 +12,7 @@ use crate::{
     mover::sight_angle,
     past::SignalPast,
     physics::{PhysicsAdapter, bad, index},
+    sensor::{SensedTruth, SensorBank},
 };
 
 /// What sensors can see of the world.
@@ -24,6 +25,9 @@ pub(crate) struct SensorView<'a> {
     pub past: &'a SignalPast,
     /// The time of the last physics step.
     pub now: Nanos,
+    pub sensors: &'a SensorBank,
+    /// The time that has come.
+    pub clock: Nanos,
 }
 
 impl SensorView<'_> {
@@ -45,13 +49,23 @@ impl SensorView<'_> {
 
     pub fn signal(&self, signal: &Signal) -> Value {
         let term = |i: u16| signal.terms.get(usize::from(i)).map(|t| self.term(t));
-        signal.value.eval(&term).unwrap_or(match signal.ty {
-            Type::Bool => Value::Bool(false),
-            Type::Int { lo, .. } => Value::Int(lo),
-            // No signal is a string or a list.
-            Type::Float(_) | Type::Text | Type::List(_) => Value::Float(f64::NAN),
-            Type::Enum(e) => e.values().first().map_or(Value::Float(f64::NAN), |s| Value::Symbol(*s)),
-        })
+        signal.value.eval(&term).unwrap_or_else(|_| without_value(signal.ty))
+    }
+
+    /// What can be read of a signal.
+    pub fn reading(&self, of: SignalId) -> Value {
+        let Some(signal) = self.signals.get(usize::from(of.0)) else { return Value::Float(f64::NAN) };
+        let source = SensorSource::Signal(of);
+        if !self.sensors.has(source) {
+            return self.signal(signal);
+        }
+        let truth = |_| SensedTruth::Signal(self.signal(signal));
+        match self.sensors.reading(source, self.clock, &truth, &|_, _| None) {
+            Some((SensedTruth::Signal(value), _)) => value,
+            Some((SensedTruth::Ranges(_) | SensedTruth::Base { .. } | SensedTruth::Arm { .. }, _)) | None => {
+                without_value(signal.ty)
+            }
+        }
     }
 
     /// By how much a signal has changed in the time before now.
@@ -99,6 +113,7 @@ impl SensorView<'_> {
             SignalTerm::Tilt(b) => Value::Float(self.physics.tilt(self.body(b))),
             SignalTerm::Height(b) => Value::Float(self.physics.lowest(self.body(b))),
             SignalTerm::Delta(of, over) => Value::Float(self.delta(of, over)),
+            SignalTerm::Reading(of) => self.reading(of),
             SignalTerm::Speed(b) => Value::Float(self.physics.speed(self.body(b))),
             SignalTerm::Heading(b) => {
                 let ahead = self.physics.pose(self.body(b)).x_axis();
@@ -117,6 +132,17 @@ impl SensorView<'_> {
                 )
             }
         }
+    }
+}
+
+/// What stands for a value that there is none of.
+fn without_value(ty: Type) -> Value {
+    match ty {
+        Type::Bool => Value::Bool(false),
+        Type::Int { lo, .. } => Value::Int(lo),
+        // No signal is a string or a list.
+        Type::Float(_) | Type::Text | Type::List(_) => Value::Float(f64::NAN),
+        Type::Enum(e) => e.values().first().map_or(Value::Float(f64::NAN), |s| Value::Symbol(*s)),
     }
 }
 
@@ -181,7 +207,9 @@ pub(crate) fn check_term(
         SignalTerm::JointRate(j) | SignalTerm::JointAngle(j) | SignalTerm::Torque(j) => {
             exists(usize::from(j.0), world.joints.len(), "joint", &what)
         }
-        SignalTerm::Delta(of, _) => exists(usize::from(of.0), signals, "signal", &what),
+        SignalTerm::Delta(of, _) | SignalTerm::Reading(of) => {
+            exists(usize::from(of.0), signals, "signal", &what)
+        }
     }
 }
 

@@ -26,13 +26,13 @@ struct CommandExpectation {
 }
 
 impl SimWorld {
-    /// The program's world at its start; `None` if the scenario has none.
+    /// The program's world at its start, in a test with this seed; `None` if the scenario has none.
     ///
     /// # Errors
     /// Why the world cannot be built.
-    pub fn new(program: &Program) -> Result<Option<Self>, SimError> {
+    pub fn new(program: &Program, seed: u64) -> Result<Option<Self>, SimError> {
         let Some(world) = &program.world else { return Ok(None) };
-        let sim = WorldSimulation::new(world, &program.signals)?;
+        let sim = WorldSimulation::new(world, &program.signals)?.seeded(seed)?;
         Ok(Some(Self { sim, expected: BTreeMap::new() }))
     }
 }
@@ -92,8 +92,12 @@ impl WorldBackend for SimWorld {
         self.sim.read(signal)
     }
 
+    fn reading(&mut self, signal: SignalId) -> Value {
+        self.sim.reading(signal)
+    }
+
     fn changes(&self) -> Option<u64> {
-        Some(self.sim.steps())
+        Some(self.sim.changes())
     }
 
     fn act(&mut self, action: &WorldAction, vars: &[Value]) -> Result<(), String> {
@@ -114,22 +118,11 @@ impl WorldBackend for SimWorld {
     }
 
     fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
-        match (device, what) {
-            (DeviceBody::Arm(arm), "joints") => Some(self.sim.joint_positions(arm)),
-            (DeviceBody::Arm(arm), "speeds") => Some(self.sim.joint_speeds(arm)),
-            (DeviceBody::Arm(arm), "tool") => self.sim.tool_pose(arm).map(Vec::from),
-            (DeviceBody::Base(base), "pose") => self.sim.base_pose(base).map(Vec::from),
-            (DeviceBody::Base(base), "orientation") => self.sim.base_orientation(base).map(Vec::from),
-            (DeviceBody::Base(base), "velocity") => self.sim.base_velocity(base).map(Vec::from),
-            (DeviceBody::Laser(laser), "ranges") => self.sim.scan(laser),
-            (DeviceBody::Laser(laser), "angles") => self.sim.laser(laser).map(|l| vec![l.lo, l.hi]),
-            (DeviceBody::Laser(laser), "limits") => {
-                self.sim.laser(laser).map(|l| vec![l.nearest, l.farthest])
-            }
-            (DeviceBody::Arm(_) | DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_), _) => {
-                None
-            }
-        }
+        self.sim.told(device, what)
+    }
+
+    fn sampled_at(&self, device: DeviceBody) -> Option<Nanos> {
+        self.sim.sampled_at(device)
     }
 
     fn plan(&self, device: DeviceBody, to: &ArmTarget) -> Result<Vec<Vec<f64>>, String> {

@@ -23,6 +23,7 @@ fn empty() -> World {
         devices: Vec::new(),
         device_kinds: Vec::new(),
         currents: Vec::new(),
+        sensors: Vec::new(),
         rules: Vec::new(),
         origin: Span::default(),
     }

@@ -8,7 +8,9 @@ use scene::Scene;
 const FLOOR: &str = "body floor: fixed box(10 m, 10 m, 10 cm) at (0 m, 0 m, -5 cm)";
 
 fn alone(more: &str, stimuli: &[(&str, &str)]) -> Scene {
-    let members = format!("{FLOOR}\npart host = adult(172 cm) at (1 m, 0 m, 0 m) rotated (0 deg, 0 deg, 180 deg)\n{more}");
+    let members = format!(
+        "{FLOOR}\npart host = adult(172 cm) at (1 m, 0 m, 0 m) rotated (0 deg, 0 deg, 180 deg)\n{more}"
+    );
     Scene::new(&members, stimuli)
 }
 
@@ -17,8 +19,19 @@ fn far(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 const BODIES: [&str; 13] = [
-    "head", "trunk", "pelvis", "upper_arm", "forearm", "hand", "left_upper_arm", "left_forearm", "left_hand",
-    "thigh", "lower_leg", "left_thigh", "left_lower_leg",
+    "head",
+    "trunk",
+    "pelvis",
+    "upper_arm",
+    "forearm",
+    "hand",
+    "left_upper_arm",
+    "left_forearm",
+    "left_hand",
+    "thigh",
+    "lower_leg",
+    "left_thigh",
+    "left_lower_leg",
 ];
 
 fn bodies(scene: &Scene) -> Vec<[f64; 3]> {
@@ -49,7 +62,10 @@ fn a_walk_is_as_fast_as_stated_and_ends_where_it_should() {
     assert!((1.19..1.25).contains(&fastest), "{fastest}");
     // It looks along y now; the hand is as far ahead as before.
     let hand = scene.at("host.hand");
-    assert!((hand[1] - pelvis[1] - 0.344).abs() < 0.01 && (hand[0] - pelvis[0] - 0.2227).abs() < 0.01, "{hand:?}");
+    assert!(
+        (hand[1] - pelvis[1] - 0.344).abs() < 0.01 && (hand[0] - pelvis[0] - 0.2227).abs() < 0.01,
+        "{hand:?}"
+    );
     assert_eq!(scene.sim.next_wake(), None, "the world rests");
 }
 
@@ -65,7 +81,10 @@ fn who_looks_closely_bows_with_the_whole_body() {
     assert!((scene.read("off") - 0.349).abs() < 2e-3, "{}", scene.read("off"));
     // The trunk leans, the feet are under the pelvis, on the ground.
     let (head, trunk, pelvis) = (scene.at("host.head"), scene.at("host.trunk"), scene.at("host.pelvis"));
-    assert!(head[2] < 1.25 && trunk[2] < 1.1 && head[0] < trunk[0] && trunk[0] < pelvis[0], "{head:?} {trunk:?} {pelvis:?}");
+    assert!(
+        head[2] < 1.25 && trunk[2] < 1.1 && head[0] < trunk[0] && trunk[0] < pelvis[0],
+        "{head:?} {trunk:?} {pelvis:?}"
+    );
     let feet = scene.at("host.lower_leg");
     assert!((0.1..0.4).contains(&feet[2]), "{feet:?}");
     assert_eq!(scene.sim.next_wake(), None, "the world rests");
@@ -73,11 +92,14 @@ fn who_looks_closely_bows_with_the_whole_body() {
 
 #[test]
 fn a_hand_goes_as_far_as_the_arm_does() {
-    let mut scene = alone("", &[
-        ("near", "host.hand.move_to((60 cm, 20 cm, 1.1 m), 1 s)"),
-        ("look", "host.head.look_at(floor, 0 cm, 1 m, 0 deg)"),
-        ("far_off", "host.hand.move_to((-2 m, 0 m, 1 m), 1 s)"),
-    ]);
+    let mut scene = alone(
+        "",
+        &[
+            ("near", "host.hand.move_to((60 cm, 20 cm, 1.1 m), 1 s)"),
+            ("look", "host.head.look_at(floor, 0 cm, 1 m, 0 deg)"),
+            ("far_off", "host.hand.move_to((-2 m, 0 m, 1 m), 1 s)"),
+        ],
+    );
     scene.act("near");
     scene.go_on(2.0, |_| {});
     assert!(far(scene.at("host.hand"), [0.6, 0.2, 1.1]) < 1e-4, "{:?}", scene.at("host.hand"));
@@ -193,12 +215,15 @@ fn who_takes_a_leg_bows_and_reaches_for_it() {
        signal seen: bool to robot = visible(host.head, leg)
        signal gap: length to robot = distance(host.hand, leg)
        signal grip: bool to robot = holds(host.grasp, leg)";
-    let mut scene = Scene::new(&format!("{FLOOR}\n{members}"), &[
-        ("ask", "host.walk_to((1.3 m, 20 cm, 0 m), 1 m/s)"),
-        ("look", "host.head.look_at(leg, -15 cm, 55 cm, 30 deg)"),
-        ("reach", "host.hand.move_to(leg + (5 cm, -10 cm, -5 cm), 800 ms)"),
-        ("grip", "host.grasp.grasp()"),
-    ]);
+    let mut scene = Scene::new(
+        &format!("{FLOOR}\n{members}"),
+        &[
+            ("ask", "host.walk_to((1.3 m, 20 cm, 0 m), 1 m/s)"),
+            ("look", "host.head.look_at(leg, -15 cm, 55 cm, 30 deg)"),
+            ("reach", "host.hand.move_to(leg + (5 cm, -10 cm, -5 cm), 800 ms)"),
+            ("grip", "host.grasp.grasp()"),
+        ],
+    );
     for (what, time) in [("ask", 5.0), ("look", 1.0), ("reach", 1.6)] {
         scene.act(what);
         scene.go_on(time, |_| {});

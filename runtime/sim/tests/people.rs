@@ -67,7 +67,9 @@ fn a_blow_is_that_of_the_two_mass_formula_at_every_step() {
                     let weight = 9.81 * reduced;
                     let expected = weight + formula.hypot(weight);
                     let off = most / expected - 1.0;
-                    println!("{name} {ball} kg {speed:.2} m/s {step}: {most:.1} N, formula {formula:.1} N, with its weight {expected:.1} N, {off:+.3}");
+                    println!(
+                        "{name} {ball} kg {speed:.2} m/s {step}: {most:.1} N, formula {formula:.1} N, with its weight {expected:.1} N, {off:+.3}"
+                    );
                     assert!(off.abs() < 0.05, "{name} {ball} {drop} {step}: {most} for {expected}");
                 }
             }
@@ -87,7 +89,8 @@ fn standing_costs_no_steps() {
     let (at, _) = sim.pose(BodyId(1)).expect("a head");
     assert_eq!(at, [0.0, 0.0, 1.0]);
     let to = WorldPoint { of: None, offset: [1.0, 0.5, 1.2].map(Expr::float) };
-    sim.act(&WorldAction::Move { body: BodyId(1), to, over: Expr::float(1.0) }, &common::none).expect("guided");
+    sim.act(&WorldAction::Move { body: BodyId(1), to, over: Expr::float(1.0) }, &common::none)
+        .expect("guided");
     let mut worst = 0.0f64;
     let start = sim.now();
     while sim.now() < start + 2 * SECOND {

@@ -70,7 +70,13 @@ fn recipe() -> impl Strategy<Value = Recipe> {
 fn add_chain(world: &mut World, chain: &Chain) {
     let id = |world: &World| BodyId(u16::try_from(world.bodies.len() - 1).expect("few bodies"));
     let number = world.arms.len();
-    world.bodies.push(body(&format!("post{number}"), BodyMotion::Fixed, BodyShape::Sphere { radius: 0.02 }, chain.at, 1.0));
+    world.bodies.push(body(
+        &format!("post{number}"),
+        BodyMotion::Fixed,
+        BodyShape::Sphere { radius: 0.02 },
+        chain.at,
+        1.0,
+    ));
     let (mut parent, mut at, mut joints) = (id(world), chain.at, Vec::new());
     for (i, (axis, length, effort)) in chain.links.iter().enumerate() {
         let shape = BodyShape::Capsule { radius: 0.02, length: length - 0.06 };
@@ -93,7 +99,13 @@ fn add_chain(world: &mut World, chain: &Chain) {
 
 fn world(recipe: &Recipe) -> World {
     let mut world = common::empty();
-    world.bodies.push(body("floor", BodyMotion::Fixed, common::cuboid(10.0, 10.0, 0.1), [0.0, 0.0, -0.05], 1.0));
+    world.bodies.push(body(
+        "floor",
+        BodyMotion::Fixed,
+        common::cuboid(10.0, 10.0, 0.1),
+        [0.0, 0.0, -0.05],
+        1.0,
+    ));
     for (i, thing) in recipe.things.iter().enumerate() {
         let motion = match thing.kind {
             0 => BodyMotion::Fixed,
@@ -132,7 +144,8 @@ fn run(recipe: &Recipe) -> Result<Vec<u64>, SimError> {
         }
         if !world.bases.is_empty() {
             let (forward, sideways, turn) = (goal[0] / 2.0, 0.0, v - 1.0);
-            sim.command(MotorCommand::DriveWheels { base: BaseId(0), forward, sideways, turn }).expect("a base");
+            sim.command(MotorCommand::DriveWheels { base: BaseId(0), forward, sideways, turn })
+                .expect("a base");
         }
         if let Some((of, to, over)) = recipe.moves.get(i) {
             let at = 1 + of % recipe.things.len().max(1);

@@ -35,7 +35,9 @@ fn a_free_way_is_that_of_a_kinematic_base() {
     let mut ends = Vec::new();
     for motion in ["dynamic", "kinematic"] {
         let mut scene = rover(motion, "40 cm", "2 kg", "");
-        for (forward, turn, time) in [(0.5, 0.0, 2.0), (0.5, 1.0, 3.0), (0.0, -2.0, 1.0), (0.8, 0.3, 2.0), (0.0, 0.0, 2.0)] {
+        for (forward, turn, time) in
+            [(0.5, 0.0, 2.0), (0.5, 1.0, 3.0), (0.0, -2.0, 1.0), (0.8, 0.3, 2.0), (0.0, 0.0, 2.0)]
+        {
             drive(&mut scene, forward, turn);
             scene.go_on(time, |_| {});
         }
@@ -49,14 +51,23 @@ fn a_free_way_is_that_of_a_kinematic_base() {
 
 #[test]
 fn a_wall_holds_it_and_it_does_not_climb() {
-    let mut scene = rover("dynamic", "40 cm", "2 kg", "body wall: fixed box(10 cm, 4 m, 1 m) at (1 m, 0 m, 50 cm)
-        signal most: force to robot = force(chassis, wall)");
+    let mut scene = rover(
+        "dynamic",
+        "40 cm",
+        "2 kg",
+        "body wall: fixed box(10 cm, 4 m, 1 m) at (1 m, 0 m, 50 cm)
+        signal most: force to robot = force(chassis, wall)",
+    );
     drive(&mut scene, 0.5, 0.0);
     scene.go_on(5.0, |_| {});
     let [x, y, _] = scene.sim.base_pose(BASE).expect("a base");
     assert!((x - 0.75).abs() < 5e-3 && y.abs() < 5e-3, "{x} {y}");
     // No harder than tyres grip.
-    assert!(scene.read("most") < 0.8 * 22.0 * 9.81 * 1.1 && scene.read("tipped") < 0.1, "{}", scene.read("most"));
+    assert!(
+        scene.read("most") < 0.8 * 22.0 * 9.81 * 1.1 && scene.read("tipped") < 0.1,
+        "{}",
+        scene.read("most")
+    );
 }
 
 #[test]
@@ -64,7 +75,8 @@ fn a_top_heavy_one_falls_when_it_is_struck_and_stays_down() {
     let ram = "body ram: kinematic box(10 cm, 40 cm, 10 cm) at (-80 cm, 0 m, 1 m)";
     let mut scene = rover("dynamic", "1 m", "15 kg", ram);
     let to = hrdsl_ir::world::WorldPoint { of: None, offset: [0.6, 0.0, 1.0].map(hrdsl_ir::Expr::float) };
-    let push = hrdsl_ir::world::WorldAction::Move { body: scene.body("ram"), to, over: hrdsl_ir::Expr::float(1.0) };
+    let push =
+        hrdsl_ir::world::WorldAction::Move { body: scene.body("ram"), to, over: hrdsl_ir::Expr::float(1.0) };
     scene.sim.act(&push, &|_| None).expect("kinematic");
     scene.go_on(4.0, |_| {});
     assert!(scene.read("tipped") > 1.2, "{}", scene.read("tipped"));
@@ -83,7 +95,12 @@ fn the_same_one_stands_when_it_brakes() {
     assert!((scene.read("pace") - 1.0).abs() < 0.01, "{}", scene.read("pace"));
     scene.sim.command(MotorCommand::StopWheels { base: BASE }).expect("a base");
     scene.go_on(3.0, |_| {});
-    assert!(scene.read("tipped") < 0.01 && scene.read("pace") < 1e-3, "{} {}", scene.read("tipped"), scene.read("pace"));
+    assert!(
+        scene.read("tipped") < 0.01 && scene.read("pace") < 1e-3,
+        "{} {}",
+        scene.read("tipped"),
+        scene.read("pace")
+    );
 }
 
 #[test]

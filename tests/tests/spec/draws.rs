@@ -13,6 +13,7 @@ use hrdsl_ir::{
     bdi::{AgentId, BeliefId, InitialFact},
     suite::ExploreMode,
     test::TestStep,
+    world::SignalId,
 };
 use hrdsl_runtime::testgen::generate;
 
@@ -142,6 +143,48 @@ fn the_page_draws_what_the_generators_draw() {
             compare(&format!("seed {seed}, suite {suite}"), &expected, &by_the_page(page, &args));
             assert!(expected.lines().count() > 100);
         }
+    }
+}
+
+/// Readings at rest: sensors, and the world, stand still, and what is read is the error.
+const SENSORS: &str = "scenario errors
+    actor robot : system
+    world {
+      body wall: fixed box(1 m, 1 m, 1 m) at (0 m, 0 m, 0 m)
+      signal place: length to robot = wall.x every 10 ms noise 2 mm dropout 20 %
+      signal truth: bool to robot = wall.x > 1 m every 10 ms dropout 20 % flip 30 %
+    }
+    system robot { run \"python3 robot.py\" }";
+
+const SENSORS_BY_THE_PAGE: &str = "
+import sys
+def newest(sensor, number, dropout):
+    while True:
+        draws = of_sample(int(sys.argv[1]), sensor, number)
+        if not happens(draws, dropout): return draws
+        number -= 1
+for number in range(200):
+    print('%.9f' % (gaussian(newest('signal place', number, 0.2), 0.002) + 0.0))
+    print(str(happens(newest('signal truth', number, 0.2), 0.3)).lower())
+";
+
+#[test]
+fn the_page_draws_the_errors_of_sensors() {
+    let compilation = compile(InputFile { name: "errors", text: SENSORS }, &[]);
+    let program = compilation.program.expect("the scenario compiles");
+    let world = program.world.as_ref().expect("a world");
+    for seed in [0, 1, u64::MAX] {
+        let sim = hrdsl_sim::WorldSimulation::new(world, &program.signals).expect("a world");
+        let mut sim = sim.seeded(seed).expect("sensors");
+        let mut got = String::new();
+        for number in 0..200 {
+            sim.advance(number * 10_000_000);
+            let place = sim.reading(SignalId(0)).as_f64().expect("a length");
+            let _ = writeln!(got, "{:.9}", place + 0.0);
+            let _ = writeln!(got, "{}", sim.reading(SignalId(1)).as_bool().expect("a truth"));
+        }
+        let page = by_the_page(SENSORS_BY_THE_PAGE, &[seed.to_string()]);
+        compare(&format!("seed {seed}"), &got.replace("-0.000000000", "0.000000000"), &page);
     }
 }
 

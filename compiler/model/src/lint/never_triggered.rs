@@ -173,6 +173,7 @@ fn range_of_term(term: &SignalTerm) -> Option<(f64, f64)> {
         SignalTerm::Visible(..)
         | SignalTerm::Touches(..)
         | SignalTerm::Holds(..)
-        | SignalTerm::HoldsAny(_) => return None,
+        | SignalTerm::HoldsAny(_)
+        | SignalTerm::Reading(_) => return None,
     })
 }

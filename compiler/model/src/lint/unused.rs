@@ -401,7 +401,7 @@ fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<UnusedName<'a>>) {
     let mut mark = |e: &TypedExpr| {
         e.each(&mut |part| {
             if let TypedExprKind::Leaf(VariableRef::Signal(s))
-            | TypedExprKind::Term(SignalTerm::Delta(s, _)) = part.kind
+            | TypedExprKind::Term(SignalTerm::Delta(s, _) | SignalTerm::Reading(s)) = part.kind
                 && let Some(read) = read.get_mut(usize::from(s.0))
             {
                 *read = true;

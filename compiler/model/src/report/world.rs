@@ -20,6 +20,7 @@ pub const LIBRARY_PARTS: &[(&str, &str)] = &[
     ("bert2", "std.robots.bert2"),
     ("collision", "std.sensors"),
     ("gaze", "std.sensors"),
+    ("knock", "std.sensors"),
     ("location", "std.sensors"),
     ("person", "std.person"),
     ("presence", "std.sensors"),
@@ -28,6 +29,7 @@ pub const LIBRARY_PARTS: &[(&str, &str)] = &[
     ("speedometer", "std.sensors"),
     ("tiago", "std.robots.mobile"),
     ("turtlebot", "std.robots.mobile"),
+    ("urg04lx", "std.sensors"),
     ("watched", "std.sensors"),
 ];
 

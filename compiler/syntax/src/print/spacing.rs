@@ -112,7 +112,9 @@ fn would_join(toks: &[PrintToken<'_>], before: usize) -> bool {
             let counts = before > 0 && toks[before - 1].kind == TokenKind::Most;
             matches!(n.kind, TokenKind::Ident | TokenKind::Percent) && !counts
         }
-        TokenKind::Quantity => p.text.ends_with('%') && n.kind.starts_operand(),
+        TokenKind::Quantity => {
+            p.text.ends_with('%') && n.kind.starts_operand() && !n.kind.is(KeywordTrait::Sensing)
+        }
         _ => false,
     }
 }

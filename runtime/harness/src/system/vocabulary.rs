@@ -25,7 +25,7 @@ impl ActorVocabulary<'_> {
         let readable = |s: &&Signal| s.to.contains(&self.actor);
         let found = self.program.signals.iter().zip(0u16..).find(|(s, _)| s.name == name && readable(s));
         match (found, stage) {
-            (Some((_, index)), Some(stage)) => SystemAnswer::Value(stage.read(SignalId(index))),
+            (Some((_, index)), Some(stage)) => SystemAnswer::Value(stage.reading(SignalId(index))),
             (Some(_), None) => refuse("there is no world to read signals from", None),
             (None, _) => {
                 let known = self.program.signals.iter().filter(readable).map(|s| s.name.as_str());

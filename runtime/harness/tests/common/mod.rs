@@ -95,6 +95,7 @@ pub fn world(rule: WorldRule) -> World {
         ],
         device_kinds: kinds(),
         currents: Vec::new(),
+        sensors: Vec::new(),
         rules: vec![rule],
         origin: Span::default(),
     }

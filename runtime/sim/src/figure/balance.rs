@@ -85,7 +85,8 @@ impl Balance {
         }
         let moved = self.make_step(capture, h);
         self.sway -= moved;
-        if self.step.is_none() && self.sway.norm() < STILL && self.speed.norm() < STILL && push.norm() == 0.0 {
+        if self.step.is_none() && self.sway.norm() < STILL && self.speed.norm() < STILL && push.norm() == 0.0
+        {
             (self.sway, self.speed) = (SpaceVector::zeros(), SpaceVector::zeros());
         }
         BalanceOutcome::Stands(moved)

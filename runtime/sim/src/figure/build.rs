@@ -111,7 +111,8 @@ impl FigureBuild {
     /// then, and how high.
     pub fn bow(&self, height: f64) -> (f64, f64, f64, f64) {
         let from_hip = self.head_local.at;
-        let (length, drawn) = ((from_hip.x.powi(2) + from_hip.z.powi(2)).sqrt(), libm::atan2(from_hip.x, from_hip.z));
+        let (length, drawn) =
+            ((from_hip.x.powi(2) + from_hip.z.powi(2)).sqrt(), libm::atan2(from_hip.x, from_hip.z));
         let upright = self.hip + from_hip.z;
         let lean_at = |height: f64, hip: f64| libm::acos(((height - hip) / length).clamp(-1.0, 1.0)) - drawn;
         let (hip, lean) = if height >= upright {
@@ -141,7 +142,8 @@ impl FigureBuild {
         let bows = (0..=BOWS).map(|i| f64::from(i) / f64::from(BOWS));
         let leans = bows.clone().map(|part| (self.hip, part * FARTHEST_LEAN));
         let crouches = bows.map(|part| (self.hip * (1.0 - part * (1.0 - LOWEST_HIP)), FARTHEST_LEAN));
-        let low_enough = |(hip, lean): &(f64, f64)| self.shoulder(limb, *hip, *lean).z - height <= STEEP_REACH * reach;
+        let low_enough =
+            |(hip, lean): &(f64, f64)| self.shoulder(limb, *hip, *lean).z - height <= STEEP_REACH * reach;
         let lowest = (self.hip * LOWEST_HIP, FARTHEST_LEAN);
         let (hip, lean) = leans.chain(crouches).find(low_enough).unwrap_or(lowest);
         let shoulder = self.shoulder(limb, hip, lean);
@@ -202,7 +204,8 @@ impl FigureBuild {
         let (hip, lean) = self.frames(posture);
         let root = if limb.is_arm { lean.point(limb.root) + moved } else { hip.point(limb.root) };
         let [upper, lower] = limb.bones(root, end, posture.stance.turn * limb.bend);
-        let at_end = lower.then(&BodyFrame::new(-SpaceVector::z() * limb.lengths[1], RotationQuat::identity()));
+        let at_end =
+            lower.then(&BodyFrame::new(-SpaceVector::z() * limb.lengths[1], RotationQuat::identity()));
         [
             (limb.upper, upper.then(&limb.upper_local)),
             (limb.lower, lower.then(&limb.lower_local)),
@@ -212,7 +215,13 @@ impl FigureBuild {
 }
 
 impl LimbBuild {
-    fn new(limb: &Limb, figure: &Figure, stance: &BodyFrame, hip: &BodyFrame, physics: &PhysicsAdapter) -> LimbBuild {
+    fn new(
+        limb: &Limb,
+        figure: &Figure,
+        stance: &BodyFrame,
+        hip: &BodyFrame,
+        physics: &PhysicsAdapter,
+    ) -> LimbBuild {
         let [root, middle, last] = limb.pivots.map(v3);
         let end = limb.end.map_or(last, |end| physics.start(end).at);
         let is_arm = limb.of == figure.trunk;
@@ -256,7 +265,9 @@ impl LimbBuild {
         let along = (a * a + far * far - b * b) / (2.0 * far);
         let middle = root + line * along + aside * (a * a - along * along).max(0.0).sqrt();
         let normal = line.cross(&aside);
-        let bone = |from: SpaceVector, to: SpaceVector| BodyFrame::new(from, with_axes((from - to).normalize(), normal));
+        let bone = |from: SpaceVector, to: SpaceVector| {
+            BodyFrame::new(from, with_axes((from - to).normalize(), normal))
+        };
         [bone(root, middle), bone(middle, root + line * far)]
     }
 }

@@ -39,7 +39,8 @@ impl PhysicsAdapter {
 
     /// How hard two bodies press on each other, N.
     pub fn force_between(&self, a: BodyId, b: BodyId) -> f64 {
-        let yielding: f64 = self.yielding_pushes(a).filter(|(other, _)| *other == b).map(|(_, push)| push.norm()).sum();
+        let yielding: f64 =
+            self.yielding_pushes(a).filter(|(other, _)| *other == b).map(|(_, push)| push.norm()).sum();
         let (a, b) = (self.parts[index(a)].collider, self.parts[index(b)].collider);
         yielding + self.world.narrow_phase.contact_pair(a, b).map_or(0.0, |pair| self.push(pair).norm())
     }

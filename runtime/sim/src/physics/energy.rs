@@ -50,7 +50,8 @@ impl PhysicsAdapter {
             let body = &self.world.bodies[part.handle];
             let speed = f64::from(body.linvel().length());
             if !(speed.is_finite() && body.translation().is_finite()) || speed > FASTEST {
-                let found = if speed > FASTEST { format!("goes at {speed:.0} m/s") } else { "is nowhere".to_owned() };
+                let found =
+                    if speed > FASTEST { format!("goes at {speed:.0} m/s") } else { "is nowhere".to_owned() };
                 self.energy.fault = Some(format!("the physics failed: `{}` {found}", part.name));
                 return;
             }
@@ -76,7 +77,12 @@ impl PhysicsAdapter {
             .map(|(i, old, new)| (i, new.0 + new.1 - old.0 - old.1))
             .collect();
         let motion: f64 = before.iter().flatten().map(|(motion, _)| motion).sum();
-        let allowed = SLACK + SLACK_PART * motion + loose * gravity.norm() * LIFTED + struck + self.motor_work() + std::mem::take(&mut self.energy.wheels);
+        let allowed = SLACK
+            + SLACK_PART * motion
+            + loose * gravity.norm() * LIFTED
+            + struck
+            + self.motor_work()
+            + std::mem::take(&mut self.energy.wheels);
         let gained: f64 = gains.iter().map(|(_, gain)| gain).sum();
         if gained > allowed {
             let most = gains.iter().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -89,7 +95,9 @@ impl PhysicsAdapter {
     /// The most that motors can have done in a step, J.
     fn motor_work(&self) -> f64 {
         let dt = f64::from(self.world.integration_parameters.dt);
-        (0..self.joints.len()).map(|joint| (self.joint_effort(joint) * self.joint_speed(joint)).abs() * dt).sum()
+        (0..self.joints.len())
+            .map(|joint| (self.joint_effort(joint) * self.joint_speed(joint)).abs() * dt)
+            .sum()
     }
 
     /// What went wrong, if something did.

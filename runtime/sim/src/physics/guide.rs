@@ -67,7 +67,8 @@ impl BodyGuide {
     /// The impulse over a part of a step, N·s.
     fn impulse(&self, body: &RigidBody, weight: SpaceVector, part: StepPart) -> SpaceVector {
         let pace = (self.to.at - self.from.at) / part.dt;
-        let (before, ahead) = if part.done == 0.0 { (self.pace, pace - self.pace) } else { (pace, SpaceVector::zeros()) };
+        let (before, ahead) =
+            if part.done == 0.0 { (self.pace, pace - self.pace) } else { (pace, SpaceVector::zeros()) };
         let aim = self.from.at + (self.to.at - self.from.at) * part.done;
         let (at, speed) = (from_pose(body.position()).at, from_vector(body.linvel()));
         let (behind, slow) = (aim - at, before - speed);

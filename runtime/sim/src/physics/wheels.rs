@@ -106,7 +106,9 @@ impl PhysicsAdapter {
         let part = if asked > grip { grip / asked } else { 1.0 };
         let mut at = self.pose(base.body).at;
         at.z = base.wheels.iter().map(|wheel| self.lowest(*wheel)).fold(f64::INFINITY, f64::min);
-        let work = (impulse.norm() * velocity.norm().max(now.norm()) + spin.abs() * turn.abs().max(turning.abs())) * part;
+        let work = (impulse.norm() * velocity.norm().max(now.norm())
+            + spin.abs() * turn.abs().max(turning.abs()))
+            * part;
         self.energy.add_wheels(work);
         let handle = self.parts[index(base.body)].handle;
         let body = &mut self.world.bodies[handle];

@@ -91,7 +91,8 @@ impl PhysicsAdapter {
                 if is_own || is_met || self.parts[j].ghost || world.bodies[root].motion == BodyMotion::Fixed {
                     continue;
                 }
-                let stiffness = world.bodies[j].stiffness.map_or(stiffness, |k| 1.0 / (1.0 / k + 1.0 / stiffness));
+                let stiffness =
+                    world.bodies[j].stiffness.map_or(stiffness, |k| 1.0 / (1.0 / k + 1.0 / stiffness));
                 let (soft, other, contact) = (i, j, None);
                 self.yielding.push(YieldingPair { soft, other, stiffness, is_suspended: false, contact });
                 self.exempt.yields(i, j);
@@ -160,9 +161,12 @@ impl PhysicsAdapter {
             let reach = NEAR + (self.speed_of(soft) + self.speed_of(other)) * dt;
             let Some(found) = self.closest(soft, other, reach) else { continue };
             let pair = &self.yielding[at];
-            let (a, b) = (&self.world.bodies[self.parts[soft].handle], &self.world.bodies[self.parts[other].handle]);
-            let inverse = |body: &RigidBody| if body.is_dynamic() { 1.0 / f64::from(body.mass()) } else { 0.0 };
-            let approach = from_vector(a.linvel() - b.velocity_at_point(found.point2)).dot(&from_vector(found.normal1));
+            let (a, b) =
+                (&self.world.bodies[self.parts[soft].handle], &self.world.bodies[self.parts[other].handle]);
+            let inverse =
+                |body: &RigidBody| if body.is_dynamic() { 1.0 / f64::from(body.mass()) } else { 0.0 };
+            let approach =
+                from_vector(a.linvel() - b.velocity_at_point(found.point2)).dot(&from_vector(found.normal1));
             let frequency = (pair.stiffness * (inverse(a) + inverse(b))).sqrt();
             near.push(NearPair { at, frequency, approach });
         }
@@ -226,11 +230,16 @@ impl PhysicsAdapter {
         let there = if yields { two.linvel() } else { two.velocity_at_point(point) };
         let slip = from_vector(one.linvel() - there);
         let size = force.norm();
-        let across = if size > 0.0 { slip - force * (slip.dot(&force) / (size * size)) } else { SpaceVector::zeros() };
+        let across =
+            if size > 0.0 { slip - force * (slip.dot(&force) / (size * size)) } else { SpaceVector::zeros() };
         let mass = |body: &RigidBody| if body.is_dynamic() { f64::from(body.mass()) } else { f64::INFINITY };
         let stops = mass(one).min(mass(two)) / 2.0;
         let rub = across.norm();
-        let friction = if rub > 0.0 { across * (-(FRICTION * size * h).min(stops * rub) / rub) } else { SpaceVector::zeros() };
+        let friction = if rub > 0.0 {
+            across * (-(FRICTION * size * h).min(stops * rub) / rub)
+        } else {
+            SpaceVector::zeros()
+        };
         let impulse = force * h + friction;
         self.world.bodies[a].apply_impulse(to_vector(impulse), true);
         let two = &mut self.world.bodies[b];
@@ -266,16 +275,18 @@ impl PhysicsAdapter {
             let other = if pair.soft == own { pair.other } else { pair.soft };
             (pair.soft == own || pair.other == own) && by.is_none_or(|by| index(by) == other)
         });
-        let of_phase = of.filter_map(|pair| pair.contact.map(|contact| (pair, contact))).filter(|(pair, contact)| {
-            let lasts = contact.age > TRANSIENT || self.is_clamped(pair.soft, contact);
-            lasts == (phase == ContactPhase::QuasiStatic)
-        });
+        let of_phase =
+            of.filter_map(|pair| pair.contact.map(|contact| (pair, contact))).filter(|(pair, contact)| {
+                let lasts = contact.age > TRANSIENT || self.is_clamped(pair.soft, contact);
+                lasts == (phase == ContactPhase::QuasiStatic)
+            });
         of_phase.map(|(_, contact)| contact.peak).sum()
     }
 
     /// Whether something else presses a body against a contact, half as hard at least.
     fn is_clamped(&self, soft: usize, contact: &YieldingContact) -> bool {
-        let against = self.pushes(body_id(soft)).map(|push| (-push.dot(&contact.normal)).max(0.0)).sum::<f64>();
+        let against =
+            self.pushes(body_id(soft)).map(|push| (-push.dot(&contact.normal)).max(0.0)).sum::<f64>();
         against > contact.peak / 2.0
     }
 

@@ -24,7 +24,16 @@ fn deg(x: f64) -> f64 {
 }
 
 pub fn body(name: &str, motion: BodyMotion, shape: BodyShape, position: Vec3, mass: f64) -> Body {
-    Body { name: name.into(), motion, shape, position, rotation: [0.0; 3], mass, stiffness: None, ghost: false }
+    Body {
+        name: name.into(),
+        motion,
+        shape,
+        position,
+        rotation: [0.0; 3],
+        mass,
+        stiffness: None,
+        ghost: false,
+    }
 }
 
 pub fn cuboid(x: f64, y: f64, z: f64) -> BodyShape {
@@ -165,6 +174,7 @@ pub fn empty() -> World {
         devices: Vec::new(),
         device_kinds: Vec::new(),
         currents: Vec::new(),
+        sensors: Vec::new(),
         rules: Vec::new(),
         origin: Span::default(),
     }

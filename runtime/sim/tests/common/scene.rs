@@ -1,4 +1,5 @@
 //! Worlds for tests, as text.
+#![allow(dead_code, reason = "each test binary uses its own part")]
 
 use hrdsl_compiler::InputFile;
 use hrdsl_ir::event::StimulusStep;

@@ -115,6 +115,11 @@ impl Checker<'_> {
             }
             return None;
         }
+        if self.depends_on_a_reading(&signal.value) {
+            let message = format!("`{}` is made of readings, which have no difference", signal.name);
+            self.report(bad_world(of.span, message, "name a signal of what is measured: the truth"));
+            return None;
+        }
         Some((SignalTerm::Delta(SignalId(id), nanos(over?)), ty))
     }
 }

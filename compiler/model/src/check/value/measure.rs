@@ -15,7 +15,7 @@ use crate::{
     report::{names, types},
 };
 
-const MEASURES: [&str; 18] = [
+const MEASURES: [&str; 19] = [
     "distance",
     "range",
     "angle",
@@ -34,6 +34,7 @@ const MEASURES: [&str; 18] = [
     "tilt",
     "height",
     "delta",
+    "reading",
 ];
 
 impl Checker<'_> {
@@ -153,7 +154,10 @@ impl Checker<'_> {
         let (what, ty) = match name {
             "joint_speed" | "joint_angle" | "torque" => self.of_joint(name, &args[0], prefix)?,
             "delta" => self.delta(&args[0], &args[1], prefix)?,
-            "touches" | "force" | "weight" | "transient_force" | "quasistatic_force" => self.contact(name, args, prefix)?,
+            "reading" => self.reading(&args[0], prefix)?,
+            "touches" | "force" | "weight" | "transient_force" | "quasistatic_force" => {
+                self.contact(name, args, prefix)?
+            }
             "holds" => {
                 let gripper = self.world_arg(Noun::Gripper, &args[0], prefix).map(GripperId);
                 let body = args.get(1).map(|a| self.body_arg(a, prefix));

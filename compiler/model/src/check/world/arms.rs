@@ -1,9 +1,16 @@
 //! What moves: joints, with the motors that drive them, arms and grippers.
 
-use hrdsl_ir::world::{JointDrive, JointMotion};
+use hrdsl_ir::{
+    sensor::SensorSource,
+    world::{ArmId, JointDrive, JointMotion},
+};
 use hrdsl_syntax::ast::{ExprSyntax, JointSyntax, NameSyntax, RangeSyntax, WorldMemberKind as Member};
 
-use crate::check::{checker::Checker, state::scope::ExprEnv, world::parts::PlacedMember};
+use crate::check::{
+    checker::Checker,
+    state::scope::ExprEnv,
+    world::{parts::PlacedMember, sensing::SensedKind},
+};
 use crate::{
     BodyId, Dimension, JointId,
     noun::Noun,
@@ -150,7 +157,8 @@ impl<'a> Checker<'a> {
             arm.contact.as_ref().and_then(|e| self.more_than_zero(e, Dimension::FORCE, "the contact force"));
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.arms);
-        if issues.declare_as(table, Noun::Arm, &full, name.span).is_some() {
+        if let Some(id) = issues.declare_as(table, Noun::Arm, &full, name.span) {
+            self.sensing(&arm.sensing, SensedKind::Arm, (&full, SensorSource::Arm(ArmId(id))));
             let (tip, postures) = (tip_id.unwrap_or(BodyId(0)), Vec::new());
             self.world_mut().arms.push(TypedArm {
                 name: full,

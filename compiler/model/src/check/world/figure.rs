@@ -26,7 +26,8 @@ impl<'a> Checker<'a> {
             self.report(bad_world(span, "a limb turns about three points", help));
         }
         let bodies = self.guided_bodies(&limb.bodies, &p.prefix);
-        let pivots: Vec<Option<[f64; 3]>> = limb.pivots.iter().map(|pivot| self.vector(pivot, LENGTH)).collect();
+        let pivots: Vec<Option<[f64; 3]>> =
+            limb.pivots.iter().map(|pivot| self.vector(pivot, LENGTH)).collect();
         let full = format!("{}{}", p.prefix, limb.name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.limbs);
         if issues.declare_as(table, Noun::Limb, &full, limb.name.span).is_some() {
@@ -63,7 +64,8 @@ impl<'a> Checker<'a> {
             let Some(id) = id.map(usize::from) else { continue };
             let of = self.world_mut().limbs.get(id).map(|l| l.of);
             if bodies.iter().all(Option::is_some) && of.is_some_and(|of| of != pelvis && of != trunk) {
-                let message = format!("the limb `{}` hangs neither on the trunk nor on the pelvis", limb.text);
+                let message =
+                    format!("the limb `{}` hangs neither on the trunk nor on the pelvis", limb.text);
                 self.report(bad_world(limb.span, message, "begin the limb with one of the figure's bodies"));
             }
             limbs.push(id);

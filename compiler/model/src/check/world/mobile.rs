@@ -2,9 +2,16 @@
 
 use std::f64::consts::TAU;
 
+use hrdsl_ir::{
+    sensor::SensorSource,
+    world::{BaseId, LaserId},
+};
 use hrdsl_syntax::ast::{NameSyntax, WorldMemberKind as Member};
 
-use crate::check::{checker::Checker, world::parts::PlacedMember};
+use crate::check::{
+    checker::Checker,
+    world::{parts::PlacedMember, sensing::SensedKind},
+};
 use crate::{
     BodyId, BodyMotion, Dimension,
     noun::Noun,
@@ -37,7 +44,8 @@ impl<'a> Checker<'a> {
         let timeout = base.timeout.as_ref().map(|e| self.time(e, "the timeout", false));
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.bases);
-        if issues.declare_as(table, Noun::Base, &full, name.span).is_some() {
+        if let Some(id) = issues.declare_as(table, Noun::Base, &full, name.span) {
+            self.sensing(&base.sensing, SensedKind::Base, (&full, SensorSource::Base(BaseId(id))));
             self.world_mut().bases.push(TypedBase {
                 name: full,
                 body: body.unwrap_or(BodyId(0)),
@@ -57,7 +65,8 @@ impl<'a> Checker<'a> {
         let motion = world.bodies.get(usize::from(body.0)).map(|b| b.motion);
         let taken = world.bases.iter().find(|b| b.body == body).map(|b| b.name.clone());
         if matches!(motion, Some(BodyMotion::Fixed | BodyMotion::Guided)) {
-            let message = format!("a base drives a dynamic or kinematic body, and `{}` is neither", name.text);
+            let message =
+                format!("a base drives a dynamic or kinematic body, and `{}` is neither", name.text);
             let help = "declare the body as `dynamic`, or as `kinematic` if nothing is to push it";
             self.report(bad_world(name.span, message, help));
         }
@@ -91,7 +100,8 @@ impl<'a> Checker<'a> {
         }
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.lasers);
-        if issues.declare_as(table, Noun::Laser, &full, name.span).is_some() {
+        if let Some(id) = issues.declare_as(table, Noun::Laser, &full, name.span) {
+            self.sensing(&laser.sensing, SensedKind::Laser, (&full, SensorSource::Laser(LaserId(id))));
             self.world_mut().lasers.push(TypedLaser {
                 name: full,
                 body,

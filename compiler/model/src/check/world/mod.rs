@@ -3,12 +3,17 @@
 mod arms;
 pub(in crate::check) mod device;
 mod edge;
+mod extent;
 mod figure;
+mod locate;
 mod mobile;
 pub(in crate::check) mod parts;
+mod placement;
 mod posture;
+mod sensing;
 pub(in crate::check) mod stimulus;
 
+use hrdsl_ir::sensor::SensorSource;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, ItemSyntaxKind, NameSyntax, RuleTriggerSyntax as SyntaxRuleOn, WorldMember,
@@ -18,10 +23,14 @@ use hrdsl_syntax::ast::{
 use crate::check::{
     checker::Checker,
     state::{scope::ExprEnv, world::WorldNames},
-    world::parts::PlacedMember,
+    world::{
+        parts::PlacedMember,
+        placement::{angles, outright},
+        sensing::SensedKind,
+    },
 };
 use crate::{
-    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, Dimension, GripperId, InferredType, Value,
+    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, Dimension, GripperId, InferredType, SignalId, Value,
     noun::Noun,
     report::{names, types, world::bad_world},
     world::{PartFrame, TypedBody, TypedRuleTrigger, TypedSignal, TypedWorld, TypedWorldRule},
@@ -30,6 +39,8 @@ use crate::{
 const LENGTH: InferredType = InferredType::Float(Dimension::LENGTH);
 const ANGLE: InferredType = InferredType::Float(Dimension::ANGLE);
 const NUMBER: InferredType = InferredType::Float(Dimension::NUMBER);
+
+type MemberPass<'a> = fn(&mut Checker<'a>, &PlacedMember<'a>);
 
 impl<'a> Checker<'a> {
     pub(in crate::check) fn world(&mut self) {
@@ -60,15 +71,17 @@ impl<'a> Checker<'a> {
             limbs: Vec::new(),
             figures: Vec::new(),
             currents: Vec::new(),
+            sensors: Vec::new(),
             signals: Vec::new(),
             rules: Vec::new(),
             parts: Vec::new(),
             span,
         });
-        let placed = self.flatten(members, "", PartFrame::default(), None);
+        let mut placed = self.flatten(members, "", PartFrame::default(), None);
         // What is named first must exist first: by kind, not by place.
-        let passes: [fn(&mut Self, &PlacedMember<'a>); 12] = [
-            Self::settings_and_bodies,
+        self.pass(&placed, Self::settings_and_bodies);
+        self.place_by_others(&mut placed);
+        let passes: [MemberPass<'a>; 11] = [
             Self::joint,
             Self::gripper,
             Self::arm,
@@ -82,14 +95,19 @@ impl<'a> Checker<'a> {
             Self::rules,
         ];
         for pass in passes {
-            for p in &placed {
-                let outer = std::mem::replace(&mut self.templates.given, p.given.clone());
-                let before = self.issues.list.len();
-                pass(self, p);
-                self.templates.given = outer;
-                if let Some((name, span)) = &p.instance {
-                    self.said_in(before, Some((name, *span)));
-                }
+            self.pass(&placed, pass);
+        }
+    }
+
+    /// Checks all members for one of their kinds.
+    fn pass(&mut self, placed: &[PlacedMember<'a>], check: MemberPass<'a>) {
+        for p in placed {
+            let outer = std::mem::replace(&mut self.templates.given, p.given.clone());
+            let before = self.issues.list.len();
+            check(self, p);
+            self.templates.given = outer;
+            if let Some((name, span)) = &p.instance {
+                self.said_in(before, Some((name, *span)));
             }
         }
     }
@@ -168,15 +186,16 @@ impl<'a> Checker<'a> {
     }
 
     fn body(&mut self, p: &PlacedMember<'a>, body: &'a ast::BodySyntax) {
-        let motion = match self.choice(Noun::Motion, &body.motion, &["fixed", "dynamic", "kinematic", "guided"]) {
-            Some(1) => BodyMotion::Dynamic,
-            Some(2) => BodyMotion::Kinematic,
-            Some(3) => BodyMotion::Guided,
-            Some(_) | None => BodyMotion::Fixed,
-        };
+        let motion =
+            match self.choice(Noun::Motion, &body.motion, &["fixed", "dynamic", "kinematic", "guided"]) {
+                Some(1) => BodyMotion::Dynamic,
+                Some(2) => BodyMotion::Kinematic,
+                Some(3) => BodyMotion::Guided,
+                Some(_) | None => BodyMotion::Fixed,
+            };
         let shape = self.shape(body);
-        let position = self.vector(&body.at, LENGTH).unwrap_or_default();
-        let rotation = body.rotated.as_ref().and_then(|r| self.vector(r, ANGLE)).unwrap_or_default();
+        let position = outright(&body.place).and_then(|at| self.vector(at, LENGTH)).unwrap_or_default();
+        let rotation = angles(body.turn.as_ref()).and_then(|r| self.vector(r, ANGLE)).unwrap_or_default();
         let mass = body.mass.as_ref().and_then(|m| self.more_than_zero(m, Dimension::MASS, "a mass"));
         let stiffness =
             body.stiffness.as_ref().and_then(|k| self.more_than_zero(k, Dimension::STIFFNESS, "a stiffness"));
@@ -284,7 +303,7 @@ impl<'a> Checker<'a> {
 
     /// An arm's joints follow each other from the base to the tip.
     fn signals(&mut self, p: &PlacedMember<'a>) {
-        let Member::Signal { name, ty, to, value } = &p.member.kind else { return };
+        let Member::Signal { name, ty, to, value, sensing } = &p.member.kind else { return };
         self.check_free(&ExprEnv::constants(), Noun::Signal, name);
         let to: Vec<ActorId> = to.iter().filter_map(|a| self.actor(a)).collect();
         let ty = self.ty(ty).filter(|of| {
@@ -295,11 +314,15 @@ impl<'a> Checker<'a> {
             Some(ty) => self.expr_for(value, ty, &mut env),
             None => self.expr(value, &mut env),
         };
+        self.senses_the_world(sensing, &value);
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.signals);
-        if issues.declare_as(table, Noun::Signal, &full, name.span).is_some() {
+        if let Some(id) = issues.declare_as(table, Noun::Signal, &full, name.span) {
             if ty.is_none() {
                 self.world.names.broken.insert(full.clone());
+            }
+            if let Some(ty) = ty {
+                self.sensing(sensing, SensedKind::of(ty), (&full, SensorSource::Signal(SignalId(id))));
             }
             let ty = ty.unwrap_or(crate::Type::Bool);
             self.world_mut().signals.push(TypedSignal { name: full, ty, to, value, span: p.member.span });

@@ -8,6 +8,7 @@ use hrdsl_syntax::ast::{self, NameSyntax, WorldMember, WorldMemberKind as Member
 use crate::check::{
     checker::Checker,
     state::{issues::too_many, item::ExprItem, scope::ExprEnv, template::TemplateArguments},
+    world::placement::{angles, outright},
 };
 use crate::{
     Dimension, InferredType,
@@ -56,7 +57,11 @@ impl<'a> Checker<'a> {
                 return all;
             }
             match &member.kind {
-                Member::Part { .. } => all.extend(self.flatten_part(member, prefix, frame)),
+                Member::Part { .. } => {
+                    let (given, instance) = (self.templates.given.clone(), instance.clone());
+                    all.push(PlacedMember { prefix: prefix.to_owned(), frame, member, given, instance });
+                    all.extend(self.flatten_part(member, prefix, frame));
+                }
                 Member::Step(_)
                 | Member::Sample(_)
                 | Member::Gravity(_)
@@ -89,8 +94,8 @@ impl<'a> Checker<'a> {
         prefix: &str,
         frame: PartFrame,
     ) -> Vec<PlacedMember<'a>> {
-        let Member::Part { name, of, args, at, rotated } = &member.kind else { return Vec::new() };
-        let inner = self.frame(at, rotated.as_ref());
+        let Member::Part { name, of, args, place, turn } = &member.kind else { return Vec::new() };
+        let inner = self.frame(outright(place), angles(turn.as_ref()));
         let full = format!("{prefix}{}", name.text);
         let instances = &mut self.world.names.instances;
         let noun = Noun::PartInstance;
@@ -107,7 +112,7 @@ impl<'a> Checker<'a> {
             return Vec::new();
         }
         let frame = compose(frame, inner);
-        let placed = PartInstance { name: full.clone(), frame, span: member.span };
+        let placed = PartInstance { name: full.clone(), frame, inner, span: member.span };
         self.world_mut().parts.push(placed);
         let end = args.iter().flatten().last().map_or(of.span, |a| a.span);
         let here = NameSyntax { text: full.clone(), span: name.span };
@@ -176,8 +181,9 @@ impl<'a> Checker<'a> {
     }
 
     /// `at (…) rotated (0 deg, 0 deg, 90 deg)`
-    fn frame(&mut self, at: &ast::ExprSyntax, rotated: Option<&ast::ExprSyntax>) -> PartFrame {
-        let position = self.vector(at, InferredType::Float(Dimension::LENGTH)).unwrap_or_default();
+    fn frame(&mut self, at: Option<&ast::ExprSyntax>, rotated: Option<&ast::ExprSyntax>) -> PartFrame {
+        let position = at.and_then(|at| self.vector(at, InferredType::Float(Dimension::LENGTH)));
+        let position = position.unwrap_or_default();
         let angles =
             rotated.and_then(|r| self.vector(r, InferredType::Float(Dimension::ANGLE))).unwrap_or_default();
         if let (Some(rotated), true) = (rotated, angles[0] != 0.0 || angles[1] != 0.0) {
@@ -232,6 +238,6 @@ fn not_a_vector(want: InferredType, span: Span) -> Diagnostic {
 }
 
 /// The frame of `inner`, which is given in the coordinates of `outer`, in the world.
-fn compose(outer: PartFrame, inner: PartFrame) -> PartFrame {
+pub(super) fn compose(outer: PartFrame, inner: PartFrame) -> PartFrame {
     PartFrame { at: outer.place(inner.at), yaw: outer.yaw + inner.yaw }
 }

@@ -11,8 +11,8 @@ use crate::check::{
     value::measure::text,
 };
 use crate::{
-    ActorId, BinaryOp, BodyMotion, BodyRef, Dimension, EventId, FigureId, GripperId, InferredType, Type, TypedExpr,
-    TypedPoint, TypedSample, TypedStimulus, TypedStimulusStep, TypedWorldAction, Value,
+    ActorId, BinaryOp, BodyMotion, BodyRef, Dimension, EventId, FigureId, GripperId, InferredType, Type,
+    TypedExpr, TypedPoint, TypedSample, TypedStimulus, TypedStimulusStep, TypedWorldAction, Value,
     noun::Noun,
     report::{names, roles, types, world},
     types::TypeLayout,
@@ -279,7 +279,8 @@ impl Checker<'_> {
             Some(body) if is_moved(body.motion) => id,
             Some(_) | None => {
                 let span = names[0].span.to(names[names.len() - 1].span);
-                let message = format!("`{}` is neither kinematic nor guided: actions cannot move it", text(names));
+                let message =
+                    format!("`{}` is neither kinematic nor guided: actions cannot move it", text(names));
                 let world = self.s.world.as_ref();
                 let moved = world.iter().flat_map(|w| &w.bodies).filter(|b| is_moved(b.motion));
                 let near: Vec<&str> = moved.map(|b| b.name.as_str()).collect();

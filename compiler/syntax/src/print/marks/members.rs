@@ -3,8 +3,9 @@
 use crate::ast::{
     AccessSyntax, AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, AutomatonSyntax,
     DeviceMember, DeviceMemberKind, EdgeActionKind, EdgeSyntax, FormulaSyntax, FunctionSyntax, JointSyntax,
-    PlanSyntax, QuerySyntax, RuleTriggerSyntax, StatementSyntax, StatementSyntaxKind, StepSyntax,
-    StepSyntaxKind, SuiteMemberKind, TestMember, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
+    PlaceSyntax, PlanSyntax, QuerySyntax, RuleTriggerSyntax, SensorClause, StatementSyntax,
+    StatementSyntaxKind, StepSyntax, StepSyntaxKind, SuiteMemberKind, TestMember, TestMemberKind, TurnSyntax,
+    VarSyntax, WorldMember, WorldMemberKind,
 };
 use crate::print::marks::{BlockKind, TokenMarker};
 use crate::token::TokenKind;
@@ -306,21 +307,32 @@ impl TokenMarker<'_> {
         }
     }
 
+    fn place(&mut self, place: &PlaceSyntax, turn: Option<&TurnSyntax>) {
+        self.maybe(place.at.as_ref());
+        self.maybe(place.beside.as_ref().map(|beside| &beside.by));
+        match turn {
+            Some(TurnSyntax::Rotated(angles)) => self.expr(angles),
+            Some(TurnSyntax::Facing(_)) | None => {}
+        }
+    }
+
+    fn sensing(&mut self, clauses: &[SensorClause]) {
+        clauses.iter().flat_map(|clause| &clause.values).for_each(|value| self.expr(value));
+    }
+
     pub(super) fn world_member(&mut self, member: &WorldMember) {
         self.start(member.span.start);
         match &member.kind {
             WorldMemberKind::Step(e) | WorldMemberKind::Sample(e) | WorldMemberKind::Gravity(e) => {
                 self.expr(e)
             }
-            WorldMemberKind::Part { of, args, at, rotated, .. } => {
+            WorldMemberKind::Part { of, args, place, turn, .. } => {
                 self.args(of.span.end, args.as_deref().unwrap_or_default());
-                self.expr(at);
-                self.maybe(rotated.as_ref());
+                self.place(place, turn.as_ref());
             }
             WorldMemberKind::Body(body) => {
                 self.args(body.shape.span.end, &body.sizes);
-                self.expr(&body.at);
-                self.maybe(body.rotated.as_ref());
+                self.place(&body.place, body.turn.as_ref());
                 self.maybe(body.mass.as_ref());
                 self.maybe(body.stiffness.as_ref());
             }
@@ -329,6 +341,7 @@ impl TokenMarker<'_> {
                 self.expr(&arm.tool);
                 self.expr(&arm.speed);
                 self.maybe(arm.contact.as_ref());
+                self.sensing(&arm.sensing);
             }
             WorldMemberKind::Gripper(gripper) => {
                 self.expr(&gripper.tool);
@@ -342,6 +355,7 @@ impl TokenMarker<'_> {
                 self.expr(&base.turn);
                 self.expr(&base.acceleration);
                 self.maybe(base.timeout.as_ref());
+                self.sensing(&base.sensing);
             }
             WorldMemberKind::Limb(limb) => limb.pivots.iter().for_each(|pivot| self.expr(pivot)),
             WorldMemberKind::Figure(figure) => {
@@ -354,11 +368,13 @@ impl TokenMarker<'_> {
                 self.range(&laser.angles);
                 self.expr(&laser.beams);
                 self.range(&laser.range);
+                self.sensing(&laser.sensing);
             }
             WorldMemberKind::Posture(posture) => self.expr(&posture.angles),
-            WorldMemberKind::Signal { ty, value, .. } => {
+            WorldMemberKind::Signal { ty, value, sensing, .. } => {
                 self.ty(ty);
                 self.expr(value);
+                self.sensing(sensing);
             }
             WorldMemberKind::Rule(rule) => {
                 match &rule.on {

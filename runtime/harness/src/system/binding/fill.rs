@@ -51,6 +51,8 @@ pub(super) struct GapContext<'a, 'p> {
     pub kind: MiddlewareKind,
     pub heard: &'a HeardEvents,
     pub now: Nanos,
+    /// When that was so which the message tells of a device, if that is not now.
+    pub stamp: Option<Nanos>,
     /// Which of the conditions hold on which fields depend.
     pub conditions: &'a [bool],
     pub stage: Option<&'a mut WorldStage<'p>>,
@@ -63,6 +65,7 @@ impl GapContext<'_, '_> {
     /// The field, and the value that it cannot hold.
     pub fn filled(&mut self, template: &MessageTemplate) -> Result<MessageText, String> {
         let mut text = String::new();
+        self.stamp = self.stage.as_deref().and_then(|stage| sampled_at(template, stage));
         match self.template(template, &mut text) {
             Ok(()) => Ok(text.into()),
             // The text breaks off where the value would stand.
@@ -83,7 +86,7 @@ impl GapContext<'_, '_> {
     fn write(&mut self, gap: &MessageGap, text: &mut String) -> Result<(), String> {
         let value = match &gap.value {
             GapValue::Now => {
-                self.time(text);
+                self.time(self.stamp.unwrap_or(self.now), text);
                 return Ok(());
             }
             GapValue::Held { events, time } => {
@@ -144,7 +147,7 @@ impl GapContext<'_, '_> {
     fn read(&mut self, read: &GapRead) -> Value {
         match read {
             GapRead::Signal(signal) => {
-                self.stage.as_deref_mut().map_or(Value::Float(f64::NAN), |stage| stage.read(*signal))
+                self.stage.as_deref_mut().map_or(Value::Float(f64::NAN), |stage| stage.reading(*signal))
             }
             GapRead::Argument { event, param, initial } => {
                 let args = self.heard.arguments(*event);
@@ -153,14 +156,29 @@ impl GapContext<'_, '_> {
         }
     }
 
-    fn time(&self, text: &mut String) {
-        let (seconds, nanos) = (EPOCH + self.now / SECOND, self.now % SECOND);
+    fn time(&self, time: Nanos, text: &mut String) {
+        // A sample may have been taken before the test began.
+        let (seconds, nanos) = (EPOCH + time.div_euclid(SECOND), time.rem_euclid(SECOND));
         let (first, second) = match self.kind {
             MiddlewareKind::Ros1 => ("secs", "nsecs"),
             MiddlewareKind::Ros2 => ("sec", "nanosec"),
         };
         let _ = write!(text, "{{\"{first}\":{seconds},\"{second}\":{nanos}}}");
     }
+}
+
+/// When that was so which a message tells of a device.
+fn sampled_at(template: &MessageTemplate, stage: &WorldStage<'_>) -> Option<Nanos> {
+    let gaps = if stage.has_sensors() { template.leaves() } else { Vec::new() };
+    gaps.into_iter().find_map(|gap| match gap {
+        GapValue::Told { device, .. } => stage.sampled_at(*device),
+        GapValue::Held { .. }
+        | GapValue::Value { .. }
+        | GapValue::Now
+        | GapValue::Fixed(_)
+        | GapValue::Whole(_)
+        | GapValue::Chosen { .. } => None,
+    })
 }
 
 /// Where the value stands that comes next in a JSON text which breaks off there.

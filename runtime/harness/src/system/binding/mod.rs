@@ -301,7 +301,7 @@ impl<'p> BindingNode<'p> {
         cx: &mut PlayerContext<'_, '_>,
     ) -> Result<MessageText, BindingFault> {
         let (kind, heard, stage) = (self.binding.kind, &self.heard, cx.stage.as_deref_mut());
-        let mut context = GapContext { kind, heard, now: cx.now, conditions, stage };
+        let mut context = GapContext { kind, heard, now: cx.now, stamp: None, conditions, stage };
         context.filled(template).map_err(|why| BindingFault::Scenario(format!("the {sort} `{name}`: {why}")))
     }
 
