@@ -395,7 +395,7 @@ impl<'t> ParseContext<'t> {
         &mut self,
         (name, motion, shape): (NameSyntax, NameSyntax, NameSyntax),
         sizes: Vec<ExprSyntax>,
-        place: PlaceSyntax,
+        place: Box<PlaceSyntax>,
         parts: Vec<BodyPart>,
     ) -> BodySyntax {
         let (turn, mass, ghost, graspable) = (None, None, false, false);
