@@ -396,7 +396,7 @@ impl<'t> ParseContext<'t> {
         &mut self,
         (name, motion, shape): (NameSyntax, NameSyntax, NameSyntax),
         sizes: Vec<ExprSyntax>,
-        place: PlaceSyntax,
+        place: Box<PlaceSyntax>,
         parts: Vec<BodyPart>,
     ) -> BodySyntax {
         let (turn, mass, stiffness, ghost, graspable) = (None, None, None, false, false);

@@ -43,7 +43,7 @@ pub enum WorldMemberKind {
         name: NameSyntax,
         of: NameSyntax,
         args: Option<Vec<ExprSyntax>>,
-        place: PlaceSyntax,
+        place: Box<PlaceSyntax>,
         turn: Option<TurnSyntax>,
     },
     Body(BodySyntax),
@@ -84,7 +84,7 @@ pub struct BodySyntax {
     /// `box`, `sphere`, `capsule`, `cylinder`
     pub shape: NameSyntax,
     pub sizes: Vec<ExprSyntax>,
-    pub place: PlaceSyntax,
+    pub place: Box<PlaceSyntax>,
     pub turn: Option<TurnSyntax>,
     pub mass: Option<ExprSyntax>,
     pub stiffness: Option<ExprSyntax>,
