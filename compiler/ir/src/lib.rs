@@ -18,6 +18,7 @@ pub mod expr;
 pub mod list;
 pub mod lowering;
 pub mod monitor;
+pub mod solid;
 pub mod suite;
 pub mod system;
 pub mod ta;

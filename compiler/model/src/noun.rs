@@ -69,6 +69,7 @@ pub(crate) enum Noun {
     /// Any of these four.
     Device,
     Posture,
+    Group,
     /// Of which devices are.
     DeviceKind,
     /// What a device can be told.
@@ -160,6 +161,7 @@ impl Noun {
             | Noun::Base
             | Noun::Laser
             | Noun::Posture
+            | Noun::Group
             | Noun::Device
             | Noun::Command
             | Noun::Primitive
@@ -240,6 +242,7 @@ impl fmt::Display for Noun {
             Noun::Laser => "laser",
             Noun::Device => "device",
             Noun::Posture => "posture",
+            Noun::Group => "group",
             Noun::DeviceKind => "kind of device",
             Noun::Command => "command",
             Noun::Primitive => "primitive",

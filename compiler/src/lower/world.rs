@@ -20,6 +20,7 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         name: g.name.clone(),
         palm: g.palm,
         fingers: g.fingers.clone(),
+        reversed: g.reversed.clone(),
         tool: g.tool,
         reach: g.reach,
         delay: nanos(g.delay),
@@ -95,6 +96,7 @@ fn body(b: &from::TypedBody) -> Body {
         rotation: [roll, pitch, yaw + b.frame.yaw],
         mass: b.mass,
         ghost: b.ghost,
+        solid: b.solid.clone(),
     }
 }
 

@@ -19,8 +19,9 @@ use crate::pattern::RequirementPattern;
 pub use crate::system::{ProgramSyntax, SystemMember, SystemMemberKind, SystemSyntax};
 pub use crate::world::{
     ArmSyntax, BaseSyntax, BodySyntax, CommandParamSyntax, DeviceCommandSyntax, DeviceMember,
-    DeviceMemberKind, DeviceSyntax, ExpectationSyntax, GripperSyntax, JointSyntax, LaserSyntax, PartSyntax,
-    PostureSyntax, RuleSyntax, RuleTriggerSyntax, WorldMember, WorldMemberKind, WorldSyntax,
+    DeviceMemberKind, DeviceSyntax, ExpectationSyntax, GripperSyntax, JointListSyntax, JointSyntax,
+    LaserSyntax, MimicSyntax, PartSyntax, PostureSyntax, RuleSyntax, RuleTriggerSyntax, StartSyntax,
+    WallsSyntax, WorldMember, WorldMemberKind, WorldSyntax,
 };
 
 /// One file: a scenario, a stdlib module (no `scenario` line), or a file of tests.

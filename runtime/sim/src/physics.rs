@@ -5,7 +5,9 @@
 mod contact;
 pub(crate) mod dynamics;
 mod joints;
+mod losses;
 mod pairs;
+mod solid;
 mod surface;
 
 use hrdsl_ir::value::seconds;
@@ -17,7 +19,9 @@ use crate::{
     math::{BodyFrame, from_pose, from_rpy, from_vector, to_pose, to_vector, v3},
 };
 use joints::DrivenJoint;
+use losses::JointLosses;
 use pairs::{ExemptPairs, JointGraph};
+use solid::{SolidExtent, described_mass, solid_shape};
 
 /// One body of the scenario.
 struct PhysicsBody {
@@ -32,6 +36,10 @@ struct PhysicsBody {
     motion: BodyMotion,
     ghost: bool,
     shape: BodyShape,
+    /// That of the engine.
+    surface: SharedShape,
+    /// Of a body that has not just one shape.
+    extent: Option<SolidExtent>,
 }
 
 pub(crate) struct PhysicsAdapter {
@@ -39,6 +47,7 @@ pub(crate) struct PhysicsAdapter {
     parts: Vec<PhysicsBody>,
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     joints: Vec<Option<DrivenJoint>>,
+    losses: JointLosses,
     exempt: ExemptPairs,
     /// The corners of the box outside of which a body is lost, m.
     scene: (Vector, Vector),
@@ -65,6 +74,7 @@ impl PhysicsAdapter {
             world: engine,
             parts: Vec::new(),
             joints: Vec::new(),
+            losses: JointLosses::default(),
             exempt: ExemptPairs::default(),
             scene: (Vector::ZERO, Vector::ZERO),
         };
@@ -74,6 +84,7 @@ impl PhysicsAdapter {
             let driven = if joint.is_rigid() { None } else { Some(physics.add_joint(joint, world, &graph)) };
             physics.joints.push(driven);
         }
+        physics.losses = JointLosses::of(world);
         physics.exempt_overlaps(world, &graph)?;
         physics.scene = physics.surroundings();
         Ok(physics)
@@ -91,17 +102,36 @@ impl PhysicsAdapter {
             let motion = world.bodies[index(root)].motion;
             let start = start_of(body);
             let local = start_of(&world.bodies[index(root)]).inverse().then(&start);
-            let collider = ColliderBuilder::new(shape_of(body)?)
+            let (surface, extent) = surface_of(body)?;
+            let weighs = motion == BodyMotion::Dynamic && body.solid.is_none();
+            let collider = ColliderBuilder::new(surface.clone())
                 .position(to_pose(&local))
-                .mass(if motion == BodyMotion::Dynamic { checked_mass(body)? } else { 0.0 })
+                .mass(if weighs { checked_mass(body)? } else { 0.0 })
                 .friction(0.8)
                 .sensor(body.ghost)
                 .user_data(i as u128);
             let bodies = &mut self.world.bodies;
-            let collider = self.world.colliders.insert_with_parent(collider, handle, bodies);
+            // A mere frame meets nothing, and costs nothing.
+            let collider = if extent.as_ref().is_some_and(|extent| extent.is_frame) {
+                ColliderHandle::invalid()
+            } else {
+                self.world.colliders.insert_with_parent(collider, handle, bodies)
+            };
             let (ghost, shape) = (body.ghost, body.shape);
             let name = body.name.clone();
-            self.parts.push(PhysicsBody { name, handle, collider, local, start, root, motion, ghost, shape });
+            self.parts.push(PhysicsBody {
+                name,
+                handle,
+                collider,
+                local,
+                start,
+                root,
+                motion,
+                ghost,
+                shape,
+                surface,
+                extent,
+            });
         }
         Ok(())
     }
@@ -126,8 +156,11 @@ impl PhysicsAdapter {
             builder = builder.can_sleep(false);
         }
         let rotors = moved.filter(|j| j.motion == JointMotion::Hinge && j.drive.rotor > 0.0);
+        let sum: f64 = rotors.clone().map(|j| j.drive.rotor).sum();
         let inertia = rotors.map(joints::rotor_inertia).reduce(|a, b| a + b);
-        if let Some(inertia) = inertia {
+        if let Some(mass) = described_mass(world, roots, id, sum) {
+            builder = builder.additional_mass_properties(mass);
+        } else if let Some(inertia) = inertia {
             builder = builder.additional_mass_properties(MassProperties::with_inertia_matrix(
                 Vector::ZERO,
                 0.0,
@@ -212,7 +245,9 @@ impl PhysicsAdapter {
     // ── Time ──
 
     pub fn step(&mut self) {
+        self.keep_gears();
         self.world.step_with_events(&self.exempt, &());
+        self.wind_joints();
         self.stop_lost();
     }
 
@@ -322,20 +357,30 @@ fn checked_mass(body: &Body) -> Result<f32, SimError> {
     }
 }
 
-fn shape_of(body: &Body) -> Result<SharedShape, SimError> {
-    let measures: Vec<f64> = match body.shape {
+/// The shape of a body, and what is measured of it if it has several.
+fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), SimError> {
+    if !body.position.iter().chain(&body.rotation).all(|x| x.is_finite()) {
+        return Err(SimError::BadNumber { what: format!("a measure of body `{}`", body.name) });
+    }
+    match &body.solid {
+        Some(solid) => solid_shape(solid, &body.name).map(|(shape, extent)| (shape, Some(extent))),
+        None => Ok((shape_of(body.shape, &body.name)?, None)),
+    }
+}
+
+fn shape_of(shape: BodyShape, name: &str) -> Result<SharedShape, SimError> {
+    let measures: Vec<f64> = match shape {
         BodyShape::Box { size } => size.to_vec(),
         BodyShape::Sphere { radius } => vec![radius],
         BodyShape::Capsule { radius, length } | BodyShape::Cylinder { radius, length } => {
             vec![radius, length]
         }
     };
-    let place = body.position.iter().chain(&body.rotation);
-    if measures.iter().any(|m| !m.is_finite() || *m <= 0.0) || !place.into_iter().all(|x| x.is_finite()) {
-        return Err(SimError::BadNumber { what: format!("a measure of body `{}`", body.name) });
+    if measures.iter().any(|m| !m.is_finite() || *m <= 0.0) {
+        return Err(SimError::BadNumber { what: format!("a measure of body `{name}`") });
     }
     let half = |x: f64| (x / 2.0) as f32;
-    Ok(match body.shape {
+    Ok(match shape {
         BodyShape::Box { size } => SharedShape::cuboid(half(size[0]), half(size[1]), half(size[2])),
         BodyShape::Sphere { radius } => SharedShape::ball(radius as f32),
         BodyShape::Capsule { radius, length } => SharedShape::capsule_z(half(length), radius as f32),

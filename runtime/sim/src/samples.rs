@@ -9,7 +9,16 @@ pub(crate) const SECOND: Nanos = 1_000_000_000;
 pub(crate) const BASE: BaseId = BaseId(0);
 
 pub(crate) fn body(name: &str, motion: BodyMotion, shape: BodyShape, position: Vec3) -> Body {
-    Body { name: name.into(), motion, shape, position, rotation: [0.0; 3], mass: 1.0, ghost: false }
+    Body {
+        name: name.into(),
+        motion,
+        shape,
+        position,
+        rotation: [0.0; 3],
+        mass: 1.0,
+        ghost: false,
+        solid: None,
+    }
 }
 
 pub(crate) fn cuboid(x: f64, y: f64, z: f64) -> BodyShape {

@@ -97,6 +97,8 @@ fn member(kind: &Member) -> Option<(&'static str, String)> {
         Member::Gripper(gripper) => ("gripper", gripper.name.text.clone()),
         Member::Base(base) => ("base", base.name.text.clone()),
         Member::Laser(laser) => ("laser", laser.name.text.clone()),
+        Member::Scanner { name, .. } => ("laser", name.text.clone()),
+        Member::Walls(walls) => ("walls", walls.name.text.clone()),
         Member::Posture(posture) => ("posture", posture.name.text.clone()),
         Member::Current { name, .. } => ("current", name.text.clone()),
         Member::Signal { name, .. } => ("signal", name.text.clone()),
@@ -104,6 +106,11 @@ fn member(kind: &Member) -> Option<(&'static str, String)> {
         Member::Step(_)
         | Member::Sample(_)
         | Member::Gravity(_)
+        | Member::Robot(_)
+        | Member::Packages(_)
+        | Member::Argument { .. }
+        | Member::Semantics(_)
+        | Member::Start(_)
         | Member::Rule(_)
         | Member::Allow(_)
         | Member::Error => return None,

@@ -110,6 +110,7 @@ pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> b
         | Noun::Base
         | Noun::Laser
         | Noun::Posture
+        | Noun::Group
         | Noun::Device
         | Noun::Command
         | Noun::Current

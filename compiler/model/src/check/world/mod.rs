@@ -6,6 +6,7 @@ mod edge;
 mod mobile;
 pub(in crate::check) mod parts;
 mod posture;
+pub(in crate::check) mod robot;
 pub(in crate::check) mod stimulus;
 
 use hrdsl_source::Span;
@@ -40,12 +41,13 @@ impl<'a> Checker<'a> {
                 continue;
             }
             found = Some(span);
-            self.build(&world.members, span);
+            self.build(&world.members, None, span);
         }
         self.unused_parts();
     }
 
-    fn build(&mut self, members: &'a [WorldMember], span: Span) {
+    /// `alone` is the description of a part that is checked as if it stood alone in a world.
+    fn build(&mut self, members: &'a [WorldMember], alone: Option<&'a WorldMember>, span: Span) {
         self.s.world = Some(TypedWorld {
             step: 0.01,
             sample: 0.05,
@@ -62,16 +64,28 @@ impl<'a> Checker<'a> {
             parts: Vec::new(),
             span,
         });
-        let placed = self.flatten(members, "", PartFrame::default(), None);
+        let mut placed = self.flatten(members, "", PartFrame::default(), None);
+        if let Some(member) = alone {
+            let given = self.templates.given.clone();
+            placed.push(PlacedMember { given, ..PlacedMember::alone(member) });
+        }
+        self.world.robots.clear();
         // What is named first must exist first: by kind, not by place.
-        let passes: [fn(&mut Self, &PlacedMember<'a>); 10] = [
+        let passes: [fn(&mut Self, &PlacedMember<'a>); 17] = [
+            Self::described_bodies,
             Self::settings_and_bodies,
+            Self::walls,
+            Self::of_descriptions,
+            Self::described_joints,
             Self::joint,
+            Self::mimic,
             Self::gripper,
             Self::arm,
+            Self::described_postures,
             Self::posture,
             Self::base,
-            Self::laser,
+            Self::lasers,
+            Self::settle,
             Self::current,
             Self::signals,
             Self::rules,
@@ -107,9 +121,9 @@ impl<'a> Checker<'a> {
             match &part.params {
                 Some(params) => self.by_itself(params, |c| {
                     c.world.names = WorldNames::default();
-                    c.build(&part.members, part.name.span);
+                    c.build(&part.members, part.description.as_deref(), part.name.span);
                 }),
-                None => self.build(&part.members, part.name.span),
+                None => self.build(&part.members, part.description.as_deref(), part.name.span),
             }
             let members = self.world.names.members;
             self.world.names = kept_names;
@@ -151,6 +165,13 @@ impl<'a> Checker<'a> {
             | Member::Gripper(_)
             | Member::Base(_)
             | Member::Laser(_)
+            | Member::Scanner { .. }
+            | Member::Robot(_)
+            | Member::Packages(_)
+            | Member::Argument { .. }
+            | Member::Semantics(_)
+            | Member::Start(_)
+            | Member::Walls(_)
             | Member::Posture(_)
             | Member::Current { .. }
             | Member::Signal { .. }
@@ -187,6 +208,8 @@ impl<'a> Checker<'a> {
                 mass: mass.unwrap_or(0.0),
                 ghost: body.ghost,
                 graspable: body.graspable,
+                solid: None,
+                own_name: None,
                 span: p.member.span,
             };
             self.world_mut().bodies.push(body);

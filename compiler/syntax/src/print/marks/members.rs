@@ -3,8 +3,9 @@
 use crate::ast::{
     AccessSyntax, AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, AutomatonSyntax,
     DeviceMember, DeviceMemberKind, EdgeActionKind, EdgeSyntax, FormulaSyntax, FunctionSyntax, JointSyntax,
-    PlanSyntax, QuerySyntax, RuleTriggerSyntax, StatementSyntax, StatementSyntaxKind, StepSyntax,
-    StepSyntaxKind, SuiteMemberKind, TestMember, TestMemberKind, VarSyntax, WorldMember, WorldMemberKind,
+    PlanSyntax, QuerySyntax, RuleTriggerSyntax, StartSyntax, StatementSyntax, StatementSyntaxKind,
+    StepSyntax, StepSyntaxKind, SuiteMemberKind, TestMember, TestMemberKind, VarSyntax, WorldMember,
+    WorldMemberKind,
 };
 use crate::print::marks::{BlockKind, TokenMarker};
 use crate::token::TokenKind;
@@ -304,6 +305,9 @@ impl TokenMarker<'_> {
         for clause in [&joint.effort, &joint.speed, &joint.rotor] {
             self.maybe(clause.as_ref());
         }
+        if let Some(mimic) = &joint.mimic {
+            self.maybe(mimic.times.as_ref());
+        }
     }
 
     pub(super) fn world_member(&mut self, member: &WorldMember) {
@@ -349,6 +353,18 @@ impl TokenMarker<'_> {
                 self.range(&laser.range);
             }
             WorldMemberKind::Posture(posture) => self.expr(&posture.angles),
+            WorldMemberKind::Start(values) => {
+                for value in values {
+                    if let StartSyntax::Joint { value, .. } = value {
+                        self.expr(value);
+                    }
+                }
+            }
+            WorldMemberKind::Walls(walls) => {
+                self.expr(&walls.height);
+                self.expr(&walls.at);
+                self.maybe(walls.rotated.as_ref());
+            }
             WorldMemberKind::Signal { ty, value, .. } => {
                 self.ty(ty);
                 self.expr(value);
@@ -361,7 +377,14 @@ impl TokenMarker<'_> {
                 self.maybe(rule.when.as_ref());
                 self.call(&rule.emit);
             }
-            WorldMemberKind::Current { .. } | WorldMemberKind::Allow(_) | WorldMemberKind::Error => {}
+            WorldMemberKind::Scanner { .. }
+            | WorldMemberKind::Robot(_)
+            | WorldMemberKind::Packages(_)
+            | WorldMemberKind::Argument { .. }
+            | WorldMemberKind::Semantics(_)
+            | WorldMemberKind::Current { .. }
+            | WorldMemberKind::Allow(_)
+            | WorldMemberKind::Error => {}
         }
     }
 
