@@ -45,6 +45,8 @@ const THERE: f64 = 1e-6;
 const HELD_UP: f64 = 0.2;
 /// Below this speed the friction that is expected is less, rad/s or m/s.
 const SLOW: f64 = 0.02;
+/// And so it is when the joint is no farther behind than this, rad or m.
+const NEAR: f64 = 0.005;
 /// How fast lasting errors are made good, as a part of that.
 const LEARNING: f64 = 0.3;
 
@@ -347,8 +349,9 @@ impl ArmControl {
         let mut efforts = &equation.inertia * wanted + equation.bias;
         for (i, (damping, friction)) in self.losses.iter().enumerate() {
             if *damping > 0.0 || *friction > 0.0 {
-                // Friction turns round where the speed does, and not at once.
-                efforts[i] += damping * self.pace[i] + friction * (self.pace[i] / SLOW).clamp(-1.0, 1.0);
+                // Friction turns round where the way does, and not at once.
+                let way = self.pace[i] / SLOW + (a[i] - positions[i]) / NEAR;
+                efforts[i] += damping * self.pace[i] + friction * way.clamp(-1.0, 1.0);
             }
         }
         for (i, id) in self.joints.iter().enumerate() {

@@ -36,9 +36,9 @@ pub(super) fn decompose(mesh: &SolidMesh) -> MeshHulls {
     };
     let (mut pieces, mut error) = (Vec::new(), 0.0f32);
     for part in parts {
-        if let Some(piece) = ConvexPiece::new(reduced(&part)) {
-            let off = |corner: &Vector| piece.shape.distance_to_local_point(*corner, true);
-            error = part.iter().map(off).fold(error, f32::max);
+        let (corners, off) = reduced(&part);
+        if let Some(piece) = ConvexPiece::new(corners) {
+            error = error.max(off);
             pieces.push(piece);
         }
     }

@@ -21,7 +21,10 @@ impl<'a> Checker<'a> {
         let reading = std::sync::Arc::clone(&self.world.robots[at].reading);
         let Some(robot) = reading.robot.as_ref() else { return };
         let own = |joint: &UrdfJoint| (joint.name.clone(), joint.place);
-        let names = self.spelled(robot.joints.iter().map(own), Noun::Joint);
+        let Some(names) = self.spelled(robot.joints.iter().map(own), Noun::Joint) else {
+            self.world.names.broken.insert(p.prefix.trim_end_matches('.').to_owned());
+            return;
+        };
         let mut ids = Vec::new();
         for (joint, name) in robot.joints.iter().zip(&names) {
             let full = format!("{}{name}", p.prefix);

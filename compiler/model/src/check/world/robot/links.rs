@@ -35,7 +35,10 @@ impl<'a> Checker<'a> {
         let start = StartValues::of(self, part, &reading);
         let poses = robot.link_poses(&start.values);
         let link = |of: &hrdsl_robots::UrdfLink| (of.name.clone(), of.place);
-        let names = self.spelled(robot.links.iter().map(link), Noun::Body);
+        let Some(names) = self.spelled(robot.links.iter().map(link), Noun::Body) else {
+            self.world.names.broken.insert(p.prefix.trim_end_matches('.').to_owned());
+            return;
+        };
         let mut maker = std::mem::take(&mut self.world.solids);
         let mut bodies = Vec::new();
         for ((at, link), (name, pose)) in robot.links.iter().enumerate().zip(names.iter().zip(&poses)) {
@@ -92,14 +95,14 @@ impl<'a> Checker<'a> {
         self.world.robots.iter().find(|robot| robot.prefix == prefix)
     }
 
-    /// Names of a description as they are written in the language, each of which must be another.
+    /// Names of a description as they are written in the language; `None`: two are written alike.
     pub(super) fn spelled(
         &mut self,
         names: impl Iterator<Item = (String, RobotPlace)>,
         noun: Noun,
-    ) -> Vec<String> {
+    ) -> Option<Vec<String>> {
         let mut known: BTreeMap<String, (String, RobotPlace)> = BTreeMap::new();
-        let mut all = Vec::new();
+        let (mut all, before) = (Vec::new(), self.issues.list.len());
         for (name, place) in names {
             let spelling = spelling(&name);
             if let Some((first, at)) = known.get(&spelling) {
@@ -109,7 +112,7 @@ impl<'a> Checker<'a> {
             }
             all.push(spelling);
         }
-        all
+        (self.issues.list.len() == before).then_some(all)
     }
 
     /// What only a part from a description has.

@@ -3,11 +3,14 @@
 use std::collections::BTreeSet;
 
 use hrdsl_ir::solid::{SharedData, SolidBody};
-use hrdsl_robots::{UrdfJoint, UrdfJointKind};
+use hrdsl_robots::{UrdfJoint, UrdfJointKind, UrdfLinkId, UrdfRobot};
 use hrdsl_syntax::ast::WorldMemberKind as Member;
 
 use crate::check::{checker::Checker, state::robot::PlacedRobot, world::parts::PlacedMember};
 use crate::{BodyId, JointId};
+
+/// Between the joints of what counts as short, m.
+const SHORT: f64 = 0.15;
 
 impl<'a> Checker<'a> {
     pub(in crate::check::world) fn settle(&mut self, p: &PlacedMember<'a>) {
@@ -68,15 +71,44 @@ fn held_joints(placed: &PlacedRobot, moved: &BTreeSet<JointId>) -> Vec<JointId> 
     (0..robot.joints.len()).filter(held).filter_map(|at| placed.joints.get(at).copied()).collect()
 }
 
-/// Of each link those that the semantics say are not to be looked at with it.
+/// The links on both sides of a body whose joints are near each other, as at a shoulder or a wrist: they are drawn so that they
+/// overlap, or do when they turn.
+fn across_short_links(robot: &UrdfRobot, placed: &PlacedRobot) -> Vec<(UrdfLinkId, UrdfLinkId)> {
+    let groups = robot.rigid_groups();
+    let group = |link: UrdfLinkId| groups.get(link.0).copied().unwrap_or(link);
+    let at = |link: UrdfLinkId| placed.poses.get(link.0).map(|pose| pose.translation).unwrap_or_default();
+    let all = |of: UrdfLinkId| (0..robot.links.len()).map(UrdfLinkId).filter(move |link| group(*link) == of);
+    let mut pairs = Vec::new();
+    for lower in robot.joints.iter().filter(|joint| joint.kind.has_one_value()) {
+        let between = group(lower.parent);
+        let upper = robot.joint_above(between).and_then(|id| robot.joint(id));
+        let Some(upper) = upper.filter(|joint| joint.kind.has_one_value()) else { continue };
+        let way = at(upper.child).into_iter().zip(at(lower.child));
+        let length = way.map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+        if length <= SHORT {
+            for above in all(group(upper.parent)) {
+                pairs.extend(all(group(lower.child)).map(|below| (above, below)));
+            }
+        }
+    }
+    pairs
+}
+
+/// Of each link those that the semantics say are not to be looked at with it; without semantics, those beyond a short one.
 fn apart(placed: &PlacedRobot) -> Vec<(BodyId, Vec<BodyId>)> {
-    let (Some(robot), Some(semantics)) = (placed.robot(), &placed.reading.semantics) else {
-        return Vec::new();
+    let Some(robot) = placed.robot() else { return Vec::new() };
+    let body = |link: UrdfLinkId| placed.bodies.get(link.0).copied();
+    let named = |name: &str| robot.link_named(name);
+    let pairs: Vec<(UrdfLinkId, UrdfLinkId)> = match &placed.reading.semantics {
+        Some(semantics) => {
+            let disabled = semantics.disabled_collisions.iter();
+            disabled.filter_map(|pair| named(&pair.link1).zip(named(&pair.link2))).collect()
+        }
+        None => across_short_links(robot, placed),
     };
-    let body = |name: &str| robot.link_named(name).and_then(|link| placed.bodies.get(link.0)).copied();
     let mut all: Vec<(BodyId, Vec<BodyId>)> = Vec::new();
-    for pair in &semantics.disabled_collisions {
-        let (Some(a), Some(b)) = (body(&pair.link1), body(&pair.link2)) else { continue };
+    for (a, b) in pairs {
+        let (Some(a), Some(b)) = (body(a), body(b)) else { continue };
         match all.iter_mut().find(|(of, _)| *of == a) {
             Some((_, others)) => others.push(b),
             None => all.push((a, vec![b])),
