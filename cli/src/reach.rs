@@ -8,7 +8,7 @@ use std::{
     sync::OnceLock,
 };
 
-use hrdsl_compiler::{ModuleLoader, ModuleText, WorkspaceEntry, WorkspaceReader};
+use hrdsl_compiler::{ModuleLoader, ModuleText, RobotEntry, RobotReader, WorkspaceEntry, WorkspaceReader};
 
 use crate::{
     fault::CommandFault,
@@ -111,8 +111,56 @@ impl ModuleLoader for DiskModules {
         Some(Box::new(DiskWorkspace { reach: &self.reach, folder: folder_of(Path::new(from)) }))
     }
 
+    fn robots(&self) -> Option<Box<dyn RobotReader + '_>> {
+        Some(Box::new(DiskRobots { reach: &self.reach }))
+    }
+
     fn is_file(&self, path: &str) -> Option<bool> {
         self.folder.as_ref().map(|folder| folder.join(path).is_file())
+    }
+}
+
+/// Descriptions of robots with their meshes, and maps.
+struct DiskRobots<'r> {
+    reach: &'r FileReach,
+}
+
+/// More than any mesh or picture has that is read.
+const MOST_OF_A_MESH: u64 = (256 << 20) + 1;
+
+impl RobotReader for DiskRobots<'_> {
+    fn bytes(&self, file: &str) -> Result<Vec<u8>, String> {
+        let file = tidy(Path::new(file));
+        if !file.exists() {
+            return Err("there is no such file".to_owned());
+        }
+        let whole = self.reach.whole(&file)?;
+        // What is no file may have no end, or wait for somebody to write.
+        if !fs::metadata(&whole).is_ok_and(|m| m.is_file()) {
+            return Err("it is no regular file".to_owned());
+        }
+        let mut bytes = Vec::new();
+        let file = fs::File::open(&whole).map_err(|e| e.to_string())?;
+        file.take(MOST_OF_A_MESH).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
+        Ok(bytes)
+    }
+
+    fn entries(&self, folder: &str) -> Result<Vec<RobotEntry>, String> {
+        let folder = tidy(Path::new(folder));
+        if !folder.is_dir() {
+            return Err("there is no such folder".to_owned());
+        }
+        let whole = self.reach.whole(&folder)?;
+        let entries = fs::read_dir(whole).map_err(|e| e.to_string())?;
+        let entry = |e: fs::DirEntry| RobotEntry {
+            name: e.file_name().to_string_lossy().into_owned(),
+            is_folder: e.path().is_dir(),
+        };
+        Ok(entries.filter_map(Result::ok).map(entry).collect())
+    }
+
+    fn is_file(&self, file: &str) -> bool {
+        self.reach.whole(&tidy(Path::new(file))).is_ok_and(|whole| whole.is_file())
     }
 }
 

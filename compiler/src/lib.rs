@@ -3,7 +3,7 @@
 //! # Steps
 //! 1. [`hrdsl_syntax::parse`]: text → AST, of the scenario and the files of tests
 //! 2. [`modules::load`]: the modules that are used, and those that they use; [`modules::load_devices`]: what devices can do
-//! 3. [`hrdsl_model::resolve`]: AST → [`Scenario`], every name resolved, every expression typed
+//! 3. `descriptions::load`: the robots and maps that it is made from; [`hrdsl_model::resolve`]: AST → [`Scenario`], every name resolved, every expression typed
 //! 4. [`hrdsl_model::lint`]: what is well formed and yet cannot be meant; `allow` takes away what is
 //! 5. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
 //!
@@ -12,6 +12,7 @@
 
 mod allow;
 mod beside;
+mod descriptions;
 mod interfaces;
 pub mod lower;
 pub mod modules;
@@ -22,7 +23,8 @@ mod spoken;
 use hrdsl_ir::{Program, binding::MiddlewareKind};
 use hrdsl_messages::{InterfaceTable, MessageLibrary, RosVersion};
 pub use hrdsl_messages::{WorkspaceEntry, WorkspaceReader};
-use hrdsl_model::{KnownSources, Scenario};
+use hrdsl_model::{DescriptionLibrary, KnownSources, Scenario};
+pub use hrdsl_robots::{RobotEntry, RobotReader};
 use hrdsl_source::{Diagnostic, FileId, SourceFiles};
 pub use hrdsl_syntax::{GRAMMAR, MAX_BYTES, ast, format, parse, token};
 
@@ -48,6 +50,8 @@ pub struct CompilationResult {
     pub modules: Vec<usize>,
     /// The definitions of the versions of ROS that its systems use.
     pub interfaces: Vec<MessageLibrary>,
+    /// The robots and maps that it is made from.
+    pub descriptions: DescriptionLibrary,
     /// As far as it could be resolved; `None` if the scenario is no text that can be looked at.
     pub scenario: Option<Scenario>,
     /// `Some` if and only if there are no errors.
@@ -141,7 +145,9 @@ pub fn compile_beside(
     }
     let missing = diagnostics.iter().any(|d| d.code == hrdsl_source::DiagnosticCode::UNKNOWN_MODULE);
     let interfaces = interfaces::load(&mut files, &ast, loader);
-    let known = KnownSources { missing_modules: missing, interfaces: &interfaces };
+    let descriptions = descriptions::load(&mut files, &ast, &mut diagnostics, loader);
+    let known =
+        KnownSources { missing_modules: missing, interfaces: &interfaces, descriptions: Some(&descriptions) };
     let (resolved, issues) = hrdsl_model::resolve_part(&ast[0], &used, &tests, known);
     diagnostics.extend(issues);
     if !alone && !diagnostics.iter().any(Diagnostic::is_error) {
@@ -153,7 +159,16 @@ pub fn compile_beside(
     diagnostics.sort_by_key(|d| (d.span(), d.code));
 
     let program = (!diagnostics.iter().any(Diagnostic::is_error)).then(|| lower::lower(&resolved, &files));
-    CompilationResult { files, ast, modules, interfaces, scenario: Some(resolved), program, diagnostics }
+    CompilationResult {
+        files,
+        ast,
+        modules,
+        interfaces,
+        descriptions,
+        scenario: Some(resolved),
+        program,
+        diagnostics,
+    }
 }
 
 /// A scenario without its `scenario` line. If something could not be read, that may have been it.

@@ -1,6 +1,7 @@
 //! `use`: the modules that a scenario needs, from the library and from files, each once, in the order of their first use.
 
 use hrdsl_messages::WorkspaceReader;
+use hrdsl_robots::RobotReader;
 use hrdsl_source::{Diagnostic, DiagnosticCode, SourceFiles, Span};
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, ModuleSyntax};
 
@@ -25,6 +26,11 @@ pub trait ModuleLoader {
 
     /// Who reads the folders of ROS workspaces, whose paths are relative to the file called `from`; `None`: nobody.
     fn workspaces(&self, _from: &str) -> Option<Box<dyn WorkspaceReader + '_>> {
+        None
+    }
+
+    /// Who reads descriptions of robots and maps, whose paths begin with the folder of the file that names them; `None`: nobody.
+    fn robots(&self) -> Option<Box<dyn RobotReader + '_>> {
         None
     }
 

@@ -34,7 +34,11 @@ pub fn recheck(compilation: &CompilationResult, at: usize, text: &str) -> Option
     let modules: Vec<&ast::FileSyntax> =
         compilation.modules.iter().filter_map(|m| compilation.ast.get(*m)).collect();
     let missing = compilation.diagnostics.iter().any(|d| d.code == DiagnosticCode::UNKNOWN_MODULE);
-    let known = KnownSources { missing_modules: missing, interfaces: &compilation.interfaces };
+    let known = KnownSources {
+        missing_modules: missing,
+        interfaces: &compilation.interfaces,
+        descriptions: Some(&compilation.descriptions),
+    };
     diagnostics.extend(hrdsl_model::resolve_alone(scenario, (index, item), &modules, known));
     let before = declares(old, &|span| compilation.files.text(span).to_owned());
     let same_names = before == declares(item, &|span| text.get(span.range()).unwrap_or("").to_owned());

@@ -780,6 +780,7 @@ module.exports = grammar({
         keyword($, "part"),
         field("name", $.identifier),
         optional(field("parameters", $.parameters)),
+        optional(seq(keyword($, "from"), field("description", $.string))),
         field("body", $.world_body),
       ),
     world_declaration: ($) => seq(keyword($, "world"), field("body", $.world_body)),
@@ -787,6 +788,9 @@ module.exports = grammar({
       block($,
         choice(
           alias($._world_setting, $.setting),
+          $.argument,
+          $.start,
+          $.walls,
           $.placement,
           $.body,
           $.joint,
@@ -804,6 +808,26 @@ module.exports = grammar({
     _world_setting: ($) =>
       choice(
         ...["step", "sample", "gravity"].map((word) => seq(keyword($, word), field("value", $.expression))),
+        ...["packages", "semantics"].map((word) => seq(keyword($, word), field("value", $.string))),
+      ),
+    argument: ($) =>
+      seq(keyword($, "argument"), field("name", $.string), "=", field("value", $.string)),
+    start: ($) =>
+      seq(
+        keyword($, "start"),
+        list(choice(field("state", $.string), seq(field("joint", $.identifier), "=", field("value", $.expression)))),
+      ),
+    walls: ($) =>
+      seq(
+        keyword($, "walls"),
+        field("name", $.identifier),
+        keyword($, "from"),
+        field("map", $.string),
+        keyword($, "height"),
+        field("height", $.expression),
+        keyword($, "at"),
+        field("at", $.expression),
+        optional(seq(keyword($, "rotated"), field("rotated", $.expression))),
       ),
     placement: ($) =>
       seq(
@@ -873,13 +897,20 @@ module.exports = grammar({
         optional(seq(keyword($, "effort"), field("effort", $.expression))),
         optional(seq(keyword($, "speed"), field("speed", $.expression))),
         optional(seq(keyword($, "rotor"), field("rotor", $.expression))),
+        optional(
+          seq(
+            keyword($, "mimic"),
+            field("mimic", $.identifier),
+            optional(seq(keyword($, "times"), field("times", $.expression))),
+          ),
+        ),
       ),
     arm: ($) =>
       seq(
         keyword($, "arm"),
         field("name", $.identifier),
         ":",
-        list(field("joint", $.identifier)),
+        choice(list(field("joint", $.identifier)), seq(keyword($, "group"), field("group", $.string))),
         keyword($, "tip"),
         field("tip", $.identifier),
         keyword($, "tool"),
@@ -895,7 +926,12 @@ module.exports = grammar({
         field("name", $.identifier),
         ":",
         field("palm", $.identifier),
-        optional(seq(keyword($, "fingers"), list(field("finger", $.identifier)))),
+        optional(
+          seq(
+            keyword($, "fingers"),
+            choice(list(field("finger", $.identifier)), seq(keyword($, "group"), field("group", $.string))),
+          ),
+        ),
         keyword($, "tool"),
         field("tool", $.expression),
         keyword($, "reach"),
@@ -926,15 +962,19 @@ module.exports = grammar({
         field("name", $.identifier),
         ":",
         field("body", $.identifier),
-        keyword($, "at"),
-        field("at", $.expression),
-        keyword($, "angles"),
-        field("angles", $.range),
-        keyword($, "beams"),
-        field("beams", $.expression),
-        keyword($, "range"),
-        field("range", $.range),
-        repeat($.sensing),
+        optional(
+          seq(
+            keyword($, "at"),
+            field("at", $.expression),
+            keyword($, "angles"),
+            field("angles", $.range),
+            keyword($, "beams"),
+            field("beams", $.expression),
+            keyword($, "range"),
+            field("range", $.range),
+            repeat($.sensing),
+          ),
+        ),
       ),
     sensing: ($) =>
       seq(

@@ -63,7 +63,7 @@ fn run(steps: Vec<ToldStep>) -> (Vec<(Nanos, u64, SystemAnswer)>, Vec<String>) {
     let answers = system.answers.clone();
     let robot = program.actor_named("robot").unwrap();
     let players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(SystemPlayer::new(&program, robot, system))];
-    let world = SimWorld::new(&program).unwrap().unwrap();
+    let world = SimWorld::new(&program, 0).unwrap().unwrap();
     let stage = WorldStage::new(&program, Box::new(world));
     let run = HarnessLoop::new(&program, players, Some(stage), 60 * SECOND).run();
     let event = |step: &hrdsl_trace::TraceStep| match &step.what {

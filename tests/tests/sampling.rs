@@ -165,7 +165,7 @@ fn what_lasts_less_than_the_grid_is_found_and_the_recording_says_the_same() {
         let sleep = ToldStep::Then(SystemRequest::Sleep { time: 2 * SECOND });
         ToldSystem::new(vec![sleep, ToldStep::Then(SystemRequest::Done)])
     };
-    let world = || SimWorld::new(&program).unwrap().unwrap();
+    let world = || SimWorld::new(&program, 0).unwrap().unwrap();
     let ended = run(&program, world(), system(), false);
     let judged = verdicts(&program, &ended.trace);
     let every = verdicts(&program, &run(&program, world(), system(), true).trace);

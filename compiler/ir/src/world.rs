@@ -16,6 +16,7 @@ use crate::{
     event::{ActorId, EventId},
     expr::Expr,
     sensor::ImperfectSensor,
+    solid::{SharedData, SolidBody},
     value::{Nanos, Type},
 };
 
@@ -72,7 +73,7 @@ impl World {
     }
 }
 
-/// A rigid body with one shape.
+/// A rigid body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
     /// `robot.palm`
@@ -88,6 +89,9 @@ pub struct Body {
     pub stiffness: Option<f64>,
     /// Ghosts collide with nothing but are seen by distances and contacts.
     pub ghost: bool,
+    /// Of a body that has more than one shape, or a mass of its own: that, in the place of `shape` and `mass`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solid: Option<SharedData<SolidBody>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -123,7 +127,10 @@ pub enum BodyShape {
     },
 }
 
-/// A joint with one degree of freedom; its zero is the bodies' starting poses.
+/// The width of the limits of a hinge that has none, rad: they are as far from 0 on both sides.
+pub const ENDLESS: f64 = 2e6;
+
+/// A joint with one degree of freedom; where the bodies start it is at [`JointDrive::start`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
     pub name: String,
@@ -144,7 +151,13 @@ impl Joint {
     /// Whether it cannot move: it makes its two bodies one.
     #[must_use]
     pub fn is_rigid(&self) -> bool {
-        self.lo == 0.0 && self.hi == 0.0
+        self.lo == 0.0 && self.hi == 0.0 || self.drive.held
+    }
+
+    /// Whether it turns round and round.
+    #[must_use]
+    pub fn is_endless(&self) -> bool {
+        self.motion == JointMotion::Hinge && self.hi - self.lo >= ENDLESS
     }
 }
 
@@ -166,6 +179,34 @@ pub struct JointDrive {
     pub speed: Option<f64>,
     /// The inertia of a hinge's rotor about the joint's axis, as a gear multiplies it, kg·m².
     pub rotor: f64,
+    /// What the joint says at the start, rad or m.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub start: f64,
+    /// What brakes it at a speed of 1, N·m·s/rad or N·s/m, and at any speed, N·m or N.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub damping: f64,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub friction: f64,
+    /// It stays as it starts, whatever its limits.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub held: bool,
+    /// What it follows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mimic: Option<JointMimic>,
+}
+
+/// A gear to another joint: the joint is where the other is, times a factor, plus an offset.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JointMimic {
+    pub joint: JointId,
+    pub factor: f64,
+    /// rad or m
+    pub offset: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands in references")]
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 /// A chain of joints under motor control, from the base to the tip, with a small kinematic planner.
@@ -198,8 +239,11 @@ pub struct NamedPosture {
 pub struct Gripper {
     pub name: String,
     pub palm: BodyId,
-    /// Sliders that move fingers: closed at their upper limits, open at their lower. None: a hand that is one body.
+    /// Joints that move fingers: closed at their upper limits, open at their lower. None: a hand that is one body.
     pub fingers: Vec<JointId>,
+    /// Those of them that are closed at their lower limits, and open at their upper.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reversed: Vec<JointId>,
     /// The point between the fingers, in the palm's frame.
     pub tool: Vec3,
     /// A hand without fingers takes a body if the distance from that point to its surface is at most this; any hand loses one that

@@ -2,6 +2,7 @@
 //! said where it was written, with the nearest right name; nothing stops at the first error.
 
 mod check;
+mod descriptions;
 mod expr;
 mod lint;
 mod noun;
@@ -13,6 +14,7 @@ pub mod world;
 
 pub use check::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction};
 pub use check::{KnownSources, resolve, resolve_alone, resolve_part};
+pub use descriptions::{DescriptionLibrary, DescriptionRequest};
 pub use expr::{
     BinaryOp, EvalError, NumberFunction, TypedExpr, TypedExprKind, TypedIndex, TypedLvalue, UnaryOp,
     VariableRef, leaves,

@@ -71,6 +71,7 @@ pub(crate) enum Noun {
     Limb,
     Figure,
     Posture,
+    Group,
     /// Of which devices are.
     DeviceKind,
     /// What a device can be told.
@@ -164,6 +165,7 @@ impl Noun {
             | Noun::Limb
             | Noun::Figure
             | Noun::Posture
+            | Noun::Group
             | Noun::Device
             | Noun::Command
             | Noun::Primitive
@@ -246,6 +248,7 @@ impl fmt::Display for Noun {
             Noun::Limb => "limb",
             Noun::Figure => "figure",
             Noun::Posture => "posture",
+            Noun::Group => "group",
             Noun::DeviceKind => "kind of device",
             Noun::Command => "command",
             Noun::Primitive => "primitive",

@@ -3,6 +3,7 @@
 use hrdsl_ir::{
     device::DeviceBody,
     sensor::ImperfectSensor,
+    solid::{SharedData, SolidBody},
     world::{DeviceCommandId, DeviceId, JointDrive, JointMotion, NamedPosture},
 };
 use hrdsl_source::Span;
@@ -83,6 +84,9 @@ pub struct TypedBody {
     pub stiffness: Option<f64>,
     pub ghost: bool,
     pub graspable: bool,
+    pub solid: Option<SharedData<SolidBody>>,
+    /// What its description calls it, if that is not the end of its name.
+    pub own_name: Option<String>,
     pub span: Span,
 }
 
@@ -100,6 +104,8 @@ pub struct TypedJoint {
     pub lo: f64,
     pub hi: f64,
     pub drive: JointDrive,
+    /// What its description calls it, if that is not the end of its name.
+    pub own_name: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -119,6 +125,8 @@ pub struct TypedGripper {
     pub name: String,
     pub palm: BodyId,
     pub fingers: Vec<JointId>,
+    /// Closed at their lower limits.
+    pub reversed: Vec<JointId>,
     pub tool: [f64; 3],
     pub reach: f64,
     /// Seconds.

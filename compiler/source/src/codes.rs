@@ -139,6 +139,7 @@ codes! {
     BAD_COMMAND = 804 "a command that the world cannot do",
     BAD_DEFINITION = 805 "a ROS interface with a fault",
     BAD_BINDING = 806 "a binding that cannot work",
+    BAD_DESCRIPTION = 807 "a description of a robot, or a map, with a fault",
     BAD_TEST = 901 "a test that cannot run",
 }
 

@@ -21,6 +21,7 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         name: g.name.clone(),
         palm: g.palm,
         fingers: g.fingers.clone(),
+        reversed: g.reversed.clone(),
         tool: g.tool,
         reach: g.reach,
         delay: nanos(g.delay),
@@ -122,6 +123,7 @@ fn body(b: &from::TypedBody) -> Body {
         mass: b.mass,
         stiffness: b.stiffness,
         ghost: b.ghost,
+        solid: b.solid.clone(),
     }
 }
 

@@ -19,9 +19,10 @@ use crate::pattern::RequirementPattern;
 pub use crate::system::{ProgramSyntax, SystemMember, SystemMemberKind, SystemSyntax};
 pub use crate::world::{
     ArmSyntax, BaseSyntax, BesideSyntax, BodySyntax, CommandParamSyntax, DeviceCommandSyntax, DeviceMember,
-    DeviceMemberKind, DeviceSyntax, ExpectationSyntax, FigureSyntax, GripperSyntax, JointSyntax, LaserSyntax,
-    LimbSyntax, PartSyntax, PlaceSide, PlaceSyntax, PostureSyntax, RuleSyntax, RuleTriggerSyntax,
-    SensorClause, SensorClauseKind, TurnSyntax, WorldMember, WorldMemberKind, WorldSyntax,
+    DeviceMemberKind, DeviceSyntax, ExpectationSyntax, FigureSyntax, GripperSyntax, JointListSyntax,
+    JointSyntax, LaserSyntax, LimbSyntax, MimicSyntax, PartSyntax, PlaceSide, PlaceSyntax, PostureSyntax,
+    RuleSyntax, RuleTriggerSyntax, SensorClause, SensorClauseKind, StartSyntax, TurnSyntax, WallsSyntax,
+    WorldMember, WorldMemberKind, WorldSyntax,
 };
 
 /// One file: a scenario, a stdlib module (no `scenario` line), or a file of tests.

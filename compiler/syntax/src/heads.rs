@@ -29,7 +29,9 @@ pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
         TokenKind::Assume => next == TokenKind::At && kind(2) == Some(TokenKind::Most),
         TokenKind::Cover | TokenKind::Cross => after(&[TokenKind::Assign, TokenKind::LParen]),
         TokenKind::Suite => after(&[TokenKind::By]),
-        TokenKind::Part => after(&[TokenKind::LBrace, TokenKind::LParen, TokenKind::Assign]),
+        TokenKind::Part => {
+            after(&[TokenKind::LBrace, TokenKind::LParen, TokenKind::Assign, TokenKind::FromWord])
+        }
         TokenKind::World => next == TokenKind::LBrace,
         TokenKind::System => after(&[TokenKind::LBrace, TokenKind::Plays]),
         TokenKind::Device | TokenKind::Enum | TokenKind::Record => after(&[TokenKind::LBrace]),

@@ -13,6 +13,8 @@ use crate::expr::{
 pub struct PartSyntax {
     pub name: NameSyntax,
     pub params: Option<Vec<ParamSyntax>>,
+    /// `from "robot.urdf"`: a [`WorldMemberKind::Robot`]
+    pub description: Option<Box<WorldMember>>,
     pub members: Vec<WorldMember>,
 }
 
@@ -54,6 +56,25 @@ pub enum WorldMemberKind {
     Laser(Box<LaserSyntax>),
     Limb(Box<LimbSyntax>),
     Figure(Box<FigureSyntax>),
+    /// `laser eye: base_scan_link`: as its description says
+    Scanner {
+        name: NameSyntax,
+        body: NameSyntax,
+    },
+    /// `from "robot.urdf"`, before the members of a part: what the description says that it is made of
+    Robot(TextSyntax),
+    /// `packages "ros_ws/src"`: where packages are searched for
+    Packages(TextSyntax),
+    /// `argument "hand" = "true"`: of xacro
+    Argument {
+        name: TextSyntax,
+        value: TextSyntax,
+    },
+    /// `semantics "robot.srdf"`
+    Semantics(TextSyntax),
+    /// `start "ready", finger = 2 cm`: where joints are at the start
+    Start(Vec<StartSyntax>),
+    Walls(Box<WallsSyntax>),
     Posture(Box<PostureSyntax>),
     /// `current leg in leg1, leg2 by robot.grip`
     Current {
@@ -142,13 +163,57 @@ pub struct JointSyntax {
     pub effort: Option<ExprSyntax>,
     pub speed: Option<ExprSyntax>,
     pub rotor: Option<ExprSyntax>,
+    pub mimic: Option<MimicSyntax>,
+}
+
+/// `mimic left times -1`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MimicSyntax {
+    pub joint: NameSyntax,
+    pub times: Option<ExprSyntax>,
+}
+
+/// `shoulder, elbow`, or `group "arm"` of the semantics of a description
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JointListSyntax {
+    Names(Vec<NameSyntax>),
+    Group(TextSyntax),
+}
+
+impl Default for JointListSyntax {
+    fn default() -> Self {
+        Self::Names(Vec::new())
+    }
+}
+
+/// Where joints start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StartSyntax {
+    /// As in this state of a group.
+    State(TextSyntax),
+    Joint {
+        joint: NameSyntax,
+        value: ExprSyntax,
+    },
+}
+
+/// `walls hall from "map.yaml" height 2 m at (0 m, 0 m, 0 m)`: the walls of an occupancy map
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WallsSyntax {
+    pub name: NameSyntax,
+    pub path: TextSyntax,
+    pub height: ExprSyntax,
+    pub at: ExprSyntax,
+    pub rotated: Option<ExprSyntax>,
 }
 
 /// `arm a: j1, j2 tip palm tool (8 cm, 0 m, 0 m) speed 0.2 rad/s contact 60 N`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmSyntax {
     pub name: NameSyntax,
-    pub joints: Vec<NameSyntax>,
+    pub joints: JointListSyntax,
     pub tip: NameSyntax,
     pub tool: ExprSyntax,
     pub speed: ExprSyntax,
@@ -162,7 +227,7 @@ pub struct ArmSyntax {
 pub struct GripperSyntax {
     pub name: NameSyntax,
     pub palm: NameSyntax,
-    pub fingers: Vec<NameSyntax>,
+    pub fingers: JointListSyntax,
     pub tool: ExprSyntax,
     pub reach: ExprSyntax,
     pub delay: ExprSyntax,

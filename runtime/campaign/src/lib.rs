@@ -3,6 +3,7 @@
 
 mod binding;
 mod forks;
+mod hulls;
 mod interfaces;
 mod internal;
 mod machines;
@@ -51,6 +52,7 @@ use hrdsl_testgen::step_lines;
 use binding::{binding_text, module_folders};
 pub use forks::ForkPlan;
 use forks::WorkerServers;
+pub use hulls::{FoundHulls, find_hulls};
 pub use internal::{InternalError, guarded, record_panics};
 pub use tally::tally;
 

@@ -43,6 +43,10 @@ const SMOOTHING: f64 = 10.0;
 const THERE: f64 = 1e-6;
 /// Below this rate an arm counts as held up, and its errors are not made good.
 const HELD_UP: f64 = 0.2;
+/// Below this speed the friction that is expected is less, rad/s or m/s.
+const SLOW: f64 = 0.02;
+/// And so it is when the joint is no farther behind than this, rad or m.
+const NEAR: f64 = 0.005;
 /// How fast lasting errors are made good, as a part of that.
 const LEARNING: f64 = 0.3;
 
@@ -56,6 +60,8 @@ pub(crate) struct ArmControl {
     speeds: Vec<f64>,
     /// How far each joint may lag behind.
     lags: Vec<f64>,
+    /// What brakes each: at a speed of 1, and at any.
+    losses: Vec<(f64, f64)>,
     contact_limit: Option<f64>,
     chain: KinematicChain,
     /// The motors' aim while no motion is under way.
@@ -89,7 +95,7 @@ impl ArmControl {
         if !(arm.max_speed.is_finite() && arm.max_speed > 0.0) {
             return Err(SimError::BadNumber { what: format!("the speed of arm `{}`", arm.name) });
         }
-        let (mut links, mut speeds, mut lags) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut links, mut speeds, mut lags, mut losses) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut end: Option<BodyId> = None;
         for id in &arm.joints {
             let at = usize::from(id.0);
@@ -103,8 +109,10 @@ impl ArmControl {
             }
             let axis = v3(joint.axis).normalize();
             let (motion, anchor) = (joint.motion, v3(joint.anchor));
-            links.push(KinematicLink { motion, anchor, axis, lo: joint.lo, hi: joint.hi });
+            let (lo, hi, start) = (joint.lo, joint.hi, joint.drive.start);
+            links.push(KinematicLink { motion, anchor, axis, lo, hi, start });
             speeds.push(joint.drive.speed.map_or(arm.max_speed, |v| v.min(arm.max_speed)));
+            losses.push((joint.drive.damping, joint.drive.friction));
             lags.push(if motion == JointMotion::Slider { SLIDER_LAG } else { LAG });
         }
         if end.is_none_or(|e| physics.root(e) != physics.root(arm.tip)) {
@@ -122,9 +130,10 @@ impl ArmControl {
             figure: ArmFigure::new(&numbers, base, physics),
             speeds,
             lags,
+            losses,
             contact_limit: arm.contact_limit,
-            rest: vec![0.0; chain.links.len()],
-            aimed: vec![0.0; chain.links.len()],
+            rest: chain.links.iter().map(|link| link.start).collect(),
+            aimed: chain.links.iter().map(|link| link.start).collect(),
             chain,
             motion: None,
             dynamics: ArmDynamics::new(&numbers, physics),
@@ -337,7 +346,14 @@ impl ArmControl {
             self.lasting_free.clone_from(&self.lasting);
         }
         let equation = self.dynamics.equation(physics);
-        let efforts = &equation.inertia * wanted + equation.bias;
+        let mut efforts = &equation.inertia * wanted + equation.bias;
+        for (i, (damping, friction)) in self.losses.iter().enumerate() {
+            if *damping > 0.0 || *friction > 0.0 {
+                // Friction turns round where the way does, and not at once.
+                let way = self.pace[i] / SLOW + (a[i] - positions[i]) / NEAR;
+                efforts[i] += damping * self.pace[i] + friction * way.clamp(-1.0, 1.0);
+            }
+        }
         for (i, id) in self.joints.iter().enumerate() {
             let done = physics.drive(usize::from(id.0), efforts[i]);
             // An arm that is held up, or a motor that can do no more, has nothing to learn from it.

@@ -11,7 +11,7 @@
 
 use hrdsl_ir::Nanos;
 use hrdsl_ir::value::seconds;
-use hrdsl_ir::world::{BodyId, BodyMotion, Gripper, World};
+use hrdsl_ir::world::{BodyId, BodyMotion, Gripper, Joint, JointId, JointMotion, World};
 use rapier3d::prelude::ImpulseJointHandle;
 
 use hrdsl_harness::CommandId;
@@ -36,6 +36,8 @@ pub(crate) struct GripperHand {
     guided: bool,
     force: f64,
     fingers: Vec<Finger>,
+    /// Where its fingers are going: 1 closes, −1 opens.
+    direction: f64,
     /// All bodies that can press what it holds.
     parts: Vec<BodyId>,
     phase: GripPhase,
@@ -50,12 +52,24 @@ pub(crate) struct GripperHand {
 struct Finger {
     joint: usize,
     body: BodyId,
-    /// m/s
+    /// m/s or rad/s; negative if it closes downwards.
     speed: f64,
+    /// The force or torque with which it presses, N or N·m: of one that others follow, also with theirs.
+    force: f64,
+    /// Another moves it.
+    follows: bool,
+    /// How far it may be ahead of those that follow it; `None`: none does.
+    lag: Option<f64>,
+    /// How near its end it counts as there, m or rad.
+    end: f64,
 }
 
-/// How near its end a finger counts as there, m.
+/// How near its end a finger counts as there, m and rad.
 const END: f64 = 1e-3;
+const END_ANGLE: f64 = 1e-2;
+/// How far a finger may be ahead of those that follow it, m and rad: as much as there is play in a gear.
+const PLAY: f64 = 2e-3;
+const PLAY_ANGLE: f64 = 2e-2;
 /// The least time for the way of fingers, s.
 const MIN_STROKE: f64 = 0.05;
 /// For how long, beyond twice the time of their way, fingers are waited for.
@@ -83,6 +97,40 @@ enum GripPhase {
 
 type FinishedCommands = Vec<(CommandId, Result<(), CommandError>)>;
 
+impl Finger {
+    fn new(id: JointId, joint: &Joint, gripper: &Gripper, world: &World, physics: &PhysicsAdapter) -> Finger {
+        let time = seconds(gripper.delay).max(MIN_STROKE);
+        let speed = (joint.hi - joint.lo) / time;
+        let follower = |at: &&JointId| {
+            world.joints.get(usize::from(at.0)).is_some_and(|j| j.drive.mimic.is_some_and(|m| m.joint == id))
+        };
+        let followers = gripper.fingers.iter().filter(follower).count();
+        let (arm, play, end) = match joint.motion {
+            JointMotion::Slider => (1.0, PLAY, END),
+            JointMotion::Hinge => {
+                let tool = physics.start(gripper.palm).point(v3(gripper.tool));
+                let way = tool - v3(joint.anchor);
+                (way.cross(&v3(joint.axis).normalize()).norm(), PLAY_ANGLE, END_ANGLE)
+            }
+        };
+        let follows = joint.drive.mimic.is_some();
+        let all = if follows { 1.0 } else { 1.0 + followers as f64 };
+        Finger {
+            joint: usize::from(id.0),
+            body: joint.child,
+            speed: if gripper.reversed.contains(&id) { -speed } else { speed },
+            force: if follows || followers > 0 || joint.motion == JointMotion::Hinge {
+                gripper.force * arm * all
+            } else {
+                gripper.force
+            },
+            follows,
+            lag: (followers > 0).then_some(play),
+            end,
+        }
+    }
+}
+
 impl GripperHand {
     fn new(gripper: &Gripper, world: &World, physics: &PhysicsAdapter) -> Result<GripperHand, SimError> {
         let what = || format!("gripper `{}`", gripper.name);
@@ -107,8 +155,7 @@ impl GripperHand {
         for id in &gripper.fingers {
             let at = usize::from(id.0);
             let joint = world.joints.get(at).ok_or_else(|| bad(what(), "joint", at))?;
-            let time = seconds(gripper.delay).max(MIN_STROKE);
-            fingers.push(Finger { joint: at, body: joint.child, speed: (joint.hi - joint.lo) / time });
+            fingers.push(Finger::new(*id, joint, gripper, world, physics));
         }
         let roots = fingers.iter().map(|f| f.body).chain([gripper.palm]).map(|b| physics.root(b));
         let parts = roots.flat_map(|root| physics.one_with(root)).filter(|b| !physics.is_ghost(*b)).collect();
@@ -123,6 +170,7 @@ impl GripperHand {
             guided: physics.motion(gripper.palm) == BodyMotion::Guided,
             force: gripper.force,
             fingers,
+            direction: 0.0,
             parts,
             phase: GripPhase::Open,
             grasping: false,
@@ -137,9 +185,19 @@ impl GripperHand {
     }
 
     /// Moves the fingers: 1 closes, −1 opens.
-    fn run_fingers(&self, direction: f64, physics: &mut PhysicsAdapter) {
+    fn run_fingers(&mut self, direction: f64, physics: &mut PhysicsAdapter) {
+        for finger in self.fingers.iter().filter(|finger| !finger.follows) {
+            physics.run_at(finger.joint, finger.speed * direction, finger.force);
+        }
+        self.direction = direction;
+    }
+
+    /// A finger does not run ahead of those that follow it: one motor moves them all.
+    fn keep_together(&self, physics: &mut PhysicsAdapter) {
         for finger in &self.fingers {
-            physics.run_at(finger.joint, finger.speed * direction, self.force);
+            let Some(play) = finger.lag else { continue };
+            let rate = (2.0 - 2.0 * physics.gear_lag(finger.joint) / play).clamp(0.0, 1.0);
+            physics.run_at(finger.joint, finger.speed * self.direction * rate, finger.force);
         }
     }
 
@@ -147,8 +205,8 @@ impl GripperHand {
     fn fingers_are_at_end(&self, closed: bool, physics: &PhysicsAdapter) -> bool {
         self.fingers.iter().all(|finger| {
             let (lo, hi) = physics.joint_limits(finger.joint);
-            let end = if closed { hi } else { lo };
-            (physics.joint_position(finger.joint) - end).abs() < END
+            let end = if closed == (finger.speed >= 0.0) { hi } else { lo };
+            (physics.joint_position(finger.joint) - end).abs() < finger.end
         })
     }
 
@@ -234,8 +292,11 @@ pub(crate) struct HandSet {
 impl HandSet {
     pub fn new(world: &World, physics: &mut PhysicsAdapter) -> Result<HandSet, SimError> {
         let hands = world.grippers.iter().map(|g| GripperHand::new(g, world, physics));
-        let hands = hands.collect::<Result<Vec<_>, _>>()?;
-        hands.iter().for_each(|hand| hand.run_fingers(-1.0, physics));
+        let mut hands = hands.collect::<Result<Vec<_>, _>>()?;
+        hands.iter().flat_map(|hand| &hand.fingers).filter(|finger| finger.follows).for_each(|finger| {
+            physics.limit_gear(finger.joint, finger.force);
+        });
+        hands.iter_mut().for_each(|hand| hand.run_fingers(-1.0, physics));
         Ok(HandSet { hands, taken: vec![false; world.bodies.len()] })
     }
 
@@ -312,6 +373,7 @@ impl HandSet {
     ) -> Vec<(BodyId, SpaceVector)> {
         let mut reaching = Vec::new();
         for i in 0..self.hands.len() {
+            self.hands[i].keep_together(physics);
             match self.hands[i].phase {
                 GripPhase::Closing { until, id } => {
                     if self.hands[i].has_closed(now, until, physics) {

@@ -5,7 +5,7 @@
 //! start stays up, so that what is held is carried upright; and, in the null space, the posture stays near the present one
 //! and, weaker, near the arm's starting posture, so that postures do not drift from one motion to the next.
 
-use hrdsl_ir::world::JointMotion;
+use hrdsl_ir::world::{ENDLESS, JointMotion};
 use nalgebra::{DMatrix, DVector};
 
 use crate::math::{BodyFrame, RotationQuat, SpaceVector, about, angle_between};
@@ -18,9 +18,11 @@ pub(crate) struct KinematicLink {
     pub axis: SpaceVector,
     pub lo: f64,
     pub hi: f64,
+    /// Where it is at the start.
+    pub start: f64,
 }
 
-/// The geometry of an arm; all joints are zero at the start.
+/// The geometry of an arm at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KinematicChain {
     pub links: Vec<KinematicLink>,
@@ -80,8 +82,18 @@ const MARGIN: f64 = 0.02;
 const RESTARTS: u32 = 12;
 
 impl KinematicLink {
+    /// Where postures are sought: a joint without limits goes once round.
+    fn range(&self) -> (f64, f64) {
+        if self.motion == JointMotion::Hinge && self.hi - self.lo >= ENDLESS {
+            (self.start - std::f64::consts::PI, self.start + std::f64::consts::PI)
+        } else {
+            (self.lo, self.hi)
+        }
+    }
+
     /// The frame of what hangs on this joint, from that of what it hangs on.
-    fn moved(&self, frame: &BodyFrame, by: f64) -> BodyFrame {
+    fn moved(&self, frame: &BodyFrame, to: f64) -> BodyFrame {
+        let by = to - self.start;
         match self.motion {
             JointMotion::Hinge => {
                 let anchor = frame.point(self.anchor);
@@ -172,13 +184,15 @@ impl KinematicChain {
             .enumerate()
             .map(|(i, l)| {
                 let part = if n == 0 { 0.5 } else { halton(n, PRIMES[i % PRIMES.len()]) };
-                l.lo + part * (l.hi - l.lo)
+                let (lo, hi) = l.range();
+                lo + part * (hi - lo)
             })
             .collect()
     }
 
     fn descend(&self, seed: &[f64], near: &[f64], target: SpaceVector) -> ArmPosture {
-        let wish: Vec<f64> = near.iter().map(|q| q / 1.2).collect();
+        let towards_start = |(q, link): (&f64, &KinematicLink)| link.start + (q - link.start) / 1.2;
+        let wish: Vec<f64> = near.iter().zip(&self.links).map(towards_start).collect();
         let mut q = self.within(seed);
         for _ in 0..160 {
             self.iterate(&mut q, Some(&wish), target);
@@ -325,6 +339,7 @@ mod tests {
             axis,
             lo: -2.5,
             hi: 2.5,
+            start: 0.0,
         };
         KinematicChain {
             links: vec![
@@ -394,6 +409,7 @@ mod tests {
             axis: SpaceVector::z(),
             lo: 0.0,
             hi: 0.5,
+            start: 0.0,
         };
         let tool = chain.tool_at(&[0.3, 0.0, 0.0]);
         assert!((tool - SpaceVector::new(0.8, 0.0, 1.3)).norm() < 1e-12);

@@ -7,7 +7,9 @@ pub(crate) mod dynamics;
 mod energy;
 mod guide;
 mod joints;
+mod losses;
 mod pairs;
+mod solid;
 mod surface;
 pub(crate) mod wheels;
 mod yielding;
@@ -23,7 +25,9 @@ use crate::{
 use energy::EnergyWatch;
 use guide::BodyGuide;
 use joints::DrivenJoint;
+use losses::JointLosses;
 use pairs::{ExemptPairs, JointGraph};
+use solid::{SolidExtent, described_mass, solid_shape};
 use yielding::YieldingPair;
 
 /// One body of the scenario.
@@ -39,6 +43,10 @@ struct PhysicsBody {
     motion: BodyMotion,
     ghost: bool,
     shape: BodyShape,
+    /// That of the engine.
+    surface: SharedShape,
+    /// Of a body that has not just one shape.
+    extent: Option<SolidExtent>,
 }
 
 impl PhysicsBody {
@@ -59,6 +67,7 @@ pub(crate) struct PhysicsAdapter {
     yielding: Vec<YieldingPair>,
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     joints: Vec<Option<DrivenJoint>>,
+    losses: JointLosses,
     exempt: ExemptPairs,
     energy: EnergyWatch,
     /// Where kinematic bodies will be at the end of the next step.
@@ -94,6 +103,7 @@ impl PhysicsAdapter {
             guides: Vec::new(),
             yielding: Vec::new(),
             joints: Vec::new(),
+            losses: JointLosses::default(),
             exempt: ExemptPairs::default(),
             energy: EnergyWatch::default(),
             led: Vec::new(),
@@ -107,6 +117,7 @@ impl PhysicsAdapter {
             let driven = if joint.is_rigid() { None } else { Some(physics.add_joint(joint, world, &graph)) };
             physics.joints.push(driven);
         }
+        physics.losses = JointLosses::of(world);
         let figure_of = figure_of(world);
         physics.exempt_overlaps(world, &graph, &figure_of)?;
         physics.find_yielding(world, &figure_of);
@@ -126,20 +137,39 @@ impl PhysicsAdapter {
             let motion = world.bodies[index(root)].motion;
             let start = start_of(body);
             let local = start_of(&world.bodies[index(root)]).inverse().then(&start);
+            let (surface, extent) = surface_of(body)?;
             let is_moved = matches!(motion, BodyMotion::Dynamic | BodyMotion::Guided);
-            let collider = ColliderBuilder::new(shape_of(body)?)
+            let weighs = is_moved && body.solid.is_none();
+            let collider = ColliderBuilder::new(surface.clone())
                 .position(to_pose(&local))
-                .mass(if is_moved { checked_mass(body)? } else { 0.0 })
+                .mass(if weighs { checked_mass(body)? } else { 0.0 })
                 .friction(0.8)
                 .sensor(body.ghost)
                 .user_data(i as u128);
             let bodies = &mut self.world.bodies;
-            let collider = self.world.colliders.insert_with_parent(collider, handle, bodies);
+            // A mere frame meets nothing, and costs nothing.
+            let collider = if extent.as_ref().is_some_and(|extent| extent.is_frame) {
+                ColliderHandle::invalid()
+            } else {
+                self.world.colliders.insert_with_parent(collider, handle, bodies)
+            };
             let (ghost, shape) = (body.ghost, body.shape);
             let name = body.name.clone();
             let guided = motion == BodyMotion::Guided && index(root) == i;
             self.guides.push(guided.then(|| BodyGuide::new(body.mass, body.stiffness, start)));
-            self.parts.push(PhysicsBody { name, handle, collider, local, start, root, motion, ghost, shape });
+            self.parts.push(PhysicsBody {
+                name,
+                handle,
+                collider,
+                local,
+                start,
+                root,
+                motion,
+                ghost,
+                shape,
+                surface,
+                extent,
+            });
         }
         Ok(())
     }
@@ -166,8 +196,11 @@ impl PhysicsAdapter {
             builder = builder.can_sleep(false);
         }
         let rotors = moved.filter(|j| j.motion == JointMotion::Hinge && j.drive.rotor > 0.0);
+        let sum: f64 = rotors.clone().map(|j| j.drive.rotor).sum();
         let inertia = rotors.map(joints::rotor_inertia).reduce(|a, b| a + b);
-        if let Some(inertia) = inertia {
+        if let Some(mass) = described_mass(world, roots, id, sum) {
+            builder = builder.additional_mass_properties(mass);
+        } else if let Some(inertia) = inertia {
             builder = builder.additional_mass_properties(MassProperties::with_inertia_matrix(
                 Vector::ZERO,
                 0.0,
@@ -282,8 +315,10 @@ impl PhysicsAdapter {
     // ── Time ──
 
     pub fn step(&mut self) {
+        self.keep_gears();
         self.step_parts();
         self.watch_energy();
+        self.wind_joints();
         self.stop_lost();
     }
 
@@ -407,20 +442,30 @@ fn checked_mass(body: &Body) -> Result<f32, SimError> {
     }
 }
 
-fn shape_of(body: &Body) -> Result<SharedShape, SimError> {
-    let measures: Vec<f64> = match body.shape {
+/// The shape of a body, and what is measured of it if it has several.
+fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), SimError> {
+    if !body.position.iter().chain(&body.rotation).all(|x| x.is_finite()) {
+        return Err(SimError::BadNumber { what: format!("a measure of body `{}`", body.name) });
+    }
+    match &body.solid {
+        Some(solid) => solid_shape(solid, &body.name).map(|(shape, extent)| (shape, Some(extent))),
+        None => Ok((shape_of(body.shape, &body.name)?, None)),
+    }
+}
+
+fn shape_of(shape: BodyShape, name: &str) -> Result<SharedShape, SimError> {
+    let measures: Vec<f64> = match shape {
         BodyShape::Box { size } => size.to_vec(),
         BodyShape::Sphere { radius } => vec![radius],
         BodyShape::Capsule { radius, length } | BodyShape::Cylinder { radius, length } => {
             vec![radius, length]
         }
     };
-    let place = body.position.iter().chain(&body.rotation);
-    if measures.iter().any(|m| !m.is_finite() || *m <= 0.0) || !place.into_iter().all(|x| x.is_finite()) {
-        return Err(SimError::BadNumber { what: format!("a measure of body `{}`", body.name) });
+    if measures.iter().any(|m| !m.is_finite() || *m <= 0.0) {
+        return Err(SimError::BadNumber { what: format!("a measure of body `{name}`") });
     }
     let half = |x: f64| (x / 2.0) as f32;
-    Ok(match body.shape {
+    Ok(match shape {
         BodyShape::Box { size } => SharedShape::cuboid(half(size[0]), half(size[1]), half(size[2])),
         BodyShape::Sphere { radius } => SharedShape::ball(radius as f32),
         BodyShape::Capsule { radius, length } => SharedShape::capsule_z(half(length), radius as f32),

@@ -18,6 +18,7 @@ pub(crate) fn body(name: &str, motion: BodyMotion, shape: BodyShape, position: V
         mass: 1.0,
         stiffness: None,
         ghost: false,
+        solid: None,
     }
 }
 

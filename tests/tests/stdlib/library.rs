@@ -99,6 +99,8 @@ fn member(kind: &Member) -> Option<(&'static str, String)> {
         Member::Laser(laser) => ("laser", laser.name.text.clone()),
         Member::Limb(limb) => ("limb", limb.name.text.clone()),
         Member::Figure(figure) => ("figure", figure.name.text.clone()),
+        Member::Scanner { name, .. } => ("laser", name.text.clone()),
+        Member::Walls(walls) => ("walls", walls.name.text.clone()),
         Member::Posture(posture) => ("posture", posture.name.text.clone()),
         Member::Current { name, .. } => ("current", name.text.clone()),
         Member::Signal { name, .. } => ("signal", name.text.clone()),
@@ -106,6 +108,11 @@ fn member(kind: &Member) -> Option<(&'static str, String)> {
         Member::Step(_)
         | Member::Sample(_)
         | Member::Gravity(_)
+        | Member::Robot(_)
+        | Member::Packages(_)
+        | Member::Argument { .. }
+        | Member::Semantics(_)
+        | Member::Start(_)
         | Member::Rule(_)
         | Member::Allow(_)
         | Member::Error => return None,

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use hrdsl_compiler::{CompilationResult, InputFile, ModuleLoader, ModuleText, ast, compile_with};
+use hrdsl_compiler::{
+    CompilationResult, InputFile, ModuleLoader, ModuleText, RobotReader, ast, compile_with,
+};
 use hrdsl_ir::{
     Program,
     bdi::{Agent, AgentId, BeliefId, InitialFact},
@@ -170,6 +172,10 @@ impl ModuleLoader for FileOverlay<'_> {
         let source = self.disk.load(from, path)?;
         let is_it = source.name == self.name;
         Ok(if is_it { ModuleText { text: self.text.to_owned(), ..source } } else { source })
+    }
+
+    fn robots(&self) -> Option<Box<dyn RobotReader + '_>> {
+        self.disk.robots()
     }
 
     fn is_file(&self, path: &str) -> Option<bool> {

@@ -16,7 +16,7 @@ use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{
         CampaignSetup, CellIsolation, CellSettings, ForkPlan, ProgramLimits, StopFlag, SupervisorCommand,
-        prepare, tally,
+        find_hulls, prepare, tally,
     },
     report,
     results::CampaignResults,
@@ -222,7 +222,9 @@ fn prepared<'p>(
 ) -> Result<CampaignSetup<'p>, CommandFault> {
     let dir = files::folder(&args.file);
     let console = InstallProgress::default();
-    let env = prepare(system, &dir, &cache()?, &|step| console.show(step)).map_err(|e| e.to_string())?;
+    let cache = cache()?;
+    let env = prepare(system, &dir, &cache, &|step| console.show(step)).map_err(|e| e.to_string())?;
+    let _ = find_hulls(program, &cache);
     let wanted = args.isolation.map(|how| match how {
         IsolationArg::Namespaces => CellIsolation::Namespaces,
         IsolationArg::Copies => CellIsolation::Copies,

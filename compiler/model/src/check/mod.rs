@@ -16,7 +16,7 @@ use hrdsl_messages::MessageLibrary;
 use hrdsl_source::Diagnostic;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
-use crate::Scenario;
+use crate::{Scenario, descriptions::DescriptionLibrary};
 use checker::Checker;
 use state::{
     names::{CheckedSource, LoneDeclaration},
@@ -51,6 +51,8 @@ pub struct KnownSources<'a> {
     pub missing_modules: bool,
     /// The definitions of the versions of ROS that the systems use.
     pub interfaces: &'a [MessageLibrary],
+    /// The robots and maps that parts and the world are made from.
+    pub descriptions: Option<&'a DescriptionLibrary>,
 }
 
 /// The same, with what else is known.
@@ -104,6 +106,7 @@ fn source<'a>(
         from_modules,
         missing_modules: known.missing_modules,
         interfaces: known.interfaces,
+        descriptions: known.descriptions,
         unread_members: false,
         alone: None,
     }

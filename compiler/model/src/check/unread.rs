@@ -112,6 +112,7 @@ pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> b
         | Noun::Limb
         | Noun::Figure
         | Noun::Posture
+        | Noun::Group
         | Noun::Device
         | Noun::Command
         | Noun::Current

@@ -2,9 +2,24 @@
 
 use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
+use crate::noun::Noun;
+
 /// HR0801
 pub(crate) fn bad_world(span: Span, message: impl Into<String>, help: impl Into<String>) -> Diagnostic {
     Diagnostic::error(DiagnosticCode::BAD_WORLD, span, message).help(help)
+}
+
+/// HR0801: two names of a description that are written alike.
+pub(crate) fn unlike_names(
+    noun: Noun,
+    name: &str,
+    first: &str,
+    spelling: &str,
+    span: Span,
+    other: Span,
+) -> Diagnostic {
+    let message = format!("the {} `{first}` and `{name}` are both written `{spelling}`", noun.plural());
+    bad_world(span, message, "rename one of them in the description").label(other, "the other one")
 }
 
 /// HR0201: a posture whose angles are no list.

@@ -244,12 +244,19 @@ impl DefinitionReader {
                 WorldMemberKind::Laser(laser) => self.define("laser", &laser.name),
                 WorldMemberKind::Limb(limb) => self.define("limb", &limb.name),
                 WorldMemberKind::Figure(figure) => self.define("figure", &figure.name),
+                WorldMemberKind::Scanner { name, .. } => self.define("laser", name),
+                WorldMemberKind::Walls(walls) => self.define("body", &walls.name),
                 WorldMemberKind::Posture(posture) => self.define("posture", &posture.name),
                 WorldMemberKind::Current { name, .. } => self.define("current body", name),
                 WorldMemberKind::Signal { name, ty, .. } => self.typed("signal", name, written(ty)),
                 WorldMemberKind::Step(_)
                 | WorldMemberKind::Sample(_)
                 | WorldMemberKind::Gravity(_)
+                | WorldMemberKind::Robot(_)
+                | WorldMemberKind::Packages(_)
+                | WorldMemberKind::Argument { .. }
+                | WorldMemberKind::Semantics(_)
+                | WorldMemberKind::Start(_)
                 | WorldMemberKind::Rule(_)
                 | WorldMemberKind::Allow(_)
                 | WorldMemberKind::Error => {}

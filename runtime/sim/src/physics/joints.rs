@@ -6,11 +6,13 @@ use rapier3d::prelude::*;
 use super::{PhysicsAdapter, index, pairs::JointGraph};
 use crate::math::{
     BodyFrame, RotationQuat, SpaceVector, about, angle_between, from_pose, from_vector, to_pose, to_vector,
-    twist, v3,
+    twist, v3, wrap,
 };
 
 /// How a motor that keeps a speed answers to an error of it, N·s/m or N·m·s/rad.
 const FIRM: f32 = 1e5;
+/// How far from its start the engine can limit a hinge, rad.
+const MOST_LIMIT: f64 = 3.1;
 /// The effort of a motor without a limit, N·m or N.
 const UNLIMITED: f64 = 1e9;
 
@@ -30,6 +32,14 @@ pub(crate) struct DrivenJoint {
     /// The most that its motor can do, and what it does.
     limit: f64,
     effort: f64,
+    /// Where it is at the start, and its limits, rad or m.
+    start: f64,
+    lo: f64,
+    hi: f64,
+    /// Of a hinge that may turn farther than half round: where it was last.
+    wound: Option<f64>,
+    /// The engine's motor runs it.
+    pub(super) is_run: bool,
 }
 
 /// A rotor's inertia, as it is added to the body that it turns: about all axes, since the links between two axes of one shoulder
@@ -54,7 +64,13 @@ impl PhysicsAdapter {
             .local_frame2(to_pose(&c.start.inverse().then(&frame)))
             .contacts_enabled(false)
             .build();
-        data.set_limits(moving, [joint.lo as f32, joint.hi as f32]);
+        let start = joint.drive.start;
+        let (least, most) = (joint.lo - start, joint.hi - start);
+        let is_wide = joint.motion == JointMotion::Hinge && (least <= -MOST_LIMIT || most >= MOST_LIMIT);
+        // Beyond half a turn the engine knows no limits: arms keep them by themselves.
+        if !is_wide {
+            data.set_limits(moving, [least as f32, most as f32]);
+        }
         let (parent_start, child_start) = (p.start, c.start);
         let (parent_handle, child_handle) = (p.handle, c.handle);
         let handle = self.world.insert_impulse_joint(parent_handle, child_handle, data);
@@ -73,20 +89,34 @@ impl PhysicsAdapter {
             carried,
             limit: joint.drive.effort.unwrap_or(UNLIMITED),
             effort: 0.0,
+            start,
+            lo: joint.lo,
+            hi: joint.hi,
+            wound: is_wide.then_some(0.0),
+            is_run: false,
         }
     }
 
     // ── What joints measure ──
 
-    /// The measured angle (rad) or way (m) from the start.
+    /// The measured angle (rad) or way (m); of a hand-made joint from the start.
     pub fn joint_position(&self, joint: usize) -> f64 {
         let Some(driven) = &self.joints[joint] else { return 0.0 };
+        let way = self.way(driven);
+        if driven.start == 0.0 { way } else { driven.start + way }
+    }
+
+    /// How far a joint is from its start.
+    fn way(&self, driven: &DrivenJoint) -> f64 {
         let pose = |h: RigidBodyHandle| from_pose(self.world.bodies[h].position());
         let moved = |pose: BodyFrame, start: &BodyFrame| pose.then(&start.inverse());
         let parent = moved(pose(driven.parent), &driven.parent_start);
         let child = moved(pose(driven.child), &driven.child_start);
         match driven.motion {
-            JointMotion::Hinge => twist(&(parent.turn.inverse() * child.turn), &driven.axis),
+            JointMotion::Hinge => {
+                let angle = twist(&(parent.turn.inverse() * child.turn), &driven.axis);
+                driven.wound.map_or(angle, |last| last + wrap(angle - wrap_far(last)))
+            }
             JointMotion::Slider => {
                 let way = child.point(driven.anchor) - parent.point(driven.anchor);
                 way.dot(&(parent.turn * driven.axis))
@@ -138,6 +168,18 @@ impl PhysicsAdapter {
 
     /// Lets a motor go at a speed (m/s or rad/s) from now on, with no more than this force or torque (N or N·m).
     pub fn run_at(&mut self, joint: usize, speed: f64, force: f64) {
+        if let Some(driven) = &mut self.joints[joint] {
+            driven.is_run = true;
+        }
+        self.set_motor(joint, speed, force);
+    }
+
+    /// Brakes a joint with no more than this force or torque (N or N·m).
+    pub(super) fn brake(&mut self, joint: usize, force: f64) {
+        self.set_motor(joint, 0.0, force);
+    }
+
+    fn set_motor(&mut self, joint: usize, speed: f64, force: f64) {
         let Some(driven) = &self.joints[joint] else { return };
         let moving = match driven.motion {
             JointMotion::Hinge => JointAxis::AngX,
@@ -152,16 +194,20 @@ impl PhysicsAdapter {
 
     /// Where a joint ends, rad or m.
     pub fn joint_limits(&self, joint: usize) -> (f64, f64) {
-        let found = self.joints[joint].as_ref().and_then(|d| self.world.impulse_joints.get(d.handle));
-        let limits = found.map(|joint| {
-            let axis = if joint.data.locked_axes.contains(JointAxesMask::LIN_X) {
-                JointAxis::AngX
-            } else {
-                JointAxis::LinX
+        self.joints[joint].as_ref().map_or((0.0, 0.0), |driven| (driven.lo, driven.hi))
+    }
+
+    /// Follows the joints that may turn farther than half round.
+    pub(super) fn wind_joints(&mut self) {
+        for at in 0..self.joints.len() {
+            let Some(driven) = self.joints[at].as_ref().filter(|driven| driven.wound.is_some()) else {
+                continue;
             };
-            joint.data.limits[axis as usize]
-        });
-        limits.map_or((0.0, 0.0), |l| (f64::from(l.min), f64::from(l.max)))
+            let way = self.way(driven);
+            if let Some(driven) = &mut self.joints[at] {
+                driven.wound = Some(way);
+            }
+        }
     }
 
     /// Takes back what the motors did in the last step.
@@ -197,6 +243,12 @@ impl PhysicsAdapter {
         roots.dedup();
         roots
     }
+}
+
+/// The same direction within -π..π, however often it is wound.
+fn wrap_far(angle: f64) -> f64 {
+    let turn = 2.0 * std::f64::consts::PI;
+    angle - turn * (angle / turn).round()
 }
 
 /// A rotation that takes the x axis to the given unit vector.

@@ -90,6 +90,7 @@ impl PhysicsAdapter {
         graph: &JointGraph,
         figure_of: &[Option<usize>],
     ) -> Result<(), SimError> {
+        self.exempt_apart(world);
         for a in 0..self.parts.len() {
             for b in a + 1..self.parts.len() {
                 if self.parts[a].ghost || self.parts[b].ghost || self.parts[a].root == self.parts[b].root {
@@ -117,6 +118,18 @@ impl PhysicsAdapter {
         Ok(())
     }
 
+    /// The pairs that descriptions say are never to be looked at together.
+    fn exempt_apart(&mut self, world: &World) {
+        for (a, body) in world.bodies.iter().enumerate() {
+            let Some(solid) = &body.solid else { continue };
+            for b in solid.exempt.iter().map(|b| index(*b)).filter(|b| *b < world.bodies.len()) {
+                self.exempt.pairs.insert((a.min(b) as u128, a.max(b) as u128));
+                self.filter(a);
+                self.filter(b);
+            }
+        }
+    }
+
     fn exempt(&mut self, a: usize, b: usize) {
         self.exempt.pairs.insert((a as u128, b as u128));
         self.filter(a);
@@ -124,13 +137,14 @@ impl PhysicsAdapter {
     }
 
     pub(super) fn filter(&mut self, part: usize) {
-        let collider = &mut self.world.colliders[self.parts[part].collider];
-        collider.set_active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS);
+        if let Some(collider) = self.world.colliders.get_mut(self.parts[part].collider) {
+            collider.set_active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS);
+        }
     }
 
     /// How deep two bodies are in each other at the start, m; negative: how far apart, if that is less than [`NEAR`].
     fn start_depth(&self, a: usize, b: usize) -> f32 {
-        let shape = |i: usize| self.world.colliders[self.parts[i].collider].shape();
+        let shape = |i: usize| &*self.parts[i].surface;
         let (pa, pb) = (to_pose(&self.parts[a].start), to_pose(&self.parts[b].start));
         let contact = parry::query::contact(&pa, shape(a), &pb, shape(b), NEAR).ok().flatten();
         contact.map_or(f32::NEG_INFINITY, |c| -c.dist)

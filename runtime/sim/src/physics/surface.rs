@@ -28,22 +28,30 @@ impl PhysicsAdapter {
     }
 
     fn shape(&self, body: BodyId) -> &dyn parry::shape::Shape {
-        self.world.colliders[self.parts[index(body)].collider].shape()
+        &*self.parts[index(body)].surface
     }
 
     /// Whether a straight line from the centre of `a` meets `b` before any other solid body.
     pub fn visible(&self, a: BodyId, b: BodyId) -> bool {
         let from = self.pose(a).at;
         let there = self.pose(b);
-        let third = there.turn * (half_length(self.parts[index(b)].shape) / 3.0);
+        let part = &self.parts[index(b)];
+        let (middle, half) = match &part.extent {
+            Some(extent) => (there.point(extent.middle), extent.half),
+            None => (there.at, half_length(part.shape)),
+        };
+        let third = there.turn * (half / 3.0);
         [SpaceVector::zeros(), third, -third]
             .iter()
-            .any(|offset| self.line_reaches(a, from, b, there.at + offset))
+            .any(|offset| self.line_reaches(a, from, b, middle + offset))
     }
 
     fn line_reaches(&self, a: BodyId, from: SpaceVector, b: BodyId, to: SpaceVector) -> bool {
         let ray = Ray::new(to_vector(from), to_vector(to - from));
-        let Some(hit) = self.cast(b, &ray, 1.0) else { return false };
+        // A mere frame is a place that a ray would miss.
+        let is_frame = self.parts[index(b)].extent.as_ref().is_some_and(|extent| extent.is_frame);
+        let hit = if is_frame { Some(1.0) } else { self.cast(b, &ray, 1.0) };
+        let Some(hit) = hit else { return false };
         let own = self.root(a);
         (0..self.parts.len()).all(|i| {
             let part = &self.parts[i];
@@ -113,14 +121,8 @@ impl PhysicsAdapter {
     pub fn lowest(&self, body: BodyId) -> f64 {
         let BodyFrame { at, turn } = self.pose(body);
         let up = turn.inverse() * SpaceVector::z();
-        let round = |radius: f64| radius * (1.0 - up.z * up.z).max(0.0).sqrt();
-        let below = match self.parts[index(body)].shape {
-            BodyShape::Box { size: [x, y, z] } => (x * up.x.abs() + y * up.y.abs() + z * up.z.abs()) / 2.0,
-            BodyShape::Sphere { radius } => radius,
-            BodyShape::Capsule { radius, length } => radius + length / 2.0 * up.z.abs(),
-            BodyShape::Cylinder { radius, length } => round(radius) + length / 2.0 * up.z.abs(),
-        };
-        at.z - below
+        let part = &self.parts[index(body)];
+        at.z - part.extent.as_ref().map_or_else(|| lowest_of(part.shape, up), |extent| extent.below(up))
     }
 
     /// How far it is to the body's surface (m) from a place in a direction of length 1, if it is not farther than so much.
@@ -130,6 +132,17 @@ impl PhysicsAdapter {
             let ray = Ray::new(to_vector(from), to_vector(direction));
             shape.cast_ray(&pose, &ray, far as f32, true).map(f64::from)
         }
+    }
+}
+
+/// How far the lowest point of a shape is below its centre, m; `up` is the vertical in its own frame.
+pub(super) fn lowest_of(shape: BodyShape, up: SpaceVector) -> f64 {
+    let round = |radius: f64| radius * (1.0 - up.z * up.z).max(0.0).sqrt();
+    match shape {
+        BodyShape::Box { size: [x, y, z] } => (x * up.x.abs() + y * up.y.abs() + z * up.z.abs()) / 2.0,
+        BodyShape::Sphere { radius } => radius,
+        BodyShape::Capsule { radius, length } => radius + length / 2.0 * up.z.abs(),
+        BodyShape::Cylinder { radius, length } => round(radius) + length / 2.0 * up.z.abs(),
     }
 }
 

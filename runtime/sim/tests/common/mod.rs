@@ -33,6 +33,7 @@ pub fn body(name: &str, motion: BodyMotion, shape: BodyShape, position: Vec3, ma
         mass,
         stiffness: None,
         ghost: false,
+        solid: None,
     }
 }
 
@@ -48,7 +49,7 @@ fn drive_of(joint: &str) -> JointDrive {
         "robot.humeral_rotation" | "robot.elbow_flexor" => 40.0,
         _ => 12.0,
     };
-    JointDrive { effort: Some(effort), speed: None, rotor: 0.1 }
+    JointDrive { effort: Some(effort), rotor: 0.1, ..JointDrive::default() }
 }
 
 struct Maker {
@@ -102,7 +103,7 @@ impl Maker {
         let palm = self.body("robot.palm", Dynamic, cuboid(0.04, 0.08, 0.08), [0.38, -0.22, 0.76], 0.4);
         for (name, y, inwards) in [("robot.finger_left", -0.18, -1.0), ("robot.finger_right", -0.26, 1.0)] {
             let finger = self.body(name, Dynamic, cuboid(0.08, 0.01, 0.03), [0.44, y, 0.76], 0.05);
-            let drive = JointDrive { effort: Some(40.0), speed: None, rotor: 0.1 };
+            let drive = JointDrive { effort: Some(40.0), rotor: 0.1, ..JointDrive::default() };
             let (motion, anchor, axis) = (JointMotion::Slider, [0.40, y, 0.76], [0.0, inwards, 0.0]);
             let (name, parent, child) = (name.into(), palm, finger);
             self.world.joints.push(Joint {
@@ -154,7 +155,17 @@ impl Maker {
     fn gripper(&mut self, name: &str, palm: BodyId, tool: Vec3, reach: f64, delay: Nanos) {
         let name = name.into();
         let (force, fingers, holds) = (40.0, Vec::new(), Vec::new());
-        self.world.grippers.push(Gripper { name, palm, fingers, tool, reach, delay, force, holds });
+        self.world.grippers.push(Gripper {
+            name,
+            palm,
+            fingers,
+            reversed: Vec::new(),
+            tool,
+            reach,
+            delay,
+            force,
+            holds,
+        });
     }
 }
 

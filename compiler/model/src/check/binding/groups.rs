@@ -35,7 +35,7 @@ impl Checker<'_> {
     fn tip_name(&self, arm: u16) -> Option<String> {
         let world = self.s.world.as_ref()?;
         let tip = world.arms.get(usize::from(arm))?.tip;
-        let name = &world.bodies.get(usize::from(tip.0))?.name;
-        name.rsplit('.').next().map(str::to_owned)
+        let body = world.bodies.get(usize::from(tip.0))?;
+        body.own_name.clone().or_else(|| body.name.rsplit('.').next().map(str::to_owned))
     }
 }

@@ -18,7 +18,7 @@ impl Checker<'_> {
         entries: &[BindingEntry],
     ) -> Vec<String> {
         let joints = self.arm_joints(body);
-        let own: Vec<String> = joints.iter().map(|full| last_name(full)).collect();
+        let own = self.joint_own_names(body);
         let mut given: Vec<Option<&TextSyntax>> = vec![None; joints.len()];
         let mut is_table = false;
         for entry in entries {
@@ -75,6 +75,14 @@ impl Checker<'_> {
             }
             None => *place = Some(part),
         }
+    }
+
+    /// What its description calls each of an arm's joints; otherwise the end of its name.
+    fn joint_own_names(&self, body: DeviceBody) -> Vec<String> {
+        let (Some(world), DeviceBody::Arm(arm)) = (&self.s.world, body) else { return Vec::new() };
+        let joints = world.arms.get(usize::from(arm.0)).map(|a| a.joints.as_slice()).unwrap_or_default();
+        let joints = joints.iter().filter_map(|id| world.joints.get(usize::from(id.0)));
+        joints.map(|joint| joint.own_name.clone().unwrap_or_else(|| last_name(&joint.name))).collect()
     }
 
     /// The joints of an arm, from its base, by their full names.

@@ -66,16 +66,28 @@ impl<'a> Checker<'a> {
         let mut fields = ToldFields { device: self.device_id(body), fields: FieldValues::new() };
         match body {
             DeviceBody::Arm(_) => fields.arm(self.joint_texts(device, body, &topic.entries)),
-            DeviceBody::Base(_) => fields.base(),
+            DeviceBody::Base(id) => {
+                let base = self.s.world.as_ref().and_then(|world| world.bases.get(usize::from(id.0)));
+                let frame = base.and_then(|base| self.link_name(base.body));
+                fields.base(frame.as_deref().unwrap_or("base_link"));
+            }
             DeviceBody::Laser(id) => {
                 let lasers = self.s.world.as_ref().map_or(&[][..], |world| &world.lasers);
                 if let Some(laser) = lasers.get(usize::from(id.0)) {
-                    fields.laser(laser, rate);
+                    let frame = self.link_name(laser.body);
+                    fields.laser(laser, rate, frame.as_deref().unwrap_or("laser"));
                 }
             }
             DeviceBody::Gripper(_) => {}
         }
         fields.fields
+    }
+
+    /// What its description calls a body; `None`: it has none.
+    fn link_name(&self, body: crate::BodyId) -> Option<String> {
+        let robots = &self.world.robots;
+        let link = robots.iter().find_map(|placed| Some((placed.link_of(body)?, placed.robot()?)));
+        link.and_then(|(link, robot)| robot.link(link)).map(|link| link.name.clone())
     }
 }
 
@@ -110,9 +122,9 @@ impl ToldFields {
         self.told("velocity", "speeds", ToldNumbers::All);
     }
 
-    fn base(&mut self) {
+    fn base(&mut self, frame: &str) {
         self.text("header.frame_id", "odom");
-        self.text("child_frame_id", "base_link");
+        self.text("child_frame_id", frame);
         for (at, axis) in (0u16..).zip(["x", "y"]) {
             self.told(&format!("pose.pose.position.{axis}"), "pose", ToldNumbers::One(at));
             self.told(&format!("twist.twist.linear.{axis}"), "velocity", ToldNumbers::One(at));
@@ -124,10 +136,10 @@ impl ToldFields {
         self.told("twist.twist.angular.z", "velocity", ToldNumbers::One(2));
     }
 
-    fn laser(&mut self, laser: &TypedLaser, rate: Option<f64>) {
+    fn laser(&mut self, laser: &TypedLaser, rate: Option<f64>, frame: &str) {
         let (lo, hi) = laser.angles;
         let steps = f64::from(laser.beams.max(2) - 1);
-        self.text("header.frame_id", "laser");
+        self.text("header.frame_id", frame);
         self.number("angle_min", lo);
         self.number("angle_max", hi);
         self.number("angle_increment", (hi - lo) / steps);

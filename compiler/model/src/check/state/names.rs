@@ -14,12 +14,14 @@ use super::{
     item::ExprItem,
     phase::CheckPhase,
     record::{DeclaredFields, RecordEntry},
+    robot::PlacedRobot,
     scope::NameScope,
+    solids::SolidMaker,
     table::{NameTable, OrderedMap},
     template::{DeclaredTemplate, TemplateArguments},
     world::WorldNames,
 };
-use crate::PlayerRef;
+use crate::{PlayerRef, descriptions::DescriptionLibrary};
 
 /// What is checked: the items of a scenario and of its modules, and what of them could not be read.
 pub(crate) struct CheckedSource<'a> {
@@ -30,6 +32,8 @@ pub(crate) struct CheckedSource<'a> {
     pub missing_modules: bool,
     /// The definitions of the versions of ROS that the systems use.
     pub interfaces: &'a [MessageLibrary],
+    /// The robots and maps that are named.
+    pub descriptions: Option<&'a DescriptionLibrary>,
     /// A declaration of the scenario, or a member of its world, could not be read.
     pub unread_items: bool,
     /// A member of the agent or automaton that is being checked could not be read.
@@ -159,6 +163,10 @@ pub(crate) struct WorldState<'a> {
     /// The parts that are being taken apart, the outermost first.
     pub open_parts: Vec<&'a str>,
     pub names: WorldNames,
+    /// The parts that are made from descriptions.
+    pub robots: Vec<PlacedRobot>,
+    /// Makes their bodies.
+    pub solids: SolidMaker,
     /// What needs a world where the scenario has none: one cause, which is said once.
     pub missed: Vec<(Span, String)>,
 }

@@ -260,6 +260,9 @@ impl Checker<'_> {
             let (is, given) = (*is, given.clone());
             return self.not_in_given(noun, is, names, &given);
         }
+        if !prefix.is_empty() && self.world.names.broken.contains(prefix.trim_end_matches('.')) {
+            return None;
+        }
         if !self.world.exists && prefix.is_empty() {
             let span = names[0].span.to(names[names.len() - 1].span);
             self.world.missed.push((span, text(names)));

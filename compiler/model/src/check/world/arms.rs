@@ -2,9 +2,11 @@
 
 use hrdsl_ir::{
     sensor::SensorSource,
-    world::{ArmId, JointDrive, JointMotion},
+    world::{ArmId, ENDLESS, JointDrive, JointMimic, JointMotion},
 };
-use hrdsl_syntax::ast::{ExprSyntax, JointSyntax, NameSyntax, RangeSyntax, WorldMemberKind as Member};
+use hrdsl_syntax::ast::{
+    ExprSyntax, JointListSyntax, JointSyntax, NameSyntax, RangeSyntax, WorldMemberKind as Member,
+};
 
 use crate::check::{
     checker::Checker,
@@ -54,6 +56,7 @@ impl<'a> Checker<'a> {
                 lo,
                 hi,
                 drive,
+                own_name: None,
             });
         }
     }
@@ -94,6 +97,7 @@ impl<'a> Checker<'a> {
             effort: measure(&joint.effort, effort, "the effort"),
             speed: measure(&joint.speed, speed, "the speed"),
             rotor: measure(&joint.rotor, Dimension::INERTIA, "the rotor's inertia").unwrap_or(0.0),
+            ..JointDrive::default()
         }
     }
 
@@ -101,8 +105,9 @@ impl<'a> Checker<'a> {
         let Member::Gripper(gripper) = &p.member.kind else { return };
         let name = &gripper.name;
         let palm = self.local_body(&gripper.palm, &p.prefix).unwrap_or(BodyId(0));
-        let fingers = self.fingers(&gripper.fingers, &p.prefix);
         let tool = self.vector(&gripper.tool, LENGTH).unwrap_or_default();
+        let fingers = self.fingers(&gripper.fingers, &p.prefix);
+        let reversed = self.closed_at_lower(&fingers, palm, tool);
         let reach = self.more_than_zero(&gripper.reach, Dimension::LENGTH, "the reach").unwrap_or(0.0);
         let delay = self.time(&gripper.delay, "the delay", false).unwrap_or(0.0);
         let force =
@@ -115,6 +120,7 @@ impl<'a> Checker<'a> {
                 name: full,
                 palm,
                 fingers,
+                reversed,
                 tool,
                 reach,
                 delay,
@@ -123,34 +129,65 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Fingers slide.
-    fn fingers(&mut self, names: &[NameSyntax], prefix: &str) -> Vec<JointId> {
+    /// Fingers slide, or turn if a description says so; what follows them is a finger, too.
+    fn fingers(&mut self, list: &JointListSyntax, prefix: &str) -> Vec<JointId> {
         let mut fingers = Vec::new();
-        for name in names {
-            let Some(id) = self.world_name(Noun::Joint, std::slice::from_ref(name), prefix) else { continue };
-            let joint = &self.world_mut().joints[usize::from(id)];
-            if joint.motion == JointMotion::Hinge || joint.lo == joint.hi {
+        for (id, name) in self.joint_list(list, prefix).unwrap_or_default() {
+            let described = self.is_described(id);
+            let joint = &self.world_mut().joints[usize::from(id.0)];
+            let moves = joint.hi > joint.lo && joint.hi - joint.lo < ENDLESS;
+            if !moves || joint.motion == JointMotion::Hinge && !described {
                 let message = format!("the joint `{}` does not slide", name.text);
                 let help = "give the finger a joint whose limits are lengths: `limits 0 cm .. 3 cm`";
                 self.report(bad_world(name.span, message, help));
             }
-            fingers.push(JointId(id));
+            fingers.push(id);
         }
+        let all = (0u16..).zip(&self.world_mut().joints);
+        let follows = |joint: &TypedJoint| joint.drive.mimic.is_some_and(|m| fingers.contains(&m.joint));
+        let more: Vec<JointId> = all.filter(|(_, j)| follows(j)).map(|(id, _)| JointId(id)).collect();
+        let new: Vec<JointId> = more.into_iter().filter(|id| !fingers.contains(id)).collect();
+        fingers.extend(new);
         fingers
+    }
+
+    /// `mimic left times -1`
+    pub(super) fn mimic(&mut self, p: &PlacedMember<'a>) {
+        let Member::Joint(joint) = &p.member.kind else { return };
+        let Some(mimic) = &joint.mimic else { return };
+        let leader = self.world_name(Noun::Joint, std::slice::from_ref(&mimic.joint), &p.prefix);
+        let own = self.world.names.joints.get(&format!("{}{}", p.prefix, joint.name.text));
+        let factor = mimic.times.as_ref().map_or(Some(1.0), |e| self.quantity_of(e, Dimension::NUMBER));
+        let (Some(leader), Some(own), Some(factor)) = (leader, own, factor) else { return };
+        let joints = &self.world_mut().joints;
+        let (Some(of), Some(to)) = (joints.get(usize::from(own)), joints.get(usize::from(leader))) else {
+            return;
+        };
+        let is_follower = to.drive.mimic.is_some() || leader == own;
+        let is_followed = joints.iter().any(|j| j.drive.mimic.is_some_and(|m| m.joint.0 == own));
+        if is_follower || is_followed || of.motion != to.motion {
+            let message = format!("the joint `{}` cannot follow `{}`", joint.name.text, mimic.joint.text);
+            let help = "a joint follows one of its own kind that follows none, and none follows it";
+            self.report(bad_world(mimic.joint.span, message, help));
+            return;
+        }
+        if let Some(joint) = self.world_mut().joints.get_mut(usize::from(own)) {
+            joint.drive.mimic = Some(JointMimic { joint: JointId(leader), factor, offset: 0.0 });
+        }
     }
 
     pub(super) fn arm(&mut self, p: &PlacedMember<'a>) {
         let Member::Arm(arm) = &p.member.kind else { return };
-        let (name, joints, tip) = (&arm.name, &arm.joints, &arm.tip);
-        let ids: Vec<JointId> = joints
-            .iter()
-            .filter_map(|j| self.world_name(Noun::Joint, std::slice::from_ref(j), &p.prefix))
-            .map(JointId)
-            .collect();
+        let (name, tip) = (&arm.name, &arm.tip);
+        let listed = self.joint_list(&arm.joints, &p.prefix);
         let tip_id = self.local_body(tip, &p.prefix);
-        if let (true, Some(tip_id)) = (ids.len() == joints.len(), tip_id) {
-            self.chain(&ids, joints, tip, tip_id);
+        // What is fixed, or follows another, has no motor of its own.
+        let mut joints = listed.clone().unwrap_or_default();
+        joints.retain(|(id, _)| !self.is_passive(*id));
+        if let (Some(_), Some(tip_id)) = (&listed, tip_id) {
+            self.chain(&joints, tip, tip_id);
         }
+        let ids: Vec<JointId> = joints.iter().map(|(id, _)| *id).collect();
         let tool = self.vector(&arm.tool, LENGTH).unwrap_or_default();
         let speed = self.more_than_zero(&arm.speed, Dimension::ANGULAR_SPEED, "the speed").unwrap_or(0.0);
         let contact =
@@ -172,24 +209,33 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn chain(&mut self, ids: &[JointId], names: &[NameSyntax], tip: &NameSyntax, tip_id: BodyId) {
-        let joints: Vec<(BodyId, BodyId)> = {
-            let world = self.world_mut();
-            ids.iter().map(|j| &world.joints[usize::from(j.0)]).map(|j| (j.parent, j.child)).collect()
+    fn chain(&mut self, listed: &[(JointId, NameSyntax)], tip: &NameSyntax, tip_id: BodyId) {
+        let ends = |id: JointId| {
+            let world = self.s.world.as_ref()?;
+            let joint = world.joints.get(usize::from(id.0))?;
+            Some((self.rigid_root(joint.parent), self.rigid_root(joint.child)))
         };
-        for (pair, name) in joints.windows(2).zip(&names[1..]) {
-            if pair[0].1 != pair[1].0 {
-                let message = format!("the joint `{}` does not follow the one before it", name.text);
-                self.report(bad_world(
-                    name.span,
-                    message,
-                    "name the joints in order, from the base to the tip",
-                ));
-            }
+        let joints: Vec<(BodyId, BodyId)> = listed.iter().filter_map(|(id, _)| ends(*id)).collect();
+        let follows = joints.windows(2).zip(listed.iter().skip(1));
+        let strays: Vec<NameSyntax> = follows
+            .filter(|(pair, _)| pair.first().map(|j| j.1) != pair.last().map(|j| j.0))
+            .map(|(_, (_, name))| name.clone())
+            .collect();
+        let reaches = joints.last().is_some_and(|last| last.1 == self.rigid_root(tip_id));
+        for name in strays {
+            let message = format!("the joint `{}` does not follow the one before it", name.text);
+            let help = "name the joints in order, from the base to the tip";
+            self.report(bad_world(name.span, message, help));
         }
-        if joints.last().is_some_and(|last| last.1 != tip_id) {
+        if !reaches {
             let message = format!("the arm's last joint does not move `{}`", tip.text);
             self.report(bad_world(tip.span, message, "the tip is the child of the last joint"));
         }
+    }
+
+    /// Whether a joint has nothing to do in an arm.
+    fn is_passive(&self, id: JointId) -> bool {
+        let joint = self.s.world.as_ref().and_then(|world| world.joints.get(usize::from(id.0)));
+        self.is_fixed_joint(id) || joint.is_some_and(|joint| joint.drive.mimic.is_some())
     }
 }

@@ -31,7 +31,8 @@ impl<'a> Checker<'a> {
     pub(super) fn base(&mut self, p: &PlacedMember<'a>) {
         let Member::Base(base) = &p.member.kind else { return };
         let name = &base.name;
-        let body = self.local_body(&base.body, &p.prefix);
+        // A link of a description stands for all that is one with it.
+        let body = self.local_body(&base.body, &p.prefix).map(|body| self.driven_root(body));
         if let Some(body) = body {
             self.drivable(&base.body, body);
         }
@@ -59,6 +60,56 @@ impl<'a> Checker<'a> {
         }
     }
 
+    fn driven_root(&self, body: BodyId) -> BodyId {
+        let described = self.world.robots.iter().any(|robot| robot.link_of(body).is_some());
+        if described { self.rigid_root(body) } else { body }
+    }
+
+    /// `laser eye: base_scan_link`: what the description says of the sensor on this link
+    fn scanner(&mut self, p: &PlacedMember<'a>) {
+        let Member::Scanner { name, body: link } = &p.member.kind else { return };
+        let Some(body) = self.local_body(link, &p.prefix) else { return };
+        let Some(robot) = self.robot_at(&p.prefix) else {
+            let message = format!("nothing says what `{}` measures", name.text);
+            let help =
+                "write `at (0 m, 0 m, 0 m) angles -135 deg .. 135 deg beams 271 range 5 cm .. 10 m` after it";
+            self.report(bad_world(name.span, message, help));
+            return;
+        };
+        let scan = match robot.sensors_on(body).as_slice() {
+            [sensor] => {
+                let [roll, pitch, yaw] = sensor.origin.rpy;
+                let (horizontal, flat) = (sensor.horizontal, roll == 0.0 && pitch == 0.0);
+                let angles = (horizontal.min_angle + yaw, horizontal.max_angle + yaw);
+                let range = (sensor.range_min, sensor.range_max);
+                let fits = i64::from(horizontal.samples) <= MOST_BEAMS
+                    && (0.0..=TAU + ROUNDING).contains(&(angles.1 - angles.0))
+                    && range.0 >= 0.0
+                    && range.1 > range.0;
+                (flat && fits).then(|| TypedLaser {
+                    name: format!("{}{}", p.prefix, name.text),
+                    body,
+                    at: sensor.origin.xyz,
+                    angles,
+                    beams: u16::try_from(horizontal.samples.max(1)).unwrap_or(1),
+                    range,
+                })
+            }
+            _ => None,
+        };
+        let Some(scan) = scan else {
+            let message =
+                format!("the description has no planar range sensor on `{}`, or several", link.text);
+            let help = "say what it measures: `at (…) angles … beams … range …`";
+            self.report(bad_world(link.span, message, help));
+            return;
+        };
+        let (issues, table) = (&mut self.issues, &mut self.world.names.lasers);
+        if issues.declare_as(table, Noun::Laser, &scan.name, name.span).is_some() {
+            self.world_mut().lasers.push(scan);
+        }
+    }
+
     /// A base has a kinematic or dynamic body to itself.
     fn drivable(&mut self, name: &NameSyntax, body: BodyId) {
         let world = self.world_mut();
@@ -76,7 +127,12 @@ impl<'a> Checker<'a> {
         }
     }
 
-    pub(super) fn laser(&mut self, p: &PlacedMember<'a>) {
+    pub(super) fn lasers(&mut self, p: &PlacedMember<'a>) {
+        self.laser(p);
+        self.scanner(p);
+    }
+
+    fn laser(&mut self, p: &PlacedMember<'a>) {
         let Member::Laser(laser) = &p.member.kind else { return };
         let name = &laser.name;
         let body = self.local_body(&laser.body, &p.prefix).unwrap_or(BodyId(0));

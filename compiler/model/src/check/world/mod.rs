@@ -10,6 +10,7 @@ mod mobile;
 pub(in crate::check) mod parts;
 mod placement;
 mod posture;
+pub(in crate::check) mod robot;
 mod sensing;
 pub(in crate::check) mod stimulus;
 
@@ -52,12 +53,13 @@ impl<'a> Checker<'a> {
                 continue;
             }
             found = Some(span);
-            self.build(&world.members, span);
+            self.build(&world.members, None, span);
         }
         self.unused_parts();
     }
 
-    fn build(&mut self, members: &'a [WorldMember], span: Span) {
+    /// `alone` is the description of a part that is checked as if it stood alone in a world.
+    fn build(&mut self, members: &'a [WorldMember], alone: Option<&'a WorldMember>, span: Span) {
         self.s.world = Some(TypedWorld {
             step: 0.01,
             sample: 0.05,
@@ -78,18 +80,31 @@ impl<'a> Checker<'a> {
             span,
         });
         let mut placed = self.flatten(members, "", PartFrame::default(), None);
+        if let Some(member) = alone {
+            let given = self.templates.given.clone();
+            placed.push(PlacedMember { given, ..PlacedMember::alone(member) });
+        }
+        self.world.robots.clear();
         // What is named first must exist first: by kind, not by place.
-        self.pass(&placed, Self::settings_and_bodies);
+        let bodies: [MemberPass<'a>; 3] = [Self::described_bodies, Self::settings_and_bodies, Self::walls];
+        for pass in bodies {
+            self.pass(&placed, pass);
+        }
         self.place_by_others(&mut placed);
-        let passes: [MemberPass<'a>; 11] = [
+        let passes: [MemberPass<'a>; 16] = [
+            Self::of_descriptions,
+            Self::described_joints,
             Self::joint,
+            Self::mimic,
             Self::gripper,
             Self::arm,
+            Self::described_postures,
             Self::posture,
             Self::base,
-            Self::laser,
+            Self::lasers,
             Self::limb,
             Self::figure,
+            Self::settle,
             Self::current,
             Self::signals,
             Self::rules,
@@ -130,9 +145,9 @@ impl<'a> Checker<'a> {
             match &part.params {
                 Some(params) => self.by_itself(params, |c| {
                     c.world.names = WorldNames::default();
-                    c.build(&part.members, part.name.span);
+                    c.build(&part.members, part.description.as_deref(), part.name.span);
                 }),
-                None => self.build(&part.members, part.name.span),
+                None => self.build(&part.members, part.description.as_deref(), part.name.span),
             }
             let members = self.world.names.members;
             self.world.names = kept_names;
@@ -176,6 +191,13 @@ impl<'a> Checker<'a> {
             | Member::Laser(_)
             | Member::Limb(_)
             | Member::Figure(_)
+            | Member::Scanner { .. }
+            | Member::Robot(_)
+            | Member::Packages(_)
+            | Member::Argument { .. }
+            | Member::Semantics(_)
+            | Member::Start(_)
+            | Member::Walls(_)
             | Member::Posture(_)
             | Member::Current { .. }
             | Member::Signal { .. }
@@ -218,6 +240,8 @@ impl<'a> Checker<'a> {
                 stiffness,
                 ghost: body.ghost,
                 graspable: body.graspable,
+                solid: None,
+                own_name: None,
                 span: p.member.span,
             };
             self.world_mut().bodies.push(body);

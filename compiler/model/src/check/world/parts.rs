@@ -36,6 +36,13 @@ pub(crate) struct PlacedMember<'a> {
     pub instance: Option<(NameSyntax, Span)>,
 }
 
+impl<'a> PlacedMember<'a> {
+    /// As it stands in the text.
+    pub fn alone(member: &'a WorldMember) -> Self {
+        Self { prefix: String::new(), frame: PartFrame::default(), member, given: None, instance: None }
+    }
+}
+
 impl<'a> Checker<'a> {
     /// The world's members and those of its parts, in source order, parts in place of their use.
     pub(in crate::check) fn flatten(
@@ -73,6 +80,13 @@ impl<'a> Checker<'a> {
                 | Member::Laser(_)
                 | Member::Limb(_)
                 | Member::Figure(_)
+                | Member::Scanner { .. }
+                | Member::Robot(_)
+                | Member::Packages(_)
+                | Member::Argument { .. }
+                | Member::Semantics(_)
+                | Member::Start(_)
+                | Member::Walls(_)
                 | Member::Posture(_)
                 | Member::Current { .. }
                 | Member::Signal { .. }
@@ -120,7 +134,11 @@ impl<'a> Checker<'a> {
         let outer = std::mem::replace(&mut self.templates.given, given);
         let (before, prefix) = (self.issues.list.len(), format!("{full}."));
         self.world.open_parts.push(&part.name.text);
-        let inner = self.flatten(&part.members, &prefix, frame, instance.clone());
+        let mut inner = self.flatten(&part.members, &prefix, frame, instance.clone());
+        if let Some(member) = part.description.as_deref() {
+            let (given, instance) = (self.templates.given.clone(), instance.clone());
+            inner.insert(0, PlacedMember { prefix, frame, member, given, instance });
+        }
         self.world.open_parts.pop();
         self.templates.given = outer;
         if let Some((name, span)) = &instance {

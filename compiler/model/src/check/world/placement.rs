@@ -48,6 +48,13 @@ fn place_of(member: &Member) -> Option<(&ast::NameSyntax, &PlaceSyntax, Option<&
         | Member::Gripper(_)
         | Member::Base(_)
         | Member::Laser(_)
+        | Member::Scanner { .. }
+        | Member::Robot(_)
+        | Member::Packages(_)
+        | Member::Argument { .. }
+        | Member::Semantics(_)
+        | Member::Start(_)
+        | Member::Walls(_)
         | Member::Limb(_)
         | Member::Figure(_)
         | Member::Posture(_)

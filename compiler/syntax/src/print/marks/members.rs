@@ -3,7 +3,7 @@
 use crate::ast::{
     AccessSyntax, AgentMember, AgentMemberKind, AutomatonMember, AutomatonMemberKind, AutomatonSyntax,
     DeviceMember, DeviceMemberKind, EdgeActionKind, EdgeSyntax, FormulaSyntax, FunctionSyntax, JointSyntax,
-    PlaceSyntax, PlanSyntax, QuerySyntax, RuleTriggerSyntax, SensorClause, StatementSyntax,
+    PlaceSyntax, PlanSyntax, QuerySyntax, RuleTriggerSyntax, SensorClause, StartSyntax, StatementSyntax,
     StatementSyntaxKind, StepSyntax, StepSyntaxKind, SuiteMemberKind, TestMember, TestMemberKind, TurnSyntax,
     VarSyntax, WorldMember, WorldMemberKind,
 };
@@ -305,6 +305,9 @@ impl TokenMarker<'_> {
         for clause in [&joint.effort, &joint.speed, &joint.rotor] {
             self.maybe(clause.as_ref());
         }
+        if let Some(mimic) = &joint.mimic {
+            self.maybe(mimic.times.as_ref());
+        }
     }
 
     fn place(&mut self, place: &PlaceSyntax, turn: Option<&TurnSyntax>) {
@@ -371,6 +374,18 @@ impl TokenMarker<'_> {
                 self.sensing(&laser.sensing);
             }
             WorldMemberKind::Posture(posture) => self.expr(&posture.angles),
+            WorldMemberKind::Start(values) => {
+                for value in values {
+                    if let StartSyntax::Joint { value, .. } = value {
+                        self.expr(value);
+                    }
+                }
+            }
+            WorldMemberKind::Walls(walls) => {
+                self.expr(&walls.height);
+                self.expr(&walls.at);
+                self.maybe(walls.rotated.as_ref());
+            }
             WorldMemberKind::Signal { ty, value, sensing, .. } => {
                 self.ty(ty);
                 self.expr(value);
@@ -384,7 +399,14 @@ impl TokenMarker<'_> {
                 self.maybe(rule.when.as_ref());
                 self.call(&rule.emit);
             }
-            WorldMemberKind::Current { .. } | WorldMemberKind::Allow(_) | WorldMemberKind::Error => {}
+            WorldMemberKind::Scanner { .. }
+            | WorldMemberKind::Robot(_)
+            | WorldMemberKind::Packages(_)
+            | WorldMemberKind::Argument { .. }
+            | WorldMemberKind::Semantics(_)
+            | WorldMemberKind::Current { .. }
+            | WorldMemberKind::Allow(_)
+            | WorldMemberKind::Error => {}
         }
     }
 

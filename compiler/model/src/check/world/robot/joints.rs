@@ -1,0 +1,107 @@
+//! The joints of a description as joints of the world.
+
+use hrdsl_ir::world::{ENDLESS, JointDrive, JointMimic, JointMotion};
+use hrdsl_robots::{RigidTransform, UrdfJoint, UrdfJointKind, UrdfRobot};
+use hrdsl_syntax::ast::WorldMemberKind as Member;
+
+use crate::check::{checker::Checker, world::parts::PlacedMember};
+use crate::{BodyId, JointId, noun::Noun, world::TypedJoint};
+
+/// The inertia of a hinge's rotor is that which its effort brings to this in a second, rad/s²: descriptions do not say it.
+const ROTOR_RATE: f64 = 800.0;
+/// The least and the most of it, kg·m².
+const ROTORS: (f64, f64) = (1e-3, 0.2);
+
+impl<'a> Checker<'a> {
+    pub(in crate::check::world) fn described_joints(&mut self, p: &PlacedMember<'a>) {
+        if !matches!(p.member.kind, Member::Robot(_)) {
+            return;
+        }
+        let Some(at) = self.world.robots.iter().position(|robot| robot.prefix == p.prefix) else { return };
+        let reading = std::sync::Arc::clone(&self.world.robots[at].reading);
+        let Some(robot) = reading.robot.as_ref() else { return };
+        let own = |joint: &UrdfJoint| (joint.name.clone(), joint.place);
+        let Some(names) = self.spelled(robot.joints.iter().map(own), Noun::Joint) else {
+            self.world.names.broken.insert(p.prefix.trim_end_matches('.').to_owned());
+            return;
+        };
+        let mut ids = Vec::new();
+        for (joint, name) in robot.joints.iter().zip(&names) {
+            let full = format!("{}{name}", p.prefix);
+            let (issues, table) = (&mut self.issues, &mut self.world.names.joints);
+            let Some(id) = issues.declare_as(table, Noun::Joint, &full, joint.place.span) else { return };
+            ids.push(JointId(id));
+            let placed = &self.world.robots[at];
+            let (parent, child) = (placed.bodies.get(joint.parent.0), placed.bodies.get(joint.child.0));
+            let pose = placed.poses.get(joint.child.0).copied().unwrap_or(RigidTransform::IDENTITY);
+            let value = placed.values.get(ids.len() - 1).copied().unwrap_or_default();
+            let (lo, hi) = limits(joint);
+            let typed = TypedJoint {
+                name: full,
+                parent: parent.copied().unwrap_or(BodyId(0)),
+                child: child.copied().unwrap_or(BodyId(0)),
+                frame: p.frame,
+                anchor: pose.translation,
+                axis: pose.turned(joint.axis),
+                motion: motion(joint),
+                lo,
+                hi,
+                drive: JointDrive { start: value, ..drive(joint) },
+                own_name: (*name != joint.name).then(|| joint.name.clone()),
+            };
+            self.world_mut().joints.push(typed);
+        }
+        self.gears(robot, &ids);
+        self.world.robots[at].joints = ids;
+    }
+
+    /// What mimics another that mimics follows the last.
+    fn gears(&mut self, robot: &UrdfRobot, ids: &[JointId]) {
+        for (joint, id) in robot.joints.iter().zip(ids) {
+            let Some(first) = &joint.mimic else { continue };
+            let (mut factor, mut offset, mut to) = (first.multiplier, first.offset, first.joint);
+            for _ in 0..robot.joints.len() {
+                let Some(next) = robot.joint(to).and_then(|joint| joint.mimic.as_ref()) else { break };
+                offset += factor * next.offset;
+                factor *= next.multiplier;
+                to = next.joint;
+            }
+            let Some(leader) = ids.get(to.0).copied() else { continue };
+            if let Some(joint) = self.world_mut().joints.get_mut(usize::from(id.0)) {
+                joint.drive.mimic = Some(JointMimic { joint: leader, factor, offset });
+            }
+        }
+    }
+}
+
+fn motion(joint: &UrdfJoint) -> JointMotion {
+    if joint.kind == UrdfJointKind::Prismatic { JointMotion::Slider } else { JointMotion::Hinge }
+}
+
+/// What is free as a whole stands where it is put.
+fn limits(joint: &UrdfJoint) -> (f64, f64) {
+    match joint.kind {
+        UrdfJointKind::Continuous => (-ENDLESS / 2.0, ENDLESS / 2.0),
+        UrdfJointKind::Revolute | UrdfJointKind::Prismatic => {
+            joint.limits.map_or((0.0, 0.0), |limits| (limits.lower, limits.upper))
+        }
+        UrdfJointKind::Fixed | UrdfJointKind::Floating | UrdfJointKind::Planar => (0.0, 0.0),
+    }
+}
+
+fn drive(joint: &UrdfJoint) -> JointDrive {
+    let effort = joint.limits.and_then(|limits| limits.effort);
+    let turns = motion(joint) == JointMotion::Hinge && joint.kind.has_one_value();
+    let rotor = match effort {
+        Some(effort) if turns => (effort / ROTOR_RATE).clamp(ROTORS.0, ROTORS.1),
+        Some(_) | None => 0.0,
+    };
+    JointDrive {
+        effort,
+        speed: joint.limits.and_then(|limits| limits.velocity).filter(|speed| *speed > 0.0),
+        rotor,
+        damping: joint.dynamics.damping,
+        friction: joint.dynamics.friction,
+        ..JointDrive::default()
+    }
+}
