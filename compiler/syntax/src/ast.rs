@@ -17,12 +17,7 @@ pub use crate::expr::{
 };
 use crate::pattern::RequirementPattern;
 pub use crate::system::{ProgramSyntax, SystemMember, SystemMemberKind, SystemSyntax};
-pub use crate::world::{
-    ArmSyntax, BaseSyntax, BodySyntax, CommandParamSyntax, DeviceCommandSyntax, DeviceMember,
-    DeviceMemberKind, DeviceSyntax, ExpectationSyntax, GripperSyntax, JointListSyntax, JointSyntax,
-    LaserSyntax, MimicSyntax, PartSyntax, PostureSyntax, RuleSyntax, RuleTriggerSyntax, StartSyntax,
-    WallsSyntax, WorldMember, WorldMemberKind, WorldSyntax,
-};
+pub use crate::world::*;
 
 /// One file: a scenario, a stdlib module (no `scenario` line), or a file of tests.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

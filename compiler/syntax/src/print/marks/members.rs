@@ -310,6 +310,7 @@ impl TokenMarker<'_> {
         }
     }
 
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub(super) fn world_member(&mut self, member: &WorldMember) {
         self.start(member.span.start);
         match &member.kind {
