@@ -13,6 +13,7 @@ mod exit;
 mod fault;
 mod files;
 mod fix;
+mod hulls;
 mod input;
 mod installing;
 mod project;

@@ -36,13 +36,11 @@ pub(crate) fn load(
     for (syntax, name) in ast.iter().zip(&names) {
         let mut reading = DescriptionReading { files, diagnostics, reader, library: &mut library, name };
         for item in &syntax.items {
-            match &item.kind {
-                ItemSyntaxKind::Part(part) => {
-                    reading.part(part);
-                    reading.maps(&part.members);
-                }
-                ItemSyntaxKind::World(world) => reading.maps(&world.members),
-                _ => {}
+            if let ItemSyntaxKind::Part(part) = &item.kind {
+                reading.part(part);
+                reading.maps(&part.members);
+            } else if let ItemSyntaxKind::World(world) = &item.kind {
+                reading.maps(&world.members);
             }
         }
     }
@@ -69,14 +67,14 @@ impl DescriptionReading<'_> {
         let mut packages = PackageTable::new();
         for member in &part.members {
             let WorldMemberKind::Packages(folder) = &member.kind else { continue };
-            let found = packages.search(self.reader, self.files, &self.from_here(folder), folder.span.into());
+            let found = packages.search(self.reader, self.files, &self.beside(folder), folder.span.into());
             self.say(&found);
         }
-        let semantics = part.members.iter().find_map(|member| match &member.kind {
-            WorldMemberKind::Semantics(path) => Some((self.from_here(path), path.span.into())),
-            _ => None,
+        let semantics = part.members.iter().find_map(|member| {
+            let WorldMemberKind::Semantics(path) = &member.kind else { return None };
+            Some((self.beside(path), path.span.into()))
         });
-        let here = self.from_here(path);
+        let here = self.beside(path);
         let wanted = RobotRequest {
             path: &here,
             place: path.span.into(),
@@ -98,7 +96,7 @@ impl DescriptionReading<'_> {
             if self.library.map(file, &path.text).is_some() {
                 continue;
             }
-            let here = self.from_here(path);
+            let here = self.beside(path);
             let map = match read_map(&here, path.span, self.files, self.reader) {
                 Ok(map) => Some(map),
                 Err(fault) => {
@@ -111,7 +109,7 @@ impl DescriptionReading<'_> {
     }
 
     /// A path from the folder of the file that names it.
-    fn from_here(&self, path: &TextSyntax) -> String {
+    fn beside(&self, path: &TextSyntax) -> String {
         match self.name.rsplit_once('/') {
             Some((folder, _)) if !path.text.starts_with('/') => format!("{folder}/{}", path.text),
             Some(_) | None => path.text.clone(),

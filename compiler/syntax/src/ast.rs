@@ -17,13 +17,7 @@ pub use crate::expr::{
 };
 use crate::pattern::RequirementPattern;
 pub use crate::system::{ProgramSyntax, SystemMember, SystemMemberKind, SystemSyntax};
-pub use crate::world::{
-    ArmSyntax, BaseSyntax, BesideSyntax, BodySyntax, CommandParamSyntax, DeviceCommandSyntax, DeviceMember,
-    DeviceMemberKind, DeviceSyntax, ExpectationSyntax, FigureSyntax, GripperSyntax, JointListSyntax,
-    JointSyntax, LaserSyntax, LimbSyntax, MimicSyntax, PartSyntax, PlaceSide, PlaceSyntax, PostureSyntax,
-    RuleSyntax, RuleTriggerSyntax, SensorClause, SensorClauseKind, StartSyntax, TurnSyntax, WallsSyntax,
-    WorldMember, WorldMemberKind, WorldSyntax,
-};
+pub use crate::world::*;
 
 /// One file: a scenario, a stdlib module (no `scenario` line), or a file of tests.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -33,6 +33,7 @@ use hrdsl_judge::TraceJudge;
 use hrdsl_results::{
     CoverageRatios, InterfaceWarning, OutputSummary, RunEnd, RunMark, TestName, TestResult, TraceJudgement,
 };
+pub use hrdsl_sim::HullStore;
 use hrdsl_sim::SimWorld;
 pub use hrdsl_sut::{
     CapturedOutput, CellSettings, HookedPackage, PreparationStep, ProgramLimits, PythonEnv, StopFlag,

@@ -86,7 +86,7 @@ fn add_chain(world: &mut World, chain: &Chain) {
         world.bodies.push(link);
         let (child, name) = (id(world), format!("joint{number}_{i}"));
         let axis = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]][usize::from(*axis)];
-        let drive = JointDrive { effort: Some(*effort), speed: None, rotor: 0.05 };
+        let drive = JointDrive { effort: Some(*effort), rotor: 0.05, ..JointDrive::default() };
         let (motion, anchor, lo, hi) = (JointMotion::Hinge, at, -2.0, 2.0);
         world.joints.push(Joint { name, parent, child, motion, anchor, axis, lo, hi, drive });
         joints.push(JointId(u16::try_from(world.joints.len() - 1).expect("few joints")));

@@ -26,8 +26,8 @@ use serde::Serialize;
 
 use super::generate::{chosen, describe, save};
 use crate::{
-    color, exit::CommandExit, fault::CommandFault, files, input, installing::InstallProgress, quantity,
-    results_folder::ResultsFolder, terminal,
+    color, exit::CommandExit, fault::CommandFault, files, hulls::HullFolder, input,
+    installing::InstallProgress, quantity, results_folder::ResultsFolder, terminal,
 };
 
 /// What `sim` writes into its folder, the reports last.
@@ -224,7 +224,7 @@ fn prepared<'p>(
     let console = InstallProgress::default();
     let cache = cache()?;
     let env = prepare(system, &dir, &cache, &|step| console.show(step)).map_err(|e| e.to_string())?;
-    let _ = find_hulls(program, &cache);
+    find_hulls(program, &HullFolder { folder: cache.join("hulls") });
     let wanted = args.isolation.map(|how| match how {
         IsolationArg::Namespaces => CellIsolation::Namespaces,
         IsolationArg::Copies => CellIsolation::Copies,

@@ -52,6 +52,7 @@ pub(in crate::check) fn in_automaton(automaton: &AutomatonSyntax) -> bool {
 }
 
 /// Whether a name of this kind may have been declared by what could not be read.
+#[expect(clippy::too_many_lines, reason = "a flat match")]
 pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
     match noun {
         // The language's own words.

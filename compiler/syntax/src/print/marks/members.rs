@@ -323,6 +323,7 @@ impl TokenMarker<'_> {
         clauses.iter().flat_map(|clause| &clause.values).for_each(|value| self.expr(value));
     }
 
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub(super) fn world_member(&mut self, member: &WorldMember) {
         self.start(member.span.start);
         match &member.kind {
