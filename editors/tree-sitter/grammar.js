@@ -798,6 +798,8 @@ module.exports = grammar({
           $.gripper,
           $.base,
           $.laser,
+          $.limb,
+          $.figure,
           $.posture,
           $.current,
           $.signal,
@@ -875,6 +877,7 @@ module.exports = grammar({
             $._rotated,
             $._facing,
             seq(keyword($, "mass"), field("mass", $.expression)),
+            seq(keyword($, "stiffness"), field("stiffness", $.expression)),
             keyword($, "ghost"),
             keyword($, "graspable"),
           ),
@@ -980,6 +983,34 @@ module.exports = grammar({
       seq(
         choice(...["every", "late", "noise", "drift", "dropout", "flip"].map((word) => keyword($, word))),
         list(field("value", $.expression)),
+      ),
+    _body_chain: ($) =>
+      seq(repeat1(seq(field("body", alias($._origin, $.identifier)), "->")), field("body", $.identifier)),
+    limb: ($) =>
+      seq(
+        keyword($, "limb"),
+        field("name", $.identifier),
+        ":",
+        $._body_chain,
+        keyword($, "at"),
+        list(field("pivot", $.expression)),
+      ),
+    figure: ($) =>
+      seq(
+        keyword($, "figure"),
+        field("name", $.identifier),
+        ":",
+        $._body_chain,
+        keyword($, "at"),
+        field("hip", $.expression),
+        keyword($, "limbs"),
+        list(field("limb", $.identifier)),
+        keyword($, "speed"),
+        field("speed", $.expression),
+        keyword($, "turn"),
+        field("turn", $.expression),
+        keyword($, "mass"),
+        field("mass", $.expression),
       ),
     posture: ($) =>
       seq(

@@ -89,6 +89,7 @@ pub fn world(rule: WorldRule) -> World {
         grippers: Vec::new(),
         bases: Vec::new(),
         lasers: Vec::new(),
+        figures: Vec::new(),
         devices: vec![
             Device { name: "arm".into(), kind: DeviceKindId(0), body: DeviceBody::Arm(ArmId(0)) },
             Device { name: "grip".into(), kind: DeviceKindId(1), body: DeviceBody::Gripper(GripperId(0)) },
