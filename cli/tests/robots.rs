@@ -33,7 +33,7 @@ fn an_arm_from_xacro_picks_a_box_with_fingers_that_follow_each_other() {
     copy(folder.path());
     expect_code(&hrdsl_in(folder.path(), "sim pick.hri --check-determinism -o out"), 0);
     let outcomes = outcomes(folder.path(), "out");
-    assert!(["R1", "R2", "R3"].iter().all(|r| outcomes[*r] == "passed"), "{outcomes:?}");
+    assert!(["R1", "R2", "R3"].iter().all(|r| outcomes[*r] == "pass"), "{outcomes:?}");
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn a_base_drives_through_the_door_of_a_map_with_the_laser_of_its_description() {
     copy(folder.path());
     expect_code(&hrdsl_in(folder.path(), "sim door.hri --check-determinism -o out"), 0);
     let outcomes = outcomes(folder.path(), "out");
-    assert!(["R1", "R2", "R3"].iter().all(|r| outcomes[*r] == "passed"), "{outcomes:?}");
+    assert!(["R1", "R2", "R3"].iter().all(|r| outcomes[*r] == "pass"), "{outcomes:?}");
 }
 
 #[test]
