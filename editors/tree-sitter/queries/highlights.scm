@@ -32,12 +32,13 @@
   "causes" "forbids" "precedes" "until" "never" "globally" "at" "most" "count" "bins" "bin" "ignore" "agents" "search"
   "random" "of" "choose" "one" "any" "per" "where" "explore" "stop" "minimise" "witness" "delays" "tests" "warmup"
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts"
-  "meanwhile" "with" "step" "gravity" "body" "joint" "arm" "gripper" "base" "laser" "posture" "current" "signal"
-  "rotated" "mass" "ghost" "graspable" "axis" "limits" "effort" "rotor" "contact" "fingers" "force" "tip" "tool"
-  "speed" "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams" "range" "every" "late" "noise" "drift"
-  "dropout" "flip" "facing" "left" "right" "ahead" "behind" "command" "expect" "run" "coverage" "limit" "budget" "cpu"
-  "wall" "memory" "output" "env" "online" "program" "ros1" "ros2" "messages" "topic" "service" "action" "group"
-  "parameter" "transition" "out" "drives" "latched" "plans"
+  "meanwhile" "with" "step" "gravity" "body" "joint" "arm" "gripper" "base" "laser" "limb" "figure" "posture"
+  "packages" "argument" "semantics" "start" "walls" "current" "signal" "rotated" "mass" "stiffness" "ghost" "graspable"
+  "axis" "limits" "effort" "rotor" "mimic" "times" "height" "contact" "fingers" "force" "limbs" "tip" "tool" "speed"
+  "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams" "range" "every" "late" "noise" "drift" "dropout"
+  "flip" "facing" "left" "right" "ahead" "behind" "command" "expect" "run" "coverage" "limit" "budget" "cpu" "wall"
+  "memory" "output" "env" "online" "program" "ros1" "ros2" "messages" "topic" "service" "action" "group" "parameter"
+  "transition" "out" "drives" "latched" "plans"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return
