@@ -179,7 +179,7 @@ fn faults_are_said_where_they_are() {
             "tip_link=\"tool\"",
             "tip_link=\"tol\"",
             PART,
-            "r.srdf:2:50 HR0807 no link is called `tol`",
+            "r.srdf:2:55 HR0807 no link is called `tol`",
         ),
         ("r.urdf", "", "", "semantics \"no.srdf\"", "made.hri:4:13 HR0807 no.srdf cannot be read"),
         ("r.urdf", "", "", "packages \"ws\"", "made.hri:4:12 HR0807 ws cannot be read"),

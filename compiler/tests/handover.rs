@@ -33,7 +33,7 @@ fn its_program_means_what_it_says() {
     assert!(names(&p.signals, true).iter().any(|n| n == "joint_speed(robot.arm)"));
     let world = p.world.as_ref().unwrap();
     let graspable = |g: &hrdsl_ir::world::Gripper| g.holds.len();
-    assert_eq!(world.grippers.iter().map(graspable).collect::<Vec<_>>(), [4, 4]);
+    assert_eq!(world.grippers.iter().map(graspable).collect::<Vec<_>>(), [4, 4, 4]);
     // Asking is a stimulus and the event that it emits: two edges with a committed location between them.
     let person = p.automata.iter().find(|a| a.name == "Person").unwrap();
     let asks = person.locations.iter().position(|l| l.name == "idle.asked~1").unwrap();

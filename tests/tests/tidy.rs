@@ -17,7 +17,7 @@ const LONG: &[(&str, usize)] = &[
     ("compiler/interop/src/tchecker/export/expr.rs", 509),
     ("compiler/interop/src/uppaal/import/expr.rs", 512),
     ("compiler/ir/src/bdi.rs", 524),
-    ("compiler/ir/src/lowering.rs", 552),
+    ("compiler/ir/src/lowering.rs", 561),
     ("compiler/model/src/check/agents/agent.rs", 570),
     ("compiler/model/src/check/automata/query.rs", 525),
     ("compiler/model/src/check/value/expr.rs", 646),

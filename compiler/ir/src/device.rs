@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 use crate::{
     Unit,
     sensor::SensorSource,
-    world::{ArmId, BaseId, DeviceCommandId, DeviceKindId, GripperId, LaserId, SignalTerm, Vec3},
+    shape::Vec3,
+    world::{ArmId, BaseId, DeviceCommandId, DeviceKindId, GripperId, LaserId, SignalTerm},
 };
 
 /// What the world has of which devices can be made.

@@ -19,6 +19,7 @@ pub mod list;
 pub mod lowering;
 pub mod monitor;
 pub mod sensor;
+pub mod shape;
 pub mod solid;
 pub mod suite;
 pub mod system;

@@ -5,7 +5,10 @@ use std::{ops::Deref, sync::Arc};
 use hrdsl_source::Span;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::world::{BodyId, BodyShape, Vec3};
+use crate::{
+    shape::{BodyShape, Vec3},
+    world_ids::BodyId,
+};
 
 /// Data that many share, and none changes.
 #[derive(Debug, PartialEq)]

@@ -6,6 +6,7 @@
 use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
+pub use crate::shape::{BodyShape, Vec3};
 pub use crate::world_ids::{
     ArmId, BaseId, BodyId, CurrentId, DeviceCommandId, DeviceId, DeviceKindId, FigureId, GripperId, JointId,
     LaserId, SignalId,
@@ -19,8 +20,6 @@ use crate::{
     solid::{SharedData, SolidBody},
     value::{Nanos, Type},
 };
-
-pub type Vec3 = [f64; 3];
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct World {
@@ -103,28 +102,6 @@ pub enum BodyMotion {
     Kinematic,
     /// Drawn by a spring to where actions send it, and pushed by what it meets: the body of somebody alive.
     Guided,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BodyShape {
-    /// Full edge lengths.
-    Box {
-        size: Vec3,
-    },
-    Sphere {
-        radius: f64,
-    },
-    /// Along z; length without the caps.
-    Capsule {
-        radius: f64,
-        length: f64,
-    },
-    /// Along z.
-    Cylinder {
-        radius: f64,
-        length: f64,
-    },
 }
 
 /// The width of the limits of a hinge that has none, rad: they are as far from 0 on both sides.

@@ -33,6 +33,7 @@ pub const LIBRARY_PARTS: &[(&str, &str)] = &[
     ("adult", "std.person"),
     ("base", "std.robots.mobile"),
     ("bert2", "std.robots.bert2"),
+    ("child", "std.person"),
     ("collision", "std.sensors"),
     ("gaze", "std.sensors"),
     ("knock", "std.sensors"),

@@ -265,6 +265,16 @@ impl Checker<'_> {
             }
             return self.world.names.figures.get(&full).map(FigureId);
         }
+        // Whoever mistypes the name of a part that has a figure means the part.
+        if let [part] = of
+            && self.world.names.kind_of(&part.text).is_none()
+        {
+            let figures = self.world.names.figures.names();
+            let names: Vec<String> =
+                figures.map(|name| name.rsplit_once('.').map_or(name, |(part, _)| part).to_owned()).collect();
+            self.unknown(Noun::Figure, part, &names, None);
+            return None;
+        }
         self.world_name(Noun::Figure, of, "").map(FigureId)
     }
 
