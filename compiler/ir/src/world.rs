@@ -35,9 +35,8 @@ pub struct World {
     pub bases: Vec<Base>,
     pub lasers: Vec<Laser>,
     pub figures: Vec<Figure>,
-    /// What the system can command or read: the arms, then the grippers, the bases, the lasers.
+    /// What the system can command or read: the arms, then the grippers, the bases, the lasers. Then what it can tell them.
     pub devices: Vec<Device>,
-    /// What it can tell them.
     pub device_kinds: Vec<DeviceKind>,
     pub currents: Vec<CurrentBody>,
     /// Those signals and devices that are read otherwise than they are.
