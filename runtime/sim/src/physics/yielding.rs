@@ -88,7 +88,13 @@ impl PhysicsAdapter {
                 let root = index(self.parts[j].root);
                 let is_own = i == j || (figure_of[i].is_some() && figure_of[i] == figure_of[j]);
                 let is_met = world.bodies[j].stiffness.is_some() && j < i;
-                if is_own || is_met || self.parts[j].ghost || world.bodies[root].motion == BodyMotion::Fixed {
+                let is_frame = self.world.colliders.get(self.parts[j].collider).is_none();
+                if is_own
+                    || is_met
+                    || is_frame
+                    || self.parts[j].ghost
+                    || world.bodies[root].motion == BodyMotion::Fixed
+                {
                     continue;
                 }
                 let stiffness =
@@ -175,7 +181,11 @@ impl PhysicsAdapter {
 
     /// Where a body can be within a step.
     fn box_in_step(&self, part: usize, dt: f64) -> Aabb {
-        let around = self.world.colliders[self.parts[part].collider].compute_aabb();
+        // A mere frame has no surface.
+        let Some(collider) = self.world.colliders.get(self.parts[part].collider) else {
+            return Aabb::new_invalid();
+        };
+        let around = collider.compute_aabb();
         around.loosened((NEAR / 2.0 + self.speed_of(part) * dt) as f32)
     }
 
