@@ -1,0 +1,155 @@
+//! What a document says of requirements: verdicts, obligations, violations, and what they measure.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What the run says of a requirement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ViewVerdict {
+    Pass,
+    Fail,
+    /// It was never triggered.
+    #[default]
+    Vacuous,
+    /// The run ended while an obligation was pending.
+    Inconclusive,
+    /// It is not known to be violated, in a run that broke off.
+    Error,
+}
+
+/// A requirement, and how this run fared by it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ViewRequirement {
+    /// Such as `R5`.
+    pub id: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+    /// `safety` or `functional`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<String>,
+    /// As the scenario has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+    pub verdict: ViewVerdict,
+    /// The least margin, in `unit`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margin: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// When it was triggered: differences.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub triggers: Vec<i64>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub obligations: Vec<ViewObligation>,
+    /// All violations, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub violations: Vec<ViewViolation>,
+    /// What it judges, as far as it can be drawn.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub measures: Vec<ViewMeasure>,
+}
+
+/// How an obligation ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ObligationOutcome {
+    #[default]
+    Met,
+    Violated,
+    /// The run ended before it was decided.
+    Pending,
+    /// It lapsed: what it was for came to nothing.
+    Dropped,
+}
+
+/// Something that had to happen, or must not, for a while.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ViewObligation {
+    /// When it was made.
+    pub from: u64,
+    /// When it was decided; left out if it never was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<u64>,
+    /// By when it had to be met.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deadline: Option<u64>,
+    pub outcome: ObligationOutcome,
+    /// What made it: `decided(ready: true)`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trigger: Option<String>,
+}
+
+/// A violation.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ViewViolation {
+    pub t: u64,
+    /// In a sentence.
+    pub text: String,
+    /// When the violated obligation was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub since: Option<u64>,
+    /// The steps of the recording that bear it out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<u64>,
+}
+
+/// What a measure is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MeasureKind {
+    /// Between the surfaces of two bodies.
+    Distance,
+    /// Between the x axis of the first body and the way from it to the second.
+    Angle,
+    /// Of a body.
+    Speed,
+    /// Between two bodies, or on one.
+    Force,
+    /// Anything else: it is plotted, and not drawn in the scene.
+    #[default]
+    Signal,
+}
+
+/// How values lie to the limit where the requirement is content.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum LimitRelation {
+    #[serde(rename = "<")]
+    #[default]
+    Below,
+    #[serde(rename = "<=")]
+    AtMost,
+    #[serde(rename = ">")]
+    Above,
+    #[serde(rename = ">=")]
+    AtLeast,
+}
+
+/// A value that a requirement compares with a limit. It is as it should be where value, relation and limit make a true sentence.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ViewMeasure {
+    pub kind: MeasureKind,
+    /// As the scenario has it: `distance(person.hand, robot.palm)`. If a signal has this name, its values are those of the measure.
+    pub name: String,
+    /// The places of the bodies that it is about among the bodies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<usize>,
+    pub relation: LimitRelation,
+    /// In the signal's unit.
+    pub limit: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// The two nearest points. Without them the line goes from origin to origin, and the page says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub points: Option<PointPairs>,
+}
+
+/// Two points over time, interpolated like poses.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PointPairs {
+    /// Differences.
+    pub t: Vec<i64>,
+    /// x, y, z in the world in tenths of a millimetre: differences.
+    pub a: Vec<i64>,
+    pub b: Vec<i64>,
+}

@@ -1,0 +1,55 @@
+// Words over the scene, as elements: they stay sharp, and can be read aloud.
+
+import { Vector3, type Camera } from "three";
+import { h, say } from "../ui/dom.js";
+import type { Label } from "./annotations.js";
+
+export interface Frame {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+export class Labels {
+  readonly element = h("div", { class: "labels" });
+  private readonly all: HTMLElement[] = [];
+  private used = 0;
+
+  begin(): void {
+    this.used = 0;
+  }
+
+  /** Places labels in one part of the scene; those behind the camera or outside are left out, and none covers another. */
+  place(labels: readonly Label[], camera: Camera, frame: Frame): void {
+    const taken: [number, number][] = [];
+    for (const label of labels) {
+      const at = new Vector3(...label.at).project(camera);
+      if (at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05) continue;
+      const x = frame.x + ((at.x + 1) / 2) * frame.width;
+      let y = frame.y + ((1 - at.y) / 2) * frame.height;
+      while (taken.some(([tx, ty]) => Math.abs(tx - x) < 190 && Math.abs(ty - y) < 22)) y += 23;
+      taken.push([x, y]);
+      this.show(label, Math.min(Math.max(x, frame.x + 4), frame.x + frame.width - 4), Math.min(y, frame.y + frame.height - 18));
+    }
+  }
+
+  private show(label: Label, x: number, y: number): void {
+    let element = this.all[this.used];
+    if (!element) {
+      element = h("div", {});
+      this.all.push(element);
+      this.element.append(element);
+    }
+    this.used += 1;
+    const name = `label ${label.kind}`;
+    if (element.className !== name) element.className = name;
+    element.hidden = false;
+    say(element, label.text);
+    element.style.transform = `translate(${Math.round(x + 16)}px, ${Math.round(y - 30)}px)`;
+  }
+
+  end(): void {
+    for (const element of this.all.slice(this.used)) element.hidden = true;
+  }
+}

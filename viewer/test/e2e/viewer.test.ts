@@ -1,0 +1,255 @@
+// The page as people use it, in Chromium without a window.
+
+import assert from "node:assert/strict";
+import { after, before, describe, test } from "node:test";
+import type { Browser, KeyInput, Page } from "puppeteer-core";
+import { chromium, launch, open, SKIPPED } from "./browser.js";
+
+const skip = chromium() === null ? SKIPPED : false;
+
+describe("the viewer in Chromium", { skip }, () => {
+  let browser: Browser;
+  before(async () => {
+    browser = await launch();
+  });
+  after(async () => {
+    await browser.close();
+  });
+
+  const time = (page: Page) => page.$eval(".time", (input) => Number.parseFloat((input as HTMLInputElement).value));
+  const text = (page: Page, selector: string) => page.$eval(selector, (element) => element.textContent ?? "");
+  const settle = (page: Page, ms = 120) => page.evaluate((wait) => new Promise((resolve) => setTimeout(() => requestAnimationFrame(resolve), wait)), ms);
+  const press = async (page: Page, ...keys: KeyInput[]) => {
+    for (const key of keys) await page.keyboard.press(key);
+    await settle(page);
+  };
+  /** How many different colours there are in a few rows of the scene: an empty one has one or two. */
+  const colours = async (page: Page) => {
+    const canvas = await page.$(".stage canvas");
+    assert.ok(canvas);
+    const png = await canvas.screenshot({ encoding: "base64" });
+    return page.evaluate(async (data) => {
+      const image = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))]));
+      const context = new OffscreenCanvas(image.width, image.height).getContext("2d")!;
+      context.drawImage(image, 0, 0);
+      const { data: dots } = context.getImageData(0, 0, image.width, image.height);
+      const seen = new Set<number>();
+      for (let i = 0; i < dots.length; i += 4 * 7) seen.add((dots[i]! << 16) | (dots[i + 1]! << 8) | dots[i + 2]!);
+      return seen.size;
+    }, png);
+  };
+
+  test("opens at the violation", async () => {
+    const { page, faults } = await open(browser, "handover");
+    assert.equal(await time(page), 13.57);
+    assert.match(await text(page, ".requirement[open]"), /R5.*the hand was 4.6 cm from robot.finger_right/s);
+    assert.match(await text(page, ".label.broken"), /4.52 cm +\(≥ 5 cm\) ✗/);
+    assert.equal(await text(page, ".caption"), "MOVE");
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("draws the scene", async () => {
+    const { page, faults } = await open(browser, "homecare");
+    assert.ok((await colours(page)) > 40);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("steps by event, by lane, and to violations", async () => {
+    const { page } = await open(browser, "handover", "#run=bdi_tests.t002&t=0");
+    assert.equal(await time(page), 0);
+    await press(page, "ArrowRight");
+    assert.equal(await time(page), 0.4);
+    await press(page, "ArrowRight", "ArrowRight");
+    assert.equal(await time(page), 9.8);
+    await press(page, "ArrowLeft");
+    assert.equal(await time(page), 0.45);
+    await press(page, "v");
+    assert.equal(await time(page), 13.57);
+    // The first lane is that of the requirement in focus: four triggers, and nothing else.
+    await press(page, "ArrowDown", "ArrowRight");
+    assert.equal(await time(page), 75.17);
+    await press(page, "Escape", "End");
+    assert.equal(await time(page), 300);
+    await press(page, "Home", ".");
+    assert.equal(await time(page), 0.001);
+    await page.close();
+  });
+
+  test("scrubs on the ruler, and goes to what is clicked on a lane", async () => {
+    const { page } = await open(browser, "handover");
+    const { x, y, width } = await page.$eval(".timeline", (element) => element.getBoundingClientRect().toJSON() as { x: number; y: number; width: number });
+    const at = (part: number) => x + 204 + part * (width - 240);
+    await page.mouse.move(at(0.2), y + 40);
+    await page.mouse.down();
+    await page.mouse.move(at(0.4), y + 40);
+    await settle(page);
+    const scrubbed = await time(page);
+    assert.ok(scrubbed > 7 && scrubbed < 11, String(scrubbed));
+    await page.mouse.up();
+    await page.mouse.click(at(0.6), y + 40);
+    await settle(page);
+    assert.ok((await time(page)) > scrubbed);
+    await page.close();
+  });
+
+  test("selects a range by dragging, and every pane follows", async () => {
+    const { page } = await open(browser, "handover");
+    const { x, y } = await page.$eval(".timeline", (element) => element.getBoundingClientRect().toJSON() as { x: number; y: number });
+    await page.click("#tab-events");
+    await page.mouse.move(x + 600, y + 190);
+    await page.mouse.down();
+    await page.mouse.move(x + 700, y + 190, { steps: 4 });
+    await page.mouse.move(x + 900, y + 190, { steps: 4 });
+    await page.mouse.up();
+    await settle(page);
+    assert.match(await text(page, ".transport .range"), /^\d+\.\d\d s … \d+\.\d\d s/);
+    const listed = await page.$$eval("#pane-events .row b", (rows) => rows.map((row) => row.textContent));
+    assert.ok(listed.includes("gripper_closing") && !listed.includes("ask_leg"), listed.join());
+    await page.click("#tab-signals");
+    await settle(page);
+    assert.match(await text(page, "#pane-signals .over"), /…/);
+    await press(page, "Escape");
+    assert.equal(await text(page, ".transport .range"), "");
+    await page.close();
+  });
+
+  test("plays, pauses, and loops in a range", async () => {
+    const { page } = await open(browser, "handover", "#run=bdi_tests.t002&t=20");
+    await press(page, "k", "Space");
+    await settle(page, 800);
+    await press(page, "Space");
+    const played = await time(page);
+    assert.ok(played > 20.1 && played < 30, String(played));
+    await settle(page, 300);
+    assert.equal(await time(page), played);
+    await page.close();
+  });
+
+  test("compares two runs, and marks the first difference", async () => {
+    const { page, faults } = await open(browser, "handover");
+    await press(page, "c");
+    await page.waitForSelector("body[data-runs='2']");
+    await settle(page, 300);
+    assert.match(await text(page, ".stage"), /A {2}bdi_tests.t002.*B {2}bdi_tests.t005/);
+    await press(page, "x");
+    assert.ok((await time(page)) < 13.57);
+    await page.click("#tab-about");
+    await settle(page);
+    assert.match(await text(page, ".difference"), /First difference/);
+    assert.match(await page.evaluate(() => location.hash), /run=bdi_tests.t002/);
+    await press(page, "c");
+    assert.equal(await page.$eval("body", (body) => body.dataset["runs"]), "1");
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("opens compared if the page says so", async () => {
+    const { page } = await open(browser, "compare");
+    assert.equal(await page.$eval("body", (body) => body.dataset["runs"]), "2");
+    await page.close();
+  });
+
+  test("keeps run, time and requirement in its address", async () => {
+    const { page } = await open(browser, "handover", "#run=bdi_tests.t005&t=70.5&focus=R6");
+    assert.equal(await time(page), 70.5);
+    assert.match(await text(page, ".requirement[open]"), /R6/);
+    await press(page, "ArrowRight");
+    await settle(page, 400);
+    assert.match(await page.evaluate(() => location.hash), /run=bdi_tests.t005.*focus=R6.*t=71\.400/);
+    await page.close();
+  });
+
+  test("is light or dark as the system is, until somebody says otherwise", async () => {
+    const { page } = await open(browser, "handover", "", { dark: true });
+    const shown = () => page.$eval("html", (html) => html.dataset["theme"]);
+    assert.equal(await shown(), "dark");
+    await press(page, "t");
+    assert.equal(await shown(), "light");
+    await press(page, "t");
+    assert.equal(await shown(), "dark");
+    // What one test chose must not be seen by the next.
+    await page.evaluate(() => localStorage.clear());
+    await page.close();
+  });
+
+  test("shows its keys, and is used by them alone", async () => {
+    const { page, faults } = await open(browser, "homecare");
+    await press(page, "?");
+    assert.ok(await page.$("dialog[open]"));
+    assert.match(await text(page, "dialog"), /play, pause/);
+    await press(page, "Escape");
+    assert.equal(await page.$("dialog[open]"), null);
+    for (const key of ["1", "2", "3", "4", "5", "6", "7", "a", "w", "q", "f", "b", "l", "+", "-", "0", "PageDown", "[", "]", "z", "j", "g"] as KeyInput[]) await press(page, key);
+    assert.equal(await page.evaluate(() => document.activeElement?.className), "time");
+    await page.keyboard.type("77,x");
+    await press(page, "Enter");
+    assert.equal(await time(page), 77);
+    await press(page, "r");
+    for (let i = 0; i < 6; i += 1) await press(page, "p");
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("reaches every control with the tab key", async () => {
+    const { page } = await open(browser, "handover");
+    const reached = new Set<string>();
+    for (let i = 0; i < 60; i += 1) {
+      await page.keyboard.press("Tab");
+      reached.add(await page.evaluate(() => document.activeElement?.getAttribute("aria-label") ?? document.activeElement?.textContent ?? ""));
+    }
+    for (const label of ["Run", "Compare with", "Light or dark", "Keys", "Scene", "Play", "Event after", "Speed", "Camera", "Time line", "Verdicts", "R5 ✗"]) assert.ok(reached.has(label), `${label}: ${[...reached].join(" | ")}`);
+    await page.close();
+  });
+
+  test("shows what can be shown of bad input, and names the rest", async () => {
+    const { page, faults } = await open(browser, "broken");
+    assert.equal(await page.title(), "bad <input> & more");
+    await page.click("#tab-about");
+    await settle(page);
+    assert.match(await text(page, ".notes"), /The mesh gone.stl is not there/);
+    const choose = async (run: string) => {
+      await page.select("select[aria-label='Run']", run);
+      await settle(page, 300);
+    };
+    await choose("almost nothing");
+    assert.match(await text(page, ".notes"), /no bodies: the scene is empty/);
+    assert.match(await text(page, ".stage .nothing"), /no bodies/);
+    for (const tab of ["verdicts", "events", "log", "code", "signals"]) {
+      await page.click(`#tab-${tab}`);
+      await settle(page);
+      assert.notEqual(await text(page, `#pane-${tab} .nothing`), "", tab);
+    }
+    await choose("wrong parts");
+    await page.click("#tab-about");
+    await settle(page);
+    assert.match(await text(page, ".notes"), /1 of 1 tracks of bodies cannot be read/);
+    await choose("another version");
+    assert.match(await text(page, ".message"), /version 9/);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("says that a template without data has none", async () => {
+    const { page, faults } = await open(browser, "empty");
+    assert.match(await text(page, ".message"), /carries no run/);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("is of use without WebGL", async () => {
+    const page = await browser.newPage();
+    await page.evaluateOnNewDocument(() => {
+      HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
+        apply: (target, self, args) => (String(args[0]).startsWith("webgl") ? null : Reflect.apply(target, self, args)),
+      });
+    });
+    await page.goto(`file://${process.cwd()}/dist/pages/handover.html`);
+    await page.waitForSelector("html[data-opened]");
+    assert.match(await text(page, ".stage .nothing"), /no WebGL/);
+    await press(page, "ArrowRight");
+    assert.equal(await time(page), 14.1);
+    await page.close();
+  });
+});
