@@ -5,7 +5,7 @@ mod support;
 use std::{collections::BTreeMap, fs, path::Path};
 
 use serde_json::Value;
-use support::{expect_code, hrdsl, hrdsl_in, root, stderr, stdout, tree};
+use support::{expect_code, hrdsl, hrdsl_in, root, stdout, tree};
 
 /// The generated files of an example, and what was said of them; checked, and made twice.
 fn generated(example: &str, folder: &Path) -> (BTreeMap<String, String>, String) {
@@ -38,8 +38,8 @@ fn predicted(text: &str) -> Vec<&str> {
     bins
 }
 
-fn lines(example: &str) -> usize {
-    let path = root().join("examples").join(example).join("scenario.hri");
+fn lines(file: &str) -> usize {
+    let path = root().join("examples").join(file);
     fs::read_to_string(path).unwrap().lines().count()
 }
 
@@ -61,7 +61,7 @@ fn home_care_generates_by_all_methods() {
     ];
     assert_eq!(predicted(&files["bdi_tests.hri"]), bins);
     assert_eq!(predicted(&files["ta_tests.hri"]), bins);
-    assert!(said.contains("goals: 68 reached, 0 unreachable, 0 inconclusive"), "{said}");
+    assert!(said.contains("goals: 71 reached, 0 unreachable, 0 inconclusive"), "{said}");
 }
 
 /// What the person's `rest` holds is drawn for each test, and the model's time for it is not waited once more.
@@ -76,22 +76,56 @@ fn a_sampled_hold_is_not_waited_twice() {
     assert!(after_rest.iter().all(|s| !s.starts_with("wait ")), "{after_rest:?}");
 }
 
-#[test]
-fn home_care_has_nothing_to_run_yet() {
+/// A copy of home care, with one test that was written by hand.
+fn home_care(folder: &Path, test: &str) {
+    for (name, bytes) in tree(&root().join("examples/homecare")) {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+    fs::write(folder.join("test.hri"), format!("scenario homecare\n{test}\n")).unwrap();
+}
+
+/// Which requirements a test of home care fails, and which it passes.
+fn failed_and_passed(file: &str, test: &str) -> [Vec<String>; 2] {
     let folder = tempfile::tempdir().unwrap();
-    let scenario = root().join("examples/homecare/scenario.hri");
-    let out = hrdsl(["sim", scenario.to_str().unwrap(), "-o", folder.path().to_str().unwrap()]);
-    expect_code(&out, 2);
-    assert!(stderr(&out).contains("no `system` block"), "{}", stderr(&out));
+    home_care(folder.path(), test);
+    expect_code(&hrdsl_in(folder.path(), &format!("sim {file} test.hri -o out --exit-zero")), 0);
+    let outcomes = outcomes(folder.path());
+    ["fail", "pass"]
+        .map(|wanted| outcomes.iter().filter(|(_, o)| o[0] == wanted).map(|(name, _)| name.clone()).collect())
+}
+
+#[test]
+fn home_care_brings_food_and_clears_the_table() {
+    let test = "test hand.day { person { order(feed); wait 150 s; order(clean); wait 170 s; order(sink); wait 120 s; order(other) } }";
+    assert_eq!(
+        failed_and_passed("scenario.hri", test),
+        [vec![], vec!["R1".to_owned(), "R2".to_owned(), "R3".to_owned()]]
+    );
+}
+
+/// The dog as published topples the robot on its way to the table: the food comes too late, the robot lies about, and does not come home.
+/// The honest one is in the way, and no more.
+#[test]
+fn the_dog_of_home_care_topples_the_robot_only_as_published() {
+    let dog = "await moving(table) within 90 s; wait 10 s; pester; pester; pester; pester; pester; retreat";
+    let test = format!("test hand.dog {{ person {{ order(feed) }} dog {{ {dog} }} }}");
+    let [failed, _] = failed_and_passed("scenario.hri", &test);
+    assert_eq!(failed, ["R1", "R2", "R3", "R4", "Upright"]);
+    let [failed, _] = failed_and_passed("honest.hri", &test);
+    assert!(!failed.contains(&"Upright".to_owned()), "{failed:?}");
 }
 
 /// The published models alone, without world, requirements and suites, have 348 and 131 lines of agents, and 725 and 722
 /// lines of automata.
 #[test]
 fn scenarios_are_short() {
-    assert!(lines("handover") < 348, "{}", lines("handover"));
-    assert!(lines("homecare") < 250, "{}", lines("homecare"));
-    assert!(lines("corridor") < 160, "{}", lines("corridor"));
+    for (file, most) in
+        [("handover/scenario.hri", 348), ("homecare/care.hri", 250), ("corridor/scenario.hri", 160)]
+    {
+        assert!(lines(file) < most, "{file}: {}", lines(file));
+    }
 }
 
 #[test]

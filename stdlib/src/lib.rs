@@ -15,6 +15,7 @@ pub const MODULES: &[(&str, &str)] = &[
     ("std.requirements", include_str!("../requirements.hri")),
     ("std.robots.bert2", include_str!("../robots/bert2.hri")),
     ("std.robots.mobile", include_str!("../robots/mobile.hri")),
+    ("std.robots.tiago", include_str!("../robots/tiago.hri")),
     ("std.sensors", include_str!("../sensors.hri")),
 ];
 

@@ -1,15 +1,33 @@
 //! Suites: those of the case studies against the published ones (the same bins with fewer tests), and what suites may ask for and set.
 
-use std::fs;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
-use hrdsl_compiler::{InputFile, compile};
+use hrdsl_compiler::{InputFile, ModuleLoader, ModuleText, compile, compile_with};
 use hrdsl_ir::{Program, suite::SuiteMethod, test::TestStep};
 use hrdsl_runtime::testgen::{GenerateOptions, generate_with};
 
+/// The modules of an example, but for that of its system: suites are made from the models alone.
+struct ExampleModules(PathBuf);
+
+impl ModuleLoader for ExampleModules {
+    fn load(&self, _from: &str, path: &str) -> Result<ModuleText, String> {
+        let text = if path == "robot.hri" {
+            "// The system.\n".to_owned()
+        } else {
+            fs::read_to_string(self.0.join(path)).map_err(|error| error.to_string())?
+        };
+        Ok(ModuleText { name: path.to_owned(), text })
+    }
+}
+
 fn program(example: &str) -> Program {
-    let path = format!("{}/../examples/{example}/scenario.hri", env!("CARGO_MANIFEST_DIR"));
-    let text = fs::read_to_string(path).unwrap();
-    compile(InputFile { name: "scenario.hri", text: &text }, &[]).program.unwrap()
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(example);
+    let text = fs::read_to_string(folder.join("scenario.hri")).unwrap();
+    let modules = ExampleModules(folder);
+    compile_with(InputFile { name: "scenario.hri", text: &text }, &[], &modules).program.unwrap()
 }
 
 /// How many tests a covering array of pairs gives, without more at random, and how many of them are needed for all bins

@@ -28,6 +28,7 @@ pub mod test;
 pub mod value;
 pub mod world;
 mod world_ids;
+mod world_point;
 
 use serde::{Deserialize, Serialize};
 

@@ -14,7 +14,7 @@ use crate::{
         ClockConstraint, Edge, EdgeAssignment, FunctionStatement, Location, QueryFormula, QueryKind,
         QueryMeasure, SyncLabel, TimeSum, TimeTerm,
     },
-    world::{WorldAction, WorldPoint},
+    world::WorldAction,
 };
 
 /// What an expression becomes where all variables are of one place: an agent's plan, a stimulus.
@@ -307,12 +307,6 @@ impl<E> WorldAction<E> {
             },
             WorldAction::Turn { figure, to } => WorldAction::Turn { figure: *figure, to: to.lower(f) },
         }
-    }
-}
-
-impl<E> WorldPoint<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> WorldPoint {
-        WorldPoint { of: self.of, offset: self.offset.each_ref().map(f) }
     }
 }
 

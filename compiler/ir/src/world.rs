@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::shape::{BodyShape, Vec3};
 pub use crate::world_ids::{
-    ArmId, BaseId, BodyId, CurrentId, DeviceCommandId, DeviceId, DeviceKindId, FigureId, GripperId, JointId,
-    LaserId, SignalId,
+    ArmId, BaseId, BodyId, BodyRef, CurrentId, DeviceCommandId, DeviceId, DeviceKindId, FigureId, GripperId,
+    JointId, LaserId, SignalId,
 };
+pub use crate::world_point::WorldPoint;
 
 use crate::{
     device::{Device, DeviceCommand, DeviceKind},
@@ -317,14 +318,6 @@ pub struct CurrentBody {
     pub by: GripperId,
 }
 
-/// A body, named outright or as [`CurrentBody`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BodyRef {
-    Body(BodyId),
-    Current(CurrentId),
-}
-
 /// `on trigger when guard emit event(args)`: what the world answers as an environment actor, or what it sees the system do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorldRule {
@@ -465,14 +458,6 @@ pub enum Axis {
     X,
     Y,
     Z,
-}
-
-/// A point: a place in the world, or relative to a body's centre (in world axes) at the time of the action.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WorldPoint<E = Expr> {
-    pub of: Option<BodyRef>,
-    /// Metres.
-    pub offset: [E; 3],
 }
 
 /// A change of the world by an environment actor; variables are those of the stimulus.

@@ -36,3 +36,11 @@ ids! {
     /// Index into [`Program::signals`](crate::Program::signals).
     SignalId,
 }
+
+/// A body, named outright or as [`CurrentBody`](crate::world::CurrentBody).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyRef {
+    Body(BodyId),
+    Current(CurrentId),
+}

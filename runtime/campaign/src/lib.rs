@@ -1,6 +1,7 @@
 //! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then [`tally`] adds them up.
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
+mod accuracy;
 mod binding;
 mod forks;
 mod hulls;
@@ -31,7 +32,8 @@ use hrdsl_ir::{
 };
 use hrdsl_judge::TraceJudge;
 use hrdsl_results::{
-    CoverageRatios, InterfaceWarning, OutputSummary, RunEnd, RunMark, TestName, TestResult, TraceJudgement,
+    CoverageRatios, InterfaceWarning, OutputSummary, PhysicsAccuracy, RunEnd, RunMark, TestName, TestResult,
+    TraceJudgement,
 };
 pub use hrdsl_sim::HullStore;
 use hrdsl_sim::SimWorld;
@@ -403,7 +405,7 @@ fn stop_reason(ended: &RunTermination, limit: hrdsl_ir::Nanos) -> String {
 /// A run that never began.
 fn failed(fault: HarnessError) -> HarnessRun {
     let (trace, ports) = (Trace::default(), PortHistory::default());
-    HarnessRun { trace, ended: RunTermination::Fault(fault), ports }
+    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, accuracy: None }
 }
 
 /// What is known about a test when its run is over.
@@ -433,6 +435,7 @@ fn test_result(
         code: ratios(&executed),
         steps: step_lines(program, test),
         output,
+        physics: run.accuracy.map(accuracy::physics).filter(|p| *p != PhysicsAccuracy::default()),
     };
     FinishedTest { result, executed, ports: run.ports, ..FinishedTest::default() }
 }

@@ -47,4 +47,4 @@ pub use system::player::SystemPlayer;
 pub use system::seam::{
     CanceledGoals, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,
 };
-pub use world::{ArmTarget, CommandId, WorldBackend};
+pub use world::{ArmTarget, CommandId, WorldAccuracy, WorldBackend};

@@ -11,6 +11,7 @@ use crate::{
     player::{ActorPlayer, HarnessError, PlayerContext, is_perceived},
     port::PortHistory,
     stage::WorldStage,
+    world::WorldAccuracy,
 };
 
 /// At most so many events at one instant: more is a model in which time cannot pass.
@@ -32,6 +33,8 @@ pub struct HarnessRun {
     pub ended: RunTermination,
     /// What the system's programs opened to speak with each other.
     pub ports: PortHistory,
+    /// How far the world strayed from what cannot be; `None`: there is none, or it cannot tell.
+    pub accuracy: Option<WorldAccuracy>,
 }
 
 /// The loop's state.
@@ -92,7 +95,8 @@ impl<'p> HarnessLoop<'p> {
         self.trace.end = self.now;
         let system = self.players.iter().find(|p| plays_the_system(self.program, p.actors()));
         let ports = system.map(|p| p.ports(self.now)).unwrap_or_default();
-        HarnessRun { trace: self.trace, ended, ports }
+        let accuracy = self.stage.as_ref().and_then(WorldStage::accuracy);
+        HarnessRun { trace: self.trace, ended, ports, accuracy }
     }
 
     fn run_loop(&mut self) -> Result<RunTermination, HarnessError> {

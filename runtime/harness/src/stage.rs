@@ -13,7 +13,7 @@ use crate::{
     edge::EdgeWatch,
     message::PlayerMessage,
     recorder::SignalRecorder,
-    world::{ArmTarget, CommandId, WorldBackend},
+    world::{ArmTarget, CommandId, WorldAccuracy, WorldBackend},
 };
 
 /// The world of one run.
@@ -78,6 +78,12 @@ impl<'p> WorldStage<'p> {
     #[must_use]
     pub fn fault(&self) -> Option<String> {
         self.world.fault()
+    }
+
+    /// How far it strayed from what cannot be.
+    #[must_use]
+    pub fn accuracy(&self) -> Option<WorldAccuracy> {
+        self.world.accuracy()
     }
 
     /// Records the signals that have changed.

@@ -21,6 +21,11 @@ pub trait WorldBackend {
         None
     }
 
+    /// How far it strayed, at worst so far, from what cannot be; `None`: it cannot tell.
+    fn accuracy(&self) -> Option<WorldAccuracy> {
+        None
+    }
+
     /// The present value of a signal, in the SI unit of its type.
     fn read(&mut self, signal: SignalId) -> Value;
 
@@ -71,6 +76,17 @@ pub trait WorldBackend {
 
     /// The commands that have ended since the last call, in the order in which they did, and why those failed that did.
     fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)>;
+}
+
+/// What a simulation of rigid bodies says of itself: how far it strayed at worst from what cannot be, and where.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WorldAccuracy {
+    /// How deep two bodies of one robot were in each other, m.
+    pub self_penetration: Option<(f64, [String; 2])>,
+    /// How deep two other bodies were, m.
+    pub penetration: Option<(f64, [String; 2])>,
+    /// How far a joint was beyond one of its limits, rad or m.
+    pub beyond_limit: Option<(f64, String)>,
 }
 
 /// Where an arm is to be.

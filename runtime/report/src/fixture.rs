@@ -221,6 +221,7 @@ fn test(s: usize, i: usize) -> TestFixture {
                 .map(|_| "RuntimeError: no leg in the gripper".into())
                 .unwrap_or_default(),
         },
+        physics: None,
         error,
     };
     TestFixture { result, executed }

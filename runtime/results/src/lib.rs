@@ -37,7 +37,7 @@ pub use suite::{
     TestExplanation, UncoveredGoal, UnreachedItem,
 };
 pub use tally::{BinResult, RequirementResult, SmallestMargin, VerdictTally};
-pub use test::{OutputSummary, RunMark, TestResult};
+pub use test::{BodyPenetration, LimitExcess, OutputSummary, PhysicsAccuracy, RunMark, TestResult};
 
 /// What kind of file `results.json` is: its `format`.
 pub const FORMAT: &str = "hrdsl-results";

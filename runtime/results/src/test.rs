@@ -45,6 +45,38 @@ pub struct TestResult {
     pub steps: Vec<String>,
     /// What the program wrote.
     pub output: OutputSummary,
+    /// How exact the physics was; left out where there is none, or where it was exact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub physics: Option<PhysicsAccuracy>,
+}
+
+/// How far the physics strayed at worst in a run from what cannot be: rigid bodies in each other, joints beyond their limits.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PhysicsAccuracy {
+    /// Of two bodies of one robot.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub self_penetration: Option<BodyPenetration>,
+    /// Of any two others. Surfaces that yield are meant to be pressed in, and do not count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub penetration: Option<BodyPenetration>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond_limit: Option<LimitExcess>,
+}
+
+/// Two rigid bodies that were in each other.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BodyPenetration {
+    /// m
+    pub depth: f64,
+    pub bodies: [String; 2],
+}
+
+/// A joint that was beyond one of its limits.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LimitExcess {
+    /// rad, or m of a slider
+    pub by: f64,
+    pub joint: String,
 }
 
 /// Something about a run that limits what its verdicts say.

@@ -17,6 +17,7 @@ use crate::{
     physics::{PhysicsAdapter, bad, dynamics::ArmDynamics, index},
     planner::{NoRoute, RoutePlanner},
     profile::{brake_time, braking},
+    rigidity,
     route::{JointRoute, JointTrack},
 };
 
@@ -33,10 +34,6 @@ const PATIENCE: f64 = 1.0;
 const LAG: f64 = 0.04;
 const SLIDER_LAG: f64 = 0.01;
 
-/// How rigid an arm is: the frequency of its controlled joints, 1/s; and the most that this is of the frequency of the steps, so
-/// that they are stable.
-const RIGID: f64 = 25.0;
-const RIGID_OF_STEPS: f64 = 0.25;
 /// How fast the aim comes to set-points, 1/s: they come between steps, now none in one and now two, and their joint goes evenly.
 const SMOOTHING: f64 = 10.0;
 /// How near it must be to be there, rad or m.
@@ -56,6 +53,8 @@ pub(crate) struct ArmControl {
     tip: BodyId,
     tool: SpaceVector,
     figure: ArmFigure,
+    /// The frequency of its controlled joints, 1/s.
+    rigid: f64,
     /// Of each joint, rad/s or m/s.
     speeds: Vec<f64>,
     /// How far each joint may lag behind.
@@ -122,6 +121,7 @@ impl ArmControl {
         let chain = KinematicChain { links, tool: physics.start(arm.tip).point(tool) };
         let numbers: Vec<usize> = arm.joints.iter().map(|id| usize::from(id.0)).collect();
         let base = world.joints[numbers[0]].parent;
+        let rigid = rigidity::of_arm_on(base, physics, world);
         Ok(ArmControl {
             name: arm.name.clone(),
             joints: arm.joints.clone(),
@@ -130,6 +130,7 @@ impl ArmControl {
             figure: ArmFigure::new(&numbers, base, physics),
             speeds,
             lags,
+            rigid,
             losses,
             contact_limit: arm.contact_limit,
             rest: chain.links.iter().map(|link| link.start).collect(),
@@ -333,7 +334,7 @@ impl ArmControl {
     /// those that make good their errors, and of these the torques.
     fn steer(&mut self, a: &[f64], b: &[f64], (h, rate): (f64, f64), physics: &mut PhysicsAdapter) {
         let (positions, speeds) = (self.positions(physics), self.speeds(physics));
-        let (n, rigid) = (self.joints.len(), RIGID.min(RIGID_OF_STEPS / h));
+        let (n, rigid) = (self.joints.len(), rigidity::in_steps(self.rigid, h));
         let mut wanted = DVector::zeros(n);
         for i in 0..n {
             let pace = (b[i] - a[i]) / h;
@@ -436,6 +437,24 @@ impl ArmControl {
     /// Whether it moves a body.
     pub fn moves(&self, body: BodyId) -> bool {
         self.figure.has(body)
+    }
+
+    /// Whether it stands still, and is left out of the next step, with what it holds. It wakes when it has something to do, and before
+    /// anything touches it.
+    pub fn sleeps(&self, held: &[BodyId], physics: &mut PhysicsAdapter) -> bool {
+        let own = self.joints.iter().map(|id| usize::from(id.0));
+        let is_left = !self.is_busy() && !physics.is_approached(self.figure.base, held);
+        own.clone().for_each(|joint| physics.let_sleep(joint, is_left));
+        let sleeps = is_left && own.clone().all(|joint| physics.is_asleep(joint));
+        if !sleeps {
+            own.for_each(|joint| physics.wake(joint));
+        }
+        sleeps
+    }
+
+    /// Whether a joint is one of its own.
+    pub fn has_joint(&self, joint: usize) -> bool {
+        self.joints.iter().any(|id| usize::from(id.0) == joint)
     }
 
     pub fn is_busy(&self) -> bool {

@@ -76,6 +76,8 @@ pub(crate) struct BaseControl {
     stopping: Option<CommandId>,
     /// Of a base that can be pushed and toppled.
     wheels: Option<RollingBase>,
+    /// Its wheels are braked: it stands.
+    is_braked: bool,
     /// It has tipped over, for good.
     has_fallen: bool,
 }
@@ -184,6 +186,7 @@ impl BaseControl {
             obstacles: Vec::new(),
             stopping: None,
             wheels: rolls.then(|| physics.on_wheels(base.body, world)),
+            is_braked: false,
             has_fallen: false,
         };
         if !rolls {
@@ -283,6 +286,15 @@ impl BaseControl {
             at = until;
         }
         self.velocity = velocity;
+        // Who stands is held by friction, within the engine's own step: arms may then move as on a fixed base.
+        let stands = velocity == PlanarVelocity::default();
+        if stands != self.is_braked {
+            self.is_braked = stands;
+            if stands { physics.off_wheels(&wheels) } else { physics.on_wheels_again(&wheels) }
+        }
+        if stands {
+            return;
+        }
         let h = seconds(to - from);
         let yaw = self.heading(physics) + velocity.turn * h / 2.0;
         let ahead = SpaceVector::new(libm::cos(yaw), libm::sin(yaw), 0.0);
@@ -360,7 +372,15 @@ impl BaseControl {
         id.map(|id| (id, Ok(())))
     }
 
+    /// Whether it lies: what it is told to do moves nothing.
+    pub fn has_fallen(&self) -> bool {
+        self.has_fallen
+    }
+
     pub fn is_busy(&self, now: Nanos) -> bool {
+        if self.has_fallen {
+            return self.stopping.is_some();
+        }
         let none = PlanarVelocity::default();
         self.stopping.is_some() || self.velocity != none || self.wanted(now) != none
     }
@@ -554,7 +574,7 @@ mod tests {
     fn goes_on_from_where_an_action_put_it() {
         let mut sim = built(&flat(Vec::new()));
         let metres = |x: f64| Expr::Const(hrdsl_ir::Value::Float(x));
-        let to = WorldPoint { of: None, offset: [metres(2.0), metres(1.0), metres(0.15)] };
+        let to = WorldPoint::free(None, [metres(2.0), metres(1.0), metres(0.15)]);
         sim.act(&WorldAction::Move { body: BodyId(1), to, over: metres(1.0) }, &|_| None).expect("kinematic");
         sim.advance(2 * SECOND);
         assert_eq!(sim.base_pose(BASE).map(|[x, y, _]| [x, y]), Some([2.0, 1.0]));

@@ -34,12 +34,13 @@ const SWIFT: f64 = 2.0;
 /// How much faster than on the average a smooth way is in its middle.
 const PEAK: f64 = 1.875;
 
-/// Where somebody stands, and how turned: m, m, rad.
+/// Where somebody stands, how turned, and how fast turning: m, m, rad, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PlanarStance {
     pub x: f64,
     pub y: f64,
     pub heading: f64,
+    pub spin: f64,
 }
 
 /// Where a head or a hand is to be: on a way in the world, or in one of the figure's own frame.
@@ -96,7 +97,8 @@ impl FigureControl {
         }
         let (build, at) = FigureBuild::new(figure, physics);
         let ahead = at.x_axis();
-        let stance = PlanarStance { x: at.at.x, y: at.at.y, heading: libm::atan2(ahead.y, ahead.x) };
+        let heading = libm::atan2(ahead.y, ahead.x);
+        let stance = PlanarStance { x: at.at.x, y: at.at.y, heading, spin: 0.0 };
         let here =
             |place: BodyFrame| PartAim { in_world: false, path: KinematicPath::new(place, place, 0, 0.0) };
         let hand = |limb: &build::LimbBuild| {
@@ -218,7 +220,7 @@ impl FigureControl {
         self.gather();
         let pushed = self.pushed;
         let points: Vec<[f64; 2]> = points.iter().map(|p| [p[0] - pushed.x, p[1] - pushed.y]).collect();
-        self.walk = Some(WalkPlan::along(&points, speed.min(self.speed), self.turn));
+        self.walk = Some(WalkPlan::along(&points, speed.min(self.speed)));
     }
 
     /// Turns on the spot until it faces a point, m.
@@ -226,7 +228,7 @@ impl FigureControl {
         self.gather();
         let (dx, dy) = (point[0] - self.pushed.x - self.stance.x, point[1] - self.pushed.y - self.stance.y);
         if dx != 0.0 || dy != 0.0 {
-            self.walk = Some(WalkPlan::turn_to(libm::atan2(dy, dx), self.turn));
+            self.walk = Some(WalkPlan::turn_to(libm::atan2(dy, dx)));
         }
     }
 
@@ -260,7 +262,7 @@ impl FigureControl {
         let passed = h * self.rate(physics);
         self.clock += nanos(passed);
         self.move_feet(passed);
-        self.lead(physics);
+        self.lead(h, physics);
     }
 
     /// What pushed it over the last step, N·s, level, less what it leans against.
@@ -282,6 +284,14 @@ impl FigureControl {
     }
 
     fn move_feet(&mut self, passed: f64) {
+        let head = self.head.in_world.then(|| self.head.path.at(self.clock));
+        let facing = match (&self.walk, head) {
+            (Some(walk), _) => walk.facing(&self.stance),
+            (None, Some(head)) => Some(self.stance.heading + self.turned_from(&head)),
+            (None, None) => None,
+        };
+        let turn = self.turn.min(SWIFT / self.swung().max(1e-3));
+        self.stance.turn(facing, turn, passed);
         if let Some(walk) = &mut self.walk {
             walk.go_on(&mut self.stance, passed);
             if walk.is_over() {
@@ -295,24 +305,46 @@ impl FigureControl {
                 self.carried = None;
             }
         }
-        if self.head.in_world {
-            let head = self.head.path.at(self.clock);
-            let looks = head.x_axis();
-            let aside = wrap(libm::atan2(looks.y, looks.x) - self.stance.heading);
-            let neck = if self.reaching { 0.0 } else { NECK };
-            let turn = (aside.abs() - neck).clamp(0.0, self.turn * passed);
-            self.stance.heading = wrap(self.stance.heading + turn.copysign(aside));
-            let (_, _, ahead, _) = self.build.bow(head.at.z - self.ground);
-            self.stance.x = head.at.x - ahead * libm::cos(self.stance.heading);
-            self.stance.y = head.at.y - ahead * libm::sin(self.stance.heading);
+        if let Some(head) = head {
+            let (_, _, ahead, _) = self.build.bow(self.head_height(&head));
+            let aim = about(SpaceVector::z(), self.stance.heading) * SpaceVector::x() * -ahead + head.at;
+            let (dx, dy) = (aim.x - self.stance.x, aim.y - self.stance.y);
+            // Whoever turns with the head low goes round it: no faster than on any other way.
+            let part = (self.speed * passed / libm::hypot(dx, dy).max(1e-9)).min(1.0);
+            self.stance.x += dx * part;
+            self.stance.y += dy * part;
         }
     }
 
-    /// Tells each body where it is to be at the end of the step.
-    fn lead(&mut self, physics: &mut PhysicsAdapter) {
+    /// How far it has to turn yet to look as its head does, rad.
+    fn turned_from(&self, head: &BodyFrame) -> f64 {
+        let looks = head.x_axis();
+        let aside = wrap(libm::atan2(looks.y, looks.x) - self.stance.heading);
+        let neck = if self.reaching { 0.0 } else { NECK };
+        (aside.abs() - neck).max(0.0).copysign(aside)
+    }
+
+    /// How high its head is to be above the ground, m: it bows to where it is turned, and no lower before.
+    fn head_height(&self, head: &BodyFrame) -> f64 {
+        let (height, upright) = (head.at.z - self.ground, self.build.head_at_rest().at.z);
+        if !self.head.in_world || height >= upright {
+            return height;
+        }
+        upright + (height - upright) * libm::cos(self.turned_from(head)).max(0.0)
+    }
+
+    /// How far from its axis it has a hand, if that turns with it, m.
+    fn swung(&self) -> f64 {
+        let own = self.stance_frame();
+        let turning = self.hands.iter().flatten().filter(|hand| !hand.in_world);
+        turning.map(|hand| level(hand.place(&own, self.clock).at - own.at).norm()).fold(0.0, f64::max)
+    }
+
+    /// Tells each body where it is to be at the end of the step, of `h` seconds.
+    fn lead(&mut self, h: f64, physics: &mut PhysicsAdapter) {
         let own = self.stance_frame();
         let head = self.head.place(&own, self.clock);
-        let (hip, lean, ..) = self.build.bow(head.at.z - self.ground);
+        let (hip, lean, ..) = self.build.bow(self.head_height(&head));
         let stance = BodyFrame::new(own.at + self.pushed, own.turn);
         let posture = FigurePosture { stance, sway: self.balance.sway(), hip, lean };
         let moved = physics.strayed(self.build.trunk);
@@ -328,18 +360,26 @@ impl FigureControl {
                 Some(aim) => aim.place(&own, self.clock).at + self.pushed + posture.sway,
                 None => stance.point(limb.rest),
             };
+            let led = |end: SpaceVector| self.build.limb(limb, &posture, end, moved);
+            // A hand is drawn to where it should be; if something holds it back, its arm goes along with it, wherever it is.
             let held_back = limb.end.map_or_else(SpaceVector::zeros, |hand| physics.strayed(hand));
-            let bodies = self.build.limb(limb, &posture, end + held_back, moved);
-            for (body, frame) in bodies.into_iter().take(if limb.end.is_some() { 3 } else { 2 }) {
-                let is_hand = Some(body) == limb.end;
-                aims.push((
-                    body,
-                    if is_hand { BodyFrame::new(frame.at - held_back, frame.turn) } else { frame },
-                ));
-            }
+            let [upper, lower, _] = led(end + held_back);
+            aims.extend([upper, lower]);
+            aims.extend(limb.end.map(|hand| (hand, led(end)[2].1)));
         }
+        // Where a hand passes its own shoulder, or an elbow turns over, a posture would leap: limbs are no faster than hands beside the
+        // trunk, and that no faster than they.
+        let trunk = physics.aim(self.build.trunk).at;
+        let mut carried = SpaceVector::zeros();
         for (body, frame) in aims {
-            physics.lead(body, &frame);
+            let from = physics.aim(body).at;
+            let way = frame.at - from - carried;
+            let part = (SWIFT * h / way.norm().max(1e-9)).min(1.0);
+            let to = if part < 1.0 { from + carried + way * part } else { frame.at };
+            physics.lead(body, &BodyFrame::new(to, frame.turn));
+            if body == self.build.head {
+                carried = physics.aimed(self.build.trunk).at - trunk;
+            }
         }
     }
 
@@ -383,10 +423,8 @@ impl PartAim {
 /// A part that was sent somewhere comes back to where it is at rest, on a way in the figure's frame.
 fn gather_part(aim: &mut PartAim, own: &BodyFrame, rest: BodyFrame, clock: Nanos) {
     let now = own.inverse().then(&aim.place(own, clock));
-    if now != rest {
-        let over = GATHERS.max((rest.at - now.at).norm() * PEAK / SWIFT);
-        *aim = PartAim { in_world: false, path: KinematicPath::new(now, rest, clock, over) };
-    }
+    let over = if now == rest { 0.0 } else { GATHERS.max((rest.at - now.at).norm() * PEAK / SWIFT) };
+    *aim = PartAim { in_world: false, path: KinematicPath::new(now, rest, clock, over) };
 }
 
 fn level(v: SpaceVector) -> SpaceVector {

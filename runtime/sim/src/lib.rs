@@ -44,6 +44,7 @@ mod planner;
 mod profile;
 mod reading;
 mod report;
+mod rigidity;
 mod route;
 #[cfg(test)]
 mod samples;
@@ -63,7 +64,7 @@ pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
 use figure::FigureControl;
 use hand::HandSet;
-pub use hrdsl_harness::{ArmTarget, CommandId};
+pub use hrdsl_harness::{ArmTarget, CommandId, WorldAccuracy};
 pub use hulls::{HullStore, warm_hulls};
 use math::{BodyFrame, SpaceVector};
 use mover::{KinematicPath, LookRequest};
@@ -177,6 +178,25 @@ impl WorldSimulation {
         self.physics.fault()
     }
 
+    /// How far the physics strayed at worst from what cannot be.
+    #[must_use]
+    pub fn accuracy(&self) -> WorldAccuracy {
+        let found = self.physics.accuracy();
+        let pair = |(depth, a, b): (f64, usize, usize)| {
+            let name =
+                |at: usize| self.world.bodies.get(at).map_or_else(String::new, |body| body.name.clone());
+            (depth, [name(a), name(b)])
+        };
+        let joint = |(by, at): (f64, usize)| {
+            (by, self.world.joints.get(at).map_or_else(String::new, |joint| joint.name.clone()))
+        };
+        WorldAccuracy {
+            self_penetration: found.own.map(pair),
+            penetration: found.others.map(pair),
+            beyond_limit: found.beyond.map(joint),
+        }
+    }
+
     /// How many physics steps there were. Signals and measurements change in these alone.
     #[must_use]
     pub fn steps(&self) -> u64 {
@@ -201,8 +221,13 @@ impl WorldSimulation {
 
     fn step(&mut self, next: Nanos) {
         self.before_change(next);
-        self.physics.release_motors();
-        for arm in &mut self.arms {
+        let mut asleep = Vec::with_capacity(self.arms.len());
+        for (arm, hands) in self.arms.iter().zip(&self.arm_hands) {
+            asleep.push(arm.sleeps(&self.hands.held_by_any(hands), &mut self.physics));
+        }
+        let sleeps = |joint: usize| self.arms.iter().zip(&asleep).any(|(arm, a)| *a && arm.has_joint(joint));
+        self.physics.release_motors(sleeps);
+        for (arm, _) in self.arms.iter_mut().zip(&asleep).filter(|(_, asleep)| !**asleep) {
             arm.drive(self.last, next, &mut self.physics);
         }
         for base in &mut self.bases {
@@ -398,9 +423,17 @@ impl WorldSimulation {
         for (i, expr) in point.offset.iter().enumerate() {
             offset[i] = number(expr, var, "a place")?;
         }
-        let Some(of) = point.of else { return Ok(offset) };
-        sense::check_body(of, &self.world, || "a place".into())?;
-        Ok(self.physics.pose(self.view().body(of)).at + offset)
+        let mut place = offset;
+        if let Some(of) = point.of {
+            sense::check_body(of, &self.world, || "a place".into())?;
+            place += self.physics.pose(self.view().body(of)).at;
+        }
+        for [low, high] in &point.within {
+            let (low, high) = (self.place(low, var)?, self.place(high, var)?);
+            // Of an empty box the upper end counts.
+            place = place.sup(&low).inf(&high);
+        }
+        Ok(place)
     }
 
     // ── The system actor ──
@@ -409,8 +442,10 @@ impl WorldSimulation {
     ///
     /// # Errors
     /// If it cannot be begun: out of reach, beyond the limits, not a number, no such device.
+    #[expect(clippy::too_many_lines, reason = "a flat match, an arm for each command")]
     pub fn command(&mut self, command: MotorCommand) -> Result<CommandId, CommandError> {
         let id = CommandId(self.commands);
+        let mut moves = true;
         let replaced = match command {
             MotorCommand::ReachPoint { arm, target, max_speed } => {
                 let at = self.arm(arm, max_speed)?;
@@ -454,7 +489,10 @@ impl WorldSimulation {
             }
             MotorCommand::DriveWheels { base, forward, sideways, turn } => {
                 let now = self.now;
-                let replaced = self.base_mut(base)?.drive(now, PlanarVelocity { forward, sideways, turn })?;
+                let base = self.base_mut(base)?;
+                let replaced = base.drive(now, PlanarVelocity { forward, sideways, turn })?;
+                // Code that does not know that its robot lies goes on driving; the world may rest.
+                moves = !base.has_fallen();
                 self.finished.push((id, Ok(())));
                 replaced
             }
@@ -465,7 +503,9 @@ impl WorldSimulation {
         };
         self.commands += 1;
         self.replaced(replaced);
-        self.wake();
+        if moves {
+            self.wake();
+        }
         Ok(id)
     }
 

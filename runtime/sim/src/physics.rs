@@ -2,6 +2,7 @@
 //!
 //! A joint whose limits are both zero joins its child rigidly: the two are one body of the engine, with two shapes.
 
+pub(crate) mod accuracy;
 mod contact;
 pub(crate) mod dynamics;
 mod energy;
@@ -9,6 +10,7 @@ mod guide;
 mod joints;
 mod losses;
 mod pairs;
+mod roots;
 mod solid;
 mod surface;
 pub(crate) mod wheels;
@@ -22,12 +24,14 @@ use crate::{
     error::SimError,
     math::{BodyFrame, from_pose, from_rpy, from_vector, to_pose, to_vector, v3},
 };
+use accuracy::AccuracyWatch;
 use energy::EnergyWatch;
 use guide::BodyGuide;
 use joints::DrivenJoint;
 use losses::JointLosses;
 use pairs::{ExemptPairs, JointGraph};
-use solid::{SolidExtent, described_mass, solid_shape};
+use roots::{figure_of, rigid_roots};
+use solid::{SolidExtent, described_mass, surface_of};
 use yielding::YieldingPair;
 
 /// One body of the scenario.
@@ -70,21 +74,30 @@ pub(crate) struct PhysicsAdapter {
     losses: JointLosses,
     exempt: ExemptPairs,
     energy: EnergyWatch,
+    accuracy: AccuracyWatch,
+    /// By body: a number of what it is joined to.
+    robots: Vec<usize>,
     /// Where kinematic bodies will be at the end of the next step.
     led: Vec<(RigidBodyHandle, Pose)>,
     /// The time of a step, s.
     step: f64,
     /// The time of the last part of a step, s, and how often the solver divided it.
     part: (f64, usize),
+    /// By body: the same of when the solver last had to do with it. What sleeps keeps the impulses of then.
+    solved: Vec<(f64, usize)>,
     /// The corners of the box outside of which a body is lost, m.
     scene: (Vector, Vector),
 }
 
-/// How often the solver divides a step. With the rotors of the library's arms enough for the tool to be within 1 mm; the cost
+/// How often the solver divides a step in which anything is awake that is not drawn. With the rotors of the library's arms enough for the tool to be within 1 mm; the cost
 /// is in proportion.
 const SUBSTEPS: usize = 4;
 /// How often it goes over all joints and contacts in each part: once, and the links of an arm hang apart by millimetres.
 const SWEEPS: usize = 2;
+/// The same of a world with a robot from a description. Nobody says how heavy its rotors are, and its links may be light: what a motor
+/// does must come to the end of a chain of seven joints within the step, or the arm shakes with all the strength that it has. A few
+/// robots still do with four.
+const SWEEPS_OF_DESCRIBED: usize = 8;
 
 impl PhysicsAdapter {
     pub fn new(world: &World) -> Result<PhysicsAdapter, SimError> {
@@ -94,7 +107,7 @@ impl PhysicsAdapter {
         let parameters = &mut engine.integration_parameters;
         parameters.dt = seconds(world.step) as f32;
         parameters.num_solver_iterations = SUBSTEPS;
-        parameters.num_internal_pgs_iterations = SWEEPS;
+        parameters.num_internal_pgs_iterations = sweeps(world);
         // It would keep contacts of bodies that have parted by centimetres.
         parameters.contact_recycling = false;
         let mut physics = PhysicsAdapter {
@@ -104,11 +117,14 @@ impl PhysicsAdapter {
             yielding: Vec::new(),
             joints: Vec::new(),
             losses: JointLosses::default(),
-            exempt: ExemptPairs::default(),
+            exempt: ExemptPairs::of(world.bodies.len()),
             energy: EnergyWatch::default(),
+            accuracy: AccuracyWatch::default(),
+            robots: Vec::new(),
             led: Vec::new(),
             step: seconds(world.step),
             part: (seconds(world.step), SUBSTEPS),
+            solved: vec![(seconds(world.step), SUBSTEPS); world.bodies.len()],
             scene: (Vector::ZERO, Vector::ZERO),
         };
         physics.add_bodies(world, &roots)?;
@@ -117,6 +133,7 @@ impl PhysicsAdapter {
             let driven = if joint.is_rigid() { None } else { Some(physics.add_joint(joint, world, &graph)) };
             physics.joints.push(driven);
         }
+        physics.robots = graph.bodies_by_robot(&roots);
         physics.losses = JointLosses::of(world);
         let figure_of = figure_of(world);
         physics.exempt_overlaps(world, &graph, &figure_of)?;
@@ -126,6 +143,7 @@ impl PhysicsAdapter {
     }
 
     fn add_bodies(&mut self, world: &World, roots: &[BodyId]) -> Result<(), SimError> {
+        let figure_of = figure_of(world);
         let handles: Vec<Option<RigidBodyHandle>> = (0..world.bodies.len())
             .map(|i| (index(roots[i]) == i).then(|| self.add_rigid(body_id(i), world, roots)))
             .collect();
@@ -156,7 +174,8 @@ impl PhysicsAdapter {
             let (ghost, shape) = (body.ghost, body.shape);
             let name = body.name.clone();
             let guided = motion == BodyMotion::Guided && index(root) == i;
-            self.guides.push(guided.then(|| BodyGuide::new(body.mass, body.stiffness, start)));
+            let has_muscles = figure_of[i].is_some();
+            self.guides.push(guided.then(|| BodyGuide::new(body, start, has_muscles)));
             self.parts.push(PhysicsBody {
                 name,
                 handle,
@@ -192,7 +211,7 @@ impl PhysicsAdapter {
             .zip(&world.joints)
             .any(|(i, j)| !j.is_rigid() && roots[index(j.child)] == id && driven(hrdsl_ir::world::JointId(i)))
         {
-            // A motor that holds it goes on working.
+            // Its arm says when it may: a motor that holds it goes on working.
             builder = builder.can_sleep(false);
         }
         let rotors = moved.filter(|j| j.motion == JointMotion::Hinge && j.drive.rotor > 0.0);
@@ -287,6 +306,7 @@ impl PhysicsAdapter {
             .contacts_enabled(false)
             .build();
         let (parent, child) = (p.handle, b.handle);
+        self.wake_robot(palm);
         let mass = f64::from(self.world.bodies[child].mass());
         self.load(palm, mass);
         self.world.insert_impulse_joint(parent, child, data)
@@ -300,7 +320,9 @@ impl PhysicsAdapter {
     /// The force (N) and the torque (N·m) that a joint between bodies bears, as the solver last found them.
     pub fn borne(&self, joint: ImpulseJointHandle) -> (f64, f64) {
         let Some(found) = self.world.impulse_joints.get(joint) else { return (0.0, 0.0) };
-        let part = self.part.0 / self.part.1 as f64;
+        let held = self.parts.iter().position(|part| part.handle == found.body2());
+        let (time, substeps) = held.map_or(self.part, |at| self.solved[at]);
+        let part = time / substeps as f64;
         let norm = |axes: [usize; 3]| {
             axes.iter().map(|i| f64::from(found.impulses[*i]).powi(2)).sum::<f64>().sqrt() / part
         };
@@ -309,7 +331,20 @@ impl PhysicsAdapter {
 
     pub fn detach(&mut self, palm: BodyId, joint: ImpulseJointHandle) {
         self.load(palm, 0.0);
+        self.wake_robot(palm);
         self.world.remove_impulse_joint(joint);
+    }
+
+    /// Wakes all that is joined to a body.
+    fn wake_robot(&mut self, of: BodyId) {
+        let robot = self.robots[index(of)];
+        for (part, own) in self.parts.iter().zip(&self.robots) {
+            if let Some(body) =
+                self.world.bodies.get_mut(part.handle).filter(|b| *own == robot && b.is_sleeping())
+            {
+                body.wake_up(true);
+            }
+        }
     }
 
     // ── Time ──
@@ -317,9 +352,45 @@ impl PhysicsAdapter {
     pub fn step(&mut self) {
         self.keep_gears();
         self.step_parts();
+        self.note_solved();
         self.watch_energy();
         self.wind_joints();
+        self.watch_accuracy();
         self.stop_lost();
+    }
+
+    /// How often the solver has to divide the next step: not at all while only people move, who have neither joints nor anything
+    /// that lies on them.
+    fn substeps(&self) -> usize {
+        let loose = |(part, guide): (&PhysicsBody, &Option<BodyGuide>)| {
+            let body = &self.world.bodies[part.handle];
+            guide.is_none() && body.is_dynamic() && !body.is_sleeping()
+        };
+        if self.parts.iter().zip(&self.guides).any(loose) { SUBSTEPS } else { 1 }
+    }
+
+    /// Notes for whom the solver was at work in the last part of the step.
+    fn note_solved(&mut self) {
+        for (solved, part) in self.solved.iter_mut().zip(&self.parts) {
+            if !self.world.bodies[part.handle].is_sleeping() {
+                *solved = self.part;
+            }
+        }
+    }
+
+    fn watch_accuracy(&mut self) {
+        self.accuracy.look_at_contacts(&self.world, &self.robots);
+        for joint in 0..self.joints.len() {
+            if self.joints[joint].is_some() && !self.is_asleep(joint) {
+                let (at, limits) = (self.joint_position(joint), self.joint_limits(joint));
+                self.accuracy.look_at_joint(joint, at, limits);
+            }
+        }
+    }
+
+    /// How far the engine strayed at worst from what cannot be.
+    pub fn accuracy(&self) -> &AccuracyWatch {
+        &self.accuracy
     }
 
     /// The box around everything that there is at the start, and as far around as things may get in a test.
@@ -380,58 +451,13 @@ pub(crate) fn bad(what: String, kind: &'static str, index: usize) -> SimError {
     SimError::BadReference { what, kind, index }
 }
 
-/// For each body the figure that it is of.
-fn figure_of(world: &World) -> Vec<Option<usize>> {
-    let mut figures = vec![None; world.bodies.len()];
-    for (i, figure) in world.figures.iter().enumerate() {
-        let limbs = figure.limbs.iter().flat_map(|limb| [limb.upper, limb.lower].into_iter().chain(limb.end));
-        for body in [figure.pelvis, figure.trunk, figure.head].into_iter().chain(limbs) {
-            if let Some(slot) = figures.get_mut(index(body)) {
-                *slot = Some(i);
-            }
-        }
-    }
-    figures
+fn sweeps(world: &World) -> usize {
+    let is_link = |body: &Body| body.motion == BodyMotion::Dynamic && body.solid.is_some();
+    if world.bodies.iter().any(is_link) { SWEEPS_OF_DESCRIBED } else { SWEEPS }
 }
 
 fn start_of(body: &Body) -> BodyFrame {
     BodyFrame::new(v3(body.position), from_rpy(body.rotation))
-}
-
-/// For each body the one that it is rigidly one with: the topmost over joints that cannot move.
-fn rigid_roots(world: &World) -> Result<Vec<BodyId>, SimError> {
-    let count = world.bodies.len();
-    let mut above: Vec<Option<BodyId>> = vec![None; count];
-    for joint in &world.joints {
-        for body in [joint.parent, joint.child] {
-            if index(body) >= count {
-                return Err(bad(format!("joint `{}`", joint.name), "body", index(body)));
-            }
-        }
-        let numbers = joint.anchor.iter().chain(&joint.axis).chain([&joint.lo, &joint.hi]);
-        if !numbers.into_iter().all(|x| x.is_finite()) || v3(joint.axis).norm() < 1e-9 || joint.lo > joint.hi
-        {
-            return Err(SimError::BadNumber { what: format!("a measure of joint `{}`", joint.name) });
-        }
-        let child = index(joint.child);
-        if world.bodies[child].motion != BodyMotion::Dynamic || joint.parent == joint.child {
-            return Err(SimError::BadChild { joint: joint.name.clone() });
-        }
-        if joint.is_rigid() && above[child].replace(joint.parent).is_some() {
-            return Err(SimError::BadChild { joint: joint.name.clone() });
-        }
-    }
-    let root = |start: usize| {
-        let mut at = body_id(start);
-        for _ in 0..=count {
-            match above[index(at)] {
-                Some(up) => at = up,
-                None => return Ok(at),
-            }
-        }
-        Err(SimError::BadChild { joint: world.bodies[start].name.clone() })
-    };
-    (0..count).map(root).collect()
 }
 
 fn checked_mass(body: &Body) -> Result<f32, SimError> {
@@ -441,40 +467,3 @@ fn checked_mass(body: &Body) -> Result<f32, SimError> {
         Err(SimError::BadNumber { what: format!("the mass of body `{}`", body.name) })
     }
 }
-
-/// The shape of a body, and what is measured of it if it has several.
-fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), SimError> {
-    if !body.position.iter().chain(&body.rotation).all(|x| x.is_finite()) {
-        return Err(SimError::BadNumber { what: format!("a measure of body `{}`", body.name) });
-    }
-    match &body.solid {
-        Some(solid) => solid_shape(solid, &body.name).map(|(shape, extent)| (shape, Some(extent))),
-        None => Ok((shape_of(body.shape, &body.name)?, None)),
-    }
-}
-
-fn shape_of(shape: BodyShape, name: &str) -> Result<SharedShape, SimError> {
-    let measures: Vec<f64> = match shape {
-        BodyShape::Box { size } => size.to_vec(),
-        BodyShape::Sphere { radius } => vec![radius],
-        BodyShape::Capsule { radius, length } | BodyShape::Cylinder { radius, length } => {
-            vec![radius, length]
-        }
-    };
-    if measures.iter().any(|m| !m.is_finite() || *m <= 0.0) {
-        return Err(SimError::BadNumber { what: format!("a measure of body `{name}`") });
-    }
-    let half = |x: f64| (x / 2.0) as f32;
-    Ok(match shape {
-        BodyShape::Box { size } => SharedShape::cuboid(half(size[0]), half(size[1]), half(size[2])),
-        BodyShape::Sphere { radius } => SharedShape::ball(radius as f32),
-        BodyShape::Capsule { radius, length } => SharedShape::capsule_z(half(length), radius as f32),
-        // The engine's cylinder lies along y.
-        BodyShape::Cylinder { radius, length } => SharedShape::compound(vec![(
-            Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(SQRT_HALF, 0.0, 0.0, SQRT_HALF)),
-            SharedShape::cylinder(half(length), radius as f32),
-        )]),
-    })
-}
-
-const SQRT_HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{ArmTarget, CheckedCommand, CommandId, WorldBackend};
+use hrdsl_harness::{ArmTarget, CheckedCommand, CommandId, WorldAccuracy, WorldBackend};
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
@@ -86,6 +86,10 @@ impl WorldBackend for SimWorld {
 
     fn fault(&self) -> Option<String> {
         self.sim.fault().map(str::to_owned)
+    }
+
+    fn accuracy(&self) -> Option<WorldAccuracy> {
+        Some(self.sim.accuracy())
     }
 
     fn read(&mut self, signal: SignalId) -> Value {

@@ -3,7 +3,7 @@
 mod common;
 use common::*;
 use hrdsl_ir::Expr;
-use hrdsl_ir::world::*;
+use hrdsl_ir::{device::DeviceBody, world::*};
 use hrdsl_sim::{CommandError, MotorCommand, WorldSimulation};
 use proptest::prelude::*;
 
@@ -231,6 +231,37 @@ fn what_is_held_is_carried_round_what_is_in_its_way() {
         let moved = distance(before, sim.pose(named(&world, &format!("leg{n}"))).unwrap().0);
         assert!(moved < 0.003, "leg {n} moved {moved}");
     }
+}
+
+/// A ball that bounces on somebody's head, far away, divides the steps; the arm goes as if it did not.
+#[test]
+fn a_blow_elsewhere_does_not_jolt_the_arm() {
+    let fastest = |with_ball: bool| {
+        let mut world = table();
+        if with_ball {
+            let mut head =
+                body("head", BodyMotion::Guided, BodyShape::Sphere { radius: 0.1 }, [3.0, 3.0, 1.0], 4.4);
+            head.stiffness = Some(75e3);
+            world.bodies.push(head);
+            let ball = BodyShape::Sphere { radius: 0.05 };
+            world.bodies.push(body("ball", BodyMotion::Dynamic, ball, [3.0, 3.0, 1.4], 0.5));
+        }
+        let mut sim = WorldSimulation::new(&world, &speeds()).unwrap();
+        let (mut fastest, mut ways) = (0.0f64, Vec::new());
+        let id = sim.command(move_to(LEGS[0])).unwrap();
+        let (_, result) = wait(&mut sim, id, |sim| {
+            fastest = fastest.max(float(sim, 0));
+            ways.push(sim.told(DeviceBody::Arm(ARM), "joints").unwrap());
+        });
+        result.unwrap();
+        (fastest, ways)
+    };
+    let (alone, beside) = (fastest(false), fastest(true));
+    let off =
+        |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let off = alone.1.iter().zip(&beside.1).map(off).fold(0.0, f64::max);
+    println!("{} {} rad/s, {off} rad", alone.0, beside.0);
+    assert!((alone.0 - beside.0).abs() < 2e-3 && alone.1.len() == beside.1.len() && off < 2e-3);
 }
 
 proptest! {

@@ -78,7 +78,7 @@ fn what_rests_presses_with_its_weight() {
     settle(&mut sim);
     check(&sim);
     // Something else moves, for so long that what rests is asleep.
-    let to = WorldPoint { of: None, offset: [0.0, -2.0, 2.0].map(Expr::float) };
+    let to = WorldPoint::free(None, [0.0, -2.0, 2.0].map(Expr::float));
     let away = WorldAction::Move { body: BodyId(3), to, over: Expr::float(10.0) };
     sim.act(&away, &|_| None).unwrap();
     sim.advance(sim.now() + 9 * SECOND);

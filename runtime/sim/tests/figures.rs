@@ -3,6 +3,7 @@
 #[path = "common/scene.rs"]
 mod scene;
 
+use proptest::prelude::*;
 use scene::Scene;
 
 const FLOOR: &str = "body floor: fixed box(10 m, 10 m, 10 cm) at (0 m, 0 m, -5 cm)";
@@ -105,7 +106,7 @@ fn a_hand_goes_as_far_as_the_arm_does() {
     assert!(far(scene.at("host.hand"), [0.6, 0.2, 1.1]) < 1e-4, "{:?}", scene.at("host.hand"));
     // Who looks at something does not walk off to reach something else.
     scene.act("look");
-    scene.go_on(1.0, |_| {});
+    scene.go_on(3.0, |_| {});
     let before = scene.at("host.pelvis");
     scene.act("far_off");
     scene.go_on(3.0, |_| {});
@@ -237,4 +238,73 @@ fn who_takes_a_leg_bows_and_reaches_for_it() {
     scene.act("grip");
     scene.go_on(1.0, |_| {});
     assert!(scene.read("gap") < 5e-3 && scene.read("grip") == 1.0, "{}", scene.read("gap"));
+}
+
+/// A hand that was sent exactly to where it is at rest is one of the figure's own again, as any other: it walks on.
+#[test]
+fn who_has_reached_for_something_can_walk_off() {
+    let cup = "body cup: fixed box(4 cm, 4 cm, 4 cm) at (0 m, 0 m, 80 cm)";
+    let stimuli = [
+        ("look", "host.head.look_at(cup, 10 cm, 55 cm, 20 deg)"),
+        ("reach", "host.hand.move_to((-20 cm, 0 m, 80 cm), 1 s)"),
+        ("up", "host.hand.move_to(host.trunk + (-20 cm, 0 m, 20 cm), 1 s)"),
+        ("walk", "host.walk_to((2 m, 1 m, 0 m), 1.2 m/s)"),
+    ];
+    for before in [&["look"][..], &["reach"], &["reach", "up"], &["look", "reach", "up"]] {
+        let mut scene = alone(cup, &stimuli);
+        for stimulus in before {
+            scene.act(stimulus);
+            scene.go_on(6.5, |_| {});
+        }
+        scene.act("walk");
+        scene.go_on(6.0, |_| {});
+        let pelvis = scene.at("host.pelvis");
+        assert!((pelvis[0] - 2.0).abs() < 0.01 && (pelvis[1] - 1.0).abs() < 0.01, "{before:?} {pelvis:?}");
+    }
+}
+
+/// What is stated of a person's motions: it walks at no more than its speed, 1.4 m/s, and no hand is faster than 2 m/s beside its trunk. The hip
+/// and the trunk move as it bows, too.
+const SPEEDS: [(&str, f64); 5] =
+    [("pelvis", 2.6), ("head", 3.4), ("trunk", 2.6), ("hand", 5.0), ("left_hand", 5.0)];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 16, failure_persistence: None, ..ProptestConfig::default() })]
+    #[test]
+    fn nobody_moves_faster_than_people_do(
+        acts in proptest::collection::vec((0usize..7, 0.1f64..4.0), 2..9),
+    ) {
+        let cups = "body cup: fixed box(4 cm, 4 cm, 4 cm) at (0 m, 0 m, 60 cm)
+            body can: fixed box(4 cm, 4 cm, 4 cm) at (2 m, -1.5 m, 1.1 m)";
+        let pace = |(body, _): &(&str, f64)| format!("\nsignal v_{body}: speed to robot = speed(host.{body})");
+        let signals: String = SPEEDS.iter().map(pace).collect();
+        let stimuli = [
+            ("a", "host.walk_to((-1 m, 1 m, 0 m), 1.4 m/s)"),
+            ("b", "host.walk_to((2 m, -1 m, 0 m), (1 m, 0 m, 0 m), 1 m/s)"),
+            ("c", "host.turn_to((2 m, 2 m, 0 m))"),
+            ("d", "host.head.look_at(cup, 10 cm, 55 cm, 20 deg)"),
+            ("e", "host.head.look_at(can, -20 cm, 70 cm, 40 deg)"),
+            ("f", "host.hand.move_to((0 m, 0 m, 60 cm), 800 ms)"),
+            ("g", "host.hand.move_to((2 m, -1 m, 1.4 m), 500 ms)"),
+        ];
+        let mut scene = alone(&format!("{cups}{signals}"), &stimuli);
+        for (which, time) in &acts {
+            scene.act(stimuli[*which].0);
+            let mut fastest = [0.0f64; SPEEDS.len()];
+            let mut jolt = 0.0f64;
+            let mut before = scene.read("v_hand");
+            scene.go_on(*time, |s| {
+                for ((body, _), fastest) in SPEEDS.iter().zip(&mut fastest) {
+                    *fastest = fastest.max(s.read(&format!("v_{body}")));
+                }
+                jolt = jolt.max((s.read("v_hand") - before).abs());
+                before = s.read("v_hand");
+            });
+            for ((body, most), fastest) in SPEEDS.iter().zip(fastest) {
+                prop_assert!(fastest <= *most, "{body} at {fastest} m/s in {} of {acts:?}", stimuli[*which].0);
+            }
+            // Its muscles draw it with 65 N at most, and it has 0.6 kg.
+            prop_assert!(jolt < 1.3, "the hand gains {jolt} m/s in a step, {acts:?}");
+        }
+    }
 }

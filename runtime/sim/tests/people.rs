@@ -88,7 +88,7 @@ fn standing_costs_no_steps() {
     assert!(sim.now() < SECOND);
     let (at, _) = sim.pose(BodyId(1)).expect("a head");
     assert_eq!(at, [0.0, 0.0, 1.0]);
-    let to = WorldPoint { of: None, offset: [1.0, 0.5, 1.2].map(Expr::float) };
+    let to = WorldPoint::free(None, [1.0, 0.5, 1.2].map(Expr::float));
     sim.act(&WorldAction::Move { body: BodyId(1), to, over: Expr::float(1.0) }, &common::none)
         .expect("guided");
     let mut worst = 0.0f64;

@@ -149,7 +149,7 @@ fn run(recipe: &Recipe) -> Result<Vec<u64>, SimError> {
         }
         if let Some((of, to, over)) = recipe.moves.get(i) {
             let at = 1 + of % recipe.things.len().max(1);
-            let to = WorldPoint { of: None, offset: to.map(Expr::float) };
+            let to = WorldPoint::free(None, to.map(Expr::float));
             let body = BodyId(u16::try_from(at).expect("few bodies"));
             let _ = sim.act(&WorldAction::Move { body, to, over: Expr::float(*over) }, &common::none);
         }

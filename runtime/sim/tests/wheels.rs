@@ -74,7 +74,7 @@ fn a_wall_holds_it_and_it_does_not_climb() {
 fn a_top_heavy_one_falls_when_it_is_struck_and_stays_down() {
     let ram = "body ram: kinematic box(10 cm, 40 cm, 10 cm) at (-80 cm, 0 m, 1 m)";
     let mut scene = rover("dynamic", "1 m", "15 kg", ram);
-    let to = hrdsl_ir::world::WorldPoint { of: None, offset: [0.6, 0.0, 1.0].map(hrdsl_ir::Expr::float) };
+    let to = hrdsl_ir::world::WorldPoint::free(None, [0.6, 0.0, 1.0].map(hrdsl_ir::Expr::float));
     let push =
         hrdsl_ir::world::WorldAction::Move { body: scene.body("ram"), to, over: hrdsl_ir::Expr::float(1.0) };
     scene.sim.act(&push, &|_| None).expect("kinematic");
@@ -117,4 +117,27 @@ fn a_person_it_runs_into_feels_its_weight() {
     let formula = 0.5 * f64::sqrt(120e3 * reduced);
     println!("{most:.0} N, formula {formula:.0} N");
     assert!((most / formula - 1.0).abs() < 0.15, "{most} {formula}");
+}
+
+/// The motors of the arm know of no base that gives way, and the base of no arm: each would make good what the other did, and more.
+#[test]
+fn an_arm_as_heavy_as_its_base_does_not_set_it_swinging() {
+    let arm = "body lift: dynamic box(10 cm, 10 cm, 30 cm) at (0 m, 0 m, 75 cm) mass 4 kg
+        body beam: dynamic box(70 cm, 8 cm, 8 cm) at (40 cm, 0 m, 80 cm) mass 8 kg
+        joint rise: mast -> lift at (0 m, 0 m, 60 cm) axis (0, 0, 1) limits -10 cm .. 10 cm effort 2000 N
+        joint swing: lift -> beam at (0 m, 0 m, 80 cm) axis (0, 0, 1) limits -90 deg .. 90 deg effort 60 Nm rotor 0.05 kgm^2
+        arm arm: rise, swing tip beam tool (35 cm, 0 m, 0 m) speed 1 rad/s";
+    let mut scene = rover("dynamic", "60 cm", "2 kg", arm);
+    drive(&mut scene, 0.25, 0.0);
+    let mut turn: f64 = 0.0;
+    scene.go_on(4.0, |scene| turn = turn.max(scene.sim.base_velocity(BASE).expect("a base")[2].abs()));
+    let [x, y, heading] = scene.sim.base_pose(BASE).expect("a base");
+    println!("{x} {y} {heading} {turn}");
+    assert!(
+        (x - 0.97).abs() < 0.01 && y.abs() < 0.005 && heading.abs() < 0.005 && turn < 0.01,
+        "{x} {y} {heading} {turn}"
+    );
+    scene.sim.command(MotorCommand::StopWheels { base: BASE }).expect("a base");
+    scene.go_on(3.0, |_| {});
+    assert_eq!(scene.sim.next_wake(), None, "it rests");
 }

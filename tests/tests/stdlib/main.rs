@@ -107,7 +107,7 @@ fn every_world_stands() {
 fn arms_reach_what_is_in_front_of_them() {
     for (module, places) in [
         ("std.robots.bert2", [[0.48, -0.05, 0.75], [0.4, -0.35, 0.6]]),
-        ("std.robots.mobile", [[0.6, -0.1, 0.7], [0.5, -0.4, 0.5]]),
+        ("std.robots.tiago", [[0.6, -0.1, 0.7], [0.7, 0.1, 0.9]]),
     ] {
         let program = program(module, 0);
         let mut sim = WorldSimulation::new(program.world.as_ref().unwrap(), &program.signals).unwrap();
@@ -139,7 +139,7 @@ fn sensors_say_what_is_so() {
     };
     let send = |sim: &mut WorldSimulation, body: &str, to: [f64; 3]| {
         let body = sim.body_named(body).unwrap();
-        let to = WorldPoint { of: None, offset: to.map(Expr::float) };
+        let to = WorldPoint::free(None, to.map(Expr::float));
         sim.act(&WorldAction::Move { body, to, over: Expr::float(1.0) }, &|_| None).unwrap();
         sim.advance(sim.now() + 2_000_000_000);
     };

@@ -43,7 +43,7 @@ pub const LIBRARY_PARTS: &[(&str, &str)] = &[
     ("pressure", "std.sensors"),
     ("proximity", "std.sensors"),
     ("speedometer", "std.sensors"),
-    ("tiago", "std.robots.mobile"),
+    ("tiago", "std.robots.tiago"),
     ("turtlebot", "std.robots.mobile"),
     ("urg04lx", "std.sensors"),
     ("watched", "std.sensors"),

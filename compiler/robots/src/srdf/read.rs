@@ -150,7 +150,12 @@ impl SemanticsReader<'_> {
         let group = self.named_group(element, "group")?;
         let mut values = Vec::new();
         for joint in element.all("joint") {
-            let read = self.named_joint(joint).and_then(|name| {
+            // Where a free root is, or what another version of the robot has: the other values hold without it.
+            let name = self.named_joint(joint).map_err(|fault| {
+                let is_unknown = matches!(fault.kind, RobotFaultKind::UnknownName { .. });
+                if is_unknown { RobotFault { severity: Severity::Warning, ..fault } } else { fault }
+            });
+            let read = name.and_then(|name| {
                 let value = joint.needs("value")?;
                 let place = joint.place_of(value);
                 let numbers = value.value.split_whitespace().map(|word| numbers_in::<1>(word, place));

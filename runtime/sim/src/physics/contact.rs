@@ -72,13 +72,28 @@ impl PhysicsAdapter {
 
     fn rigid_pushes(&self, body: BodyId) -> impl Iterator<Item = SpaceVector> + '_ {
         let own = self.parts[index(body)].collider;
-        let others = (0..self.parts.len()).map(body_id).map(|other| self.parts[index(other)].collider);
+        let pairs = self.world.contact_pairs_with(own).filter(|pair| pair.has_any_active_contact());
+        let mut found: Vec<(u128, SpaceVector)> = pairs
+            .filter_map(|pair| {
+                let is_first = pair.collider1 == own;
+                let other =
+                    self.world.colliders.get(if is_first { pair.collider2 } else { pair.collider1 })?;
+                let push = self.push(pair);
+                Some((other.user_data, if is_first { -push } else { push }))
+            })
+            .collect();
         // In the order of the bodies: what floats add up to must not depend on the engine's own order.
-        others.filter(move |other| *other != own).filter_map(move |other| {
-            let pair = self.world.narrow_phase.contact_pair(own, other)?;
-            let push = self.push(pair);
-            Some(if pair.collider1 == own { -push } else { push })
-        })
+        found.sort_by_key(|(other, _)| *other);
+        found.into_iter().map(|(_, push)| push)
+    }
+
+    /// The time in which the solver last did what it did to a pair, s: that of the one that can move.
+    fn solved_for(&self, pair: &ContactPair) -> f64 {
+        let number = |handle| self.world.colliders.get(handle).map(|c| c.user_data as usize);
+        let of = |at: usize| self.parts.get(at).filter(|part| self.world.bodies[part.handle].is_dynamic());
+        let moves =
+            [pair.collider1, pair.collider2].into_iter().filter_map(number).find(|at| of(*at).is_some());
+        moves.map_or(self.part, |at| self.solved[at]).0
     }
 
     /// The force on the second of a pair; its opposite is on the first.
@@ -88,6 +103,6 @@ impl PhysicsAdapter {
             let impulse: f64 = manifold.points.iter().map(|point| f64::from(point.data.impulse)).sum();
             sum += from_vector(manifold.data.normal) * impulse;
         }
-        sum / self.part.0
+        sum / self.solved_for(pair)
     }
 }

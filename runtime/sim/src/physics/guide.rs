@@ -4,7 +4,7 @@
 //! touches is where it is to be, to the precision of the engine; one that is pushed gives way, with the mass that a contact feels. It
 //! turns as it is to, as long as nothing keeps it from that.
 
-use hrdsl_ir::world::BodyId;
+use hrdsl_ir::world::{Body, BodyId};
 use rapier3d::prelude::*;
 
 use super::{PhysicsAdapter, index};
@@ -19,6 +19,8 @@ const DAMPING: f64 = 0.7;
 /// With how much a body is drawn at most, N, and how much more for each kg: a hand pushes with less than a trunk.
 const STRENGTH: f64 = 60.0;
 const STRENGTH_PER_MASS: f64 = 8.0;
+/// How fast a body of a figure gets to the speed of its aim, m/s²: no muscle throws a limb off faster.
+const QUICKEST: f64 = 20.0;
 /// Nearer than this it is there, m, and slower than this it stands, m/s.
 const THERE: f64 = 1e-6;
 const STILL: f64 = 1e-5;
@@ -31,6 +33,8 @@ pub(super) struct BodyGuide {
     spring: f64,
     damper: f64,
     strength: f64,
+    /// How fast it gets to the speed of its aim, m/s².
+    quickest: f64,
     /// Where it was to be when the step began, and is to be at its end.
     from: BodyFrame,
     to: BodyFrame,
@@ -49,7 +53,9 @@ pub(super) struct StepPart {
 }
 
 impl BodyGuide {
-    pub fn new(mass: f64, stiffness: Option<f64>, start: BodyFrame) -> Self {
+    /// A body of a figure gets to its speed as muscles do; one that is led alone follows its aim at once.
+    pub fn new(body: &Body, start: BodyFrame, has_muscles: bool) -> Self {
+        let (mass, stiffness) = (body.mass, body.stiffness);
         let own = mass * FREQUENCY * FREQUENCY;
         let spring = stiffness.map_or(own, |k| own.min(BESIDE_SURFACE * k));
         BodyGuide {
@@ -57,6 +63,7 @@ impl BodyGuide {
             spring,
             damper: 2.0 * DAMPING * (spring * mass).sqrt(),
             strength: STRENGTH + STRENGTH_PER_MASS * mass,
+            quickest: if has_muscles { QUICKEST } else { f64::INFINITY },
             from: start,
             to: start,
             pace: SpaceVector::zeros(),
@@ -76,9 +83,10 @@ impl BodyGuide {
         if behind.norm() < THERE && slow.norm() < STILL && ahead.norm() == 0.0 && self.load == 0.0 {
             return SpaceVector::zeros();
         }
-        let pull = behind * self.spring + slow * self.damper;
-        let size = pull.norm();
-        let pull = if size > self.strength { pull * (self.strength / size) } else { pull };
+        // The spring alone is limited, too: who comes free from far behind is damped, and does not shoot back.
+        let pull = limited(behind * self.spring, self.strength) + slow * self.damper;
+        let pull = limited(pull, self.strength);
+        let ahead = limited(ahead, self.quickest * part.dt);
         ahead * (self.mass + self.load) + (pull - weight * self.load) * part.h
     }
 
@@ -108,6 +116,11 @@ impl PhysicsAdapter {
     /// Where a guided body is to be; of another where it is.
     pub fn aim(&self, body: BodyId) -> BodyFrame {
         self.guides[index(body)].as_ref().map_or_else(|| self.pose(body), |guide| guide.from)
+    }
+
+    /// Where a guided body is to be at the end of the next step; of another where it is.
+    pub fn aimed(&self, body: BodyId) -> BodyFrame {
+        self.guides[index(body)].as_ref().map_or_else(|| self.pose(body), |guide| guide.to)
     }
 
     /// A guided body carries so much from now on, kg.
@@ -168,6 +181,12 @@ impl PhysicsAdapter {
         let (a, b) = (self.parts[index(first)].handle, self.parts[index(second)].handle);
         self.world.insert_impulse_joint(a, b, joint);
     }
+}
+
+/// The vector, no longer than so much.
+fn limited(v: SpaceVector, most: f64) -> SpaceVector {
+    let size = v.norm();
+    if size > most { v * (most / size) } else { v }
 }
 
 /// The rotation vector that turns one rotation into the other, rad.

@@ -1,6 +1,7 @@
 //! Joints of the engine: their motors, whose torque is limited, and what they measure.
 
 use hrdsl_ir::world::{BodyId, BodyMotion, Joint, JointMotion, World};
+use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;
 
 use super::{PhysicsAdapter, index, pairs::JointGraph};
@@ -11,16 +12,30 @@ use crate::math::{
 
 /// How a motor that keeps a speed answers to an error of it, N·s/m or N·m·s/rad.
 const FIRM: f32 = 1e5;
+/// How fast the solver puts right what has come apart at a joint: at this rate in the shortest parts of a step, 1/s. As fast as it can
+/// would mean within a part of a step, however short: an arm would be jolted whenever somebody is touched anywhere, and the step divided.
+const MENDS: f32 = 2000.0;
+/// So much damped that nothing but that is soft.
+const STIFF: f32 = 1000.0;
+/// What is so near to a robot that sleeps wakes it, m: contacts begin before surfaces meet.
+const APPROACHED: f32 = 0.02;
 /// How far from its start the engine can limit a hinge, rad.
 const MOST_LIMIT: f64 = 3.1;
 /// The effort of a motor without a limit, N·m or N.
 const UNLIMITED: f64 = 1e9;
+
+/// An arm whose every point stays slower for half a second may sleep, m/s and rad/s.
+const SLEEPS_BELOW: f32 = 1e-3;
+const SLEEPS_BELOW_ANGULAR: f32 = 1e-3;
 
 /// A joint of the engine.
 pub(crate) struct DrivenJoint {
     handle: ImpulseJointHandle,
     parent: RigidBodyHandle,
     child: RigidBodyHandle,
+    /// What bears the torque of a hinge's motor: the parent, or what that slides on. It cannot turn against it, so that it is the same,
+    /// but for the solver, which would have to hand on what a light torso cannot bear.
+    bearer: RigidBodyHandle,
     pub(super) motion: JointMotion,
     /// At the start, in the world.
     axis: SpaceVector,
@@ -64,6 +79,13 @@ impl PhysicsAdapter {
             .local_frame2(to_pose(&c.start.inverse().then(&frame)))
             .contacts_enabled(false)
             .build();
+        // The light links of a described robot would shake.
+        if world.bodies[index(child)].solid.is_none() {
+            data.softness = SpringCoefficients {
+                natural_frequency: STIFF * MENDS / std::f32::consts::TAU,
+                damping_ratio: STIFF,
+            };
+        }
         let start = joint.drive.start;
         let (least, most) = (joint.lo - start, joint.hi - start);
         let is_wide = joint.motion == JointMotion::Hinge && (least <= -MOST_LIMIT || most >= MOST_LIMIT);
@@ -73,6 +95,7 @@ impl PhysicsAdapter {
         }
         let (parent_start, child_start) = (p.start, c.start);
         let (parent_handle, child_handle) = (p.handle, c.handle);
+        let bearer = self.parts[index(self.bearer_of(parent, world))].handle;
         let handle = self.world.insert_impulse_joint(parent_handle, child_handle, data);
         let beyond = graph.beyond(joint, parent, child);
         let dynamic = beyond.into_iter().filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
@@ -81,6 +104,7 @@ impl PhysicsAdapter {
             handle,
             parent: parent_handle,
             child: child_handle,
+            bearer,
             motion: joint.motion,
             axis,
             anchor,
@@ -95,6 +119,31 @@ impl PhysicsAdapter {
             wound: is_wide.then_some(0.0),
             is_run: false,
         }
+    }
+
+    /// A body, or what it slides on in the end.
+    fn bearer_of(&self, body: BodyId, world: &World) -> BodyId {
+        let mut at = body;
+        // No more often than there are joints: a chain of sliders may be closed.
+        for _ in &world.joints {
+            let slides =
+                |j: &&Joint| j.motion == JointMotion::Slider && !j.is_rigid() && self.root(j.child) == at;
+            let Some(slider) = world.joints.iter().find(slides) else { break };
+            at = self.root(slider.parent);
+        }
+        at
+    }
+
+    /// Whether a body, and what it hangs on in the end, is held by nothing fixed or led.
+    pub fn is_loose(&self, body: BodyId, world: &World) -> bool {
+        let mut at = self.root(body);
+        for _ in &world.joints {
+            let Some(above) = world.joints.iter().find(|j| !j.is_rigid() && self.root(j.child) == at) else {
+                break;
+            };
+            at = self.root(above.parent);
+        }
+        world.bodies[index(at)].motion == BodyMotion::Dynamic
     }
 
     // ── What joints measure ──
@@ -156,7 +205,8 @@ impl PhysicsAdapter {
         let at = self.world.bodies[driven.child].center_of_mass();
         let pull = to_vector(axis * driven.effort);
         let (effort, motion) = (driven.effort, driven.motion);
-        for (body, pull) in [(driven.child, pull), (driven.parent, -pull)] {
+        let against = if motion == JointMotion::Hinge { driven.bearer } else { driven.parent };
+        for (body, pull) in [(driven.child, pull), (against, -pull)] {
             let body = &mut self.world.bodies[body];
             match motion {
                 JointMotion::Hinge => body.add_torque(pull, false),
@@ -210,13 +260,67 @@ impl PhysicsAdapter {
         }
     }
 
-    /// Takes back what the motors did in the last step.
-    pub fn release_motors(&mut self) {
-        let ends = self.joints.iter().flatten().flat_map(|driven| [driven.parent, driven.child]);
-        for handle in ends {
-            let body = &mut self.world.bodies[handle];
-            body.reset_torques(false);
-            body.reset_forces(false);
+    /// Whether the bodies that a joint moves may be left out of the steps while they stand still; if not, they wake. What their motors
+    /// do then goes on.
+    pub fn let_sleep(&mut self, joint: usize, may: bool) {
+        let Some(driven) = &self.joints[joint] else { return };
+        let Some(body) = self.world.bodies.get_mut(driven.child) else { return };
+        if may == (body.activation().normalized_linear_threshold >= 0.0) {
+            return;
+        }
+        let activation = body.activation_mut();
+        (activation.normalized_linear_threshold, activation.angular_threshold) =
+            if may { (SLEEPS_BELOW, SLEEPS_BELOW_ANGULAR) } else { (-1.0, -1.0) };
+        if !may {
+            body.wake_up(true);
+        }
+    }
+
+    /// Whether something that moves, and is not of the robot that a body is of, could touch that robot, or what it holds, in the next
+    /// step. The engine would wake what is touched, and solve its joints a step too late.
+    pub fn is_approached(&self, of: BodyId, held: &[BodyId]) -> bool {
+        let robot = self.robots[index(of)];
+        let is_own = |at: usize| self.robots[at] == robot || held.iter().any(|body| index(*body) == at);
+        let of_those = |at: &usize| !self.parts[*at].ghost;
+        let own: Vec<Aabb> = (0..self.parts.len())
+            .filter(|at| is_own(*at))
+            .filter(of_those)
+            .filter_map(|at| self.world.colliders.get(self.parts[at].collider))
+            .map(|collider| collider.compute_aabb())
+            .collect();
+        (0..self.parts.len()).filter(|at| !is_own(*at) && self.moves(*at)).filter(of_those).any(|at| {
+            let swept = self.box_in_step(at, self.step).loosened(APPROACHED);
+            own.iter().any(|own| own.intersects(&swept))
+        })
+    }
+
+    fn moves(&self, part: usize) -> bool {
+        let body = &self.world.bodies[self.parts[part].handle];
+        body.is_dynamic_or_kinematic() && !body.is_sleeping()
+    }
+
+    /// Wakes the body that a joint moves, if it sleeps.
+    pub fn wake(&mut self, joint: usize) {
+        let Some(driven) = &self.joints[joint] else { return };
+        if let Some(body) = self.world.bodies.get_mut(driven.child).filter(|body| body.is_sleeping()) {
+            body.wake_up(true);
+        }
+    }
+
+    /// Whether the body that a joint moves is left out of the steps, since it stands still.
+    pub fn is_asleep(&self, joint: usize) -> bool {
+        self.joints[joint].as_ref().is_some_and(|driven| self.world.bodies[driven.child].is_sleeping())
+    }
+
+    /// Takes back what the motors did in the last step, but for those of arms that sleep: whoever wakes one finds it held.
+    pub fn release_motors(&mut self, sleeps: impl Fn(usize) -> bool) {
+        for (_, driven) in self.joints.iter().enumerate().filter(|(at, _)| !sleeps(*at)) {
+            let Some(driven) = driven else { continue };
+            for handle in [driven.parent, driven.child, driven.bearer] {
+                let body = &mut self.world.bodies[handle];
+                body.reset_torques(false);
+                body.reset_forces(false);
+            }
         }
     }
 

@@ -1,7 +1,5 @@
 //! Which bodies may touch: all that are solid, but for neighbours on a joint, and pairs of one figure that overlap by design.
 
-use std::collections::BTreeSet;
-
 use hrdsl_ir::world::{BodyId, Joint, World};
 use rapier3d::parry;
 use rapier3d::prelude::*;
@@ -13,6 +11,8 @@ use crate::{error::SimError, math::to_pose};
 const NEAR: f32 = 1e-3;
 /// How deep other bodies may be in each other at the start, m: what stands on something is placed by eye.
 const SUNK: f32 = 5e-3;
+/// How many figures have a group of the engine's.
+const FIGURE_GROUPS: u32 = 31;
 
 /// The joints that can move, between bodies that are rigidly one.
 pub(super) struct JointGraph {
@@ -31,6 +31,11 @@ impl JointGraph {
             figures.iter_mut().filter(|f| **f == from).for_each(|f| *f = into);
         }
         JointGraph { edges, figures }
+    }
+
+    /// By body: a number of the figure that it is of, or of the body that it is one with.
+    pub fn bodies_by_robot(&self, roots: &[BodyId]) -> Vec<usize> {
+        roots.iter().map(|root| self.figures[index(*root)]).collect()
     }
 
     /// The bodies on the child's side of a joint, the child first. Of a joint that closes a loop, all of the figure.
@@ -52,30 +57,46 @@ impl JointGraph {
     }
 }
 
-/// Pairs of bodies, by number, the smaller first, that never touch.
+/// Pairs of bodies, by number, that never touch, or in another way than the engine's. It is asked for every pair that is near, in every
+/// step: so each pair is a bit of two matrices.
 #[derive(Default)]
 pub(super) struct ExemptPairs {
-    pairs: BTreeSet<(u128, u128)>,
-    /// Those that touch in another way than the engine's.
-    yielding: BTreeSet<(u128, u128)>,
+    bodies: usize,
+    /// Those that never touch.
+    never: Vec<bool>,
+    /// Those that the engine leaves out: these, and those that yield.
+    left_out: Vec<bool>,
 }
 
 impl ExemptPairs {
-    fn has(&self, a: u128, b: u128) -> bool {
-        self.pairs.contains(&(a.min(b), a.max(b)))
+    pub fn of(bodies: usize) -> ExemptPairs {
+        ExemptPairs { bodies, never: vec![false; bodies * bodies], left_out: vec![false; bodies * bodies] }
+    }
+
+    fn has(&self, a: usize, b: usize) -> bool {
+        self.never.get(a * self.bodies + b).copied().unwrap_or(false)
+    }
+
+    fn exempt(&mut self, a: usize, b: usize) {
+        for at in [a * self.bodies + b, b * self.bodies + a] {
+            self.never[at] = true;
+            self.left_out[at] = true;
+        }
     }
 
     pub fn yields(&mut self, a: usize, b: usize) {
-        self.yielding.insert((a.min(b) as u128, a.max(b) as u128));
+        for at in [a * self.bodies + b, b * self.bodies + a] {
+            self.left_out[at] = true;
+        }
     }
 }
 
 impl PhysicsHooks for ExemptPairs {
     fn filter_contact_pair(&self, context: &PairFilterContext<'_>) -> Option<SolverFlags> {
-        let number = |handle: ColliderHandle| context.colliders[handle].user_data;
-        let (a, b) = (number(context.collider1), number(context.collider2));
-        let exempt = self.has(a, b) || self.yielding.contains(&(a.min(b), a.max(b)));
-        (!exempt).then_some(SolverFlags::COMPUTE_RIGID_IMPULSES)
+        let number = |handle: ColliderHandle| context.colliders[handle].user_data as usize;
+        let at = number(context.collider1) * self.bodies + number(context.collider2);
+        let is_left_out = self.left_out.get(at).copied().unwrap_or(false);
+        (!is_left_out).then_some(SolverFlags::COMPUTE_RIGID_IMPULSES)
     }
 }
 
@@ -91,13 +112,14 @@ impl PhysicsAdapter {
         figure_of: &[Option<usize>],
     ) -> Result<(), SimError> {
         self.exempt_apart(world);
+        self.group_figures(figure_of);
         for a in 0..self.parts.len() {
             for b in a + 1..self.parts.len() {
                 if self.parts[a].ghost || self.parts[b].ghost || self.parts[a].root == self.parts[b].root {
                     continue;
                 }
                 if figure_of[a].is_some() && figure_of[a] == figure_of[b] {
-                    self.exempt(a, b);
+                    self.exempt.exempt(a, b);
                     continue;
                 }
                 let depth = self.start_depth(a, b);
@@ -118,12 +140,30 @@ impl PhysicsAdapter {
         Ok(())
     }
 
+    /// Bodies of one figure never meet. There are many such pairs, always near each other: the engine's groups leave them out at a
+    /// glance. It has 32 groups, of which the first is everybody's; figures beyond are asked for each time.
+    fn group_figures(&mut self, figure_of: &[Option<usize>]) {
+        for (part, figure) in figure_of.iter().enumerate() {
+            let Some(figure) = figure else { continue };
+            if let Some(group) = u32::try_from(*figure).ok().filter(|figure| *figure < FIGURE_GROUPS) {
+                let own = Group::from_bits_truncate(2 << group);
+                let groups =
+                    InteractionGroups::new(own, Group::ALL.difference(own), InteractionTestMode::And);
+                if let Some(collider) = self.world.colliders.get_mut(self.parts[part].collider) {
+                    collider.set_collision_groups(groups);
+                }
+            } else {
+                self.filter(part);
+            }
+        }
+    }
+
     /// The pairs that descriptions say are never to be looked at together.
     fn exempt_apart(&mut self, world: &World) {
         for (a, body) in world.bodies.iter().enumerate() {
             let Some(solid) = &body.solid else { continue };
             for b in solid.exempt.iter().map(|b| index(*b)).filter(|b| *b < world.bodies.len()) {
-                self.exempt.pairs.insert((a.min(b) as u128, a.max(b) as u128));
+                self.exempt.exempt(a, b);
                 self.filter(a);
                 self.filter(b);
             }
@@ -131,7 +171,7 @@ impl PhysicsAdapter {
     }
 
     fn exempt(&mut self, a: usize, b: usize) {
-        self.exempt.pairs.insert((a as u128, b as u128));
+        self.exempt.exempt(a, b);
         self.filter(a);
         self.filter(b);
     }
@@ -157,7 +197,7 @@ impl PhysicsAdapter {
             && !pb.ghost
             && pa.root != pb.root
             && (pa.gives_way() || pb.gives_way())
-            && !self.exempt.has(index(a) as u128, index(b) as u128)
+            && !self.exempt.has(index(a), index(b))
             && !self.are_neighbours(pa.root, pb.root)
     }
 

@@ -2,12 +2,12 @@
 
 use hrdsl_ir::{
     solid::{PlacedSolid, SolidBody, SolidGeometry, SolidMass},
-    world::{BodyId, BodyMotion, BodyShape, World},
+    world::{Body, BodyId, BodyMotion, BodyShape, World},
 };
 use nalgebra::Matrix3;
 use rapier3d::prelude::*;
 
-use super::{index, shape_of, start_of, surface::lowest_of};
+use super::{index, start_of, surface::lowest_of};
 use crate::{
     error::SimError,
     hulls::hulls_of,
@@ -189,3 +189,40 @@ fn load(world: &World, roots: &[BodyId], id: BodyId) -> f64 {
     };
     world.bodies.iter().zip(roots).map(mass).sum()
 }
+
+/// The shape of a body, and what is measured of it if it has several.
+pub(super) fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), SimError> {
+    if !body.position.iter().chain(&body.rotation).all(|x| x.is_finite()) {
+        return Err(SimError::BadNumber { what: format!("a measure of body `{}`", body.name) });
+    }
+    match &body.solid {
+        Some(solid) => solid_shape(solid, &body.name).map(|(shape, extent)| (shape, Some(extent))),
+        None => Ok((shape_of(body.shape, &body.name)?, None)),
+    }
+}
+
+fn shape_of(shape: BodyShape, name: &str) -> Result<SharedShape, SimError> {
+    let measures: Vec<f64> = match shape {
+        BodyShape::Box { size } => size.to_vec(),
+        BodyShape::Sphere { radius } => vec![radius],
+        BodyShape::Capsule { radius, length } | BodyShape::Cylinder { radius, length } => {
+            vec![radius, length]
+        }
+    };
+    if measures.iter().any(|m| !m.is_finite() || *m <= 0.0) {
+        return Err(SimError::BadNumber { what: format!("a measure of body `{name}`") });
+    }
+    let half = |x: f64| (x / 2.0) as f32;
+    Ok(match shape {
+        BodyShape::Box { size } => SharedShape::cuboid(half(size[0]), half(size[1]), half(size[2])),
+        BodyShape::Sphere { radius } => SharedShape::ball(radius as f32),
+        BodyShape::Capsule { radius, length } => SharedShape::capsule_z(half(length), radius as f32),
+        // The engine's cylinder lies along y.
+        BodyShape::Cylinder { radius, length } => SharedShape::compound(vec![(
+            Pose::from_parts(Vector::ZERO, Rotation::from_xyzw(SQRT_HALF, 0.0, 0.0, SQRT_HALF)),
+            SharedShape::cylinder(half(length), radius as f32),
+        )]),
+    })
+}
+
+const SQRT_HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;

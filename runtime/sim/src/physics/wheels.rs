@@ -36,7 +36,12 @@ impl PhysicsAdapter {
         let own: Vec<BodyId> = self.one_with(self.root(body)).filter(|b| !self.is_ghost(*b)).collect();
         let lowest = own.iter().map(|b| self.lowest(*b)).fold(f64::INFINITY, f64::min);
         let wheels: Vec<BodyId> = own.into_iter().filter(|b| self.lowest(*b) <= lowest + WHEEL).collect();
-        let radius = wheels.iter().map(|b| self.sphere_around(*b).1).fold(0.0, f64::max);
+        let middle = self.pose(body).at;
+        let reach = |b: &BodyId| {
+            let (centre, radius) = self.sphere_around(*b);
+            (centre.x - middle.x).hypot(centre.y - middle.y) + radius
+        };
+        let radius = wheels.iter().map(reach).fold(0.0, f64::max);
         let handle = self.parts[index(body)].handle;
         let principal = self.world.bodies[handle].mass_properties().local_mprops.reconstruct_inertia_matrix();
         let rolling = RollingBase {
@@ -50,7 +55,12 @@ impl PhysicsAdapter {
         rolling
     }
 
-    /// The base lies on its side: its wheels rub like everything else.
+    /// The base rolls.
+    pub fn on_wheels_again(&mut self, base: &RollingBase) {
+        self.set_friction(&base.wheels, 0.0, CoefficientCombineRule::Min);
+    }
+
+    /// The base stands with its wheels braked, or lies on its side: its wheels rub like everything else.
     pub fn off_wheels(&mut self, base: &RollingBase) {
         self.set_friction(&base.wheels, FRICTION, CoefficientCombineRule::Average);
     }
@@ -94,13 +104,17 @@ impl PhysicsAdapter {
         let (now, turning) = self.rolling_velocity(base);
         let change = SpaceVector::new(velocity.x - now.x, velocity.y - now.y, 0.0);
         let more = turn - turning;
-        if change.norm() < STANDS && more.abs() < STANDS {
+        // What an arm's motors turn its base by in this step, the tyres bear: an arm is as heavy as its base, and motors that know of
+        // no base that gives way would set both swinging.
+        let handle = self.parts[index(base.body)].handle;
+        let twist = f64::from(self.world.bodies[handle].user_torque().z) * h;
+        if change.norm() < STANDS && more.abs() < STANDS && twist.abs() < STANDS * base.inertia {
             return;
         }
         let load: f64 = base.wheels.iter().map(|wheel| self.load_from_below(*wheel)).sum();
         let grip = FRICTION * load * h;
         let impulse = change * base.mass;
-        let spin = base.inertia * more;
+        let spin = base.inertia * more - twist;
         // Wheels that must both push and turn share their grip.
         let asked = impulse.norm() + spin.abs() / base.radius.max(1e-3);
         let part = if asked > grip { grip / asked } else { 1.0 };
@@ -110,7 +124,6 @@ impl PhysicsAdapter {
             + spin.abs() * turn.abs().max(turning.abs()))
             * part;
         self.energy.add_wheels(work);
-        let handle = self.parts[index(base.body)].handle;
         let body = &mut self.world.bodies[handle];
         body.apply_impulse_at_point(to_vector(impulse * part), to_vector(at), true);
         body.apply_torque_impulse(to_vector(SpaceVector::z() * (spin * part)), true);

@@ -12,7 +12,7 @@ use hrdsl_ir::world::{BodyId, BodyMotion, ContactPhase, World};
 use rapier3d::parry::{self, bounding_volume::Aabb, bounding_volume::BoundingVolume};
 use rapier3d::prelude::*;
 
-use super::{PhysicsAdapter, SUBSTEPS, body_id, guide::StepPart, index};
+use super::{PhysicsAdapter, body_id, guide::StepPart, index};
 use crate::math::{SpaceVector, from_vector, to_vector};
 
 /// The speed after a blow, of that before: an assumption; peaks do not depend on it.
@@ -24,7 +24,7 @@ const FRICTION: f64 = 0.8;
 /// How far bodies may be apart to count as near, besides what they can do in a step, m.
 const NEAR: f64 = 2e-3;
 /// Which part of 1/ω a part of a step may last: in a blow, and when surfaces hardly move any more.
-const FINE: f64 = 0.15;
+const FINE: f64 = 0.25;
 const COARSE: f64 = 0.5;
 /// Below this speed of approach it is no blow, m/s.
 const SLOW: f64 = 0.02;
@@ -125,11 +125,9 @@ impl PhysicsAdapter {
         let near = self.near_pairs(dt);
         let parts = near.iter().map(|pair| pair.parts(dt)).fold(1.0, f64::max);
         let h = dt / parts;
-        self.part = (h, (SUBSTEPS as f64 / parts).ceil() as usize);
-        if parts > 1.0 {
-            self.world.integration_parameters.dt = h as f32;
-            self.world.integration_parameters.num_solver_iterations = self.part.1;
-        }
+        self.part = (h, (self.substeps() as f64 / parts).ceil() as usize);
+        self.world.integration_parameters.dt = h as f32;
+        self.world.integration_parameters.num_solver_iterations = self.part.1;
         let mut done = 0.0;
         while done < parts {
             self.draw_guided(StepPart { done: done / parts, h, dt });
@@ -143,7 +141,6 @@ impl PhysicsAdapter {
         self.end_guided(dt);
         self.led.clear();
         self.world.integration_parameters.dt = dt as f32;
-        self.world.integration_parameters.num_solver_iterations = SUBSTEPS;
     }
 
     /// The pairs that may touch within a step.
@@ -173,6 +170,10 @@ impl PhysicsAdapter {
                 |body: &RigidBody| if body.is_dynamic() { 1.0 / f64::from(body.mass()) } else { 0.0 };
             let approach =
                 from_vector(a.linvel() - b.velocity_at_point(found.point2)).dot(&from_vector(found.normal1));
+            // Those that cannot meet within the step need no finer one.
+            if f64::from(found.dist) > approach.max(0.0) * dt + NEAR {
+                continue;
+            }
             let frequency = (pair.stiffness * (inverse(a) + inverse(b))).sqrt();
             near.push(NearPair { at, frequency, approach });
         }
@@ -180,7 +181,7 @@ impl PhysicsAdapter {
     }
 
     /// Where a body can be within a step.
-    fn box_in_step(&self, part: usize, dt: f64) -> Aabb {
+    pub(super) fn box_in_step(&self, part: usize, dt: f64) -> Aabb {
         // A mere frame has no surface.
         let Some(collider) = self.world.colliders.get(self.parts[part].collider) else {
             return Aabb::new_invalid();

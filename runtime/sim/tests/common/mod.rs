@@ -241,7 +241,7 @@ pub fn none(_: u16) -> Option<Value> {
 }
 
 pub fn at(of: Option<BodyRef>, place: Vec3) -> WorldPoint {
-    WorldPoint { of, offset: place.map(Expr::float) }
+    WorldPoint::free(of, place.map(Expr::float))
 }
 
 pub fn move_to(target: Vec3) -> MotorCommand {

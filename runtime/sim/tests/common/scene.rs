@@ -16,10 +16,15 @@ pub struct Scene {
 impl Scene {
     /// `members` is what is in the world, `stimuli` what `someone` can do, each by a name and the actions of its body.
     pub fn new(members: &str, stimuli: &[(&str, &str)]) -> Scene {
+        Scene::with("", members, stimuli)
+    }
+
+    /// The same with more modules than `std.person`.
+    pub fn with(uses: &str, members: &str, stimuli: &[(&str, &str)]) -> Scene {
         let stimuli: String =
             stimuli.iter().map(|(name, body)| format!("stimulus {name} by someone {{ {body} }}\n")).collect();
         let text = format!(
-            "scenario scene\nuse std.person\nactor someone : environment\nactor robot : system\n{stimuli}world {{\n{members}\n}}\n"
+            "scenario scene\nuse std.person\n{uses}\nactor someone : environment\nactor robot : system\n{stimuli}world {{\n{members}\n}}\n"
         );
         let compiled = hrdsl_compiler::compile(InputFile { name: "scene.hri", text: &text }, &[]);
         let issues: Vec<String> =

@@ -1,6 +1,6 @@
 //! Postures of arms: angles of all joints under a name, by which programs ask for them.
 
-use hrdsl_ir::world::NamedPosture;
+use hrdsl_ir::world::{JointMotion, NamedPosture};
 use hrdsl_syntax::ast::{ExprSyntax, ExprSyntaxKind as Syntax, WorldMemberKind as Member};
 
 use crate::check::{checker::Checker, world::parts::PlacedMember};
@@ -21,12 +21,13 @@ impl<'a> Checker<'a> {
             self.report(no_angles(posture.angles.span));
             return;
         };
-        let angles: Vec<Option<f64>> = items.iter().map(|e| self.quantity_of(e, Dimension::ANGLE)).collect();
+        let joints = arm.and_then(|arm| self.world_mut().arms.get(usize::from(arm)));
+        let joints = joints.map_or_else(Vec::new, |arm| arm.joints.clone());
+        // Of a slider it is a length; where there is no joint, an angle is as good as anything.
+        let sizes: Vec<Dimension> = (0..items.len()).map(|at| self.size_of(joints.get(at))).collect();
+        let angles = items.iter().zip(sizes).map(|(e, size)| self.quantity_of(e, size));
+        let angles: Vec<Option<f64>> = angles.collect();
         let Some(arm) = arm else { return };
-        let joints = match self.world_mut().arms.get(usize::from(arm)) {
-            Some(arm) => arm.joints.clone(),
-            None => return,
-        };
         if joints.len() != items.len() {
             let want = format!("a list of {} angles", joints.len());
             self.report(types::other_shape(&want, &format!("one of {}", items.len()), posture.angles.span));
@@ -45,13 +46,27 @@ impl<'a> Checker<'a> {
         arm.postures.push(NamedPosture { name: name.text.clone(), angles });
     }
 
+    /// Of what dimension the place of a joint is.
+    fn size_of(&mut self, joint: Option<&JointId>) -> Dimension {
+        let joint = joint.and_then(|joint| self.world_mut().joints.get(usize::from(joint.0)));
+        match joint.map(|joint| joint.motion) {
+            Some(JointMotion::Slider) => Dimension::LENGTH,
+            Some(JointMotion::Hinge) | None => Dimension::ANGLE,
+        }
+    }
+
     fn within_limits(&mut self, joint: JointId, angle: Option<f64>, written: &ExprSyntax) {
         let Some(joint) = self.world_mut().joints.get(usize::from(joint.0)) else { return };
         let Some(angle) = angle else { return };
         if angle < joint.lo - ROUNDING || angle > joint.hi + ROUNDING {
-            let degrees = |x: f64| (x.to_degrees() * 10.0).round() / 10.0;
-            let rule = format!("between its limits, {} deg .. {} deg", degrees(joint.lo), degrees(joint.hi));
-            let issue = types::must_be(&format!("the angle of `{}`", joint.name), &rule, written.span);
+            let (unit, what, of_unit) = match joint.motion {
+                JointMotion::Hinge => ("deg", "angle", f64::to_degrees as fn(f64) -> f64),
+                JointMotion::Slider => ("cm", "place", (|x| x * 100.0) as fn(f64) -> f64),
+            };
+            let rounded = |x: f64| (of_unit(x) * 10.0).round() / 10.0;
+            let rule =
+                format!("between its limits, {} {unit} .. {} {unit}", rounded(joint.lo), rounded(joint.hi));
+            let issue = types::must_be(&format!("the {what} of `{}`", joint.name), &rule, written.span);
             self.report(issue);
         }
     }

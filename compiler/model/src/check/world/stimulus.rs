@@ -304,7 +304,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A vector of three lengths, a body, or a body plus such a vector.
+    /// A vector of three lengths, a body, a body plus such a vector, or a point that is brought into a box.
     fn point(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> Option<TypedPoint> {
         match &e.kind {
             Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right }
@@ -312,15 +312,12 @@ impl Checker<'_> {
             {
                 let of = self.body_arg(left, "");
                 let offset = self.offset(right, *op == BinaryOp::Sub, env);
-                Some(TypedPoint { of: Some(of?), offset: offset? })
+                Some(TypedPoint::free(Some(of?), offset?))
             }
             Syntax::Path(path) if self.is_body(e, env) => {
                 let zero =
                     || TypedExpr::value(Value::Float(0.0), InferredType::Float(Dimension::LENGTH), path.span);
-                Some(TypedPoint {
-                    of: Some(self.body_ref(&path.names, "")?),
-                    offset: [zero(), zero(), zero()],
-                })
+                Some(TypedPoint::free(Some(self.body_ref(&path.names, "")?), [zero(), zero(), zero()]))
             }
             Syntax::Tuple(_)
             | Syntax::Path(_)
@@ -328,7 +325,10 @@ impl Checker<'_> {
             | Syntax::Field { .. }
             | Syntax::Binary { .. }
             | Syntax::Unary { .. }
-            | Syntax::If { .. } => Some(TypedPoint { of: None, offset: self.offset(e, false, env)? }),
+            | Syntax::If { .. } => Some(TypedPoint::free(None, self.offset(e, false, env)?)),
+            Syntax::Call { callee, args } if callee.names.len() == 1 && callee.names[0].text == CLAMP => {
+                self.clamped(args, e.span, env)
+            }
             Syntax::Error => None,
             Syntax::Bool(_)
             | Syntax::Int(_)
@@ -346,6 +346,19 @@ impl Checker<'_> {
                 None
             }
         }
+    }
+
+    /// `clamp(POINT, LOW, HIGH)`
+    fn clamped(&mut self, args: &[ast::ExprSyntax], span: Span, env: &mut ExprEnv) -> Option<TypedPoint> {
+        let [point, low, high] = args else {
+            let issue = types::counts(Noun::Function, CLAMP, 3, args.len(), span);
+            self.report(issue.help("write `clamp(POINT, LOW, HIGH)`, with two corners of a box"));
+            return None;
+        };
+        let (point, low, high) = (self.point(point, env), self.point(low, env), self.point(high, env));
+        let mut point = point?;
+        point.within.push([low?, high?]);
+        Some(point)
     }
 
     /// Whether a name means a body: it stands for no value.
@@ -375,6 +388,9 @@ impl Checker<'_> {
         <[TypedExpr; 3]>::try_from(parts).ok()
     }
 }
+
+/// Brings a point into a box.
+const CLAMP: &str = "clamp";
 
 fn is_moved(motion: BodyMotion) -> bool {
     match motion {

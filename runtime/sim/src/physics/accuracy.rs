@@ -1,0 +1,50 @@
+//! How far the engine strays from what cannot be: rigid bodies that are in each other, joints that are beyond their limits.
+//!
+//! The solver keeps both only nearly. The worst of a run is kept, so that whoever reads its results can see what they rest on. Surfaces
+//! that yield are meant to be pressed in, and pairs that overlap by design never meet: neither counts.
+
+use rapier3d::prelude::*;
+
+/// Two bodies by number, and how deep they were in each other, m.
+pub(crate) type PenetratingPair = (f64, usize, usize);
+
+/// The worst of all steps so far.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct AccuracyWatch {
+    /// Of two bodies of one robot, and of any two others.
+    pub own: Option<PenetratingPair>,
+    pub others: Option<PenetratingPair>,
+    /// A joint, and how far it was beyond a limit, rad or m.
+    pub beyond: Option<(f64, usize)>,
+}
+
+impl AccuracyWatch {
+    /// Looks at all contacts as the last step began; `robots` gives for each body a number of what it is joined to.
+    pub fn look_at_contacts(&mut self, world: &PhysicsWorld, robots: &[usize]) {
+        for pair in world.contact_pairs() {
+            let depth = |manifold: &ContactManifold| {
+                manifold.points.iter().map(|point| -f64::from(point.dist)).fold(0.0, f64::max)
+            };
+            let deepest = pair.solver_manifolds().iter().map(depth).fold(0.0, f64::max);
+            if deepest <= 0.0 {
+                continue;
+            }
+            let number = |handle| {
+                world.colliders.get(handle).and_then(|collider| usize::try_from(collider.user_data).ok())
+            };
+            let (Some(a), Some(b)) = (number(pair.collider1), number(pair.collider2)) else { continue };
+            let worst = if robots.get(a) == robots.get(b) { &mut self.own } else { &mut self.others };
+            if worst.is_none_or(|(depth, ..)| deepest > depth) {
+                *worst = Some((deepest, a.min(b), a.max(b)));
+            }
+        }
+    }
+
+    /// Looks at one joint: where it is, and where it ends.
+    pub fn look_at_joint(&mut self, joint: usize, at: f64, (lo, hi): (f64, f64)) {
+        let by = (lo - at).max(at - hi);
+        if by > 0.0 && self.beyond.is_none_or(|(worst, _)| by > worst) {
+            self.beyond = Some((by, joint));
+        }
+    }
+}

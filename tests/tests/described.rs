@@ -1,0 +1,180 @@
+//! Robots from descriptions in the physics: beside a whole person, and with light links and rotors that nobody knows.
+
+use std::fmt::Write;
+
+use hrdsl_compiler::{InputFile, ModuleLoader, ModuleText, RobotEntry, RobotReader, compile_with};
+use hrdsl_ir::{
+    Expr, Value,
+    value::SECOND,
+    world::{ArmId, BaseId, BodyId, BodyRef, FigureId, SignalTerm, World, WorldAction, WorldPoint},
+};
+use hrdsl_sim::{MotorCommand, WorldSimulation};
+
+/// Drives, has an arm of two joints, and frames on what is fixed to the base and on what moves.
+const HELPER: &str = r#"<robot name="helper">
+  <link name="footprint"/>
+  <link name="base"><inertial><mass value="30"/><origin xyz="0 0 0.2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><origin xyz="0 0 0.3"/><geometry><box size="0.4 0.4 0.6"/></geometry></collision></link>
+  <link name="laser"/>
+  <link name="upper"><inertial><mass value="2"/><origin xyz="0.2 0 0"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.03" iyz="0" izz="0.03"/></inertial>
+    <collision><origin xyz="0.2 0 0" rpy="0 1.5708 0"/><geometry><cylinder radius="0.04" length="0.4"/></geometry></collision></link>
+  <link name="lower"><inertial><mass value="1"/><origin xyz="0.15 0 0"/><inertia ixx="0.005" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial>
+    <collision><origin xyz="0.15 0 0" rpy="0 1.5708 0"/><geometry><cylinder radius="0.03" length="0.3"/></geometry></collision></link>
+  <link name="tool"/>
+  <joint name="stand" type="fixed"><parent link="footprint"/><child link="base"/></joint>
+  <joint name="mount" type="fixed"><parent link="base"/><child link="laser"/><origin xyz="0.2 0 0.4"/></joint>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><origin xyz="0.25 0 0.7"/><axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2" effort="60" velocity="2"/></joint>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/><origin xyz="0.42 0 0"/><axis xyz="0 0 1"/>
+    <limit lower="-2.4" upper="2.4" effort="30" velocity="2"/></joint>
+  <joint name="flange" type="fixed"><parent link="lower"/><child link="tool"/><origin xyz="0.3 0 0"/></joint>
+</robot>
+"#;
+
+const TOGETHER: &str = r#"scenario together
+use std.person
+actor person : environment
+actor robot  : system
+part helper from "robot.urdf" {
+  arm arm: shoulder, elbow tip tool tool (0 m, 0 m, 0 m) speed 1 rad/s
+  base wheels: base speed 0.5 m/s turn 1 rad/s acceleration 1 m/s^2
+  laser eye: laser at (0 m, 0 m, 0 m) angles -90 deg .. 90 deg beams 91 range 5 cm .. 10 m
+}
+world {
+  body floor: fixed box(10 m, 10 m, 10 cm) at (0 m, 0 m, -5 cm)
+  part robot = helper at (0 m, 0 m, 1 mm)
+  part guest = adult(172 cm) at (1.6 m, 0 m, 0 m) rotated (0 deg, 0 deg, 180 deg)
+}
+"#;
+
+/// The one file that there is, `robot.urdf`.
+struct OneRobot(String);
+
+impl ModuleLoader for OneRobot {
+    fn load(&self, _from: &str, _path: &str) -> Result<ModuleText, String> {
+        Err("there are no modules here".to_owned())
+    }
+
+    fn robots(&self) -> Option<Box<dyn RobotReader + '_>> {
+        Some(Box::new(OneRobot(self.0.clone())))
+    }
+}
+
+impl RobotReader for OneRobot {
+    fn bytes(&self, file: &str) -> Result<Vec<u8>, String> {
+        if file == "robot.urdf" {
+            Ok(self.0.clone().into_bytes())
+        } else {
+            Err("there is no such file".to_owned())
+        }
+    }
+
+    fn entries(&self, _folder: &str) -> Result<Vec<RobotEntry>, String> {
+        Err("there is no such folder".to_owned())
+    }
+}
+
+fn world_of(urdf: &str, scenario: &str) -> World {
+    let robot = OneRobot(urdf.to_owned());
+    let compiled = compile_with(InputFile { name: "described.hri", text: scenario }, &[], &robot);
+    let world = compiled.program.and_then(|program| program.world);
+    world.unwrap_or_else(|| panic!("{:#?}", compiled.diagnostics))
+}
+
+/// Ten seconds, every tenth of which the world is looked at.
+fn ten_seconds(sim: &mut WorldSimulation, mut each: impl FnMut(&WorldSimulation)) {
+    for tenth in 1..=100 {
+        sim.advance(tenth * SECOND / 10);
+        assert_eq!(sim.fault(), None, "after {tenth} tenths of a second");
+        each(sim);
+    }
+}
+
+fn named(world: &World, name: &str) -> BodyId {
+    let at = world.bodies.iter().position(|body| body.name == name).unwrap();
+    BodyId(u16::try_from(at).unwrap())
+}
+
+#[test]
+fn they_stand_side_by_side_for_ten_seconds() {
+    let world = world_of(HELPER, TOGETHER);
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
+    let start = sim.joint_positions(ArmId(0));
+    ten_seconds(&mut sim, |_| {});
+    let off =
+        sim.joint_positions(ArmId(0)).iter().zip(&start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-3, "the arm is off by {off} rad");
+}
+
+#[test]
+fn the_robot_drives_up_to_a_person_who_comes_near_and_pushes_with_its_arm_for_ten_seconds() {
+    let world = world_of(HELPER, TOGETHER);
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
+    let place = WorldPoint::free(None, [1.4, 0.1, 0.0].map(Expr::float));
+    let walk = WorldAction::Walk { figure: FigureId(0), along: vec![place], speed: Expr::float(0.5) };
+    sim.act(&walk, &|_| None).unwrap();
+    let drive = MotorCommand::DriveWheels { base: BaseId(0), forward: 0.1, sideways: 0.0, turn: 0.0 };
+    sim.command(drive).unwrap();
+    sim.command(MotorCommand::FollowJoints { arm: ArmId(0), positions: vec![0.2, -0.3], times: vec![3.0] })
+        .unwrap();
+    let bodies = world.bodies.iter().filter(|body| body.name.starts_with("guest."));
+    let guest: Vec<BodyId> = bodies.map(|body| named(&world, &body.name)).collect();
+    let links = ["robot.upper", "robot.lower", "robot.base"].map(|name| named(&world, name));
+    let mut met = false;
+    ten_seconds(&mut sim, |sim| {
+        met |= links.iter().any(|link| {
+            guest.iter().any(|part| {
+                let touch = SignalTerm::Touches(BodyRef::Body(*link), BodyRef::Body(*part));
+                sim.measure(&touch) == Value::Bool(true)
+            })
+        });
+    });
+    assert!(met, "the robot never touches the person: the test shows nothing");
+}
+
+/// Seven joints, as arms with a wrist have them, of 3 kg each and thin: so the inertias of what hangs on a joint and of the link next to
+/// it differ a hundredfold.
+fn light_arm() -> String {
+    let mut urdf = String::from("<robot name=\"light\">\n  <link name=\"l0\"/>\n");
+    let places = ["0 0 0.33", "0 0 0", "0 0 0.32", "0.08 0 0", "-0.08 0 0.38", "0 0 0", "0.09 0 0"];
+    let axes = ["0 0 1", "0 1 0", "0 0 1", "0 -1 0", "0 0 1", "0 -1 0", "0 0 1"];
+    for (at, (place, axis)) in places.iter().zip(axes).enumerate() {
+        let (child, effort) = (at + 1, if at < 4 { 87 } else { 12 });
+        let _ = writeln!(
+            urdf,
+            "  <link name=\"l{child}\"><inertial><mass value=\"3\"/><origin xyz=\"0 0 0.05\"/><inertia ixx=\"0.01\" ixy=\"0\" \
+             ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.005\"/></inertial></link>\n  <joint name=\"j{child}\" type=\"revolute\">\
+             <parent link=\"l{at}\"/><child link=\"l{child}\"/><origin xyz=\"{place}\"/><axis xyz=\"{axis}\"/>\
+             <limit lower=\"-2.8\" upper=\"2.8\" effort=\"{effort}\" velocity=\"2\"/></joint>"
+        );
+    }
+    urdf + "</robot>\n"
+}
+
+const ALONE: &str = r#"scenario alone
+actor robot : system
+part light from "robot.urdf" {
+  arm arm: j1, j2, j3, j4, j5, j6, j7 tip l7 tool (0 m, 0 m, 10 cm) speed 1 rad/s
+}
+world { part robot = light at (0 m, 0 m, 0 m) }
+"#;
+
+#[test]
+fn an_arm_of_seven_light_links_comes_to_postures_and_rests_in_them() {
+    let world = world_of(&light_arm(), ALONE);
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
+    let postures = [
+        [0.4, 0.5, 0.1, -1.0, -0.1, 1.4, 0.8],
+        [-0.6, 0.3, 0.5, -1.6, 0.4, 1.0, -0.5],
+        [0.2, -0.4, -0.3, -0.6, 0.2, 0.9, 0.3],
+    ];
+    for (number, posture) in postures.iter().enumerate() {
+        let command =
+            MotorCommand::ReachJoints { arm: ArmId(0), positions: posture.to_vec(), max_speed: None };
+        let id = sim.command(command).unwrap();
+        sim.advance(sim.now() + 6 * SECOND);
+        assert_eq!(sim.finished(), [(id, Ok(()))], "posture {number}");
+        let fastest = sim.joint_speeds(ArmId(0)).iter().map(|v| v.abs()).fold(0.0, f64::max);
+        assert!(fastest < 1e-3, "in posture {number} it still moves at {fastest} rad/s");
+    }
+}
