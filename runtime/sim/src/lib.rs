@@ -13,8 +13,9 @@
 //! - A motor's rotor is added to its link's inertia about all axes.
 //! - What a hand holds is fixed to the palm by a joint that bears as much as friction would, and slips beyond.
 //! - An arm's planner knows exactly where everything is but people.
-//! - People are kinematic: nothing pushes them.
-//! - A base is kinematic: it drives as it is told, pushes what is loose, and stops before what is fixed.
+//! - People are bodies that springs draw along their script, and whose surfaces are springs: what pushes them moves them. A body that is
+//!   declared `kinematic` is pushed by nothing.
+//! - A base drives as it is told, pushes what is loose, and stops before what is fixed; a dynamic one stands on wheels that slip, and topples.
 //! - A body farther than 20 m from all that there was at the start is lost, and stops there.
 //!
 //! # Determinism

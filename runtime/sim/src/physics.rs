@@ -2,7 +2,6 @@
 //!
 //! A joint whose limits are both zero joins its child rigidly: the two are one body of the engine, with two shapes.
 
-pub(crate) mod accuracy;
 mod contact;
 pub(crate) mod dynamics;
 mod energy;
@@ -10,84 +9,35 @@ mod guide;
 mod joints;
 mod losses;
 mod pairs;
-mod roots;
-mod solid;
+mod state;
 mod surface;
 pub(crate) mod wheels;
 mod yielding;
 
+pub(crate) use state::{
+    accuracy::AccuracyWatch,
+    adapter::PhysicsAdapter,
+    bodies::{bad, body_id, index},
+};
+
 use hrdsl_ir::value::seconds;
-use hrdsl_ir::world::{Body, BodyId, BodyMotion, BodyShape, JointMotion, World};
+use hrdsl_ir::world::{Body, BodyId, BodyMotion, JointMotion, World};
 use rapier3d::prelude::*;
 
 use crate::{
     error::SimError,
-    math::{BodyFrame, from_pose, from_rpy, from_vector, to_pose, to_vector, v3},
+    math::{BodyFrame, from_pose, from_vector, to_pose, to_vector, v3},
 };
-use accuracy::AccuracyWatch;
-use energy::EnergyWatch;
-use guide::BodyGuide;
-use joints::DrivenJoint;
-use losses::JointLosses;
-use pairs::{ExemptPairs, JointGraph};
-use roots::{figure_of, rigid_roots};
-use solid::{SolidExtent, described_mass, surface_of};
-use yielding::YieldingPair;
-
-/// One body of the scenario.
-struct PhysicsBody {
-    name: String,
-    handle: RigidBodyHandle,
-    collider: ColliderHandle,
-    /// Within the engine's body.
-    local: BodyFrame,
-    start: BodyFrame,
-    /// The body that this one is one with.
-    root: BodyId,
-    motion: BodyMotion,
-    ghost: bool,
-    shape: BodyShape,
-    /// That of the engine.
-    surface: SharedShape,
-    /// Of a body that has not just one shape.
-    extent: Option<SolidExtent>,
-}
-
-impl PhysicsBody {
-    /// Whether forces move it.
-    fn gives_way(&self) -> bool {
-        match self.motion {
-            BodyMotion::Dynamic | BodyMotion::Guided => true,
-            BodyMotion::Fixed | BodyMotion::Kinematic => false,
-        }
-    }
-}
-
-pub(crate) struct PhysicsAdapter {
-    world: PhysicsWorld,
-    parts: Vec<PhysicsBody>,
-    /// By body: what draws those that are guided.
-    guides: Vec<Option<BodyGuide>>,
-    yielding: Vec<YieldingPair>,
-    /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
-    joints: Vec<Option<DrivenJoint>>,
-    losses: JointLosses,
-    exempt: ExemptPairs,
-    energy: EnergyWatch,
-    accuracy: AccuracyWatch,
-    /// By body: a number of what it is joined to.
-    robots: Vec<usize>,
-    /// Where kinematic bodies will be at the end of the next step.
-    led: Vec<(RigidBodyHandle, Pose)>,
-    /// The time of a step, s.
-    step: f64,
-    /// The time of the last part of a step, s, and how often the solver divided it.
-    part: (f64, usize),
-    /// By body: the same of when the solver last had to do with it. What sleeps keeps the impulses of then.
-    solved: Vec<(f64, usize)>,
-    /// The corners of the box outside of which a body is lost, m.
-    scene: (Vector, Vector),
-}
+use state::{
+    adapter::PhysicsBody,
+    bodies::start_of,
+    energy::EnergyWatch,
+    guide::BodyGuide,
+    losses::JointLosses,
+    pairs::{ExemptPairs, JointGraph},
+    roots::{figure_of, rigid_roots},
+    solid::{described_mass, surface_of},
+};
 
 /// How often the solver divides a step in which anything is awake that is not drawn. With the rotors of the library's arms enough for the tool to be within 1 mm; the cost
 /// is in proportion.
@@ -439,25 +389,9 @@ const QUIET_LINEAR: f32 = 4e-3;
 /// rad/s
 const QUIET_ANGULAR: f32 = 1.5e-2;
 
-pub(crate) fn index(body: BodyId) -> usize {
-    usize::from(body.0)
-}
-
-pub(crate) fn body_id(i: usize) -> BodyId {
-    BodyId(u16::try_from(i).unwrap_or(u16::MAX))
-}
-
-pub(crate) fn bad(what: String, kind: &'static str, index: usize) -> SimError {
-    SimError::BadReference { what, kind, index }
-}
-
 fn sweeps(world: &World) -> usize {
     let is_link = |body: &Body| body.motion == BodyMotion::Dynamic && body.solid.is_some();
     if world.bodies.iter().any(is_link) { SWEEPS_OF_DESCRIBED } else { SWEEPS }
-}
-
-fn start_of(body: &Body) -> BodyFrame {
-    BodyFrame::new(v3(body.position), from_rpy(body.rotation))
 }
 
 fn checked_mass(body: &Body) -> Result<f32, SimError> {

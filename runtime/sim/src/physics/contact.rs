@@ -7,7 +7,10 @@
 use hrdsl_ir::world::BodyId;
 use rapier3d::prelude::*;
 
-use super::{PhysicsAdapter, body_id, index};
+use super::state::{
+    adapter::PhysicsAdapter,
+    bodies::{body_id, index},
+};
 use crate::math::{SpaceVector, from_vector};
 
 /// A contact of one body with another.

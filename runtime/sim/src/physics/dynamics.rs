@@ -9,7 +9,7 @@ use hrdsl_ir::world::JointMotion;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rapier3d::prelude::*;
 
-use super::{PhysicsAdapter, joints::DrivenJoint};
+use super::state::{adapter::PhysicsAdapter, joint::DrivenJoint};
 use crate::math::{SpaceVector, from_vector};
 
 /// The numbers of an arm's joints, from the base to the tip, and its bodies with how many of the joints move each.

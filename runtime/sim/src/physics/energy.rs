@@ -4,7 +4,7 @@
 //! motors, wheels, muscles and moved bodies can have done is allowed for, generously: what is found is a solver that has gone wrong, not a
 //! joule too many. Such a run says nothing any more, and ends as an error.
 
-use super::{PhysicsAdapter, index};
+use super::state::{adapter::PhysicsAdapter, bodies::index};
 use crate::math::from_vector;
 
 /// What may come from nowhere in a step: so many J, and this part of the energy of motion.
@@ -18,24 +18,6 @@ const OF_LATE: f64 = 0.95;
 const LEVERS: f64 = 20.0;
 /// Faster than this nothing is, m/s.
 const FASTEST: f64 = 100.0;
-
-/// What is known of the energy, and the first fault that was found.
-#[derive(Clone, Debug, Default)]
-pub(super) struct EnergyWatch {
-    /// By body of the scenario, if forces alone move it: its energies of motion and of height, J.
-    known: Vec<Option<(f64, f64)>>,
-    /// What wheels can have done in the step, J.
-    wheels: f64,
-    /// The fastest of what is moved, of late, m/s.
-    fastest_moved: f64,
-    fault: Option<String>,
-}
-
-impl EnergyWatch {
-    pub fn add_wheels(&mut self, work: f64) {
-        self.wheels += work;
-    }
-}
 
 impl PhysicsAdapter {
     /// Looks at everything after a step.

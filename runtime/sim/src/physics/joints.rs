@@ -4,7 +4,12 @@ use hrdsl_ir::world::{BodyId, BodyMotion, Joint, JointMotion, World};
 use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;
 
-use super::{PhysicsAdapter, index, pairs::JointGraph};
+use super::state::{
+    adapter::{PhysicsAdapter, PhysicsBody},
+    bodies::index,
+    joint::DrivenJoint,
+    pairs::JointGraph,
+};
 use crate::math::{
     BodyFrame, RotationQuat, SpaceVector, about, angle_between, from_pose, from_vector, to_pose, to_vector,
     twist, v3, wrap,
@@ -27,35 +32,6 @@ const UNLIMITED: f64 = 1e9;
 /// An arm whose every point stays slower for half a second may sleep, m/s and rad/s.
 const SLEEPS_BELOW: f32 = 1e-3;
 const SLEEPS_BELOW_ANGULAR: f32 = 1e-3;
-
-/// A joint of the engine.
-pub(crate) struct DrivenJoint {
-    handle: ImpulseJointHandle,
-    parent: RigidBodyHandle,
-    child: RigidBodyHandle,
-    /// What bears the torque of a hinge's motor: the parent, or what that slides on. It cannot turn against it, so that it is the same,
-    /// but for the solver, which would have to hand on what a light torso cannot bear.
-    bearer: RigidBodyHandle,
-    pub(super) motion: JointMotion,
-    /// At the start, in the world.
-    axis: SpaceVector,
-    anchor: SpaceVector,
-    parent_start: BodyFrame,
-    child_start: BodyFrame,
-    /// What it carries: bodies on the child's side.
-    pub(super) carried: Vec<RigidBodyHandle>,
-    /// The most that its motor can do, and what it does.
-    limit: f64,
-    effort: f64,
-    /// Where it is at the start, and its limits, rad or m.
-    start: f64,
-    lo: f64,
-    hi: f64,
-    /// Of a hinge that may turn farther than half round: where it was last.
-    wound: Option<f64>,
-    /// The engine's motor runs it.
-    pub(super) is_run: bool,
-}
 
 /// A rotor's inertia, as it is added to the body that it turns: about all axes, since the links between two axes of one shoulder
 /// or wrist would otherwise be so much lighter than their neighbours that the solver could not hold them together.
@@ -342,7 +318,7 @@ impl PhysicsAdapter {
     /// The bodies that a joint carries, by the body of the scenario that leads each.
     pub fn carried_by(&self, joint: usize) -> Vec<BodyId> {
         let Some(driven) = &self.joints[joint] else { return Vec::new() };
-        let carried = |part: &&super::PhysicsBody| driven.carried.contains(&part.handle);
+        let carried = |part: &&PhysicsBody| driven.carried.contains(&part.handle);
         let mut roots: Vec<BodyId> = self.parts.iter().filter(carried).map(|part| part.root).collect();
         roots.dedup();
         roots

@@ -1,53 +1,9 @@
 //! What joints have besides motors: damping, friction, and gears to other joints.
 
-use hrdsl_ir::world::{JointMimic, World};
-
-use super::PhysicsAdapter;
+use super::state::{adapter::PhysicsAdapter, losses::JointGear};
 
 /// How fast a follower makes good what it is behind, as a part of it in each step.
 const CATCH_UP: f64 = 0.5;
-
-/// The joints of which the engine must be told anew at each step; none in most worlds.
-#[derive(Default)]
-pub(super) struct JointLosses {
-    gears: Vec<JointGear>,
-    brakes: Vec<JointBrake>,
-}
-
-struct JointGear {
-    follower: usize,
-    leader: usize,
-    factor: f64,
-    offset: f64,
-    /// The most that it bears, N·m or N.
-    force: f64,
-}
-
-struct JointBrake {
-    joint: usize,
-    damping: f64,
-    friction: f64,
-}
-
-/// A gear without a limit bears this, N·m or N.
-const STRONGEST: f64 = 1e4;
-
-impl JointLosses {
-    pub fn of(world: &World) -> JointLosses {
-        let mut losses = JointLosses::default();
-        for (at, joint) in world.joints.iter().enumerate().filter(|(_, joint)| !joint.is_rigid()) {
-            if let Some(JointMimic { joint: leader, factor, offset }) = joint.drive.mimic {
-                let force = joint.drive.effort.filter(|effort| *effort > 0.0).unwrap_or(STRONGEST);
-                let leader = usize::from(leader.0);
-                losses.gears.push(JointGear { follower: at, leader, factor, offset, force });
-            } else if joint.drive.damping > 0.0 || joint.drive.friction > 0.0 {
-                let (damping, friction) = (joint.drive.damping, joint.drive.friction);
-                losses.brakes.push(JointBrake { joint: at, damping, friction });
-            }
-        }
-        losses
-    }
-}
 
 impl PhysicsAdapter {
     /// Tells the engine what followers are to do in the next step, and how hard joints are braked in it.

@@ -4,7 +4,11 @@ use hrdsl_ir::world::{BodyId, BodyMotion, BodyShape};
 use rapier3d::parry::{self, bounding_volume::BoundingVolume};
 use rapier3d::prelude::*;
 
-use super::{PhysicsAdapter, body_id, index};
+use super::state::{
+    adapter::PhysicsAdapter,
+    bodies::{body_id, index},
+    solid::lowest_of,
+};
 use crate::math::{BodyFrame, SpaceVector, angle_between, from_vector, to_pose, to_vector};
 
 impl PhysicsAdapter {
@@ -132,17 +136,6 @@ impl PhysicsAdapter {
             let ray = Ray::new(to_vector(from), to_vector(direction));
             shape.cast_ray(&pose, &ray, far as f32, true).map(f64::from)
         }
-    }
-}
-
-/// How far the lowest point of a shape is below its centre, m; `up` is the vertical in its own frame.
-pub(super) fn lowest_of(shape: BodyShape, up: SpaceVector) -> f64 {
-    let round = |radius: f64| radius * (1.0 - up.z * up.z).max(0.0).sqrt();
-    match shape {
-        BodyShape::Box { size: [x, y, z] } => (x * up.x.abs() + y * up.y.abs() + z * up.z.abs()) / 2.0,
-        BodyShape::Sphere { radius } => radius,
-        BodyShape::Capsule { radius, length } => radius + length / 2.0 * up.z.abs(),
-        BodyShape::Cylinder { radius, length } => round(radius) + length / 2.0 * up.z.abs(),
     }
 }
 

@@ -8,7 +8,7 @@
 use hrdsl_ir::world::{BodyId, World};
 use rapier3d::prelude::*;
 
-use super::{PhysicsAdapter, index};
+use super::state::{adapter::PhysicsAdapter, bodies::index};
 use crate::math::{SpaceVector, from_vector, to_vector};
 
 /// Between tyres and the ground, and on all other surfaces.

@@ -3,7 +3,7 @@
 //! A body with a stiffness meets whatever can move as a mass on a spring: its surface gives way by δ, and pushes back with k δ (ISO/TS
 //! 15066:2016, Annex A, equation A.5, where E = F²/2k). A blow at the speed v of two masses whose reduced mass is μ comes to v √(k μ).
 //! When the surface springs back, it gives less than it took: unloading is stiffer, by a constant factor (Walton and Braun 1986), so
-//! that a body leaves as [`RESTITUTION`] says, and the peak is as without it. The force acts on the middle of what yields, and
+//! that a body leaves as [`RESTITUTION`](super::state::yielding::RESTITUTION) says, and the peak is as without it. The force acts on the middle of what yields, and
 //! friction across it.
 //!
 //! Blows last for few milliseconds: a step in which such bodies meet is divided, as finely as stiffness and masses ask for.
@@ -12,11 +12,14 @@ use hrdsl_ir::world::{BodyId, BodyMotion, ContactPhase, World};
 use rapier3d::parry::{self, bounding_volume::Aabb, bounding_volume::BoundingVolume};
 use rapier3d::prelude::*;
 
-use super::{PhysicsAdapter, body_id, guide::StepPart, index};
+use super::state::{
+    adapter::PhysicsAdapter,
+    bodies::{body_id, index},
+    guide::StepPart,
+    yielding::{YieldingContact, YieldingPair},
+};
 use crate::math::{SpaceVector, from_vector, to_vector};
 
-/// The speed after a blow, of that before: an assumption; peaks do not depend on it.
-const RESTITUTION: f64 = 0.5;
 /// How fast a dent comes back while something is still pressed into it, s: an assumption, too.
 const RECOVERY: f64 = 0.1;
 /// What friction is on all surfaces.
@@ -34,41 +37,6 @@ const MOST_PARTS: f64 = 64.0;
 const TRANSIENT: f64 = 0.5;
 /// What begins again within this time is the same contact, s.
 const SAME: f64 = 0.1;
-
-/// A body that yields, and one that can move and may meet it.
-pub(super) struct YieldingPair {
-    soft: usize,
-    other: usize,
-    /// N/m; of two bodies that yield, both springs in series.
-    stiffness: f64,
-    /// A hand does not press what it holds.
-    is_suspended: bool,
-    contact: Option<YieldingContact>,
-}
-
-/// Two surfaces that press on each other.
-#[derive(Clone, Copy, Debug)]
-struct YieldingContact {
-    /// How deep the surface has been pressed in, m.
-    deepest: f64,
-    /// On the body that yields, of length 1.
-    normal: SpaceVector,
-    /// The greatest force in the last step, N; and the impulse over it, N·s.
-    peak: f64,
-    impulse: f64,
-    /// For how long they have met, and for how long they have been apart since, s.
-    age: f64,
-    parted: f64,
-}
-
-impl YieldingContact {
-    /// The force of a surface that is pressed in by so much, N.
-    fn force_at(&self, depth: f64, stiffness: f64) -> f64 {
-        let back = stiffness / (RESTITUTION * RESTITUTION);
-        let dent = self.deepest * (1.0 - RESTITUTION * RESTITUTION);
-        if depth >= self.deepest { stiffness * depth } else { (back * (depth - dent)).max(0.0) }
-    }
-}
 
 /// What is found of a pair before its surfaces meet.
 struct NearPair {

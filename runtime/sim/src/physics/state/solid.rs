@@ -7,7 +7,7 @@ use hrdsl_ir::{
 use nalgebra::Matrix3;
 use rapier3d::prelude::*;
 
-use super::{index, start_of, surface::lowest_of};
+use super::bodies::{index, start_of};
 use crate::{
     error::SimError,
     hulls::hulls_of,
@@ -25,7 +25,7 @@ const PART_OF_LOAD: f64 = 0.02;
 const LIGHTEST: f64 = 0.01;
 
 /// What is measured of a body of several shapes, in its own frame.
-pub(super) struct SolidExtent {
+pub struct SolidExtent {
     plain: Vec<(BodyFrame, BodyShape)>,
     corners: Vec<SpaceVector>,
     /// The middle of the box around it, and from there to an end along its longest edge.
@@ -50,7 +50,7 @@ impl SolidExtent {
 ///
 /// # Errors
 /// If a measure is no number that it can have.
-pub(super) fn solid_shape(solid: &SolidBody, name: &str) -> Result<(SharedShape, SolidExtent), SimError> {
+pub fn solid_shape(solid: &SolidBody, name: &str) -> Result<(SharedShape, SolidExtent), SimError> {
     let (mut parts, mut plain, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for placed in &solid.shapes {
         let frame = frame_of(placed, name)?;
@@ -125,12 +125,7 @@ fn longest_axis(half: SpaceVector) -> SpaceVector {
 
 /// The mass of all that is rigidly one with a body, if a description says it: in the body's frame, with what rotors add to its
 /// inertia.
-pub(super) fn described_mass(
-    world: &World,
-    roots: &[BodyId],
-    id: BodyId,
-    rotors: f64,
-) -> Option<MassProperties> {
+pub fn described_mass(world: &World, roots: &[BodyId], id: BodyId, rotors: f64) -> Option<MassProperties> {
     let root = &world.bodies[index(id)];
     if root.solid.is_none() || root.motion != BodyMotion::Dynamic {
         return None;
@@ -191,7 +186,7 @@ fn load(world: &World, roots: &[BodyId], id: BodyId) -> f64 {
 }
 
 /// The shape of a body, and what is measured of it if it has several.
-pub(super) fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), SimError> {
+pub fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), SimError> {
     if !body.position.iter().chain(&body.rotation).all(|x| x.is_finite()) {
         return Err(SimError::BadNumber { what: format!("a measure of body `{}`", body.name) });
     }
@@ -226,3 +221,14 @@ fn shape_of(shape: BodyShape, name: &str) -> Result<SharedShape, SimError> {
 }
 
 const SQRT_HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
+
+/// How far the lowest point of a shape is below its centre, m; `up` is the vertical in its own frame.
+pub fn lowest_of(shape: BodyShape, up: SpaceVector) -> f64 {
+    let round = |radius: f64| radius * (1.0 - up.z * up.z).max(0.0).sqrt();
+    match shape {
+        BodyShape::Box { size: [x, y, z] } => (x * up.x.abs() + y * up.y.abs() + z * up.z.abs()) / 2.0,
+        BodyShape::Sphere { radius } => radius,
+        BodyShape::Capsule { radius, length } => radius + length / 2.0 * up.z.abs(),
+        BodyShape::Cylinder { radius, length } => round(radius) + length / 2.0 * up.z.abs(),
+    }
+}

@@ -2,11 +2,11 @@
 
 use hrdsl_ir::world::{BodyId, BodyMotion, World};
 
-use super::{bad, body_id, index};
+use super::bodies::{bad, body_id, index};
 use crate::{error::SimError, math::v3};
 
 /// For each body the figure that it is of.
-pub(super) fn figure_of(world: &World) -> Vec<Option<usize>> {
+pub fn figure_of(world: &World) -> Vec<Option<usize>> {
     let mut figures = vec![None; world.bodies.len()];
     for (i, figure) in world.figures.iter().enumerate() {
         let limbs = figure.limbs.iter().flat_map(|limb| [limb.upper, limb.lower].into_iter().chain(limb.end));
@@ -20,7 +20,7 @@ pub(super) fn figure_of(world: &World) -> Vec<Option<usize>> {
 }
 
 /// For each body the one that it is rigidly one with: the topmost over joints that cannot move.
-pub(super) fn rigid_roots(world: &World) -> Result<Vec<BodyId>, SimError> {
+pub fn rigid_roots(world: &World) -> Result<Vec<BodyId>, SimError> {
     let count = world.bodies.len();
     let mut above: Vec<Option<BodyId>> = vec![None; count];
     for joint in &world.joints {

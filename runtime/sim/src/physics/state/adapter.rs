@@ -1,0 +1,65 @@
+//! What the adapter keeps of the engine and of each body, between one step and the next.
+
+use hrdsl_ir::world::{BodyId, BodyMotion, BodyShape};
+use rapier3d::prelude::*;
+
+use super::{
+    accuracy::AccuracyWatch, energy::EnergyWatch, guide::BodyGuide, joint::DrivenJoint, losses::JointLosses,
+    pairs::ExemptPairs, solid::SolidExtent, yielding::YieldingPair,
+};
+use crate::math::BodyFrame;
+
+/// One body of the scenario.
+pub struct PhysicsBody {
+    pub name: String,
+    pub handle: RigidBodyHandle,
+    pub collider: ColliderHandle,
+    /// Within the engine's body.
+    pub local: BodyFrame,
+    pub start: BodyFrame,
+    /// The body that this one is one with.
+    pub root: BodyId,
+    pub motion: BodyMotion,
+    pub ghost: bool,
+    pub shape: BodyShape,
+    /// That of the engine.
+    pub surface: SharedShape,
+    /// Of a body that has not just one shape.
+    pub extent: Option<SolidExtent>,
+}
+
+impl PhysicsBody {
+    /// Whether forces move it.
+    pub fn gives_way(&self) -> bool {
+        match self.motion {
+            BodyMotion::Dynamic | BodyMotion::Guided => true,
+            BodyMotion::Fixed | BodyMotion::Kinematic => false,
+        }
+    }
+}
+
+pub(crate) struct PhysicsAdapter {
+    pub world: PhysicsWorld,
+    pub parts: Vec<PhysicsBody>,
+    /// By body: what draws those that are guided.
+    pub guides: Vec<Option<BodyGuide>>,
+    pub yielding: Vec<YieldingPair>,
+    /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
+    pub joints: Vec<Option<DrivenJoint>>,
+    pub losses: JointLosses,
+    pub exempt: ExemptPairs,
+    pub energy: EnergyWatch,
+    pub accuracy: AccuracyWatch,
+    /// By body: a number of what it is joined to.
+    pub robots: Vec<usize>,
+    /// Where kinematic bodies will be at the end of the next step.
+    pub led: Vec<(RigidBodyHandle, Pose)>,
+    /// The time of a step, s.
+    pub step: f64,
+    /// The time of the last part of a step, s, and how often the solver divided it.
+    pub part: (f64, usize),
+    /// By body: the same of when the solver last had to do with it. What sleeps keeps the impulses of then.
+    pub solved: Vec<(f64, usize)>,
+    /// The corners of the box outside of which a body is lost, m.
+    pub scene: (Vector, Vector),
+}
