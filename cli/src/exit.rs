@@ -29,7 +29,8 @@ Exit codes:
      `import`: a file is no program, or `--strict` and something is left out; `inspect`: the agents cannot go on
      (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault
   2  the command line is wrong, or a file cannot be read or written
-  3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism found a difference;
+  3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism, --repeat or
+     --schedules found a difference;
      `prove`: a requirement is violated, or a query is not satisfied; `conformance`: a case failed
   4  `prove`: something was not decided within the budget, and nothing else is wrong
   5  `sim`: interrupted; the results are those of the tests that had ended

@@ -254,7 +254,10 @@ fn what_is_not_repeatable_is_named() {
     let folder = project(GOOD, 2);
     let out = sim(folder.path(), "--check-determinism");
     expect_code(&out, 0);
-    assert!(stdout(&out).contains("2 tests ran twice, event by event the same"), "{}", stdout(&out));
+    assert!(stdout(&out).contains("2 tests ran twice, byte for byte the same"), "{}", stdout(&out));
+    let out = sim(folder.path(), "--repeat 5");
+    expect_code(&out, 0);
+    assert!(stdout(&out).contains("2 tests ran 5 times, byte for byte the same"), "{}", stdout(&out));
     let robot = "
 import hrdsl
 node = hrdsl.Node('robot')
@@ -268,7 +271,7 @@ for byte in n:
     expect_code(&out, 3);
     let text = stdout(&out);
     assert!(
-        text.contains("2 of 2 tests differ between two runs") && text.contains("mini.hand.t01: step "),
+        text.contains("2 of 2 tests differ between two runs") && text.contains("mini.hand.t01, run 2: step "),
         "{text}"
     );
 }

@@ -1,4 +1,4 @@
-//! `--check-determinism`: a second run of the same tests, compared with the first, event by event.
+//! `--check-determinism` and `--repeat`: further runs of the same tests, compared with the first byte by byte.
 
 use std::{
     collections::BTreeMap,
@@ -8,7 +8,10 @@ use std::{
 };
 
 use hrdsl_ir::test::Test;
-use hrdsl_runtime::campaign::CampaignSetup;
+use hrdsl_runtime::{
+    campaign::{CampaignOutcome, CampaignSetup},
+    results::TestResult,
+};
 
 use super::run::{output_text, progress_bar, recording};
 use crate::{fault::CommandFault, files};
@@ -16,7 +19,7 @@ use crate::{fault::CommandFault, files};
 /// Differences that are listed, at most.
 const LISTED: usize = 20;
 
-/// What the second run made different.
+/// What further runs made different.
 pub struct RunDifferences {
     /// How many tests differ.
     pub tests: usize,
@@ -24,62 +27,94 @@ pub struct RunDifferences {
     pub text: String,
 }
 
-/// Runs the tests once more, in the opposite order, and compares their recordings and output with those below a folder.
+/// For each test that differs, by its place among the tests: its name, the run (from 2) and the first difference.
+type FoundDifferences = BTreeMap<usize, (String, u32, String)>;
+
+/// Runs the tests until each has run so many times, every other time in the opposite order, and compares their recordings, output and
+/// results with those of the first run, whose files are below a folder.
 pub fn compare(
     campaign: &CampaignSetup<'_>,
     tests: &[Test],
+    outcome: &CampaignOutcome,
     first: &Path,
+    runs: u32,
 ) -> Result<RunDifferences, CommandFault> {
+    let known: BTreeMap<String, String> =
+        outcome.tests.iter().map(|test| (test.result.name.to_string(), result_text(&test.result))).collect();
     let backwards: Vec<Test> = tests.iter().rev().cloned().collect();
-    let bar = progress_bar(tests.len());
+    let bar = progress_bar(tests.len() * (runs as usize).saturating_sub(1));
     bar.set_message("again, to compare");
-    let found: Mutex<BTreeMap<usize, (String, String)>> = Mutex::default();
-    // The second run keeps no files: those of the first are the results.
+    let found: Mutex<FoundDifferences> = Mutex::default();
+    // Further runs keep no files: those of the first are the results.
     let again = CampaignSetup { keep: None, ..campaign.clone() };
-    let outcome = again.run(&backwards, |done| {
-        let stem = done.result.name.file_stem();
-        let before = files::read(&recording(first, &stem))?;
-        let output = files::read(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
-        let difference = difference(&before, done.recording).or_else(|| {
-            let again = output_text(done.output);
-            line_difference(&output, &again)
-                .map(|(line, a, b)| format!("output, line {line}: {a}; then: {b}"))
-        });
-        if let Some(difference) = difference {
-            let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-            found.insert(tests.len() - done.index, (done.result.name.to_string(), difference));
+    let mut ran = 1;
+    let mut interrupted = None;
+    for run in 2..=runs {
+        let is_backwards = run % 2 == 0;
+        let outcome = again.run(if is_backwards { &backwards } else { tests }, |done| {
+            let stem = done.result.name.file_stem();
+            let name = done.result.name.to_string();
+            let before = files::read(&recording(first, &stem))?;
+            let output = files::read(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
+            let difference = difference(&before, done.recording)
+                .or_else(|| output_difference(&output, &output_text(done.output)))
+                .or_else(|| result_difference(known.get(&name)?, &result_text(done.result)));
+            if let Some(difference) = difference {
+                let at = if is_backwards { tests.len() - done.index } else { done.index };
+                let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
+                found.entry(at).or_insert((name, run, difference));
+            }
+            bar.inc(1);
+            Ok(())
+        })?;
+        if outcome.interrupted {
+            interrupted = Some((run, outcome.tests.len()));
+            break;
         }
-        bar.inc(1);
-        Ok(())
-    })?;
+        ran = run;
+    }
     bar.finish_and_clear();
     let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(RunDifferences { tests: found.len(), text: text(&found, tests.len(), ran, interrupted) })
+}
+
+/// `interrupted`: the run that was, and how many tests it had done.
+fn text(found: &FoundDifferences, tests: usize, ran: u32, interrupted: Option<(u32, usize)>) -> String {
     let mut text = String::new();
-    if outcome.interrupted {
-        let _ =
-            writeln!(text, "determinism: the second run was interrupted after {} tests", outcome.tests.len());
+    if let Some((run, done)) = interrupted {
+        let _ = writeln!(text, "determinism: run {run} was interrupted after {done} tests");
     }
-    if found.is_empty() {
-        let _ =
-            writeln!(text, "determinism: {} tests ran twice, event by event the same", outcome.tests.len());
-    } else {
-        let _ = writeln!(
-            text,
-            "determinism: {} of {} tests differ between two runs",
-            found.len(),
-            outcome.tests.len()
-        );
+    let count = found.len();
+    if count > 0 {
+        let _ = writeln!(text, "determinism: {count} of {tests} tests differ between two runs");
+    } else if ran > 1 {
+        let times = if ran == 2 { "twice".to_owned() } else { format!("{ran} times") };
+        let _ = writeln!(text, "determinism: {tests} tests ran {times}, byte for byte the same");
     }
-    for (name, difference) in found.values().take(LISTED) {
-        let _ = writeln!(text, "  {name}: {difference}");
+    for (name, run, difference) in found.values().take(LISTED) {
+        let _ = writeln!(text, "  {name}, run {run}: {difference}");
     }
-    if found.len() > LISTED {
-        let _ = writeln!(text, "  and {} more", found.len() - LISTED);
+    if count > LISTED {
+        let _ = writeln!(text, "  and {} more", count - LISTED);
     }
-    if !found.is_empty() {
+    if count > 0 {
         text.push_str("  (spec/randomness.md lists what is repeatable and what is not)\n");
     }
-    Ok(RunDifferences { tests: found.len(), text })
+    text
+}
+
+/// All that the results say of a test.
+fn result_text(result: &TestResult) -> String {
+    serde_json::to_string_pretty(result).unwrap_or_default()
+}
+
+fn output_difference(first: &str, second: &str) -> Option<String> {
+    line_difference(first, second).map(|(line, a, b)| format!("output, line {line}: {a}; then: {b}"))
+}
+
+fn result_difference(first: &str, second: &str) -> Option<String> {
+    let (_, a, b) = line_difference(first, second)?;
+    Some(format!("results: first {}; then {}", a.trim(), b.trim()))
 }
 
 /// The first event in which two recordings differ.

@@ -44,7 +44,7 @@ pub const SUPERVISE: &str = "supervise-cell";
 /// run.json, the tests, a recording of each, and what the program wrote in each.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --system with_rospy/system.hri\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --schedules 20"
+    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --system with_rospy/system.hri\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --suite ta_tests -n 4 --repeat 100\n  hrdsl sim scenario.hri --schedules 20"
 )]
 pub struct SimArgs {
     /// The scenario.
@@ -78,6 +78,9 @@ pub struct SimArgs {
     /// Run the tests twice, and name the first event of each test that differs.
     #[arg(long)]
     check_determinism: bool,
+    /// Run the tests so many times, and name the first event of each test that differs from its first run.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..), conflicts_with_all = ["check_determinism", "debug"])]
+    repeat: Option<u32>,
     /// Run the tests in so many other orders of the programs' threads, too, and name those that come to something else.
     #[arg(long, value_name = "N", conflicts_with_all = ["debug", "schedule"])]
     schedules: Option<u32>,
@@ -144,10 +147,11 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     };
     let begun = Instant::now();
     let outcome = run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
-    let differences = if args.check_determinism && !outcome.interrupted {
-        Some(determinism::compare(&campaign, &tests, &folder.staging())?)
-    } else {
-        None
+    let differences = match args.repeat.or(args.check_determinism.then_some(2)) {
+        Some(runs) if !outcome.interrupted => {
+            Some(determinism::compare(&campaign, &tests, &outcome, &folder.staging(), runs)?)
+        }
+        Some(_) | None => None,
     };
     let races = match args.schedules {
         Some(count) if !outcome.interrupted => Some(schedules::compare(&campaign, &tests, &outcome, count)?),
