@@ -236,7 +236,7 @@ impl Checker<'_> {
                 }
                 continue;
             }
-            let names: Vec<String> = self.s.automata.iter().map(|a| a.name.clone()).collect();
+            let names = self.near_of(&[Noun::Automaton]);
             self.unknown(Noun::Automaton, automaton, &names, None);
         }
         if self.issues.declare(&mut self.networks.table, Noun::Network, name).is_some() {

@@ -5,7 +5,7 @@ use hrdsl_syntax::ast::{self, CallSyntax, ItemSyntaxKind, NameSyntax};
 
 use crate::check::{
     automata::automaton::EdgeScope,
-    checker::Checker,
+    checker::{Checker, EVENTS},
     state::{record::DeclaredFields, scope::ExprEnv, table::NameTable},
 };
 use crate::resolution::type_span;
@@ -88,7 +88,7 @@ impl Checker<'_> {
             let name = &party.automaton;
             let player = self.players.table.get(&name.text).map(|id| self.players.ids[usize::from(id)]);
             let Some(PlayerRef::Automaton(automaton)) = player else {
-                let all: Vec<String> = self.s.automata.iter().map(|a| a.name.clone()).collect();
+                let all = self.near_of(&[Noun::Automaton]);
                 self.unknown(Noun::Automaton, name, &all, None);
                 self.channels.vague.insert(channel.text.clone());
                 continue;
@@ -116,9 +116,9 @@ impl Checker<'_> {
         }
         let known = given || self.events.table.get(&name.text).is_some();
         if !known && (scope.actor.is_none() || self.channels.table.names().next().is_some()) {
-            let mut names = self.near(self.channels.table.names());
+            let mut names = self.near_of(&[Noun::Channel]);
             if scope.actor.is_some() {
-                names.extend(self.near(self.events.table.names()));
+                names.extend(self.near_of(&EVENTS));
                 names.extend(self.given_names(Noun::Event));
             }
             let noun = if scope.actor.is_some() { Noun::Medium } else { Noun::Channel };

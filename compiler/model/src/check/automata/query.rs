@@ -59,7 +59,7 @@ impl Checker<'_> {
         let network = self.networks.table.get(&query.network.text).map(NetworkId);
         self.refer(&query.network, self.networks.table.span_of(&query.network.text));
         let Some(network) = network else {
-            let all: Vec<String> = self.networks.table.names().map(str::to_owned).collect();
+            let all = self.near_of(&[Noun::Network]);
             self.unknown(Noun::Network, &query.network, &all, None);
             return None;
         };

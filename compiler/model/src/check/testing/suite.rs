@@ -121,7 +121,7 @@ impl Checker<'_> {
         let mut actors = Vec::new();
         for name in list {
             let Some(id) = self.players.table.get(&name.text) else {
-                let all: Vec<String> = self.players.table.names().map(str::to_owned).collect();
+                let all = self.near_of(&[Noun::Agent, Noun::Automaton]);
                 self.unknown(Noun::Player, name, &all, None);
                 continue;
             };
@@ -158,7 +158,7 @@ impl Checker<'_> {
         let found = self.networks.table.get(&name.text).map(NetworkId);
         self.refer(name, self.networks.table.span_of(&name.text));
         if found.is_none() {
-            let all: Vec<String> = self.networks.table.names().map(str::to_owned).collect();
+            let all = self.near_of(&[Noun::Network]);
             self.unknown(Noun::Network, name, &all, None);
         }
         found
@@ -251,7 +251,7 @@ impl Checker<'_> {
                     said.reached.push(ModelGoal::Bins(CrossId(id)));
                 }
                 None => {
-                    let all: Vec<String> = self.judged.crosses.names().map(str::to_owned).collect();
+                    let all = self.near_of(&[Noun::Cross]);
                     self.unknown(Noun::Cross, name, &all, None);
                 }
             },
@@ -322,7 +322,7 @@ impl Checker<'_> {
     ) -> Option<TypedChoice> {
         let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
         let Some(PlayerRef::Agent(id)) = player else {
-            let all: Vec<String> = self.s.agents.iter().map(|a| a.name.clone()).collect();
+            let all = self.near_of(&[Noun::Agent]);
             self.unknown(Noun::Agent, agent, &all, None);
             return None;
         };
@@ -360,7 +360,7 @@ impl Checker<'_> {
                     return None;
                 };
                 if let Some(place) = place {
-                    self.refer_within(per, place, "parameter");
+                    self.refer_within(per, place, Noun::Parameter);
                 }
                 ChoiceKind::OnePer(u16::try_from(at).unwrap_or(u16::MAX))
             }

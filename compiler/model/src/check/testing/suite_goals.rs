@@ -14,7 +14,7 @@ impl Checker<'_> {
         let what = self.choice(Noun::ReachOf, what, &["violation", "trigger"]);
         for name in list {
             if self.judged.requirements.get(&name.text).is_none() {
-                let all: Vec<String> = self.judged.requirements.names().map(str::to_owned).collect();
+                let all = self.near_of(&[Noun::Requirement]);
                 self.unknown(Noun::Requirement, name, &all, None);
                 continue;
             }
@@ -38,7 +38,7 @@ impl Checker<'_> {
 
     pub(super) fn reach_query(&mut self, name: &NameSyntax) -> Option<SearchGoal> {
         if self.networks.queries.get(&name.text).is_none() {
-            let all: Vec<String> = self.networks.queries.names().map(str::to_owned).collect();
+            let all = self.near_of(&[Noun::Query]);
             self.unknown(Noun::Query, name, &all, None);
             return None;
         }

@@ -194,7 +194,7 @@ impl Checker<'_> {
     fn predicted(&mut self, text: &TextSyntax) {
         let (cross, bin) = text.text.split_once('.').unwrap_or((&text.text, ""));
         let Some(id) = self.judged.crosses.get(cross) else {
-            let all: Vec<String> = self.judged.crosses.names().map(str::to_owned).collect();
+            let all = self.near_of(&[Noun::Cross]);
             let name = NameSyntax { text: cross.to_owned(), span: text.span };
             self.unknown(Noun::Cross, &name, &all, Some(Noun::Cross));
             return;
@@ -255,7 +255,7 @@ impl Checker<'_> {
                 continue;
             };
             if let Some(place) = self.events.table.span(event.0) {
-                self.refer_within(name, place, "sample");
+                self.refer_within(name, place, Noun::Sample);
             }
             if values[at].is_some() {
                 self.report(names::duplicate(Noun::Sample, &name.text, name.span, None));

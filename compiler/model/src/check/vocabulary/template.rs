@@ -20,6 +20,7 @@ use crate::{
     BinaryOp, EventPattern, InferredType, List, Text, Type, TypedExpr, Value,
     noun::Noun,
     report::{names, types},
+    resolution::of_sort,
     types::TypeLayout,
 };
 
@@ -137,17 +138,6 @@ impl<'a> Checker<'a> {
         }
     }
 
-    pub(in crate::check) fn is_template(&self, text: &str) -> bool {
-        let sorts = [
-            TemplateSyntaxKind::Agent,
-            TemplateSyntaxKind::Automaton,
-            TemplateSyntaxKind::Require,
-            TemplateSyntaxKind::Cover,
-            TemplateSyntaxKind::Cross,
-        ];
-        sorts.into_iter().any(|sort| self.templates.declared.contains_key(&(sort, text)))
-    }
-
     /// What a name stands for in the instance that is being checked.
     pub(in crate::check) fn given(&self, name: &str) -> Option<&TemplateArgument> {
         self.templates.given.as_ref()?.get(name).map(|bound| &bound.given)
@@ -192,14 +182,9 @@ impl<'a> Checker<'a> {
         let Some(template) =
             self.templates.declared.get(&(instance.sort, instance.of.text.as_str())).copied()
         else {
-            let sort = instance.sort;
-            let all: Vec<String> = self
-                .templates
-                .declared
-                .keys()
-                .filter(|(s, _)| *s == sort)
-                .map(|(_, n)| (*n).to_owned())
-                .collect();
+            let sort = of_sort(instance.sort).word();
+            let of_sort = self.s.names.all_of(Noun::Template).filter(|template| template.noun == sort);
+            let all = self.near(of_sort.map(|template| template.name.as_str()));
             // That the name is one of a plain declaration says that it has no parameters.
             self.unknown(Noun::Template, &instance.of, &all, None);
             return None;
