@@ -7,8 +7,8 @@ use super::{
     state::{
         issues::IssueList,
         names::{
-            AgentNames, ChannelNames, CheckedSource, ConstEntry, EventNames, JudgedNames, NetworkNames,
-            PlayerNames, SharedNames, TemplateNames, TypeNames, WorldState,
+            AgentNames, ChannelNames, CheckedSource, ConstEntry, EventNames, NetworkNames, PlayerNames,
+            SharedNames, TemplateNames, TypeNames, WorldState,
         },
         solids::SolidMaker,
         table::{NameTable, OrderedMap},
@@ -52,8 +52,8 @@ pub(crate) struct Checker<'a> {
     // 4. those who play the actors
     pub(super) agents: AgentNames<'a>,
     pub(super) networks: NetworkNames,
-    // 5. requirements, coverage, suites
-    pub(super) judged: JudgedNames,
+    /// Coverpoints, which templates can be given.
+    pub(super) points: NameTable,
 }
 
 impl<'a> Checker<'a> {
@@ -88,7 +88,7 @@ impl<'a> Checker<'a> {
             },
             agents: AgentNames::default(),
             networks: NetworkNames::default(),
-            judged: JudgedNames::default(),
+            points: NameTable::default(),
         }
     }
 
@@ -226,8 +226,8 @@ impl<'a> Checker<'a> {
             )
             | None => {}
         }
-        let found = self.judged.points.get(&name.text).map(CoverpointId);
-        self.refer(name, self.judged.points.span_of(&name.text));
+        let found = self.points.get(&name.text).map(CoverpointId);
+        self.refer(name, self.points.span_of(&name.text));
         if found.is_none() {
             let mut all = self.near_of(&[Noun::Point]);
             all.extend(self.given_names(Noun::Point));

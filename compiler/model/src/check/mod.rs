@@ -22,6 +22,7 @@ use state::{
     names::{CheckedSource, LoneDeclaration},
     phase::CheckPhase,
 };
+use testing::phase::TestingPhase;
 
 pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction};
 
@@ -33,8 +34,8 @@ pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction}
 /// 2. [`Checker::devices`], [`Checker::world`]: what devices can be told; bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
 /// 4. [`Checker::agents`], [`Checker::automata`]: those who play the actors
-/// 5. [`Checker::queries`], [`Checker::requirements`], [`Checker::coverage`], [`Checker::suites`], [`Checker::systems`]
-/// 6. [`Checker::tests`]
+/// 5. [`Checker::queries`]
+/// 6. [`TestingPhase`]: requirements, coverage, suites, systems, tests
 #[must_use]
 pub fn resolve(
     scenario: &ast::FileSyntax,
@@ -112,9 +113,6 @@ fn source<'a>(
     }
 }
 
-/// A phase's work.
-type PhaseCheck<'a> = fn(&mut Checker<'a>);
-
 fn phases<'a>(
     source: CheckedSource<'a>,
     name: Option<&ast::NameSyntax>,
@@ -125,22 +123,18 @@ fn phases<'a>(
     checker.vocabulary();
     checker.devices();
     checker.world();
-    let later: [(CheckPhase, PhaseCheck<'a>); 8] = [
+    let later: [(CheckPhase, fn(&mut Checker<'a>)); 4] = [
         (CheckPhase::Stimuli, Checker::stimuli),
         (CheckPhase::Agents, Checker::agents),
         (CheckPhase::Automata, Checker::automata),
         (CheckPhase::Queries, Checker::queries),
-        (CheckPhase::Requirements, Checker::requirements),
-        (CheckPhase::Coverage, Checker::coverage),
-        (CheckPhase::Suites, Checker::suites),
-        (CheckPhase::Systems, Checker::systems),
     ];
     for (phase, check) in later {
         if checker.source.reaches(phase) {
             check(&mut checker);
         }
     }
-    checker.tests(tests);
+    TestingPhase::check(&mut checker, tests);
     checker.say_without_world();
     checker
 }

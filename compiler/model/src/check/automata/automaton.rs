@@ -18,6 +18,7 @@ use crate::check::{
         table::{MAX_NAMES, NameTable},
     },
     unread,
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     ActorId, AutomatonId, LocationId, Network, PlayerRef, TypedLocation, TypedStimulusStep, TypedSync,

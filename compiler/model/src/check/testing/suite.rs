@@ -7,11 +7,13 @@ use hrdsl_syntax::ast::{
     SuiteSetting,
 };
 
+use super::phase::TestingPhase;
 use crate::check::state::phase::CheckPhase;
 use crate::check::unread;
+use crate::check::vocabulary::template::CheckerPhase;
 use crate::check::{
     agents::agent::AgentScope,
-    checker::{Checker, NOBODY},
+    checker::NOBODY,
     state::{issues::too_many, scope::ExprEnv, table::MAX_NAMES},
 };
 use crate::{
@@ -49,14 +51,14 @@ impl SuiteMembers {
     }
 }
 
-impl Checker<'_> {
+impl TestingPhase<'_, '_> {
     pub(in crate::check) fn suites(&mut self) {
         self.source.unread_members = self.players.agents.iter().any(|a| unread::in_agent(a.syntax));
         for (item, span) in self.each_item() {
             if let ItemSyntaxKind::Suite(suite) = item {
                 let looked_at = self.source.looks_at(CheckPhase::Suites, span);
                 let resolved = if looked_at { self.suite(suite, span) } else { None };
-                let new = self.issues.declare(&mut self.judged.suites, Noun::Suite, &suite.name).is_some();
+                let new = self.checker.issues.declare(&mut self.suites, Noun::Suite, &suite.name).is_some();
                 self.s.suites.extend(resolved.filter(|_| new));
             }
         }
@@ -116,7 +118,7 @@ impl Checker<'_> {
 
     /// Agents and automata; at most one for an actor.
     fn suite_players(&mut self, list: &[NameSyntax]) -> Vec<PlayerRef> {
-        self.judged.unknown_player = list.iter().any(|name| self.players.table.get(&name.text).is_none());
+        self.unknown_player = list.iter().any(|name| self.players.table.get(&name.text).is_none());
         let mut players = Vec::new();
         let mut actors = Vec::new();
         for name in list {
@@ -244,9 +246,9 @@ impl Checker<'_> {
                 let found = self.choice(Noun::Delays, word, &["earliest", "latest", "sampled"]);
                 said.delays = found.map_or(said.delays, |i| kinds[i]);
             }
-            Member::ReachBins(name) => match self.judged.crosses.get(&name.text) {
+            Member::ReachBins(name) => match self.crosses.get(&name.text) {
                 Some(id) => {
-                    self.refer(name, self.judged.crosses.span(id));
+                    self.refer(name, self.crosses.span(id));
                     said.goals.push(SearchGoal::Bins(CrossId(id)));
                     said.reached.push(ModelGoal::Bins(CrossId(id)));
                 }
@@ -328,7 +330,7 @@ impl Checker<'_> {
         };
         self.refer(agent, self.players.table.span_of(&agent.text));
         // A player whose name is wrong may be the one that is missing.
-        if !players.contains(&PlayerRef::Agent(id)) && !self.judged.unknown_player {
+        if !players.contains(&PlayerRef::Agent(id)) && !self.unknown_player {
             let message = format!("`{}` does not play in this suite", agent.text);
             self.report(bad_suite(agent.span, message, "add it after `by agents`"));
         }
