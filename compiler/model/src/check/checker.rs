@@ -7,8 +7,8 @@ use super::{
     state::{
         issues::IssueList,
         names::{
-            AgentNames, ChannelNames, CheckedSource, ConstEntry, EventNames, NetworkNames, PlayerNames,
-            SharedNames, TemplateNames, TypeNames, WorldState,
+            AgentNames, CheckedSource, ConstEntry, EventNames, PlayerNames, SharedNames, TemplateNames,
+            TypeNames, WorldState,
         },
         solids::SolidMaker,
         table::{NameTable, OrderedMap},
@@ -46,12 +46,10 @@ pub(crate) struct Checker<'a> {
     pub(super) events: EventNames<'a>,
     pub(super) players: PlayerNames<'a>,
     pub(super) shared: SharedNames,
-    pub(super) channels: ChannelNames,
     // 2. the world
     pub(super) world: WorldState<'a>,
     // 4. those who play the actors
     pub(super) agents: AgentNames<'a>,
-    pub(super) networks: NetworkNames,
     /// Coverpoints, which templates can be given.
     pub(super) points: NameTable,
 }
@@ -76,7 +74,6 @@ impl<'a> Checker<'a> {
                 agent_names: Enumeration::intern("agent", &["self", "percept"]),
             },
             shared: SharedNames::default(),
-            channels: ChannelNames::default(),
             world: WorldState {
                 exists,
                 parts: OrderedMap::default(),
@@ -87,7 +84,6 @@ impl<'a> Checker<'a> {
                 missed: Vec::new(),
             },
             agents: AgentNames::default(),
-            networks: NetworkNames::default(),
             points: NameTable::default(),
         }
     }

@@ -17,6 +17,7 @@ use hrdsl_source::Diagnostic;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
 use crate::{Scenario, descriptions::DescriptionLibrary};
+use automata::phase::AutomataPhase;
 use checker::Checker;
 use state::{
     names::{CheckedSource, LoneDeclaration},
@@ -33,8 +34,8 @@ pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction}
 ///    agents and automata, and channels
 /// 2. [`Checker::devices`], [`Checker::world`]: what devices can be told; bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
-/// 4. [`Checker::agents`], [`Checker::automata`]: those who play the actors
-/// 5. [`Checker::queries`]
+/// 4. [`Checker::agents`]: those who play the actors, and
+/// 5. [`AutomataPhase`], which takes the channels and gives the networks
 /// 6. [`TestingPhase`]: requirements, coverage, suites, systems, tests
 #[must_use]
 pub fn resolve(
@@ -121,20 +122,18 @@ fn phases<'a>(
     let mut checker = Checker::new(source);
     checker.s.name = name.map_or_else(String::new, |n| n.text.clone());
     checker.vocabulary();
+    let channels = checker.channels();
     checker.devices();
     checker.world();
-    let later: [(CheckPhase, fn(&mut Checker<'a>)); 4] = [
-        (CheckPhase::Stimuli, Checker::stimuli),
-        (CheckPhase::Agents, Checker::agents),
-        (CheckPhase::Automata, Checker::automata),
-        (CheckPhase::Queries, Checker::queries),
-    ];
+    let later: [(CheckPhase, fn(&mut Checker<'a>)); 2] =
+        [(CheckPhase::Stimuli, Checker::stimuli), (CheckPhase::Agents, Checker::agents)];
     for (phase, check) in later {
         if checker.source.reaches(phase) {
             check(&mut checker);
         }
     }
-    TestingPhase::check(&mut checker, tests);
+    let networks = AutomataPhase::check(&mut checker, channels);
+    TestingPhase::check(&mut checker, networks, tests);
     checker.say_without_world();
     checker
 }

@@ -212,7 +212,5 @@ pub(crate) struct AgentNames<'a> {
 #[derive(Default)]
 pub(crate) struct NetworkNames {
     pub table: NameTable,
-    /// By the place in the scenario's automata: what the edges of each see.
-    pub scopes: BTreeMap<usize, Rc<NameScope>>,
     pub queries: NameTable,
 }

@@ -6,13 +6,14 @@ use hrdsl_syntax::ast;
 
 use crate::check::{
     checker::Checker,
-    state::{phase::CheckPhase, table::NameTable},
+    state::{names::NetworkNames, phase::CheckPhase, table::NameTable},
     vocabulary::template::CheckerPhase,
 };
 
 /// The last phase: nothing is declared in it that others speak of.
 pub(in crate::check) struct TestingPhase<'c, 'a> {
     pub(super) checker: &'c mut Checker<'a>,
+    pub(super) networks: NetworkNames,
     pub(super) requirements: NameTable,
     pub(super) crosses: NameTable,
     pub(super) suites: NameTable,
@@ -22,9 +23,14 @@ pub(in crate::check) struct TestingPhase<'c, 'a> {
 
 impl<'c, 'a> TestingPhase<'c, 'a> {
     /// Checks requirements, coverage, suites and systems, then the tests of the scenario and of the files of tests.
-    pub(in crate::check) fn check(checker: &'c mut Checker<'a>, tests: &[&ast::FileSyntax]) {
+    pub(in crate::check) fn check(
+        checker: &'c mut Checker<'a>,
+        networks: NetworkNames,
+        tests: &[&ast::FileSyntax],
+    ) {
         let mut phase = Self {
             checker,
+            networks,
             requirements: NameTable::default(),
             crosses: NameTable::default(),
             suites: NameTable::default(),

@@ -82,7 +82,6 @@ impl<'a> Checker<'a> {
                 _ => {}
             }
         }
-        self.declare_channels();
     }
 
     /// An instance of a template of agents or automata.
