@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// What a name can be the name of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Noun {
     Actor,
     Role,
@@ -179,12 +179,11 @@ impl Noun {
             | Noun::Action => format!("{self}s"),
         }
     }
-}
 
-impl fmt::Display for Noun {
+    /// `clock`
     #[expect(clippy::too_many_lines, reason = "a flat match")]
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+    pub fn word(self) -> &'static str {
+        match self {
             Noun::Actor => "actor",
             Noun::Role => "role",
             Noun::Constant => "constant",
@@ -257,6 +256,12 @@ impl fmt::Display for Noun {
             Noun::Signal => "signal",
             Noun::Action => "action",
             Noun::Coordinate => "coordinate",
-        })
+        }
+    }
+}
+
+impl fmt::Display for Noun {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
     }
 }

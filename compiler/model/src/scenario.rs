@@ -102,24 +102,10 @@ pub struct Scenario {
     pub device_kinds: Vec<DeviceKind>,
     pub world: Option<TypedWorld>,
     pub systems: Vec<SystemUnderTest<TypedExpr>>,
-    pub declared: Vec<NamedSpan>,
     #[serde(skip)]
     pub places: DeclarationPlaces,
     #[serde(skip)]
     pub names: Resolutions,
-}
-
-/// A declaration of which nothing is left where it is used: a constant, a type, a template, a part.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NamedSpan {
-    /// `the constant`
-    pub noun: &'static str,
-    pub name: String,
-    /// The name's.
-    pub place: Span,
-    pub span: Span,
-    /// Something reads it.
-    pub used: bool,
 }
 
 /// Where names stand that a diagnostic points at; each list is by the id of its elements.

@@ -7,8 +7,8 @@ use super::{
     state::{
         issues::IssueList,
         names::{
-            AgentNames, ChannelNames, CheckedSource, ConstEntry, EventNames, JudgedNames, NetworkNames,
-            PlayerNames, SharedNames, TemplateNames, TypeNames, WorldState,
+            AgentNames, CheckedSource, ConstEntry, EventNames, PlayerNames, SharedNames, TemplateNames,
+            TypeNames, WorldState,
         },
         solids::SolidMaker,
         table::{NameTable, OrderedMap},
@@ -18,8 +18,8 @@ use super::{
     unread,
 };
 use crate::{
-    ActorId, ArgPattern, CoverpointId, DefinedType, EventId, InferredType, NameDefinition, PlayerRef,
-    Resolutions, Role, Scenario,
+    ActorId, ArgPattern, CoverpointId, DefinedType, EventId, InferredType, NameDefinition, Resolutions, Role,
+    Scenario,
     noun::Noun,
     report::{
         names::{unknown, wrong_kind},
@@ -29,6 +29,9 @@ use crate::{
 
 /// Stands for an actor whose name is unknown, so that nothing else is said about it.
 pub(super) const NOBODY: ActorId = ActorId(u16::MAX);
+
+/// What [`Noun::EventOrStimulus`] means.
+pub(super) const EVENTS: [Noun; 2] = [Noun::Event, Noun::Stimulus];
 
 /// The scenario so far and what is known for the rest of it, in the order of the phases.
 pub(crate) struct Checker<'a> {
@@ -43,14 +46,12 @@ pub(crate) struct Checker<'a> {
     pub(super) events: EventNames<'a>,
     pub(super) players: PlayerNames<'a>,
     pub(super) shared: SharedNames,
-    pub(super) channels: ChannelNames,
     // 2. the world
     pub(super) world: WorldState<'a>,
     // 4. those who play the actors
     pub(super) agents: AgentNames<'a>,
-    pub(super) networks: NetworkNames,
-    // 5. requirements, coverage, suites
-    pub(super) judged: JudgedNames,
+    /// Coverpoints, which templates can be given.
+    pub(super) points: NameTable,
 }
 
 impl<'a> Checker<'a> {
@@ -73,7 +74,6 @@ impl<'a> Checker<'a> {
                 agent_names: Enumeration::intern("agent", &["self", "percept"]),
             },
             shared: SharedNames::default(),
-            channels: ChannelNames::default(),
             world: WorldState {
                 exists,
                 parts: OrderedMap::default(),
@@ -84,8 +84,7 @@ impl<'a> Checker<'a> {
                 missed: Vec::new(),
             },
             agents: AgentNames::default(),
-            networks: NetworkNames::default(),
-            judged: JudgedNames::default(),
+            points: NameTable::default(),
         }
     }
 
@@ -97,7 +96,7 @@ impl<'a> Checker<'a> {
     }
 
     /// A name is that of a part of the declaration whose name stands there: a field, a parameter.
-    pub(super) fn refer_within(&mut self, name: &NameSyntax, place: Span, noun: &str) {
+    pub(super) fn refer_within(&mut self, name: &NameSyntax, place: Span, noun: Noun) {
         let whole = self.s.names.defined_at(place).map(|definition| definition.whole);
         let part = whole.and_then(|whole| self.s.names.named_in(whole, noun, &name.text));
         self.refer(name, part);
@@ -107,7 +106,7 @@ impl<'a> Checker<'a> {
     pub(super) fn define_here(&mut self, name: &NameSyntax, ty: InferredType) {
         let inferred = |ty: InferredType| DefinedType::Inferred(ty.to_string());
         self.s.names.define(NameDefinition {
-            noun: "variable",
+            noun: Noun::Variable.word(),
             name: name.text.clone(),
             place: name.span,
             whole: name.span,
@@ -153,7 +152,7 @@ impl<'a> Checker<'a> {
                 Some(ActorId(id))
             }
             None => {
-                let names = self.near(self.actors.names());
+                let names = self.near_of(&[Noun::Actor]);
                 self.unknown(Noun::Actor, name, &names, None);
                 None
             }
@@ -194,9 +193,9 @@ impl<'a> Checker<'a> {
             self.refer(name, self.events.table.span(id));
             return Some(EventId(id));
         }
-        let mut names =
-            self.near(self.events.table.entries().filter(|(_, id)| fits(self, *id)).map(|(n, _)| n));
-        if noun == Noun::EventOrStimulus {
+        let either = noun == Noun::EventOrStimulus;
+        let mut names = self.near_of(if either { &EVENTS } else { std::slice::from_ref(&noun) });
+        if either {
             names.extend(self.given_names(Noun::Event));
         }
         self.unknown(noun, name, &names, local);
@@ -223,10 +222,10 @@ impl<'a> Checker<'a> {
             )
             | None => {}
         }
-        let found = self.judged.points.get(&name.text).map(CoverpointId);
-        self.refer(name, self.judged.points.span_of(&name.text));
+        let found = self.points.get(&name.text).map(CoverpointId);
+        self.refer(name, self.points.span_of(&name.text));
         if found.is_none() {
-            let mut all = self.near(self.judged.points.names());
+            let mut all = self.near_of(&[Noun::Point]);
             all.extend(self.given_names(Noun::Point));
             self.unknown(Noun::Point, name, &all, None);
         }
@@ -255,51 +254,23 @@ impl<'a> Checker<'a> {
         self.report(issue);
     }
 
-    /// What a globally visible name is.
+    /// What a globally visible name is: a parameter of the template hides others, and the world's parts are made, not declared.
     pub(super) fn kind_of(&self, text: &str) -> Option<Noun> {
-        if let Some(id) = self.events.table.get(text) {
-            let stimulus = self.s.events[usize::from(id)].stimulus.is_some();
-            return Some(if stimulus { Noun::Stimulus } else { Noun::Event });
-        }
-        if let Some(id) = self.players.table.get(text) {
-            return Some(match self.players.ids[usize::from(id)] {
-                PlayerRef::Agent(_) => Noun::Agent,
-                PlayerRef::Automaton(_) => Noun::Automaton,
-            });
-        }
-        if self.consts.contains_key(text) {
-            return Some(Noun::Constant);
-        }
         if self.given(text).is_some() {
             return Some(Noun::Parameter);
         }
-        if self.types.values.contains_key(text) {
-            return Some(Noun::EnumValue);
-        }
-        if self.is_template(text) {
-            return Some(Noun::Template);
-        }
-        let tables = [
-            (&self.actors, Noun::Actor),
-            (&self.shared.names, Noun::Variable),
-            (&self.channels.table, Noun::Channel),
-            (&self.networks.table, Noun::Network),
-            (&self.networks.queries, Noun::Query),
-            (&self.judged.requirements, Noun::Requirement),
-            (&self.judged.points, Noun::Point),
-            (&self.judged.crosses, Noun::Cross),
-            (&self.judged.suites, Noun::Suite),
-            (&self.types.enums, Noun::Enum),
-            (&self.types.record_names, Noun::Record),
-        ];
-        let found = tables.iter().find(|(t, _)| t.get(text).is_some()).map(|(_, noun)| *noun);
-        found.or_else(|| self.world.names.kind_of(text))
+        self.s.names.kind_of(text).or_else(|| self.world.names.kind_of(text))
     }
 
     /// The names that a misspelt one may have been meant to be; none after many misspelt names, since looking for the
     /// nearest takes time that grows with both.
     pub(super) fn near<'n>(&self, names: impl Iterator<Item = &'n str>) -> Vec<String> {
         if self.issues.compares() { names.map(str::to_owned).collect() } else { Vec::new() }
+    }
+
+    /// The same: those of these kinds that are visible everywhere.
+    pub(super) fn near_of(&self, nouns: &[Noun]) -> Vec<String> {
+        if self.issues.compares() { self.near(self.s.names.names_of(nouns).into_iter()) } else { Vec::new() }
     }
 
     /// A word that is one of a fixed list.

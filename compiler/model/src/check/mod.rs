@@ -17,11 +17,13 @@ use hrdsl_source::Diagnostic;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
 use crate::{Scenario, descriptions::DescriptionLibrary};
+use automata::phase::AutomataPhase;
 use checker::Checker;
 use state::{
     names::{CheckedSource, LoneDeclaration},
     phase::CheckPhase,
 };
+use testing::phase::TestingPhase;
 
 pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction};
 
@@ -32,9 +34,9 @@ pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction}
 ///    agents and automata, and channels
 /// 2. [`Checker::devices`], [`Checker::world`]: what devices can be told; bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
-/// 4. [`Checker::agents`], [`Checker::automata`]: those who play the actors
-/// 5. [`Checker::queries`], [`Checker::requirements`], [`Checker::coverage`], [`Checker::suites`], [`Checker::systems`]
-/// 6. [`Checker::tests`]
+/// 4. [`Checker::agents`]: those who play the actors, and
+/// 5. [`AutomataPhase`], which takes the channels and gives the networks
+/// 6. [`TestingPhase`]: requirements, coverage, suites, systems, tests
 #[must_use]
 pub fn resolve(
     scenario: &ast::FileSyntax,
@@ -112,9 +114,6 @@ fn source<'a>(
     }
 }
 
-/// A phase's work.
-type PhaseCheck<'a> = fn(&mut Checker<'a>);
-
 fn phases<'a>(
     source: CheckedSource<'a>,
     name: Option<&ast::NameSyntax>,
@@ -123,24 +122,18 @@ fn phases<'a>(
     let mut checker = Checker::new(source);
     checker.s.name = name.map_or_else(String::new, |n| n.text.clone());
     checker.vocabulary();
+    let channels = checker.channels();
     checker.devices();
     checker.world();
-    let later: [(CheckPhase, PhaseCheck<'a>); 8] = [
-        (CheckPhase::Stimuli, Checker::stimuli),
-        (CheckPhase::Agents, Checker::agents),
-        (CheckPhase::Automata, Checker::automata),
-        (CheckPhase::Queries, Checker::queries),
-        (CheckPhase::Requirements, Checker::requirements),
-        (CheckPhase::Coverage, Checker::coverage),
-        (CheckPhase::Suites, Checker::suites),
-        (CheckPhase::Systems, Checker::systems),
-    ];
+    let later: [(CheckPhase, fn(&mut Checker<'a>)); 2] =
+        [(CheckPhase::Stimuli, Checker::stimuli), (CheckPhase::Agents, Checker::agents)];
     for (phase, check) in later {
         if checker.source.reaches(phase) {
             check(&mut checker);
         }
     }
-    checker.tests(tests);
+    let networks = AutomataPhase::check(&mut checker, channels);
+    TestingPhase::check(&mut checker, networks, tests);
     checker.say_without_world();
     checker
 }

@@ -1,16 +1,15 @@
-//! Where the names of a scenario stand, and which declarations it uses: read off the AST once all is resolved. Without
-//! errors the elements of the scenario are those of the AST, in the same order, those of an instance the template's.
+//! Where the names of a scenario stand: read off the AST once all is resolved. Without errors the elements of the scenario are
+//! those of the AST, in the same order, those of an instance the template's.
 
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemSyntaxKind, SuiteMemberKind,
 };
 
-use crate::check::{checker::Checker, state::names::DeclaredPlayer, vocabulary::template::template};
-use crate::{AgentPlaces, AutomatonPlaces, NamedSpan, TypedAutomaton, VarPlace};
+use crate::check::{checker::Checker, state::names::DeclaredPlayer};
+use crate::{AgentPlaces, AutomatonPlaces, TypedAutomaton, VarPlace};
 
 impl Checker<'_> {
-    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub(in crate::check) fn places(&mut self) {
         for (item, span) in self.each_item() {
             match item {
@@ -26,33 +25,16 @@ impl Checker<'_> {
                 }
                 ItemSyntaxKind::Network { name, .. } => self.s.places.networks.push(name.span),
                 ItemSyntaxKind::Suite(suite) => self.s.places.awaits.push(awaits(suite)),
-                ItemSyntaxKind::Const { name, .. } => {
-                    let used = self.s.names.is_used(name.span);
-                    self.declared("the constant", name, span, used);
-                }
-                ItemSyntaxKind::Enum { name, .. } => {
-                    let used = self.s.names.is_used(name.span);
-                    self.declared("the enumeration", name, span, used);
-                }
-                ItemSyntaxKind::Record { name, .. } => {
-                    let used = self.s.names.is_used(name.span);
-                    self.declared("the record", name, span, used);
-                }
-                ItemSyntaxKind::Part(part) => {
-                    let used = self.s.names.is_used(part.name.span);
-                    self.declared("the part", &part.name, span, used);
-                }
-                ItemSyntaxKind::Agent(_)
+                ItemSyntaxKind::Enum { .. }
+                | ItemSyntaxKind::Record { .. }
+                | ItemSyntaxKind::Const { .. }
+                | ItemSyntaxKind::Part(_)
+                | ItemSyntaxKind::Agent(_)
                 | ItemSyntaxKind::Automaton(_)
                 | ItemSyntaxKind::Require(_)
                 | ItemSyntaxKind::Cover(_)
-                | ItemSyntaxKind::Cross(_) => {
-                    if let Some((_, template)) = template(item) {
-                        let used = self.s.names.is_used(template.name.span);
-                        self.declared("the template", template.name, span, used);
-                    }
-                }
-                ItemSyntaxKind::Use(_)
+                | ItemSyntaxKind::Cross(_)
+                | ItemSyntaxKind::Use(_)
                 | ItemSyntaxKind::Allow(_)
                 | ItemSyntaxKind::Channel(_)
                 | ItemSyntaxKind::Function(_)
@@ -67,10 +49,6 @@ impl Checker<'_> {
                 | ItemSyntaxKind::Error => {}
             }
         }
-        for (name, span) in std::mem::take(&mut self.shared.functions.declared).into_values() {
-            let used = self.s.names.is_used(name.span);
-            self.declared("the function", &name, span, used);
-        }
         let agents = self.players.agents.iter();
         self.s.places.agents =
             agents.map(|a| agent_places(a.syntax, a.name_span(a.syntax.name.span))).collect();
@@ -79,11 +57,6 @@ impl Checker<'_> {
             automata.map(|(a, of)| automaton_places(a.syntax, of, a.name_span(a.syntax.name.span))).collect();
         let signals = &self.world.names.signals;
         self.s.places.signals = signals.entries().filter_map(|(_, id)| signals.span(id)).collect();
-    }
-
-    fn declared(&mut self, noun: &'static str, name: &ast::NameSyntax, span: Span, used: bool) {
-        let (text, place) = (name.text.clone(), name.span);
-        self.s.declared.push(NamedSpan { noun, name: text, place, span, used });
     }
 }
 

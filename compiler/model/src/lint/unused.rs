@@ -1,5 +1,7 @@
 //! HR0107: declarations that nothing uses. What suites use is told only if there are suites or tests.
 
+use std::collections::BTreeSet;
+
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use super::{
@@ -9,13 +11,14 @@ use super::{
     query_reads::QueryReads,
 };
 use crate::{
-    ActorId, AutomatonId, AutomatonVar, FunctionEffects, MessageSubject, NetworkId, Performative, PlayerRef,
-    Role, Scenario, SignalTerm, TypedAgent, TypedAutomaton, TypedContext, TypedExpr, TypedExprKind,
-    TypedMethod, TypedStepKind, TypedSync, TypedTime, TypedUpdate, VariableRef, leaves,
+    ActorId, AutomatonId, AutomatonVar, FunctionEffects, MessageSubject, NameDefinition, NetworkId,
+    Performative, PlayerRef, Role, Scenario, TypedAgent, TypedAutomaton, TypedContext, TypedExpr,
+    TypedMethod, TypedStepKind, TypedSync, TypedTime, TypedUpdate, VariableRef, leaves, noun::Noun,
 };
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     let mut found = Vec::new();
+    mentioned(scenario, &mut found);
     vocabulary(scenario, facts, &mut found);
     let queries = QueryReads::of(scenario);
     if facts.has_tests {
@@ -29,7 +32,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, is
 
 /// A declaration that nothing uses.
 struct UnusedName<'a> {
-    noun: &'static str,
+    noun: Noun,
     name: &'a str,
     at: Span,
     /// What is not done with it.
@@ -41,7 +44,7 @@ struct UnusedName<'a> {
 impl UnusedName<'_> {
     fn said(self) -> Diagnostic {
         let Self { noun, name, at, lacks, whole } = self;
-        let message = format!("{noun} `{name}` is never {lacks}");
+        let message = format!("the {noun} `{name}` is never {lacks}");
         let issue = Diagnostic::warning(DiagnosticCode::UNUSED, at, message);
         match whole {
             // One of several that are declared together cannot simply go.
@@ -54,22 +57,34 @@ impl UnusedName<'_> {
     }
 }
 
-fn vocabulary<'a>(scenario: &'a Scenario, facts: &ScenarioFacts, found: &mut Vec<UnusedName<'a>>) {
-    for declared in scenario.declared.iter().filter(|c| !c.used) {
-        let whole = Some((declared.span, true));
-        let (name, at) = (declared.name.as_str(), declared.place);
-        found.push(UnusedName { noun: declared.noun, name, at, lacks: "used", whole });
+/// Declarations of which nothing is left where they are used: they are, if their names are mentioned.
+fn mentioned<'a>(scenario: &'a Scenario, found: &mut Vec<UnusedName<'a>>) {
+    let names = &scenario.names;
+    let mut add = |noun: Noun, declared: &'a NameDefinition| {
+        if !names.is_used(declared.place) {
+            let (name, at, whole) = (declared.name.as_str(), declared.place, Some((declared.whole, true)));
+            found.push(UnusedName { noun, name, at, lacks: "used", whole });
+        }
+    };
+    for noun in [Noun::Constant, Noun::Enum, Noun::Record, Noun::Part, Noun::Template] {
+        names.all_of(noun).for_each(|declared| add(noun, declared));
     }
+    // Those of automata are visible there only.
+    let functions = names.definitions().filter(|declared| declared.noun == Noun::Function.word());
+    functions.for_each(|declared| add(Noun::Function, declared));
+}
+
+fn vocabulary<'a>(scenario: &'a Scenario, facts: &ScenarioFacts, found: &mut Vec<UnusedName<'a>>) {
     for (id, event, at) in own_events(scenario) {
         if facts.made(id) || facts.read(id) {
             continue;
         }
         let name = event.name.as_str();
         found.push(if event.stimulus.is_some() {
-            UnusedName { noun: "the stimulus", name, at, lacks: "done", whole: Some((event.origin, false)) }
+            UnusedName { noun: Noun::Stimulus, name, at, lacks: "done", whole: Some((event.origin, false)) }
         } else {
             UnusedName {
-                noun: "the event",
+                noun: Noun::Event,
                 name,
                 at,
                 lacks: "made nor taken",
@@ -104,7 +119,7 @@ fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unu
         let at = places.agents.get(i).map_or(agent.origin, |p| p.name);
         let whole = Some((agent.origin, false));
         found.push(UnusedName {
-            noun: "the agent",
+            noun: Noun::Agent,
             name: &agent.name,
             at,
             lacks: "played in a suite",
@@ -115,7 +130,7 @@ fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unu
         let at = places.automata.get(i).map_or(automaton.origin, |p| p.name);
         let (name, whole) = (automaton.name.as_str(), Some((automaton.origin, false)));
         found.push(UnusedName {
-            noun: "the automaton",
+            noun: Noun::Automaton,
             name,
             at,
             lacks: "played in a suite or network",
@@ -126,7 +141,7 @@ fn players<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<Unu
         let at = places.networks.get(i).copied().unwrap_or(network.origin);
         let whole = Some((network.origin, false));
         found.push(UnusedName {
-            noun: "the network",
+            noun: Noun::Network,
             name: &network.name,
             at,
             lacks: "searched by a suite",
@@ -173,7 +188,7 @@ fn beliefs<'a>(scenario: &'a Scenario, index: usize, agent: &'a TypedAgent, foun
     for (i, belief) in agent.beliefs.iter().enumerate().filter(unread) {
         let at = places.and_then(|p| p.beliefs.get(i)).copied().unwrap_or(belief.origin);
         let whole = (!named[i]).then_some((belief.origin, true));
-        found.push(UnusedName { noun: "the belief", name: &belief.name, at, lacks: "read", whole });
+        found.push(UnusedName { noun: Noun::Belief, name: &belief.name, at, lacks: "read", whole });
     }
 }
 
@@ -254,7 +269,7 @@ fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<U
         for (i, clock) in automaton.clocks.iter().enumerate().filter(|(i, _)| !clocks.read[first + *i]) {
             let at = places.and_then(|p| p.clocks.get(i)).copied().unwrap_or(automaton.origin);
             // Several clocks may share a declaration: there is no text that can simply go.
-            found.push(UnusedName { noun: "the clock", name: clock, at, lacks: "read", whole: None });
+            found.push(UnusedName { noun: Noun::Clock, name: clock, at, lacks: "read", whole: None });
         }
         for i in unread(&automaton.vars, &mut own) {
             let var = &automaton.vars[i];
@@ -262,7 +277,7 @@ fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<U
             let at = place.map_or(automaton.origin, |p| p.name);
             let whole = place.filter(|_| !own.set[i]).map(|p| (p.whole, true));
             found.push(UnusedName {
-                noun: "the variable",
+                noun: Noun::Variable,
                 name: whole_name(&var.name),
                 at,
                 lacks: "read",
@@ -276,7 +291,7 @@ fn variables<'a>(scenario: &'a Scenario, queries: &QueryReads, found: &mut Vec<U
         let Some(place) = scenario.places.shared.get(i) else { continue };
         let whole = (!shared.set[i]).then_some((place.whole, true));
         let (name, at) = (whole_name(&var.name), place.name);
-        found.push(UnusedName { noun: "the variable", name, at, lacks: "read", whole });
+        found.push(UnusedName { noun: Noun::Variable, name, at, lacks: "read", whole });
     }
 }
 
@@ -293,7 +308,7 @@ fn unread_clocks<'a>(scenario: &'a Scenario, uses: &NameUses, found: &mut Vec<Un
         let place = places[0];
         let whole = (!uses.set[part].contains(&true)).then_some((place.whole, true));
         let name = whole_name(first);
-        found.push(UnusedName { noun: "the clock", name, at: place.name, lacks: "read", whole });
+        found.push(UnusedName { noun: Noun::Clock, name, at: place.name, lacks: "read", whole });
     }
 }
 
@@ -392,32 +407,19 @@ fn reads_time(time: &TypedTime, own: &mut NameUses, shared: &mut NameUses) {
     time.terms.iter().for_each(|t| reads(&t.value, own, shared, None));
 }
 
-/// Signals that no actor, rule, requirement or other signal reads.
+/// Signals that are neither sent to code nor mentioned: nothing sets a signal, so that whoever names it reads it.
 fn signals<'a>(scenario: &'a Scenario, found: &mut Vec<UnusedName<'a>>) {
     let Some(world) = &scenario.world else { return };
     // Only the code of a system actor reads signals by itself.
     let is_code = |a: &ActorId| scenario.actors.get(usize::from(a.0)).is_some_and(|a| a.role == Role::System);
-    let mut read: Vec<bool> = world.signals.iter().map(|s| s.to.iter().any(is_code)).collect();
-    let mut mark = |e: &TypedExpr| {
-        e.each(&mut |part| {
-            if let TypedExprKind::Leaf(VariableRef::Signal(s))
-            | TypedExprKind::Term(SignalTerm::Delta(s, _) | SignalTerm::Reading(s)) = part.kind
-                && let Some(read) = read.get_mut(usize::from(s.0))
-            {
-                *read = true;
-            }
-        });
-    };
-    world.signals.iter().for_each(|s| mark(&s.value));
-    for rule in &world.rules {
-        rule.condition().into_iter().chain(&rule.guard).chain(&rule.args).for_each(&mut mark);
-    }
-    for requirement in &scenario.requirements {
-        requirement.pattern.condition().into_iter().for_each(&mut mark);
-    }
-    for (i, signal) in world.signals.iter().enumerate().filter(|(i, _)| !read[*i]) {
-        let at = scenario.places.signals.get(i).copied().unwrap_or(signal.span);
+    // Each instance of a part has the part's signals, which are declared once.
+    let mut seen = BTreeSet::new();
+    for (signal, at) in world.signals.iter().zip(&scenario.places.signals) {
+        if scenario.names.is_used(*at) || signal.to.iter().any(is_code) || !seen.insert(*at) {
+            continue;
+        }
+        let name = scenario.names.defined_at(*at).map_or(&signal.name, |declared| &declared.name);
         let whole = Some((signal.span, true));
-        found.push(UnusedName { noun: "the signal", name: &signal.name, at, lacks: "read", whole });
+        found.push(UnusedName { noun: Noun::Signal, name, at: *at, lacks: "read", whole });
     }
 }

@@ -8,38 +8,66 @@ use hrdsl_syntax::ast::{
     ItemSyntaxKind, NameSyntax, StatementSyntaxKind, StimulusStepKind, TypeExpr, WorldMemberKind,
 };
 
-use super::{DefinedType, NameDefinition};
+use super::{DefinedType, NameDefinition, global::GlobalNames};
+use crate::noun::Noun;
 
-/// The definitions of these items and of all in them.
-pub(super) fn of_items(items: &[&ast::ItemSyntax]) -> Vec<NameDefinition> {
-    let mut reader = DefinitionReader { found: Vec::new(), whole: Span::default(), doc: String::new() };
+/// The definitions of these items and of all in them, and those of them that are visible everywhere.
+pub(super) fn of_items(items: &[&ast::ItemSyntax]) -> (Vec<NameDefinition>, GlobalNames) {
+    let mut reader = DefinitionReader {
+        found: Vec::new(),
+        everywhere: GlobalNames::default(),
+        whole: Span::default(),
+        doc: String::new(),
+    };
     for item in items {
         reader.whole = item.span;
         reader.doc.clone_from(&item.doc);
         reader.item(&item.kind);
     }
-    reader.found
+    (reader.found, reader.everywhere)
 }
 
 struct DefinitionReader {
     found: Vec<NameDefinition>,
+    everywhere: GlobalNames,
     /// Of the declaration that is being read.
     whole: Span,
     doc: String,
 }
 
 impl DefinitionReader {
-    fn define(&mut self, noun: &'static str, name: &NameSyntax) {
+    fn define(&mut self, noun: Noun, name: &NameSyntax) {
         self.typed(noun, name, DefinedType::None);
     }
 
-    fn typed(&mut self, noun: &'static str, name: &NameSyntax, ty: DefinedType) {
+    fn typed(&mut self, noun: Noun, name: &NameSyntax, ty: DefinedType) {
         let (text, doc) = (name.text.clone(), self.doc.clone());
-        self.found.push(NameDefinition { noun, name: text, place: name.span, whole: self.whole, ty, doc });
+        self.found.push(NameDefinition {
+            noun: noun.word(),
+            name: text,
+            place: name.span,
+            whole: self.whole,
+            ty,
+            doc,
+        });
+    }
+
+    /// A name that is visible everywhere.
+    fn global(&mut self, noun: Noun, name: &NameSyntax) {
+        self.everywhere.enter(noun, &name.text, name.span);
+        self.define(noun, name);
+    }
+
+    /// The name of a declaration that is a template if it has parameters; those are defined, too.
+    fn template(&mut self, noun: Noun, name: &NameSyntax, params: Option<&Vec<ast::ParamSyntax>>) {
+        let is = if params.is_some() { Noun::Template } else { noun };
+        self.everywhere.enter(is, &name.text, name.span);
+        self.define(noun, name);
+        self.params(Noun::Parameter, params.map_or(&[], Vec::as_slice));
     }
 
     /// Those of a declaration have its documentation no more.
-    fn params(&mut self, noun: &'static str, params: &[ast::ParamSyntax]) {
+    fn params(&mut self, noun: Noun, params: &[ast::ParamSyntax]) {
         let doc = std::mem::take(&mut self.doc);
         for param in params {
             self.typed(noun, &param.name, written(&param.ty));
@@ -47,73 +75,72 @@ impl DefinitionReader {
         self.doc = doc;
     }
 
-    fn template(&mut self, params: Option<&Vec<ast::ParamSyntax>>) {
-        self.params("parameter", params.map_or(&[], Vec::as_slice));
-    }
-
     #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn item(&mut self, kind: &ItemSyntaxKind) {
         match kind {
             ItemSyntaxKind::Enum { name, values } => {
-                self.define("enumeration", name);
-                values.iter().for_each(|value| self.define("value", value));
+                self.global(Noun::Enum, name);
+                values.iter().for_each(|value| self.global(Noun::EnumValue, value));
             }
             ItemSyntaxKind::Record { name, fields } => {
-                self.define("record", name);
-                self.params("field", fields);
+                self.global(Noun::Record, name);
+                self.params(Noun::Field, fields);
             }
-            ItemSyntaxKind::Actor { name, .. } => self.define("actor", name),
-            ItemSyntaxKind::Const { name, .. } => self.define("constant", name),
+            ItemSyntaxKind::Actor { name, .. } => self.global(Noun::Actor, name),
+            ItemSyntaxKind::Const { name, .. } => self.global(Noun::Constant, name),
             ItemSyntaxKind::Event(event) => {
                 for one in &event.names {
-                    self.define("event", &one.name);
-                    self.params("parameter", &one.params);
+                    self.global(Noun::Event, &one.name);
+                    self.params(Noun::Parameter, &one.params);
                 }
             }
             ItemSyntaxKind::Stimulus(stimulus) => {
-                self.define("stimulus", &stimulus.name);
-                self.params("parameter", &stimulus.params);
+                self.global(Noun::Stimulus, &stimulus.name);
+                self.params(Noun::Parameter, &stimulus.params);
                 self.samples(&stimulus.body);
             }
             ItemSyntaxKind::Agent(agent) => self.agent(agent),
-            ItemSyntaxKind::Var(var) => self.typed("variable", &var.name, written(&var.ty)),
+            ItemSyntaxKind::Var(var) => {
+                self.everywhere.enter(Noun::Variable, &var.name.text, var.name.span);
+                self.typed(Noun::Variable, &var.name, written(&var.ty));
+            }
             ItemSyntaxKind::Automaton(automaton) => self.automaton(automaton),
             ItemSyntaxKind::Channel(channel) => {
                 for one in &channel.names {
-                    self.define("channel", &one.name);
-                    self.params("parameter", &one.params);
+                    self.global(Noun::Channel, &one.name);
+                    self.params(Noun::Parameter, &one.params);
                 }
             }
-            ItemSyntaxKind::Function(function) => self.function(function),
-            ItemSyntaxKind::Query(query) => self.define("query", &query.name),
-            ItemSyntaxKind::Network { name, .. } => self.define("network", name),
+            ItemSyntaxKind::Function(function) => {
+                self.everywhere.enter(Noun::Function, &function.name.text, function.name.span);
+                self.function(function);
+            }
+            ItemSyntaxKind::Query(query) => self.global(Noun::Query, &query.name),
+            ItemSyntaxKind::Network { name, .. } => self.global(Noun::Network, name),
             ItemSyntaxKind::Require(require) => {
-                self.define("requirement", &require.name);
-                self.template(require.params.as_ref());
+                self.template(Noun::Requirement, &require.name, require.params.as_ref());
             }
             ItemSyntaxKind::Cover(cover) => {
-                self.define("coverpoint", &cover.name);
-                self.template(cover.params.as_ref());
-                cover.bins.iter().for_each(|bin| self.define("bin", &bin.name));
+                self.template(Noun::Point, &cover.name, cover.params.as_ref());
+                cover.bins.iter().for_each(|bin| self.define(Noun::Bin, &bin.name));
             }
             ItemSyntaxKind::Cross(cross) => {
-                self.define("cross product", &cross.name);
-                self.template(cross.params.as_ref());
+                self.template(Noun::Cross, &cross.name, cross.params.as_ref());
             }
-            ItemSyntaxKind::Suite(suite) => self.define("suite", &suite.name),
+            ItemSyntaxKind::Suite(suite) => self.global(Noun::Suite, &suite.name),
             ItemSyntaxKind::Part(part) => {
-                self.define("part", &part.name);
-                self.template(part.params.as_ref());
+                self.global(Noun::Part, &part.name);
+                self.params(Noun::Parameter, part.params.as_deref().unwrap_or_default());
                 self.world(&part.members);
             }
             ItemSyntaxKind::World(world) => self.world(&world.members),
             ItemSyntaxKind::Device(device) => self.device(device),
             ItemSyntaxKind::Test(test) => {
                 if let Some(last) = test.name.names.last() {
-                    self.define("test", last);
+                    self.define(Noun::Test, last);
                 }
             }
-            ItemSyntaxKind::Instance(instance) => self.define(sort(instance.sort), &instance.name),
+            ItemSyntaxKind::Instance(instance) => self.global(of_sort(instance.sort), &instance.name),
             ItemSyntaxKind::Use(_)
             | ItemSyntaxKind::Allow(_)
             | ItemSyntaxKind::Assume(_)
@@ -125,7 +152,7 @@ impl DefinitionReader {
     fn samples(&mut self, steps: &[ast::StimulusStepSyntax]) {
         for step in steps {
             match &step.kind {
-                StimulusStepKind::Sample { name, .. } => self.define("sample", name),
+                StimulusStepKind::Sample { name, .. } => self.define(Noun::Sample, name),
                 StimulusStepKind::If { then, otherwise, .. } => {
                     self.samples(then);
                     self.samples(otherwise);
@@ -139,8 +166,7 @@ impl DefinitionReader {
     }
 
     fn agent(&mut self, agent: &ast::AgentSyntax) {
-        self.define("agent", &agent.name);
-        self.template(agent.params.as_ref());
+        self.template(Noun::Agent, &agent.name, agent.params.as_ref());
         let mut goals: BTreeSet<&str> = BTreeSet::new();
         for member in &agent.members {
             if let AgentMember::GoalType { name, .. } = &member.kind {
@@ -151,20 +177,20 @@ impl DefinitionReader {
             (self.whole, self.doc) = (member.span, member.doc.clone());
             match &member.kind {
                 AgentMember::Belief { name, params, annotations, .. } => {
-                    self.define("belief", name);
-                    self.params("parameter", params);
-                    self.params("annotation", annotations);
+                    self.define(Noun::Belief, name);
+                    self.params(Noun::Parameter, params);
+                    self.params(Noun::Annotation, annotations);
                 }
                 AgentMember::GoalType { name, params } => {
-                    self.define("goal", name);
-                    self.params("parameter", params);
+                    self.define(Noun::Goal, name);
+                    self.params(Noun::Parameter, params);
                 }
                 AgentMember::Plan(plan) => {
-                    plan.label.iter().for_each(|label| self.define("plan label", &label.name));
+                    plan.label.iter().for_each(|label| self.define(Noun::Label, &label.name));
                     // A goal that is not declared is what its first plan achieves.
                     let of = &plan.trigger.literal.call.name;
                     if plan.trigger.kind == ast::TriggerSyntaxKind::Achieve && goals.insert(&of.text) {
-                        self.define("goal", of);
+                        self.define(Noun::Goal, of);
                     }
                 }
                 AgentMember::Rule { .. }
@@ -176,15 +202,14 @@ impl DefinitionReader {
     }
 
     fn automaton(&mut self, automaton: &ast::AutomatonSyntax) {
-        self.define("automaton", &automaton.name);
-        self.template(automaton.params.as_ref());
+        self.template(Noun::Automaton, &automaton.name, automaton.params.as_ref());
         for member in &automaton.members {
             (self.whole, self.doc) = (member.span, member.doc.clone());
             match &member.kind {
-                AutomatonMember::Clock(clocks) => clocks.iter().for_each(|c| self.define("clock", c)),
-                AutomatonMember::Var(var) => self.typed("variable", &var.name, written(&var.ty)),
-                AutomatonMember::Location { name, .. } => self.define("location", name),
-                AutomatonMember::Edge(edge) => self.params("variable", &edge.selects),
+                AutomatonMember::Clock(clocks) => clocks.iter().for_each(|c| self.define(Noun::Clock, c)),
+                AutomatonMember::Var(var) => self.typed(Noun::Variable, &var.name, written(&var.ty)),
+                AutomatonMember::Location { name, .. } => self.define(Noun::Location, name),
+                AutomatonMember::Edge(edge) => self.params(Noun::Variable, &edge.selects),
                 AutomatonMember::Function(function) => self.function(function),
                 AutomatonMember::Allow(_) | AutomatonMember::Error => {}
             }
@@ -193,8 +218,8 @@ impl DefinitionReader {
 
     fn function(&mut self, function: &ast::FunctionSyntax) {
         let ty = function.result.as_ref().map_or(DefinedType::None, written);
-        self.typed("function", &function.name, ty);
-        self.params("parameter", &function.params);
+        self.typed(Noun::Function, &function.name, ty);
+        self.params(Noun::Parameter, &function.params);
         let doc = std::mem::take(&mut self.doc);
         self.statements(&function.body);
         self.doc = doc;
@@ -203,14 +228,14 @@ impl DefinitionReader {
     fn statements(&mut self, statements: &[ast::StatementSyntax]) {
         for statement in statements {
             match &statement.kind {
-                StatementSyntaxKind::Var(var) => self.typed("variable", &var.name, written(&var.ty)),
+                StatementSyntaxKind::Var(var) => self.typed(Noun::Variable, &var.name, written(&var.ty)),
                 StatementSyntaxKind::If { then, otherwise, .. } => {
                     self.statements(then);
                     self.statements(otherwise);
                 }
                 StatementSyntaxKind::While { body, .. } => self.statements(body),
                 StatementSyntaxKind::For { name, body, .. } => {
-                    self.define("variable", name);
+                    self.define(Noun::Variable, name);
                     self.statements(body);
                 }
                 StatementSyntaxKind::Assign { .. }
@@ -225,9 +250,9 @@ impl DefinitionReader {
         for member in &device.members {
             (self.whole, self.doc) = (member.span, member.doc.clone());
             let DeviceMemberKind::Command(command) = &member.kind else { continue };
-            self.define("command", &command.name);
+            self.define(Noun::Command, &command.name);
             let params: Vec<ast::ParamSyntax> = command.params.iter().map(|p| p.param.clone()).collect();
-            self.params("parameter", &params);
+            self.params(Noun::Parameter, &params);
         }
     }
 
@@ -235,20 +260,20 @@ impl DefinitionReader {
         for member in members {
             (self.whole, self.doc) = (member.span, member.doc.clone());
             match &member.kind {
-                WorldMemberKind::Part { name, .. } => self.define("part of the world", name),
-                WorldMemberKind::Body(body) => self.define("body", &body.name),
-                WorldMemberKind::Joint(joint) => self.define("joint", &joint.name),
-                WorldMemberKind::Arm(arm) => self.define("arm", &arm.name),
-                WorldMemberKind::Gripper(gripper) => self.define("gripper", &gripper.name),
-                WorldMemberKind::Base(base) => self.define("base", &base.name),
-                WorldMemberKind::Laser(laser) => self.define("laser", &laser.name),
-                WorldMemberKind::Limb(limb) => self.define("limb", &limb.name),
-                WorldMemberKind::Figure(figure) => self.define("figure", &figure.name),
-                WorldMemberKind::Scanner { name, .. } => self.define("laser", name),
-                WorldMemberKind::Walls(walls) => self.define("body", &walls.name),
-                WorldMemberKind::Posture(posture) => self.define("posture", &posture.name),
-                WorldMemberKind::Current { name, .. } => self.define("current body", name),
-                WorldMemberKind::Signal { name, ty, .. } => self.typed("signal", name, written(ty)),
+                WorldMemberKind::Part { name, .. } => self.define(Noun::PartInstance, name),
+                WorldMemberKind::Body(body) => self.define(Noun::Body, &body.name),
+                WorldMemberKind::Joint(joint) => self.define(Noun::Joint, &joint.name),
+                WorldMemberKind::Arm(arm) => self.define(Noun::Arm, &arm.name),
+                WorldMemberKind::Gripper(gripper) => self.define(Noun::Gripper, &gripper.name),
+                WorldMemberKind::Base(base) => self.define(Noun::Base, &base.name),
+                WorldMemberKind::Laser(laser) => self.define(Noun::Laser, &laser.name),
+                WorldMemberKind::Limb(limb) => self.define(Noun::Limb, &limb.name),
+                WorldMemberKind::Figure(figure) => self.define(Noun::Figure, &figure.name),
+                WorldMemberKind::Scanner { name, .. } => self.define(Noun::Laser, name),
+                WorldMemberKind::Walls(walls) => self.define(Noun::Body, &walls.name),
+                WorldMemberKind::Posture(posture) => self.define(Noun::Posture, &posture.name),
+                WorldMemberKind::Current { name, .. } => self.define(Noun::Current, name),
+                WorldMemberKind::Signal { name, ty, .. } => self.typed(Noun::Signal, name, written(ty)),
                 WorldMemberKind::Step(_)
                 | WorldMemberKind::Sample(_)
                 | WorldMemberKind::Gravity(_)
@@ -274,13 +299,14 @@ fn written(ty: &TypeExpr) -> DefinedType {
     }
 }
 
-fn sort(of: ast::TemplateSyntaxKind) -> &'static str {
+/// What the instances of a template are.
+pub(crate) fn of_sort(of: ast::TemplateSyntaxKind) -> Noun {
     match of {
-        ast::TemplateSyntaxKind::Agent => "agent",
-        ast::TemplateSyntaxKind::Automaton => "automaton",
-        ast::TemplateSyntaxKind::Require => "requirement",
-        ast::TemplateSyntaxKind::Cover => "coverpoint",
-        ast::TemplateSyntaxKind::Cross => "cross product",
+        ast::TemplateSyntaxKind::Agent => Noun::Agent,
+        ast::TemplateSyntaxKind::Automaton => Noun::Automaton,
+        ast::TemplateSyntaxKind::Require => Noun::Requirement,
+        ast::TemplateSyntaxKind::Cover => Noun::Point,
+        ast::TemplateSyntaxKind::Cross => Noun::Cross,
     }
 }
 

@@ -2,16 +2,22 @@
 //!
 //! The definitions are read off the syntax ([`definitions`]); the uses are told by the checker as it resolves them. What a
 //! template's parameter is used for is known once, however many instances there are; a use may then have several definitions.
+//! Whoever misses a name asks here what it is instead, and which names of the kind there are ([`global`]); the lints ask whether
+//! a name is used.
 
 mod definitions;
+mod global;
 
-pub(crate) use definitions::type_span;
+pub(crate) use definitions::{of_sort, type_span};
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_source::{FileId, Span};
 use hrdsl_syntax::ast;
 use serde::Serialize;
+
+use crate::noun::Noun;
+use global::GlobalNames;
 
 /// A name that is declared.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -45,6 +51,9 @@ pub enum DefinedType {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Resolutions {
     definitions: BTreeMap<Span, NameDefinition>,
+    /// The definitions that are visible everywhere, by noun and name.
+    #[serde(skip)]
+    everywhere: GlobalNames,
     /// By use: the places of the definitions.
     uses: BTreeMap<Span, BTreeSet<Span>>,
     /// By definition: the uses.
@@ -54,8 +63,9 @@ pub struct Resolutions {
 impl Resolutions {
     /// The definitions of these items, and no use yet.
     pub(crate) fn of_items(items: &[&ast::ItemSyntax]) -> Self {
-        let definitions = definitions::of_items(items);
-        Self { definitions: definitions.into_iter().map(|d| (d.place, d)).collect(), ..Self::default() }
+        let (definitions, everywhere) = definitions::of_items(items);
+        let definitions = definitions.into_iter().map(|d| (d.place, d)).collect();
+        Self { definitions, everywhere, ..Self::default() }
     }
 
     /// What one declaration declares.
@@ -91,14 +101,29 @@ impl Resolutions {
         self.definitions.values()
     }
 
+    /// What a name that is visible everywhere is of, wherever it is declared.
+    pub(crate) fn kind_of(&self, name: &str) -> Option<Noun> {
+        self.everywhere.kind_of(name)
+    }
+
+    /// The names of these kinds that are visible everywhere, in the order of the text, those of modules first.
+    pub(crate) fn names_of(&self, nouns: &[Noun]) -> Vec<&str> {
+        self.everywhere.names(nouns)
+    }
+
+    /// What is declared of this kind, visible everywhere, in the same order.
+    pub(crate) fn all_of(&self, noun: Noun) -> impl Iterator<Item = &NameDefinition> {
+        self.everywhere.places(noun).filter_map(|place| self.definitions.get(&place))
+    }
+
     /// Where a name is declared within a declaration.
-    pub(crate) fn named_in(&self, whole: Span, noun: &str, name: &str) -> Option<Span> {
+    pub(crate) fn named_in(&self, whole: Span, noun: Noun, name: &str) -> Option<Span> {
         let from = Span { end: whole.start, ..whole };
         let within = self
             .definitions
             .range(from..)
             .take_while(|(place, _)| place.file == whole.file && place.end <= whole.end);
-        let mut found = within.filter(|(_, d)| d.noun == noun && d.name == name);
+        let mut found = within.filter(|(_, d)| d.noun == noun.word() && d.name == name);
         found.next().map(|(place, _)| *place)
     }
 

@@ -20,6 +20,7 @@ use crate::check::{
         template::DeclaredTemplate,
     },
     unread,
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     AgentId, BeliefDecl, BeliefId, GoalDecl, GoalId, InferredType, InitialFact, MessageSubject, Parameter,

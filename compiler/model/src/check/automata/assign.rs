@@ -3,16 +3,16 @@
 use hrdsl_syntax::ast::{self, AccessSyntax, NameSyntax};
 
 use crate::check::{
-    automata::{automaton::EdgeScope, clock::is_clock},
-    checker::Checker,
+    automata::{automaton::EdgeScope, clock::is_clock, phase::AutomataPhase},
     state::scope::{ExprEnv, LocalName},
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     BinaryOp, Type, TypedExpr, TypedLvalue, TypedUpdate, VariableRef, noun::Noun, report::automata,
     types::TypeLayout,
 };
 
-impl Checker<'_> {
+impl AutomataPhase<'_, '_> {
     /// `target = value`: one update for each single value.
     pub(in crate::check) fn update(
         &mut self,

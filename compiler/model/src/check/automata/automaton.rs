@@ -9,8 +9,7 @@ use hrdsl_syntax::ast::{
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
-    automata::edge,
-    checker::Checker,
+    automata::{edge, phase::AutomataPhase},
     state::{
         issues::too_many,
         names::DeclaredPlayer,
@@ -18,6 +17,7 @@ use crate::check::{
         table::{MAX_NAMES, NameTable},
     },
     unread,
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     ActorId, AutomatonId, LocationId, Network, PlayerRef, TypedLocation, TypedStimulusStep, TypedSync,
@@ -50,7 +50,7 @@ fn emissions(steps: &[TypedStimulusStep]) -> usize {
     steps.iter().map(of).sum()
 }
 
-impl Checker<'_> {
+impl AutomataPhase<'_, '_> {
     pub(in crate::check) fn automata(&mut self) {
         self.shared_functions();
         self.templates_of(TemplateSyntaxKind::Automaton, |c, template| {
@@ -123,7 +123,7 @@ impl Checker<'_> {
         let locations = scope.locations.entries();
         Rc::make_mut(&mut own).locations =
             locations.filter_map(|(name, id)| Some((name.to_owned(), scope.locations.span(id)?))).collect();
-        self.networks.scopes.insert(index, own);
+        self.scopes.insert(index, own);
         self.say_impure();
         self.source.unread_members = false;
         self.made(&self.s.automata[index], automaton.name.span).into_iter().for_each(|i| self.report(i));
@@ -236,10 +236,10 @@ impl Checker<'_> {
                 }
                 continue;
             }
-            let names: Vec<String> = self.s.automata.iter().map(|a| a.name.clone()).collect();
+            let names = self.near_of(&[Noun::Automaton]);
             self.unknown(Noun::Automaton, automaton, &names, None);
         }
-        if self.issues.declare(&mut self.networks.table, Noun::Network, name).is_some() {
+        if self.checker.issues.declare(&mut self.networks.table, Noun::Network, name).is_some() {
             self.s.networks.push(Network { name: name.text.clone(), automata: ids, origin: span });
         }
     }

@@ -4,9 +4,10 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, CallSyntax, ItemSyntaxKind, NameSyntax};
 
 use crate::check::{
-    automata::automaton::EdgeScope,
-    checker::Checker,
-    state::{record::DeclaredFields, scope::ExprEnv, table::NameTable},
+    automata::{automaton::EdgeScope, phase::AutomataPhase},
+    checker::{Checker, EVENTS},
+    state::{names::ChannelNames, record::DeclaredFields, scope::ExprEnv, table::NameTable},
+    vocabulary::template::CheckerPhase,
 };
 use crate::resolution::type_span;
 use crate::{
@@ -25,15 +26,17 @@ pub(in crate::check) enum EdgeMedium {
 
 impl Checker<'_> {
     /// After the automata have their names: those are the parties of joint channels.
-    pub(in crate::check) fn declare_channels(&mut self) {
+    pub(in crate::check) fn channels(&mut self) -> ChannelNames {
+        let mut channels = ChannelNames::default();
         for (item, span) in self.each_item() {
             if let ItemSyntaxKind::Channel(channel) = item {
-                self.declare_channel(channel, span);
+                self.declare_channel(channel, span, &mut channels);
             }
         }
+        channels
     }
 
-    fn declare_channel(&mut self, channel: &ast::ChannelSyntax, whole: Span) {
+    fn declare_channel(&mut self, channel: &ast::ChannelSyntax, whole: Span, channels: &mut ChannelNames) {
         for one in &channel.names {
             let name = &one.name;
             let fields = self.channel_params(&one.params);
@@ -45,7 +48,9 @@ impl Checker<'_> {
                     if let Some(param) = one.params.first() {
                         self.report(automata::joint_params(&name.text, param.name.span));
                     }
-                    ChannelKind::Joint(self.parties(name, of, &mut parties))
+                    let (of, vague) = self.parties(of, &mut parties);
+                    channels.vague.extend(vague.then(|| name.text.clone()));
+                    ChannelKind::Joint(of)
                 }
             };
             if let Some(event) = self.events.table.get(&name.text) {
@@ -53,11 +58,11 @@ impl Checker<'_> {
                 self.report(duplicate(noun, &name.text, name.span, self.events.table.span(event)));
                 continue;
             }
-            if self.issues.declare(&mut self.channels.table, Noun::Channel, name).is_none() {
+            if self.issues.declare(&mut channels.table, Noun::Channel, name).is_none() {
                 continue;
             }
             let params = self.flat(&fields).iter().map(|p| finite_var(&p.name, p.ty)).collect();
-            self.channels.fields.push(fields);
+            channels.fields.push(fields);
             let span = if channel.names.len() == 1 { whole } else { name.span };
             let (text, urgent) = (name.text.clone(), channel.urgent);
             self.s.channels.push(Channel { name: text, kind, urgent, params, origin: span });
@@ -76,21 +81,20 @@ impl Checker<'_> {
         fields
     }
 
-    /// The automata of a joint channel; `places` gets where they are named.
+    /// The automata of a joint channel, and whether one has a diagnostic; `places` gets where they are named.
     fn parties(
         &mut self,
-        channel: &NameSyntax,
         parties: &[ast::PartySyntax],
         places: &mut Vec<Span>,
-    ) -> Vec<ChannelParticipant> {
-        let (mut resolved, mut seen) = (Vec::new(), NameTable::default());
+    ) -> (Vec<ChannelParticipant>, bool) {
+        let (mut resolved, mut seen, mut vague) = (Vec::new(), NameTable::default(), false);
         for party in parties {
             let name = &party.automaton;
             let player = self.players.table.get(&name.text).map(|id| self.players.ids[usize::from(id)]);
             let Some(PlayerRef::Automaton(automaton)) = player else {
-                let all: Vec<String> = self.s.automata.iter().map(|a| a.name.clone()).collect();
+                let all = self.near_of(&[Noun::Automaton]);
                 self.unknown(Noun::Automaton, name, &all, None);
-                self.channels.vague.insert(channel.text.clone());
+                vague = true;
                 continue;
             };
             self.refer(name, self.players.table.span_of(&name.text));
@@ -99,9 +103,11 @@ impl Checker<'_> {
                 places.push(name.span);
             }
         }
-        resolved
+        (resolved, vague)
     }
+}
 
+impl AutomataPhase<'_, '_> {
     /// What `on` or `do` of an edge names.
     pub(in crate::check) fn medium(
         &mut self,
@@ -116,9 +122,9 @@ impl Checker<'_> {
         }
         let known = given || self.events.table.get(&name.text).is_some();
         if !known && (scope.actor.is_none() || self.channels.table.names().next().is_some()) {
-            let mut names = self.near(self.channels.table.names());
+            let mut names = self.near_of(&[Noun::Channel]);
             if scope.actor.is_some() {
-                names.extend(self.near(self.events.table.names()));
+                names.extend(self.near_of(&EVENTS));
                 names.extend(self.given_names(Noun::Event));
             }
             let noun = if scope.actor.is_some() { Noun::Medium } else { Noun::Channel };

@@ -7,12 +7,13 @@ use hrdsl_syntax::ast::{
 };
 
 use crate::check::{
-    automata::{automaton::EdgeScope, channel::EdgeMedium},
+    automata::{automaton::EdgeScope, channel::EdgeMedium, phase::AutomataPhase},
     checker::Checker,
     state::{
         item::ArgumentPart,
         scope::{ExprEnv, is_variable_name},
     },
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     ArgPattern, AutomatonVar, EventId, InferredType, LocationId, ReceiveArg, Type, TypedClockConstraint,
@@ -22,7 +23,7 @@ use crate::{
     types::{TypeLayout, finite_var},
 };
 
-impl Checker<'_> {
+impl AutomataPhase<'_, '_> {
     pub(in crate::check) fn edge(
         &mut self,
         scope: &EdgeScope,
@@ -263,7 +264,8 @@ impl Checker<'_> {
             self.owns(actor, event, call);
         }
         let fields = self.fields_of(event);
-        let args = self.args(self.noun_of(event), call, &fields, env);
+        let noun = self.noun_of(event);
+        let args = self.args(noun, call, &fields, env);
         let params = self.s.events[usize::from(event.0)].params.clone();
         if args.len() != params.len() {
             return None;

@@ -90,7 +90,6 @@ impl Checker<'_> {
         span: Span,
     ) -> Option<CallableFunction> {
         let name = &function.name;
-        self.shared.functions.declared.entry(name.span).or_insert_with(|| (name.clone(), span));
         let params = self.function_params(function);
         let result = function.result.as_ref().map(|ty| {
             let ty = self.ty(ty);
@@ -149,6 +148,8 @@ impl Checker<'_> {
                     | Noun::Agent
                     | Noun::Automaton
                     | Noun::Network
+                    | Noun::Query
+                    | Noun::Requirement
                     | Noun::Point
                     | Noun::Cross
                     | Noun::Suite

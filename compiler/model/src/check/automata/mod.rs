@@ -6,5 +6,6 @@ pub(super) mod channel;
 pub(super) mod clock;
 pub(super) mod edge;
 pub(super) mod function;
+pub(super) mod phase;
 pub(super) mod query;
 pub(super) mod statement;

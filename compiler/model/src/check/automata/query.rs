@@ -6,8 +6,9 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, ExprSyntaxKind as Syntax, ItemSyntaxKind, NameSyntax, UnaryOp};
 
 use crate::check::state::phase::CheckPhase;
+use crate::check::vocabulary::template::CheckerPhase;
 use crate::check::{
-    checker::Checker,
+    automata::phase::AutomataPhase,
     state::{
         scope::{ExprEnv, LocalName, NameScope},
         table::OrderedMap,
@@ -42,13 +43,17 @@ struct QuerySum<'e> {
     rest: Vec<(&'e ast::ExprSyntax, bool)>,
 }
 
-impl Checker<'_> {
+impl AutomataPhase<'_, '_> {
     pub(in crate::check) fn queries(&mut self) {
         for (item, span) in self.each_item() {
             if let ItemSyntaxKind::Query(query) = item {
                 let looked_at = self.source.looks_at(CheckPhase::Queries, span);
                 let resolved = if looked_at { self.query(query, span) } else { None };
-                let new = self.issues.declare(&mut self.networks.queries, Noun::Query, &query.name).is_some();
+                let new = self
+                    .checker
+                    .issues
+                    .declare(&mut self.networks.queries, Noun::Query, &query.name)
+                    .is_some();
                 self.s.queries.extend(resolved.filter(|_| new));
             }
         }
@@ -59,7 +64,7 @@ impl Checker<'_> {
         let network = self.networks.table.get(&query.network.text).map(NetworkId);
         self.refer(&query.network, self.networks.table.span_of(&query.network.text));
         let Some(network) = network else {
-            let all: Vec<String> = self.networks.table.names().map(str::to_owned).collect();
+            let all = self.near_of(&[Noun::Network]);
             self.unknown(Noun::Network, &query.network, &all, None);
             return None;
         };
@@ -125,7 +130,7 @@ impl Checker<'_> {
             for (number, location) in (0u16..).zip(&self.s.automata[at].locations) {
                 net.locations.insert(format!("{of}.{}", location.name), (place, LocationId(number)));
             }
-            let Some(scope) = self.networks.scopes.get(&at) else { continue };
+            let Some(scope) = self.scopes.get(&at) else { continue };
             for local in scope.names.values() {
                 let name = format!("{of}.{}", local.name);
                 // INVARIANT: the number of a leaf is the name's place in the scope.
@@ -198,7 +203,7 @@ impl Checker<'_> {
     /// A name is that of a location, variable or clock of an automaton.
     fn refer_member(&mut self, automaton: &NameSyntax, member: &NameSyntax) {
         let Some(at) = self.s.automata.iter().position(|a| a.name == automaton.text) else { return };
-        let Some(scope) = self.networks.scopes.get(&at).cloned() else { return };
+        let Some(scope) = self.scopes.get(&at).cloned() else { return };
         let known = ExprEnv { own: scope.clone(), ..ExprEnv::default() };
         let place = known.place_of(&member.text).or_else(|| scope.locations.get(&member.text).copied());
         self.refer(member, place);

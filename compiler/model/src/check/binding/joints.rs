@@ -60,7 +60,7 @@ impl Checker<'_> {
             return;
         };
         if let Some(full) = joints.get(at) {
-            self.refer(joint, self.world.names.place_of(full));
+            self.refer(joint, self.world.names.place_of(Noun::Joint, full));
         }
         if part.text.is_empty() || part.text.contains('/') {
             self.report(bindings::bad_joint_text(part.span));

@@ -13,6 +13,7 @@ use super::{
     shape::{FieldShape, MessageShape},
 };
 use crate::check::{checker::Checker, state::item::ExprItem};
+use crate::noun::Noun;
 use crate::{
     Axis, BodyRef, Dimension, InferredType, SignalTerm, TypedExpr, TypedExprKind,
     report::{bindings, types},
@@ -210,7 +211,7 @@ impl<'a> Checker<'a> {
         let driven = base.and_then(|id| self.s.world.as_ref()?.bases.get(usize::from(id)));
         let body =
             driven.map(|base| BodyRef::Body(base.body)).or_else(|| self.world.names.body_ref(&full))?;
-        self.refer_in_world(&path.names, &full);
+        self.refer_in_world(Noun::Body, &path.names, &full);
         Some(body)
     }
 }

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::NameSyntax;
 
 use crate::FunctionId;
 
@@ -16,6 +15,4 @@ pub(crate) struct FunctionCalls {
     pub calls: BTreeMap<u16, Vec<(FunctionId, Span)>>,
     /// Calls in places where nothing may change.
     pub only_read: Vec<(FunctionId, Span)>,
-    /// By the place of their names: the functions that all automata know, and those of automata.
-    pub declared: BTreeMap<Span, (NameSyntax, Span)>,
 }

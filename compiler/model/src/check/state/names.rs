@@ -212,18 +212,5 @@ pub(crate) struct AgentNames<'a> {
 #[derive(Default)]
 pub(crate) struct NetworkNames {
     pub table: NameTable,
-    /// By the place in the scenario's automata: what the edges of each see.
-    pub scopes: BTreeMap<usize, Rc<NameScope>>,
     pub queries: NameTable,
-}
-
-/// What is judged and covered, and how tests are made.
-#[derive(Default)]
-pub(crate) struct JudgedNames {
-    pub requirements: NameTable,
-    pub points: NameTable,
-    pub crosses: NameTable,
-    pub suites: NameTable,
-    /// The suite that is being checked names a player that does not exist.
-    pub unknown_player: bool,
 }

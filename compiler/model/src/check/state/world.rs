@@ -44,9 +44,11 @@ impl WorldNames {
         ]
     }
 
-    /// Where a full name is declared, whatever it is of.
-    pub fn place_of(&self, full: &str) -> Option<Span> {
-        self.tables().into_iter().find_map(|(_, table)| table.span_of(full))
+    /// Where a full name is declared: that of something of this kind if there is one, else whatever it is of.
+    pub fn place_of(&self, noun: Noun, full: &str) -> Option<Span> {
+        let tables = self.tables();
+        let of_kind = tables.iter().find(|(of, _)| *of == noun).and_then(|(_, table)| table.span_of(full));
+        of_kind.or_else(|| tables.iter().find_map(|(_, table)| table.span_of(full)))
     }
 
     pub fn get(&self, noun: Noun, full: &str) -> Option<u16> {

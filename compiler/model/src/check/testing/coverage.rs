@@ -7,10 +7,10 @@ use hrdsl_syntax::ast::{
     self, CrossMemberKind as Member, ExprSyntaxKind as Syntax, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind,
 };
 
+use super::phase::TestingPhase;
 use crate::check::{
-    checker::Checker,
     state::{scope::ExprEnv, table::NameTable, template::TemplateArgument},
-    vocabulary::template::template,
+    vocabulary::template::{CheckerPhase, template},
 };
 use crate::{
     BinCondition, BinaryOp, CoverBin, CoverCross, CoverPoint, CoverpointId, CrossBin, EventPattern, UnaryOp,
@@ -19,7 +19,7 @@ use crate::{
     report::{coverage::overlap, types},
 };
 
-impl Checker<'_> {
+impl TestingPhase<'_, '_> {
     pub(in crate::check) fn coverage(&mut self) {
         self.templates_of(TemplateSyntaxKind::Cover, |c, template| {
             if let ItemSyntaxKind::Cover(cover) = template.kind {
@@ -79,7 +79,8 @@ impl Checker<'_> {
         span: Span,
     ) {
         self.not_a_template(TemplateSyntaxKind::Cover, name);
-        if self.issues.declare(&mut self.judged.points, Noun::Point, name).is_some() {
+        let checker = self.checker();
+        if checker.issues.declare(&mut checker.points, Noun::Point, name).is_some() {
             self.s.places.bins.push(syntax.bins.iter().map(|bin| bin.name.span).collect());
             self.s.points.push(CoverPoint { name: name.text.clone(), count, bins, origin: span });
         }
@@ -87,7 +88,7 @@ impl Checker<'_> {
 
     fn cross(&mut self, name: &NameSyntax, cross: CoverCross) {
         self.not_a_template(TemplateSyntaxKind::Cross, name);
-        if self.issues.declare(&mut self.judged.crosses, Noun::Cross, name).is_some() {
+        if self.checker.issues.declare(&mut self.crosses, Noun::Cross, name).is_some() {
             self.s.crosses.push(CoverCross { name: name.text.clone(), ..cross });
         }
     }
@@ -208,7 +209,7 @@ impl Checker<'_> {
             | None => {}
         }
         let name_of = |c: &Self, p: &CoverpointId| c.s.points[usize::from(p.0)].name.clone();
-        let here = self.judged.points.get(&point.text).map(CoverpointId).filter(|id| points.contains(id));
+        let here = self.points.get(&point.text).map(CoverpointId).filter(|id| points.contains(id));
         let Some(id) = here else {
             // A point whose name is wrong may be the one that is meant.
             if !whole {
@@ -219,7 +220,7 @@ impl Checker<'_> {
             self.unknown(Noun::Point, point, &all, None);
             return None;
         };
-        self.refer(point, self.judged.points.span(id.0));
+        self.refer(point, self.points.span(id.0));
         self.bin_of(id, bin)
     }
 

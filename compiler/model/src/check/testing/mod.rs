@@ -1,8 +1,9 @@
 //! What is judged and how it is tested: requirements, coverage, suites, tests, the system under test.
 
-pub(super) mod coverage;
-pub(super) mod requirement;
-pub(super) mod suite;
+mod coverage;
+pub(super) mod phase;
+mod requirement;
+mod suite;
 mod suite_goals;
-pub(super) mod system;
-pub(super) mod test;
+mod system;
+mod test;

@@ -3,14 +3,18 @@
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind};
 
+use super::phase::TestingPhase;
 use crate::check::state::phase::CheckPhase;
-use crate::check::{checker::Checker, state::scope::ExprEnv, vocabulary::template::template};
+use crate::check::{
+    state::scope::ExprEnv,
+    vocabulary::template::{CheckerPhase, template},
+};
 use crate::{
     EventPattern, InferredType, RequirementKind, TypedAssumption, TypedExpr, TypedExprKind, TypedPattern,
     TypedRequirement, VariableRef, noun::Noun, report::requirements::says_nothing,
 };
 
-impl Checker<'_> {
+impl TestingPhase<'_, '_> {
     pub(in crate::check) fn requirements(&mut self) {
         self.templates_of(TemplateSyntaxKind::Require, |c, template| {
             if let ItemSyntaxKind::Require(require) = template.kind {
@@ -61,7 +65,7 @@ impl Checker<'_> {
         span: Span,
     ) {
         self.not_a_template(TemplateSyntaxKind::Require, name);
-        let new = self.issues.declare(&mut self.judged.requirements, Noun::Requirement, name).is_some();
+        let new = self.checker.issues.declare(&mut self.requirements, Noun::Requirement, name).is_some();
         if let Some((kind, title, pattern)) = resolved.filter(|_| new) {
             let name = name.text.clone();
             self.s.requirements.push(TypedRequirement { name, kind, title, pattern, text, span });

@@ -7,11 +7,13 @@ use hrdsl_syntax::ast::{
     SuiteSetting,
 };
 
+use super::phase::TestingPhase;
 use crate::check::state::phase::CheckPhase;
 use crate::check::unread;
+use crate::check::vocabulary::template::CheckerPhase;
 use crate::check::{
     agents::agent::AgentScope,
-    checker::{Checker, NOBODY},
+    checker::NOBODY,
     state::{issues::too_many, scope::ExprEnv, table::MAX_NAMES},
 };
 use crate::{
@@ -49,14 +51,14 @@ impl SuiteMembers {
     }
 }
 
-impl Checker<'_> {
+impl TestingPhase<'_, '_> {
     pub(in crate::check) fn suites(&mut self) {
         self.source.unread_members = self.players.agents.iter().any(|a| unread::in_agent(a.syntax));
         for (item, span) in self.each_item() {
             if let ItemSyntaxKind::Suite(suite) = item {
                 let looked_at = self.source.looks_at(CheckPhase::Suites, span);
                 let resolved = if looked_at { self.suite(suite, span) } else { None };
-                let new = self.issues.declare(&mut self.judged.suites, Noun::Suite, &suite.name).is_some();
+                let new = self.checker.issues.declare(&mut self.suites, Noun::Suite, &suite.name).is_some();
                 self.s.suites.extend(resolved.filter(|_| new));
             }
         }
@@ -116,12 +118,12 @@ impl Checker<'_> {
 
     /// Agents and automata; at most one for an actor.
     fn suite_players(&mut self, list: &[NameSyntax]) -> Vec<PlayerRef> {
-        self.judged.unknown_player = list.iter().any(|name| self.players.table.get(&name.text).is_none());
+        self.unknown_player = list.iter().any(|name| self.players.table.get(&name.text).is_none());
         let mut players = Vec::new();
         let mut actors = Vec::new();
         for name in list {
             let Some(id) = self.players.table.get(&name.text) else {
-                let all: Vec<String> = self.players.table.names().map(str::to_owned).collect();
+                let all = self.near_of(&[Noun::Agent, Noun::Automaton]);
                 self.unknown(Noun::Player, name, &all, None);
                 continue;
             };
@@ -158,7 +160,7 @@ impl Checker<'_> {
         let found = self.networks.table.get(&name.text).map(NetworkId);
         self.refer(name, self.networks.table.span_of(&name.text));
         if found.is_none() {
-            let all: Vec<String> = self.networks.table.names().map(str::to_owned).collect();
+            let all = self.near_of(&[Noun::Network]);
             self.unknown(Noun::Network, name, &all, None);
         }
         found
@@ -244,14 +246,14 @@ impl Checker<'_> {
                 let found = self.choice(Noun::Delays, word, &["earliest", "latest", "sampled"]);
                 said.delays = found.map_or(said.delays, |i| kinds[i]);
             }
-            Member::ReachBins(name) => match self.judged.crosses.get(&name.text) {
+            Member::ReachBins(name) => match self.crosses.get(&name.text) {
                 Some(id) => {
-                    self.refer(name, self.judged.crosses.span(id));
+                    self.refer(name, self.crosses.span(id));
                     said.goals.push(SearchGoal::Bins(CrossId(id)));
                     said.reached.push(ModelGoal::Bins(CrossId(id)));
                 }
                 None => {
-                    let all: Vec<String> = self.judged.crosses.names().map(str::to_owned).collect();
+                    let all = self.near_of(&[Noun::Cross]);
                     self.unknown(Noun::Cross, name, &all, None);
                 }
             },
@@ -322,13 +324,13 @@ impl Checker<'_> {
     ) -> Option<TypedChoice> {
         let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
         let Some(PlayerRef::Agent(id)) = player else {
-            let all: Vec<String> = self.s.agents.iter().map(|a| a.name.clone()).collect();
+            let all = self.near_of(&[Noun::Agent]);
             self.unknown(Noun::Agent, agent, &all, None);
             return None;
         };
         self.refer(agent, self.players.table.span_of(&agent.text));
         // A player whose name is wrong may be the one that is missing.
-        if !players.contains(&PlayerRef::Agent(id)) && !self.judged.unknown_player {
+        if !players.contains(&PlayerRef::Agent(id)) && !self.unknown_player {
             let message = format!("`{}` does not play in this suite", agent.text);
             self.report(bad_suite(agent.span, message, "add it after `by agents`"));
         }
@@ -360,7 +362,7 @@ impl Checker<'_> {
                     return None;
                 };
                 if let Some(place) = place {
-                    self.refer_within(per, place, "parameter");
+                    self.refer_within(per, place, Noun::Parameter);
                 }
                 ChoiceKind::OnePer(u16::try_from(at).unwrap_or(u16::MAX))
             }

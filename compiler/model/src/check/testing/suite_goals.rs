@@ -2,23 +2,23 @@
 
 use hrdsl_syntax::ast::{self, NameSyntax};
 
-use super::suite::SuiteMembers;
-use crate::check::checker::Checker;
+use super::{phase::TestingPhase, suite::SuiteMembers};
+use crate::check::vocabulary::template::CheckerPhase;
 use crate::{
     NetworkId, QueryId, RequirementId, SearchGoal, TypedQueryKind, noun::Noun, report::coverage::bad_suite,
 };
 
-impl Checker<'_> {
+impl TestingPhase<'_, '_> {
     /// `violation of R1, R2`, `trigger of R1`
     pub(super) fn reach_of(&mut self, what: &NameSyntax, list: &[NameSyntax], said: &mut SuiteMembers) {
         let what = self.choice(Noun::ReachOf, what, &["violation", "trigger"]);
         for name in list {
-            if self.judged.requirements.get(&name.text).is_none() {
-                let all: Vec<String> = self.judged.requirements.names().map(str::to_owned).collect();
+            if self.requirements.get(&name.text).is_none() {
+                let all = self.near_of(&[Noun::Requirement]);
                 self.unknown(Noun::Requirement, name, &all, None);
                 continue;
             }
-            self.refer(name, self.judged.requirements.span_of(&name.text));
+            self.refer(name, self.requirements.span_of(&name.text));
             // One with a diagnostic is in no list.
             let Some(at) = self.s.requirements.iter().position(|r| r.name == name.text) else { continue };
             if self.s.requirements[at].pattern.condition().is_some() {
@@ -38,7 +38,7 @@ impl Checker<'_> {
 
     pub(super) fn reach_query(&mut self, name: &NameSyntax) -> Option<SearchGoal> {
         if self.networks.queries.get(&name.text).is_none() {
-            let all: Vec<String> = self.networks.queries.names().map(str::to_owned).collect();
+            let all = self.near_of(&[Noun::Query]);
             self.unknown(Noun::Query, name, &all, None);
             return None;
         }

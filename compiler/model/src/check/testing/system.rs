@@ -4,14 +4,15 @@ use hrdsl_ir::value::{SECOND, nanos};
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, SystemMemberKind as Member};
 
-use crate::check::checker::Checker;
+use super::phase::TestingPhase;
+use crate::check::vocabulary::template::CheckerPhase;
 use crate::{
     ActorId, Role, SystemProgram, SystemUnderTest, TypedExpr,
     noun::Noun,
     report::{names, roles, systems},
 };
 
-impl Checker<'_> {
+impl TestingPhase<'_, '_> {
     pub(in crate::check) fn systems(&mut self) {
         let mut known: Vec<(String, Span)> = Vec::new();
         // The first is meant where none is named: one of the scenario's own comes before those of modules.

@@ -8,9 +8,11 @@ use hrdsl_ir::{
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, CallSyntax, ItemSyntaxKind, NameSyntax, TestMemberKind as Member, TextSyntax};
 
+use super::phase::TestingPhase;
 use crate::check::state::phase::CheckPhase;
+use crate::check::vocabulary::template::CheckerPhase;
 use crate::check::{
-    checker::{Checker, NOBODY},
+    checker::NOBODY,
     state::{scope::ExprEnv, table::NameTable},
     value::measure::text,
 };
@@ -20,7 +22,7 @@ use crate::{
     report::{names, roles, scenario_tests::bad_test, types},
 };
 
-impl Checker<'_> {
+impl TestingPhase<'_, '_> {
     /// The tests of the scenario itself, then those of the files of tests, which hold nothing else.
     pub(in crate::check) fn tests(&mut self, files: &[&ast::FileSyntax]) {
         let mut table = NameTable::default();
@@ -193,8 +195,8 @@ impl Checker<'_> {
     /// `cross.bin`
     fn predicted(&mut self, text: &TextSyntax) {
         let (cross, bin) = text.text.split_once('.').unwrap_or((&text.text, ""));
-        let Some(id) = self.judged.crosses.get(cross) else {
-            let all: Vec<String> = self.judged.crosses.names().map(str::to_owned).collect();
+        let Some(id) = self.crosses.get(cross) else {
+            let all = self.near_of(&[Noun::Cross]);
             let name = NameSyntax { text: cross.to_owned(), span: text.span };
             self.unknown(Noun::Cross, &name, &all, Some(Noun::Cross));
             return;
@@ -255,7 +257,7 @@ impl Checker<'_> {
                 continue;
             };
             if let Some(place) = self.events.table.span(event.0) {
-                self.refer_within(name, place, "sample");
+                self.refer_within(name, place, Noun::Sample);
             }
             if values[at].is_some() {
                 self.report(names::duplicate(Noun::Sample, &name.text, name.span, None));

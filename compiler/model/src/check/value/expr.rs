@@ -168,7 +168,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A name that nothing has.
+    /// A name that nothing has which expressions speak of: another one was meant.
     fn means_nothing(&self, name: &NameSyntax, env: &ExprEnv) -> bool {
         let local = env.find(&name.text).is_some() || env.layout(&name.text).is_some();
         let signal = env
@@ -176,7 +176,13 @@ impl<'a> Checker<'a> {
             .as_ref()
             .is_some_and(|prefix| self.world.names.kind_of(&format!("{prefix}{}", name.text)).is_some());
         let variable = env.plan && is_variable_name(&name.text);
-        !local && !signal && !variable && !self.has_value(&name.text) && self.kind_of(&name.text).is_none()
+        !local && !signal && !variable && !self.has_value(&name.text) && !self.is_spoken_of(&name.text)
+    }
+
+    /// Whether a name is of something that other declarations speak of in their expressions, if wrongly.
+    pub(in crate::check) fn is_spoken_of(&self, name: &str) -> bool {
+        let aside = [Noun::Network, Noun::Query, Noun::Requirement, Noun::Point, Noun::Cross, Noun::Suite];
+        self.kind_of(name).is_some_and(|is| !aside.contains(&is))
     }
 
     /// An expression for a parameter or variable of this type; a constant must lie in its range.

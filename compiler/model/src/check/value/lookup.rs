@@ -159,9 +159,9 @@ impl<'a> Checker<'a> {
     /// A name is that of a value of an enumeration, which is used by it.
     pub(in crate::check) fn refer_value(&mut self, of: Enumeration, name: &NameSyntax) {
         let Some(whole) = self.s.enums.iter().find(|e| e.of == of).map(|e| e.span) else { return };
-        let value = self.s.names.named_in(whole, "value", &name.text);
+        let value = self.s.names.named_in(whole, Noun::EnumValue, &name.text);
         self.refer(name, value);
-        let enumeration = self.s.names.named_in(whole, "enumeration", of.name());
+        let enumeration = self.s.names.named_in(whole, Noun::Enum, of.name());
         self.refer(name, enumeration);
     }
 
@@ -177,7 +177,7 @@ impl<'a> Checker<'a> {
 
     /// `Odrer.feed`: the enumeration that a name was meant to be, if it has the value and nothing has the name.
     fn misspelt_enum(&self, name: &NameSyntax, value: &NameSyntax) -> Option<&'static str> {
-        if self.has_value(&name.text) || self.kind_of(&name.text).is_some() {
+        if self.has_value(&name.text) || self.is_spoken_of(&name.text) {
             return None;
         }
         let of = self.types.values.get(value.text.as_str())?;
@@ -224,7 +224,8 @@ impl<'a> Checker<'a> {
     pub(in crate::check) fn names_with_value(&self, env: &ExprEnv) -> Vec<String> {
         let whole = |name: &str| !name.is_empty() && !name.contains(['.', '[']);
         let locals = env.all().filter(|l| l.bound && whole(&l.name)).map(|l| l.name.as_str());
-        let mut names = self.near(locals.chain(env.layout_names()).chain(self.consts.keys().copied()));
+        let mut names = self.near(locals.chain(env.layout_names()));
+        names.extend(self.near_of(&[Noun::Constant]));
         let given = self.templates.given.iter().flat_map(|given| given.iter());
         names.extend(
             given

@@ -73,7 +73,9 @@ impl Checker<'_> {
             ));
             return TypedExpr::error(path.span);
         };
-        if let Some(id) = self.world.names.signals.get(&format!("{prefix}{}", text(&path.names))) {
+        let full = format!("{prefix}{}", text(&path.names));
+        if let Some(id) = self.world.names.signals.get(&full) {
+            self.refer_in_world(Noun::Signal, &path.names, &full);
             return self.signal(id, path.span);
         }
         let (axis, body) = path.names.split_last().expect("a path has a name");
@@ -219,7 +221,7 @@ impl Checker<'_> {
     pub(in crate::check) fn body_ref(&mut self, names: &[NameSyntax], prefix: &str) -> Option<BodyRef> {
         let full = self.full_name(names, prefix)?;
         if let Some(body) = self.world.names.body_ref(&full) {
-            self.refer_in_world(names, &full);
+            self.refer_in_world(Noun::Body, names, &full);
             return Some(body);
         }
         self.world_name(Noun::Body, names, prefix);
@@ -253,7 +255,7 @@ impl Checker<'_> {
     ) -> Option<u16> {
         let full = self.full_name(names, prefix)?;
         if let Some(id) = self.world.names.get(noun, &full) {
-            self.refer_in_world(names, &full);
+            self.refer_in_world(noun, names, &full);
             return Some(id);
         }
         if let Some(TemplateArgument::Thing(is, given)) = self.given(&names[0].text) {
@@ -310,16 +312,17 @@ impl Checker<'_> {
         }
     }
 
-    /// The names of a path in the world: each is that of an instance of a part or of something in it.
-    pub(in crate::check) fn refer_in_world(&mut self, names: &[NameSyntax], full: &str) {
+    /// The names of a path in the world: the last is that of something of this kind, each before it that of an instance of a
+    /// part.
+    pub(in crate::check) fn refer_in_world(&mut self, noun: Noun, names: &[NameSyntax], full: &str) {
         if self.given(&names[0].text).is_some() {
             return self.refer_given(&names[0]);
         }
-        let mut whole = full;
+        let (mut noun, mut whole) = (noun, full);
         for name in names.iter().rev() {
-            self.refer(name, self.world.names.place_of(whole));
+            self.refer(name, self.world.names.place_of(noun, whole));
             let Some((outer, _)) = whole.rsplit_once('.') else { break };
-            whole = outer;
+            (noun, whole) = (Noun::PartInstance, outer);
         }
     }
 
@@ -375,7 +378,7 @@ impl Checker<'_> {
         if env.world.is_some() {
             all.extend(MEASURES.map(str::to_owned));
         }
-        all.extend(self.types.record_names.names().map(str::to_owned));
+        all.extend(self.near_of(&[Noun::Record]));
         all.extend(env.function_names().map(str::to_owned));
         let callee = NameSyntax { text: name, span: callee.span };
         self.unknown(Noun::Function, &callee, &all, None);

@@ -165,7 +165,7 @@ impl Checker<'_> {
         };
         if let ExprItem::Record(id, ..) = &item {
             let record = self.types.records[usize::from(*id)].name.span;
-            self.refer_within(name, record, "field");
+            self.refer_within(name, record, Noun::Field);
         }
         let at = fields.iter().position(|f| *f == name.text);
         match at.zip(item.parts()).and_then(|(at, parts)| parts.get(at)) {

@@ -286,8 +286,10 @@ impl<'a> Checker<'a> {
     }
 
     pub(in crate::check) fn type_names(&self) -> Vec<String> {
-        let own = self.types.enums.names().chain(self.types.record_names.names()).map(str::to_owned);
-        type_names().chain(["agent"]).map(str::to_owned).chain(own).collect()
+        let mut names: Vec<String> = type_names().chain(["agent"]).map(str::to_owned).collect();
+        names.extend(self.near_of(&[Noun::Enum]));
+        names.extend(self.near_of(&[Noun::Record]));
+        names
     }
 
     fn range_type(&mut self, lo: &ast::ExprSyntax, hi: &ast::ExprSyntax) -> Option<Type> {

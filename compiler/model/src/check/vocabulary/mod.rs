@@ -16,7 +16,7 @@ use crate::check::{
         scope::ExprEnv,
         table::{NameTable, OrderedMap},
     },
-    vocabulary::template::template,
+    vocabulary::template::{CheckerPhase, template},
 };
 use crate::{
     Actor, ActorId, AgentId, AutomatonId, AutomatonVar, LocationId, PlayerRef, Role, Type, TypedAgent,
@@ -82,7 +82,6 @@ impl<'a> Checker<'a> {
                 _ => {}
             }
         }
-        self.declare_channels();
     }
 
     /// An instance of a template of agents or automata.

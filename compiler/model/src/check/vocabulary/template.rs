@@ -20,6 +20,7 @@ use crate::{
     BinaryOp, EventPattern, InferredType, List, Text, Type, TypedExpr, Value,
     noun::Noun,
     report::{names, types},
+    resolution::of_sort,
     types::TypeLayout,
 };
 
@@ -137,17 +138,6 @@ impl<'a> Checker<'a> {
         }
     }
 
-    pub(in crate::check) fn is_template(&self, text: &str) -> bool {
-        let sorts = [
-            TemplateSyntaxKind::Agent,
-            TemplateSyntaxKind::Automaton,
-            TemplateSyntaxKind::Require,
-            TemplateSyntaxKind::Cover,
-            TemplateSyntaxKind::Cross,
-        ];
-        sorts.into_iter().any(|sort| self.templates.declared.contains_key(&(sort, text)))
-    }
-
     /// What a name stands for in the instance that is being checked.
     pub(in crate::check) fn given(&self, name: &str) -> Option<&TemplateArgument> {
         self.templates.given.as_ref()?.get(name).map(|bound| &bound.given)
@@ -192,14 +182,9 @@ impl<'a> Checker<'a> {
         let Some(template) =
             self.templates.declared.get(&(instance.sort, instance.of.text.as_str())).copied()
         else {
-            let sort = instance.sort;
-            let all: Vec<String> = self
-                .templates
-                .declared
-                .keys()
-                .filter(|(s, _)| *s == sort)
-                .map(|(_, n)| (*n).to_owned())
-                .collect();
+            let sort = of_sort(instance.sort).word();
+            let of_sort = self.s.names.all_of(Noun::Template).filter(|template| template.noun == sort);
+            let all = self.near(of_sort.map(|template| template.name.as_str()));
             // That the name is one of a plain declaration says that it has no parameters.
             self.unknown(Noun::Template, &instance.of, &all, None);
             return None;
@@ -387,68 +372,6 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Checks each template of a sort by itself.
-    pub(in crate::check) fn templates_of(
-        &mut self,
-        sort: TemplateSyntaxKind,
-        check: impl Fn(&mut Self, DeclaredTemplate<'a>),
-    ) {
-        let of_sort =
-            |((s, _), t): (&(TemplateSyntaxKind, &'a str), &DeclaredTemplate<'a>)| (*s == sort).then_some(*t);
-        let templates: Vec<DeclaredTemplate<'a>> =
-            self.templates.declared.iter().filter_map(of_sort).collect();
-        for template in templates {
-            self.by_itself(template.params, |c| check(c, template));
-        }
-    }
-
-    /// Checks something with parameters by itself. Wrong is what is wrong whatever the parameters stand for: with each
-    /// of several values. What is wrong with some values only is found in the instances that give them.
-    pub(in crate::check) fn by_itself(&mut self, params: &[ast::ParamSyntax], check: impl Fn(&mut Self)) {
-        let before = self.issues.list.len();
-        let mut always: Option<Vec<Diagnostic>> = None;
-        // What is said in one trial may be taken back.
-        let (said, said_of) = (self.issues.said.clone(), self.issues.said_of);
-        for trial in TemplateTrial::ALL {
-            let given = self.placeholders(params, trial);
-            let outer = self.templates.given.replace(given);
-            let alone = std::mem::replace(&mut self.templates.by_itself, true);
-            check(self);
-            self.templates.by_itself = alone;
-            self.templates.given = outer;
-            let found = self.issues.list.split_off(before);
-            self.issues.said.clone_from(&said);
-            self.issues.said_of = said_of;
-            let places: BTreeSet<(DiagnosticCode, Span)> = found.iter().map(|f| (f.code, f.span())).collect();
-            let again = |known: &Diagnostic| places.contains(&(known.code, known.span()));
-            always = Some(match always {
-                None => found,
-                Some(known) => known.into_iter().filter(again).collect(),
-            });
-            if always.as_ref().is_some_and(Vec::is_empty) {
-                break;
-            }
-        }
-        self.issues.list.extend(always.unwrap_or_default());
-    }
-
-    /// Checks a template as one instance. What is wrong with the template itself has been said; the rest is said with
-    /// the instance that it is wrong in.
-    pub(in crate::check) fn as_instance<T>(
-        &mut self,
-        given: Option<Rc<TemplateArguments>>,
-        instance: Option<(&NameSyntax, Span)>,
-        check: impl FnOnce(&mut Self) -> T,
-    ) -> T {
-        let Some(given) = given else { return check(self) };
-        let outer = self.templates.given.replace(given);
-        let before = self.issues.list.len();
-        let result = check(self);
-        self.templates.given = outer;
-        self.said_in(before, instance);
-        result
-    }
-
     /// The diagnostics since then are of an instance: what is new in them is said with the instance.
     pub(in crate::check) fn said_in(&mut self, before: usize, instance: Option<(&NameSyntax, Span)>) {
         let new = self.issues.list.split_off(before);
@@ -470,5 +393,88 @@ impl<'a> Checker<'a> {
         if found {
             self.issues.said_of = self.issues.list.len();
         }
+    }
+}
+
+/// The checker, or a phase over it.
+pub(in crate::check) trait CheckerPhase<'a> {
+    fn checker(&mut self) -> &mut Checker<'a>;
+
+    /// A name means what is declared there.
+    fn refer(&mut self, name: &NameSyntax, place: Option<Span>) {
+        self.checker().refer(name, place);
+    }
+
+    fn report(&mut self, issue: Diagnostic) {
+        self.checker().report(issue);
+    }
+
+    /// Checks each template of a sort by itself.
+    fn templates_of(&mut self, sort: TemplateSyntaxKind, check: impl Fn(&mut Self, DeclaredTemplate<'a>)) {
+        let of_sort =
+            |((s, _), t): (&(TemplateSyntaxKind, &'a str), &DeclaredTemplate<'a>)| (*s == sort).then_some(*t);
+        let templates: Vec<DeclaredTemplate<'a>> =
+            self.checker().templates.declared.iter().filter_map(of_sort).collect();
+        for template in templates {
+            self.by_itself(template.params, |c| check(c, template));
+        }
+    }
+
+    /// Checks something with parameters by itself. Wrong is what is wrong whatever the parameters stand for: with each
+    /// of several values. What is wrong with some values only is found in the instances that give them.
+    fn by_itself(&mut self, params: &[ast::ParamSyntax], check: impl Fn(&mut Self)) {
+        let issues = &self.checker().issues;
+        let before = issues.list.len();
+        let mut always: Option<Vec<Diagnostic>> = None;
+        // What is said in one trial may be taken back.
+        let (said, said_of) = (issues.said.clone(), issues.said_of);
+        for trial in TemplateTrial::ALL {
+            let checker = self.checker();
+            let given = checker.placeholders(params, trial);
+            let outer = checker.templates.given.replace(given);
+            let alone = std::mem::replace(&mut checker.templates.by_itself, true);
+            check(self);
+            let checker = self.checker();
+            checker.templates.by_itself = alone;
+            checker.templates.given = outer;
+            let found = checker.issues.list.split_off(before);
+            checker.issues.said.clone_from(&said);
+            checker.issues.said_of = said_of;
+            let places: BTreeSet<(DiagnosticCode, Span)> = found.iter().map(|f| (f.code, f.span())).collect();
+            let again = |known: &Diagnostic| places.contains(&(known.code, known.span()));
+            always = Some(match always {
+                None => found,
+                Some(known) => known.into_iter().filter(again).collect(),
+            });
+            if always.as_ref().is_some_and(Vec::is_empty) {
+                break;
+            }
+        }
+        self.checker().issues.list.extend(always.unwrap_or_default());
+    }
+
+    /// Checks a template as one instance. What is wrong with the template itself has been said; the rest is said with
+    /// the instance that it is wrong in.
+    fn as_instance<T>(
+        &mut self,
+        given: Option<Rc<TemplateArguments>>,
+        instance: Option<(&NameSyntax, Span)>,
+        check: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        let Some(given) = given else { return check(self) };
+        let checker = self.checker();
+        let outer = checker.templates.given.replace(given);
+        let before = checker.issues.list.len();
+        let result = check(self);
+        let checker = self.checker();
+        checker.templates.given = outer;
+        checker.said_in(before, instance);
+        result
+    }
+}
+
+impl<'a> CheckerPhase<'a> for Checker<'a> {
+    fn checker(&mut self) -> &mut Checker<'a> {
+        self
     }
 }

@@ -209,7 +209,7 @@ impl<'a> Checker<'a> {
         let full = self.full_name(&path.names, prefix)?;
         for sort in DeviceSort::ALL {
             if let Some(id) = self.world.names.get(noun_of(sort), &full) {
-                self.refer_in_world(&path.names, &full);
+                self.refer_in_world(noun_of(sort), &path.names, &full);
                 return Some(body(sort, id));
             }
         }

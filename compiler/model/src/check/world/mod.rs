@@ -24,6 +24,7 @@ use hrdsl_syntax::ast::{
 use crate::check::{
     checker::Checker,
     state::{scope::ExprEnv, world::WorldNames},
+    vocabulary::template::CheckerPhase,
     world::{
         parts::PlacedMember,
         placement::{angles, outright},

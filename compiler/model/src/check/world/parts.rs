@@ -170,7 +170,7 @@ impl<'a> Checker<'a> {
 
     fn part(&mut self, of: &NameSyntax) -> Option<&'a ast::PartSyntax> {
         let Some((part, _)) = self.world.parts.get(of.text.as_str()) else {
-            let names: Vec<String> = self.world.parts.keys().map(|k| (*k).to_owned()).collect();
+            let names = self.near_of(&[Noun::Part]);
             if self.source.unread_items || self.source.missing_modules {
                 return None;
             }
@@ -178,7 +178,7 @@ impl<'a> Checker<'a> {
             let said = self.issues.list.len();
             self.unknown(Noun::Part, of, &names, Some(Noun::Part));
             if let Some(issue) = self.issues.list.get_mut(said) {
-                crate::report::world::missing_part(issue, &of.text, names.is_empty());
+                crate::report::world::missing_part(issue, &of.text, self.world.parts.is_empty());
             }
             return None;
         };

@@ -160,7 +160,7 @@ impl<'a> Checker<'a> {
             self.world_name(Noun::Body, &path.names, prefix);
             return None;
         }
-        self.refer_in_world(&path.names, &full);
+        self.refer_in_world(Noun::Body, &path.names, &full);
         if !full.starts_with(prefix) {
             let message = format!("`{full}` is outside of the part that is placed by it");
             self.report(bad_world(span, message, "place the part itself by it, in the world"));
