@@ -91,9 +91,9 @@ fn edit(folder: &Path, file: &str, from: &str, to: &str) {
     fs::write(folder.join(file), text.replace(from, to)).unwrap();
 }
 
-/// The two faults that its README tells of, and how to mend them.
+/// The two faults that its README tells of, and how to fix them.
 #[test]
-fn faults_of_the_driver_are_found_and_gone_when_they_are_mended() {
+fn faults_of_the_driver_are_found_and_gone_when_they_are_fixed() {
     let folder = tempfile::tempdir().unwrap();
     copy(folder.path());
     fs::write(folder.path().join("tests.hri"), TESTS).unwrap();
@@ -111,10 +111,10 @@ fn faults_of_the_driver_are_found_and_gone_when_they_are_mended() {
     assert_eq!(failing(&found["delivery.side.t1"]), ["R1"]);
 
     let guard = "        if not scan.range_min <= distance <= scan.range_max:\n";
-    let mended = format!("        if distance < scan.range_min:\n            return 0.0\n{guard}");
-    edit(folder.path(), "src/courier/src/courier/motion.py", guard, &mended);
+    let fixed = format!("        if distance < scan.range_min:\n            return 0.0\n{guard}");
+    edit(folder.path(), "src/courier/src/courier/motion.py", guard, &fixed);
     edit(folder.path(), "scenario.hri", "_max_speed:=0.5", "_max_speed:=0.5 _half_width:=0.6");
-    for (test, outcomes) in run("mended") {
+    for (test, outcomes) in run("fixed") {
         assert_eq!(failing(&outcomes), [""; 0], "{test}");
         for requirement in ["R1", "R2", "R3", "R5"] {
             assert_eq!(outcomes[requirement], "pass", "{test}: {requirement}");

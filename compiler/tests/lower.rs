@@ -877,14 +877,15 @@ fn channels_are_offered_accepted_and_joined() {
          network net = A | B",
     );
     let channels: Vec<_> = p.channels.iter().map(|c| (c.name.as_str(), c.urgent, c.kind.clone())).collect();
-    let party = |automaton, optional| ChannelParticipant { automaton: AutomatonId(automaton), optional };
+    let participant =
+        |automaton, optional| ChannelParticipant { automaton: AutomatonId(automaton), optional };
     assert_eq!(
         channels,
         [
-            ("take", true, ChannelKind::HandShake),
-            ("go", true, ChannelKind::HandShake),
+            ("take", true, ChannelKind::Binary),
+            ("go", true, ChannelKind::Binary),
             ("at", false, ChannelKind::Broadcast),
-            ("all", false, ChannelKind::Joint(vec![party(1, false), party(0, true)])),
+            ("all", false, ChannelKind::MultiWay(vec![participant(1, false), participant(0, true)])),
         ]
     );
     let params = |i: usize| -> Vec<(&str, i64, i64, bool)> {

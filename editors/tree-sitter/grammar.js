@@ -518,9 +518,9 @@ module.exports = grammar({
       choice(
         keyword($, "urgent"),
         seq(optional(keyword($, "urgent")), keyword($, "broadcast")),
-        seq(optional(keyword($, "urgent")), keyword($, "joint"), list($.party, "|")),
+        seq(optional(keyword($, "urgent")), keyword($, "joint"), list($.participant, "|")),
       ),
-    party: ($) => seq(field("automaton", $.identifier), optional("?")),
+    participant: ($) => seq(field("automaton", $.identifier), optional("?")),
 
     // The statements of a function are separated as the steps of a plan are.
     function_declaration: ($) =>

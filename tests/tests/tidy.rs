@@ -241,6 +241,21 @@ fn type_names() -> Vec<(String, String)> {
     names
 }
 
+/// Where one looks for a type by its name, only one is found: in the sources, and in the pages of types that are made from them.
+#[test]
+fn no_name_of_a_type_is_given_twice() {
+    let mut files: std::collections::BTreeMap<String, Vec<String>> = std::collections::BTreeMap::new();
+    for (name, file) in type_names() {
+        files.entry(name).or_default().push(file);
+    }
+    let twice: Vec<String> = files
+        .into_iter()
+        .filter(|(_, files)| files.len() > 1)
+        .map(|(name, files)| format!("{name}: {}", files.join(", ")))
+        .collect();
+    assert!(twice.is_empty(), "these types need a name of their own:\n{}", twice.join("\n"));
+}
+
 /// `cargo test -p hrdsl-tests --test tidy names -- --nocapture` prints the shares.
 #[test]
 fn names_of_types_are_distinct_and_of_more_than_one_word() {

@@ -100,6 +100,19 @@ impl DeviceKind {
         u16::try_from(at).ok().map(DeviceCommandId)
     }
 
+    /// The first command that does this: the library's own, if a scenario declares another one beside it.
+    #[must_use]
+    pub fn command_doing(&self, primitive: DevicePrimitive) -> Option<DeviceCommandId> {
+        let at = self.commands.iter().position(|c| c.primitive == primitive)?;
+        u16::try_from(at).ok().map(DeviceCommandId)
+    }
+
+    /// The command that ends what the device is doing, if there is one.
+    #[must_use]
+    pub fn stop(&self) -> Option<&DeviceCommand> {
+        self.commands.iter().find(|c| c.primitive.is_stop())
+    }
+
     /// `an arm`
     #[must_use]
     pub fn with_article(&self) -> String {
@@ -258,21 +271,21 @@ pub struct PrimitiveParam {
 }
 
 /// The place, or the angles.
-const TO: &str = "to";
+pub const TO: &str = "to";
 /// The angles of all joints, posture after posture.
-const POSITIONS: &str = "positions";
+pub const POSITIONS: &str = "positions";
 /// The time of each posture, from the beginning.
-const TIMES: &str = "times";
+pub const TIMES: &str = "times";
 /// Which joint, from the base, counted from 0.
-const JOINT: &str = "joint";
+pub const JOINT: &str = "joint";
 /// No joint goes faster.
-const SPEED: &str = "speed";
+pub const SPEED: &str = "speed";
 /// How fast along the way the base looks.
-const FORWARD: &str = "forward";
+pub const FORWARD: &str = "forward";
 /// How fast about the vertical, to the left.
-const TURN: &str = "turn";
+pub const TURN: &str = "turn";
 /// How fast to the left, without turning.
-const SIDEWAYS: &str = "sideways";
+pub const SIDEWAYS: &str = "sideways";
 
 const fn param(name: &'static str, unit: Unit, count: NumberCount, optional: bool) -> PrimitiveParam {
     PrimitiveParam { name, ty: CommandType { unit, count }, optional }
@@ -312,6 +325,21 @@ impl DevicePrimitive {
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|p| p.name() == name)
+    }
+
+    /// Whether it ends what the device is doing, and does nothing else.
+    #[must_use]
+    pub fn is_stop(self) -> bool {
+        match self {
+            DevicePrimitive::StopJoints | DevicePrimitive::StopWheels => true,
+            DevicePrimitive::ReachPoint
+            | DevicePrimitive::ReachJoints
+            | DevicePrimitive::FollowJoints
+            | DevicePrimitive::AimJoint
+            | DevicePrimitive::CloseFingers
+            | DevicePrimitive::OpenFingers
+            | DevicePrimitive::DriveWheels => false,
+        }
     }
 
     /// What does it.
@@ -433,6 +461,30 @@ pub enum PrimitiveCall {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn commands_are_found_by_what_they_do() {
+        let command = |name: &str, primitive| DeviceCommand {
+            name: name.to_owned(),
+            doc: String::new(),
+            params: Vec::new(),
+            primitive,
+            expect: None,
+        };
+        let kind = DeviceKind {
+            name: "base".to_owned(),
+            doc: String::new(),
+            sort: DeviceSort::Base,
+            commands: vec![
+                command("stop", DevicePrimitive::DriveWheels),
+                command("halt", DevicePrimitive::StopWheels),
+                command("crawl", DevicePrimitive::DriveWheels),
+            ],
+        };
+        assert_eq!(kind.stop().map(|c| c.name.as_str()), Some("halt"));
+        assert_eq!(kind.command_doing(DevicePrimitive::DriveWheels), Some(DeviceCommandId(0)));
+        assert_eq!(kind.command_doing(DevicePrimitive::AimJoint), None);
+    }
 
     #[test]
     fn each_primitive_is_called_with_the_parameters_of_its_table() {

@@ -301,7 +301,7 @@ pub struct Channel {
     /// Time does not pass while a transition over it is possible. Its edges have no clock guards, except those that accept
     /// a broadcast.
     pub urgent: bool,
-    /// Of finite types; the `init` has no meaning. None, if the channel is joint.
+    /// Of finite types; the `init` has no meaning. None, if its kind is multi-way.
     pub params: Vec<AutomatonVar>,
     pub origin: Span,
 }
@@ -310,11 +310,11 @@ pub struct Channel {
 #[serde(rename_all = "snake_case")]
 pub enum ChannelKind {
     /// One edge that offers and one of another automaton that accepts, together.
-    HandShake,
+    Binary,
     /// One edge that offers, and of each other automaton that can one that accepts.
     Broadcast,
     /// An edge of each of these automata at once, their updates in this order; if all are optional, at least one's.
-    Joint(Vec<ChannelParticipant>),
+    MultiWay(Vec<ChannelParticipant>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

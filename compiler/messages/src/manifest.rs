@@ -22,7 +22,7 @@ pub(crate) fn package_name(
     }
     let document = roxmltree::Document::parse(text).map_err(|error| {
         let place = error.pos();
-        malformed(byte_of(text, place.row, place.col), format!("mend the XML: {error}"))
+        malformed(byte_of(text, place.row, place.col), format!("fix the XML: {error}"))
     })?;
     let root = document.root_element();
     let name = root.children().find(|node| node.has_tag_name("name"));

@@ -115,7 +115,7 @@ impl FaultList {
                 what: "faults of a definition that are told",
                 limit: MOST_FAULTS as u64,
             };
-            self.list.push(kind.at(fault.span, "mend those before it first"));
+            self.list.push(kind.at(fault.span, "fix those before it first"));
         }
     }
 }

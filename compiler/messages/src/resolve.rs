@@ -46,7 +46,7 @@ fn unknown_types(
             let help = match near {
                 Some(near) => format!("write `{near}`"),
                 None => {
-                    format!("name the workspace that holds the package `{}`, or mend the name", held.package)
+                    format!("name the workspace that holds the package `{}`, or fix the name", held.package)
                 }
             };
             // As it is written there: without the package that it is of anyway.

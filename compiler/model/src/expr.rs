@@ -107,6 +107,37 @@ impl TypedExpr {
         }
     }
 
+    /// The value as at run time, with `vars` giving those of the variables; `None`: it has none, or it takes what is not known.
+    /// `&&` and `||` are short-circuit: the right side may be unknown, or have no value, where the left one decides.
+    pub(crate) fn value_with(&self, vars: &dyn Fn(VariableRef) -> Option<Value>) -> Option<Value> {
+        match &self.kind {
+            TypedExprKind::Const(value) => Some(*value),
+            TypedExprKind::Leaf(leaf) => vars(*leaf),
+            TypedExprKind::Unary(op, a) => hrdsl_ir::expr::unary(*op, a.value_with(vars)?).ok(),
+            TypedExprKind::Binary(op @ (BinaryOp::And | BinaryOp::Or), a, b) => {
+                let left = a.value_with(vars)?.as_bool()?;
+                if left == (*op == BinaryOp::Or) { Some(Value::Bool(left)) } else { b.value_with(vars) }
+            }
+            TypedExprKind::Binary(op, a, b) => {
+                hrdsl_ir::expr::binary(*op, a.value_with(vars)?, b.value_with(vars)?).ok()
+            }
+            TypedExprKind::If(c, a, b) => {
+                let taken = if c.value_with(vars)?.as_bool()? { a } else { b };
+                taken.value_with(vars)
+            }
+            TypedExprKind::Call(f, args) => {
+                let args: Option<Vec<Value>> = args.iter().map(|a| a.value_with(vars)).collect();
+                hrdsl_ir::expr::call(*f, &args?).ok()
+            }
+            // What only a run knows.
+            TypedExprKind::Term(_)
+            | TypedExprKind::List(..)
+            | TypedExprKind::Element(_)
+            | TypedExprKind::Apply(..)
+            | TypedExprKind::Error => None,
+        }
+    }
+
     /// Calls `f` with each variable that the expression may read, as often as it occurs; without what functions read.
     pub fn each_leaf(&self, f: &mut dyn FnMut(VariableRef)) {
         self.each(&mut |e| match &e.kind {
@@ -151,5 +182,37 @@ impl TypedExpr {
                 rest.iter().for_each(|e| e.each(f));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn expr(kind: TypedExprKind, ty: InferredType) -> TypedExpr {
+        TypedExpr { kind, ty, span: Span::default() }
+    }
+
+    fn both(op: BinaryOp, a: &TypedExpr, b: &TypedExpr) -> TypedExpr {
+        expr(TypedExprKind::Binary(op, a.clone().into(), b.clone().into()), InferredType::Bool)
+    }
+
+    #[test]
+    fn the_left_side_may_decide_alone() {
+        let truth = |b| TypedExpr::value(Value::Bool(b), InferredType::Bool, Span::default());
+        let (yes, no) = (truth(true), truth(false));
+        let known = expr(TypedExprKind::Leaf(VariableRef::Local(0)), InferredType::Bool);
+        let unknown = expr(TypedExprKind::Leaf(VariableRef::Local(1)), InferredType::Bool);
+        let value = |op, a, b| {
+            both(op, a, b).value_with(&|leaf| (leaf == VariableRef::Local(0)).then_some(Value::Bool(true)))
+        };
+        assert_eq!(value(BinaryOp::And, &no, &unknown), Some(Value::Bool(false)));
+        assert_eq!(value(BinaryOp::Or, &known, &unknown), Some(Value::Bool(true)));
+        assert_eq!(value(BinaryOp::And, &known, &yes), Some(Value::Bool(true)));
+        assert_eq!(value(BinaryOp::Or, &no, &no), Some(Value::Bool(false)));
+        // What stands on the left is looked at first, and may have no value.
+        assert_eq!(value(BinaryOp::And, &unknown, &no), None);
+        assert_eq!(value(BinaryOp::Or, &unknown, &yes), None);
+        assert_eq!(value(BinaryOp::And, &yes, &unknown), None);
     }
 }

@@ -4,6 +4,7 @@
 mod check;
 mod descriptions;
 mod expr;
+mod interval;
 mod lint;
 mod noun;
 mod report;

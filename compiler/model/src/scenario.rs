@@ -151,7 +151,7 @@ pub struct AutomatonPlaces {
 pub struct ChannelPlaces {
     pub name: Span,
     /// Of a joint one's participants.
-    pub parties: Vec<Span>,
+    pub participants: Vec<Span>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -1,17 +1,16 @@
-//! The resolved world: parts instantiated, bodies by id. Poses are still in the coordinates of their part, with its frame.
+//! The resolved world: parts instantiated, bodies by id. Devices and figures are those of the Program already; bodies and joints are
+//! still in the coordinates of their part, with its frame, since others are placed by them.
 
 use hrdsl_ir::{
     device::DeviceBody,
     sensor::ImperfectSensor,
     solid::{SharedData, SolidBody},
-    world::{DeviceCommandId, DeviceId, JointDrive, JointMotion, NamedPosture},
+    world::{Arm, Base, DeviceCommandId, DeviceId, Figure, Gripper, JointDrive, JointMotion, Laser, Limb},
 };
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::{
-    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, EventId, EventPattern, JointId, Type, TypedExpr,
-};
+use crate::{ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, EventId, EventPattern, Type, TypedExpr};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TypedWorld {
@@ -21,12 +20,13 @@ pub struct TypedWorld {
     pub gravity: [f64; 3],
     pub bodies: Vec<TypedBody>,
     pub joints: Vec<TypedJoint>,
-    pub arms: Vec<TypedArm>,
-    pub grippers: Vec<TypedGripper>,
-    pub bases: Vec<TypedBase>,
-    pub lasers: Vec<TypedLaser>,
-    pub limbs: Vec<TypedLimb>,
-    pub figures: Vec<TypedFigure>,
+    pub arms: Vec<Arm>,
+    pub grippers: Vec<Gripper>,
+    pub bases: Vec<Base>,
+    pub lasers: Vec<Laser>,
+    /// Those that figures have, and those that none has.
+    pub limbs: Vec<Limb>,
+    pub figures: Vec<Figure>,
     pub currents: Vec<CurrentBody>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<ImperfectSensor>,
@@ -106,88 +106,6 @@ pub struct TypedJoint {
     pub drive: JointDrive,
     /// What its description calls it, if that is not the end of its name.
     pub own_name: Option<String>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedArm {
-    pub name: String,
-    pub joints: Vec<JointId>,
-    pub tip: BodyId,
-    pub tool: [f64; 3],
-    pub speed: f64,
-    /// N
-    pub contact: Option<f64>,
-    pub postures: Vec<NamedPosture>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedGripper {
-    pub name: String,
-    pub palm: BodyId,
-    pub fingers: Vec<JointId>,
-    /// Closed at their lower limits.
-    pub reversed: Vec<JointId>,
-    pub tool: [f64; 3],
-    pub reach: f64,
-    /// Seconds.
-    pub delay: f64,
-    /// N
-    pub force: f64,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedBase {
-    pub name: String,
-    pub body: BodyId,
-    /// m/s
-    pub speed: f64,
-    /// m/s; 0 of a base that cannot.
-    pub sideways: f64,
-    /// rad/s
-    pub turn: f64,
-    /// m/s²
-    pub acceleration: f64,
-    /// Seconds.
-    pub timeout: Option<f64>,
-}
-
-/// An arm or a leg, in the coordinates of its part, which are those of its figure.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedLimb {
-    pub name: String,
-    pub of: BodyId,
-    pub upper: BodyId,
-    pub lower: BodyId,
-    pub end: Option<BodyId>,
-    pub pivots: [[f64; 3]; 3],
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedFigure {
-    pub name: String,
-    pub pelvis: BodyId,
-    pub trunk: BodyId,
-    pub head: BodyId,
-    pub hip: [f64; 3],
-    /// By their places among the world's.
-    pub limbs: Vec<usize>,
-    /// m/s, rad/s, kg
-    pub speed: f64,
-    pub turn: f64,
-    pub mass: f64,
-    pub frame: PartFrame,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedLaser {
-    pub name: String,
-    pub body: BodyId,
-    pub at: [f64; 3],
-    /// rad
-    pub angles: (f64, f64),
-    pub beams: u16,
-    /// m
-    pub range: (f64, f64),
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

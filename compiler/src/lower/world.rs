@@ -6,8 +6,8 @@ use hrdsl_ir::{
     sensor::SensorSource,
     value::nanos,
     world::{
-        Arm, ArmId, Axis, Base, BaseId, Body, BodyId, BodyRef, ContactPhase, DeviceKindId, Figure, Gripper,
-        GripperId, Joint, Laser, LaserId, Limb, RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
+        ArmId, Axis, BaseId, Body, BodyRef, ContactPhase, DeviceKindId, GripperId, Joint, LaserId,
+        RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
     },
 };
 use hrdsl_model::{self as model, VariableRef, world as from};
@@ -15,39 +15,17 @@ use hrdsl_model::{self as model, VariableRef, world as from};
 use super::expr::{self, LeafSource};
 
 pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut SignalTable<'_>) -> World {
-    let graspable: Vec<BodyId> =
-        (0..).zip(&w.bodies).filter(|(_, b)| b.graspable).map(|(i, _)| BodyId(i)).collect();
-    let gripper = |g: &from::TypedGripper| Gripper {
-        name: g.name.clone(),
-        palm: g.palm,
-        fingers: g.fingers.clone(),
-        reversed: g.reversed.clone(),
-        tool: g.tool,
-        reach: g.reach,
-        delay: nanos(g.delay),
-        force: g.force,
-        holds: graspable.clone(),
-    };
-    let arm = |a: &from::TypedArm| Arm {
-        name: a.name.clone(),
-        joints: a.joints.clone(),
-        tip: a.tip,
-        tool: a.tool,
-        max_speed: a.speed,
-        contact_limit: a.contact,
-        postures: a.postures.clone(),
-    };
     World {
         step: nanos(w.step),
         sample: nanos(w.sample),
         gravity: w.gravity,
         bodies: w.bodies.iter().map(body).collect(),
         joints: w.joints.iter().map(joint).collect(),
-        arms: w.arms.iter().map(arm).collect(),
-        grippers: w.grippers.iter().map(gripper).collect(),
-        bases: w.bases.iter().map(base).collect(),
-        lasers: w.lasers.iter().map(laser).collect(),
-        figures: w.figures.iter().map(|f| figure(f, w)).collect(),
+        arms: w.arms.clone(),
+        grippers: w.grippers.clone(),
+        bases: w.bases.clone(),
+        lasers: w.lasers.clone(),
+        figures: w.figures.clone(),
         currents: w.currents.clone(),
         sensors: w.sensors.clone(),
         devices: devices(w, kinds),
@@ -69,46 +47,6 @@ fn devices(w: &from::TypedWorld, kinds: &[DeviceKind]) -> Vec<Device> {
         Some(Device { name: name.clone(), kind, body })
     };
     arms.chain(grippers).chain(bases).chain(lasers).filter_map(device).collect()
-}
-
-fn base(b: &from::TypedBase) -> Base {
-    Base {
-        name: b.name.clone(),
-        body: b.body,
-        max_speed: b.speed,
-        max_sideways: b.sideways,
-        max_turn: b.turn,
-        acceleration: b.acceleration,
-        timeout: b.timeout.map(nanos),
-    }
-}
-
-fn figure(f: &from::TypedFigure, world: &from::TypedWorld) -> Figure {
-    let place = |at: [f64; 3]| f.frame.place(at);
-    let limb = |l: &from::TypedLimb| Limb {
-        name: l.name.clone(),
-        of: l.of,
-        upper: l.upper,
-        lower: l.lower,
-        end: l.end,
-        pivots: l.pivots.map(place),
-    };
-    Figure {
-        name: f.name.clone(),
-        pelvis: f.pelvis,
-        trunk: f.trunk,
-        head: f.head,
-        hip: place(f.hip),
-        limbs: f.limbs.iter().filter_map(|at| world.limbs.get(*at)).map(limb).collect(),
-        speed: f.speed,
-        turn: f.turn,
-        mass: f.mass,
-    }
-}
-
-fn laser(l: &from::TypedLaser) -> Laser {
-    let ((lo, hi), (nearest, farthest)) = (l.angles, l.range);
-    Laser { name: l.name.clone(), body: l.body, at: l.at, lo, hi, beams: l.beams, nearest, farthest }
 }
 
 /// In world coordinates: a turn about the vertical adds to the yaw, which is applied last.

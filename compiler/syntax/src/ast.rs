@@ -444,16 +444,16 @@ pub struct ChannelSyntax {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChannelSyntaxKind {
-    HandShake,
+    Binary,
     /// `: broadcast`
     Broadcast,
     /// `: joint P | Q | R?`
-    Joint(Vec<PartySyntax>),
+    MultiWay(Vec<ParticipantSyntax>),
 }
 
 /// An automaton that has a part in a multi-way channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PartySyntax {
+pub struct ParticipantSyntax {
     pub automaton: NameSyntax,
     /// `?`: takes part if it can
     pub optional: bool,

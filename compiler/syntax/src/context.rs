@@ -6,7 +6,7 @@ use crate::ast::{
     AccessSyntax, AgentMember, AutomatonMember, AutomatonMemberKind, BinSyntax, BinaryOp, BindingEntry,
     BindingMember, BodySyntax, CallSyntax, ChannelSyntax, ChannelSyntaxKind, CrossMember, DeviceMember,
     EdgeAction, EdgeSyntax, EventName, ExprSyntax, ExprSyntaxKind, InstanceSyntax, ItemSyntaxKind,
-    LiteralSyntax, NameSyntax, ParamSyntax, PartySyntax, PathSyntax, PlaceSyntax, RangeSyntax,
+    LiteralSyntax, NameSyntax, ParamSyntax, ParticipantSyntax, PathSyntax, PlaceSyntax, RangeSyntax,
     StatementSyntax, StepSyntax, StepSyntaxKind, StimulusStepSyntax, SuiteMember, SystemMember,
     TemplateSyntaxKind, TestMember, TextSyntax, TurnSyntax, TypeExpr, UnaryOp, WorldMember,
 };
@@ -58,7 +58,16 @@ macro_rules! small {
     )*};
 }
 
-small!(NameSyntax, PathSyntax, TextSyntax, CallSyntax, LiteralSyntax, ExprSyntax, AccessSyntax, PartySyntax);
+small!(
+    NameSyntax,
+    PathSyntax,
+    TextSyntax,
+    CallSyntax,
+    LiteralSyntax,
+    ExprSyntax,
+    AccessSyntax,
+    ParticipantSyntax
+);
 
 /// One of the parts of an edge that may come in any order.
 pub(crate) enum EdgePart {
@@ -341,7 +350,7 @@ impl<'t> ParseContext<'t> {
         names: Vec<EventName>,
         kind: Option<(bool, ChannelSyntaxKind)>,
     ) -> ChannelSyntax {
-        let (urgent, kind) = kind.unwrap_or((false, ChannelSyntaxKind::HandShake));
+        let (urgent, kind) = kind.unwrap_or((false, ChannelSyntaxKind::Binary));
         ChannelSyntax { names, urgent, kind }
     }
 

@@ -52,5 +52,5 @@
 (agent_declaration plays: (identifier) @name) @reference.interface
 (automaton_declaration plays: (identifier) @name) @reference.interface
 (system_declaration name: (_) actor: (identifier) @name) @reference.interface
-(party automaton: (identifier) @name) @reference.class
+(participant automaton: (identifier) @name) @reference.class
 (named_type name: (identifier) @name) @reference.type

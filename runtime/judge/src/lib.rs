@@ -17,7 +17,7 @@ use hrdsl_coverage::{CoverageCollector, MachineCollector, MachineHits};
 use hrdsl_ir::{Nanos, Program, value::seconds};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict, SeenStep};
 use hrdsl_results::{
-    FirstFailure, MachineCoverage, TraceJudgement, VerdictOutcome, VerdictResult, WitnessStep,
+    CounterexampleStep, FirstFailure, MachineCoverage, TraceJudgement, VerdictOutcome, VerdictResult,
 };
 use hrdsl_trace::{MachineDeclaration, RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
 
@@ -110,9 +110,9 @@ fn failure(program: &Program, verdict: &MonitorVerdict) -> Option<FirstFailure> 
     let violation = verdict.first_failure.as_ref()?;
     let step = |seen: &SeenStep| {
         let (who, what) = print::who_did_what(program, &seen.step.what);
-        WitnessStep { step: seen.index, time: seconds(seen.step.time), text: format!("{who} {what}") }
+        CounterexampleStep { step: seen.index, time: seconds(seen.step.time), text: format!("{who} {what}") }
     };
-    let mut counterexample: Vec<WitnessStep> = violation.counterexample.iter().map(step).collect();
+    let mut counterexample: Vec<CounterexampleStep> = violation.counterexample.iter().map(step).collect();
     counterexample.sort_by_key(|w| w.step);
     Some(FirstFailure {
         time: seconds(violation.time),

@@ -18,7 +18,7 @@ pub enum GoalFate {
     Reached(Box<ObservedRun>),
     /// No run that keeps the assumptions reaches it.
     Unreachable,
-    /// Not decided: why.
+    /// Inconclusive: why.
     Inconclusive(String),
 }
 

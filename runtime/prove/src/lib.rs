@@ -52,10 +52,10 @@ pub enum ProofStatus {
     Violated(Box<ObservedRun>),
     /// No run does.
     Holds {
-        /// Whether some run triggers it. `None`: not decided within the budget.
+        /// Whether some run triggers it. `None`: inconclusive within the budget.
         triggered: Option<bool>,
     },
-    /// Not decided: why.
+    /// Inconclusive: why.
     Inconclusive(String),
     /// It cannot be judged on a model: why.
     NotOnTheModel(String),

@@ -37,7 +37,7 @@ pub enum QueryFinding {
     NotSatisfied,
     /// Of a `sup` or `inf`, for each measure.
     Bounds(Vec<String>),
-    /// Not decided: why.
+    /// Inconclusive: why.
     Inconclusive(String),
     /// The model is at fault, and where.
     Fault(String),

@@ -266,11 +266,11 @@ pub fn places(results: &CampaignResults) -> BTreeMap<&TestName, usize> {
     results.tests.iter().enumerate().rev().map(|(i, t)| (&t.name, i)).collect()
 }
 
-/// What the campaign leaves unsaid, in sentences: undecided requirements, missed bins, inconclusive goals, missed code, errors.
+/// What the campaign leaves unsaid, in sentences: requirements that are never decided, missed bins, inconclusive goals, missed code, errors.
 pub fn gaps(results: &CampaignResults) -> Vec<String> {
     let mut gaps = Vec::new();
     errors(results, &mut gaps);
-    undecided(results, &mut gaps);
+    never_decided(results, &mut gaps);
     missed_bins(results, &mut gaps);
     for suite in &results.suites {
         let inconclusive = suite.goals.iter().filter(|g| g.status == GoalStatus::Inconclusive).count();
@@ -333,7 +333,7 @@ fn errors(results: &CampaignResults, gaps: &mut Vec<String>) {
     }
 }
 
-fn undecided(results: &CampaignResults, gaps: &mut Vec<String>) {
+fn never_decided(results: &CampaignResults, gaps: &mut Vec<String>) {
     let checked = |t: &VerdictTally| t.pass + t.fail > 0;
     let never: Vec<String> = results
         .requirements

@@ -4,10 +4,10 @@ mod model;
 mod system;
 
 use hrdsl_results::{
-    BinName, BinResult, CampaignResults, CodeFile, CoverageRatios, FORMAT, FirstFailure, GoalReport,
-    GoalStatus, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark, SmallestMargin,
-    SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION, VerdictOutcome as Outcome, VerdictResult,
-    VerdictTally, WitnessStep,
+    BinName, BinResult, CampaignResults, CodeFile, CounterexampleStep, CoverageRatios, FORMAT, FirstFailure,
+    GoalReport, GoalStatus, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
+    SmallestMargin, SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION, VerdictOutcome as Outcome,
+    VerdictResult, VerdictTally,
 };
 
 pub(crate) use model::model;
@@ -303,7 +303,7 @@ fn verdict(s: usize, i: usize, r: usize, is_broken: bool) -> VerdictResult {
 }
 
 fn failure(r: usize, time: f64) -> FirstFailure {
-    let step = |step: usize, time: f64, text: &str| WitnessStep { step, time, text: text.to_owned() };
+    let step = |step: usize, time: f64, text: &str| CounterexampleStep { step, time, text: text.to_owned() };
     match r {
         4 => FirstFailure {
             time,

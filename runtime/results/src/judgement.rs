@@ -70,12 +70,12 @@ pub struct FirstFailure {
     /// `true`: a deadline passed; `false`: the last step of the counterexample violates.
     pub deadline: bool,
     /// The steps that show it, in order.
-    pub counterexample: Vec<WitnessStep>,
+    pub counterexample: Vec<CounterexampleStep>,
 }
 
 /// A step of the trace that bears out a verdict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct WitnessStep {
+pub struct CounterexampleStep {
     /// Its place in the trace's steps, from 0: line `step + 2` of the recording.
     pub step: usize,
     /// Seconds.

@@ -29,7 +29,7 @@ pub use code::{CodeFile, CoverageRatios};
 pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::CoverItemKind, test::TestMethod};
 pub use hrdsl_trace::RunEnd;
 pub use interface::{InterfaceFault, InterfaceRole, InterfaceWarning, UnservedWait};
-pub use judgement::{FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult, WitnessStep};
+pub use judgement::{CounterexampleStep, FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult};
 pub use machine::{MachineCoverage, MachineResult, MachineStateResult, MachineTransitionResult};
 pub use names::{GoalName, RequirementName, SuiteName, TestName};
 pub use suite::{

@@ -153,19 +153,19 @@ fn a_shared_clock_is_read_when_it_is_set() {
 }
 
 /// The one leaves before three, or goes off from three on; the other tells it, until two.
-fn leaving(stay_away: impl Fn(&mut Program) -> [hrdsl_ir::ta::ChannelId; 2], joint: bool) -> Program {
+fn leaving(stay_away: impl Fn(&mut Program) -> [hrdsl_ir::ta::ChannelId; 2], multi_way: bool) -> Program {
     let mut p = program();
     let [told, tell] = stay_away(&mut p);
     let mut one = automaton("One", &["x"]);
     let (here, off, left) = (normal(&mut one, "here"), normal(&mut one, "off"), normal(&mut one, "left"));
     edge(here, off).clock(0, ClockOp::Ge, 3).to(&mut one);
     let hears = edge(here, left);
-    if joint { hears.join(told) } else { hears.accept(told, &[]) }.to(&mut one);
+    if multi_way { hears.join(told) } else { hears.accept(told, &[]) }.to(&mut one);
     add(&mut p, one);
     let mut other = automaton("Other", &["y"]);
     let (a, b) = (normal(&mut other, "a"), normal(&mut other, "b"));
     let tells = edge(a, b).clock(0, ClockOp::Le, 2);
-    if joint { tells.join(tell) } else { tells.offer(tell, &[]) }.to(&mut other);
+    if multi_way { tells.join(tell) } else { tells.offer(tell, &[]) }.to(&mut other);
     add(&mut p, other);
     p
 }
@@ -177,11 +177,11 @@ fn who_stays_away_from_a_broadcast_does_so_at_its_time() {
 }
 
 #[test]
-fn who_stays_away_from_a_joint_channel_does_so_at_its_time() {
-    let party = |i, optional| ChannelParticipant { automaton: AutomatonId(i), optional };
-    let kind = ChannelKind::Joint(vec![party(0, true), party(1, false)]);
-    let joint = |p: &mut Program| [channel(p, "all", kind.clone(), &[]); 2];
-    is_out_of_order(&leaving(joint, true), (0, 1), (1, 1));
+fn who_stays_away_from_a_multi_way_channel_does_so_at_its_time() {
+    let participant = |i, optional| ChannelParticipant { automaton: AutomatonId(i), optional };
+    let kind = ChannelKind::MultiWay(vec![participant(0, true), participant(1, false)]);
+    let multi_way = |p: &mut Program| [channel(p, "all", kind.clone(), &[]); 2];
+    is_out_of_order(&leaving(multi_way, true), (0, 1), (1, 1));
 }
 
 /// One automaton writes what another's invariant says, another has an urgent channel, a third a difference of clocks.
@@ -206,7 +206,7 @@ fn what_local_time_does_not_serve_is_refused() {
     let why = refusal(&p);
     assert_eq!(why, "the invariant of `a` of `One` depends on `s`, which other automata change or share");
     p.automata[0].locations[0].holds = None;
-    let hurry = channel(&mut p, "hurry", ChannelKind::HandShake, &[]);
+    let hurry = channel(&mut p, "hurry", ChannelKind::Binary, &[]);
     p.channels[0].urgent = true;
     p.automata[0].edges[0] = edge(a, a).offer(hurry, &[]).0;
     assert_eq!(refusal(&p), "channel `hurry` is urgent");

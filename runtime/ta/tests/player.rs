@@ -173,7 +173,7 @@ fn an_automaton_that_is_not_there_is_an_error() {
 }
 
 #[test]
-fn alone_it_takes_no_hand_shake_and_a_broadcast_offer_as_internal() {
+fn alone_it_takes_no_binary_synchronisation_and_a_broadcast_offer_as_internal() {
     use hrdsl_ir::{
         Expr, Span,
         ta::{
@@ -184,8 +184,8 @@ fn alone_it_takes_no_hand_shake_and_a_broadcast_offer_as_internal() {
     let mut p = program();
     p.clocks.push("g".into());
     let kinds = [
-        ChannelKind::HandShake,
-        ChannelKind::Joint(vec![ChannelParticipant { automaton: AutomatonId(0), optional: true }]),
+        ChannelKind::Binary,
+        ChannelKind::MultiWay(vec![ChannelParticipant { automaton: AutomatonId(0), optional: true }]),
         ChannelKind::Broadcast,
     ];
     p.channels = kinds

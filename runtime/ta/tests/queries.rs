@@ -426,8 +426,8 @@ fn channels() -> (Program, [LocationId; 2]) {
         AutomatonId, Channel, ChannelId, ChannelKind, ChannelParticipant, ReceiveArg, SyncLabel,
     };
     let mut p = program();
-    let party = |n| ChannelParticipant { automaton: AutomatonId(n), optional: false };
-    let kinds = [ChannelKind::HandShake, ChannelKind::Joint(vec![party(0), party(1)])];
+    let participant = |n| ChannelParticipant { automaton: AutomatonId(n), optional: false };
+    let kinds = [ChannelKind::Binary, ChannelKind::MultiWay(vec![participant(0), participant(1)])];
     for (name, kind) in ["go", "all"].into_iter().zip(kinds) {
         let params = if name == "go" { vec![common::var("k", 0, 3, 0)] } else { Vec::new() };
         let urgent = name == "go";

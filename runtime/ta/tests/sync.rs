@@ -1,4 +1,4 @@
-//! Hand-shakes, joint and urgent channels, functions, arrays and clocks set to times, by what can be reached.
+//! Binary, multi-way and urgent channels, functions, arrays and clocks set to times, by what can be reached.
 
 mod common;
 
@@ -37,9 +37,9 @@ fn fault(p: &Program) -> String {
 }
 
 #[test]
-fn a_hand_shake_needs_two_and_the_same_arguments() {
+fn a_binary_synchronisation_needs_two_and_the_same_arguments() {
     let mut p = program();
-    let c = channel(&mut p, "c", ChannelKind::HandShake, &[(0, 3)]);
+    let c = channel(&mut p, "c", ChannelKind::Binary, &[(0, 3)]);
     let mut a = automaton("A", &[]);
     let l = [normal(&mut a, "a"), normal(&mut a, "b"), normal(&mut a, "c")];
     edge(l[0], l[1]).offer(c, &[n(1)]).to(&mut a);
@@ -59,7 +59,7 @@ fn a_hand_shake_needs_two_and_the_same_arguments() {
 #[test]
 fn an_argument_outside_its_range_is_a_fault() {
     let mut p = program();
-    let c = channel(&mut p, "c", ChannelKind::HandShake, &[(0, 3)]);
+    let c = channel(&mut p, "c", ChannelKind::Binary, &[(0, 3)]);
     let mut a = automaton("A", &[]);
     let l = normal(&mut a, "a");
     edge(l, l).offer(c, &[n(4)]).to(&mut a);
@@ -68,11 +68,12 @@ fn an_argument_outside_its_range_is_a_fault() {
 }
 
 /// B must join, C may; A's edge waits for a variable.
-fn joint(optional: bool, clock_of_c: i64) -> Program {
+fn multi_way(optional: bool, clock_of_c: i64) -> Program {
     let mut p = program();
-    let party = |automaton, optional| ChannelParticipant { automaton: AutomatonId(automaton), optional };
-    let parties = vec![party(0, false), party(1, optional)];
-    let go = channel(&mut p, "go", ChannelKind::Joint(parties), &[]);
+    let participant =
+        |automaton, optional| ChannelParticipant { automaton: AutomatonId(automaton), optional };
+    let participants = vec![participant(0, false), participant(1, optional)];
+    let go = channel(&mut p, "go", ChannelKind::MultiWay(participants), &[]);
     let mut a = automaton("A", &["x"]);
     let l = [location(&mut a, "a", LocationKind::Normal, &[clock(0, ClockOp::Le, 3)]), normal(&mut a, "b")];
     edge(l[0], l[1]).join(go).to(&mut a);
@@ -85,23 +86,23 @@ fn joint(optional: bool, clock_of_c: i64) -> Program {
 }
 
 #[test]
-fn a_joint_channel_waits_for_who_must_take_part() {
+fn a_multi_way_channel_waits_for_who_must_take_part() {
     // Start and both gone on.
-    assert_eq!(discrete(&joint(false, 2)), 2);
+    assert_eq!(discrete(&multi_way(false, 2)), 2);
     // B comes too late.
-    assert_eq!(discrete(&joint(false, 4)), 1);
+    assert_eq!(discrete(&multi_way(false, 4)), 1);
     // With or without B.
-    assert_eq!(discrete(&joint(true, 2)), 3);
-    assert_eq!(discrete(&joint(true, 4)), 2);
+    assert_eq!(discrete(&multi_way(true, 2)), 3);
+    assert_eq!(discrete(&multi_way(true, 4)), 2);
     // B could always take part: it must.
-    assert_eq!(discrete(&joint(true, 0)), 2);
+    assert_eq!(discrete(&multi_way(true, 0)), 2);
 }
 
 #[test]
 fn an_urgent_channel_stops_time_when_it_is_possible() {
     for (urgent, states) in [(true, 2), (false, 3)] {
         let mut p = program();
-        let c = channel(&mut p, "c", ChannelKind::HandShake, &[]);
+        let c = channel(&mut p, "c", ChannelKind::Binary, &[]);
         p.channels[0].urgent = urgent;
         let mut a = automaton("A", &["x"]);
         let l = [normal(&mut a, "a"), normal(&mut a, "b"), normal(&mut a, "late")];

@@ -1,4 +1,4 @@
-//! Goals along the flow of control and data: pairs of edges, and definitions of variables with their uses.
+//! Goals along the flow of control and data: edge pairs and def-use pairs.
 
 use hrdsl_ir::{
     Expr, Program,

@@ -64,10 +64,10 @@ pub struct ViewDocument {
     pub topics: Vec<TopicTrack>,
     /// What programs wrote, in order.
     #[serde(default)]
-    pub log: Vec<LogLine>,
+    pub log: Vec<ViewLogLine>,
     /// The files of the robot's code. Those without text may be among the shared assets of the page.
     #[serde(default)]
-    pub files: Vec<SourceFile>,
+    pub files: Vec<ViewSourceFile>,
     /// Which lines of the robot's code ran when; left out if nobody measured it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lines: Option<LineTrack>,
@@ -381,7 +381,7 @@ pub enum LogLevel {
 
 /// What a program wrote.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct LogLine {
+pub struct ViewLogLine {
     pub t: u64,
     pub level: LogLevel,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -391,7 +391,7 @@ pub struct LogLine {
 
 /// A file of the robot's code.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct SourceFile {
+pub struct ViewSourceFile {
     pub name: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,

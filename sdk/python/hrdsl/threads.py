@@ -201,7 +201,7 @@ class ThreadHandle:
 
 
 def install(scheduler: Scheduler) -> Threads:
-    """Replaces the threads and locks of this process; `threading` has not been imported yet, or is mended."""
+    """Replaces the threads and locks of this process; `threading` has not been imported yet, or is patched."""
     locks.use(scheduler)
     threads = Threads(scheduler)
     old = {name: getattr(_thread, name, None) for name in _NAMES}

@@ -123,9 +123,9 @@ def over_channel(number, ells, v, u):
     """All moves over a channel; without u, those that make it urgent."""
     kind = channels[number]["kind"]
     if isinstance(kind, dict):
-        parties = [p for p in kind["joint"] if p["automaton"] in net.automata]
-        each = [list(ways(net.automata.index(p["automaton"]), ells, v, u, "join", number)) for p in parties]
-        if any(not found and not p["optional"] for p, found in zip(parties, each)):
+        participants = [p for p in kind["multi_way"] if p["automaton"] in net.automata]
+        each = [list(ways(net.automata.index(p["automaton"]), ells, v, u, "join", number)) for p in participants]
+        if any(not found and not p["optional"] for p, found in zip(participants, each)):
             return []
         return [list(moves) for moves in product(*filter(None, each)) if moves]
     found = []

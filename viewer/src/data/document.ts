@@ -13,7 +13,7 @@ export interface ViewDocument {
   /** In the order in which they happened. */
   events?: ViewEvent[];
   /** The files of the robot's code. Those without text may be among the shared assets of the page. */
-  files?: SourceFile[];
+  files?: ViewSourceFile[];
   /** `hrdsl-view` */
   format: string;
   /** The version of hrdsl that made it. */
@@ -23,7 +23,7 @@ export interface ViewDocument {
   /** Which lines of the robot's code ran when; left out if nobody measured it. */
   lines?: LineTrack | null;
   /** What programs wrote, in order. */
-  log?: LogLine[];
+  log?: ViewLogLine[];
   machines?: MachineTrack[];
   /** What could not be shown, a sentence each. */
   notes?: string[];
@@ -77,14 +77,6 @@ export interface LineTrack {
 
 /** How grave a line of the log is. */
 export type LogLevel = "debug" | "info" | "warning" | "error";
-
-/** What a program wrote. */
-export interface LogLine {
-  level: LogLevel;
-  program?: string | null;
-  t: number;
-  text: string;
-}
 
 /** A state machine of the system, or an automaton: in which state it was. */
 export interface MachineTrack {
@@ -169,12 +161,6 @@ export interface SignalTrack {
   values?: string[];
 }
 
-/** A file of the robot's code. */
-export interface SourceFile {
-  name: string;
-  text?: string | null;
-}
-
 /** Which way messages go, as the robot's code sees it. */
 export type TopicDirection = "in" | "out";
 
@@ -238,6 +224,14 @@ export interface ViewLaser {
   range: [number, number];
   /** What it saw. Without it, the page works out what a perfect one would have seen, and says so. */
   scans?: ScanTrack | null;
+}
+
+/** What a program wrote. */
+export interface ViewLogLine {
+  level: LogLevel;
+  program?: string | null;
+  t: number;
+  text: string;
 }
 
 /** A value that a requirement compares with a limit. It is as it should be where value, relation and limit make a true sentence. */
@@ -335,6 +329,12 @@ export type ViewShape = {
   pose?: [number, number, number, number, number, number, number] | null;
   scale?: [number, number, number] | null;
 };
+
+/** A file of the robot's code. */
+export interface ViewSourceFile {
+  name: string;
+  text?: string | null;
+}
 
 /** What the run says of a requirement. */
 export type ViewVerdict = "pass" | "fail" | "vacuous" | "inconclusive" | "error";

@@ -1,7 +1,7 @@
 // A robot hands a person the four legs of a table, for 300 s: once a hand is where the gripper closes, once it is not.
 
 import { readFileSync } from "node:fs";
-import type { LogLine, ViewBody, ViewDocument, ViewEvent, ViewRequirement } from "../../src/data/document.js";
+import type { ViewLogLine, ViewBody, ViewDocument, ViewEvent, ViewRequirement } from "../../src/data/document.js";
 import { armBodies, armFrames, between, fastest, joints, reach, toolAt } from "./arm.js";
 import { figureBodies, figureFrames, type Stance } from "./figure.js";
 import { add, lerp, length, none, rotate, smooth, sub, turn, type Frame, type V } from "./maths.js";
@@ -49,14 +49,14 @@ interface Round {
 
 class Story {
   readonly events: ViewEvent[] = [];
-  readonly log: LogLine[] = [];
+  readonly log: ViewLogLine[] = [];
   readonly states: { t: number; state: string; outcome: string | null }[] = [];
   private step = 2;
 
   event(t: number, name: string, kind: ViewEvent["kind"], actor: string | null, args?: string, until?: number): void {
     this.events.push({ t: ticks(t), name, kind, step: (this.step += 5), ...(actor ? { actor } : {}), ...(args ? { args } : {}), ...(until ? { until: ticks(until) } : {}) });
   }
-  says(t: number, text: string, level: LogLine["level"] = "info"): void {
+  says(t: number, text: string, level: ViewLogLine["level"] = "info"): void {
     this.log.push({ t: ticks(t), level, program: "robot.py", text });
   }
   state(t: number, state: string, outcome: string | null = null): void {

@@ -1,6 +1,6 @@
 // A mobile robot serves a person in a flat for 700 s, a dog runs in front of it, and the person falls.
 
-import type { LogLine, ViewBody, ViewDocument, ViewEvent } from "../../src/data/document.js";
+import type { ViewLogLine, ViewBody, ViewDocument, ViewEvent } from "../../src/data/document.js";
 import { obstaclesOf, composed, scan } from "../../src/scene/rays.js";
 import { figureBodies, figureFrames, type Stance } from "./figure.js";
 import { add, chance, mul, none, rotate, smooth, turn, type Frame, type V } from "./maths.js";
@@ -274,11 +274,11 @@ export function homecareSample(): ViewDocument {
   });
   const halts = legs.flatMap((l) => (l.halt ? [l.halt] : []));
   const events: ViewEvent[] = [];
-  const log: LogLine[] = [];
+  const log: ViewLogLine[] = [];
   let step = 0;
   const event = (t: number, name: string, kind: ViewEvent["kind"], actor: string | null, args?: string, until?: number) =>
     events.push({ t: ticks(t), name, kind, step: (step += 4), ...(actor ? { actor } : {}), ...(args ? { args } : {}), ...(until ? { until: ticks(until) } : {}) });
-  const says = (t: number, text: string, level: LogLine["level"] = "info") => log.push({ t: ticks(t), level, program: "server.py", text });
+  const says = (t: number, text: string, level: ViewLogLine["level"] = "info") => log.push({ t: ticks(t), level, program: "server.py", text });
   const orders: [number, string, number[]][] = [[18, "feed", [0, 1, 2]], [188, "sink", [3, 4]], [328, "feed", [5, 6, 7]], [558, "sink", [8, 9]]];
   const states: [number, string][] = [[0, "IDLE"]];
   for (const [t, what, which] of orders) {

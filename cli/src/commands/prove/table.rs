@@ -150,7 +150,7 @@ fn untriggered(triggered: Option<bool>, why: Option<&str>) -> Option<String> {
             Some(why) => format!("vacuously: it is never triggered; {why}"),
             None => "vacuously: it is never triggered".to_owned(),
         }),
-        None => Some("whether it is ever triggered is not decided".to_owned()),
+        None => Some("whether it is ever triggered is inconclusive".to_owned()),
     }
 }
 

@@ -202,7 +202,7 @@ impl<'a> Checker<'a> {
         None
     }
 
-    /// A coverage point.
+    /// A coverpoint.
     pub(super) fn point_named(&mut self, name: &NameSyntax) -> Option<CoverpointId> {
         match self.given(&name.text) {
             Some(TemplateArgument::Point(id)) => {

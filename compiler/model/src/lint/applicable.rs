@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 
 use super::{
     agent_facts::{AgentFacts, BeliefChange, HeldBeliefs, change},
-    plan_terms::{alternatives, fold, same_value},
+    plan_terms::{alternatives, same_value},
     simple::{is_simple, is_simple_literal, is_simple_step},
 };
 use crate::{
@@ -491,11 +491,14 @@ impl<'a> ContextPlace<'a> {
 
     /// The value of an expression, or a name that is the same for the same expression over the same values.
     fn sym(&self, e: &TypedExpr) -> AskedLiteral<SymbolicTerm> {
-        let value = |var: u16| match &self.vars[usize::from(var)] {
-            Some(SymbolicTerm::Value(value)) => Some(*value),
-            Some(SymbolicTerm::Named(_)) | None => None,
+        let value = |leaf| match leaf {
+            VariableRef::Local(var) => match &self.vars[usize::from(var)] {
+                Some(SymbolicTerm::Value(value)) => Some(*value),
+                Some(SymbolicTerm::Named(_)) | None => None,
+            },
+            VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_) => None,
         };
-        if let Some(value) = fold(e, &value) {
+        if let Some(value) = e.value_with(&value) {
             return Ok(SymbolicTerm::Value(value));
         }
         let all = |parts: &[&TypedExpr]| -> AskedLiteral<String> {

@@ -52,11 +52,11 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, _: &'a ScenarioFacts<'a>, issues
             continue;
         }
         match &channel.kind {
-            ChannelKind::HandShake | ChannelKind::Broadcast => {
+            ChannelKind::Binary | ChannelKind::Broadcast => {
                 issues.extend(one_side(scenario, (channel, place.name), sides));
             }
-            ChannelKind::Joint(parties) => {
-                let named = parties.iter().zip(&place.parties);
+            ChannelKind::MultiWay(participants) => {
+                let named = participants.iter().zip(&place.participants);
                 let absent = named.filter(|(p, _)| !sides.join.contains(&p.automaton));
                 issues.extend(absent.map(|(p, at)| no_part(scenario, channel, p, *at)));
             }
@@ -98,11 +98,11 @@ fn one_side(
     Some(Diagnostic::warning(DiagnosticCode::ONE_SIDED_CHANNEL, at, message).help(help))
 }
 
-fn no_part(scenario: &Scenario, channel: &Channel, party: &ChannelParticipant, at: Span) -> Diagnostic {
-    let (name, of) = (&channel.name, usize::from(party.automaton.0));
+fn no_part(scenario: &Scenario, channel: &Channel, participant: &ChannelParticipant, at: Span) -> Diagnostic {
+    let (name, of) = (&channel.name, usize::from(participant.automaton.0));
     let automaton = scenario.automata.get(of).map_or("?", |a| a.name.as_str());
     let message = format!("`{automaton}` has no edge for the multi-way channel `{name}`");
-    let why = if party.optional { "it never takes part" } else { "nobody can take part without it" };
+    let why = if participant.optional { "it never takes part" } else { "nobody can take part without it" };
     Diagnostic::warning(DiagnosticCode::ONE_SIDED_CHANNEL, at, message)
         .here(why)
         .help(format!("give it an edge with `on {name}`, or take it out of the participants"))

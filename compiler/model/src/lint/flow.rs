@@ -5,8 +5,7 @@ use std::{collections::VecDeque, rc::Rc};
 use crate::{
     Channel, ChannelKind, ClockOp, EventId, FunctionId, LocationId, ReceiveArg, Scenario, TypedAutomaton,
     TypedClockConstraint, TypedEdge, TypedEvent, TypedExpr, TypedExprKind, TypedSync, TypedUpdate,
-    VariableRef, leaves,
-    lint::interval::{IntervalEnv, ValueInterval},
+    VariableRef, interval::ValueInterval, leaves, lint::interval::IntervalEnv,
 };
 
 /// After so many visits of a location what still grows is taken to reach the end of its range.

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use hrdsl_ir::world::Gripper;
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::facts::ScenarioFacts;
 use crate::{
     BodyId, BodyMotion, BodyShape, Scenario,
-    world::{PartFrame, PartInstance, TypedBody, TypedGripper, TypedWorld, sin_cos},
+    world::{PartFrame, PartInstance, TypedBody, TypedWorld, sin_cos},
 };
 
 /// Beyond so many comparisons nothing is said.
@@ -82,7 +83,7 @@ fn hollow<'a>(world: &'a TypedWorld) -> Vec<&'a PartInstance> {
 }
 
 /// Whether the gripper can take hold of it where it is.
-fn reaches(world: &TypedWorld, gripper: &TypedGripper, falling: &PlacedBody) -> bool {
+fn reaches(world: &TypedWorld, gripper: &Gripper, falling: &PlacedBody) -> bool {
     let Some(palm) = world.bodies.get(usize::from(gripper.palm.0)) else { return true };
     let tool = rotate(palm.frame.yaw, palm.rotation, gripper.tool);
     let at: [f64; 3] = std::array::from_fn(|i| palm.frame.place(palm.position)[i] + tool[i]);

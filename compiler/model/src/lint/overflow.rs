@@ -2,14 +2,11 @@
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 
-use super::{
-    facts::ScenarioFacts,
-    flow::ValueFlow,
-    interval::{IntervalEnv, ValueInterval},
-};
+use super::{facts::ScenarioFacts, flow::ValueFlow, interval::IntervalEnv};
 use crate::{
     EventId, Parameter, Scenario, TriggerOn, Type, TypedAgent, TypedAutomaton, TypedContext, TypedEvent,
     TypedExpr, TypedStep, TypedStepKind, TypedStimulusStep, TypedSync, TypedTerm, TypedUpdate, VariableRef,
+    interval::ValueInterval,
 };
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {

@@ -193,31 +193,6 @@ pub(crate) fn same_expr(a: &TypedExpr, b: &TypedExpr, vars: &mut dyn FnMut(u16, 
     }
 }
 
-/// The value of an expression whose variables have these values.
-pub(crate) fn fold(e: &TypedExpr, vars: &dyn Fn(u16) -> Option<Value>) -> Option<Value> {
-    match &e.kind {
-        TypedExprKind::Const(value) => Some(*value),
-        TypedExprKind::Leaf(VariableRef::Local(var)) => vars(*var),
-        TypedExprKind::Leaf(_)
-        | TypedExprKind::Term(_)
-        | TypedExprKind::List(..)
-        | TypedExprKind::Element(_)
-        | TypedExprKind::Apply(..)
-        | TypedExprKind::Error => None,
-        TypedExprKind::Unary(op, a) => hrdsl_ir::expr::unary(*op, fold(a, vars)?).ok(),
-        TypedExprKind::Binary(op, a, b) => hrdsl_ir::expr::binary(*op, fold(a, vars)?, fold(b, vars)?).ok(),
-        TypedExprKind::If(c, a, b) => match fold(c, vars)? {
-            Value::Bool(true) => fold(a, vars),
-            Value::Bool(false) => fold(b, vars),
-            Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_) => None,
-        },
-        TypedExprKind::Call(f, args) => {
-            let args: Option<Vec<Value>> = args.iter().map(|a| fold(a, vars)).collect();
-            hrdsl_ir::expr::call(*f, &args?).ok()
-        }
-    }
-}
-
 /// Whether it has a value for all values of its variables: a plan with a division by zero is not applicable.
 pub(crate) fn is_total(e: &TypedExpr) -> bool {
     let mut total = true;

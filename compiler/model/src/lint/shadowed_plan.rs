@@ -7,11 +7,11 @@ use super::{
     dead_plan::never_runs,
     facts::ScenarioFacts,
     plan_terms::{
-        PlanTerm, TermImage, VarRenaming, alternatives, bound_before, fold, is_total, more_general, of_args,
+        PlanTerm, TermImage, VarRenaming, alternatives, bound_before, is_total, more_general, of_args,
         same_expr,
     },
 };
-use crate::{Scenario, TypedContext, TypedPlan, TypedTerm, Value};
+use crate::{Scenario, TypedContext, TypedPlan, TypedTerm, Value, VariableRef};
 
 /// So many plans for the same goal or event are compared with each that follows.
 const COMPARED: usize = 100;
@@ -130,11 +130,14 @@ fn implied(
 /// A test of values that the other plan's head fixes.
 fn is_true(test: &TypedContext, renaming: &VarRenaming) -> bool {
     let TypedContext::Test(e) = test else { return false };
-    let value = |var| match renaming.get(&var) {
-        Some(TermImage::Const(value)) => Some(*value),
-        Some(TermImage::Var(_) | TermImage::Unnamed) | None => None,
+    let value = |leaf| match leaf {
+        VariableRef::Local(var) => match renaming.get(&var) {
+            Some(TermImage::Const(value)) => Some(*value),
+            Some(TermImage::Var(_) | TermImage::Unnamed) | None => None,
+        },
+        VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_) => None,
     };
-    fold(e, &value) == Some(Value::Bool(true))
+    e.value_with(&value) == Some(Value::Bool(true))
 }
 
 /// Whether a negation or test is the same as the other plan's.

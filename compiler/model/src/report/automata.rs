@@ -154,7 +154,7 @@ pub(crate) fn urgent_guard(channel: &str, span: Span, declared: Span) -> Diagnos
 }
 
 /// HR0512: an edge of an automaton that has no part in the channel.
-pub(crate) fn not_a_party(automaton: &str, channel: &str, span: Span, declared: Span) -> Diagnostic {
+pub(crate) fn not_a_participant(automaton: &str, channel: &str, span: Span, declared: Span) -> Diagnostic {
     let message = format!("`{automaton}` has no part in the multi-way channel `{channel}`");
     Diagnostic::error(DiagnosticCode::BAD_JOINT, span, message)
         .label(declared, "its participants are named here")
@@ -162,14 +162,14 @@ pub(crate) fn not_a_party(automaton: &str, channel: &str, span: Span, declared: 
 }
 
 /// HR0512
-pub(crate) fn joint_offered(channel: &str, span: Span) -> Diagnostic {
+pub(crate) fn multi_way_offered(channel: &str, span: Span) -> Diagnostic {
     let message = format!("nobody offers the multi-way channel `{channel}`: all its participants are alike");
     Diagnostic::error(DiagnosticCode::BAD_JOINT, span, message)
         .help(format!("write `on {channel}` on the edge of each"))
 }
 
 /// HR0512
-pub(crate) fn joint_params(channel: &str, span: Span) -> Diagnostic {
+pub(crate) fn multi_way_params(channel: &str, span: Span) -> Diagnostic {
     let message = format!("the multi-way channel `{channel}` carries nothing: nobody sends");
     Diagnostic::error(DiagnosticCode::BAD_JOINT, span, message)
         .help("hand values over in shared variables, or declare a channel for each value")

@@ -81,7 +81,7 @@ pub(crate) fn read_xml(file: FileId, text: &str) -> Result<XmlElement, RobotFaul
         let place = error.pos();
         let at = declared.original(byte_of(&declared.text, place.row, place.col));
         let kind = RobotFaultKind::BrokenXml(error.to_string());
-        kind.at(Span::new(file, at, (at + 1).min(text.len())), "mend the XML")
+        kind.at(Span::new(file, at, (at + 1).min(text.len())), "fix the XML")
     })?;
     let mut tree = TreeReader { file, declared: &declared, elements: 0 };
     tree.element(document.root_element())

@@ -454,8 +454,8 @@ fn limit_text(e: &MeasureExtremum, side: ExtremumSide) -> String {
         }
         ExtremumLimit::Unbounded => "unbounded".to_owned(),
         ExtremumLimit::Nowhere => "the formula holds nowhere".to_owned(),
-        ExtremumLimit::Inconclusive { seen: Some(q) } => format!("not decided; {} was seen", text(q)),
-        ExtremumLimit::Inconclusive { seen: None } => "not decided".to_owned(),
+        ExtremumLimit::Inconclusive { seen: Some(q) } => format!("inconclusive; {} was seen", text(q)),
+        ExtremumLimit::Inconclusive { seen: None } => "inconclusive".to_owned(),
     }
 }
 
@@ -463,9 +463,9 @@ fn used_up(what: SearchCutoff) -> String {
     let what = match what {
         SearchCutoff::States => "states",
         SearchCutoff::Memory => "memory",
-        SearchCutoff::Stopped => return "not decided: the search was stopped".to_owned(),
+        SearchCutoff::Stopped => return "the search was stopped".to_owned(),
     };
-    format!("not decided: the budget of {what} was used up")
+    format!("the budget of {what} was used up")
 }
 
 fn length(run: &WitnessRun) -> String {

@@ -67,7 +67,7 @@ pub fn fastest(
     timing: ScheduleOptions,
 ) -> Result<Option<Box<WitnessRun>>, SearchError> {
     if matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. }) {
-        let what = "a pair of edges is not looked for by time";
+        let what = "edge pairs and def-use pairs are not looked for by time";
         return Err(ModelError::Question(what.into()).into());
     }
     let formula = goal.formula();

@@ -52,7 +52,7 @@ fn base() -> Program {
         params,
         origin: Span::default(),
     };
-    let party = |n, optional| ChannelParticipant { automaton: AutomatonId(n), optional };
+    let participant = |n, optional| ChannelParticipant { automaton: AutomatonId(n), optional };
     let function = |name: &str, params: Vec<AutomatonVar>, result, pure, body| AutomatonFunction {
         name: name.into(),
         owner: None,
@@ -68,17 +68,26 @@ fn base() -> Program {
         shared: vec![var("q[0]", 0, 2), var("q[1]", 0, 2)],
         clocks: vec!["g".into()],
         channels: vec![
-            channel("shake", ChannelKind::HandShake, false, vec![var("k", 0, 1)]),
-            channel("hurry", ChannelKind::HandShake, true, Vec::new()),
+            channel("shake", ChannelKind::Binary, false, vec![var("k", 0, 1)]),
+            channel("hurry", ChannelKind::Binary, true, Vec::new()),
             channel("tell", ChannelKind::Broadcast, false, vec![var("k", 0, 2)]),
             channel("alarm", ChannelKind::Broadcast, true, Vec::new()),
             channel(
                 "all",
-                ChannelKind::Joint(vec![party(1, false), party(0, false), party(2, true)]),
+                ChannelKind::MultiWay(vec![
+                    participant(1, false),
+                    participant(0, false),
+                    participant(2, true),
+                ]),
                 false,
                 Vec::new(),
             ),
-            channel("any", ChannelKind::Joint(vec![party(0, true), party(2, true)]), true, Vec::new()),
+            channel(
+                "any",
+                ChannelKind::MultiWay(vec![participant(0, true), participant(2, true)]),
+                true,
+                Vec::new(),
+            ),
         ],
         functions: vec![
             function(

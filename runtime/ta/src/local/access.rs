@@ -109,14 +109,14 @@ fn depends(model: &CompiledNetwork, touched: &[Vec<Vec<u16>>], member: usize, ed
         }
         EdgeSync::Join { channel, .. } => {
             let shared = model.multiway.iter().find(|j| j.channel == *channel);
-            for &(party, optional) in shared.iter().flat_map(|j| &j.parties) {
+            for &(participant, optional) in shared.iter().flat_map(|j| &j.participants) {
                 if optional {
-                    all.push(party);
-                    let arrows = model.members[usize::from(party)].edges.iter().enumerate();
+                    all.push(participant);
+                    let arrows = model.members[usize::from(participant)].edges.iter().enumerate();
                     let joins = arrows.filter(
                         |(_, a)| matches!(&a.sync, EdgeSync::Join { channel: c, .. } if c == channel),
                     );
-                    all.extend(joins.flat_map(|(e, _)| &touched[usize::from(party)][e]));
+                    all.extend(joins.flat_map(|(e, _)| &touched[usize::from(participant)][e]));
                 }
             }
         }

@@ -367,14 +367,14 @@ impl<'p> NetworkCompiler<'p> {
         let sync = match &edge.sync {
             SyncLabel::Internal => EdgeSync::Internal,
             SyncLabel::Join { channel } => {
-                let Some(ChannelKind::Joint(parties)) =
+                let Some(ChannelKind::MultiWay(participants)) =
                     self.program.channels.get(usize::from(channel.0)).map(|c| &c.kind)
                 else {
                     return Err(unknown());
                 };
                 let id = self.network.automata[usize::from(outer.member.unwrap_or(0))];
-                let party = parties.iter().find(|p| p.automaton == id).ok_or_else(unknown)?;
-                EdgeSync::Join { channel: *channel, optional: party.optional }
+                let participant = participants.iter().find(|p| p.automaton == id).ok_or_else(unknown)?;
+                EdgeSync::Join { channel: *channel, optional: participant.optional }
             }
             SyncLabel::Receive { event, args } => self
                 .received(SyncMedium::Event(*event), args, &mut binders, &mut locals)
@@ -712,13 +712,13 @@ impl<'p> NetworkCompiler<'p> {
 fn multiway_channels(program: &Program, network: &Network) -> Vec<MultiwayChannel> {
     let mut all = Vec::new();
     for (i, c) in program.channels.iter().enumerate() {
-        if let ChannelKind::Joint(parties) = &c.kind {
+        if let ChannelKind::MultiWay(participants) = &c.kind {
             let member = |a: AutomatonId| CompiledNetwork::member_of(network, a);
-            let there = parties.iter().filter_map(|p| member(p.automaton).map(|m| (m, p.optional)));
+            let there = participants.iter().filter_map(|p| member(p.automaton).map(|m| (m, p.optional)));
             all.push(MultiwayChannel {
                 channel: ChannelId(i as u16),
                 urgent: c.urgent,
-                parties: there.collect(),
+                participants: there.collect(),
             });
         }
     }

@@ -200,7 +200,7 @@ pub(crate) struct MultiwayChannel {
     pub channel: ChannelId,
     pub urgent: bool,
     /// Index in the network; whether it may stay away.
-    pub parties: Vec<(u16, bool)>,
+    pub participants: Vec<(u16, bool)>,
 }
 
 /// What counts an event.

@@ -697,7 +697,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnum
         self.s.guard.clear();
         self.s.parts.clear();
         self.s.args.clear();
-        for &(member, optional) in &shared.parties {
+        for &(member, optional) in &shared.participants {
             let m = usize::from(member);
             let is = |e: &u16| {
                 matches!(&model.members[m].edges[usize::from(*e)].sync,

@@ -156,10 +156,10 @@ impl WellFormedScope<'_> {
     fn channel_fits(&self, channel: ChannelId, args: usize, multiway: bool) -> bool {
         self.program.channels.get(usize::from(channel.0)).is_some_and(|c| {
             let is_multiway = match &c.kind {
-                ChannelKind::Joint(parties) => {
-                    parties.iter().any(|p| Some(p.automaton) == self.id) && c.params.is_empty()
+                ChannelKind::MultiWay(participants) => {
+                    participants.iter().any(|p| Some(p.automaton) == self.id) && c.params.is_empty()
                 }
-                ChannelKind::HandShake | ChannelKind::Broadcast => false,
+                ChannelKind::Binary | ChannelKind::Broadcast => false,
             };
             is_multiway == multiway && c.params.len() == args && c.params.iter().all(range_has_values)
         })

@@ -422,16 +422,17 @@ impl<'p> ConcreteInterpreter<'p> {
         self.program.channels.iter().zip(0u16..).filter(|(c, _)| c.urgent).any(|(channel, id)| {
             let id = ChannelId(id);
             match &channel.kind {
-                ChannelKind::Joint(parties) => {
+                ChannelKind::MultiWay(participants) => {
                     let mut there =
-                        parties.iter().filter_map(|p| Some((self.member(p.automaton)?, p.optional)));
+                        participants.iter().filter_map(|p| Some((self.member(p.automaton)?, p.optional)));
                     let open = |m| {
                         self.receptions(m, SyncMedium::Channel(id), &[], false).is_ok_and(|w| !w.is_empty())
                     };
-                    let parties: Vec<(bool, bool)> = there.by_ref().map(|(m, opt)| (open(m), opt)).collect();
-                    parties.iter().any(|w| w.0) && parties.iter().all(|w| w.0 || w.1)
+                    let participants: Vec<(bool, bool)> =
+                        there.by_ref().map(|(m, opt)| (open(m), opt)).collect();
+                    participants.iter().any(|w| w.0) && participants.iter().all(|w| w.0 || w.1)
                 }
-                ChannelKind::HandShake => self.offers(id, false).iter().any(|(m, args)| {
+                ChannelKind::Binary => self.offers(id, false).iter().any(|(m, args)| {
                     self.others(m.automaton).any(|o| {
                         self.receptions(o, SyncMedium::Channel(id), args, false).is_ok_and(|w| !w.is_empty())
                     })
@@ -545,7 +546,7 @@ impl<'p> ConcreteInterpreter<'p> {
                 let all = hear(SyncMedium::Channel(*channel), &args)?;
                 match declared.kind {
                     ChannelKind::Broadcast => groups.push(all),
-                    ChannelKind::HandShake | ChannelKind::Joint(_) => {
+                    ChannelKind::Binary | ChannelKind::MultiWay(_) => {
                         groups.extend(all.into_iter().skip(1).map(|moves| vec![vec![m.clone()], moves]));
                     }
                 }
@@ -563,9 +564,11 @@ impl<'p> ConcreteInterpreter<'p> {
         id: ChannelId,
         first: &AutomatonMove,
     ) -> Result<Option<Vec<Vec<AutomatonMove>>>, ModelError> {
-        let Some(ChannelKind::Joint(parties)) = self.channel(id).map(|c| &c.kind) else { return Ok(None) };
+        let Some(ChannelKind::MultiWay(participants)) = self.channel(id).map(|c| &c.kind) else {
+            return Ok(None);
+        };
         let mut all = Vec::new();
-        for p in parties {
+        for p in participants {
             let Some(member) = self.member(p.automaton) else { continue };
             let moves = self.receptions(member, SyncMedium::Channel(id), &[], true)?;
             match (moves.is_empty(), p.optional) {

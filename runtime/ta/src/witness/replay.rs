@@ -308,7 +308,7 @@ fn meets(
     let medium = SyncMedium::Channel(id);
     match &channel.kind {
         ChannelKind::Broadcast => hears(machine, first.automaton, rest, medium, args),
-        ChannelKind::HandShake => {
+        ChannelKind::Binary => {
             let [partner] = rest else { return Err("a binary synchronisation is not of two".into()) };
             if partner.automaton == first.automaton {
                 return Err("an automaton shakes hands with itself".into());
@@ -316,10 +316,10 @@ fn meets(
             let can = machine.receptions(partner.automaton, medium, args, true).map_err(|e| e.to_string())?;
             takes_part(machine, partner.automaton, &can, rest).map(drop)
         }
-        ChannelKind::Joint(parties) => {
+        ChannelKind::MultiWay(participants) => {
             let all: Vec<AutomatonMove> = std::iter::once(first).chain(rest).cloned().collect();
             let mut left = all.as_slice();
-            for p in parties {
+            for p in participants {
                 let Some(member) = machine.member(p.automaton) else { continue };
                 let can = machine.receptions(member, medium, &[], true).map_err(|e| e.to_string())?;
                 if can.is_empty() && !p.optional {

@@ -196,9 +196,9 @@ impl<'a> WitnessTraceBuilder<'a> {
             None => ("?", TransitionMedium::Binary),
             Some(c) => {
                 let medium = match c.kind {
-                    ChannelKind::HandShake => TransitionMedium::Binary,
+                    ChannelKind::Binary => TransitionMedium::Binary,
                     ChannelKind::Broadcast => TransitionMedium::Broadcast,
-                    ChannelKind::Joint(_) => TransitionMedium::MultiWay,
+                    ChannelKind::MultiWay(_) => TransitionMedium::MultiWay,
                 };
                 (&c.name, medium)
             }

@@ -5,7 +5,7 @@ use hrdsl_ir::{
     expr::BinaryOp::{Add, Gt, Le as AtMost, Lt, Rem, Sub},
     ta::{
         AutomatonId,
-        ChannelKind::{HandShake, Joint},
+        ChannelKind::{Binary, MultiWay},
         ChannelParticipant,
         ClockOp::{Eq, Ge, Gt as After, Le, Lt as Before},
         LocationKind::{Committed, Normal},
@@ -43,8 +43,8 @@ pub fn csma_cd(count: i64) -> Program {
     const SIGMA: i64 = 26;
     let mut p = program();
     let j = shared(&mut p, "j", 1, count + 1, 1);
-    let [begin, busy, end] = ["begin", "busy", "end"].map(|name| channel(&mut p, name, HandShake, &[]));
-    let cd = channel(&mut p, "cd", HandShake, &[(1, count)]);
+    let [begin, busy, end] = ["begin", "busy", "end"].map(|name| channel(&mut p, name, Binary, &[]));
+    let cd = channel(&mut p, "cd", Binary, &[(1, count)]);
     let mut bus = automaton("Bus", &["y"]);
     let idle = normal(&mut bus, "Idle");
     let active = normal(&mut bus, "Active");
@@ -82,7 +82,7 @@ pub fn csma_cd(count: i64) -> Program {
 /// FDDI, TTRT = 50 N, SA = 20, TD = 0.
 pub fn fddi(count: i64) -> Program {
     let mut p = program();
-    let [tt, rt] = ["TT", "RT"].map(|name| channel(&mut p, name, HandShake, &[(0, count - 1)]));
+    let [tt, rt] = ["TT", "RT"].map(|name| channel(&mut p, name, Binary, &[(0, count - 1)]));
     let mut ring = automaton("Ring", &["r"]);
     let at: Vec<_> = (0..count)
         .map(|i| {
@@ -128,7 +128,7 @@ pub fn critical_region(count: i64) -> Program {
     const T: i64 = 10;
     let mut p = program();
     let id = shared(&mut p, "id", 0, count, 0);
-    let [enter, exit] = ["enter", "exit"].map(|name| channel(&mut p, name, HandShake, &[(1, count)]));
+    let [enter, exit] = ["enter", "exit"].map(|name| channel(&mut p, name, Binary, &[(1, count)]));
     let mut counter = automaton("Counter", &[]);
     let (i, c) = (normal(&mut counter, "I"), normal(&mut counter, "C"));
     edge(i, c).when(eq(v(id), n(0))).set(id, n(1)).to(&mut counter);
@@ -173,7 +173,7 @@ pub fn train_gate(count: i64) -> Program {
     let head = shared(&mut p, "head", 0, count - 1, 0);
     let length = shared(&mut p, "length", 0, count, 0);
     let [go, appr, leave, stop] =
-        ["go", "appr", "leave", "stop"].map(|name| channel(&mut p, name, HandShake, &[(0, count - 1)]));
+        ["go", "appr", "leave", "stop"].map(|name| channel(&mut p, name, Binary, &[(0, count - 1)]));
     let at = |of| bin(Rem, bin(Add, v(head), of), n(count));
     let front = || element(queue, v(head), count);
     let back = || element(queue, at(bin(Sub, v(length), n(1))), count);
@@ -214,7 +214,7 @@ pub fn train_gate(count: i64) -> Program {
 /// Dining philosophers: time-out 3, eat 10, slow 0.
 pub fn philosophers(count: i64) -> Program {
     let mut p = program();
-    let [take, release] = ["take", "release"].map(|name| channel(&mut p, name, HandShake, &[(0, count - 1)]));
+    let [take, release] = ["take", "release"].map(|name| channel(&mut p, name, Binary, &[(0, count - 1)]));
     for k in 0..count {
         let mut f = automaton(&format!("Fork{k}"), &[]);
         let (free, taken) = (normal(&mut f, "free"), normal(&mut f, "taken"));
@@ -242,8 +242,8 @@ pub fn philosophers(count: i64) -> Program {
 /// All processes wait, then go on at once, within a second of the last.
 pub fn parallel(count: i64) -> Program {
     let mut p = program();
-    let party = |i| ChannelParticipant { automaton: AutomatonId(i), optional: false };
-    let go = channel(&mut p, "go", Joint((0..count as u16).map(party).collect()), &[]);
+    let participant = |i| ChannelParticipant { automaton: AutomatonId(i), optional: false };
+    let go = channel(&mut p, "go", MultiWay((0..count as u16).map(participant).collect()), &[]);
     for i in 0..count {
         let mut a = automaton(&format!("P{i}"), &["x"]);
         let (start, wait, done) = (normal(&mut a, "A"), normal(&mut a, "B"), normal(&mut a, "C"));

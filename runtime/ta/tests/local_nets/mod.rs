@@ -39,12 +39,12 @@ pub struct Member {
 /// A network of random automata: binary synchronisations 0 and 1, a broadcast channel, an event, a multi-way channel of the first three.
 pub fn random(members: &[Member], optional: [bool; 3]) -> Program {
     let mut p = program();
-    let shake = channel(&mut p, "shake", ChannelKind::HandShake, &[(0, 1)]);
+    let shake = channel(&mut p, "shake", ChannelKind::Binary, &[(0, 1)]);
     let cast = channel(&mut p, "cast", ChannelKind::Broadcast, &[]);
     let here = members.len().min(3);
-    let parties =
+    let participants =
         (0..here).map(|i| ChannelParticipant { automaton: AutomatonId(i as u16), optional: optional[i] });
-    let all = channel(&mut p, "all", ChannelKind::Joint(parties.collect()), &[]);
+    let all = channel(&mut p, "all", ChannelKind::MultiWay(participants.collect()), &[]);
     let tell = event(&mut p, "tell", &[]);
     shared(&mut p, "s", 0, 2, 0);
     p.clocks.push("g".into());

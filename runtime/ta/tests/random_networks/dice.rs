@@ -95,18 +95,22 @@ pub fn network(seed: u64, flavour: Flavour) -> Program {
 }
 
 fn channels(d: &mut Dice, p: &mut Program, count: u16) {
-    let mut parties: Vec<ChannelParticipant> =
+    let mut participants: Vec<ChannelParticipant> =
         (0..count).map(|i| ChannelParticipant { automaton: AutomatonId(i), optional: d.one_in(3) }).collect();
     if d.one_in(3) {
-        parties.reverse();
+        participants.reverse();
     }
     if d.one_in(3) {
-        parties.pop();
+        participants.pop();
     }
-    let kinds =
-        [ChannelKind::HandShake, ChannelKind::HandShake, ChannelKind::Broadcast, ChannelKind::Joint(parties)];
+    let kinds = [
+        ChannelKind::Binary,
+        ChannelKind::Binary,
+        ChannelKind::Broadcast,
+        ChannelKind::MultiWay(participants),
+    ];
     for (i, kind) in kinds.into_iter().enumerate() {
-        let plain = matches!(kind, ChannelKind::Joint(_)) || i == 0;
+        let plain = matches!(kind, ChannelKind::MultiWay(_)) || i == 0;
         let params = if plain { Vec::new() } else { vec![var("p", 0, 1, 0)] };
         let name = ["h", "k", "b", "j"][i].to_owned();
         p.channels.push(Channel { name, kind, urgent: d.one_in(3), params, origin: Span::default() });
@@ -311,18 +315,18 @@ fn synced(d: &mut Dice, p: &Program, it: E, selected: bool) -> E {
             it = taken(d, it, selected, 1, |args| SyncLabel::Accept { channel, args });
         }
         // Only participants join.
-        _ if is_party(p) => it.0.sync = SyncLabel::Join { channel: over(3) },
+        _ if is_participant(p) => it.0.sync = SyncLabel::Join { channel: over(3) },
         _ => {}
     }
     it
 }
 
 /// Whether the automaton that comes next is a participant of the multi-way channel.
-fn is_party(p: &Program) -> bool {
+fn is_participant(p: &Program) -> bool {
     let next = AutomatonId(p.automata.len() as u16);
     p.channels.iter().any(|c| match &c.kind {
-        ChannelKind::Joint(parties) => parties.iter().any(|q| q.automaton == next),
-        ChannelKind::HandShake | ChannelKind::Broadcast => false,
+        ChannelKind::MultiWay(participants) => participants.iter().any(|q| q.automaton == next),
+        ChannelKind::Binary | ChannelKind::Broadcast => false,
     })
 }
 

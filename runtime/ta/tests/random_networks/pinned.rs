@@ -64,12 +64,12 @@ fn a_false_invariant_protects_its_bounds() {
 fn divided(kind: ChannelKind) -> Program {
     let mut p = program();
     shared(&mut p, "s", 0, 2, 0);
-    let joint = matches!(kind, ChannelKind::Joint(_));
+    let multi_way = matches!(kind, ChannelKind::MultiWay(_));
     let origin = Span::default();
     p.channels.push(Channel { name: "c".into(), kind, urgent: false, params: Vec::new(), origin });
     let channel = ChannelId(0);
     let accept = || SyncLabel::Accept { channel, args: Vec::<ReceiveArg>::new() };
-    let syncs = if joint {
+    let syncs = if multi_way {
         [SyncLabel::Join { channel }, SyncLabel::Join { channel }]
     } else {
         [SyncLabel::Offer { channel, args: Vec::new() }, accept()]
@@ -89,7 +89,7 @@ fn divided(kind: ChannelKind) -> Program {
     let l = location(&mut c, "l", LocationKind::Committed, &[]);
     let m = normal(&mut c, "m");
     edge(l, m).set(0, n(2)).to(&mut c);
-    if !joint {
+    if !multi_way {
         let mut hears = edge(l, m).when(eq(v(0), n(1)));
         hears.0.sync = accept();
         hears.to(&mut c);
@@ -99,15 +99,15 @@ fn divided(kind: ChannelKind) -> Program {
 }
 
 #[test]
-fn a_committed_location_forbids_the_fault_of_a_party() {
-    let party = |i| ChannelParticipant { automaton: AutomatonId(i), optional: false };
-    agrees(&divided(ChannelKind::Joint(vec![party(0), party(1)])));
+fn a_committed_location_forbids_the_fault_of_a_participant() {
+    let participant = |i| ChannelParticipant { automaton: AutomatonId(i), optional: false };
+    agrees(&divided(ChannelKind::MultiWay(vec![participant(0), participant(1)])));
 }
 
 #[test]
 fn a_committed_location_forbids_the_fault_of_a_receiver() {
     agrees(&divided(ChannelKind::Broadcast));
-    agrees(&divided(ChannelKind::HandShake));
+    agrees(&divided(ChannelKind::Binary));
 }
 
 /// A receiver that binds an argument and asks about it, in a network in which nobody sends.

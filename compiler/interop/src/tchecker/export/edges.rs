@@ -197,11 +197,11 @@ impl TcheckerWriter<'_> {
             SyncLabel::Receive { .. } => EdgeSyncRole::Hears(flat),
             SyncLabel::Offer { channel, .. } => match self.kind(channel.0) {
                 ChannelKind::Broadcast => EdgeSyncRole::Announces(flat),
-                ChannelKind::HandShake | ChannelKind::Joint(_) => EdgeSyncRole::Offers(flat),
+                ChannelKind::Binary | ChannelKind::MultiWay(_) => EdgeSyncRole::Offers(flat),
             },
             SyncLabel::Accept { channel, .. } => match self.kind(channel.0) {
                 ChannelKind::Broadcast => EdgeSyncRole::Hears(flat),
-                ChannelKind::HandShake | ChannelKind::Joint(_) => EdgeSyncRole::Accepts(flat),
+                ChannelKind::Binary | ChannelKind::MultiWay(_) => EdgeSyncRole::Accepts(flat),
             },
             SyncLabel::Join { channel } => EdgeSyncRole::Joins(usize::from(channel.0)),
         };

@@ -32,9 +32,9 @@ impl TcheckerWriter<'_> {
         for part in parts {
             match part {
                 EdgeSyncRole::Alone => self.alone(instances, &mut joined),
-                EdgeSyncRole::Offers(name) => self.hand_shake(name, instances, &mut joined),
+                EdgeSyncRole::Offers(name) => self.binary(name, instances, &mut joined),
                 EdgeSyncRole::Announces(name) => self.broadcast(name, instances, &mut joined),
-                EdgeSyncRole::Joins(channel) => self.joint(*channel, instances, &mut joined),
+                EdgeSyncRole::Joins(channel) => self.multi_way(*channel, instances, &mut joined),
                 // With what they take.
                 EdgeSyncRole::Accepts(_) | EdgeSyncRole::Hears(_) => {}
             }
@@ -49,7 +49,7 @@ impl TcheckerWriter<'_> {
         }
     }
 
-    fn hand_shake(&mut self, name: &str, instances: &[Vec<EdgeInstance>], joined: &mut SynchronizedEdges) {
+    fn binary(&mut self, name: &str, instances: &[Vec<EdgeInstance>], joined: &mut SynchronizedEdges) {
         let (offers, accepts) =
             (EdgeSyncRole::Offers(name.to_owned()), EdgeSyncRole::Accepts(name.to_owned()));
         let (senders, receivers) = (with(instances, &offers), with(instances, &accepts));
@@ -98,15 +98,17 @@ impl TcheckerWriter<'_> {
         }
     }
 
-    fn joint(&mut self, channel: usize, instances: &[Vec<EdgeInstance>], joined: &mut SynchronizedEdges) {
+    fn multi_way(&mut self, channel: usize, instances: &[Vec<EdgeInstance>], joined: &mut SynchronizedEdges) {
         let channel_name = self.program.channels[channel].name.clone();
-        let ChannelKind::Joint(parties) = &self.program.channels[channel].kind else { return };
+        let ChannelKind::MultiWay(participants) = &self.program.channels[channel].kind else { return };
         let part = EdgeSyncRole::Joins(channel);
-        let at = |party: &hrdsl_ir::ta::ChannelParticipant| {
-            self.network.automata.iter().position(|a| *a == party.automaton)
+        let at = |participant: &hrdsl_ir::ta::ChannelParticipant| {
+            self.network.automata.iter().position(|a| *a == participant.automaton)
         };
-        let present: Vec<(usize, bool)> =
-            parties.iter().filter_map(|party| Some((at(party)?, party.optional))).collect();
+        let present: Vec<(usize, bool)> = participants
+            .iter()
+            .filter_map(|participant| Some((at(participant)?, participant.optional)))
+            .collect();
         let has = |p: usize| instances[p].iter().any(|i| i.part == part);
         if present.iter().any(|(p, optional)| !optional && !has(*p)) {
             return;

@@ -67,11 +67,11 @@ pub struct TcheckerEdge {
 /// `sync:P@a:Q@b?`
 #[derive(Debug)]
 pub struct TcheckerSync {
-    pub parties: Vec<SyncParty>,
+    pub participants: Vec<SyncParticipant>,
 }
 
 #[derive(Debug)]
-pub struct SyncParty {
+pub struct SyncParticipant {
     /// Index into the model's processes.
     pub process: usize,
     pub event: String,

@@ -55,7 +55,7 @@ impl TcheckerScenarioNames {
             names.clocks.push(elements);
         }
         for sync in &model.syncs {
-            let mut events: Vec<&str> = sync.parties.iter().map(|p| p.event.as_str()).collect();
+            let mut events: Vec<&str> = sync.participants.iter().map(|p| p.event.as_str()).collect();
             events.dedup();
             let name = names.fresh(&events.join("_"));
             names.channels.push(name);

@@ -4,8 +4,8 @@ use indexmap::IndexMap;
 
 use super::{
     ast::{
-        ByteOffset, SyncParty, TcheckerArray, TcheckerEdge, TcheckerInt, TcheckerLocation, TcheckerModel,
-        TcheckerProcess, TcheckerSync,
+        ByteOffset, SyncParticipant, TcheckerArray, TcheckerEdge, TcheckerInt, TcheckerLocation,
+        TcheckerModel, TcheckerProcess, TcheckerSync,
     },
     term::TcheckerTermParser,
 };
@@ -317,7 +317,7 @@ impl TcheckerReader {
     }
 
     fn sync(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
-        let mut parties: Vec<SyncParty> = Vec::new();
+        let mut participants: Vec<SyncParticipant> = Vec::new();
         for &(field, at) in &d.fields[1..] {
             let (strong, weak) = field.strip_suffix('?').map_or((field, false), |f| (f, true));
             let Some((process, event)) = strong.split_once('@') else {
@@ -325,15 +325,15 @@ impl TcheckerReader {
             };
             let process = self.process_of((process.trim(), at))?;
             let event = self.event_of((event.trim(), at))?;
-            if parties.iter().any(|p| p.process == process) {
+            if participants.iter().any(|p| p.process == process) {
                 return fault(at, format!("`{field}` is a second part of one process"));
             }
-            parties.push(SyncParty { process, event, weak });
+            participants.push(SyncParticipant { process, event, weak });
         }
-        if parties.len() < 2 {
+        if participants.len() < 2 {
             return fault(d.fields[0].1, "a `sync` has two parts at least, as in `sync:P@a:Q@a`");
         }
-        self.model.syncs.push(TcheckerSync { parties });
+        self.model.syncs.push(TcheckerSync { participants });
         self.ignore_all(d);
         Ok(())
     }

@@ -90,11 +90,11 @@ impl TcheckerTranslator<'_> {
             }
         }
         for (sync, name) in self.model.syncs.iter().zip(self.names.channels.clone()) {
-            let party = |p: &super::ast::SyncParty| {
+            let participant = |p: &super::ast::SyncParticipant| {
                 format!("{}{}", self.names.processes[p.process], if p.weak { "?" } else { "" })
             };
-            let parties: Vec<String> = sync.parties.iter().map(party).collect();
-            self.line(&format!("channel {name} : joint {}", parties.join(" | ")));
+            let participants: Vec<String> = sync.participants.iter().map(participant).collect();
+            self.line(&format!("channel {name} : joint {}", participants.join(" | ")));
         }
         for (what, old, new, at) in self.names.changed.clone() {
             self.notes.push((at, NoteSeverity::Info, format!("the {what} `{old}` is called `{new}`")));
@@ -174,7 +174,7 @@ impl TcheckerTranslator<'_> {
             .syncs
             .iter()
             .zip(&self.names.channels)
-            .filter(|(s, _)| s.parties.iter().any(|q| q.process == p && q.event == edge.event))
+            .filter(|(s, _)| s.participants.iter().any(|q| q.process == p && q.event == edge.event))
             .map(|(_, name)| name.clone())
             .collect();
         let mut copies = Vec::new();

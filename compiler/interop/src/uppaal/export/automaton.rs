@@ -10,7 +10,7 @@ use hrdsl_ir::ta::{
 use indexmap::IndexSet;
 
 use super::{
-    MultiwayRole, UppaalChannel, UppaalExporter, escaped,
+    MultiWayRole, UppaalChannel, UppaalExporter, escaped,
     expr::{UppaalExprContext, UppaalExprText, UppaalPrecedence, UppaalTextResult},
     function,
     slots::{UppaalNames, UppaalSlot, UppaalSlotTable, slot},
@@ -148,12 +148,12 @@ impl UppaalExporter<'_> {
             SyncLabel::Join { channel } => {
                 let known = self.channels.get(channel).ok_or("a channel that is not known here")?;
                 Ok(match self.part(*channel, id) {
-                    MultiwayRole::Offer => format!("{}!", known.name),
-                    MultiwayRole::Accept => format!("{}?", known.name),
-                    MultiwayRole::Alone if known.urgent => {
+                    MultiWayRole::Offer => format!("{}!", known.name),
+                    MultiWayRole::Accept => format!("{}?", known.name),
+                    MultiWayRole::Alone if known.urgent => {
                         return Err("an urgent channel of one automaton".to_owned());
                     }
-                    MultiwayRole::Alone => String::new(),
+                    MultiWayRole::Alone => String::new(),
                 })
             }
         }

@@ -53,7 +53,7 @@ struct UppaalChannel {
 
 /// How an automaton's part in a multi-way channel is said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum MultiwayRole {
+enum MultiWayRole {
     Offer,
     Accept,
     /// It is alone in it.
@@ -290,9 +290,9 @@ impl<'p> UppaalExporter<'p> {
         }
         let channel = &self.program.channels[usize::from(id.0)];
         let broadcast = match &channel.kind {
-            ChannelKind::HandShake => false,
+            ChannelKind::Binary => false,
             ChannelKind::Broadcast => true,
-            ChannelKind::Joint(parties) => match self.joint(parties) {
+            ChannelKind::MultiWay(participants) => match self.multi_way(participants) {
                 Some(broadcast) => broadcast,
                 None => {
                     let message = format!(
@@ -310,13 +310,13 @@ impl<'p> UppaalExporter<'p> {
         self.channels.insert(id, UppaalChannel { name, params, broadcast, urgent });
     }
 
-    fn present(&self, parties: &[ChannelParticipant]) -> Vec<ChannelParticipant> {
-        parties.iter().filter(|p| self.network.automata.contains(&p.automaton)).copied().collect()
+    fn present(&self, participants: &[ChannelParticipant]) -> Vec<ChannelParticipant> {
+        participants.iter().filter(|p| self.network.automata.contains(&p.automaton)).copied().collect()
     }
 
     /// Whether a multi-way channel is a broadcast; `None`: it is neither that nor a binary synchronisation.
-    fn joint(&self, parties: &[ChannelParticipant]) -> Option<bool> {
-        let present = self.present(parties);
+    fn multi_way(&self, participants: &[ChannelParticipant]) -> Option<bool> {
+        let present = self.present(participants);
         match present.as_slice() {
             [one] if !one.optional => Some(false),
             [a, b] if !a.optional && !b.optional => Some(false),
@@ -325,14 +325,14 @@ impl<'p> UppaalExporter<'p> {
         }
     }
 
-    fn part(&self, id: ChannelId, automaton: AutomatonId) -> MultiwayRole {
-        let ChannelKind::Joint(parties) = &self.program.channels[usize::from(id.0)].kind else {
-            return MultiwayRole::Alone;
+    fn part(&self, id: ChannelId, automaton: AutomatonId) -> MultiWayRole {
+        let ChannelKind::MultiWay(participants) = &self.program.channels[usize::from(id.0)].kind else {
+            return MultiWayRole::Alone;
         };
-        match self.present(parties).as_slice() {
-            [one] if !one.optional => MultiwayRole::Alone,
-            [first, ..] if first.automaton == automaton => MultiwayRole::Offer,
-            _ => MultiwayRole::Accept,
+        match self.present(participants).as_slice() {
+            [one] if !one.optional => MultiWayRole::Alone,
+            [first, ..] if first.automaton == automaton => MultiWayRole::Offer,
+            _ => MultiWayRole::Accept,
         }
     }
 

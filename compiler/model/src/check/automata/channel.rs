@@ -25,7 +25,7 @@ pub(in crate::check) enum EdgeMedium {
 }
 
 impl Checker<'_> {
-    /// After the automata have their names: those are the parties of joint channels.
+    /// After the automata have their names: those are the participants of multi-way channels.
     pub(in crate::check) fn channels(&mut self) -> ChannelNames {
         let mut channels = ChannelNames::default();
         for (item, span) in self.each_item() {
@@ -40,17 +40,17 @@ impl Checker<'_> {
         for one in &channel.names {
             let name = &one.name;
             let fields = self.channel_params(&one.params);
-            let mut parties = Vec::new();
+            let mut participants = Vec::new();
             let kind = match &channel.kind {
-                ast::ChannelSyntaxKind::HandShake => ChannelKind::HandShake,
+                ast::ChannelSyntaxKind::Binary => ChannelKind::Binary,
                 ast::ChannelSyntaxKind::Broadcast => ChannelKind::Broadcast,
-                ast::ChannelSyntaxKind::Joint(of) => {
+                ast::ChannelSyntaxKind::MultiWay(of) => {
                     if let Some(param) = one.params.first() {
-                        self.report(automata::joint_params(&name.text, param.name.span));
+                        self.report(automata::multi_way_params(&name.text, param.name.span));
                     }
-                    let (of, vague) = self.parties(of, &mut parties);
+                    let (of, vague) = self.participants(of, &mut participants);
                     channels.vague.extend(vague.then(|| name.text.clone()));
-                    ChannelKind::Joint(of)
+                    ChannelKind::MultiWay(of)
                 }
             };
             if let Some(event) = self.events.table.get(&name.text) {
@@ -66,7 +66,7 @@ impl Checker<'_> {
             let span = if channel.names.len() == 1 { whole } else { name.span };
             let (text, urgent) = (name.text.clone(), channel.urgent);
             self.s.channels.push(Channel { name: text, kind, urgent, params, origin: span });
-            self.s.places.channels.push(ChannelPlaces { name: name.span, parties });
+            self.s.places.channels.push(ChannelPlaces { name: name.span, participants });
         }
     }
 
@@ -81,15 +81,15 @@ impl Checker<'_> {
         fields
     }
 
-    /// The automata of a joint channel, and whether one has a diagnostic; `places` gets where they are named.
-    fn parties(
+    /// The automata of a multi-way channel, and whether one has a diagnostic; `places` gets where they are named.
+    fn participants(
         &mut self,
-        parties: &[ast::PartySyntax],
+        participants: &[ast::ParticipantSyntax],
         places: &mut Vec<Span>,
     ) -> (Vec<ChannelParticipant>, bool) {
         let (mut resolved, mut seen, mut vague) = (Vec::new(), NameTable::default(), false);
-        for party in parties {
-            let name = &party.automaton;
+        for participant in participants {
+            let name = &participant.automaton;
             let player = self.players.table.get(&name.text).map(|id| self.players.ids[usize::from(id)]);
             let Some(PlayerRef::Automaton(automaton)) = player else {
                 let all = self.near_of(&[Noun::Automaton]);
@@ -99,7 +99,7 @@ impl Checker<'_> {
             };
             self.refer(name, self.players.table.span_of(&name.text));
             if self.issues.declare(&mut seen, Noun::Automaton, name).is_some() {
-                resolved.push(ChannelParticipant { automaton, optional: party.optional });
+                resolved.push(ChannelParticipant { automaton, optional: participant.optional });
                 places.push(name.span);
             }
         }
@@ -158,17 +158,19 @@ impl AutomataPhase<'_, '_> {
         if call.args.as_ref().is_some_and(|args| !args.is_empty()) {
             self.wrong_arity(Noun::Channel, call, &fields);
         }
-        // A template is no party, but its instances may be.
+        // A template is no participant, but its instances may be.
         let vague = self.templates.by_itself || self.channels.vague.contains(&call.name.text);
         let of = &self.s.channels[usize::from(channel.0)];
-        let party = match &of.kind {
-            ChannelKind::Joint(parties) => parties.iter().any(|p| usize::from(p.automaton.0) == scope.index),
-            ChannelKind::HandShake | ChannelKind::Broadcast => true,
+        let participant = match &of.kind {
+            ChannelKind::MultiWay(participants) => {
+                participants.iter().any(|p| usize::from(p.automaton.0) == scope.index)
+            }
+            ChannelKind::Binary | ChannelKind::Broadcast => true,
         };
-        if !party && !vague {
+        if !participant && !vague {
             let place = self.s.places.channels[usize::from(channel.0)].name;
             let automaton = &self.s.automata[scope.index].name;
-            self.report(automata::not_a_party(automaton, &of.name, call.name.span, place));
+            self.report(automata::not_a_participant(automaton, &of.name, call.name.span, place));
         }
         Some(TypedSync::Join { channel })
     }
@@ -181,7 +183,7 @@ impl AutomataPhase<'_, '_> {
         env: &mut ExprEnv,
     ) -> Option<TypedSync> {
         if self.is_joint(channel) {
-            self.report(automata::joint_offered(&call.name.text, call.span));
+            self.report(automata::multi_way_offered(&call.name.text, call.span));
             return None;
         }
         let fields = self.fields_of_channel(channel);
@@ -202,7 +204,7 @@ impl AutomataPhase<'_, '_> {
     }
 
     fn is_joint(&self, channel: ChannelId) -> bool {
-        matches!(self.s.channels[usize::from(channel.0)].kind, ChannelKind::Joint(_))
+        matches!(self.s.channels[usize::from(channel.0)].kind, ChannelKind::MultiWay(_))
     }
 
     fn fields_of_channel(&self, channel: ChannelId) -> DeclaredFields {

@@ -2,8 +2,7 @@
 
 use hrdsl_ir::{
     binding::{CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep},
-    device::{CommandParam, DeviceBody, DeviceSort},
-    world::DeviceCommandId,
+    device::{self, DevicePrimitive, DeviceSort},
 };
 use hrdsl_messages::InterfaceName;
 use hrdsl_syntax::ast::TopicOutSyntax;
@@ -12,14 +11,70 @@ use super::scope::BindingScope;
 use crate::check::checker::Checker;
 use crate::{TypedExpr, report::bindings};
 
-/// A message that drives devices of a sort, by which command.
+/// A message that drives devices of a sort.
 struct DeviceDrive {
     sort: DeviceSort,
     package: &'static str,
     message: &'static str,
-    command: &'static str,
+    how: DriveContent,
     /// As a person says it.
     says: &'static str,
+}
+
+/// What such a message holds.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum DriveContent {
+    /// The angle of one joint, which the topic names.
+    OneJoint,
+    Trajectory,
+    Twist,
+    /// A twist below a header.
+    StampedTwist,
+}
+
+impl DriveContent {
+    /// What the world does with it. The command is the one that the library declares for it, whatever its name.
+    fn primitive(self) -> DevicePrimitive {
+        match self {
+            DriveContent::OneJoint => DevicePrimitive::AimJoint,
+            DriveContent::Trajectory => DevicePrimitive::FollowJoints,
+            DriveContent::Twist | DriveContent::StampedTwist => DevicePrimitive::DriveWheels,
+        }
+    }
+
+    /// What the message says of a parameter of the command, by the parameter's name, which is the primitive's: x looks forward, y to
+    /// the left, z up.
+    fn argument(self, param: &str, joints: &[String]) -> Option<CommandArgument<TypedExpr>> {
+        let field = |path: &[&str]| {
+            CommandArgument::Sequence(path.iter().map(|s| MessageStep::Field((*s).to_owned())).collect())
+        };
+        let twist = |part: &'static str, axis: &'static str| match self {
+            DriveContent::StampedTwist => field(&["twist", part, axis]),
+            DriveContent::OneJoint | DriveContent::Trajectory | DriveContent::Twist => field(&[part, axis]),
+        };
+        match (self, param) {
+            (DriveContent::OneJoint, device::JOINT) => {
+                Some(CommandArgument::Wildcard { names: joints.to_vec() })
+            }
+            (DriveContent::OneJoint, device::TO) => Some(field(&["data"])),
+            (DriveContent::Trajectory, device::POSITIONS) => {
+                Some(CommandArgument::TrackPositions { names: joints.to_vec() })
+            }
+            (DriveContent::Trajectory, device::TIMES) => Some(CommandArgument::TrackTimes),
+            (DriveContent::Twist | DriveContent::StampedTwist, device::FORWARD) => Some(twist("linear", "x")),
+            (DriveContent::Twist | DriveContent::StampedTwist, device::SIDEWAYS) => {
+                Some(twist("linear", "y"))
+            }
+            (DriveContent::Twist | DriveContent::StampedTwist, device::TURN) => Some(twist("angular", "z")),
+            (
+                DriveContent::OneJoint
+                | DriveContent::Trajectory
+                | DriveContent::Twist
+                | DriveContent::StampedTwist,
+                _,
+            ) => None,
+        }
+    }
 }
 
 const DRIVES: [DeviceDrive; 4] = [
@@ -27,28 +82,28 @@ const DRIVES: [DeviceDrive; 4] = [
         sort: DeviceSort::Arm,
         package: "std_msgs",
         message: "Float64",
-        command: "aim",
+        how: DriveContent::OneJoint,
         says: "`std_msgs/Float64` aims one joint of an arm",
     },
     DeviceDrive {
         sort: DeviceSort::Arm,
         package: "trajectory_msgs",
         message: "JointTrajectory",
-        command: "follow",
+        how: DriveContent::Trajectory,
         says: "`trajectory_msgs/JointTrajectory` moves an arm",
     },
     DeviceDrive {
         sort: DeviceSort::Base,
         package: "geometry_msgs",
         message: "Twist",
-        command: "drive",
+        how: DriveContent::Twist,
         says: "`geometry_msgs/Twist` drives a base",
     },
     DeviceDrive {
         sort: DeviceSort::Base,
         package: "geometry_msgs",
         message: "TwistStamped",
-        command: "drive",
+        how: DriveContent::StampedTwist,
         says: "`geometry_msgs/TwistStamped`, too",
     },
 ];
@@ -76,47 +131,17 @@ impl<'a> Checker<'a> {
             self.report(issue);
             return;
         };
-        if drive.command == "aim" && !topic.name.text.contains('*') {
+        if drive.how == DriveContent::OneJoint && !topic.name.text.contains('*') {
             self.report(bindings::no_wildcard(topic.name.span));
             return;
         }
         let kind = self.s.device_kinds.iter().find(|kind| kind.sort == body.sort());
-        // INVARIANT: the library declares the commands above; a test compiles a drive of each.
-        let Some(command) = kind.and_then(|kind| kind.command(drive.command)) else { return };
+        // INVARIANT: the library declares a command for each of them; a test compiles a drive of each.
+        let Some(command) = kind.and_then(|kind| kind.command_doing(drive.how.primitive())) else { return };
         let joints = self.joint_texts(device, body, &topic.entries);
-        let args = match drive.command {
-            "aim" => vec![
-                Some(CommandArgument::Wildcard { names: joints }),
-                Some(CommandArgument::Sequence(vec![MessageStep::Field("data".to_owned())])),
-            ],
-            "drive" => self.twist(body, command, drive.message == "TwistStamped"),
-            _ => vec![
-                Some(CommandArgument::TrackPositions { names: joints }),
-                Some(CommandArgument::TrackTimes),
-            ],
-        };
+        let params = self.command_params(body, command);
+        let args = params.iter().map(|param| drive.how.argument(&param.name, &joints)).collect();
         let effect = MessageEffect::Command { device: self.device_id(body), command, args };
         rules.rules.push(MessageRule { guard: None, rising: false, effect, origin: device.span });
-    }
-
-    /// What a twist says of the parameters of `drive`: x looks forward, y to the left, z up.
-    fn twist(
-        &self,
-        body: DeviceBody,
-        command: DeviceCommandId,
-        stamped: bool,
-    ) -> Vec<Option<CommandArgument<TypedExpr>>> {
-        let params = self.command_params(body, command);
-        let argument = |param: &CommandParam| {
-            let (part, axis) = match param.name.as_str() {
-                "forward" => ("linear", "x"),
-                "sideways" => ("linear", "y"),
-                "turn" => ("angular", "z"),
-                _ => return None,
-            };
-            let path = stamped.then_some("twist").into_iter().chain([part, axis]);
-            Some(CommandArgument::Sequence(path.map(|s| MessageStep::Field(s.to_owned())).collect()))
-        };
-        params.iter().map(argument).collect()
     }
 }

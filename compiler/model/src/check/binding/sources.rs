@@ -3,13 +3,14 @@
 use hrdsl_ir::{
     binding::{GapValue, MessageGap, MessageScalar, ToldNumbers},
     device::{DeviceBody, DeviceSort},
+    world::Laser,
 };
 use hrdsl_messages::InterfaceName;
 use hrdsl_syntax::ast::TopicInSyntax;
 
 use super::{fields::FieldValues, scope::BindingScope};
 use crate::check::checker::Checker;
-use crate::{TypedExpr, report::bindings, world::TypedLaser};
+use crate::{TypedExpr, report::bindings};
 
 /// A message that holds what devices of a sort tell.
 struct DeviceSource {
@@ -136,16 +137,15 @@ impl ToldFields {
         self.told("twist.twist.angular.z", "velocity", ToldNumbers::One(2));
     }
 
-    fn laser(&mut self, laser: &TypedLaser, rate: Option<f64>, frame: &str) {
-        let (lo, hi) = laser.angles;
-        let steps = f64::from(laser.beams.max(2) - 1);
+    fn laser(&mut self, laser: &Laser, rate: Option<f64>, frame: &str) {
         self.text("header.frame_id", frame);
-        self.number("angle_min", lo);
-        self.number("angle_max", hi);
-        self.number("angle_increment", (hi - lo) / steps);
+        self.number("angle_min", laser.lo);
+        self.number("angle_max", laser.hi);
+        let steps = f64::from(laser.beams.max(2) - 1);
+        self.number("angle_increment", (laser.hi - laser.lo) / steps);
         self.number("scan_time", rate.map_or(0.0, |rate| 1.0 / rate));
-        self.number("range_min", laser.range.0);
-        self.number("range_max", laser.range.1);
+        self.number("range_min", laser.nearest);
+        self.number("range_max", laser.farthest);
         self.told("ranges", "ranges", ToldNumbers::All);
     }
 }

@@ -1,4 +1,4 @@
-//! Coverage points, their bins, and cross products.
+//! Coverpoints, their bins, and crosses.
 
 use std::collections::BTreeMap;
 

@@ -345,7 +345,7 @@ impl Checker<'_> {
                 let is = self.world.names.kind_of(given).or((is != noun).then_some(is));
                 let before = self.issues.list.len();
                 self.unknown(noun, &NameSyntax { text: given.to_owned(), span: only.span }, &near, is);
-                // What is to be mended is what the instance gives.
+                // What is to be fixed is what the instance gives.
                 for issue in self.issues.list.iter_mut().skip(before) {
                     let help = issue.help.take().map_or(String::new(), |help| format!(": {help}"));
                     issue.help = Some(format!("`{}` stands for `{given}`{help}", only.text));

@@ -2,7 +2,8 @@
 
 use hrdsl_ir::{
     sensor::SensorSource,
-    world::{ArmId, ENDLESS, JointDrive, JointMimic, JointMotion},
+    value::nanos,
+    world::{Arm, ArmId, ENDLESS, Gripper, JointDrive, JointMimic, JointMotion},
 };
 use hrdsl_syntax::ast::{
     ExprSyntax, JointListSyntax, JointSyntax, NameSyntax, RangeSyntax, WorldMemberKind as Member,
@@ -13,12 +14,7 @@ use crate::check::{
     state::scope::ExprEnv,
     world::{parts::PlacedMember, sensing::SensedKind},
 };
-use crate::{
-    BodyId, Dimension, JointId,
-    noun::Noun,
-    report::world::bad_world,
-    world::{TypedArm, TypedGripper, TypedJoint},
-};
+use crate::{BodyId, Dimension, JointId, noun::Noun, report::world::bad_world, world::TypedJoint};
 
 use super::{LENGTH, NUMBER};
 
@@ -116,17 +112,25 @@ impl<'a> Checker<'a> {
         let (issues, table) = (&mut self.issues, &mut self.world.names.grippers);
         if issues.declare_as(table, Noun::Gripper, &full, name.span).is_some() {
             let force = force.unwrap_or(FORCE);
-            self.world_mut().grippers.push(TypedGripper {
+            // All bodies are there: they were the passes before.
+            let holds = self.graspable();
+            self.world_mut().grippers.push(Gripper {
                 name: full,
                 palm,
                 fingers,
                 reversed,
                 tool,
                 reach,
-                delay,
+                delay: nanos(delay),
                 force,
+                holds,
             });
         }
+    }
+
+    fn graspable(&mut self) -> Vec<BodyId> {
+        let bodies = (0..).zip(&self.world_mut().bodies);
+        bodies.filter(|(_, b)| b.graspable).map(|(i, _)| BodyId(i)).collect()
     }
 
     /// Fingers slide, or turn if a description says so; what follows them is a finger, too.
@@ -197,13 +201,13 @@ impl<'a> Checker<'a> {
         if let Some(id) = issues.declare_as(table, Noun::Arm, &full, name.span) {
             self.sensing(&arm.sensing, SensedKind::Arm, (&full, SensorSource::Arm(ArmId(id))));
             let (tip, postures) = (tip_id.unwrap_or(BodyId(0)), Vec::new());
-            self.world_mut().arms.push(TypedArm {
+            self.world_mut().arms.push(Arm {
                 name: full,
                 joints: ids,
                 tip,
                 tool,
-                speed,
-                contact,
+                max_speed: speed,
+                contact_limit: contact,
                 postures,
             });
         }

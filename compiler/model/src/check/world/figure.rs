@@ -1,5 +1,6 @@
 //! People: limbs, and the figures that they are of.
 
+use hrdsl_ir::world::{Figure, Limb};
 use hrdsl_syntax::ast::{NameSyntax, WorldMemberKind as Member};
 
 use crate::check::{checker::Checker, world::parts::PlacedMember};
@@ -7,7 +8,6 @@ use crate::{
     BodyId, BodyMotion, Dimension,
     noun::Noun,
     report::{types, world::bad_world},
-    world::{TypedFigure, TypedLimb},
 };
 
 use super::LENGTH;
@@ -32,8 +32,8 @@ impl<'a> Checker<'a> {
         let (issues, table) = (&mut self.issues, &mut self.world.names.limbs);
         if issues.declare_as(table, Noun::Limb, &full, limb.name.span).is_some() {
             let body = |i: usize| bodies.get(i).copied().flatten();
-            let pivot = |i: usize| pivots.get(i).copied().flatten().unwrap_or_default();
-            self.world_mut().limbs.push(TypedLimb {
+            let pivot = |i: usize| p.frame.place(pivots.get(i).copied().flatten().unwrap_or_default());
+            self.world_mut().limbs.push(Limb {
                 name: full,
                 of: body(0).unwrap_or(BodyId(0)),
                 upper: body(1).unwrap_or(BodyId(0)),
@@ -61,29 +61,28 @@ impl<'a> Checker<'a> {
         let mut limbs = Vec::new();
         for limb in &figure.limbs {
             let id = self.world_name(Noun::Limb, std::slice::from_ref(limb), &p.prefix);
-            let Some(id) = id.map(usize::from) else { continue };
-            let of = self.world_mut().limbs.get(id).map(|l| l.of);
-            if bodies.iter().all(Option::is_some) && of.is_some_and(|of| of != pelvis && of != trunk) {
+            let known = id.and_then(|id| self.world_mut().limbs.get(usize::from(id)).cloned());
+            let Some(known) = known else { continue };
+            if bodies.iter().all(Option::is_some) && known.of != pelvis && known.of != trunk {
                 let message =
                     format!("the limb `{}` hangs neither on the trunk nor on the pelvis", limb.text);
                 self.report(bad_world(limb.span, message, "begin the limb with one of the figure's bodies"));
             }
-            limbs.push(id);
+            limbs.push(known);
         }
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.figures);
         if issues.declare_as(table, Noun::Figure, &full, name.span).is_some() {
-            self.world_mut().figures.push(TypedFigure {
+            self.world_mut().figures.push(Figure {
                 name: full,
                 pelvis,
                 trunk,
                 head,
-                hip,
+                hip: p.frame.place(hip),
                 limbs,
                 speed: speed.unwrap_or(0.0),
                 turn: turn.unwrap_or(0.0),
                 mass: mass.unwrap_or(0.0),
-                frame: p.frame,
             });
         }
         self.in_one_figure(&figure.bodies, &bodies);
@@ -108,7 +107,7 @@ impl<'a> Checker<'a> {
     fn in_one_figure(&mut self, names: &[NameSyntax], bodies: &[Option<BodyId>]) {
         for (name, body) in names.iter().zip(bodies) {
             let Some(body) = body else { continue };
-            let of = |f: &&TypedFigure| [f.pelvis, f.trunk, f.head].contains(body);
+            let of = |f: &&Figure| [f.pelvis, f.trunk, f.head].contains(body);
             let figures: Vec<String> =
                 self.world_mut().figures.iter().filter(of).map(|f| f.name.clone()).collect();
             if let [first, _, ..] = figures.as_slice() {

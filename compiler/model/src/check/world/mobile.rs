@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use hrdsl_ir::{
     sensor::SensorSource,
-    world::{BaseId, LaserId},
+    value::nanos,
+    world::{Base, BaseId, Laser, LaserId},
 };
 use hrdsl_syntax::ast::{NameSyntax, WorldMemberKind as Member};
 
@@ -16,7 +17,6 @@ use crate::{
     BodyId, BodyMotion, Dimension,
     noun::Noun,
     report::{types, world::bad_world},
-    world::{TypedBase, TypedLaser},
 };
 
 use super::LENGTH;
@@ -47,15 +47,15 @@ impl<'a> Checker<'a> {
         let (issues, table) = (&mut self.issues, &mut self.world.names.bases);
         if let Some(id) = issues.declare_as(table, Noun::Base, &full, name.span) {
             self.sensing(&base.sensing, SensedKind::Base, (&full, SensorSource::Base(BaseId(id))));
-            self.world_mut().bases.push(TypedBase {
+            self.world_mut().bases.push(Base {
                 name: full,
                 body: body.unwrap_or(BodyId(0)),
-                speed: speed.unwrap_or(0.0),
-                sideways: sideways.flatten().unwrap_or(0.0),
-                turn: turn.unwrap_or(0.0),
+                max_speed: speed.unwrap_or(0.0),
+                max_sideways: sideways.flatten().unwrap_or(0.0),
+                max_turn: turn.unwrap_or(0.0),
                 acceleration: acceleration.unwrap_or(0.0),
                 // None at all and none that counts are the same.
-                timeout: timeout.flatten().filter(|t| *t > 0.0),
+                timeout: timeout.flatten().filter(|t| *t > 0.0).map(nanos),
             });
         }
     }
@@ -80,19 +80,21 @@ impl<'a> Checker<'a> {
             [sensor] => {
                 let [roll, pitch, yaw] = sensor.origin.rpy;
                 let (horizontal, flat) = (sensor.horizontal, roll == 0.0 && pitch == 0.0);
-                let angles = (horizontal.min_angle + yaw, horizontal.max_angle + yaw);
-                let range = (sensor.range_min, sensor.range_max);
+                let (lo, hi) = (horizontal.min_angle + yaw, horizontal.max_angle + yaw);
+                let (nearest, farthest) = (sensor.range_min, sensor.range_max);
                 let fits = i64::from(horizontal.samples) <= MOST_BEAMS
-                    && (0.0..=TAU + ROUNDING).contains(&(angles.1 - angles.0))
-                    && range.0 >= 0.0
-                    && range.1 > range.0;
-                (flat && fits).then(|| TypedLaser {
+                    && (0.0..=TAU + ROUNDING).contains(&(hi - lo))
+                    && nearest >= 0.0
+                    && farthest > nearest;
+                (flat && fits).then(|| Laser {
                     name: format!("{}{}", p.prefix, name.text),
                     body,
                     at: sensor.origin.xyz,
-                    angles,
+                    lo,
+                    hi,
                     beams: u16::try_from(horizontal.samples.max(1)).unwrap_or(1),
-                    range,
+                    nearest,
+                    farthest,
                 })
             }
             _ => None,
@@ -158,13 +160,17 @@ impl<'a> Checker<'a> {
         let (issues, table) = (&mut self.issues, &mut self.world.names.lasers);
         if let Some(id) = issues.declare_as(table, Noun::Laser, &full, name.span) {
             self.sensing(&laser.sensing, SensedKind::Laser, (&full, SensorSource::Laser(LaserId(id))));
-            self.world_mut().lasers.push(TypedLaser {
+            let (lo, hi) = angles.unwrap_or_default();
+            let (nearest, farthest) = range.unwrap_or_default();
+            self.world_mut().lasers.push(Laser {
                 name: full,
                 body,
                 at,
-                angles: angles.unwrap_or_default(),
+                lo,
+                hi,
                 beams: beams.and_then(|n| u16::try_from(n).ok()).unwrap_or(1),
-                range: range.unwrap_or_default(),
+                nearest,
+                farthest,
             });
         }
     }

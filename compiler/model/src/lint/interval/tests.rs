@@ -5,6 +5,7 @@ use hrdsl_source::Span;
 use proptest::prelude::*;
 
 use super::*;
+use crate::Value;
 
 pub(crate) const VARS: usize = 3;
 
@@ -82,26 +83,10 @@ pub(crate) fn condition() -> impl Strategy<Value = TypedExpr> {
 
 /// The value as at run time; `None`: it has none.
 pub(crate) fn run(e: &TypedExpr, own: &[i64]) -> Option<Value> {
-    let truth = |e: &TypedExpr| run(e, own).map(|v| v == Value::Bool(true));
-    match &e.kind {
-        TypedExprKind::Const(v) => Some(*v),
-        TypedExprKind::Leaf(VariableRef::Own(i)) => Some(Value::Int(own[usize::from(*i)])),
-        TypedExprKind::Leaf(_)
-        | TypedExprKind::Term(_)
-        | TypedExprKind::List(..)
-        | TypedExprKind::Element(_)
-        | TypedExprKind::Apply(..)
-        | TypedExprKind::Error => None,
-        TypedExprKind::Unary(op, a) => hrdsl_ir::expr::unary(*op, run(a, own)?).ok(),
-        TypedExprKind::Binary(BinaryOp::And, a, b) => Some(Value::Bool(truth(a)? && truth(b)?)),
-        TypedExprKind::Binary(BinaryOp::Or, a, b) => Some(Value::Bool(truth(a)? || truth(b)?)),
-        TypedExprKind::Binary(op, a, b) => hrdsl_ir::expr::binary(*op, run(a, own)?, run(b, own)?).ok(),
-        TypedExprKind::If(c, a, b) => run(if truth(c)? { a } else { b }, own),
-        TypedExprKind::Call(f, args) => {
-            let args: Option<Vec<Value>> = args.iter().map(|a| run(a, own)).collect();
-            hrdsl_ir::expr::call(*f, &args?).ok()
-        }
-    }
+    e.value_with(&|leaf| match leaf {
+        VariableRef::Own(i) => own.get(usize::from(i)).map(|n| Value::Int(*n)),
+        VariableRef::Local(_) | VariableRef::Shared(_) | VariableRef::Signal(_) => None,
+    })
 }
 
 pub(crate) fn holds(interval: ValueInterval, value: Value) -> bool {

@@ -272,10 +272,10 @@ pub(super) fn stop_devices(program: &Program, rules: &MessageRules, stage: &mut 
     for rule in &rules.rules {
         let MessageEffect::Command { device, .. } = &rule.effect else { continue };
         let device = world.device(*device);
-        if world.kind_of(device).command("stop").is_some() {
+        if let Some(stop) = world.kind_of(device).stop() {
             let request = CommandRequest {
                 device: device.name.clone(),
-                command: "stop".to_owned(),
+                command: stop.name.clone(),
                 args: BTreeMap::new(),
             };
             // It knows the command, which takes nothing: a device that cannot stop now is stopped by the next one.

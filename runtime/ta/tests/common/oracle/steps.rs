@@ -157,9 +157,9 @@ impl<'p> Net<'p> {
         let channels = &self.layout.p.channels;
         for (c, id) in channels.iter().zip((0..).map(ChannelId)).filter(|(c, _)| c.urgent) {
             let possible = match &c.kind {
-                ChannelKind::Joint(_) => !self.joints(s, id)?.is_empty(),
+                ChannelKind::MultiWay(_) => !self.multi_ways(s, id)?.is_empty(),
                 ChannelKind::Broadcast => !self.offers(s, id)?.is_empty(),
-                ChannelKind::HandShake => {
+                ChannelKind::Binary => {
                     let mut any = false;
                     for offer in self.offers(s, id)? {
                         any |= !self.pairs(s, id, &offer)?.is_empty();
@@ -302,13 +302,13 @@ impl<'p> Net<'p> {
     }
 
     /// The groups of a multi-way channel.
-    fn joints(&self, s: &State, over: ChannelId) -> Result<Vec<Vec<Part>>, Stop> {
-        let ChannelKind::Joint(parties) = &self.layout.p.channels[usize::from(over.0)].kind else {
+    fn multi_ways(&self, s: &State, over: ChannelId) -> Result<Vec<Vec<Part>>, Stop> {
+        let ChannelKind::MultiWay(participants) = &self.layout.p.channels[usize::from(over.0)].kind else {
             return Ok(Vec::new());
         };
         let mut groups = vec![Vec::new()];
-        for party in parties {
-            let member = self.layout.members.iter().position(|&m| m == usize::from(party.automaton.0));
+        for participant in participants {
+            let member = self.layout.members.iter().position(|&m| m == usize::from(participant.automaton.0));
             let Some(member) = member else { continue };
             let mut ways = Vec::new();
             for (e, edge) in self.automaton(member).edges.iter().enumerate() {
@@ -318,7 +318,7 @@ impl<'p> Net<'p> {
             }
             if !ways.is_empty() {
                 groups = product(&groups, &ways);
-            } else if !party.optional {
+            } else if !participant.optional {
                 return Ok(Vec::new());
             }
         }
@@ -344,9 +344,9 @@ impl<'p> Net<'p> {
                         let kind = &self.layout.p.channels[usize::from(channel.0)].kind;
                         for way in self.ways(s, member, e, &[])? {
                             groups.extend(match kind {
-                                ChannelKind::HandShake => self.pairs(s, *channel, &way)?,
+                                ChannelKind::Binary => self.pairs(s, *channel, &way)?,
                                 ChannelKind::Broadcast => self.broadcasts(s, &way)?,
-                                ChannelKind::Joint(_) => Vec::new(),
+                                ChannelKind::MultiWay(_) => Vec::new(),
                             });
                         }
                     }
@@ -355,7 +355,7 @@ impl<'p> Net<'p> {
             }
         }
         for c in 0..self.layout.p.channels.len() {
-            groups.extend(self.joints(s, ChannelId(c as u16))?);
+            groups.extend(self.multi_ways(s, ChannelId(c as u16))?);
         }
         Ok(groups)
     }

@@ -156,14 +156,14 @@ pub fn program(p: &Program) -> String {
         let params: Vec<_> = c.params.iter().map(|v| format!("{}..{}", v.lo, v.hi)).collect();
         let urgent = if c.urgent { "urgent " } else { "" };
         let kind = match &c.kind {
-            ChannelKind::HandShake => String::new(),
+            ChannelKind::Binary => String::new(),
             ChannelKind::Broadcast => "broadcast".to_owned(),
-            ChannelKind::Joint(parties) => {
+            ChannelKind::MultiWay(participants) => {
                 let one = |q: &hrdsl_ir::ta::ChannelParticipant| {
                     let name = &p.automata[usize::from(q.automaton.0)].name;
                     format!("{name}{}", if q.optional { "?" } else { "" })
                 };
-                format!("joint {}", parties.iter().map(one).collect::<Vec<_>>().join(" | "))
+                format!("joint {}", participants.iter().map(one).collect::<Vec<_>>().join(" | "))
             }
         };
         let _ = writeln!(text, "channel {}({}) : {urgent}{kind}", c.name, params.join(", "));

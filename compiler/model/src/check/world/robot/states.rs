@@ -1,11 +1,10 @@
 //! States of groups as postures of the arms that have their joints.
 
-use hrdsl_ir::world::NamedPosture;
+use hrdsl_ir::world::{Arm, NamedPosture};
 use hrdsl_robots::SrdfState;
 use hrdsl_syntax::ast::WorldMemberKind as Member;
 
 use crate::check::{checker::Checker, state::robot::PlacedRobot, world::parts::PlacedMember};
-use crate::world::TypedArm;
 
 impl<'a> Checker<'a> {
     pub(in crate::check::world) fn described_postures(&mut self, p: &PlacedMember<'a>) {
@@ -33,7 +32,7 @@ impl<'a> Checker<'a> {
 }
 
 /// Those of all joints of an arm, if the state has them, and they are within the limits.
-fn angles(arm: &TypedArm, state: &SrdfState, placed: &PlacedRobot) -> Option<Vec<f64>> {
+fn angles(arm: &Arm, state: &SrdfState, placed: &PlacedRobot) -> Option<Vec<f64>> {
     let angle = |joint: &crate::JointId| {
         let (_, joint) = placed.joint_of(*joint)?;
         let (_, values) = state.values.iter().find(|(name, _)| *name == joint.name)?;
