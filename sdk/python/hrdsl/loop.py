@@ -26,6 +26,8 @@ def install(asyncio: Any, scheduler: Scheduler) -> None:
     if unix is None:
         return
     kind = _loop(asyncio, unix, _selector(scheduler), scheduler)
+    if scheduler.is_drawn:
+        kind = _drawn(asyncio, kind, scheduler)
     module: Any = unix
     for name in ("_UnixDefaultEventLoopPolicy", "DefaultEventLoopPolicy"):
         if hasattr(module, name):
@@ -121,6 +123,37 @@ def _loop(asyncio: Any, unix: Any, selector: Any, scheduler: Scheduler) -> Any:
 
     SelectorEventLoop.__module__, SelectorEventLoop.__qualname__ = real.__module__, real.__qualname__
     return SelectorEventLoop
+
+
+def _drawn(asyncio: Any, real: Any, scheduler: Scheduler) -> Any:
+    """A loop whose order the schedule draws, as far as `asyncio` leaves it open: which of the tasks that are ready goes on first, and
+    which of the timers of one instant is called first. What `call_soon` is given keeps its place, since its order is promised."""
+    import heapq
+
+    class SelectorEventLoop(real):  # type: ignore[misc, valid-type]
+        """A loop with an order of its own."""
+
+        def _process_events(self, event_list: Any) -> None:
+            # Once in each turn, before its timers are put behind what is ready, and before anything is called.
+            super()._process_events(event_list)
+            ready, timers = self._ready, self._scheduled
+            if len(ready) > 1:
+                places = [place for place, handle in enumerate(ready) if _is_of_task(asyncio, handle)]
+                tasks = [ready[place] for place in places]
+                scheduler.shuffle(tasks)
+                for place, handle in zip(places, tasks):
+                    ready[place] = handle
+            if len(timers) > 1 and timers[0]._when < self.time() + self._clock_resolution:
+                # Those of the same instant leave the heap as they lie in it.
+                scheduler.shuffle(timers)
+                heapq.heapify(timers)
+
+    SelectorEventLoop.__module__, SelectorEventLoop.__qualname__ = real.__module__, real.__qualname__
+    return SelectorEventLoop
+
+
+def _is_of_task(asyncio: Any, handle: Any) -> bool:
+    return isinstance(getattr(handle._callback, "__self__", None), asyncio.Task)
 
 
 def _child_watcher(asyncio: Any, unix: Any) -> None:

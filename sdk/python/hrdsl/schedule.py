@@ -295,6 +295,21 @@ class Scheduler:
         both = (self._deadlines.first(), self._patience.first())
         return min((deadline for deadline in both if deadline is not None), default=None)
 
+    # ── other orders ──
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether chance says who is next among those that are ready."""
+        return self._chance is not None
+
+    def shuffle(self, items: list[Any]) -> None:
+        """Puts what is ready at once into the order that the schedule draws; without one it stays as it is."""
+        if self._chance is None:
+            return
+        for last in range(len(items) - 1, 0, -1):
+            other = int(self._chance.random() * (last + 1))
+            items[last], items[other] = items[other], items[last]
+
     # ── the baton ──
 
     def _hand_over(self, me: Task) -> None:

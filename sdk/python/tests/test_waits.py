@@ -286,6 +286,69 @@ class Loop(Case):
             """
         self.assertEqual(self.said(text), ["0.000 b'echo x\\n'", "0.000 (b'in', None) 0", "0.000 signal True"])
 
+    def test_a_schedule_draws_what_asyncio_leaves_open(self):
+        text = """
+            import asyncio
+            def note(*what):
+                order.append("%s%d" % what)
+            async def step(number):
+                note("a", number)
+                await asyncio.sleep(0)
+                note("b", number)
+                await asyncio.sleep(1)
+                note("c", number)
+            async def main():
+                loop = asyncio.get_running_loop()
+                await asyncio.gather(*[step(number) for number in range(6)])
+                done = loop.create_future()
+                for number in range(6):
+                    loop.call_later(1 + number % 2, note, "t", number)
+                    loop.call_soon(note, "s", number)
+                    loop.call_soon_threadsafe(note, "u", number)
+                    asyncio.ensure_future(step(number + 6))
+                loop.call_later(3, done.set_result, None)
+                await done
+                time.sleep(1)  # so that timers of other instants are called in one turn
+            order = []
+            asyncio.run(main())
+            say(*order)
+            """
+        plain = self.said(text)
+        first = " ".join("%s%d" % (letter, number) for letter in "ab" for number in range(6))
+        self.assertTrue(plain[0].startswith("5.000 " + first), plain)
+        found = {}
+        for seed in range(1, 7):
+            (line,) = self.said(text, env={"HRDSL_SCHEDULE": str(seed)})
+            self.assertEqual([line], self.said(text, env={"HRDSL_SCHEDULE": str(seed)}), "the same seed, the same order")
+            order = line.split()[1:]
+            found[seed] = {letter: [int(each[1:]) for each in order if each[0] == letter] for letter in "abcstu"}
+            self.assertEqual(sorted(order), sorted(plain[0].split()[1:]))
+            # What is promised stays: each task's own order, that of `call_soon`, and timers by their times.
+            self.assertEqual((found[seed]["s"], found[seed]["u"]), (list(range(6)), list(range(6))))
+            self.assertEqual([number % 2 for number in found[seed]["t"]], [0, 0, 0, 1, 1, 1])
+            for number in range(12):
+                self.assertEqual([each[0] for each in order if each[0] in "abc" and each[1:] == str(number)], list("abc"))
+        for letter in "abct":
+            self.assertGreater(len({tuple(each[letter]) for each in found.values()}), 4, letter)
+
+    def test_a_schedule_finds_a_race_of_tasks(self):
+        text = """
+            import asyncio
+            account = 100
+            async def withdraw(amount):
+                global account
+                before = account
+                await asyncio.sleep(0)
+                account = before - amount
+            async def main():
+                await asyncio.gather(withdraw(10), withdraw(20))
+            asyncio.run(main())
+            say(account)
+            """
+        self.assertEqual(self.said(text), ["0.000 80"])
+        found = {tuple(self.said(text, env={"HRDSL_SCHEDULE": str(seed)})) for seed in range(1, 7)}
+        self.assertEqual(found, {("0.000 80",), ("0.000 90",)})
+
     def test_debugging_warns_of_no_slow_callbacks(self):
         text = """
             import asyncio, logging
