@@ -1,10 +1,11 @@
 # Ten children fill their memory; it answers all the same.
 # expect: pass
 import os
+import posix
 import hrdsl
 node = hrdsl.Node('robot')
 for _ in range(10):
-    if os.fork() == 0:
+    if posix.fork() == 0:
         try:
             bytearray(30 << 20)
         finally:

@@ -1,9 +1,10 @@
 # Leaves a daemon that floods.
 # expect: any
 import os
+import posix
 import hrdsl
 node = hrdsl.Node('robot')
-if os.fork() == 0:
+if posix.fork() == 0:
     os.setsid()
     while True:
         os.write(1, b'x' * 4096)

@@ -2,10 +2,11 @@
 # expect: any
 # needs: namespaces
 import os
+import posix
 import hrdsl
 node = hrdsl.Node('robot')
 for _ in range(200):
-    if os.fork():
+    if posix.fork():
         break
 else:
     os._exit(0)

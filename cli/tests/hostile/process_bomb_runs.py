@@ -1,12 +1,12 @@
 # A chain of processes that fork and end, so that none is there for long; it answers.
 # expect: pass
 # needs: namespaces
-import os, time
+import os, posix, time
 import hrdsl
 node = hrdsl.Node('robot')
-if os.fork() == 0:
+if posix.fork() == 0:
     for _ in range(3000):
-        if os.fork():
+        if posix.fork():
             os._exit(0)
     os._exit(0)
 node.wait_for('asked')

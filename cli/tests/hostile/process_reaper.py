@@ -1,11 +1,11 @@
 # Adopts its grandchildren and leaves them.
 # expect: pass
-import ctypes, os
+import ctypes, os, posix
 import hrdsl
 node = hrdsl.Node('robot')
 ctypes.CDLL(None).prctl(36, 1)
-if os.fork() == 0:
-    if os.fork() == 0:
+if posix.fork() == 0:
+    if posix.fork() == 0:
         os.execvp('sleep', ['sleep', '1000'])
     os._exit(0)
 os.wait()

@@ -1,12 +1,12 @@
 # Leaves a session of its own that ignores SIGTERM; it answers.
 # expect: pass
-import os, signal, time
+import os, posix, signal, time
 import hrdsl
 node = hrdsl.Node('robot')
-if os.fork() == 0:
+if posix.fork() == 0:
     os.setsid()
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    if os.fork() == 0:
+    if posix.fork() == 0:
         os.execvp('sleep', ['sleep', '1000'])
     os.execvp('sleep', ['sleep', '1000'])
 node.wait_for('asked')

@@ -13,13 +13,20 @@ A call that waits (`sleep`, `wait_for`, an arm's motion) is one message to the h
 pass and answers when the wait is over; between calls no simulated time passes. A motion can be begun, too, and waited for
 beside events:
 
-    drive = node.device("robot.base").begin("drive", speed=0.3)
-    if node.wait_for("child_near", drive) is not drive:
-        node.device("robot.base").command("brake")
+    reach = node.arm("robot.arm").begin("move_to", to=[0.3, -0.3, 0.55])
+    if node.wait_for("child_near", reach) is not reach:
+        node.arm("robot.arm").stop()
+
+What a base is told holds from then on, while the program looks:
+
+    node.base("robot.wheels").drive(forward=0.3)
+    while min(node.laser("robot.eye").ranges()) > 0.5:
+        node.sleep(0.05)
+    node.base("robot.wheels").stop()
 """
 
 from hrdsl.errors import ProtocolError, Stopped
-from hrdsl.node import Arm, Device, Event, Gripper, Motion, Node
+from hrdsl.node import Arm, Base, Device, Event, Gripper, Laser, Motion, Node
 from hrdsl.states import StateMachine
 
-__all__ = ["Arm", "Device", "Event", "Gripper", "Motion", "Node", "ProtocolError", "StateMachine", "Stopped"]
+__all__ = ["Arm", "Base", "Device", "Event", "Gripper", "Laser", "Motion", "Node", "ProtocolError", "StateMachine", "Stopped"]

@@ -49,5 +49,15 @@ class Busy(SystemExit):
         return "a loop that never waits keeps all other threads from running"
 
 
+class ChildLives(SystemExit):
+    """The program waits while a child process lives, for which it has not waited; its place is on standard error."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+
+    def __str__(self) -> str:
+        return "the program waits while a child process lives"
+
+
 class Unsupported(RuntimeError):
     """What would run in real time beside the simulated one."""

@@ -255,9 +255,8 @@ class Exchange:
         return self.link.request({"request": "read", "signal": signal})["value"]
 
     def state(self, device: str, what: str) -> list[float]:
-        """How a device is now: its `joints`, as positions in radians or metres."""
-        value: list[float] = self.link.request({"request": "state", "device": device, "what": what})["value"]
-        return value
+        """How a device is now, in SI units; numbers may be infinite, or NaN."""
+        return [float(each) for each in self.link.request({"request": "state", "device": device, "what": what})["value"]]
 
     def declare(self, machine: str, states: list[str], transitions: list[list[str]], outcomes: list[str]) -> None:
         """Tells what a state machine consists of: its transitions are lists of a state, an outcome of it and what is next."""

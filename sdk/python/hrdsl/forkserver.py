@@ -20,6 +20,7 @@ import ctypes
 import gc
 import json
 import os
+import posix
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def serve(run: PreparedRun) -> tuple[int | None, int]:
     gc.freeze()
     orders.send(json.dumps({"modules": found}).encode())
     _settle()
-    while os.fork():
+    while posix.fork():
         if os.waitpid(-1, 0)[1]:
             os._exit(0)
     return _attend(orders, cell, rights, run.link)
@@ -92,11 +93,11 @@ def _attend(orders: Any, cell: dict[str, Any], rights: _Rights, link: Link) -> t
     try:
         rights.take_up()
         rights.enter(cell["namespaces"])
-        if os.fork():
+        if posix.fork():
             os._exit(0)
         os.setsid()
         ready, go = os.pipe()
-        program = os.fork()
+        program = posix.fork()
         if program:
             _supervise(cell, control, given, program, go)
     except OSError as error:

@@ -1,21 +1,20 @@
 """The event loop of `asyncio` in simulated time.
 
 It is the library's own loop for Unix, over a selector that waits in the scheduler: a loop without anything to do is a
-thread that waits until its next timer, or until `call_soon_threadsafe` wakes it. Transports of sockets, pipes and child
-processes work; their descriptors are asked whenever the loop has nothing else to do at an instant.
+thread that waits until its next timer, or until `call_soon_threadsafe` wakes it. Transports of sockets and pipes work; their
+descriptors are asked whenever the loop has nothing else to do at an instant. Child processes are refused.
 """
 
 from __future__ import annotations
 
-import os
 import sys
 
-from hrdsl.errors import Unsupported
+from hrdsl.children import unsupported
 from hrdsl.waits import Ready, wait
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, NoReturn
 
     from hrdsl.schedule import Scheduler, Task
 
@@ -26,6 +25,8 @@ def install(asyncio: Any, scheduler: Scheduler) -> None:
     if unix is None:
         return
     kind = _loop(asyncio, unix, _selector(scheduler), scheduler)
+    if scheduler.is_drawn:
+        kind = _drawn(asyncio, kind, scheduler)
     module: Any = unix
     for name in ("_UnixDefaultEventLoopPolicy", "DefaultEventLoopPolicy"):
         if hasattr(module, name):
@@ -34,8 +35,6 @@ def install(asyncio: Any, scheduler: Scheduler) -> None:
     for place in (module, asyncio):
         if hasattr(place, "EventLoop"):  # from Python 3.13 on
             place.EventLoop = kind
-    if sys.version_info < (3, 12):
-        _child_watcher(asyncio, module)
 
 
 def _selector(scheduler: Scheduler) -> Any:
@@ -114,6 +113,9 @@ def _loop(asyncio: Any, unix: Any, selector: Any, scheduler: Scheduler) -> Any:
         def _write_to_self(self) -> None:
             self._selector.wake()
 
+        async def _make_subprocess_transport(self, *args: Any, **how: Any) -> NoReturn:
+            raise unsupported("asyncio.create_subprocess_exec (or _shell)")
+
         def add_signal_handler(self, sig: int, callback: Any, *args: Any) -> None:
             if self._ssock is None:
                 super()._make_self_pipe()
@@ -123,47 +125,32 @@ def _loop(asyncio: Any, unix: Any, selector: Any, scheduler: Scheduler) -> Any:
     return SelectorEventLoop
 
 
-def _child_watcher(asyncio: Any, unix: Any) -> None:
-    """Up to Python 3.11 a thread waits for each child in C code, which would keep all others from running. In its place
-    the loop watches a descriptor of the process, as later versions do."""
+def _drawn(asyncio: Any, real: Any, scheduler: Scheduler) -> Any:
+    """A loop whose order the schedule draws, as far as `asyncio` leaves it open: which of the tasks that are ready goes on first, and
+    which of the timers of one instant is called first. What `call_soon` is given keeps its place, since its order is promised."""
+    import heapq
 
-    class Watcher(unix.AbstractChildWatcher):  # type: ignore[misc]
-        def add_child_handler(self, pid: int, callback: Any, *args: Any) -> None:
-            if not hasattr(os, "pidfd_open"):
-                raise Unsupported("asyncio waits for child processes from Python 3.9 on, on Linux; use subprocess")
-            loop, descriptor = asyncio.get_running_loop(), os.pidfd_open(pid)
+    class SelectorEventLoop(real):  # type: ignore[misc, valid-type]
+        """A loop with an order of its own."""
 
-            def ended() -> None:
-                loop._remove_reader(descriptor)
-                try:
-                    status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
-                except ChildProcessError:  # somebody else has waited for it
-                    status = 255
-                os.close(descriptor)
-                callback(pid, status, *args)
+        def _process_events(self, event_list: Any) -> None:
+            # Once in each turn, before its timers are put behind what is ready, and before anything is called.
+            super()._process_events(event_list)
+            ready, timers = self._ready, self._scheduled
+            if len(ready) > 1:
+                places = [place for place, handle in enumerate(ready) if _is_of_task(asyncio, handle)]
+                tasks = [ready[place] for place in places]
+                scheduler.shuffle(tasks)
+                for place, handle in zip(places, tasks):
+                    ready[place] = handle
+            if len(timers) > 1 and timers[0]._when < self.time() + self._clock_resolution:
+                # Those of the same instant leave the heap as they lie in it.
+                scheduler.shuffle(timers)
+                heapq.heapify(timers)
 
-            loop._add_reader(descriptor, ended)
+    SelectorEventLoop.__module__, SelectorEventLoop.__qualname__ = real.__module__, real.__qualname__
+    return SelectorEventLoop
 
-        def remove_child_handler(self, pid: int) -> bool:
-            return True  # asyncio never takes a handler back, but at the end of its child
 
-        def attach_loop(self, loop: Any) -> None:
-            pass
-
-        def close(self) -> None:
-            pass
-
-        def is_active(self) -> bool:
-            return True
-
-        def __enter__(self) -> Watcher:
-            return self
-
-        def __exit__(self, *exception: object) -> None:
-            pass
-
-    def init(self: Any) -> None:
-        if self._watcher is None:
-            self._watcher = Watcher()
-
-    unix._UnixDefaultEventLoopPolicy._init_watcher = init
+def _is_of_task(asyncio: Any, handle: Any) -> bool:
+    return isinstance(getattr(handle._callback, "__self__", None), asyncio.Task)

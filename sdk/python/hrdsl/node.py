@@ -99,6 +99,12 @@ class Device:
         self.last_error = motion.error
         return motion.error is None
 
+    def state(self, what: str) -> list[float]:
+        """How the device is now, in SI units: `joints`, `speeds` or `tool` of an arm, `pose`, `orientation` or `velocity` of a base,
+        `ranges`, `angles` or `limits` of a laser. An imperfect sensor that shows nothing says NaN. Raises `ProtocolError` if it has no such
+        state."""
+        return self._exchange.state(self.name, what)
+
 
 class Arm(Device):
     """A chain of joints under motor control. Motions return when they end: whether the target was reached."""
@@ -110,6 +116,47 @@ class Arm(Device):
     def move_joints(self, angles: Iterable[float], speed: float | None = None) -> bool:
         """Brings the joints to these angles (radians, from the base to the tip)."""
         return self.command("move_joints", to=_numbers(angles, None), speed=speed)
+
+
+    def follow(self, positions: Iterable[Iterable[float]], times: Iterable[float]) -> bool:
+        """Brings the joints through postures (radians, from the base to the tip), each at its time (seconds from now)."""
+        postures = [_numbers(posture, None) for posture in positions]
+        instants = [_seconds(time) for time in times]
+        if len(postures) != len(instants):
+            raise ValueError("%d postures and %d times: each posture has a time" % (len(postures), len(instants)))
+        if len({len(posture) for posture in postures}) > 1:
+            raise ValueError("all postures of a trajectory have as many joints")
+        return self.command("follow", positions=sum(postures, []), times=instants)
+
+    def aim(self, joint: int, angle: float) -> bool:
+        """Lets one joint (from 0, counted from the base) aim at an angle (radians) from now on; returns at once."""
+        return self.command("aim", joint=joint, to=float(angle))
+
+    def stop(self) -> bool:
+        """Gives up what the arm is doing, and brakes."""
+        return self.command("stop")
+
+
+class Base(Device):
+    """What drives on the ground."""
+
+    def drive(self, forward: float, turn: float = 0.0, sideways: float | None = None) -> bool:
+        """Lets the base go at a velocity (m/s; rad/s to the left; m/s to the left, if it can) from now on, as long as its timeout is;
+        returns at once."""
+        return self.command("drive", forward=float(forward), turn=float(turn), sideways=sideways)
+
+    def stop(self) -> bool:
+        """Brakes, and returns when the base stands."""
+        return self.command("stop")
+
+
+class Laser(Device):
+    """What measures how far it is to the next surface, all around."""
+
+    def ranges(self) -> list[float]:
+        """How far it is along each beam, in metres: infinite if nothing is met, minus infinite if something is too near, NaN where an
+        imperfect one shows nothing."""
+        return self.state("ranges")
 
 
 class Gripper(Device):
@@ -177,6 +224,14 @@ class Node:
     def gripper(self, name: str) -> Gripper:
         """The gripper of this name; always the same object."""
         return self._device(Gripper, name)
+
+    def base(self, name: str) -> Base:
+        """The base of this name; always the same object."""
+        return self._device(Base, name)
+
+    def laser(self, name: str) -> Laser:
+        """The laser of this name; always the same object."""
+        return self._device(Laser, name)
 
     def device(self, name: str) -> Device:
         """The device of this name, whatever its kind; always the same object."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from hrdsl import threads
+from hrdsl import children, threads
 from hrdsl.replace import when_imported
 from hrdsl.schedule import Scheduler
 
@@ -25,6 +25,7 @@ def install(link: Link) -> Scheduler:
         os.environ.setdefault(name, "1")
     scheduler = link.scheduler = Scheduler(link, _number("HRDSL_SCHEDULE", int))
     made = threads.install(scheduler)
+    children.install()
     _when_imported(scheduler)
     link.sleep = scheduler.sleep  # type: ignore[method-assign]
     budget = _number("HRDSL_BUSY_SECONDS", float)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import builtins
 import os
+import posix
 import sys
 
 import _signal  # type: ignore[import-not-found]  # without the enumerations of `signal`
@@ -88,7 +89,7 @@ class _Project:
 def _in_fork(call: Any) -> str:
     """What a call returns in a process of its own, as UTF-8; nothing if it does not return."""
     reading, writing = os.pipe()
-    if not os.fork():
+    if not posix.fork():
         try:
             os.write(writing, call().encode())
         finally:

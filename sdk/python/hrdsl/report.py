@@ -1,4 +1,4 @@
-"""What is said of threads that wait for each other, and of a loop that never waits."""
+"""What is said of threads that wait for each other, of a loop that never waits, and of waits while a child process lives."""
 
 from __future__ import annotations
 
@@ -38,6 +38,18 @@ def busy(scheduler: Scheduler, task: Task, seconds: float) -> str:
         "hrdsl: %s: %s has computed for more than %g s of processor time while others wait to run; if this is a loop that waits for"
         " something, wait with time.sleep, Event.wait(timeout) or a queue (HRDSL_BUSY_SECONDS sets the limit)\n"
         % (place, name(scheduler, task), seconds)
+    )
+
+
+def child(scheduler: Scheduler) -> str:
+    """Where the program waits while a child lives, and what to do instead."""
+    from hrdsl import children
+
+    _, place = _wait_of(sys._getframe(1))
+    return "hrdsl: %ssimulated time is to pass, or another thread to run, while `%s` lives, a process that runs in real time; %s\n" % (
+        place and place + ": ",
+        next(iter(scheduler.children.values())),
+        children.INSTEAD,
     )
 
 

@@ -13,7 +13,7 @@ import time
 from collections import deque
 
 from hrdsl.deadlines import Deadlines
-from hrdsl.errors import Deadlock, Stopped
+from hrdsl.errors import ChildLives, Deadlock, Stopped
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -98,6 +98,7 @@ class Scheduler:
         self.look: Callable[[bool], bool] | None = None  # at the descriptors of `watched`
         self.ending: Callable[[], BaseException] | None = None  # what waits raise, once none can end
         self.failed = False  # whether the program ends by a fault that it cannot catch
+        self.children: dict[int, str] = {}  # processes that nobody has waited for: their commands by their numbers
         self._main_first = False
         self._deadlines = Deadlines()
         self._patience = Deadlines()  # those that come after all else that happens at their instants
@@ -117,6 +118,8 @@ class Scheduler:
         """Lets others run until somebody calls `unpark` for the running thread, or until the deadline (simulated
         nanoseconds): whether it was the former. Who is patient waits for all else that happens at the instant of the
         deadline. Only for the thread that `current` has returned."""
+        if self.children:
+            self.refuse_wait()
         me = self.running
         me.what, me.result = what, None
         try:
@@ -176,6 +179,8 @@ class Scheduler:
         """Lets those run that are ready."""
         me = self.current()
         if me is not None and (self.ready or self._deadlines.entries):
+            if self.children:
+                self.refuse_wait()
             self.ready.append(me)
             self._hand_over(me)
 
@@ -266,6 +271,7 @@ class Scheduler:
         self._deadlines.entries.clear()
         self._patience.entries.clear()
         self.watched.clear()
+        self.children.clear()
         self._ended = None
 
     def begin_anew(self) -> None:
@@ -286,6 +292,15 @@ class Scheduler:
             self.ready.remove(main)
             self.ready.appendleft(main)
 
+    def refuse_wait(self) -> None:
+        """Ends the program, unless it ends already: a child lives, and the calling thread is about to wait."""
+        if self.ending is None:
+            from hrdsl import report
+
+            sys.stderr.write(report.child(self))
+            self.end(ChildLives)
+            raise ChildLives()
+
     def close(self) -> None:
         """The program has ended: polls are no waits any more, for time does not pass."""
         self.polls = -(1 << 60)
@@ -294,6 +309,21 @@ class Scheduler:
         """The first deadline of those who wait."""
         both = (self._deadlines.first(), self._patience.first())
         return min((deadline for deadline in both if deadline is not None), default=None)
+
+    # ── other orders ──
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether chance says who is next among those that are ready."""
+        return self._chance is not None
+
+    def shuffle(self, items: list[Any]) -> None:
+        """Puts what is ready at once into the order that the schedule draws; without one it stays as it is."""
+        if self._chance is None:
+            return
+        for last in range(len(items) - 1, 0, -1):
+            other = int(self._chance.random() * (last + 1))
+            items[last], items[other] = items[other], items[last]
 
     # ── the baton ──
 
@@ -385,11 +415,15 @@ class Scheduler:
                 continue
             until, give_up, gave_up = self._deadlines.first(), self._patience.first(), False
             try:
+                if self.children:  # a thread has ended that has left one behind
+                    self.refuse_wait()
                 is_timeless = until is None and give_up is None
                 if self.watched and self.look is not None:
                     if self.look(is_timeless and not self.outside.can_arrive()):
                         continue
                 gave_up = self.outside.wait(until, give_up)
+            except ChildLives:
+                continue
             except Deadlock as found:
                 if not any(task.result is None for task in self.tasks.values()):
                     return  # the last thread of a forked process ends

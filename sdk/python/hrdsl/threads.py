@@ -18,7 +18,7 @@ import os
 import sys
 
 from hrdsl import locks
-from hrdsl.errors import Busy, Deadlock, Stopped
+from hrdsl.errors import Busy, ChildLives, Deadlock, Stopped
 from hrdsl.replace import Builtin, put, when_imported
 from hrdsl.schedule import POLLS, Task
 
@@ -268,7 +268,7 @@ def _threading(module: Any, scheduler: Scheduler) -> None:
 
     def excepthook(args: Any, /) -> None:
         """Handle uncaught Thread.run() exception."""
-        if not issubclass(args.exc_type, (Stopped, Deadlock, Busy)):  # which end threads as `SystemExit` does
+        if not issubclass(args.exc_type, (Stopped, Deadlock, Busy, ChildLives)):  # which end threads as `SystemExit` does
             real_hook(args)
 
     module.excepthook = Builtin(excepthook, real_hook, "threading")
@@ -318,7 +318,7 @@ def _quiet_workers(module: Any) -> None:
 
     def is_fault(record: Any) -> bool:
         kind = record.exc_info[0] if record.exc_info else None
-        return kind is None or not issubclass(kind, (Stopped, Deadlock, Busy))
+        return kind is None or not issubclass(kind, (Stopped, Deadlock, Busy, ChildLives))
 
     module.LOGGER.addFilter(is_fault)
 

@@ -1,16 +1,16 @@
-"""Waits for descriptors, and for other processes.
+"""Waits for descriptors.
 
 `select`, `poll` and `epoll` wait in simulated time: at each instant at which all threads wait, the descriptors are asked
 before time moves. Where nothing in the program has a deadline, the descriptors alone can end the wait, and the system's
-real time passes. `subprocess` waits for its children in real time, during which no other thread runs.
+real time passes.
 """
 
 from __future__ import annotations
 
+from hrdsl import children
 from hrdsl.errors import Unsupported
 from hrdsl.locks import after
 from hrdsl.replace import Builtin
-from hrdsl.schedule import real_monotonic, real_sleep
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -39,6 +39,8 @@ def wait(scheduler: Scheduler, watch: Watch, timeout: float | None) -> bool:
     me = scheduler.current()
     if me is None:
         return False
+    if scheduler.children:  # whose pipes would be ready sooner or later in real time
+        scheduler.refuse_wait()
     if watch.look():
         return True
     if timeout is not None and timeout <= 0:
@@ -72,14 +74,14 @@ def _descriptors(module: Any, scheduler: Scheduler) -> None:
     if real_poll is None:
         return
     module.poll = _poll(real_poll, scheduler)
-    _real["poll"] = real_poll
+    as_they_were["poll"] = real_poll
     scheduler.look = lambda block: _look(scheduler, real_poll, block)
     if hasattr(module, "epoll"):
         module.epoll = _epoll(module.epoll, scheduler)
 
 
 #: What others need as it was.
-_real: dict[str, Any] = {}
+as_they_were: dict[str, Any] = {}
 
 _IN, _PRI, _OUT = 1, 2, 4  # POLLIN, POLLPRI, POLLOUT
 
@@ -184,26 +186,12 @@ def _epoll(real_epoll: Any, scheduler: Scheduler) -> Any:
     return epoll
 
 
-def _subprocess(module: Any, scheduler: Scheduler) -> None:
-    """A child lives in real time, so a wait for it, and the timeout of that, do too; simulated time stands still."""
-    import selectors
-    from types import SimpleNamespace
-
-    module._time, module.time = real_monotonic, SimpleNamespace(sleep=real_sleep)
-    if "poll" in _real and hasattr(selectors, "PollSelector"):
-
-        class Selector(selectors.PollSelector):
-            _selector_cls = _real["poll"]
-
-        module._PopenSelector = Selector
-
-
 def _multiprocessing(module: Any, scheduler: Scheduler) -> None:
     def start(self: Any) -> NoReturn:
         """Refused: it would run in real time beside the simulated one."""
         raise Unsupported(
             "multiprocessing starts processes that run in real time, beside the simulated one; use threads"
-            " (threading, concurrent.futures.ThreadPoolExecutor), or subprocess for a child that is waited for"
+            " (threading, concurrent.futures.ThreadPoolExecutor), or subprocess.run for a child that is waited for"
         )
 
     module.BaseProcess.start = start
@@ -218,7 +206,7 @@ def _asyncio(module: Any, scheduler: Scheduler) -> None:
 #: What patches each module that waits in ways of its own.
 PATCHES: dict[str, Callable[[Any, Scheduler], None]] = {
     "select": _descriptors,
-    "subprocess": _subprocess,
+    "subprocess": children.patch_subprocess,
     "multiprocessing.process": _multiprocessing,
     "asyncio": _asyncio,
 }

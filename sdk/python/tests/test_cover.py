@@ -48,7 +48,7 @@ class Coverage(unittest.TestCase):
         return sorted(name for name in os.listdir(self.folder) if name.endswith(".json"))
 
     def test_it_goes_to_a_descriptor_that_is_not_handed_on(self):
-        text = "import os, subprocess, sys\nif os.fork():\n    os.wait()\nelse:\n    sys.exit(0)\n"
+        text = "import os, posix, subprocess, sys\nif posix.fork():\n    os.wait()\nelse:\n    sys.exit(0)\n"
         text += "subprocess.run([sys.executable, '-c', 'import os; os.fstat(%s)' % sys.argv[1]], close_fds=False)\n"
         script = self.file("script.py", text)
         with tempfile.TemporaryFile() as out:

@@ -4,6 +4,7 @@ import copy
 import json
 import os
 import pickle
+import re
 import sys
 import threading
 import unittest
@@ -96,12 +97,42 @@ class Messages(unittest.TestCase):
         act = {"request": "act", "on": "robot.grip", "do": "drop", "args": {"command": "gently"}, "wait": False, "call": 2}
         self.assertEqual(harness.requests[-2], act)
 
+    def test_devices_get_the_commands_of_their_kinds(self):
+        harness, node = self.node(System(commands=lambda request: (0, None)))
+        arm, base = node.arm("robot.arm"), node.base("robot.wheels")
+        for call, name, command, args in (
+            (lambda: arm.move_joints((1, 2), speed=0.5), "robot.arm", "move_joints", {"to": [1.0, 2.0], "speed": 0.5}),
+            (lambda: arm.follow([(0, 1), (2, 3)], (0.5, 1)), "robot.arm", "follow", {"positions": [0.0, 1.0, 2.0, 3.0], "times": [0.5, 1.0]}),
+            (lambda: arm.follow([], []), "robot.arm", "follow", {"positions": [], "times": []}),
+            (lambda: arm.aim(1, 0.25), "robot.arm", "aim", {"joint": 1, "to": 0.25}),
+            (arm.stop, "robot.arm", "stop", {}),
+            (lambda: base.drive(0.3), "robot.wheels", "drive", {"forward": 0.3, "turn": 0.0}),
+            (lambda: base.drive(1, turn=-1, sideways=0.5), "robot.wheels", "drive", {"forward": 1.0, "turn": -1.0, "sideways": 0.5}),
+            (base.stop, "robot.wheels", "stop", {}),
+            (node.gripper("robot.grip").open, "robot.grip", "open", {}),
+            (node.gripper("robot.grip").close, "robot.grip", "close", {}),
+        ):
+            self.assertIs(call(), True)
+            (act,) = [request for request in harness.requests if request["request"] == "act"][-1:]
+            self.assertEqual((act["on"], act["do"], act["args"]), (name, command, args))
+
+    def test_the_state_of_a_device_is_read(self):
+        states = {"robot.eye": [0.5, "inf", "-inf", "nan"], "robot.wheels": [1, 2.5, -0.5]}
+        harness, node = self.node(System(states=states))
+        ranges = node.laser("robot.eye").ranges()
+        self.assertEqual((ranges[:3], ranges[3] != ranges[3]), ([0.5, float("inf"), float("-inf")], True))
+        self.assertEqual(harness.requests[-1], {"request": "state", "device": "robot.eye", "what": "ranges"})
+        self.assertEqual(node.base("robot.wheels").state("pose"), [1.0, 2.5, -0.5])
+        self.assertEqual(harness.requests[-1]["what"], "pose")
+        self.assertEqual({type(number) for number in node.device("robot.wheels").state("pose")}, {float})
+
     def test_a_name_is_one_device(self):
         _, node = self.node(System(commands=lambda request: (7, "joint 2 is at its limit")))
         self.assertIs(node.arm("robot.arm").move_to((1, 2, 3)), False)
         self.assertEqual(node.arm("robot.arm").last_error, "joint 2 is at its limit")
         self.assertIsNone(node.arm("robot.other").last_error)
-        self.assertIs(node.gripper("robot.grip"), node.gripper("robot.grip"))
+        for make in (node.gripper, node.base, node.laser, node.device):
+            self.assertIs(make("robot.grip"), make("robot.grip"))
 
     def test_outside_of_hrdsl_it_says_what_to_do(self):
         self.addCleanup(os.environ.update, {k: v for k, v in os.environ.items() if k.startswith("HRDSL_")})
@@ -135,11 +166,25 @@ class Messages(unittest.TestCase):
             lambda: node.wait_for("a", timeout=-1),
             lambda: node.arm("a").move_to((1, 2)),
             lambda: node.arm("a").command("turn", by=float("nan")),
+            lambda: node.arm("a").follow([(1, 2)], (1, 2)),
+            lambda: node.arm("a").follow([(1, 2), (1,)], (1, 2)),
+            lambda: node.arm("a").follow([(1, 2)], (-1,)),
+            lambda: node.base("a").drive(float("inf")),
             lambda: node.emit("a", x=float("nan")),
         ):
             with self.assertRaises(ValueError):
                 wrong()
         self.assertEqual(len(harness.requests), 1)
+
+
+class Page(unittest.TestCase):
+    def test_the_page_has_all_of_it(self):
+        with open(os.path.join(ROOT, "..", "..", "spec", "client-libraries.md")) as file:
+            part = file.read().partition("## hrdsl\n")[2].partition("\n## ")[0]
+        told = set(re.findall(r"^\| `(\w+)\.(\w+)", part, re.M)) | set(re.findall(r", `(\w+)\.(\w+)", part))
+        kinds = [getattr(hrdsl, name) for name in hrdsl.__all__ if not issubclass(getattr(hrdsl, name), BaseException)]
+        there = {(kind.__name__, name) for kind in kinds for name in vars(kind) if name[0] != "_" and callable(getattr(kind, name))}
+        self.assertEqual(told, there)
 
 
 class Coverage(unittest.TestCase):

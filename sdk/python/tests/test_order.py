@@ -241,9 +241,9 @@ class Order(Case):
 
 
 class Processes(Case):
-    def test_a_forked_process_has_one_thread_and_locks_that_work(self):
+    def test_what_is_forked_past_the_refusal_has_one_thread_and_locks_that_work(self):
         text = """
-            import os, queue, sys, warnings
+            import os, posix, queue, sys, warnings
             warnings.simplefilter("ignore")
             lock, go = threading.Lock(), threading.Event()
             def hold():
@@ -256,7 +256,7 @@ class Processes(Case):
             for thread in threads:
                 thread.start()
             sys.stdout.flush()
-            child = os.fork()
+            child = posix.fork()
             if not child:
                 say(threading.active_count(), lock.locked(), threads[0].is_alive())
                 lock.release()
@@ -276,7 +276,7 @@ class Processes(Case):
             for thread in threads:
                 thread.join()
             warnings.simplefilter("error")  # that there is more than one thread
-            child = os.fork()
+            child = posix.fork()
             if not child:
                 os._exit(0)
             say(os.waitpid(child, 0)[1])
@@ -297,8 +297,66 @@ class Processes(Case):
             with multiprocessing.pool.ThreadPool(2) as pool:
                 say(pool.map(lambda seconds: time.sleep(seconds), [1, 2, 2]))
             """
-        refused = "hrdsl.errors Unsupported  use threads (threading, concurrent.futures.ThreadPoolExecutor), or subprocess for a child that is waited for"
+        refused = "hrdsl.errors Unsupported  use threads (threading, concurrent.futures.ThreadPoolExecutor), or subprocess.run for a child that is waited for"
         self.assertEqual(self.said(text), [refused] * 2 + ["3.000 MainThread [None, None, None]"])
+
+    def test_processes_that_nobody_waits_for_are_refused(self):
+        text = """
+            import asyncio, os, pty
+            for name, start in (
+                ("os.fork", os.fork), ("os.forkpty", os.forkpty), ("os.forkpty", lambda: pty.spawn("true")),
+                ("os.posix_spawn", lambda: os.posix_spawn("/bin/true", ["true"], {})),
+                ("os.spawnlp", lambda: os.spawnlp(os.P_NOWAIT, "true", "true")),
+                ("asyncio.create", lambda: asyncio.run(asyncio.create_subprocess_exec("true"))),
+                ("asyncio.create", lambda: asyncio.run(asyncio.create_subprocess_shell("true"))),
+            ):
+                try:
+                    start()
+                except RuntimeError as error:
+                    print(type(error).__name__, str(error).startswith(name), str(error).split(";")[1])
+            """
+        instead = " run a command to its end with subprocess.run, use threads, or make it a `program` of the system"
+        self.assertEqual(self.said(text), ["Unsupported True " + instead] * 7)
+
+    def test_a_wait_while_a_child_lives_ends_the_program(self):
+        text = """
+            import os, select, subprocess, threading, time
+            def start():
+                return subprocess.Popen(["sleep", "1"])
+            def wait():
+                start()
+                %s
+            try:
+                wait()
+            except Exception:
+                print("never")
+            finally:
+                print("finally")
+            """
+        told = " simulated time is to pass, or another thread to run, while `sleep 1` lives, a process that runs in real time; "
+        told += "run it to its end first (subprocess.run, communicate(), wait()), or make it a `program` of the system\n"
+        waits = ("time.sleep(1)", "threading.Event().wait(1)", "threading.Thread(target=int).start()", "select.select([], [], [], 1)")
+        looks = ("select.select([0], [], [], 0)", "[time.time() for _ in range(3001)]", "__import__('hrdsl').Node('x').sleep(1)")
+        for wait in (*waits, *looks, "__import__('asyncio').run(__import__('asyncio').sleep(1))"):
+            with self.subTest(wait=wait):
+                finished = run_text(text % wait)
+                self.assertEqual((finished.code, finished.out), (1, "finally\n"), finished.err)
+                self.assertRegex(finished.err, r"^hrdsl: .*/program.py:7:")
+                self.assertEqual(finished.err.partition("program.py:7:")[2], told)
+                self.assertNotIn("wait", [request["request"] for request in finished.requests])
+
+    def test_so_does_one_that_a_thread_leaves_behind(self):
+        text = """
+            import subprocess
+            def work():
+                time.sleep(1)
+                subprocess.Popen(["sleep", "1"])
+            threading.Thread(target=lambda: (time.sleep(9), print("never"))).start()
+            threading.Thread(target=work).start()
+            """
+        finished = run_text(SAY + textwrap.dedent(text))
+        self.assertEqual((finished.code, finished.out), (1, ""))
+        self.assertRegex(finished.err, "^hrdsl: simulated time is to pass, .* while `sleep 1` lives, .*\n$")
 
     def test_native_libraries_compute_in_one_thread(self):
         text = "import os\nprint(os.environ['OMP_NUM_THREADS'], os.environ['OPENBLAS_NUM_THREADS'])"

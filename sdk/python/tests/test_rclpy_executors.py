@@ -6,6 +6,47 @@ from ros2_programs import SECOND, TRIED, Ros2Case
 from system import System
 
 
+class Schedules(Ros2Case):
+    text = """
+import rclpy
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("node")
+said = []
+for name in "abc":
+    node.create_timer(1.0, lambda name=name: said.append(name))
+publisher = node.create_publisher(String, "topic", 10)
+node.create_subscription(String, "topic", lambda message: said.append(message.data), 10)
+executor = EXECUTOR()
+executor.add_node(node)
+for name in "xyz":
+    executor.create_task(said.append, name)
+for data in "123":
+    publisher.publish(String(data=data))
+done = rclpy.task.Future()
+node.create_timer(1.5, lambda: done.set_result(None))
+executor.spin_until_future_complete(done)
+print("".join(said))
+"""
+
+    def test_what_is_ready_at_once_runs_in_an_order_that_is_drawn(self):
+        for executor, first in ("SingleThreadedExecutor", "zyx123abc"), ("MultiThreadedExecutor", "zyx123acb"):
+            text = self.text.replace("EXECUTOR", executor)
+            self.assertEqual(self.said(text), [first])
+            found = set()
+            for seed in range(1, 7):
+                (order,) = self.said(text, env={"HRDSL_SCHEDULE": str(seed)})
+                self.assertEqual([order], self.said(text, env={"HRDSL_SCHEDULE": str(seed)}), "the same seed, the same order")
+                self.assertEqual(sorted(order), sorted(first))
+                found.add(order)
+                if executor.startswith("Single"):
+                    self.assertEqual([each for each in order if each in "123"], list("123"), "of one topic, as published")
+            self.assertGreater(len({"".join(each for each in order if each in "abc") for order in found}), 2, found)
+            self.assertGreater(len({"".join(each for each in order if each in "xyz") for order in found}), 2, found)
+
+
 class Timers(Ros2Case):
     def test_the_grid(self):
         text = """

@@ -82,12 +82,12 @@ class Simulated(Case):
             """
         )
 
-    def test_forked_processes_have_chances_of_their_own(self):
+    def test_what_is_forked_past_the_refusal_has_chances_of_its_own(self):
         text = """
-            import random
+            import posix, random
             read, write = os.pipe()
             for _ in range(2):
-                child = os.fork()
+                child = posix.fork()
                 if not child:
                     os.write(write, b"%s %s\\n" % (str(random.random()).encode(), os.urandom(3).hex().encode()))
                     os._exit(0)
@@ -100,11 +100,12 @@ class Simulated(Case):
     def test_a_forked_process_makes_no_requests(self):
         out = self.program(
             """
+            import posix
             import hrdsl
             node = hrdsl.Node("parent")
             for ask in (node.now, lambda: time.sleep(1), lambda: hrdsl.Node("child"), lambda: sys.exit(0), lambda: None):
                 sys.stdout.flush()
-                child = os.fork()
+                child = posix.fork()
                 if child == 0:
                     try:
                         ask()
@@ -130,6 +131,22 @@ class Simulated(Case):
             """
         )
         self.assertIn("ProtocolError: a process started by the program has no connection to the harness", out)
+
+    def test_a_process_that_it_starts_sees_the_machine_s_clock_and_the_test_s_seed(self):
+        out = self.program(
+            """
+            import subprocess
+            ask = "import os, random, time; print(sorted(n for n in os.environ if n.startswith('HRDSL')), os.environ['HRDSL_SEED']);"
+            ask += "print(time.time() > %r, time.monotonic() > 0, random.Random().random())" % (time.time() + 1)
+            for _ in range(2):
+                print(subprocess.check_output([sys.executable, "-c", ask], universal_newlines=True), end="")
+            print(time.time(), time.monotonic())
+            """
+        )
+        lines = out.splitlines()
+        self.assertEqual((lines[0], lines[4]), ("['HRDSL_SEED'] 17", "1735689600.0 0.0"))
+        self.assertEqual([line.rpartition(" ")[0] for line in (lines[1], lines[3])], ["True True"] * 2)
+        self.assertNotEqual(lines[1], lines[3], "entropy is the machine's")
 
     def test_modules_are_themselves_after_the_patch(self):
         self.program(

@@ -71,6 +71,26 @@ struct WrittenEvent<'a> {
     time: Nanos,
 }
 
+/// JSON has no infinite numbers, and none that is no number: they are words, as in messages.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum WrittenNumber {
+    Finite(f64),
+    Word(&'static str),
+}
+
+impl WrittenNumber {
+    fn of(x: f64) -> Self {
+        if x.is_finite() {
+            Self::Finite(x)
+        } else if x.is_nan() {
+            Self::Word("nan")
+        } else {
+            Self::Word(if x > 0.0 { "inf" } else { "-inf" })
+        }
+    }
+}
+
 impl Serialize for ReplyLine<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
@@ -86,7 +106,10 @@ impl Serialize for ReplyLine<'_> {
             }
             ReplyAnswer::TimedOut => map.serialize_entry("event", &None::<()>)?,
             ReplyAnswer::Value(value) => map.serialize_entry("value", value)?,
-            ReplyAnswer::Numbers(numbers) => map.serialize_entry("value", numbers)?,
+            ReplyAnswer::Numbers(numbers) => {
+                let written: Vec<WrittenNumber> = numbers.iter().map(|x| WrittenNumber::of(*x)).collect();
+                map.serialize_entry("value", &written)?;
+            }
             ReplyAnswer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
             ReplyAnswer::Acted(Err(error)) => {
                 map.serialize_entry("ok", &false)?;

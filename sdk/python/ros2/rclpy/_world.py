@@ -34,6 +34,13 @@ def looked(what: str) -> None:
     exchange().polled(what)
 
 
+def in_turn(works: list[Any]) -> list[Any]:
+    """What is ready at once, in the order that the schedule draws; without one as it is."""
+    if len(works) > 1:
+        exchange().scheduler.shuffle(works)
+    return works
+
+
 def silently(call: Any, *args: Any) -> None:
     """For what a program cleans up after itself: when the test is over there is nobody left to tell."""
     from hrdsl.errors import ProtocolError, Stopped

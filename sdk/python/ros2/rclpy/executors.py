@@ -181,7 +181,7 @@ class Executor:
             self._bell.is_rung = False
             chosen = self.get_nodes() if nodes is None else nodes
             if self._tasks:
-                for task, entity, node in reversed(self._tasks[:]):
+                for task, entity, node in _world.in_turn(self._tasks[::-1]):
                     if task._can_go_on() and (node is None or node in chosen):
                         found = True
                         yield task, entity, node
@@ -190,6 +190,7 @@ class Executor:
             if not ready:
                 self._sleep(chosen, deadline, nanos)
                 ready = self._scan(chosen)
+            _world.in_turn(ready)
             if self._is_shutdown:
                 raise ShutdownException()
             if not self._context.is_open():
