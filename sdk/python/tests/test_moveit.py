@@ -210,6 +210,102 @@ print(timed.joint_trajectory.points[-1].time_from_start > path.joint_trajectory.
         )
 
 
+    def test_what_the_tutorial_of_moveit_does(self):
+        text = """
+from math import dist, fabs, cos, pi
+import geometry_msgs.msg, moveit_msgs.msg
+from moveit_commander.conversions import pose_to_list
+
+def all_close(goal, actual, tolerance):
+    if type(goal) is list:
+        return all(abs(goal[index] - actual[index]) <= tolerance for index in range(len(goal)))
+    if type(goal) is geometry_msgs.msg.PoseStamped:
+        return all_close(goal.pose, actual.pose, tolerance)
+    x0, y0, z0, qx0, qy0, qz0, qw0 = pose_to_list(actual)
+    x1, y1, z1, qx1, qy1, qz1, qw1 = pose_to_list(goal)
+    d = dist((x1, y1, z1), (x0, y0, z0))
+    return d <= tolerance and fabs(qx0 * qx1 + qy0 * qy1 + qz0 * qz1 + qw0 * qw1) >= cos(tolerance / 2.0)
+
+robot = moveit_commander.RobotCommander()
+scene = moveit_commander.PlanningSceneInterface()
+group = moveit_commander.MoveGroupCommander("arm")
+display = rospy.Publisher("/move_group/display_planned_path", moveit_msgs.msg.DisplayTrajectory, queue_size=20)
+print(group.get_planning_frame(), group.get_end_effector_link(), robot.get_group_names())
+joint_goal = group.get_current_joint_values()
+joint_goal[0], joint_goal[1] = pi / 4, 0
+group.go(joint_goal, wait=True)
+group.stop()
+print(all_close(joint_goal, group.get_current_joint_values(), 0.01))
+here = group.get_current_pose().pose
+print(near(pose_to_list(here)), all_close(here, group.get_current_pose().pose, 0.01))
+here.position.x += 0.1
+print(all_close(here, group.get_current_pose().pose, 0.01))
+group.set_pose_target(here)
+print(group.go(wait=True))
+group.clear_pose_targets()
+plan, fraction = group.compute_cartesian_path([here], 0.05, 0.0)
+shown = moveit_msgs.msg.DisplayTrajectory()
+shown.trajectory_start = robot.get_current_state()
+shown.trajectory.append(plan)
+display.publish(shown)
+print(group.execute(plan, wait=True), len(shown.trajectory[0].joint_trajectory.points) > 2)
+box = geometry_msgs.msg.PoseStamped()
+box.header.frame_id = "hand"
+box.pose.orientation.w = 1.0
+scene.add_box("box", box, size=(0.075, 0.075, 0.075))
+scene.attach_box("hand", "box", touch_links=robot.get_link_names(group="arm"))
+print(len(scene.get_attached_objects(["box"]).keys()) > 0, "box" in scene.get_known_object_names())
+scene.remove_attached_object("hand", name="box")
+scene.remove_world_object("box")
+print(len(scene.get_attached_objects(["box"]).keys()) > 0, "box" in scene.get_known_object_names())
+"""
+        system = Arm()
+        out = [line for line in self.said(text, system) if "WARN" not in line and "INFO" not in line]
+        quaternion = [0.0, 0.0, 0.479426, 0.877583]
+        expected = ["base hand ['arm']", "True", str([0.5, 0.0, 0.25, *quaternion]) + " True", "False", "True"]
+        self.assertEqual(out, [*expected, "True True", "True False", "False False"])
+        ((_, topic, message),) = system.published
+        self.assertEqual(topic, "/move_group/display_planned_path")
+        self.assertEqual(message["trajectory"][0]["joint_trajectory"]["joint_names"], ["shoulder", "elbow"])
+        self.assertEqual(message["trajectory_start"]["joint_state"]["name"], ["shoulder", "elbow"])
+
+    def test_targets_that_are_shifted_and_several(self):
+        text = """
+from geometry_msgs.msg import Pose
+group = moveit_commander.MoveGroupCommander("arm")
+group.shift_pose_target(0, 0.25)
+print(near(group.plan()[1].joint_trajectory.points[-1].positions))
+group.shift_pose_target(1, -0.125, "hand")
+print(near(group.plan()[1].joint_trajectory.points[-1].positions))
+group.shift_pose_target(5, 0.5)
+print(group.plan()[0])
+tries(lambda: group.shift_pose_target(6, 1.0), lambda: group.shift_pose_target(0, 1.0, "foot"))
+first, second = Pose(), Pose()
+first.position.x, second.position.x = 0.75, 0.25
+first.orientation.w = second.orientation.w = 1.0
+group.set_pose_targets([first, second])
+print(near(group.plan()[1].joint_trajectory.points[-1].positions))
+tries(lambda: group.set_pose_targets([]))
+"""
+        out = [line for line in self.said(text) if "WARN" not in line]
+        self.assertEqual(
+            out,
+            [
+                "[0.75, 0.0]",
+                "[0.5, -0.125]",
+                "True",
+                "MoveItCommanderException An axis value between 0 and 5 expected",
+                "MoveItCommanderException group arm has no end-effector foot, but hand",
+                "[0.75, 0.0]",
+                "MoveItCommanderException Unable to set target poses",
+            ],
+        )
+        asked = [request for request in self.requests if request["request"] == "plan"]
+        turned = asked[2]["orientation"]  # by half a radian more than the hand has
+        self.assertAlmostEqual(turned[2], 0.6816387600233341)
+        self.assertAlmostEqual(turned[3], 0.7316888688738209)
+
+
 class Motions(Case):
     def test_it_returns_at_the_end(self):
         text = """
@@ -365,6 +461,35 @@ print(group.get_goal_tolerance(), group.get_planning_time(), all(abs(value) <= 2
         )
         for why in ("elbow cannot be 1.6, but -1.5 to 1.5", "it has 2 joints, and 1 values", "it has no joint knee"):
             self.assertIn("target of group arm: " + why, self.out + self.err)
+
+    def test_tolerances_and_the_planner_are_kept(self):
+        text = """
+group = moveit_commander.MoveGroupCommander("arm")
+group.set_planner_id("RRTConnectkConfigDefault")
+group.set_goal_tolerance(0.25)
+print(repr(group.get_planner_id()), group.get_goal_tolerance(), group.get_goal_joint_tolerance())
+group.set_joint_value_target([0.0, 1.625])  # as far beyond its bounds as the tolerance allows
+group.set_goal_joint_tolerance(0.01)
+tries(lambda: group.set_joint_value_target([0.0, 1.625]))
+"""
+        out = [line for line in self.said(text) if "ERROR" not in line]
+        bounds = "MoveItCommanderException Error setting joint target. Is the target within bounds?"
+        self.assertEqual(out, ["'RRTConnectkConfigDefault' (0.25, 0.25, 0.25) 0.25", bounds])
+
+    def test_a_group_attaches_and_detaches(self):
+        text = """
+scene = moveit_commander.PlanningSceneInterface()
+group = moveit_commander.MoveGroupCommander("arm")
+print(group.attach_object("cup"), group.attach_object("tray", "link", ["base"]))
+print({name: of.link_name for name, of in scene.get_attached_objects().items()}, scene.get_known_object_names())
+print(group.detach_object("cup"), list(scene.get_attached_objects()), scene.get_known_object_names())
+print(group.detach_object("cup"), group.detach_object("link"), group.detach_object(), list(scene.get_attached_objects()))
+"""
+        out = [line for line in self.said(text) if "WARN" not in line]
+        self.assertEqual(
+            out,
+            ["True True", "{'cup': 'hand', 'tray': 'link'} []", "True ['tray'] ['cup']", "False True False []"],
+        )
 
     def test_the_scene_is_kept(self):
         text = """

@@ -127,7 +127,7 @@ from rclpy.qos import DurabilityPolicy, QoSPresetProfiles, ReliabilityPolicy
 from rclpy.time import Time
 rclpy.init()
 n = Node("n", namespace="left/arm")
-print(n.get_namespace(), n.get_fully_qualified_name())
+print(n.get_name(), n.get_namespace(), n.get_fully_qualified_name())
 executor = SingleThreadedExecutor()
 print(executor.add_node(n), executor.get_nodes() == [n], executor.add_node(n))
 executor.remove_node(n)
@@ -149,7 +149,7 @@ with tempfile.TemporaryDirectory() as folder:
         tried(lambda: sorted((name, value.value.type) for name, value in parameter_dict_from_yaml_file(path, **how).items()))
 """
         out = [
-            "/left/arm /left/arm/n",
+            "n /left/arm /left/arm/n",
             "True True False",
             "[]",
             "True True 5",

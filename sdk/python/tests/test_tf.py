@@ -90,6 +90,37 @@ print(listener.getLatestCommonTime("map", "tool") == at(2), listener.allFramesAs
             ],
         )
 
+    def test_between_two_times(self):
+        text = """
+rospy.init_node("listener")
+listener = tf.TransformListener()
+begun = rospy.get_time()
+listener.waitForTransformFull("base", at(2), "base", at(1), "map", rospy.Duration(4))
+print(rospy.get_time() - begun)
+place, rotation = listener.lookupTransformFull("base", at(2), "base", at(1), "map")
+print(near(place), near(tf.transformations.euler_from_quaternion(rotation)), type(place), type(rotation))
+print(near(listener.lookupTransformFull("base", at(1), "/base", at(2), "/map")[0]))
+print(listener.canTransformFull("base", at(2), "base", at(1), "map"), listener.canTransformFull("base", at(3), "base", at(1), "map"))
+for call, *more in (listener.lookupTransformFull,), (listener.waitForTransformFull, rospy.Duration(0.5)):
+    begun = rospy.get_time()
+    try:
+        call("base", at(9), "base", at(1), "map", *more)
+    except tf.Exception as error:
+        print(rospy.get_time() - begun, "base" in str(error) and "into the future" in str(error))
+"""
+        arrivals = [heard(1, transform("map", "base", 1, 1.0)), heard(2, transform("map", "base", 2, 3.0, 1.0))]
+        self.assertEqual(
+            self.said(text, System(arrivals)),
+            [
+                "2.0",
+                "[-2.0, -1.0, 0.0] [0.0, 0.0, 0.0] <class 'list'> <class 'list'>",
+                "[2.0, 1.0, 0.0]",
+                "1 0",
+                "0.0 True",
+                "0.5 True",
+            ],
+        )
+
     def test_what_is_not_known(self):
         text = """
 rospy.init_node("listener")
