@@ -180,6 +180,12 @@ impl Noun {
         }
     }
 
+    /// Networks, and what is judged and covered: other declarations do not speak of them in expressions, so that whoever writes
+    /// such a name there most likely means another one.
+    pub fn is_apart(self) -> bool {
+        [Noun::Network, Noun::Query, Noun::Requirement, Noun::Point, Noun::Cross, Noun::Suite].contains(&self)
+    }
+
     /// `clock`
     #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub fn word(self) -> &'static str {

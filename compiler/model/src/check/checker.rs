@@ -1,4 +1,6 @@
-//! The checker: the scenario so far, the states of the phases, and what all of them ask.
+//! The checker: the scenario so far, what several phases know, and what all of them ask.
+
+use std::collections::BTreeSet;
 
 use hrdsl_source::{Diagnostic, Enumeration, Span};
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax};
@@ -7,8 +9,8 @@ use super::{
     state::{
         issues::IssueList,
         names::{
-            AgentNames, CheckedSource, ConstEntry, EventNames, PlayerNames, SharedNames, TemplateNames,
-            TypeNames, WorldState,
+            CheckedSource, ConstEntry, EventNames, PlayerNames, SharedNames, TemplateNames, TypeNames,
+            WorldState,
         },
         solids::SolidMaker,
         table::{NameTable, OrderedMap},
@@ -33,12 +35,12 @@ pub(super) const NOBODY: ActorId = ActorId(u16::MAX);
 /// What [`Noun::EventOrStimulus`] means.
 pub(super) const EVENTS: [Noun; 2] = [Noun::Event, Noun::Stimulus];
 
-/// The scenario so far and what is known for the rest of it, in the order of the phases.
+/// The scenario so far, and what is known for the rest of it by more than one phase.
 pub(crate) struct Checker<'a> {
     pub(super) s: Scenario,
     pub(super) issues: IssueList,
     pub(super) source: CheckedSource<'a>,
-    // 1. the vocabulary
+    // the vocabulary
     pub(super) actors: NameTable,
     pub(super) consts: OrderedMap<&'a str, ConstEntry<'a>>,
     pub(super) types: TypeNames<'a>,
@@ -46,10 +48,11 @@ pub(crate) struct Checker<'a> {
     pub(super) events: EventNames<'a>,
     pub(super) players: PlayerNames<'a>,
     pub(super) shared: SharedNames,
-    // 2. the world
+    // the world
     pub(super) world: WorldState<'a>,
-    // 4. those who play the actors
-    pub(super) agents: AgentNames<'a>,
+    // what is met on the way
+    /// The variables of agents without a value that were read since this was emptied.
+    pub(super) unbound: BTreeSet<String>,
     /// Coverpoints, which templates can be given.
     pub(super) points: NameTable,
 }
@@ -83,7 +86,7 @@ impl<'a> Checker<'a> {
                 solids: SolidMaker::default(),
                 missed: Vec::new(),
             },
-            agents: AgentNames::default(),
+            unbound: BTreeSet::new(),
             points: NameTable::default(),
         }
     }
@@ -238,7 +241,8 @@ impl<'a> Checker<'a> {
             return;
         }
         let is = local.or_else(|| self.kind_of(&name.text));
-        if is.is_none() && unread::may_declare(noun, self.source.unread_items, self.source.unread_members) {
+        let known = local.is_some() || is.is_some_and(|is| !is.is_apart());
+        if !known && unread::may_declare(noun, self.source.unread_items, self.source.unread_members) {
             return;
         }
         let helpless = !self.issues.compares();

@@ -17,6 +17,7 @@ use hrdsl_source::Diagnostic;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
 use crate::{Scenario, descriptions::DescriptionLibrary};
+use agents::phase::AgentsPhase;
 use automata::phase::AutomataPhase;
 use checker::Checker;
 use state::{
@@ -30,13 +31,13 @@ pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction}
 /// Resolves and checks a scenario with the modules it uses and files of tests in its vocabulary.
 ///
 /// # Steps
-/// 1. [`Checker::vocabulary`]: actors, types, constants, events, stimuli, shared variables, templates, the names of
-///    agents and automata, and channels
+/// 1. [`Checker::vocabulary`], [`Checker::channels`]: actors, types, constants, events, stimuli, shared variables, templates,
+///    the names of agents and automata, and channels
 /// 2. [`Checker::devices`], [`Checker::world`]: what devices can be told; bodies with their parts, signals, rules
 /// 3. [`Checker::stimuli`]: what stimuli do to the world
-/// 4. [`Checker::agents`]: those who play the actors, and
+/// 4. [`AgentsPhase`], which gives what agents have declared
 /// 5. [`AutomataPhase`], which takes the channels and gives the networks
-/// 6. [`TestingPhase`]: requirements, coverage, suites, systems, tests
+/// 6. [`TestingPhase`], which takes both: requirements, coverage, suites, systems, tests
 #[must_use]
 pub fn resolve(
     scenario: &ast::FileSyntax,
@@ -125,15 +126,12 @@ fn phases<'a>(
     let channels = checker.channels();
     checker.devices();
     checker.world();
-    let later: [(CheckPhase, fn(&mut Checker<'a>)); 2] =
-        [(CheckPhase::Stimuli, Checker::stimuli), (CheckPhase::Agents, Checker::agents)];
-    for (phase, check) in later {
-        if checker.source.reaches(phase) {
-            check(&mut checker);
-        }
+    if checker.source.reaches(CheckPhase::Stimuli) {
+        checker.stimuli();
     }
+    let agents = AgentsPhase::check(&mut checker);
     let networks = AutomataPhase::check(&mut checker, channels);
-    TestingPhase::check(&mut checker, networks, tests);
+    TestingPhase::check(&mut checker, (agents, networks), tests);
     checker.say_without_world();
     checker
 }

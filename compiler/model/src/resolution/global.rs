@@ -1,6 +1,6 @@
 //! The names that are visible everywhere, by what they are of, in the order of the text.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_source::Span;
 use indexmap::IndexMap;
@@ -67,9 +67,11 @@ impl GlobalNames {
     pub(super) fn names(&self, nouns: &[Noun]) -> Vec<&str> {
         let all = nouns.iter().filter_map(|noun| self.by_noun.get(noun)).flatten();
         let mut found: Vec<(usize, &str)> = all.map(|(name, of)| (of.order, name.as_str())).collect();
-        // Those of one kind are in order already.
+        // Those of one kind are in order already, each once.
         if nouns.len() > 1 {
             found.sort_unstable();
+            let mut seen = BTreeSet::new();
+            found.retain(|(_, name)| seen.insert(*name));
         }
         found.into_iter().map(|(_, name)| name).collect()
     }

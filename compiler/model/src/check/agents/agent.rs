@@ -10,7 +10,7 @@ use hrdsl_syntax::ast::{
 
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
-    checker::Checker,
+    agents::phase::AgentsPhase,
     state::{
         issues::too_many,
         names::{DeclaredPlayer, GoalEntry},
@@ -85,11 +85,11 @@ fn declared(agent: &ast::AgentSyntax, goal: &str) -> Option<(String, Span)> {
     })
 }
 
-impl<'a> Checker<'a> {
+impl<'a> AgentsPhase<'_, 'a> {
     pub(in crate::check) fn agents(&mut self) {
         for (item, _) in self.each_item() {
             if let ItemSyntaxKind::Agent(agent) = item {
-                asked_goals(agent, &mut self.agents.asked_goals);
+                asked_goals(agent, &mut self.asked_goals);
             }
         }
         // All names come first, since agents send each other messages; those of templates before those of instances, so
@@ -125,6 +125,7 @@ impl<'a> Checker<'a> {
         let (index, contents) = (self.s.agents.len(), self.s.contents.len());
         let plain = DeclaredPlayer { syntax, given: None, instance: None };
         self.push_agent(&plain, template.name, template.name.span);
+        self.names.add();
         self.declare_members(index, syntax);
         if whole {
             self.agent_rules(&AgentScope::new(index), syntax);
@@ -132,10 +133,7 @@ impl<'a> Checker<'a> {
         }
         self.s.agents.truncate(index);
         self.s.contents.truncate(contents);
-        self.agents.beliefs.truncate(index);
-        self.agents.belief_fields.truncate(index);
-        self.agents.goals.truncate(index);
-        self.agents.modes.retain(|(agent, _), _| usize::from(*agent) < index);
+        self.names.truncate(index);
     }
 
     /// Beliefs and goals with their types.
@@ -151,9 +149,9 @@ impl<'a> Checker<'a> {
             self.report(too_many(message, agent.name.span));
             goals.truncate(MAX_NAMES);
         }
-        self.agents.goals[index] = goals;
+        self.names.goals[index] = goals;
         self.declare_goals(index, agent);
-        let entries = self.agents.goals[index].clone();
+        let entries = self.names.goals[index].clone();
         self.s.agents[index].goals = entries
             .iter()
             .map(|(name, entry)| {
@@ -187,9 +185,9 @@ impl<'a> Checker<'a> {
             }
         }
         let percept = on.and_then(|event| self.percept(index, event, &fields));
-        if self.issues.declare(&mut self.agents.beliefs[index], Noun::Belief, name).is_some() {
+        if self.checker.issues.declare(&mut self.names.beliefs[index], Noun::Belief, name).is_some() {
             let params = self.flat(&fields);
-            self.agents.belief_fields[index].push(fields);
+            self.names.belief_fields[index].push(fields);
             let (name, annotations) = (name.text.clone(), marks);
             let belief = BeliefDecl { name, params, annotations, percept, negates: None, origin: span };
             self.s.agents[index].beliefs.push(belief);
@@ -204,7 +202,8 @@ impl<'a> Checker<'a> {
         fields: &DeclaredFields,
     ) -> Option<crate::EventId> {
         let event = self.event(Noun::EventOrStimulus, name, None)?;
-        self.perceives(self.s.agents[index].actor, event, name.span, false);
+        let actor = self.s.agents[index].actor;
+        self.perceives(actor, event, name.span, false);
         let types = |params: &[Parameter]| params.iter().map(|p| p.ty).collect::<Vec<_>>();
         let (ours, theirs) = (self.flat(fields), &self.s.events[usize::from(event.0)].params);
         let known = fields.iter().all(|(_, l)| *l != crate::types::TypeLayout::Unknown);
@@ -236,16 +235,16 @@ impl<'a> Checker<'a> {
             if self.issues.declare(&mut table, Noun::Goal, name).is_none() {
                 continue;
             }
-            match self.agents.goals[index].get_mut(&name.text) {
+            match self.names.goals[index].get_mut(&name.text) {
                 Some(entry) => {
                     *entry = GoalEntry { arity: fields.len(), fields: Some(fields), place: name.span }
                 }
                 None if unread::in_agent(agent) => {}
                 None => {
-                    let goals: Vec<String> = self.agents.goals[index].keys().cloned().collect();
+                    let goals: Vec<String> = self.names.goals[index].keys().cloned().collect();
                     let issue = no_plan(&name.text, name.span, goals.iter().map(String::as_str));
                     let is_adopted =
-                        adopts(agent, &name.text) || self.agents.asked_goals.contains(name.text.as_str());
+                        adopts(agent, &name.text) || self.asked_goals.contains(name.text.as_str());
                     let issue = if is_adopted {
                         issue
                     } else {
@@ -281,7 +280,7 @@ impl<'a> Checker<'a> {
 
     /// Plans for goals that nothing adopts: most often one of a goal's plans is misspelt.
     fn unadopted(&mut self, scope: &AgentScope, agent: &ast::AgentSyntax) {
-        let mut adopted: BTreeSet<&str> = self.agents.asked_goals.clone();
+        let mut adopted: BTreeSet<&str> = self.asked_goals.clone();
         let mut here: indexmap::IndexSet<&str> = indexmap::IndexSet::new();
         let mut broken = false;
         for member in &agent.members {
@@ -299,7 +298,7 @@ impl<'a> Checker<'a> {
                 Member::Error => broken = true,
             }
         }
-        let goals = &self.agents.goals[usize::from(scope.id.0)];
+        let goals = &self.names.goals[usize::from(scope.id.0)];
         if broken || here.iter().any(|goal| !goals.contains_key(*goal)) {
             // An adoption is misspelt, and has its diagnostic: it may be the one that is missing.
             return;
@@ -379,11 +378,11 @@ impl<'a> Checker<'a> {
     }
 
     pub(in crate::check) fn belief_fields(&self, agent: AgentId, belief: BeliefId) -> DeclaredFields {
-        self.agents.belief_fields[usize::from(agent.0)][usize::from(belief.0)].clone()
+        self.names.belief_fields[usize::from(agent.0)][usize::from(belief.0)].clone()
     }
 
     pub(in crate::check) fn goal_fields(&self, agent: AgentId, goal: GoalId) -> Option<DeclaredFields> {
-        let (_, entry) = self.agents.goals[usize::from(agent.0)].get_index(usize::from(goal.0))?;
+        let (_, entry) = self.names.goals[usize::from(agent.0)].get_index(usize::from(goal.0))?;
         entry.fields.clone()
     }
 
@@ -402,14 +401,14 @@ impl<'a> Checker<'a> {
         let index = usize::from(agent.0);
         let plain = &self.s.agents[index].beliefs[usize::from(belief.0)];
         let name = format!("~{}", plain.name);
-        if let Some(id) = self.agents.beliefs[index].get(&name) {
+        if let Some(id) = self.names.beliefs[index].get(&name) {
             return Some(BeliefId(id));
         }
         let negation = BeliefDecl { name, percept: None, negates: Some(belief), ..plain.clone() };
-        let (issues, table) = (&mut self.issues, &mut self.agents.beliefs[index]);
+        let (issues, table) = (&mut self.checker.issues, &mut self.names.beliefs[index]);
         let id = issues.declare_as(table, Noun::Belief, &negation.name, negation.origin)?;
         let fields = self.belief_fields(agent, belief);
-        self.agents.belief_fields[index].push(fields);
+        self.names.belief_fields[index].push(fields);
         self.s.agents[index].beliefs.push(negation);
         Some(BeliefId(id))
     }
@@ -419,14 +418,14 @@ impl<'a> Checker<'a> {
         scope: &AgentScope,
         name: &ast::NameSyntax,
     ) -> Option<BeliefId> {
-        let table = &self.agents.beliefs[usize::from(scope.id.0)];
+        let table = &self.names.beliefs[usize::from(scope.id.0)];
         if let Some(id) = table.get(&name.text) {
             let place = table.span(id);
             self.refer(name, place);
             return Some(BeliefId(id));
         }
         let names: Vec<String> = table.names().filter(|n| !n.starts_with('~')).map(str::to_owned).collect();
-        let is_goal = self.agents.goals[usize::from(scope.id.0)].contains_key(&name.text);
+        let is_goal = self.names.goals[usize::from(scope.id.0)].contains_key(&name.text);
         self.unknown(Noun::Belief, name, &names, is_goal.then_some(Noun::Goal));
         None
     }
@@ -439,22 +438,23 @@ impl<'a> Checker<'a> {
     /// What a name is within some agent.
     pub(in crate::check) fn kind_of_agent(&self, agent: AgentId, text: &str) -> Option<Noun> {
         let index = usize::from(agent.0);
-        if self.agents.beliefs[index].get(text).is_some() {
+        if self.names.beliefs[index].get(text).is_some() {
             return Some(Noun::Belief);
         }
-        self.agents.goals[index].contains_key(text).then_some(Noun::Goal)
+        self.names.goals[index].contains_key(text).then_some(Noun::Goal)
     }
 
     /// A goal with its number of arguments; there must be a plan for it.
     pub(in crate::check) fn goal(&mut self, scope: &AgentScope, call: &CallSyntax) -> Option<GoalId> {
         let name = &call.name;
-        let goals = &self.agents.goals[usize::from(scope.id.0)];
+        let goals = &self.names.goals[usize::from(scope.id.0)];
         let Some((index, _, entry)) = goals.get_full(&name.text) else {
             let helpless = !self.issues.compares();
             let goals = self.near(goals.keys().map(String::as_str));
             self.issues.compared += goals.len();
             let near = goals.iter().map(String::as_str);
-            let is = self.kind_in_agent(scope, &name.text).or_else(|| self.kind_of(&name.text));
+            let elsewhere = || self.kind_of(&name.text).filter(|is| !is.is_apart());
+            let is = self.kind_in_agent(scope, &name.text).or_else(elsewhere);
             let issue = match is {
                 Some(is) => names::wrong_kind(Noun::Goal, is, &name.text, name.span, near),
                 None if self.source.unread_members => return None,
@@ -506,11 +506,11 @@ impl<'a> Checker<'a> {
     fn subject(&mut self, agent: AgentId, name: &str, is_goal: bool, arity: usize) -> Option<MessageSubject> {
         let index = usize::from(agent.0);
         if is_goal {
-            let id = self.agents.goals[index].get_index_of(name)?;
+            let id = self.names.goals[index].get_index_of(name)?;
             let fits = usize::from(self.s.agents[index].goals.get(id)?.arity) == arity;
             return u16::try_from(id).ok().filter(|_| fits).map(|id| MessageSubject::Goal(GoalId(id)));
         }
-        let plain = BeliefId(self.agents.beliefs[index].get(name.trim_start_matches('~'))?);
+        let plain = BeliefId(self.names.beliefs[index].get(name.trim_start_matches('~'))?);
         let belief = if name.starts_with('~') { self.negation(agent, plain)? } else { plain };
         let fits = self.s.agents[index].beliefs[usize::from(belief.0)].params.len() == arity;
         fits.then_some(MessageSubject::Belief(belief))

@@ -6,11 +6,12 @@ use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax};
 use crate::check::{
     agents::{
         agent::AgentScope,
+        phase::AgentsPhase,
         terms::{TermMode, literal_of},
     },
-    checker::Checker,
     state::scope::{ExprEnv, is_variable_name},
     value::{expr::FUNCTIONS, range},
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     BinaryOp, Dimension, InferredType, TypedContext, TypedTerm, UnaryOp,
@@ -39,7 +40,7 @@ pub(in crate::check) fn restore(env: &mut ExprEnv, before: &KnownVars) {
     }
 }
 
-impl Checker<'_> {
+impl AgentsPhase<'_, '_> {
     pub(in crate::check) fn context(
         &mut self,
         scope: &AgentScope,

@@ -7,10 +7,12 @@ use crate::check::{
         agent::AgentScope,
         context::{known, restore},
         internal_table::{INTERNAL_ACTIONS, InternalAction, InternalOp},
+        phase::AgentsPhase,
         terms::{TermMode, literal_of},
     },
     checker::Checker,
     state::scope::ExprEnv,
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     Dimension, GoalId, InferredType, ListFunction, TypedContext, TypedExpr, TypedInternalAct, TypedStepKind,
@@ -19,7 +21,7 @@ use crate::{
     report::{agents, names, types},
 };
 
-impl Checker<'_> {
+impl AgentsPhase<'_, '_> {
     /// The row of an internal action, if it has the right number of arguments.
     fn action(&mut self, call: &CallSyntax) -> Option<&'static InternalAction> {
         let name = &call.name;
@@ -240,7 +242,7 @@ impl Checker<'_> {
         binds: bool,
     ) -> Option<(GoalId, Vec<TypedTerm>)> {
         let call = self.goal_call(e)?;
-        let goals = &self.agents.goals[usize::from(scope.id.0)];
+        let goals = &self.names.goals[usize::from(scope.id.0)];
         if call.args.is_none()
             && let Some((index, ..)) = goals.get_full(&call.name.text)
         {
@@ -329,7 +331,7 @@ impl Checker<'_> {
             }
             return None;
         };
-        let named = self.agents.beliefs[usize::from(scope.id.0)].get(&literal.call.name.text);
+        let named = self.names.beliefs[usize::from(scope.id.0)].get(&literal.call.name.text);
         if let (None, Some(id)) = (&literal.call.args, named) {
             let fields = self.belief_fields(scope.id, crate::BeliefId(id));
             let any = |_: &_| ast::ExprSyntax { kind: Syntax::Any, span: e.span };

@@ -9,11 +9,13 @@ use crate::check::{
     agents::{
         agent::AgentScope,
         context::{known, restore},
+        phase::AgentsPhase,
         terms::literal_of,
     },
     checker::Checker,
     state::{issues::too_many, names::DeclaredPlayer, record::DeclaredFields, scope::ExprEnv},
     unread,
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     AgentId, AgentSpeech, BeliefId, ContentId, GoalId, InferredType, MessageContent, Parameter, Performative,
@@ -55,7 +57,7 @@ struct MessageTopic {
     belief: Option<(AgentId, BeliefId)>,
 }
 
-impl Checker<'_> {
+impl AgentsPhase<'_, '_> {
     /// `.send(A, tell, b(…))`, `.broadcast(tell, b(…))`
     pub(in crate::check) fn send_message(
         &mut self,
@@ -169,7 +171,8 @@ impl Checker<'_> {
             self.report(names::wrong_kind(Noun::Agent, is, &name.text, name.span, all));
             return (TypedExpr::error(e.span), MessageReceiver::Unknown);
         }
-        let to = self.expr_of(e, InferredType::Enum(self.players.agent_names), env);
+        let named = InferredType::Enum(self.players.agent_names);
+        let to = self.expr_of(e, named, env);
         let receiver = match (&to.kind, to.constant()) {
             (TypedExprKind::Error, _) => MessageReceiver::Unknown,
             (_, Some(Value::Symbol(symbol))) => match symbol.name() {
@@ -249,11 +252,11 @@ impl Checker<'_> {
     ) -> Option<(Option<Vec<Parameter>>, Option<DeclaredFields>, Option<BeliefId>)> {
         let index = usize::from(agent.0);
         if goal {
-            let at = self.agents.goals[index].get_index_of(&name.text)?;
+            let at = self.names.goals[index].get_index_of(&name.text)?;
             let id = GoalId(u16::try_from(at).ok()?);
             return Some((self.s.agents[index].goals[at].params.clone(), self.goal_fields(agent, id), None));
         }
-        let plain = BeliefId(self.agents.beliefs[index].get(&name.text)?);
+        let plain = BeliefId(self.names.beliefs[index].get(&name.text)?);
         let belief = if negated { self.negation(agent, plain)? } else { plain };
         let params = self.s.agents[index].beliefs[usize::from(belief.0)].params.clone();
         Some((Some(params), Some(self.belief_fields(agent, belief)), Some(belief)))
@@ -274,7 +277,7 @@ impl Checker<'_> {
         for other in having.iter().skip(1) {
             let Some((theirs, ..)) = self.declared_in(*other, name, literal.negated, goal) else { continue };
             let arity = |c: &Self, agent: AgentId| {
-                c.agents.goals[usize::from(agent.0)].get(&name.text).map(|g| g.arity)
+                c.names.goals[usize::from(agent.0)].get(&name.text).map(|g| g.arity)
             };
             let alike = match (types(params), types(theirs.as_ref())) {
                 (Some(ours), Some(theirs)) => ours == theirs,
@@ -307,9 +310,9 @@ impl Checker<'_> {
         for agent in receivers {
             let index = usize::from(agent.0);
             match noun {
-                Noun::Goal => names.extend(self.agents.goals[index].keys().cloned()),
+                Noun::Goal => names.extend(self.names.goals[index].keys().cloned()),
                 _ => names.extend(
-                    self.agents.beliefs[index].names().filter(|n| !n.starts_with('~')).map(str::to_owned),
+                    self.names.beliefs[index].names().filter(|n| !n.starts_with('~')).map(str::to_owned),
                 ),
             }
         }
@@ -404,7 +407,7 @@ impl Checker<'_> {
     /// A goal without declared types has a number of arguments all the same.
     fn counted(&mut self, about: &MessageTopic) {
         let name = &about.call.name.text;
-        let having = self.agents.goals.iter().filter_map(|goals| goals.get(name)).map(|g| g.arity);
+        let having = self.names.goals.iter().filter_map(|goals| goals.get(name)).map(|g| g.arity);
         let all: Vec<usize> = having.collect();
         if let Some(want) = all.first()
             && !all.contains(&about.arity)
@@ -417,7 +420,7 @@ impl Checker<'_> {
     fn has_for_answers(&mut self, scope: &AgentScope, about: &MessageTopic, span: Span) {
         let name = &about.call.name.text;
         let index = usize::from(scope.id.0);
-        let ours = self.agents.beliefs[index].get(name);
+        let ours = self.names.beliefs[index].get(name);
         let types = |params: &[Parameter]| params.iter().map(|p| p.ty).collect::<Vec<_>>();
         let theirs = about.fields.as_ref().map(|f| self.flat(f)).unwrap_or_default();
         let fits = ours

@@ -5,6 +5,7 @@ pub(super) mod context;
 pub(super) mod internal;
 pub(super) mod internal_table;
 pub(super) mod message;
+pub(super) mod phase;
 pub(super) mod plan;
 pub(super) mod rule;
 pub(super) mod steps;

@@ -6,9 +6,9 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AgentMemberKind as Member};
 
 use crate::check::{
-    agents::agent::AgentScope,
-    checker::Checker,
+    agents::{agent::AgentScope, phase::AgentsPhase},
     state::{names::ArgumentMode, scope::ExprEnv},
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     BeliefId, InferredType, TypedBeliefRule, TypedContext, TypedExprKind, TypedTerm, VariableRef,
@@ -29,7 +29,7 @@ struct RuleFindings {
     modes: Vec<ArgumentMode>,
 }
 
-impl Checker<'_> {
+impl AgentsPhase<'_, '_> {
     /// The rules of an agent. First their modes are worked out: what a rule needs may depend on what those need that it
     /// asks; then what is wrong is said.
     pub(in crate::check) fn agent_rules(&mut self, scope: &AgentScope, agent: &ast::AgentSyntax) {
@@ -74,7 +74,7 @@ impl Checker<'_> {
             });
             let belief = found.rule.belief;
             let free = vec![ArgumentMode::Free; found.modes.len()];
-            let known = self.agents.modes.entry((scope.id.0, belief.0)).or_insert(free);
+            let known = self.names.modes.entry((scope.id.0, belief.0)).or_insert(free);
             let mut changed = false;
             for (known, new) in known.iter_mut().zip(&found.modes) {
                 changed |= *new > *known;
@@ -101,16 +101,16 @@ impl Checker<'_> {
         let fields = belief.map(|b| self.belief_fields(scope.id, b));
         let args = self.matched(Noun::Belief, &head.call, fields.as_ref(), &mut env, true);
         let mut modes = vec![ArgumentMode::Free; args.len()];
-        if let Some(known) = belief.and_then(|b| self.agents.modes.get(&(scope.id.0, b.0))) {
+        if let Some(known) = belief.and_then(|b| self.names.modes.get(&(scope.id.0, b.0))) {
             modes.iter_mut().zip(known).for_each(|(mode, known)| *mode = *known);
         }
         let heads = open_heads(&args, &mut modes, &mut env);
-        self.agents.unbound.clear();
+        self.unbound.clear();
         let body = clause.body.map_or(TypedContext::True, |e| self.context(scope, e, &mut env));
         self.fits_head(&args, belief, &heads, scope, &mut env, head.span);
         for (var, at) in &heads {
             let Some(local) = env.locals.get(usize::from(*var)) else { continue };
-            if !local.bound || self.agents.unbound.contains(&local.name) {
+            if !local.bound || self.unbound.contains(&local.name) {
                 modes[*at] = ArgumentMode::Input;
             }
         }

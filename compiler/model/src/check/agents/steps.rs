@@ -6,17 +6,18 @@ use crate::check::{
     agents::{
         agent::AgentScope,
         context::{known, restore},
+        phase::AgentsPhase,
     },
-    checker::Checker,
     state::scope::ExprEnv,
     value::expr::MAX_TIME,
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     Dimension, GoalId, InferredType, TypedContext, TypedExpr, TypedStep, TypedStepKind, Value, noun::Noun,
     report::types,
 };
 
-impl Checker<'_> {
+impl AgentsPhase<'_, '_> {
     pub(in crate::check) fn plan_body(
         &mut self,
         scope: &AgentScope,
@@ -152,9 +153,10 @@ impl Checker<'_> {
     fn act_of(&mut self, scope: &AgentScope, call: &CallSyntax, env: &mut ExprEnv) -> Option<TypedStepKind> {
         let local = self.kind_in_agent(scope, &call.name.text);
         let event = self.event(Noun::EventOrStimulus, &call.name, local)?;
-        self.owns(self.s.agents[usize::from(scope.id.0)].actor, event, call);
+        let (actor, noun) = (self.s.agents[usize::from(scope.id.0)].actor, self.noun_of(event));
+        self.owns(actor, event, call);
         let fields = self.fields_of(event);
-        let args = self.args(self.noun_of(event), call, &fields, env);
+        let args = self.args(noun, call, &fields, env);
         Some(TypedStepKind::Do { event, args })
     }
 

@@ -4,14 +4,10 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, CallSyntax, ExprSyntaxKind as Syntax};
 
 use crate::check::{
-    agents::agent::AgentScope,
+    agents::{agent::AgentScope, phase::AgentsPhase},
     checker::Checker,
-    state::{
-        item::ArgumentPart,
-        names::ArgumentMode,
-        record::DeclaredFields,
-        scope::{ExprEnv, is_variable_name},
-    },
+    state::{item::ArgumentPart, names::ArgumentMode, record::DeclaredFields, scope::ExprEnv},
+    vocabulary::template::CheckerPhase,
 };
 use crate::{
     BeliefAnnotation, BeliefId, InferredType, Parameter, Type, TypedAssertion, TypedExpr, TypedExprKind,
@@ -84,12 +80,7 @@ pub(in crate::check) fn literal_of(e: &ast::ExprSyntax) -> Option<ast::LiteralSy
     Some(literal)
 }
 
-impl Checker<'_> {
-    /// Whether a name like this is an agent's variable, and not a constant or another agent.
-    pub(in crate::check) fn is_variable(&self, text: &str) -> bool {
-        is_variable_name(text) && !self.has_value(text) && self.players.agent_names.symbol(text).is_none()
-    }
-
+impl AgentsPhase<'_, '_> {
     /// Arguments that are matched: `_`, a variable, or a value. `None` for parameters: their types are not known.
     pub(in crate::check) fn matched(
         &mut self,
@@ -360,7 +351,7 @@ impl Checker<'_> {
         call: &CallSyntax,
         env: &ExprEnv,
     ) {
-        let Some(modes) = self.agents.modes.get(&(agent, belief.0)).cloned() else { return };
+        let Some(modes) = self.names.modes.get(&(agent, belief.0)).cloned() else { return };
         let written = call.args.as_deref().unwrap_or_default();
         for (i, (arg, mode)) in args.iter().zip(&modes).enumerate() {
             let span = if written.len() == modes.len() { written[i].span } else { call.span };
@@ -377,7 +368,7 @@ impl Checker<'_> {
             };
             if needs {
                 let names = open.iter().filter_map(|v| env.locals.get(usize::from(*v)));
-                self.agents.unbound.extend(names.map(|l| l.name.clone()));
+                self.unbound.extend(names.map(|l| l.name.clone()));
                 self.report(agents::rule_needs(&call.name.text, i, span));
             }
         }

@@ -1,4 +1,4 @@
-//! What the checker knows, in small states: each is filled by one phase and read by those after it.
+//! What the checker knows, in small states: each is filled by one phase and read by those after it, or given to them.
 
 pub(crate) mod function;
 pub(crate) mod issues;

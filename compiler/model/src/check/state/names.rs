@@ -1,4 +1,4 @@
-//! Names that are visible everywhere, by what they are of: each table is filled by one phase, and read by those after it.
+//! Names with what resolves them, by what they are of: each table is filled by one phase, and read by those after it.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -195,17 +195,30 @@ pub(crate) struct GoalEntry {
 
 /// What agents have declared, by agent.
 #[derive(Default)]
-pub(crate) struct AgentNames<'a> {
+pub(crate) struct AgentNames {
     pub beliefs: Vec<NameTable>,
     /// By belief: the parameters as declared.
     pub belief_fields: Vec<Vec<DeclaredFields>>,
     pub goals: Vec<OrderedMap<String, GoalEntry>>,
     /// By agent and belief: what its rules need of its arguments.
     pub modes: BTreeMap<(u16, u16), Vec<ArgumentMode>>,
-    /// The goals that some message asks somebody to achieve, by name.
-    pub asked_goals: BTreeSet<&'a str>,
-    /// The variables without a value that were read since this was emptied.
-    pub unbound: BTreeSet<String>,
+}
+
+impl AgentNames {
+    /// Of an agent that has declared nothing yet.
+    pub fn add(&mut self) {
+        self.beliefs.push(NameTable::default());
+        self.belief_fields.push(Vec::new());
+        self.goals.push(OrderedMap::default());
+    }
+
+    /// Keeps the names of the first agents.
+    pub fn truncate(&mut self, agents: usize) {
+        self.beliefs.truncate(agents);
+        self.belief_fields.truncate(agents);
+        self.goals.truncate(agents);
+        self.modes.retain(|(agent, _), _| usize::from(*agent) < agents);
+    }
 }
 
 /// Networks of automata, and what is asked of them.

@@ -6,13 +6,18 @@ use hrdsl_syntax::ast;
 
 use crate::check::{
     checker::Checker,
-    state::{names::NetworkNames, phase::CheckPhase, table::NameTable},
+    state::{
+        names::{AgentNames, NetworkNames},
+        phase::CheckPhase,
+        table::NameTable,
+    },
     vocabulary::template::CheckerPhase,
 };
 
 /// The last phase: nothing is declared in it that others speak of.
 pub(in crate::check) struct TestingPhase<'c, 'a> {
     pub(super) checker: &'c mut Checker<'a>,
+    pub(super) agents: AgentNames,
     pub(super) networks: NetworkNames,
     pub(super) requirements: NameTable,
     pub(super) crosses: NameTable,
@@ -25,27 +30,29 @@ impl<'c, 'a> TestingPhase<'c, 'a> {
     /// Checks requirements, coverage, suites and systems, then the tests of the scenario and of the files of tests.
     pub(in crate::check) fn check(
         checker: &'c mut Checker<'a>,
-        networks: NetworkNames,
+        (agents, networks): (AgentNames, NetworkNames),
         tests: &[&ast::FileSyntax],
     ) {
         let mut phase = Self {
             checker,
+            agents,
             networks,
             requirements: NameTable::default(),
             crosses: NameTable::default(),
             suites: NameTable::default(),
             unknown_player: false,
         };
-        let steps: [(CheckPhase, fn(&mut Self)); 4] = [
-            (CheckPhase::Requirements, Self::requirements),
-            (CheckPhase::Coverage, Self::coverage),
-            (CheckPhase::Suites, Self::suites),
-            (CheckPhase::Systems, Self::systems),
-        ];
-        for (step, check) in steps {
-            if phase.source.reaches(step) {
-                check(&mut phase);
-            }
+        if phase.source.reaches(CheckPhase::Requirements) {
+            phase.requirements();
+        }
+        if phase.source.reaches(CheckPhase::Coverage) {
+            phase.coverage();
+        }
+        if phase.source.reaches(CheckPhase::Suites) {
+            phase.suites();
+        }
+        if phase.source.reaches(CheckPhase::Systems) {
+            phase.systems();
         }
         phase.tests(tests);
     }

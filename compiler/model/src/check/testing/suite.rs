@@ -12,7 +12,7 @@ use crate::check::state::phase::CheckPhase;
 use crate::check::unread;
 use crate::check::vocabulary::template::CheckerPhase;
 use crate::check::{
-    agents::agent::AgentScope,
+    agents::{agent::AgentScope, phase::AgentsPhase},
     checker::NOBODY,
     state::{issues::too_many, scope::ExprEnv, table::MAX_NAMES},
 };
@@ -379,7 +379,9 @@ impl TestingPhase<'_, '_> {
         let player = self.players.table.get(&agent.text).map(|id| self.players.ids[usize::from(id)]);
         let Some(PlayerRef::Agent(id)) = player else { return None };
         let mut env = ExprEnv { plan: true, noun: Some(Noun::Variable), ..ExprEnv::default() };
-        let context = self.context(&AgentScope::of(id), formula, &mut env);
+        let mut agents = AgentsPhase::over(self.checker, std::mem::take(&mut self.agents));
+        let context = agents.context(&AgentScope::of(id), formula, &mut env);
+        self.agents = agents.names;
         if env.locals.len() > MAX_NAMES {
             let message = format!("the condition has more than {MAX_NAMES} variables");
             self.report(too_many(message, formula.span));

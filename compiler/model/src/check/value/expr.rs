@@ -181,8 +181,7 @@ impl<'a> Checker<'a> {
 
     /// Whether a name is of something that other declarations speak of in their expressions, if wrongly.
     pub(in crate::check) fn is_spoken_of(&self, name: &str) -> bool {
-        let aside = [Noun::Network, Noun::Query, Noun::Requirement, Noun::Point, Noun::Cross, Noun::Suite];
-        self.kind_of(name).is_some_and(|is| !aside.contains(&is))
+        self.kind_of(name).is_some_and(|is| !is.is_apart())
     }
 
     /// An expression for a parameter or variable of this type; a constant must lie in its range.

@@ -165,6 +165,11 @@ impl<'a> Checker<'a> {
         self.refer(name, enumeration);
     }
 
+    /// Whether a name like this is an agent's variable, and not a constant or another agent.
+    pub(in crate::check) fn is_variable(&self, text: &str) -> bool {
+        is_variable_name(text) && !self.has_value(text) && self.players.agent_names.symbol(text).is_none()
+    }
+
     /// A plan's variable by its full name, of which `P.x` may be one.
     pub(in crate::check) fn variable(&mut self, name: &NameSyntax, env: &ExprEnv) -> TypedExpr {
         let local = env.find(&name.text).filter(|l| l.bound);
@@ -200,7 +205,7 @@ impl<'a> Checker<'a> {
     /// A name that has no value here.
     fn without_value(&mut self, name: &NameSyntax, env: &ExprEnv) -> TypedExpr {
         let names = self.names_with_value(env);
-        self.agents.unbound.insert(name.text.clone());
+        self.unbound.insert(name.text.clone());
         if let Some(help) = self.values_of_type(name) {
             let is = if self.types.enums.get(&name.text).is_some() { Noun::Enum } else { Noun::Record };
             let noun = env.noun.unwrap_or(Noun::Constant);
@@ -209,9 +214,11 @@ impl<'a> Checker<'a> {
             self.report(unbound(&name.text, name.span, names.iter().map(String::as_str)));
         } else {
             let said = self.issues.list.len();
-            self.unknown(env.noun.unwrap_or(Noun::Constant), name, &names, None);
-            if env.plan
-                && env.noun == Some(Noun::Variable)
+            // A small letter instead of a capital one is likelier than that something far away was meant.
+            let variable = env.noun.filter(|noun| env.plan && *noun == Noun::Variable);
+            let apart = self.kind_of(&name.text).is_some_and(Noun::is_apart);
+            self.unknown(env.noun.unwrap_or(Noun::Constant), name, &names, variable.filter(|_| apart));
+            if variable.is_some()
                 && let Some(issue) = self.issues.list.get_mut(said)
             {
                 crate::report::agents::small_variable(issue, &name.text, &names);

@@ -13,3 +13,4 @@ pub(super) mod lookup;
 pub(super) mod measure;
 pub(super) mod parts;
 pub(super) mod range;
+pub(super) mod roles;

@@ -14,7 +14,6 @@ use crate::check::{
         names::{ConstEntry, ConstState, DeclaredPlayer},
         record::DeclaredFields,
         scope::ExprEnv,
-        table::{NameTable, OrderedMap},
     },
     vocabulary::template::{CheckerPhase, template},
 };
@@ -209,9 +208,6 @@ impl<'a> Checker<'a> {
     ) {
         let plays = &agent.syntax.plays;
         let actor = self.as_instance(agent.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
-        self.agents.beliefs.push(NameTable::default());
-        self.agents.goals.push(OrderedMap::default());
-        self.agents.belief_fields.push(Vec::new());
         self.s.agents.push(TypedAgent {
             name: name.text.clone(),
             actor,
