@@ -877,8 +877,7 @@ fn channels_are_offered_accepted_and_joined() {
          network net = A | B",
     );
     let channels: Vec<_> = p.channels.iter().map(|c| (c.name.as_str(), c.urgent, c.kind.clone())).collect();
-    let participant =
-        |automaton, optional| ChannelParticipant { automaton: AutomatonId(automaton), optional };
+    let participant = |a, optional| ChannelParticipant { automaton: AutomatonId(a), optional };
     assert_eq!(
         channels,
         [

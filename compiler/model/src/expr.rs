@@ -92,19 +92,7 @@ impl TypedExpr {
     /// The value, if it is a constant.
     #[must_use]
     pub fn constant(&self) -> Option<Value> {
-        match self.kind {
-            TypedExprKind::Const(value) => Some(value),
-            TypedExprKind::Leaf(_)
-            | TypedExprKind::Term(_)
-            | TypedExprKind::Unary(..)
-            | TypedExprKind::Binary(..)
-            | TypedExprKind::If(..)
-            | TypedExprKind::Call(..)
-            | TypedExprKind::List(..)
-            | TypedExprKind::Element(_)
-            | TypedExprKind::Apply(..)
-            | TypedExprKind::Error => None,
-        }
+        if let TypedExprKind::Const(value) = self.kind { Some(value) } else { None }
     }
 
     /// The value as at run time, with `vars` giving those of the variables; `None`: it has none, or it takes what is not known.
@@ -140,18 +128,12 @@ impl TypedExpr {
 
     /// Calls `f` with each variable that the expression may read, as often as it occurs; without what functions read.
     pub fn each_leaf(&self, f: &mut dyn FnMut(VariableRef)) {
-        self.each(&mut |e| match &e.kind {
-            TypedExprKind::Leaf(leaf) => f(*leaf),
-            TypedExprKind::Element(place) => leaves(place).into_iter().for_each(&mut *f),
-            TypedExprKind::Const(_)
-            | TypedExprKind::Term(_)
-            | TypedExprKind::Unary(..)
-            | TypedExprKind::Binary(..)
-            | TypedExprKind::If(..)
-            | TypedExprKind::Call(..)
-            | TypedExprKind::List(..)
-            | TypedExprKind::Apply(..)
-            | TypedExprKind::Error => {}
+        self.each(&mut |e| {
+            if let TypedExprKind::Leaf(leaf) = &e.kind {
+                f(*leaf);
+            } else if let TypedExprKind::Element(place) = &e.kind {
+                leaves(place).into_iter().for_each(&mut *f);
+            }
         });
     }
 

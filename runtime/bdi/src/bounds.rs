@@ -7,6 +7,7 @@ use crate::{
     intention::{Intention, NO_PLAN},
     log::{LogItem, PlanIndex},
 };
+use hrdsl_ir::known_name;
 
 impl AgentMachine<'_> {
     /// Ends the run of an agent that holds too much.
@@ -45,7 +46,10 @@ impl AgentMachine<'_> {
     }
 
     fn label(&self, plan: PlanIndex) -> &str {
-        self.mind.agent.and_then(|a| a.plans.get(usize::from(plan))).map_or("?", |p| &p.label)
+        known_name(
+            "plan",
+            self.mind.agent.and_then(|a| a.plans.get(usize::from(plan))).map(|p| p.label.as_str()),
+        )
     }
 
     /// Of what most of them are; of equally many the first.
@@ -63,7 +67,9 @@ impl AgentMachine<'_> {
             HoldingKind::Facts => {
                 let facts = (0u16..).zip(self.mind.beliefs.all()).map(|(id, rows)| (id, rows.held()));
                 let names = self.mind.agent.map(|a| &a.beliefs);
-                let name = |id: u16| names.and_then(|n| n.get(usize::from(id))).map_or("?", |b| &b.name);
+                let name = |id: u16| {
+                    known_name("belief", names.and_then(|n| n.get(usize::from(id))).map(|b| b.name.as_str()))
+                };
                 commonest(facts).map(|id| format!("of the belief `{}`", name(id)))
             }
             HoldingKind::Messages => {

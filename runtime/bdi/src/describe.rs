@@ -4,6 +4,7 @@ use hrdsl_ir::{
     Program, Value,
     bdi::{Agent, BeliefAnnotation, BeliefId, ContentId, GoalId, PlanContext, TriggerOn},
     expr::EvalError,
+    known_name,
 };
 
 use crate::{
@@ -77,7 +78,10 @@ impl LogNames<'_, '_> {
                 format!("warning: {} does not fit its declaration", call(self.belief(*belief), args))
             }
             LogItem::Perceived { event, args } => {
-                let name = self.program.events.get(usize::from(event.0)).map_or("?", |e| &e.name);
+                let name = known_name(
+                    "event",
+                    self.program.events.get(usize::from(event.0)).map(|e| e.name.as_str()),
+                );
                 format!("perceives {}", call(name, args))
             }
             LogItem::Heard { from, performative: p, content, args } => {
@@ -107,23 +111,26 @@ impl LogNames<'_, '_> {
     }
 
     fn plan(&self, index: u16) -> &str {
-        self.agent.plans.get(usize::from(index)).map_or("?", |p| &p.label)
+        known_name("plan", self.agent.plans.get(usize::from(index)).map(|p| p.label.as_str()))
     }
 
     fn belief(&self, id: BeliefId) -> &str {
-        self.agent.beliefs.get(usize::from(id.0)).map_or("?", |b| &b.name)
+        known_name("belief", self.agent.beliefs.get(usize::from(id.0)).map(|b| b.name.as_str()))
     }
 
     fn goal(&self, id: GoalId) -> &str {
-        self.agent.goals.get(usize::from(id.0)).map_or("?", |g| &g.name)
+        known_name("goal", self.agent.goals.get(usize::from(id.0)).map(|g| g.name.as_str()))
     }
 
     fn content(&self, id: ContentId) -> &str {
-        self.program.contents.get(usize::from(id.0)).map_or("?", |c| &c.name)
+        known_name(
+            "subject of messages",
+            self.program.contents.get(usize::from(id.0)).map(|c| c.name.as_str()),
+        )
     }
 
     fn peer(&self, place: u16) -> &'static str {
-        self.mind.me.peers.agents.get(usize::from(place)).map_or("?", |(name, _)| name.name())
+        known_name("agent", self.mind.me.peers.agents.get(usize::from(place)).map(|(name, _)| name.name()))
     }
 
     pub(crate) fn on(&self, on: TriggerOn, args: &EventArguments) -> String {
@@ -134,9 +141,10 @@ impl LogNames<'_, '_> {
             TriggerOn::GoalFailed(g) => ("-!", self.goal(g)),
             TriggerOn::TestAdded(b) => ("+?", self.belief(b)),
             TriggerOn::TestFailed(b) => ("-?", self.belief(b)),
-            TriggerOn::Perceived(e) => {
-                ("on ", self.program.events.get(usize::from(e.0)).map_or("?", |e| e.name.as_str()))
-            }
+            TriggerOn::Perceived(e) => (
+                "on ",
+                known_name("event", self.program.events.get(usize::from(e.0)).map(|e| e.name.as_str())),
+            ),
         };
         format!("{sign}{}", call(name, args.iter().map(slot)))
     }
@@ -154,7 +162,10 @@ impl LogNames<'_, '_> {
         let one = |(what, value): &(BeliefAnnotation, Value)| match what {
             BeliefAnnotation::Source => format!("source({value})"),
             BeliefAnnotation::Declared(at) => {
-                format!("{}({value})", declared.get(usize::from(*at)).map_or("?", |p| &p.name))
+                format!(
+                    "{}({value})",
+                    known_name("annotation", declared.get(usize::from(*at)).map(|p| p.name.as_str()))
+                )
             }
         };
         let all: Vec<String> = all.iter().map(one).collect();

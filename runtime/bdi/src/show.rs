@@ -9,6 +9,7 @@ use hrdsl_ir::{
         GoalId, InternalAct, Performative, PlanContext, PlanStepKind,
     },
     expr::{BinaryOp, NumberFunction, UnaryOp},
+    known_name,
     list::ListFunction,
     value::seconds,
 };
@@ -75,19 +76,22 @@ pub fn step(program: &Program, agent: &Agent, names: &[String], of: &PlanStepKin
 
 impl FormulaPrinter<'_> {
     fn belief(&self, id: BeliefId) -> &str {
-        self.agent.beliefs.get(usize::from(id.0)).map_or("?", |b| &b.name)
+        known_name("belief", self.agent.beliefs.get(usize::from(id.0)).map(|b| b.name.as_str()))
     }
 
     fn goal(&self, id: GoalId, args: impl IntoIterator<Item = String>) -> String {
-        call(self.agent.goals.get(usize::from(id.0)).map_or("?", |g| &g.name), args)
+        call(known_name("goal", self.agent.goals.get(usize::from(id.0)).map(|g| g.name.as_str())), args)
     }
 
     fn event(&self, id: hrdsl_ir::EventId, args: impl IntoIterator<Item = String>) -> String {
-        call(self.program.events.get(usize::from(id.0)).map_or("?", |e| &e.name), args)
+        call(known_name("event", self.program.events.get(usize::from(id.0)).map(|e| e.name.as_str())), args)
     }
 
     fn content(&self, id: ContentId, args: &[AgentTerm]) -> String {
-        let name = self.program.contents.get(usize::from(id.0)).map_or("?", |c| c.name.as_str());
+        let name = known_name(
+            "subject of messages",
+            self.program.contents.get(usize::from(id.0)).map(|c| c.name.as_str()),
+        );
         call(name, args.iter().map(|t| self.term(t)))
     }
 
@@ -152,7 +156,10 @@ impl FormulaPrinter<'_> {
         let one = |(what, text): (BeliefAnnotation, String)| match what {
             BeliefAnnotation::Source => format!("source({text})"),
             BeliefAnnotation::Declared(at) => {
-                format!("{}({text})", declared.get(usize::from(at)).map_or("?", |p| &p.name))
+                format!(
+                    "{}({text})",
+                    known_name("annotation", declared.get(usize::from(at)).map(|p| p.name.as_str()))
+                )
             }
         };
         let all: Vec<String> = of.into_iter().map(one).collect();

@@ -10,6 +10,7 @@ use hrdsl_ir::{
     EventId, Program,
     event::StimulusStep,
     expr::Expr,
+    known_name,
     ta::{Automaton, Edge, Location, LocationId, LocationKind, Network, SyncLabel},
 };
 use hrdsl_ta::WitnessRun;
@@ -103,7 +104,7 @@ impl TimedHolds {
     fn location(&self, member: usize, location: LocationId) -> &str {
         let automaton = self.program.automata.iter().find(|a| a.name == self.members[member].0);
         let found = automaton.and_then(|a| a.locations.get(usize::from(location.0)));
-        found.map_or("?", |l| l.name.as_str())
+        known_name("location", found.map(|l| l.name.as_str()))
     }
 }
 

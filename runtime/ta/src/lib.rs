@@ -54,7 +54,7 @@ pub use network::model::{CompiledNetwork, ObservationOptions, slot_names};
 pub use network::query::{
     self, EventCounter, EventLimit, GoalKind, ReachabilityGoal, SearchBudget, StateFormula, clock_names,
 };
-pub use network::semantics::{AutomatonMove, BinderValues};
+pub use network::{selects::BinderValues, semantics::AutomatonMove};
 pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
 pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport};
 pub use witness::build::retimed;

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_ir::coverage::{BinCondition, CoverBin, Coverage, CoverpointId};
+use hrdsl_ir::{
+    coverage::{BinCondition, CoverBin, Coverage, CoverpointId},
+    known_name,
+};
 
 /// Values that are listed one by one, at most.
 const LISTED: usize = 8;
@@ -51,12 +54,12 @@ fn number(numbers: &[i64], point: CoverpointId) -> i64 {
 fn unmet(coverage: &Coverage, condition: &BinCondition, seen: &BTreeSet<Vec<i64>>) -> String {
     match condition {
         BinCondition::In { point, bin } => {
-            let Some((name, bin)) = declared(coverage, *point, *bin) else { return "?".to_owned() };
+            let Some((name, bin)) = declared(coverage, *point, *bin) else { return no_bin() };
             format!("`{name}` was {}, needs {}", values(*point, seen), needed(bin))
         }
         BinCondition::Not(inner) => match &**inner {
             BinCondition::In { point, bin } => {
-                let Some((name, bin)) = declared(coverage, *point, *bin) else { return "?".to_owned() };
+                let Some((name, bin)) = declared(coverage, *point, *bin) else { return no_bin() };
                 format!("`{name}` was {}, must not be {}", values(*point, seen), needed(bin))
             }
             BinCondition::Not(_) | BinCondition::And(_) | BinCondition::Or(_) => {
@@ -66,7 +69,9 @@ fn unmet(coverage: &Coverage, condition: &BinCondition, seen: &BTreeSet<Vec<i64>
         BinCondition::And(_) | BinCondition::Or(_) => {
             let mut points = BTreeSet::new();
             points_of(condition, &mut points);
-            let name = |p: &CoverpointId| coverage.points.get(usize::from(p.0)).map_or("?", |p| &p.name);
+            let name = |p: &CoverpointId| {
+                known_name("coverpoint", coverage.points.get(usize::from(p.0)).map(|p| p.name.as_str()))
+            };
             let were: Vec<String> =
                 points.iter().map(|p| format!("`{}` was {}", name(p), values(*p, seen))).collect();
             format!("`{}` was never met: {}", text(coverage, condition, false), were.join(", "))
@@ -87,6 +92,11 @@ fn points_of(condition: &BinCondition, points: &mut BTreeSet<CoverpointId>) {
 fn declared(coverage: &Coverage, point: CoverpointId, bin: u16) -> Option<(&str, &CoverBin)> {
     let point = coverage.points.get(usize::from(point.0))?;
     Some((&point.name, point.bins.get(usize::from(bin))?))
+}
+
+/// What a condition asks for is declared.
+fn no_bin() -> String {
+    known_name("bin", None).to_owned()
 }
 
 /// `0..3`, `0, 2, 5`
@@ -121,8 +131,9 @@ fn text(coverage: &Coverage, condition: &BinCondition, is_inner: bool) -> String
         if is_inner { format!("({})", all.join(op)) } else { all.join(op) }
     };
     match condition {
-        BinCondition::In { point, bin } => declared(coverage, *point, *bin)
-            .map_or_else(|| "?".to_owned(), |(name, bin)| format!("{name}.{}", bin.name)),
+        BinCondition::In { point, bin } => {
+            declared(coverage, *point, *bin).map_or_else(no_bin, |(name, bin)| format!("{name}.{}", bin.name))
+        }
         BinCondition::Not(c) => format!("!{}", text(coverage, c, true)),
         BinCondition::And(cs) => joined(cs, " && "),
         BinCondition::Or(cs) => joined(cs, " || "),

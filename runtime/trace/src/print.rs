@@ -1,6 +1,6 @@
 //! Shows the steps of a trace to people.
 
-use hrdsl_ir::{Event, EventId, Nanos, Program, Type, Unit, Value, world::SignalId};
+use hrdsl_ir::{Event, EventId, Nanos, Program, Type, Unit, Value, known_name, world::SignalId};
 
 use crate::{TraceStep, TraceStepKind, record};
 
@@ -64,7 +64,10 @@ pub fn value(value: Value, unit: Unit) -> String {
 
 fn maker(program: &Program, event: EventId) -> &str {
     let from = |e: &Event| program.actors.get(usize::from(e.from.0));
-    program.events.get(usize::from(event.0)).and_then(from).map_or("?", |actor| &actor.name)
+    known_name(
+        "actor",
+        program.events.get(usize::from(event.0)).and_then(from).map(|actor| actor.name.as_str()),
+    )
 }
 
 fn sample(program: &Program, signal: SignalId, sampled: Value) -> String {

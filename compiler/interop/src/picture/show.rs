@@ -3,6 +3,7 @@
 use hrdsl_ir::{
     Expr, Program, Value,
     expr::{BinaryOp, Lvalue, NumberFunction, UnaryOp},
+    known_name,
     ta::{
         Automaton, AutomatonVar, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment, ReceiveArg,
         SyncLabel, TimeSum,
@@ -56,14 +57,14 @@ impl<'p> AutomatonPrinter<'p> {
         let of = |v: &'p AutomatonVar| v.name.as_str();
         let shared = self.program.shared.get(slot).map(of);
         let found = shared.or_else(|| self.automaton.vars.get(own).map(of));
-        found.or_else(|| self.binders.get(bound).map(String::as_str)).unwrap_or("?")
+        known_name("variable", found.or_else(|| self.binders.get(bound).map(String::as_str)))
     }
 
     pub fn clock(&self, clock: ClockId) -> &str {
         let at = usize::from(clock.0);
         let own = at.wrapping_sub(self.program.clocks.len());
         let found = self.program.clocks.get(at).or_else(|| self.automaton.clocks.get(own));
-        found.map_or("?", String::as_str)
+        known_name("clock", found.map(String::as_str))
     }
 
     fn place(&self, place: &Lvalue) -> String {
@@ -103,7 +104,10 @@ impl<'p> AutomatonPrinter<'p> {
             }
             Expr::Element(place) => (self.place(place), 9),
             Expr::Apply(f, args) => {
-                let name = self.program.functions.get(usize::from(f.0)).map_or("?", |f| f.name.as_str());
+                let name = known_name(
+                    "function",
+                    self.program.functions.get(usize::from(f.0)).map(|f| f.name.as_str()),
+                );
                 (self.call(name, args), 9)
             }
         };

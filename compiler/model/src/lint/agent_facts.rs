@@ -108,30 +108,12 @@ impl BeliefChange<'_> {
 }
 
 pub(crate) fn change(step: &TypedStep) -> Option<BeliefChange<'_>> {
-    match &step.kind {
-        TypedStepKind::Add(a) => Some(BeliefChange::Adds(a.belief, of_exprs(&a.args))),
-        TypedStepKind::Replace(a) => Some(BeliefChange::Replaces(a.belief, of_exprs(&a.args))),
-        TypedStepKind::Remove(l) | TypedStepKind::Abolish(l) => {
-            Some(BeliefChange::Removes(l.belief, of_args(&l.args)))
-        }
-        TypedStepKind::Do { .. }
-        | TypedStepKind::Achieve { .. }
-        | TypedStepKind::Spawn { .. }
-        | TypedStepKind::Query(..)
-        | TypedStepKind::Test(_)
-        | TypedStepKind::Await { .. }
-        | TypedStepKind::Wait { .. }
-        | TypedStepKind::If { .. }
-        | TypedStepKind::While { .. }
-        | TypedStepKind::For { .. }
-        | TypedStepKind::Fork { .. }
-        | TypedStepKind::Send { .. }
-        | TypedStepKind::Ask { .. }
-        | TypedStepKind::AskAll { .. }
-        | TypedStepKind::Print { .. }
-        | TypedStepKind::Control { .. }
-        | TypedStepKind::Fail => None,
+    if let TypedStepKind::Replace(a) = &step.kind {
+        return Some(BeliefChange::Replaces(a.belief, of_exprs(&a.args)));
     }
+    let added = step.kind.as_assertion().map(|a| BeliefChange::Adds(a.belief, of_exprs(&a.args)));
+    let removed = || step.kind.as_removal().map(|l| BeliefChange::Removes(l.belief, of_args(&l.args)));
+    added.or_else(removed)
 }
 
 /// The steps, those within blocks too, in the order of the text.

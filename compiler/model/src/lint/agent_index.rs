@@ -142,28 +142,12 @@ impl<'a> AgentIndex<'a> {
     }
 
     fn step(&mut self, plan: usize, at: usize, kind: &'a TypedStepKind) {
-        match kind {
-            TypedStepKind::Query(l) => self.queries[usize::from(l.belief.0)].push((plan, at, l)),
-            TypedStepKind::Achieve { goal: g, .. } => self.adopted[usize::from(g.0)].push((plan, at)),
-            TypedStepKind::Spawn { goal: g, .. } => self.spawned[usize::from(g.0)].push(plan),
-            TypedStepKind::Do { .. }
-            | TypedStepKind::Test(_)
-            | TypedStepKind::Add(_)
-            | TypedStepKind::Remove(_)
-            | TypedStepKind::Replace(_)
-            | TypedStepKind::Abolish(_)
-            | TypedStepKind::Await { .. }
-            | TypedStepKind::Wait { .. }
-            | TypedStepKind::If { .. }
-            | TypedStepKind::While { .. }
-            | TypedStepKind::For { .. }
-            | TypedStepKind::Fork { .. }
-            | TypedStepKind::Send { .. }
-            | TypedStepKind::Ask { .. }
-            | TypedStepKind::AskAll { .. }
-            | TypedStepKind::Print { .. }
-            | TypedStepKind::Control { .. }
-            | TypedStepKind::Fail => {}
+        if let Some(l) = kind.as_query() {
+            self.queries[usize::from(l.belief.0)].push((plan, at, l));
+        } else if let Some((goal, _)) = kind.as_achieve() {
+            self.adopted[usize::from(goal.0)].push((plan, at));
+        } else if let TypedStepKind::Spawn { goal, .. } = kind {
+            self.spawned[usize::from(goal.0)].push(plan);
         }
     }
 

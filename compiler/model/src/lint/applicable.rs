@@ -198,33 +198,12 @@ pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &TypedPlan, at: usize) -
             return Ok(true);
         }
         here.facts_since(plan, at)?;
-        match &plan.body[at].kind {
-            TypedStepKind::Achieve { goal, args, within: _ } => {
-                let args: Vec<SymbolicTerm> =
-                    args.iter().map(|e| here.sym(e)).collect::<AskedLiteral<_>>()?;
-                here.has_plan(*goal, &args)
-            }
-            TypedStepKind::Query(l) => here.literal(l.belief, &l.args),
-            TypedStepKind::Do { .. }
-            | TypedStepKind::Spawn { .. }
-            | TypedStepKind::Test(_)
-            | TypedStepKind::Add(_)
-            | TypedStepKind::Remove(_)
-            | TypedStepKind::Replace(_)
-            | TypedStepKind::Abolish(_)
-            | TypedStepKind::Await { .. }
-            | TypedStepKind::Wait { .. }
-            | TypedStepKind::If { .. }
-            | TypedStepKind::While { .. }
-            | TypedStepKind::For { .. }
-            | TypedStepKind::Fork { .. }
-            | TypedStepKind::Send { .. }
-            | TypedStepKind::Ask { .. }
-            | TypedStepKind::AskAll { .. }
-            | TypedStepKind::Print { .. }
-            | TypedStepKind::Control { .. }
-            | TypedStepKind::Fail => Ok(true),
+        let step = &plan.body[at].kind;
+        if let Some((goal, args)) = step.as_achieve() {
+            let args: Vec<SymbolicTerm> = args.iter().map(|e| here.sym(e)).collect::<AskedLiteral<_>>()?;
+            return here.has_plan(goal, &args);
         }
+        step.as_query().map_or(Ok(true), |l| here.literal(l.belief, &l.args))
     };
     always(&is_so, &mut PossibleWorld { known: Vec::new(), budget: BUDGET })
 }

@@ -1,5 +1,6 @@
 //! HR0514: channels over which nothing can happen, because one side of them has no edge. HR0107: those that have no side.
 
+use hrdsl_ir::known_name;
 use hrdsl_source::Span;
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId};
 
@@ -89,7 +90,8 @@ fn one_side(
             (format!("nobody accepts the channel `{name}`"), format!("let an edge do so: `on {name}`"))
         }
         ([one], [other]) if one == other => {
-            let automaton = scenario.automata.get(usize::from(one.0)).map_or("?", |a| a.name.as_str());
+            let automaton =
+                known_name("automaton", scenario.automata.get(usize::from(one.0)).map(|a| a.name.as_str()));
             let message = format!("only `{automaton}` offers and accepts the channel `{name}`");
             (message, "let another automaton take one of the sides: none does both at once".to_owned())
         }
@@ -100,7 +102,7 @@ fn one_side(
 
 fn no_part(scenario: &Scenario, channel: &Channel, participant: &ChannelParticipant, at: Span) -> Diagnostic {
     let (name, of) = (&channel.name, usize::from(participant.automaton.0));
-    let automaton = scenario.automata.get(of).map_or("?", |a| a.name.as_str());
+    let automaton = known_name("automaton", scenario.automata.get(of).map(|a| a.name.as_str()));
     let message = format!("`{automaton}` has no edge for the multi-way channel `{name}`");
     let why = if participant.optional { "it never takes part" } else { "nobody can take part without it" };
     Diagnostic::warning(DiagnosticCode::ONE_SIDED_CHANNEL, at, message)

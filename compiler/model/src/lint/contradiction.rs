@@ -6,7 +6,7 @@ use hrdsl_source::Span;
 
 use super::{
     agent_facts::AgentFacts,
-    plan_terms::{PlanTerm, alternatives, bound_before, of_args, same_expr, same_value},
+    plan_terms::{PlanTerm, alternatives, bound_before, of_args, same, same_value},
 };
 use crate::{
     BinaryOp, Parameter, TriggerOn, Type, TypedContext, TypedExpr, TypedExprKind, TypedPlan, TypedTerm,
@@ -128,15 +128,11 @@ fn same_term(a: PlanTerm<'_>, b: PlanTerm<'_>) -> bool {
     match (a, b) {
         (PlanTerm::Var(a), PlanTerm::Var(b)) => a == b,
         (PlanTerm::Const(a), PlanTerm::Const(b)) => same_value(a, b),
-        (PlanTerm::Other(a), PlanTerm::Other(b)) => alike(a, b),
+        (PlanTerm::Other(a), PlanTerm::Other(b)) => same(a, b),
         (PlanTerm::Any | PlanTerm::Var(_) | PlanTerm::Const(_) | PlanTerm::Other(_) | PlanTerm::Part, _) => {
             false
         }
     }
-}
-
-fn alike(a: &TypedExpr, b: &TypedExpr) -> bool {
-    same_expr(a, b, &mut |a, b| a == b)
 }
 
 /// The tests of a conjunction, with whether they must hold.
@@ -167,7 +163,7 @@ fn tests<'a>(parts: &[&'a TypedContext]) -> Vec<(&'a TypedExpr, bool)> {
 fn negated_test(parts: &[&TypedContext]) -> Option<FoundContradiction> {
     let tests = tests(parts);
     tests.iter().enumerate().find_map(|(i, (e, holds))| {
-        let (other, _) = tests[..i].iter().find(|(other, held)| held != holds && alike(e, other))?;
+        let (other, _) = tests[..i].iter().find(|(other, held)| held != holds && same(e, other))?;
         Some(clash(e.span, other.span))
     })
 }
@@ -226,13 +222,13 @@ fn comparisons<'a>(parts: &[&'a TypedContext]) -> Vec<VarComparison<'a>> {
 fn excluded(parts: &[&TypedContext]) -> Option<FoundContradiction> {
     let all = comparisons(parts);
     all.iter().enumerate().find_map(|(i, c)| {
-        if alike(c.left, c.right) && c.orders & EQUAL == 0 {
+        if same(c.left, c.right) && c.orders & EQUAL == 0 {
             let why = "nothing differs from itself".to_owned();
             return Some(FoundContradiction { span: c.span, why, with: None });
         }
         let other = all[..i].iter().find(|d| {
-            (alike(c.left, d.left) && alike(c.right, d.right) && c.orders & d.orders == 0)
-                || (alike(c.left, d.right) && alike(c.right, d.left) && c.orders & mirrored(d.orders) == 0)
+            (same(c.left, d.left) && same(c.right, d.right) && c.orders & d.orders == 0)
+                || (same(c.left, d.right) && same(c.right, d.left) && c.orders & mirrored(d.orders) == 0)
         })?;
         Some(clash(c.span, other.span))
     })

@@ -163,30 +163,10 @@ impl<'a> DroppedBelief<'a> {
     fn made_by_subgoals(&self) -> bool {
         let mut seen = BTreeSet::new();
         let before = &self.plan.body[..self.at];
-        before.iter().any(|step| match step.kind {
-            TypedStepKind::Achieve { goal, .. } | TypedStepKind::Spawn { goal, .. } => {
-                self.goal_makes(goal, &mut seen)
-            }
-            TypedStepKind::Do { .. }
-            | TypedStepKind::Query(_)
-            | TypedStepKind::Test(_)
-            | TypedStepKind::Add(_)
-            | TypedStepKind::Remove(_)
-            | TypedStepKind::Replace(_)
-            | TypedStepKind::Abolish(_)
-            | TypedStepKind::Await { .. }
-            | TypedStepKind::Wait { .. }
-            | TypedStepKind::If { .. }
-            | TypedStepKind::While { .. }
-            | TypedStepKind::For { .. }
-            | TypedStepKind::Fork { .. }
-            | TypedStepKind::Send { .. }
-            | TypedStepKind::Ask { .. }
-            | TypedStepKind::AskAll { .. }
-            | TypedStepKind::Print { .. }
-            | TypedStepKind::Control { .. }
-            | TypedStepKind::Fail => false,
-        })
+        before
+            .iter()
+            .filter_map(|step| step.kind.as_adoption())
+            .any(|(goal, _)| self.goal_makes(goal, &mut seen))
     }
 
     fn goal_makes(&self, goal: GoalId, seen: &mut BTreeSet<GoalId>) -> bool {
@@ -200,30 +180,10 @@ impl<'a> DroppedBelief<'a> {
         self.facts.plans(TriggerOn::GoalAdded(goal)).chain(self.facts.plans(TriggerOn::GoalFailed(goal))).any(
             |plan| {
                 makes(plan, plan.body.len(), self.belief, &self.args, true)
-                    || all_steps(&plan.body).into_iter().any(|step| match step.kind {
-                        TypedStepKind::Achieve { goal, .. } | TypedStepKind::Spawn { goal, .. } => {
-                            self.goal_makes(goal, seen)
-                        }
-                        TypedStepKind::Do { .. }
-                        | TypedStepKind::Query(_)
-                        | TypedStepKind::Test(_)
-                        | TypedStepKind::Add(_)
-                        | TypedStepKind::Remove(_)
-                        | TypedStepKind::Replace(_)
-                        | TypedStepKind::Abolish(_)
-                        | TypedStepKind::Await { .. }
-                        | TypedStepKind::Wait { .. }
-                        | TypedStepKind::If { .. }
-                        | TypedStepKind::While { .. }
-                        | TypedStepKind::For { .. }
-                        | TypedStepKind::Fork { .. }
-                        | TypedStepKind::Send { .. }
-                        | TypedStepKind::Ask { .. }
-                        | TypedStepKind::AskAll { .. }
-                        | TypedStepKind::Print { .. }
-                        | TypedStepKind::Control { .. }
-                        | TypedStepKind::Fail => false,
-                    })
+                    || all_steps(&plan.body)
+                        .into_iter()
+                        .filter_map(|step| step.kind.as_adoption())
+                        .any(|(goal, _)| self.goal_makes(goal, seen))
             },
         )
     }

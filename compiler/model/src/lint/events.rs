@@ -1,5 +1,6 @@
 //! HR0304 and HR0305: events that nobody makes, and events that nobody takes. HR0405: a wait for what nobody makes.
 
+use hrdsl_ir::known_name;
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 
 use super::facts::ScenarioFacts;
@@ -24,7 +25,8 @@ pub(crate) fn not_made<'a>(
         if facts.made(id) || !facts.read(id) || facts.told(id) {
             continue;
         }
-        let actor = scenario.actors.get(usize::from(event.from.0)).map_or("?", |a| a.name.as_str());
+        let actor =
+            known_name("actor", scenario.actors.get(usize::from(event.from.0)).map(|a| a.name.as_str()));
         let (message, help) = if event.stimulus.is_some() {
             let message = format!("nobody does the stimulus `{}`, and something counts on it", event.name);
             (message, "let an agent, an automaton, a random suite or a test do it".to_owned())

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     ArgPattern, EventId, EventPattern, ReceiveArg, Role, Scenario, TestStep, TriggerOn, TypedExpr,
-    TypedMethod, TypedStepKind, TypedStimulusStep, TypedSync, TypedTerm, Value, world::TypedRuleTrigger,
+    TypedMethod, TypedStimulusStep, TypedSync, TypedTerm, Value, world::TypedRuleTrigger,
 };
 
 /// So many different combinations of arguments are told apart; a maker beyond them counts as making any.
@@ -215,30 +215,10 @@ impl<'a> ScenarioFacts<'a> {
                     self.waits_for(span, vec![WantedFact::new(event, args)]);
                 }
                 for step in all_steps(&plan.body) {
-                    match &step.kind {
-                        TypedStepKind::Do { event, args } => self.makes_exprs(*event, args),
-                        TypedStepKind::Await { events, .. } => {
-                            self.waits_for(step.origin, events.iter().map(WantedFact::of).collect());
-                        }
-                        TypedStepKind::Achieve { .. }
-                        | TypedStepKind::Spawn { .. }
-                        | TypedStepKind::Query(..)
-                        | TypedStepKind::Test(_)
-                        | TypedStepKind::Add(..)
-                        | TypedStepKind::Remove(..)
-                        | TypedStepKind::Replace(..)
-                        | TypedStepKind::Abolish(_)
-                        | TypedStepKind::Wait { .. }
-                        | TypedStepKind::If { .. }
-                        | TypedStepKind::While { .. }
-                        | TypedStepKind::For { .. }
-                        | TypedStepKind::Fork { .. }
-                        | TypedStepKind::Send { .. }
-                        | TypedStepKind::Ask { .. }
-                        | TypedStepKind::AskAll { .. }
-                        | TypedStepKind::Print { .. }
-                        | TypedStepKind::Control { .. }
-                        | TypedStepKind::Fail => {}
+                    if let Some((event, args)) = step.kind.as_do() {
+                        self.makes_exprs(event, args);
+                    } else if let Some(events) = step.kind.as_await() {
+                        self.waits_for(step.origin, events.iter().map(WantedFact::of).collect());
                     }
                 }
             }

@@ -4,6 +4,7 @@ use crate::{
     BinaryOp, InferredType, NumberFunction, TypedExpr, TypedExprKind, UnaryOp, VariableRef,
     interval::{MAX, MIN, ValueInterval},
     leaves,
+    lint::plan_terms::same,
 };
 
 /// The intervals of names: those given, as far as conditions have not left less of them.
@@ -241,37 +242,6 @@ impl<'a> IntervalEnv<'a> {
             | TypedExprKind::Apply(..)
             | TypedExprKind::Error => true,
         }
-    }
-}
-
-/// Whether two expressions are written alike, wherever they stand.
-pub(super) fn same(a: &TypedExpr, b: &TypedExpr) -> bool {
-    match (&a.kind, &b.kind) {
-        (TypedExprKind::Const(a), TypedExprKind::Const(b)) => a == b,
-        (TypedExprKind::Leaf(a), TypedExprKind::Leaf(b)) => a == b,
-        (TypedExprKind::Term(a), TypedExprKind::Term(b)) => a == b,
-        (TypedExprKind::Unary(f, a), TypedExprKind::Unary(g, b)) => f == g && same(a, b),
-        (TypedExprKind::Binary(f, a, b), TypedExprKind::Binary(g, c, d)) => {
-            f == g && same(a, c) && same(b, d)
-        }
-        (TypedExprKind::If(a, b, c), TypedExprKind::If(d, e, f)) => same(a, d) && same(b, e) && same(c, f),
-        (TypedExprKind::Call(f, a), TypedExprKind::Call(g, b)) => {
-            f == g && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
-        }
-        (
-            TypedExprKind::Const(_)
-            | TypedExprKind::Leaf(_)
-            | TypedExprKind::Term(_)
-            | TypedExprKind::Unary(..)
-            | TypedExprKind::Binary(..)
-            | TypedExprKind::If(..)
-            | TypedExprKind::Call(..)
-            | TypedExprKind::List(..)
-            | TypedExprKind::Element(_)
-            | TypedExprKind::Apply(..)
-            | TypedExprKind::Error,
-            _,
-        ) => false,
     }
 }
 

@@ -1,5 +1,6 @@
 //! HR0602: a requirement that nothing can ever put to the test.
 
+use hrdsl_ir::known_name;
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::facts::ScenarioFacts;
@@ -12,7 +13,7 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, is
     for (requirement, trigger) in scenario.requirements.iter().zip(&facts.triggers) {
         let why = if facts.in_vain(trigger) {
             let event = trigger.first().and_then(|w| scenario.events.get(usize::from(w.event.0)));
-            let name = event.map_or("?", |e| e.name.as_str());
+            let name = known_name("event", event.map(|e| e.name.as_str()));
             let made = trigger.iter().any(|w| facts.made(w.event));
             let how = if made { "with these arguments nobody makes" } else { "nobody makes" };
             Some((format!("{how} `{name}`"), "name an event that somebody makes"))

@@ -148,6 +148,11 @@ fn more_general_term(general: PlanTerm<'_>, special: PlanTerm<'_>, renaming: &mu
     }
 }
 
+/// Whether two expressions over the same variables are written alike, wherever they stand.
+pub(crate) fn same(a: &TypedExpr, b: &TypedExpr) -> bool {
+    same_expr(a, b, &mut |a, b| a == b)
+}
+
 /// Whether two expressions are written alike; `vars` says which variables are alike.
 pub(crate) fn same_expr(a: &TypedExpr, b: &TypedExpr, vars: &mut dyn FnMut(u16, u16) -> bool) -> bool {
     match (&a.kind, &b.kind) {

@@ -4,7 +4,7 @@ use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use super::{
     facts::{ScenarioFacts, WantedFact},
-    interval::same,
+    plan_terms::same,
 };
 use crate::{ArgPattern, BinaryOp, EventPattern, Scenario, TypedExpr, TypedExprKind, TypedPattern, UnaryOp};
 
@@ -101,22 +101,11 @@ fn exclude(a: &TypedExpr, b: &TypedExpr) -> bool {
 }
 
 fn conjuncts<'a>(e: &'a TypedExpr, all: &mut Vec<&'a TypedExpr>) {
-    match &e.kind {
-        TypedExprKind::Binary(BinaryOp::And, a, b) => {
-            conjuncts(a, all);
-            conjuncts(b, all);
-        }
-        TypedExprKind::Const(_)
-        | TypedExprKind::Leaf(_)
-        | TypedExprKind::Term(_)
-        | TypedExprKind::Unary(..)
-        | TypedExprKind::Binary(..)
-        | TypedExprKind::If(..)
-        | TypedExprKind::Call(..)
-        | TypedExprKind::List(..)
-        | TypedExprKind::Element(_)
-        | TypedExprKind::Apply(..)
-        | TypedExprKind::Error => all.push(e),
+    if let TypedExprKind::Binary(BinaryOp::And, a, b) = &e.kind {
+        conjuncts(a, all);
+        conjuncts(b, all);
+    } else {
+        all.push(e);
     }
 }
 

@@ -1,5 +1,6 @@
 //! HR0505: locations and edges of an automaton that nothing ever comes to.
 
+use hrdsl_ir::known_name;
 use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use super::{
@@ -49,7 +50,9 @@ fn dead_edges(automaton: &TypedAutomaton, flow: &ValueFlow) -> Vec<(usize, &'sta
 }
 
 fn never_taken(automaton: &TypedAutomaton, edge: &TypedEdge, why: &str) -> Diagnostic {
-    let name = |l: LocationId| automaton.locations.get(usize::from(l.0)).map_or("?", |l| l.name.as_str());
+    let name = |l: LocationId| {
+        known_name("location", automaton.locations.get(usize::from(l.0)).map(|l| l.name.as_str()))
+    };
     let message = format!("the edge from `{}` to `{}` is never taken", name(edge.from), name(edge.to));
     Diagnostic::warning(DiagnosticCode::UNREACHABLE_LOCATION, edge.origin, message)
         .here(why)

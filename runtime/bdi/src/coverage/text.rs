@@ -3,6 +3,7 @@
 use hrdsl_ir::{
     Program,
     bdi::{Agent, BeliefId, ContentId, GoalId, PlanStepKind, TriggerOn},
+    known_name,
 };
 
 use super::universe::{AgentCoverItem, ApplicableCount, sites};
@@ -11,7 +12,7 @@ use crate::show::performative as performative_name;
 /// What an item is called: `plan Human.leg#2 failed`, `edge Human.table#1 -> leg#2 (step 3)`.
 #[must_use]
 pub fn name(program: &Program, agent: &Agent, item: AgentCoverItem) -> String {
-    let label = |plan: u16| agent.plans.get(usize::from(plan)).map_or("?", |p| &p.label);
+    let label = |plan: u16| known_name("plan", agent.plans.get(usize::from(plan)).map(|p| p.label.as_str()));
     let owner = &agent.name;
     match item {
         AgentCoverItem::Selected(plan) => format!("plan {owner}.{}", label(plan)),
@@ -41,7 +42,12 @@ pub fn name(program: &Program, agent: &Agent, item: AgentCoverItem) -> String {
 
 /// `tell seen`
 fn message(program: &Program, agent: &Agent, plan: u16, site: u16) -> String {
-    let name = |content: ContentId| program.contents.get(usize::from(content.0)).map_or("?", |c| &c.name);
+    let name = |content: ContentId| {
+        known_name(
+            "subject of messages",
+            program.contents.get(usize::from(content.0)).map(|c| c.name.as_str()),
+        )
+    };
     let steps = agent.plans.get(usize::from(plan)).map(sites).unwrap_or_default();
     match steps.get(usize::from(site)).map(|s| &s.kind) {
         Some(PlanStepKind::Send { performative, content, .. }) => {
@@ -54,11 +60,11 @@ fn message(program: &Program, agent: &Agent, plan: u16, site: u16) -> String {
 }
 
 pub(super) fn belief(agent: &Agent, id: BeliefId) -> &str {
-    agent.beliefs.get(usize::from(id.0)).map_or("?", |b| &b.name)
+    known_name("belief", agent.beliefs.get(usize::from(id.0)).map(|b| b.name.as_str()))
 }
 
 pub(super) fn goal(agent: &Agent, id: GoalId) -> &str {
-    agent.goals.get(usize::from(id.0)).map_or("?", |g| &g.name)
+    known_name("goal", agent.goals.get(usize::from(id.0)).map(|g| g.name.as_str()))
 }
 
 /// A trigger without its arguments: `+!leg`, `on discarded`.
@@ -72,7 +78,10 @@ pub fn trigger(program: &Program, agent: &Agent, on: TriggerOn) -> String {
         TriggerOn::TestAdded(b) => format!("+?{}", belief(agent, b)),
         TriggerOn::TestFailed(b) => format!("-?{}", belief(agent, b)),
         TriggerOn::Perceived(e) => {
-            format!("on {}", program.events.get(usize::from(e.0)).map_or("?", |e| &e.name))
+            format!(
+                "on {}",
+                known_name("event", program.events.get(usize::from(e.0)).map(|e| e.name.as_str()))
+            )
         }
     }
 }

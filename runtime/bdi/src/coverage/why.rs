@@ -8,6 +8,7 @@ use hrdsl_ir::{
         Agent, AgentId, BeliefId, ContentId, GoalId, MessageSubject, Performative, Plan, PlanContext,
         PlanStepKind, TriggerOn,
     },
+    known_name,
 };
 
 use super::{
@@ -88,7 +89,7 @@ impl<'a> TeamMember<'a> {
     }
 
     fn label(&self, plan: u16) -> &'a str {
-        self.plan(plan).map_or("?", |p| &p.label)
+        known_name("plan", self.plan(plan).map(|p| p.label.as_str()))
     }
 
     fn selected(&self, plan: u16) -> u64 {
@@ -304,7 +305,10 @@ impl<'a> TeamMember<'a> {
             TriggerOn::BeliefAdded(wanted) => {
                 let percept = self.agent.beliefs.get(usize::from(wanted.0)).and_then(|b| b.percept);
                 if let Some(event) = percept {
-                    let name = program.events.get(usize::from(event.0)).map_or("?", |e| &e.name);
+                    let name = known_name(
+                        "event",
+                        program.events.get(usize::from(event.0)).map(|e| e.name.as_str()),
+                    );
                     return format!("`{name}` was never perceived");
                 }
                 let is_it =
@@ -331,7 +335,10 @@ impl<'a> TeamMember<'a> {
             }
             TriggerOn::Perceived(event) => match program.events.get(usize::from(event.0)) {
                 Some(e) => {
-                    let maker = program.actors.get(usize::from(e.from.0)).map_or("?", |a| &a.name);
+                    let maker = known_name(
+                        "actor",
+                        program.actors.get(usize::from(e.from.0)).map(|a| a.name.as_str()),
+                    );
                     format!("`{maker}` never made `{}` when the agent could perceive it", e.name)
                 }
                 None => "there is no such event".to_owned(),

@@ -8,8 +8,10 @@ use std::cell::RefCell;
 use hrdsl_ir::{
     Enumeration, EventId, Expr, Value,
     expr::{ArrayIndex, BinaryOp, EvalError, EvalScope, Lvalue, NumberFunction, UnaryOp},
-    ta::{AutomatonVar, ChannelId, FunctionId},
+    ta::{ChannelId, FunctionId},
 };
+
+use crate::network::number::{NumberComparison, NumberType};
 
 /// Statements that one evaluation may run.
 const STEPS: u32 = 1_000_000;
@@ -50,47 +52,6 @@ pub enum SyncMedium {
     Channel(ChannelId),
 }
 
-/// The type of a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum NumberType {
-    Bool,
-    Int,
-    Enum(Enumeration),
-    /// An index into the model's constants: of a float, string or list that an event carries.
-    Constant,
-}
-
-impl NumberType {
-    pub(crate) fn of(var: &AutomatonVar) -> Self {
-        match var.enumeration {
-            Some(e) => NumberType::Enum(e),
-            None if var.is_bool => NumberType::Bool,
-            None => NumberType::Int,
-        }
-    }
-
-    /// The number of a value. `None`: it is of another type.
-    pub(crate) fn number(self, value: Value) -> Option<i64> {
-        match (self, value) {
-            (NumberType::Bool, Value::Bool(b)) => Some(i64::from(b)),
-            (NumberType::Int, Value::Int(n)) => Some(n),
-            (NumberType::Enum(e), Value::Symbol(s)) => e.index_of(s).and_then(|n| i64::try_from(n).ok()),
-            (NumberType::Bool | NumberType::Int | NumberType::Enum(_) | NumberType::Constant, _) => None,
-        }
-    }
-
-    /// The value of a number.
-    pub(crate) fn value(self, n: i64, constants: &[Value]) -> Option<Value> {
-        let index = usize::try_from(n);
-        match self {
-            NumberType::Bool => Some(Value::Bool(n != 0)),
-            NumberType::Int => Some(Value::Int(n)),
-            NumberType::Enum(e) => index.ok().and_then(|n| e.values().get(n)).copied().map(Value::Symbol),
-            NumberType::Constant => index.ok().and_then(|n| constants.get(n)).copied(),
-        }
-    }
-}
-
 /// Where a variable of an expression lives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum VariablePlace {
@@ -98,29 +59,6 @@ pub(crate) enum VariablePlace {
     State(u32),
     /// Of the frame: selects and bound arguments of an edge, or parameters and locals of a function.
     Local(u32),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum NumberComparison {
-    Eq,
-    Ne,
-    Lt,
-    Le,
-    Gt,
-    Ge,
-}
-
-impl NumberComparison {
-    fn holds(self, a: i64, b: i64) -> bool {
-        match self {
-            NumberComparison::Eq => a == b,
-            NumberComparison::Ne => a != b,
-            NumberComparison::Lt => a < b,
-            NumberComparison::Le => a <= b,
-            NumberComparison::Gt => a > b,
-            NumberComparison::Ge => a >= b,
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -265,7 +203,7 @@ impl<'e> CodeEvalContext<'e> {
         value: &CompiledExpr,
         routine: Option<u32>,
     ) -> Result<(), CodeEvalError> {
-        // The lvalue is chosen before the value is worked out: a function in the value may change its indices.
+        // As in `hrdsl_ir::exec`: the lvalue is chosen before the value is worked out, since a function in the value may change its indices.
         let at = place.resolve(self)?;
         let n = value.eval(self)?;
         match at {
@@ -288,6 +226,7 @@ impl<'e> CodeEvalContext<'e> {
         }
         let library = self.library;
         let r = &library.routines[routine as usize];
+        // The frame grows on top while `base` is still the caller's: arguments are worked out in the caller's frame.
         let base = self.stack.len();
         for (a, &(lo, hi)) in args.iter().zip(&r.params) {
             let n = a.eval(self)?;
@@ -370,6 +309,7 @@ impl<'e> CodeEvalContext<'e> {
         let mut n = lo;
         while n <= hi {
             self.step()?;
+            // Rounds are counted in `n`: a body that sets the variable does not change how often it runs.
             if n < least || n > most {
                 return Err(EvalError::Range(n).into());
             }
@@ -503,6 +443,7 @@ impl CompiledExpr {
     /// The least and greatest value that it can have, and whether it always has one. `locals` are the frame's ranges.
     pub(crate) fn span(&self, library: &CodeLibrary, locals: &[(i64, i64)]) -> (i64, i64, bool) {
         let of = |c: &CompiledExpr| c.span(library, locals);
+        // Bounds of zones rely on it, and an interval that is too small would make them unsound: what is not known saturates outwards.
         match self {
             CompiledExpr::Const(n) => (*n, *n, true),
             CompiledExpr::Var(i) => {
@@ -543,6 +484,7 @@ impl CompiledExpr {
                 }
                 (lo, hi, place.always_there(library, locals))
             }
+            // A function may be endless, or have a fault: never sure.
             CompiledExpr::Apply(f, _) => {
                 let result = library.routines[*f as usize].result;
                 result.map_or((0, 0, false), |(_, lo, hi)| (lo, hi, false))
@@ -598,6 +540,7 @@ impl CompiledExpr {
                 called(*routine);
                 args.iter().for_each(|a| a.scan(read, called));
             }
+            // Not looked into: it may read all that it could name.
             CompiledExpr::Generic(g) => {
                 for (at, _) in &g.scope.vars {
                     if let VariablePlace::State(i) = at {
@@ -704,6 +647,7 @@ impl ArithmeticOp {
             ArithmeticOp::Add => corners(&i64::checked_add),
             ArithmeticOp::Sub => corners(&i64::checked_sub),
             ArithmeticOp::Mul => corners(&i64::checked_mul),
+            // Towards zero it comes no farther from zero than the dividend. Only `i64::MIN / -1` would.
             ArithmeticOp::Div => {
                 let most = a.saturating_abs().max(b.saturating_abs());
                 (most.saturating_neg(), most, x && y && (c > 0 || d < 0) && a > i64::MIN)
@@ -729,6 +673,7 @@ struct CodeValueScope<'a, 'e> {
 impl EvalScope for CodeValueScope<'_, '_> {
     fn var(&self, slot: u16) -> Option<Value> {
         let (at, ty) = *self.scope.vars.get(usize::from(slot))?;
+        // While a function that this expression calls runs, nobody asks this scope: the function's code has the environment itself.
         let env = self.env.try_borrow().ok()?;
         ty.value(env.get(at), &env.library.constants)
     }
@@ -766,6 +711,7 @@ impl GenericExpr {
 
 impl CodeLibrary {
     pub(crate) fn routine(&self, function: FunctionId, member: Option<u16>) -> Option<u32> {
+        // A function of the automaton's own is over its variables; one that all share has no member.
         let of = |m: Option<u16>| self.numbers.iter().find(|n| n.0 == function && n.1 == m).map(|n| n.2);
         of(member).or_else(|| of(None))
     }
@@ -866,6 +812,7 @@ impl CodeLibrary {
     ) -> Option<(CompiledExpr, CompiledExpr, NumberType)> {
         let of = |e, hint| self.typed(names, e, hint);
         let kind = |t: NumberType| if let NumberType::Enum(e) = t { Some(e) } else { None };
+        // A symbol alone says not of which enumeration it is: whichever side knows tells the other.
         let ((a, x), (b, y)) = match of(a, hint) {
             Some((code, ty)) => ((code, ty), of(b, kind(ty).or(hint))?),
             None => {
@@ -955,6 +902,7 @@ impl CodeLibrary {
         let base = names.vars.get(usize::from(place.slot))?.0;
         let index = |i: &ArrayIndex| Some((self.compile(names, &i.at, NumberType::Int), i.count, i.stride));
         let indices = place.indices.iter().map(index).collect::<Option<Vec<_>>>()?;
+        // The last element has to be a variable, too: from here on a place is only ever reached by indices within their counts.
         let last: usize =
             place.indices.iter().map(|i| usize::from(i.count.max(1) - 1) * usize::from(i.stride)).sum();
         names.vars.get(usize::from(place.slot) + last)?;
@@ -1011,6 +959,7 @@ fn comparison(op: NumberComparison, a: CompiledExpr, b: CompiledExpr) -> Compile
 /// Of constants: the value, if it has one.
 #[expect(clippy::wildcard_enum_match_arm, reason = "what is not folded here is folded where it is made")]
 fn fold(code: CompiledExpr) -> CompiledExpr {
+    // What has no value (`1 / 0`) stays as it is: it is a fault when, and if, it is evaluated.
     let value = match &code {
         CompiledExpr::Not(a) => a.constant().map(|n| i64::from(n == 0)),
         CompiledExpr::Neg(a) => a.constant().and_then(i64::checked_neg),

@@ -15,17 +15,19 @@ use crate::{
     network::{
         bounds::ExtrapolationBounds,
         code::{
-            CodeLibrary, CompiledExpr, CompiledFunction, CompiledLvalue, CompiledStatement, NumberType,
-            SyncMedium, VariablePlace, VariableScope,
+            CodeLibrary, CompiledExpr, CompiledFunction, CompiledLvalue, CompiledStatement, SyncMedium,
+            VariablePlace, VariableScope,
         },
         error::ModelError,
-        model::{BoundWidth, CompiledNetwork, ObservationOptions},
+        model::{CompiledNetwork, ObservationOptions},
+        number::NumberType,
         parts::{
             ClockConstraints, CompiledAutomaton, CompiledEdge, CompiledLocation, EdgeOutput, EdgeSync,
             EdgeUpdate, EventWatch, InputPartner, InputPattern, MultiwayChannel, OutputArgument,
             ParametricConstraint, TimeExpr,
         },
         well_formed,
+        width::width,
     },
     zone::constraint::constraints,
 };
@@ -70,6 +72,8 @@ fn compiled<'p>(
     }
     let slots: Vec<&AutomatonVar> =
         program.shared.iter().chain(automata.iter().flat_map(|a| &a.vars)).collect();
+    // The order of what follows matters: members give names to variables, functions are compiled over those names and may call each
+    // other, edges call functions, and partners and extrapolation look at compiled edges.
     let library = CodeLibrary { ranges: ranges(&automata, &slots, observe), ..CodeLibrary::default() };
     let unit = unit(&automata, &observe.formulas);
     let mut compiler = NetworkCompiler { program, network, unit, library };
@@ -114,7 +118,8 @@ fn compiled<'p>(
     })
 }
 
-/// Of each number of the discrete vector.
+/// Of each number of the discrete vector, in the order in which `CompiledNetwork` finds them: locations, variables, counters, limits, the
+/// last edge of each member, the last definition of each variable. The two have to agree.
 fn ranges(automata: &[&Automaton], slots: &[&AutomatonVar], observe: &ObservationOptions) -> Vec<(i64, i64)> {
     let mut all: Vec<(i64, i64)> = automata.iter().map(|a| (0, a.locations.len() as i64 - 1)).collect();
     all.extend(slots.iter().map(|v| (v.lo, v.hi)));
@@ -207,6 +212,7 @@ impl<'p> NetworkCompiler<'p> {
     // ── Functions ──
 
     fn functions(&mut self, network: &Network, members: &[CompiledAutomaton]) -> ModelResult<()> {
+        // In two passes, all signatures before any body: functions may call each other in circles.
         let shared: Vec<(VariablePlace, NumberType)> = self
             .program
             .shared
@@ -219,6 +225,7 @@ impl<'p> NetworkCompiler<'p> {
             let owner = f.owner.map(|a| CompiledNetwork::member_of(network, a));
             let (member, vars) = match owner {
                 None => (None, shared.clone()),
+                // Of an automaton that is not in this network: nobody can call it.
                 Some(None) => continue,
                 Some(Some(m)) => (Some(m), members[usize::from(m)].names.vars.clone()),
             };
@@ -364,6 +371,8 @@ impl<'p> NetworkCompiler<'p> {
         let mut names = outer.clone();
         let mut binders: Vec<NumberType> = edge.selects.iter().map(NumberType::of).collect();
         let mut locals: Vec<(i64, i64)> = edge.selects.iter().map(|v| (v.lo, v.hi)).collect();
+        // What is received binds names that the rest of the edge uses, arguments that are sent use them: so the one comes before the names
+        // are complete, the other after.
         let sync = match &edge.sync {
             SyncLabel::Internal => EdgeSync::Internal,
             SyncLabel::Join { channel } => {
@@ -473,6 +482,7 @@ impl<'p> NetworkCompiler<'p> {
     fn clock(&self, clock: ClockId, first: usize) -> u16 {
         let shared = self.program.clocks.len();
         let n = usize::from(clock.0);
+        // Clock 0 of a zone is the constant zero.
         (if n < shared { n + 1 } else { first + n - shared }) as u16
     }
 
@@ -485,6 +495,7 @@ impl<'p> NetworkCompiler<'p> {
     ) -> ModelResult<TimeExpr> {
         let far = || ModelError::Constants { automaton: automaton.name.clone() };
         let mut terms = Vec::new();
+        // Without remainder: the unit divides all constants and factors, so that no bound is rounded.
         let mut units = time.nanos / self.unit;
         for t in &time.terms {
             let factor = t.factor / self.unit;
@@ -549,6 +560,7 @@ impl<'p> NetworkCompiler<'p> {
             (ArgPattern::Any, _) => None,
             (ArgPattern::Is(v), NumberType::Constant) => Some(self.library.constant(*v)),
             (ArgPattern::Is(v), NumberType::Bool | NumberType::Int | NumberType::Enum(_)) => {
+                // A value that the parameter cannot have is a pattern that nothing matches, and no fault.
                 Some(ty.number(*v).unwrap_or(NEVER))
             }
         }
@@ -749,69 +761,11 @@ fn partner(n: usize, other: &CompiledAutomaton, signal: &EdgeOutput) -> Option<I
             .wants
             .iter()
             .zip(&signal.args)
+            // Only constants are told apart here; what else is sent is compared when it is.
             .all(|(want, arg)| want.is_none_or(|w| arg.code.constant().is_none_or(|n| n == w))),
         EdgeSync::In(_) | EdgeSync::Internal | EdgeSync::Out(_) | EdgeSync::Join { .. } => false,
     };
     let edges: Vec<Box<[u16]>> =
         other.locations.iter().map(|l| l.receiving.iter().copied().filter(may).collect()).collect();
     edges.iter().any(|e| !e.is_empty()).then_some(InputPartner { member: n as u16, edges })
-}
-
-/// The least width in which no sum can overflow.
-///
-/// INVARIANT: entries of an extrapolated zone lie within the greatest constant M. Guards on single clocks leave all within
-/// 2M, each update adds M at most, invariants and delays give 2M more; a sum has three of them. Constraints on differences
-/// may lengthen a path by one constant for each clock.
-fn width(
-    members: &[CompiledAutomaton],
-    formulas: &ClockConstraints,
-    dim: usize,
-    library: &CodeLibrary,
-) -> ModelResult<BoundWidth> {
-    let (mut most, mut differences, mut updates) = (1, false, 0);
-    let mut note = |c: &ClockConstraints| {
-        for f in &c.fixed {
-            most = most.max(f.bound.value().abs());
-            differences |= f.i != 0 && f.j != 0;
-        }
-        for m in &c.moving {
-            most = most.max(m.span.0.abs()).max(m.span.1.abs());
-            differences |= m.j != 0;
-        }
-    };
-    note(formulas);
-    for m in members {
-        m.locations.iter().for_each(|l| note(&l.invariant));
-        m.edges.iter().for_each(|e| note(&e.guard));
-    }
-    let mut set = 0;
-    for m in members {
-        let mut worst = 0;
-        for e in &m.edges {
-            let mut here = 0;
-            for u in &e.updates {
-                let EdgeUpdate::Reset { to, .. } = u else { continue };
-                let locals: Vec<(i64, i64)> = e.locals(library);
-                let (lo, hi) = to.span(library, &locals);
-                set = set.max(lo.abs()).max(hi.abs());
-                here += i64::from((lo, hi) != (0, 0));
-            }
-            worst = worst.max(here);
-        }
-        updates += worst;
-    }
-    let most = most.max(set);
-    let far = 3 * (4 + updates + if differences { 2 * dim as i64 } else { 0 });
-    let reach = i128::from(most) * i128::from(far);
-    if reach < 1 << 14 {
-        Ok(BoundWidth::Bits16)
-    } else if reach < 1 << 30 {
-        Ok(BoundWidth::Bits32)
-    } else if reach < 1 << 61 {
-        Ok(BoundWidth::Bits64)
-    } else {
-        Err(ModelError::Constants {
-            automaton: members.first().map_or(String::new(), |m| m.automaton.name.clone()),
-        })
-    }
 }

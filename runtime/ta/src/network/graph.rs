@@ -13,9 +13,9 @@ use hrdsl_ir::{
 use crate::{
     network::{
         actions::{DelayCondition, EnabledTransition, PathTransition},
-        code::NumberType,
         error::ModelError,
         model::CompiledNetwork,
+        number::NumberType,
         parts::{CompiledAutomaton, TimeExpr},
         query::{StateFormula, StateView, SymbolicView, as_bounds},
         semantics::ClockReset,

@@ -12,8 +12,9 @@ use hrdsl_ir::{
 
 use crate::network::{
     bounds::ExtrapolationBounds,
-    code::{CodeEvalError, CodeLibrary, NumberType, SyncMedium, VariablePlace, VariableScope},
+    code::{CodeEvalError, CodeLibrary, SyncMedium, VariablePlace, VariableScope},
     error::{EdgeName, ModelError, range_fault},
+    number::NumberType,
     parts::{CompiledAutomaton, CompiledLocation, EventWatch, MultiwayChannel},
     query::{EventCounter, EventLimit, GoalKind, ReachabilityGoal, StateFormula},
 };

@@ -4,9 +4,9 @@ use hrdsl_ir::ta::{ChannelId, ClockOp, LocationKind};
 
 use crate::{
     network::code::{
-        CodeEvalContext, CodeEvalError, CodeLibrary, CompiledExpr, CompiledLvalue, NumberType, SyncMedium,
-        VariableScope,
+        CodeEvalContext, CodeEvalError, CodeLibrary, CompiledExpr, CompiledLvalue, SyncMedium, VariableScope,
     },
+    network::number::NumberType,
     zone::constraint::{DifferenceConstraint, constraints},
 };
 

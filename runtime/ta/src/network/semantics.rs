@@ -10,11 +10,7 @@
 
 use std::ops::ControlFlow;
 
-use hrdsl_ir::{
-    ArgPattern, EventId, Value,
-    expr::EvalError,
-    ta::{AutomatonVar, LocationKind, ReceiveArg},
-};
+use hrdsl_ir::{EventId, Value, expr::EvalError, ta::LocationKind};
 use smallvec::SmallVec;
 
 use crate::{
@@ -23,12 +19,10 @@ use crate::{
         error::ModelError,
         model::CompiledNetwork,
         parts::{CompiledEdge, EdgeOutput, EdgeSync, EdgeUpdate, stops_time},
+        selects::{BinderValues, first, next},
     },
     zone::constraint::{DifferenceConstraint, constraints},
 };
-
-/// The values of an edge's selects, then of the parameters it binds.
-pub type BinderValues = SmallVec<[Value; 2]>;
 
 /// One automaton's part in a transition.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -113,55 +107,6 @@ pub(crate) struct EnumerationScratch {
     guard: Vec<DifferenceConstraint>,
 }
 
-/// All combinations of the selects' values, the first select slowest.
-pub(crate) fn choices(selects: &[AutomatonVar]) -> Vec<BinderValues> {
-    let mut all = vec![BinderValues::new()];
-    for s in selects {
-        let mut longer = Vec::new();
-        for chosen in &all {
-            for value in (s.lo..=s.hi).filter_map(|n| s.value(n)) {
-                let mut next = chosen.clone();
-                next.push(value);
-                longer.push(next);
-            }
-        }
-        all = longer;
-    }
-    all
-}
-
-/// Binds an event's arguments to a receiving edge's parameters, if they match.
-pub(crate) fn bind(pattern: &[ReceiveArg], args: &[Value], binders: &mut BinderValues) -> bool {
-    for (p, &v) in pattern.iter().zip(args) {
-        match p {
-            ReceiveArg::Match(ArgPattern::Any) => {}
-            ReceiveArg::Match(ArgPattern::Is(want)) if want.key() == v.key() => {}
-            ReceiveArg::Match(ArgPattern::Is(_)) => return false,
-            ReceiveArg::Bind => binders.push(v),
-        }
-    }
-    true
-}
-
-/// The least of all combinations of selects; `false`: there is none.
-fn first(selects: &[(i64, i64)], out: &mut SmallVec<[i64; 4]>) -> bool {
-    out.clear();
-    out.extend(selects.iter().map(|s| s.0));
-    selects.iter().all(|s| s.0 <= s.1)
-}
-
-/// The next combination, the last select fastest.
-fn next(selects: &[(i64, i64)], chosen: &mut [i64]) -> bool {
-    for (n, s) in chosen.iter_mut().zip(selects).rev() {
-        if *n < s.1 {
-            *n += 1;
-            return true;
-        }
-        *n = s.0;
-    }
-    false
-}
-
 /// Whether a constraint may hold, as far as the one who enumerates cares.
 pub(crate) trait ConstraintFilter {
     fn may(&self, c: DifferenceConstraint) -> bool;
@@ -197,6 +142,7 @@ impl<'p> CompiledNetwork<'p> {
         scratch: &mut EnumerationScratch,
         found: &mut F,
     ) -> EnumerationFlow {
+        // A path is kept as numbers of transitions, so that this order is part of what the search remembers.
         let committed = self.any_committed(state);
         let mut e = FiringEnumeration { model: self, state, committed, may, found, s: scratch };
         for m in 0..self.members.len() {
@@ -226,6 +172,7 @@ impl<'p> CompiledNetwork<'p> {
         effect.target.extend_from_slice(state);
         effect.resets.clear();
         effect.below.clear();
+        // Counted before the updates: what a limit forbids has no fault either.
         if let Some(SyncMedium::Event(event)) = firing.medium
             && !self.count(&mut effect.target, event, firing.args)
         {
@@ -246,6 +193,7 @@ impl<'p> CompiledNetwork<'p> {
         let (m, e) = (usize::from(take.member), usize::from(take.edge));
         let arrow = &self.members[m].edges[e];
         effect.target[m] = arrow.to() as i64;
+        // One after the other on the target itself: an update sees what those before it did, of this edge and of earlier parts.
         let mut written = Vec::new();
         stack.clear();
         stack.extend_from_slice(&take.binders);
@@ -260,6 +208,8 @@ impl<'p> CompiledNetwork<'p> {
                 }
                 EdgeUpdate::Reset { clock, from, to } => {
                     let by = to.eval(&mut env)?;
+                    // A zone is changed once for the whole transition, so that a copy of a clock that was set before it in the same
+                    // transition goes back to what that was set to.
                     let known = from.and_then(|y| resets.iter().find(|r| r.clock == y).copied());
                     let reset = match (from, known) {
                         (None, _) => ClockReset { clock: *clock, from: 0, by },
@@ -267,6 +217,7 @@ impl<'p> CompiledNetwork<'p> {
                         (Some(_), Some(r)) => ClockReset { clock: *clock, from: r.from, by: r.by + by },
                     };
                     if reset.by < 0 {
+                        // Without another clock it is known here; with one, the zone has to be asked.
                         if reset.from == 0 {
                             return Err(CodeEvalError::Negative { clock: *clock });
                         }
@@ -293,6 +244,7 @@ impl<'p> CompiledNetwork<'p> {
         let matches = |patterns: &[Vec<Option<i64>>]| {
             patterns.iter().any(|p| p.iter().zip(args).all(|(want, n)| want.is_none_or(|w| w == *n)))
         };
+        // Limits come first. A counter stops at its cap, beyond which no goal tells numbers apart: so states stay finitely many.
         for (i, patterns) in &watch.limits {
             if matches(patterns) {
                 let n = &mut state[self.limit_at(*i)];
@@ -373,7 +325,8 @@ impl<'p> CompiledNetwork<'p> {
         if !any_multiway && !offers {
             return false;
         }
-        // A guard of a broadcast's receiver does not matter, nor does a fault: it is met when the transition is.
+        // A guard of a broadcast's receiver does not matter, nor does a fault: it is met when the transition is. Committed locations are left
+        // out: where there is one, no time passes anyhow. The clocks of urgent edges have no guards, so that no zone need be asked.
         let mut e = FiringEnumeration {
             model: self,
             state,
@@ -430,6 +383,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnum
     /// Whether the edge is open and its clocks allow it; their constraints are added to the guard. A guard over variables
     /// that is false protects the bounds of clocks from faults.
     fn opens(&mut self, member: usize, edge: usize, binders: &[i64]) -> Result<bool, CodeEvalError> {
+        // Clocks first, which are a look at the zone. Their fault waits until the guard over variables is known.
         let clocks = self.clocks(member, edge, binders);
         if clocks == Ok(false) || self.data(member, edge, binders)? { clocks } else { Ok(false) }
     }
@@ -555,6 +509,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnum
 
     fn binary(&mut self, member: usize, signal: &EdgeOutput) -> EnumerationFlow {
         let model = self.model;
+        // One committed location among the two is enough; if the sender has it, any partner will do.
         let own = !self.committed || model.is_committed(self.state, member);
         for partner in &signal.partners {
             let p = usize::from(partner.member);
@@ -614,6 +569,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnum
     fn responses(&mut self, member: usize, edges: &[u16], optional: bool) -> Vec<SyncResponse> {
         let model = self.model;
         let mut out = Vec::new();
+        // Each entry is a conjunction under which no edge so far is open; at first the empty one, which always holds.
         let mut absent: Vec<SmallVec<[DifferenceConstraint; 4]>> = vec![SmallVec::new()];
         for &edge in edges {
             let arrow = &model.members[member].edges[usize::from(edge)];
@@ -632,6 +588,8 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnum
                 let own: SmallVec<[DifferenceConstraint; 2]> = SmallVec::from_slice(&self.s.guard[guards..]);
                 self.s.guard.truncate(guards);
                 let take = CompiledMove { member: member as u16, edge, binders };
+                // An edge without clock guards leaves `absent` empty: then the automaton cannot stay away. A fault counts as open, since
+                // it happens where the guard's clocks hold.
                 if open != Ok(false) {
                     // To stay away, one of the constraints of each enabled edge must fail.
                     absent = absent.iter().flat_map(|cs| own.iter().map(|c| extended(cs, *c))).collect();
@@ -646,6 +604,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnum
                 more = next(&arrow.selects, &mut chosen);
             }
         }
+        // Without an open edge it is no option at all, and does not multiply the combinations.
         if optional && !out.is_empty() {
             out.extend(absent.into_iter().map(SyncResponse::Absent));
         }
@@ -677,6 +636,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnum
                     self.fault(usize::from(member), usize::from(edge), f)?;
                 }
                 Some(_) => {}
+                // All of a multi-way channel's optional participants stay away: nothing happens.
                 None if self.s.parts.is_empty() => {}
                 None => self.fire(medium)?,
             }

@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 use crate::{
     network::{actions::PathTransition, error::ModelError, model::CompiledNetwork},
     search::{
+        covering::{covers, demands, subsumes},
         goals::{CompiledGoals, SymbolicStateRef},
         options::{SearchOptions, SubsumptionRelation},
         stepper::{SymbolicStepper, SymbolicSuccessor},
@@ -16,9 +17,9 @@ use crate::{
     witness::error::SearchError,
     zone::{
         constraint::DifferenceConstraint,
-        dbm::{Dbm, DbmNumber, dominates},
+        dbm::{Dbm, DbmNumber},
         diagonals::split,
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction, NONE, extra_lu, thresholds},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, extra_lu, thresholds},
     },
 };
 
@@ -228,9 +229,12 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         self.load(c, node);
         batch.visited += 1;
         let visit = NodeExpansion { model: self.model, c, node, keep: c.options.keep_committed };
+        // Committed states that are met are put behind this one, and expanded by the same loop. `via` counts through all of them, so that
+        // a number means the same transition whenever the node is expanded again: `retrace` relies on it.
         let mut via = 0;
         let mut at = 0;
         while at < self.count {
+            // Taken out, since `step` adds to the list that it stands in.
             let mut current = std::mem::replace(&mut self.locals[at], ExpansionState::empty());
             let result = self.step(&visit, at, &mut current, &mut via, batch, None);
             let reached = current.via;
@@ -256,13 +260,17 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     ) -> Result<(), ModelError> {
         let (m, locals, count) = (&mut self.m, &mut self.locals, &mut self.count);
         let mut fault = None;
+        // Goals over two edges ask which edge was the last one before this transition, and the stepper works on the state itself.
         let before = &if visit.c.open.is_empty() { Vec::new() } else { current.state.clone() };
         let result = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
             let number = *via;
             *via += 1;
             batch.transitions += 1;
             visit.taken(before, &s, number, batch);
+            // No time passes in a committed state: what follows it is found at once, and nothing is won by storing it. The cut at `AT_ONCE`
+            // depends on the node alone, never on the store, so that `retrace` makes it, too.
             if visit.keep || *count > AT_ONCE || !visit.model.any_committed(s.state) {
+                // Who retraces has stored the state already.
                 if until.is_none()
                     && let Err(error) = visit.arrive(m, s.state, s.frame, s.zone, (visit.node, number), batch)
                 {
@@ -298,6 +306,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             let before = number;
             let result = self.step(&visit, at, &mut current, &mut number, &mut batch, Some(via));
             self.locals[at] = current;
+            // Looked at before the fault: a transition that comes before one is a path all the same.
             if via >= before && via < number {
                 last = Some((at, via - before));
                 break;
@@ -305,6 +314,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             result?;
             at += 1;
         }
+        // Back along the committed states, each of which knows the one before it; the first local state is the node itself.
         let mut steps = vec![last.ok_or_else(lost)?];
         while let Some(&(at, _)) = steps.last()
             && at > 0
@@ -362,6 +372,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     ) -> Option<&[u32]> {
         self.m.covers.clear();
         let head = store.head(discrete);
+        // The newest node stands first: what was stored before the round was compared when the state was expanded.
         if head == NIL || head < first {
             return Some(&self.m.covers);
         }
@@ -396,66 +407,6 @@ impl<N: DbmNumber> ExpansionState<N> {
             via: None,
         }
     }
-}
-
-/// What an entry of a zone must be at least to cover a zone.
-fn demands<N: DbmNumber>(
-    subsumption: SubsumptionRelation,
-    frame: &ActiveClocks,
-    zone: &Dbm<N>,
-    out: &mut Vec<N>,
-    flat: &[N],
-) {
-    match subsumption {
-        SubsumptionRelation::Inclusion | SubsumptionRelation::Equality => {
-            out.clear();
-            out.extend_from_slice(flat);
-        }
-        SubsumptionRelation::Simulation => thresholds(frame, zone, out),
-    }
-}
-
-fn subsumes<N: DbmNumber>(subsumption: SubsumptionRelation, old: &[N], demands: &[N]) -> bool {
-    match subsumption {
-        SubsumptionRelation::Equality => old == demands,
-        SubsumptionRelation::Inclusion | SubsumptionRelation::Simulation => dominates(old, demands),
-    }
-}
-
-/// Whether the new zone covers the old one, both without padding.
-fn covers<N: DbmNumber>(
-    subsumption: SubsumptionRelation,
-    frame: &ActiveClocks,
-    new: &[N],
-    old: &[N],
-) -> bool {
-    match subsumption {
-        SubsumptionRelation::Equality => false,
-        SubsumptionRelation::Inclusion => dominates(new, old),
-        SubsumptionRelation::Simulation => {
-            let dim = frame.dim();
-            let rows = new.chunks_exact(dim).zip(old.chunks_exact(dim)).zip(&frame.bounds);
-            rows.clone().all(|((new_row, old_row), lu)| {
-                lu.lower == NONE
-                    || new_row
-                        .iter()
-                        .zip(old_row)
-                        .enumerate()
-                        .all(|(x, (a, b))| a >= b || !breaks(frame, old, x, *a, lu.lower))
-            })
-        }
-    }
-}
-
-/// Whether an entry of the greater zone that is less than that of the smaller one keeps it from covering.
-fn breaks<N: DbmNumber>(frame: &ActiveClocks, old: &[N], x: usize, entry: N, lower: i64) -> bool {
-    let upper = frame.bounds[x].upper;
-    let least: i64 = old[x].into();
-    if upper == NONE || least < 1 - 2 * upper {
-        return false;
-    }
-    let entry: i64 = entry.into();
-    entry < 2 * (lower + (least + 1).div_euclid(2))
 }
 
 /// The expansion of one node.
@@ -505,6 +456,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
             m.flat.clear();
             piece.store(&mut m.flat);
             demands(self.c.options.subsumption, s.frame, piece, &mut m.bounds, &m.flat);
+            // Against the local states alone, so that the numbers of an expansion depend on nothing but its node.
             let known = locals[..*count].iter().any(|l| {
                 if l.state != *s.state {
                     return false;
@@ -596,6 +548,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         if self.c.open.iter().any(|o| *o) {
             let settled = !self.model.any_committed(state);
             m.met.clear();
+            // Goals without clocks are the discrete state's: where that is stored, they were looked at when it came.
             if known.is_none() {
                 self.c.goals.states(state, &mut m.stack, self.model, settled, self.c.open, &mut m.met)?;
             }
@@ -651,6 +604,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
             if !looked {
                 demands(subsumption, frame, zone, &mut m.bounds, flat);
             }
+            // One walk for both questions: a zone that covers this one ends it, those that it covers are noted for the store to drop.
             let mut at = self.c.store.head(discrete);
             while at != NIL {
                 let node = &self.c.store.nodes[at as usize];

@@ -4,9 +4,10 @@ use hrdsl_ir::ta::QueryFormula;
 
 use crate::{
     network::{
-        code::{CodeEvalContext, CodeEvalError, CompiledExpr, NumberComparison, NumberType, VariableScope},
+        code::{CodeEvalContext, CodeEvalError, CompiledExpr, VariableScope},
         error::ModelError,
         model::CompiledNetwork,
+        number::{NumberComparison, NumberType},
         parts::{ParametricConstraint, TimeExpr},
         query::{GoalKind, ReachabilityGoal, StateFormula},
     },

@@ -8,7 +8,7 @@ use std::{ops::ControlFlow, sync::Arc};
 
 use hrdsl_ir::{
     EventId, Expr, Program, Value,
-    exec::{self, FunctionTable, VariableMemory},
+    exec::{self, FunctionTable},
     expr::EvalError,
     ta::{
         Automaton, AutomatonVar, Channel, ChannelId, ChannelKind, ClockConstraint, ClockId, ClockOp, Edge,
@@ -16,11 +16,15 @@ use hrdsl_ir::{
     },
 };
 
-use crate::network::{
-    code::SyncMedium,
-    error::{EdgeName, ModelError, argument_fault, bad_argument, range_fault},
-    query::nanos,
-    semantics::{AutomatonMove, BinderValues, bind, choices},
+use crate::{
+    network::{
+        code::SyncMedium,
+        error::{EdgeName, ModelError, argument_fault, bad_argument, range_fault},
+        query::nanos,
+        selects::{BinderValues, bind, choices},
+        semantics::AutomatonMove,
+    },
+    witness::memory::{AutomatonScope, AutomatonScopeMut, read, slots},
 };
 
 /// The state of some automata at an instant; time is in ticks.
@@ -38,62 +42,6 @@ pub(crate) struct ConcreteInterpreter<'p> {
     pub(crate) now: i128,
     /// Ticks in a nanosecond.
     ticks: i128,
-}
-
-/// The variables that an automaton knows.
-struct AutomatonScope<'m> {
-    program: &'m Program,
-    vars: &'m [AutomatonVar],
-    shared: &'m [i64],
-    own: &'m [i64],
-}
-
-impl VariableMemory for AutomatonScope<'_> {
-    fn read(&self, slot: u16) -> Option<Value> {
-        read(self.program, self.vars, self.shared, self.own, slot)
-    }
-
-    fn write(&mut self, _: u16, _: Value) -> Result<(), EvalError> {
-        Err(EvalError::Type)
-    }
-}
-
-/// The same, to be assigned.
-struct AutomatonScopeMut<'m> {
-    program: &'m Program,
-    vars: &'m [AutomatonVar],
-    shared: &'m mut [i64],
-    own: &'m mut [i64],
-}
-
-impl VariableMemory for AutomatonScopeMut<'_> {
-    fn read(&self, slot: u16) -> Option<Value> {
-        read(self.program, self.vars, self.shared, self.own, slot)
-    }
-
-    fn write(&mut self, slot: u16, value: Value) -> Result<(), EvalError> {
-        let at = usize::from(slot);
-        let (var, place) = match self.program.shared.get(at) {
-            Some(var) => (var, self.shared.get_mut(at)),
-            None => {
-                let own = at - self.program.shared.len();
-                (self.vars.get(own).ok_or(EvalError::Unbound(slot))?, self.own.get_mut(own))
-            }
-        };
-        *place.ok_or(EvalError::Unbound(slot))? = exec::fit(var, slot, value)?;
-        Ok(())
-    }
-}
-
-fn read(program: &Program, vars: &[AutomatonVar], shared: &[i64], own: &[i64], slot: u16) -> Option<Value> {
-    let at = usize::from(slot);
-    match program.shared.get(at) {
-        Some(var) => var.value(*shared.get(at)?),
-        None => {
-            let at = at - program.shared.len();
-            vars.get(at)?.value(*own.get(at)?)
-        }
-    }
 }
 
 impl<'p> ConcreteInterpreter<'p> {
@@ -263,6 +211,7 @@ impl<'p> ConcreteInterpreter<'p> {
 
     /// Goes along an edge: its updates in order, then its target.
     pub(crate) fn take(&mut self, m: &AutomatonMove) -> Result<(), ModelError> {
+        // The location goes first, and no update can read it; invariants are asked when all parts have moved.
         let edge = self.edge(m);
         self.location[m.automaton] = edge.to;
         edge.updates.iter().try_for_each(|u| self.update(m, u))
@@ -285,6 +234,7 @@ impl<'p> ConcreteInterpreter<'p> {
         to: &TimeSum,
     ) -> Result<(), ModelError> {
         let plus = self.span(m.automaton, &m.binders, to).map_err(|e| self.fault(m, e))?;
+        // A clock is kept as the time at which it was zero, so that delays change nothing but `now`. A copy takes the other's zero.
         let zero = from.map_or(self.now, |from| self.zero_at(m.automaton, from)) - plus;
         if zero > self.now {
             let name = clock_name(self.program, self.members[m.automaton], clock);
@@ -546,6 +496,7 @@ impl<'p> ConcreteInterpreter<'p> {
                 let all = hear(SyncMedium::Channel(*channel), &args)?;
                 match declared.kind {
                     ChannelKind::Broadcast => groups.push(all),
+                    // One partner at a time: each of those that could accept is another transition.
                     ChannelKind::Binary | ChannelKind::MultiWay(_) => {
                         groups.extend(all.into_iter().skip(1).map(|moves| vec![vec![m.clone()], moves]));
                     }
@@ -577,6 +528,8 @@ impl<'p> ConcreteInterpreter<'p> {
                 (false, _) => all.push(moves),
             }
         }
+        // Every open edge of a participant is asked whether it starts this; only the first participant's do, or each combination would come
+        // once for each of its parts.
         Ok(all.first().is_some_and(|moves| moves.contains(first)).then_some(all))
     }
 
@@ -588,15 +541,18 @@ impl<'p> ConcreteInterpreter<'p> {
     ) -> Result<ControlFlow<()>, ModelError> {
         let takes_committed =
             group.iter().any(|moves| self.kind(moves[0].automaton) == LocationKind::Committed);
+        // INVARIANT: a list of the group is of one automaton, and none is empty. One committed part lets all the others move with it.
         if self.any_committed() && !takes_committed {
             return Ok(ControlFlow::Continue(()));
         }
         let mut at = vec![0; group.len()];
         loop {
+            // Guards and arguments were worked out in the state before; updates go one after the other, in the order of the parts.
             let mut next = self.clone();
             for (moves, &i) in group.iter().zip(&at) {
                 next.take(&moves[i])?;
             }
+            // A transition into an invariant that does not hold is not there; it is no fault.
             if next.broken_invariant()?.is_none() && f(next).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
@@ -637,6 +593,7 @@ impl<'p> ConcreteInterpreter<'p> {
         let mut times = Vec::new();
         for (member, a) in self.members.iter().enumerate() {
             let edges = a.edges.iter().filter(|e| e.from == self.location[member]);
+            // Invariants of targets count, too: an edge may be open before the location that it leads to can be entered.
             let targets = edges.clone().flat_map(|e| &a.locations[usize::from(e.to.0)].invariant);
             let guards = edges.clone().flat_map(|e| e.clock_guard.iter().map(move |c| (e, c)));
             for c in targets.chain(&self.place(member).invariant) {
@@ -655,6 +612,8 @@ impl<'p> ConcreteInterpreter<'p> {
     }
 
     fn note_turn(&self, member: usize, binders: &[Value], c: &ClockConstraint, times: &mut Vec<i128>) {
+        // The difference of two clocks does not change with time. A bound without a value is a fault of its edge, which is met where the
+        // edge is tried.
         if let (None, Ok(bound)) = (c.minus, self.span(member, binders, &c.bound)) {
             let at = self.zero_at(member, c.clock) + bound;
             times.extend([at - 1, at, at + 1]);
@@ -692,9 +651,4 @@ pub(crate) fn clock_name(program: &Program, automaton: &Automaton, clock: ClockI
             own.map_or_else(|| format!("#{at}"), |c| format!("{}.{c}", automaton.name))
         }
     }
-}
-
-/// How many variables an automaton knows.
-fn slots(program: &Program, vars: &[AutomatonVar]) -> u16 {
-    u16::try_from(program.shared.len() + vars.len()).unwrap_or(u16::MAX)
 }

@@ -4,6 +4,7 @@
 pub(crate) mod build;
 pub(crate) mod concrete;
 pub(crate) mod error;
+mod memory;
 pub(crate) mod player;
 mod replay;
 pub(crate) mod run;

@@ -21,7 +21,8 @@ use rand_chacha::ChaCha8Rng;
 use crate::{
     network::{
         error::ModelError,
-        semantics::{AutomatonMove, BinderValues, bind, choices},
+        selects::{BinderValues, bind, choices},
+        semantics::AutomatonMove,
         well_formed,
     },
     witness::concrete::ConcreteInterpreter,

@@ -17,7 +17,8 @@ use crate::{
         code::SyncMedium,
         error::ModelError,
         query::{EventCounter, EventLimit, StateFormula, StateView, StateViewScope, any_matches, nanos},
-        semantics::{AutomatonMove, choices},
+        selects::choices,
+        semantics::AutomatonMove,
     },
     witness::{
         concrete::{ConcreteInterpreter, compare},

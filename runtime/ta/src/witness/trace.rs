@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use hrdsl_ir::{
-    Nanos, Program, Value,
+    Nanos, Program, Value, known_name,
     ta::{Automaton, ChannelId, ChannelKind, ClockId, EdgeAssignment, LocationId, Network},
 };
 use serde::Serialize;
@@ -169,7 +169,10 @@ impl<'a> WitnessTraceBuilder<'a> {
         let (over, medium) = match (&step.event, &step.channel) {
             (Some((event, args)), _) => {
                 let event = self.program.events.get(usize::from(event.0));
-                (Some(applied(event.map_or("?", |e| &e.name), args)), TransitionMedium::Event)
+                (
+                    Some(applied(known_name("event", event.map(|e| e.name.as_str())), args)),
+                    TransitionMedium::Event,
+                )
             }
             (None, Some((channel, args))) => {
                 let (name, medium) = self.channel(*channel);
@@ -178,7 +181,7 @@ impl<'a> WitnessTraceBuilder<'a> {
             (None, None) => (None, TransitionMedium::Internal),
         };
         let variables = step.variables.iter().map(|(slot, from, to)| {
-            format!("{}: {from} -> {to}", self.slots.get(*slot).map_or("?", String::as_str))
+            format!("{}: {from} -> {to}", known_name("variable", self.slots.get(*slot).map(String::as_str)))
         });
         WitnessTransition {
             time: seconds(step.time, witness.ticks),
@@ -193,7 +196,7 @@ impl<'a> WitnessTraceBuilder<'a> {
 
     fn channel(&self, id: ChannelId) -> (&'a str, TransitionMedium) {
         match self.program.channels.get(usize::from(id.0)) {
-            None => ("?", TransitionMedium::Binary),
+            None => (known_name("channel", None), TransitionMedium::Binary),
             Some(c) => {
                 let medium = match c.kind {
                     ChannelKind::Binary => TransitionMedium::Binary,
@@ -208,7 +211,9 @@ impl<'a> WitnessTraceBuilder<'a> {
     fn part(&self, m: &AutomatonMove) -> Option<TransitionParticipant> {
         let a = self.member(m.automaton)?;
         let edge = a.edges.get(m.edge)?;
-        let name = |l: LocationId| a.locations.get(usize::from(l.0)).map_or("?", |l| &l.name).to_owned();
+        let name = |l: LocationId| {
+            known_name("location", a.locations.get(usize::from(l.0)).map(|l| l.name.as_str())).to_owned()
+        };
         let (from, to) = (name(edge.from), name(edge.to));
         Some(TransitionParticipant { member: m.automaton, automaton: a.name.clone(), from, to })
     }

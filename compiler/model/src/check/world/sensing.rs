@@ -271,23 +271,12 @@ impl Checker<'_> {
     /// Whether an expression depends on what the system could read.
     pub(in crate::check) fn depends_on_a_reading(&self, e: &TypedExpr) -> bool {
         let mut found = false;
-        e.each(&mut |part| match part.kind {
-            TypedExprKind::Term(SignalTerm::Reading(_)) => found = true,
-            TypedExprKind::Leaf(VariableRef::Signal(id)) => {
+        e.each(&mut |part| {
+            found |= matches!(part.kind, TypedExprKind::Term(SignalTerm::Reading(_)));
+            if let TypedExprKind::Leaf(VariableRef::Signal(id)) = part.kind {
                 let signal = self.s.world.as_ref().and_then(|w| w.signals.get(usize::from(id.0)));
                 found |= signal.is_some_and(|s| self.depends_on_a_reading(&s.value));
             }
-            TypedExprKind::Const(_)
-            | TypedExprKind::Leaf(_)
-            | TypedExprKind::Term(_)
-            | TypedExprKind::Unary(..)
-            | TypedExprKind::Binary(..)
-            | TypedExprKind::If(..)
-            | TypedExprKind::Call(..)
-            | TypedExprKind::List(..)
-            | TypedExprKind::Element(_)
-            | TypedExprKind::Apply(..)
-            | TypedExprKind::Error => {}
         });
         found
     }

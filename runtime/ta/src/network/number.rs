@@ -1,0 +1,67 @@
+//! Values as whole numbers, and how two of them compare.
+
+use hrdsl_ir::{Enumeration, Value, ta::AutomatonVar};
+
+/// The type of a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum NumberType {
+    Bool,
+    Int,
+    Enum(Enumeration),
+    /// An index into the model's constants: of a float, string or list that an event carries.
+    Constant,
+}
+
+impl NumberType {
+    pub(crate) fn of(var: &AutomatonVar) -> Self {
+        match var.enumeration {
+            Some(e) => NumberType::Enum(e),
+            None if var.is_bool => NumberType::Bool,
+            None => NumberType::Int,
+        }
+    }
+
+    /// The number of a value. `None`: it is of another type.
+    pub(crate) fn number(self, value: Value) -> Option<i64> {
+        match (self, value) {
+            (NumberType::Bool, Value::Bool(b)) => Some(i64::from(b)),
+            (NumberType::Int, Value::Int(n)) => Some(n),
+            (NumberType::Enum(e), Value::Symbol(s)) => e.index_of(s).and_then(|n| i64::try_from(n).ok()),
+            (NumberType::Bool | NumberType::Int | NumberType::Enum(_) | NumberType::Constant, _) => None,
+        }
+    }
+
+    /// The value of a number.
+    pub(crate) fn value(self, n: i64, constants: &[Value]) -> Option<Value> {
+        let index = usize::try_from(n);
+        match self {
+            NumberType::Bool => Some(Value::Bool(n != 0)),
+            NumberType::Int => Some(Value::Int(n)),
+            NumberType::Enum(e) => index.ok().and_then(|n| e.values().get(n)).copied().map(Value::Symbol),
+            NumberType::Constant => index.ok().and_then(|n| constants.get(n)).copied(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NumberComparison {
+    Eq,
+    Ne,
+    Lt,
+    Le,
+    Gt,
+    Ge,
+}
+
+impl NumberComparison {
+    pub(crate) fn holds(self, a: i64, b: i64) -> bool {
+        match self {
+            NumberComparison::Eq => a == b,
+            NumberComparison::Ne => a != b,
+            NumberComparison::Lt => a < b,
+            NumberComparison::Le => a <= b,
+            NumberComparison::Gt => a > b,
+            NumberComparison::Ge => a >= b,
+        }
+    }
+}
