@@ -145,6 +145,7 @@ const steps = {
   plan: (step) => show(about(step, "device", "to"), "value", "ok", "error"),
   machine: (step) => told(about(step, "name", "states", "transitions", "outcomes")),
   transition: (step) => told(about(step, "machine", "label", "state", "outcome", "next")),
+  failed: (step) => told(about(step, "node", "text")),
   refusals: () => {
     ask({ request: "now" });
     return { refused: refused.splice(0) };

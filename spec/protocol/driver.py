@@ -198,6 +198,11 @@ def transition(machine, label, state, outcome, next):
     return {}
 
 
+def failed(**told):
+    exchange.tell({"request": "failed", **told})
+    return {}
+
+
 def refusals():
     """Each is raised, by a request of its own."""
     refused = []

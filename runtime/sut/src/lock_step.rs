@@ -7,7 +7,7 @@ use hrdsl_harness::{
 use hrdsl_ir::{Nanos, value::nanos};
 
 use crate::{
-    error::SutError,
+    error::{ProgramFailure, SutError},
     process::SutProcess,
     protocol::{HarnessReply, MessageRequest, ProgramRequest, ProtocolArgument, RefusedLine, ReplyAnswer},
 };
@@ -23,13 +23,16 @@ pub struct LockStep<'r> {
     greets: bool,
     /// Requests without a reply that the harness has not yet answered, by their lines.
     one_way: Vec<u64>,
+    /// What has failed in the program, as it says. It ends the test when the program next waits for a reply: until then it
+    /// writes, and that belongs to what is told.
+    failure: Option<ProgramFailure>,
 }
 
 impl<'r> LockStep<'r> {
     #[must_use]
     pub fn new(process: &'r mut SutProcess, name: &str) -> Self {
         let name = name.to_owned();
-        Self { process, name, waits: false, greets: false, one_way: Vec::new() }
+        Self { process, name, waits: false, greets: false, one_way: Vec::new(), failure: None }
     }
 }
 
@@ -39,11 +42,20 @@ impl SystemActor for LockStep<'_> {
     }
 
     fn next(&mut self, _: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault> {
-        let request = self.process.next()?;
+        let request = match self.process.next() {
+            Ok(request) => request,
+            Err(error) => return Err(self.fault(error)),
+        };
         let line = RequestTicket(self.process.line());
+        if let ProgramRequest::Failed { text, node } = &request {
+            self.failure.get_or_insert_with(|| ProgramFailure::new(node, text));
+        }
         if request.is_one_way() {
             self.one_way.push(line.0);
         } else {
+            if let Some(failure) = self.failure.take() {
+                return Err(self.process.failed(failure).into());
+            }
             self.waits = true;
             self.greets = matches!(request, ProgramRequest::Hello { .. });
         }
@@ -69,12 +81,25 @@ impl SystemActor for LockStep<'_> {
     }
 }
 
+impl LockStep<'_> {
+    /// What ends the test: of a program that has ended, what it said before that had failed.
+    fn fault(&mut self, error: SutError) -> SystemFault {
+        match self.failure.take() {
+            Some(failure) if matches!(error, SutError::Exited { .. }) => self.process.failed(failure).into(),
+            Some(_) | None => error.into(),
+        }
+    }
+}
+
 fn meant(request: ProgramRequest) -> SystemRequest {
     let arguments = |args: std::collections::BTreeMap<String, ProtocolArgument>| {
         args.into_iter().map(|(name, arg)| (name, argument(arg))).collect()
     };
     match request {
-        ProgramRequest::Hello { .. } | ProgramRequest::Now => SystemRequest::Now,
+        // A failure asks for nothing; it is counted as any other request.
+        ProgramRequest::Hello { .. } | ProgramRequest::Now | ProgramRequest::Failed { .. } => {
+            SystemRequest::Now
+        }
         ProgramRequest::Emit { event, args } => SystemRequest::Emit { event, args: arguments(args) },
         ProgramRequest::Sleep { seconds } => SystemRequest::Sleep { time: nanos(seconds) },
         ProgramRequest::WaitFor { events, timeout } => {
@@ -172,6 +197,7 @@ impl From<SutError> for SystemFault {
             SutError::Overrun { .. }
             | SutError::Absent { .. }
             | SutError::Exited { .. }
+            | SutError::Failed { .. }
             | SutError::Rubbish { .. }
             | SutError::Environment { .. }
             | SutError::Io { .. } => SystemFaultKind::Program,

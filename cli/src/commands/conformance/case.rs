@@ -13,7 +13,7 @@ macro_rules! case {
 }
 
 /// All cases, in the order in which they run.
-const CASES: [(&str, &str); 21] = [
+const CASES: [(&str, &str); 22] = [
     case!("time"),
     case!("events"),
     case!("drop"),
@@ -35,6 +35,7 @@ const CASES: [(&str, &str); 21] = [
     case!("binding"),
     case!("bound-actions"),
     case!("machines"),
+    case!("failed"),
 ];
 
 /// What a library does in one run.
@@ -53,6 +54,8 @@ pub struct ConformanceCase {
     pub programs: Vec<CaseProgram>,
     /// The events that the system makes, as lines of the recording.
     pub events: Vec<Value>,
+    /// The first line of the error with which the test has to end; none: it ends without.
+    pub error: Option<String>,
 }
 
 /// A program of the system, each a driver.
@@ -106,6 +109,7 @@ fn parse(name: &'static str, text: &str) -> Result<ConformanceCase, String> {
                 program.steps.push(CaseStep { line, told, expected });
             }
             "!" => case.events.push(json()?),
+            "error" => case.error = Some(rest.to_owned()),
             _ => return Err(wrong("what begins so is not known")),
         }
     }

@@ -222,21 +222,28 @@ fn judged(
         of_output(case, driver, &said.map(|o| o.output.stdout.text()).unwrap_or_default())
     };
     let difference = case.programs.iter().find_map(of_program).or_else(|| of_events(case, made));
-    if difference.is_none() && error.is_none() {
+    let error = error.and_then(|error| error.lines().next());
+    if difference.is_none() && error == case.error.as_deref() {
         return CaseVerdict::Passed;
     }
-    CaseVerdict::Failed(complaint(difference, output, error))
+    let broke_off = match (&case.error, error) {
+        (Some(expected), error) if error != Some(expected) => {
+            let got = error.unwrap_or("a run that did not break off");
+            format!("  the run had to break off: {expected}\n  got      {got}\n")
+        }
+        (None, Some(error)) => format!("  the run broke off: {error}\n"),
+        (None, None) | (Some(_), _) => String::new(),
+    };
+    CaseVerdict::Failed(complaint(difference, output, &broke_off))
 }
 
 /// The first difference, the error of the test, and the last that the drivers wrote.
-fn complaint(difference: Option<CaseDifference>, output: &[ProgramOutput], error: Option<&str>) -> String {
+fn complaint(difference: Option<CaseDifference>, output: &[ProgramOutput], broke_off: &str) -> String {
     let mut text = String::new();
     if let Some(CaseDifference { at, expected, got, place }) = difference {
         text += &format!("  {at}\n  expected {expected}\n  got      {got}\n  the case is {place}\n");
     }
-    if let Some(error) = error {
-        text += &format!("  the run broke off: {}\n", error.lines().next().unwrap_or_default());
-    }
+    text += broke_off;
     for written in output {
         let end = written.output.stderr.last_lines(LAST_LINES);
         if !end.is_empty() {

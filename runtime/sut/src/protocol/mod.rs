@@ -144,6 +144,12 @@ pub enum ProgramRequest {
         transitions: Vec<(String, String, String)>,
         outcomes: Vec<String>,
     },
+    /// Something of it has failed where nobody else is told: a callback that throws, in a library that goes on.
+    Failed {
+        text: String,
+        #[serde(default)]
+        node: String,
+    },
     /// With a message in it.
     #[serde(skip)]
     Message(MessageRequest),
@@ -223,6 +229,7 @@ impl ProgramRequest {
             | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
+            | ProgramRequest::Failed { .. }
             | ProgramRequest::Message(_)
             | ProgramRequest::Done => None,
         }
@@ -244,6 +251,7 @@ impl ProgramRequest {
             | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
+            | ProgramRequest::Failed { .. }
             | ProgramRequest::Message(_) => 2,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
@@ -267,6 +275,7 @@ impl ProgramRequest {
             | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
+            | ProgramRequest::Failed { .. }
             | ProgramRequest::Message(_) => true,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
@@ -307,7 +316,7 @@ struct RequestHead<'l> {
 }
 
 /// The kinds of requests that have no reply of their own, from version 2 on.
-const ONE_WAY: [&str; 12] = [
+const ONE_WAY: [&str; 13] = [
     "publish",
     "call",
     "respond",
@@ -320,6 +329,7 @@ const ONE_WAY: [&str; 12] = [
     "await",
     "transition",
     "machine",
+    "failed",
 ];
 
 /// What a line means to a program that speaks this version.
@@ -436,6 +446,14 @@ mod tests {
             (line.as_str(), machine),
             (r#"{"request":"transition","machine":"M","next":"A"}"#, begun),
             (r#"{"request":"await","kind":"client","name":"/plan","give_up":5}"#, waits),
+            (
+                r#"{"request":"failed","node":"/brain","text":"no"}"#,
+                ProgramRequest::Failed { text: "no".into(), node: "/brain".into() },
+            ),
+            (
+                r#"{"request":"failed","text":"no"}"#,
+                ProgramRequest::Failed { text: "no".into(), node: String::new() },
+            ),
         ] {
             let found = request(line);
             assert!(found.is_one_way(), "{line}");
