@@ -19,6 +19,7 @@ fn run(program: &str) -> String {
     }
     let (scenario, middleware) = match program {
         "values" | "short" => ("values.hri", "ros1"),
+        "logs" => ("shares.hri", "ros1"),
         "throws_late" => ("two.hri", "ros1"),
         "throws_two" => ("two.hri", "ros2"),
         _ => ("scenario.hri", "ros1"),
@@ -46,6 +47,9 @@ fn run(program: &str) -> String {
     let _ = writeln!(text, "{}", only("output"));
     for verdict in results["tests"][0]["verdicts"].as_array().into_iter().flatten() {
         let _ = writeln!(text, "{}: {}", verdict["requirement"], verdict["outcome"]);
+    }
+    if program == "logs" {
+        let _ = writeln!(text, "{:#}", results["tests"][0]["log"]);
     }
     if let Some(error) = results["tests"][0]["error"].as_str() {
         let _ = writeln!(text, "error: {error}");
@@ -102,6 +106,7 @@ programs! {
     throws: "a callback that throws is logged, and an error of the test that names node and topic",
     throws_late: "so is a timer that does; a violation that was seen before counts",
     throws_two: "in ROS 2 the exception ends the program, with the node and the topic",
+    logs: "what two nodes log is counted, and what warns is told with its time",
     locks: "threads that wait for each other are found and named",
     polls: "a loop that polls nothing is found, with its line",
     values: "rows, places of bodies, names of joints and postures are what the scenario says",

@@ -146,6 +146,7 @@ const steps = {
   machine: (step) => told(about(step, "name", "states", "transitions", "outcomes")),
   transition: (step) => told(about(step, "machine", "label", "state", "outcome", "next")),
   failed: (step) => told(about(step, "node", "text")),
+  log: (step) => told(about(step, "level", "node", "text")),
   refusals: () => {
     ask({ request: "now" });
     return { refused: refused.splice(0) };

@@ -203,6 +203,11 @@ def failed(**told):
     return {}
 
 
+def log(**told):
+    exchange.tell({"request": "log", **told})
+    return {}
+
+
 def refusals():
     """Each is raised, by a request of its own."""
     refused = []

@@ -1,8 +1,9 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    ArmTarget, AwaitedPort, CanceledGoals, CommandRequest, MachineDeclaration, MachineEdge, MachineStep,
-    RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemRequest,
+    ArmTarget, AwaitedPort, CanceledGoals, CommandRequest, LogRecord, MachineDeclaration, MachineEdge,
+    MachineStep, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind,
+    SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
@@ -149,6 +150,9 @@ fn meant(request: ProgramRequest) -> SystemRequest {
             let transitions = transitions.into_iter().map(edge).collect();
             let declared = MachineDeclaration { machine: name, states, transitions, outcomes };
             SystemRequest::Machine(MachineStep::Declared(declared))
+        }
+        ProgramRequest::Log { level, node, text } => {
+            SystemRequest::Log(LogRecord { level: level.into(), node, text })
         }
         ProgramRequest::Message(request) => carried(request),
         ProgramRequest::Done => SystemRequest::Done,

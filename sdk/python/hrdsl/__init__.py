@@ -19,7 +19,8 @@ beside events:
 """
 
 from hrdsl.errors import ProtocolError, Stopped
+from hrdsl.logger import Logger
 from hrdsl.node import Arm, Device, Event, Gripper, Motion, Node
 from hrdsl.states import StateMachine
 
-__all__ = ["Arm", "Device", "Event", "Gripper", "Motion", "Node", "ProtocolError", "StateMachine", "Stopped"]
+__all__ = ["Arm", "Device", "Event", "Gripper", "Logger", "Motion", "Node", "ProtocolError", "StateMachine", "Stopped"]

@@ -1,4 +1,6 @@
-"""What a program tells the harness of itself, beside what it writes: that something in it has failed."""
+"""What a program tells the harness of itself, beside what it writes: its log, and that something in it has failed.
+
+Nothing of it is told when the test is over already, nor by a process that the program has forked: both may go on to log."""
 
 from __future__ import annotations
 
@@ -18,8 +20,7 @@ _encode = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 
 def failed(node: str, where: str, error: BaseException) -> None:
     """Tells that an exception was raised where nobody of the program hears of it, such as in a callback: the test ends, and is
-    an error. The program goes on until then. Nothing is told when the test is over already, and by a process that the program
-    has forked."""
+    an error. The program goes on until then."""
     text = "%s raised %s" % (where, _in_words(error))
     if isinstance(error, ImportError):
         from hrdsl import advice
@@ -27,6 +28,12 @@ def failed(node: str, where: str, error: BaseException) -> None:
         told = advice.about(error)
         text += "; %s" % told if told else ""
     _tell({"request": "failed", "node": node, "text": text[:LONGEST]})
+
+
+def log(level: int, node: str, text: str) -> None:
+    """Tells what the program has logged; the level is a number of `logging`."""
+    name = "debug" if level < 20 else "info" if level < 30 else "warn" if level < 40 else "error" if level < 50 else "fatal"
+    _tell({"request": "log", "level": name, "node": node, "text": text[:LONGEST]})
 
 
 def place(error: BaseException, node: str, where: str) -> None:

@@ -35,7 +35,7 @@ class System:
         self.commands = commands or (lambda request: (0, None))
         self.events, self.end, self.others, self.accepts = events, end, list(others), accepts
         self.mailbox, self.refused, self.ports, self.calls, self.goals = [], [], {}, {}, {}
-        self.awaited, self.failures = [], []
+        self.awaited, self.failures, self.logged = [], [], []
         self.latched, self.published, self.watched = dict(latched), [], False
         self._queue, self._number = [], 0
         for time, arrival in arrivals:
@@ -213,6 +213,9 @@ class System:
 
     def tell_failed(self, request):
         self.failures.append((self.time, request["node"], request["text"]))
+
+    def tell_log(self, request):
+        self.logged.append((self.time, request["level"], request["node"], request["text"]))
 
     def tell_transition(self, request):
         pass

@@ -13,7 +13,7 @@ macro_rules! case {
 }
 
 /// All cases, in the order in which they run.
-const CASES: [(&str, &str); 22] = [
+const CASES: [(&str, &str); 23] = [
     case!("time"),
     case!("events"),
     case!("drop"),
@@ -36,6 +36,7 @@ const CASES: [(&str, &str); 22] = [
     case!("bound-actions"),
     case!("machines"),
     case!("failed"),
+    case!("log"),
 ];
 
 /// What a library does in one run.
@@ -56,6 +57,8 @@ pub struct ConformanceCase {
     pub events: Vec<Value>,
     /// The first line of the error with which the test has to end; none: it ends without.
     pub error: Option<String>,
+    /// What the results have to say of the log; none: it is not looked at.
+    pub log: Option<Value>,
 }
 
 /// A program of the system, each a driver.
@@ -109,6 +112,7 @@ fn parse(name: &'static str, text: &str) -> Result<ConformanceCase, String> {
                 program.steps.push(CaseStep { line, told, expected });
             }
             "!" => case.events.push(json()?),
+            "log" => case.log = Some(json()?),
             "error" => case.error = Some(rest.to_owned()),
             _ => return Err(wrong("what begins so is not known")),
         }

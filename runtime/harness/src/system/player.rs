@@ -17,6 +17,7 @@ use crate::{
     argument::SystemArgument,
     command::{CommandRequest, NotBegun},
     fault::SystemFault,
+    log::SystemLog,
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext},
     port::{PortDeclaration, PortHistory},
@@ -34,6 +35,7 @@ pub struct SystemPlayer<'p, S> {
     programs: Vec<ServedProgram<S>>,
     graph: MessageGraph,
     binding: Option<BindingNode<'p>>,
+    log: SystemLog,
     begun: bool,
     now: Nanos,
 }
@@ -65,6 +67,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             programs: programs.into_iter().map(|(name, system)| ServedProgram::new(name, system)).collect(),
             graph: MessageGraph::default(),
             binding: None,
+            log: SystemLog::default(),
             begun: false,
             now: 0,
         }
@@ -172,6 +175,10 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             }
             SystemRequest::Machine(step) => Answer(self.machine(index, step, cx)),
             SystemRequest::List => Answer(self.listed(index)),
+            SystemRequest::Log(record) => {
+                self.log.add(cx.now, &self.programs[index].name, record);
+                Answer(SystemAnswer::Ok)
+            }
             SystemRequest::Await(awaited) => {
                 self.graph.await_port(index, awaited, cx.now);
                 Answer(SystemAnswer::Ok)
@@ -288,6 +295,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             | SystemRequest::State { .. }
             | SystemRequest::Plan { .. }
             | SystemRequest::Machine(_)
+            | SystemRequest::Log(_)
             | SystemRequest::List
             | SystemRequest::Await(_)
             | SystemRequest::Open(_)
@@ -454,6 +462,10 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
 
     fn is_finished(&self) -> bool {
         self.programs.iter().all(|p| p.ended)
+    }
+
+    fn log(&self) -> SystemLog {
+        self.log.clone()
     }
 
     fn ports(&self, end: Nanos) -> PortHistory {

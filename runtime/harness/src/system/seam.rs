@@ -13,6 +13,7 @@ use crate::{
     argument::SystemArgument,
     command::CommandRequest,
     fault::SystemFault,
+    log::LogRecord,
     port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
     world::ArmTarget,
 };
@@ -140,6 +141,8 @@ pub enum SystemRequest {
     },
     /// A state machine of its own was declared, was begun or has moved.
     Machine(MachineStep),
+    /// It logs something, which changes nothing.
+    Log(LogRecord),
     /// It has come to its normal end.
     Done,
 }

@@ -6,6 +6,7 @@ mod reply;
 
 use std::{borrow::Cow, collections::BTreeMap, fmt};
 
+use hrdsl_harness::ProgramLogLevel;
 use hrdsl_ir::{Nanos, Value};
 use serde::{Deserialize, Serialize};
 
@@ -150,11 +151,41 @@ pub enum ProgramRequest {
         #[serde(default)]
         node: String,
     },
+    /// The program logs something.
+    Log {
+        level: WrittenLogLevel,
+        #[serde(default)]
+        node: String,
+        text: String,
+    },
     /// With a message in it.
     #[serde(skip)]
     Message(MessageRequest),
     /// The program has come to its normal end.
     Done,
+}
+
+/// The levels of a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WrittenLogLevel {
+    Debug,
+    Info,
+    Warn,
+    Error,
+    Fatal,
+}
+
+impl From<WrittenLogLevel> for ProgramLogLevel {
+    fn from(level: WrittenLogLevel) -> Self {
+        match level {
+            WrittenLogLevel::Debug => ProgramLogLevel::Debug,
+            WrittenLogLevel::Info => ProgramLogLevel::Info,
+            WrittenLogLevel::Warn => ProgramLogLevel::Warn,
+            WrittenLogLevel::Error => ProgramLogLevel::Error,
+            WrittenLogLevel::Fatal => ProgramLogLevel::Fatal,
+        }
+    }
 }
 
 fn yes() -> bool {
@@ -230,6 +261,7 @@ impl ProgramRequest {
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
+            | ProgramRequest::Log { .. }
             | ProgramRequest::Message(_)
             | ProgramRequest::Done => None,
         }
@@ -252,6 +284,7 @@ impl ProgramRequest {
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
+            | ProgramRequest::Log { .. }
             | ProgramRequest::Message(_) => 2,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
@@ -276,6 +309,7 @@ impl ProgramRequest {
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
+            | ProgramRequest::Log { .. }
             | ProgramRequest::Message(_) => true,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
@@ -316,7 +350,7 @@ struct RequestHead<'l> {
 }
 
 /// The kinds of requests that have no reply of their own, from version 2 on.
-const ONE_WAY: [&str; 13] = [
+const ONE_WAY: [&str; 14] = [
     "publish",
     "call",
     "respond",
@@ -330,6 +364,7 @@ const ONE_WAY: [&str; 13] = [
     "transition",
     "machine",
     "failed",
+    "log",
 ];
 
 /// What a line means to a program that speaks this version.
@@ -454,15 +489,26 @@ mod tests {
                 r#"{"request":"failed","text":"no"}"#,
                 ProgramRequest::Failed { text: "no".into(), node: String::new() },
             ),
+            (
+                r#"{"request":"log","level":"warn","node":"/brain","text":"low"}"#,
+                ProgramRequest::Log {
+                    level: WrittenLogLevel::Warn,
+                    node: "/brain".into(),
+                    text: "low".into(),
+                },
+            ),
         ] {
             let found = request(line);
             assert!(found.is_one_way(), "{line}");
             assert_eq!(found, expected);
         }
-        assert!(matches!(
-            parse(br#"{"request":"machine","name":"M"}"#, 2),
-            ProtocolLine::Refused { waits: false, .. }
-        ));
+        for wrong in [r#"{"request":"machine","name":"M"}"#, r#"{"request":"log","level":"loud","text":"a"}"#]
+        {
+            assert!(
+                matches!(parse(wrong.as_bytes(), 2), ProtocolLine::Refused { waits: false, .. }),
+                "{wrong}"
+            );
+        }
     }
 
     #[test]
