@@ -19,7 +19,7 @@ fn run(program: &str) -> String {
     }
     let (scenario, middleware) = match program {
         "values" | "short" => ("values.hri", "ros1"),
-        "logs" => ("shares.hri", "ros1"),
+        "logs" | "shares" => ("shares.hri", "ros1"),
         "throws_late" => ("two.hri", "ros1"),
         "throws_two" => ("two.hri", "ros2"),
         _ => ("scenario.hri", "ros1"),
@@ -108,6 +108,7 @@ programs! {
     throws_two: "in ROS 2 the exception ends the program, with the node and the topic",
     logs: "what two nodes log is counted, and what warns is told with its time",
     locks: "threads that wait for each other are found and named",
+    shares: "parameters are one tree for all programs",
     polls: "a loop that polls nothing is found, with its line",
     values: "rows, places of bodies, names of joints and postures are what the scenario says",
     short: "a row that is shorter than a rule reads is the program's error",

@@ -13,7 +13,7 @@ fn conformance(words: &str) -> std::process::Output {
 fn the_sdk_for_python_conforms() {
     let out = conformance("-- python3 driver.py");
     expect_code(&out, 0);
-    assert!(stdout(&out).ends_with("23 cases: 23 passed, 0 skipped, 0 failed\n"), "{}", stdout(&out));
+    assert!(stdout(&out).ends_with("24 cases: 24 passed, 0 skipped, 0 failed\n"), "{}", stdout(&out));
 }
 
 /// In another language, and with nothing but the page.
@@ -21,7 +21,7 @@ fn the_sdk_for_python_conforms() {
 fn a_driver_in_javascript_without_any_library_conforms() {
     let out = conformance("-- node driver.js");
     expect_code(&out, 0);
-    assert!(stdout(&out).ends_with("23 cases: 23 passed, 0 skipped, 0 failed\n"), "{}", stdout(&out));
+    assert!(stdout(&out).ends_with("24 cases: 24 passed, 0 skipped, 0 failed\n"), "{}", stdout(&out));
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn an_error_that_a_case_expects_has_to_come() {
 fn cases_are_listed_and_chosen_by_name() {
     let out = conformance("--list");
     expect_code(&out, 0);
-    assert_eq!(stdout(&out).lines().count(), 23);
+    assert_eq!(stdout(&out).lines().count(), 24);
     assert!(stdout(&out).starts_with("time           Simulated time passes"), "{}", stdout(&out));
     let out = conformance("--case act -- node driver.js");
     expect_code(&out, 2);

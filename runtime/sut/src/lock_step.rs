@@ -2,8 +2,8 @@
 
 use hrdsl_harness::{
     ArmTarget, AwaitedPort, CanceledGoals, CommandRequest, LogRecord, MachineDeclaration, MachineEdge,
-    MachineStep, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind,
-    SystemRequest,
+    MachineStep, ParameterRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault,
+    SystemFaultKind, SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
@@ -151,6 +151,10 @@ fn meant(request: ProgramRequest) -> SystemRequest {
             let declared = MachineDeclaration { machine: name, states, transitions, outcomes };
             SystemRequest::Machine(MachineStep::Declared(declared))
         }
+        ProgramRequest::GetParameter { name } => SystemRequest::Parameter(ParameterRequest::Get { name }),
+        ProgramRequest::DeleteParameter { name } => {
+            SystemRequest::Parameter(ParameterRequest::Delete { name })
+        }
         ProgramRequest::Log { level, node, text } => {
             SystemRequest::Log(LogRecord { level: level.into(), node, text })
         }
@@ -167,6 +171,9 @@ fn carried(request: MessageRequest) -> SystemRequest {
         MessageRequest::Feedback { call, message } => SystemRequest::Feedback { call, message },
         MessageRequest::Finish { call, end, message, text } => {
             SystemRequest::Finish { call, end, message, text }
+        }
+        MessageRequest::SetParameter { name, value } => {
+            SystemRequest::Parameter(ParameterRequest::Set { name, value })
         }
     }
 }
@@ -186,6 +193,7 @@ fn said(answer: SystemAnswer) -> ReplyAnswer {
         SystemAnswer::TimedOut => ReplyAnswer::TimedOut,
         SystemAnswer::Value(value) => ReplyAnswer::Value(value),
         SystemAnswer::Numbers(numbers) => ReplyAnswer::Numbers(numbers),
+        SystemAnswer::Json(text) => ReplyAnswer::Json(text),
         SystemAnswer::Ended(how) => ReplyAnswer::Acted(how),
         SystemAnswer::Arrived { arrivals, gave_up } => ReplyAnswer::Arrived { arrivals, gave_up },
         SystemAnswer::Listed(ports) => ReplyAnswer::Listed(ports),

@@ -13,7 +13,7 @@ macro_rules! case {
 }
 
 /// All cases, in the order in which they run.
-const CASES: [(&str, &str); 23] = [
+const CASES: [(&str, &str); 24] = [
     case!("time"),
     case!("events"),
     case!("drop"),
@@ -37,6 +37,7 @@ const CASES: [(&str, &str); 23] = [
     case!("machines"),
     case!("failed"),
     case!("log"),
+    case!("parameters"),
 ];
 
 /// What a library does in one run.

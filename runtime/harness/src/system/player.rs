@@ -9,6 +9,7 @@ use super::{
     binding::{BindingFault, BindingNode, BindingOutcome},
     graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
     mailbox::HeardEvent,
+    parameters::ParameterTree,
     program::{RequestWait, ServedProgram},
     seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     vocabulary::{ActorVocabulary, refuse},
@@ -35,6 +36,9 @@ pub struct SystemPlayer<'p, S> {
     programs: Vec<ServedProgram<S>>,
     graph: MessageGraph,
     binding: Option<BindingNode<'p>>,
+    parameters: ParameterTree,
+    /// Why not all of the binding's parameters could be set.
+    wrong: Option<String>,
     log: SystemLog,
     begun: bool,
     now: Nanos,
@@ -67,6 +71,8 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             programs: programs.into_iter().map(|(name, system)| ServedProgram::new(name, system)).collect(),
             graph: MessageGraph::default(),
             binding: None,
+            parameters: ParameterTree::default(),
+            wrong: None,
             log: SystemLog::default(),
             begun: false,
             now: 0,
@@ -77,6 +83,9 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
     #[must_use]
     pub fn with_binding(mut self, binding: Option<&'p MiddlewareBinding>) -> Self {
         let node = self.programs.len();
+        for (name, value) in binding.iter().flat_map(|b| &b.parameters) {
+            self.wrong = self.wrong.or(self.parameters.set(name, value).err());
+        }
         self.binding = binding.map(|b| BindingNode::new(self.vocabulary.program, b, node));
         self
     }
@@ -175,6 +184,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             }
             SystemRequest::Machine(step) => Answer(self.machine(index, step, cx)),
             SystemRequest::List => Answer(self.listed(index)),
+            SystemRequest::Parameter(request) => Answer(self.parameters.answer(request)),
             SystemRequest::Log(record) => {
                 self.log.add(cx.now, &self.programs[index].name, record);
                 Answer(SystemAnswer::Ok)
@@ -295,6 +305,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             | SystemRequest::State { .. }
             | SystemRequest::Plan { .. }
             | SystemRequest::Machine(_)
+            | SystemRequest::Parameter(_)
             | SystemRequest::Log(_)
             | SystemRequest::List
             | SystemRequest::Await(_)
@@ -426,6 +437,9 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
 
     fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         self.now = cx.now;
+        if let Some(why) = self.wrong.take() {
+            return Err(scenario_fault(&why));
+        }
         if std::mem::replace(&mut self.begun, true) {
             self.bound(cx, BindingNode::wake)?;
         } else {

@@ -151,6 +151,14 @@ pub enum ProgramRequest {
         #[serde(default)]
         node: String,
     },
+    /// The value of a parameter of the system.
+    GetParameter {
+        name: String,
+    },
+    /// There is to be no such parameter any more.
+    DeleteParameter {
+        name: String,
+    },
     /// The program logs something.
     Log {
         level: WrittenLogLevel,
@@ -261,6 +269,8 @@ impl ProgramRequest {
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
+            | ProgramRequest::GetParameter { .. }
+            | ProgramRequest::DeleteParameter { .. }
             | ProgramRequest::Log { .. }
             | ProgramRequest::Message(_)
             | ProgramRequest::Done => None,
@@ -284,6 +294,8 @@ impl ProgramRequest {
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
+            | ProgramRequest::GetParameter { .. }
+            | ProgramRequest::DeleteParameter { .. }
             | ProgramRequest::Log { .. }
             | ProgramRequest::Message(_) => 2,
             ProgramRequest::Hello { .. }
@@ -309,8 +321,8 @@ impl ProgramRequest {
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
-            | ProgramRequest::Log { .. }
-            | ProgramRequest::Message(_) => true,
+            | ProgramRequest::Log { .. } => true,
+            ProgramRequest::Message(request) => request.is_one_way(),
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
             | ProgramRequest::Emit { .. }
@@ -324,6 +336,8 @@ impl ProgramRequest {
             | ProgramRequest::List
             | ProgramRequest::State { .. }
             | ProgramRequest::Plan { .. }
+            | ProgramRequest::GetParameter { .. }
+            | ProgramRequest::DeleteParameter { .. }
             | ProgramRequest::Done => false,
         }
     }
@@ -509,6 +523,23 @@ mod tests {
                 "{wrong}"
             );
         }
+    }
+
+    #[test]
+    fn parameters_are_asked_for_and_their_values_stay_text() {
+        let get = request(r#"{"request":"get_parameter","name":"/a"}"#);
+        let set = request(r#"{"request":"set_parameter","name":"/a","value": {"b": 1.50} }"#);
+        let delete = request(r#"{"request":"delete_parameter","name":"/a"}"#);
+        assert_eq!(get, ProgramRequest::GetParameter { name: "/a".into() });
+        let (name, value) = ("/a".into(), r#"{"b": 1.50}"#.into());
+        assert_eq!(set, ProgramRequest::Message(MessageRequest::SetParameter { name, value }));
+        assert_eq!(delete, ProgramRequest::DeleteParameter { name: "/a".into() });
+        assert!([get, set, delete].iter().all(|request| !request.is_one_way()));
+        let wrong = parse(br#"{"request":"set_parameter","name":"/a"}"#, 2);
+        assert!(matches!(wrong, ProtocolLine::Refused { waits: true, .. }), "{wrong:?}");
+        let reply = HarnessReply { time: 5, answer: ReplyAnswer::Json("[1.50]".into()) };
+        let line = ReplyLine { reply: &reply, refused: &[] };
+        assert_eq!(serde_json::to_string(&line).unwrap(), r#"{"t":5,"value":[1.50]}"#);
     }
 
     #[test]
