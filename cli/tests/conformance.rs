@@ -13,7 +13,7 @@ fn conformance(words: &str) -> std::process::Output {
 fn the_sdk_for_python_conforms() {
     let out = conformance("-- python3 driver.py");
     expect_code(&out, 0);
-    assert!(stdout(&out).ends_with("21 cases: 21 passed, 0 skipped, 0 failed\n"), "{}", stdout(&out));
+    assert!(stdout(&out).ends_with("24 cases: 24 passed, 0 skipped, 0 failed\n"), "{}", stdout(&out));
 }
 
 /// In another language, and with nothing but the page.
@@ -21,7 +21,7 @@ fn the_sdk_for_python_conforms() {
 fn a_driver_in_javascript_without_any_library_conforms() {
     let out = conformance("-- node driver.js");
     expect_code(&out, 0);
-    assert!(stdout(&out).ends_with("21 cases: 21 passed, 0 skipped, 0 failed\n"), "{}", stdout(&out));
+    assert!(stdout(&out).ends_with("24 cases: 24 passed, 0 skipped, 0 failed\n"), "{}", stdout(&out));
 }
 
 #[test]
@@ -59,11 +59,29 @@ fn the_first_difference_is_named() {
     assert_eq!(stderr(&out), "error: there is no driver ./absent\n");
 }
 
+/// A run that breaks off as the case has it, and one that should have and does not.
+#[test]
+fn an_error_that_a_case_expects_has_to_come() {
+    let driver = std::fs::read_to_string(root().join("spec/protocol/driver.js")).unwrap();
+    let silent =
+        driver.replace("failed: (step) => told(about(step, \"node\", \"text\"))", "failed: () => ({})");
+    assert_ne!(driver, silent);
+    let folder = folder(&[("silent.js", &silent)]);
+    let out = hrdsl_in(folder.path(), "conformance --case failed -- node silent.js");
+    expect_code(&out, 3);
+    assert!(
+        stdout(&out).contains("the run had to break off: the node /driver has failed: "),
+        "{}",
+        stdout(&out)
+    );
+    assert!(stdout(&out).contains("got      a run that did not break off\n"), "{}", stdout(&out));
+}
+
 #[test]
 fn cases_are_listed_and_chosen_by_name() {
     let out = conformance("--list");
     expect_code(&out, 0);
-    assert_eq!(stdout(&out).lines().count(), 21);
+    assert_eq!(stdout(&out).lines().count(), 24);
     assert!(stdout(&out).starts_with("time           Simulated time passes"), "{}", stdout(&out));
     let out = conformance("--case act -- node driver.js");
     expect_code(&out, 2);

@@ -145,6 +145,11 @@ const steps = {
   plan: (step) => show(about(step, "device", "to"), "value", "ok", "error"),
   machine: (step) => told(about(step, "name", "states", "transitions", "outcomes")),
   transition: (step) => told(about(step, "machine", "label", "state", "outcome", "next")),
+  get_parameter: (step) => show(about(step, "name"), "value", "ok", "error"),
+  set_parameter: (step) => show(about(step, "name", "value")),
+  delete_parameter: (step) => show(about(step, "name"), "ok", "error"),
+  failed: (step) => told(about(step, "node", "text")),
+  log: (step) => told(about(step, "level", "node", "text")),
   refusals: () => {
     ask({ request: "now" });
     return { refused: refused.splice(0) };

@@ -184,8 +184,7 @@ def state(device, what):
 
 
 def plan(device, to):
-    answer = exchange.link.request({"request": "plan", "device": device, "to": to})
-    return {key: answer[key] for key in ("value", "ok", "error") if key in answer}
+    return asked(request="plan", device=device, to=to)
 
 
 def machine(**told):
@@ -195,6 +194,34 @@ def machine(**told):
 
 def transition(machine, label, state, outcome, next):
     exchange.transition(machine, label, state, outcome, next)
+    return {}
+
+
+def get_parameter(name):
+    return asked(request="get_parameter", name=name)
+
+
+def set_parameter(name, value):
+    exchange.link.request({"request": "set_parameter", "name": name, "value": value})
+    return {}
+
+
+def delete_parameter(name):
+    return asked(request="delete_parameter", name=name)
+
+
+def asked(**request):
+    answer = exchange.link.request(request)
+    return {key: answer[key] for key in ("value", "ok", "error") if key in answer}
+
+
+def failed(**told):
+    exchange.tell({"request": "failed", **told})
+    return {}
+
+
+def log(**told):
+    exchange.tell({"request": "log", **told})
     return {}
 
 

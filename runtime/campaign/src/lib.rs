@@ -7,6 +7,7 @@ mod forks;
 mod hulls;
 mod interfaces;
 mod internal;
+mod log;
 mod machines;
 mod tally;
 
@@ -22,7 +23,7 @@ use std::{
 
 use hrdsl_harness::{
     ActorPlayer, HarnessError, HarnessLoop, HarnessRun, PortHistory, RunTermination, ScriptPlayer,
-    SystemFault, SystemFaultKind, SystemPlayer, WorldStage,
+    SystemFault, SystemFaultKind, SystemLog, SystemPlayer, WorldStage,
 };
 use hrdsl_ir::{
     Program,
@@ -404,8 +405,8 @@ fn stop_reason(ended: &RunTermination, limit: hrdsl_ir::Nanos) -> String {
 
 /// A run that never began.
 fn failed(fault: HarnessError) -> HarnessRun {
-    let (trace, ports) = (Trace::default(), PortHistory::default());
-    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, accuracy: None }
+    let (trace, ports, log) = (Trace::default(), PortHistory::default(), SystemLog::default());
+    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, log, accuracy: None }
 }
 
 /// What is known about a test when its run is over.
@@ -428,6 +429,7 @@ fn test_result(
         error: ending.error,
         marks: if others { vec![RunMark::OtherProcesses] } else { Vec::new() },
         waits: interfaces::unserved_waits(&run.ports),
+        log: log::summary(&run.log),
         duration: seconds(run.trace.end),
         judgement,
         predicted: test.provenance.predicts.clone(),

@@ -17,6 +17,7 @@ mod command;
 pub mod doubles;
 mod edge;
 mod fault;
+mod log;
 mod message;
 mod player;
 mod port;
@@ -33,6 +34,7 @@ pub use clock::{TimeSource, VirtualClock};
 pub use command::{CheckedCommand, CommandRequest, NotBegun};
 pub use fault::{SystemFault, SystemFaultKind};
 pub use hrdsl_trace::{MachineDeclaration, MachineEdge, MachineStep};
+pub use log::{KeptRecord, LogRecord, ProgramLogLevel, SystemLog};
 pub use message::PlayerMessage;
 pub use player::{ActorPlayer, HarnessError, PlayerContext, is_perceived};
 pub use port::{
@@ -45,6 +47,6 @@ pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
 pub use system::player::SystemPlayer;
 pub use system::seam::{
-    CanceledGoals, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,
+    CanceledGoals, ParameterRequest, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,
 };
 pub use world::{ArmTarget, CommandId, WorldAccuracy, WorldBackend};

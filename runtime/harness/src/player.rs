@@ -2,7 +2,9 @@
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value};
 
-use crate::{fault::SystemFault, message::PlayerMessage, port::PortHistory, stage::WorldStage};
+use crate::{
+    fault::SystemFault, log::SystemLog, message::PlayerMessage, port::PortHistory, stage::WorldStage,
+};
 
 /// What a player is given when it is asked.
 pub struct PlayerContext<'a, 'p> {
@@ -43,6 +45,10 @@ pub trait ActorPlayer {
     fn ports(&self, end: Nanos) -> PortHistory {
         let _ = end;
         PortHistory::default()
+    }
+    /// What its programs have logged.
+    fn log(&self) -> SystemLog {
+        SystemLog::default()
     }
 }
 

@@ -7,6 +7,7 @@ use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
 use crate::{
     clock::{TimeSource, VirtualClock},
+    log::SystemLog,
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext, is_perceived},
     port::PortHistory,
@@ -33,6 +34,8 @@ pub struct HarnessRun {
     pub ended: RunTermination,
     /// What the system's programs opened to speak with each other.
     pub ports: PortHistory,
+    /// What they have logged.
+    pub log: SystemLog,
     /// How far the world strayed from what cannot be; `None`: there is none, or it cannot tell.
     pub accuracy: Option<WorldAccuracy>,
 }
@@ -95,8 +98,9 @@ impl<'p> HarnessLoop<'p> {
         self.trace.end = self.now;
         let system = self.players.iter().find(|p| plays_the_system(self.program, p.actors()));
         let ports = system.map(|p| p.ports(self.now)).unwrap_or_default();
+        let log = system.map(|p| p.log()).unwrap_or_default();
         let accuracy = self.stage.as_ref().and_then(WorldStage::accuracy);
-        HarnessRun { trace: self.trace, ended, ports, accuracy }
+        HarnessRun { trace: self.trace, ended, ports, log, accuracy }
     }
 
     fn run_loop(&mut self) -> Result<RunTermination, HarnessError> {

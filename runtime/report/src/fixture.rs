@@ -5,7 +5,7 @@ mod system;
 
 use hrdsl_results::{
     BinName, BinResult, CampaignResults, CodeFile, CounterexampleStep, CoverageRatios, FORMAT, FirstFailure,
-    GoalReport, GoalStatus, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
+    GoalReport, GoalStatus, LogSummary, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
     SmallestMargin, SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION, VerdictOutcome as Outcome,
     VerdictResult, VerdictTally,
 };
@@ -213,6 +213,7 @@ fn test(s: usize, i: usize) -> TestFixture {
         steps: steps(s, i),
         marks: if i % 29 == 6 { vec![RunMark::DependsOnLoad] } else { Vec::new() },
         waits: Vec::new(),
+        log: LogSummary::default(),
         output: OutputSummary {
             stdout_bytes: 120,
             stderr_bytes: if error.is_some() { 42 } else { 0 },

@@ -110,6 +110,9 @@ fn test_case(results: &CampaignResults, test: &TestResult) -> TestCase {
     for note in facts::notes(test) {
         case.add_property(Property::new("hrdsl.mark", text::line(&note)));
     }
+    if !test.log.is_empty() {
+        case.add_property(Property::new("hrdsl.log", test.log.in_short()));
+    }
     if !test.output.stderr_end.is_empty() {
         case.set_system_err(text::clean(&test.output.stderr_end));
     }

@@ -14,6 +14,7 @@
 mod code;
 mod interface;
 mod judgement;
+mod log;
 mod machine;
 mod names;
 mod schema;
@@ -30,6 +31,7 @@ pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::CoverItem
 pub use hrdsl_trace::RunEnd;
 pub use interface::{InterfaceFault, InterfaceRole, InterfaceWarning, UnservedWait};
 pub use judgement::{CounterexampleStep, FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult};
+pub use log::{LogCounts, LogSummary, LoggedLevel, LoggedText};
 pub use machine::{MachineCoverage, MachineResult, MachineStateResult, MachineTransitionResult};
 pub use names::{GoalName, RequirementName, SuiteName, TestName};
 pub use suite::{

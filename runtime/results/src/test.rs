@@ -9,6 +9,7 @@ use crate::{
     code::CoverageRatios,
     interface::UnservedWait,
     judgement::TraceJudgement,
+    log::LogSummary,
     names::{SuiteName, TestName},
     schema,
 };
@@ -31,6 +32,9 @@ pub struct TestResult {
     /// What programs waited for in vain until the test was over.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub waits: Vec<UnservedWait>,
+    /// What its programs have logged; left out if they have not.
+    #[serde(default, skip_serializing_if = "LogSummary::is_empty")]
+    pub log: LogSummary,
     /// Simulated seconds.
     pub duration: f64,
     #[serde(flatten)]

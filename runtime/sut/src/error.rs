@@ -33,6 +33,9 @@ pub enum SutError {
         silence: &'static str,
         output: Box<CapturedOutput>,
     },
+    /// Something of the program has failed, as it says itself.
+    #[error("{failure}{output}")]
+    Failed { failure: ProgramFailure, output: Box<CapturedOutput> },
     /// The campaign is to end.
     #[error("the run was interrupted")]
     Stopped { output: Box<CapturedOutput> },
@@ -68,9 +71,41 @@ impl SutError {
         match self {
             SutError::Exited { output, .. }
             | SutError::Overrun { output, .. }
+            | SutError::Failed { output, .. }
             | SutError::Stopped { output }
             | SutError::Rubbish { output, .. } => Some(output),
             SutError::Absent { .. } | SutError::Environment { .. } | SutError::Io { .. } => None,
+        }
+    }
+}
+
+/// So many characters of what a program says of a failure are kept.
+const LONGEST_FAILURE: usize = 2_000;
+
+/// What of a program has failed, in its own words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ProgramFailure {
+    /// Empty: it does not say.
+    node: String,
+    text: String,
+}
+
+impl ProgramFailure {
+    #[must_use]
+    pub fn new(node: &str, text: &str) -> Self {
+        let kept = |words: &str| match words.char_indices().nth(LONGEST_FAILURE) {
+            Some((end, _)) => format!("{}…", words.get(..end).unwrap_or_default()),
+            None => words.to_owned(),
+        };
+        Self { node: kept(node), text: kept(text) }
+    }
+}
+
+impl fmt::Display for ProgramFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.node.as_str() {
+            "" => write!(f, "the program has failed: {}", self.text),
+            node => write!(f, "the node {node} has failed: {}", self.text),
         }
     }
 }
@@ -97,5 +132,20 @@ pub(crate) fn silence(middleware: Option<&str>, is_python: bool) -> &'static str
         Some(_) | None => {
             "; it never spoke to the harness (does it write requests to the descriptor in `HRDSL_REQUEST_FD`?)"
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failure_names_its_node_and_is_no_longer_than_people_read() {
+        let shown = |node: &str, text: &str| ProgramFailure::new(node, text).to_string();
+        assert_eq!(shown("/brain", "no table"), "the node /brain has failed: no table");
+        assert_eq!(shown("", "no table"), "the program has failed: no table");
+        let long = shown("", &"ä".repeat(LONGEST_FAILURE + 1));
+        assert_eq!(long.chars().filter(|c| *c == 'ä').count(), LONGEST_FAILURE);
+        assert!(long.ends_with("ä…"));
     }
 }

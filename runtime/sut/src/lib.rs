@@ -37,7 +37,7 @@ pub use affinity::{PinnedCore, pin_to_free_core};
 pub use cell::CellSettings;
 pub use coverage::FileCoverage;
 pub use environment::{EnvironmentNeeds, HookedPackage, PreparationStep, PythonEnv};
-pub use error::SutError;
+pub use error::{ProgramFailure, SutError};
 pub use exit::ProgramExit;
 pub use fork_server::ForkServer;
 pub use launch::{DEFAULT_VARIABLES, LaunchMiddleware, LaunchSpec};

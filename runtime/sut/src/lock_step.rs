@@ -1,13 +1,14 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    ArmTarget, AwaitedPort, CanceledGoals, CommandRequest, MachineDeclaration, MachineEdge, MachineStep,
-    RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind, SystemRequest,
+    ArmTarget, AwaitedPort, CanceledGoals, CommandRequest, LogRecord, MachineDeclaration, MachineEdge,
+    MachineStep, ParameterRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault,
+    SystemFaultKind, SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
 use crate::{
-    error::SutError,
+    error::{ProgramFailure, SutError},
     process::SutProcess,
     protocol::{HarnessReply, MessageRequest, ProgramRequest, ProtocolArgument, RefusedLine, ReplyAnswer},
 };
@@ -23,13 +24,16 @@ pub struct LockStep<'r> {
     greets: bool,
     /// Requests without a reply that the harness has not yet answered, by their lines.
     one_way: Vec<u64>,
+    /// What has failed in the program, as it says. It ends the test when the program next waits for a reply: until then it
+    /// writes, and that belongs to what is told.
+    failure: Option<ProgramFailure>,
 }
 
 impl<'r> LockStep<'r> {
     #[must_use]
     pub fn new(process: &'r mut SutProcess, name: &str) -> Self {
         let name = name.to_owned();
-        Self { process, name, waits: false, greets: false, one_way: Vec::new() }
+        Self { process, name, waits: false, greets: false, one_way: Vec::new(), failure: None }
     }
 }
 
@@ -39,11 +43,20 @@ impl SystemActor for LockStep<'_> {
     }
 
     fn next(&mut self, _: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault> {
-        let request = self.process.next()?;
+        let request = match self.process.next() {
+            Ok(request) => request,
+            Err(error) => return Err(self.fault(error)),
+        };
         let line = RequestTicket(self.process.line());
+        if let ProgramRequest::Failed { text, node } = &request {
+            self.failure.get_or_insert_with(|| ProgramFailure::new(node, text));
+        }
         if request.is_one_way() {
             self.one_way.push(line.0);
         } else {
+            if let Some(failure) = self.failure.take() {
+                return Err(self.process.failed(failure).into());
+            }
             self.waits = true;
             self.greets = matches!(request, ProgramRequest::Hello { .. });
         }
@@ -69,12 +82,25 @@ impl SystemActor for LockStep<'_> {
     }
 }
 
+impl LockStep<'_> {
+    /// What ends the test: of a program that has ended, what it said before that had failed.
+    fn fault(&mut self, error: SutError) -> SystemFault {
+        match self.failure.take() {
+            Some(failure) if matches!(error, SutError::Exited { .. }) => self.process.failed(failure).into(),
+            Some(_) | None => error.into(),
+        }
+    }
+}
+
 fn meant(request: ProgramRequest) -> SystemRequest {
     let arguments = |args: std::collections::BTreeMap<String, ProtocolArgument>| {
         args.into_iter().map(|(name, arg)| (name, argument(arg))).collect()
     };
     match request {
-        ProgramRequest::Hello { .. } | ProgramRequest::Now => SystemRequest::Now,
+        // A failure asks for nothing; it is counted as any other request.
+        ProgramRequest::Hello { .. } | ProgramRequest::Now | ProgramRequest::Failed { .. } => {
+            SystemRequest::Now
+        }
         ProgramRequest::Emit { event, args } => SystemRequest::Emit { event, args: arguments(args) },
         ProgramRequest::Sleep { seconds } => SystemRequest::Sleep { time: nanos(seconds) },
         ProgramRequest::WaitFor { events, timeout } => {
@@ -125,6 +151,13 @@ fn meant(request: ProgramRequest) -> SystemRequest {
             let declared = MachineDeclaration { machine: name, states, transitions, outcomes };
             SystemRequest::Machine(MachineStep::Declared(declared))
         }
+        ProgramRequest::GetParameter { name } => SystemRequest::Parameter(ParameterRequest::Get { name }),
+        ProgramRequest::DeleteParameter { name } => {
+            SystemRequest::Parameter(ParameterRequest::Delete { name })
+        }
+        ProgramRequest::Log { level, node, text } => {
+            SystemRequest::Log(LogRecord { level: level.into(), node, text })
+        }
         ProgramRequest::Message(request) => carried(request),
         ProgramRequest::Done => SystemRequest::Done,
     }
@@ -138,6 +171,9 @@ fn carried(request: MessageRequest) -> SystemRequest {
         MessageRequest::Feedback { call, message } => SystemRequest::Feedback { call, message },
         MessageRequest::Finish { call, end, message, text } => {
             SystemRequest::Finish { call, end, message, text }
+        }
+        MessageRequest::SetParameter { name, value } => {
+            SystemRequest::Parameter(ParameterRequest::Set { name, value })
         }
     }
 }
@@ -157,6 +193,7 @@ fn said(answer: SystemAnswer) -> ReplyAnswer {
         SystemAnswer::TimedOut => ReplyAnswer::TimedOut,
         SystemAnswer::Value(value) => ReplyAnswer::Value(value),
         SystemAnswer::Numbers(numbers) => ReplyAnswer::Numbers(numbers),
+        SystemAnswer::Json(text) => ReplyAnswer::Json(text),
         SystemAnswer::Ended(how) => ReplyAnswer::Acted(how),
         SystemAnswer::Arrived { arrivals, gave_up } => ReplyAnswer::Arrived { arrivals, gave_up },
         SystemAnswer::Listed(ports) => ReplyAnswer::Listed(ports),
@@ -172,6 +209,7 @@ impl From<SutError> for SystemFault {
             SutError::Overrun { .. }
             | SutError::Absent { .. }
             | SutError::Exited { .. }
+            | SutError::Failed { .. }
             | SutError::Rubbish { .. }
             | SutError::Environment { .. }
             | SutError::Io { .. } => SystemFaultKind::Program,

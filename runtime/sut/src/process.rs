@@ -22,7 +22,7 @@ use crate::{
         message::{CellRequest, KeptFiles},
     },
     coverage::{self, FileCoverage},
-    error::SutError,
+    error::{ProgramFailure, SutError},
     exit::ProgramExit,
     fork_server::ForkServer,
     launch::LaunchSpec,
@@ -38,6 +38,9 @@ const LONGEST_LINE: usize = 1 << 20;
 
 /// More malformed requests one after the other come from no program that reads its replies.
 const MOST_REFUSED: usize = 1_000;
+
+/// Reads of a stream that empty a pipe as large as the kernel lets programs make it.
+const READS_OF_A_PIPE: usize = 16;
 
 /// How long a program may work on its coverage after it was asked to terminate.
 const LAST_WORDS: Duration = Duration::from_millis(500);
@@ -307,6 +310,15 @@ impl SutProcess {
             stdout: self.stdout.capture.captured(moved),
             stderr: self.stderr.capture.captured(moved),
         }
+    }
+
+    /// What of the program has failed, with what it has written until it began to wait for a reply.
+    pub(crate) fn failed(&mut self, failure: ProgramFailure) -> SutError {
+        for _ in 0..READS_OF_A_PIPE {
+            self.stdout.read(&mut self.chunk);
+            self.stderr.read(&mut self.chunk);
+        }
+        SutError::Failed { failure, output: Box::new(self.output()) }
     }
 
     // ── errors ──

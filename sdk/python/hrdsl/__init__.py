@@ -26,7 +26,8 @@ What a base is told holds from then on, while the program looks:
 """
 
 from hrdsl.errors import ProtocolError, Stopped
+from hrdsl.logger import Logger
 from hrdsl.node import Arm, Base, Device, Event, Gripper, Laser, Motion, Node
 from hrdsl.states import StateMachine
 
-__all__ = ["Arm", "Base", "Device", "Event", "Gripper", "Laser", "Motion", "Node", "ProtocolError", "StateMachine", "Stopped"]
+__all__ = ["Arm", "Base", "Device", "Event", "Gripper", "Laser", "Logger", "Motion", "Node", "ProtocolError", "StateMachine", "Stopped"]

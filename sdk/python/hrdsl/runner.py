@@ -17,7 +17,7 @@ import os
 import sys
 
 from hrdsl import link as _links
-from hrdsl import debug, virtual
+from hrdsl import debug, told, virtual
 from hrdsl.errors import ProtocolError, Stopped
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -247,6 +247,9 @@ def _status(run: Callable[[], None]) -> tuple[int, bool]:
         while trace is not None and trace.tb_frame.f_globals.get("__name__") == __name__:
             trace = trace.tb_next  # the script's own frames only
         sys.excepthook(type(error), error.with_traceback(trace), trace)
+        found = told.place_of(error)
+        if found:
+            sys.stderr.write("hrdsl: it was raised in a callback of the node %s: %s\n" % found)
         if isinstance(error, ImportError):
             _advise(error)
         return 1, False

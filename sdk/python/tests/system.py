@@ -25,19 +25,22 @@ class System:
     published from outside, and a function is called with the system. `services` are functions from a message to a message by
     their names; `actions` functions from a goal to a list of (delay, feedback) and (delay, end, result); `commands` is a
     function from an `act` to (delay, error or None), `signals` and `states` have values by their names, and `latched` the
-    last messages of topics from outside. `events` are those that the actor hears; None: all. `end` is the end of the test.
+    last messages of topics from outside, and `parameters` values by their names. `events` are those that the actor hears; None: all. `end` is the end of the test.
     Actions from outside do not say that they accept goals unless the system `accepts`."""
 
     def __init__(self, arrivals=(), services=(), actions=(), commands=None, signals=(), states=(), events=None,
-                 latched=(), end=None, others=(), accepts=True):  # fmt: skip
+                 latched=(), end=None, others=(), accepts=True, parameters=()):  # fmt: skip
         self.time, self.stopped, self.lines = 0, False, 0
         self.services, self.actions, self.signals, self.states = map(dict, (services, actions, signals, states))
         self.commands = commands or (lambda request: (0, None))
         self.events, self.end, self.others, self.accepts = events, end, list(others), accepts
         self.mailbox, self.refused, self.ports, self.calls, self.goals = [], [], {}, {}, {}
-        self.awaited = []
+        self.awaited, self.failures, self.logged = [], [], []
         self.latched, self.published, self.watched = dict(latched), [], False
         self._queue, self._number = [], 0
+        self.parameters = {}
+        for name, value in dict(parameters).items():
+            self.do_set_parameter({"name": name, "value": value})
         for time, arrival in arrivals:
             self.later(time, arrival)
 
@@ -77,6 +80,40 @@ class System:
 
     def do_hello(self, request):
         return {"version": 2, "program": "robot"}
+
+    # ── parameters ──
+
+    def _above(self, name, make=False):
+        """The dictionary that has a parameter, or would, and the last part of its name."""
+        place, parts = {"": self.parameters}, [""] + [part for part in name.split("/") if part]
+        for part in parts[:-1]:
+            if not isinstance(place.get(part), dict):
+                if not make:
+                    return {}, ""
+                place[part] = {}
+            place = place[part]
+        return place, parts[-1]
+
+    def do_get_parameter(self, request):
+        place, own = self._above(request["name"])
+        if not request["name"].strip("/"):
+            return {"value": self.parameters}
+        return {"value": place[own]} if own in place else {"ok": False, "error": "there is none"}
+
+    def do_set_parameter(self, request):
+        place, own = self._above(request["name"], make=True)
+        if own:
+            place[own] = request["value"]
+        else:
+            self.parameters = request["value"]
+        return {}
+
+    def do_delete_parameter(self, request):
+        place, own = self._above(request["name"])
+        if not own or own not in place:
+            return {"ok": False, "error": "there is none"}
+        del place[own]
+        return {"ok": True}
 
     def do_read(self, request):
         return {"value": self.signals.get(request["signal"], 0)}
@@ -210,6 +247,12 @@ class System:
 
     def tell_await(self, request):
         self.awaited.append(request)
+
+    def tell_failed(self, request):
+        self.failures.append((self.time, request["node"], request["text"]))
+
+    def tell_log(self, request):
+        self.logged.append((self.time, request["level"], request["node"], request["text"]))
 
     def tell_transition(self, request):
         pass

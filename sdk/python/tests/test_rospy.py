@@ -570,7 +570,7 @@ class Parameters(Case):
             """
         parameters = {"/arm/speed": 0.2, "/arm": {"speed": 0.2, "joints": ["a"]}, "/node/own": True, "speed": 3}
         self.assertEqual(
-            self.said(text, binding={"parameters": parameters}),
+            self.said(text, system=System(parameters=parameters)),
             [
                 "0.2 {'speed': 0.2, 'joints': ['a']} True 5",
                 "KeyError 'no'",
@@ -611,6 +611,32 @@ class Parameters(Case):
             self.assertEqual(finished.code, 1)
             self.assertIn("ROSInitException: invalid command-line parameters: %s\n" % told, finished.err)
 
+    def test_values_that_json_does_not_have_and_loops_that_look(self):
+        text = """
+            import rospy
+            rospy.init_node("node")
+            for value in (float("nan"), [float("-inf"), {"a": b"\\0\\xff"}], {"/float": 1, "b": 2}, 0.1, 1e22, -0.0, "\\u00fc\\n"):
+                rospy.set_param("~value", value)
+                print(repr(rospy.get_param("~value")))
+            try:
+                rospy.set_param("~value", "\\ud800")
+            except UnicodeEncodeError:
+                print("half a character")
+            while not rospy.has_param("/there"):
+                pass
+            print(rospy.get_time() >= 1735689601, rospy.get_param("/there/it"))
+            """
+        def later(system):
+            system.do_set_parameter({"name": "/there", "value": {"it": "is"}})
+
+        self.assertEqual(
+            self.said(text, system=System([(SECOND, later)], end=100 * SECOND)),
+            [
+                "nan", "[-inf, {'a': b'\\x00\\xff'}]", "{'/float': 1, 'b': 2}", "0.1", "1e+22", "-0.0", "'\u00fc\\n'",
+                "half a character", "True is",
+            ],
+        )  # fmt: skip
+
     def test_names_of_parameters(self):
         text = """
             import rospy
@@ -627,7 +653,7 @@ class Parameters(Case):
         parameters = {"/gain": 1, "/left/far": 2, "/fast": 9}
         words = ["__ns:=left", "speed:=/fast", "_own:=1"]
         self.assertEqual(
-            self.said(text, words=words, binding={"parameters": parameters}),
+            self.said(text, words=words, system=System(parameters=parameters)),
             [
                 "/gain /left/far /gain /left/node/own",
                 "3 3 1 1",

@@ -13,7 +13,7 @@ macro_rules! case {
 }
 
 /// All cases, in the order in which they run.
-const CASES: [(&str, &str); 21] = [
+const CASES: [(&str, &str); 24] = [
     case!("time"),
     case!("events"),
     case!("drop"),
@@ -35,6 +35,9 @@ const CASES: [(&str, &str); 21] = [
     case!("binding"),
     case!("bound-actions"),
     case!("machines"),
+    case!("failed"),
+    case!("log"),
+    case!("parameters"),
 ];
 
 /// What a library does in one run.
@@ -53,6 +56,10 @@ pub struct ConformanceCase {
     pub programs: Vec<CaseProgram>,
     /// The events that the system makes, as lines of the recording.
     pub events: Vec<Value>,
+    /// The first line of the error with which the test has to end; none: it ends without.
+    pub error: Option<String>,
+    /// What the results have to say of the log; none: it is not looked at.
+    pub log: Option<Value>,
 }
 
 /// A program of the system, each a driver.
@@ -106,6 +113,8 @@ fn parse(name: &'static str, text: &str) -> Result<ConformanceCase, String> {
                 program.steps.push(CaseStep { line, told, expected });
             }
             "!" => case.events.push(json()?),
+            "log" => case.log = Some(json()?),
+            "error" => case.error = Some(rest.to_owned()),
             _ => return Err(wrong("what begins so is not known")),
         }
     }

@@ -51,6 +51,17 @@ pub fn of_output(case: &ConformanceCase, program: &CaseProgram, output: &str) ->
     })
 }
 
+/// What the results say of the log, if it is not what it should be.
+pub fn of_log(case: &ConformanceCase, made: &Value) -> Option<CaseDifference> {
+    let expected = case.log.as_ref().filter(|expected| !fits(expected, made))?;
+    Some(CaseDifference {
+        at: "the log in the results".to_owned(),
+        expected: expected.to_string(),
+        got: made.to_string(),
+        place: case.place(1),
+    })
+}
+
 /// The first event that the system has made otherwise; `made` are lines of the recording.
 pub fn of_events(case: &ConformanceCase, made: &[Value]) -> Option<CaseDifference> {
     let count = case.events.len().max(made.len());

@@ -15,7 +15,7 @@ use serde_json::Value;
 
 use self::{
     case::ConformanceCase,
-    compare::{CaseDifference, of_events, of_output, skipped},
+    compare::{CaseDifference, of_events, of_log, of_output, skipped},
 };
 use super::sim;
 use crate::{exit::CommandExit, fault::CommandFault, files, input, installing::InstallProgress, terminal};
@@ -169,7 +169,8 @@ impl<'a> ConformanceRun<'a> {
         let found = std::sync::Mutex::new(CaseVerdict::Failed("  it did not run\n".to_owned()));
         campaign.run(&program.tests, |done| {
             let made = events_of(&program, &system, done.recording);
-            let verdict = judged(case, done.output, &made, done.result.error.as_deref());
+            let log = serde_json::to_value(&done.result.log).map_err(|e| e.to_string())?;
+            let verdict = judged(case, done.output, (&made, &log), done.result.error.as_deref());
             *found.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = verdict;
             Ok(())
         })?;
@@ -211,7 +212,7 @@ fn events_of(program: &Program, system: &SystemUnderTest, recording: &str) -> Ve
 fn judged(
     case: &ConformanceCase,
     output: &[ProgramOutput],
-    made: &[Value],
+    (made, log): (&[Value], &Value),
     error: Option<&str>,
 ) -> CaseVerdict {
     if let Some(why) = output.iter().find_map(|o| skipped(&o.output.stdout.text())) {
@@ -221,22 +222,30 @@ fn judged(
         let said = output.iter().find(|o| case.programs.len() == 1 || o.program == driver.name);
         of_output(case, driver, &said.map(|o| o.output.stdout.text()).unwrap_or_default())
     };
-    let difference = case.programs.iter().find_map(of_program).or_else(|| of_events(case, made));
-    if difference.is_none() && error.is_none() {
+    let difference = case.programs.iter().find_map(of_program);
+    let difference = difference.or_else(|| of_events(case, made)).or_else(|| of_log(case, log));
+    let error = error.and_then(|error| error.lines().next());
+    if difference.is_none() && error == case.error.as_deref() {
         return CaseVerdict::Passed;
     }
-    CaseVerdict::Failed(complaint(difference, output, error))
+    let broke_off = match (&case.error, error) {
+        (Some(expected), error) if error != Some(expected) => {
+            let got = error.unwrap_or("a run that did not break off");
+            format!("  the run had to break off: {expected}\n  got      {got}\n")
+        }
+        (None, Some(error)) => format!("  the run broke off: {error}\n"),
+        (None, None) | (Some(_), _) => String::new(),
+    };
+    CaseVerdict::Failed(complaint(difference, output, &broke_off))
 }
 
 /// The first difference, the error of the test, and the last that the drivers wrote.
-fn complaint(difference: Option<CaseDifference>, output: &[ProgramOutput], error: Option<&str>) -> String {
+fn complaint(difference: Option<CaseDifference>, output: &[ProgramOutput], broke_off: &str) -> String {
     let mut text = String::new();
     if let Some(CaseDifference { at, expected, got, place }) = difference {
         text += &format!("  {at}\n  expected {expected}\n  got      {got}\n  the case is {place}\n");
     }
-    if let Some(error) = error {
-        text += &format!("  the run broke off: {}\n", error.lines().next().unwrap_or_default());
-    }
+    text += broke_off;
     for written in output {
         let end = written.output.stderr.last_lines(LAST_LINES);
         if !end.is_empty() {

@@ -4,6 +4,7 @@ mod binding;
 mod graph;
 mod history;
 mod mailbox;
+mod parameters;
 pub mod player;
 mod program;
 pub mod seam;

@@ -9,6 +9,7 @@ use super::{
     binding::{BindingFault, BindingNode, BindingOutcome},
     graph::{GraphDelivery, GraphOutcome, MessageGraph, ProgramIndex},
     mailbox::HeardEvent,
+    parameters::ParameterTree,
     program::{RequestWait, ServedProgram},
     seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     vocabulary::{ActorVocabulary, refuse},
@@ -17,6 +18,7 @@ use crate::{
     argument::SystemArgument,
     command::{CommandRequest, NotBegun},
     fault::SystemFault,
+    log::SystemLog,
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext},
     port::{PortDeclaration, PortHistory},
@@ -34,6 +36,10 @@ pub struct SystemPlayer<'p, S> {
     programs: Vec<ServedProgram<S>>,
     graph: MessageGraph,
     binding: Option<BindingNode<'p>>,
+    parameters: ParameterTree,
+    /// Why not all of the binding's parameters could be set.
+    wrong: Option<String>,
+    log: SystemLog,
     begun: bool,
     now: Nanos,
 }
@@ -65,6 +71,9 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             programs: programs.into_iter().map(|(name, system)| ServedProgram::new(name, system)).collect(),
             graph: MessageGraph::default(),
             binding: None,
+            parameters: ParameterTree::default(),
+            wrong: None,
+            log: SystemLog::default(),
             begun: false,
             now: 0,
         }
@@ -74,6 +83,9 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
     #[must_use]
     pub fn with_binding(mut self, binding: Option<&'p MiddlewareBinding>) -> Self {
         let node = self.programs.len();
+        for (name, value) in binding.iter().flat_map(|b| &b.parameters) {
+            self.wrong = self.wrong.or(self.parameters.set(name, value).err());
+        }
         self.binding = binding.map(|b| BindingNode::new(self.vocabulary.program, b, node));
         self
     }
@@ -172,6 +184,11 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             }
             SystemRequest::Machine(step) => Answer(self.machine(index, step, cx)),
             SystemRequest::List => Answer(self.listed(index)),
+            SystemRequest::Parameter(request) => Answer(self.parameters.answer(request)),
+            SystemRequest::Log(record) => {
+                self.log.add(cx.now, &self.programs[index].name, record);
+                Answer(SystemAnswer::Ok)
+            }
             SystemRequest::Await(awaited) => {
                 self.graph.await_port(index, awaited, cx.now);
                 Answer(SystemAnswer::Ok)
@@ -288,6 +305,8 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             | SystemRequest::State { .. }
             | SystemRequest::Plan { .. }
             | SystemRequest::Machine(_)
+            | SystemRequest::Parameter(_)
+            | SystemRequest::Log(_)
             | SystemRequest::List
             | SystemRequest::Await(_)
             | SystemRequest::Open(_)
@@ -418,6 +437,9 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
 
     fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         self.now = cx.now;
+        if let Some(why) = self.wrong.take() {
+            return Err(scenario_fault(&why));
+        }
         if std::mem::replace(&mut self.begun, true) {
             self.bound(cx, BindingNode::wake)?;
         } else {
@@ -454,6 +476,10 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
 
     fn is_finished(&self) -> bool {
         self.programs.iter().all(|p| p.ended)
+    }
+
+    fn log(&self) -> SystemLog {
+        self.log.clone()
     }
 
     fn ports(&self, end: Nanos) -> PortHistory {

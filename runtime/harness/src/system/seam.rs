@@ -13,6 +13,7 @@ use crate::{
     argument::SystemArgument,
     command::CommandRequest,
     fault::SystemFault,
+    log::LogRecord,
     port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
     world::ArmTarget,
 };
@@ -140,8 +141,20 @@ pub enum SystemRequest {
     },
     /// A state machine of its own was declared, was begun or has moved.
     Machine(MachineStep),
+    /// What all programs of the system share.
+    Parameter(ParameterRequest),
+    /// It logs something, which changes nothing.
+    Log(LogRecord),
     /// It has come to its normal end.
     Done,
+}
+
+/// What a program asks of the parameters of the system, by names with slashes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ParameterRequest {
+    Get { name: String },
+    Set { name: String, value: MessageText },
+    Delete { name: String },
 }
 
 /// Which goals a client wants to end.
@@ -166,6 +179,8 @@ pub enum SystemAnswer {
     Value(Value),
     /// To state and plan.
     Numbers(Vec<f64>),
+    /// To a question for a parameter: the text of its value.
+    Json(MessageText),
     /// To a command: it ended, well or for this reason not.
     Ended(Result<(), String>),
     /// To a wait: what has arrived, in the order in which it did.

@@ -1,7 +1,7 @@
 //! The page holds what is in the results, and nothing that anybody wrote in them is taken for HTML.
 
 use super::*;
-use hrdsl_results::BinName;
+use hrdsl_results::{BinName, LogCounts, LogSummary, LoggedLevel, LoggedText};
 
 use crate::fixture;
 
@@ -173,6 +173,34 @@ fn model_coverage_is_a_section_with_reasons() {
     ] {
         assert!(page.contains(text), "{text}");
     }
+}
+
+#[test]
+fn what_was_logged_stands_with_its_test() {
+    let mut results = fixture::campaign(3);
+    assert!(!html(&results).contains("Logged: "));
+    let counts = LogCounts { info: 7, ..LogCounts::default() };
+    results.tests[0].log = LogSummary { counts, first: Vec::new() };
+    let counts = LogCounts { debug: 1, warn: 3, ..LogCounts::default() };
+    let first = vec![LoggedText {
+        time: 2.5,
+        program: "brain".into(),
+        node: "/arm".into(),
+        level: LoggedLevel::Warn,
+        text: "<b>low\nbattery".into(),
+    }];
+    results.tests[1].log = LogSummary { counts, first };
+    let page = html(&results);
+    assert_eq!(unbalanced(&page), None);
+    for text in [
+        "<p class=\"note\">Logged: 7 info</p>",
+        "<summary>Logged: 1 debug, 3 warn</summary><pre>2.50 s  warn  &#x2f;arm: &lt;b&gt;low",
+        "and 2 more that warn",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    let junit = crate::junit(&results);
+    assert!(junit.contains("<property name=\"hrdsl.log\" value=\"1 debug, 3 warn\"/>"), "{junit}");
 }
 
 #[test]

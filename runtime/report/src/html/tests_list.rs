@@ -50,6 +50,11 @@ struct TestEntry {
     again: String,
     /// What must be known to trust it.
     notes: Vec<String>,
+    /// What its programs have logged, as counts of levels; empty if they have not.
+    log: String,
+    /// The first that warn, in lines; and how many more there were.
+    logged: Vec<String>,
+    more_logged: u64,
     /// The last lines that the program complained.
     stderr: String,
     /// Where its output is; empty if there was none.
@@ -151,6 +156,9 @@ fn test(results: &CampaignResults, index: usize, test: &TestResult) -> TestEntry
             .filter(|_| test.error.is_some() || test.has_failed())
             .unwrap_or_default(),
         notes: facts::notes(test),
+        log: test.log.in_short(),
+        logged: test.log.first.iter().map(|logged| text::line(&logged.line())).collect(),
+        more_logged: test.log.warnings().saturating_sub(test.log.first.len() as u64),
         stderr: text::clean(&test.output.stderr_end),
         output: if test.output.stdout_bytes + test.output.stderr_bytes > 0 {
             format!("output/{}.txt", test.name.file_stem())

@@ -6,6 +6,7 @@ mod reply;
 
 use std::{borrow::Cow, collections::BTreeMap, fmt};
 
+use hrdsl_harness::ProgramLogLevel;
 use hrdsl_ir::{Nanos, Value};
 use serde::{Deserialize, Serialize};
 
@@ -144,11 +145,55 @@ pub enum ProgramRequest {
         transitions: Vec<(String, String, String)>,
         outcomes: Vec<String>,
     },
+    /// Something of it has failed where nobody else is told: a callback that throws, in a library that goes on.
+    Failed {
+        text: String,
+        #[serde(default)]
+        node: String,
+    },
+    /// The value of a parameter of the system.
+    GetParameter {
+        name: String,
+    },
+    /// There is to be no such parameter any more.
+    DeleteParameter {
+        name: String,
+    },
+    /// The program logs something.
+    Log {
+        level: WrittenLogLevel,
+        #[serde(default)]
+        node: String,
+        text: String,
+    },
     /// With a message in it.
     #[serde(skip)]
     Message(MessageRequest),
     /// The program has come to its normal end.
     Done,
+}
+
+/// The levels of a log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WrittenLogLevel {
+    Debug,
+    Info,
+    Warn,
+    Error,
+    Fatal,
+}
+
+impl From<WrittenLogLevel> for ProgramLogLevel {
+    fn from(level: WrittenLogLevel) -> Self {
+        match level {
+            WrittenLogLevel::Debug => ProgramLogLevel::Debug,
+            WrittenLogLevel::Info => ProgramLogLevel::Info,
+            WrittenLogLevel::Warn => ProgramLogLevel::Warn,
+            WrittenLogLevel::Error => ProgramLogLevel::Error,
+            WrittenLogLevel::Fatal => ProgramLogLevel::Fatal,
+        }
+    }
 }
 
 fn yes() -> bool {
@@ -223,6 +268,10 @@ impl ProgramRequest {
             | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
+            | ProgramRequest::Failed { .. }
+            | ProgramRequest::GetParameter { .. }
+            | ProgramRequest::DeleteParameter { .. }
+            | ProgramRequest::Log { .. }
             | ProgramRequest::Message(_)
             | ProgramRequest::Done => None,
         }
@@ -244,6 +293,10 @@ impl ProgramRequest {
             | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
+            | ProgramRequest::Failed { .. }
+            | ProgramRequest::GetParameter { .. }
+            | ProgramRequest::DeleteParameter { .. }
+            | ProgramRequest::Log { .. }
             | ProgramRequest::Message(_) => 2,
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
@@ -267,7 +320,9 @@ impl ProgramRequest {
             | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
-            | ProgramRequest::Message(_) => true,
+            | ProgramRequest::Failed { .. }
+            | ProgramRequest::Log { .. } => true,
+            ProgramRequest::Message(request) => request.is_one_way(),
             ProgramRequest::Hello { .. }
             | ProgramRequest::Now
             | ProgramRequest::Emit { .. }
@@ -281,6 +336,8 @@ impl ProgramRequest {
             | ProgramRequest::List
             | ProgramRequest::State { .. }
             | ProgramRequest::Plan { .. }
+            | ProgramRequest::GetParameter { .. }
+            | ProgramRequest::DeleteParameter { .. }
             | ProgramRequest::Done => false,
         }
     }
@@ -307,7 +364,7 @@ struct RequestHead<'l> {
 }
 
 /// The kinds of requests that have no reply of their own, from version 2 on.
-const ONE_WAY: [&str; 12] = [
+const ONE_WAY: [&str; 14] = [
     "publish",
     "call",
     "respond",
@@ -320,6 +377,8 @@ const ONE_WAY: [&str; 12] = [
     "await",
     "transition",
     "machine",
+    "failed",
+    "log",
 ];
 
 /// What a line means to a program that speaks this version.
@@ -436,15 +495,51 @@ mod tests {
             (line.as_str(), machine),
             (r#"{"request":"transition","machine":"M","next":"A"}"#, begun),
             (r#"{"request":"await","kind":"client","name":"/plan","give_up":5}"#, waits),
+            (
+                r#"{"request":"failed","node":"/brain","text":"no"}"#,
+                ProgramRequest::Failed { text: "no".into(), node: "/brain".into() },
+            ),
+            (
+                r#"{"request":"failed","text":"no"}"#,
+                ProgramRequest::Failed { text: "no".into(), node: String::new() },
+            ),
+            (
+                r#"{"request":"log","level":"warn","node":"/brain","text":"low"}"#,
+                ProgramRequest::Log {
+                    level: WrittenLogLevel::Warn,
+                    node: "/brain".into(),
+                    text: "low".into(),
+                },
+            ),
         ] {
             let found = request(line);
             assert!(found.is_one_way(), "{line}");
             assert_eq!(found, expected);
         }
-        assert!(matches!(
-            parse(br#"{"request":"machine","name":"M"}"#, 2),
-            ProtocolLine::Refused { waits: false, .. }
-        ));
+        for wrong in [r#"{"request":"machine","name":"M"}"#, r#"{"request":"log","level":"loud","text":"a"}"#]
+        {
+            assert!(
+                matches!(parse(wrong.as_bytes(), 2), ProtocolLine::Refused { waits: false, .. }),
+                "{wrong}"
+            );
+        }
+    }
+
+    #[test]
+    fn parameters_are_asked_for_and_their_values_stay_text() {
+        let get = request(r#"{"request":"get_parameter","name":"/a"}"#);
+        let set = request(r#"{"request":"set_parameter","name":"/a","value": {"b": 1.50} }"#);
+        let delete = request(r#"{"request":"delete_parameter","name":"/a"}"#);
+        assert_eq!(get, ProgramRequest::GetParameter { name: "/a".into() });
+        let (name, value) = ("/a".into(), r#"{"b": 1.50}"#.into());
+        assert_eq!(set, ProgramRequest::Message(MessageRequest::SetParameter { name, value }));
+        assert_eq!(delete, ProgramRequest::DeleteParameter { name: "/a".into() });
+        assert!([get, set, delete].iter().all(|request| !request.is_one_way()));
+        let wrong = parse(br#"{"request":"set_parameter","name":"/a"}"#, 2);
+        assert!(matches!(wrong, ProtocolLine::Refused { waits: true, .. }), "{wrong:?}");
+        let reply = HarnessReply { time: 5, answer: ReplyAnswer::Json("[1.50]".into()) };
+        let line = ReplyLine { reply: &reply, refused: &[] };
+        assert_eq!(serde_json::to_string(&line).unwrap(), r#"{"t":5,"value":[1.50]}"#);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Requests of version 2 that carry a message: read past the message, which stays the text that it is.
+//! Requests of version 2 that carry a message, or a value: read past it, so that it stays the text that it is.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use hrdsl_harness::{GoalEnd, MessageText};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-/// A request that carries messages to others.
+/// A request that carries messages to others, or a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MessageRequest {
     Publish { port: u64, message: MessageText },
@@ -14,6 +14,21 @@ pub enum MessageRequest {
     Respond { call: u64, answer: Result<MessageText, String> },
     Feedback { call: u64, message: MessageText },
     Finish { call: u64, end: GoalEnd, message: MessageText, text: String },
+    SetParameter { name: String, value: MessageText },
+}
+
+impl MessageRequest {
+    /// Whether it has no reply of its own.
+    pub(super) fn is_one_way(&self) -> bool {
+        match self {
+            MessageRequest::Publish { .. }
+            | MessageRequest::Call { .. }
+            | MessageRequest::Respond { .. }
+            | MessageRequest::Feedback { .. }
+            | MessageRequest::Finish { .. } => true,
+            MessageRequest::SetParameter { .. } => false,
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -54,6 +69,13 @@ struct FinishLine<'l> {
     message: &'l RawValue,
     #[serde(default)]
     text: String,
+}
+
+#[derive(Deserialize)]
+struct SetParameterLine<'l> {
+    name: String,
+    #[serde(borrow)]
+    value: &'l RawValue,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -107,6 +129,9 @@ pub(super) fn parse(kind: &str, line: &[u8]) -> Option<serde_json::Result<Messag
             },
             message: text(l.message),
             text: l.text,
+        }),
+        "set_parameter" => serde_json::from_slice(line).map(|l: SetParameterLine<'_>| {
+            MessageRequest::SetParameter { name: l.name, value: text(l.value) }
         }),
         _ => return None,
     })

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{PortListing, QosPolicy, SystemArrival};
+use hrdsl_harness::{MessageText, PortListing, QosPolicy, SystemArrival};
 use hrdsl_ir::{Nanos, Value};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 use serde_json::value::RawValue;
@@ -48,7 +48,9 @@ pub enum ReplyAnswer {
     Value(Value),
     /// To state and plan.
     Numbers(Vec<f64>),
-    /// To act: it ended, well or for this reason not.
+    /// To get_parameter: the text of the value.
+    Json(MessageText),
+    /// To act and delete_parameter, and to get_parameter if there is none: it ended, well or for this reason not.
     Acted(Result<(), String>),
     /// To wait.
     Arrived { arrivals: Vec<SystemArrival>, gave_up: bool },
@@ -110,6 +112,7 @@ impl Serialize for ReplyLine<'_> {
                 let written: Vec<WrittenNumber> = numbers.iter().map(|x| WrittenNumber::of(*x)).collect();
                 map.serialize_entry("value", &written)?;
             }
+            ReplyAnswer::Json(text) => map.serialize_entry("value", raw(text)?)?,
             ReplyAnswer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
             ReplyAnswer::Acted(Err(error)) => {
                 map.serialize_entry("ok", &false)?;

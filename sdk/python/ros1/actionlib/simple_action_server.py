@@ -29,6 +29,7 @@ class SimpleActionServer:
     def __init__(
         self, name: str, ActionSpec: Any, execute_cb: Callable[[Any], Any] | None = None, auto_start: bool = True
     ) -> None:
+        self._name = name
         self.new_goal = False
         self.preempt_request = False
         self.new_goal_preempt_request = False
@@ -159,6 +160,7 @@ class SimpleActionServer:
                 self.execute_condition.notify()
             except Exception as error:
                 rospy.logerr("SimpleActionServer.internal_goal_callback - exception %s", str(error))
+                rospy.core.failed("callback for a new goal of %s" % self._name, error)
 
     def internal_preempt_callback(self, preempt: ServerGoalHandle) -> None:
         """Somebody asks for the end of a goal."""

@@ -7,6 +7,7 @@ import atexit
 import sys
 import time
 
+from hrdsl import told
 from hrdsl.errors import Stopped
 from hrdsl.exchange import the_exchange
 from rospy.log import (
@@ -133,6 +134,12 @@ def is_shutdown() -> bool:
 
 def is_shutdown_requested() -> bool:
     return _in_shutdown
+
+
+def failed(where: str, error: BaseException) -> None:
+    """A callback has raised something: the node goes on, and the harness ends the test. Not when the node has come to its end."""
+    if not _shutdown_flag:
+        told.failed(get_name(), where, error)
 
 
 def _add(kind: str, hook: Callable[..., object]) -> None:

@@ -9,6 +9,8 @@ import os
 import sys
 import time
 
+from hrdsl import told
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Callable
@@ -71,6 +73,9 @@ def _write(level: int, name: str, text: str, record: Any = None) -> None:
     else:
         line = _formatted(form, name, text, record)
     (sys.stdout if level < 30 else sys.stderr).write(line)
+    from rospy.names import get_name
+
+    told.log(level, get_name(), text)
 
 
 def _formatted(form: str, name: str, text: str, record: Any) -> str:

@@ -1,9 +1,11 @@
-"""Parameters: a tree of this program, which begins with those of the binding file."""
+"""Parameters: one tree for all programs of the system, which the harness has. It begins with those of the binding.
+
+What JSON has no value for is an object whose only key no name has: `{"/float": "nan"}`, `{"/bytes": "AAE="}`.
+"""
 
 from __future__ import annotations
 
-import copy
-
+from hrdsl.exchange import the_exchange
 from rosgraph.names import is_global, is_legal_name, is_private, ns_join
 from rospy.exceptions import ROSException
 from rospy.names import get_mappings, get_name, resolve_name
@@ -18,19 +20,14 @@ _UNSPECIFIED: Any = object()
 class Tree:
     """Values by names with slashes."""
 
-    def __init__(self, values: dict[str, Any]) -> None:
-        self._root: dict[str, Any] = {}
-        for name, value in values.items():
-            self.set(name if is_global(name) else "/" + name, value)
-
     def get(self, key: str) -> Any:
         """The value, or the tree below; raises `KeyError`."""
-        found: Any = self._root
-        for part in _parts(key):
-            if not isinstance(found, dict):
-                raise KeyError(key)
-            found = found[part]
-        return copy.deepcopy(found)
+        exchange = the_exchange()
+        exchange.polled("parameter")
+        answer = exchange.link.request({"request": "get_parameter", "name": key})
+        if "value" not in answer:
+            raise KeyError(key)
+        return _decoded(answer["value"])
 
     def has(self, key: str) -> bool:
         try:
@@ -41,30 +38,15 @@ class Tree:
 
     def set(self, key: str, value: Any) -> None:
         """Sets a value, or replaces the tree below by a dictionary."""
-        parts, value = _parts(key), _copied(value)
-        if not parts:
-            if not isinstance(value, dict):
-                raise TypeError("cannot set root of parameter tree to non-dictionary")
-            self._root = value
-            return
-        place = self._root
-        for part in parts[:-1]:
-            inner = place.get(part)
-            if not isinstance(inner, dict):
-                inner = place[part] = {}
-            place = inner
-        place[parts[-1]] = value
+        value = _encoded(value)
+        if not _parts(key) and not isinstance(value, dict):
+            raise TypeError("cannot set root of parameter tree to non-dictionary")
+        the_exchange().link.request({"request": "set_parameter", "name": key, "value": value})
 
     def delete(self, key: str) -> None:
-        parts = _parts(key)
-        place: Any = self._root
-        for part in parts[:-1]:
-            place = place[part]
-            if not isinstance(place, dict):
-                raise KeyError(key)
-        if not parts:
-            raise KeyError("cannot delete root of parameter tree")
-        del place[parts[-1]]
+        """Removes a value, or the tree below; raises `KeyError`."""
+        if not the_exchange().link.request({"request": "delete_parameter", "name": key})["ok"]:
+            raise KeyError(key)
 
     def names(self) -> list[str]:
         """Of all values."""
@@ -77,7 +59,7 @@ class Tree:
                 else:
                     found.append(ns_join(prefix, name))
 
-        collect("/", self._root)
+        collect("/", self.get("/"))
         return found
 
     def search(self, ns: str, key: str) -> str | None:
@@ -100,36 +82,54 @@ def _parts(key: str) -> list[str]:
     return [part for part in key.split("/") if part]
 
 
-def _copied(value: Any) -> Any:
-    """As it is after it was sent; what cannot be sent is refused."""
+def _encoded(value: Any) -> Any:
+    """As it is sent; what cannot be sent is refused, as XML-RPC does."""
     if isinstance(value, dict):
         for key in value:
             if not isinstance(key, str):
                 raise TypeError("dictionary key must be string")
-        return {key: _copied(inner) for key, inner in value.items()}
+        return {key: _encoded(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_copied(inner) for inner in value]
-    if type(value) in (bool, int, float, str, bytes):
+        return [_encoded(inner) for inner in value]
+    if type(value) is str:
+        value.encode("utf-8")  # half a character cannot be sent
+        return value
+    if type(value) is bytes:
+        import base64
+
+        return {"/bytes": base64.b64encode(value).decode("ascii")}
+    if type(value) is float and value - value != 0.0:
+        return {"/float": repr(value)}
+    if type(value) in (bool, int, float):
         if type(value) is int and not -(1 << 31) <= value < 1 << 31:
             raise OverflowError("int exceeds XML-RPC limits")
         return value
     if value is None:
         raise TypeError("cannot marshal None unless allow_none is enabled")
-    if hasattr(value, "__dict__") and not isinstance(value, (type, bool, int, float, str, bytes, list, tuple, dict)):
-        return _copied(dict(value.__dict__))  # an object is sent as its attributes
+    if hasattr(value, "__dict__") and not isinstance(value, (type, bool, int, float, str, bytes)):
+        return _encoded(dict(value.__dict__))  # an object is sent as its attributes
     raise TypeError("cannot marshal %s objects" % type(value))
 
 
-_tree: Tree | None = None
+def _decoded(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_decoded(inner) for inner in value]
+    if not isinstance(value, dict):
+        return value
+    if len(value) == 1 and "/float" in value:
+        return float(value["/float"])
+    if len(value) == 1 and "/bytes" in value:
+        import base64
+
+        return base64.b64decode(value["/bytes"])
+    return {key: _decoded(inner) for key, inner in value.items()}
+
+
+_tree = Tree()
 
 
 def tree() -> Tree:
-    """The one of this program."""
-    global _tree
-    if _tree is None:
-        from hrdsl.binding import binding
-
-        _tree = Tree(binding().get("parameters", {}))
+    """The one of the system."""
     return _tree
 
 

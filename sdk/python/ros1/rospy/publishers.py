@@ -151,6 +151,13 @@ class _PublisherImpl(topic.TopicImpl):
         threading.Thread(target=self._tell_listeners, name="listeners of %s" % self.resolved_name, daemon=True).start()
 
     def _tell_listeners(self) -> None:
+        try:
+            self._tell_of_peers()
+        except Exception as error:
+            core.failed("publisher of %s (%s): its listener" % (self.resolved_name, self.type), error)
+            raise
+
+    def _tell_of_peers(self) -> None:
         known: list[str] = []
         the_exchange().scheduler.yield_()  # so that the program has the publisher in hand when it is told
         while not self.closed:

@@ -8,6 +8,7 @@ import types
 import weakref
 
 import genpy
+from hrdsl import told
 from hrdsl.exchange import the_exchange
 from hrdsl.interfaces import class_of
 from hrdsl.mailbox import Mailbox
@@ -112,7 +113,7 @@ class _SubscriberImpl(topic.TopicImpl):
         )
         self._latched_header = self._header.with_latching()
         port = the_exchange().open("subscriber", self.resolved_name, type_name, handler=self._box.put)
-        threading.Thread(target=self._receive, name=self.resolved_name, daemon=True).start()
+        threading.Thread(target=self._run, name=self.resolved_name, daemon=True).start()
         return port
 
     def set_queue_size(self, queue_size: Any) -> None:
@@ -156,6 +157,16 @@ class _SubscriberImpl(topic.TopicImpl):
         self.callbacks = []
         self._box.put(None)
 
+    def _run(self) -> None:
+        try:
+            self._receive()
+        except Exception as error:  # that what a callback has published was refused
+            core.failed(str(self), error)
+            raise
+
+    def __str__(self) -> str:
+        return "subscriber of %s (%s)" % (self.resolved_name, self.type)
+
     def _receive(self) -> None:
         while True:
             arrival: Arrival | None = self._box.get()
@@ -180,11 +191,12 @@ class _SubscriberImpl(topic.TopicImpl):
                 cb(message, cb_args)
             else:
                 cb(message)
-        except Exception:
+        except Exception as error:
             import traceback
 
             if not core.is_shutdown():
                 logerr("bad callback: %s\n%s" % (cb, traceback.format_exc()))
+                core.failed("%s: %s" % (self, told.name_of(cb)), error)
 
 
 def _is_same(one: Any, other: Any) -> bool:

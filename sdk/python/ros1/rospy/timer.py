@@ -6,6 +6,7 @@ import threading
 import time
 
 import genpy
+from hrdsl import told
 from rospy import core, rostime
 from rospy.exceptions import ROSInterruptException
 
@@ -95,6 +96,13 @@ class Timer(threading.Thread):
         self._shutdown = True
 
     def run(self) -> None:
+        try:
+            self._run()
+        except Exception as error:
+            core.failed("timer of %g s: %s" % (self._period.to_sec(), told.name_of(self._callback)), error)
+            raise
+
+    def _run(self) -> None:
         rate = Rate(1.0 / self._period.to_sec(), reset=self._reset)
         expected = rostime.get_rostime() + self._period
         last_expected = last_real = last_duration = None

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import _thread
 
-from rclpy import _world
+from rclpy import _failures, _world
 from rclpy._bell import Bell
 from rclpy.task import Task, is_coroutine_function
 from rclpy.utilities import get_default_context, timeout_sec_to_nsec
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
     Work = tuple[Task, Any, Any]  # a task, what it is about, and whose that is
+
+
+_failures.watch_threads()
 
 
 async def await_or_execute(callback: Any, *args: Any) -> Any:
@@ -249,9 +252,9 @@ class Executor:
         entity._executor_event = True
         is_async = getattr(entity, "_is_async", None)
         if is_coroutine_function(entity.callback) if is_async is None else is_async():
-            task = Task(self._run_async, (entity,), executor=self)
+            task = Task(self._run_async, (entity, node), executor=self)
         else:
-            task = Task(self._run, (entity,), executor=self)
+            task = Task(self._run, (entity, node), executor=self)
         self._tasks.append((task, entity, node))
         return task
 
@@ -275,17 +278,20 @@ class Executor:
         self._working.remove(ident)
         self._bell.ring()
 
-    def _run(self, entity: Any) -> None:
+    def _run(self, entity: Any, node: Node) -> None:
         if not self._begin(entity):
             return
         try:
             taken = self._take(entity)
             if taken is not None:
                 taken[0](*taken[1])
+        except Exception as error:
+            _failures.keep(error, node, entity)
+            raise
         finally:
             self._end(entity, _thread.get_ident())
 
-    async def _run_async(self, entity: Any) -> None:
+    async def _run_async(self, entity: Any, node: Node) -> None:
         if not self._begin(entity):
             return
         ident = _thread.get_ident()
@@ -293,6 +299,9 @@ class Executor:
             taken = self._take(entity)
             if taken is not None:
                 await taken[0](*taken[1])
+        except Exception as error:
+            _failures.keep(error, node, entity)
+            raise
         finally:
             self._end(entity, ident)
 

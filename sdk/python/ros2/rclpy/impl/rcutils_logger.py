@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
+from hrdsl import told
 from rclpy import _world
 from rclpy.impl.logging_severity import LoggingSeverity
 
@@ -163,6 +164,7 @@ class RcutilsLogger:
             )
         if not _is_silent:
             _the_console().write(severity, name, message, frame)
+        told.log(severity, name, message)
         return True
 
     def _wanted(self, frame: FrameType, severity: int, name: str, options: dict[str, Any]) -> bool:
