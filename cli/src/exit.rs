@@ -32,7 +32,7 @@ Exit codes:
   3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism, --repeat or
      --schedules found a difference;
      `prove`: a requirement is violated, or a query is not satisfied; `conformance`: a case failed
-  4  `prove`: something is inconclusive within the budget, and nothing else is wrong
+  4  `prove`: something is inconclusive, since the budget was used up, and nothing else is wrong
   5  `sim`: interrupted; the results are those of the tests that had ended
   70 hrdsl itself is at fault: an internal error, which is worth a report";
 
