@@ -10,13 +10,20 @@ use support::hrdsl_in;
 
 const TESTS: &str = "test hand.t1 { seed 1; order(3); wait 1 s; ask; wait 2 s; order(5) }\n";
 
+/// Topics that the scenario publishes, and programs may.
+const SHARED: &str = r#"  ros1 {
+    topic "/joint_states" : sensor_msgs/JointState in at 1 Hz from robot.arm
+    topic "/echo" : std_msgs/Int8 in latched { data = ordered.n }
+    topic "/echo" : std_msgs/Int8 out { emit counted(data) when data > 1 }
+"#;
+
 /// What became of a program of `cli/tests/bindings` and its companion: the events, the output, the error of the test.
 fn run(program: &str) -> String {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bindings");
     let folder = tempfile::tempdir().unwrap();
-    for file in [&format!("{program}.py"), "other.py"] {
-        fs::copy(here.join(file), folder.path().join(file)).unwrap();
-    }
+    fs::copy(here.join(format!("{program}.py")), folder.path().join(format!("{program}.py"))).unwrap();
+    let other = if program == "late" { "leaves_early.py" } else { "other.py" };
+    fs::copy(here.join(other), folder.path().join("other.py")).unwrap();
     let (scenario, middleware) = match program {
         "values" | "short" => ("values.hri", "ros1"),
         "logs" | "shares" => ("shares.hri", "ros1"),
@@ -25,7 +32,11 @@ fn run(program: &str) -> String {
         _ => ("scenario.hri", "ros1"),
     };
     let scenario = fs::read_to_string(here.join(scenario)).unwrap().replace("MIDDLEWARE", middleware);
-    fs::write(folder.path().join("scenario.hri"), scenario.replace("PROGRAM", program)).unwrap();
+    let mut scenario = scenario.replace("PROGRAM", program);
+    if program == "says_input" {
+        scenario = scenario.replace("  ros1 {\n", SHARED);
+    }
+    fs::write(folder.path().join("scenario.hri"), scenario).unwrap();
     fs::write(folder.path().join("tests.hri"), TESTS).unwrap();
     let done = hrdsl_in(folder.path(), "sim scenario.hri tests.hri -o out --check-determinism --exit-zero");
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap_or_default();
@@ -102,6 +113,8 @@ programs! {
     good: "everything that is bound is heard, said, asked and driven",
     wrong_type: "a publisher of another type than the binding's is refused, with both types",
     out_of_range: "a message that makes no event of the scenario is the program's error",
+    says_input: "a publisher of a topic that the scenario itself publishes is refused",
+    late: "an answer to a call whose client has ended",
     dies: "a program that dies ends the test, and is named",
     throws: "a callback that throws is logged, and an error of the test that names node and topic",
     throws_late: "so is a timer that does; a violation that was seen before counts",

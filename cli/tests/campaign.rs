@@ -102,17 +102,29 @@ fn a_campaign_is_repeatable_to_the_byte_with_any_number_of_workers() {
 
 #[test]
 fn a_campaign_is_the_same_whether_interpreters_are_forked_or_started_anew() {
-    let folder = tempfile::tempdir().unwrap();
-    let dirs = ["--jobs 2", "--jobs 1 --no-fork"].map(|how| (how, folder.path().join(&how[7..8])));
-    for (how, dir) in &dirs {
-        let mut more = vec!["-n", "2", "--exit-zero"];
-        more.extend(how.split(' '));
-        expect_code(&sim(&handover(), dir, &more), 0);
-    }
-    let [forked, anew] = dirs.map(|(_, dir)| tree(&dir));
-    assert_eq!(forked.keys().collect::<Vec<_>>(), anew.keys().collect::<Vec<_>>());
-    for (name, bytes) in &forked {
-        assert!(*bytes == anew[name], "{name} differs");
+    let examples = root().join("examples");
+    for (scenario, system) in [
+        (handover(), None),
+        (handover(), Some("handover/with_rospy/system.hri")),
+        (examples.join("corridor/scenario.hri"), Some("corridor/with_rclpy/system.hri")),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let dirs = ["--jobs 2", "--jobs 1 --no-fork"].map(|how| (how, folder.path().join(&how[7..8])));
+        let system = system.map(|file| examples.join(file));
+        for (how, dir) in &dirs {
+            let mut more = vec!["--exit-zero"];
+            more.extend(how.split(' '));
+            match &system {
+                Some(system) => more.extend(["-n", "1", "--system", system.to_str().unwrap()]),
+                None => more.extend(["-n", "2"]),
+            }
+            expect_code(&sim(&scenario, dir, &more), 0);
+        }
+        let [forked, anew] = dirs.map(|(_, dir)| tree(&dir));
+        assert_eq!(forked.keys().collect::<Vec<_>>(), anew.keys().collect::<Vec<_>>());
+        for (name, bytes) in &forked {
+            assert!(*bytes == anew[name], "{name} of {system:?} differs");
+        }
     }
 }
 

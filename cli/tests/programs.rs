@@ -116,17 +116,20 @@ fn schedules_find_a_race_and_name_one_that_shows_it_again() {
     for _ in 0..2 {
         let again = sim(&format!("--schedule {schedule} --test race.t2"));
         expect_code(&again, 3);
-        assert!(stdout(&again).contains(&format!("--schedule {schedule} --test race.t2")), "{}", stdout(&again));
+        assert!(
+            stdout(&again).contains(&format!("--schedule {schedule} --test race.t2")),
+            "{}",
+            stdout(&again)
+        );
     }
     for before in 1..schedule.parse::<u32>().unwrap() {
         expect_code(&sim(&format!("--schedule {before} --test race.t2")), 0);
     }
 
     // A program that locks what it shares has no race.
-    let safe = RACE.replace("account else", "wait(account) else").replace(
-        "def pay():",
-        "def wait(account):\n    opened.wait(9)\n    return account\ndef pay():",
-    );
+    let safe = RACE
+        .replace("account else", "wait(account) else")
+        .replace("def pay():", "def wait(account):\n    opened.wait(9)\n    return account\ndef pay():");
     let safe = safe.replace("    account[\"sum\"] = 100", "    account[\"sum\"] = 100\n    opened.set()");
     let safe = safe.replace("node.wait_for(", "opened = threading.Event()\nnode.wait_for(");
     fs::write(at.path().join("robot.py"), safe).unwrap();

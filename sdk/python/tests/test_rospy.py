@@ -148,6 +148,19 @@ class Nodes(Case):
             """
         self.assertEqual(self.said(text, system=System(end=7 * SECOND // 2)), ["swallowed", "end 1735689603.5", "hook"])
 
+    def test_a_loop_that_only_looks_whether_it_is_over(self):
+        text = """
+            import rospy
+            rospy.init_node("node")
+            for _ in range(999):
+                rospy.is_shutdown()
+            print(rospy.get_rostime().to_nsec() % 10**9)
+            while not rospy.is_shutdown() and rospy.get_rostime().to_nsec() % 10**9 < 5 * 10**6:
+                pass
+            print(rospy.get_rostime().to_nsec() % 10**9)
+            """
+        self.assertEqual(self.said(text, system=System()), ["0", "5000000"])
+
 
 class Topics(Case):
     def test_callbacks(self):

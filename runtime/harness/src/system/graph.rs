@@ -120,13 +120,12 @@ impl MessageGraph {
         Ok(out)
     }
 
-    /// A program has ended.
+    /// A program has ended. Its calls stay open: what is answered later reaches nobody, which is no fault of the server's.
     pub fn leave(&mut self, program: ProgramIndex) -> Vec<GraphDelivery> {
         let mine: Vec<u64> =
             self.ports.iter().filter(|p| p.program == program).map(|p| p.declared.port).collect();
         let mut out: Vec<GraphDelivery> =
             mine.into_iter().flat_map(|port| self.close(program, port).unwrap_or_default()).collect();
-        self.calls.retain(|_, call| call.client != program);
         self.watchers.retain(|watcher| *watcher != program);
         self.history.left(program);
         out.retain(|delivery| delivery.to != program);

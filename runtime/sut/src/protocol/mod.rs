@@ -617,6 +617,8 @@ mod tests {
         assert_eq!(wire(ReplyAnswer::Ok), r#"{"t":5}"#);
         assert_eq!(wire(ReplyAnswer::TimedOut), r#"{"t":5,"event":null}"#);
         assert_eq!(wire(ReplyAnswer::Value(Value::Bool(true))), r#"{"t":5,"value":true}"#);
+        let numbers = ReplyAnswer::Numbers(vec![0.5, f64::INFINITY, f64::NEG_INFINITY, f64::NAN]);
+        assert_eq!(wire(numbers), r#"{"t":5,"value":[0.5,"inf","-inf","nan"]}"#);
         assert_eq!(wire(ReplyAnswer::Acted(Ok(()))), r#"{"t":5,"ok":true}"#);
         assert_eq!(wire(ReplyAnswer::Acted(Err("far".into()))), r#"{"t":5,"ok":false,"error":"far"}"#);
         assert_eq!(

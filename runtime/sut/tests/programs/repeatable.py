@@ -151,6 +151,23 @@ def order_of_threads():
     return seen
 
 
+def order_of_tasks():
+    import asyncio
+
+    order = []
+
+    async def step(number):
+        order.append(number)
+        await asyncio.sleep(number % 2)
+        order.append(number)
+
+    async def main():
+        await asyncio.gather(*[step(number) for number in range(6)])
+
+    asyncio.run(main())
+    return order
+
+
 ROWS = {
     "the module `random`": lambda: (random.random(), random.seed(), random.random(), random.gauss(0, 1)),
     "generators without a seed": generators,
@@ -172,6 +189,7 @@ ROWS = {
     "numbers of threads": threads,
     "waits": waits,
     "the order in which threads run": order_of_threads,
+    "the order in which tasks go on": order_of_tasks,
 }
 
 hrdsl.Node("repeatable").sleep(90.25)

@@ -5,6 +5,7 @@ mod action_topics;
 mod fill;
 mod read;
 mod rules;
+mod said_topics;
 
 use std::collections::BTreeMap;
 
@@ -187,6 +188,7 @@ impl<'p> BindingNode<'p> {
 
     /// Why a program must not open this port, if there is a reason in the middleware.
     pub fn refuses(&self, declared: &PortDeclaration, graph: &MessageGraph) -> Result<(), String> {
+        said_topics::refuse(declared, self.binding)?;
         match self.binding.kind {
             MiddlewareKind::Ros1 => action_topics::refuse(declared, graph),
             MiddlewareKind::Ros2 => Ok(()),
