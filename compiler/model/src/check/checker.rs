@@ -241,7 +241,7 @@ impl<'a> Checker<'a> {
             return;
         }
         let is = local.or_else(|| self.kind_of(&name.text));
-        let known = local.is_some() || is.is_some_and(|is| !is.is_apart());
+        let known = local.is_some() || is.is_some_and(|is| is == noun || !is.is_apart());
         if !known && unread::may_declare(noun, self.source.unread_items, self.source.unread_members) {
             return;
         }
@@ -264,6 +264,11 @@ impl<'a> Checker<'a> {
             return Some(Noun::Parameter);
         }
         self.s.names.kind_of(text).or_else(|| self.world.names.kind_of(text))
+    }
+
+    /// Whether a name is of something that other declarations speak of in their expressions, if wrongly.
+    pub(super) fn is_spoken_of(&self, name: &str) -> bool {
+        self.kind_of(name).is_some_and(|is| !is.is_apart())
     }
 
     /// The names that a misspelt one may have been meant to be; none after many misspelt names, since looking for the

@@ -413,11 +413,7 @@ impl<'a> AgentsPhase<'_, 'a> {
         Some(BeliefId(id))
     }
 
-    pub(in crate::check) fn belief(
-        &mut self,
-        scope: &AgentScope,
-        name: &ast::NameSyntax,
-    ) -> Option<BeliefId> {
+    pub(super) fn belief(&mut self, scope: &AgentScope, name: &ast::NameSyntax) -> Option<BeliefId> {
         let table = &self.names.beliefs[usize::from(scope.id.0)];
         if let Some(id) = table.get(&name.text) {
             let place = table.span(id);

@@ -5,8 +5,6 @@ use std::rc::Rc;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, ExprSyntaxKind as Syntax, ItemSyntaxKind, NameSyntax, UnaryOp};
 
-use crate::check::state::phase::CheckPhase;
-use crate::check::vocabulary::template::CheckerPhase;
 use crate::check::{
     automata::phase::AutomataPhase,
     state::{
@@ -15,6 +13,7 @@ use crate::check::{
     },
     value::linear::{LinearTime, linear},
 };
+use crate::check::{state::phase::CheckPhase, vocabulary::template::CheckerPhase};
 use crate::{
     ClockId, ClockOp, Dimension, InferredType, LocationId, NetworkId, PlayerRef, TypedClockConstraint,
     TypedExprKind, TypedFormula, TypedMeasure, TypedQuery, TypedQueryKind, VariableRef,
@@ -49,11 +48,8 @@ impl AutomataPhase<'_, '_> {
             if let ItemSyntaxKind::Query(query) = item {
                 let looked_at = self.source.looks_at(CheckPhase::Queries, span);
                 let resolved = if looked_at { self.query(query, span) } else { None };
-                let new = self
-                    .checker
-                    .issues
-                    .declare(&mut self.networks.queries, Noun::Query, &query.name)
-                    .is_some();
+                let (issues, table) = (&mut self.checker.issues, &mut self.networks.queries);
+                let new = issues.declare(table, Noun::Query, &query.name).is_some();
                 self.s.queries.extend(resolved.filter(|_| new));
             }
         }
@@ -495,13 +491,11 @@ fn each_path(e: &ast::ExprSyntax, f: &mut dyn FnMut(&ast::PathSyntax)) {
     match &e.kind {
         Syntax::Path(path) => f(path),
         Syntax::Call { args, .. } | Syntax::Tuple(args) => args.iter().for_each(|a| each_path(a, f)),
-        Syntax::Index { of, index } => {
-            each_path(of, f);
-            each_path(index, f);
-        }
         Syntax::Field { of, .. } => each_path(of, f),
         Syntax::Unary { operand, .. } | Syntax::Strong(operand) => each_path(operand, f),
-        Syntax::Binary { left, right, .. } | Syntax::Unify { left, right } => {
+        Syntax::Binary { left, right, .. }
+        | Syntax::Unify { left, right }
+        | Syntax::Index { of: left, index: right } => {
             each_path(left, f);
             each_path(right, f);
         }

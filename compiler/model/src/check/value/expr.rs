@@ -179,11 +179,6 @@ impl<'a> Checker<'a> {
         !local && !signal && !variable && !self.has_value(&name.text) && !self.is_spoken_of(&name.text)
     }
 
-    /// Whether a name is of something that other declarations speak of in their expressions, if wrongly.
-    pub(in crate::check) fn is_spoken_of(&self, name: &str) -> bool {
-        self.kind_of(name).is_some_and(|is| !is.is_apart())
-    }
-
     /// An expression for a parameter or variable of this type; a constant must lie in its range.
     pub(in crate::check) fn expr_for(
         &mut self,
