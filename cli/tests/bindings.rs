@@ -169,3 +169,37 @@ fn a_value_that_there_is_not_is_the_scenarios_fault_and_its_field_is_named() {
     let output = fs::read_to_string(output.next().unwrap().unwrap().path()).unwrap();
     assert!(output.contains("\"reason\":\"the test has broken off: "), "{output}");
 }
+
+const FLOOD: &str = r#"scenario flood
+actor person : environment
+actor robot  : system
+event ordered from person to robot
+stimulus order by person { emit ordered }
+system robot {
+  run "python3 flood.py"
+  limit 5 s
+  ros1 { }
+}
+"#;
+
+const LOGS: &str = r#"import hrdsl
+node, log = hrdsl.Node("flood"), hrdsl.Logger("flood")
+while True:
+    log.warn("again")
+"#;
+
+#[test]
+fn a_flood_of_logs_is_the_error_of_its_test_and_takes_no_more_than_so_much() {
+    let test = "test flood.t1 { seed 1; order }\n";
+    let folder = support::folder(&[("scenario.hri", FLOOD), ("tests.hri", test), ("flood.py", LOGS)]);
+    let done = hrdsl_in(folder.path(), "sim scenario.hri tests.hri -o out --exit-zero");
+    let results = fs::read_to_string(folder.path().join("out/results.json")).unwrap_or_default();
+    let results: Value =
+        serde_json::from_str(&results).unwrap_or_else(|_| panic!("{}", support::stderr(&done)));
+    let test = &results["tests"][0];
+    let error = test["error"].as_str().unwrap_or_default();
+    assert!(error.contains("requests without letting simulated time pass"), "{error}");
+    let (warn, first) = (&test["log"]["counts"]["warn"], test["log"]["first"].as_array());
+    assert!(warn.as_u64().is_some_and(|n| (50_000..=100_000).contains(&n)), "{warn}");
+    assert_eq!(first.map(Vec::len), Some(20));
+}

@@ -6,10 +6,10 @@ use std::{cell::RefCell, rc::Rc};
 
 use common::{ROBOT, ask, emit, go, program, sleep, system, told, wait};
 use hrdsl_harness::{
-    AwaitedPort, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun, LogRecord,
-    MachineDeclaration, MachineEdge, MachineStep, ParameterRequest, PortDeclaration, PortKind, PortQos,
-    ProgramLogLevel, QosDurability, QosPolicy, QosReliability, RunTermination, SystemAnswer, SystemArrival,
-    SystemFault, SystemFaultKind, SystemPlayer, SystemRequest, WorldStage,
+    AwaitedPort, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun, MachineDeclaration,
+    MachineEdge, MachineStep, PortDeclaration, PortKind, PortQos, QosDurability, QosPolicy, QosReliability,
+    RunTermination, SystemAnswer, SystemArrival, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest,
+    WorldStage,
     doubles::{ToldCommand, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{test::TestStep, value::SECOND};
@@ -519,43 +519,6 @@ fn the_run_tells_who_had_which_port_and_who_waited_in_vain() {
     let waits: Vec<(&str, &str, i64)> =
         run.ports.waits.iter().map(|w| (w.program.as_str(), w.name.as_str(), w.since)).collect();
     assert_eq!(waits, [("a", "/plan", 0)]);
-}
-
-/// One tree, in the order of the requests.
-#[test]
-fn what_one_program_sets_the_others_see() {
-    let get = |name: &str| Then(SystemRequest::Parameter(ParameterRequest::Get { name: name.into() }));
-    let set = |name: &str, value: &str| {
-        Then(SystemRequest::Parameter(ParameterRequest::Set { name: name.into(), value: value.into() }))
-    };
-    let delete = |name: &str| Then(SystemRequest::Parameter(ParameterRequest::Delete { name: name.into() }));
-    let a =
-        vec![set("/a/x", "1.50"), Then(sleep(2)), get("/a"), delete("/a/y"), delete("/a/y"), set("/", "1")];
-    let b = vec![get("/a/x"), get("/b"), set("/a/y", "[true]"), Then(sleep(3)), get("/")];
-    let (told, _) = run(Vec::new(), vec![a, b], None);
-    let json = |text: &str| SystemAnswer::Json(text.into());
-    let absent = |name: &str| SystemAnswer::Ended(Err(format!("there is no parameter `{name}`")));
-    let root = refused("the root of the parameters can only be an object");
-    let removed = [(2, 3, SystemAnswer::Ended(Ok(()))), (2, 4, absent("/a/y")), (2, 5, root)];
-    assert_eq!(said(&told[0])[0], (2, 2, json(r#"{"x":1.50,"y":[true]}"#)));
-    assert_eq!(said(&told[0])[1..], removed);
-    let seen = [(0, 0, json("1.50")), (0, 1, absent("/b")), (3, 4, json(r#"{"a":{"x":1.50}}"#))];
-    assert_eq!(said(&told[1]), seen);
-}
-
-/// What warns is kept with its time and its program; nobody hears of it.
-#[test]
-fn what_programs_log_is_counted_and_what_warns_kept() {
-    let log = |level, text: &str| {
-        Then(SystemRequest::Log(LogRecord { level, node: "/n".to_owned(), text: text.to_owned() }))
-    };
-    let a = vec![log(ProgramLogLevel::Info, "ready"), Then(sleep(2)), log(ProgramLogLevel::Warn, "low")];
-    let b = vec![Then(sleep(1)), log(ProgramLogLevel::Error, "stuck")];
-    let (told, run) = run(Vec::new(), vec![a, b], None);
-    let kept = run.log.first.iter().map(|k| (k.time / SECOND, k.program.as_str(), k.record.text.as_str()));
-    assert_eq!(kept.collect::<Vec<_>>(), [(1, "b", "stuck"), (2, "a", "low")]);
-    assert_eq!(ProgramLogLevel::ALL.map(|level| run.log.count(level)), [0, 1, 1, 1, 0]);
-    assert_eq!(said(&told[0]), []);
 }
 
 /// Each step of a machine is a step of the trace; of several programs, each machine is called by its own first.

@@ -92,6 +92,7 @@ impl LockStep<'_> {
     }
 }
 
+#[expect(clippy::too_many_lines, reason = "a flat match, an arm for each request")]
 fn meant(request: ProgramRequest) -> SystemRequest {
     let arguments = |args: std::collections::BTreeMap<String, ProtocolArgument>| {
         args.into_iter().map(|(name, arg)| (name, argument(arg))).collect()
