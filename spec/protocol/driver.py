@@ -183,9 +183,10 @@ def state(device, what):
     return {"value": exchange.state(device, what)}
 
 
-def plan(device, to):
-    answer = exchange.link.request({"request": "plan", "device": device, "to": to})
-    return {key: answer[key] for key in ("value", "ok", "error") if key in answer}
+def plan(**asked):
+    answer = exchange.link.request({"request": "plan", **asked})
+    told = ("value", "times", "velocities", "accelerations", "ok", "error")
+    return {key: answer[key] for key in told if key in answer}
 
 
 def machine(**told):

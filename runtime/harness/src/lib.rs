@@ -45,6 +45,6 @@ pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
 pub use system::player::SystemPlayer;
 pub use system::seam::{
-    CanceledGoals, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,
+    CanceledGoals, PlanForm, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,
 };
-pub use world::{ArmTarget, CommandId, WorldAccuracy, WorldBackend};
+pub use world::{ArmTarget, CommandId, PlannedPoint, PlannedWay, WayRequest, WorldAccuracy, WorldBackend};

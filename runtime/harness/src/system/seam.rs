@@ -14,7 +14,7 @@ use crate::{
     command::CommandRequest,
     fault::SystemFault,
     port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
-    world::ArmTarget,
+    world::{PlannedPoint, WayRequest},
 };
 
 /// Whatever plays the system actor.
@@ -132,16 +132,27 @@ pub enum SystemRequest {
         device: String,
         what: String,
     },
-    /// The posture in which an arm would be at a target; with `way`, all corners of a free way there, one after the other.
+    /// A free way of an arm to a target.
     Plan {
         device: String,
-        to: ArmTarget,
-        way: bool,
+        wanted: WayRequest,
+        form: PlanForm,
     },
     /// A state machine of its own was declared, was begun or has moved.
     Machine(MachineStep),
     /// It has come to its normal end.
     Done,
+}
+
+/// What a system wants to know of a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlanForm {
+    /// The posture at its end.
+    End,
+    /// Its corners, one after the other, with both ends.
+    Corners,
+    /// Its points with their times.
+    Timed,
 }
 
 /// Which goals a client wants to end.
@@ -166,6 +177,8 @@ pub enum SystemAnswer {
     Value(Value),
     /// To state and plan.
     Numbers(Vec<f64>),
+    /// To a plan with times.
+    Way(Vec<PlannedPoint>),
     /// To a command: it ended, well or for this reason not.
     Ended(Result<(), String>),
     /// To a wait: what has arrived, in the order in which it did.
