@@ -142,7 +142,10 @@ const steps = {
     told("port" in step ? { request: "cancel", port: numbers[step.port] } : { request: "cancel", call: numbers[step.call] }),
   list: () => show({ request: "list" }, "ports"),
   state: (step) => show(about(step, "device", "what"), "value"),
-  plan: (step) => show(about(step, "device", "to"), "value", "ok", "error"),
+  plan: (step) => {
+    const asked = about(step, "device", "to", "joints", "from", "way", "timed", "speeds", "accelerations");
+    return show(asked, "value", "times", "velocities", "accelerations", "ok", "error");
+  },
   machine: (step) => told(about(step, "name", "states", "transitions", "outcomes")),
   transition: (step) => told(about(step, "machine", "label", "state", "outcome", "next")),
   get_parameter: (step) => show(about(step, "name"), "value", "ok", "error"),

@@ -183,8 +183,8 @@ def state(device, what):
     return {"value": exchange.state(device, what)}
 
 
-def plan(device, to):
-    return asked(request="plan", device=device, to=to)
+def plan(**request):
+    return asked(request="plan", **request)
 
 
 def machine(**told):
@@ -212,7 +212,8 @@ def delete_parameter(name):
 
 def asked(**request):
     answer = exchange.link.request(request)
-    return {key: answer[key] for key in ("value", "ok", "error") if key in answer}
+    told = ("value", "times", "velocities", "accelerations", "ok", "error")
+    return {key: answer[key] for key in told if key in answer}
 
 
 def failed(**told):

@@ -60,3 +60,15 @@ for name in ("crane", "plain"):
 group.set_named_target("home")
 group.set_max_acceleration_scaling_factor(0.5)
 print(group.go(wait=True), rounded(*group.get_current_joint_values()))
+
+
+def duration(move):
+    began = rospy.get_time()
+    move()
+    return rospy.get_time() - began
+
+
+group.set_max_acceleration_scaling_factor(1.0)
+by_itself = duration(lambda: client.send_goal_and_wait(PlayMotionGoal(motion_name="aside")))
+by_plan = duration(lambda: group.go([0.0, 0.0], wait=True))
+print("there by itself in %.2f s, and back by a plan in %.2f s" % (by_itself, by_plan))

@@ -39,7 +39,7 @@ struct WrittenJoint<'a> {
     upper: f64,
     /// rad/s
     velocity: f64,
-    /// rad/s²
+    /// In the mean, while the joint comes to its speed, rad/s²
     acceleration: f64,
 }
 
@@ -70,14 +70,9 @@ pub(crate) fn binding_text<'p>(
         let arm = world.arms.get(usize::from(arm.0))?;
         let joint = |(id, name): (&hrdsl_ir::world::JointId, &'p String)| {
             let joint = world.joints.get(usize::from(id.0))?;
-            let acceleration = group.acceleration.unwrap_or(arm.max_speed / RAMP);
-            Some(WrittenJoint {
-                name,
-                lower: joint.lo,
-                upper: joint.hi,
-                velocity: arm.max_speed,
-                acceleration,
-            })
+            let velocity = joint.drive.speed.map_or(arm.max_speed, |own| own.min(arm.max_speed));
+            let acceleration = group.acceleration.unwrap_or(velocity / RAMP);
+            Some(WrittenJoint { name, lower: joint.lo, upper: joint.hi, velocity, acceleration })
         };
         let joints = arm.joints.iter().zip(&group.joints).filter_map(joint).collect();
         let states = arm.postures.iter().map(|p| (p.name.as_str(), p.angles.as_slice())).collect();

@@ -47,6 +47,7 @@ pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
 pub use system::player::SystemPlayer;
 pub use system::seam::{
-    CanceledGoals, ParameterRequest, RequestTicket, SystemActor, SystemAnswer, SystemArrival, SystemRequest,
+    CanceledGoals, ParameterRequest, PlanForm, RequestTicket, SystemActor, SystemAnswer, SystemArrival,
+    SystemRequest,
 };
-pub use world::{ArmTarget, CommandId, WorldAccuracy, WorldBackend};
+pub use world::{ArmTarget, CommandId, PlannedPoint, PlannedWay, WayRequest, WorldAccuracy, WorldBackend};

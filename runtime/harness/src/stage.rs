@@ -13,7 +13,7 @@ use crate::{
     edge::EdgeWatch,
     message::PlayerMessage,
     recorder::SignalRecorder,
-    world::{ArmTarget, CommandId, WorldAccuracy, WorldBackend},
+    world::{CommandId, PlannedWay, WayRequest, WorldAccuracy, WorldBackend},
 };
 
 /// The world of one run.
@@ -159,15 +159,13 @@ impl<'p> WorldStage<'p> {
         self.world.sampled_at(device.body)
     }
 
-    /// The posture in which an arm would be at a target; with `way`, all corners of a free way there, one after the other.
+    /// A free way of an arm.
     ///
     /// # Errors
     /// That there is no such arm, or no such way.
-    pub fn plan(&self, device: &str, to: &ArmTarget, way: bool) -> Result<Vec<f64>, NotBegun> {
+    pub fn plan(&self, device: &str, wanted: &WayRequest) -> Result<PlannedWay, NotBegun> {
         let found = self.device(device)?;
-        let corners = self.world.plan(found.body, to).map_err(NotBegun::Failed)?;
-        let skipped = if way { 0 } else { corners.len().saturating_sub(1) };
-        Ok(corners.into_iter().skip(skipped).flatten().collect())
+        self.world.plan(found.body, wanted).map_err(NotBegun::Failed)
     }
 
     fn device(&self, name: &str) -> Result<&'p Device, NotBegun> {

@@ -64,13 +64,12 @@ pub trait WorldBackend {
         None
     }
 
-    /// The corners of a free way of an arm to a target, from the posture in which it is to the one in which it would be there;
-    /// nothing moves.
+    /// A free way of an arm; nothing moves.
     ///
     /// # Errors
     /// Why there is none.
-    fn plan(&self, device: DeviceBody, to: &ArmTarget) -> Result<Vec<Vec<f64>>, String> {
-        let _ = (device, to);
+    fn plan(&self, device: DeviceBody, wanted: &WayRequest) -> Result<PlannedWay, String> {
+        let _ = (device, wanted);
         Err("this device plans nothing".to_owned())
     }
 
@@ -96,6 +95,40 @@ pub enum ArmTarget {
     Place(Vec3),
     /// The positions of its joints, from the base to the tip, rad or m.
     Posture(Vec<f64>),
+}
+
+/// A way that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WayRequest {
+    pub to: ArmTarget,
+    /// Where it begins, rad or m; `None`: where the arm is.
+    pub from: Option<Vec<f64>>,
+    /// The greatest speed of each joint, rad/s or m/s, if they are to be slower than they may be.
+    pub speeds: Option<Vec<f64>>,
+    /// How quickly each joint comes to its speed, in the mean, rad/s² or m/s²; `None`: as in the arm's own motions.
+    pub accelerations: Option<Vec<f64>>,
+}
+
+/// A way of an arm, as it would go it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedWay {
+    /// The postures between which it is straight, from where it begins to where it ends.
+    pub corners: Vec<Vec<f64>>,
+    /// Points of the way with their times, of which the first is its beginning and the last its end; corners are rounded.
+    pub points: Vec<PlannedPoint>,
+}
+
+/// Where an arm is at a time on its way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedPoint {
+    /// Seconds from the beginning.
+    pub time: f64,
+    /// Of each joint, rad or m.
+    pub positions: Vec<f64>,
+    /// rad/s or m/s
+    pub velocities: Vec<f64>,
+    /// rad/s² or m/s²
+    pub accelerations: Vec<f64>,
 }
 
 /// A command under way.

@@ -1,6 +1,8 @@
 //! The arm's controller: has a way planned, lets the motors follow it as far as they can, and tells when it has arrived, or why
 //! not.
 
+mod plan;
+
 use hrdsl_ir::Nanos;
 use hrdsl_ir::value::seconds;
 use hrdsl_ir::world::{Arm, BodyId, JointId, JointMotion, Vec3, World};
@@ -9,14 +11,13 @@ use hrdsl_harness::CommandId;
 use nalgebra::DVector;
 
 use crate::{
-    clearance::{ArmClearance, ArmFigure},
+    clearance::ArmFigure,
     error::{CommandError, SimError},
     kinematics::{KinematicChain, KinematicLink},
     math::{BodyFrame, SpaceVector, v3},
     motion::{ArmGoal, ArmMotion, ArmPath},
     physics::{PhysicsAdapter, bad, dynamics::ArmDynamics, index},
-    planner::{NoRoute, RoutePlanner},
-    profile::{brake_time, braking},
+    profile::{RISE, brake_time, braking},
     rigidity,
     route::{JointRoute, JointTrack},
 };
@@ -144,58 +145,6 @@ impl ArmControl {
         })
     }
 
-    /// Plans a way of the tool to a place.
-    pub fn plan_place(
-        &self,
-        target: Vec3,
-        limit: Option<f64>,
-        at: &ArmMoment<'_>,
-    ) -> Result<JointRoute, CommandError> {
-        let speeds = self.speeds_within(limit);
-        let local = self.relative(at.physics, v3(target));
-        let route = self.planner(&speeds, at).reach_place(&self.stop(), local);
-        route.map_err(|why| self.no_route(why, at.physics))
-    }
-
-    /// Plans a way to a posture.
-    pub fn plan_posture(
-        &self,
-        posture: &[f64],
-        limit: Option<f64>,
-        at: &ArmMoment<'_>,
-    ) -> Result<JointRoute, CommandError> {
-        let speeds = self.speeds_within(limit);
-        let route = self.planner(&speeds, at).reach_posture(&self.stop(), posture);
-        route.map_err(|why| self.no_route(why, at.physics))
-    }
-
-    fn planner<'a>(&'a self, speeds: &'a [f64], at: &ArmMoment<'a>) -> RoutePlanner<'a> {
-        let clearance = ArmClearance::new(&self.figure, &self.chain, at.physics, &at.held, &*at.is_known);
-        RoutePlanner { chain: &self.chain, clearance, speeds }
-    }
-
-    fn no_route(&self, why: NoRoute, physics: &PhysicsAdapter) -> CommandError {
-        match why {
-            NoRoute::Unreachable(distance) => CommandError::Unreachable { distance },
-            NoRoute::Obstructed(a, b) => {
-                CommandError::Obstructed { by: physics.name(b).to_owned(), part: physics.name(a).to_owned() }
-            }
-        }
-    }
-
-    fn speeds_within(&self, limit: Option<f64>) -> Vec<f64> {
-        self.speeds.iter().map(|v| limit.map_or(*v, |l| v.min(l))).collect()
-    }
-
-    /// The place, as it would be if the arm's base were where it was at the start.
-    fn relative(&self, physics: &PhysicsAdapter, target: SpaceVector) -> SpaceVector {
-        let base = self.figure.base;
-        if physics.is_fixed(base) {
-            return target;
-        }
-        physics.start(base).point(physics.pose(base).inverse().point(target))
-    }
-
     pub fn check(&self, positions: &[f64], world: &World) -> Result<(), CommandError> {
         let expected = self.joints.len();
         if positions.len() != expected {
@@ -213,7 +162,7 @@ impl ArmControl {
     /// Begins to go along a way; what the arm was doing is given up, and its command is returned.
     pub fn go(&mut self, id: CommandId, route: JointRoute, place: Option<Vec3>) -> Option<CommandId> {
         let goal = place.map_or(ArmGoal::Joints, |p| ArmGoal::Place(v3(p)));
-        self.begin(ArmMotion::new(id, goal, self.aim(), ArmPath::along(route)))
+        self.begin(ArmMotion::new(id, goal, self.aim(), ArmPath::along(route, RISE)))
     }
 
     fn begin(&mut self, motion: ArmMotion) -> Option<CommandId> {

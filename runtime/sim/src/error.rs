@@ -46,6 +46,8 @@ pub enum CommandError {
     Unreachable { distance: f64 },
     #[error("the arm has {expected} joints, but {given} positions were given")]
     WrongJointCount { expected: usize, given: usize },
+    #[error("the arm has {expected} joints, but {given} speeds or accelerations were given")]
+    WrongLimitCount { expected: usize, given: usize },
     #[error("the position given for joint `{joint}` is beyond its limits")]
     OutOfLimits { joint: String },
     #[error("a posture has {joints} angles, so that {times} of them have {expected}, but {given} were given")]
@@ -54,7 +56,7 @@ pub enum CommandError {
     TimesDoNotGrow,
     #[error("joints are counted from 0 to {}", joints.saturating_sub(1))]
     NoSuchJoint { joints: usize },
-    #[error("a speed must be a positive finite number")]
+    #[error("speeds and accelerations must be positive finite numbers")]
     BadSpeed,
     #[error("a place or position must be a finite number")]
     NotFinite,

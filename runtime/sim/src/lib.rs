@@ -65,7 +65,7 @@ pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
 use figure::FigureControl;
 use hand::HandSet;
-pub use hrdsl_harness::{ArmTarget, CommandId, WorldAccuracy};
+pub use hrdsl_harness::{ArmTarget, CommandId, PlannedWay, WayRequest, WorldAccuracy};
 pub use hulls::{HullStore, warm_hulls};
 use math::{BodyFrame, SpaceVector};
 use mover::{KinematicPath, LookRequest};
@@ -533,28 +533,13 @@ impl WorldSimulation {
         self.finished.extend(id.map(|id| (id, Err(CommandError::Replaced))));
     }
 
-    /// The corners of a free way of an arm to a target, from the posture in which it would stop now.
+    /// A free way of an arm, from the posture in which it would stop now if no other one is asked for.
     ///
     /// # Errors
-    /// That the target is out of reach or beyond limits, or that there is no free way.
-    pub fn plan(&self, arm: ArmId, to: &ArmTarget) -> Result<Vec<Vec<f64>>, CommandError> {
+    /// That the target is out of reach or beyond limits, that there is no free way, or that numbers make no sense.
+    pub fn plan(&self, arm: ArmId, wanted: &WayRequest) -> Result<PlannedWay, CommandError> {
         let at = self.arm(arm, None)?;
-        let (arm, moment) = (&self.arms[at], self.moment(at));
-        let numbers = match to {
-            ArmTarget::Place(place) => &place[..],
-            ArmTarget::Posture(posture) => posture,
-        };
-        if numbers.iter().any(|x| !x.is_finite()) {
-            return Err(CommandError::NotFinite);
-        }
-        let route = match to {
-            ArmTarget::Place(place) => arm.plan_place(*place, None, &moment)?,
-            ArmTarget::Posture(posture) => {
-                arm.check(posture, &self.world)?;
-                arm.plan_posture(posture, None, &moment)?
-            }
-        };
-        Ok(route.points_where(|_| true).collect())
+        self.arms[at].plan_way(wanted, &self.world, &self.moment(at))
     }
 
     /// What the planner of an arm knows: everything but where people are.

@@ -1,6 +1,6 @@
 //! A motion of an arm on its way: where its joints should be, on a clock of its own that waits for an arm that lags behind.
 
-use hrdsl_harness::CommandId;
+use hrdsl_harness::{CommandId, PlannedPoint};
 
 use crate::{
     math::SpaceVector,
@@ -24,6 +24,9 @@ pub(crate) enum ArmPath {
     Track(JointTrack),
 }
 
+/// How far points of a way are apart at most, s.
+const POINTS: f64 = 0.05;
+
 pub(crate) struct ArmMotion {
     pub id: CommandId,
     pub goal: ArmGoal,
@@ -40,13 +43,57 @@ pub(crate) struct ArmMotion {
 }
 
 impl ArmPath {
-    pub fn along(route: JointRoute) -> ArmPath {
+    /// Along a way, at full speed after so many seconds.
+    pub fn along(route: JointRoute, rise: f64) -> ArmPath {
         if route.has_corners() {
-            let pace = LimitedPace::new(route.length(), |s| route.limit(s));
+            let pace = LimitedPace::new(route.length(), rise, |s| route.limit(s));
             return ArmPath::Route(route, pace);
         }
-        let profile = MotionProfile::new(route.length(), 1.0);
+        let profile = MotionProfile::new(route.length(), 1.0, rise);
         ArmPath::Straight(route, profile)
+    }
+
+    /// The posture after so many seconds, of an arm that begins at `from`.
+    fn at(&self, t: f64, from: &[f64]) -> Vec<f64> {
+        match self {
+            ArmPath::Straight(route, profile) => route.at(profile.at(t) * route.length()),
+            ArmPath::Route(route, pace) => route.at(pace.at(t)),
+            ArmPath::Track(track) => track.at(t, from),
+        }
+    }
+
+    /// Seconds from start to end.
+    fn length(&self) -> f64 {
+        match self {
+            ArmPath::Straight(_, profile) => profile.length(),
+            ArmPath::Route(_, pace) => pace.length(),
+            ArmPath::Track(track) => track.length(),
+        }
+    }
+
+    /// Its points with their times, as close as [`POINTS`] says; speeds and accelerations by differences.
+    pub fn points(&self, from: &[f64]) -> Vec<PlannedPoint> {
+        const H: f64 = 1e-3;
+        let length = self.length();
+        let last = (length / POINTS).ceil() as usize;
+        let point = |i: usize| {
+            let time = if i == last { length } else { length * i as f64 / last as f64 };
+            let positions = self.at(time, from);
+            let (before, after) = (self.at((time - H).max(0.0), from), self.at(time + H, from));
+            let rests = i == 0 || i == last;
+            let (velocities, accelerations) = before
+                .iter()
+                .zip(&positions)
+                .zip(&after)
+                .map(|((a, b), c)| {
+                    // It begins and ends at rest, beyond which it has no other half.
+                    let velocity = if rests { 0.0 } else { (c - a) / (2.0 * H) };
+                    (velocity, (a - 2.0 * b + c) / (H * H))
+                })
+                .unzip();
+            PlannedPoint { time, positions, velocities, accelerations }
+        };
+        (0..=last).map(point).collect()
     }
 }
 
@@ -72,12 +119,7 @@ impl ArmMotion {
             let (travel, _) = braking(t);
             return self.from.iter().zip(&self.speed).map(|(q, v)| q + v * travel).collect();
         }
-        let t = t - self.brake;
-        match &self.path {
-            ArmPath::Straight(route, profile) => route.at(profile.at(t) * route.length()),
-            ArmPath::Route(route, pace) => route.at(pace.at(t)),
-            ArmPath::Track(track) => track.at(t, &self.from),
-        }
+        self.path.at(t - self.brake, &self.from)
     }
 
     /// The posture aimed at now.
@@ -108,12 +150,7 @@ impl ArmMotion {
     }
 
     fn length(&self) -> f64 {
-        self.brake
-            + match &self.path {
-                ArmPath::Straight(_, profile) => profile.length(),
-                ArmPath::Route(_, pace) => pace.length(),
-                ArmPath::Track(track) => track.length(),
-            }
+        self.brake + self.path.length()
     }
 
     /// The posture in which it ends.

@@ -4,8 +4,8 @@
 //! acceleration jumps. All joints share the ramp: they start and arrive together, and the one with the longest way keeps
 //! the limit.
 
-/// Seconds to come to full speed, and to stop.
-const RISE: f64 = 0.5;
+/// Seconds to come to full speed, and to stop, if nobody asks for others.
+pub(crate) const RISE: f64 = 0.5;
 
 /// Of a motion from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,19 +14,21 @@ pub(crate) struct MotionProfile {
     peak: f64,
     /// Seconds.
     length: f64,
+    /// Seconds to come to full speed, and to stop.
+    rise: f64,
 }
 
 impl MotionProfile {
-    /// `way` is the longest way of any joint (rad, or m); `limit` its greatest speed.
-    pub fn new(travel: f64, limit: f64) -> Self {
+    /// `travel` is the longest way of any joint (rad, or m); `limit` its greatest speed, to which it comes in `rise` seconds.
+    pub fn new(travel: f64, limit: f64, rise: f64) -> Self {
         let travel = travel.abs();
         if travel < 1e-9 {
-            return MotionProfile { peak: 0.0, length: 0.0 };
+            return MotionProfile { peak: 0.0, length: 0.0, rise };
         }
-        if travel >= limit * RISE {
-            MotionProfile { peak: limit / travel, length: travel / limit + RISE }
+        if travel >= limit * rise {
+            MotionProfile { peak: limit / travel, length: travel / limit + rise, rise }
         } else {
-            MotionProfile { peak: 1.0 / RISE, length: 2.0 * RISE }
+            MotionProfile { peak: 1.0 / rise, length: 2.0 * rise, rise }
         }
     }
 
@@ -42,12 +44,12 @@ impl MotionProfile {
         }
         let t = t.max(0.0);
         let left = self.length - t;
-        if t < RISE {
-            self.peak * RISE * risen(t / RISE)
-        } else if left < RISE {
-            1.0 - self.peak * RISE * risen(left / RISE)
+        if t < self.rise {
+            self.peak * self.rise * risen(t / self.rise)
+        } else if left < self.rise {
+            1.0 - self.peak * self.rise * risen(left / self.rise)
         } else {
-            self.peak * (RISE / 2.0 + t - RISE)
+            self.peak * (self.rise / 2.0 + t - self.rise)
         }
     }
 }
@@ -62,11 +64,11 @@ pub(crate) struct LimitedPace {
 }
 
 impl LimitedPace {
-    /// `limit` is the greatest speed so far along the way, 0 to 1, and never 0.
-    pub fn new(length: f64, limit: impl Fn(f64) -> f64) -> LimitedPace {
+    /// `limit` is the greatest speed so far along the way, 0 to 1, and never 0; full speed is come to in `rise` seconds.
+    pub fn new(length: f64, rise: f64, limit: impl Fn(f64) -> f64) -> LimitedPace {
         let cells = (length / 0.005).ceil().max(1.0) as usize;
         let grid = length / cells as f64;
-        let gain = 2.0 * grid / RISE;
+        let gain = 2.0 * grid / rise;
         let mut speeds: Vec<f64> = (0..=cells).map(|i| limit(grid * i as f64)).collect();
         speeds[0] = 0.0;
         speeds[cells] = 0.0;
@@ -134,8 +136,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn keeps_the_limit_and_arrives(travel in 1e-6f64..4.0, limit in 0.01f64..2.0) {
-            let p = MotionProfile::new(travel, limit);
+        fn keeps_the_limit_and_arrives(travel in 1e-6f64..4.0, limit in 0.01f64..2.0, rise in 0.1f64..1.0) {
+            let p = MotionProfile::new(travel, limit, rise);
             prop_assert!(p.at(0.0).abs() < 1e-12);
             prop_assert!((p.at(p.length()) - 1.0).abs() < 1e-12);
             let h = 1e-4;
@@ -151,7 +153,7 @@ mod tests {
     #[test]
     fn limits_on_the_way_are_kept() {
         let limit = |s: f64| if (s - 1.0).abs() < 0.1 { 0.2 } else { 1.0 };
-        let pace = LimitedPace::new(2.0, limit);
+        let pace = LimitedPace::new(2.0, RISE, limit);
         assert!((pace.at(0.0), pace.at(pace.length() + 1.0)) == (0.0, 2.0));
         let h = 1e-3;
         let (mut before, mut last) = (0.0, 0.0);
@@ -168,7 +170,7 @@ mod tests {
 
     #[test]
     fn no_way_takes_no_time() {
-        let p = MotionProfile::new(0.0, 0.2);
+        let p = MotionProfile::new(0.0, 0.2, RISE);
         assert!(p.length() == 0.0 && p.at(0.0) == 1.0);
     }
 

@@ -78,6 +78,13 @@ impl JointRoute {
         near.fold(1.0, |limit, i| limit.min((self.reach(i) / ROUNDING).max(SLOWEST)))
     }
 
+    /// The seconds to full speed in which no joint comes to its speed more quickly, in the mean, than it may.
+    pub fn rise(&self, accelerations: &[f64]) -> f64 {
+        let lengths = self.along.windows(2).map(|along| along[1] - along[0]);
+        let lines = self.points.windows(2).zip(lengths).filter(|(_, length)| *length > 0.0);
+        lines.fold(0.0, |rise, (ends, length)| rise.max(span(&ends[0], &ends[1], accelerations) / length))
+    }
+
     pub fn has_corners(&self) -> bool {
         self.points.len() > 2
     }

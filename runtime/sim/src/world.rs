@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{ArmTarget, CheckedCommand, CommandId, WorldAccuracy, WorldBackend};
+use hrdsl_harness::{CheckedCommand, CommandId, PlannedWay, WayRequest, WorldAccuracy, WorldBackend};
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
@@ -129,9 +129,9 @@ impl WorldBackend for SimWorld {
         self.sim.sampled_at(device)
     }
 
-    fn plan(&self, device: DeviceBody, to: &ArmTarget) -> Result<Vec<Vec<f64>>, String> {
+    fn plan(&self, device: DeviceBody, wanted: &WayRequest) -> Result<PlannedWay, String> {
         match device {
-            DeviceBody::Arm(arm) => self.sim.plan(arm, to).map_err(|e| e.to_string()),
+            DeviceBody::Arm(arm) => self.sim.plan(arm, wanted).map_err(|e| e.to_string()),
             DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_) => {
                 Err(format!("a {} plans nothing", device.sort().name()))
             }

@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use hrdsl_ir::Expr;
 use hrdsl_ir::{device::DeviceBody, world::*};
-use hrdsl_sim::{CommandError, MotorCommand, WorldSimulation};
+use hrdsl_sim::{ArmTarget, CommandError, CommandId, MotorCommand, PlannedWay, WayRequest, WorldSimulation};
 use proptest::prelude::*;
 
 fn speeds() -> Vec<Signal> {
@@ -167,9 +167,7 @@ fn a_place_without_a_free_way_is_refused_with_what_is_in_the_way() {
 
 #[test]
 fn an_arm_goes_round_what_is_in_its_way() {
-    let mut world = table();
-    let post = body("post", BodyMotion::Fixed, cuboid(0.06, 0.06, 0.9), [0.48, -0.05, 0.45], 1.0);
-    world.bodies.push(post);
+    let world = posted();
     let post = BodyRef::Body(named(&world, "post"));
     let parts = ["palm", "forearm", "elbow", "upper_arm"];
     let terms: Vec<_> = parts.map(|part| BodyRef::Body(named(&world, &format!("robot.{part}")))).into();
@@ -178,6 +176,100 @@ fn an_arm_goes_round_what_is_in_its_way() {
     let id = sim.command(move_to(OFFER)).unwrap();
     let (_, result) = wait(&mut sim, id, |sim| (0..4).for_each(|i| assert!(float(sim, i) > 1e-3, "{i}")));
     result.unwrap();
+}
+
+/// The way to a place within the speed, and the acceleration to that in half a second or another one.
+fn timed(sim: &WorldSimulation, target: Vec3, speed: f64, rise: f64) -> PlannedWay {
+    let limits = |limit: f64| Some(vec![limit; 9]);
+    let (speeds, accelerations) = (limits(speed), limits(speed / rise));
+    sim.plan(ARM, &WayRequest { to: ArmTarget::Place(target), from: None, speeds, accelerations }).unwrap()
+}
+
+/// Begins to go along a plan.
+fn follow(sim: &mut WorldSimulation, way: &PlannedWay) -> CommandId {
+    let positions = way.points.iter().flat_map(|point| point.positions.clone()).collect();
+    let times = way.points.iter().map(|point| point.time).collect();
+    sim.command(MotorCommand::FollowJoints { arm: ARM, positions, times }).unwrap()
+}
+
+/// A world with a post in the way of the arm.
+fn posted() -> World {
+    let mut world = table();
+    let post = body("post", BodyMotion::Fixed, cuboid(0.06, 0.06, 0.9), [0.48, -0.05, 0.45], 1.0);
+    world.bodies.push(post);
+    world
+}
+
+#[test]
+fn a_plan_takes_the_time_and_goes_the_way_of_the_arms_own_motion() {
+    let mut corners = Vec::new();
+    for (world, target) in [(table(), LEGS[0]), (table(), DISCARD), (posted(), OFFER)] {
+        let [mut own, mut planned] = [&world, &world].map(|w| WorldSimulation::new(w, &[]).unwrap());
+        let way = timed(&planned, target, 0.2, 0.5);
+        corners.push(way.corners.len());
+        let mut ways = [Vec::new(), Vec::new()];
+        let id = own.command(move_to(target)).unwrap();
+        let (time, result) = wait(&mut own, id, |sim| ways[0].push(sim.joint_positions(ARM)));
+        result.unwrap();
+        let id = follow(&mut planned, &way);
+        let (again, result) = wait(&mut planned, id, |sim| ways[1].push(sim.joint_positions(ARM)));
+        result.unwrap();
+        println!("{target:?}: {time} s, {again} s, {} corners", way.corners.len());
+        assert!((time - again).abs() < 1.5 * STEP as f64 / 1e9, "{target:?}: {time} s, and {again} s");
+        let [own, planned] = &ways;
+        for (a, b) in own.iter().flatten().zip(planned.iter().flatten()) {
+            assert!((a - b).abs() < 2e-3, "{target:?}: {a}, {b}");
+        }
+    }
+    assert!(corners[1] == 2 && corners[2] > 2, "one is straight, and one goes round the post: {corners:?}");
+}
+
+#[test]
+fn the_points_of_a_plan_keep_its_speeds_and_fit_each_other() {
+    let sim = WorldSimulation::new(&posted(), &[]).unwrap();
+    for (speed, rise) in [(0.2, 0.5), (0.05, 0.5), (0.2, 0.25), (1.0, 0.5)] {
+        let way = timed(&sim, OFFER, speed, rise);
+        let (first, last) = (&way.points[0], &way.points[way.points.len() - 1]);
+        assert!(first.time == 0.0 && first.velocities.iter().chain(&last.velocities).all(|v| *v == 0.0));
+        for pair in way.points.windows(2) {
+            let (a, b) = (&pair[0], &pair[1]);
+            let h = b.time - a.time;
+            assert!((0.0..=0.05 + 1e-9).contains(&h), "{h}");
+            for joint in 0..9 {
+                assert!(b.velocities[joint].abs() <= speed * 1.001, "{} rad/s", b.velocities[joint]);
+                let mean = (a.velocities[joint] + b.velocities[joint]) / 2.0;
+                let moved = b.positions[joint] - a.positions[joint];
+                assert!((moved - mean * h).abs() < 0.1 * speed * h, "at {} s: {moved}, {mean}", a.time);
+            }
+        }
+    }
+    // On a straight way, ramps of half the length take a quarter of a second off.
+    let sim = WorldSimulation::new(&table(), &[]).unwrap();
+    let length = |rise| timed(&sim, DISCARD, 0.2, rise).points.last().unwrap().time;
+    assert!((length(0.5) - length(0.25) - 0.25).abs() < 1e-9);
+}
+
+#[test]
+fn a_plan_may_begin_elsewhere_and_refuses_numbers_that_make_no_sense() {
+    let sim = WorldSimulation::new(&table(), &[]).unwrap();
+    let mut from = vec![0.0; 9];
+    from[2] = 0.3;
+    let to = ArmTarget::Posture(vec![0.0; 9]);
+    let wanted = WayRequest { to, from: Some(from.clone()), speeds: None, accelerations: None };
+    let way = sim.plan(ARM, &wanted).unwrap();
+    assert_eq!((&way.corners[0], &way.points[0].positions), (&from, &from));
+    assert_eq!(way.points.last().unwrap().positions, vec![0.0; 9]);
+    let asks = |change: &dyn Fn(&mut WayRequest)| {
+        let mut wanted = wanted.clone();
+        change(&mut wanted);
+        sim.plan(ARM, &wanted).unwrap_err()
+    };
+    let short = asks(&|w| w.from = Some(vec![0.0; 3]));
+    assert_eq!(short, CommandError::WrongJointCount { expected: 9, given: 3 });
+    assert_eq!(asks(&|w| w.from = Some(vec![f64::NAN; 9])), CommandError::NotFinite);
+    assert_eq!(asks(&|w| w.speeds = Some(vec![0.0; 9])), CommandError::BadSpeed);
+    let few = CommandError::WrongLimitCount { expected: 9, given: 1 };
+    assert_eq!(asks(&|w| w.accelerations = Some(vec![1.0])), few);
 }
 
 /// What the planner does not know of, since nobody is where they will be: the arm pushes no harder than its motors can, gives up,

@@ -46,6 +46,6 @@ pub use lock_step::LockStep;
 pub use output::{CapturedOutput, CapturedStream};
 pub use process::{FinishedProcess, SutProcess};
 pub use protocol::{
-    HarnessReply, MessageRequest, OpenRequest, PROTOCOL_VERSION, ProgramRequest, ProtocolArgument,
-    RefusedLine, ReplyAnswer,
+    HarnessReply, MessageRequest, OpenRequest, PROTOCOL_VERSION, PlanRequest, ProgramRequest,
+    ProtocolArgument, RefusedLine, ReplyAnswer,
 };

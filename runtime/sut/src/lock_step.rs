@@ -1,9 +1,9 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    ArmTarget, AwaitedPort, CanceledGoals, CommandRequest, LogRecord, MachineDeclaration, MachineEdge,
-    MachineStep, ParameterRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault,
-    SystemFaultKind, SystemRequest,
+    AwaitedPort, CanceledGoals, CommandRequest, LogRecord, MachineDeclaration, MachineEdge, MachineStep,
+    ParameterRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind,
+    SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
@@ -133,12 +133,7 @@ fn meant(request: ProgramRequest) -> SystemRequest {
             SystemRequest::AnswerCancel { call, granted, text }
         }
         ProgramRequest::State { device, what } => SystemRequest::State { device, what },
-        ProgramRequest::Plan { device, to, joints, way } => {
-            // INVARIANT: `fault` refuses a request with neither.
-            let place = to.unwrap_or_default();
-            let to = joints.map_or(ArmTarget::Place(place), ArmTarget::Posture);
-            SystemRequest::Plan { device, to, way }
-        }
+        ProgramRequest::Plan(plan) => plan.asked(),
         ProgramRequest::Transition { machine, label, outcome, next } => SystemRequest::Machine(match label {
             Some(from) => {
                 let edge = MachineEdge { from, outcome: outcome.unwrap_or_default(), to: next };
@@ -195,6 +190,7 @@ fn said(answer: SystemAnswer) -> ReplyAnswer {
         SystemAnswer::Value(value) => ReplyAnswer::Value(value),
         SystemAnswer::Numbers(numbers) => ReplyAnswer::Numbers(numbers),
         SystemAnswer::Json(text) => ReplyAnswer::Json(text),
+        SystemAnswer::Way(points) => ReplyAnswer::Way(points),
         SystemAnswer::Ended(how) => ReplyAnswer::Acted(how),
         SystemAnswer::Arrived { arrivals, gave_up } => ReplyAnswer::Arrived { arrivals, gave_up },
         SystemAnswer::Listed(ports) => ReplyAnswer::Listed(ports),

@@ -57,12 +57,26 @@ class Arm(System):
         return {"value": [0.5, 0.0, 0.25, 0.0, 0.0, 0.479425538604203, 0.8775825618903728]}
 
     def do_plan(self, request):
-        if "joints" in request:
-            return {"value": request["joints"]}
-        x, y, z = request["to"]
-        if x > 1:
+        x, y = request["joints"] if "joints" in request else request["to"][:2]
+        if x > 1 and "to" in request:
             return {"ok": False, "error": "the place is out of reach"}
-        return {"value": [x, y]}
+        return self._timed(request, [x, y]) if request.get("timed") else {"value": [x, y]}
+
+    def _timed(self, request, end):
+        """A way by its begin, its middle and its end; it takes the time of both ramps more than without them."""
+        begin = request.get("from", self.states["robot.arm"])
+        apart = [b - a for a, b in zip(begin, end)]
+        length = max(abs(change) / speed for change, speed in zip(apart, request["speeds"]))
+        if not length:
+            return {"value": end, "velocities": [0.0, 0.0], "accelerations": [0.0, 0.0], "times": [0.0]}
+        rise = max(abs(change) / most for change, most in zip(apart, request["accelerations"])) / length
+        middle, speeds = [a + change / 2 for a, change in zip(begin, apart)], [change / length for change in apart]
+        return {
+            "value": [*begin, *middle, *end],
+            "velocities": [0.0, 0.0, *speeds, 0.0, 0.0],
+            "accelerations": [change / length / rise for change in apart] + [0.0] * 4,
+            "times": [0.0, (length + rise) / 2, length + rise],
+        }
 
     def _command(self, request):
         if request["do"] != "follow":
@@ -114,8 +128,7 @@ group.set_joint_value_target([1.0, -0.5])
 success, plan, seconds, code = group.plan()
 points = plan.joint_trajectory.points
 print(success, seconds, code.val, plan.joint_trajectory.joint_names, plan.joint_trajectory.header.frame_id, len(points))
-for at in (0, 5, 10, -1):
-    point = points[at]
+for point in points:
     print("%.3f" % point.time_from_start.to_sec(), near(point.positions), near(point.velocities), near(point.accelerations))
 group.set_max_velocity_scaling_factor(0.1)
 group.set_max_acceleration_scaling_factor(0.5)
@@ -125,11 +138,10 @@ print(len(group.plan([0, 0])[1].joint_trajectory.points), type(points[0].positio
         self.assertEqual(
             self.said(text),
             [
-                "True 0.0 1 ['shoulder', 'elbow'] base 21",
+                "True 0.0 1 ['shoulder', 'elbow'] base 3",
                 "0.000 [0.0, 0.0] [0.0, 0.0] [1.0, -0.5]",
-                "0.500 [0.125, -0.0625] [0.5, -0.25] [1.0, -0.5]",
-                "1.000 [0.5, -0.25] [1.0, -0.5] [-1.0, 0.5]",
-                "2.000 [1.0, -0.5] [0.0, 0.0] [-1.0, 0.5]",
+                "1.000 [0.5, -0.25] [1.0, -0.5] [0.0, 0.0]",
+                "2.000 [1.0, -0.5] [0.0, 0.0] [0.0, 0.0]",
                 "10.200",
                 "1 tuple",
             ],
@@ -185,9 +197,35 @@ tries(lambda: group.set_pose_target(pose), lambda: group.set_pose_target([1, 2])
             ],
         )
         asked = [request for request in self.requests if request["request"] == "plan"]
-        self.assertEqual(asked[0], {"request": "plan", "device": "robot.arm", "to": [0.5, 0.25, 1.0], "way": True})
+        self.assertEqual(
+            asked[0],
+            {
+                "request": "plan", "device": "robot.arm", "to": [0.5, 0.25, 1.0], "timed": True,
+                "speeds": [1.0, 0.5], "accelerations": [1.0, 1.0],
+            },
+        )  # fmt: skip
         self.assertEqual(asked[1]["orientation"], [0.0, 0.0, 0.0, 1.0])
         self.assertEqual((self.out + self.err).count("and not for its orientation"), 1)
+
+    def test_a_start_elsewhere_and_factors_are_asked_for(self):
+        text = """
+group = moveit_commander.MoveGroupCommander("arm")
+state = group.get_current_state()
+state.joint_state.position = [0.5, 0.0]
+group.set_start_state(state)
+group.set_max_velocity_scaling_factor(0.5)
+group.set_max_acceleration_scaling_factor(0.25)
+points = group.plan([1.0, 0.0])[1].joint_trajectory.points
+print(near(points[0].positions), "%.3f" % points[-1].time_from_start.to_sec())
+state.joint_state.position = [0.005, 0.0]
+group.set_start_state(state)
+print(near(group.plan([1.0, 0.0])[1].joint_trajectory.points[0].positions))
+"""
+        self.assertEqual(self.said(text), ["[0.5, 0.0] 3.000", "[0.005, 0.0]"])
+        first, second = [request for request in self.requests if request["request"] == "plan"]
+        self.assertEqual((first["from"], first["speeds"]), ([0.5, 0.0], [0.5, 0.25]))
+        self.assertEqual(first["accelerations"], [0.25, 0.25])
+        self.assertNotIn("from", second, "the arm is there, nearly")
 
     def test_a_path_of_the_hand(self):
         text = """
@@ -198,14 +236,19 @@ print(fraction, [near(point.positions) for point in path.joint_trajectory.points
 path, fraction = group.compute_cartesian_path([list_to_pose([1.5, 0, 0.25, 0, 0, 0, 1])], 0.1, True)
 print(fraction)
 timed = group.retime_trajectory(group.get_current_state(), path, 0.5, 0.5)
-print(timed.joint_trajectory.points[-1].time_from_start > path.joint_trajectory.points[-1].time_from_start)
+for made in (path, timed):
+    print(["%.4f" % point.time_from_start.to_sec() for point in made.joint_trajectory.points])
+    print(made.joint_trajectory.points[1].velocities)
 """
         self.assertEqual(
             self.said(text),
             [
                 "1.0 [[0.0, 0.0], [0.6, 0.0], [0.7, 0.0], [0.8, 0.0], [0.9, 0.0]]",
                 "0.5",
-                "True",
+                "['0.0000', '1.1010', '1.2081', '1.3300', '1.4877', '2.0000']",
+                "(0.9714697864743692, 0.0)",
+                "['0.0000', '1.7000', '1.9000', '2.1010', '2.3300', '3.0000']",
+                "(0.5, 0.0)",
             ],
         )
 
@@ -336,7 +379,7 @@ tries(lambda: group.execute(plan))
         self.assertIn("Invalid Trajectory: start point deviates from current robot state more than 0.01", said)
         self.assertIn("ABORTED: it hit something", said)
         time, args = system.followed[0]
-        self.assertEqual((time, args["times"][:2], args["positions"][:2]), (0, [0.0, 0.1], [0.0, 0.0]))
+        self.assertEqual((time, args["times"][:2], args["positions"][:2]), (0, [0.0, 1.0], [0.0, 0.0]))
         self.assertEqual((args["times"][-1], args["positions"][-2:]), (2.0, [1.0, 0.0]))
 
     def test_one_that_is_stopped(self):

@@ -11,7 +11,7 @@ use super::{
     mailbox::HeardEvent,
     parameters::ParameterTree,
     program::{RequestWait, ServedProgram},
-    seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
+    seam::{PlanForm, RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     vocabulary::{ActorVocabulary, refuse},
 };
 use crate::{
@@ -23,7 +23,7 @@ use crate::{
     player::{ActorPlayer, HarnessError, PlayerContext},
     port::{PortDeclaration, PortHistory},
     stage::WorldStage,
-    world::CommandId,
+    world::{CommandId, PlannedWay},
 };
 
 /// Plays the system actor by its programs, each a [`SystemActor`].
@@ -178,9 +178,11 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 }
                 Err(answer) => answer,
             }),
-            SystemRequest::State { device, what } => Answer(asked(cx, |stage| stage.state(&device, &what))),
-            SystemRequest::Plan { device, to, way } => {
-                Answer(asked(cx, |stage| stage.plan(&device, &to, way)))
+            SystemRequest::State { device, what } => {
+                Answer(asked(cx, |stage| stage.state(&device, &what).map(SystemAnswer::Numbers)))
+            }
+            SystemRequest::Plan { device, wanted, form } => {
+                Answer(asked(cx, |stage| stage.plan(&device, &wanted).map(|way| told_way(way, form))))
             }
             SystemRequest::Machine(step) => Answer(self.machine(index, step, cx)),
             SystemRequest::List => Answer(self.listed(index)),
@@ -415,11 +417,20 @@ fn begin(request: &CommandRequest, cx: &mut PlayerContext<'_, '_>) -> Result<Com
 /// Asks the world for numbers.
 fn asked(
     cx: &mut PlayerContext<'_, '_>,
-    ask: impl FnOnce(&WorldStage<'_>) -> Result<Vec<f64>, NotBegun>,
+    ask: impl FnOnce(&WorldStage<'_>) -> Result<SystemAnswer, NotBegun>,
 ) -> SystemAnswer {
     match cx.stage.as_deref() {
-        Some(stage) => ask(stage).map_or_else(said, SystemAnswer::Numbers),
+        Some(stage) => ask(stage).unwrap_or_else(said),
         None => refuse("there is no world with devices", None),
+    }
+}
+
+fn told_way(way: PlannedWay, form: PlanForm) -> SystemAnswer {
+    let PlannedWay { mut corners, points } = way;
+    match form {
+        PlanForm::End => SystemAnswer::Numbers(corners.pop().unwrap_or_default()),
+        PlanForm::Corners => SystemAnswer::Numbers(corners.concat()),
+        PlanForm::Timed => SystemAnswer::Way(points),
     }
 }
 

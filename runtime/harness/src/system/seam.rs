@@ -15,7 +15,7 @@ use crate::{
     fault::SystemFault,
     log::LogRecord,
     port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
-    world::ArmTarget,
+    world::{PlannedPoint, WayRequest},
 };
 
 /// Whatever plays the system actor.
@@ -133,11 +133,11 @@ pub enum SystemRequest {
         device: String,
         what: String,
     },
-    /// The posture in which an arm would be at a target; with `way`, all corners of a free way there, one after the other.
+    /// A free way of an arm to a target.
     Plan {
         device: String,
-        to: ArmTarget,
-        way: bool,
+        wanted: WayRequest,
+        form: PlanForm,
     },
     /// A state machine of its own was declared, was begun or has moved.
     Machine(MachineStep),
@@ -155,6 +155,17 @@ pub enum ParameterRequest {
     Get { name: String },
     Set { name: String, value: MessageText },
     Delete { name: String },
+}
+
+/// What a system wants to know of a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlanForm {
+    /// The posture at its end.
+    End,
+    /// Its corners, one after the other, with both ends.
+    Corners,
+    /// Its points with their times.
+    Timed,
 }
 
 /// Which goals a client wants to end.
@@ -181,6 +192,8 @@ pub enum SystemAnswer {
     Numbers(Vec<f64>),
     /// To a question for a parameter: the text of its value.
     Json(MessageText),
+    /// To a plan with times.
+    Way(Vec<PlannedPoint>),
     /// To a command: it ended, well or for this reason not.
     Ended(Result<(), String>),
     /// To a wait: what has arrived, in the order in which it did.

@@ -1,6 +1,7 @@
 //! The lock-step protocol, versions 1 and 2, as data (`spec/protocol.md`): one JSON line each way.
 
 mod open;
+mod plan;
 mod ports;
 mod reply;
 
@@ -11,6 +12,7 @@ use hrdsl_ir::{Nanos, Value};
 use serde::{Deserialize, Serialize};
 
 pub use open::{OpenRequest, WrittenPortKind};
+pub use plan::PlanRequest;
 pub use ports::MessageRequest;
 pub(crate) use reply::ReplyLine;
 pub use reply::{HarnessReply, RefusedLine, ReplyAnswer};
@@ -120,15 +122,7 @@ pub enum ProgramRequest {
         what: String,
     },
     /// The posture in which an arm's tool would be at a place, or the way to it or to a posture.
-    Plan {
-        device: String,
-        #[serde(default)]
-        to: Option<[f64; 3]>,
-        #[serde(default)]
-        joints: Option<Vec<f64>>,
-        #[serde(default)]
-        way: bool,
-    },
+    Plan(PlanRequest),
     /// A state machine has gone from the state `label` to the state `next`; without `label` it begins there.
     Transition {
         machine: String,
@@ -249,9 +243,7 @@ impl ProgramRequest {
                 Some("cancel needs either a `call` or a `port`".to_owned())
             }
             ProgramRequest::Open(open) => open.fault(),
-            ProgramRequest::Plan { to: None, joints: None, .. } => {
-                Some("plan needs a place `to` go, or `joints`".to_owned())
-            }
+            ProgramRequest::Plan(plan) => plan.fault(),
             ProgramRequest::Now
             | ProgramRequest::Emit { .. }
             | ProgramRequest::Drop { .. }
@@ -265,7 +257,6 @@ impl ProgramRequest {
             | ProgramRequest::Accept { .. }
             | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::State { .. }
-            | ProgramRequest::Plan { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
@@ -290,7 +281,7 @@ impl ProgramRequest {
             | ProgramRequest::Accept { .. }
             | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::State { .. }
-            | ProgramRequest::Plan { .. }
+            | ProgramRequest::Plan(_)
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
@@ -335,7 +326,7 @@ impl ProgramRequest {
             | ProgramRequest::Open(_)
             | ProgramRequest::List
             | ProgramRequest::State { .. }
-            | ProgramRequest::Plan { .. }
+            | ProgramRequest::Plan(_)
             | ProgramRequest::GetParameter { .. }
             | ProgramRequest::DeleteParameter { .. }
             | ProgramRequest::Done => false,

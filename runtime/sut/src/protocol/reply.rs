@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{MessageText, PortListing, QosPolicy, SystemArrival};
+use hrdsl_harness::{MessageText, PlannedPoint, PortListing, QosPolicy, SystemArrival};
 use hrdsl_ir::{Nanos, Value};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 use serde_json::value::RawValue;
@@ -48,6 +48,8 @@ pub enum ReplyAnswer {
     Value(Value),
     /// To state and plan.
     Numbers(Vec<f64>),
+    /// To plan with `timed`.
+    Way(Vec<PlannedPoint>),
     /// To get_parameter: the text of the value.
     Json(MessageText),
     /// To act and delete_parameter, and to get_parameter if there is none: it ended, well or for this reason not.
@@ -113,6 +115,7 @@ impl Serialize for ReplyLine<'_> {
                 map.serialize_entry("value", &written)?;
             }
             ReplyAnswer::Json(text) => map.serialize_entry("value", raw(text)?)?,
+            ReplyAnswer::Way(points) => way(&mut map, points)?,
             ReplyAnswer::Acted(Ok(())) => map.serialize_entry("ok", &true)?,
             ReplyAnswer::Acted(Err(error)) => {
                 map.serialize_entry("ok", &false)?;
@@ -210,6 +213,15 @@ impl Serialize for WrittenArrival<'_> {
         }
         map.end()
     }
+}
+
+/// The points of a way, member by member.
+fn way<M: SerializeMap>(map: &mut M, points: &[PlannedPoint]) -> Result<(), M::Error> {
+    let flat = |of: fn(&PlannedPoint) -> &[f64]| points.iter().flat_map(of).copied().collect::<Vec<f64>>();
+    map.serialize_entry("value", &flat(|point| &point.positions))?;
+    map.serialize_entry("velocities", &flat(|point| &point.velocities))?;
+    map.serialize_entry("accelerations", &flat(|point| &point.accelerations))?;
+    map.serialize_entry("times", &points.iter().map(|point| point.time).collect::<Vec<f64>>())
 }
 
 /// What a server says about a goal, if it says something.

@@ -1,7 +1,7 @@
 """Plans and motions of a robot's groups of joints, with the interface of MoveIt's moveit_commander.
 
 The groups are those of the scenario's binding. A plan goes from posture to posture along a way that touches nothing of the
-scenario's world, within the joints' speeds, with a rest at each corner.
+scenario's world, at the times at which the arm would go them by itself at that speed.
 """
 
 from __future__ import annotations

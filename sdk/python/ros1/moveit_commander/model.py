@@ -8,6 +8,7 @@ from hrdsl.binding import binding
 from hrdsl.errors import ProtocolError
 from hrdsl.exchange import the_exchange
 from moveit_commander.exception import MoveItCommanderException
+from moveit_commander.timing import Point
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -86,33 +87,44 @@ class Group:
         message: dict[str, Any] = {"to": list(pose[:3]), "from": list(begin)}
         if len(pose) == 7:
             message["orientation"] = list(pose[3:])
-        found, why = self._ask(message)
-        if found is not None and len(pose) == 7:
             warn_once("hrdsl plans for the place of %s, and not for its orientation" % self.tip)
-        return found, why
+        found, why = self._ask(message)
+        return (None, why) if found is None else (found["value"], "")
 
-    def way(self, target: dict[str, Any], begin: Sequence[float]) -> tuple[list[list[float]] | None, str]:
-        """The corners of a way that is free, from where the joints are to a place (`to`) or to values (`joints`); or None and why
-        there is none. From where the joints are not, the way is straight."""
-        found, why = self._ask({**target, "way": True})
+    def way(
+        self, target: dict[str, Any], begin: Sequence[float], elsewhere: bool, limits: tuple[list[float], list[float]]
+    ) -> tuple[list[Point] | None, str]:
+        """A way that is free, from where the joints begin, which is where they are or `elsewhere`, to a place (`to`) or to
+        values (`joints`), at the times at which the arm goes it within these speeds and accelerations (rad/s and rad/s², or m/s
+        and m/s²); or None and why there is none."""
+        speeds, accelerations = limits
+        message = {**target, "timed": True, "speeds": speeds, "accelerations": accelerations}
+        if elsewhere:
+            message["from"] = list(begin)
+        found, why = self._ask(message)
         if found is None:
             return None, why
         count = len(self.joints)
-        corners = [found[at : at + count] for at in range(0, len(found), count)]
-        if len(found) % count or not corners:
+        rows = [_rows(found.get(what, ()), count) for what in ("value", "velocities", "accelerations")]
+        if not rows[0]:
             return None, "the arm has another number of joints than group %s" % self.name
-        if max(abs(a - b) for a, b in zip(corners[0], begin)) > ELSEWHERE:
-            corners = [list(begin), corners[-1]]
-        return [list(begin), *corners[1:]] if len(corners) > 1 else [list(begin), corners[0]], ""
+        points = [Point(float(time), *at) for time, *at in zip(found["times"], *rows)]
+        points[0].positions = tuple(begin)
+        return points, ""
 
-    def _ask(self, message: dict[str, Any]) -> tuple[list[float] | None, str]:
+    def _ask(self, message: dict[str, Any]) -> tuple[dict[str, list[float]] | None, str]:
         try:
             answer = the_exchange().link.request({"request": "plan", "device": self.device, **message})
         except ProtocolError as error:
             return None, str(error)
         if "value" not in answer:
             return None, str(answer.get("error", "there is no such posture"))
-        return [float(value) for value in answer["value"]], ""
+        return {what: [float(number) for number in of] for what, of in answer.items() if isinstance(of, list)}, ""
+
+
+def _rows(numbers: Sequence[float], count: int) -> list[Sequence[float]]:
+    """The numbers of each point, if there are as many for all."""
+    return [] if len(numbers) % count else [numbers[at : at + count] for at in range(0, len(numbers), count)]
 
 
 #: How far joints may be from where they are said to begin (rad or m), so that a way from where they are is meant.

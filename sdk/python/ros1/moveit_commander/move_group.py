@@ -81,11 +81,13 @@ class MoveGroupCommander(Targets):
         """Plans begin where this `RobotState` has the joints."""
         self._start = dict(zip(msg.joint_state.name, msg.joint_state.position))
 
-    def _begin(self) -> list[float]:
+    def _begin(self) -> tuple[list[float], bool]:
+        """Where plans begin, and whether the joints are elsewhere."""
         now = self._group.positions()
         if self._start is None:
-            return now
-        return [float(self._start.get(name, value)) for name, value in zip(self._group.names, now)]
+            return now, False
+        begin = [float(self._start.get(name, value)) for name, value in zip(self._group.names, now)]
+        return begin, max(abs(a - b) for a, b in zip(begin, now)) > model.ELSEWHERE
 
     def plan(self, joints: Any = None) -> Any:
         """The way to the target, or to what is given: (success, `RobotTrajectory`, planning time, `MoveItErrorCodes`); in
@@ -111,18 +113,18 @@ class MoveGroupCommander(Targets):
             self.set_joint_value_target(joints)
 
     def _plan(self) -> tuple[int, Any]:
-        begin = self._begin()
+        begin, elsewhere = self._begin()
         target: dict[str, Any] = {"joints": self._joint_target}
         if self._pose_target is not None:
             target = {"to": list(self._pose_target[:3])}
             if len(self._pose_target) == 7:
                 target["orientation"] = list(self._pose_target[3:])
                 model.warn_once("hrdsl plans for the place of %s, and not for its orientation" % self._group.tip)
-        corners, why = self._group.way(target, begin)
-        if corners is None:
+        points, why = self._group.way(target, begin, elsewhere, self._limits())
+        if points is None:
             rospy.logwarn("group %s cannot reach its target: %s" % (self._group.name, why))
             return _NO_POSTURE, self._trajectory([])
-        return _SUCCESS, self._trajectory(timing.lines(corners, *self._limits()))
+        return _SUCCESS, self._trajectory(points)
 
     def _limits(self, speed: float | None = None, acceleration: float | None = None) -> tuple[list[float], list[float]]:
         speed = self._speed_factor if speed is None else speed
@@ -158,7 +160,7 @@ class MoveGroupCommander(Targets):
         if path_constraints:
             unsupported("compute_cartesian_path with path_constraints", "leave them out")
         places = self._straight([self._pose(pose) for pose in waypoints], float(eef_step))
-        postures = [self._begin()]
+        postures = [self._begin()[0]]
         for place in places:
             found, _ = self._group.reach(place, postures[-1])
             if found is None:

@@ -1,4 +1,4 @@
-"""When a robot is where on its way: it speeds up, keeps its speed, and slows down, within the limits of its joints."""
+"""When a robot is where on a way that it is given: it speeds up, keeps its speed, and slows down, as in the world's own motions."""
 
 from __future__ import annotations
 
@@ -9,9 +9,6 @@ if TYPE_CHECKING:
     from typing import Sequence
 
     Posture = Sequence[float]
-
-#: Seconds between the points of a plan, nearly.
-STEP = 0.1
 
 
 class Point:
@@ -25,34 +22,43 @@ class Point:
 
 
 class Profile:
-    """A way of some length, begun and ended at rest, with a greatest speed of 1 and this greatest acceleration."""
+    """A way of some length, begun and ended at rest, with a greatest speed of 1, to which it comes by a smooth step in `rise`
+    seconds."""
 
-    def __init__(self, length: float, acceleration: float) -> None:
-        self._length, self._acceleration = length, acceleration
-        self._rising = 1.0 / acceleration  # how long it speeds up
-        if length < self._rising:  # it never gets that fast
-            self._rising = math.sqrt(length / acceleration)
-        self._speed = acceleration * self._rising
-        self._cruising = max(0.0, length / self._speed - self._rising) if length else 0.0
-        self.duration = 2.0 * self._rising + self._cruising
+    def __init__(self, length: float, rise: float) -> None:
+        self._length, self._rise = length, rise
+        self._speed = min(1.0, length / rise)  # a short way takes no less than both ramps
+        self._ramp = self._speed * rise / 2.0
+        self.duration = (length - 2.0 * self._ramp) / self._speed + 2.0 * rise
 
     def at(self, time: float) -> tuple[float, float, float]:
         """How far it is at a time, how fast, and how quickly it gets faster."""
-        if time < self._rising:
-            return self._acceleration * time * time / 2.0, self._acceleration * time, self._acceleration
-        if time < self._rising + self._cruising:
-            return self._speed * (time - self._rising / 2.0), self._speed, 0.0
         left = max(0.0, self.duration - time)
-        return self._length - self._acceleration * left * left / 2.0, self._acceleration * left, -self._acceleration
+        if time < self._rise:
+            return self._risen(time)
+        if left < self._rise:
+            ahead, speed, rise = self._risen(left)
+            return self._length - ahead, speed, -rise
+        return self._ramp + self._speed * (time - self._rise), self._speed, 0.0
+
+    def _risen(self, time: float) -> tuple[float, float, float]:
+        u = time / self._rise
+        return (
+            self._speed * self._rise * u * u * u * (1.0 - u / 2.0),
+            self._speed * u * u * (3.0 - 2.0 * u),
+            self._speed * 6.0 * u * (1.0 - u) / self._rise,
+        )
 
     def when(self, place: float) -> float:
         """The time at which it is so far."""
-        ramp = self._speed * self._rising / 2.0
-        if place <= ramp:
-            return math.sqrt(2.0 * max(0.0, place) / self._acceleration)
-        if place <= self._length - ramp:
-            return place / self._speed + self._rising / 2.0
-        return self.duration - math.sqrt(2.0 * max(0.0, self._length - place) / self._acceleration)
+        if place > self._length / 2.0:
+            return self.duration - self.when(self._length - place)
+        if place > self._ramp:
+            return self._rise + (place - self._ramp) / self._speed
+        low, high = 0.0, self._rise
+        while low < (middle := (low + high) / 2.0) < high:
+            low, high = (middle, high) if self._risen(middle)[0] < place else (low, middle)
+        return high if place > 0.0 else 0.0
 
 
 class _Way:
@@ -62,18 +68,18 @@ class _Way:
         self.postures = [postures[0]]
         self.ends = [0.0]
         self.changes: list[list[float]] = []  # of the joints, for each second at full speed
-        limit = math.inf
+        rise = 0.0
         for posture in postures[1:]:
             apart = [there - here for here, there in zip(self.postures[-1], posture)]
             length = max((abs(change) / speed for change, speed in zip(apart, speeds)), default=0.0)
             if length <= 1e-12:
                 continue
             change = [part / length for part in apart]
-            limit = min([limit] + [most / abs(part) for part, most in zip(change, accelerations) if part])
+            rise = max([rise] + [abs(part) / most for part, most in zip(change, accelerations)])
             self.postures.append(posture)
             self.ends.append(self.ends[-1] + length)
             self.changes.append(change)
-        self.profile = Profile(self.ends[-1], limit) if self.changes else None
+        self.profile = Profile(self.ends[-1], rise) if self.changes else None
 
     def point(self, time: float) -> Point:
         """Where it is at a time."""
@@ -97,29 +103,8 @@ class _Way:
         return Point(0.0, self.postures[0], zeros, zeros)
 
 
-def line(start: Posture, target: Posture, speeds: Posture, accelerations: Posture) -> list[Point]:
-    """The straight way between two postures, a point about every tenth of a second."""
-    way = _Way([start, target], speeds, accelerations)
-    if way.profile is None:
-        return [way.rest()]
-    count = max(1, math.ceil(way.profile.duration / STEP - 1e-9))
-    points = [way.point(way.profile.duration * at / count) for at in range(count + 1)]
-    points[0].positions, points[-1].positions = tuple(start), tuple(target)
-    return points
-
-
-def lines(postures: Sequence[Posture], speeds: Posture, accelerations: Posture) -> list[Point]:
-    """The straight ways from each of these postures to the next, with a rest at each."""
-    points: list[Point] = []
-    for start, target in zip(postures, postures[1:]):
-        begun = points.pop().time if points else 0.0
-        for point in line(start, target, speeds, accelerations):
-            points.append(Point(begun + point.time, point.positions, point.velocities, point.accelerations))
-    return points
-
-
 def through(postures: Sequence[Posture], speeds: Posture, accelerations: Posture) -> list[Point]:
-    """The way through these postures, with a point at each that differs from the one before."""
+    """The way through these postures without a rest, with a point at each that differs from the one before."""
     way = _Way(postures, speeds, accelerations)
     if way.profile is None:
         return [way.rest()]
