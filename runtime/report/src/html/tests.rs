@@ -194,7 +194,7 @@ fn what_was_logged_stands_with_its_test() {
     assert_eq!(unbalanced(&page), None);
     for text in [
         "<p class=\"note\">Logged: 7 info</p>",
-        "<summary>Logged: 1 debug, 3 warn</summary><pre>2.50 s  warn  &#x2f;arm: &lt;b&gt;low",
+        "<summary>Logged: 1 debug, 3 warn</summary><pre>2.50 s warn &#x2f;arm: &lt;b&gt;low battery\n",
         "and 2 more that warn",
     ] {
         assert!(page.contains(text), "{text}");
