@@ -231,7 +231,8 @@ impl<'p> BindingNode<'p> {
     pub fn next_wake(&self, now: Nanos, graph: &MessageGraph) -> Option<Nanos> {
         let due = |(times, input): (&InputTimes, &'p TopicInput)| {
             let hears = graph.has_subscriber(self.node, times.port);
-            let periodic = input.period.filter(|_| hears).map(|period| next_after(now, times.sent, period));
+            let periodic =
+                input.period.filter(|_| hears).map(|period| said_topics::next_after(now, times.sent, period));
             periodic.into_iter().chain(times.until).min()
         };
         self.inputs.iter().zip(&self.binding.inputs).filter_map(due).min()
@@ -488,13 +489,6 @@ fn declaration(port: u64, kind: PortKind, name: &str, interface: &str, latched: 
     let (name, type_name) = (name.to_owned(), interface.to_owned());
     let (kept, qos) = (usize::from(latched), PortQos::default());
     PortDeclaration { port, kind, name, type_name, kept, depth: DEPTH, qos }
-}
-
-/// The next point of the grid, unless the message of this instant has not gone yet.
-fn next_after(now: Nanos, sent: Option<Nanos>, period: Nanos) -> Nanos {
-    let period = period.max(1);
-    let is_due = now > 0 && now % period == 0 && sent != Some(now);
-    if is_due { now } else { (now / period + 1) * period }
 }
 
 /// When the first of what holds is over.

@@ -1,7 +1,7 @@
-//! The topics that the scenario itself publishes: what it says there is what the world says, and a program that spoke there, too, would be
-//! taken for the world by all who hear it.
+//! The topics that the scenario itself publishes: when it speaks, and why no program may. What it says there is what the world says,
+//! and a program that spoke there, too, would be taken for the world by all who hear it.
 
-use hrdsl_ir::binding::MiddlewareBinding;
+use hrdsl_ir::{Nanos, binding::MiddlewareBinding};
 
 use crate::port::{PortDeclaration, PortKind};
 
@@ -22,4 +22,11 @@ pub(super) fn refuse(declared: &PortDeclaration, binding: &MiddlewareBinding) ->
         "the scenario itself publishes the topic `{name}`, and whoever hears it could not tell a program from the world: \
          publish at another name, or let the scenario not bind this one `in`"
     ))
+}
+
+/// The next point of the grid, unless the message of this instant has not gone yet.
+pub(super) fn next_after(now: Nanos, sent: Option<Nanos>, period: Nanos) -> Nanos {
+    let period = period.max(1);
+    let is_due = now > 0 && now % period == 0 && sent != Some(now);
+    if is_due { now } else { (now / period + 1) * period }
 }
