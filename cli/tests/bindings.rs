@@ -17,7 +17,11 @@ fn run(program: &str) -> String {
     for file in [&format!("{program}.py"), "other.py"] {
         fs::copy(here.join(file), folder.path().join(file)).unwrap();
     }
-    let scenario = if matches!(program, "values" | "short") { "values.hri" } else { "scenario.hri" };
+    let scenario = match program {
+        "values" | "short" => "values.hri",
+        "frames" => "frames.hri",
+        _ => "scenario.hri",
+    };
     let scenario = fs::read_to_string(here.join(scenario)).unwrap();
     fs::write(folder.path().join("scenario.hri"), scenario.replace("PROGRAM", program)).unwrap();
     fs::write(folder.path().join("tests.hri"), TESTS).unwrap();
@@ -93,6 +97,7 @@ programs! {
     locks: "threads that wait for each other are found and named",
     polls: "a loop that polls nothing is found, with its line",
     values: "rows, places of bodies, names of joints and postures are what the scenario says",
+    frames: "listeners of tf find where bodies of the scenario are, and where they were",
     short: "a row that is shorter than a rule reads is the program's error",
     imports: "a package of messages that nobody has is named, with what to do",
 }
