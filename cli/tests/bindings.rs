@@ -26,6 +26,7 @@ fn run(program: &str) -> String {
     fs::copy(here.join(other), folder.path().join("other.py")).unwrap();
     let (scenario, middleware) = match program {
         "values" | "short" => ("values.hri", "ros1"),
+        "frames" => ("frames.hri", "ros1"),
         "logs" | "shares" => ("shares.hri", "ros1"),
         "throws_late" => ("two.hri", "ros1"),
         "throws_two" => ("two.hri", "ros2"),
@@ -124,6 +125,7 @@ programs! {
     shares: "parameters are one tree for all programs",
     polls: "a loop that polls nothing is found, with its line",
     values: "rows, places of bodies, names of joints and postures are what the scenario says",
+    frames: "listeners of tf find where bodies of the scenario are, and where they were",
     short: "a row that is shorter than a rule reads is the program's error",
     imports: "a package of messages that nobody has is named, with what to do",
 }

@@ -80,9 +80,10 @@ impl JointRoute {
 
     /// The seconds to full speed in which no joint comes to its speed more quickly, in the mean, than it may.
     pub fn rise(&self, accelerations: &[f64]) -> f64 {
-        let lengths = self.along.windows(2).map(|along| along[1] - along[0]);
-        let lines = self.points.windows(2).zip(lengths).filter(|(_, length)| *length > 0.0);
-        lines.fold(0.0, |rise, (ends, length)| rise.max(span(&ends[0], &ends[1], accelerations) / length))
+        let lengths = self.along.iter().zip(self.along.iter().skip(1)).map(|(from, to)| to - from);
+        let ends = self.points.iter().zip(self.points.iter().skip(1));
+        let lines = ends.zip(lengths).filter(|(_, length)| *length > 0.0);
+        lines.fold(0.0, |rise: f64, ((from, to), length)| rise.max(span(from, to, accelerations) / length))
     }
 
     pub fn has_corners(&self) -> bool {

@@ -29,10 +29,8 @@ pub struct PlanRequest {
 impl PlanRequest {
     /// Why it makes no sense whatever the scenario, if it does not.
     pub(super) fn fault(&self) -> Option<String> {
-        match (&self.to, &self.joints) {
-            (None, None) => Some("plan needs a place `to` go, or `joints`".to_owned()),
-            (None, Some(_)) | (Some(_), None) | (Some(_), Some(_)) => None,
-        }
+        let leads_nowhere = self.to.is_none() && self.joints.is_none();
+        leads_nowhere.then(|| "plan needs a place `to` go, or `joints`".to_owned())
     }
 
     /// What it asks of the harness. INVARIANT: `fault` refuses one with neither a place nor a posture.

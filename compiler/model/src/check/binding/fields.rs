@@ -73,8 +73,8 @@ impl GivenFields {
         }
     }
 
-    /// The text of the message around its values, and the conditions. The time in a header is that of the message, unless
-    /// something else is said.
+    /// The text of the message around its values, and the conditions. The time in each header is that of the message,
+    /// unless something else is said.
     pub fn template(self, shape: &MessageShape) -> (MessageTemplate<TypedExpr>, Vec<TypedExpr>) {
         let mut filling = FilledShape { shape, given: self, gaps: Vec::new() };
         let text = shape.text(&mut filling);
@@ -111,7 +111,8 @@ impl MessageGaps for FilledShape<'_> {
     fn is_gap(&mut self, path: &[MessageStep]) -> bool {
         let place = place_text(path);
         let shape = self.shape.at(path);
-        let stamp = place == "header.stamp" && matches!(shape, Some(FieldShape::Scalar(..)));
+        let in_header = place == "header.stamp" || place.ends_with(".header.stamp");
+        let stamp = in_header && matches!(shape, Some(FieldShape::Scalar(..)));
         let mut cases = self.given.cases.remove(&place).unwrap_or_default();
         if cases.first().is_some_and(|case| case.condition.is_none()) {
             self.gaps.extend(cases.pop().map(|case| case.gap));
