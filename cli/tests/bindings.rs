@@ -17,13 +17,12 @@ const SHARED: &str = r#"  ros1 {
     topic "/echo" : std_msgs/Int8 out { emit counted(data) when data > 1 }
 "#;
 
-/// What became of a program of `cli/tests/bindings` and its companion: the events, the output, the error of the test.
-fn run(program: &str) -> String {
+/// Puts a program, its companion and their scenario into a folder.
+fn prepare(program: &str, folder: &Path) {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bindings");
-    let folder = tempfile::tempdir().unwrap();
-    fs::copy(here.join(format!("{program}.py")), folder.path().join(format!("{program}.py"))).unwrap();
+    fs::copy(here.join(format!("{program}.py")), folder.join(format!("{program}.py"))).unwrap();
     let other = if program == "late" { "leaves_early.py" } else { "other.py" };
-    fs::copy(here.join(other), folder.path().join("other.py")).unwrap();
+    fs::copy(here.join(other), folder.join("other.py")).unwrap();
     let (scenario, middleware) = match program {
         "values" | "short" => ("values.hri", "ros1"),
         "frames" => ("frames.hri", "ros1"),
@@ -37,7 +36,13 @@ fn run(program: &str) -> String {
     if program == "says_input" {
         scenario = scenario.replace("  ros1 {\n", SHARED);
     }
-    fs::write(folder.path().join("scenario.hri"), scenario).unwrap();
+    fs::write(folder.join("scenario.hri"), scenario).unwrap();
+}
+
+/// What became of a program of `cli/tests/bindings` and its companion: the events, the output, the error of the test.
+fn run(program: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    prepare(program, folder.path());
     fs::write(folder.path().join("tests.hri"), TESTS).unwrap();
     let done = hrdsl_in(folder.path(), "sim scenario.hri tests.hri -o out --check-determinism --exit-zero");
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap_or_default();

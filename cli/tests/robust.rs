@@ -252,9 +252,6 @@ fn secrets_stay_with_the_user() {
 #[test]
 fn what_is_not_repeatable_is_named() {
     let folder = project(GOOD, 2);
-    let out = sim(folder.path(), "--check-determinism");
-    expect_code(&out, 0);
-    assert!(stdout(&out).contains("2 tests ran twice, byte for byte the same"), "{}", stdout(&out));
     let out = sim(folder.path(), "--repeat 5");
     expect_code(&out, 0);
     assert!(stdout(&out).contains("2 tests ran 5 times, byte for byte the same"), "{}", stdout(&out));

@@ -1,6 +1,6 @@
 //! Shows the steps of a trace to people.
 
-use hrdsl_ir::{Event, EventId, Nanos, Program, Type, Unit, Value, known_name, world::SignalId};
+use hrdsl_ir::{Event, EventId, Nanos, Program, Type, Unit, Value, world::SignalId};
 
 use crate::{TraceStep, TraceStepKind, record};
 
@@ -64,10 +64,8 @@ pub fn value(value: Value, unit: Unit) -> String {
 
 fn maker(program: &Program, event: EventId) -> &str {
     let from = |e: &Event| program.actors.get(usize::from(e.from.0));
-    known_name(
-        "actor",
-        program.events.get(usize::from(event.0)).and_then(from).map(|actor| actor.name.as_str()),
-    )
+    // A step may be of another program: it is shown all the same.
+    program.events.get(usize::from(event.0)).and_then(from).map_or("?", |actor| actor.name.as_str())
 }
 
 fn sample(program: &Program, signal: SignalId, sampled: Value) -> String {

@@ -171,13 +171,10 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 Ok(id) => Wait(RequestWait::Command(id)),
                 Err(answer) => Answer(answer),
             },
-            SystemRequest::Begin { call, command } => Answer(match begin(&command, cx) {
-                Ok(id) => {
-                    self.programs[index].began(id, call);
-                    SystemAnswer::Ok
-                }
-                Err(answer) => answer,
-            }),
+            SystemRequest::Begin { call, command } => {
+                let begun = begin(&command, cx).map(|id| self.programs[index].began(id, call));
+                Answer(begun.map_or_else(|answer| answer, |()| SystemAnswer::Ok))
+            }
             SystemRequest::State { device, what } => {
                 Answer(asked(cx, |stage| stage.state(&device, &what).map(SystemAnswer::Numbers)))
             }
