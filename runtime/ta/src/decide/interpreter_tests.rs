@@ -53,6 +53,8 @@ fn base() -> Program {
         origin: Span::default(),
     };
     let participant = |n, optional| ChannelParticipant { automaton: AutomatonId(n), optional };
+    let all = ChannelKind::MultiWay(vec![participant(1, false), participant(0, false), participant(2, true)]);
+    let any = ChannelKind::MultiWay(vec![participant(0, true), participant(2, true)]);
     let function = |name: &str, params: Vec<AutomatonVar>, result, pure, body| AutomatonFunction {
         name: name.into(),
         owner: None,
@@ -72,22 +74,8 @@ fn base() -> Program {
             channel("hurry", ChannelKind::Binary, true, Vec::new()),
             channel("tell", ChannelKind::Broadcast, false, vec![var("k", 0, 2)]),
             channel("alarm", ChannelKind::Broadcast, true, Vec::new()),
-            channel(
-                "all",
-                ChannelKind::MultiWay(vec![
-                    participant(1, false),
-                    participant(0, false),
-                    participant(2, true),
-                ]),
-                false,
-                Vec::new(),
-            ),
-            channel(
-                "any",
-                ChannelKind::MultiWay(vec![participant(0, true), participant(2, true)]),
-                true,
-                Vec::new(),
-            ),
+            channel("all", all, false, Vec::new()),
+            channel("any", any, true, Vec::new()),
         ],
         functions: vec![
             function(
