@@ -210,8 +210,10 @@ static enum Token role(TSLexer *lexer, const Word *word, bool same_line, bool fa
   if (!failed && valid[MEMBER] && (name || same_line)) return MEMBER;
   if (name && valid[ORIGIN] && before_arrow(lexer)) return ORIGIN;
   if (keyword == NULL) return IDENTIFIER;
-  if (valid[keyword->token] || !name || !valid[IDENTIFIER]) return keyword->token;
-  return IDENTIFIER;
+  if (valid[keyword->token] || !valid[IDENTIFIER]) return keyword->token;
+  // No declaration begins within a line where a name is due: `body cover: …`.
+  bool head_as_name = keyword->class == CLASS_HEAD && same_line;
+  return name || head_as_name ? IDENTIFIER : keyword->token;
 }
 
 bool tree_sitter_hri_external_scanner_scan(void *payload, TSLexer *lexer, const bool *valid) {
