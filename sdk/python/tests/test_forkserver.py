@@ -11,7 +11,9 @@ import textwrap
 import threading
 import unittest
 
-from harness import RUNNER
+import ros2_table
+import tables
+from harness import ROOT, RUNNER
 from system import System
 from test_cover import PACKAGE, is_installed
 
@@ -31,7 +33,7 @@ os.write(0, b"%d" % status)
 class Server:
     """A fork server for a program in a folder, without namespaces."""
 
-    def __init__(self, folder, words=("program.py",), modules=None, coverage=()):
+    def __init__(self, folder, words=("program.py",), modules=None, coverage=(), variables=()):
         self.orders, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.folder = folder
         script = os.path.join(folder, ".supervisor.py")
@@ -49,6 +51,7 @@ class Server:
             HRDSL_SYS_PATH=os.pathsep.join(sys.path[1:]),
             HRDSL_COVERAGE_PACKAGE=PACKAGE,
         )
+        env.update(variables)
         options = [word for name in coverage for word in ("--coverage", name)]
         self.process = subprocess.Popen(
             [sys.executable, "-S", RUNNER, *options, *words],
@@ -118,6 +121,21 @@ class ForkServer(unittest.TestCase):
         self.addCleanup(server.process.stderr.close)
         self.addCleanup(server.orders.close)
         return server
+
+    def test_client_libraries_and_messages_are_found(self):
+        for ros, text in (
+            ("ros1", "import rospy\nfrom std_msgs.msg import Bool\nfrom std_srvs.srv import Trigger"),
+            ("ros2", "import rclpy\nfrom rclpy.node import Node\nfrom std_msgs.msg import Bool"),
+        ):
+            path = os.path.join(self.folder, "binding.json")
+            made = tables.table(["std_msgs", "std_srvs", "rosgraph_msgs"]) if ros == "ros1" else ros2_table.table()
+            with open(path, "w") as file:
+                json.dump({"ros": int(ros[3]), "interfaces": made}, file)
+            libraries = os.pathsep.join([os.path.join(ROOT, ros), *sys.path[1:]])
+            variables = {"HRDSL_MIDDLEWARE": ros, "HRDSL_BINDING": path, "HRDSL_SYS_PATH": libraries}
+            with self.subTest(ros):
+                server = self.serve(text, variables=variables)
+                self.assertEqual(server.modules, [line.split()[1] for line in text.split("\n")])
 
     def test_runs_of_a_seed_are_the_same_whatever_ran_before(self):
         text = """

@@ -141,10 +141,8 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     if args.debug && tests.len() != 1 {
         return Err(format!("--debug runs one test, and {} are chosen; name one with --test", tests.len()));
     }
-    let campaign = CampaignSetup {
-        interfaces: input::interface_table(&compilation, system)?,
-        ..prepared(args, program, system, &out, &folder)?
-    };
+    let interfaces = input::interface_table(&compilation, system)?;
+    let campaign = prepared(args, program, system, interfaces, &out, &folder)?;
     let begun = Instant::now();
     let outcome = run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
     let differences = match args.repeat.or(args.check_determinism.then_some(2)) {
@@ -221,6 +219,7 @@ fn prepared<'p>(
     args: &SimArgs,
     program: &'p Program,
     system: &'p SystemUnderTest,
+    interfaces: String,
     out: &Path,
     folder: &ResultsFolder,
 ) -> Result<CampaignSetup<'p>, CommandFault> {
@@ -247,7 +246,7 @@ fn prepared<'p>(
     let mut campaign = CampaignSetup {
         program,
         system,
-        interfaces: String::new(),
+        interfaces,
         dir,
         env,
         seed: args.seed,
