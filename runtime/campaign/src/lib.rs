@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod binding;
+mod execute;
 mod forks;
 mod hulls;
 mod interfaces;
@@ -10,6 +11,7 @@ mod internal;
 mod log;
 mod machines;
 mod tally;
+mod times;
 
 use std::{
     ffi::OsString,
@@ -18,12 +20,10 @@ use std::{
         Mutex, PoisonError,
         atomic::{AtomicUsize, Ordering},
     },
-    time::Duration,
 };
 
 use hrdsl_harness::{
-    ActorPlayer, HarnessError, HarnessLoop, HarnessRun, PortHistory, RunTermination, ScriptPlayer,
-    SystemFault, SystemFaultKind, SystemLog, SystemPlayer, WorldStage,
+    HarnessError, HarnessRun, PortHistory, RunTermination, SpentTime, SystemFaultKind, SystemLog,
 };
 use hrdsl_ir::{
     Program,
@@ -37,15 +37,12 @@ use hrdsl_results::{
     TraceJudgement,
 };
 pub use hrdsl_sim::HullStore;
-use hrdsl_sim::SimWorld;
 pub use hrdsl_sut::{
-    CapturedOutput, CellSettings, HookedPackage, PreparationStep, ProgramLimits, PythonEnv, StopFlag,
+    CapturedOutput, CellSettings, HookedPackage, PreparationStep, ProcessorClocks, ProgramLimits, PythonEnv,
+    StopFlag,
     cell::{CellIsolation, SupervisorCommand, supervise},
 };
-use hrdsl_sut::{
-    EnvironmentNeeds, FileCoverage, FinishedProcess, HarnessReply, LaunchMiddleware, LaunchSpec, LockStep,
-    ReplyAnswer, SutError, SutProcess,
-};
+use hrdsl_sut::{EnvironmentNeeds, FileCoverage, FinishedProcess, LaunchMiddleware, LaunchSpec, SutError};
 use hrdsl_trace::{
     MachineDeclaration, Trace,
     record::{self, RecordingEnd, RecordingHeader},
@@ -59,11 +56,11 @@ use forks::WorkerServers;
 pub use hulls::{FoundHulls, find_hulls};
 pub use internal::{InternalError, guarded, record_panics};
 pub use tally::tally;
+pub use times::CampaignTimes;
+use times::{CampaignStopwatch, TestTimes};
 
 /// How much of the program's output is kept, in bytes for each stream.
 const OUTPUT_KEPT: usize = 64 * 1024;
-/// Processor time, or sleep, that the program has to end when its test is over.
-const GRACE: Duration = Duration::from_secs(5);
 /// Lines of a program's complaints that go into the results.
 const LAST_LINES: usize = 20;
 
@@ -93,6 +90,8 @@ pub struct CampaignSetup<'a> {
     pub jobs: usize,
     /// Set when the campaign is to end before its last test.
     pub stop: StopFlag,
+    /// What measures where processor time goes; `None`: nobody asks, and no clock is looked at.
+    pub clocks: Option<ProcessorClocks>,
 }
 
 /// A finished test, with what belongs to it.
@@ -131,6 +130,8 @@ pub struct CampaignOutcome {
     pub interrupted: bool,
     /// Names of the middleware at which somebody was alone in every test.
     pub warnings: Vec<InterfaceWarning>,
+    /// Where processor time went, if it was measured.
+    pub times: Option<CampaignTimes>,
 }
 
 /// A test that was run, and what wall time has to do with it.
@@ -139,6 +140,7 @@ struct TestAttempt {
     recording: String,
     output: Vec<ProgramOutput>,
     fault: Option<SystemFaultKind>,
+    times: TestTimes,
 }
 
 /// Installs what the programs under test need, into `cache` on first use; `listen` is told what happens. They run in `dir`, where
@@ -177,13 +179,19 @@ impl CampaignSetup<'_> {
             middleware: self.middleware().map_err(|e| e.to_string())?,
         };
         let next = AtomicUsize::new(0);
+        let sum = CampaignStopwatch::start(self.clocks);
         let results: Mutex<Vec<Option<FinishedTest>>> = Mutex::new(vec![None; tests.len()]);
         let finish = |index: usize, mut attempt: TestAttempt| {
             let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
             let TestAttempt { finished: FinishedTest { result, .. }, recording, output, .. } = &attempt;
-            if let Err(why) = on_done(FinishedRun { index, result, recording, output }) {
+            let mut writing = SpentTime::default();
+            let done = || on_done(FinishedRun { index, result, recording, output });
+            if let Err(why) = self.measured(&mut writing, done) {
                 attempt.finished.result.break_off(why);
             }
+            attempt.times.recordings += writing;
+            attempt.times.whole += writing;
+            sum.add(&attempt.times);
             results[index] = Some(attempt.finished);
         };
         let again: Mutex<Vec<(usize, TestAttempt)>> = Mutex::default();
@@ -223,7 +231,7 @@ impl CampaignSetup<'_> {
         let planned = tests.len();
         let tests: Vec<FinishedTest> = results.into_iter().flatten().collect();
         let warnings = interfaces::warnings(self.system.binding.as_ref(), &tests);
-        Ok(CampaignOutcome { tests, planned, interrupted, warnings })
+        Ok(CampaignOutcome { tests, planned, interrupted, warnings, times: sum.end() })
     }
 
     fn next_test(&self, tests: &[Test], next: &AtomicUsize) -> Option<usize> {
@@ -255,24 +263,48 @@ impl CampaignSetup<'_> {
 
     /// Runs and judges one test. A fault of hrdsl itself breaks off this test alone.
     fn run_one(&self, system: &CampaignSystem<'_>, test: &Test, servers: &mut WorkerServers) -> TestAttempt {
-        guarded(|| self.judged(test, self.execute(system, test, servers))).unwrap_or_else(|fault| {
-            self.judged(test, (failed(HarnessError::Internal(fault.to_string())), Vec::new()))
-        })
+        let mut times = TestTimes::default();
+        let mut whole = SpentTime::default();
+        let mut attempt = self.measured(&mut whole, || {
+            let run = || {
+                let run = self.execute(system, test, servers, &mut times);
+                self.judged(test, run, &mut times)
+            };
+            guarded(run).unwrap_or_else(|fault| {
+                let run = (failed(HarnessError::Internal(fault.to_string())), Vec::new());
+                self.judged(test, run, &mut TestTimes::default())
+            })
+        });
+        attempt.times = TestTimes { whole, ..times };
+        attempt
+    }
+
+    /// Does something, and measures what it takes if somebody asks.
+    fn measured<T>(&self, spent: &mut SpentTime, act: impl FnOnce() -> T) -> T {
+        match self.clocks {
+            Some(clocks) => spent.measure(clocks.thread, act),
+            None => act(),
+        }
     }
 
     fn judged(
         &self,
         test: &Test,
         (run, finished): (HarnessRun, Vec<(String, FinishedProcess)>),
+        times: &mut TestTimes,
     ) -> TestAttempt {
+        times.simulated = run.trace.end;
+        times.programs = finished.iter().map(|(_, f)| f.cpu).sum();
         let header = RecordingHeader {
             test: Some(test.name.clone()),
             seed: Some(test.seed),
             ..RecordingHeader::of(self.program)
         };
         let ending = ending(&run, &finished);
-        let recording = record::write(self.program, &header, &run.trace, &ending);
-        let (judgement, machines) = judge(self.program, &run.trace, ending.kind);
+        let recording = self
+            .measured(&mut times.recordings, || record::write(self.program, &header, &run.trace, &ending));
+        let judgement = || judge(self.program, &run.trace, ending.kind);
+        let (judgement, machines) = self.measured(&mut times.judgement, judgement);
         let fault = match &run.ended {
             RunTermination::Fault(HarnessError::System(fault)) => Some(fault.kind),
             RunTermination::Fault(
@@ -288,7 +320,7 @@ impl CampaignSetup<'_> {
         let output = finished.iter().map(output).collect();
         let finished =
             FinishedTest { machines, ..test_result(self.program, test, run, (ending, judgement), finished) };
-        TestAttempt { finished, recording, output, fault }
+        TestAttempt { finished, recording, output, fault, times: TestTimes::default() }
     }
 
     /// What programs find out about their middleware.
@@ -301,49 +333,6 @@ impl CampaignSetup<'_> {
             binding: file,
             modules: module_folders(binding),
         }))
-    }
-
-    fn execute(
-        &self,
-        system: &CampaignSystem<'_>,
-        test: &Test,
-        servers: &mut WorkerServers,
-    ) -> (HarnessRun, Vec<(String, FinishedProcess)>) {
-        let declared = system.declared;
-        let stage = match SimWorld::new(self.program, test.seed) {
-            Ok(world) => world.map(|world| WorldStage::new(self.program, Box::new(world))),
-            Err(why) => return (failed(HarnessError::World(why.to_string())), Vec::new()),
-        };
-        let mut processes: Vec<(String, SutProcess)> = Vec::new();
-        if self.forks.is_fresh {
-            servers.0.clear();
-        }
-        for (number, program) in declared.programs.iter().enumerate() {
-            match self.start(number, &self.launch(system, program, test.seed, Some(test)), servers) {
-                Ok(process) => processes.push((program.name.clone(), process)),
-                Err(error) => {
-                    let finished = finish(processes);
-                    return (failed(HarnessError::System(SystemFault::from(error))), finished);
-                }
-            }
-        }
-        let programs = processes.iter_mut().map(|(name, process)| {
-            let step = LockStep::new(process, name);
-            (name.clone(), step)
-        });
-        let player = SystemPlayer::of_programs(self.program, declared.actor, programs)
-            .with_binding(declared.binding.as_ref());
-        let mut players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(player)];
-        players
-            .extend(ScriptPlayer::all(self.program, test).map(|p| Box::new(p) as Box<dyn ActorPlayer + '_>));
-        let run = HarnessLoop::new(self.program, players, stage, declared.limit).run();
-        let reason = stop_reason(&run.ended, declared.limit);
-        for (_, process) in &mut processes {
-            // It may have ended by itself: then nobody reads this.
-            let answer = ReplyAnswer::Stop { reason: reason.clone() };
-            let _ = process.reply(&HarnessReply { time: run.trace.end, answer });
-        }
-        (run, finish(processes))
     }
 
     fn launch(
@@ -385,22 +374,6 @@ struct CampaignSystem<'a> {
 /// Python takes seeds of 32 bits.
 fn hash_seed(seed: u64) -> u32 {
     u32::try_from(seed & u64::from(u32::MAX)).unwrap_or_default()
-}
-
-fn finish(processes: Vec<(String, SutProcess)>) -> Vec<(String, FinishedProcess)> {
-    processes.into_iter().map(|(name, process)| (name, process.finish(GRACE))).collect()
-}
-
-/// What programs are told when they have to end.
-fn stop_reason(ended: &RunTermination, limit: hrdsl_ir::Nanos) -> String {
-    match ended {
-        RunTermination::Quiescent => "the test is over: nothing is left that could happen".to_owned(),
-        RunTermination::Limit => format!("the test is over: it lasts {} s", seconds(limit)),
-        RunTermination::Fault(fault) => {
-            let fault = fault.to_string();
-            format!("the test has broken off: {}", fault.lines().next().unwrap_or_default())
-        }
-    }
 }
 
 /// A run that never began.

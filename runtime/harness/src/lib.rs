@@ -24,8 +24,10 @@ mod port;
 mod recorder;
 mod run;
 mod script;
+mod spent;
 mod stage;
 mod stimulus;
+mod stopwatch;
 mod system;
 mod world;
 
@@ -43,8 +45,10 @@ pub use port::{
 };
 pub use run::{HarnessLoop, HarnessRun, RunTermination};
 pub use script::{ScriptPlayer, script_rng};
+pub use spent::{SpentTime, ThreadClock};
 pub use stage::WorldStage;
 pub use stimulus::{StimulusPerformance, draw_samples};
+pub use stopwatch::{RunStopwatch, SeamTimes, TimedSystem, TimedWorld};
 pub use system::player::SystemPlayer;
 pub use system::seam::{
     CanceledGoals, ParameterRequest, PlanForm, RequestTicket, SystemActor, SystemAnswer, SystemArrival,

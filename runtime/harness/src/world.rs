@@ -6,7 +6,7 @@ use hrdsl_ir::{
     world::{SignalId, Vec3, WorldAction},
 };
 
-use crate::command::CheckedCommand;
+use crate::{command::CheckedCommand, spent::SpentTime};
 
 /// A world in which actors act. Times are those of the harness's clock; the calls come in the order of time.
 pub trait WorldBackend {
@@ -24,6 +24,11 @@ pub trait WorldBackend {
     /// How far it strayed, at worst so far, from what cannot be; `None`: it cannot tell.
     fn accuracy(&self) -> Option<WorldAccuracy> {
         None
+    }
+
+    /// What its engine took so far, if it measures that.
+    fn engine_time(&self) -> SpentTime {
+        SpentTime::default()
     }
 
     /// The present value of a signal, in the SI unit of its type.

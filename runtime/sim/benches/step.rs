@@ -25,6 +25,20 @@ fn ten_steps_moving(bencher: Bencher) {
         .bench_local_refs(|sim| sim.advance(sim.now() + 10 * STEP));
 }
 
+/// The same ten steps of the engine alone, with its motors as they were last driven: what no world of these bodies can do without. (Its
+/// solver divides each of them as it does where an arm moves.)
+#[divan::bench]
+fn ten_bare_steps_moving(bencher: Bencher) {
+    bencher
+        .with_inputs(|| {
+            let mut sim = WorldSimulation::new(&table(), &[]).expect("the world");
+            sim.command(move_to(OFFER)).expect("in reach");
+            sim.advance(2_000_000_000);
+            sim
+        })
+        .bench_local_refs(|sim| (0..10).for_each(|_| sim.step_bare()));
+}
+
 /// Ten physics steps just before the world is found to be at rest.
 #[divan::bench]
 fn ten_steps_standing(bencher: Bencher) {

@@ -65,7 +65,8 @@ pub use command::MotorCommand;
 pub use error::{CommandError, SimError};
 use figure::FigureControl;
 use hand::HandSet;
-pub use hrdsl_harness::{ArmTarget, CommandId, PlannedWay, WayRequest, WorldAccuracy};
+use hrdsl_harness::ThreadClock;
+pub use hrdsl_harness::{ArmTarget, CommandId, PlannedWay, SpentTime, WayRequest, WorldAccuracy};
 pub use hulls::{HullStore, warm_hulls};
 use math::{BodyFrame, SpaceVector};
 use mover::{KinematicPath, LookRequest};
@@ -196,6 +197,25 @@ impl WorldSimulation {
             penetration: found.others.map(pair),
             beyond_limit: found.beyond.map(joint),
         }
+    }
+
+    /// The same world, which measures by a clock what its engine takes.
+    #[must_use]
+    pub fn timed(mut self, clock: ThreadClock) -> Self {
+        self.physics.clock = Some(clock);
+        self
+    }
+
+    /// What the engine's steps took so far, if they are measured.
+    #[must_use]
+    pub fn engine_time(&self) -> SpentTime {
+        self.physics.engine_time
+    }
+
+    /// A step of the engine and nothing else, with each motor as it was last driven: what a step costs at the very least. The time
+    /// stays where it is.
+    pub fn step_bare(&mut self) {
+        self.physics.step_engine();
     }
 
     /// How many physics steps there were. Signals and measurements change in these alone.

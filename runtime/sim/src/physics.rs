@@ -20,6 +20,7 @@ pub(crate) use state::{
     bodies::{bad, body_id, index},
 };
 
+use hrdsl_harness::SpentTime;
 use hrdsl_ir::value::seconds;
 use hrdsl_ir::world::{Body, BodyId, BodyMotion, JointMotion, World};
 use rapier3d::prelude::*;
@@ -76,6 +77,8 @@ impl PhysicsAdapter {
             part: (seconds(world.step), SUBSTEPS),
             solved: vec![(seconds(world.step), SUBSTEPS); world.bodies.len()],
             scene: (Vector::ZERO, Vector::ZERO),
+            clock: None,
+            engine_time: SpentTime::default(),
         };
         physics.add_bodies(world, &roots)?;
         let graph = JointGraph::new(world, &roots);

@@ -3,7 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_harness::{CheckedCommand, CommandId, PlannedWay, WayRequest, WorldAccuracy, WorldBackend};
+use hrdsl_harness::{
+    CheckedCommand, CommandId, PlannedWay, SpentTime, ThreadClock, WayRequest, WorldAccuracy, WorldBackend,
+};
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
@@ -34,6 +36,12 @@ impl SimWorld {
         let Some(world) = &program.world else { return Ok(None) };
         let sim = WorldSimulation::new(world, &program.signals)?.seeded(seed)?;
         Ok(Some(Self { sim, expected: BTreeMap::new() }))
+    }
+
+    /// The same, which measures by a clock what its engine takes.
+    #[must_use]
+    pub fn timed(self, clock: ThreadClock) -> Self {
+        Self { sim: self.sim.timed(clock), ..self }
     }
 }
 
@@ -90,6 +98,10 @@ impl WorldBackend for SimWorld {
 
     fn accuracy(&self) -> Option<WorldAccuracy> {
         Some(self.sim.accuracy())
+    }
+
+    fn engine_time(&self) -> SpentTime {
+        self.sim.engine_time()
     }
 
     fn read(&mut self, signal: SignalId) -> Value {

@@ -30,6 +30,7 @@ mod output;
 mod patience;
 mod pipes;
 mod process;
+mod processor;
 mod protocol;
 mod start;
 
@@ -45,6 +46,7 @@ pub use limits::{LimitOverrun, ProgramLimits, StopFlag};
 pub use lock_step::LockStep;
 pub use output::{CapturedOutput, CapturedStream};
 pub use process::{FinishedProcess, SutProcess};
+pub use processor::ProcessorClocks;
 pub use protocol::{
     HarnessReply, MessageRequest, OpenRequest, PROTOCOL_VERSION, PlanRequest, ProgramRequest,
     ProtocolArgument, RefusedLine, ReplyAnswer,

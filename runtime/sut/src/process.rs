@@ -88,6 +88,8 @@ pub struct FinishedProcess {
     pub others: bool,
     /// The files that it wrote, if they were to be kept.
     pub kept: Option<KeptFiles>,
+    /// Processor time of all that it started, too.
+    pub cpu: Duration,
 }
 
 /// What a turn of the poll loop waits for, besides output and the program's end.
@@ -298,8 +300,8 @@ impl SutProcess {
         let ending = self.cell.ending().cloned();
         let exit = ending.as_ref().filter(|_| !killed).map_or(ProgramExit::Killed, |e| e.exit);
         let coverage = self.coverage.take().and_then(|(file, names)| coverage::read(file, &names));
-        let (others, kept) = ending.map_or((false, None), |e| (e.others, e.kept));
-        FinishedProcess { exit, output: self.output(), coverage, others, kept }
+        let (others, kept, cpu) = ending.map_or_else(Default::default, |e| (e.others, e.kept, e.cpu));
+        FinishedProcess { exit, output: self.output(), coverage, others, kept, cpu }
     }
 
     /// What the program has written to its output so far, with the paths of the project.

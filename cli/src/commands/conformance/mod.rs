@@ -165,6 +165,7 @@ impl<'a> ConformanceRun<'a> {
             forks: ForkPlan::default(),
             jobs: 1,
             stop: self.stop.clone(),
+            clocks: None,
         };
         let found = std::sync::Mutex::new(CaseVerdict::Failed("  it did not run\n".to_owned()));
         campaign.run(&program.tests, |done| {

@@ -46,7 +46,7 @@ pub fn compare(
     bar.set_message("again, to compare");
     let found: Mutex<FoundDifferences> = Mutex::default();
     // Further runs keep no files: those of the first are the results.
-    let again = CampaignSetup { keep: None, ..campaign.clone() };
+    let again = CampaignSetup { keep: None, clocks: None, ..campaign.clone() };
     let mut ran = 1;
     let mut interrupted = None;
     for run in 2..=runs {

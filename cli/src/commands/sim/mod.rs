@@ -4,6 +4,7 @@ mod determinism;
 mod rerun;
 mod run;
 mod schedules;
+mod timings;
 
 use std::{
     collections::BTreeMap,
@@ -15,8 +16,8 @@ use std::{
 use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{
-        CampaignSetup, CellIsolation, CellSettings, ForkPlan, ProgramLimits, StopFlag, SupervisorCommand,
-        find_hulls, prepare, tally,
+        CampaignSetup, CampaignTimes, CellIsolation, CellSettings, ForkPlan, ProcessorClocks, ProgramLimits,
+        StopFlag, SupervisorCommand, find_hulls, prepare, tally,
     },
     report,
     results::CampaignResults,
@@ -87,6 +88,9 @@ pub struct SimArgs {
     /// Let this number say in which order threads run that are ready; by default, first come first served.
     #[arg(long, value_name = "K")]
     schedule: Option<u32>,
+    /// Say where processor time goes, on the console and in run.json.
+    #[arg(long, conflicts_with = "debug")]
+    timings: bool,
     /// Keep the files that the program writes in each test, in `files/`.
     #[arg(long)]
     keep_files: bool,
@@ -156,13 +160,17 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
         Some(_) | None => None,
     };
     let interrupted = outcome.interrupted;
+    let times = outcome.times;
     let dir = campaign.dir.clone();
     let sources =
         system.coverage().into_iter().filter_map(|f| files::read(&dir.join(&f)).ok().map(|text| (f, text)));
     let sources = sources.collect::<BTreeMap<_, _>>();
     let results = tally(program, args.seed, &generated, outcome, &sources, rerun::words(args, &out));
-    publish(&results, &campaign, folder)?;
+    publish(&results, &campaign, times.as_ref(), folder)?;
     summarise(&results, &campaign, &out, begun.elapsed())?;
+    if let Some(times) = &times {
+        terminal::print(&timings::table(times))?;
+    }
     let repeatable = differences.as_ref().is_none_or(|d| d.tests == 0);
     if let Some(differences) = differences {
         terminal::print(&differences.text)?;
@@ -257,6 +265,7 @@ fn prepared<'p>(
         jobs: if args.debug { 1 } else { args.jobs.map_or_else(cores, usize::from) },
         forks: ForkPlan::default(),
         stop: stop_flag(args.debug)?,
+        clocks: args.timings.then_some(ProcessorClocks::SYSTEM),
     };
     for complaint in campaign.plan_forks(args.no_fork)? {
         terminal::say_line(format_args!(
@@ -431,12 +440,16 @@ struct RunInfo<'a> {
     /// What could not be kept apart.
     gaps: &'a [String],
     system: String,
+    /// Where processor time went, if somebody asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timings: Option<&'a CampaignTimes>,
 }
 
 /// Writes the reports, and puts all results in their places.
 fn publish(
     results: &CampaignResults,
     campaign: &CampaignSetup<'_>,
+    timings: Option<&CampaignTimes>,
     folder: ResultsFolder,
 ) -> Result<(), CommandFault> {
     let to = folder.staging();
@@ -448,6 +461,7 @@ fn publish(
         isolation: campaign.cells.isolation,
         gaps: &campaign.cells.gaps,
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        timings,
     };
     files::write(&to.join("run.json"), &files::json(&info)?)?;
     files::write(&to.join("results.json"), &results.to_json().map_err(|e| e.to_string())?)?;

@@ -74,7 +74,7 @@ pub fn compare(
         variables.retain(|(name, _)| name != VARIABLE);
         variables.push((VARIABLE.into(), schedule.to_string().into()));
         // The files of the first run are the results.
-        let other = CampaignSetup { keep: None, variables, ..campaign.clone() };
+        let other = CampaignSetup { keep: None, clocks: None, variables, ..campaign.clone() };
         let outcome = other.run(tests, |done| {
             let name = done.result.name.to_string();
             let difference = known.get(&name).and_then(|k| k.difference(&TestVerdicts::of(done.result)));

@@ -42,7 +42,7 @@ use super::{
     view::{PrivateView, make_read_only},
     watch::ProgramWatch,
 };
-use crate::exit::ProgramExit;
+use crate::{exit::ProgramExit, processor::ProcessorClocks};
 
 /// The word with which the supervisor starts itself again, inside the cell.
 const INSIDE: &str = "inside";
@@ -260,7 +260,8 @@ fn end(
         let ending = CellEnding {
             exit: watch.main.unwrap_or(ProgramExit::Killed),
             others: watch.others,
-            cpu: usage.cpu.max(descendants::usage().cpu),
+            // What was waited for is known to the microsecond.
+            cpu: usage.cpu.max(descendants::usage().cpu).max((ProcessorClocks::SYSTEM.children)()),
             kept: keep_to.map(keep),
         };
         watch.control.report(&CellReport::Ended(ending));

@@ -1,5 +1,6 @@
 //! What the adapter keeps of the engine and of each body, between one step and the next.
 
+use hrdsl_harness::{SpentTime, ThreadClock};
 use hrdsl_ir::world::{BodyId, BodyMotion, BodyShape};
 use rapier3d::prelude::*;
 
@@ -62,4 +63,8 @@ pub(crate) struct PhysicsAdapter {
     pub solved: Vec<(f64, usize)>,
     /// The corners of the box outside of which a body is lost, m.
     pub scene: (Vector, Vector),
+    /// What measures the engine, if anybody asks.
+    pub clock: Option<ThreadClock>,
+    /// What the engine's steps took so far, by that clock.
+    pub engine_time: SpentTime,
 }
