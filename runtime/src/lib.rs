@@ -6,7 +6,7 @@
 //! 2. [`campaign::prepare`] installs what the code under test needs;
 //! 3. [`campaign::Campaign::run`] runs the tests in parallel: each in a [`harness`] whose players make one
 //!    `Trace`, which [`judge`] judges;
-//! 4. [`campaign::tally`] adds up the tests to [`results`];
+//! 4. [`judge::tally`] adds up the tests to [`results`];
 //! 5. [`report`] shows them: on a terminal, as JUnit XML, as a page.
 //!
 //! Besides, [`prove`] asks the networks of automata themselves. Each of these is a crate, for a build that leaves out what it

@@ -7,8 +7,10 @@
 //! with are integer nanoseconds ([`Nanos`]).
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
+pub mod abstract_test;
 pub mod bdi;
 pub mod binding;
+pub mod cover_item;
 pub mod coverage;
 pub mod device;
 mod eval_error;

@@ -1,4 +1,5 @@
-//! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then [`tally`] adds them up.
+//! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then
+//! [`tally`](hrdsl_judge::tally) adds them up.
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod accuracy;
@@ -8,8 +9,6 @@ mod hulls;
 mod interfaces;
 mod internal;
 mod log;
-mod machines;
-mod tally;
 
 use std::{
     ffi::OsString,
@@ -31,9 +30,9 @@ use hrdsl_ir::{
     test::Test,
     value::seconds,
 };
-use hrdsl_judge::TraceJudge;
+use hrdsl_judge::{CampaignOutcome, FinishedTest, TraceJudge};
 use hrdsl_results::{
-    CoverageRatios, InterfaceWarning, OutputSummary, PhysicsAccuracy, RunEnd, RunMark, TestName, TestResult,
+    CoverageRatios, FileCoverage, OutputSummary, PhysicsAccuracy, RunEnd, RunMark, TestName, TestResult,
     TraceJudgement,
 };
 pub use hrdsl_sim::HullStore;
@@ -43,8 +42,8 @@ pub use hrdsl_sut::{
     cell::{CellIsolation, SupervisorCommand, supervise},
 };
 use hrdsl_sut::{
-    EnvironmentNeeds, FileCoverage, FinishedProcess, HarnessReply, LaunchMiddleware, LaunchSpec, LockStep,
-    ReplyAnswer, SutError, SutProcess,
+    EnvironmentNeeds, FinishedProcess, HarnessReply, LaunchMiddleware, LaunchSpec, LockStep, ReplyAnswer,
+    SutError, SutProcess,
 };
 use hrdsl_trace::{
     MachineDeclaration, Trace,
@@ -58,7 +57,6 @@ pub use forks::ForkPlan;
 use forks::WorkerServers;
 pub use hulls::{FoundHulls, find_hulls};
 pub use internal::{InternalError, guarded, record_panics};
-pub use tally::tally;
 
 /// How much of the program's output is kept, in bytes for each stream.
 const OUTPUT_KEPT: usize = 64 * 1024;
@@ -111,31 +109,17 @@ pub struct ProgramOutput {
     pub output: CapturedOutput,
 }
 
-/// A finished test, with the code of the system under test that it executed.
+/// A finished test, and where its programs met.
 #[derive(Clone, Debug, Default)]
-pub struct FinishedTest {
-    pub result: TestResult,
-    pub executed: Vec<FileCoverage>,
+struct PortedTest {
+    finished: FinishedTest,
     /// What its programs opened to speak with each other.
-    pub ports: PortHistory,
-    /// What their state machines consist of.
-    pub machines: Vec<MachineDeclaration>,
-}
-
-/// What a campaign came to.
-#[derive(Clone, Debug, Default)]
-pub struct CampaignOutcome {
-    /// The tests that ended, in the order in which they were given.
-    pub tests: Vec<FinishedTest>,
-    pub planned: usize,
-    pub interrupted: bool,
-    /// Names of the middleware at which somebody was alone in every test.
-    pub warnings: Vec<InterfaceWarning>,
+    ports: PortHistory,
 }
 
 /// A test that was run, and what wall time has to do with it.
 struct TestAttempt {
-    finished: FinishedTest,
+    finished: PortedTest,
     recording: String,
     output: Vec<ProgramOutput>,
     fault: Option<SystemFaultKind>,
@@ -177,12 +161,13 @@ impl CampaignSetup<'_> {
             middleware: self.middleware().map_err(|e| e.to_string())?,
         };
         let next = AtomicUsize::new(0);
-        let results: Mutex<Vec<Option<FinishedTest>>> = Mutex::new(vec![None; tests.len()]);
+        let results: Mutex<Vec<Option<PortedTest>>> = Mutex::new(vec![None; tests.len()]);
         let finish = |index: usize, mut attempt: TestAttempt| {
             let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
-            let TestAttempt { finished: FinishedTest { result, .. }, recording, output, .. } = &attempt;
+            let TestAttempt { finished, recording, output, .. } = &attempt;
+            let result = &finished.finished.result;
             if let Err(why) = on_done(FinishedRun { index, result, recording, output }) {
-                attempt.finished.result.break_off(why);
+                attempt.finished.finished.result.break_off(why);
             }
             results[index] = Some(attempt.finished);
         };
@@ -221,8 +206,9 @@ impl CampaignSetup<'_> {
         let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
         let interrupted = self.stop.is_set() && results.iter().any(Option::is_none);
         let planned = tests.len();
-        let tests: Vec<FinishedTest> = results.into_iter().flatten().collect();
+        let tests: Vec<PortedTest> = results.into_iter().flatten().collect();
         let warnings = interfaces::warnings(self.system.binding.as_ref(), &tests);
+        let tests = tests.into_iter().map(|test| test.finished).collect();
         Ok(CampaignOutcome { tests, planned, interrupted, warnings })
     }
 
@@ -247,7 +233,7 @@ impl CampaignSetup<'_> {
             Some(SystemFaultKind::Interrupted) => first,
             Some(SystemFaultKind::WallTime) => second,
             Some(SystemFaultKind::Program) | None => {
-                second.finished.result.marks.push(RunMark::DependsOnLoad);
+                second.finished.finished.result.marks.push(RunMark::DependsOnLoad);
                 second
             }
         }
@@ -286,8 +272,8 @@ impl CampaignSetup<'_> {
             output: f.output.clone(),
         };
         let output = finished.iter().map(output).collect();
-        let finished =
-            FinishedTest { machines, ..test_result(self.program, test, run, (ending, judgement), finished) };
+        let mut finished = test_result(self.program, test, run, (ending, judgement), finished);
+        finished.finished.machines = machines;
         TestAttempt { finished, recording, output, fault }
     }
 
@@ -416,7 +402,7 @@ fn test_result(
     run: HarnessRun,
     (ending, judgement): (RecordingEnd, TraceJudgement),
     finished: Vec<(String, FinishedProcess)>,
-) -> FinishedTest {
+) -> PortedTest {
     let output = summary(&finished);
     let others = finished.iter().any(|(_, f)| f.others);
     let executed = FileCoverage::united(finished.into_iter().filter_map(|(_, f)| f.coverage).flatten());
@@ -439,7 +425,8 @@ fn test_result(
         output,
         physics: run.accuracy.map(accuracy::physics).filter(|p| *p != PhysicsAccuracy::default()),
     };
-    FinishedTest { result, executed, ports: run.ports, ..FinishedTest::default() }
+    let finished = FinishedTest { result, executed, ..FinishedTest::default() };
+    PortedTest { finished, ports: run.ports }
 }
 
 fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> (TraceJudgement, Vec<MachineDeclaration>) {

@@ -8,10 +8,7 @@ use std::{
 };
 
 use hrdsl_ir::test::Test;
-use hrdsl_runtime::{
-    campaign::{CampaignOutcome, CampaignSetup},
-    results::TestResult,
-};
+use hrdsl_runtime::{campaign::CampaignSetup, judge::CampaignOutcome, results::TestResult};
 
 use super::run::{output_text, progress_bar, recording};
 use crate::{fault::CommandFault, files};

@@ -16,11 +16,12 @@ use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{
         CampaignSetup, CellIsolation, CellSettings, ForkPlan, ProgramLimits, StopFlag, SupervisorCommand,
-        find_hulls, prepare, tally,
+        find_hulls, prepare,
     },
+    judge::tally,
     report,
-    results::CampaignResults,
-    testgen::{GeneratedSuite, generate},
+    results::{CampaignResults, GeneratedSuite},
+    testgen::generate,
 };
 use serde::Serialize;
 

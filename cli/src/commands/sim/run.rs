@@ -7,7 +7,10 @@ use std::{
 };
 
 use hrdsl_ir::test::Test;
-use hrdsl_runtime::campaign::{CampaignOutcome, CampaignSetup, FinishedRun, ProgramOutput};
+use hrdsl_runtime::{
+    campaign::{CampaignSetup, FinishedRun, ProgramOutput},
+    judge::CampaignOutcome,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{fault::CommandFault, files, results_folder};

@@ -8,7 +8,8 @@ use std::{
 
 use hrdsl_ir::test::Test;
 use hrdsl_runtime::{
-    campaign::{CampaignOutcome, CampaignSetup},
+    campaign::CampaignSetup,
+    judge::CampaignOutcome,
     results::{TestResult, VerdictOutcome},
 };
 
