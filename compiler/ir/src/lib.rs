@@ -13,6 +13,7 @@ pub mod binding;
 pub mod cover_item;
 pub mod coverage;
 pub mod device;
+pub mod device_state;
 mod eval_error;
 pub mod event;
 pub mod exec;

@@ -89,7 +89,7 @@ fn gap(gap: &MessageGap<TypedExpr>, signals: &mut SignalTable<'_>) -> MessageGap
         GapValue::Held { events, time } => GapValue::Held { events: events.clone(), time: *time },
         GapValue::Now => GapValue::Now,
         GapValue::Told { device, what, numbers } => {
-            GapValue::Told { device: *device, what: what.clone(), numbers: *numbers }
+            GapValue::Told { device: *device, what: *what, numbers: *numbers }
         }
         GapValue::Fixed(json) => GapValue::Fixed(json.clone()),
         GapValue::Value { value, reads } => read_value(value, reads, signals),

@@ -7,6 +7,7 @@ use hrdsl_harness::{CheckedCommand, CommandId, PlannedWay, WayRequest, WorldAccu
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
+    device_state::DeviceState,
     world::{SignalId, SignalTerm, WorldAction},
 };
 
@@ -121,7 +122,7 @@ impl WorldBackend for SimWorld {
         Ok(id)
     }
 
-    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+    fn state(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
         self.sim.told(device, what)
     }
 
