@@ -57,7 +57,7 @@ fn message(program: &Program, agent: &Agent, plan: u16, site: u16) -> String {
         }
         Some(PlanStepKind::Ask { content, .. }) => format!("ask {}", name(*content)),
         Some(PlanStepKind::AskAll { content, .. }) => format!("ask_all {}", name(*content)),
-        Some(_) | None => "?".to_owned(),
+        Some(_) | None => known_name("message in this step", None).to_owned(),
     }
 }
 
