@@ -4,9 +4,9 @@
 //!
 //! 1. [`testgen::generate`] makes a suite's tests: by agents, by search, at random; [`testgen::write`] prints them;
 //! 2. [`campaign::prepare`] installs what the code under test needs;
-//! 3. [`campaign::Campaign::run`] runs the tests in parallel: each in a [`harness`] whose players make one
+//! 3. [`campaign::CampaignSetup::run`] runs the tests in parallel: each in a [`harness`] whose players make one
 //!    `Trace`, which [`judge`] judges;
-//! 4. [`campaign::tally`] adds up the tests to [`results`];
+//! 4. [`judge::tally`] adds up the tests to [`results`];
 //! 5. [`report`] shows them: on a terminal, as JUnit XML, as a page.
 //!
 //! Besides, [`prove`] asks the networks of automata themselves. Each of these is a crate, for a build that leaves out what it

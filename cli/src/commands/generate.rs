@@ -10,9 +10,9 @@ use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
     prove::ProofOptions,
     report::explain_text,
-    results::{GoalReport, GoalStatus, ModelCoverage, SuiteExplanation},
+    results::{GeneratedSuite, GoalReport, GoalStatus, ModelCoverage, SuiteExplanation},
     testgen::{
-        GenerateOptions, GeneratedSuite, generate_with,
+        GenerateOptions, generate_with,
         model_run::{LogDetail, ModelInspection},
         write,
     },

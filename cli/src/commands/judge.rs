@@ -9,8 +9,7 @@ use std::{
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
-    campaign::{CampaignOutcome, FinishedTest, tally},
-    judge::{JudgedRecording, judge_recording},
+    judge::{CampaignOutcome, FinishedTest, JudgedRecording, judge_recording, tally},
     report,
     results::{
         BinName, BinResult, CampaignResults, MachineCoverage, MachineResult, RequirementResult, RunEnd,

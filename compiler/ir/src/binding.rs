@@ -9,6 +9,7 @@ use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    device_state::DeviceState,
     event::{EventId, EventPattern},
     expr::Expr,
     value::{Nanos, Type},
@@ -122,8 +123,8 @@ pub enum GapValue<E = Expr> {
     Value { value: E, reads: Vec<GapRead> },
     /// The time of the message, as clocks of the programs tell it.
     Now,
-    /// What a device tells of itself under a name, such as the `ranges` of a laser.
-    Told { device: DeviceId, what: String, numbers: ToldNumbers },
+    /// What a device tells of itself, such as the `ranges` of a laser.
+    Told { device: DeviceId, what: DeviceState, numbers: ToldNumbers },
     /// The same in every message, as JSON.
     Fixed(String),
     /// Several values at once: those of a row, or of a message in the message.

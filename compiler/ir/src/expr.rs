@@ -319,7 +319,12 @@ fn compared(op: BinaryOp, equal: bool) -> Result<Value, EvalError> {
     }
 }
 
-fn on_ints(op: BinaryOp, a: i64, b: i64) -> Result<Value, EvalError> {
+/// Applies a binary operator to two whole numbers: the one place that says what overflows.
+///
+/// # Errors
+/// See [`EvalError`].
+#[inline]
+pub fn on_ints(op: BinaryOp, a: i64, b: i64) -> Result<Value, EvalError> {
     let int = |n: Option<i64>| n.map(Value::Int).ok_or(EvalError::Overflow);
     match op {
         BinaryOp::Add => int(a.checked_add(b)),

@@ -7,10 +7,13 @@
 //! with are integer nanoseconds ([`Nanos`]).
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
+pub mod abstract_test;
 pub mod bdi;
 pub mod binding;
+pub mod cover_item;
 pub mod coverage;
 pub mod device;
+pub mod device_state;
 mod eval_error;
 pub mod event;
 pub mod exec;

@@ -174,6 +174,22 @@ impl CoverItemKind {
         CoverItemKind::Path,
     ];
 
+    /// What stands before and after the place of an item in its name: `plan Human.leg#2 failed`.
+    #[must_use]
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            CoverItemKind::Selected => ("plan ", ""),
+            CoverItemKind::Completed => ("plan ", " completed"),
+            CoverItemKind::Failed => ("plan ", " failed"),
+            CoverItemKind::ContextTrue => ("context ", " true"),
+            CoverItemKind::ContextFalse => ("context ", " false"),
+            CoverItemKind::Applicable => ("applicable ", ""),
+            CoverItemKind::Message => ("message ", ""),
+            CoverItemKind::Edge => ("edge ", ""),
+            CoverItemKind::Path => ("path ", ""),
+        }
+    }
+
     /// As the heading of a column.
     #[must_use]
     pub fn title(self) -> &'static str {

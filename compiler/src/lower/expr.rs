@@ -12,6 +12,12 @@ pub(crate) enum LeafSource {
     Term(SignalTerm, model::TypedExpr),
 }
 
+/// Stops at what the checker has ruled out: this is a fault of ours, and a value in its place would be a wrong answer.
+#[track_caller]
+pub(crate) fn ruled_out(what: &str) -> ! {
+    unreachable!("the checker lets no {what} through")
+}
+
 /// Lowers an expression; `read` gives what stands for a name or a measurement.
 pub(crate) fn expr(e: &model::TypedExpr, read: &mut dyn FnMut(LeafSource) -> Expr) -> Expr {
     match &e.kind {
@@ -34,8 +40,8 @@ pub(crate) fn expr(e: &model::TypedExpr, read: &mut dyn FnMut(LeafSource) -> Exp
             Expr::List(items, rest)
         }
         TypedExprKind::Element(of) => {
-            // INVARIANT: only automata and functions choose elements at run time, and their leaves are variables.
-            let slot = if let Expr::Var(slot) = read(LeafSource::Leaf(of.slot)) { slot } else { u16::MAX };
+            // Only automata and functions choose elements at run time, and their leaves are variables.
+            let Expr::Var(slot) = read(LeafSource::Leaf(of.slot)) else { ruled_out("element of a constant") };
             let index = |i: &model::TypedIndex| ArrayIndex {
                 at: expr(&i.at, read),
                 count: i.count,
@@ -47,8 +53,7 @@ pub(crate) fn expr(e: &model::TypedExpr, read: &mut dyn FnMut(LeafSource) -> Exp
         TypedExprKind::Apply(function, args, _) => {
             Expr::Apply(*function, args.iter().map(|a| expr(a, read)).collect())
         }
-        // INVARIANT: a scenario with errors is not lowered.
-        TypedExprKind::Error => Expr::bool(false),
+        TypedExprKind::Error => ruled_out("expression with an error"),
     }
 }
 
@@ -56,8 +61,7 @@ pub(crate) fn expr(e: &model::TypedExpr, read: &mut dyn FnMut(LeafSource) -> Exp
 pub(crate) fn local(e: &model::TypedExpr) -> Expr {
     expr(e, &mut |source| match source {
         LeafSource::Leaf(VariableRef::Local(i)) => Expr::Var(i),
-        // INVARIANT: the checker lets nothing else into such an expression.
         LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
-        | LeafSource::Term(..) => Expr::bool(false),
+        | LeafSource::Term(..) => ruled_out("variable but locals into a stimulus or plan"),
     })
 }

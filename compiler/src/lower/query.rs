@@ -50,17 +50,18 @@ impl lowering::VariableSlots<model::TypedExpr, VariableRef> for QueryVariableSlo
     fn expr(&self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| match source {
             LeafSource::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
-            // INVARIANT: the checker lets no measurement into a query.
-            LeafSource::Term(..) => Expr::bool(false),
+            LeafSource::Term(..) => expr::ruled_out("measurement in a query"),
         })
     }
 
     fn slot(&self, of: &VariableRef) -> u16 {
         match of {
             VariableRef::Shared(i) => *i,
-            VariableRef::Own(i) => self.own.get(usize::from(*i)).copied().unwrap_or(u16::MAX),
-            // INVARIANT: the checker lets nothing else into a query.
-            VariableRef::Local(_) | VariableRef::Signal(_) => u16::MAX,
+            VariableRef::Own(i) => {
+                let own = self.own.get(usize::from(*i)).copied();
+                own.unwrap_or_else(|| expr::ruled_out("variable of no automaton in a query"))
+            }
+            VariableRef::Local(_) | VariableRef::Signal(_) => expr::ruled_out("local or signal in a query"),
         }
     }
 }

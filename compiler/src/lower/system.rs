@@ -14,7 +14,7 @@ use hrdsl_ir::{
 use hrdsl_model::{TypedExpr, VariableRef};
 
 use super::{
-    expr::{LeafSource, expr},
+    expr::{LeafSource, expr, ruled_out},
     world::SignalTable,
 };
 
@@ -89,7 +89,7 @@ fn gap(gap: &MessageGap<TypedExpr>, signals: &mut SignalTable<'_>) -> MessageGap
         GapValue::Held { events, time } => GapValue::Held { events: events.clone(), time: *time },
         GapValue::Now => GapValue::Now,
         GapValue::Told { device, what, numbers } => {
-            GapValue::Told { device: *device, what: what.clone(), numbers: *numbers }
+            GapValue::Told { device: *device, what: *what, numbers: *numbers }
         }
         GapValue::Fixed(json) => GapValue::Fixed(json.clone()),
         GapValue::Value { value, reads } => read_value(value, reads, signals),
@@ -115,11 +115,11 @@ fn read_value(value: &TypedExpr, reads: &[GapRead], signals: &mut SignalTable<'_
             LeafSource::Leaf(VariableRef::Signal(id)) => signal(usize::from(id.0)),
             LeafSource::Leaf(VariableRef::Local(at)) => match reads.get(usize::from(at)) {
                 Some(read) => *read,
-                // INVARIANT: the checker numbers the locals by this list.
-                None => return Expr::bool(false),
+                None => ruled_out("local that a binding does not read"),
             },
-            // INVARIANT: bindings have no other variables.
-            LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_)) => return Expr::bool(false),
+            LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_)) => {
+                ruled_out("variable of an automaton in a binding")
+            }
         };
         var(&mut kept, read)
     });
@@ -141,12 +141,10 @@ fn rules(r: &MessageRules<TypedExpr>) -> MessageRules {
         let whole = expr(e, &mut |source| match source {
             LeafSource::Leaf(VariableRef::Local(at)) => match r.reads.get(usize::from(at)) {
                 Some(read) => var(&mut kept, read.clone()),
-                // INVARIANT: the checker numbers the locals by this list.
-                None => Expr::bool(false),
+                None => ruled_out("local that a rule does not read"),
             },
-            // INVARIANT: rules read nothing but the message.
             LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
-            | LeafSource::Term(..) => Expr::bool(false),
+            | LeafSource::Term(..) => ruled_out("rule that reads more than its message"),
         });
         with_texts_compared(whole, &mut kept)
     };

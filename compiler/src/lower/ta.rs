@@ -167,8 +167,7 @@ impl lowering::VariableSlots<model::TypedExpr, VariableRef> for EdgeVariableSlot
     fn expr(&self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| match source {
             LeafSource::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
-            // INVARIANT: automata measure nothing.
-            LeafSource::Term(..) => Expr::bool(false),
+            LeafSource::Term(..) => expr::ruled_out("measurement in an automaton"),
         })
     }
 
@@ -177,8 +176,7 @@ impl lowering::VariableSlots<model::TypedExpr, VariableRef> for EdgeVariableSlot
             VariableRef::Shared(i) => *i,
             VariableRef::Own(i) => self.shared + i,
             VariableRef::Local(i) => self.shared + self.own + i,
-            // INVARIANT: automata do not read signals.
-            VariableRef::Signal(_) => u16::MAX,
+            VariableRef::Signal(_) => expr::ruled_out("signal in an automaton"),
         }
     }
 }
@@ -190,10 +188,12 @@ impl EdgeVariableSlots {
             LeafSource::Leaf(VariableRef::Local(i)) => match args.get(usize::from(i)) {
                 Some(RetainedArgument::Const(v)) => Expr::Const(*v),
                 Some(RetainedArgument::Kept(own)) => Expr::Var(self.slot(&VariableRef::Own(*own))),
-                Some(RetainedArgument::Unused) | None => Expr::bool(false),
+                Some(RetainedArgument::Unused) | None => {
+                    expr::ruled_out("argument that is read and not kept")
+                }
             },
             LeafSource::Leaf(VariableRef::Own(_) | VariableRef::Shared(_) | VariableRef::Signal(_))
-            | LeafSource::Term(..) => Expr::bool(false),
+            | LeafSource::Term(..) => expr::ruled_out("variable but locals into a stimulus"),
         })
     }
 

@@ -93,7 +93,7 @@ fn rule(r: &from::TypedWorldRule, world: &from::TypedWorld, signals: &mut Signal
                 RuleTrigger::Commanded { device: world.device_id(*device), command: *command }
             }
             from::TypedRuleTrigger::Edge { rising, held, .. } => {
-                let condition = condition.unwrap_or_else(|| Expr::bool(false));
+                let condition = condition.unwrap_or_else(|| expr::ruled_out("edge without a condition"));
                 RuleTrigger::Edge { rising: *rising, condition, held: nanos(*held) }
             }
         },
@@ -245,9 +245,8 @@ fn measured(e: &model::TypedExpr, declared: &[from::TypedSignal], terms: &mut Ve
         LeafSource::Leaf(VariableRef::Signal(id)) => {
             measured(&declared[usize::from(id.0)].value, declared, terms)
         }
-        // INVARIANT: signals have no other variables.
         LeafSource::Leaf(VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_)) => {
-            Expr::bool(false)
+            expr::ruled_out("variable in a signal")
         }
     })
 }
@@ -270,9 +269,8 @@ impl<'s, 'a> SignalReader<'s, 'a> {
             let at = match source {
                 LeafSource::Term(t, e) => self.signals.of_term(t, e.span),
                 LeafSource::Leaf(VariableRef::Signal(id)) => usize::from(id.0),
-                // INVARIANT: requirements and rules have no other variables.
                 LeafSource::Leaf(VariableRef::Local(_) | VariableRef::Own(_) | VariableRef::Shared(_)) => {
-                    return Expr::bool(false);
+                    expr::ruled_out("variable in a requirement or rule")
                 }
             };
             self.signals.list[at].recorded |= self.recorded;

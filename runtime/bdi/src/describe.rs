@@ -247,7 +247,7 @@ impl LogNames<'_, '_> {
         }
         let plan = self.agent.plans.get(usize::from(plan));
         let name = plan.and_then(|p| p.vars.get(usize::from(var)));
-        format!("`{}` has no value", name.map_or("?", |n| n))
+        format!("`{}` has no value", known_name("variable", name.map(String::as_str)))
     }
 
     fn step(&self, plan: u16, line: u16, vars: &[VariableSlot], outcome: StepOutcome) -> String {

@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     Expr, List, Value,
     bdi::AgentTerm,
-    expr::{BinaryOp, EvalError, binary},
+    expr::{BinaryOp, EvalError, binary, on_ints},
     list::same,
 };
 
@@ -42,22 +42,10 @@ fn whole(expr: &Expr, slots: &[VariableSlot]) -> Option<i64> {
     }
 }
 
-/// The commonest operations are done at once: this is where most of an agent's time goes.
+/// Operations on whole numbers are done at once: this is where most of an agent's time goes.
 fn operate(op: BinaryOp, a: &Expr, b: &Expr, slots: &[VariableSlot]) -> Result<Value, EvalError> {
     if let (Some(a), Some(b)) = (whole(a, slots), whole(b, slots)) {
-        return match op {
-            BinaryOp::Add => a.checked_add(b).map(Value::Int).ok_or(EvalError::Overflow),
-            BinaryOp::Sub => a.checked_sub(b).map(Value::Int).ok_or(EvalError::Overflow),
-            BinaryOp::Lt => Ok(Value::Bool(a < b)),
-            BinaryOp::Le => Ok(Value::Bool(a <= b)),
-            BinaryOp::Gt => Ok(Value::Bool(a > b)),
-            BinaryOp::Ge => Ok(Value::Bool(a >= b)),
-            BinaryOp::Eq => Ok(Value::Bool(a == b)),
-            BinaryOp::Ne => Ok(Value::Bool(a != b)),
-            BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem | BinaryOp::And | BinaryOp::Or => {
-                binary(op, Value::Int(a), Value::Int(b))
-            }
-        };
+        return on_ints(op, a, b);
     }
     if matches!(op, BinaryOp::And | BinaryOp::Or) {
         let left = eval(a, slots)?.as_bool().ok_or(EvalError::Type)?;

@@ -7,7 +7,7 @@ use hrdsl_ir::{binding::MiddlewareBinding, value::seconds};
 use hrdsl_results::{InterfaceFault, InterfaceRole, InterfaceWarning, TestName, UnservedWait};
 use hrdsl_source::nearest;
 
-use crate::FinishedTest;
+use crate::PortedTest;
 
 /// What a middleware's own tools publish and hear. That nobody is there means nothing.
 const INFRASTRUCTURE: [&str; 9] = [
@@ -34,7 +34,7 @@ pub(crate) fn unserved_waits(ports: &PortHistory) -> Vec<UnservedWait> {
 }
 
 /// The names at which programs, or the binding, were alone in every test.
-pub(crate) fn warnings(binding: Option<&MiddlewareBinding>, tests: &[FinishedTest]) -> Vec<InterfaceWarning> {
+pub(crate) fn warnings(binding: Option<&MiddlewareBinding>, tests: &[PortedTest]) -> Vec<InterfaceWarning> {
     let graph = CampaignGraph::of(tests);
     let mut alone: Vec<InterfaceWarning> =
         graph.lonely().map(|((kind, name), users)| graph.warning(binding, (*kind, name), users)).collect();
@@ -75,7 +75,7 @@ struct BoundName {
 }
 
 impl CampaignGraph {
-    fn of(tests: &[FinishedTest]) -> Self {
+    fn of(tests: &[PortedTest]) -> Self {
         let mut graph = Self::default();
         for test in tests {
             for PortUse { kind, name, program, type_name } in &test.ports.uses {
@@ -92,9 +92,9 @@ impl CampaignGraph {
         graph
     }
 
-    fn users(&mut self, key: (PortKind, String), test: &FinishedTest) -> &mut PortUsers {
+    fn users(&mut self, key: (PortKind, String), test: &PortedTest) -> &mut PortUsers {
         let users = self.ports.entry(key).or_default();
-        users.tests.insert(test.result.name.clone());
+        users.tests.insert(test.finished.result.name.clone());
         users
     }
 
@@ -154,8 +154,9 @@ impl CampaignGraph {
     }
 
     /// A name of the binding that no program uses, unless all tests broke off before it could.
-    fn unused(&self, bound: BoundName, tests: &[FinishedTest]) -> Option<InterfaceWarning> {
-        let whole = tests.iter().filter(|t| t.result.error.is_none()).map(|t| &t.result.name);
+    fn unused(&self, bound: BoundName, tests: &[PortedTest]) -> Option<InterfaceWarning> {
+        let whole =
+            tests.iter().filter(|t| t.finished.result.error.is_none()).map(|t| &t.finished.result.name);
         let whole: BTreeSet<&TestName> = whole.collect();
         let first = (*whole.first()?).clone();
         let lonely = self.lonely().filter(|((kind, _), _)| *kind == bound.kind);
@@ -232,13 +233,14 @@ mod tests {
         Span,
         binding::{MessageRules, MessageTemplate, MiddlewareKind, TopicInput, TopicOutput},
     };
+    use hrdsl_judge::FinishedTest;
     use hrdsl_results::TestResult;
 
     use super::*;
 
     type PortFixture<'a> = (PortKind, &'a str, Option<&'a str>);
 
-    fn test(name: &str, error: bool, ports: &[PortFixture<'_>]) -> FinishedTest {
+    fn test(name: &str, error: bool, ports: &[PortFixture<'_>]) -> PortedTest {
         let uses = ports.iter().map(|(kind, name, program)| PortUse {
             kind: *kind,
             name: (*name).to_owned(),
@@ -246,10 +248,10 @@ mod tests {
             type_name: Some("std_msgs/msg/Int8".to_owned()),
         });
         let error = error.then(|| "it died".to_owned());
-        FinishedTest {
-            result: TestResult { name: name.into(), error, ..TestResult::default() },
+        let result = TestResult { name: name.into(), error, ..TestResult::default() };
+        PortedTest {
+            finished: FinishedTest { result, ..FinishedTest::default() },
             ports: PortHistory { uses: uses.collect(), waits: Vec::new() },
-            ..FinishedTest::default()
         }
     }
 
@@ -288,7 +290,7 @@ mod tests {
         }
     }
 
-    fn told(binding: Option<&MiddlewareBinding>, tests: &[FinishedTest]) -> Vec<String> {
+    fn told(binding: Option<&MiddlewareBinding>, tests: &[PortedTest]) -> Vec<String> {
         let text = |w: &InterfaceWarning| {
             let advice = w.advice().map(|a| format!("; {a}")).unwrap_or_default();
             format!("{}{advice} [{} {}]", w.sentence(), w.tests, w.first)

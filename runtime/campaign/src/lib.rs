@@ -1,4 +1,5 @@
-//! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then [`tally`] adds them up.
+//! All tests of a campaign, in parallel: each is run, judged, and handed on before the next is counted; then
+//! [`tally`](hrdsl_judge::tally) adds them up.
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod accuracy;
@@ -9,8 +10,6 @@ mod hulls;
 mod interfaces;
 mod internal;
 mod log;
-mod machines;
-mod tally;
 mod times;
 
 use std::{
@@ -31,9 +30,9 @@ use hrdsl_ir::{
     test::Test,
     value::seconds,
 };
-use hrdsl_judge::TraceJudge;
+use hrdsl_judge::{CampaignOutcome, FinishedTest, TraceJudge};
 use hrdsl_results::{
-    CoverageRatios, InterfaceWarning, OutputSummary, PhysicsAccuracy, RunEnd, RunMark, TestName, TestResult,
+    CoverageRatios, FileCoverage, OutputSummary, PhysicsAccuracy, RunEnd, RunMark, TestName, TestResult,
     TraceJudgement,
 };
 pub use hrdsl_sim::HullStore;
@@ -42,7 +41,7 @@ pub use hrdsl_sut::{
     StopFlag,
     cell::{CellIsolation, SupervisorCommand, supervise},
 };
-use hrdsl_sut::{EnvironmentNeeds, FileCoverage, FinishedProcess, LaunchMiddleware, LaunchSpec, SutError};
+use hrdsl_sut::{EnvironmentNeeds, FinishedProcess, LaunchMiddleware, LaunchSpec, SutError};
 use hrdsl_trace::{
     MachineDeclaration, Trace,
     record::{self, RecordingEnd, RecordingHeader},
@@ -55,7 +54,6 @@ pub use forks::ForkPlan;
 use forks::WorkerServers;
 pub use hulls::{FoundHulls, find_hulls};
 pub use internal::{InternalError, guarded, record_panics};
-pub use tally::tally;
 pub use times::CampaignTimes;
 use times::{CampaignStopwatch, TestTimes};
 
@@ -110,33 +108,24 @@ pub struct ProgramOutput {
     pub output: CapturedOutput,
 }
 
-/// A finished test, with the code of the system under test that it executed.
+/// A finished test, and where its programs met.
 #[derive(Clone, Debug, Default)]
-pub struct FinishedTest {
-    pub result: TestResult,
-    pub executed: Vec<FileCoverage>,
+struct PortedTest {
+    finished: FinishedTest,
     /// What its programs opened to speak with each other.
-    pub ports: PortHistory,
-    /// What their state machines consist of.
-    pub machines: Vec<MachineDeclaration>,
+    ports: PortHistory,
 }
 
-/// What a campaign came to.
+/// What a campaign came to, and where its processor time went, if that was measured.
 #[derive(Clone, Debug, Default)]
-pub struct CampaignOutcome {
-    /// The tests that ended, in the order in which they were given.
-    pub tests: Vec<FinishedTest>,
-    pub planned: usize,
-    pub interrupted: bool,
-    /// Names of the middleware at which somebody was alone in every test.
-    pub warnings: Vec<InterfaceWarning>,
-    /// Where processor time went, if it was measured.
+pub struct CampaignRun {
+    pub outcome: CampaignOutcome,
     pub times: Option<CampaignTimes>,
 }
 
 /// A test that was run, and what wall time has to do with it.
 struct TestAttempt {
-    finished: FinishedTest,
+    finished: PortedTest,
     recording: String,
     output: Vec<ProgramOutput>,
     fault: Option<SystemFaultKind>,
@@ -173,21 +162,22 @@ impl CampaignSetup<'_> {
         &self,
         tests: &[Test],
         on_done: impl Fn(FinishedRun<'_>) -> Result<(), String> + Sync,
-    ) -> Result<CampaignOutcome, String> {
+    ) -> Result<CampaignRun, String> {
         let system = &CampaignSystem {
             declared: self.system,
             middleware: self.middleware().map_err(|e| e.to_string())?,
         };
         let next = AtomicUsize::new(0);
         let sum = CampaignStopwatch::start(self.clocks);
-        let results: Mutex<Vec<Option<FinishedTest>>> = Mutex::new(vec![None; tests.len()]);
+        let results: Mutex<Vec<Option<PortedTest>>> = Mutex::new(vec![None; tests.len()]);
         let finish = |index: usize, mut attempt: TestAttempt| {
             let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
-            let TestAttempt { finished: FinishedTest { result, .. }, recording, output, .. } = &attempt;
+            let TestAttempt { finished, recording, output, .. } = &attempt;
+            let result = &finished.finished.result;
             let mut writing = SpentTime::default();
             let done = || on_done(FinishedRun { index, result, recording, output });
             if let Err(why) = self.measured(&mut writing, done) {
-                attempt.finished.result.break_off(why);
+                attempt.finished.finished.result.break_off(why);
             }
             attempt.times.recordings += writing;
             attempt.times.whole += writing;
@@ -229,9 +219,11 @@ impl CampaignSetup<'_> {
         let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
         let interrupted = self.stop.is_set() && results.iter().any(Option::is_none);
         let planned = tests.len();
-        let tests: Vec<FinishedTest> = results.into_iter().flatten().collect();
+        let tests: Vec<PortedTest> = results.into_iter().flatten().collect();
         let warnings = interfaces::warnings(self.system.binding.as_ref(), &tests);
-        Ok(CampaignOutcome { tests, planned, interrupted, warnings, times: sum.end() })
+        let tests = tests.into_iter().map(|test| test.finished).collect();
+        let outcome = CampaignOutcome { tests, planned, interrupted, warnings };
+        Ok(CampaignRun { outcome, times: sum.end() })
     }
 
     fn next_test(&self, tests: &[Test], next: &AtomicUsize) -> Option<usize> {
@@ -255,7 +247,7 @@ impl CampaignSetup<'_> {
             Some(SystemFaultKind::Interrupted) => first,
             Some(SystemFaultKind::WallTime) => second,
             Some(SystemFaultKind::Program) | None => {
-                second.finished.result.marks.push(RunMark::DependsOnLoad);
+                second.finished.finished.result.marks.push(RunMark::DependsOnLoad);
                 second
             }
         }
@@ -318,8 +310,8 @@ impl CampaignSetup<'_> {
             output: f.output.clone(),
         };
         let output = finished.iter().map(output).collect();
-        let finished =
-            FinishedTest { machines, ..test_result(self.program, test, run, (ending, judgement), finished) };
+        let mut finished = test_result(self.program, test, run, (ending, judgement), finished);
+        finished.finished.machines = machines;
         TestAttempt { finished, recording, output, fault, times: TestTimes::default() }
     }
 
@@ -389,7 +381,7 @@ fn test_result(
     run: HarnessRun,
     (ending, judgement): (RecordingEnd, TraceJudgement),
     finished: Vec<(String, FinishedProcess)>,
-) -> FinishedTest {
+) -> PortedTest {
     let output = summary(&finished);
     let others = finished.iter().any(|(_, f)| f.others);
     let executed = FileCoverage::united(finished.into_iter().filter_map(|(_, f)| f.coverage).flatten());
@@ -412,7 +404,8 @@ fn test_result(
         output,
         physics: run.accuracy.map(accuracy::physics).filter(|p| *p != PhysicsAccuracy::default()),
     };
-    FinishedTest { result, executed, ports: run.ports, ..FinishedTest::default() }
+    let finished = FinishedTest { result, executed, ..FinishedTest::default() };
+    PortedTest { finished, ports: run.ports }
 }
 
 fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> (TraceJudgement, Vec<MachineDeclaration>) {

@@ -6,6 +6,7 @@ use std::{cell::RefCell, collections::VecDeque, rc::Rc};
 use hrdsl_ir::{
     Nanos, Value,
     device::DeviceBody,
+    device_state::DeviceState,
     world::{SignalId, WorldAction},
 };
 
@@ -25,7 +26,7 @@ pub struct ToldWorld {
     /// By device and command: how long it takes, and how it ends. Others cannot be done.
     pub commands: Vec<(&'static str, &'static str, ToldCommand)>,
     /// What devices tell of themselves from which time on: under which name, which numbers; in order.
-    pub states: Vec<(Nanos, DeviceBody, &'static str, Vec<f64>)>,
+    pub states: Vec<(Nanos, DeviceBody, DeviceState, Vec<f64>)>,
     /// What it was asked to do, each with the time.
     pub seen: Rc<RefCell<Vec<(Nanos, String)>>>,
     now: Nanos,
@@ -52,7 +53,7 @@ impl ToldWorld {
 
     /// The same, with devices that tell these [states](Self::states).
     #[must_use]
-    pub fn with_states(mut self, states: Vec<(Nanos, DeviceBody, &'static str, Vec<f64>)>) -> Self {
+    pub fn with_states(mut self, states: Vec<(Nanos, DeviceBody, DeviceState, Vec<f64>)>) -> Self {
         self.states = states;
         self
     }
@@ -90,8 +91,9 @@ impl WorldBackend for ToldWorld {
         Ok(id)
     }
 
-    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
-        let is = |s: &&(Nanos, DeviceBody, &str, Vec<f64>)| s.0 <= self.now && s.1 == device && s.2 == what;
+    fn state(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
+        let is =
+            |s: &&(Nanos, DeviceBody, DeviceState, Vec<f64>)| s.0 <= self.now && s.1 == device && s.2 == what;
         self.states.iter().rev().find(is).map(|(_, _, _, numbers)| numbers.clone())
     }
 

@@ -3,6 +3,7 @@
 use hrdsl_ir::{
     EventId, EventPattern, Nanos, Program, Value,
     device::Device,
+    device_state::DeviceState,
     expr::Expr,
     world::{DeviceId, RuleTrigger, SignalId, WorldAction, WorldRule},
 };
@@ -129,19 +130,16 @@ impl<'p> WorldStage<'p> {
     /// That there is no such device, or that it cannot tell this.
     pub fn state(&self, device: &str, what: &str) -> Result<Vec<f64>, NotBegun> {
         let found = self.device(device)?;
-        self.world.state(found.body, what).ok_or_else(|| NotBegun::Refused {
+        let told = DeviceState::named(what).and_then(|state| self.world.state(found.body, state));
+        told.ok_or_else(|| NotBegun::Refused {
             error: format!("`{device}` cannot tell its `{what}`"),
-            help: Some(
-                "an arm can tell `joints`, `speeds` and `tool`, a base `pose`, `orientation` and `velocity`, a laser \
-                 `ranges`, `angles` and `limits`, a gripper nothing"
-                    .to_owned(),
-            ),
+            help: Some(DeviceState::of_all_sorts()),
         })
     }
 
     /// The same, of a device of the program by its number; `None`: it cannot tell this.
     #[must_use]
-    pub fn told(&self, device: DeviceId, what: &str) -> Option<Vec<f64>> {
+    pub fn told(&self, device: DeviceId, what: DeviceState) -> Option<Vec<f64>> {
         let device = self.declared?.devices.get(usize::from(device.0))?;
         self.world.state(device.body, what)
     }

@@ -3,6 +3,7 @@
 use hrdsl_ir::{
     Nanos, Value,
     device::DeviceBody,
+    device_state::DeviceState,
     world::{SignalId, Vec3, WorldAction},
 };
 
@@ -58,7 +59,7 @@ pub trait WorldBackend {
     fn command(&mut self, command: &CheckedCommand<'_>) -> Result<CommandId, String>;
 
     /// What a device tells the system of itself, in SI units; `None`: it cannot tell this.
-    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+    fn state(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
         let _ = (device, what);
         None
     }

@@ -15,6 +15,7 @@ use hrdsl_ir::{
         TopicInput,
     },
     device::{Device, DeviceBody, DeviceKind, DeviceSort},
+    device_state::DeviceState,
     value::SECOND,
     world::{DeviceId, DeviceKindId, LaserId},
 };
@@ -22,7 +23,7 @@ use hrdsl_ir::{
 const LASER: DeviceBody = DeviceBody::Laser(LaserId(0));
 
 /// The small scenario, with a laser, and the topic `/scan` from it at 1 Hz.
-fn scanning(what: &str) -> (Program, MiddlewareBinding) {
+fn scanning(what: DeviceState) -> (Program, MiddlewareBinding) {
     let mut program = program();
     let mut device = DeviceId(0);
     if let Some(world) = &mut program.world {
@@ -33,7 +34,7 @@ fn scanning(what: &str) -> (Program, MiddlewareBinding) {
         world.devices.push(Device { name, kind: DeviceKindId(kind), body: LASER });
     }
     let told = |numbers| MessageGap {
-        value: GapValue::Told { device, what: what.to_owned(), numbers },
+        value: GapValue::Told { device, what, numbers },
         scalar: MessageScalar::Float,
     };
     let fixed = MessageGap { value: GapValue::Fixed("\"laser\"".into()), scalar: MessageScalar::Text };
@@ -63,7 +64,7 @@ fn scanning(what: &str) -> (Program, MiddlewareBinding) {
 }
 
 /// The messages that a program heard in three seconds, each with its time in seconds.
-fn heard(what: &str) -> (Vec<(Nanos, String)>, HarnessRun) {
+fn heard(what: DeviceState) -> (Vec<(Nanos, String)>, HarnessRun) {
     let (program, binding) = scanning(what);
     let wait = || ToldStep::Then(SystemRequest::Wait { until: None, give_up: None });
     let (name, type_name) = ("/scan".to_owned(), "sensor_msgs/LaserScan".to_owned());
@@ -75,8 +76,8 @@ fn heard(what: &str) -> (Vec<(Nanos, String)>, HarnessRun) {
     let player = SystemPlayer::new(&program, ROBOT, system).with_binding(Some(&binding));
     let players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(player)];
     let near = vec![1.0, f64::NEG_INFINITY, 0.25];
-    let states =
-        vec![(0, LASER, "ranges", vec![f64::INFINITY, 2.5]), (3 * SECOND / 2, LASER, "ranges", near)];
+    let states = [(0, vec![f64::INFINITY, 2.5]), (3 * SECOND / 2, near)];
+    let states = states.map(|(time, numbers)| (time, LASER, DeviceState::Ranges, numbers)).to_vec();
     let world = ToldWorld::default().with_states(states);
     let stage = WorldStage::new(&program, Box::new(world));
     let run = HarnessLoop::new(&program, players, Some(stage), 5 * SECOND / 2).run();
@@ -93,7 +94,7 @@ fn heard(what: &str) -> (Vec<(Nanos, String)>, HarnessRun) {
 
 #[test]
 fn a_topic_from_a_device_holds_what_it_tells_at_that_moment() {
-    let (messages, _) = heard("ranges");
+    let (messages, _) = heard(DeviceState::Ranges);
     let far = r#"{"frame_id":"laser","ranges":["inf",2.5],"first":2.5}"#;
     let near = r#"{"frame_id":"laser","ranges":[1.0,"-inf",0.25],"first":"-inf"}"#;
     let later: Vec<_> = messages.iter().filter(|(time, _)| *time > 0).cloned().collect();
@@ -102,7 +103,7 @@ fn a_topic_from_a_device_holds_what_it_tells_at_that_moment() {
 
 #[test]
 fn what_a_device_cannot_tell_is_said() {
-    let (messages, run) = heard("joints");
+    let (messages, run) = heard(DeviceState::Joints);
     assert_eq!(messages, []);
     let said = format!("{:?}", run.ended);
     assert!(said.contains("the world does not tell the `joints` of this device"), "{said}");

@@ -1,4 +1,4 @@
-//! Judgement: from a [`Program`] and a trace to verdicts and bins, whoever made the trace.
+//! Judgement: from a [`Program`] and a trace to verdicts and bins, whoever made the trace, and from tests to a campaign's results.
 //!
 //! A campaign judges the trace of each run, and `hrdsl judge` a recording; both do it here, so that a recording has the
 //! verdicts of its run.
@@ -8,10 +8,12 @@
 //! 2. the trace is shown to it, step by step ([`TraceObserver`]), in memory that does not grow with the trace;
 //! 3. [`TraceJudge::finish`] gives the [`TraceJudgement`], and what the state machines of the system consist of.
 //!
-//! [`judge_recording`] does all three with a recording, which it reads in one pass.
+//! [`judge_recording`] does all three with a recording, which it reads in one pass. [`tally`] adds up the tests that were judged.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
+mod machines;
 mod recording;
+mod tally;
 
 use hrdsl_coverage::{CoverageCollector, MachineCollector, MachineHits};
 use hrdsl_ir::{Nanos, Program, value::seconds};
@@ -22,6 +24,7 @@ use hrdsl_results::{
 use hrdsl_trace::{MachineDeclaration, RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
 
 pub use recording::{JudgeError, JudgedRecording, judge_recording};
+pub use tally::{CampaignOutcome, FinishedTest, tally};
 
 /// Judges one trace.
 #[derive(Clone, Debug)]

@@ -6,8 +6,8 @@ mod system;
 use hrdsl_results::{
     BinName, BinResult, CampaignResults, CodeFile, CounterexampleStep, CoverageRatios, FORMAT, FirstFailure,
     GoalReport, GoalStatus, LogSummary, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
-    SmallestMargin, SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION, VerdictOutcome as Outcome,
-    VerdictResult, VerdictTally,
+    SmallestMargin, SuiteGoalId, SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION,
+    VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
 pub(crate) use model::model;
@@ -408,8 +408,8 @@ fn requirement(r: usize, tests: &[TestFixture]) -> RequirementResult {
 fn suite(s: usize, tests: &[&TestFixture]) -> SuiteInfo {
     let (name, method) = SUITES[s];
     let line_percent = |n: usize| ratios(&together(&tests[..n])).line_percent();
-    let goal = |goal: String, status: GoalStatus, reason: &str| GoalReport {
-        goal: goal.into(),
+    let goal = |goal: SuiteGoalId, status: GoalStatus, reason: &str| GoalReport {
+        goal,
         status,
         reason: reason.into(),
         test: None,
@@ -417,7 +417,7 @@ fn suite(s: usize, tests: &[&TestFixture]) -> SuiteInfo {
     let mut goals = Vec::new();
     if method == TestMethod::Search {
         goals.extend(BINS[..13].iter().zip(0..13).map(|(b, i)| {
-            let name = format!("bin human_robot.{b}");
+            let name = SuiteGoalId::Bin(BinName::new("human_robot", b));
             if i == 11 {
                 goal(
                     name,
@@ -429,11 +429,12 @@ fn suite(s: usize, tests: &[&TestFixture]) -> SuiteInfo {
             }
         }));
         goals.push(goal(
-            "edge Robot: sensing -> timeout3".into(),
+            SuiteGoalId::Edge("Robot: sensing -> timeout3".into()),
             GoalStatus::Inconclusive,
             "the budget of states was used up",
         ));
-        goals.push(goal("location Person.gone".into(), GoalStatus::Reached, "in 5 steps"));
+        let gone = SuiteGoalId::Location("Person.gone".into());
+        goals.push(goal(gone, GoalStatus::Reached, "in 5 steps"));
     }
     SuiteInfo {
         name: name.into(),

@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use hrdsl_results::CoverItemKind;
 
 use super::text;
-use hrdsl_results::{AgentCoverage, KindCoverage, ModelCoverage, SuiteExplanation, TestExplanation};
+use hrdsl_results::{
+    AgentCoverage, KindCoverage, ModelCoverage, SuiteExplanation, SuiteGoalId, TestExplanation,
+};
 
 /// Goals that are listed for a test, at most.
 const LISTED: usize = 12;
@@ -56,7 +58,7 @@ pub fn explain_text(suite: &str, explanation: &SuiteExplanation, coverage: Optio
     for test in &explanation.tests {
         one_test(&mut out, test);
     }
-    let reasons = |out: &mut String, heading: &str, all: &[(&str, &str)]| {
+    let reasons = |out: &mut String, heading: &str, all: &[(String, &str)]| {
         if !all.is_empty() {
             let _ = writeln!(out, "\n{heading}");
         }
@@ -64,13 +66,13 @@ pub fn explain_text(suite: &str, explanation: &SuiteExplanation, coverage: Optio
             let _ = writeln!(out, "  {}\n      {}", text::line(name), text::line(reason));
         }
     };
-    let goals: Vec<(&str, &str)> =
-        explanation.uncovered.iter().map(|u| (u.goal.as_str(), u.reason.as_str())).collect();
+    let goals: Vec<(String, &str)> =
+        explanation.uncovered.iter().map(|u| (u.goal.to_string(), u.reason.as_str())).collect();
     reasons(&mut out, "Goals that no test reaches", &goals);
     for agent in coverage.iter().flat_map(|m| &m.agents) {
-        let is_goal = |item: &str| goals.iter().any(|(name, _)| *name == item);
+        let is_goal = |item: &SuiteGoalId| explanation.uncovered.iter().any(|u| u.goal == *item);
         let others = agent.unreached.iter().filter(|u| !is_goal(&u.item));
-        let others: Vec<(&str, &str)> = others.map(|u| (u.item.as_str(), u.reason.as_str())).collect();
+        let others: Vec<(String, &str)> = others.map(|u| (u.item.to_string(), u.reason.as_str())).collect();
         reasons(&mut out, &format!("What else of {} was not reached", text::line(&agent.agent)), &others);
     }
     out
@@ -101,7 +103,7 @@ fn one_test(out: &mut String, test: &TestExplanation) {
         if goals.is_empty() {
             continue;
         }
-        let mut names: Vec<String> = goals.iter().take(LISTED).map(|g| text::line(g)).collect();
+        let mut names: Vec<String> = goals.iter().take(LISTED).map(|g| text::line(&g.to_string())).collect();
         if goals.len() > LISTED {
             names.push(format!("{} more", goals.len() - LISTED));
         }
@@ -147,8 +149,8 @@ What else of Human was not reached
     #[test]
     fn hostile_text_stays_on_its_line() {
         let (_, mut explanation) = fixture::model();
-        explanation.uncovered[0].goal = "a\u{1b}[31m\nb".into();
+        explanation.uncovered[0].goal = SuiteGoalId::Query("a\u{1b}[31m\nb".into());
         let text = explain_text("s", &explanation, None);
-        assert!(text.contains("\n  a b\n") && !text.contains('\u{1b}'));
+        assert!(text.contains("\n  query a b\n") && !text.contains('\u{1b}'));
     }
 }

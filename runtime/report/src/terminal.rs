@@ -355,7 +355,7 @@ fn uncovered(page: &mut TerminalPage, suite: &SuiteInfo) {
     for goal in all.iter().take(GOALS) {
         page.line(&[
             StyledSpan("○ ".into(), TerminalStyle::Warn),
-            StyledSpan(text::line(&goal.goal), TerminalStyle::Plain),
+            StyledSpan(text::line(&goal.goal.to_string()), TerminalStyle::Plain),
             StyledSpan(format!("  {}", text::line(&goal.reason)), TerminalStyle::Dim),
         ]);
     }

@@ -7,11 +7,15 @@
 //! # Map
 //! - [`CampaignResults`] is the file `results.json`; [`CampaignResults::to_json`] writes it, [`CampaignResults::from_json`] reads it back.
 //! - [`TestResult`] is one test: how its run ended, and the [`TraceJudgement`] on it.
+//! - [`GeneratedSuite`] is what its tests were made as, before they were run.
 //! - [`RequirementResult`], [`BinResult`], [`SuiteInfo`], [`CodeFile`], [`MachineResult`] and [`InterfaceWarning`] add up the
 //!   tests.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod code;
+mod executed;
+mod generated;
+mod goal;
 mod interface;
 mod judgement;
 mod log;
@@ -27,13 +31,16 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use code::{CodeFile, CoverageRatios};
+pub use executed::FileCoverage;
+pub use generated::{AbstractTests, AgentFindings, GeneratedSuite};
+pub use goal::SuiteGoalId;
 pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::CoverItemKind, test::TestMethod};
 pub use hrdsl_trace::RunEnd;
 pub use interface::{InterfaceFault, InterfaceRole, InterfaceWarning, UnservedWait};
 pub use judgement::{CounterexampleStep, FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult};
 pub use log::{LogCounts, LogSummary, LoggedLevel, LoggedText};
 pub use machine::{MachineCoverage, MachineResult, MachineStateResult, MachineTransitionResult};
-pub use names::{GoalName, RequirementName, SuiteName, TestName};
+pub use names::{RequirementName, SuiteName, TestName};
 pub use suite::{
     AgentCoverage, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteExplanation, SuiteInfo,
     TestExplanation, UncoveredGoal, UnreachedItem,

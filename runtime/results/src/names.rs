@@ -2,7 +2,6 @@
 
 use std::{borrow::Borrow, fmt, ops::Deref};
 
-use hrdsl_ir::coverage::BinName;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -74,19 +73,9 @@ names! {
     RequirementName;
     /// The name of a suite: `bdi_tests`
     SuiteName;
-    /// The full name of a test: `handover.bdi_tests.t017`
+    /// The name of a test: `handover.bdi_tests.t017`; where a suite speaks of its own tests, without the scenario:
+    /// `bdi_tests.t017`
     TestName;
-    /// What a suite is to reach, by a word for its kind and a name: `bin human_robot.4 legs, bored`,
-    /// `edge Robot: sense -> decide (edge 3)`, `plan Human.leg#2`
-    GoalName;
-}
-
-impl GoalName {
-    /// The goal of a bin.
-    #[must_use]
-    pub fn of_bin(bin: &BinName) -> Self {
-        Self(format!("bin {bin}"))
-    }
 }
 
 /// The longest name of a file that leaves room for an ending in any file system.

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     code::CoverageRatios,
-    names::{GoalName, SuiteName},
+    goal::SuiteGoalId,
+    names::{SuiteName, TestName},
     schema,
 };
 
@@ -39,13 +40,13 @@ pub struct SuiteInfo {
 /// What became of one goal of a suite by search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GoalReport {
-    pub goal: GoalName,
+    pub goal: SuiteGoalId,
     pub status: GoalStatus,
     /// For an unreachable goal, why; for an inconclusive one, which budget ran out.
     pub reason: String,
     /// For one that is reached: the first test whose witness reaches it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub test: Option<String>,
+    pub test: Option<TestName>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -91,7 +92,7 @@ pub struct UnreachedItem {
     #[schemars(schema_with = "schema::item_kind")]
     pub kind: CoverItemKind,
     /// `plan Human.leg#2 failed`
-    pub item: GoalName,
+    pub item: SuiteGoalId,
     pub reason: String,
 }
 
@@ -107,19 +108,19 @@ pub struct SuiteExplanation {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct TestExplanation {
     /// The first concrete test made of it.
-    pub test: String,
+    pub test: TestName,
     /// The belief sets that it came from.
     pub because: Vec<String>,
     /// How many goals it reaches.
     pub reaches: usize,
     /// The goals that no test before it reaches.
-    pub first: Vec<GoalName>,
+    pub first: Vec<SuiteGoalId>,
     /// Those that no other test reaches.
-    pub only: Vec<GoalName>,
+    pub only: Vec<SuiteGoalId>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct UncoveredGoal {
-    pub goal: GoalName,
+    pub goal: SuiteGoalId,
     pub reason: String,
 }

@@ -3,6 +3,7 @@
 use hrdsl_ir::{
     Nanos, Value,
     device::DeviceBody,
+    device_state::DeviceState,
     sensor::SensorSource,
     world::{ArmId, SignalId},
 };
@@ -61,18 +62,20 @@ impl WorldSimulation {
         self.sensed(device.source()?)?.map(|(_, time)| time)
     }
 
-    /// What is true of a device, by name; `None`: it has no such state.
-    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+    /// What is true of a device; `None`: it has no such state.
+    fn state(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
         match (device, what) {
-            (DeviceBody::Arm(arm), "joints") => Some(self.joint_positions(arm)),
-            (DeviceBody::Arm(arm), "speeds") => Some(self.joint_speeds(arm)),
-            (DeviceBody::Arm(arm), "tool") => self.tool_pose(arm).map(Vec::from),
-            (DeviceBody::Base(base), "pose") => self.base_pose(base).map(Vec::from),
-            (DeviceBody::Base(base), "orientation") => self.base_orientation(base).map(Vec::from),
-            (DeviceBody::Base(base), "velocity") => self.base_velocity(base).map(Vec::from),
-            (DeviceBody::Laser(laser), "ranges") => self.scan(laser),
-            (DeviceBody::Laser(laser), "angles") => self.laser(laser).map(|l| vec![l.lo, l.hi]),
-            (DeviceBody::Laser(laser), "limits") => self.laser(laser).map(|l| vec![l.nearest, l.farthest]),
+            (DeviceBody::Arm(arm), DeviceState::Joints) => Some(self.joint_positions(arm)),
+            (DeviceBody::Arm(arm), DeviceState::Speeds) => Some(self.joint_speeds(arm)),
+            (DeviceBody::Arm(arm), DeviceState::Tool) => self.tool_pose(arm).map(Vec::from),
+            (DeviceBody::Base(base), DeviceState::Pose) => self.base_pose(base).map(Vec::from),
+            (DeviceBody::Base(base), DeviceState::Orientation) => self.base_orientation(base).map(Vec::from),
+            (DeviceBody::Base(base), DeviceState::Velocity) => self.base_velocity(base).map(Vec::from),
+            (DeviceBody::Laser(laser), DeviceState::Ranges) => self.scan(laser),
+            (DeviceBody::Laser(laser), DeviceState::Angles) => self.laser(laser).map(|l| vec![l.lo, l.hi]),
+            (DeviceBody::Laser(laser), DeviceState::Limits) => {
+                self.laser(laser).map(|l| vec![l.nearest, l.farthest])
+            }
             (DeviceBody::Arm(_) | DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_), _) => {
                 None
             }
@@ -81,10 +84,10 @@ impl WorldSimulation {
 
     /// What a device tells the system of itself; `None`: it cannot tell this.
     #[must_use]
-    pub fn told(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+    pub fn told(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
         let exact = self.state(device, what)?;
         // What a laser is, is known.
-        if matches!(device, DeviceBody::Laser(_)) && what != "ranges" {
+        if matches!(device, DeviceBody::Laser(_)) && what != DeviceState::Ranges {
             return Some(exact);
         }
         let Some(source) = device.source() else { return Some(exact) };
@@ -92,14 +95,14 @@ impl WorldSimulation {
         let Some((seen, _)) = sensed else { return Some(vec![f64::NAN; exact.len()]) };
         Some(match (seen, what) {
             (SensedTruth::Ranges(ranges), _) => ranges,
-            (SensedTruth::Base { velocity, .. }, "velocity") => velocity.to_vec(),
-            (SensedTruth::Base { pose: [_, _, yaw], .. }, "orientation") => {
+            (SensedTruth::Base { velocity, .. }, DeviceState::Velocity) => velocity.to_vec(),
+            (SensedTruth::Base { pose: [_, _, yaw], .. }, DeviceState::Orientation) => {
                 let turn = about(SpaceVector::z(), yaw);
                 vec![turn.i, turn.j, turn.k, turn.w]
             }
             (SensedTruth::Base { pose, .. }, _) => pose.to_vec(),
-            (SensedTruth::Arm { speeds, .. }, "speeds") => speeds,
-            (SensedTruth::Arm { tool, .. }, "tool") => seven(&tool).to_vec(),
+            (SensedTruth::Arm { speeds, .. }, DeviceState::Speeds) => speeds,
+            (SensedTruth::Arm { tool, .. }, DeviceState::Tool) => seven(&tool).to_vec(),
             (SensedTruth::Arm { joints, .. }, _) => joints,
             (SensedTruth::Signal(_), _) => exact,
         })

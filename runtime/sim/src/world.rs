@@ -9,6 +9,7 @@ use hrdsl_harness::{
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
+    device_state::DeviceState,
     world::{SignalId, SignalTerm, WorldAction},
 };
 
@@ -133,7 +134,7 @@ impl WorldBackend for SimWorld {
         Ok(id)
     }
 
-    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+    fn state(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
         self.sim.told(device, what)
     }
 

@@ -3,7 +3,7 @@
 mod common;
 use common::*;
 use hrdsl_ir::Expr;
-use hrdsl_ir::{device::DeviceBody, world::*};
+use hrdsl_ir::{device::DeviceBody, device_state::DeviceState, world::*};
 use hrdsl_sim::{ArmTarget, CommandError, CommandId, MotorCommand, PlannedWay, WayRequest, WorldSimulation};
 use proptest::prelude::*;
 
@@ -343,7 +343,7 @@ fn a_blow_elsewhere_does_not_jolt_the_arm() {
         let id = sim.command(move_to(LEGS[0])).unwrap();
         let (_, result) = wait(&mut sim, id, |sim| {
             fastest = fastest.max(float(sim, 0));
-            ways.push(sim.told(DeviceBody::Arm(ARM), "joints").unwrap());
+            ways.push(sim.told(DeviceBody::Arm(ARM), DeviceState::Joints).unwrap());
         });
         result.unwrap();
         (fastest, ways)

@@ -5,6 +5,7 @@ use common::*;
 use hrdsl_ir::{
     Expr, Nanos, Type, Unit, Value,
     device::DeviceBody,
+    device_state::DeviceState,
     expr::BinaryOp,
     sensor::{ImperfectSensor, OdometryDrift, SensorNoise, SensorSource},
     world::*,
@@ -185,11 +186,11 @@ fn a_scan_is_late_noisy_and_full_of_holes() {
         ..of_eye
     };
     let mut sim = running(vec![sensor], 3);
-    let truth = running(Vec::new(), 0).told(eye, "ranges").unwrap();
+    let truth = running(Vec::new(), 0).told(eye, DeviceState::Ranges).unwrap();
     let (mut errors, mut holes) = (Vec::new(), 0);
     for sample in 0..1000 {
         sim.advance(sample * 100 * MS + 20 * MS);
-        let seen = sim.told(eye, "ranges").unwrap();
+        let seen = sim.told(eye, DeviceState::Ranges).unwrap();
         assert_eq!(sim.sampled_at(eye), Some(sample * 100 * MS));
         holes += seen.iter().filter(|range| **range == f64::INFINITY).count();
         errors.extend(seen.iter().zip(&truth).map(|(a, b)| a - b).filter(|error| error.is_finite()));
@@ -198,7 +199,7 @@ fn a_scan_is_late_noisy_and_full_of_holes() {
     let deviation = (errors.iter().map(|x| x * x).sum::<f64>() / count).sqrt();
     let lost = f64::from(u32::try_from(holes).unwrap()) / 21_000.0;
     assert!((deviation - 0.01).abs() < 0.0005 && (lost - 0.05).abs() < 0.005, "{deviation} {lost}");
-    assert_eq!(sim.told(eye, "limits"), Some(vec![0.1, 10.0]), "what it is, is known");
+    assert_eq!(sim.told(eye, DeviceState::Limits), Some(vec![0.1, 10.0]), "what it is, is known");
 }
 
 #[test]
@@ -211,7 +212,7 @@ fn a_base_that_drifts_believes_to_be_elsewhere() {
         let drive = MotorCommand::DriveWheels { base: BaseId(0), forward: 0.5, sideways: 0.0, turn: 0.0 };
         sim.command(drive).unwrap();
         sim.advance(4 * SECOND);
-        let told = sim.told(wheels, "pose").unwrap()[0];
+        let told = sim.told(wheels, DeviceState::Pose).unwrap()[0];
         let truth = sim.base_pose(BaseId(0)).unwrap()[0];
         (told - truth) / truth.sqrt()
     };

@@ -8,7 +8,7 @@
 //!    memory, or [`SutProcess::fork`] lets a [`ForkServer`] fork it, which has imported beforehand what it will.
 //!    [`SutProcess::next`] waits for the program's [`ProgramRequest`], within the [`ProgramLimits`].
 //! 4. [`SutProcess::reply`] answers it with a [`HarnessReply`], which carries the simulated time.
-//! 5. [`SutProcess::finish`] ends the program and gives its exit, output and code coverage ([`FileCoverage`]).
+//! 5. [`SutProcess::finish`] ends the program and gives its exit, output and code coverage ([`FileCoverage`](hrdsl_results::FileCoverage)).
 //!
 //! [`LockStep`] is such a process as the harness's system.
 //!
@@ -36,7 +36,6 @@ mod start;
 
 pub use affinity::{PinnedCore, pin_to_free_core};
 pub use cell::CellSettings;
-pub use coverage::FileCoverage;
 pub use environment::{EnvironmentNeeds, HookedPackage, PreparationStep, PythonEnv};
 pub use error::{ProgramFailure, SutError};
 pub use exit::ProgramExit;

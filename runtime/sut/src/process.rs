@@ -11,6 +11,7 @@ use std::{
 };
 
 use hrdsl_ir::Nanos;
+use hrdsl_results::FileCoverage;
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
     io::Errno,
@@ -21,7 +22,7 @@ use crate::{
         handle::CellHandle,
         message::{CellRequest, KeptFiles},
     },
-    coverage::{self, FileCoverage},
+    coverage,
     error::{ProgramFailure, SutError},
     exit::ProgramExit,
     fork_server::ForkServer,

@@ -10,9 +10,10 @@ use std::{
 use common::{GRACE, environment, launch, reply, run};
 use hrdsl_harness::SystemArrival;
 use hrdsl_ir::{Symbol, Value};
+use hrdsl_results::FileCoverage;
 use hrdsl_sut::{
-    FileCoverage, HarnessReply, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer,
-    SutError, SutProcess,
+    HarnessReply, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer, SutError,
+    SutProcess,
 };
 
 fn hello(process: &mut SutProcess) {

@@ -3,23 +3,23 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_bdi::{
-    choose::{BeliefExplorer, BeliefSet, factors},
+    choose::{BeliefExplorer, factors},
     coverage::AgentTeam,
     measure::AgentCounts,
 };
 use hrdsl_harness::RunTermination;
 use hrdsl_ir::{
     Program,
+    abstract_test::{AbstractTest, BeliefSet, ReachedGoals, TestOrigin},
     bdi::AgentId,
     suite::{ExploreMode, PlayerRef, Suite, SuiteMethod},
 };
-use hrdsl_results::ModelCoverage;
+use hrdsl_results::{AbstractTests, AgentFindings, ModelCoverage};
 use rayon::prelude::*;
 
 use crate::{
     concrete, extract,
-    goals::{AgentGoals, ReachedGoals, agents},
-    harvest::{AbstractTest, AbstractTests, AgentFindings, TestOrigin},
+    goals::{AgentGoals, agents},
     model,
     model_run::{LogDetail, ModelRun, ModelRunOptions, model_run},
 };
@@ -260,7 +260,7 @@ impl AgentRunTally {
     fn harvest(self, model: &AgentRunInput<'_>, explorer: &BeliefExplorer<'_>) -> AbstractTests {
         let notes = self.notes(explorer);
         let team = AgentTeam { program: model.program, measured: &self.measured };
-        let goals = &model.goals.names;
+        let goals = &model.goals.ids;
         let why = |goal: usize| match (self.reached.contains(&goal), self.broken.contains(&goal)) {
             (true, _) => String::new(),
             (false, true) => "only runs that break an assumption reach it".to_owned(),

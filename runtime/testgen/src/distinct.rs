@@ -2,11 +2,10 @@
 
 use hrdsl_ir::{
     ArgPattern, Value,
+    abstract_test::AbstractTest,
     test::{TestScript, TestStep},
 };
 use indexmap::IndexMap;
-
-use crate::harvest::AbstractTest;
 
 /// How many origins of one abstract test are written out.
 const ORIGINS: usize = 3;

@@ -8,7 +8,7 @@ use hrdsl_ir::{
     suite::SearchGoal,
     ta::{Automaton, AutomatonId, AutomatonVar, LocationId, Network, QueryKind},
 };
-use hrdsl_results::GoalName;
+use hrdsl_results::{RequirementName, SuiteGoalId};
 use hrdsl_ta::{EventCounter, GoalKind, StateFormula};
 
 use crate::{
@@ -22,7 +22,7 @@ use hrdsl_prove as prove;
 pub fn goals(program: &Program, network: &Network, asked: &[SearchGoal]) -> Vec<NamedGoal> {
     let mut all: Vec<NamedGoal> = Vec::new();
     for goal in asked.iter().flat_map(|g| of(program, network, g)) {
-        if all.iter().all(|known| known.name != goal.name) {
+        if all.iter().all(|known| known.id != goal.id) {
             all.push(goal);
         }
     }
@@ -51,13 +51,16 @@ fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<NamedGoal>
         SearchGoal::Pairs => each_automaton(program, network, flow::pairs),
         SearchGoal::Uses => flow::uses(program, network),
         SearchGoal::Values => values(program, network),
-        SearchGoal::Violation(id) => requirement(program, *id, "violation", WitnessedGoal::Violation),
-        SearchGoal::Trigger(id) => requirement(program, *id, "trigger", WitnessedGoal::Trigger),
+        SearchGoal::Violation(id) => {
+            requirement(program, *id, SuiteGoalId::Violation, WitnessedGoal::Violation)
+        }
+        SearchGoal::Trigger(id) => requirement(program, *id, SuiteGoalId::Trigger, WitnessedGoal::Trigger),
         SearchGoal::Query(id) => {
             let Some(query) = program.queries.get(usize::from(id.0)) else { return Vec::new() };
             let QueryKind::Possibly(formula) = &query.ask else { return Vec::new() };
             let goal = prove::of_formula(formula);
-            vec![NamedGoal::one(format!("query {}", query.name), goal.what, false, WitnessedGoal::Nothing)]
+            let id = SuiteGoalId::Query(query.name.clone());
+            vec![NamedGoal::one(id, goal.what, false, WitnessedGoal::Nothing)]
         }
     }
 }
@@ -65,13 +68,13 @@ fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<NamedGoal>
 fn requirement(
     program: &Program,
     id: RequirementId,
-    what: &str,
+    goal: fn(RequirementName) -> SuiteGoalId,
     shown: fn(usize) -> WitnessedGoal,
 ) -> Vec<NamedGoal> {
     let at = usize::from(id.0);
     let Some(requirement) = program.monitors.get(at) else { return Vec::new() };
-    let name = GoalName::from(format!("{what} of {}", requirement.name));
-    vec![NamedGoal { name, alternatives: Vec::new(), shown: vec![shown(at)], monitor: Some(at) }]
+    let id = goal(requirement.name.as_str().into());
+    vec![NamedGoal { id, alternatives: Vec::new(), shown: vec![shown(at)], monitor: Some(at) }]
 }
 
 fn each_automaton(
@@ -87,8 +90,8 @@ fn locations(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
     let ids = (0u16..).map(LocationId).zip(&automaton.locations);
     let named = ids.filter(|(_, l)| !is_generated(&l.name)).map(|(location, l)| {
         let what = GoalKind::Location { automaton: index, location };
-        let name = format!("location {}.{}", automaton.name, l.name);
-        NamedGoal::one(name, what, false, WitnessedGoal::Location(index, location))
+        let id = SuiteGoalId::Location(format!("{}.{}", automaton.name, l.name));
+        NamedGoal::one(id, what, false, WitnessedGoal::Location(index, location))
     });
     named.collect()
 }
@@ -96,8 +99,9 @@ fn locations(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
 fn edges(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
     let named = declared(automaton).into_iter().map(|(number, edge)| {
         let what = GoalKind::Edge { automaton: index, edge };
-        let name = format!("edge {}: {}", automaton.name, edge_name(automaton, number, edge));
-        NamedGoal::one(name, what, false, WitnessedGoal::Edge(index, edge))
+        let name = edge_name(automaton, number, edge);
+        let id = SuiteGoalId::Edge(format!("{}: {name}", automaton.name));
+        NamedGoal::one(id, what, false, WitnessedGoal::Edge(index, edge))
     });
     named.collect()
 }
@@ -115,7 +119,8 @@ fn values(program: &Program, network: &Network) -> Vec<NamedGoal> {
         let each = (var.lo..=var.hi).filter_map(|n| var.value(n)).map(move |value| {
             let is = Expr::binary(BinaryOp::Eq, Expr::Var(slot), Expr::Const(value));
             let what = GoalKind::Condition(StateFormula::Data(is));
-            NamedGoal::one(format!("value {name} = {value}"), what, false, WitnessedGoal::Nothing)
+            let id = SuiteGoalId::Value(format!("{name} = {value}"));
+            NamedGoal::one(id, what, false, WitnessedGoal::Nothing)
         });
         each.collect::<Vec<_>>()
     };
@@ -133,7 +138,7 @@ fn bins(program: &Program, cross: &CoverCross) -> Vec<NamedGoal> {
         all.extend(ignored.iter().cloned());
         let name = BinName::new(&cross.name, &bin.name);
         NamedGoal::one(
-            GoalName::of_bin(&name),
+            SuiteGoalId::Bin(name.clone()),
             GoalKind::Condition(StateFormula::And(all)),
             true,
             WitnessedGoal::Bin(name),

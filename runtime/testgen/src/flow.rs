@@ -5,6 +5,7 @@ use hrdsl_ir::{
     expr::Lvalue,
     ta::{Automaton, Edge, EdgeAssignment, FunctionId, FunctionStatement, Network, SyncLabel},
 };
+use hrdsl_results::SuiteGoalId;
 use hrdsl_ta::{GoalKind, ReachabilityGoal};
 
 use crate::{
@@ -31,13 +32,12 @@ pub fn pairs(index: usize, automaton: &Automaton) -> Vec<NamedGoal> {
                 settled: false,
             };
             named.push(NamedGoal {
-                name: format!(
-                    "edge pair {}: {}, {}",
+                id: SuiteGoalId::EdgePair(format!(
+                    "{}: {}, {}",
                     automaton.name,
                     edge_name(automaton, *i, *first),
                     edge_name(automaton, *j, *second)
-                )
-                .into(),
+                )),
                 alternatives: firsts.iter().map(goal).collect(),
                 shown: firsts.iter().map(|f| WitnessedGoal::Pair(index, *f, *second)).collect(),
                 monitor: None,
@@ -92,8 +92,8 @@ pub fn uses(program: &Program, network: &Network) -> Vec<NamedGoal> {
                     definition: setter.map(|t| (t.automaton, t.edge)),
                     user: (user.automaton, user.edge),
                 };
-                let name = format!("def-use pair of {name}: {from}, read by {}", user.name);
-                named.push(NamedGoal::one(name, what, false, WitnessedGoal::Nothing));
+                let id = SuiteGoalId::DefUsePair(format!("{name}: {from}, read by {}", user.name));
+                named.push(NamedGoal::one(id, what, false, WitnessedGoal::Nothing));
             }
         }
     }

@@ -3,36 +3,27 @@
 use std::collections::BTreeSet;
 
 use hrdsl_bdi::{
-    coverage::{AgentCoverItem, AgentTeam, items, name},
+    coverage::{AgentTeam, items, place},
     measure::AgentCounts,
 };
 use hrdsl_coverage::TestCoverage;
 use hrdsl_ir::{
     Program,
+    abstract_test::ReachedGoals,
     bdi::{Agent, AgentId},
+    cover_item::AgentGoal,
     coverage::{BinName, CrossId},
     suite::{ModelGoal, PlayerRef},
 };
-use hrdsl_results::GoalName;
+use hrdsl_results::SuiteGoalId;
 
 use crate::bins;
-
-/// Something that a suite is to reach.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum AgentGoal {
-    Item(AgentId, AgentCoverItem),
-    /// A bin of a cross, by their places.
-    Bin(u16, u16),
-}
 
 /// The goals of a suite, each once, in the order in which the suite asks for them.
 pub struct AgentGoals {
     pub all: Vec<AgentGoal>,
-    pub names: Vec<GoalName>,
+    pub ids: Vec<SuiteGoalId>,
 }
-
-/// The goals that were reached, by their places.
-pub type ReachedGoals = BTreeSet<usize>;
 
 /// The agents among the players.
 pub fn agents<'p>(program: &'p Program, players: &[PlayerRef]) -> Vec<(AgentId, &'p Agent)> {
@@ -52,13 +43,13 @@ impl AgentGoals {
             .chain(crosses.map(|(cross, _)| ModelGoal::Bins(CrossId(cross))))
             .collect::<Vec<_>>();
         let asked = if asked.is_empty() { &usual } else { asked };
-        let mut goals = Self { all: Vec::new(), names: Vec::new() };
+        let mut goals = Self { all: Vec::new(), ids: Vec::new() };
         let mut known = BTreeSet::new();
         for goal in asked {
-            for (goal, name) in expand(program, players, *goal) {
+            for (goal, id) in expand(program, players, *goal) {
                 if known.insert(goal) {
                     goals.all.push(goal);
-                    goals.names.push(name);
+                    goals.ids.push(id);
                 }
             }
         }
@@ -70,7 +61,7 @@ impl AgentGoals {
     pub fn reached(&self, measured: &[(AgentId, AgentCounts)], coverage: &TestCoverage) -> ReachedGoals {
         let is_reached = |goal: &AgentGoal| match goal {
             AgentGoal::Item(agent, item) => {
-                measured.iter().any(|(a, counts)| a == agent && item.is_reached(counts))
+                measured.iter().any(|(a, counts)| a == agent && counts.reaches(*item))
             }
             AgentGoal::Bin(cross, bin) => {
                 coverage.crosses.get(usize::from(*cross)).is_some_and(|bins| bins.contains(bin))
@@ -90,7 +81,7 @@ impl AgentGoals {
     }
 }
 
-fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(AgentGoal, GoalName)> {
+fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(AgentGoal, SuiteGoalId)> {
     match goal {
         ModelGoal::Bins(cross) => {
             let Some(declared) = program.coverage.crosses.get(usize::from(cross.0)) else {
@@ -98,7 +89,7 @@ fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(Age
             };
             let bins = (0u16..).zip(&declared.bins);
             let named = bins.map(|(i, bin)| {
-                (AgentGoal::Bin(cross.0, i), GoalName::of_bin(&BinName::new(&declared.name, &bin.name)))
+                (AgentGoal::Bin(cross.0, i), SuiteGoalId::Bin(BinName::new(&declared.name, &bin.name)))
             });
             named.collect()
         }
@@ -110,7 +101,7 @@ fn expand(program: &Program, players: &[PlayerRef], goal: ModelGoal) -> Vec<(Age
             let of = |(id, agent): (AgentId, &Agent)| {
                 let named = items(agent, goal)
                     .into_iter()
-                    .map(|i| (AgentGoal::Item(id, i), name(program, agent, i).into()));
+                    .map(|i| (AgentGoal::Item(id, i), SuiteGoalId::Item(i.kind(), place(program, agent, i))));
                 named.collect::<Vec<_>>()
             };
             agents(program, players).into_iter().flat_map(of).collect()

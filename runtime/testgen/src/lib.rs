@@ -19,7 +19,6 @@ mod expand;
 mod extract;
 mod flow;
 mod goals;
-mod harvest;
 mod minimise;
 mod model;
 pub mod model_run;
@@ -30,37 +29,19 @@ mod write;
 
 use hrdsl_ir::{
     Program,
+    abstract_test::AbstractTest,
     suite::{DelayChoice, Suite, SuiteMethod, WitnessKind},
     test::{Test, TestMethod, TestProvenance, TestScript, TestStep},
 };
 use hrdsl_prove::ProofOptions;
-use hrdsl_results::{GoalReport, GoalStatus, ModelCoverage, SuiteExplanation, UncoveredGoal};
+use hrdsl_results::{
+    AbstractTests, AgentFindings, GeneratedSuite, GoalReport, GoalStatus, SuiteExplanation, TestName,
+    UncoveredGoal,
+};
 
 pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
-pub use harvest::{AbstractTest, AbstractTests, AgentFindings, TestOrigin};
-pub use hrdsl_bdi::choose::BeliefSet;
 pub use write::{step_lines, write};
-
-/// A generated suite.
-#[derive(Clone, Debug)]
-pub struct GeneratedSuite {
-    pub suite: String,
-    pub method: TestMethod,
-    /// How many different abstract tests there are.
-    pub abstract_tests: usize,
-    pub tests: Vec<Test>,
-    /// Of a suite by agents: where each test came from.
-    pub origins: Vec<TestOrigin>,
-    /// Of a suite by search: every goal's fate.
-    pub goals: Vec<GoalReport>,
-    /// Of a suite by agents: what was reached of their programs.
-    pub coverage: Option<ModelCoverage>,
-    /// Of a suite by agents: what each test is for, and why goals stayed uncovered.
-    pub explanation: Option<SuiteExplanation>,
-    /// What a user should know: runs left out, budgets that ran out.
-    pub notes: Vec<String>,
-}
 
 /// How tests are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -179,8 +160,8 @@ fn name_tests(suite: &Suite, made: &[AbstractTest], goals: &mut [GoalReport]) {
 }
 
 /// `SUITE.t001`
-fn test_name(suite: &Suite, number: u64) -> String {
-    format!("{}.t{number:03}", suite.name)
+fn test_name(suite: &Suite, number: u64) -> TestName {
+    format!("{}.t{number:03}", suite.name).into()
 }
 
 /// Numbers and seeds the tests; abstract tests that are too few come again with other seeds.
@@ -224,7 +205,7 @@ fn warmed_up(suite: &Suite, mut scripts: Vec<TestScript>) -> Vec<TestScript> {
 #[cfg(test)]
 mod tests {
     use hrdsl_ir::{Span, ta::NetworkId};
-    use hrdsl_results::GoalName;
+    use hrdsl_results::{ModelCoverage, SuiteGoalId};
 
     use super::*;
 
@@ -253,15 +234,16 @@ mod tests {
             },
             origin: Span::default(),
         };
+        let goal = |name: &str| SuiteGoalId::Query(name.into());
         let found = AgentFindings {
-            goals: ["g0", "g1", "g2"].map(GoalName::from).to_vec(),
+            goals: ["g0", "g1", "g2"].map(goal).to_vec(),
             reasons: ["", "", "it cannot be"].map(String::from).to_vec(),
             coverage: ModelCoverage::default(),
         };
         let said = explain(&found, &[test(1, "a", &[0])], &suite);
         assert_eq!(said.tests[0].test, "s.t001");
-        assert_eq!((&said.tests[0].first, &said.tests[0].only), (&vec!["g0".into()], &vec!["g0".into()]));
-        let uncovered = |goal: &str, reason: &str| UncoveredGoal { goal: goal.into(), reason: reason.into() };
+        assert_eq!((&said.tests[0].first, &said.tests[0].only), (&vec![goal("g0")], &vec![goal("g0")]));
+        let uncovered = |name: &str, reason: &str| UncoveredGoal { goal: goal(name), reason: reason.into() };
         assert_eq!(
             said.uncovered,
             [uncovered("g1", "only tests beyond the first 1 reach it"), uncovered("g2", "it cannot be")]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::{goals::ReachedGoals, harvest::AbstractTest};
+use hrdsl_ir::abstract_test::{AbstractTest, ReachedGoals};
 
 /// Which tests to keep, in their order, so that together they reach what all of them do: first that which reaches most
 /// that is not reached yet (the first of several), again and again; then, in the order in which they were taken, those go

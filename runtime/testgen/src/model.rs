@@ -1,17 +1,15 @@
 //! What a suite by agents reached of its model, and why not the rest.
 
-use hrdsl_bdi::coverage::{AgentTeam, name, universe};
+use hrdsl_bdi::coverage::{AgentTeam, place, universe};
 use hrdsl_ir::{
     Program,
+    abstract_test::{AbstractTest, ReachedGoals},
     bdi::AgentId,
     suite::{CoverItemKind, PlayerRef},
 };
-use hrdsl_results::{AgentCoverage, GoalName, KindCoverage, TestExplanation, UnreachedItem};
+use hrdsl_results::{AgentCoverage, KindCoverage, SuiteGoalId, TestExplanation, TestName, UnreachedItem};
 
-use crate::{
-    goals::{ReachedGoals, agents},
-    harvest::AbstractTest,
-};
+use crate::goals::agents;
 
 /// What the agents' counts say, summed over all runs that count.
 pub fn coverage(program: &Program, players: &[PlayerRef], team: &AgentTeam<'_>) -> Vec<AgentCoverage> {
@@ -21,10 +19,8 @@ pub fn coverage(program: &Program, players: &[PlayerRef], team: &AgentTeam<'_>) 
 fn of_agent(program: &Program, id: AgentId, team: &AgentTeam<'_>) -> AgentCoverage {
     let agent = &program.agents[usize::from(id.0)];
     let measured = team.measured.iter().find(|(a, _)| *a == id).map(|(_, m)| m);
-    let items: Vec<_> = universe(agent)
-        .into_iter()
-        .map(|item| (item, measured.is_some_and(|m| item.is_reached(m))))
-        .collect();
+    let items: Vec<_> =
+        universe(agent).into_iter().map(|item| (item, measured.is_some_and(|m| m.reaches(item)))).collect();
     let kind = |kind: CoverItemKind| {
         let of_kind = || items.iter().filter(|(item, _)| item.kind() == kind);
         KindCoverage {
@@ -35,7 +31,7 @@ fn of_agent(program: &Program, id: AgentId, team: &AgentTeam<'_>) -> AgentCovera
     };
     let unreached = items.iter().filter(|(_, reached)| !reached).map(|(item, _)| UnreachedItem {
         kind: item.kind(),
-        item: name(program, agent, *item).into(),
+        item: SuiteGoalId::Item(item.kind(), place(program, agent, *item)),
         reason: team.why(id, *item),
     });
     AgentCoverage {
@@ -48,8 +44,8 @@ fn of_agent(program: &Program, id: AgentId, team: &AgentTeam<'_>) -> AgentCovera
 /// What each test is for: `name` says what the first concrete test of an abstract one is called.
 pub fn explained(
     tests: &[AbstractTest],
-    goals: &[GoalName],
-    name: impl Fn(usize) -> String,
+    goals: &[SuiteGoalId],
+    name: impl Fn(usize) -> TestName,
 ) -> Vec<TestExplanation> {
     let mut how_many = vec![0usize; goals.len()];
     for goal in tests.iter().flat_map(|t| &t.reaches) {
@@ -58,7 +54,7 @@ pub fn explained(
     let mut seen = ReachedGoals::new();
     let mut explained = Vec::new();
     for (index, test) in tests.iter().enumerate() {
-        let named = |which: &dyn Fn(usize) -> bool| -> Vec<GoalName> {
+        let named = |which: &dyn Fn(usize) -> bool| -> Vec<SuiteGoalId> {
             test.reaches.iter().filter(|g| which(**g)).map(|g| goals[*g].clone()).collect()
         };
         explained.push(TestExplanation {
@@ -83,11 +79,12 @@ mod tests {
             reaches: goals.iter().copied().collect(),
             ..AbstractTest::default()
         };
-        let goals: Vec<GoalName> = ["a", "b", "c", "d"].map(GoalName::from).to_vec();
-        let found = explained(&[test(&[0, 1]), test(&[1, 2]), test(&[2])], &goals, |i| format!("t{i}"));
-        let first: Vec<&[GoalName]> = found.iter().map(|t| t.first.as_slice()).collect();
+        let goals: Vec<SuiteGoalId> = ["a", "b", "c", "d"].map(|q| SuiteGoalId::Query(q.into())).to_vec();
+        let found =
+            explained(&[test(&[0, 1]), test(&[1, 2]), test(&[2])], &goals, |i| format!("t{i}").into());
+        let first: Vec<&[SuiteGoalId]> = found.iter().map(|t| t.first.as_slice()).collect();
         assert_eq!(first, [&goals[..2], &goals[2..3], &[]]);
-        let only: Vec<&[GoalName]> = found.iter().map(|t| t.only.as_slice()).collect();
+        let only: Vec<&[SuiteGoalId]> = found.iter().map(|t| t.only.as_slice()).collect();
         assert_eq!(only, [&goals[..1], &[], &[]]);
         assert_eq!((found[1].test.as_str(), found[1].reaches), ("t1", 2));
     }

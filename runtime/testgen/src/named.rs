@@ -1,14 +1,14 @@
 //! Goals with names for people, and what edges are called.
 
 use hrdsl_ir::ta::{Automaton, LocationId};
-use hrdsl_results::GoalName;
+use hrdsl_results::SuiteGoalId;
 use hrdsl_ta::{GoalKind, ReachabilityGoal};
 
 use crate::covers::WitnessedGoal;
 
-/// A goal with its name for people. It is reached if one of its alternatives is.
+/// A goal of a suite, and what the search has to reach for it. It is reached if one of its alternatives is.
 pub struct NamedGoal {
-    pub name: GoalName,
+    pub id: SuiteGoalId,
     pub alternatives: Vec<ReachabilityGoal>,
     /// Each with the alternative of the same place.
     pub shown: Vec<WitnessedGoal>,
@@ -17,18 +17,8 @@ pub struct NamedGoal {
 }
 
 impl NamedGoal {
-    pub(super) fn one(
-        name: impl Into<GoalName>,
-        what: GoalKind,
-        settled: bool,
-        shown: WitnessedGoal,
-    ) -> Self {
-        Self {
-            name: name.into(),
-            alternatives: vec![ReachabilityGoal { what, settled }],
-            shown: vec![shown],
-            monitor: None,
-        }
+    pub(super) fn one(id: SuiteGoalId, what: GoalKind, settled: bool, shown: WitnessedGoal) -> Self {
+        Self { id, alternatives: vec![ReachabilityGoal { what, settled }], shown: vec![shown], monitor: None }
     }
 }
 

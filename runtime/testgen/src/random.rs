@@ -3,6 +3,7 @@
 use hrdsl_coverage::assume::AssumptionChecker;
 use hrdsl_ir::{
     ActorId, Event, EventId, Expr, Nanos, Program, Type, Value,
+    abstract_test::AbstractTest,
     event::StimulusStep,
     suite::{Suite, SuiteMethod},
     test::{TestScript, TestStep},
@@ -12,10 +13,9 @@ use rand_chacha::ChaCha8Rng;
 
 use hrdsl_harness::is_perceived;
 
-use crate::{
-    extract,
-    harvest::{AbstractTest, AbstractTests},
-};
+use hrdsl_results::AbstractTests;
+
+use crate::extract;
 
 /// Draws `count` sequences.
 ///

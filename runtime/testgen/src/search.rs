@@ -5,17 +5,17 @@
 
 use hrdsl_ir::{
     Program,
+    abstract_test::AbstractTest,
     suite::{PlayerRef, SearchGoal, Suite},
     ta::{Network, NetworkId},
 };
-use hrdsl_results::{GoalReport, GoalStatus};
+use hrdsl_results::{AbstractTests, GoalReport, GoalStatus};
 use hrdsl_ta::{GoalKind, ReachabilityGoal, SearchError};
 
 use crate::{
     covers::{ReachedItems, WitnessedGoal},
     expand::{counters, goals},
     extract,
-    harvest::{AbstractTest, AbstractTests},
     named::NamedGoal,
 };
 use hrdsl_prove::{
@@ -54,7 +54,7 @@ pub fn harvest(
         if let GoalFate::Reached(run) = fate {
             harvest.tests.push(test(program, suite, &awaits, named, run));
         }
-        harvest.goals.push(GoalReport { goal: named.name.clone(), status, reason, test: None });
+        harvest.goals.push(GoalReport { goal: named.id.clone(), status, reason, test: None });
     }
     note_reached(program, network, &named, &fates, &mut harvest.tests);
     Ok(harvest)
@@ -70,7 +70,7 @@ fn test(
     let trace = run.witness.trace();
     AbstractTest {
         scripts: extract::scripts(program, awaits, &trace, suite.settings.patience),
-        because: vec![format!("witness of {}", named.name)],
+        because: vec![format!("witness of {}", named.id)],
         predicts: extract::covered(program, &trace).cross_names(&program.coverage),
         ..AbstractTest::default()
     }

@@ -9,11 +9,12 @@ use std::{
 
 use hrdsl_bdi::{
     CYCLE_LIMIT, LogDetail,
-    choose::{BeliefSet, explore, factors},
+    choose::{explore, factors},
 };
 use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{
     Program, Span, Value,
+    abstract_test::BeliefSet,
     bdi::AgentId,
     suite::{PlayerRef, SuiteMethod},
     value::SECOND,

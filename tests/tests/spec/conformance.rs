@@ -7,8 +7,9 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use hrdsl_bdi::{CYCLE_LIMIT, choose::BeliefSet};
+use hrdsl_bdi::CYCLE_LIMIT;
 use hrdsl_compiler::{InputFile, compile};
+use hrdsl_ir::abstract_test::BeliefSet;
 
 use crate::{
     agents::{Cast, by_the_pages, difference, printed},

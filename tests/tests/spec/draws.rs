@@ -6,10 +6,11 @@ use std::{
     process::{Command, Stdio},
 };
 
-use hrdsl_bdi::choose::{BeliefExplorer, BeliefFactor, BeliefSet, FactorAlternative, explore};
+use hrdsl_bdi::choose::{BeliefExplorer, BeliefFactor, FactorAlternative, explore};
 use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{
     Value,
+    abstract_test::BeliefSet,
     bdi::{AgentId, BeliefId, InitialFact},
     suite::ExploreMode,
     test::TestStep,

@@ -43,7 +43,7 @@ fn compared(name: &str, text: &str) -> (BTreeSet<String>, BTreeSet<String>) {
     let program = compilation.program.unwrap_or_else(|| panic!("{said:#?}"));
     let generated = generate(&program, &program.suites[0], None, 0).unwrap();
     let of = |status| -> BTreeSet<String> {
-        generated.goals.iter().filter(|g| g.status == status).map(|g| short(&g.goal)).collect()
+        generated.goals.iter().filter(|g| g.status == status).map(|g| short(&g.goal.to_string())).collect()
     };
     let (reached, unreachable) = (of(GoalStatus::Reached), of(GoalStatus::Unreachable));
     let got = by_the_page(&program);

@@ -8,12 +8,13 @@ use std::path::PathBuf;
 use hrdsl_compiler::CompilationResult;
 use hrdsl_ir::{
     Nanos, Program, Span,
+    abstract_test::TestOrigin,
     bdi::{AgentId, InitialFact},
     suite::{PlayerRef, Suite, SuiteMethod},
     value::nanos,
 };
 use hrdsl_runtime::testgen::{
-    self, GenerateOptions, TestOrigin, generate_with, how_many_sets,
+    self, GenerateOptions, generate_with, how_many_sets,
     model_run::{LogDetail, LogLine, ModelInspection, ModelRunOptions, inspect},
     seed_of,
 };

@@ -9,7 +9,8 @@ use std::{
 
 use hrdsl_ir::test::Test;
 use hrdsl_runtime::{
-    campaign::{CampaignOutcome, CampaignSetup},
+    campaign::{CampaignRun, CampaignSetup},
+    judge::CampaignOutcome,
     results::TestResult,
 };
 
@@ -51,22 +52,24 @@ pub fn compare(
     let mut interrupted = None;
     for run in 2..=runs {
         let is_backwards = run % 2 == 0;
-        let outcome = again.run(if is_backwards { &backwards } else { tests }, |done| {
-            let stem = done.result.name.file_stem();
-            let name = done.result.name.to_string();
-            let before = files::read(&recording(first, &stem))?;
-            let output = files::read(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
-            let difference = difference(&before, done.recording)
-                .or_else(|| output_difference(&output, &output_text(done.output)))
-                .or_else(|| result_difference(known.get(&name)?, &result_text(done.result)));
-            if let Some(difference) = difference {
-                let at = if is_backwards { tests.len() - done.index } else { done.index };
-                let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-                found.entry(at).or_insert((name, run, difference));
-            }
-            bar.inc(1);
-            Ok(())
-        })?;
+        let CampaignRun { outcome, .. } =
+            again.run(if is_backwards { &backwards } else { tests }, |done| {
+                let stem = done.result.name.file_stem();
+                let name = done.result.name.to_string();
+                let before = files::read(&recording(first, &stem))?;
+                let output =
+                    files::read(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
+                let difference = difference(&before, done.recording)
+                    .or_else(|| output_difference(&output, &output_text(done.output)))
+                    .or_else(|| result_difference(known.get(&name)?, &result_text(done.result)));
+                if let Some(difference) = difference {
+                    let at = if is_backwards { tests.len() - done.index } else { done.index };
+                    let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
+                    found.entry(at).or_insert((name, run, difference));
+                }
+                bar.inc(1);
+                Ok(())
+            })?;
         if outcome.interrupted {
             interrupted = Some((run, outcome.tests.len()));
             break;

@@ -16,12 +16,13 @@ use std::{
 use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{
-        CampaignSetup, CampaignTimes, CellIsolation, CellSettings, ForkPlan, ProcessorClocks, ProgramLimits,
-        StopFlag, SupervisorCommand, find_hulls, prepare, tally,
+        CampaignRun, CampaignSetup, CampaignTimes, CellIsolation, CellSettings, ForkPlan, ProcessorClocks,
+        ProgramLimits, StopFlag, SupervisorCommand, find_hulls, prepare,
     },
+    judge::tally,
     report,
-    results::CampaignResults,
-    testgen::{GeneratedSuite, generate},
+    results::{CampaignResults, GeneratedSuite},
+    testgen::generate,
 };
 use serde::Serialize;
 
@@ -148,7 +149,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let interfaces = input::interface_table(&compilation, system)?;
     let campaign = prepared(args, program, system, interfaces, &out, &folder)?;
     let begun = Instant::now();
-    let outcome = run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
+    let CampaignRun { outcome, times } = run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
     let differences = match args.repeat.or(args.check_determinism.then_some(2)) {
         Some(runs) if !outcome.interrupted => {
             Some(determinism::compare(&campaign, &tests, &outcome, &folder.staging(), runs)?)
@@ -160,7 +161,6 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
         Some(_) | None => None,
     };
     let interrupted = outcome.interrupted;
-    let times = outcome.times;
     let dir = campaign.dir.clone();
     let sources =
         system.coverage().into_iter().filter_map(|f| files::read(&dir.join(&f)).ok().map(|text| (f, text)));

@@ -7,7 +7,7 @@ use std::{
 };
 
 use hrdsl_ir::test::Test;
-use hrdsl_runtime::campaign::{CampaignOutcome, CampaignSetup, FinishedRun, ProgramOutput};
+use hrdsl_runtime::campaign::{CampaignRun, CampaignSetup, FinishedRun, ProgramOutput};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{fault::CommandFault, files, results_folder};
@@ -35,10 +35,10 @@ pub fn execute(
     tests: &[Test],
     to: &Path,
     quiet: bool,
-) -> Result<CampaignOutcome, CommandFault> {
+) -> Result<CampaignRun, CommandFault> {
     let bar = if quiet { ProgressBar::hidden() } else { progress_bar(tests.len()) };
     let progress = Mutex::new(CampaignProgress::default());
-    let outcome = campaign.run(tests, |done| {
+    let run = campaign.run(tests, |done| {
         let written = write(&done, to);
         let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
         progress.violating += u32::from(done.result.has_failed());
@@ -48,7 +48,7 @@ pub fn execute(
         written
     })?;
     bar.finish_and_clear();
-    Ok(outcome)
+    Ok(run)
 }
 
 /// Where a test's recording is.

@@ -8,7 +8,8 @@ use std::{
 
 use hrdsl_ir::test::Test;
 use hrdsl_runtime::{
-    campaign::{CampaignOutcome, CampaignSetup},
+    campaign::{CampaignRun, CampaignSetup},
+    judge::CampaignOutcome,
     results::{TestResult, VerdictOutcome},
 };
 
@@ -75,7 +76,7 @@ pub fn compare(
         variables.push((VARIABLE.into(), schedule.to_string().into()));
         // The files of the first run are the results.
         let other = CampaignSetup { keep: None, clocks: None, variables, ..campaign.clone() };
-        let outcome = other.run(tests, |done| {
+        let CampaignRun { outcome, .. } = other.run(tests, |done| {
             let name = done.result.name.to_string();
             let difference = known.get(&name).and_then(|k| k.difference(&TestVerdicts::of(done.result)));
             if let Some(difference) = difference {

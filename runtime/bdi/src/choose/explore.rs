@@ -4,6 +4,7 @@ use std::{cell::Cell, collections::BTreeSet, rc::Rc};
 
 use hrdsl_ir::{
     Program,
+    abstract_test::BeliefSet,
     bdi::AgentId,
     suite::{BeliefChoice, ExploreMode},
 };
@@ -15,7 +16,7 @@ use super::{
     factors::{BeliefFactor, ChooseError},
     judge::ConditionEvaluator,
     learn::FactorLearner,
-    sets::{AlternativeRow, BATCH, BeliefSet, MAX_SETS, belief_set, row_at, shuffle, sizes, space},
+    sets::{AlternativeRow, BATCH, MAX_SETS, belief_set, row_at, shuffle, sizes, space},
     space::AllowedSpace,
     within::within,
 };

@@ -4,14 +4,12 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use hrdsl_ir::{
     Program,
+    abstract_test::BeliefSet,
     bdi::{Agent, AgentId, BeliefId, InitialFact, InternalAct, PlanContext},
     suite::{BeliefChoice, BeliefCondition},
 };
 
-use super::{
-    factors::{BeliefFactor, ChooseError},
-    sets::BeliefSet,
-};
+use super::factors::{BeliefFactor, ChooseError};
 use crate::{
     belief::{BeliefBase, FactAnnotations, GroundArguments, sourced, typed},
     check,

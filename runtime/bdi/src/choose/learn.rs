@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use hrdsl_ir::abstract_test::BeliefSet;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{
     factors::BeliefFactor,
-    sets::{AlternativeRow, BATCH, BeliefSet, belief_set, sizes},
+    sets::{AlternativeRow, BATCH, belief_set, sizes},
     space::{AllowedSpace, NextRow},
     within::after,
 };

@@ -17,4 +17,4 @@ pub use explore::{BeliefExplorer, ExploredBeliefs, explore};
 pub use factors::{BeliefFactor, ChooseError, FactorAlternative, MAX_ALTERNATIVES, factors};
 pub use judge::allows;
 pub use learn::FactorLearner;
-pub use sets::{BATCH, BeliefSet, MAX_SETS};
+pub use sets::{BATCH, MAX_SETS};

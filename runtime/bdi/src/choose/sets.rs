@@ -1,6 +1,6 @@
 //! Sets of beliefs, and the rows of numbers that stand for them.
 
-use hrdsl_ir::bdi::{AgentId, InitialFact};
+use hrdsl_ir::abstract_test::BeliefSet;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -11,15 +11,6 @@ pub const MAX_SETS: usize = 1_000_000;
 
 /// How many sets are run before what they reached is looked at. It is part of what `learn` means.
 pub const BATCH: usize = 16;
-
-/// What the agents of one abstract test start with.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BeliefSet {
-    /// In the order of the factors.
-    pub facts: Vec<(AgentId, InitialFact)>,
-    /// Each fact as it is written; [`FactorAlternative::text`](super::FactorAlternative::text).
-    pub text: Vec<String>,
-}
 
 /// An index of an alternative for each factor.
 pub(super) type AlternativeRow = Vec<u32>;

@@ -3,39 +3,41 @@
 use hrdsl_ir::{
     Program,
     bdi::{Agent, BeliefId, ContentId, GoalId, PlanStepKind, TriggerOn},
+    cover_item::{AgentCoverItem, ApplicableCount},
     known_name,
 };
 
-use super::universe::{AgentCoverItem, ApplicableCount, sites};
+use super::universe::sites;
 use crate::show::performative as performative_name;
 
-/// What an item is called: `plan Human.leg#2 failed`, `edge Human.table#1 -> leg#2 (step 3)`.
+/// Where an item is, without the [words](hrdsl_ir::suite::CoverItemKind::words) that say of which kind it is: `Human.leg#2`,
+/// `Human.table#1 -> leg#2 (step 3)`.
 #[must_use]
-pub fn name(program: &Program, agent: &Agent, item: AgentCoverItem) -> String {
+pub fn place(program: &Program, agent: &Agent, item: AgentCoverItem) -> String {
     let label = |plan: u16| known_name("plan", agent.plans.get(usize::from(plan)).map(|p| p.label.as_str()));
     let owner = &agent.name;
     match item {
-        AgentCoverItem::Selected(plan) => format!("plan {owner}.{}", label(plan)),
-        AgentCoverItem::Completed(plan) => format!("plan {owner}.{} completed", label(plan)),
-        AgentCoverItem::Failed(plan) => format!("plan {owner}.{} failed", label(plan)),
-        AgentCoverItem::Context { plan, holds } => format!("context {owner}.{} {holds}", label(plan)),
+        AgentCoverItem::Selected(plan)
+        | AgentCoverItem::Completed(plan)
+        | AgentCoverItem::Failed(plan)
+        | AgentCoverItem::Context { plan, .. } => format!("{owner}.{}", label(plan)),
         AgentCoverItem::Applicable { on, plans } => {
             let many = match plans {
                 ApplicableCount::None => "none",
                 ApplicableCount::One => "one",
                 ApplicableCount::Many => "many",
             };
-            format!("applicable {owner}.{} {many}", trigger(program, agent, on))
+            format!("{owner}.{} {many}", trigger(program, agent, on))
         }
         AgentCoverItem::Message { plan, site } => {
             let what = message(program, agent, plan, site);
-            format!("message {owner}.{}: {what} (step {})", label(plan), site + 1)
+            format!("{owner}.{}: {what} (step {})", label(plan), site + 1)
         }
         AgentCoverItem::Edge { plan, site, by } => {
-            format!("edge {owner}.{} -> {} (step {})", label(plan), label(by), site + 1)
+            format!("{owner}.{} -> {} (step {})", label(plan), label(by), site + 1)
         }
         AgentCoverItem::Path([a, b, c]) => {
-            format!("path {owner}: {} > {} > {}", label(a), label(b), label(c))
+            format!("{owner}: {} > {} > {}", label(a), label(b), label(c))
         }
     }
 }
@@ -55,7 +57,7 @@ fn message(program: &Program, agent: &Agent, plan: u16, site: u16) -> String {
         }
         Some(PlanStepKind::Ask { content, .. }) => format!("ask {}", name(*content)),
         Some(PlanStepKind::AskAll { content, .. }) => format!("ask_all {}", name(*content)),
-        Some(_) | None => "?".to_owned(),
+        Some(_) | None => known_name("message in this step", None).to_owned(),
     }
 }
 

@@ -5,99 +5,41 @@ use std::collections::BTreeSet;
 use hrdsl_ir::{
     Expr,
     bdi::{Agent, AgentTerm, Plan, PlanContext, PlanStep, PlanStepKind, PlanTrigger, TriggerOn, each_step},
-    suite::{CoverItemKind, ModelGoal},
+    cover_item::{AgentCoverItem, ApplicableCount},
+    suite::ModelGoal,
 };
 
 use crate::measure::AgentCounts;
 
-/// Something of an agent's program that a run reaches or does not. Plans are named by their place in the library, steps
-/// by their site ([`AgentCounts`]).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum AgentCoverItem {
-    /// The plan was selected.
-    Selected(u16),
-    /// It was finished.
-    Completed(u16),
-    Failed(u16),
-    /// The plan's context was tried, and was so.
-    Context {
-        plan: u16,
-        holds: bool,
-    },
-    /// An event came with so many applicable plans.
-    Applicable {
-        on: TriggerOn,
-        plans: ApplicableCount,
-    },
-    /// The message of a step was sent.
-    Message {
-        plan: u16,
-        site: u16,
-    },
-    /// A plan was selected for the goal of a step.
-    Edge {
-        plan: u16,
-        site: u16,
-        by: u16,
-    },
-    /// These plans lay on each other in an intention, the lowest first.
-    Path([u16; 3]),
-}
-
-/// How many plans are applicable to an event.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ApplicableCount {
-    None,
-    One,
-    Many,
-}
-
-impl ApplicableCount {
-    /// Its place in [`AgentCounts::applicable`].
-    fn index(self) -> usize {
-        match self {
-            ApplicableCount::None => 0,
-            ApplicableCount::One => 1,
-            ApplicableCount::Many => 2,
-        }
+/// The place of so many plans in [`AgentCounts::applicable`].
+fn applicable_place(plans: ApplicableCount) -> usize {
+    match plans {
+        ApplicableCount::None => 0,
+        ApplicableCount::One => 1,
+        ApplicableCount::Many => 2,
     }
 }
 
-impl AgentCoverItem {
+impl AgentCounts {
+    /// Whether a run with these counts reached an item.
     #[must_use]
-    pub fn kind(self) -> CoverItemKind {
-        match self {
-            AgentCoverItem::Selected(_) => CoverItemKind::Selected,
-            AgentCoverItem::Completed(_) => CoverItemKind::Completed,
-            AgentCoverItem::Failed(_) => CoverItemKind::Failed,
-            AgentCoverItem::Context { holds: true, .. } => CoverItemKind::ContextTrue,
-            AgentCoverItem::Context { holds: false, .. } => CoverItemKind::ContextFalse,
-            AgentCoverItem::Applicable { .. } => CoverItemKind::Applicable,
-            AgentCoverItem::Message { .. } => CoverItemKind::Message,
-            AgentCoverItem::Edge { .. } => CoverItemKind::Edge,
-            AgentCoverItem::Path(_) => CoverItemKind::Path,
-        }
-    }
-
-    /// Whether a run with these counts reached it.
-    #[must_use]
-    pub fn is_reached(self, measured: &AgentCounts) -> bool {
+    pub fn reaches(&self, item: AgentCoverItem) -> bool {
         let of = |counts: &[u64], plan: u16| counts.get(usize::from(plan)).copied().unwrap_or(0);
-        let count = match self {
-            AgentCoverItem::Selected(plan) => of(&measured.selected, plan),
-            AgentCoverItem::Completed(plan) => of(&measured.completed, plan),
-            AgentCoverItem::Failed(plan) => of(&measured.failed, plan),
+        let count = match item {
+            AgentCoverItem::Selected(plan) => of(&self.selected, plan),
+            AgentCoverItem::Completed(plan) => of(&self.completed, plan),
+            AgentCoverItem::Failed(plan) => of(&self.failed, plan),
             AgentCoverItem::Context { plan, holds } => {
-                measured.contexts.get(usize::from(plan)).map_or(0, |n| n[usize::from(holds)])
+                self.contexts.get(usize::from(plan)).map_or(0, |n| n[usize::from(holds)])
             }
             AgentCoverItem::Applicable { on, plans } => {
-                measured.applicable.get(&on).map_or(0, |n| n[plans.index()])
+                self.applicable.get(&on).map_or(0, |n| n[applicable_place(plans)])
             }
-            AgentCoverItem::Message { plan, site } => measured.sent.get(&(plan, site)).copied().unwrap_or(0),
+            AgentCoverItem::Message { plan, site } => self.sent.get(&(plan, site)).copied().unwrap_or(0),
             AgentCoverItem::Edge { plan, site, by } => {
-                measured.edges.get(&(plan, site, by)).copied().unwrap_or(0)
+                self.edges.get(&(plan, site, by)).copied().unwrap_or(0)
             }
-            AgentCoverItem::Path(plans) => measured.paths.get(&plans).copied().unwrap_or(0),
+            AgentCoverItem::Path(plans) => self.paths.get(&plans).copied().unwrap_or(0),
         };
         count > 0
     }
@@ -246,8 +188,13 @@ fn paths(agent: &Agent) -> BTreeSet<[u16; 3]> {
 #[cfg(test)]
 mod tests {
     use super::{super::fixture, *};
-    use crate::coverage::name;
+    use crate::coverage::place;
     use hrdsl_ir::coverage::CrossId;
+
+    fn name(program: &hrdsl_ir::Program, agent: &Agent, item: AgentCoverItem) -> String {
+        let (before, after) = item.kind().words();
+        format!("{before}{}{after}", place(program, agent, item))
+    }
 
     #[test]
     fn all_that_the_program_does_not_rule_out_is_in_it() {
@@ -313,7 +260,7 @@ mod tests {
         let human = &program.agents[0];
         let nothing = AgentCounts::new(human);
         let all = universe(human);
-        assert!(all.iter().all(|i| !i.is_reached(&nothing)));
+        assert!(all.iter().all(|i| !nothing.reaches(*i)));
         let mut measured = nothing;
         measured.selected[2] = 1;
         measured.completed[1] = 2;
@@ -324,7 +271,7 @@ mod tests {
         measured.sent.insert((0, 1), 1);
         measured.edges.insert((5, 1, 4), 1);
         measured.paths.insert([0, 0, 2], 9);
-        let reached = all.iter().filter(|i| i.is_reached(&measured)).map(|i| name(&program, human, *i));
+        let reached = all.iter().filter(|i| measured.reaches(**i)).map(|i| name(&program, human, *i));
         assert_eq!(
             reached.collect::<Vec<_>>(),
             [

@@ -8,12 +8,13 @@ use hrdsl_ir::{
         Agent, AgentId, BeliefId, ContentId, GoalId, MessageSubject, Performative, Plan, PlanContext,
         PlanStepKind, TriggerOn,
     },
+    cover_item::{AgentCoverItem, ApplicableCount},
     known_name,
 };
 
 use super::{
     text::{belief, goal, trigger},
-    universe::{AgentCoverItem, ApplicableCount, is_always_applicable, numbered, sites},
+    universe::{is_always_applicable, numbered, sites},
 };
 use crate::{measure::AgentCounts, show};
 

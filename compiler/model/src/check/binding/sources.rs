@@ -3,6 +3,7 @@
 use hrdsl_ir::{
     binding::{GapValue, MessageGap, MessageScalar, ToldNumbers},
     device::{DeviceBody, DeviceSort},
+    device_state::DeviceState,
     world::Laser,
 };
 use hrdsl_messages::InterfaceName;
@@ -103,8 +104,8 @@ impl ToldFields {
         self.fields.insert(field.to_owned(), MessageGap { value, scalar });
     }
 
-    fn told(&mut self, field: &str, what: &str, numbers: ToldNumbers) {
-        let value = GapValue::Told { device: self.device, what: what.to_owned(), numbers };
+    fn told(&mut self, field: &str, what: DeviceState, numbers: ToldNumbers) {
+        let value = GapValue::Told { device: self.device, what, numbers };
         self.add(field, value, MessageScalar::Float);
     }
 
@@ -119,22 +120,22 @@ impl ToldFields {
     fn arm(&mut self, joints: Vec<String>) {
         let names: Vec<String> = joints.iter().map(|name| json(name)).collect();
         self.add("name", GapValue::Fixed(format!("[{}]", names.join(","))), MessageScalar::Text);
-        self.told("position", "joints", ToldNumbers::All);
-        self.told("velocity", "speeds", ToldNumbers::All);
+        self.told("position", DeviceState::Joints, ToldNumbers::All);
+        self.told("velocity", DeviceState::Speeds, ToldNumbers::All);
     }
 
     fn base(&mut self, frame: &str) {
         self.text("header.frame_id", "odom");
         self.text("child_frame_id", frame);
         for (at, axis) in (0u16..).zip(["x", "y"]) {
-            self.told(&format!("pose.pose.position.{axis}"), "pose", ToldNumbers::One(at));
-            self.told(&format!("twist.twist.linear.{axis}"), "velocity", ToldNumbers::One(at));
+            self.told(&format!("pose.pose.position.{axis}"), DeviceState::Pose, ToldNumbers::One(at));
+            self.told(&format!("twist.twist.linear.{axis}"), DeviceState::Velocity, ToldNumbers::One(at));
         }
         for (at, axis) in (0u16..).zip(["x", "y", "z", "w"]) {
             let field = format!("pose.pose.orientation.{axis}");
-            self.told(&field, "orientation", ToldNumbers::One(at));
+            self.told(&field, DeviceState::Orientation, ToldNumbers::One(at));
         }
-        self.told("twist.twist.angular.z", "velocity", ToldNumbers::One(2));
+        self.told("twist.twist.angular.z", DeviceState::Velocity, ToldNumbers::One(2));
     }
 
     fn laser(&mut self, laser: &Laser, rate: Option<f64>, frame: &str) {
@@ -146,7 +147,7 @@ impl ToldFields {
         self.number("scan_time", rate.map_or(0.0, |rate| 1.0 / rate));
         self.number("range_min", laser.nearest);
         self.number("range_max", laser.farthest);
-        self.told("ranges", "ranges", ToldNumbers::All);
+        self.told("ranges", DeviceState::Ranges, ToldNumbers::All);
     }
 }
 

@@ -8,6 +8,7 @@ use hrdsl_ir::{
         GapRead, GapValue, MessageGap, MessageScalar, MessageStep, MessageTemplate, MiddlewareKind,
         ToldNumbers, place_text,
     },
+    device_state::DeviceState,
     value::SECOND,
     world::DeviceId,
 };
@@ -99,7 +100,7 @@ impl GapContext<'_, '_> {
                 let values: Vec<Value> = reads.iter().map(|read| self.read(read)).collect();
                 value.eval(&|i| values.get(usize::from(i)).copied()).map_err(|e| e.to_string())?
             }
-            GapValue::Told { device, what, numbers } => return self.told(*device, what, *numbers, text),
+            GapValue::Told { device, what, numbers } => return self.told(*device, *what, *numbers, text),
             GapValue::Fixed(json) => {
                 text.push_str(json);
                 return Ok(());
@@ -124,12 +125,13 @@ impl GapContext<'_, '_> {
     fn told(
         &self,
         device: DeviceId,
-        what: &str,
+        what: DeviceState,
         numbers: ToldNumbers,
         text: &mut String,
     ) -> Result<(), String> {
         let all = self.stage.as_deref().and_then(|stage| stage.told(device, what));
-        let all = all.ok_or_else(|| format!("the world does not tell the `{what}` of this device"))?;
+        let all =
+            all.ok_or_else(|| format!("the world does not tell the `{}` of this device", what.name()))?;
         match numbers {
             ToldNumbers::All => {
                 text.push('[');

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use hrdsl_results::{MachineResult, MachineStateResult, MachineTransitionResult, TestName};
 
-use crate::FinishedTest;
+use crate::tally::{FinishedTest, count_one};
 
 /// The machines that the tests declared, in the order in which they did. `suite` says where a test's suite stands, of so many.
 pub(crate) fn machines(
@@ -99,9 +99,7 @@ impl CampaignMachines {
 
 /// One more test. The first is so by the alphabet: the same whatever the order of the tests.
 fn hit(hits: &mut [u32], first: &mut Option<TestName>, suite: usize, test: &TestName) {
-    if let Some(number) = hits.get_mut(suite) {
-        *number += 1;
-    }
+    count_one(hits, suite);
     if first.as_ref().is_none_or(|first| test < first) {
         *first = Some(test.clone());
     }
@@ -109,8 +107,9 @@ fn hit(hits: &mut [u32], first: &mut Option<TestName>, suite: usize, test: &Test
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_harness::{MachineDeclaration, MachineEdge};
+
     use hrdsl_results::{MachineCoverage, TestResult, TraceJudgement};
+    use hrdsl_trace::{MachineDeclaration, MachineEdge};
 
     use super::*;
 

@@ -4,13 +4,34 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_ir::{Program, coverage::BinName, monitor::Monitor};
 use hrdsl_results::{
-    BinResult, CampaignResults, CodeFile, CoverageRatios, FORMAT, GoalName, GoalStatus, RequirementResult,
-    SmallestMargin, SuiteInfo, SuiteName, TestMethod, VERSION, VerdictOutcome, VerdictTally,
+    BinResult, CampaignResults, CodeFile, CoverageRatios, FORMAT, FileCoverage, GeneratedSuite, GoalStatus,
+    InterfaceWarning, RequirementResult, SmallestMargin, SuiteGoalId, SuiteInfo, SuiteName, TestMethod,
+    TestResult, VERSION, VerdictOutcome, VerdictTally,
 };
 
-use hrdsl_testgen::GeneratedSuite;
+use hrdsl_trace::MachineDeclaration;
 
-use crate::{CampaignOutcome, FinishedTest, machines::machines};
+use crate::machines::machines;
+
+/// A finished test, with the code of the system under test that it executed.
+#[derive(Clone, Debug, Default)]
+pub struct FinishedTest {
+    pub result: TestResult,
+    pub executed: Vec<FileCoverage>,
+    /// What their state machines consist of.
+    pub machines: Vec<MachineDeclaration>,
+}
+
+/// What a campaign came to.
+#[derive(Clone, Debug, Default)]
+pub struct CampaignOutcome {
+    /// The tests that ended, in the order in which they were given.
+    pub tests: Vec<FinishedTest>,
+    pub planned: usize,
+    pub interrupted: bool,
+    /// Names of the middleware at which somebody was alone in every test.
+    pub warnings: Vec<InterfaceWarning>,
+}
 
 /// Puts the results of a campaign together. `sources` are the texts of the measured files, by name; `rerun` is the command that
 /// runs one test again, up to its name.
@@ -62,7 +83,9 @@ fn requirements(program: &Program, tests: &[FinishedTest], place: &SuiteOrder<'_
     for test in tests.iter().map(|t| &t.result) {
         let suite = place.get(&test.suite).copied().unwrap_or(0);
         for (requirement, verdict) in requirements.iter_mut().zip(&test.judgement.verdicts) {
-            requirement.tally[suite].add(verdict.outcome);
+            if let Some(tally) = requirement.tally.get_mut(suite) {
+                tally.add(verdict.outcome);
+            }
             if verdict.outcome == VerdictOutcome::Fail {
                 requirement.failing.push(test.name.clone());
             }
@@ -109,6 +132,13 @@ fn suites(generated: &[GeneratedSuite], tests: &[FinishedTest]) -> Vec<SuiteInfo
 
 fn count(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
+}
+
+/// One more for the suite that stands there.
+pub(crate) fn count_one(counts: &mut [u32], suite: usize) {
+    if let Some(count) = counts.get_mut(suite) {
+        *count += 1;
+    }
 }
 
 type LineSet<'a> = BTreeSet<(&'a str, u32)>;
@@ -162,13 +192,15 @@ fn bins(
             for test in tests.iter().map(|t| &t.result) {
                 let suite = place.get(&test.suite).copied().unwrap_or(0);
                 if test.judgement.bins.contains(&result.name) {
-                    result.hits[suite] += 1;
+                    count_one(&mut result.hits, suite);
                     // By the alphabet: the same whatever the order of the tests.
                     if result.first.as_ref().is_none_or(|first| test.name < *first) {
                         result.first = Some(test.name.clone());
                     }
                 }
-                result.predicted[suite] += u32::from(test.predicted.contains(&result.name));
+                if test.predicted.contains(&result.name) {
+                    count_one(&mut result.predicted, suite);
+                }
             }
             out.push(result);
         }
@@ -178,9 +210,9 @@ fn bins(
 
 /// Why the search says that a bin cannot be reached.
 fn unreachable(generated: &[GeneratedSuite], bin: &BinName) -> Option<String> {
-    let name = GoalName::of_bin(bin);
+    let is_it = |goal: &SuiteGoalId| matches!(goal, SuiteGoalId::Bin(name) if name == bin);
     let mut goals = generated.iter().flat_map(|g| &g.goals);
-    goals.find(|g| g.goal == name && g.status == GoalStatus::Unreachable).map(|g| g.reason.clone())
+    goals.find(|g| is_it(&g.goal) && g.status == GoalStatus::Unreachable).map(|g| g.reason.clone())
 }
 
 fn code(tests: &[FinishedTest], sources: &BTreeMap<String, String>, place: &SuiteOrder<'_>) -> Vec<CodeFile> {
@@ -195,7 +227,7 @@ fn code(tests: &[FinishedTest], sources: &BTreeMap<String, String>, place: &Suit
                     lines.entry(*line).or_insert_with(|| vec![0; place.len()]);
                 }
                 for line in &file.executed {
-                    lines.entry(*line).or_insert_with(|| vec![0; place.len()])[suite] += 1;
+                    count_one(lines.entry(*line).or_insert_with(|| vec![0; place.len()]), suite);
                 }
                 branches.extend(file.branches.iter().copied());
                 taken.extend(file.executed_branches.iter().copied());
