@@ -9,13 +9,13 @@
 //! Blows last for few milliseconds: a step in which such bodies meet is divided, as finely as stiffness and masses ask for.
 
 use hrdsl_ir::world::{BodyId, BodyMotion, ContactPhase, World};
-use rapier3d::parry::{self, bounding_volume::Aabb, bounding_volume::BoundingVolume};
+use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;
 
+use super::division::NEAR;
 use super::state::{
     adapter::PhysicsAdapter,
     bodies::{body_id, index},
-    guide::StepPart,
     yielding::{YieldingContact, YieldingPair},
 };
 use crate::math::{SpaceVector, from_vector, to_vector};
@@ -24,8 +24,6 @@ use crate::math::{SpaceVector, from_vector, to_vector};
 const RECOVERY: f64 = 0.1;
 /// What friction is on all surfaces.
 const FRICTION: f64 = 0.8;
-/// How far bodies may be apart to count as near, besides what they can do in a step, m.
-const NEAR: f64 = 2e-3;
 /// Which part of 1/ω a part of a step may last: in a blow, and when surfaces hardly move any more.
 const FINE: f64 = 0.25;
 const COARSE: f64 = 0.5;
@@ -39,8 +37,8 @@ const TRANSIENT: f64 = 0.5;
 const SAME: f64 = 0.1;
 
 /// What is found of a pair before its surfaces meet.
-struct NearPair {
-    at: usize,
+pub(super) struct NearPair {
+    pub at: usize,
     /// The frequency of its masses on its spring, 1/s.
     frequency: f64,
     /// m/s
@@ -87,32 +85,8 @@ impl PhysicsAdapter {
         }
     }
 
-    /// Does a step, in as many parts as the bodies that meet ask for.
-    pub(super) fn step_parts(&mut self) {
-        let dt = f64::from(self.world.integration_parameters.dt);
-        let near = self.near_pairs(dt);
-        let parts = near.iter().map(|pair| pair.parts(dt)).fold(1.0, f64::max);
-        let h = dt / parts;
-        self.part = (h, (self.substeps() as f64 / parts).ceil() as usize);
-        self.world.integration_parameters.dt = h as f32;
-        self.world.integration_parameters.num_solver_iterations = self.part.1;
-        let mut done = 0.0;
-        while done < parts {
-            self.draw_guided(StepPart { done: done / parts, h, dt });
-            for pair in &near {
-                self.press(pair.at, h);
-            }
-            self.lead_on((done + 1.0) / parts);
-            self.world.step_with_events(&self.exempt, &());
-            done += 1.0;
-        }
-        self.end_guided(dt);
-        self.led.clear();
-        self.world.integration_parameters.dt = dt as f32;
-    }
-
     /// The pairs that may touch within a step.
-    fn near_pairs(&mut self, dt: f64) -> Vec<NearPair> {
+    pub(super) fn near_pairs(&mut self, dt: f64) -> Vec<NearPair> {
         if self.yielding.is_empty() {
             return Vec::new();
         }
@@ -148,35 +122,8 @@ impl PhysicsAdapter {
         near
     }
 
-    /// Where a body can be within a step.
-    pub(super) fn box_in_step(&self, part: usize, dt: f64) -> Aabb {
-        // A mere frame has no surface.
-        let Some(collider) = self.world.colliders.get(self.parts[part].collider) else {
-            return Aabb::new_invalid();
-        };
-        let around = collider.compute_aabb();
-        around.loosened((NEAR / 2.0 + self.speed_of(part) * dt) as f32)
-    }
-
-    /// No point of a body's surface is faster, m/s.
-    fn speed_of(&self, part: usize) -> f64 {
-        let own = &self.parts[part];
-        let body = &self.world.bodies[own.handle];
-        let collider = &self.world.colliders[own.collider];
-        let centre = collider.position().translation;
-        let radius = collider.shape().compute_local_bounding_sphere().radius();
-        f64::from(body.velocity_at_point(centre).length() + body.angvel().length() * radius)
-    }
-
-    fn closest(&self, a: usize, b: usize, far: f64) -> Option<parry::query::Contact> {
-        let collider = |i: usize| &self.world.colliders[self.parts[i].collider];
-        let (a, b) = (collider(a), collider(b));
-        // The engine knows how to measure between all shapes that a scenario can name.
-        parry::query::contact(a.position(), a.shape(), b.position(), b.shape(), far as f32).ok().flatten()
-    }
-
     /// Lets the surfaces of a pair press on each other for a part of a step.
-    fn press(&mut self, at: usize, h: f64) {
+    pub(super) fn press(&mut self, at: usize, h: f64) {
         let (soft, other) = (self.yielding[at].soft, self.yielding[at].other);
         let Some(found) = self.closest(soft, other, 0.0).filter(|c| c.dist < 0.0) else {
             // A dent is gone when the surfaces have parted.
@@ -287,7 +234,7 @@ impl PhysicsAdapter {
 
 impl NearPair {
     /// How many parts of a step it asks for.
-    fn parts(&self, dt: f64) -> f64 {
+    pub(super) fn parts(&self, dt: f64) -> f64 {
         let fine = if self.approach > SLOW { FINE } else { COARSE };
         (dt * self.frequency / fine).ceil().clamp(1.0, MOST_PARTS)
     }
