@@ -77,15 +77,17 @@ impl PhysicsAdapter {
 
     // ── How they are found ──
 
-    /// Adds what the solver found for a part of a step, which is so much of the step.
-    pub(super) fn add_loads(&self, share: f64, loads: &mut ContactLoads) {
+    /// What the solver found for the last part of a step.
+    pub(super) fn loads_of_part(&self) -> ContactLoads {
+        let mut loads = ContactLoads::default();
         let number = |handle| self.world.colliders.get(handle).map(|c| c.user_data as usize);
         for pair in self.world.contact_pairs().filter(|pair| pair.has_any_active_contact()) {
             let (Some(a), Some(b)) = (number(pair.collider1), number(pair.collider2)) else { continue };
             if self.is_solved(a) || self.is_solved(b) {
-                loads.add(a, b, self.push(pair) * share);
+                loads.add(a, b, self.push(pair));
             }
         }
+        loads
     }
 
     /// The step is over: pairs that sleep are as they were.

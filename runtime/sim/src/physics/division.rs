@@ -43,7 +43,9 @@ impl PhysicsAdapter {
             self.ease_joints();
             self.world.step_with_events(&self.exempt, &());
             self.accuracy.look_at_contacts(&self.world, &self.robots);
-            self.add_loads(1.0 / parts, &mut loads);
+            let part = self.loads_of_part();
+            self.note_presses(&near, &part, h);
+            loads.add_part(&part, 1.0 / parts);
             done += 1.0;
         }
         self.keep_loads(loads);

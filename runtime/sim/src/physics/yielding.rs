@@ -16,6 +16,7 @@ use super::division::NEAR;
 use super::state::{
     adapter::PhysicsAdapter,
     bodies::{body_id, index},
+    loads::ContactLoads,
     yielding::{YieldingContact, YieldingPair},
 };
 use crate::math::{SpaceVector, from_vector, to_vector};
@@ -31,8 +32,6 @@ const COARSE: f64 = 0.5;
 const SLOW: f64 = 0.02;
 /// The most parts of a step.
 const MOST_PARTS: f64 = 64.0;
-/// What lasts longer is quasi-static (ISO/TS 15066:2016, 5.5.4), s.
-const TRANSIENT: f64 = 0.5;
 /// What begins again within this time is the same contact, s.
 const SAME: f64 = 0.1;
 
@@ -96,7 +95,7 @@ impl PhysicsAdapter {
             let pair = &mut self.yielding[at];
             let (soft, other) = (pair.soft, pair.other);
             if let Some(contact) = &mut pair.contact {
-                (contact.peak, contact.impulse) = (0.0, 0.0);
+                (contact.peaks, contact.impulse, contact.force) = ([0.0; 2], 0.0, 0.0);
                 contact.parted += dt;
             }
             pair.contact = pair.contact.filter(|contact| contact.parted < SAME);
@@ -128,24 +127,48 @@ impl PhysicsAdapter {
         let Some(found) = self.closest(soft, other, 0.0).filter(|c| c.dist < 0.0) else {
             // A dent is gone when the surfaces have parted.
             if let Some(contact) = &mut self.yielding[at].contact {
-                contact.deepest = 0.0;
+                (contact.deepest, contact.force) = (0.0, 0.0);
             }
             return;
         };
         let normal = -from_vector(found.normal1);
         let depth = -f64::from(found.dist);
         let pair = &mut self.yielding[at];
-        let new = YieldingContact { deepest: 0.0, normal, peak: 0.0, impulse: 0.0, age: 0.0, parted: 0.0 };
+        let new = YieldingContact::new(normal);
         let contact = pair.contact.get_or_insert(new);
         let force = contact.force_at(depth, pair.stiffness);
         // What was pressed in more deeply comes back.
         contact.deepest = depth.max(contact.deepest - (contact.deepest - depth) * (h / RECOVERY).min(1.0));
-        contact.peak = contact.peak.max(force);
+        contact.force = force;
         contact.impulse += force * h;
         contact.normal = normal;
         contact.age += h;
         contact.parted = 0.0;
         self.push_apart((soft, other), found.point2, normal * force, h);
+    }
+
+    /// After a part of a step: tells contacts in which something else holds the body against it.
+    pub(super) fn note_presses(&mut self, near: &[NearPair], loads: &ContactLoads, h: f64) {
+        let pressing = |at: usize| self.yielding[at].contact.filter(|contact| contact.force > 0.0);
+        let against: Vec<(usize, f64)> = near
+            .iter()
+            .filter_map(|pair| pressing(pair.at).map(|contact| (pair.at, contact)))
+            .map(|(at, contact)| {
+                let soft = self.yielding[at].soft;
+                let others = (0..self.yielding.len()).filter(|other| *other != at).filter_map(|other| {
+                    let pair = &self.yielding[other];
+                    let push = pair.contact.map(|contact| contact.normal * contact.force)?;
+                    if pair.soft == soft { Some(push) } else { (pair.other == soft).then_some(-push) }
+                });
+                let pushes = loads.on(soft).map(|(_, push)| push).chain(others);
+                (at, pushes.map(|push| (-push.dot(&contact.normal)).max(0.0)).sum())
+            })
+            .collect();
+        for (at, against) in against {
+            if let Some(contact) = &mut self.yielding[at].contact {
+                contact.note(against, h);
+            }
+        }
     }
 
     /// The force on the body that yields, and its opposite on the other; with the friction that goes with it.
@@ -182,8 +205,8 @@ impl PhysicsAdapter {
     pub(super) fn yielding_pushes(&self, body: BodyId) -> impl Iterator<Item = (BodyId, SpaceVector)> + '_ {
         let own = index(body);
         self.yielding.iter().filter_map(move |pair| {
-            let contact = pair.contact.filter(|c| c.peak > 0.0)?;
-            let push = contact.normal * contact.peak;
+            let contact = pair.contact.filter(|c| c.peak() > 0.0)?;
+            let push = contact.normal * contact.peak();
             if pair.soft == own {
                 Some((body_id(pair.other), push))
             } else if pair.other == own {
@@ -202,18 +225,8 @@ impl PhysicsAdapter {
             (pair.soft == own || pair.other == own) && by.is_none_or(|by| index(by) == other)
         });
         let of_phase =
-            of.filter_map(|pair| pair.contact.map(|contact| (pair, contact))).filter(|(pair, contact)| {
-                let lasts = contact.age > TRANSIENT || self.is_clamped(pair.soft, contact);
-                lasts == (phase == ContactPhase::QuasiStatic)
-            });
-        of_phase.map(|(_, contact)| contact.peak).sum()
-    }
-
-    /// Whether something else presses a body against a contact, half as hard at least.
-    fn is_clamped(&self, soft: usize, contact: &YieldingContact) -> bool {
-        let against =
-            self.pushes(body_id(soft)).map(|push| (-push.dot(&contact.normal)).max(0.0)).sum::<f64>();
-        against > contact.peak / 2.0
+            |contact: YieldingContact| contact.peaks[usize::from(phase == ContactPhase::QuasiStatic)];
+        of.filter_map(|pair| pair.contact.map(of_phase)).sum()
     }
 
     /// The level part of what pressed on a body in such contacts over the last step, N·s.

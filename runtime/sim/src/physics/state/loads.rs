@@ -19,6 +19,13 @@ impl ContactLoads {
         *self.of.entry(pair).or_insert_with(SpaceVector::zeros) += force;
     }
 
+    /// Adds those of a part of a step, which is so much of the step.
+    pub fn add_part(&mut self, part: &ContactLoads, share: f64) {
+        for ((a, b), force) in &part.of {
+            self.add(*a, *b, force * share);
+        }
+    }
+
     /// What another step told of pairs that this one says nothing of, if it still holds.
     pub fn take_over(&mut self, before: ContactLoads, holds: impl Fn(usize, usize) -> bool) {
         for ((a, b), force) in before.of {
