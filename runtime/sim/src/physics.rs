@@ -3,6 +3,7 @@
 //! A joint whose limits are both zero joins its child rigidly: the two are one body of the engine, with two shapes.
 
 mod contact;
+mod division;
 pub(crate) mod dynamics;
 mod energy;
 mod guide;
@@ -34,6 +35,7 @@ use state::{
     bodies::start_of,
     energy::EnergyWatch,
     guide::BodyGuide,
+    loads::ContactLoads,
     losses::JointLosses,
     pairs::{ExemptPairs, JointGraph},
     roots::{figure_of, rigid_roots},
@@ -68,6 +70,7 @@ impl PhysicsAdapter {
             yielding: Vec::new(),
             joints: Vec::new(),
             losses: JointLosses::default(),
+            loads: ContactLoads::default(),
             exempt: ExemptPairs::of(world.bodies.len()),
             energy: EnergyWatch::default(),
             accuracy: AccuracyWatch::default(),
@@ -229,7 +232,7 @@ impl PhysicsAdapter {
     }
 
     /// Leads kinematic bodies for a part of a step, of which so much will be over then.
-    fn lead_on(&mut self, done: f64) {
+    pub(super) fn lead_on(&mut self, done: f64) {
         for (handle, to) in &self.led {
             let body = &mut self.world.bodies[*handle];
             let left = (1.0 - done) * self.step;
@@ -314,7 +317,7 @@ impl PhysicsAdapter {
 
     /// How often the solver has to divide the next step: not at all while only people move, who have neither joints nor anything
     /// that lies on them.
-    fn substeps(&self) -> usize {
+    pub(super) fn substeps(&self) -> usize {
         let loose = |(part, guide): (&PhysicsBody, &Option<BodyGuide>)| {
             let body = &self.world.bodies[part.handle];
             guide.is_none() && body.is_dynamic() && !body.is_sleeping()
@@ -332,7 +335,6 @@ impl PhysicsAdapter {
     }
 
     fn watch_accuracy(&mut self) {
-        self.accuracy.look_at_contacts(&self.world, &self.robots);
         for joint in 0..self.joints.len() {
             if self.joints[joint].is_some() && !self.is_asleep(joint) {
                 let (at, limits) = (self.joint_position(joint), self.joint_limits(joint));

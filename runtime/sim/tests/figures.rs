@@ -3,6 +3,8 @@
 #[path = "common/scene.rs"]
 mod scene;
 
+use hrdsl_ir::world::ArmId;
+use hrdsl_sim::MotorCommand;
 use proptest::prelude::*;
 use scene::Scene;
 
@@ -196,13 +198,67 @@ fn who_is_clamped_is_pressed_and_not_struck() {
         if s.read("press") > 50.0 {
             held.get_or_insert(s.sim.now());
         }
-        most = most.max(s.read("wall_force"));
+        // Bones and the wall are rigid: the moment in which they meet is a blow of one step.
+        if held.is_some_and(|held| s.sim.now() > held + 100_000_000) {
+            most = most.max(s.read("wall_force"));
+        }
     });
     let (struck, held) = (struck.expect("a blow"), held.expect("a press"));
     assert!(held - struck < 300_000_000, "{struck} {held}");
     // 3.6 mm of 25 N/mm, and the wall bears no more than that.
     let press = scene.read("press");
     assert!((80.0..100.0).contains(&press) && most < 200.0, "{press} {most}");
+}
+
+/// A ram of 8 kg on a slider strikes somebody who stands with the back to a wall, or freely: what is measured, and of which kind it is,
+/// is the same at every step.
+#[test]
+fn clamped_or_free_a_blow_is_the_same_at_every_step() {
+    for (wall, gap) in [("touches", 1.1116), ("is near", 1.1216), ("is far", 3.0)] {
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        for step in [10_000_000, 5_000_000, 2_000_000, 1_000_000] {
+            let members = format!(
+                "body wall: fixed box(20 cm, 4 m, 2 m) at ({gap} m + 10 cm, 0 m, 1 m)
+                body rail: fixed box(10 cm, 10 cm, 10 cm) at (0 m, 0 m, 118 cm)
+                body ram: dynamic box(20 cm, 12 cm, 20 cm) at (50 cm, 0 m, 118 cm) mass 8 kg
+                joint slide: rail -> ram at (50 cm, 0 m, 118 cm) axis (1, 0, 0) limits -10 cm .. 60 cm effort 200 N
+                arm pusher: slide tip ram tool (10 cm, 0 m, 0 m) speed 0.5 rad/s
+                signal blow: force to robot = transient_force(host.trunk)
+                signal press: force to robot = quasistatic_force(host.trunk)"
+            );
+            let mut scene = alone(&members, &[]);
+            scene.at_step(step);
+            let push = MotorCommand::ReachJoints { arm: ArmId(0), positions: vec![0.4], max_speed: None };
+            scene.sim.command(push).expect("an arm");
+            let (mut blow, mut press) = (0.0f64, 0.0f64);
+            let mut begins = None;
+            scene.go_on(3.0, |s| {
+                let (struck, pressed) = (s.read("blow"), s.read("press"));
+                if struck + pressed > 0.0 {
+                    begins.get_or_insert(s.sim.now());
+                }
+                // The blow, and not how the arm pushes on after it.
+                if begins.is_none_or(|at| s.sim.now() < at + 400_000_000) {
+                    (blow, press) = (blow.max(struck), press.max(pressed));
+                }
+            });
+            println!("wall {wall}, {step}: {blow:.0} N, {press:.0} N");
+            found.push([blow, press]);
+        }
+        // The lesser of the two is within a tenth of the greater one.
+        let finest = *found.last().expect("steps");
+        let greatest = finest[0].max(finest[1]);
+        for of in &found {
+            for (one, best) in of.iter().zip(&finest) {
+                assert!((one - best).abs() <= 0.1 * greatest, "wall {wall}: {found:?}");
+            }
+        }
+        match wall {
+            "touches" => assert!(finest[0] == 0.0 && finest[1] > 150.0, "{found:?}"),
+            "is near" => assert!(finest[0] > 150.0 && finest[1] > 30.0, "{found:?}"),
+            _ => assert!(finest[0] > 150.0 && finest[1] == 0.0, "{found:?}"),
+        }
+    }
 }
 
 #[test]

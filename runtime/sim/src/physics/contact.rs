@@ -1,7 +1,7 @@
 //! Contacts: which bodies press on each other, and how hard, as the solver found it in the last step.
 //!
-//! The solver gives an impulse at each point of a contact, along its normal; over the time of the step it is a force. Friction,
-//! which acts across the normal, is not counted. Where a surface yields, it is the greatest force of the step. Bodies that the physics
+//! The solver gives an impulse at each point of a contact, along its normal; over the time of the step it is a force, the mean over
+//! the parts of the step. Friction, which acts across the normal, is not counted. Where a surface yields, it is the greatest force of the step. Bodies that the physics
 //! lets pass through each other never press.
 
 use hrdsl_ir::world::BodyId;
@@ -10,6 +10,7 @@ use rapier3d::prelude::*;
 use super::state::{
     adapter::PhysicsAdapter,
     bodies::{body_id, index},
+    loads::ContactLoads,
 };
 use crate::math::{SpaceVector, from_vector};
 
@@ -24,12 +25,9 @@ pub(crate) struct Pressing {
 impl PhysicsAdapter {
     /// What presses a body, and how hard.
     pub fn pressings(&self, body: BodyId) -> impl Iterator<Item = Pressing> + '_ {
-        let own = self.parts[index(body)].collider;
-        let rigid = self.world.contact_pairs_with(own).filter_map(move |pair| {
-            let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
-            let force = self.push(pair).norm();
-            let number = usize::try_from(self.world.colliders[other].user_data).ok()?;
-            (force > 0.0).then_some(Pressing { other: body_id(number), force })
+        let rigid = self.loads.on(index(body)).filter_map(|(other, push)| {
+            let force = push.norm();
+            (force > 0.0).then_some(Pressing { other: body_id(other), force })
         });
         let yielding = self.yielding_pushes(body);
         rigid.chain(yielding.map(|(other, push)| Pressing { other, force: push.norm() }))
@@ -44,8 +42,8 @@ impl PhysicsAdapter {
     pub fn force_between(&self, a: BodyId, b: BodyId) -> f64 {
         let yielding: f64 =
             self.yielding_pushes(a).filter(|(other, _)| *other == b).map(|(_, push)| push.norm()).sum();
-        let (a, b) = (self.parts[index(a)].collider, self.parts[index(b)].collider);
-        yielding + self.world.narrow_phase.contact_pair(a, b).map_or(0.0, |pair| self.push(pair).norm())
+        let rigid = self.loads.on(index(a)).find(|(other, _)| *other == index(b));
+        yielding + rigid.map_or(0.0, |(_, push)| push.norm())
     }
 
     /// How hard all others press on the body: the sum over them, whatever the directions, N.
@@ -74,38 +72,44 @@ impl PhysicsAdapter {
     }
 
     fn rigid_pushes(&self, body: BodyId) -> impl Iterator<Item = SpaceVector> + '_ {
-        let own = self.parts[index(body)].collider;
-        let pairs = self.world.contact_pairs_with(own).filter(|pair| pair.has_any_active_contact());
-        let mut found: Vec<(u128, SpaceVector)> = pairs
-            .filter_map(|pair| {
-                let is_first = pair.collider1 == own;
-                let other =
-                    self.world.colliders.get(if is_first { pair.collider2 } else { pair.collider1 })?;
-                let push = self.push(pair);
-                Some((other.user_data, if is_first { -push } else { push }))
-            })
-            .collect();
-        // In the order of the bodies: what floats add up to must not depend on the engine's own order.
-        found.sort_by_key(|(other, _)| *other);
-        found.into_iter().map(|(_, push)| push)
+        self.loads.on(index(body)).map(|(_, push)| push)
     }
 
-    /// The time in which the solver last did what it did to a pair, s: that of the one that can move.
-    fn solved_for(&self, pair: &ContactPair) -> f64 {
+    // ── How they are found ──
+
+    /// What the solver found for the last part of a step.
+    pub(super) fn loads_of_part(&self) -> ContactLoads {
+        let mut loads = ContactLoads::default();
         let number = |handle| self.world.colliders.get(handle).map(|c| c.user_data as usize);
-        let of = |at: usize| self.parts.get(at).filter(|part| self.world.bodies[part.handle].is_dynamic());
-        let moves =
-            [pair.collider1, pair.collider2].into_iter().filter_map(number).find(|at| of(*at).is_some());
-        moves.map_or(self.part, |at| self.solved[at]).0
+        for pair in self.world.contact_pairs().filter(|pair| pair.has_any_active_contact()) {
+            let (Some(a), Some(b)) = (number(pair.collider1), number(pair.collider2)) else { continue };
+            if self.is_solved(a) || self.is_solved(b) {
+                loads.add(a, b, self.push(pair));
+            }
+        }
+        loads
     }
 
-    /// The force on the second of a pair; its opposite is on the first.
+    /// The step is over: pairs that sleep are as they were.
+    pub(super) fn keep_loads(&mut self, mut loads: ContactLoads) {
+        let before = std::mem::take(&mut self.loads);
+        loads.take_over(before, |a, b| !self.is_solved(a) && !self.is_solved(b));
+        self.loads = loads;
+    }
+
+    /// Whether the solver has to do with a body.
+    fn is_solved(&self, part: usize) -> bool {
+        let body = &self.world.bodies[self.parts[part].handle];
+        body.is_dynamic() && !body.is_sleeping()
+    }
+
+    /// The force on the second of a pair in the last part of the step; its opposite is on the first.
     fn push(&self, pair: &ContactPair) -> SpaceVector {
         let mut sum = SpaceVector::zeros();
         for manifold in pair.solver_manifolds().iter().filter(|m| m.data.num_active_contacts() > 0) {
             let impulse: f64 = manifold.points.iter().map(|point| f64::from(point.data.impulse)).sum();
             sum += from_vector(manifold.data.normal) * impulse;
         }
-        sum / self.solved_for(pair)
+        sum / self.part.0
     }
 }

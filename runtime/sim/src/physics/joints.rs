@@ -22,6 +22,15 @@ const FIRM: f32 = 1e5;
 const MENDS: f32 = 2000.0;
 /// So much damped that nothing but that is soft.
 const STIFF: f32 = 1000.0;
+/// A joint that is so far apart is torn, m and rad. What is led whatever is in its way can do that, which no joint would let happen: two
+/// forces without limit are against each other. So a torn joint gives way, as a spring with a damper, and comes together no faster
+/// than so, m/s and rad/s.
+const TORN: f64 = 4e-3;
+const TORN_TURN: f64 = 0.04;
+const MENDS_AT_MOST: f64 = 2.0;
+const MENDS_AT_MOST_TURN: f64 = 10.0;
+/// How fast it stops what tears it, s.
+const TORN_STOPS: f64 = 3e-3;
 /// What is so near to a robot that sleeps wakes it, m: contacts begin before surfaces meet.
 const APPROACHED: f32 = 0.02;
 /// How far from its start the engine can limit a hinge, rad.
@@ -62,6 +71,7 @@ impl PhysicsAdapter {
                 damping_ratio: STIFF,
             };
         }
+        let softness = data.softness;
         let start = joint.drive.start;
         let (least, most) = (joint.lo - start, joint.hi - start);
         let is_wide = joint.motion == JointMotion::Hinge && (least <= -MOST_LIMIT || most >= MOST_LIMIT);
@@ -93,6 +103,8 @@ impl PhysicsAdapter {
             lo: joint.lo,
             hi: joint.hi,
             wound: is_wide.then_some(0.0),
+            softness,
+            is_torn: false,
             is_run: false,
         }
     }
@@ -218,6 +230,46 @@ impl PhysicsAdapter {
         }
     }
 
+    /// Lets torn joints give way, and those that have come together again not.
+    pub(super) fn ease_joints(&mut self) {
+        let h = self.part.0 / self.part.1 as f64;
+        for at in 0..self.joints.len() {
+            let Some(driven) = &self.joints[at] else { continue };
+            let (apart, tilted) = self.apart(driven);
+            let is_torn = apart > TORN || tilted > TORN_TURN;
+            if !is_torn && !driven.is_torn {
+                continue;
+            }
+            let usual = f64::from(driven.softness.erp_inv_dt(h as f32));
+            let rate = usual.min(MENDS_AT_MOST / apart).min(MENDS_AT_MOST_TURN / tilted);
+            let (handle, softness) = (driven.handle, if is_torn { giving(rate, h) } else { driven.softness });
+            if let Some(joint) = self.world.impulse_joints.get_mut(handle, false) {
+                joint.data.softness = softness;
+            }
+            if let Some(driven) = &mut self.joints[at] {
+                driven.is_torn = is_torn;
+            }
+        }
+    }
+
+    /// How far the two sides of a joint have come apart: m, and rad.
+    fn apart(&self, driven: &DrivenJoint) -> (f64, f64) {
+        let moved = |handle: RigidBodyHandle, start: &BodyFrame| {
+            from_pose(self.world.bodies[handle].position()).then(&start.inverse())
+        };
+        let parent = moved(driven.parent, &driven.parent_start);
+        let child = moved(driven.child, &driven.child_start);
+        let way = child.point(driven.anchor) - parent.point(driven.anchor);
+        let axis = parent.turn * driven.axis;
+        match driven.motion {
+            JointMotion::Hinge => (way.norm(), angle_between(&axis, &(child.turn * driven.axis))),
+            JointMotion::Slider => (
+                (way - axis * way.dot(&axis)).norm(),
+                2.0 * (parent.turn.inverse() * child.turn).imag().norm(),
+            ),
+        }
+    }
+
     /// Where a joint ends, rad or m.
     pub fn joint_limits(&self, joint: usize) -> (f64, f64) {
         self.joints[joint].as_ref().map_or((0.0, 0.0), |driven| (driven.lo, driven.hi))
@@ -322,6 +374,17 @@ impl PhysicsAdapter {
         let mut roots: Vec<BodyId> = self.parts.iter().filter(carried).map(|part| part.root).collect();
         roots.dedup();
         roots
+    }
+}
+
+/// The softness of a torn joint, of whose gap so much is mended in a second, in parts of a step of the time `h`.
+fn giving(rate: f64, h: f64) -> SpringCoefficients<f32> {
+    // The engine's rate is ω/(hω + 2ζ), and a speed is less by 1 of 1 + 1/(4ζ² h · rate) after each time h.
+    let damping = 0.5 / (rate * TORN_STOPS).sqrt();
+    let frequency = 2.0 * damping * rate / (1.0 - h * rate).max(1e-3);
+    SpringCoefficients {
+        natural_frequency: (frequency / std::f64::consts::TAU) as f32,
+        damping_ratio: damping as f32,
     }
 }
 

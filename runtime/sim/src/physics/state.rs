@@ -6,6 +6,7 @@ pub mod bodies;
 pub mod energy;
 pub mod guide;
 pub mod joint;
+pub mod loads;
 pub mod losses;
 pub mod pairs;
 pub mod roots;

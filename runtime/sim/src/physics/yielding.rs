@@ -9,13 +9,14 @@
 //! Blows last for few milliseconds: a step in which such bodies meet is divided, as finely as stiffness and masses ask for.
 
 use hrdsl_ir::world::{BodyId, BodyMotion, ContactPhase, World};
-use rapier3d::parry::{self, bounding_volume::Aabb, bounding_volume::BoundingVolume};
+use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;
 
+use super::division::NEAR;
 use super::state::{
     adapter::PhysicsAdapter,
     bodies::{body_id, index},
-    guide::StepPart,
+    loads::ContactLoads,
     yielding::{YieldingContact, YieldingPair},
 };
 use crate::math::{SpaceVector, from_vector, to_vector};
@@ -24,8 +25,6 @@ use crate::math::{SpaceVector, from_vector, to_vector};
 const RECOVERY: f64 = 0.1;
 /// What friction is on all surfaces.
 const FRICTION: f64 = 0.8;
-/// How far bodies may be apart to count as near, besides what they can do in a step, m.
-const NEAR: f64 = 2e-3;
 /// Which part of 1/ω a part of a step may last: in a blow, and when surfaces hardly move any more.
 const FINE: f64 = 0.25;
 const COARSE: f64 = 0.5;
@@ -33,14 +32,12 @@ const COARSE: f64 = 0.5;
 const SLOW: f64 = 0.02;
 /// The most parts of a step.
 const MOST_PARTS: f64 = 64.0;
-/// What lasts longer is quasi-static (ISO/TS 15066:2016, 5.5.4), s.
-const TRANSIENT: f64 = 0.5;
 /// What begins again within this time is the same contact, s.
 const SAME: f64 = 0.1;
 
 /// What is found of a pair before its surfaces meet.
-struct NearPair {
-    at: usize,
+pub(super) struct NearPair {
+    pub at: usize,
     /// The frequency of its masses on its spring, 1/s.
     frequency: f64,
     /// m/s
@@ -87,42 +84,8 @@ impl PhysicsAdapter {
         }
     }
 
-    /// Does a step, in as many parts as the bodies that meet ask for.
-    pub(super) fn step_parts(&mut self) {
-        let dt = f64::from(self.world.integration_parameters.dt);
-        let near = self.near_pairs(dt);
-        let parts = near.iter().map(|pair| pair.parts(dt)).fold(1.0, f64::max);
-        let h = dt / parts;
-        self.part = (h, (self.substeps() as f64 / parts).ceil() as usize);
-        self.world.integration_parameters.dt = h as f32;
-        self.world.integration_parameters.num_solver_iterations = self.part.1;
-        let mut done = 0.0;
-        while done < parts {
-            self.draw_guided(StepPart { done: done / parts, h, dt });
-            for pair in &near {
-                self.press(pair.at, h);
-            }
-            self.lead_on((done + 1.0) / parts);
-            self.step_engine();
-            done += 1.0;
-        }
-        self.end_guided(dt);
-        self.led.clear();
-        self.world.integration_parameters.dt = dt as f32;
-    }
-
-    /// What no world of these bodies can do without: a step of the engine.
-    pub(crate) fn step_engine(&mut self) {
-        match self.clock {
-            Some(clock) => {
-                self.engine_time.measure(clock, || self.world.step_with_events(&self.exempt, &()));
-            }
-            None => self.world.step_with_events(&self.exempt, &()),
-        }
-    }
-
     /// The pairs that may touch within a step.
-    fn near_pairs(&mut self, dt: f64) -> Vec<NearPair> {
+    pub(super) fn near_pairs(&mut self, dt: f64) -> Vec<NearPair> {
         if self.yielding.is_empty() {
             return Vec::new();
         }
@@ -132,7 +95,7 @@ impl PhysicsAdapter {
             let pair = &mut self.yielding[at];
             let (soft, other) = (pair.soft, pair.other);
             if let Some(contact) = &mut pair.contact {
-                (contact.peak, contact.impulse) = (0.0, 0.0);
+                (contact.peaks, contact.impulse, contact.force) = ([0.0; 2], 0.0, 0.0);
                 contact.parted += dt;
             }
             pair.contact = pair.contact.filter(|contact| contact.parted < SAME);
@@ -158,57 +121,54 @@ impl PhysicsAdapter {
         near
     }
 
-    /// Where a body can be within a step.
-    pub(super) fn box_in_step(&self, part: usize, dt: f64) -> Aabb {
-        // A mere frame has no surface.
-        let Some(collider) = self.world.colliders.get(self.parts[part].collider) else {
-            return Aabb::new_invalid();
-        };
-        let around = collider.compute_aabb();
-        around.loosened((NEAR / 2.0 + self.speed_of(part) * dt) as f32)
-    }
-
-    /// No point of a body's surface is faster, m/s.
-    fn speed_of(&self, part: usize) -> f64 {
-        let own = &self.parts[part];
-        let body = &self.world.bodies[own.handle];
-        let collider = &self.world.colliders[own.collider];
-        let centre = collider.position().translation;
-        let radius = collider.shape().compute_local_bounding_sphere().radius();
-        f64::from(body.velocity_at_point(centre).length() + body.angvel().length() * radius)
-    }
-
-    fn closest(&self, a: usize, b: usize, far: f64) -> Option<parry::query::Contact> {
-        let collider = |i: usize| &self.world.colliders[self.parts[i].collider];
-        let (a, b) = (collider(a), collider(b));
-        // The engine knows how to measure between all shapes that a scenario can name.
-        parry::query::contact(a.position(), a.shape(), b.position(), b.shape(), far as f32).ok().flatten()
-    }
-
     /// Lets the surfaces of a pair press on each other for a part of a step.
-    fn press(&mut self, at: usize, h: f64) {
+    pub(super) fn press(&mut self, at: usize, h: f64) {
         let (soft, other) = (self.yielding[at].soft, self.yielding[at].other);
         let Some(found) = self.closest(soft, other, 0.0).filter(|c| c.dist < 0.0) else {
             // A dent is gone when the surfaces have parted.
             if let Some(contact) = &mut self.yielding[at].contact {
-                contact.deepest = 0.0;
+                (contact.deepest, contact.force) = (0.0, 0.0);
             }
             return;
         };
         let normal = -from_vector(found.normal1);
         let depth = -f64::from(found.dist);
         let pair = &mut self.yielding[at];
-        let new = YieldingContact { deepest: 0.0, normal, peak: 0.0, impulse: 0.0, age: 0.0, parted: 0.0 };
+        let new = YieldingContact::new(normal);
         let contact = pair.contact.get_or_insert(new);
         let force = contact.force_at(depth, pair.stiffness);
         // What was pressed in more deeply comes back.
         contact.deepest = depth.max(contact.deepest - (contact.deepest - depth) * (h / RECOVERY).min(1.0));
-        contact.peak = contact.peak.max(force);
+        contact.force = force;
         contact.impulse += force * h;
         contact.normal = normal;
         contact.age += h;
         contact.parted = 0.0;
         self.push_apart((soft, other), found.point2, normal * force, h);
+    }
+
+    /// After a part of a step: tells contacts in which something else holds the body against it.
+    pub(super) fn note_presses(&mut self, near: &[NearPair], loads: &ContactLoads, h: f64) {
+        let pressing = |at: usize| self.yielding[at].contact.filter(|contact| contact.force > 0.0);
+        let against: Vec<(usize, f64)> = near
+            .iter()
+            .filter_map(|pair| pressing(pair.at).map(|contact| (pair.at, contact)))
+            .map(|(at, contact)| {
+                let soft = self.yielding[at].soft;
+                let others = (0..self.yielding.len()).filter(|other| *other != at).filter_map(|other| {
+                    let pair = &self.yielding[other];
+                    let push = pair.contact.map(|contact| contact.normal * contact.force)?;
+                    if pair.soft == soft { Some(push) } else { (pair.other == soft).then_some(-push) }
+                });
+                let pushes = loads.on(soft).map(|(_, push)| push).chain(others);
+                (at, pushes.map(|push| (-push.dot(&contact.normal)).max(0.0)).sum())
+            })
+            .collect();
+        for (at, against) in against {
+            if let Some(contact) = &mut self.yielding[at].contact {
+                contact.note(against, h);
+            }
+        }
     }
 
     /// The force on the body that yields, and its opposite on the other; with the friction that goes with it.
@@ -245,8 +205,8 @@ impl PhysicsAdapter {
     pub(super) fn yielding_pushes(&self, body: BodyId) -> impl Iterator<Item = (BodyId, SpaceVector)> + '_ {
         let own = index(body);
         self.yielding.iter().filter_map(move |pair| {
-            let contact = pair.contact.filter(|c| c.peak > 0.0)?;
-            let push = contact.normal * contact.peak;
+            let contact = pair.contact.filter(|c| c.peak() > 0.0)?;
+            let push = contact.normal * contact.peak();
             if pair.soft == own {
                 Some((body_id(pair.other), push))
             } else if pair.other == own {
@@ -265,18 +225,8 @@ impl PhysicsAdapter {
             (pair.soft == own || pair.other == own) && by.is_none_or(|by| index(by) == other)
         });
         let of_phase =
-            of.filter_map(|pair| pair.contact.map(|contact| (pair, contact))).filter(|(pair, contact)| {
-                let lasts = contact.age > TRANSIENT || self.is_clamped(pair.soft, contact);
-                lasts == (phase == ContactPhase::QuasiStatic)
-            });
-        of_phase.map(|(_, contact)| contact.peak).sum()
-    }
-
-    /// Whether something else presses a body against a contact, half as hard at least.
-    fn is_clamped(&self, soft: usize, contact: &YieldingContact) -> bool {
-        let against =
-            self.pushes(body_id(soft)).map(|push| (-push.dot(&contact.normal)).max(0.0)).sum::<f64>();
-        against > contact.peak / 2.0
+            |contact: YieldingContact| contact.peaks[usize::from(phase == ContactPhase::QuasiStatic)];
+        of.filter_map(|pair| pair.contact.map(of_phase)).sum()
     }
 
     /// The level part of what pressed on a body in such contacts over the last step, N·s.
@@ -297,7 +247,7 @@ impl PhysicsAdapter {
 
 impl NearPair {
     /// How many parts of a step it asks for.
-    fn parts(&self, dt: f64) -> f64 {
+    pub(super) fn parts(&self, dt: f64) -> f64 {
         let fine = if self.approach > SLOW { FINE } else { COARSE };
         (dt * self.frequency / fine).ceil().clamp(1.0, MOST_PARTS)
     }

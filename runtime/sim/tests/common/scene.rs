@@ -34,6 +34,13 @@ impl Scene {
         Scene { program, sim }
     }
 
+    /// Begins anew, with another physics step.
+    pub fn at_step(&mut self, step: Nanos) {
+        let world = self.program.world.as_mut().expect("a world");
+        world.step = step;
+        self.sim = built(world, &self.program.signals);
+    }
+
     pub fn body(&self, name: &str) -> BodyId {
         let world = self.program.world.as_ref().expect("a world");
         let at = world.bodies.iter().position(|b| b.name == name).unwrap_or_else(|| panic!("no body {name}"));

@@ -5,8 +5,8 @@ use hrdsl_ir::world::{BodyId, BodyMotion, BodyShape};
 use rapier3d::prelude::*;
 
 use super::{
-    accuracy::AccuracyWatch, energy::EnergyWatch, guide::BodyGuide, joint::DrivenJoint, losses::JointLosses,
-    pairs::ExemptPairs, solid::SolidExtent, yielding::YieldingPair,
+    accuracy::AccuracyWatch, energy::EnergyWatch, guide::BodyGuide, joint::DrivenJoint, loads::ContactLoads,
+    losses::JointLosses, pairs::ExemptPairs, solid::SolidExtent, yielding::YieldingPair,
 };
 use crate::math::BodyFrame;
 
@@ -48,6 +48,7 @@ pub(crate) struct PhysicsAdapter {
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     pub joints: Vec<Option<DrivenJoint>>,
     pub losses: JointLosses,
+    pub loads: ContactLoads,
     pub exempt: ExemptPairs,
     pub energy: EnergyWatch,
     pub accuracy: AccuracyWatch,

@@ -30,6 +30,9 @@ pub(crate) struct DrivenJoint {
     pub hi: f64,
     /// Of a hinge that may turn farther than half round: where it was last.
     pub wound: Option<f64>,
+    /// How the solver mends what has come apart at it; and whether it has come so far apart that it gives way.
+    pub softness: SpringCoefficients<f32>,
+    pub is_torn: bool,
     /// The engine's motor runs it.
     pub is_run: bool,
 }

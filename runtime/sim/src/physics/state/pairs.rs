@@ -68,6 +68,11 @@ impl ExemptPairs {
         self.never.get(a * self.bodies + b).copied().unwrap_or(false)
     }
 
+    /// Whether the engine leaves them out.
+    pub fn is_left_out(&self, a: usize, b: usize) -> bool {
+        self.left_out.get(a * self.bodies + b).copied().unwrap_or(false)
+    }
+
     pub fn exempt(&mut self, a: usize, b: usize) {
         for at in [a * self.bodies + b, b * self.bodies + a] {
             self.never[at] = true;

@@ -1,0 +1,144 @@
+//! How finely a step is divided: by what may meet within it, and how fast.
+//!
+//! The engine looks for contacts once in each step of its own, and no farther than a few centimetres around a surface: what comes from
+//! farther away in that time, or swings round in it, is found inside of the other, and put out of it again only slowly. So a step in
+//! which rigid bodies come together fast is done in parts, as one in which surfaces yield is.
+
+use rapier3d::parry::{self, bounding_volume::Aabb, bounding_volume::BoundingVolume};
+use rapier3d::prelude::*;
+
+use super::state::{
+    adapter::PhysicsAdapter,
+    bodies::{body_id, index},
+    guide::StepPart,
+    loads::ContactLoads,
+};
+use crate::math::from_vector;
+
+/// How far bodies may be apart to count as near, besides what they can do in a step, m.
+pub(super) const NEAR: f64 = 2e-3;
+/// How much nearer to each other rigid surfaces come in a part of a step, m: a quarter of how far around it the engine looks.
+const WAY: f64 = 5e-3;
+/// The most parts that rigid bodies ask for.
+const MOST_PARTS: f64 = 32.0;
+
+impl PhysicsAdapter {
+    /// Does a step, in as many parts as the bodies that meet ask for.
+    pub(super) fn step_parts(&mut self) {
+        let dt = f64::from(self.world.integration_parameters.dt);
+        let near = self.near_pairs(dt);
+        let parts = near.iter().map(|pair| pair.parts(dt)).fold(self.rigid_parts(dt), f64::max);
+        let h = dt / parts;
+        self.part = (h, (self.substeps() as f64 / parts).ceil() as usize);
+        self.world.integration_parameters.dt = h as f32;
+        self.world.integration_parameters.num_solver_iterations = self.part.1;
+        let mut loads = ContactLoads::default();
+        let mut done = 0.0;
+        while done < parts {
+            self.draw_guided(StepPart { done: done / parts, h, dt });
+            for pair in &near {
+                self.press(pair.at, h);
+            }
+            self.lead_on((done + 1.0) / parts);
+            self.ease_joints();
+            self.step_engine();
+            self.accuracy.look_at_contacts(&self.world, &self.robots);
+            let part = self.loads_of_part();
+            self.note_presses(&near, &part, h);
+            loads.add_part(&part, 1.0 / parts);
+            done += 1.0;
+        }
+        self.keep_loads(loads);
+        self.end_guided(dt);
+        self.led.clear();
+        self.world.integration_parameters.dt = dt as f32;
+    }
+
+    /// What no world of these bodies can do without: a step of the engine.
+    pub(crate) fn step_engine(&mut self) {
+        match self.clock {
+            Some(clock) => {
+                self.engine_time.measure(clock, || self.world.step_with_events(&self.exempt, &()));
+            }
+            None => self.world.step_with_events(&self.exempt, &()),
+        }
+    }
+
+    /// How many parts the rigid bodies ask for that may meet within a step.
+    fn rigid_parts(&self, dt: f64) -> f64 {
+        let is_fast = |part: &usize| self.is_loose_or_led(*part) && self.speed_of(*part) * dt > WAY;
+        let fast: Vec<usize> = (0..self.parts.len()).filter(is_fast).collect();
+        let mut parts: f64 = 1.0;
+        for one in &fast {
+            let swept = self.box_in_step(*one, dt);
+            for other in 0..self.parts.len() {
+                if self.meet_rigidly(*one, other) && swept.intersects(&self.box_in_step(other, dt)) {
+                    parts = parts.max((self.approach(*one, other, dt) * dt / WAY).ceil());
+                }
+            }
+        }
+        parts.min(MOST_PARTS)
+    }
+
+    /// Whether forces alone move a body, or it is led whatever is in its way.
+    fn is_loose_or_led(&self, part: usize) -> bool {
+        let body = &self.world.bodies[self.parts[part].handle];
+        let is_solid =
+            !self.parts[part].ghost && self.world.colliders.get(self.parts[part].collider).is_some();
+        let guide = &self.guides[index(self.parts[part].root)];
+        is_solid && guide.is_none() && (body.is_kinematic() || body.is_dynamic() && !body.is_sleeping())
+    }
+
+    fn meet_rigidly(&self, a: usize, b: usize) -> bool {
+        !self.exempt.is_left_out(a, b) && self.may_touch(body_id(a), body_id(b))
+    }
+
+    /// How fast two surfaces may come together within a step, m/s; 0 if they do not come near.
+    fn approach(&self, a: usize, b: usize, dt: f64) -> f64 {
+        let reach = NEAR + (self.speed_of(a) + self.speed_of(b)) * dt;
+        let Some(found) = self.closest(a, b, reach) else { return 0.0 };
+        let ((at_a, turning_a), (at_b, turning_b)) = (self.coming(a), self.coming(b));
+        let straight = from_vector(at_a - at_b).dot(&from_vector(found.normal1)).max(0.0);
+        // Another point than the nearest may swing round.
+        let approach = straight + turning_a + turning_b;
+        if f64::from(found.dist) > approach * dt + NEAR { 0.0 } else { approach }
+    }
+
+    /// How fast the middle of a body's surface will go in the next step, m/s, and how much faster its points may go as it turns.
+    fn coming(&self, part: usize) -> (Vector, f64) {
+        let own = &self.parts[part];
+        let body = &self.world.bodies[own.handle];
+        let Some(collider) = self.world.colliders.get(own.collider) else { return (Vector::ZERO, 0.0) };
+        let radius = collider.shape().compute_local_bounding_sphere().radius();
+        let turning = f64::from(body.angvel().length() * radius);
+        let led = self.led.iter().find(|(handle, _)| *handle == own.handle);
+        let middle = led.map_or_else(
+            || body.velocity_at_point(collider.position().translation),
+            |(_, to)| (to.translation - body.translation()) / self.step as f32,
+        );
+        (middle, turning)
+    }
+
+    /// No point of a body's surface will be faster in the next step, m/s.
+    pub(super) fn speed_of(&self, part: usize) -> f64 {
+        let (middle, turning) = self.coming(part);
+        f64::from(middle.length()) + turning
+    }
+
+    /// Where a body can be within a step.
+    pub(super) fn box_in_step(&self, part: usize, dt: f64) -> Aabb {
+        // A mere frame has no surface.
+        let Some(collider) = self.world.colliders.get(self.parts[part].collider) else {
+            return Aabb::new_invalid();
+        };
+        let around = collider.compute_aabb();
+        around.loosened((NEAR / 2.0 + self.speed_of(part) * dt) as f32)
+    }
+
+    pub(super) fn closest(&self, a: usize, b: usize, far: f64) -> Option<parry::query::Contact> {
+        let collider = |i: usize| self.world.colliders.get(self.parts[i].collider);
+        let (a, b) = (collider(a)?, collider(b)?);
+        // The engine knows how to measure between all shapes that a scenario can name.
+        parry::query::contact(a.position(), a.shape(), b.position(), b.shape(), far as f32).ok().flatten()
+    }
+}
