@@ -37,6 +37,12 @@ ABSENT = {
     "nav2_simple_commander": "bind the actions of navigation, and use rclpy.action",
     "controller_manager": "bind the topic or the action of the controller",
     "gazebo_ros": "the world is the scenario's",
+    "ament_index_python.resources": "only packages are indexed, those that `messages` names: ask ament_index_python.packages for them",
+    "rosidl_runtime_py": "use what messages have themselves: `str(msg)`, `msg.get_fields_and_field_types()`, `getattr` and `setattr`",
+    "tf2_kdl": "do_transform_point and its like of tf2_geometry_msgs transform the messages of geometry_msgs",
+    "tf2_sensor_msgs": "read the points of the cloud, and transform each with tf2_geometry_msgs.do_transform_point",
+    "tf_transformations": "put `transforms3d` into requirements.txt, and use its `euler` and `quaternions` (whose order is w, x, y, z)",
+    "turtlesim": "its window does not run; name a folder of its definitions with `messages`, and bind `cmd_vel` and `pose` of the turtle",
 }
 
 

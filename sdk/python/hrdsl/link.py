@@ -48,6 +48,7 @@ class Link:
         self._told: list[tuple[object, int]] = []  # since the last reply: what each is about, and the thread
         self._lines = 0  # that had been written when the last reply came
         self.time = 0  # simulated nanoseconds at the last reply
+        self.asked = 0  # requests that have had a reply
         self.program = ""  # its name in the scenario
         self.faults: list[tuple[int, ProtocolError]] = []  # of requests without replies, to be raised by these threads
         self.backlog: list[dict[str, Any]] = []  # what has arrived before there is an exchange
@@ -165,6 +166,7 @@ class Link:
             if self._stopped is not None:
                 raise Stopped(self._stopped)
             answer = self._exchange(line)
+        self.asked += 1
         if "error" in answer and "ok" not in answer:
             raise ProtocolError(answer["error"], answer.get("help"))
         return answer

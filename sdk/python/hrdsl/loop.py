@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 
 from hrdsl.children import unsupported
+from hrdsl.schedule import POLLS
 from hrdsl.waits import Ready, wait
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
@@ -99,6 +100,11 @@ def _loop(asyncio: Any, unix: Any, selector: Any, scheduler: Scheduler) -> Any:
             self._clock_resolution = 1e-9
 
         def time(self) -> float:
+            # As `Scheduler.polled` does. The loop itself asks once in each turn: a coroutine that looks again and again, and sleeps for
+            # nothing between, waits for time to pass, too.
+            scheduler.polls += 1
+            if scheduler.polls >= POLLS:
+                scheduler.much_polled()
             return outside.time / 1e9
 
         # Signals alone need the pipe to itself that a loop has for being woken.

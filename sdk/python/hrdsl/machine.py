@@ -20,13 +20,18 @@ CORES = frozenset({0})
 def install(elapsed: Callable[[], float]) -> Callable[[], None]:
     """Replaces what tells of cores, load and resources used; `elapsed` is simulated time in seconds. What it returns is to be
     called when the program begins in a process that was forked for it."""
+
+    def times() -> Any:
+        now = elapsed()
+        return os.times_result((now, 0.0, 0.0, 0.0, now))
+
     for name in ("cpu_count", "process_cpu_count"):
         put(name, lambda: len(CORES), os)
     put("getloadavg", lambda: (0.0, 0.0, 0.0), os)
     _affinity()
     _system_values()
     if hasattr(os, "times"):
-        put("times", lambda: os.times_result((elapsed(), 0.0, 0.0, 0.0, elapsed())), os)
+        put("times", times, os)
     when_imported("resource", lambda module: _usage(module, elapsed))
     return _thread_numbers()
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import sys
 
-from hrdsl import children, threads
+from hrdsl import alarms, children, threads
 from hrdsl.replace import when_imported
 from hrdsl.schedule import Scheduler
+from hrdsl.watch import Watcher
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -19,24 +20,23 @@ if TYPE_CHECKING:
 _POOLS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
 
-def install(link: Link) -> Scheduler:
-    """Lets a scheduler run the threads of this process."""
+def install(link: Link) -> tuple[Scheduler, Callable[[], None]]:
+    """Lets a scheduler run the threads of this process. What it returns besides is to be called when the program begins, and has it
+    watched for loops that never wait."""
     for name in _POOLS:
         os.environ.setdefault(name, "1")
     scheduler = link.scheduler = Scheduler(link, _number("HRDSL_SCHEDULE", int))
     made = threads.install(scheduler)
+    alarms.install(scheduler, made)
     children.install()
     _when_imported(scheduler)
     link.sleep = scheduler.sleep  # type: ignore[method-assign]
     budget = _number("HRDSL_BUSY_SECONDS", float)
 
     def watch() -> None:
-        from hrdsl.watch import Watcher
-
         Watcher(scheduler, made, 10.0 if budget is None else budget).start()
 
-    made.on_first = watch
-    return scheduler
+    return scheduler, watch
 
 
 def _when_imported(scheduler: Scheduler) -> None:
@@ -48,7 +48,7 @@ def _when_imported(scheduler: Scheduler) -> None:
 
         return call
 
-    for name in ("select", "subprocess", "multiprocessing.process", "asyncio"):
+    for name in ("select", "subprocess", "_multiprocessing", "multiprocessing.connection", "multiprocessing.process", "asyncio"):
         when_imported(name, patch(name))
 
 

@@ -13,6 +13,8 @@ import sys
 
 import _signal  # type: ignore[import-not-found]  # without the enumerations of `signal`
 
+from hrdsl.alarms import real_alarm
+
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
     from types import FrameType
@@ -130,7 +132,7 @@ def _try(name: str, run: PreparedRun, project: _Project) -> str:
     known, descriptors = set(sys.modules), _descriptors()
     sys.dont_write_bytecode = True
     _signal.signal(_signal.SIGALRM, _signal.SIG_DFL)
-    _signal.alarm(_PATIENCE)
+    real_alarm(_PATIENCE)
     run.simulation.chance.on_draw = lambda: None if _is_reseeded(sys._getframe(1)) else faults.append("chance")
 
     def listen(event: str, args: Any) -> None:

@@ -33,12 +33,44 @@ def deadlock(scheduler: Scheduler) -> str:
 
 def busy(scheduler: Scheduler, task: Task, seconds: float) -> str:
     """Where the loop is, and which waits let the others run."""
-    _, place = _wait_of(sys._current_frames().get(task.ident))
+    place, wait = _loop_of(task)
     return (
         "hrdsl: %s: %s has computed for more than %g s of processor time while others wait to run; if this is a loop that waits for"
-        " something, wait with time.sleep, Event.wait(timeout) or a queue (HRDSL_BUSY_SECONDS sets the limit)\n"
-        % (place, name(scheduler, task), seconds)
+        " something, %s (HRDSL_BUSY_SECONDS sets the limit)\n" % (place, name(scheduler, task), seconds, wait)
     )
+
+
+def silent(scheduler: Scheduler, task: Task, seconds: float) -> str:
+    """Where a thread computes that keeps nobody from running, but makes no request either."""
+    place, wait = _loop_of(task)
+    return (
+        "hrdsl: %s: %s has computed for more than %g s of processor time without a wait or a request, while no simulated time passes, and"
+        " the limit of the program is near; if this is a loop that waits for something, %s\n"
+        % (place, name(scheduler, task), seconds, wait)
+    )
+
+
+def _loop_of(task: Task) -> tuple[str, str]:
+    """Where a thread computes, and how it would wait there."""
+    frame = sys._current_frames().get(task.ident)
+    _, place = _wait_of(frame)
+    while frame is not None:
+        if frame.f_code.co_filename.endswith(os.path.join("asyncio", "events.py")):
+            return place, "wait with `await asyncio.sleep(seconds)`, or for an asyncio.Event"
+        frame = frame.f_back
+    waits = "wait with time.sleep, Event.wait(timeout) or a queue"
+    for module, more in _WAITS.items():
+        if module in sys.modules:
+            return place, "%s, or with %s" % (waits, more)
+    return place, waits
+
+
+#: With what else programs wait that use one of these modules.
+_WAITS = {
+    "rclpy": "rclpy.spin_once(node)",
+    "rospy": "rospy.sleep, or the sleep of a rospy.Rate",
+    "hrdsl.node": "Node.wait_for or Node.sleep",
+}
 
 
 def child(scheduler: Scheduler) -> str:

@@ -82,6 +82,7 @@ class PreparedRun:
         _signal.signal(_signal.SIGHUP, _signal.SIG_DFL)
         _signal.signal(_signal.SIGTERM, _terminated)
         link, scheduler = self.link, self.simulation.scheduler
+        self.simulation.watch()
         status = 1
         try:
             status, is_stopped = _status(lambda: _run(self.words, self.option, self.recorder))

@@ -30,6 +30,10 @@ if TYPE_CHECKING:
         def stopped(self) -> bool:
             """Whether the test is over, so that no wait ends any more."""
 
+        @property
+        def asked(self) -> int:
+            """How many requests have been answered."""
+
         def wait(self, until: int | None, give_up: int | None) -> bool:
             """Lets time pass until `until`, or something arrives, whose handlers may call `Scheduler.unpark`, or `give_up`, if
             nothing else happens at that instant: whether it was the last. Raises `Deadlock` if nothing can end it."""
@@ -363,6 +367,8 @@ class Scheduler:
     def _handle_signals(self, me: Task) -> None:
         _handle_pending()
         sender, self._sender = self._sender, None
+        if me.what == "pause":  # the handler was what it has waited for
+            self.unpark(me)
         if sender is not None:
             sender.baton.release()
             me.baton.acquire()

@@ -28,12 +28,13 @@ class Simulation:
 
     def __init__(self, link: Link, seed: int) -> None:
         """Replaces what the standard library tells of time, chance and the machine, for this process, and what waits."""
-        self.scheduler = outside.install(link)
+        self.scheduler, self.watch = outside.install(link)
         self._begin_files = files.install(link, lambda: EPOCH + link.time)  # before the clocks, as it needs the real one
         self.chance = chance.install(seed)
-        self._begin_threads = machine.install(lambda: link.time / SECOND)
-        _clocks(self.scheduler, link)
-        dates.install(lambda: (EPOCH + link.time) / SECOND)
+        now = _polled_clock(self.scheduler, link)
+        self._begin_threads = machine.install(lambda: now() / SECOND)
+        _clocks(self.scheduler, now)
+        dates.install(lambda: (EPOCH + now()) / SECOND)
 
     def begin(self, seed: int) -> None:
         """To be called where the program begins later than this was made, in a process that was forked for it: nothing of what
@@ -44,7 +45,7 @@ class Simulation:
         self.chance.begin(seed)
 
 
-def _clocks(scheduler: Scheduler, link: Link) -> None:
+def _polled_clock(scheduler: Scheduler, link: Link) -> Callable[[], int]:
     def now() -> int:
         # As `Scheduler.polled` does: a program that reads the clock again and again waits for it to move.
         scheduler.polls += 1
@@ -52,6 +53,10 @@ def _clocks(scheduler: Scheduler, link: Link) -> None:
             scheduler.much_polled()
         return link.time
 
+    return now
+
+
+def _clocks(scheduler: Scheduler, now: Callable[[], int]) -> None:
     def elapsed() -> float:
         return now() / SECOND
 

@@ -7,14 +7,13 @@ real time passes.
 
 from __future__ import annotations
 
-from hrdsl import children
-from hrdsl.errors import Unsupported
+from hrdsl import children, processes
 from hrdsl.locks import after
 from hrdsl.replace import Builtin
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
-    from typing import Any, Callable, NoReturn
+    from typing import Any, Callable
 
     from hrdsl.schedule import Scheduler, Watch
 
@@ -186,17 +185,6 @@ def _epoll(real_epoll: Any, scheduler: Scheduler) -> Any:
     return epoll
 
 
-def _multiprocessing(module: Any, scheduler: Scheduler) -> None:
-    def start(self: Any) -> NoReturn:
-        """Refused: it would run in real time beside the simulated one."""
-        raise Unsupported(
-            "multiprocessing starts processes that run in real time, beside the simulated one; use threads"
-            " (threading, concurrent.futures.ThreadPoolExecutor), or subprocess.run for a child that is waited for"
-        )
-
-    module.BaseProcess.start = start
-
-
 def _asyncio(module: Any, scheduler: Scheduler) -> None:
     from hrdsl import loop
 
@@ -207,6 +195,8 @@ def _asyncio(module: Any, scheduler: Scheduler) -> None:
 PATCHES: dict[str, Callable[[Any, Scheduler], None]] = {
     "select": _descriptors,
     "subprocess": children.patch_subprocess,
-    "multiprocessing.process": _multiprocessing,
+    "_multiprocessing": processes.patch_semaphores,
+    "multiprocessing.connection": processes.patch_connections,
+    "multiprocessing.process": processes.patch_starts,
     "asyncio": _asyncio,
 }

@@ -1,7 +1,8 @@
-"""Finds loops that never wait, so that no other thread of the program ever runs."""
+"""Finds loops that never wait, so that no other thread of the program ever runs, and no time passes."""
 
 from __future__ import annotations
 
+import _thread
 import os
 import sys
 import time
@@ -17,12 +18,16 @@ if TYPE_CHECKING:
     from hrdsl.schedule import Scheduler, Task
     from hrdsl.threads import Threads
 
+#: Bytes of its stack.
+_STACK = 1 << 20
+
 
 class Watcher:
     """A thread of the system's, beside those of the program, that looks now and then whether the scheduler was called.
 
     It changes nothing that the program sees unless it finds a fault: the thread that has the baton has computed for
-    `budget` seconds of its processor time without a call, while another is ready, or waits for a time that cannot come.
+    `budget` seconds of its processor time without a call, while another is ready, or waits for a time that cannot come. Of a thread
+    that computes for so long while nobody waits, it tells the place, since the harness soon ends a program that makes no request.
     """
 
     def __init__(self, scheduler: Scheduler, threads: Threads, budget: float) -> None:
@@ -43,7 +48,13 @@ class Watcher:
         self._stop, self._stopped = real_lock(), real_lock()
         self._stop.acquire()
         self._stopped.acquire()
-        real_start(self._run, ())
+        size = _thread.stack_size(_STACK)
+        try:
+            real_start(self._run, ())
+        except RuntimeError:  # the system lets it have no more threads, and the program may need none
+            self._stop = None
+        finally:
+            _thread.stack_size(size)
 
     def _end(self) -> None:
         """A forked process has one thread, and the interpreter warns of more; the next thread that the program starts
@@ -61,14 +72,21 @@ class Watcher:
     def _run(self) -> None:
         stop, stopped = self._stop, self._stopped
         seen, since = (-1, -1), 0.0
+        heard, silent_since = -1, 0.0  # requests, which let nobody else run
         while not stop.acquire(True, min(1.0, max(0.01, self._budget / 4))):
             task = self._scheduler.running
             used = _processor_time(task)
             if used is None or (task.ident, self._scheduler.calls) != seen:
                 seen, since = (task.ident, self._scheduler.calls), used or 0.0
+                heard, silent_since = self._scheduler.outside.asked, since
             elif used - since > self._budget and self._keeps_others(task):
                 self._found(task)
                 break
+            elif self._scheduler.outside.asked != heard:
+                heard, silent_since = self._scheduler.outside.asked, used
+            elif used - silent_since > self._budget:
+                self._tell(task)
+                silent_since = float("inf")  # once is enough, until something is asked again
         stopped.release()
 
     def _keeps_others(self, task: Task) -> bool:
@@ -77,6 +95,12 @@ class Watcher:
             return True
         # A message that a callback waits for comes when time passes, and not before.
         return scheduler.outside.can_arrive()
+
+    def _tell(self, task: Task) -> None:
+        from hrdsl import report
+
+        sys.stderr.write(report.silent(self._scheduler, task, self._budget))
+        sys.stderr.flush()
 
     def _found(self, task: Task) -> None:
         from hrdsl import report

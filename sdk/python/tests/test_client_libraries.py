@@ -39,7 +39,7 @@ def ran(code):
 """
 
 ROS1 = LOOKS + """
-import moveit_commander, moveit_msgs.msg, rosgraph, rospkg, rospy, smach_ros, tf.transformations, tf2_ros, tf_conversions
+import actionlib, moveit_commander, moveit_msgs.msg, rosgraph, rospkg, rospy, smach_ros, tf.transformations, tf2_ros, tf_conversions
 rospy.init_node("node")
 group = moveit_commander.MoveGroupCommander("arm")
 """

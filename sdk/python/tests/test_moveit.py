@@ -509,7 +509,9 @@ print(group.get_goal_tolerance(), group.get_planning_time(), all(abs(value) <= 2
         text = """
 group = moveit_commander.MoveGroupCommander("arm")
 group.set_planner_id("RRTConnectkConfigDefault")
+group.set_planner_id("RRTConnectkConfigDefault")
 group.set_goal_tolerance(0.25)
+group.set_goal_position_tolerance(0.25)
 print(repr(group.get_planner_id()), group.get_goal_tolerance(), group.get_goal_joint_tolerance())
 group.set_joint_value_target([0.0, 1.625])  # as far beyond its bounds as the tolerance allows
 group.set_goal_joint_tolerance(0.01)
@@ -518,6 +520,8 @@ tries(lambda: group.set_joint_value_target([0.0, 1.625]))
         out = [line for line in self.said(text) if "ERROR" not in line]
         bounds = "MoveItCommanderException Error setting joint target. Is the target within bounds?"
         self.assertEqual(out, ["'RRTConnectkConfigDefault' (0.25, 0.25, 0.25) 0.25", bounds])
+        for warning in ("identifiers of planners and pipelines are kept, and change no plan", "tolerances of positions and orientations are kept, and"):
+            self.assertEqual((self.out + self.err).count(warning), 1, self.err)
 
     def test_a_group_attaches_and_detaches(self):
         text = """

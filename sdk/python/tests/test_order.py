@@ -154,7 +154,23 @@ class Faults(Case):
             threading.Timer(1, print, ["timer"]).start()
             """
         finished = run_text(text, env={"HRDSL_BUSY_SECONDS": "0.1"})
-        self.assertEqual((finished.code, finished.out, finished.err), (0, "timer\n", ""))
+        self.assertEqual((finished.code, finished.out), (0, "timer\n"))
+        self.assertRegex(finished.err, r"^hrdsl: .*/program.py:\d+: thread MainThread has computed for more than 0.1 s of processor time without")
+        self.assertEqual(len(finished.err.splitlines()), 1, "it is told once")
+
+    def test_a_thread_alone_is_told_where_it_computes_and_how_it_would_wait(self):
+        for begin, how in (
+            ("import hrdsl\nnode = hrdsl.Node('a')\nnode.emit('a')\n", "or with Node.wait_for or Node.sleep"),
+            ("import asyncio\n", "with `await asyncio.sleep(seconds)`, or for an asyncio.Event"),
+        ):
+            text = begin + "async def look():\n    left = 10**7\n    while left:\n        left -= 1\n"
+            text += "asyncio.run(look())" if "asyncio" in begin else "try:\n    look().send(None)\nexcept StopIteration:\n    print('end')"
+            finished = run_text(text, env={"HRDSL_BUSY_SECONDS": "0.05"})
+            lines = [place + 1 for place, line in enumerate(text.splitlines()) if "left" in line]
+            self.assertEqual(finished.code, 0, "it is no fault")
+            self.assertRegex(finished.err, r"^hrdsl: .*/program.py:(%s): thread MainThread has" % "|".join(map(str, lines)))
+            self.assertTrue(finished.err.endswith(how + "\n"), finished.err)
+            self.assertEqual(len(finished.err.splitlines()), 1, finished.err)
 
     def test_after_a_stop_all_threads_end(self):
         text = """

@@ -325,6 +325,25 @@ class Polling(Case):
                 (line,) = self.said(text % poll)
                 self.assertIn(line, ("0.010 MainThread end", "0.011 MainThread end"))
 
+    def test_clocks_of_all_kinds_are_polls(self):
+        text = """
+            import asyncio, datetime, os, resource
+            loop = asyncio.new_event_loop()
+            for clock in (
+                lambda: datetime.datetime.now().timestamp() - 1735689600, lambda: datetime.datetime.utcnow().timestamp() - 1735689600,
+                lambda: os.times().elapsed, lambda: os.times().user, lambda: resource.getrusage(resource.RUSAGE_SELF).ru_utime,
+                lambda: time.gmtime().tm_sec / 100, lambda: time.clock_gettime(time.CLOCK_MONOTONIC), lambda: time.process_time(),
+                loop.time,
+            ):
+                start = clock()
+                while clock() < start + 0.01:
+                    pass
+                print("end")
+            """
+        # `utcnow` is deprecated from Python 3.12 on.
+        finished = run_text("import warnings\nwarnings.simplefilter('ignore')\n" + SAY + textwrap.dedent(text))
+        self.assertEqual((finished.code, finished.err, finished.out), (0, "", "end\n" * 9))
+
     def test_using_queues_and_locks_is_no_polling(self):
         text = """
             import queue

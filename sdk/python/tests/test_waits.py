@@ -248,6 +248,24 @@ class Loop(Case):
         )
 
     @unittest.skipUnless(sys.version_info >= (3, 11), "TaskGroup and timeout came with Python 3.11")
+    def test_turns_without_a_wait_let_time_pass(self):
+        text = """
+            import asyncio
+            async def main():
+                task = asyncio.ensure_future(asyncio.sleep(0.01))
+                while not task.done():
+                    await asyncio.sleep(0)
+                say("done")
+                event = asyncio.Event()
+                threading.Timer(0.01, event.set).start()
+                while not event.is_set():
+                    await asyncio.sleep(0)
+                say("set")
+            asyncio.run(main())
+            """
+        times = [float(line.split()[0]) for line in self.said(text)]
+        self.assertTrue(0.01 <= times[0] <= 0.011 and 0.02 <= times[1] <= 0.022, times)
+
     def test_groups_and_timeouts(self):
         text = """
             import asyncio

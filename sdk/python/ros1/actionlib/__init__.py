@@ -30,6 +30,7 @@ __all__ = [
     "CommState",
     "GoalID",
     "GoalIDGenerator",
+    "GoalManager",
     "GoalStatus",
     "ServerGoalHandle",
     "SimpleActionClient",
@@ -42,3 +43,13 @@ __all__ = [
     "rospy",
     "threading",
 ]
+
+
+class GoalManager:
+    """Refused."""
+
+    def __init__(self, *args: object, **kwargs: object) -> None:
+        raise NotImplementedError(
+            "actionlib.GoalManager, which an action client has inside, is not there in hrdsl: make an actionlib.ActionClient, whose send_goal"
+            " returns a handle of the goal, or an actionlib.SimpleActionClient"
+        )

@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from typing import Any, NoReturn, Sequence
 
 _OUT_OF_BOUNDS = "Error setting joint target. Is the target within bounds?"
+_EXACT = "plans are exact: tolerances of positions and orientations are kept, and change no plan"
+_ONE_PLANNER = "there is one planner, hrdsl's own: identifiers of planners and pipelines are kept, and change no plan"
 
 
 def unsupported(what: str, instead: str) -> NoReturn:
@@ -252,6 +254,7 @@ class Targets:
 
     def set_goal_tolerance(self, value: float) -> None:
         """Sets all three."""
+        model.warn_once(_EXACT)
         self._tolerances = {kind: float(value) for kind in self._tolerances}
 
     def set_goal_joint_tolerance(self, value: float) -> None:
@@ -260,10 +263,12 @@ class Targets:
 
     def set_goal_position_tolerance(self, value: float) -> None:
         """Is kept; plans are exact."""
+        model.warn_once(_EXACT)
         self._tolerances["position"] = float(value)
 
     def set_goal_orientation_tolerance(self, value: float) -> None:
         """Is kept; plans are exact."""
+        model.warn_once(_EXACT)
         self._tolerances["orientation"] = float(value)
 
     def set_max_velocity_scaling_factor(self, value: float) -> None:
@@ -289,6 +294,7 @@ class Targets:
 
     def set_planner_id(self, planner_id: str) -> None:
         """Is kept; there is one planner."""
+        model.warn_once(_ONE_PLANNER)
         self._planner = str(planner_id)
 
     def get_planner_id(self) -> str:
@@ -297,6 +303,7 @@ class Targets:
 
     def set_planning_pipeline_id(self, planning_pipeline: str) -> None:
         """Is kept; there is one planner."""
+        model.warn_once(_ONE_PLANNER)
         self._pipeline = str(planning_pipeline)
 
     def get_planning_pipeline_id(self) -> str:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Buffer",
     "BufferCore",
+    "BufferServer",
     "BufferInterface",
     "ConnectivityException",
     "ConvertRegistration",
@@ -56,5 +57,15 @@ class BufferClient:
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         raise NotImplementedError(
             "tf2_ros.BufferClient, which asks a server of transforms, is not there in hrdsl: make a tf2_ros.Buffer and a"
+            " tf2_ros.TransformListener instead"
+        )
+
+
+class BufferServer:
+    """Refused."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        raise NotImplementedError(
+            "tf2_ros.BufferServer, which answers other nodes about transforms, is not there in hrdsl: give each node a tf2_ros.Buffer and a"
             " tf2_ros.TransformListener instead"
         )

@@ -21,7 +21,7 @@ from tf2_ros.buffer_interface import (
     convert,
 )
 from tf2_ros.buffer import Buffer
-from tf2_ros.buffer_client import BufferClient
+from tf2_ros.buffer_client import BufferClient, BufferServer
 from tf2_ros.transform_listener import TransformListener
 from tf2_ros.transform_broadcaster import TransformBroadcaster
 from tf2_ros.static_transform_broadcaster import StaticTransformBroadcaster
@@ -30,6 +30,7 @@ __all__ = [
     "Buffer",
     "BufferClient",
     "BufferCore",
+    "BufferServer",
     "BufferInterface",
     "ConnectivityException",
     "ConvertRegistration",

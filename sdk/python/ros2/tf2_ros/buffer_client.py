@@ -1,4 +1,4 @@
-"""Refused: transforms that another node computes."""
+"""Refused: transforms that another node computes, or that are computed for others."""
 
 from __future__ import annotations
 
@@ -15,3 +15,10 @@ class BufferClient(BufferInterface):
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         _world.unsupported("tf2_ros.BufferClient", "make a tf2_ros.Buffer and a tf2_ros.TransformListener instead")
+
+
+class BufferServer:
+    """Refused."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        _world.unsupported("tf2_ros.BufferServer", "give each node a tf2_ros.Buffer and a tf2_ros.TransformListener instead")
