@@ -108,7 +108,7 @@ impl<W: WorldBackend> WorldBackend for TimedWorld<W> {
         self.watch.measure(|t| &mut t.planning, || self.world.command(command))
     }
 
-    fn state(&self, device: DeviceBody, what: &str) -> Option<Vec<f64>> {
+    fn state(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
         self.watch.measure(|t| &mut t.sensing, || self.world.state(device, what))
     }
 
