@@ -274,6 +274,18 @@ impl Laser {
     pub fn increment(&self) -> f64 {
         if self.beams < 2 { 0.0 } else { (self.hi - self.lo) / f64::from(self.beams - 1) }
     }
+
+    /// The first and the last beam between two angles, which are both among them; `None`: there is no beam.
+    #[must_use]
+    pub fn beams_between(&self, from: f64, to: f64) -> Option<(u16, u16)> {
+        /// What rounding may cost at either end, as a part of the angle between two beams.
+        const ROUNDING: f64 = 1e-6;
+        let slack = if self.beams < 2 { ROUNDING } else { ROUNDING * self.increment() };
+        let angle = |beam: u16| self.lo + f64::from(beam) * self.increment();
+        let mut within = (0..self.beams).filter(|beam| (from - slack..=to + slack).contains(&angle(*beam)));
+        let first = within.next()?;
+        Some((first, within.last().unwrap_or(first)))
+    }
 }
 
 /// Somebody with a trunk on legs: guided bodies that go where one of them is sent, and keep their balance, or fall.
@@ -385,12 +397,12 @@ pub enum SignalTerm {
     HoldsAny(GripperId),
     /// `joint_speed(arm)`: the largest speed of its joints, rad/s
     JointSpeed(ArmId),
-    /// `joint_speed(joint)`: about its axis, rad/s
+    /// `joint_speed(joint)`: about its axis, rad/s, or along it, m/s
     JointRate(JointId),
-    /// `joint_angle(joint)`: from the start, rad
-    JointAngle(JointId),
-    /// `torque(joint)`: of its motor, about its axis, Nm
-    Torque(JointId),
+    /// `joint_position(joint)`, or of a hinge `joint_angle(joint)`: rad or m
+    JointPosition(JointId),
+    /// `joint_effort(joint)`, or of a hinge `torque(joint)`: of its motor, about its axis, Nm, or along it, N
+    JointEffort(JointId),
     /// `speed(b)`: m/s
     Speed(BodyRef),
     /// `touches(a, b)`: whether one presses on the other, or their surfaces touch or overlap, bool
@@ -402,6 +414,12 @@ pub enum SignalTerm {
     /// `transient_force(a)`, `transient_force(a, b)`, `quasistatic_force(a)`, `quasistatic_force(a, b)`: how hard others, or
     /// one, press on what yields, in contacts of this kind, N
     Pressed { body: BodyRef, by: Option<BodyRef>, phase: ContactPhase },
+    /// `estimated_pressure(a, area)`, `estimated_pressure(a, b, area)`: how hard others, or one, press on it, over an area (m²) that
+    /// somebody assumes, Pa
+    Pressure { body: BodyRef, by: Option<BodyRef>, area: f64 },
+    /// `nearest(laser)`, `nearest(laser, from, to)`: the least range of these beams, the first and the last, m; infinite if they meet
+    /// nothing
+    Nearest { laser: LaserId, first: u16, last: u16 },
     /// `weight(b)`: how hard others press down on it, N
     Weight(BodyRef),
     /// `tilt(b)`: between the vertical and where its direction points that was vertical at the start, rad, 0..π

@@ -302,6 +302,7 @@ impl WorldSimulation {
             hands: &self.hands,
             arms: &self.arms,
             currents: &self.world.currents,
+            lasers: &self.world.lasers,
             signals: &self.signals,
             past: &self.past,
             sensors: &self.sensors,
