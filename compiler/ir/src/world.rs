@@ -199,6 +199,9 @@ pub struct Arm {
     pub max_speed: f64,
     /// It stops when what it meets presses it harder than this, N; `None`: it does not feel contacts.
     pub contact_limit: Option<f64>,
+    /// Its planner knows where people are, too.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub avoids_people: bool,
     /// In the order of the text; each name once.
     pub postures: Vec<NamedPosture>,
 }

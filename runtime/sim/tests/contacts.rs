@@ -125,6 +125,7 @@ fn beam(loaded: bool) -> World {
         tip: BodyId(1),
         tool: [0.0; 3],
         contact_limit: None,
+        avoids_people: false,
         max_speed: 0.5,
         postures: Vec::new(),
     }];
