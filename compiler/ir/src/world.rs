@@ -281,13 +281,10 @@ impl Laser {
     /// The first and the last beam between two angles, which are both among them; `None`: there is no beam.
     #[must_use]
     pub fn beams_between(&self, from: f64, to: f64) -> Option<(u16, u16)> {
-        /// What rounding may cost at either end, as a part of the angle between two beams.
-        const ROUNDING: f64 = 1e-6;
-        let slack = if self.beams < 2 { ROUNDING } else { ROUNDING * self.increment() };
+        let slack = 1e-6 * if self.beams < 2 { 1.0 } else { self.increment() };
         let angle = |beam: u16| self.lo + f64::from(beam) * self.increment();
         let mut within = (0..self.beams).filter(|beam| (from - slack..=to + slack).contains(&angle(*beam)));
-        let first = within.next()?;
-        Some((first, within.last().unwrap_or(first)))
+        within.next().map(|first| (first, within.last().unwrap_or(first)))
     }
 }
 
@@ -414,14 +411,11 @@ pub enum SignalTerm {
     Force(BodyRef, BodyRef),
     /// `force(b)`: how hard all others press on it, N
     ForceOn(BodyRef),
-    /// `transient_force(a)`, `transient_force(a, b)`, `quasistatic_force(a)`, `quasistatic_force(a, b)`: how hard others, or
-    /// one, press on what yields, in contacts of this kind, N
+    /// `transient_force(a, b)`, `quasistatic_force(a, b)`: how hard others, or one, press on what yields in such contacts, N
     Pressed { body: BodyRef, by: Option<BodyRef>, phase: ContactPhase },
-    /// `estimated_pressure(a, area)`, `estimated_pressure(a, b, area)`: how hard others, or one, press on it, over an area (m²) that
-    /// somebody assumes, Pa
+    /// `estimated_pressure(a, b, area)`: how hard others, or one, press on it, over an area (m²) that somebody assumes, Pa
     Pressure { body: BodyRef, by: Option<BodyRef>, area: f64 },
-    /// `nearest(laser)`, `nearest(laser, from, to)`: the least range of these beams, the first and the last, m; infinite if they meet
-    /// nothing
+    /// `nearest(laser, from, to)`: the least range of all beams from the first to the last, m; infinite if they meet nothing
     Nearest { laser: LaserId, first: u16, last: u16 },
     /// `weight(b)`: how hard others press down on it, N
     Weight(BodyRef),
