@@ -900,6 +900,8 @@ module.exports = grammar({
         optional(seq(keyword($, "effort"), field("effort", $.expression))),
         optional(seq(keyword($, "speed"), field("speed", $.expression))),
         optional(seq(keyword($, "rotor"), field("rotor", $.expression))),
+        optional(seq(keyword($, "damping"), field("damping", $.expression))),
+        optional(seq(keyword($, "friction"), field("friction", $.expression))),
         optional(
           seq(
             keyword($, "mimic"),
@@ -921,6 +923,7 @@ module.exports = grammar({
         keyword($, "speed"),
         field("speed", $.expression),
         optional(seq(keyword($, "contact"), field("contact", $.expression))),
+        optional(seq(keyword($, "avoids"), field("avoids", $.identifier))),
         repeat($.sensing),
       ),
     gripper: ($) =>
@@ -980,9 +983,16 @@ module.exports = grammar({
         ),
       ),
     sensing: ($) =>
-      seq(
-        choice(...["every", "late", "noise", "drift", "dropout", "flip"].map((word) => keyword($, word))),
-        list(field("value", $.expression)),
+      choice(
+        seq(
+          choice(...["every", "late", "noise", "drift", "dropout", "flip"].map((word) => keyword($, word))),
+          list(field("value", $.expression)),
+        ),
+        seq(
+          keyword($, "outlier"),
+          field("value", $.expression),
+          optional(seq(keyword($, "in"), field("range", $.range))),
+        ),
       ),
     _body_chain: ($) =>
       seq(repeat1(seq(field("body", alias($._origin, $.identifier)), "->")), field("body", $.identifier)),

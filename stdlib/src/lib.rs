@@ -11,6 +11,7 @@ pub const DEVICES: &str = "std.devices";
 /// All modules: path and text, sorted by path.
 pub const MODULES: &[(&str, &str)] = &[
     (DEVICES, include_str!("../devices.hri")),
+    ("std.furniture", include_str!("../furniture.hri")),
     ("std.person", include_str!("../person.hri")),
     ("std.requirements", include_str!("../requirements.hri")),
     ("std.robots.bert2", include_str!("../robots/bert2.hri")),

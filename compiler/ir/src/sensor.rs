@@ -28,6 +28,9 @@ pub struct ImperfectSensor {
     pub dropout: f64,
     /// With which probability a truth is read as the other one.
     pub flip: f64,
+    /// How often a quantity, or a beam of a laser, is read as anything.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outlier: Option<SensorOutlier>,
 }
 
 impl ImperfectSensor {
@@ -46,7 +49,10 @@ impl ImperfectSensor {
     /// Whether two of its samples may differ though the world stands still.
     #[must_use]
     pub fn is_random(&self) -> bool {
-        self.dropout > 0.0 || self.flip > 0.0 || self.noise.iter().any(|noise| noise.deviation > 0.0)
+        self.dropout > 0.0
+            || self.flip > 0.0
+            || self.outlier.is_some_and(|outlier| outlier.probability > 0.0)
+            || self.noise.iter().any(|noise| noise.deviation > 0.0)
     }
 }
 
@@ -90,6 +96,16 @@ pub struct SensorNoise {
     /// The SI unit of what it is added to.
     pub unit: Unit,
     pub deviation: f64,
+}
+
+/// `outlier 1 % in 0 m .. 5 m`: a reading that has nothing to do with the truth, evenly from a range.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SensorOutlier {
+    /// Of each sample; of a laser: of each beam of one.
+    pub probability: f64,
+    /// In the SI unit of what is read.
+    pub lo: f64,
+    pub hi: f64,
 }
 
 /// `drift 2 cm, 1 deg`: errors that add up on the way, independent of each other.

@@ -47,6 +47,8 @@ pub enum Unit {
     Hertz,
     NewtonMetre,
     NewtonPerMetre,
+    NewtonSecondPerMetre,
+    NewtonMetreSecondPerRadian,
     KilogramSquareMetre,
     Byte,
 }
@@ -70,6 +72,8 @@ impl Unit {
             Unit::Hertz => "Hz",
             Unit::NewtonMetre => "Nm",
             Unit::NewtonPerMetre => "N/m",
+            Unit::NewtonSecondPerMetre => "Ns/m",
+            Unit::NewtonMetreSecondPerRadian => "Nms/rad",
             Unit::KilogramSquareMetre => "kgm^2",
             Unit::Byte => "B",
         }
@@ -306,6 +310,8 @@ mod tests {
             (Unit::Hertz, "Hz", "\"hertz\""),
             (Unit::NewtonMetre, "Nm", "\"newton_metre\""),
             (Unit::NewtonPerMetre, "N/m", "\"newton_per_metre\""),
+            (Unit::NewtonSecondPerMetre, "Ns/m", "\"newton_second_per_metre\""),
+            (Unit::NewtonMetreSecondPerRadian, "Nms/rad", "\"newton_metre_second_per_radian\""),
             (Unit::KilogramSquareMetre, "kgm^2", "\"kilogram_square_metre\""),
         ];
         for (unit, symbol, data) in written {

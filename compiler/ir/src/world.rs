@@ -199,6 +199,9 @@ pub struct Arm {
     pub max_speed: f64,
     /// It stops when what it meets presses it harder than this, N; `None`: it does not feel contacts.
     pub contact_limit: Option<f64>,
+    /// Its planner knows where people are, too.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub avoids_people: bool,
     /// In the order of the text; each name once.
     pub postures: Vec<NamedPosture>,
 }
@@ -273,6 +276,15 @@ impl Laser {
     #[must_use]
     pub fn increment(&self) -> f64 {
         if self.beams < 2 { 0.0 } else { (self.hi - self.lo) / f64::from(self.beams - 1) }
+    }
+
+    /// The first and the last beam between two angles, which are both among them; `None`: there is no beam.
+    #[must_use]
+    pub fn beams_between(&self, from: f64, to: f64) -> Option<(u16, u16)> {
+        let slack = 1e-6 * if self.beams < 2 { 1.0 } else { self.increment() };
+        let angle = |beam: u16| self.lo + f64::from(beam) * self.increment();
+        let mut within = (0..self.beams).filter(|beam| (from - slack..=to + slack).contains(&angle(*beam)));
+        within.next().map(|first| (first, within.last().unwrap_or(first)))
     }
 }
 
@@ -385,12 +397,12 @@ pub enum SignalTerm {
     HoldsAny(GripperId),
     /// `joint_speed(arm)`: the largest speed of its joints, rad/s
     JointSpeed(ArmId),
-    /// `joint_speed(joint)`: about its axis, rad/s
+    /// `joint_speed(joint)`: about its axis, rad/s, or along it, m/s
     JointRate(JointId),
-    /// `joint_angle(joint)`: from the start, rad
-    JointAngle(JointId),
-    /// `torque(joint)`: of its motor, about its axis, Nm
-    Torque(JointId),
+    /// `joint_position(joint)`, or of a hinge `joint_angle(joint)`: rad or m
+    JointPosition(JointId),
+    /// `joint_effort(joint)`, or of a hinge `torque(joint)`: of its motor, about its axis, Nm, or along it, N
+    JointEffort(JointId),
     /// `speed(b)`: m/s
     Speed(BodyRef),
     /// `touches(a, b)`: whether one presses on the other, or their surfaces touch or overlap, bool
@@ -399,9 +411,12 @@ pub enum SignalTerm {
     Force(BodyRef, BodyRef),
     /// `force(b)`: how hard all others press on it, N
     ForceOn(BodyRef),
-    /// `transient_force(a)`, `transient_force(a, b)`, `quasistatic_force(a)`, `quasistatic_force(a, b)`: how hard others, or
-    /// one, press on what yields, in contacts of this kind, N
+    /// `transient_force(a, b)`, `quasistatic_force(a, b)`: how hard others, or one, press on what yields in such contacts, N
     Pressed { body: BodyRef, by: Option<BodyRef>, phase: ContactPhase },
+    /// `estimated_pressure(a, b, area)`: how hard others, or one, press on it, over an area (m²) that somebody assumes, Pa
+    Pressure { body: BodyRef, by: Option<BodyRef>, area: f64 },
+    /// `nearest(laser, from, to)`: the least range of all beams from the first to the last, m; infinite if they meet nothing
+    Nearest { laser: LaserId, first: u16, last: u16 },
     /// `weight(b)`: how hard others press down on it, N
     Weight(BodyRef),
     /// `tilt(b)`: between the vertical and where its direction points that was vertical at the start, rad, 0..π

@@ -45,6 +45,8 @@ const NAMED: &[(Dimension, &str, &str, SiUnit)] = &[
     (Dimension::PRESSURE, "pressure", "a pressure", SiUnit::Pascal),
     (Dimension::TORQUE, "torque", "a torque", SiUnit::NewtonMetre),
     (Dimension::STIFFNESS, "stiffness", "a stiffness", SiUnit::NewtonPerMetre),
+    (Dimension::DAMPING, "damping", "a damping", SiUnit::NewtonSecondPerMetre),
+    (Dimension::ANGULAR_DAMPING, "angular_damping", "an angular damping", SiUnit::NewtonMetreSecondPerRadian),
     (Dimension::INERTIA, "inertia", "a moment of inertia", SiUnit::KilogramSquareMetre),
     (Dimension::FREQUENCY, "frequency", "a frequency", SiUnit::Hertz),
     (Dimension::DATA, "data", "an amount of data", SiUnit::Byte),
@@ -64,6 +66,8 @@ impl Dimension {
     pub const PRESSURE: Dimension = dim(-1, 1, -2, 0);
     pub const TORQUE: Dimension = dim(2, 1, -2, 0);
     pub const STIFFNESS: Dimension = dim(0, 1, -2, 0);
+    pub const DAMPING: Dimension = dim(0, 1, -1, 0);
+    pub const ANGULAR_DAMPING: Dimension = dim(2, 1, -1, -1);
     pub const INERTIA: Dimension = dim(2, 1, 0, 0);
     pub const FREQUENCY: Dimension = dim(0, 0, -1, 0);
     pub const DATA: Dimension = Dimension { byte: 1, ..Dimension::NUMBER };
@@ -400,6 +404,8 @@ pub const UNITS: &[UnitOfMeasure] = &[
     unit("Nm", Dimension::TORQUE, 1.0, 1.0),
     unit("N/m", Dimension::STIFFNESS, 1.0, 1.0),
     unit("N/mm", Dimension::STIFFNESS, 1e3, 1.0),
+    unit("Ns/m", Dimension::DAMPING, 1.0, 1.0),
+    unit("Nms/rad", Dimension::ANGULAR_DAMPING, 1.0, 1.0),
     unit("kgm^2", Dimension::INERTIA, 1.0, 1.0),
     unit("Hz", Dimension::FREQUENCY, 1.0, 1.0),
     unit("kHz", Dimension::FREQUENCY, 1e3, 1.0),

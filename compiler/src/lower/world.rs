@@ -6,8 +6,8 @@ use hrdsl_ir::{
     sensor::SensorSource,
     value::nanos,
     world::{
-        ArmId, Axis, BaseId, Body, BodyRef, ContactPhase, DeviceKindId, GripperId, Joint, LaserId,
-        RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
+        ArmId, Axis, BaseId, Body, BodyRef, ContactPhase, DeviceKindId, GripperId, Joint, JointMotion,
+        LaserId, RuleTrigger, Signal, SignalId, SignalTerm, World, WorldRule,
     },
 };
 use hrdsl_model::{self as model, VariableRef, world as from};
@@ -106,19 +106,25 @@ fn rule(r: &from::TypedWorldRule, world: &from::TypedWorld, signals: &mut Signal
 }
 
 fn type_of(t: SignalTerm, world: Option<&from::TypedWorld>) -> Type {
+    let of_motion = |j: model::JointId, turns, slides| {
+        let joint = world.and_then(|world| world.joints.get(usize::from(j.0)));
+        Type::Float(if joint.is_some_and(|j| j.motion == JointMotion::Slider) { slides } else { turns })
+    };
     match t {
         SignalTerm::Distance(..)
         | SignalTerm::Range(..)
         | SignalTerm::Coordinate(..)
+        | SignalTerm::Nearest { .. }
         | SignalTerm::Height(_) => Type::Float(Unit::Metre),
-        SignalTerm::Angle(..) | SignalTerm::Heading(_) | SignalTerm::Tilt(_) | SignalTerm::JointAngle(_) => {
-            Type::Float(Unit::Radian)
-        }
+        SignalTerm::Angle(..) | SignalTerm::Heading(_) | SignalTerm::Tilt(_) => Type::Float(Unit::Radian),
+        SignalTerm::Pressure { .. } => Type::Float(Unit::Pascal),
         SignalTerm::Force(..)
         | SignalTerm::ForceOn(_)
         | SignalTerm::Weight(_)
         | SignalTerm::Pressed { .. } => Type::Float(Unit::Newton),
-        SignalTerm::Torque(_) => Type::Float(Unit::NewtonMetre),
+        SignalTerm::JointPosition(j) => of_motion(j, Unit::Radian, Unit::Metre),
+        SignalTerm::JointRate(j) => of_motion(j, Unit::RadianPerSecond, Unit::MetrePerSecond),
+        SignalTerm::JointEffort(j) => of_motion(j, Unit::NewtonMetre, Unit::Newton),
         SignalTerm::Delta(of, _) | SignalTerm::Reading(of) => {
             let of = world.and_then(|world| world.signals.get(usize::from(of.0)));
             of.map_or(Type::Float(Unit::None), |of| of.ty)
@@ -128,7 +134,7 @@ fn type_of(t: SignalTerm, world: Option<&from::TypedWorld>) -> Type {
         | SignalTerm::Touches(..)
         | SignalTerm::Holds(..)
         | SignalTerm::HoldsAny(_) => Type::Bool,
-        SignalTerm::JointSpeed(_) | SignalTerm::JointRate(_) => Type::Float(Unit::RadianPerSecond),
+        SignalTerm::JointSpeed(_) => Type::Float(Unit::RadianPerSecond),
         SignalTerm::Speed(_) => Type::Float(Unit::MetrePerSecond),
     }
 }
@@ -141,6 +147,7 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
     };
     let gripper = |g: model::GripperId| world.grippers[usize::from(g.0)].name.as_str();
     let joint = |j: model::JointId| world.joints[usize::from(j.0)].name.as_str();
+    let turns = |j: model::JointId| world.joints[usize::from(j.0)].motion == JointMotion::Hinge;
     match term {
         SignalTerm::Distance(a, b) => format!("distance({}, {})", body(a), body(b)),
         SignalTerm::Range(a, b) => format!("range({}, {})", body(a), body(b)),
@@ -158,8 +165,10 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
         SignalTerm::HoldsAny(g) => format!("holds({})", gripper(g)),
         SignalTerm::JointSpeed(a) => format!("joint_speed({})", world.arms[usize::from(a.0)].name),
         SignalTerm::JointRate(j) => format!("joint_speed({})", joint(j)),
-        SignalTerm::JointAngle(j) => format!("joint_angle({})", joint(j)),
-        SignalTerm::Torque(j) => format!("torque({})", joint(j)),
+        SignalTerm::JointPosition(j) if turns(j) => format!("joint_angle({})", joint(j)),
+        SignalTerm::JointPosition(j) => format!("joint_position({})", joint(j)),
+        SignalTerm::JointEffort(j) if turns(j) => format!("torque({})", joint(j)),
+        SignalTerm::JointEffort(j) => format!("joint_effort({})", joint(j)),
         SignalTerm::Touches(a, b) => format!("touches({}, {})", body(a), body(b)),
         SignalTerm::Force(a, b) => format!("force({}, {})", body(a), body(b)),
         SignalTerm::ForceOn(b) => format!("force({})", body(b)),
@@ -170,6 +179,20 @@ fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
             };
             let by = by.map_or_else(String::new, |by| format!(", {}", body(by)));
             format!("{name}({}{by})", body(b))
+        }
+        SignalTerm::Pressure { body: b, by, area } => {
+            let by = by.map_or_else(String::new, |by| format!(", {}", body(by)));
+            format!("estimated_pressure({}{by}, {area} m^2)", body(b))
+        }
+        SignalTerm::Nearest { laser, first, last } => {
+            let laser = &world.lasers[usize::from(laser.0)];
+            let angle = |beam: u16| (laser.lo + f64::from(beam) * laser.increment()).to_degrees();
+            match (first, last) {
+                (0, last) if last + 1 == laser.beams => format!("nearest({})", laser.name),
+                (first, last) => {
+                    format!("nearest({}, {:.3} deg, {:.3} deg)", laser.name, angle(first), angle(last))
+                }
+            }
         }
         SignalTerm::Weight(b) => format!("weight({})", body(b)),
         SignalTerm::Tilt(b) => format!("tilt({})", body(b)),

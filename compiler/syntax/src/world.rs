@@ -151,7 +151,8 @@ pub enum TurnSyntax {
     Facing(PathSyntax),
 }
 
-/// `joint j: parent -> child at (…) axis (0, 0, 1) limits -60 deg .. 60 deg effort 40 Nm speed 1 rad/s rotor 0.1 kgm^2`
+/// `joint j: parent -> child at (…) axis (0, 0, 1) limits -60 deg .. 60 deg effort 40 Nm speed 1 rad/s rotor 0.1 kgm^2 damping
+/// 2 Nms/rad friction 1 Nm`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JointSyntax {
     pub name: NameSyntax,
@@ -163,6 +164,10 @@ pub struct JointSyntax {
     pub effort: Option<ExprSyntax>,
     pub speed: Option<ExprSyntax>,
     pub rotor: Option<ExprSyntax>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping: Option<ExprSyntax>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<ExprSyntax>,
     pub mimic: Option<MimicSyntax>,
 }
 
@@ -209,7 +214,7 @@ pub struct WallsSyntax {
     pub rotated: Option<ExprSyntax>,
 }
 
-/// `arm a: j1, j2 tip palm tool (8 cm, 0 m, 0 m) speed 0.2 rad/s contact 60 N`
+/// `arm a: j1, j2 tip palm tool (8 cm, 0 m, 0 m) speed 0.2 rad/s contact 60 N avoids people`
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmSyntax {
     pub name: NameSyntax,
@@ -218,6 +223,8 @@ pub struct ArmSyntax {
     pub tool: ExprSyntax,
     pub speed: ExprSyntax,
     pub contact: Option<ExprSyntax>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub avoids: Option<NameSyntax>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensing: Vec<SensorClause>,
 }
@@ -270,6 +277,9 @@ pub struct SensorClause {
     pub kind: SensorClauseKind,
     /// One; of `noise` and `drift` one for each dimension.
     pub values: Vec<ExprSyntax>,
+    /// Of `outlier`: from where they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<RangeSyntax>,
     pub span: Span,
 }
 
@@ -288,6 +298,8 @@ pub enum SensorClauseKind {
     Dropout,
     /// The probability that a truth is the other one.
     Flip,
+    /// The probability that a quantity is anything in a range: `outlier 1 % in 0 m .. 5 m`.
+    Outlier,
 }
 
 impl SensorClauseKind {
@@ -301,6 +313,7 @@ impl SensorClauseKind {
             SensorClauseKind::Drift => "drift",
             SensorClauseKind::Dropout => "dropout",
             SensorClauseKind::Flip => "flip",
+            SensorClauseKind::Outlier => "outlier",
         }
     }
 }

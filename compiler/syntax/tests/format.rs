@@ -627,6 +627,7 @@ part p(n:0..4){
   /// A palm.
   body palm:dynamic box(4cm,8cm,8cm)at(0m,0m,0m)graspable mass 0.4kg ghost rotated(0deg,0deg,1deg)
   joint j:torso->palm at(0m,0m,0m)axis(0,0,1)limits -60deg..60deg
+  joint hinge_of_the_door:frame->leaf at(0m,0m,0m)axis(0,0,1)limits 0deg..110deg damping 2Nms/rad   friction 1Nm
   arm a:j,k tip palm tool(8cm,0m,0m)speed 0.2rad/s
   arm arm: hip_rotor, hip_flexor, shoulder_flexor, shoulder_abduction, humeral_rotation, elbow_flexor, wrist_pronation, wrist_abduction tip palm tool (8 cm, 0 cm, 0 cm) speed 0.2 rad/s
   gripper g:palm tool(8cm,0m,0m)reach 4cm delay 500ms
@@ -658,13 +659,14 @@ system robot{run "python3 robot.py" coverage "a.py","b.py";limit 300s;budget 10s
 part p{
   base b:palm speed 1m/s turn 1rad/s acceleration 1m/s^2 every 20ms drift 2cm,1deg
   base wheels: the_platform_of_it speed 0.5 m/s sideways 0.25 m/s turn 90 deg/s acceleration 0.5 m/s^2 timeout 500 ms noise 1cm,0.5deg , 1cm/s
-  arm a:j,k tip palm tool(8cm,0m,0m)speed 0.2rad/s noise 0.1deg late 5ms
-  laser l:palm at(0m,0m,0m)angles-90deg..90deg beams 181 range 5cm..10m dropout 0.5% late LAG noise 1cm
+  arm a:j,k tip palm tool(8cm,0m,0m)speed 0.2rad/s contact 60N avoids   people noise 0.1deg late 5ms
+  laser l:palm at(0m,0m,0m)angles-90deg..90deg beams 181 range 5cm..10m dropout 0.5% outlier 1%  late LAG noise 1cm
 }
 world{
   signal near:bool to robot=distance(a,b)<10cm flip 1% every 100ms late 50ms
   signal a_name_that_is_rather_long: length to robot, person = distance(person.hand, robot.palm) every 50 ms late 20 ms noise 5 mm
    dropout 2 %
+  signal gap:length to robot=x outlier 1%in 0m..5m late 20ms
   signal n:0..9 to robot=if x{7%late}else{7%2}
 }
 "#

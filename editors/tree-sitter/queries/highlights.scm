@@ -34,11 +34,11 @@
   "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts"
   "meanwhile" "with" "step" "gravity" "body" "joint" "arm" "gripper" "base" "laser" "limb" "figure" "posture"
   "packages" "argument" "semantics" "start" "walls" "current" "signal" "rotated" "mass" "stiffness" "ghost" "graspable"
-  "axis" "limits" "effort" "rotor" "mimic" "times" "height" "contact" "fingers" "force" "limbs" "tip" "tool" "speed"
-  "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams" "range" "every" "late" "noise" "drift" "dropout"
-  "flip" "facing" "left" "right" "ahead" "behind" "command" "expect" "run" "coverage" "limit" "budget" "cpu" "wall"
-  "memory" "output" "env" "online" "program" "ros1" "ros2" "messages" "topic" "service" "action" "group" "parameter"
-  "transition" "out" "drives" "latched" "plans"
+  "axis" "limits" "effort" "rotor" "damping" "friction" "mimic" "times" "height" "contact" "avoids" "fingers" "force"
+  "limbs" "tip" "tool" "speed" "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams" "range" "every"
+  "late" "noise" "drift" "dropout" "flip" "outlier" "facing" "left" "right" "ahead" "behind" "command" "expect" "run"
+  "coverage" "limit" "budget" "cpu" "wall" "memory" "output" "env" "online" "program" "ros1" "ros2" "messages" "topic"
+  "service" "action" "group" "parameter" "transition" "out" "drives" "latched" "plans"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return

@@ -104,7 +104,7 @@ static bool before_arrow(TSLexer *lexer) {
 
 // Whether a word begins a clause of a sensor: `late 50 ms`.
 static bool starts_sensing(TSLexer *lexer, const Word *word) {
-  static const char *const WORDS[] = {"every", "late", "noise", "drift", "dropout", "flip"};
+  static const char *const WORDS[] = {"every", "late", "noise", "drift", "dropout", "flip", "outlier"};
   for (unsigned i = 0; i < sizeof WORDS / sizeof *WORDS; i++) {
     if (!equals(word, WORDS[i])) continue;
     take_blanks(lexer);

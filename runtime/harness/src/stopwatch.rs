@@ -5,6 +5,7 @@ use std::{cell::Cell, rc::Rc};
 use hrdsl_ir::{
     Nanos, Value,
     device::DeviceBody,
+    device_state::DeviceState,
     world::{SignalId, WorldAction},
 };
 

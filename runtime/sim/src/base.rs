@@ -547,8 +547,17 @@ mod tests {
         let (parent, child, tip) = (BodyId(1), BodyId(2), BodyId(2));
         world.joints.push(upright_joint(parent, child, [0.0, 0.0, 0.5], (-2.0, 2.0)));
         let (joints, tool) = (vec![JointId(0)], [0.2, 0.0, 0.0]);
-        let (max_speed, contact_limit, postures) = (1.0, None, Vec::new());
-        world.arms.push(Arm { name: "arm".into(), joints, tip, tool, max_speed, contact_limit, postures });
+        let (max_speed, contact_limit, avoids_people, postures) = (1.0, None, false, Vec::new());
+        world.arms.push(Arm {
+            name: "arm".into(),
+            joints,
+            tip,
+            tool,
+            max_speed,
+            contact_limit,
+            avoids_people,
+            postures,
+        });
         let mut sim = built(&world);
         sim.command(drive(1.0, 0.0, 1.0)).expect("a base");
         for _ in 0..20 {

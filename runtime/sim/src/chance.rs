@@ -46,6 +46,11 @@ impl SampleDraws {
         probability > 0.0 && self.fraction() < probability
     }
 
+    /// Evenly between two numbers.
+    pub fn between(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * self.fraction()
+    }
+
     /// With a mean of 0 (Box and Muller 1958); nothing is drawn for a deviation of 0.
     pub fn gaussian(&mut self, deviation: f64) -> f64 {
         if deviation <= 0.0 {

@@ -15,7 +15,9 @@ pub enum SimError {
     TipNotOnArm { arm: String },
     #[error("the joint `{joint}` does not carry a dynamic body of its own")]
     BadChild { joint: String },
-    #[error("the gripper `{gripper}` cannot hold `{body}`, which is not a free dynamic body")]
+    #[error(
+        "the gripper `{gripper}` cannot hold `{body}`, which is not dynamic, nor rigidly one with a body that is"
+    )]
     NotHoldable { gripper: String, body: String },
     #[error("the body `{body}` is neither kinematic nor guided, so that no action moves it")]
     NotMoved { body: String },

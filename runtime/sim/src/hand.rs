@@ -19,7 +19,7 @@ use hrdsl_harness::CommandId;
 use crate::{
     error::{CommandError, SimError},
     math::{SpaceVector, v3},
-    physics::{PhysicsAdapter, bad, index},
+    physics::{PhysicsAdapter, bad, body_id, index},
 };
 
 /// Beyond its reach by this much (m), a hand loses what it holds.
@@ -139,8 +139,7 @@ impl GripperHand {
                 return Err(bad(what(), "body", index(*body)));
             }
         }
-        let jointed = |b: BodyId| world.joints.iter().any(|j| j.parent == b || j.child == b);
-        let unfit = |b: &&BodyId| physics.motion(**b) != BodyMotion::Dynamic || jointed(**b);
+        let unfit = |b: &&BodyId| physics.motion(physics.root(**b)) != BodyMotion::Dynamic;
         if let Some(body) = gripper.holds.iter().find(unfit) {
             let body = world.bodies[index(*body)].name.clone();
             return Err(SimError::NotHoldable { gripper: gripper.name.clone(), body });
@@ -287,6 +286,8 @@ pub(crate) struct HandSet {
     hands: Vec<GripperHand>,
     /// By body: whether any hand has ever taken it.
     taken: Vec<bool>,
+    /// By body: whether it hangs on a joint that moves, as a handle does.
+    hung: Vec<bool>,
 }
 
 impl HandSet {
@@ -297,7 +298,15 @@ impl HandSet {
             physics.limit_gear(finger.joint, finger.force);
         });
         hands.iter_mut().for_each(|hand| hand.run_fingers(-1.0, physics));
-        Ok(HandSet { hands, taken: vec![false; world.bodies.len()] })
+        let moving = || world.joints.iter().filter(|joint| !joint.is_rigid());
+        let hangs = |body: BodyId| moving().any(|joint| physics.root(joint.child) == physics.root(body));
+        let hung = (0..world.bodies.len()).map(|at| hangs(body_id(at))).collect();
+        Ok(HandSet { hands, taken: vec![false; world.bodies.len()], hung })
+    }
+
+    /// Whether a body hangs on a joint that moves, so that whoever holds it does not carry it.
+    pub fn is_hung(&self, body: BodyId) -> bool {
+        self.hung[index(body)]
     }
 
     pub fn named(&self, name: &str) -> Option<usize> {
@@ -452,7 +461,7 @@ impl HandSet {
         for (i, hand) in self.hands.iter_mut().enumerate() {
             let leads = hand.held == Some(body) && if motorised { hand.dynamic } else { first == Some(i) };
             if leads && hand.joint.is_none() {
-                hand.joint = Some(physics.attach(hand.palm, body));
+                hand.joint = Some(physics.attach(hand.palm, body, !self.hung[index(body)]));
             } else if hand.held == Some(body)
                 && !leads
                 && let Some(joint) = hand.joint.take()

@@ -27,16 +27,30 @@ pub(crate) fn check(laser: &Laser, world: &World) -> Result<(), SimError> {
 /// The distance along each beam, m: infinite where nothing is met up to the farthest that it measures, minus infinity where something
 /// is nearer than the nearest (REP 117).
 pub(crate) fn scan(laser: &Laser, physics: &PhysicsAdapter) -> Vec<f64> {
+    match laser.beams.checked_sub(1) {
+        Some(last) => ranges(laser, (0, last), physics),
+        None => Vec::new(),
+    }
+}
+
+/// The least of the distances along some of the beams, from one to another.
+pub(crate) fn nearest(laser: &Laser, beams: (u16, u16), physics: &PhysicsAdapter) -> f64 {
+    ranges(laser, beams, physics).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// Those of some of the beams alone: the others are not cast.
+fn ranges(laser: &Laser, (from, last): (u16, u16), physics: &PhysicsAdapter) -> Vec<f64> {
     let eye = physics.pose(laser.body).then(&BodyFrame::new(v3(laser.at), RotationQuat::identity()));
     let directions: Vec<SpaceVector> =
-        (0..laser.beams).map(|i| eye.turn * direction(laser.lo + f64::from(i) * laser.increment())).collect();
+        (from..=last).map(|i| eye.turn * direction(laser.lo + f64::from(i) * laser.increment())).collect();
     let mut ranges = vec![f64::INFINITY; directions.len()];
     let (own, back) = (physics.root(laser.body), eye.inverse());
     for body in physics.solids().filter(|b| physics.root(*b) != own) {
         let (centre, radius) = physics.sphere_around(body);
         let ranger = physics.ranger(body);
         for beams in beams_near(laser, back.point(centre), radius).into_iter().flatten() {
-            for (range, direction) in ranges.iter_mut().zip(&directions).take(beams.1).skip(beams.0) {
+            let [skipped, end] = [beams.0, beams.1].map(|beam| beam.saturating_sub(usize::from(from)));
+            for (range, direction) in ranges.iter_mut().zip(&directions).take(end).skip(skipped) {
                 let found = ranger(eye.at, *direction, range.min(laser.farthest));
                 *range = found.unwrap_or(*range);
             }
@@ -82,7 +96,7 @@ fn beams_near(laser: &Laser, centre: SpaceVector, radius: f64) -> [Option<(usize
 mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    use hrdsl_ir::world::{Body, BodyId, BodyMotion, BodyShape, LaserId};
+    use hrdsl_ir::world::{Body, BodyId, BodyMotion, BodyShape, LaserId, SignalTerm};
     use proptest::prelude::*;
 
     use super::*;
@@ -147,6 +161,42 @@ mod tests {
         let yaw = sim.base_pose(crate::samples::BASE).expect("a base")[2];
         let ranges = sim.scan(LaserId(0)).expect("a laser");
         assert!(near(ranges[0], 3.0 / libm::cos(FRAC_PI_2 + yaw)), "{ranges:?} at {yaw}");
+    }
+
+    #[test]
+    fn the_nearest_of_some_beams_is_the_least_of_their_ranges() {
+        let mut world = flat(vec![
+            body("wall", BodyMotion::Fixed, cuboid(0.2, 9.0, 1.0), [3.1, 0.0, 0.5]),
+            body(
+                "post",
+                BodyMotion::Fixed,
+                BodyShape::Cylinder { radius: 0.1, length: 1.0 },
+                [1.2, 1.2, 0.5],
+            ),
+        ]);
+        world.lasers.push(laser(181, -FRAC_PI_2, FRAC_PI_2));
+        let sim = built(&world);
+        let ranges = sim.scan(LaserId(0)).expect("a laser");
+        let laser = &world.lasers[0];
+        let degrees = f64::to_radians;
+        for (from, to, beams) in [(-90.0, 90.0, (0, 180)), (-30.0, 30.0, (60, 120)), (10.0, 10.0, (100, 100))]
+        {
+            let found = laser.beams_between(degrees(from), degrees(to)).expect("beams");
+            assert_eq!(found, beams);
+            let least =
+                ranges[usize::from(beams.0)..=usize::from(beams.1)].iter().copied().fold(9.0, f64::min);
+            let term = SignalTerm::Nearest { laser: LaserId(0), first: beams.0, last: beams.1 };
+            assert_eq!(sim.measure(&term).as_f64(), Some(least), "{from} to {to}");
+        }
+        // The wall ahead, and the post to the left of it.
+        let least = |from, to| {
+            let (first, last) = laser.beams_between(degrees(from), degrees(to)).expect("beams");
+            sim.measure(&SignalTerm::Nearest { laser: LaserId(0), first, last }).as_f64().expect("a number")
+        };
+        assert!(near(least(-30.0, 30.0), 3.0) && near(least(40.0, 50.0), f64::hypot(1.2, 1.2) - 0.1));
+        assert_eq!(least(-90.0, -80.0), f64::INFINITY);
+        assert_eq!(laser.beams_between(degrees(0.2), degrees(0.8)), None);
+        assert_eq!(laser.beams_between(degrees(30.0), degrees(-30.0)), None);
     }
 
     proptest! {

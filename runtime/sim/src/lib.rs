@@ -13,7 +13,7 @@
 //! - What is kinematic may tear joints, which then give way and come together again.
 //! - A motor's rotor is added to its link's inertia about all axes.
 //! - What a hand holds is fixed to the palm by a joint that bears as much as friction would, and slips beyond.
-//! - An arm's planner knows exactly where everything is but people.
+//! - An arm's planner knows exactly where everything is but people, and by choice where these are, too.
 //! - People are bodies that springs draw along their script, and whose surfaces are springs: what pushes them moves them. A body that is
 //!   declared `kinematic` is pushed by nothing.
 //! - A base drives as it is told, pushes what is loose, and stops before what is fixed; a dynamic one stands on wheels that slip, and topples.
@@ -323,6 +323,7 @@ impl WorldSimulation {
             hands: &self.hands,
             arms: &self.arms,
             currents: &self.world.currents,
+            lasers: &self.world.lasers,
             signals: &self.signals,
             past: &self.past,
             sensors: &self.sensors,
@@ -563,21 +564,26 @@ impl WorldSimulation {
         self.arms[at].plan_way(wanted, &self.world, &self.moment(at))
     }
 
-    /// What the planner of an arm knows: everything but where people are.
+    /// What the planner of an arm knows: everything, but where people are only if it avoids them. What hangs on a joint of its own, such
+    /// as a door, and is in the arm's hand goes its own way: it is neither carried nor avoided.
     fn moment(&self, arm: usize) -> ArmMoment<'_> {
         let bases = &self.bases;
+        let sees_people = self.world.arms.get(arm).is_some_and(|arm| arm.avoids_people);
+        let held = self.hands.held_by_any(&self.arm_hands[arm]);
+        let (hung, carried): (Vec<BodyId>, Vec<BodyId>) =
+            held.into_iter().partition(|body| self.hands.is_hung(*body));
+        let hung: Vec<BodyId> = hung.into_iter().map(|body| self.physics.root(body)).collect();
         let is_known = move |body: BodyId| {
             let root = self.physics.root(body);
-            match self.physics.motion(root) {
+            let is_seen = match self.physics.motion(root) {
                 BodyMotion::Fixed | BodyMotion::Dynamic => true,
-                BodyMotion::Kinematic | BodyMotion::Guided => bases.iter().any(|b| b.body == root),
-            }
+                BodyMotion::Kinematic | BodyMotion::Guided => {
+                    sees_people || bases.iter().any(|b| b.body == root)
+                }
+            };
+            is_seen && !hung.contains(&root)
         };
-        ArmMoment {
-            physics: &self.physics,
-            held: self.hands.held_by_any(&self.arm_hands[arm]),
-            is_known: Box::new(is_known),
-        }
+        ArmMoment { physics: &self.physics, held: carried, is_known: Box::new(is_known) }
     }
 
     /// The commands that have ended since the last call, in the order in which they did (arms before hands, hands before bases).

@@ -23,7 +23,7 @@ pub(crate) use state::{
 
 use hrdsl_harness::SpentTime;
 use hrdsl_ir::value::seconds;
-use hrdsl_ir::world::{Body, BodyId, BodyMotion, JointMotion, World};
+use hrdsl_ir::world::{Body, BodyId, BodyMotion, Joint, JointId, JointMotion, World};
 use rapier3d::prelude::*;
 
 use crate::{
@@ -162,11 +162,15 @@ impl PhysicsAdapter {
         let start = start_of(body);
         let mut builder = builder.pose(to_pose(&start));
         let moved = world.joints.iter().filter(|j| !j.is_rigid() && roots[index(j.child)] == id);
+        let is_finger = |id| world.grippers.iter().any(|gripper| gripper.fingers.contains(&id));
         let driven = |id| world.arms.iter().any(|arm| arm.joints.contains(&id));
-        if (0..)
-            .zip(&world.joints)
-            .any(|(i, j)| !j.is_rigid() && roots[index(j.child)] == id && driven(hrdsl_ir::world::JointId(i)))
-        {
+        // The engine would stop a door that swings slowly.
+        let is_passive =
+            |id, joint: &Joint| !is_finger(id) && world.bodies[index(joint.child)].solid.is_none();
+        if (0..).zip(&world.joints).any(|(i, j)| {
+            let number = JointId(i);
+            !j.is_rigid() && roots[index(j.child)] == id && (driven(number) || is_passive(number, j))
+        }) {
             // Its arm says when it may: a motor that holds it goes on working.
             builder = builder.can_sleep(false);
         }
@@ -251,8 +255,8 @@ impl PhysicsAdapter {
         }
     }
 
-    /// Fixes a body to a palm where it is now.
-    pub fn attach(&mut self, palm: BodyId, body: BodyId) -> ImpulseJointHandle {
+    /// Fixes a body to a palm where it is now; what is not carried is borne by a joint of its own.
+    pub fn attach(&mut self, palm: BodyId, body: BodyId, is_carried: bool) -> ImpulseJointHandle {
         let (p, b) = (&self.parts[index(palm)], &self.parts[index(body)]);
         let between = from_pose(self.world.bodies[p.handle].position())
             .inverse()
@@ -263,7 +267,7 @@ impl PhysicsAdapter {
             .build();
         let (parent, child) = (p.handle, b.handle);
         self.wake_robot(palm);
-        let mass = f64::from(self.world.bodies[child].mass());
+        let mass = if is_carried { f64::from(self.world.bodies[child].mass()) } else { 0.0 };
         self.load(palm, mass);
         self.world.insert_impulse_joint(parent, child, data)
     }

@@ -1,7 +1,7 @@
 //! Sensors: the value of every primitive term, now.
 
 use hrdsl_ir::world::{
-    Axis, BodyId, BodyRef, CurrentBody, QuaternionPart, Signal, SignalId, SignalTerm, World,
+    Axis, BodyId, BodyRef, CurrentBody, Laser, QuaternionPart, Signal, SignalId, SignalTerm, World,
 };
 use hrdsl_ir::{Nanos, Type, Value, sensor::SensorSource};
 
@@ -9,6 +9,7 @@ use crate::{
     arm::ArmControl,
     error::SimError,
     hand::HandSet,
+    laser,
     mover::sight_angle,
     past::SignalPast,
     physics::{PhysicsAdapter, bad, index},
@@ -21,6 +22,7 @@ pub(crate) struct SensorView<'a> {
     pub hands: &'a HandSet,
     pub arms: &'a [ArmControl],
     pub currents: &'a [CurrentBody],
+    pub lasers: &'a [Laser],
     pub signals: &'a [Signal],
     pub past: &'a SignalPast,
     /// The time of the last physics step.
@@ -75,6 +77,14 @@ impl SensorView<'_> {
         now - self.past.at(of, self.now - over).unwrap_or(now)
     }
 
+    /// How hard others, or one of them, press on a body, N.
+    fn force(&self, on: BodyRef, by: Option<BodyRef>) -> f64 {
+        match by {
+            Some(by) => self.physics.force_between(self.body(on), self.body(by)),
+            None => self.physics.force_on(self.body(on)),
+        }
+    }
+
     pub fn term(&self, term: &SignalTerm) -> Value {
         match *term {
             SignalTerm::Distance(a, b) => Value::Float(self.physics.distance(self.body(a), self.body(b))),
@@ -101,13 +111,18 @@ impl SensorView<'_> {
             SignalTerm::HoldsAny(g) => Value::Bool(self.hands.held_by(usize::from(g.0)).is_some()),
             SignalTerm::JointSpeed(a) => Value::Float(self.arms[usize::from(a.0)].speed(self.physics)),
             SignalTerm::JointRate(j) => Value::Float(self.physics.joint_speed(usize::from(j.0))),
-            SignalTerm::JointAngle(j) => Value::Float(self.physics.joint_position(usize::from(j.0))),
-            SignalTerm::Torque(j) => Value::Float(self.physics.joint_effort(usize::from(j.0))),
+            SignalTerm::JointPosition(j) => Value::Float(self.physics.joint_position(usize::from(j.0))),
+            SignalTerm::JointEffort(j) => Value::Float(self.physics.joint_effort(usize::from(j.0))),
             SignalTerm::Touches(a, b) => Value::Bool(self.physics.touches(self.body(a), self.body(b))),
-            SignalTerm::Force(a, b) => Value::Float(self.physics.force_between(self.body(a), self.body(b))),
-            SignalTerm::ForceOn(b) => Value::Float(self.physics.force_on(self.body(b))),
+            SignalTerm::Force(a, b) => Value::Float(self.force(a, Some(b))),
+            SignalTerm::ForceOn(b) => Value::Float(self.force(b, None)),
             SignalTerm::Pressed { body, by, phase } => {
                 Value::Float(self.physics.pressed(self.body(body), by.map(|by| self.body(by)), phase))
+            }
+            SignalTerm::Pressure { body, by, area } => Value::Float(self.force(body, by) / area),
+            SignalTerm::Nearest { laser, first, last } => {
+                let laser = &self.lasers[usize::from(laser.0)];
+                Value::Float(laser::nearest(laser, (first, last), self.physics))
             }
             SignalTerm::Weight(b) => Value::Float(self.physics.load_on(self.body(b))),
             SignalTerm::Tilt(b) => Value::Float(self.physics.tilt(self.body(b))),
@@ -202,9 +217,22 @@ pub(crate) fn check_term(
             check_body(body, world, &what)?;
             by.map_or(Ok(()), |by| check_body(by, world, &what))
         }
+        SignalTerm::Pressure { body, by, area } => {
+            if !(area.is_finite() && area > 0.0) {
+                return Err(SimError::BadNumber { what: format!("the area of a pressure in {}", what()) });
+            }
+            check_body(body, world, &what)?;
+            by.map_or(Ok(()), |by| check_body(by, world, &what))
+        }
+        SignalTerm::Nearest { laser, first, last } => {
+            exists(usize::from(laser.0), world.lasers.len(), "laser", &what)?;
+            let beams = usize::from(world.lasers[usize::from(laser.0)].beams);
+            exists(usize::from(last), beams, "beam", &what)?;
+            if first <= last { Ok(()) } else { Err(bad(what(), "beam", usize::from(first))) }
+        }
         SignalTerm::HoldsAny(g) => gripper(g.0),
         SignalTerm::JointSpeed(a) => exists(usize::from(a.0), world.arms.len(), "arm", &what),
-        SignalTerm::JointRate(j) | SignalTerm::JointAngle(j) | SignalTerm::Torque(j) => {
+        SignalTerm::JointRate(j) | SignalTerm::JointPosition(j) | SignalTerm::JointEffort(j) => {
             exists(usize::from(j.0), world.joints.len(), "joint", &what)
         }
         SignalTerm::Delta(of, _) | SignalTerm::Reading(of) => {

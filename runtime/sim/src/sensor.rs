@@ -315,7 +315,8 @@ impl SensorLine {
                 SensedTruth::Signal(Value::Bool(b != draws.happens(self.data.flip)))
             }
             SensedTruth::Signal(Value::Float(x)) => {
-                SensedTruth::Signal(Value::Float(x + draws.gaussian(noise(self.unit))))
+                let noisy = x + draws.gaussian(noise(self.unit));
+                SensedTruth::Signal(Value::Float(self.outlier(draws).unwrap_or(noisy)))
             }
             SensedTruth::Signal(
                 value @ (Value::Int(_) | Value::Symbol(_) | Value::Text(_) | Value::List(_)),
@@ -362,10 +363,16 @@ impl SensorLine {
         SensedTruth::Arm { joints: measured, speeds, tool, base: *base }
     }
 
+    /// What is read in place of the truth, if that has nothing to do with it.
+    fn outlier(&self, draws: &mut SampleDraws) -> Option<f64> {
+        let outlier = self.data.outlier?;
+        draws.happens(outlier.probability).then(|| draws.between(outlier.lo, outlier.hi))
+    }
+
     fn beam(&self, range: f64, draws: &mut SampleDraws) -> f64 {
         let lost = draws.happens(self.data.dropout);
         let noise = draws.gaussian(self.data.deviation(Unit::Metre));
-        let range = range + noise;
+        let range = self.outlier(draws).unwrap_or(range + noise);
         if lost || range > self.farthest {
             f64::INFINITY
         } else if range < self.nearest {
@@ -380,6 +387,8 @@ fn check(sensor: &ImperfectSensor, world: &World, signals: &[Signal]) -> Result<
     let what = || format!("a measure of {} `{}`", sensor.source.sort(), sensor.name);
     let is_probability = |p: f64| (0.0..=1.0).contains(&p);
     let deviations = sensor.noise.iter().map(|noise| noise.deviation);
+    let outliers = sensor.outlier.iter();
+    let ranges = outliers.clone().all(|o| o.lo.is_finite() && o.hi.is_finite() && o.lo <= o.hi);
     let drifts = sensor.drift.iter().flat_map(|drift| [drift.way, drift.turn]);
     let count = match sensor.source {
         SensorSource::Signal(_) => signals.len(),
@@ -394,6 +403,8 @@ fn check(sensor: &ImperfectSensor, world: &World, signals: &[Signal]) -> Result<
         && sensor.every.is_none_or(|every| every > 0)
         && is_probability(sensor.dropout)
         && is_probability(sensor.flip)
+        && ranges
+        && outliers.map(|outlier| outlier.probability).all(is_probability)
         && deviations.chain(drifts).all(|x| x.is_finite() && x >= 0.0);
     if is_good { Ok(()) } else { Err(SimError::BadNumber { what: what() }) }
 }

@@ -309,6 +309,36 @@ fn an_arm_that_feels_contacts_stops_at_them() {
     }
 }
 
+/// A head is in the straight way: an arm that is told to goes round it, another is held up by it.
+#[test]
+fn a_way_goes_round_people_by_choice() {
+    for avoids_people in [false, true] {
+        let mut world = table();
+        let head = named(&world, "person.head");
+        world.bodies[usize::from(head.0)].position = [0.45, -0.1, 0.65];
+        world.arms[0].avoids_people = avoids_people;
+        let palm = BodyRef::Body(named(&world, "robot.palm"));
+        let near = number("near", SignalTerm::Distance(palm, BodyRef::Body(head)));
+        let press = number("press", SignalTerm::ForceOn(BodyRef::Body(head)));
+        let mut sim = WorldSimulation::new(&world, &[near, press]).unwrap();
+        let id = sim.command(move_to(OFFER)).unwrap();
+        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        let (time, result) = wait(&mut sim, id, |sim| {
+            (least, most) = (least.min(float(sim, 0)), most.max(float(sim, 1)));
+        });
+        println!(
+            "avoids people: {avoids_people}: {time:.1} s, {result:?}, palm {least:.3} m off, {most:.1} N"
+        );
+        if avoids_people {
+            result.unwrap();
+            assert!(least > 0.003 && most == 0.0, "{least} m, {most} N");
+        } else {
+            assert!(matches!(result, Err(CommandError::Blocked { .. })), "{result:?}");
+            assert!(most > 1.0, "{most}");
+        }
+    }
+}
+
 /// The hand would be free to go there straight; the leg in it would come down on those that stand on the table.
 #[test]
 fn what_is_held_is_carried_round_what_is_in_its_way() {

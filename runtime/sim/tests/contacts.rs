@@ -125,13 +125,14 @@ fn beam(loaded: bool) -> World {
         tip: BodyId(1),
         tool: [0.0; 3],
         contact_limit: None,
+        avoids_people: false,
         max_speed: 0.5,
         postures: Vec::new(),
     }];
     world
 }
 
-const TORQUE: SignalTerm = SignalTerm::Torque(JointId(0));
+const TORQUE: SignalTerm = SignalTerm::JointEffort(JointId(0));
 
 #[test]
 fn a_motor_holds_what_lies_on_the_beam() {
@@ -147,7 +148,7 @@ fn a_motor_holds_what_lies_on_the_beam() {
 
 #[test]
 fn a_difference_is_to_what_was_and_nothing_at_rest() {
-    let turned = SignalTerm::JointAngle(JointId(0));
+    let turned = SignalTerm::JointPosition(JointId(0));
     let change = Signal { terms: vec![SignalTerm::Delta(SignalId(0), SECOND)], ..number("change", turned) };
     let mut sim = WorldSimulation::new(&beam(false), &[number("turned", turned), change]).unwrap();
     settle(&mut sim);
@@ -191,4 +192,42 @@ fn heights_and_tilts_are_of_the_shape_and_of_the_start() {
         assert!((of(SignalTerm::Height(body)) - (1.0 - below)).abs() < 1e-6, "{at}");
         assert!(of(SignalTerm::Tilt(body)) < 1e-3, "{at}");
     }
+}
+
+/// A plate that a motor lifts along the vertical, with a load on it.
+fn lift() -> World {
+    let mut world = empty();
+    world.bodies = vec![
+        body("post", BodyMotion::Fixed, cuboid(0.1, 0.1, 2.0), [0.0, 0.0, 1.0], 1.0),
+        body("plate", BodyMotion::Dynamic, cuboid(0.2, 0.2, 0.04), [0.4, 0.0, 1.0], 3.0),
+        body("load", BodyMotion::Dynamic, cuboid(0.1, 0.1, 0.1), [0.4, 0.0, 1.0751], 1.0),
+    ];
+    let (motion, drive) = (JointMotion::Slider, JointDrive::default());
+    let (parent, child, anchor) = (BodyId(0), BodyId(1), [0.4, 0.0, 1.0]);
+    let (name, axis) = ("lift".into(), [0.0, 0.0, 1.0]);
+    world.joints = vec![Joint { name, parent, child, motion, anchor, axis, lo: -0.5, hi: 0.5, drive }];
+    world.arms = vec![Arm { joints: vec![JointId(0)], ..beam(false).arms[0].clone() }];
+    world
+}
+
+#[test]
+fn what_slides_is_measured_along_its_axis() {
+    let mut sim = WorldSimulation::new(&lift(), &[]).unwrap();
+    let of = |sim: &WorldSimulation, term| sim.measure(&term).as_f64().unwrap();
+    let joint = JointId(0);
+    sim.advance(SECOND);
+    near(of(&sim, SignalTerm::JointEffort(joint)), 4.0 * 9.81);
+    let (plate, load) = (BodyRef::Body(BodyId(1)), BodyRef::Body(BodyId(2)));
+    for by in [None, Some(load)] {
+        near(of(&sim, SignalTerm::Pressure { body: plate, by, area: 1e-2 }), 981.0);
+    }
+    let up = MotorCommand::FollowJoints { arm: ArmId(0), positions: vec![0.3], times: vec![1.0] };
+    sim.command(up).unwrap();
+    let mut fastest = 0.0f64;
+    while let Some(next) = sim.next_wake() {
+        sim.advance(next);
+        fastest = fastest.max(of(&sim, SignalTerm::JointRate(joint)));
+    }
+    assert!((of(&sim, SignalTerm::JointPosition(joint)) - 0.3).abs() < 0.01, "it is up");
+    assert!((0.29..0.5).contains(&fastest), "0.3 m in a second: {fastest}");
 }

@@ -93,8 +93,8 @@ fn add_chain(world: &mut World, chain: &Chain) {
         (parent, at) = (child, [at[0] + length, at[1], at[2]]);
     }
     let (name, tip, tool) = (format!("arm{number}"), parent, [0.0, 0.0, 0.05]);
-    let (max_speed, contact_limit, postures) = (1.0, None, Vec::new());
-    world.arms.push(Arm { name, joints, tip, tool, max_speed, contact_limit, postures });
+    let (max_speed, contact_limit, avoids_people, postures) = (1.0, None, false, Vec::new());
+    world.arms.push(Arm { name, joints, tip, tool, max_speed, contact_limit, avoids_people, postures });
 }
 
 fn world(recipe: &Recipe) -> World {

@@ -7,7 +7,7 @@ use hrdsl_ir::{
     device::DeviceBody,
     device_state::DeviceState,
     expr::BinaryOp,
-    sensor::{ImperfectSensor, OdometryDrift, SensorNoise, SensorSource},
+    sensor::{ImperfectSensor, OdometryDrift, SensorNoise, SensorOutlier, SensorSource},
     world::*,
 };
 use hrdsl_sim::{MotorCommand, WorldSimulation};
@@ -58,7 +58,8 @@ fn signals() -> Vec<Signal> {
 
 fn exact(name: &str, source: SensorSource) -> ImperfectSensor {
     let (every, late, noise, drift, dropout, flip) = (None, 0, Vec::new(), None, 0.0, 0.0);
-    ImperfectSensor { name: name.into(), source, every, late, noise, drift, dropout, flip }
+    let outlier = None;
+    ImperfectSensor { name: name.into(), source, every, late, noise, drift, dropout, flip, outlier }
 }
 
 fn of_x() -> ImperfectSensor {
@@ -151,6 +152,73 @@ fn noise_and_dropout_are_as_large_as_is_said() {
     let flipped = seen.iter().filter(|(_, flipped)| *flipped).count() as f64 / count;
     assert!(mean.abs() < 0.001 && (deviation - 0.02).abs() < 0.001, "{mean} {deviation}");
     assert!((lost - 0.1).abs() < 0.01 && (flipped - 0.03).abs() < 0.005, "{lost} {flipped}");
+}
+
+#[test]
+fn outliers_are_as_many_as_is_said_and_anywhere_in_their_range() {
+    let (n, period) = (20_000, 10 * MS);
+    let outlier = Some(SensorOutlier { probability: 0.02, lo: 1.0, hi: 5.0 });
+    let noisy = ImperfectSensor { every: Some(period), noise: metres(0.02), outlier, ..of_x() };
+    let mut sim = running(vec![noisy], 6);
+    let mut far = Vec::new();
+    for sample in 1..=n {
+        sim.advance(sample * period);
+        far.extend(Some(reading(&sim, X)).filter(|x| *x > 0.5));
+    }
+    let (count, all) = (far.len() as f64, n as f64);
+    let mean = far.iter().sum::<f64>() / count;
+    let deviation = (far.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt();
+    assert!((count / all - 0.02).abs() < 0.004, "{count}");
+    assert!(far.iter().all(|x| (1.0..=5.0).contains(x)));
+    // Evenly: around the middle, with a deviation of a twelfth of the square of the width.
+    assert!((mean - 3.0).abs() < 0.2 && (deviation - 4.0 / 12f64.sqrt()).abs() < 0.1, "{mean} {deviation}");
+}
+
+#[test]
+fn a_laser_sees_what_is_not_there_beam_by_beam() {
+    let eye = DeviceBody::Laser(LaserId(0));
+    let of_eye = exact("eye", SensorSource::Laser(LaserId(0)));
+    let outlier = Some(SensorOutlier { probability: 0.03, lo: 0.1, hi: 10.0 });
+    let sensor = ImperfectSensor { every: Some(100 * MS), outlier, ..of_eye };
+    let mut sim = running(vec![sensor], 3);
+    let truth = running(Vec::new(), 0).told(eye, "ranges").unwrap();
+    let mut false_returns = Vec::new();
+    for sample in 0..1000 {
+        sim.advance(sample * 100 * MS);
+        let seen = sim.told(eye, "ranges").unwrap();
+        let wrong = seen.iter().zip(&truth).filter(|(a, b)| a != b).map(|(a, _)| *a);
+        false_returns.extend(wrong);
+    }
+    let part = false_returns.len() as f64 / 21_000.0;
+    let mean = false_returns.iter().sum::<f64>() / false_returns.len() as f64;
+    assert!((part - 0.03).abs() < 0.004 && (mean - 5.05).abs() < 0.4, "{part} {mean}");
+}
+
+#[test]
+fn the_nearest_is_the_least_of_a_scan_as_it_is_true() {
+    let of_eye = exact("eye", SensorSource::Laser(LaserId(0)));
+    let mut world = hall(vec![ImperfectSensor { noise: metres(0.1), ..of_eye }]);
+    world.bodies[0].position = [1.5, 0.2, 0.15];
+    let laser = world.lasers[0].clone();
+    let noisy = WorldSimulation::new(&world, &[]).unwrap();
+    world.sensors = Vec::new();
+    let exact = WorldSimulation::new(&world, &[]).unwrap();
+    let ranges = exact.told(DeviceBody::Laser(LaserId(0)), "ranges").unwrap();
+    let mut found = Vec::new();
+    for (from, to) in [(-0.2, 0.2), (-0.2, 0.0), (0.1, 0.16), (0.02, 0.02)] {
+        let (first, last) = laser.beams_between(from, to).unwrap();
+        let term = SignalTerm::Nearest { laser: LaserId(0), first, last };
+        let least = ranges[usize::from(first)..=usize::from(last)].iter().copied().fold(9.0, f64::min);
+        for sim in [&noisy, &exact] {
+            assert_eq!(sim.measure(&term).as_f64(), Some(least), "{from} to {to}");
+        }
+        found.push((last - first, least));
+    }
+    // The ball ahead to the left, the wall behind it.
+    assert!(found[0].1 == found[2].1 && (1.3..1.45).contains(&found[0].1), "{found:?}");
+    assert!(found[1].1 == found[3].1 && (found[1].1 - 3.0).abs() < 0.01, "{found:?}");
+    assert_eq!(found.iter().map(|f| f.0).collect::<Vec<_>>(), [20, 10, 3, 0]);
+    assert_eq!(laser.beams_between(0.165, 0.175), None);
 }
 
 #[test]
@@ -252,6 +320,8 @@ fn sensors_of_nothing_and_bad_measures_are_refused() {
         ImperfectSensor { every: Some(0), ..of_x() },
         ImperfectSensor { dropout: 1.5, ..of_x() },
         ImperfectSensor { flip: f64::NAN, ..of_x() },
+        ImperfectSensor { outlier: Some(SensorOutlier { probability: 2.0, lo: 0.0, hi: 1.0 }), ..of_x() },
+        ImperfectSensor { outlier: Some(SensorOutlier { probability: 0.1, lo: 2.0, hi: 1.0 }), ..of_x() },
         ImperfectSensor { noise: metres(-1.0), ..of_x() },
     ] {
         assert!(said(bad).is_some_and(|why| why.contains("signal `x`")));

@@ -161,15 +161,17 @@ fn range_of_term(term: &SignalTerm) -> Option<(f64, f64)> {
         | SignalTerm::Force(..)
         | SignalTerm::ForceOn(_)
         | SignalTerm::Pressed { .. }
+        | SignalTerm::Pressure { .. }
         | SignalTerm::Weight(_) => (0.0, infinite),
         SignalTerm::Angle(..) | SignalTerm::Tilt(_) => (0.0, std::f64::consts::PI),
         SignalTerm::Heading(_) => (-std::f64::consts::PI, std::f64::consts::PI),
         SignalTerm::Orientation(..) => (-1.0, 1.0),
         SignalTerm::Coordinate(..)
         | SignalTerm::Height(_)
-        | SignalTerm::JointAngle(_)
+        | SignalTerm::JointPosition(_)
         | SignalTerm::JointRate(_)
-        | SignalTerm::Torque(_)
+        | SignalTerm::JointEffort(_)
+        | SignalTerm::Nearest { .. }
         | SignalTerm::Delta(..) => (-infinite, infinite),
         SignalTerm::Visible(..)
         | SignalTerm::Touches(..)

@@ -35,6 +35,8 @@ pub const LIBRARY_PARTS: &[(&str, &str)] = &[
     ("bert2", "std.robots.bert2"),
     ("child", "std.person"),
     ("collision", "std.sensors"),
+    ("door", "std.furniture"),
+    ("drawer", "std.furniture"),
     ("gaze", "std.sensors"),
     ("knock", "std.sensors"),
     ("location", "std.sensors"),

@@ -136,6 +136,7 @@ impl Maker {
             tool: [0.08, 0.0, 0.0],
             max_speed: 0.2,
             contact_limit: None,
+            avoids_people: false,
             postures: Vec::new(),
         });
         self.gripper("robot.grip", palm, [0.08, 0.0, 0.0], 0.04, 500_000_000);

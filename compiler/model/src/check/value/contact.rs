@@ -4,38 +4,98 @@ use hrdsl_ir::{
     value::nanos,
     world::{ContactPhase, JointMotion},
 };
+use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax};
 
 use crate::{
-    ArmId, BodyRef, Dimension, InferredType, JointId, SignalId, SignalTerm, check::checker::Checker,
-    noun::Noun, report::world::bad_world,
+    ArmId, BodyRef, Dimension, InferredType, JointId, LaserId, SignalId, SignalTerm,
+    check::checker::Checker,
+    noun::Noun,
+    report::{types, world::bad_world},
 };
 
 impl Checker<'_> {
-    /// `joint_speed` is of an arm or of a joint, the others are of a joint.
+    /// `joint_speed` is of an arm or of a joint, the others are of a joint; `joint_angle` and `torque` of one that turns.
     pub(super) fn of_joint(
         &mut self,
         name: &str,
         arg: &ast::ExprSyntax,
         prefix: &str,
     ) -> Option<(SignalTerm, InferredType)> {
-        let speed = InferredType::Float(Dimension::ANGULAR_SPEED);
         if name == "joint_speed" && !self.names_joint(arg, prefix) {
             let arm = self.world_arg(Noun::Arm, arg, prefix)?;
-            return Some((SignalTerm::JointSpeed(ArmId(arm)), speed));
+            return Some((SignalTerm::JointSpeed(ArmId(arm)), InferredType::Float(Dimension::ANGULAR_SPEED)));
         }
         let joint = JointId(self.world_arg(Noun::Joint, arg, prefix)?);
         let declared = self.s.world.as_ref().and_then(|w| w.joints.get(usize::from(joint.0)));
-        if declared.is_some_and(|j| j.motion == JointMotion::Slider) {
+        let slides = declared.is_some_and(|j| j.motion == JointMotion::Slider);
+        let of_any = match name {
+            "joint_angle" => "joint_position",
+            "torque" => "joint_effort",
+            other => other,
+        };
+        if slides && name != of_any {
             let message = format!("`{name}` is of joints that turn, and this one slides");
-            self.report(bad_world(arg.span, message, "measure `distance` or the coordinates of what slides"));
+            let help = format!("write `{of_any}`, which is of all joints, each in its own unit");
+            self.report(bad_world(arg.span, message, help));
             return None;
         }
-        Some(match name {
-            "joint_speed" => (SignalTerm::JointRate(joint), speed),
-            "joint_angle" => (SignalTerm::JointAngle(joint), InferredType::Float(Dimension::ANGLE)),
-            _ => (SignalTerm::Torque(joint), InferredType::Float(Dimension::TORQUE)),
-        })
+        let (term, turning, sliding) = match of_any {
+            "joint_position" => (SignalTerm::JointPosition(joint), Dimension::ANGLE, Dimension::LENGTH),
+            "joint_effort" => (SignalTerm::JointEffort(joint), Dimension::TORQUE, Dimension::FORCE),
+            _ => (SignalTerm::JointRate(joint), Dimension::ANGULAR_SPEED, Dimension::SPEED),
+        };
+        Some((term, InferredType::Float(if slides { sliding } else { turning })))
+    }
+
+    /// `nearest(laser)`: of all beams, or of those between two angles.
+    pub(super) fn nearest(
+        &mut self,
+        args: &[ast::ExprSyntax],
+        prefix: &str,
+        span: Span,
+    ) -> Option<(SignalTerm, InferredType)> {
+        let laser = self.world_arg(Noun::Laser, args.first()?, prefix);
+        let mut angle = |at: usize| args.get(at).map(|e| self.quantity_of(e, Dimension::ANGLE));
+        let (from, to) = (angle(1), angle(2));
+        let id = LaserId(laser?);
+        let declared = self.s.world.as_ref()?.lasers.get(usize::from(id.0))?;
+        let (from, to) = (from.unwrap_or(Some(declared.lo))?, to.unwrap_or(Some(declared.hi))?);
+        let Some((first, last)) = declared.beams_between(from, to) else {
+            let [lo, hi] = [declared.lo, declared.hi].map(f64::to_degrees);
+            let message = format!("`{}` has no beam between these angles", declared.name);
+            let help = format!(
+                "its {} beams go from {lo:.1} deg to {hi:.1} deg; the lesser angle is the first",
+                declared.beams
+            );
+            self.report(bad_world(span, message, help));
+            return None;
+        };
+        Some((SignalTerm::Nearest { laser: id, first, last }, InferredType::Float(Dimension::LENGTH)))
+    }
+
+    /// `estimated_pressure(a, area)`: the force over an area that somebody assumes.
+    pub(super) fn pressure(
+        &mut self,
+        args: &[ast::ExprSyntax],
+        prefix: &str,
+    ) -> Option<(SignalTerm, InferredType)> {
+        let (area, bodies) = args.split_last()?;
+        let mut solid = |at: usize| bodies.get(at).map(|a| self.solid_arg("estimated_pressure", a, prefix));
+        let (body, by) = (solid(0)?, solid(1));
+        let found = self.quantity_of(area, Dimension::LENGTH.times(Dimension::LENGTH))?;
+        if found <= 0.0 {
+            self.report(types::must_be("the assumed area", "more than 0", area.span));
+            return None;
+        }
+        let by = match by {
+            Some(by) => Some(by?),
+            None => None,
+        };
+        Some((
+            SignalTerm::Pressure { body: body?, by, area: found },
+            InferredType::Float(Dimension::PRESSURE),
+        ))
     }
 
     fn names_joint(&self, arg: &ast::ExprSyntax, prefix: &str) -> bool {

@@ -15,7 +15,7 @@ use crate::{
     report::{names, types},
 };
 
-const MEASURES: [&str; 19] = [
+const MEASURES: [&str; 23] = [
     "distance",
     "range",
     "angle",
@@ -31,6 +31,10 @@ const MEASURES: [&str; 19] = [
     "quasistatic_force",
     "torque",
     "joint_angle",
+    "joint_position",
+    "joint_effort",
+    "estimated_pressure",
+    "nearest",
     "tilt",
     "height",
     "delta",
@@ -142,6 +146,8 @@ impl Checker<'_> {
         let want = match name.as_str() {
             "distance" | "range" | "angle" | "visible" | "touches" | "delta" => 2..=2,
             "holds" | "force" | "transient_force" | "quasistatic_force" => 1..=2,
+            "estimated_pressure" => 2..=3,
+            "nearest" if args.len() != 1 => 3..=3,
             _ => 1..=1,
         };
         if !want.contains(&args.len()) {
@@ -154,7 +160,11 @@ impl Checker<'_> {
     fn term(&mut self, name: &str, args: &[ast::ExprSyntax], prefix: &str, span: Span) -> Option<TypedExpr> {
         let length = InferredType::Float(Dimension::LENGTH);
         let (what, ty) = match name {
-            "joint_speed" | "joint_angle" | "torque" => self.of_joint(name, &args[0], prefix)?,
+            "joint_speed" | "joint_angle" | "torque" | "joint_position" | "joint_effort" => {
+                self.of_joint(name, &args[0], prefix)?
+            }
+            "nearest" => self.nearest(args, prefix, span)?,
+            "estimated_pressure" => self.pressure(args, prefix)?,
             "delta" => self.delta(&args[0], &args[1], prefix)?,
             "reading" => self.reading(&args[0], prefix)?,
             "touches" | "force" | "weight" | "transient_force" | "quasistatic_force" => {

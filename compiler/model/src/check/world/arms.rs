@@ -74,9 +74,9 @@ impl<'a> Checker<'a> {
     }
 
     fn joint_drive(&mut self, joint: &JointSyntax, motion: JointMotion) -> JointDrive {
-        let (effort, speed) = match motion {
-            JointMotion::Hinge => (Dimension::TORQUE, Dimension::ANGULAR_SPEED),
-            JointMotion::Slider => (Dimension::FORCE, Dimension::SPEED),
+        let (effort, speed, damping) = match motion {
+            JointMotion::Hinge => (Dimension::TORQUE, Dimension::ANGULAR_SPEED, Dimension::ANGULAR_DAMPING),
+            JointMotion::Slider => (Dimension::FORCE, Dimension::SPEED, Dimension::DAMPING),
         };
         if let (JointMotion::Slider, Some(rotor)) = (motion, &joint.rotor) {
             let message = "a joint that slides has no rotor";
@@ -86,6 +86,17 @@ impl<'a> Checker<'a> {
                 "give the body that slides the mass of what moves it",
             ));
         }
+        if let (Some(_), Some(loss)) = (&joint.mimic, joint.damping.as_ref().or(joint.friction.as_ref())) {
+            let message = format!(
+                "the joint `{}` follows another, and is braked by nothing of its own",
+                joint.name.text
+            );
+            self.report(bad_world(
+                loss.span,
+                message,
+                "brake the joint that it follows, or leave out `mimic`",
+            ));
+        }
         let mut measure = |e: &Option<ExprSyntax>, dim: Dimension, what: &str| {
             e.as_ref().and_then(|e| self.more_than_zero(e, dim, what))
         };
@@ -93,6 +104,8 @@ impl<'a> Checker<'a> {
             effort: measure(&joint.effort, effort, "the effort"),
             speed: measure(&joint.speed, speed, "the speed"),
             rotor: measure(&joint.rotor, Dimension::INERTIA, "the rotor's inertia").unwrap_or(0.0),
+            damping: measure(&joint.damping, damping, "the damping").unwrap_or(0.0),
+            friction: measure(&joint.friction, effort, "the friction").unwrap_or(0.0),
             ..JointDrive::default()
         }
     }
@@ -196,6 +209,7 @@ impl<'a> Checker<'a> {
         let speed = self.more_than_zero(&arm.speed, Dimension::ANGULAR_SPEED, "the speed").unwrap_or(0.0);
         let contact =
             arm.contact.as_ref().and_then(|e| self.more_than_zero(e, Dimension::FORCE, "the contact force"));
+        let avoids_people = arm.avoids.as_ref().is_some_and(|what| self.avoids_people(what));
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.arms);
         if let Some(id) = issues.declare_as(table, Noun::Arm, &full, name.span) {
@@ -208,9 +222,21 @@ impl<'a> Checker<'a> {
                 tool,
                 max_speed: speed,
                 contact_limit: contact,
+                avoids_people,
                 postures,
             });
         }
+    }
+
+    /// Everything but people an arm goes round anyway.
+    fn avoids_people(&mut self, what: &NameSyntax) -> bool {
+        let known = what.text == "people";
+        if !known {
+            let message = format!("an arm cannot be told to avoid `{}`", what.text);
+            let help = "write `avoids people`; it goes round everything else anyway";
+            self.report(bad_world(what.span, message, help));
+        }
+        known
     }
 
     fn chain(&mut self, listed: &[(JointId, NameSyntax)], tip: &NameSyntax, tip_id: BodyId) {

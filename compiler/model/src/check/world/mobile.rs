@@ -159,11 +159,10 @@ impl<'a> Checker<'a> {
         let full = format!("{}{}", p.prefix, name.text);
         let (issues, table) = (&mut self.issues, &mut self.world.names.lasers);
         if let Some(id) = issues.declare_as(table, Noun::Laser, &full, name.span) {
-            self.sensing(&laser.sensing, SensedKind::Laser, (&full, SensorSource::Laser(LaserId(id))));
             let (lo, hi) = angles.unwrap_or_default();
             let (nearest, farthest) = range.unwrap_or_default();
             self.world_mut().lasers.push(Laser {
-                name: full,
+                name: full.clone(),
                 body,
                 at,
                 lo,
@@ -172,6 +171,7 @@ impl<'a> Checker<'a> {
                 nearest,
                 farthest,
             });
+            self.sensing(&laser.sensing, SensedKind::Laser, (&full, SensorSource::Laser(LaserId(id))));
         }
     }
 }

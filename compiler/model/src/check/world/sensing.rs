@@ -1,7 +1,7 @@
 //! In what a sensor is worse than the truth: the clauses of signals, lasers, bases and arms.
 
 use hrdsl_ir::{
-    sensor::{ImperfectSensor, OdometryDrift, SensorNoise, SensorSource},
+    sensor::{ImperfectSensor, OdometryDrift, SensorNoise, SensorOutlier, SensorSource},
     value::nanos,
 };
 use hrdsl_source::Span;
@@ -93,6 +93,7 @@ impl Checker<'_> {
             drift: None,
             dropout: 0.0,
             flip: 0.0,
+            outlier: None,
         };
         for (at, clause) in clauses.iter().enumerate() {
             let word = clause.kind.word();
@@ -103,6 +104,7 @@ impl Checker<'_> {
             match clause.kind {
                 Clause::Noise => self.noise(clause, kind, &mut sensor.noise),
                 Clause::Drift => sensor.drift = self.drift(clause, kind),
+                Clause::Outlier => sensor.outlier = self.outlier(clause, kind, source),
                 Clause::Every | Clause::Late | Clause::Dropout | Clause::Flip => {
                     let Some(value) = self.only_value(clause) else { continue };
                     self.simple_clause(clause, value, kind, &mut sensor);
@@ -155,8 +157,53 @@ impl Checker<'_> {
                     | SensedKind::Laser => self.misplaced(clause, kind),
                 }
             }
-            Clause::Noise | Clause::Drift => {}
+            Clause::Noise | Clause::Drift | Clause::Outlier => {}
         }
+    }
+
+    /// `outlier 1 % in 0 m .. 5 m`; of a laser anywhere in its range, if nothing else is said.
+    fn outlier(
+        &mut self,
+        clause: &SensorClause,
+        kind: SensedKind,
+        source: SensorSource,
+    ) -> Option<SensorOutlier> {
+        let probability = clause.values.first().and_then(|value| self.probability(value));
+        let (dim, all) = match kind {
+            SensedKind::Quantity(dim) => (dim, None),
+            SensedKind::Laser => (Dimension::LENGTH, self.scanned(source)),
+            SensedKind::Truth | SensedKind::Choice | SensedKind::Arm | SensedKind::Base => {
+                self.misplaced(clause, kind);
+                return None;
+            }
+        };
+        let range = match &clause.range {
+            Some(range) => {
+                let ends =
+                    self.ends(range, dim, "outliers are in a range", "write `outlier 1 % in 0 m .. 5 m`")?;
+                let within = all.is_none_or(|(lo, hi): (f64, f64)| lo <= ends.0 && ends.1 <= hi);
+                if !within {
+                    let rule = "within what the laser measures: its `range`";
+                    self.report(types::must_be("the range of outliers", rule, range.span));
+                }
+                Some(ends)
+            }
+            None => all,
+        };
+        let Some((lo, hi)) = range else {
+            if clause.range.is_none() && matches!(kind, SensedKind::Quantity(_)) {
+                let message = "nothing says where the outliers of a quantity are";
+                self.report(bad_world(clause.span, message, "write a range behind it: `in 0 m .. 5 m`"));
+            }
+            return None;
+        };
+        Some(SensorOutlier { probability: probability?, lo, hi })
+    }
+
+    /// Between which distances a laser measures; `None`: that is in error.
+    fn scanned(&self, source: SensorSource) -> Option<(f64, f64)> {
+        let laser = self.s.world.as_ref()?.lasers.get(source.index())?;
+        Some((laser.nearest, laser.farthest))
     }
 
     /// A clause that says nothing of what is read.

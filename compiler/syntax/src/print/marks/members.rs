@@ -302,7 +302,7 @@ impl TokenMarker<'_> {
         self.expr(&joint.at);
         self.expr(&joint.axis);
         self.range(&joint.limits);
-        for clause in [&joint.effort, &joint.speed, &joint.rotor] {
+        for clause in [&joint.effort, &joint.speed, &joint.rotor, &joint.damping, &joint.friction] {
             self.maybe(clause.as_ref());
         }
         if let Some(mimic) = &joint.mimic {
@@ -320,7 +320,12 @@ impl TokenMarker<'_> {
     }
 
     fn sensing(&mut self, clauses: &[SensorClause]) {
-        clauses.iter().flat_map(|clause| &clause.values).for_each(|value| self.expr(value));
+        for clause in clauses {
+            clause.values.iter().for_each(|value| self.expr(value));
+            if let Some(range) = &clause.range {
+                self.range(range);
+            }
+        }
     }
 
     #[expect(clippy::too_many_lines, reason = "a flat match")]
