@@ -44,7 +44,7 @@ pub fn tally(
     sources: &BTreeMap<String, String>,
     rerun: String,
 ) -> CampaignResults {
-    let CampaignOutcome { tests, planned, interrupted, warnings, times: _ } = outcome;
+    let CampaignOutcome { tests, planned, interrupted, warnings } = outcome;
     let suites = suites(generated, &tests);
     let place: SuiteOrder<'_> = suites.iter().enumerate().map(|(i, s)| (&s.name, i)).collect();
     CampaignResults {
