@@ -181,11 +181,11 @@ fn a_laser_sees_what_is_not_there_beam_by_beam() {
     let outlier = Some(SensorOutlier { probability: 0.03, lo: 0.1, hi: 10.0 });
     let sensor = ImperfectSensor { every: Some(100 * MS), outlier, ..of_eye };
     let mut sim = running(vec![sensor], 3);
-    let truth = running(Vec::new(), 0).told(eye, "ranges").unwrap();
+    let truth = running(Vec::new(), 0).told(eye, DeviceState::Ranges).unwrap();
     let mut false_returns = Vec::new();
     for sample in 0..1000 {
         sim.advance(sample * 100 * MS);
-        let seen = sim.told(eye, "ranges").unwrap();
+        let seen = sim.told(eye, DeviceState::Ranges).unwrap();
         let wrong = seen.iter().zip(&truth).filter(|(a, b)| a != b).map(|(a, _)| *a);
         false_returns.extend(wrong);
     }
@@ -203,7 +203,7 @@ fn the_nearest_is_the_least_of_a_scan_as_it_is_true() {
     let noisy = WorldSimulation::new(&world, &[]).unwrap();
     world.sensors = Vec::new();
     let exact = WorldSimulation::new(&world, &[]).unwrap();
-    let ranges = exact.told(DeviceBody::Laser(LaserId(0)), "ranges").unwrap();
+    let ranges = exact.told(DeviceBody::Laser(LaserId(0)), DeviceState::Ranges).unwrap();
     let mut found = Vec::new();
     for (from, to) in [(-0.2, 0.2), (-0.2, 0.0), (0.1, 0.16), (0.02, 0.02)] {
         let (first, last) = laser.beams_between(from, to).unwrap();
