@@ -284,7 +284,7 @@ impl Laser {
         let slack = 1e-6 * if self.beams < 2 { 1.0 } else { self.increment() };
         let angle = |beam: u16| self.lo + f64::from(beam) * self.increment();
         let mut within = (0..self.beams).filter(|beam| (from - slack..=to + slack).contains(&angle(*beam)));
-        within.next().map(|first| (first, within.last().unwrap_or(first)))
+        within.next().map(|first| (first, within.next_back().unwrap_or(first)))
     }
 }
 

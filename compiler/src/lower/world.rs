@@ -140,6 +140,7 @@ fn type_of(t: SignalTerm, world: Option<&from::TypedWorld>) -> Type {
 }
 
 /// A term as it is written in the scenario, with the full names of what it measures.
+#[expect(clippy::too_many_lines, reason = "a flat match")]
 fn written(term: SignalTerm, world: &from::TypedWorld) -> String {
     let body = |b: BodyRef| match b {
         BodyRef::Body(id) => world.bodies[usize::from(id.0)].name.as_str(),

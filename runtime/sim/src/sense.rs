@@ -85,6 +85,7 @@ impl SensorView<'_> {
         }
     }
 
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub fn term(&self, term: &SignalTerm) -> Value {
         match *term {
             SignalTerm::Distance(a, b) => Value::Float(self.physics.distance(self.body(a), self.body(b))),
