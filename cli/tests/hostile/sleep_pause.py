@@ -1,5 +1,5 @@
-# Waits for a signal that never comes, where no simulated time passes.
-# expect: error "it slept for 1 s of wall time"
+# Waits for a signal that never comes.
+# expect: error "deadlock: all threads of the program wait"
 import signal
 import hrdsl
 node = hrdsl.Node('robot')
