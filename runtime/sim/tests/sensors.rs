@@ -216,7 +216,7 @@ fn the_nearest_is_the_least_of_a_scan_as_it_is_true() {
     }
     // The ball ahead to the left, the wall behind it.
     assert!(found[0].1 == found[2].1 && (1.3..1.45).contains(&found[0].1), "{found:?}");
-    assert!((found[1].1 - 3.0).abs() < 1e-6 && (found[3].1 - 3.0 / 0.02f64.cos()).abs() < 1e-6, "{found:?}");
+    assert!((found[1].1 - 3.0).abs() < 1e-6 && (found[3].1 - 3.000_600_1).abs() < 1e-6, "{found:?}");
     assert_eq!(found.iter().map(|f| f.0).collect::<Vec<_>>(), [20, 10, 3, 0]);
     assert_eq!(laser.beams_between(0.165, 0.175), None);
 }
