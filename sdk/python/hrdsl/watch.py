@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _signal  # type: ignore[import-not-found]  # without the enumerations of `signal`
 import _thread
 import os
 import sys
@@ -21,11 +22,20 @@ if TYPE_CHECKING:
 #: Bytes of its stack.
 _STACK = 1 << 20
 
+#: Of the system's timer of processor time, which programs cannot have (`hrdsl.alarms`).
+_TICK = getattr(_signal, "SIGPROF", None)
+
+# As they are before anything is replaced.
+_real_timer = getattr(_signal, "setitimer", None)
+_real_sigwait = getattr(_signal, "sigwait", None)
+_real_pthread_kill = getattr(_signal, "pthread_kill", None)
+
 
 class Watcher:
     """A thread of the system's, beside those of the program, that looks now and then whether the scheduler was called.
 
-    It changes nothing that the program sees unless it finds a fault: the thread that has the baton has computed for
+    Now and then is measured in processor time where the system can: a program that computes little is never looked at, however long
+    that takes on a busy machine, and so has the same objects at the same addresses in every run. It changes nothing that the program sees unless it finds a fault: the thread that has the baton has computed for
     `budget` seconds of its processor time without a call, while another is ready, or waits for a time that cannot come. Of a thread
     that computes for so long while nobody waits, it tells the place, since the harness soon ends a program that makes no request.
     """
@@ -34,11 +44,19 @@ class Watcher:
         self._scheduler = scheduler
         self._threads = threads
         self._budget = budget
+        self._every = min(1.0, max(0.01, budget / 4))  # seconds between looks
         self._stop: Any = None  # released to end it, while it runs
         self._stopped: Any = None
+        self._ident = 0
+        self._has_timer = False
 
     def start(self) -> None:
-        """Begins to look, until the process forks."""
+        """Begins to look, until the process forks. To be called before the program has a second thread."""
+        if _real_sigwait is not None and _real_timer is not None and _TICK is not None:
+            # Should a program unblock all signals, this one does not end it; while it is blocked, it is kept for `sigwait` all the same.
+            _signal.signal(_TICK, _signal.SIG_IGN)
+            _signal.pthread_sigmask(_signal.SIG_BLOCK, (_TICK,))
+            self._has_timer = True
         self._go()
         if hasattr(os, "register_at_fork"):
             os.register_at_fork(before=self._end)
@@ -50,7 +68,7 @@ class Watcher:
         self._stopped.acquire()
         size = _thread.stack_size(_STACK)
         try:
-            real_start(self._run, ())
+            self._ident = real_start(self._run, ())
         except RuntimeError:  # the system lets it have no more threads, and the program may need none
             self._stop = None
         finally:
@@ -61,6 +79,8 @@ class Watcher:
         brings a new watcher."""
         if self._stop is not None:
             self._stop.release()
+            if self._has_timer and self._stopped.locked():
+                _real_pthread_kill(self._ident, _TICK)  # type: ignore[misc]
             self._stopped.acquire()
             self._stop = None
             self._threads.on_first = self._go
@@ -73,7 +93,7 @@ class Watcher:
         stop, stopped = self._stop, self._stopped
         seen, since = (-1, -1), 0.0
         heard, silent_since = -1, 0.0  # requests, which let nobody else run
-        while not stop.acquire(True, min(1.0, max(0.01, self._budget / 4))):
+        while not self._wait(stop):
             task = self._scheduler.running
             used = _processor_time(task)
             if used is None or (task.ident, self._scheduler.calls) != seen:
@@ -88,6 +108,15 @@ class Watcher:
                 self._tell(task)
                 silent_since = float("inf")  # once is enough, until something is asked again
         stopped.release()
+
+    def _wait(self, stop: Any) -> bool:
+        """Until it is time to look: whether it is the end instead."""
+        if not self._has_timer:
+            return bool(stop.acquire(True, self._every))
+        _signal.pthread_sigmask(_signal.SIG_BLOCK, (_TICK,))
+        _real_timer(_signal.ITIMER_PROF, self._every)  # type: ignore[misc]
+        _real_sigwait((_TICK,))  # type: ignore[misc]
+        return bool(stop.acquire(False))
 
     def _keeps_others(self, task: Task) -> bool:
         scheduler = self._scheduler

@@ -158,6 +158,25 @@ class Faults(Case):
         self.assertRegex(finished.err, r"^hrdsl: .*/program.py:\d+: thread MainThread has computed for more than 0.1 s of processor time without")
         self.assertEqual(len(finished.err.splitlines()), 1, "it is told once")
 
+    def test_a_program_that_computes_little_is_never_looked_at(self):
+        # A look leaves other objects at other addresses, and must not depend on how long the machine takes.
+        text = """
+            import threading
+            from hrdsl import watch
+            looks = []
+            real = watch._processor_time
+            watch._processor_time = lambda task: looks.append(task) or real(task)
+            threading.Thread(target=int).start()
+            watch.real_sleep(0.5)
+            print(len(looks))
+            place = 0
+            while not looks and place < 10**8:
+                place += 1
+            print(len(looks) > 0)
+            """
+        finished = run_text(text, env={"HRDSL_BUSY_SECONDS": "0.8"})
+        self.assertEqual((finished.code, finished.out), (0, "0\nTrue\n"), finished.err)
+
     def test_a_thread_alone_is_told_where_it_computes_and_how_it_would_wait(self):
         for begin, how in (
             ("import hrdsl\nnode = hrdsl.Node('a')\nnode.emit('a')\n", "or with Node.wait_for or Node.sleep"),
