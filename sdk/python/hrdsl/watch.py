@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import _signal  # type: ignore[import-not-found]  # without the enumerations of `signal`
 import _thread
 import os
 import sys
@@ -22,22 +21,25 @@ if TYPE_CHECKING:
 #: Bytes of its stack.
 _STACK = 1 << 20
 
-#: Of the system's timer of processor time, which programs cannot have (`hrdsl.alarms`).
-_TICK = getattr(_signal, "SIGPROF", None)
+#: After so many seconds of real time, at most, the interpreter takes a processor away from a thread that others wait for. It is
+#: longer than a busy machine keeps a thread from running: one that has handed over the baton comes to its own wait before the next
+#: begins, and whatever both make, they make in the same order in every run.
+_SWITCH = 0.5
 
-# As they are before anything is replaced.
-_real_timer = getattr(_signal, "setitimer", None)
-_real_sigwait = getattr(_signal, "sigwait", None)
-_real_pthread_kill = getattr(_signal, "pthread_kill", None)
+#: The clock of what the process has computed.
+_COMPUTED = getattr(time, "CLOCK_PROCESS_CPUTIME_ID", None)
+
+_real_nanos = getattr(time, "clock_gettime_ns", None)  # as it is before anything is replaced
 
 
 class Watcher:
     """A thread of the system's, beside those of the program, that looks now and then whether the scheduler was called.
 
     Now and then is measured in processor time where the system can: a program that computes little is never looked at, however long
-    that takes on a busy machine, and so has the same objects at the same addresses in every run. It changes nothing that the program sees unless it finds a fault: the thread that has the baton has computed for
-    `budget` seconds of its processor time without a call, while another is ready, or waits for a time that cannot come. Of a thread
-    that computes for so long while nobody waits, it tells the place, since the harness soon ends a program that makes no request.
+    that takes on a busy machine, and so has the same objects at the same addresses in every run. It changes nothing that the program
+    sees unless it finds a fault: the thread that has the baton has computed for `budget` seconds of its processor time without a
+    call, while another is ready, or waits for a time that cannot come. Of a thread that computes for so long while nobody waits, it
+    tells the place, since the harness soon ends a program that makes no request.
     """
 
     def __init__(self, scheduler: Scheduler, threads: Threads, budget: float) -> None:
@@ -47,28 +49,24 @@ class Watcher:
         self._every = min(1.0, max(0.01, budget / 4))  # seconds between looks
         self._stop: Any = None  # released to end it, while it runs
         self._stopped: Any = None
-        self._ident = 0
-        self._has_timer = False
+        self._begun: Any = None
 
     def start(self) -> None:
-        """Begins to look, until the process forks. To be called before the program has a second thread."""
-        if _real_sigwait is not None and _real_timer is not None and _TICK is not None:
-            # Should a program unblock all signals, this one does not end it; while it is blocked, it is kept for `sigwait` all the same.
-            _signal.signal(_TICK, _signal.SIG_IGN)
-            _signal.pthread_sigmask(_signal.SIG_BLOCK, (_TICK,))
-            self._has_timer = True
+        """Begins to look, until the process forks."""
+        sys.setswitchinterval(min(_SWITCH, self._every))
         self._go()
         if hasattr(os, "register_at_fork"):
             os.register_at_fork(before=self._end)
 
     def _go(self) -> None:
         self._threads.on_first = None
-        self._stop, self._stopped = real_lock(), real_lock()
-        self._stop.acquire()
-        self._stopped.acquire()
+        self._stop, self._stopped, self._begun = real_lock(), real_lock(), real_lock()
+        for lock in (self._stop, self._stopped, self._begun):
+            lock.acquire()
         size = _thread.stack_size(_STACK)
         try:
-            self._ident = real_start(self._run, ())
+            real_start(self._run, ())
+            self._begun.acquire()  # so that what it makes is made now, not beside the program
         except RuntimeError:  # the system lets it have no more threads, and the program may need none
             self._stop = None
         finally:
@@ -79,8 +77,6 @@ class Watcher:
         brings a new watcher."""
         if self._stop is not None:
             self._stop.release()
-            if self._has_timer and self._stopped.locked():
-                _real_pthread_kill(self._ident, _TICK)  # type: ignore[misc]
             self._stopped.acquire()
             self._stop = None
             self._threads.on_first = self._go
@@ -93,6 +89,7 @@ class Watcher:
         stop, stopped = self._stop, self._stopped
         seen, since = (-1, -1), 0.0
         heard, silent_since = -1, 0.0  # requests, which let nobody else run
+        self._begun.release()  # nobody else runs before this thread waits (`_SWITCH`)
         while not self._wait(stop):
             task = self._scheduler.running
             used = _processor_time(task)
@@ -111,12 +108,16 @@ class Watcher:
 
     def _wait(self, stop: Any) -> bool:
         """Until it is time to look: whether it is the end instead."""
-        if not self._has_timer:
-            return bool(stop.acquire(True, self._every))
-        _signal.pthread_sigmask(_signal.SIG_BLOCK, (_TICK,))
-        _real_timer(_signal.ITIMER_PROF, self._every)  # type: ignore[misc]
-        _real_sigwait((_TICK,))  # type: ignore[misc]
-        return bool(stop.acquire(False))
+        every = self._every
+        if _real_nanos is None or _COMPUTED is None:
+            return bool(stop.acquire(True, every))
+        until = _real_nanos(_COMPUTED) + int(every * 1e9)
+        while not stop.acquire(True, every):
+            # The number that this line makes is gone at once, and its place is the next again, so that the program's objects are
+            # where they would be without it. (A float would be kept for the next float.)
+            if _real_nanos(_COMPUTED) >= until:
+                return False
+        return True
 
     def _keeps_others(self, task: Task) -> bool:
         scheduler = self._scheduler

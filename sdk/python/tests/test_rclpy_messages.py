@@ -1,5 +1,6 @@
 """The classes of ROS 2's messages, as rosidl lays them out."""
 
+import importlib.util
 import unittest
 
 from ros2_programs import Ros2Case
@@ -108,6 +109,8 @@ tried(lambda: hash(String()))
 
     def test_odd_ones(self):
         text = TRY + """
+import sys
+sys.modules["numpy"] = None  # as where it is not installed
 from odd_msgs.msg import Odd, Nothing
 m = Odd()
 print(m)
@@ -144,8 +147,30 @@ tried(SetBool)
             ],
         )
 
+    @unittest.skipUnless(importlib.util.find_spec("numpy"), "NumPy is not installed")
+    def test_arrays_of_a_fixed_size_are_those_of_numpy(self):
+        text = TRY + """
+import numpy
+from odd_msgs.msg import Odd
+m = Odd(key=numpy.array([1, 2, 3, 4], dtype=numpy.uint8))
+m.place[1] = 0.5
+print(type(m.key).__name__, m.key.dtype, m.key.tolist(), m.place.reshape(3, 1).tolist())
+tried(lambda: setattr(m, "key", numpy.array([1, 2, 3, 4])))
+tried(lambda: setattr(m, "place", numpy.zeros(2)))
+"""
+        self.assertEqual(
+            self.said(text),
+            [
+                "ndarray uint8 [1, 2, 3, 4] [[0.0], [0.5], [0.0]]",
+                "AssertionError: The 'key' numpy.ndarray() must have the dtype of 'numpy.uint8'",
+                "AssertionError: The 'place' numpy.ndarray() must have a size of 3",
+            ],
+        )
+
     def test_the_wire(self):
         text = """
+            import sys
+            sys.modules["numpy"] = None  # as where it is not installed
             import rclpy, array
             from rclpy.node import Node
             from odd_msgs.msg import Odd

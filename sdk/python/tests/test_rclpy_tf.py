@@ -200,7 +200,7 @@ buffer.set_transform(transform("map", "base", 1, 1.0, math.pi / 2), "test")
 header = Header(frame_id="base", stamp=at(1).to_msg())
 
 def near(*numbers):
-    return [round(number, 6) + 0.0 for number in numbers]
+    return [float(round(number, 6)) + 0.0 for number in numbers]  # perhaps numpy's
 
 point = buffer.transform(PointStamped(header=header, point=Point(x=2.0)), "map")
 print(point.header.frame_id, near(point.point.x, point.point.y))

@@ -119,7 +119,8 @@ class Children(Case):
             with subprocess.Popen("exit 5", shell=True) as child:
                 pass
             say(child.returncode, os.popen("echo a").read(), list(os.popen("echo b; echo c")))
-            for child in subprocess.Popen(["sleep", "9"]), subprocess.Popen(["sleep", "9"]):
+            both = [subprocess.Popen(["sleep", "9"]), subprocess.Popen(["sleep", "9"])]
+            for child in both:  # kept, for one that is forgotten is waited for
                 child.terminate()
             for wait in lambda pid: os.waitpid(pid, 0)[1], lambda pid: os.wait()[1]:
                 say(wait(child.pid))
