@@ -4,16 +4,17 @@ mod common;
 
 use std::{
     collections::{BTreeMap, VecDeque},
+    path::Path,
     time::Duration,
 };
 
-use common::{GRACE, environment, launch, reply, run};
+use common::{GRACE, environment, launch, reply, run, try_environment};
 use hrdsl_harness::SystemArrival;
 use hrdsl_ir::{Symbol, Value};
 use hrdsl_results::FileCoverage;
 use hrdsl_sut::{
-    HarnessReply, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, ReplyAnswer, SutError,
-    SutProcess,
+    HarnessReply, LaunchSpec, ProgramExit, ProgramRequest, ProtocolArgument, PythonEnv, ReplyAnswer,
+    SutError, SutProcess,
 };
 
 fn hello(process: &mut SutProcess) {
@@ -417,11 +418,22 @@ fn is_ok(text: &str) -> bool {
     text.lines().last().is_some_and(|last| last == "OK" || last.starts_with("OK (skipped="))
 }
 
+/// With NumPy, which the SDK's tests use where it is there: it is installed if the index of packages can be reached.
+fn environment_with_numpy() -> PythonEnv {
+    let list = Path::new(env!("CARGO_TARGET_TMPDIR")).join("numpy.txt");
+    std::fs::write(&list, "numpy\n").unwrap();
+    try_environment(Some(&list)).unwrap_or_else(|why| {
+        eprintln!("the tests of the SDK that need NumPy are skipped: {why}");
+        environment(None)
+    })
+}
+
 #[test]
 fn the_sdks_own_tests_pass() {
     // `env`: they run programs in simulated time, and themselves in real time.
     let alone = ["env", "-u", "HRDSL_SEED", "-u", "HRDSL_REQUEST_FD", "-u", "HRDSL_REPLY_FD"];
     let mut tests = launch(&[&alone[..], &["python3", "-m", "unittest", "discover"]].concat());
+    tests.env = environment_with_numpy();
     let coverage = tests.env.coverage_package().as_os_str().to_owned();
     tests.variables.push(("HRDSL_COVERAGE_PACKAGE".into(), coverage));
     tests.dir = tests.dir.join("../../../../sdk/python/tests");

@@ -9,7 +9,7 @@ use std::{
 use hrdsl_harness::SystemArrival;
 use hrdsl_sut::{
     CellSettings, EnvironmentNeeds, FinishedProcess, HarnessReply, LaunchSpec, ProgramLimits, ProgramRequest,
-    PythonEnv, ReplyAnswer, StopFlag, SutProcess,
+    PythonEnv, ReplyAnswer, StopFlag, SutError, SutProcess,
     cell::{CellIsolation, SupervisorCommand},
 };
 
@@ -17,11 +17,15 @@ pub const GRACE: Duration = Duration::from_secs(20);
 
 /// For the interpreter named by `HRDSL_TEST_PYTHON`, or `python3`.
 pub fn environment(requirements: Option<&Path>) -> PythonEnv {
+    try_environment(requirements).unwrap()
+}
+
+/// The same, where what is required may not be had.
+pub fn try_environment(requirements: Option<&Path>) -> Result<PythonEnv, SutError> {
     let python = std::env::var("HRDSL_TEST_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sut");
     let dir = Path::new(".");
     PythonEnv::prepare(&EnvironmentNeeds { python: &python, dir, requirements, cache: &cache }, &|_| {})
-        .unwrap()
 }
 
 fn plain_environment() -> PythonEnv {
