@@ -9,6 +9,7 @@
 
 mod color;
 mod commands;
+mod covered_files;
 mod exit;
 mod fault;
 mod files;

@@ -60,6 +60,10 @@ pub struct ProjectSource {
     pub kind: SourceKind,
     /// Given on the command line by itself, not found in a folder.
     named: bool,
+    /// Where it is, without links.
+    place: Option<PathBuf>,
+    /// Where the files are that it uses.
+    uses: Vec<PathBuf>,
 }
 
 /// What is compiled together: a scenario (or module), and the files of tests and of systems that belong to it, by index in the
@@ -156,15 +160,18 @@ impl CheckedProject {
 impl ProjectSource {
     fn new(path: Option<PathBuf>, text: String, named: bool) -> Self {
         let name = path.as_ref().map_or("<stdin>".to_owned(), |p| p.display().to_string());
-        let said = kind_of(&parse(FileId(0), &text).0);
+        let syntax = parse(FileId(0), &text).0;
+        let said = kind_of(&syntax);
         // Without a place a system cannot be seen from a scenario's folder.
         let is_lost = path.is_none() && matches!(said, SourceKind::System);
         let kind = if is_lost { SourceKind::Module } else { said };
-        Self { path, name, text, kind, named }
+        let uses = used_files(&syntax, &path.as_ref().map_or(PathBuf::from("."), |p| files::folder(p)));
+        let place = path.as_ref().and_then(|p| p.canonicalize().ok());
+        Self { path, name, text, kind, named, place, uses }
     }
 
     fn is_at(&self, place: &Path) -> bool {
-        self.path.as_ref().is_some_and(|p| p.canonicalize().is_ok_and(|p| p == place))
+        self.place.as_deref() == Some(place)
     }
 
     /// The folder that it is in, whole; of standard input the present one.
@@ -209,10 +216,42 @@ pub fn walk(root: &Path) -> Result<Vec<PathBuf>, CommandFault> {
     Ok(files)
 }
 
+fn used_files(file: &ast::FileSyntax, folder: &Path) -> Vec<PathBuf> {
+    let used = file.items.iter().filter_map(|item| {
+        if let ast::ItemSyntaxKind::Use(ast::ModuleSyntax::File(path)) = &item.kind {
+            Some(folder.join(&path.text))
+        } else {
+            None
+        }
+    });
+    used.filter_map(|path| path.canonicalize().ok()).collect()
+}
+
+/// The places of all files that scenarios use, and those use in turn. They are checked with the scenario, whose names they may
+/// speak of.
+fn parts_of_scenarios(sources: &[ProjectSource]) -> BTreeSet<&Path> {
+    let scenarios = sources.iter().filter(|s| s.kind == SourceKind::Scenario);
+    let mut waiting: Vec<&Path> = scenarios.flat_map(|s| &s.uses).map(PathBuf::as_path).collect();
+    let mut parts = BTreeSet::new();
+    while let Some(place) = waiting.pop() {
+        if parts.insert(place) {
+            waiting.extend(
+                sources.iter().filter(|s| s.is_at(place)).flat_map(|s| &s.uses).map(PathBuf::as_path),
+            );
+        }
+    }
+    parts
+}
+
 fn units(sources: &[ProjectSource]) -> Result<Vec<CompilationUnit>, CommandFault> {
-    let belongs = |s: &ProjectSource| matches!(s.kind, SourceKind::Tests | SourceKind::System);
+    let parts = parts_of_scenarios(sources);
+    let is_with_others = |s: &ProjectSource| match s.kind {
+        SourceKind::Tests | SourceKind::System => true,
+        SourceKind::Module => !s.named && parts.iter().any(|place| s.is_at(place)),
+        SourceKind::Scenario => false,
+    };
     let head = |(i, s): (usize, &ProjectSource)| {
-        (!belongs(s)).then(|| CompilationUnit { head: i, tests: Vec::new(), systems: Vec::new() })
+        (!is_with_others(s)).then(|| CompilationUnit { head: i, tests: Vec::new(), systems: Vec::new() })
     };
     let mut units: Vec<CompilationUnit> = sources.iter().enumerate().filter_map(head).collect();
     let scenarios: Vec<(usize, PathBuf)> = sources
@@ -221,7 +260,8 @@ fn units(sources: &[ProjectSource]) -> Result<Vec<CompilationUnit>, CommandFault
         .filter(|(_, s)| s.kind == SourceKind::Scenario)
         .map(|(i, s)| (i, s.folder()))
         .collect();
-    for (i, source) in sources.iter().enumerate().filter(|(_, s)| belongs(s)) {
+    let has_owner = |s: &ProjectSource| matches!(s.kind, SourceKind::Tests | SourceKind::System);
+    for (i, source) in sources.iter().enumerate().filter(|(_, s)| has_owner(s)) {
         let owner = owner(source, sources, &scenarios)?;
         for unit in units.iter_mut().filter(|u| u.head == owner) {
             match source.kind {

@@ -11,6 +11,7 @@ use std::{
 use hrdsl_compiler::{ModuleLoader, ModuleText, RobotEntry, RobotReader, WorkspaceEntry, WorkspaceReader};
 
 use crate::{
+    covered_files,
     fault::CommandFault,
     files::{folder as folder_of, read},
     terminal::shown,
@@ -115,8 +116,8 @@ impl ModuleLoader for DiskModules {
         Some(Box::new(DiskRobots { reach: &self.reach }))
     }
 
-    fn is_file(&self, path: &str) -> Option<bool> {
-        self.folder.as_ref().map(|folder| folder.join(path).is_file())
+    fn means_a_file(&self, path: &str) -> Option<bool> {
+        self.folder.as_ref().map(|folder| covered_files::is_there(folder, path))
     }
 }
 

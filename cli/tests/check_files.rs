@@ -249,7 +249,7 @@ fn a_fixed_file_keeps_its_rights_and_its_links() {
 
 #[test]
 fn files_that_are_to_be_covered_are_there() {
-    let system = "system robot { run \"python3 robot.py\"; coverage \"robot.py\", \"lib/move.py\", \"lib\", \"gone.py\" }\n";
+    let system = "system robot { run \"python3 robot.py\"; coverage \"robot.py\", \"lib/move.py\", \"lib\", \"gone.py\", \"*.py\", \"*.cc\" }\n";
     let text = format!("{}{system}", scenario("a", "ask"));
     let folder =
         folder(&[("a/scenario.hri", &text), ("a/robot.py", ""), ("a/lib/move.py", ""), ("gone.py", "")]);
@@ -257,16 +257,59 @@ fn files_that_are_to_be_covered_are_there() {
     expect_code(&out, 0);
     let said = stderr(&out);
     let line = text.lines().count();
-    for name in ["lib", "gone.py"] {
+    for name in ["lib", "gone.py", "*.cc"] {
         let column = system.rfind(&format!("\"{name}\"")).unwrap() + 1;
         assert!(said.contains(&format!("a/scenario.hri:{line}:{column}")), "{name}: {said}");
     }
-    assert!(said.contains("HR0803") && said.contains("2 warnings"), "{said}");
+    assert!(said.contains("HR0803") && said.contains("3 warnings"), "{said}");
     // From the scenario's folder, whatever the present one is; a plain name has that.
     let out = hrdsl_in(&folder.path().join("a"), "check scenario.hri");
-    assert!(stderr(&out).contains("2 warnings"), "{}", stderr(&out));
+    assert!(stderr(&out).contains("3 warnings"), "{}", stderr(&out));
     expect_code(&hrdsl_in(folder.path(), "check a/scenario.hri --deny HR0803"), 1);
     // Standard input has no folder.
     let out = hrdsl_reading(folder.path(), "check -", &text);
     assert!(!stderr(&out).contains("HR0803"), "{}", stderr(&out));
+}
+
+#[cfg(unix)]
+#[test]
+fn no_program_is_started_to_check() {
+    use std::os::unix::fs::PermissionsExt;
+    // All that is found on the path says that it was started.
+    let programs = folder(&[]);
+    let marker = programs.path().join("started");
+    for name in ["python3", "python", "sh", "xacro", "rosmsg"] {
+        let program = programs.path().join(name);
+        fs::write(&program, format!("#!/bin/sh\necho {name} >> {}\n", marker.display())).unwrap();
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    // Home care reads a workspace of messages.
+    let mut check = support::command();
+    check.env("PATH", programs.path()).arg("check").arg(support::root().join("examples"));
+    let out = check.output().unwrap();
+    expect_code(&out, 0);
+    assert!(!marker.exists(), "{}", fs::read_to_string(&marker).unwrap());
+    assert!(stdout(&out).contains("homecare"), "{}", stdout(&out));
+}
+
+#[test]
+fn modules_of_scenarios_in_a_folder_are_checked_with_them() {
+    let main =
+        "scenario a\nuse \"people.hri\"\nactor guest : environment\nactor robot : system\nconst N = 3\n";
+    let people = "use \"deep/calls.hri\"\nstimulus ask by guest { emit called(N) }\n";
+    let calls = "event called(n: 0..9) from guest to robot\n";
+    let alone = "event shouted from nobody\n";
+    let at = folder(&[
+        ("main.hri", main),
+        ("people.hri", people),
+        ("deep/calls.hri", calls),
+        ("alone.hri", alone),
+    ]);
+    let out = hrdsl_in(at.path(), "check .");
+    assert_eq!(well_formed(&out), ["main.hri"], "{}", stderr(&out));
+    let said = stderr(&out);
+    assert!(said.contains("no actor is called `nobody`") && !said.contains("guest"), "{said}");
+    // One that is named is checked by itself.
+    let out = hrdsl_in(at.path(), "check main.hri people.hri");
+    assert!(stderr(&out).contains("no actor is called `guest`"), "{}", stderr(&out));
 }

@@ -137,3 +137,38 @@ fn schedules_find_a_race_and_name_one_that_shows_it_again() {
     expect_code(&none, 0);
     assert!(stdout(&none).contains("2 tests come to the same in 6 other orders"), "{}", stdout(&none));
 }
+
+/// A program of several files, one of which nobody imports.
+const PARTS: &str = r#"scenario parts
+actor house : environment
+actor robot : system
+event begun from house to robot
+stimulus look by house { emit begun }
+system robot { run "python3 robot.py"; coverage "*.py", "lib/**/*.py"; limit 1 s }
+"#;
+
+#[test]
+fn a_pattern_measures_every_file_that_it_matches() {
+    let robot = "import hrdsl\nfrom lib.motion import move\nnode = hrdsl.Node('robot')\nmove()\n";
+    let motion = "def move():\n    return 1\n\n\ndef stop():\n    return 2\n";
+    let at = folder(&[
+        ("scenario.hri", PARTS),
+        ("a.tests.hri", "test look.t1 { seed 1; look }\n"),
+        ("robot.py", robot),
+        ("lib/__init__.py", ""),
+        ("lib/motion.py", motion),
+        ("lib/deep/unused.py", "a = 1\n"),
+        ("lib/notes.txt", "a = 1\n"),
+    ]);
+    expect_code(&hrdsl_in(at.path(), "sim scenario.hri a.tests.hri -o out"), 0);
+    let results = fs::read_to_string(at.path().join("out/results.json")).unwrap();
+    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    let files = results["code"].as_array().unwrap().iter();
+    let lines = |file: &serde_json::Value| {
+        let lines = file["lines"].as_array().unwrap();
+        let hit = lines.iter().filter(|line| line[1] != 0).count();
+        format!("{} {hit}/{}", file["file"].as_str().unwrap(), lines.len())
+    };
+    let files: Vec<String> = files.map(lines).collect();
+    assert_eq!(files, ["lib/__init__.py 0/0", "lib/deep/unused.py 0/1", "lib/motion.py 3/4", "robot.py 4/4"]);
+}

@@ -17,12 +17,13 @@ pub(crate) fn missing(files: &[FileSyntax], loader: &dyn ModuleLoader) -> Vec<Di
             if let Member::Program(program) = &member.kind { program.members.as_slice() } else { &[] };
         covered(&member.kind).into_iter().chain(inner.iter().filter_map(|m| covered(&m.kind)))
     });
-    let missing = named.flatten().filter(|f| loader.is_file(&f.text) == Some(false));
+    let missing = named.flatten().filter(|f| loader.means_a_file(&f.text) == Some(false));
     missing
         .map(|f| {
-            let message = format!("there is no file `{}`, so no coverage is measured of it", f.text);
+            let is = if f.text.contains(['*', '?', '[']) { "that matches " } else { "" };
+            let message = format!("there is no file {is}`{}`, so no coverage is measured of it", f.text);
             Diagnostic::warning(DiagnosticCode::NO_SUCH_FILE, f.span, message)
-                .help("name a file of the program, from the scenario's folder")
+                .help("name a file of the program, or several by a pattern (`*.py`, `src/**/*.py`), from the scenario's folder")
         })
         .collect()
 }

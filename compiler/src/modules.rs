@@ -34,8 +34,8 @@ pub trait ModuleLoader {
         None
     }
 
-    /// Whether `path` is a file, from the scenario's folder; `None`: nobody knows.
-    fn is_file(&self, _path: &str) -> Option<bool> {
+    /// Whether `path`, or a pattern such as `src/*.py`, means a file, from the scenario's folder; `None`: nobody knows.
+    fn means_a_file(&self, _path: &str) -> Option<bool> {
         None
     }
 }

@@ -33,7 +33,7 @@ impl ModuleLoader for Example {
         self.files.iter().find(|f| f.name == path).cloned().ok_or("there is no such file".to_owned())
     }
 
-    fn is_file(&self, path: &str) -> Option<bool> {
+    fn means_a_file(&self, path: &str) -> Option<bool> {
         (!self.files.is_empty()).then(|| self.files.iter().any(|f| f.name == path))
     }
 }

@@ -47,7 +47,7 @@ pub struct SystemProgram {
     pub name: String,
     /// The command, split into words; paths are relative to the scenario's folder.
     pub run: Vec<String>,
-    /// Files whose code coverage is measured, relative to the scenario's folder; empty: none.
+    /// Files whose code coverage is measured, or patterns of their names (`src/*.py`), relative to the scenario's folder; empty: none.
     pub coverage: Vec<String>,
     pub origin: Span,
 }

@@ -69,7 +69,7 @@ impl ModuleLoader for Modules {
     }
 
     /// A page that shows no files says nothing about which there are.
-    fn is_file(&self, path: &str) -> Option<bool> {
+    fn means_a_file(&self, path: &str) -> Option<bool> {
         (!self.0.is_empty()).then(|| self.0.iter().any(|f| f.name == path))
     }
 }

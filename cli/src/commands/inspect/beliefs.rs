@@ -178,8 +178,8 @@ impl ModuleLoader for FileOverlay<'_> {
         self.disk.robots()
     }
 
-    fn is_file(&self, path: &str) -> Option<bool> {
-        self.disk.is_file(path)
+    fn means_a_file(&self, path: &str) -> Option<bool> {
+        self.disk.means_a_file(path)
     }
 }
 

@@ -28,7 +28,7 @@ use serde::Serialize;
 
 use super::generate::{chosen, describe, save};
 use crate::{
-    color, exit::CommandExit, fault::CommandFault, files, hulls::HullFolder, input,
+    color, covered_files, exit::CommandExit, fault::CommandFault, files, hulls::HullFolder, input,
     installing::InstallProgress, quantity, results_folder::ResultsFolder, terminal,
 };
 
@@ -138,6 +138,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
         return Ok(CommandExit::Errors);
     };
     let system = chosen_system(program, args.system.as_deref())?;
+    let system = &covered_files::named(system, &files::folder(&args.file));
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
     let folder = ResultsFolder::open(&out, &NAMES)?;
 
