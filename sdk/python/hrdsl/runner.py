@@ -227,7 +227,7 @@ def _middleware() -> None:
         interfaces.install()
 
 
-def _status(run: Callable[[], None]) -> tuple[int, bool]:
+def _status(run: Callable[[], object]) -> tuple[int, bool]:
     """Runs a part of the program, and says with which status it has ended, and whether because the test is over."""
     try:
         run()

@@ -2,7 +2,7 @@
 
 import unittest
 
-from ros2_programs import SECOND, TRIED, Ros2Case
+from ros2_programs import SECOND, TRIED, Ros2Case, run_ros2
 from system import System
 
 

@@ -114,7 +114,8 @@ class Message:
         if not isinstance(other, self.__class__):
             return False
         for name in self.__slots__:
-            mine, its = getattr(self, name, None), getattr(other, name, None)
+            mine: Any = getattr(self, name, None)
+            its: Any = getattr(other, name, None)
             if type(mine) in (list, tuple) and type(its) in (list, tuple):
                 mine, its = tuple(mine), tuple(its)
             if not mine == its:

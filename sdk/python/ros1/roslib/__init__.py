@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import roslib.message
-import roslib.names
-import roslib.packages
+from roslib import message, names, packages
 from roslib.launcher import load_manifest
 
 __version__ = "1.7.0"
-__all__ = ["is_interactive", "load_manifest", "set_interactive"]
+__all__ = ["is_interactive", "load_manifest", "message", "names", "packages", "set_interactive"]
 
 _is_interactive = False
 
