@@ -12,7 +12,7 @@ NOT_OURS = ("__pycache__", "build", "hrdsl-out", "node_modules")
 
 #: The client libraries that a binding brings, by the binding.
 CLIENTS = {
-    "ros1": ("rospy", "smach", "smach_ros", "actionlib", "moveit_commander", "tf", "tf2_ros", "message_filters", "rospkg", "roslib"),
+    "ros1": ("rospy", "smach", "smach_ros", "actionlib", "moveit_commander", "tf", "tf2_ros", "message_filters", "rospkg", "roslib", "rosgraph"),
     "ros2": ("rclpy", "ament_index_python", "tf2_ros", "message_filters", "sensor_msgs_py"),
 }
 
@@ -29,6 +29,9 @@ ABSENT = {
     "dynamic_reconfigure.client": "nobody is reconfigured; set parameters with rospy.set_param",
     "rosbag": "what others would say is the scenario's to publish",
     "rosbag2_py": "what others would say is the scenario's to publish",
+    "rosgraph.network": "programs of a test share no network: ask rospy for topics and services",
+    "rosgraph.xmlrpc": "nodes are not asked by XML-RPC: ask rospy or rosgraph.Master",
+    "rosgraph.roslogging": "set the level of the log in rospy.init_node, or by `logging`",
     "roslaunch": "each node is a program of the system, with its own `run`",
     "rosparam": "read and set parameters with rospy",
     "rosnode": "ask rospy for topics and services",

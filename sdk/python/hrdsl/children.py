@@ -139,10 +139,11 @@ def _popen(kind: Any, children: dict[int, str]) -> None:
         except ChildProcessError:
             return self.pid, 0
 
-    for function in (__init__, poll, wait, communicate, send_signal, _try_wait):
+    functions: list[Any] = [__init__, poll, wait, communicate, send_signal, _try_wait]
+    for function in functions:
         real = getattr(kind, function.__name__)
         function.__qualname__, function.__doc__ = real.__qualname__, real.__doc__
-        function.__wrapped__ = real  # type: ignore[attr-defined]  # whose arguments are shown
+        function.__wrapped__ = real  # whose arguments are shown
         setattr(kind, function.__name__, function)
 
 

@@ -12,6 +12,7 @@ import json
 from hrdsl import link as _links
 from hrdsl.errors import ProtocolError
 from hrdsl.events import EventBox
+from hrdsl.open_calls import OpenCalls
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -70,10 +71,13 @@ class Port:
         call = Call(exchange, exchange.number(), self)
         text = message if isinstance(message, bytes) else _encode(message).encode("ascii")
         exchange.calls[call.number] = handler
+        if self.kind == "client":
+            exchange.open_calls.ask(call.number, self, exchange.time)
         try:
             self._tell(b'{"request":"call","port":%d,"call":%d,"message":%s}\n' % (self.number, call.number, text), self)
         except BaseException:
             del exchange.calls[call.number]
+            exchange.open_calls.answered(call.number)
             raise
         return call
 
@@ -122,6 +126,7 @@ class Exchange:
         self.events = EventBox(self)
         self.ports: dict[int, Port] = {}  # that are open
         self.calls: dict[int, Handler] = {}  # that have not ended
+        self.open_calls = OpenCalls()
         self.parked = 0  # threads that wait for what arrives
         self._commands: dict[int, Callable[[str | None], object]] = {}
         self._listeners: list[Handler] = []  # to events
@@ -200,10 +205,12 @@ class Exchange:
 
     def respond(self, number: int, message: Message) -> None:
         """Answers a call of a service, by the number with which it arrived."""
+        self.open_calls.answer(number)
         self._about_call(b'{"request":"respond","call":%d,"message":%s}\n', number, message)
 
     def refuse(self, number: int, text: str) -> None:
         """Answers it with an error."""
+        self.open_calls.answer(number)
         self._about_call(b'{"request":"respond","call":%d,"error":%s}\n', number, text)
 
     def accept(self, number: int, text: str = "") -> None:
@@ -304,6 +311,8 @@ class Exchange:
             if number is not None:
                 port = self.ports.get(number)
                 if port is not None and port._handler is not None:
+                    if port.kind == "server":
+                        self.open_calls.arrive(arrival["called"], port, self.time)
                     port._handler(arrival)
             elif "event" in arrival:
                 self.events.arrived(arrival["event"])
@@ -325,6 +334,7 @@ class Exchange:
         elif "answered" in arrival or "finished" in arrival:
             number = arrival["answered" if "answered" in arrival else "finished"]
             handler = self.calls.pop(number, None)
+            self.open_calls.answered(number)
             if handler is not None:
                 handler(arrival)
         elif "incompatible" in arrival:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import _thread
 import json
 import os
+import sys
 
 from hrdsl.errors import Deadlock, ProtocolError, Stopped
 
@@ -253,6 +254,8 @@ class Link:
 
     def _stop(self, why: str) -> NoReturn:
         self._stopped = why
+        if self.exchange is not None and self.is_ours():
+            sys.stderr.write(self.exchange.open_calls.report())
         raise Stopped(why)
 
     def done(self) -> None:

@@ -136,7 +136,7 @@ def _drawn(asyncio: Any, real: Any, scheduler: Scheduler) -> Any:
     which of the timers of one instant is called first. What `call_soon` is given keeps its place, since its order is promised."""
     import heapq
 
-    class SelectorEventLoop(real):  # type: ignore[misc, valid-type]
+    class SelectorEventLoop(real):  # type: ignore[misc]
         """A loop with an order of its own."""
 
         def _process_events(self, event_list: Any) -> None:

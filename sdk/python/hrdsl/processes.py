@@ -152,7 +152,8 @@ def patch_connections(module: Any, scheduler: Scheduler) -> None:
     """To be called when `multiprocessing.connection` is imported."""
 
     def _recv(self: Any, size: int, read: Any = os.read) -> Any:
-        rest, parts = size, []
+        rest = size
+        parts: list[bytes] = []
         while rest:
             _await(module, scheduler, self, False)
             part = read(self._handle, rest)

@@ -7,7 +7,7 @@ import sys
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
-    from functools import partial
+    from functools import partial as partial
     from types import ModuleType
     from typing import Any, Callable
 else:
@@ -22,21 +22,21 @@ class Builtin(partial):  # type: ignore[type-arg]
     method of a class that has it as an attribute; and it is pickled by its name."""
 
     def __new__(cls, function: Callable[..., Any], real: Any, module: str) -> Builtin:
-        self = super().__new__(cls, function)
-        self.__name__: str = real.__name__
-        self.__qualname__: str = real.__name__
+        self: Any = super().__new__(cls, function)
+        self.__name__ = self.__qualname__ = real.__name__
         self.__module__ = module
         self.__doc__ = real.__doc__
-        return self
+        made: Builtin = self
+        return made
 
     def __get__(self, instance: object, owner: object = None) -> Builtin:
         return self
 
     def __repr__(self) -> str:
-        return "<built-in function %s>" % self.__name__
+        return "<built-in function %s>" % self.__dict__["__name__"]
 
     def __reduce__(self) -> str:
-        return self.__qualname__
+        return str(self.__dict__["__qualname__"])
 
 
 def put(name: str, function: Callable[..., Any], *modules: ModuleType) -> Any:

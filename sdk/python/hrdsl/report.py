@@ -94,6 +94,12 @@ def name(scheduler: Scheduler, task: Task) -> str:
     return "thread MainThread" if task is scheduler.main else "a thread without a name"
 
 
+def site(frame: FrameType | None) -> str:
+    """What the program's innermost line has called, and where."""
+    what, place = _wait_of(frame)
+    return what + (place and " at " + place)
+
+
 def _wait_of(frame: FrameType | None) -> tuple[str, str]:
     """What the program's innermost line has called, and its place."""
     called = None

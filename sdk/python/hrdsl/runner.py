@@ -96,6 +96,7 @@ class PreparedRun:
             if scheduler.failed:
                 status = status or 1
             if status == 0 and link.is_ours() and not link.stopped:
+                told.caught_all()
                 link.done()
         finally:
             scheduler.close()
@@ -226,7 +227,7 @@ def _middleware() -> None:
         interfaces.install()
 
 
-def _status(run: Callable[[], None]) -> tuple[int, bool]:
+def _status(run: Callable[[], object]) -> tuple[int, bool]:
     """Runs a part of the program, and says with which status it has ended, and whether because the test is over."""
     try:
         run()
@@ -248,6 +249,7 @@ def _status(run: Callable[[], None]) -> tuple[int, bool]:
         while trace is not None and trace.tb_frame.f_globals.get("__name__") == __name__:
             trace = trace.tb_next  # the script's own frames only
         sys.excepthook(type(error), error.with_traceback(trace), trace)
+        told.ended_by(error)
         found = told.place_of(error)
         if found:
             sys.stderr.write("hrdsl: it was raised in a callback of the node %s: %s\n" % found)

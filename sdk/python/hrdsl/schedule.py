@@ -102,6 +102,7 @@ class Scheduler:
         self.look: Callable[[bool], bool] | None = None  # at the descriptors of `watched`
         self.ending: Callable[[], BaseException] | None = None  # what waits raise, once none can end
         self.failed = False  # whether the program ends by a fault that it cannot catch
+        self.before_wait: Callable[[], object] | None = None  # called before each wait
         self.children: dict[int, str] = {}  # processes that nobody has waited for: their commands by their numbers
         self._main_first = False
         self._deadlines = Deadlines()
@@ -124,6 +125,8 @@ class Scheduler:
         deadline. Only for the thread that `current` has returned."""
         if self.children:
             self.refuse_wait()
+        if self.before_wait is not None:
+            self.before_wait()
         me = self.running
         me.what, me.result = what, None
         try:

@@ -4,13 +4,17 @@ Nothing of it is told when the test is over already, nor by a process that the p
 
 from __future__ import annotations
 
+import _thread
 import json
+import sys
 
 from hrdsl import link as _links
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
     from typing import Any
+
+    from hrdsl.schedule import Scheduler
 
 #: So many characters of a text are sent at most.
 LONGEST = 2000
@@ -48,6 +52,59 @@ def place(error: BaseException, node: str, where: str) -> None:
 def place_of(error: BaseException | None) -> tuple[str, str] | None:
     """The node and the callback in which it was raised, if that is known."""
     found: tuple[str, str] | None = getattr(error, "_hrdsl_place", None)
+    return found
+
+
+#: Exceptions of callbacks that a client library has passed on to the program, with the threads in which it did.
+_left: list[tuple[BaseException, int]] = []
+
+
+def left(error: BaseException, scheduler: Scheduler) -> None:
+    """An exception whose place is kept leaves the library. If it ends the program or its thread, that is told; if the program
+    catches it, the harness is told as soon as the program waits again, or ends."""
+    if place_of(error) is not None:
+        _left.append((error, _thread.get_ident()))
+        scheduler.before_wait = lambda: _settle(scheduler)
+
+
+def _settle(scheduler: Scheduler) -> None:
+    """Tells of what this thread has caught: it is not on its way any more, nor what was raised in its place."""
+    me, on_the_way = _thread.get_ident(), _chain(sys.exc_info()[1])
+    for error, thread in _left[:]:
+        if thread == me and id(error) not in on_the_way:
+            _caught(error, thread)
+    if not _left:
+        scheduler.before_wait = None
+
+
+def caught_all() -> None:
+    """The program has come to its end by itself, and so has caught what it was passed."""
+    for error, thread in _left[:]:
+        _caught(error, thread)
+
+
+def _caught(error: BaseException, thread: int) -> None:
+    _left.remove((error, thread))
+    place = place_of(error)
+    if place is not None:
+        failed(*place, error)
+
+
+def ended_by(error: BaseException | None) -> None:
+    """The exception has ended the program or a thread, where others tell of it."""
+    chain = _chain(error)
+    _left[:] = [entry for entry in _left if id(entry[0]) not in chain]
+
+
+def _chain(error: BaseException | None) -> set[int]:
+    """The exception, and those in whose place it was raised."""
+    found: set[int] = set()
+    rest = [error]
+    while rest:
+        each = rest.pop()
+        if each is not None and id(each) not in found:
+            found.add(id(each))
+            rest += [each.__context__, each.__cause__]
     return found
 
 

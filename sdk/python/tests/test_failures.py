@@ -191,20 +191,35 @@ print("goes on")
         self.assertIn("ValueError: number 3\n", finished.err)
         self.assertEqual(finished.out, "goes on\n")
 
-    def test_what_the_program_catches_is_its_own(self):
-        text = """
-node.create_subscription(Int8, "/numbers", hear, 1)
-def spin():
-    try:
-        rclpy.spin(node)
-    except ValueError as error:
-        print("caught", error)
-thread = threading.Thread(target=spin)
-thread.start()
-thread.join()
-"""
-        finished, told = self.ended(text, 0)
-        self.assertEqual((finished.out, finished.err, told), ("caught number 3\n", "", []))
+    def test_what_the_program_catches_is_told_when_it_goes_on(self):
+        where = "subscriber of /numbers (std_msgs/msg/Int8) raised ValueError: number 3"
+        begin = "node.create_subscription(Int8, '/numbers', hear, 1)\n"
+        caught = begin + "try:\n    rclpy.spin(node)\nexcept Exception as error:\n    print('caught', error)\n%s"
+        thread = "thread = threading.Thread(target=spin)\nthread.start()\nthread.join()"
+        for text, time in (
+            (caught % "", SECOND),
+            (caught % "time.sleep(3)", SECOND),
+            (caught % "    time.sleep(3)\ntime.sleep(2)\n", 4 * SECOND),  # only then it is clear that it is not raised again
+            (begin + "def spin():\n    try:\n        rclpy.spin(node)\n    except ValueError as error:\n        print('caught', error)\n" + thread, SECOND),
+            (begin + "while node.get_clock().now().nanoseconds < 1735689604 * 10**9:\n    try:\n        rclpy.spin_once(node, timeout_sec=1)\n"
+                "    except Exception as error:\n        print('caught', error)\n", SECOND),
+        ):  # fmt: skip
+            with self.subTest(text):
+                finished, told = self.ended(text, 0)
+                self.assertEqual((finished.out, finished.err), ("caught number 3\n", ""))
+                self.assertEqual(told, [(time, "/robot/brain", where)])
+
+    def test_what_is_raised_again_or_is_no_error_is_not_told(self):
+        begin = "node.create_subscription(Int8, '/numbers', hear, 1)\n"
+        for text, code in (
+            (begin + "try:\n    rclpy.spin(node)\nfinally:\n    time.sleep(1)\n    node.destroy_node()\n    rclpy.shutdown()", 1),
+            (begin + "try:\n    rclpy.spin(node)\nexcept ValueError as error:\n    time.sleep(1)\n    raise RuntimeError('no') from error", 1),
+            (begin + "try:\n    try:\n        rclpy.spin(node)\n    except ValueError:\n        time.sleep(1)\n        raise\nfinally:\n    time.sleep(1)", 1),
+            ("def leave():\n    raise SystemExit\nnode.create_timer(1, leave)\ntry:\n    rclpy.spin(node)\nexcept SystemExit:\n    time.sleep(1)", 0),
+            ("try:\n    rclpy.spin_until_future_complete(node, rclpy.task.Future(), timeout_sec=1)\n    raise ValueError\nexcept ValueError:\n    pass\ntime.sleep(1)", 0),
+        ):  # fmt: skip
+            with self.subTest(text):
+                self.assertEqual(self.ended(text, code)[1], [])
 
 
 if __name__ == "__main__":

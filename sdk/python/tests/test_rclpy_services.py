@@ -2,7 +2,7 @@
 
 import unittest
 
-from ros2_programs import SECOND, TRIED, Ros2Case
+from ros2_programs import SECOND, TRIED, Ros2Case, run_ros2
 from system import System
 
 
@@ -112,7 +112,9 @@ finally:
     rclpy.shutdown()
     print("cleaned up")
 """
-        self.assertEqual(self.said(text, System(end=5 * SECOND)), ["cleaning up", "cleaned up"])
+        finished = run_ros2(text, system=System(end=5 * SECOND))
+        self.assertEqual((finished.code, finished.out), (0, "cleaning up\ncleaned up\n"))
+        self.assertIn("the client of /t (std_srvs/srv/Trigger) has no answer to its call of 1.000 s", finished.err)
 
 
 class Actions(Ros2Case):

@@ -21,7 +21,6 @@ _LIMITS = {
     "char": (0, (1 << 8) - 1), "uint16": (0, (1 << 16) - 1), "uint32": (0, (1 << 32) - 1), "uint64": (0, (1 << 64) - 1),
 }  # fmt: skip
 _FLOATS = ("float32", "float64")
-_BYTES = ("uint8", "char")
 
 
 def make_class(definition: dict[str, Any], resolve: Resolve) -> Any:
@@ -114,11 +113,11 @@ class _Field:
     def default(self) -> str:
         """A new value for it."""
         if self.array is not None and self.exactly is None:
-            return "b''" if self.type in _BYTES else "[]"
+            return "b''" if self.type in values.BYTES else "[]"
         one = self._default_of_one()
         if self.array is None:
             return one
-        if self.type in _BYTES:
+        if self.type in values.BYTES:
             return repr(b"\0" * self.exactly)
         if self.cls is not None:
             return "[%s for _ in range(%d)]" % (one, self.exactly)

@@ -93,14 +93,16 @@ class Message:
         return wire.read(self, str)
 
     def serialize_numpy(self, buff: Any, numpy: Any) -> None:
-        """As `serialize`; arrays of numbers may be NumPy's."""
-        self.serialize(buff)
+        """As `serialize`, of arrays of NumPy, whose bytes are written whatever their numbers are."""
+        from genpy import wire
+
+        wire.write(self, buff, is_numpy=True)
 
     def deserialize_numpy(self, str: bytes, numpy: Any) -> Any:
         """As `deserialize`, with arrays of NumPy."""
         from genpy import wire
 
-        return wire.with_numpy(self.deserialize(str), numpy)
+        return wire.with_numpy(wire.read(self, str), numpy)
 
     def __repr__(self) -> str:
         return strify_message(self)
@@ -112,7 +114,8 @@ class Message:
         if not isinstance(other, self.__class__):
             return False
         for name in self.__slots__:
-            mine, its = getattr(self, name, None), getattr(other, name, None)
+            mine: Any = getattr(self, name, None)
+            its: Any = getattr(other, name, None)
             if type(mine) in (list, tuple) and type(its) in (list, tuple):
                 mine, its = tuple(mine), tuple(its)
             if not mine == its:
@@ -279,6 +282,8 @@ def _class(space: str, name: str) -> Any:
     package, _, own = name.partition("/")
     if not own:
         raise ValueError("message type is missing package name: %s" % name)
+    if "/" in own:
+        raise ValueError("invalid name [%s]" % name)
     known = interfaces()
     spaces = ("msg", "srv") if space == "msg" else ("srv",)
     for each in spaces:

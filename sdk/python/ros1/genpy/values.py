@@ -18,6 +18,9 @@ CODES = {
     "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d",
 }  # fmt: skip
 
+#: Which numbers arrays hold as bytes.
+BYTES = ("uint8", "char")
+
 #: What packing raises.
 Unpackable = _struct.error
 
@@ -73,7 +76,7 @@ def time(value: Any) -> str:
 def numbers(values: Any, kind: str, count: int | None) -> str:
     """An array of numbers."""
     code = CODES[kind]
-    if kind in ("uint8", "char") and isinstance(values, (bytes, bytearray, str)):
+    if kind in BYTES and type(values) not in (list, tuple):
         return "[%s]" % ",".join(map(str, packed_bytes(values, count)))
     length = len(values) if count is None else count
     form = "<%d%s" % (length, code)
@@ -148,7 +151,7 @@ def read_numbers(values: Any, kind: str, count: int | None) -> Any:
     code = CODES[kind]
     if kind == "bool":
         return [bool(value) for value in values]
-    if kind in ("uint8", "char"):
+    if kind in BYTES:
         return bytes(values)
     form = "<%d%s" % (len(values), code)
     try:

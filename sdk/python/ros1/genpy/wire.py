@@ -6,7 +6,7 @@ import _struct
 
 from genpy.message import DeserializationError
 from genpy.rostime import Duration, Time
-from genpy.values import CODES, Unpackable, failed, packed_bytes
+from genpy.values import BYTES, CODES, Unpackable, failed, packed_bytes
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -17,37 +17,49 @@ if TYPE_CHECKING:
 _TIMES = {"time": ("II", Time), "duration": ("ii", Duration)}
 
 
-def write(message: Any, file: Any) -> None:
-    """Writes all fields."""
+def write(message: Any, file: Any, is_numpy: bool = False) -> None:
+    """Writes all fields; arrays of numbers as they are in memory if they are NumPy's."""
     try:
         parts: list[bytes] = []
-        _write(message, message._definition, parts)
+        _write(message, message._definition, parts, is_numpy)
     except (Unpackable, TypeError, ValueError) as error:
         failed(message, error)
     file.write(b"".join(parts))
 
 
-def _write(message: Any, definition: dict[str, Any], parts: list[bytes]) -> None:
+def _write(message: Any, definition: dict[str, Any], parts: list[bytes], is_numpy: bool) -> None:
     for field in definition["fields"]:
         value, kind, array = getattr(message, field["name"]), field["type"], field.get("array")
         if array is None:
-            _write_one(value, kind, parts)
+            _write_one(value, kind, parts, is_numpy)
             continue
         count = array["exactly"] if isinstance(array, dict) else None
         if count is None:
             parts.append(_struct.pack("<I", len(value)))
-        if kind in ("uint8", "char") and isinstance(value, (bytes, bytearray, str)):
-            parts.append(packed_bytes(value, count))
+        if kind in BYTES:
+            if type(value) in (list, tuple):
+                parts.append(_struct.pack("<%dB" % (len(value) if count is None else count), *value))
+            else:
+                parts.append(packed_bytes(value, count))
         elif kind in CODES:
-            parts.append(_struct.pack("<%d%s" % (len(value) if count is None else count, CODES[kind]), *value))
+            if is_numpy:
+                parts.append(_memory(value))
+            else:
+                parts.append(_struct.pack("<%d%s" % (len(value) if count is None else count, CODES[kind]), *value))
         elif count is not None and len(value) != count:
             raise ValueError("Expecting %s items but found %s" % (count, len(value)))
         else:
             for element in value:
-                _write_one(element, kind, parts)
+                _write_one(element, kind, parts, is_numpy)
 
 
-def _write_one(value: Any, kind: str, parts: list[bytes]) -> None:
+def _memory(values: Any) -> bytes:
+    """The bytes of an array of NumPy, of whatever numbers; those of 2.3 and later no more have the name that `genpy` asks for."""
+    found: bytes = (values.tobytes if hasattr(values, "tobytes") else values.tostring)()
+    return found
+
+
+def _write_one(value: Any, kind: str, parts: list[bytes], is_numpy: bool) -> None:
     if kind in CODES:
         parts.append(_struct.pack("<" + CODES[kind], value))
     elif kind == "string":
@@ -59,7 +71,7 @@ def _write_one(value: Any, kind: str, parts: list[bytes]) -> None:
     else:
         from hrdsl.interfaces import class_of
 
-        _write(value, class_of(kind)._definition, parts)
+        _write(value, class_of(kind)._definition, parts, is_numpy)
 
 
 def read(message: Any, data: bytes) -> Any:
@@ -134,7 +146,7 @@ class _Reader:
     def _array(self, field: dict[str, Any]) -> Any:
         kind, array = field["type"], field["array"]
         count = array["exactly"] if isinstance(array, dict) else self._unpack("<I")[0]
-        if kind in ("uint8", "char"):
+        if kind in BYTES:
             return self._take(count)
         if kind in CODES:
             found = self._unpack("<%d%s" % (count, CODES[kind]))
@@ -153,12 +165,16 @@ class _Holder:
 
 
 def with_numpy(message: Any, numpy: Any) -> Any:
-    """Makes arrays of numbers arrays of NumPy."""
+    """Makes arrays of numbers arrays of NumPy, which nobody can write to, in the messages within, too."""
     for field in message._definition["fields"]:
         kind, name = field["type"], field["name"]
-        if "array" in field and kind in CODES:
-            value = getattr(message, name)
-            dtype = numpy.dtype("bool" if kind == "bool" else "<" + CODES[kind])
-            made = numpy.frombuffer(value, dtype) if isinstance(value, bytes) else numpy.array(value, dtype)
-            setattr(message, name, made)
+        if kind in CODES:
+            if "array" in field and kind != "bool" and kind not in BYTES:
+                value = getattr(message, name)
+                dtype = "<" + CODES[kind]
+                setattr(message, name, numpy.frombuffer(_struct.pack("<%d%s" % (len(value), CODES[kind]), *value), dtype))
+        elif "/" in kind:
+            inner = getattr(message, name)
+            for each in inner if "array" in field else (inner,):
+                with_numpy(each, numpy)
     return message

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import rosgraph.names
-from rosgraph.names import *  # noqa: F403
-from rosgraph.master import Master, MasterError, MasterException, MasterFailure
+import sys
 
-ROS_MASTER_URI = "ROS_MASTER_URI"
+from rosgraph import names
+from rosgraph.masterapi import Master, MasterError, MasterException, MasterFailure
+from rosgraph.masterapi import is_online as is_master_online
+from rosgraph.rosenv import ROS_HOSTNAME, ROS_IP, ROS_IPV6, ROS_MASTER_URI, ROS_NAMESPACE, get_master_uri
+
+__all__ = [
+    "ROS_HOSTNAME", "ROS_IP", "ROS_IPV6", "ROS_MASTER_URI", "ROS_NAMESPACE", "Master", "MasterError", "MasterException",
+    "MasterFailure", "get_master_uri", "is_master_online", "myargv", "names",
+]  # fmt: skip
 
 
-def is_master_online(master_uri: str | None = None) -> bool:
-    """Always."""
-    return True
-
-
-def get_master_uri(env: object = None, argv: object = None) -> str:
-    return "http://localhost:11311"
+def myargv(argv: list[str] | None = None) -> list[str]:
+    """The arguments without those that remap."""
+    return [arg for arg in (sys.argv if argv is None else argv) if names.REMAP not in arg]

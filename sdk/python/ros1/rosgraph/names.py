@@ -17,6 +17,7 @@ GLOBALNS = "/"
 PRIV_NAME = "~"
 REMAP = ":="
 ANYTYPE = "*"
+ROS_NAMESPACE = "ROS_NAMESPACE"
 
 NAME_LEGAL_CHARS_P = re.compile(r"^[\~\/A-Za-z][\w\/]*$")
 BASE_NAME_LEGAL_CHARS_P = re.compile(r"^[A-Za-z][\w]*$")
@@ -56,7 +57,7 @@ def get_ros_namespace(env: Any = None, argv: list[str] | None = None) -> str:
     for arg in sys.argv if argv is None else argv:
         if arg.startswith("__ns:="):
             return make_global_ns(arg[len("__ns:=") :])
-    return make_global_ns((os.environ if env is None else env).get("ROS_NAMESPACE", GLOBALNS))
+    return make_global_ns((os.environ if env is None else env).get(ROS_NAMESPACE, GLOBALNS))
 
 
 def make_global_ns(name: str) -> str:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import roslib.message
-import roslib.names
-import roslib.packages
+from roslib import message, names, packages
+from roslib.launcher import load_manifest
 
+__version__ = "1.7.0"
+__all__ = ["is_interactive", "load_manifest", "message", "names", "packages", "set_interactive"]
 
-def load_manifest(package_name: str) -> None:
-    """Nothing: what the program needs is found already."""
-
-
-def is_interactive() -> bool:
-    return False
+_is_interactive = False
 
 
 def set_interactive(interactive: bool) -> None:
-    """Nothing."""
+    """Keeps what it is told."""
+    global _is_interactive
+    _is_interactive = interactive
+
+
+def is_interactive() -> bool:
+    """What `set_interactive` was told."""
+    return _is_interactive

@@ -5,7 +5,11 @@ from __future__ import annotations
 import rospkg
 
 
-class InvalidROSPkgException(Exception):
+class ROSPkgException(Exception):
+    """What is wrong with packages."""
+
+
+class InvalidROSPkgException(ROSPkgException):
     """There is no such package."""
 
 

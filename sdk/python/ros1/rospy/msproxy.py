@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rosgraph.master import Master, MasterError
+from rosgraph.masterapi import Master, MasterError
 from rospy import names, params
 
 TYPE_CHECKING = False

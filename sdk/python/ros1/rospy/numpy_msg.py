@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
@@ -22,18 +24,44 @@ def numpy_msg(msg_type: Any) -> Any:
                 setattr(message, name, getattr(plain, name))
             return wire.with_numpy(message, numpy)
 
+        def to_json(message: Any) -> str:
+            return str(msg_type._json(_received(msg_type, message)))
+
         made: Any = type(
             "Numpy_%s" % msg_type._type.replace("/", "__"),
             (msg_type,),
-            {"__slots__": msg_type.__slots__, "_of_json": staticmethod(of_json), "deserialize": _deserialize},
+            {
+                "__slots__": msg_type.__slots__,
+                "_of_json": staticmethod(of_json),
+                "_json": staticmethod(to_json),
+                "serialize": _serialize,
+                "deserialize": _deserialize,
+            },
         )
         _made[msg_type] = made
     return _made[msg_type]
 
 
+def _serialize(self: Any, buff: Any) -> None:
+    import numpy
+
+    self.serialize_numpy(buff, numpy)
+
+
 def _deserialize(self: Any, str: bytes) -> Any:
     import numpy
 
-    from genpy import wire
+    return self.deserialize_numpy(str, numpy)
 
-    return wire.with_numpy(wire.read(self, str), numpy)
+
+def _received(msg_type: Any, message: Any) -> Any:
+    """What subscribers make of the bytes of its arrays, which are sent whatever numbers they are of."""
+    from genpy.message import DeserializationError, SerializationError
+
+    file = io.BytesIO()
+    message.serialize(file)
+    try:
+        return msg_type().deserialize(file.getvalue())
+    except (DeserializationError, ValueError, IndexError) as error:
+        told = "no subscriber could read this %s: an array of NumPy has another dtype or size than its field (%s)"
+        raise SerializationError(told % (msg_type._type, error)) from None

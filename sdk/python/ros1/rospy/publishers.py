@@ -137,7 +137,8 @@ class _PublisherImpl(topic.TopicImpl):
             header.seq = self.seq
             if header.frame_id is None:
                 header.frame_id = "0"
-        port.publish(self._json(message).encode("ascii"))
+        json = self._json if message.__class__ is self.data_class else getattr(message, "_json", self._json)
+        port.publish(json(message).encode("ascii"))
 
     def add_subscriber_listener(self, listener: SubscribeListener) -> None:
         self._listeners.append(listener)

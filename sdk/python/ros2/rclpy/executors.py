@@ -331,6 +331,7 @@ class SingleThreadedExecutor(Executor):
         handler()
         error = handler.exception()
         if error is not None:
+            _failures.leave(error)
             raise error
 
 
@@ -363,4 +364,7 @@ class MultiThreadedExecutor(Executor):
         for future in self._futures[:]:
             if future._done:
                 self._futures.remove(future)
-                future.result()
+                error = future.exception()
+                if error is not None:
+                    _failures.leave(error)
+                    raise error

@@ -103,10 +103,10 @@ class Arm(object):
 
 def set_points(points):
     """Set-points of the joints along a plan, one for each period of the controllers: as far ahead of the plan as the joints
-    come after them. The last one is the plan's end."""
+    come after them. The last one is the plan's end, and is for the period in which the plan ends."""
     at = 0
     duration = points[-1].time_from_start.to_sec()
-    for step in range(int(math.ceil(duration * SET_POINT_RATE))):
+    for step in range(int(math.ceil(duration * SET_POINT_RATE)) - 1):
         time = float(step) / SET_POINT_RATE
         while points[at + 1].time_from_start.to_sec() <= time:
             at += 1

@@ -1,0 +1,5 @@
+"""The base of errors of this package."""
+
+
+class ROSLibException(Exception):
+    """The base."""
