@@ -74,9 +74,12 @@ pub fn message(of: &AgentSpeakLiteral) -> Result<AgentSpeakMessage<'_>, Omission
     let Some((to, said, content, rest)) = parts else {
         return Err(format!("`{}` has other arguments", of.functor));
     };
-    let Some(name) = atom(said).filter(|p| performative(p).is_some()) else {
-        return Err(format!("hrdsl has no messages of the sort `{}`", atom(said).unwrap_or("?")));
+    let Some(name) = atom(said) else {
+        return Err("of what sort this message is is known only when it runs".to_owned());
     };
+    if performative(name).is_none() {
+        return Err(format!("hrdsl has no messages of the sort `{name}`"));
+    }
     if !rest.is_empty() && !matches!(name, "askOne" | "askAll") {
         return Err(format!("a message of the sort `{name}` has no answer"));
     }

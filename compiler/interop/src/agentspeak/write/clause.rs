@@ -422,7 +422,7 @@ impl<'a> ClauseTranslator<'a> {
         let args = of.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?.concat();
         self.used.beliefs.insert(key.clone());
         let annotations = self.annotations(of, &key, want)?;
-        let name = self.cx.names.beliefs.get(&key).cloned().unwrap_or_else(|| ident(&key.0));
+        let name = self.cx.names.belief(&key);
         Ok(format!("{}{}{annotations}", if of.negated { "~" } else { "" }, call(&name, &args)))
     }
 
@@ -464,7 +464,7 @@ impl<'a> ClauseTranslator<'a> {
                 )),
             }
         }
-        let name = self.cx.names.goals.get(&key).cloned().unwrap_or_else(|| ident(&key.0));
+        let name = self.cx.names.goal(&key);
         Ok(call(&name, &args) + &source)
     }
 }

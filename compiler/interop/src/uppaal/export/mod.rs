@@ -247,14 +247,11 @@ impl<'p> UppaalExporter<'p> {
         let syncs: Vec<(&'p SyncLabel, Span)> =
             self.automata().flat_map(|a| a.edges.iter().map(|e| (&e.sync, e.origin))).collect();
         for (sync, span) in syncs {
-            match sync {
-                SyncLabel::Internal => {}
-                SyncLabel::Send { event, .. } | SyncLabel::Receive { event, .. } => self.event(*event, span),
-                SyncLabel::Offer { channel, .. }
-                | SyncLabel::Accept { channel, .. }
-                | SyncLabel::Join { channel } => {
-                    self.channel(*channel);
-                }
+            if let Some(event) = sync.event() {
+                self.event(event, span);
+            }
+            if let Some(channel) = sync.channel() {
+                self.channel(channel);
             }
         }
     }
