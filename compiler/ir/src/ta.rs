@@ -493,6 +493,21 @@ pub enum QueryFormula<E = Expr> {
     Or(Vec<QueryFormula<E>>),
 }
 
+impl<E> QueryKind<E> {
+    /// The formulas that it asks.
+    #[must_use]
+    pub fn formulas(&self) -> Vec<&QueryFormula<E>> {
+        match self {
+            QueryKind::Possibly(f)
+            | QueryKind::Invariantly(f)
+            | QueryKind::PotentiallyAlways(f)
+            | QueryKind::Eventually(f) => vec![f],
+            QueryKind::LeadsTo(f, g) => vec![f, g],
+            QueryKind::Sup { when, .. } | QueryKind::Inf { when, .. } => vec![when],
+        }
+    }
+}
+
 impl<E> QueryFormula<E> {
     /// Whether it speaks of `deadlock`.
     #[must_use]

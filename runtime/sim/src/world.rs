@@ -48,39 +48,30 @@ impl SimWorld {
 
 /// What a device is to do; `None`: it is for one of another sort to do.
 fn meant(body: DeviceBody, call: &PrimitiveCall) -> Option<MotorCommand> {
-    Some(match (body, call) {
-        (DeviceBody::Arm(arm), PrimitiveCall::ReachPoint { to, speed }) => {
-            MotorCommand::ReachPoint { arm, target: *to, max_speed: *speed }
+    // INVARIANT: the checker gives each kind of device the primitives of its own sort; a laser has none.
+    let arm = || if let DeviceBody::Arm(arm) = body { Some(arm) } else { None };
+    let gripper = || if let DeviceBody::Gripper(gripper) = body { Some(gripper) } else { None };
+    let base = || if let DeviceBody::Base(base) = body { Some(base) } else { None };
+    Some(match call {
+        PrimitiveCall::ReachPoint { to, speed } => {
+            MotorCommand::ReachPoint { arm: arm()?, target: *to, max_speed: *speed }
         }
-        (DeviceBody::Arm(arm), PrimitiveCall::ReachJoints { to, speed }) => {
-            MotorCommand::ReachJoints { arm, positions: to.clone(), max_speed: *speed }
+        PrimitiveCall::ReachJoints { to, speed } => {
+            MotorCommand::ReachJoints { arm: arm()?, positions: to.clone(), max_speed: *speed }
         }
-        (DeviceBody::Arm(arm), PrimitiveCall::FollowJoints { positions, times }) => {
-            MotorCommand::FollowJoints { arm, positions: positions.clone(), times: times.clone() }
+        PrimitiveCall::FollowJoints { positions, times } => {
+            MotorCommand::FollowJoints { arm: arm()?, positions: positions.clone(), times: times.clone() }
         }
-        (DeviceBody::Arm(arm), PrimitiveCall::AimJoint { joint, to }) => {
-            MotorCommand::AimJoint { arm, joint: *joint, to: *to }
+        PrimitiveCall::AimJoint { joint, to } => {
+            MotorCommand::AimJoint { arm: arm()?, joint: *joint, to: *to }
         }
-        (DeviceBody::Arm(arm), PrimitiveCall::StopJoints) => MotorCommand::StopJoints { arm },
-        (DeviceBody::Gripper(gripper), PrimitiveCall::CloseFingers) => MotorCommand::CloseFingers { gripper },
-        (DeviceBody::Gripper(gripper), PrimitiveCall::OpenFingers) => MotorCommand::OpenFingers { gripper },
-        (DeviceBody::Base(base), PrimitiveCall::DriveWheels { forward, sideways, turn }) => {
-            MotorCommand::DriveWheels { base, forward: *forward, sideways: *sideways, turn: *turn }
+        PrimitiveCall::StopJoints => MotorCommand::StopJoints { arm: arm()? },
+        PrimitiveCall::CloseFingers => MotorCommand::CloseFingers { gripper: gripper()? },
+        PrimitiveCall::OpenFingers => MotorCommand::OpenFingers { gripper: gripper()? },
+        PrimitiveCall::DriveWheels { forward, sideways, turn } => {
+            MotorCommand::DriveWheels { base: base()?, forward: *forward, sideways: *sideways, turn: *turn }
         }
-        (DeviceBody::Base(base), PrimitiveCall::StopWheels) => MotorCommand::StopWheels { base },
-        // INVARIANT: the checker gives each kind of device the primitives of its own sort; a laser has none.
-        (
-            DeviceBody::Arm(_) | DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_),
-            PrimitiveCall::ReachPoint { .. }
-            | PrimitiveCall::ReachJoints { .. }
-            | PrimitiveCall::FollowJoints { .. }
-            | PrimitiveCall::AimJoint { .. }
-            | PrimitiveCall::StopJoints
-            | PrimitiveCall::CloseFingers
-            | PrimitiveCall::OpenFingers
-            | PrimitiveCall::DriveWheels { .. }
-            | PrimitiveCall::StopWheels,
-        ) => return None,
+        PrimitiveCall::StopWheels => MotorCommand::StopWheels { base: base()? },
     })
 }
 

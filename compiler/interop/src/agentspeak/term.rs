@@ -7,21 +7,10 @@ pub type OmissionReason = String;
 
 /// The literal that a term is.
 pub fn literal(of: &AgentSpeakTerm) -> Result<&AgentSpeakLiteral, OmissionReason> {
-    match &of.kind {
-        TermKind::Literal(l) => Ok(l),
-        TermKind::Int(_)
-        | TermKind::Float(_)
-        | TermKind::Text(_)
-        | TermKind::Bool(_)
-        | TermKind::Any
-        | TermKind::Var { .. }
-        | TermKind::List { .. }
-        | TermKind::Not(_)
-        | TermKind::Neg(_)
-        | TermKind::Binary { .. }
-        | TermKind::Body(_)
-        | TermKind::Trigger(_)
-        | TermKind::Plan => Err("what this is about is known only when it runs".to_owned()),
+    if let TermKind::Literal(literal) = &of.kind {
+        Ok(literal)
+    } else {
+        Err("what this is about is known only when it runs".to_owned())
     }
 }
 

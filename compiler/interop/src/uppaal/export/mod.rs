@@ -366,17 +366,6 @@ fn duration(nanos: Nanos) -> String {
     found.map_or_else(|| format!("{nanos} ns"), |(n, unit)| format!("{} {unit}", nanos / n))
 }
 
-fn formulas(ask: &QueryKind) -> Vec<&QueryFormula> {
-    match ask {
-        QueryKind::Possibly(f)
-        | QueryKind::Invariantly(f)
-        | QueryKind::PotentiallyAlways(f)
-        | QueryKind::Eventually(f) => vec![f],
-        QueryKind::LeadsTo(f, g) => vec![f, g],
-        QueryKind::Sup { when, .. } | QueryKind::Inf { when, .. } => vec![when],
-    }
-}
-
 fn called_in(ask: &QueryKind, note: &mut dyn FnMut(FunctionId)) {
     fn each(formula: &QueryFormula, note: &mut dyn FnMut(FunctionId)) {
         match formula {
@@ -387,7 +376,7 @@ fn called_in(ask: &QueryKind, note: &mut dyn FnMut(FunctionId)) {
             QueryFormula::At { .. } | QueryFormula::Deadlock => {}
         }
     }
-    formulas(ask).into_iter().for_each(|f| each(f, note));
+    ask.formulas().into_iter().for_each(|f| each(f, note));
     if let QueryKind::Sup { of, .. } | QueryKind::Inf { of, .. } = ask {
         for measure in of {
             if let QueryMeasure::Data(e) = measure {
