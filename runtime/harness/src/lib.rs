@@ -54,4 +54,6 @@ pub use system::seam::{
     CallRequest, CanceledGoals, ParameterRequest, PlanForm, RequestTicket, SystemActor, SystemAnswer,
     SystemArrival, SystemRequest,
 };
-pub use world::{ArmTarget, CommandId, PlannedPoint, PlannedWay, WayRequest, WorldAccuracy, WorldBackend};
+pub use world::{
+    ArmTarget, CommandId, MotionPlanRequest, PlannedPoint, PlannedTrajectory, WorldAccuracy, WorldBackend,
+};

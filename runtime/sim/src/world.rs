@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use hrdsl_harness::{
-    CheckedCommand, CommandId, PlannedWay, SpentTime, ThreadClock, WayRequest, WorldAccuracy, WorldBackend,
+    CheckedCommand, CommandId, MotionPlanRequest, PlannedTrajectory, SpentTime, ThreadClock, WorldAccuracy,
+    WorldBackend,
 };
 use hrdsl_ir::{
     Nanos, Program, Value,
@@ -13,10 +14,10 @@ use hrdsl_ir::{
     world::{SignalId, SignalTerm, WorldAction},
 };
 
-use crate::{WorldSimulation, command::MotorCommand, error::SimError};
+use crate::{WorldSimulation, command::MotorCommand, error::SimulationError};
 
 /// A [`WorldSimulation`] behind the seam.
-pub struct SimWorld {
+pub struct SimulatedWorld {
     sim: WorldSimulation,
     /// Of commands under way: what must be measured at their end.
     expected: BTreeMap<CommandId, CommandExpectation>,
@@ -28,12 +29,12 @@ struct CommandExpectation {
     otherwise: String,
 }
 
-impl SimWorld {
+impl SimulatedWorld {
     /// The program's world at its start, in a test with this seed; `None` if the scenario has none.
     ///
     /// # Errors
     /// Why the world cannot be built.
-    pub fn new(program: &Program, seed: u64) -> Result<Option<Self>, SimError> {
+    pub fn new(program: &Program, seed: u64) -> Result<Option<Self>, SimulationError> {
         let Some(world) = &program.world else { return Ok(None) };
         let sim = WorldSimulation::new(world, &program.signals)?.seeded(seed)?;
         Ok(Some(Self { sim, expected: BTreeMap::new() }))
@@ -75,7 +76,7 @@ fn meant(body: DeviceBody, call: &PrimitiveCall) -> Option<MotorCommand> {
     })
 }
 
-impl WorldBackend for SimWorld {
+impl WorldBackend for SimulatedWorld {
     fn next_wake(&self) -> Option<Nanos> {
         self.sim.next_wake()
     }
@@ -133,7 +134,7 @@ impl WorldBackend for SimWorld {
         self.sim.sampled_at(device)
     }
 
-    fn plan(&self, device: DeviceBody, wanted: &WayRequest) -> Result<PlannedWay, String> {
+    fn plan(&self, device: DeviceBody, wanted: &MotionPlanRequest) -> Result<PlannedTrajectory, String> {
         match device {
             DeviceBody::Arm(arm) => self.sim.plan(arm, wanted).map_err(|e| e.to_string()),
             DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_) => {

@@ -23,7 +23,7 @@ use crate::{
     player::{ActorPlayer, HarnessError, PlayerContext},
     port::{PortDeclaration, PortHistory},
     stage::WorldStage,
-    world::{CommandId, PlannedWay},
+    world::{CommandId, PlannedTrajectory},
 };
 
 /// Plays the system actor by its programs, each a [`SystemActor`].
@@ -179,7 +179,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 Answer(asked(cx, |stage| stage.state(&device, &what).map(SystemAnswer::Numbers)))
             }
             SystemRequest::Plan { device, wanted, form } => {
-                Answer(asked(cx, |stage| stage.plan(&device, &wanted).map(|way| told_way(way, form))))
+                Answer(asked(cx, |stage| stage.plan(&device, &wanted).map(|way| told_trajectory(way, form))))
             }
             SystemRequest::Machine(step) => Answer(self.machine(index, step, cx)),
             SystemRequest::List => Answer(self.listed(index)),
@@ -395,8 +395,8 @@ fn asked(
     }
 }
 
-fn told_way(way: PlannedWay, form: PlanForm) -> SystemAnswer {
-    let PlannedWay { mut corners, points } = way;
+fn told_trajectory(way: PlannedTrajectory, form: PlanForm) -> SystemAnswer {
+    let PlannedTrajectory { mut corners, points } = way;
     match form {
         PlanForm::End => SystemAnswer::Numbers(corners.pop().unwrap_or_default()),
         PlanForm::Corners => SystemAnswer::Numbers(corners.concat()),

@@ -15,7 +15,7 @@ use crate::{
     fault::SystemFault,
     log::LogRecord,
     port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
-    world::{PlannedPoint, WayRequest},
+    world::{MotionPlanRequest, PlannedPoint},
 };
 
 /// Whatever plays the system actor.
@@ -100,10 +100,10 @@ pub enum SystemRequest {
         device: String,
         what: String,
     },
-    /// A free way of an arm to a target.
+    /// A free path of an arm to a target.
     Plan {
         device: String,
-        wanted: WayRequest,
+        wanted: MotionPlanRequest,
         form: PlanForm,
     },
     /// A state machine of its own was declared, was begun or has moved.
@@ -169,7 +169,7 @@ pub enum ParameterRequest {
     Delete { name: String },
 }
 
-/// What a system wants to know of a way.
+/// What a system wants to know of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlanForm {
     /// The posture at its end.
