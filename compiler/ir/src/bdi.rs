@@ -241,6 +241,12 @@ impl<E> PlanContext<E> {
         }
     }
 
+    /// The parts that must all hold: of a conjunction its own, otherwise the whole.
+    #[must_use]
+    pub fn conjuncts(&self) -> &[PlanContext<E>] {
+        if let PlanContext::And(parts) = self { parts } else { std::slice::from_ref(self) }
+    }
+
     /// The variables that it may bind.
     #[must_use]
     pub fn binds(&self) -> Vec<u16> {

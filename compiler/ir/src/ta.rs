@@ -508,6 +508,22 @@ impl<E> QueryKind<E> {
     }
 }
 
+impl QueryFormula {
+    /// Whether it holds whatever the state is, by the way it is written.
+    #[must_use]
+    pub fn is_always(&self) -> bool {
+        match self {
+            QueryFormula::And(parts) => parts.is_empty(),
+            QueryFormula::Data(condition) => *condition == Expr::bool(true),
+            QueryFormula::At { .. }
+            | QueryFormula::Clock(_)
+            | QueryFormula::Deadlock
+            | QueryFormula::Not(_)
+            | QueryFormula::Or(_) => false,
+        }
+    }
+}
+
 impl<E> QueryFormula<E> {
     /// Whether it speaks of `deadlock`.
     #[must_use]

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Program, Value,
-    bdi::{Agent, BeliefAnnotation, BeliefId, ContentId, GoalId, PlanContext, TriggerOn},
+    bdi::{Agent, BeliefAnnotation, BeliefId, ContentId, GoalId, TriggerOn},
     expr::EvalError,
 };
 
@@ -180,8 +180,7 @@ impl LogNames<'_, '_> {
             ApplicabilityVerdict::Applicable => format!("{label} is applicable"),
             ApplicabilityVerdict::False { part } => {
                 let plan = self.agent.plan(plan);
-                let parts = if let PlanContext::And(all) = &plan.context { all.get(part) } else { None };
-                let context = parts.unwrap_or(&plan.context);
+                let context = plan.context.conjuncts().get(part).unwrap_or(&plan.context);
                 // What the event says is known; what the parts before found is not, and need not be the same each time.
                 let mut slots = vec![None; plan.vars.len()];
                 let likes = unify_all(

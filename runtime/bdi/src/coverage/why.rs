@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use hrdsl_ir::{
     Program,
     bdi::{
-        Agent, AgentId, BeliefId, ContentId, GoalId, MessageSubject, Performative, Plan, PlanContext,
-        PlanStepKind, TriggerOn,
+        Agent, AgentId, BeliefId, ContentId, GoalId, MessageSubject, Performative, Plan, PlanStepKind,
+        TriggerOn,
     },
     cover_item::{AgentCoverItem, ApplicableCount},
 };
@@ -180,16 +180,7 @@ impl<'a> TeamMember<'a> {
         let blocked = self.measured.blocked.get(usize::from(plan))?;
         let most = blocked.iter().copied().max().filter(|n| *n > 0)?;
         let at = blocked.iter().position(|n| *n == most)?;
-        let part = match &declared.context {
-            PlanContext::And(parts) => parts.get(at)?,
-            PlanContext::True
-            | PlanContext::Belief(_)
-            | PlanContext::Not(_)
-            | PlanContext::Or(_)
-            | PlanContext::Test(_)
-            | PlanContext::Unify(..)
-            | PlanContext::Internal(_, _) => &declared.context,
-        };
+        let part = declared.context.conjuncts().get(at)?;
         let text = show::context(self.team.program, self.agent, &declared.vars, part);
         Some(match blocked.len() {
             1 => format!("`{text}`"),
