@@ -92,8 +92,7 @@ pub fn show(files: &SourceFiles, diagnostics: &[&Diagnostic], most: usize) {
         }
         let (errors, warnings) = (errors.len() - shown, warnings.len() - rest);
         if errors + warnings > 0 {
-            let name = files.get(file).map_or("?", |f| &f.name);
-            let (name, more) = (printable_line(name), render::totals(errors, warnings));
+            let (name, more) = (printable_line(files.name(file)), render::totals(errors, warnings));
             terminal::say_line(format_args!(
                 "{name}: {more} more are not shown (`hrdsl check --max-findings 0` shows all)"
             ));

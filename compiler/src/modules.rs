@@ -121,35 +121,7 @@ pub fn is_module(file: &ast::FileSyntax) -> bool {
 
 /// What only a scenario can have.
 fn only_in_scenario(kind: &ItemSyntaxKind) -> Option<&'static str> {
-    match kind {
-        ItemSyntaxKind::World(_) => Some("a `world`"),
-        ItemSyntaxKind::Suite(_) => Some("a `suite`"),
-        ItemSyntaxKind::Test(_) => Some("a `test`"),
-        ItemSyntaxKind::Use(_)
-        | ItemSyntaxKind::Allow(_)
-        | ItemSyntaxKind::Enum { .. }
-        | ItemSyntaxKind::Record { .. }
-        | ItemSyntaxKind::Actor { .. }
-        | ItemSyntaxKind::Const { .. }
-        | ItemSyntaxKind::Event(_)
-        | ItemSyntaxKind::Stimulus(_)
-        | ItemSyntaxKind::Agent(_)
-        | ItemSyntaxKind::Var(_)
-        | ItemSyntaxKind::Automaton(_)
-        | ItemSyntaxKind::Channel(_)
-        | ItemSyntaxKind::Function(_)
-        | ItemSyntaxKind::Query(_)
-        | ItemSyntaxKind::Network { .. }
-        | ItemSyntaxKind::Require(_)
-        | ItemSyntaxKind::Assume(_)
-        | ItemSyntaxKind::Cover(_)
-        | ItemSyntaxKind::Cross(_)
-        | ItemSyntaxKind::Part(_)
-        | ItemSyntaxKind::Device(_)
-        | ItemSyntaxKind::System(_)
-        | ItemSyntaxKind::Instance(_)
-        | ItemSyntaxKind::Error => None,
-    }
+    kind.rules().only_in_scenario
 }
 
 /// HR0106

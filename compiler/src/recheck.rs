@@ -54,35 +54,7 @@ fn is_of_the_whole(kind: &ItemSyntaxKind) -> bool {
 
 /// What the rest of a scenario sees of a declaration. Of some all is seen: the value of a constant, the parts of the world.
 fn declares(item: &ast::ItemSyntax, written: &dyn Fn(Span) -> String) -> Vec<(&'static str, String, String)> {
-    let whole = match &item.kind {
-        ItemSyntaxKind::Agent(_)
-        | ItemSyntaxKind::Automaton(_)
-        | ItemSyntaxKind::Stimulus(_)
-        | ItemSyntaxKind::Require(_)
-        | ItemSyntaxKind::Assume(_)
-        | ItemSyntaxKind::Query(_)
-        | ItemSyntaxKind::Suite(_)
-        | ItemSyntaxKind::System(_)
-        | ItemSyntaxKind::Test(_) => String::new(),
-        ItemSyntaxKind::Use(_)
-        | ItemSyntaxKind::Allow(_)
-        | ItemSyntaxKind::Enum { .. }
-        | ItemSyntaxKind::Record { .. }
-        | ItemSyntaxKind::Actor { .. }
-        | ItemSyntaxKind::Const { .. }
-        | ItemSyntaxKind::Event(_)
-        | ItemSyntaxKind::Var(_)
-        | ItemSyntaxKind::Channel(_)
-        | ItemSyntaxKind::Function(_)
-        | ItemSyntaxKind::Network { .. }
-        | ItemSyntaxKind::Cover(_)
-        | ItemSyntaxKind::Cross(_)
-        | ItemSyntaxKind::Part(_)
-        | ItemSyntaxKind::Device(_)
-        | ItemSyntaxKind::World(_)
-        | ItemSyntaxKind::Instance(_)
-        | ItemSyntaxKind::Error => written(item.span),
-    };
+    let whole = if item.kind.rules().is_seen_by_name { String::new() } else { written(item.span) };
     let names = Resolutions::of_declaration(item);
     let ty = |ty: &DefinedType| match ty {
         DefinedType::None => String::new(),

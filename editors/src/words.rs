@@ -1,7 +1,7 @@
 //! The words of the language, as templates name them.
 
 use hrdsl_model::{UNITS, type_names};
-use hrdsl_syntax::token::{KEYWORDS, Keyword, KeywordClass, KeywordTrait};
+use hrdsl_syntax::token::{KEYWORDS, Keyword, KeywordClass, TokenTrait};
 
 /// The words of a list: `heads`, `hard`, `soft`, `soft:PLACE`, `before_event`, `after_event`, `units` or `types`. `None`: there is no such list.
 #[must_use]
@@ -12,8 +12,8 @@ pub fn list(name: &str) -> Option<Vec<&'static str>> {
         "heads" => Some(words(&|k| k.class == KeywordClass::Head)),
         "hard" => Some(words(&|k| matches!(k.class, KeywordClass::Hard | KeywordClass::Reserved))),
         "soft" => Some(words(&|k| k.class == KeywordClass::Soft)),
-        "before_event" => Some(words(&|k| k.traits.contains(&KeywordTrait::BeforeEvent))),
-        "after_event" => Some(words(&|k| k.traits.contains(&KeywordTrait::AfterEvent))),
+        "before_event" => Some(words(&|k| k.traits.contains(&TokenTrait::BeforeEvent))),
+        "after_event" => Some(words(&|k| k.traits.contains(&TokenTrait::AfterEvent))),
         "units" => Some(base_units()),
         // A shared clock is declared as a variable is.
         "types" => Some(type_names().chain(["clock"]).collect()),

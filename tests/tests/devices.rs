@@ -12,7 +12,7 @@ use hrdsl_ir::{
     Nanos, Program, Value,
     value::{SECOND, seconds},
 };
-use hrdsl_sim::SimWorld;
+use hrdsl_sim::SimulatedWorld;
 
 /// A torso with an arm and a hand, nothing to hold, and a command of the scenario's own.
 const SCENARIO: &str = r#"scenario bench
@@ -63,7 +63,7 @@ fn run(steps: Vec<ToldStep>) -> (Vec<(Nanos, u64, SystemAnswer)>, Vec<String>) {
     let answers = system.answers.clone();
     let robot = program.actor_named("robot").unwrap();
     let players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(SystemPlayer::new(&program, robot, system))];
-    let world = SimWorld::new(&program, 0).unwrap().unwrap();
+    let world = SimulatedWorld::new(&program, 0).unwrap().unwrap();
     let stage = WorldStage::new(&program, Box::new(world));
     let run = HarnessLoop::new(&program, players, Some(stage), 60 * SECOND).run();
     let event = |step: &hrdsl_trace::TraceStep| match &step.what {

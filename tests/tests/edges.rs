@@ -6,7 +6,7 @@ use hrdsl_harness::{
     doubles::{ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{Nanos, Program, Value, value::SECOND, world::SignalId};
-use hrdsl_sim::SimWorld;
+use hrdsl_sim::SimulatedWorld;
 use hrdsl_trace::{TraceStepKind, print};
 
 const MILLISECOND: Nanos = SECOND / 1000;
@@ -106,7 +106,7 @@ system robot { run "python3 robot.py" }
 #[test]
 fn every_step_of_the_physics_is_looked_at_and_time_counts_at_rest() {
     let program = program(FALLS);
-    let seen = events(&program, SimWorld::new(&program, 0).unwrap().unwrap(), 10);
+    let seen = events(&program, SimulatedWorld::new(&program, 0).unwrap().unwrap(), 10);
     let times: Vec<Nanos> = seen.iter().map(|s| s.split(' ').next().unwrap().parse().unwrap()).collect();
     let names: Vec<&str> = seen.iter().map(|s| s.split(' ').nth(1).unwrap()).collect();
     assert_eq!(names, ["passed", "gone", "lies"], "{seen:?}");

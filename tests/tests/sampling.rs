@@ -10,7 +10,7 @@ use hrdsl_harness::{
 use hrdsl_ir::{Nanos, Program, Value, value::SECOND, world::SignalId};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict};
 use hrdsl_runtime::judge::judge_recording;
-use hrdsl_sim::SimWorld;
+use hrdsl_sim::SimulatedWorld;
 use hrdsl_trace::{
     RunEnd, Trace, TraceStepKind,
     record::{self, RecordingEnd, RecordingHeader},
@@ -165,7 +165,7 @@ fn what_lasts_less_than_the_grid_is_found_and_the_recording_says_the_same() {
         let sleep = ToldStep::Then(SystemRequest::Sleep { time: 2 * SECOND });
         ToldSystem::new(vec![sleep, ToldStep::Then(SystemRequest::Done)])
     };
-    let world = || SimWorld::new(&program, 0).unwrap().unwrap();
+    let world = || SimulatedWorld::new(&program, 0).unwrap().unwrap();
     let ended = run(&program, world(), system(), false);
     let judged = verdicts(&program, &ended.trace);
     let every = verdicts(&program, &run(&program, world(), system(), true).trace);

@@ -141,5 +141,5 @@ fn place(files: &SourceFiles, span: Span) -> JsonPlace<'_> {
         });
         JsonPoint { line, column, byte }
     };
-    JsonPlace { file: file.map_or("?", |f| &f.name), start: point(span.start), end: point(span.end) }
+    JsonPlace { file: files.name(span.file), start: point(span.start), end: point(span.end) }
 }

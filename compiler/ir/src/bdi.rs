@@ -9,6 +9,7 @@ use crate::{
     event::{ActorId, EventId, EventPattern, Parameter},
     expr::Expr,
     list::ListFunction,
+    plan_steps::PlanBlock,
     value::Value,
 };
 
@@ -240,6 +241,12 @@ impl<E> PlanContext<E> {
         }
     }
 
+    /// The parts that must all hold: of a conjunction its own, otherwise the whole.
+    #[must_use]
+    pub fn conjuncts(&self) -> &[PlanContext<E>] {
+        if let PlanContext::And(parts) = self { parts } else { std::slice::from_ref(self) }
+    }
+
     /// The variables that it may bind.
     #[must_use]
     pub fn binds(&self) -> Vec<u16> {
@@ -297,19 +304,23 @@ impl<E> InternalAct<E> {
     /// The formula that it asks.
     #[must_use]
     pub fn formula(&self) -> Option<&PlanContext<E>> {
-        match self {
-            InternalAct::FindAll { formula, .. } | InternalAct::Count { formula, .. } => Some(formula),
-            InternalAct::Member { .. }
-            | InternalAct::Apply { .. }
-            | InternalAct::Holds { .. }
-            | InternalAct::Intend { .. }
-            | InternalAct::Desire { .. }
-            | InternalAct::Suspended { .. }
-            | InternalAct::Random { .. }
-            | InternalAct::Shuffle { .. }
-            | InternalAct::Time { .. }
-            | InternalAct::MyName { .. }
-            | InternalAct::AllNames { .. } => None,
+        if let InternalAct::FindAll { formula, .. } | InternalAct::Count { formula, .. } = self {
+            Some(formula)
+        } else {
+            None
+        }
+    }
+
+    /// The goal that it asks for, with its arguments.
+    #[must_use]
+    pub fn goal(&self) -> Option<(GoalId, &[AgentTerm<E>])> {
+        if let InternalAct::Intend { goal, args }
+        | InternalAct::Desire { goal, args }
+        | InternalAct::Suspended { goal, args } = self
+        {
+            Some((*goal, args))
+        } else {
+            None
         }
     }
 
@@ -399,56 +410,13 @@ impl<E> PlanStep<E> {
     /// The steps within it.
     #[must_use]
     pub fn blocks(&self) -> Vec<&[PlanStep<E>]> {
-        match &self.kind {
-            PlanStepKind::If { then, otherwise, .. } => vec![then, otherwise],
-            PlanStepKind::While { body, .. } | PlanStepKind::For { body, .. } => vec![body],
-            PlanStepKind::Fork { branches, .. } => branches.iter().map(Vec::as_slice).collect(),
-            PlanStepKind::Do { .. }
-            | PlanStepKind::Achieve { .. }
-            | PlanStepKind::Spawn { .. }
-            | PlanStepKind::Query(_)
-            | PlanStepKind::Test(_)
-            | PlanStepKind::Add(_)
-            | PlanStepKind::Remove(_)
-            | PlanStepKind::Replace(_)
-            | PlanStepKind::Abolish(_)
-            | PlanStepKind::Await { .. }
-            | PlanStepKind::Wait { .. }
-            | PlanStepKind::Send { .. }
-            | PlanStepKind::Ask { .. }
-            | PlanStepKind::AskAll { .. }
-            | PlanStepKind::Print { .. }
-            | PlanStepKind::Control { .. }
-            | PlanStepKind::Fail => Vec::new(),
-        }
+        self.kind.as_block().map_or_else(Vec::new, PlanBlock::bodies)
     }
 
     /// The formula that it asks.
     #[must_use]
     pub fn condition(&self) -> Option<&PlanContext<E>> {
-        match &self.kind {
-            PlanStepKind::Test(condition)
-            | PlanStepKind::If { condition, .. }
-            | PlanStepKind::While { condition, .. }
-            | PlanStepKind::For { condition, .. } => Some(condition),
-            PlanStepKind::Do { .. }
-            | PlanStepKind::Achieve { .. }
-            | PlanStepKind::Spawn { .. }
-            | PlanStepKind::Query(_)
-            | PlanStepKind::Add(_)
-            | PlanStepKind::Remove(_)
-            | PlanStepKind::Replace(_)
-            | PlanStepKind::Abolish(_)
-            | PlanStepKind::Await { .. }
-            | PlanStepKind::Wait { .. }
-            | PlanStepKind::Fork { .. }
-            | PlanStepKind::Send { .. }
-            | PlanStepKind::Ask { .. }
-            | PlanStepKind::AskAll { .. }
-            | PlanStepKind::Print { .. }
-            | PlanStepKind::Control { .. }
-            | PlanStepKind::Fail => None,
-        }
+        self.kind.as_test().or_else(|| self.kind.as_block()?.condition())
     }
 }
 

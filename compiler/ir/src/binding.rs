@@ -167,15 +167,19 @@ impl<E> GapValue<E> {
     /// What its expression reads, if it is one.
     #[must_use]
     pub fn reads(&self) -> &[GapRead] {
-        match self {
-            GapValue::Value { reads, .. } => reads,
-            GapValue::Held { .. }
-            | GapValue::Now
-            | GapValue::Told { .. }
-            | GapValue::Fixed(_)
-            | GapValue::Whole(_)
-            | GapValue::Chosen { .. } => &[],
-        }
+        if let GapValue::Value { reads, .. } = self { reads } else { &[] }
+    }
+
+    /// After which events it is true, and for how long.
+    #[must_use]
+    pub fn as_held(&self) -> Option<(&[EventPattern], Nanos)> {
+        if let GapValue::Held { events, time } = self { Some((events, *time)) } else { None }
+    }
+
+    /// The device that tells it.
+    #[must_use]
+    pub fn teller(&self) -> Option<DeviceId> {
+        if let GapValue::Told { device, .. } = self { Some(*device) } else { None }
     }
 
     /// Whether this occurrence of an event sets it.

@@ -330,16 +330,7 @@ impl DevicePrimitive {
     /// Whether it ends what the device is doing, and does nothing else.
     #[must_use]
     pub fn is_stop(self) -> bool {
-        match self {
-            DevicePrimitive::StopJoints | DevicePrimitive::StopWheels => true,
-            DevicePrimitive::ReachPoint
-            | DevicePrimitive::ReachJoints
-            | DevicePrimitive::FollowJoints
-            | DevicePrimitive::AimJoint
-            | DevicePrimitive::CloseFingers
-            | DevicePrimitive::OpenFingers
-            | DevicePrimitive::DriveWheels => false,
-        }
+        matches!(self, DevicePrimitive::StopJoints | DevicePrimitive::StopWheels)
     }
 
     /// What does it.

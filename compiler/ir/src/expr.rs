@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-pub use hrdsl_source::{BinaryOp, UnaryOp};
+pub use hrdsl_source::{BinaryOp, OperatorSort, UnaryOp};
 
 use crate::{
     list::{self, List},
@@ -33,7 +33,7 @@ pub enum Expr {
     List(Vec<Expr>, Option<Box<Expr>>),
     /// An element of an array of variables. Automata only.
     Element(Box<Lvalue>),
-    /// A function of automata, applied: see [`ta::NumberFunction`](crate::ta::Function).
+    /// A function of automata, applied: see [`AutomatonFunction`](crate::ta::AutomatonFunction).
     Apply(FunctionId, Vec<Expr>),
 }
 
@@ -283,39 +283,24 @@ pub fn binary(op: BinaryOp, a: Value, b: Value) -> Result<Value, EvalError> {
 }
 
 fn on_bools(op: BinaryOp, a: bool, b: bool) -> Result<Value, EvalError> {
-    Ok(Value::Bool(match op {
-        BinaryOp::And => a && b,
-        BinaryOp::Or => a || b,
-        BinaryOp::Eq => a == b,
-        BinaryOp::Ne => a != b,
-        BinaryOp::Add
-        | BinaryOp::Sub
-        | BinaryOp::Mul
-        | BinaryOp::Div
-        | BinaryOp::Rem
-        | BinaryOp::Lt
-        | BinaryOp::Le
-        | BinaryOp::Gt
-        | BinaryOp::Ge => return Err(EvalError::Type),
+    Ok(Value::Bool(match op.sort() {
+        OperatorSort::Logic => {
+            if op == BinaryOp::And {
+                a && b
+            } else {
+                a || b
+            }
+        }
+        OperatorSort::Equality => (a == b) == (op == BinaryOp::Eq),
+        OperatorSort::Arithmetic | OperatorSort::Order => return Err(EvalError::Type),
     }))
 }
 
 /// Symbols, strings and lists know `==` and `!=` only.
 fn compared(op: BinaryOp, equal: bool) -> Result<Value, EvalError> {
-    match op {
-        BinaryOp::Eq => Ok(Value::Bool(equal)),
-        BinaryOp::Ne => Ok(Value::Bool(!equal)),
-        BinaryOp::Add
-        | BinaryOp::Sub
-        | BinaryOp::Mul
-        | BinaryOp::Div
-        | BinaryOp::Rem
-        | BinaryOp::Lt
-        | BinaryOp::Le
-        | BinaryOp::Gt
-        | BinaryOp::Ge
-        | BinaryOp::And
-        | BinaryOp::Or => Err(EvalError::Type),
+    match op.sort() {
+        OperatorSort::Equality => Ok(Value::Bool(equal == (op == BinaryOp::Eq))),
+        OperatorSort::Arithmetic | OperatorSort::Order | OperatorSort::Logic => Err(EvalError::Type),
     }
 }
 

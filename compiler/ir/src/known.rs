@@ -2,11 +2,10 @@
 
 /// The name of something that was looked up by an id of the same Program, for a text that people read.
 ///
-/// The checker gave the id, so that it is there, whatever `what` it is. Should it be missing all the same, that is a fault of ours, and a
-/// debug build stops at it; a text says `?`, and no verdict depends on texts.
+/// The checker gave the id, so that it is there, whatever `what` it is. Should it be missing all the same, that is a fault of hrdsl's own and
+/// is told as one: no text is made of it.
 #[must_use]
 #[track_caller]
 pub fn known_name<'a>(what: &str, name: Option<&'a str>) -> &'a str {
-    debug_assert!(name.is_some(), "this program has no such {what}");
-    name.unwrap_or("?")
+    name.unwrap_or_else(|| panic!("this program has no such {what}"))
 }

@@ -12,6 +12,7 @@ pub mod bdi;
 pub mod binding;
 pub mod cover_item;
 pub mod coverage;
+mod declared;
 pub mod device;
 pub mod device_state;
 mod eval_error;
@@ -42,6 +43,7 @@ pub use expr::Expr;
 pub use hrdsl_source::{Enumeration, Span, Symbol};
 pub use known::known_name;
 pub use list::{List, Text};
+pub use plan_steps::PlanBlock;
 pub use value::{ListOf, Nanos, Type, Unit, Value};
 
 /// A whole scenario, ready to generate tests from and to run.
@@ -80,16 +82,6 @@ pub struct Program {
 }
 
 impl Program {
-    #[must_use]
-    pub fn event(&self, id: EventId) -> &Event {
-        &self.events[id.0 as usize]
-    }
-
-    #[must_use]
-    pub fn actor(&self, id: ActorId) -> &Actor {
-        &self.actors[id.0 as usize]
-    }
-
     /// The event or stimulus of this name.
     #[must_use]
     pub fn event_named(&self, name: &str) -> Option<EventId> {

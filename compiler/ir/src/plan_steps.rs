@@ -2,10 +2,76 @@
 
 use crate::{
     EventId, EventPattern,
-    bdi::{Assertion, BeliefLiteral, GoalId, PlanStepKind},
+    bdi::{Assertion, BeliefLiteral, GoalId, PlanContext, PlanStep, PlanStepKind},
 };
 
+/// A step that has other steps in it.
+#[derive(Clone, Copy, Debug)]
+pub enum PlanBlock<'s, E> {
+    If { condition: &'s PlanContext<E>, then: &'s [PlanStep<E>], otherwise: &'s [PlanStep<E>] },
+    While { condition: &'s PlanContext<E>, body: &'s [PlanStep<E>] },
+    For { condition: &'s PlanContext<E>, body: &'s [PlanStep<E>] },
+    Fork { branches: &'s [Vec<PlanStep<E>>], all: bool },
+}
+
+impl<'s, E> PlanBlock<'s, E> {
+    /// The steps within it.
+    #[must_use]
+    pub fn bodies(self) -> Vec<&'s [PlanStep<E>]> {
+        match self {
+            PlanBlock::If { then, otherwise, .. } => vec![then, otherwise],
+            PlanBlock::While { body, .. } | PlanBlock::For { body, .. } => vec![body],
+            PlanBlock::Fork { branches, .. } => branches.iter().map(Vec::as_slice).collect(),
+        }
+    }
+
+    /// The formula that says whether, or how often, they are done.
+    #[must_use]
+    pub fn condition(self) -> Option<&'s PlanContext<E>> {
+        match self {
+            PlanBlock::If { condition, .. }
+            | PlanBlock::While { condition, .. }
+            | PlanBlock::For { condition, .. } => Some(condition),
+            PlanBlock::Fork { .. } => None,
+        }
+    }
+}
+
 impl<E> PlanStepKind<E> {
+    /// The block that it is, if there are steps in it.
+    #[must_use]
+    pub fn as_block(&self) -> Option<PlanBlock<'_, E>> {
+        Some(match self {
+            PlanStepKind::If { condition, then, otherwise } => PlanBlock::If { condition, then, otherwise },
+            PlanStepKind::While { condition, body } => PlanBlock::While { condition, body },
+            PlanStepKind::For { condition, body } => PlanBlock::For { condition, body },
+            PlanStepKind::Fork { branches, all } => PlanBlock::Fork { branches, all: *all },
+            PlanStepKind::Do { .. }
+            | PlanStepKind::Achieve { .. }
+            | PlanStepKind::Spawn { .. }
+            | PlanStepKind::Query(_)
+            | PlanStepKind::Test(_)
+            | PlanStepKind::Add(_)
+            | PlanStepKind::Remove(_)
+            | PlanStepKind::Replace(_)
+            | PlanStepKind::Abolish(_)
+            | PlanStepKind::Await { .. }
+            | PlanStepKind::Wait { .. }
+            | PlanStepKind::Send { .. }
+            | PlanStepKind::Ask { .. }
+            | PlanStepKind::AskAll { .. }
+            | PlanStepKind::Print { .. }
+            | PlanStepKind::Control { .. }
+            | PlanStepKind::Fail => return None,
+        })
+    }
+
+    /// The formula that it tests.
+    #[must_use]
+    pub fn as_test(&self) -> Option<&PlanContext<E>> {
+        if let PlanStepKind::Test(condition) = self { Some(condition) } else { None }
+    }
+
     /// The stimulus or event that it does.
     #[must_use]
     pub fn as_do(&self) -> Option<(EventId, &[E])> {

@@ -101,7 +101,7 @@ pub struct BeliefChoice<E = Expr> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BeliefCondition<E = Expr> {
     pub context: PlanContext<E>,
-    /// The names of its variables; [`Term::Var`](crate::bdi::Term::Var) counts in them.
+    /// The names of its variables; [`AgentTerm::Var`](crate::bdi::AgentTerm::Var) counts in them.
     pub vars: Vec<String>,
     pub origin: Span,
 }

@@ -262,6 +262,42 @@ impl<E> SyncLabel<E> {
             | SyncLabel::Join { channel } => Some(*channel),
         }
     }
+
+    /// The event that it sends or takes.
+    #[must_use]
+    pub fn event(&self) -> Option<EventId> {
+        self.as_send().map(|sent| sent.0).or(self.as_receive().map(|taken| taken.0))
+    }
+
+    /// The event that it sends, with its arguments.
+    #[must_use]
+    pub fn as_send(&self) -> Option<(EventId, &[E])> {
+        if let SyncLabel::Send { event, args } = self { Some((*event, args)) } else { None }
+    }
+
+    /// The event that it takes, and which of them by their arguments.
+    #[must_use]
+    pub fn as_receive(&self) -> Option<(EventId, &[ReceiveArg])> {
+        if let SyncLabel::Receive { event, args } = self { Some((*event, args)) } else { None }
+    }
+
+    /// The channel over which it offers, with the arguments.
+    #[must_use]
+    pub fn as_offer(&self) -> Option<(ChannelId, &[E])> {
+        if let SyncLabel::Offer { channel, args } = self { Some((*channel, args)) } else { None }
+    }
+
+    /// The channel over which it accepts, and what by the arguments.
+    #[must_use]
+    pub fn as_accept(&self) -> Option<(ChannelId, &[ReceiveArg])> {
+        if let SyncLabel::Accept { channel, args } = self { Some((*channel, args)) } else { None }
+    }
+
+    /// The arguments that it hands over.
+    #[must_use]
+    pub fn given(&self) -> &[E] {
+        self.as_send().map(|sent| sent.1).or(self.as_offer().map(|offered| offered.1)).unwrap_or_default()
+    }
 }
 
 /// What a receiving edge does with one argument.
@@ -455,6 +491,37 @@ pub enum QueryFormula<E = Expr> {
     Not(Box<QueryFormula<E>>),
     And(Vec<QueryFormula<E>>),
     Or(Vec<QueryFormula<E>>),
+}
+
+impl<E> QueryKind<E> {
+    /// The formulas that it asks.
+    #[must_use]
+    pub fn formulas(&self) -> Vec<&QueryFormula<E>> {
+        match self {
+            QueryKind::Possibly(f)
+            | QueryKind::Invariantly(f)
+            | QueryKind::PotentiallyAlways(f)
+            | QueryKind::Eventually(f) => vec![f],
+            QueryKind::LeadsTo(f, g) => vec![f, g],
+            QueryKind::Sup { when, .. } | QueryKind::Inf { when, .. } => vec![when],
+        }
+    }
+}
+
+impl QueryFormula {
+    /// Whether it holds whatever the state is, by the way it is written.
+    #[must_use]
+    pub fn is_always(&self) -> bool {
+        match self {
+            QueryFormula::And(parts) => parts.is_empty(),
+            QueryFormula::Data(condition) => *condition == Expr::bool(true),
+            QueryFormula::At { .. }
+            | QueryFormula::Clock(_)
+            | QueryFormula::Deadlock
+            | QueryFormula::Not(_)
+            | QueryFormula::Or(_) => false,
+        }
+    }
 }
 
 impl<E> QueryFormula<E> {

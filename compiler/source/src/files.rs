@@ -18,6 +18,9 @@ pub struct SourceFile {
 
 const BLOCK: usize = 256;
 
+/// What stands for the name of a file where there is none: a span of what was made up lies in no file.
+const NO_FILE: &str = "(no file)";
+
 /// A place as people count: from 1, columns in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TextPosition {
@@ -45,6 +48,12 @@ impl SourceFiles {
         self.files.get(id.0 as usize)
     }
 
+    /// The name of the file of this id, as it is shown.
+    #[must_use]
+    pub fn name(&self, id: FileId) -> &str {
+        self.get(id).map_or(NO_FILE, |f| &f.name)
+    }
+
     pub fn iter(&self) -> impl Iterator<Item = (FileId, &SourceFile)> {
         self.files.iter().enumerate().map(|(i, f)| (FileId(u16::try_from(i).unwrap_or(u16::MAX)), f))
     }
@@ -65,8 +74,7 @@ impl SourceFiles {
     #[must_use]
     pub fn place(&self, span: Span) -> String {
         let TextPosition { line, column } = self.position(span);
-        let name = self.get(span.file).map_or("?", |f| &f.name);
-        format!("{}:{line}:{column}", printable_line(name))
+        format!("{}:{line}:{column}", printable_line(self.name(span.file)))
     }
 }
 
@@ -145,6 +153,7 @@ mod tests {
         assert_eq!(source.line(0).map(|l| l.end), text.find('\r'));
         assert_eq!((source.line(2).map(|l| l.len()), source.line(3)), (Some(0), None));
         assert_eq!(files.place(Span::new(file, 2, 3)), "a␊b:1:2");
+        assert_eq!(files.place(Span::new(FileId(7), 2, 3)), "(no file):1:1");
         files.add("", "");
         assert_eq!(files.get(FileId(1)).unwrap().position(0), TextPosition { line: 1, column: 1 });
     }

@@ -15,6 +15,6 @@ pub use diagnostic::{Diagnostic, Severity, SpanLabel, SuggestedFix, TextEdit};
 pub use files::{SourceFile, SourceFiles, TextPosition};
 pub use nearest::{distance, nearest};
 pub use printable::{is_steering, printable, printable_char, printable_line};
-pub use shared_words::{BinaryOp, LocationKind, UnaryOp};
+pub use shared_words::{BinaryOp, LocationKind, OperatorSort, UnaryOp};
 pub use span::{FileId, Span};
 pub use symbol::{Enumeration, InternedTotals, Symbol};

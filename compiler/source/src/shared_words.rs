@@ -27,6 +27,33 @@ pub enum BinaryOp {
     Or,
 }
 
+/// What sort of operator one is, by what it takes and gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OperatorSort {
+    /// Numbers to a number.
+    Arithmetic,
+    /// Two values of any one type to a bool.
+    Equality,
+    /// Numbers to a bool.
+    Order,
+    /// Bools to a bool.
+    Logic,
+}
+
+impl BinaryOp {
+    #[must_use]
+    pub fn sort(self) -> OperatorSort {
+        match self {
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => {
+                OperatorSort::Arithmetic
+            }
+            BinaryOp::Eq | BinaryOp::Ne => OperatorSort::Equality,
+            BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => OperatorSort::Order,
+            BinaryOp::And | BinaryOp::Or => OperatorSort::Logic,
+        }
+    }
+}
+
 /// How time passes in a location of an automaton.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A source file of a compilation, by its index in [`Files`](crate::Files).
+/// A source file of a compilation, by its index in [`SourceFiles`](crate::SourceFiles).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct FileId(pub u16);
 

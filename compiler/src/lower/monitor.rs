@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     EventPattern, Expr, Nanos, Unit,
-    expr::{BinaryOp, NumberFunction, UnaryOp},
+    expr::{BinaryOp, NumberFunction, OperatorSort, UnaryOp},
     monitor::{
         Assumption, Monitor, MonitorEdge, MonitorEffect, MonitorMargin, MonitorState, MonitorTrigger, StateId,
     },
@@ -186,19 +186,10 @@ fn margin(e: &model::TypedExpr, positive: bool, reader: &mut SignalReader<'_, '_
             (unit == other).then(|| (Expr::Call(pick, vec![a, b]), unit))
         }
         TypedExprKind::Binary(op, a, b) => {
-            let smaller_first = match op {
-                BinaryOp::Lt | BinaryOp::Le => true,
-                BinaryOp::Gt | BinaryOp::Ge => false,
-                BinaryOp::Add
-                | BinaryOp::Sub
-                | BinaryOp::Mul
-                | BinaryOp::Div
-                | BinaryOp::Rem
-                | BinaryOp::Eq
-                | BinaryOp::Ne
-                | BinaryOp::And
-                | BinaryOp::Or => return None,
-            };
+            if op.sort() != OperatorSort::Order {
+                return None;
+            }
+            let smaller_first = matches!(op, BinaryOp::Lt | BinaryOp::Le);
             let unit = match a.ty {
                 InferredType::Float(dim) => dim.unit(),
                 InferredType::Int

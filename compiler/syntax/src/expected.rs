@@ -1,6 +1,6 @@
 //! What would have fitted where the parser found something else, in words that a person uses.
 
-use crate::token::{KEYWORDS, Keyword, KeywordClass, KeywordTrait, TokenKind};
+use crate::token::{KEYWORDS, Keyword, KeywordClass, TokenKind, TokenTrait};
 
 /// Where a run stopped fitting the grammar.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ struct TerminalGroup {
     /// Names, and with them all soft keywords, are part of it.
     names: bool,
     /// The keywords that start a member of this block are part of it.
-    members: Option<KeywordTrait>,
+    members: Option<TokenTrait>,
     /// The others that are part of it.
     covers: &'static [&'static str],
     says: &'static [&'static str],
@@ -85,7 +85,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["gravity", "joint"],
         if_none: &["IDENT"],
         names: false,
-        members: Some(KeywordTrait::InWorld),
+        members: Some(TokenTrait::InWorld),
         covers: &[],
         says: &["a member of the world such as `body` or `signal`"],
     },
@@ -94,7 +94,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["explore", "horizon"],
         if_none: &["IDENT"],
         names: false,
-        members: Some(KeywordTrait::InSuite),
+        members: Some(TokenTrait::InSuite),
         covers: &[],
         says: &["a line such as `choose` or `tests`"],
     },
@@ -112,7 +112,7 @@ const GROUPS: &[TerminalGroup] = &[
         if_all: &["ORIGIN", "clock"],
         if_none: &["IDENT"],
         names: false,
-        members: Some(KeywordTrait::InAutomaton),
+        members: Some(TokenTrait::InAutomaton),
         covers: &["ORIGIN"],
         says: &["`location`", "`clock`", "`var`", "an edge such as `a -> b`"],
     },

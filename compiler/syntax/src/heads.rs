@@ -1,6 +1,6 @@
 //! Keywords that start declarations and can be names: which of the two one is, by the tokens around it.
 
-use crate::token::{KeywordTrait, Lexeme, TokenKind};
+use crate::token::{Lexeme, TokenKind, TokenTrait};
 
 /// Whether the tokens after the keyword at `at` are those of its declaration.
 pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
@@ -21,7 +21,7 @@ pub(crate) fn has_its_rest(tokens: &[Lexeme], at: usize) -> bool {
         TokenKind::Query => after(&[TokenKind::Of, TokenKind::Str]),
         TokenKind::Require => {
             after(&[TokenKind::LParen, TokenKind::Assign])
-                || ((tokens[at].first || !next.is(KeywordTrait::AfterEvent))
+                || ((tokens[at].first || !next.is(TokenTrait::AfterEvent))
                     && next.can_be_name()
                     && kind(2).is_some_and(TokenKind::can_be_name)
                     && starts_pattern(kind(3)))
@@ -53,5 +53,5 @@ fn starts_pattern(kind: Option<TokenKind>) -> bool {
 
 /// Words that a name follows, at the level of declarations.
 pub(crate) fn wants_a_name(kind: TokenKind) -> bool {
-    kind.continues() || kind.is(KeywordTrait::WantsName)
+    kind.continues() || kind.is(TokenTrait::WantsName)
 }

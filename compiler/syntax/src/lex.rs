@@ -3,7 +3,7 @@
 use hrdsl_source::{Diagnostic, DiagnosticCode, FileId, Span};
 use logos::Logos;
 
-use crate::token::{KeywordClass, KeywordTrait, Lexeme, TokenKind};
+use crate::token::{KeywordClass, Lexeme, TokenKind, TokenTrait};
 use crate::words;
 
 /// The tokens of a file, and what was found on the way.
@@ -387,7 +387,7 @@ impl LexemeJoiner<'_> {
             let of_clause = self.raw.get(i + 3).is_some_and(|t| {
                 !t.first && matches!(t.kind, TokenKind::Int | TokenKind::Float | TokenKind::Ident)
             });
-            let clause = after.is_some_and(|t| of_clause && t.kind.is(KeywordTrait::Sensing));
+            let clause = after.is_some_and(|t| of_clause && t.kind.is(TokenTrait::Sensing));
             return usize::from(clause || !after.is_some_and(|t| t.kind.starts_operand()));
         }
         if unit.kind != TokenKind::Ident || self.counts_events() {
@@ -402,18 +402,7 @@ impl LexemeJoiner<'_> {
         {
             return 3;
         }
-        let is_name = after.is_some_and(|t| {
-            matches!(
-                t.kind,
-                TokenKind::LParen
-                    | TokenKind::Arrow
-                    | TokenKind::Assign
-                    | TokenKind::PlusAssign
-                    | TokenKind::MinusAssign
-                    | TokenKind::Colon
-                    | TokenKind::Dot
-            )
-        });
+        let is_name = after.is_some_and(|t| t.kind.is(TokenTrait::AfterName));
         usize::from(!is_name)
     }
 

@@ -19,6 +19,7 @@ mod context;
 mod expected;
 mod expr;
 mod heads;
+mod item_rules;
 mod lex;
 mod outline;
 mod parse;
@@ -38,6 +39,7 @@ mod grammar {
     pub use generated::UnitParser;
 }
 
+pub use item_rules::ItemRules;
 pub use outline::{MAX_HEIGHT, MAX_NESTING};
 pub use parse::{MAX_BYTES, parse};
 pub use pattern::{BannedEvents, DemandedEvents, RequirementPattern};

@@ -20,7 +20,7 @@ use crate::ast::{
 };
 use crate::context::{ParseContext, ParsedUnit};
 use crate::run::run;
-use crate::token::{KeywordTrait, Lexeme, TokenKind};
+use crate::token::{Lexeme, TokenKind, TokenTrait};
 use crate::{expected::ParseFault, report::report};
 
 pub(crate) struct RecoveringParser<'a, 't> {
@@ -404,7 +404,7 @@ macro_rules! members {
             }
 
             fn starts(kind: TokenKind) -> bool {
-                kind.is(KeywordTrait::$first) $(|| kind.$names())?
+                kind.is(TokenTrait::$first) $(|| kind.$names())?
             }
         }
     )*};

@@ -4,7 +4,7 @@ use hrdsl_source::{Diagnostic, DiagnosticCode};
 
 use crate::context::ParseContext;
 use crate::expected::{ParseFault, describe, keyword, row};
-use crate::token::{Keyword, KeywordClass, Lexeme, TokenKind};
+use crate::token::{Keyword, KeywordClass, Lexeme, TokenKind, TokenTrait};
 
 /// The diagnostic of a fault in these tokens, which `next` follows; none if the lexer has made it.
 pub(crate) fn report(cx: &mut ParseContext<'_>, fault: &ParseFault, tokens: &[Lexeme], next: Option<Lexeme>) {
@@ -89,23 +89,6 @@ fn reserved(word: &str) -> Option<&'static Keyword> {
     row(word).filter(|k| k.class == KeywordClass::Reserved)
 }
 
-/// What stands after a name that is declared or set.
-fn follows_a_name(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::Colon
-            | TokenKind::Assign
-            | TokenKind::LParen
-            | TokenKind::RParen
-            | TokenKind::Comma
-            | TokenKind::Semi
-            | TokenKind::Arrow
-            | TokenKind::FromWord
-            | TokenKind::Plays
-            | TokenKind::By
-    )
-}
-
 fn help(
     cx: &ParseContext<'_>,
     fault: &ParseFault,
@@ -114,7 +97,7 @@ fn help(
 ) -> Option<String> {
     let word = cx.text_of(token);
     let [before, after] = around.map(|t| t.map(|t| t.kind));
-    let named = after.is_some_and(follows_a_name);
+    let named = after.is_some_and(|kind| kind.is(TokenTrait::AfterDeclared));
     // Where an expression is expected, the word may have been meant as the operator that it is.
     if let Some(keyword) = reserved(word)
         && fault.has("IDENT")
@@ -127,15 +110,7 @@ fn help(
     }
     let text = match token.kind {
         TokenKind::Eq if fault.has("=") => "to set a value, write `=`",
-        TokenKind::Assign
-        | TokenKind::Eq
-        | TokenKind::Ne
-        | TokenKind::Lt
-        | TokenKind::Le
-        | TokenKind::Gt
-        | TokenKind::Ge
-            if fault.has("&&") =>
-        {
+        kind if (kind == TokenKind::Assign || kind.is(TokenTrait::Comparison)) && fault.has("&&") => {
             "comparisons cannot be chained: write `a < b && b < c`"
         }
         // The expression before may have been taken for complete.

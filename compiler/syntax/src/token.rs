@@ -15,9 +15,9 @@ pub enum KeywordClass {
     Reserved,
 }
 
-/// What else may be true of a keyword, where it stands as one.
+/// What else may be true of a token: of a keyword, where it stands as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KeywordTrait {
+pub enum TokenTrait {
     /// The grammar says place by place where it may be a name; all others may be one wherever `Soft` is.
     Apart,
     /// Starts a clause, before which a long line is broken.
@@ -32,6 +32,35 @@ pub enum KeywordTrait {
     Sensing,
     /// At the level of declarations a name follows.
     WantsName,
+    /// Starts a declaration that ends with its closing brace.
+    Block,
+    /// Members that start so are aligned at their `=`.
+    AlignedAtAssign,
+    /// Where nothing but parentheses follows it, it is a name.
+    WantsRest,
+    /// Starts a step of a test, of which it is not the only word.
+    TestStep,
+    /// May be the first token of an operand.
+    StartsOperand,
+    /// May be the last token of an operand, or of a member.
+    EndsOperand,
+    /// An operator of expressions; each adds a level to the tree.
+    Operator,
+    Comparison,
+    /// What follows belongs to what is before, also on a new line.
+    Continues,
+    /// Ends a name within something else, or goes on with it, and starts nothing.
+    EndsName,
+    /// Stands after a name that is declared or set.
+    AfterDeclared,
+    /// Shows that the word before it is a name, and not the unit of a number.
+    AfterName,
+    /// Starts a step of a plan.
+    StartsStep,
+    /// Starts a step of a plan and, at the start of a line, is nothing else.
+    StartsOnlyStep,
+    /// No blank follows it.
+    NoBlankAfter,
     // Starts a member, or a step, of such a block.
     InStimulus,
     InAgent,
@@ -53,95 +82,23 @@ pub struct Keyword {
     /// The construct that it belongs to, as the specification's table shows it.
     pub place: &'static str,
     pub(crate) kind: TokenKind,
-    pub traits: &'static [KeywordTrait],
+    pub traits: &'static [TokenTrait],
 }
 
-macro_rules! keywords {
-    ($($kind:ident $word:tt $class:ident $place:literal [$($holds:ident)*];)*) => {
+/// Makes the kinds of tokens and what is true of them: of keywords, of signs, and of all others.
+macro_rules! tokens {
+    (
+        { $($kind:ident $word:tt $class:ident $place:literal [$($holds:ident)*];)* }
+        { $($sign:tt $sign_kind:ident [$($sign_holds:ident)*];)* }
+        { $($(#[$($attribute:tt)*])* $other:ident [$($other_holds:ident)*];)* }
+    ) => {
         /// The kind of a token.
         #[derive(Logos, Clone, Copy, Debug, PartialEq, Eq)]
         #[logos(skip r"[ \t\r]+")]
         pub(crate) enum TokenKind {
             $(#[token($word)] $kind,)*
-
-            #[token("_", priority = 9)] Any,
-            #[regex("[A-Za-z_][A-Za-z0-9_]*", priority = 2)] Ident,
-            #[regex("[0-9]+")] Int,
-            #[regex(r"[0-9]+\.[0-9]+([eE][+-]?[0-9]+)?")] Float,
-            #[regex(r#""([^"\\\n]|\\[^\n])*""#)] Str,
-
-            #[token("(")] LParen,
-            #[token(")")] RParen,
-            #[token("{")] LBrace,
-            #[token("}")] RBrace,
-            #[token("[")] LBracket,
-            #[token("]")] RBracket,
-            #[token("^")] Caret,
-            #[token(",")] Comma,
-            #[token(";")] Semi,
-            #[token(":")] Colon,
-            #[token(".")] Dot,
-            #[token("..")] DotDot,
-            #[token("@")] At_,
-            #[token("?")] Question,
-            #[token("|")] Pipe,
-            #[token("->")] Arrow,
-            #[token("-->")] LongArrow,
-            #[token("E<>")] Possibly,
-            #[token("A[]")] Invariantly,
-            #[token("E[]")] PotentiallyAlways,
-            #[token("A<>")] Eventually,
-            #[token("=")] Assign,
-            #[token("+=")] PlusAssign,
-            #[token("-=")] MinusAssign,
-            #[token("-+")] MinusPlus,
-            #[token("!")] Bang,
-            #[token("!!")] BangBang,
-            #[token("&&")] AndAnd,
-            #[token("||")] OrOr,
-            #[token("==")] Eq,
-            #[token("!=")] Ne,
-            #[token("<")] Lt,
-            #[token("<=")] Le,
-            #[token(">")] Gt,
-            #[token(">=")] Ge,
-            #[token("+")] Plus,
-            #[token("-")] Minus,
-            #[token("*")] Star,
-            #[token("/")] Slash,
-            #[token("%")] Percent,
-            #[token("~")] Tilde,
-
-            // Seen by the lexer only.
-            #[token("\n")] Newline,
-            #[regex(r"//[^\n]*", allow_greedy = true)] Comment,
-            #[regex(r#""([^"\\\n]|\\[^\n])*\\?"#)] OpenStr,
-
-            // Made by the lexer.
-            /// A number and its unit.
-            Quantity,
-            /// A name before `->`.
-            From,
-            /// The dot before the name of an internal action.
-            Internal,
-            /// Text that could not be read; the diagnostic has been made.
-            Error,
-
-            // Made by the driver: what is to be read, and its end.
-            StartStimulusStep,
-            StartAgentMember,
-            StartStep,
-            StartStatement,
-            StartAutomatonMember,
-            StartCrossMember,
-            StartSuiteMember,
-            StartTestMember,
-            StartWorldMember,
-            StartDeviceMember,
-            StartSystemMember,
-            StartBindingMember,
-            StartBindingEntry,
-            End,
+            $(#[token($sign)] $sign_kind,)*
+            $($(#[$($attribute)*])* $other,)*
         }
 
         /// All keywords, by where they belong.
@@ -151,7 +108,7 @@ macro_rules! keywords {
                 class: KeywordClass::$class,
                 place: $place,
                 kind: TokenKind::$kind,
-                traits: &[$(KeywordTrait::$holds),*],
+                traits: &[$(TokenTrait::$holds),*],
             }),*
         ];
 
@@ -160,17 +117,109 @@ macro_rules! keywords {
             pub(crate) fn class(self) -> Option<KeywordClass> {
                 match self {
                     $(Self::$kind => Some(KeywordClass::$class),)*
-                    _ => None,
+                    $(Self::$sign_kind => None,)*
+                    $(Self::$other => None,)*
                 }
             }
 
-            /// Whether the registry says this of a keyword.
-            pub(crate) fn is(self, what: KeywordTrait) -> bool {
-                let traits: &[KeywordTrait] = match self {
-                    $(Self::$kind => &[$(KeywordTrait::$holds),*],)*
-                    _ => &[],
+            /// Whether the registry says this of it.
+            pub(crate) fn is(self, what: TokenTrait) -> bool {
+                let traits: &[TokenTrait] = match self {
+                    $(Self::$kind => &[$(TokenTrait::$holds),*],)*
+                    $(Self::$sign_kind => &[$(TokenTrait::$sign_holds),*],)*
+                    $(Self::$other => &[$(TokenTrait::$other_holds),*],)*
                 };
                 traits.contains(&what)
+            }
+        }
+    };
+}
+
+/// Adds to the keywords what is no word of its own: signs; names, numbers and texts; what the lexer and the driver make.
+macro_rules! keywords {
+    ($($keyword:tt)*) => {
+        tokens! {
+            { $($keyword)* }
+            {
+                "(" LParen [StartsOperand Continues AfterDeclared AfterName NoBlankAfter];
+                ")" RParen [EndsOperand EndsName AfterDeclared];
+                "{" LBrace [];
+                "}" RBrace [EndsOperand];
+                "[" LBracket [StartsOperand Continues NoBlankAfter];
+                "]" RBracket [EndsOperand EndsName];
+                "^" Caret [];
+                "," Comma [Continues EndsName AfterDeclared];
+                ";" Semi [AfterDeclared];
+                ":" Colon [Continues EndsName AfterDeclared AfterName];
+                "." Dot [Continues AfterName NoBlankAfter];
+                ".." DotDot [Continues EndsName];
+                "@" At_ [Continues NoBlankAfter];
+                "?" Question [StartsStep StartsOnlyStep];
+                "|" Pipe [Continues EndsName];
+                "->" Arrow [Continues AfterDeclared AfterName];
+                "-->" LongArrow [Continues];
+                "E<>" Possibly [];
+                "A[]" Invariantly [];
+                "E[]" PotentiallyAlways [];
+                "A<>" Eventually [];
+                "=" Assign [Continues EndsName AfterDeclared AfterName];
+                "+=" PlusAssign [Continues EndsName AfterName];
+                "-=" MinusAssign [Continues EndsName AfterName];
+                "-+" MinusPlus [StartsStep StartsOnlyStep NoBlankAfter];
+                "!" Bang [Operator StartsStep StartsOnlyStep];
+                "!!" BangBang [Operator StartsStep StartsOnlyStep];
+                "&&" AndAnd [Operator Continues EndsName];
+                "||" OrOr [Operator Continues EndsName];
+                "==" Eq [Operator Comparison Continues EndsName];
+                "!=" Ne [Operator Comparison Continues EndsName];
+                "<" Lt [Operator Comparison Continues EndsName];
+                "<=" Le [Operator Comparison Continues EndsName];
+                ">" Gt [Operator Comparison Continues EndsName];
+                ">=" Ge [Operator Comparison Continues EndsName];
+                "+" Plus [Operator Continues EndsName StartsStep];
+                "-" Minus [Operator Continues StartsStep];
+                "*" Star [Operator Continues EndsName];
+                "/" Slash [Operator Continues EndsName];
+                "%" Percent [Operator Continues EndsName];
+                "~" Tilde [StartsOperand Operator NoBlankAfter];
+            }
+            {
+                #[token("_", priority = 9)] Any [StartsOperand EndsOperand];
+                #[regex("[A-Za-z_][A-Za-z0-9_]*", priority = 2)] Ident [];
+                #[regex("[0-9]+")] Int [StartsOperand EndsOperand];
+                #[regex(r"[0-9]+\.[0-9]+([eE][+-]?[0-9]+)?")] Float [StartsOperand EndsOperand];
+                #[regex(r#""([^"\\\n]|\\[^\n])*""#)] Str [StartsOperand EndsOperand];
+
+                // Seen by the lexer only.
+                #[token("\n")] Newline [];
+                #[regex(r"//[^\n]*", allow_greedy = true)] Comment [];
+                #[regex(r#""([^"\\\n]|\\[^\n])*\\?"#)] OpenStr [];
+
+                // Made by the lexer.
+                /// A number and its unit.
+                Quantity [StartsOperand EndsOperand];
+                /// A name before `->`.
+                From [];
+                /// The dot before the name of an internal action.
+                Internal [StartsOperand StartsStep StartsOnlyStep NoBlankAfter];
+                /// Text that could not be read; the diagnostic has been made.
+                Error [StartsOperand EndsOperand];
+
+                // Made by the driver: what is to be read, and its end.
+                StartStimulusStep [];
+                StartAgentMember [];
+                StartStep [];
+                StartStatement [];
+                StartAutomatonMember [];
+                StartCrossMember [];
+                StartSuiteMember [];
+                StartTestMember [];
+                StartWorldMember [];
+                StartDeviceMember [];
+                StartSystemMember [];
+                StartBindingMember [];
+                StartBindingEntry [];
+                End [];
             }
         }
     };
@@ -186,22 +235,7 @@ impl TokenKind {
 
     /// Starts a declaration that ends with its closing brace.
     pub(crate) fn has_block(self) -> bool {
-        matches!(
-            self,
-            Self::Stimulus
-                | Self::Agent
-                | Self::Automaton
-                | Self::Fn
-                | Self::Cross
-                | Self::Suite
-                | Self::Part
-                | Self::Device
-                | Self::World
-                | Self::System
-                | Self::Test
-                | Self::Enum
-                | Self::Record
-        )
+        self.is(TokenTrait::Block)
     }
 
     /// Looks like a name: an identifier or a soft keyword.
@@ -231,90 +265,22 @@ impl TokenKind {
 
     /// May be the first token of an operand.
     pub(crate) fn starts_operand(self) -> bool {
-        self.is_name()
-            || matches!(
-                self,
-                Self::Int
-                    | Self::Float
-                    | Self::Quantity
-                    | Self::LParen
-                    | Self::Any
-                    | Self::True
-                    | Self::False
-                    | Self::Str
-                    | Self::LBracket
-                    | Self::Tilde
-                    | Self::Internal
-                    | Self::Error
-            )
+        self.is_name() || self.is(TokenTrait::StartsOperand)
     }
 
     /// May be the last token of an operand, or of a member.
     pub(crate) fn ends_operand(self) -> bool {
-        self.is_name()
-            || matches!(
-                self,
-                Self::Int
-                    | Self::Float
-                    | Self::Quantity
-                    | Self::Str
-                    | Self::RParen
-                    | Self::RBracket
-                    | Self::RBrace
-                    | Self::Any
-                    | Self::True
-                    | Self::False
-                    | Self::Error
-            )
+        self.is_name() || self.is(TokenTrait::EndsOperand)
     }
 
     /// An operator of expressions; each adds a level to the tree.
     pub(crate) fn is_operator(self) -> bool {
-        matches!(
-            self,
-            Self::Plus
-                | Self::Minus
-                | Self::Star
-                | Self::Slash
-                | Self::Percent
-                | Self::Bang
-                | Self::BangBang
-                | Self::Not
-                | Self::And
-                | Self::Or
-                | Self::Imply
-                | Self::AndAnd
-                | Self::OrOr
-                | Self::Eq
-                | Self::Ne
-                | Self::Lt
-                | Self::Le
-                | Self::Gt
-                | Self::Ge
-                | Self::If
-                | Self::Tilde
-        )
+        self.is(TokenTrait::Operator)
     }
 
     /// What follows belongs to what is before, also on a new line.
     pub(crate) fn continues(self) -> bool {
-        (self.is_operator() && !matches!(self, Self::Bang | Self::BangBang | Self::If | Self::Tilde))
-            || matches!(
-                self,
-                Self::Comma
-                    | Self::Colon
-                    | Self::Dot
-                    | Self::DotDot
-                    | Self::LParen
-                    | Self::LBracket
-                    | Self::Pipe
-                    | Self::Arrow
-                    | Self::LongArrow
-                    | Self::Assign
-                    | Self::PlusAssign
-                    | Self::MinusAssign
-                    | Self::At_
-            )
+        self.is(TokenTrait::Continues)
     }
 }
 

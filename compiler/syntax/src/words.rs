@@ -2,7 +2,7 @@
 //!
 //! Everywhere else the grammar itself takes a keyword for a name where the keyword does not fit.
 
-use crate::token::{KeywordTrait, Lexeme, TokenKind};
+use crate::token::{Lexeme, TokenKind, TokenTrait};
 
 /// Makes names of the keywords that what stands around them shows to be names.
 pub(crate) fn names(tokens: &mut [Lexeme]) {
@@ -51,14 +51,7 @@ fn lacks_its_rest(tokens: &[Lexeme], at: usize, does: bool) -> bool {
     let empty =
         next.kind == TokenKind::LParen && tokens.get(at + 2).is_some_and(|t| t.kind == TokenKind::RParen);
     match tokens[at].kind {
-        TokenKind::Await
-        | TokenKind::Else
-        | TokenKind::Fork
-        | TokenKind::Method
-        | TokenKind::Because
-        | TokenKind::Predicts
-        | TokenKind::Meanwhile
-        | TokenKind::With => next.kind == TokenKind::LParen || follows,
+        kind if kind.is(TokenTrait::WantsRest) => next.kind == TokenKind::LParen || follows,
         TokenKind::If => {
             let step = at.checked_sub(1).is_none_or(|i| {
                 matches!(tokens[i].kind, TokenKind::Semi | TokenKind::LBrace | TokenKind::RBrace)
@@ -88,32 +81,7 @@ fn follows_a_name(word: Lexeme, next: Lexeme) -> bool {
         return word.end == next.start
             && matches!(word.kind, TokenKind::If | TokenKind::Else | TokenKind::Imply);
     }
-    matches!(
-        next.kind,
-        TokenKind::RParen
-            | TokenKind::RBracket
-            | TokenKind::Comma
-            | TokenKind::Colon
-            | TokenKind::DotDot
-            | TokenKind::Pipe
-            | TokenKind::Assign
-            | TokenKind::PlusAssign
-            | TokenKind::MinusAssign
-            | TokenKind::Eq
-            | TokenKind::Ne
-            | TokenKind::Lt
-            | TokenKind::Le
-            | TokenKind::Gt
-            | TokenKind::Ge
-            | TokenKind::Plus
-            | TokenKind::Star
-            | TokenKind::Slash
-            | TokenKind::Percent
-            | TokenKind::And
-            | TokenKind::AndAnd
-            | TokenKind::Or
-            | TokenKind::OrOr
-    )
+    next.kind.is(TokenTrait::EndsName)
 }
 
 /// `causes x`: what is before is the trigger. In `after causes: x` and `never causes while c` it is not.
@@ -121,7 +89,7 @@ fn starts_a_response(tokens: &[Lexeme]) -> bool {
     let [word, next, ..] = tokens else { return false };
     let event =
         next.kind.can_be_name() && next.kind != TokenKind::While && !(next.first && next.kind.is_head());
-    word.kind.is(KeywordTrait::Response) && event
+    word.kind.is(TokenTrait::Response) && event
 }
 
 /// Whether a keyword that parentheses follow is a call by what follows them.
@@ -141,9 +109,9 @@ fn called_before(kind: TokenKind, next: Option<Lexeme>) -> bool {
             )
         ),
         TokenKind::After | TokenKind::Never => {
-            after.is_some_and(|k| k == TokenKind::Or || k.is(KeywordTrait::Response))
+            after.is_some_and(|k| k == TokenKind::Or || k.is(TokenTrait::Response))
         }
-        TokenKind::Globally => after.is_some_and(|k| k.is(KeywordTrait::Response)),
+        TokenKind::Globally => after.is_some_and(|k| k.is(TokenTrait::Response)),
         _ => false,
     }
 }
@@ -178,18 +146,8 @@ impl TestLineTracker {
     fn is_step(&self, tokens: &[Lexeme], at: usize) -> bool {
         let starts = tokens[at].first || at.checked_sub(1).is_some_and(|i| tokens[i].kind == TokenKind::Semi);
         let alone = tokens.get(at + 1).is_some_and(|t| t.first && t.kind.is_word());
-        let step = matches!(
-            tokens[at].kind,
-            TokenKind::Await
-                | TokenKind::Wait
-                | TokenKind::Seed
-                | TokenKind::Method
-                | TokenKind::Because
-                | TokenKind::Predicts
-                | TokenKind::Meanwhile
-                | TokenKind::With
-        );
-        let step = step && alone || tokens[at].kind == TokenKind::Imply && tokens[at].first;
+        let step = tokens[at].kind.is(TokenTrait::TestStep) && alone
+            || tokens[at].kind == TokenKind::Imply && tokens[at].first;
         // Of the test, or of an actor's block.
         self.test && matches!(self.braces, 1 | 2) && step && starts
     }

@@ -7,7 +7,7 @@ use crate::{
     intention::{Intention, NO_PLAN},
     log::{LogItem, PlanIndex},
 };
-use hrdsl_ir::known_name;
+use hrdsl_ir::bdi::BeliefId;
 
 impl AgentMachine<'_> {
     /// Ends the run of an agent that holds too much.
@@ -46,10 +46,7 @@ impl AgentMachine<'_> {
     }
 
     fn label(&self, plan: PlanIndex) -> &str {
-        known_name(
-            "plan",
-            self.mind.agent.and_then(|a| a.plans.get(usize::from(plan))).map(|p| p.label.as_str()),
-        )
+        &self.mind.agent.plan(plan).label
     }
 
     /// Of what most of them are; of equally many the first.
@@ -66,10 +63,7 @@ impl AgentMachine<'_> {
             }
             HoldingKind::Facts => {
                 let facts = (0u16..).zip(self.mind.beliefs.all()).map(|(id, rows)| (id, rows.held()));
-                let names = self.mind.agent.map(|a| &a.beliefs);
-                let name = |id: u16| {
-                    known_name("belief", names.and_then(|n| n.get(usize::from(id))).map(|b| b.name.as_str()))
-                };
+                let name = |id: u16| &self.mind.agent.belief(BeliefId(id)).name;
                 commonest(facts).map(|id| format!("of the belief `{}`", name(id)))
             }
             HoldingKind::Messages => {

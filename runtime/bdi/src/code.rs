@@ -1,7 +1,7 @@
 //! Plans as lines of code: blocks become jumps.
 
 use hrdsl_ir::{
-    Expr, Span,
+    Expr, PlanBlock, Span,
     bdi::{AgentTerm, InternalAct, PlanContext, PlanStep, PlanStepKind},
 };
 
@@ -89,8 +89,8 @@ impl<'p> PlanCompiler<'p> {
     fn step(&mut self, step: &'p PlanStep) {
         let (site, origin) = (self.site, step.origin);
         self.site = self.site.saturating_add(1);
-        match &step.kind {
-            PlanStepKind::If { condition, then, otherwise } => {
+        match step.kind.as_block() {
+            Some(PlanBlock::If { condition, then, otherwise }) => {
                 let test = self.line(PlanOp::Branch { condition, otherwise: 0 }, site, origin);
                 self.steps(then);
                 let skip = (!otherwise.is_empty()).then(|| self.line(PlanOp::Jump(0), site, origin));
@@ -100,14 +100,14 @@ impl<'p> PlanCompiler<'p> {
                     self.lines[skip].op = PlanOp::Jump(self.here());
                 }
             }
-            PlanStepKind::While { condition, body } => {
+            Some(PlanBlock::While { condition, body }) => {
                 self.line(PlanOp::Enter(variables(condition, body)), site, origin);
                 let test = self.line(PlanOp::While { condition, end: 0 }, site, origin);
                 self.steps(body);
                 self.line(PlanOp::Jump(test as u16), site, origin);
                 self.lines[test].op = PlanOp::While { condition, end: self.here() };
             }
-            PlanStepKind::For { condition, body } => {
+            Some(PlanBlock::For { condition, body }) => {
                 let variables = variables(condition, body);
                 self.line(PlanOp::For { condition, variables }, site, origin);
                 let next = self.line(PlanOp::Next { end: 0 }, site, origin);
@@ -115,7 +115,7 @@ impl<'p> PlanCompiler<'p> {
                 self.line(PlanOp::Jump(next as u16), site, origin);
                 self.lines[next].op = PlanOp::Next { end: self.here() };
             }
-            PlanStepKind::Fork { branches, all } => {
+            Some(PlanBlock::Fork { branches, all }) => {
                 let fork = self.line(PlanOp::Join, site, origin);
                 let mut starts = Vec::new();
                 for branch in branches {
@@ -124,25 +124,9 @@ impl<'p> PlanCompiler<'p> {
                     self.line(PlanOp::Join, site, origin);
                 }
                 let end = self.here();
-                self.lines[fork].op = PlanOp::Fork { branches: starts.into(), all: *all, end };
+                self.lines[fork].op = PlanOp::Fork { branches: starts.into(), all, end };
             }
-            PlanStepKind::Do { .. }
-            | PlanStepKind::Achieve { .. }
-            | PlanStepKind::Spawn { .. }
-            | PlanStepKind::Query(_)
-            | PlanStepKind::Test(_)
-            | PlanStepKind::Add(_)
-            | PlanStepKind::Remove(_)
-            | PlanStepKind::Replace(_)
-            | PlanStepKind::Abolish(_)
-            | PlanStepKind::Await { .. }
-            | PlanStepKind::Wait { .. }
-            | PlanStepKind::Send { .. }
-            | PlanStepKind::Ask { .. }
-            | PlanStepKind::AskAll { .. }
-            | PlanStepKind::Print { .. }
-            | PlanStepKind::Control { .. }
-            | PlanStepKind::Fail => {
+            None => {
                 self.line(PlanOp::Plain(&step.kind), site, origin);
             }
         }

@@ -131,7 +131,7 @@ impl<'p> AgentMachine<'p> {
     }
 
     fn start(&mut self, chosen: &[InitialFact]) {
-        let Some(agent) = self.mind.agent else { return };
+        let agent = self.mind.agent;
         for fact in agent.initial_beliefs.iter().chain(chosen) {
             let declared = agent.beliefs.get(usize::from(fact.belief.0));
             match declared.and_then(|b| typed(&b.params, GroundArguments::from_slice(&fact.args))) {
@@ -470,7 +470,7 @@ impl<'p> AgentMachine<'p> {
     fn origin_of(&self, event: &QueuedEvent) -> Span {
         let step =
             event.by.and_then(|(plan, site)| self.mind.library.code(plan).iter().find(|l| l.site == site));
-        step.map(|l| l.origin).or(self.mind.agent.map(|a| a.origin)).unwrap_or_default()
+        step.map_or(self.mind.agent.origin, |l| l.origin)
     }
 
     // ── Log and measure ──

@@ -2,9 +2,8 @@
 
 use hrdsl_ir::{
     Program, Value,
-    bdi::{Agent, BeliefAnnotation, BeliefId, ContentId, GoalId, PlanContext, TriggerOn},
+    bdi::{Agent, BeliefAnnotation, BeliefId, ContentId, GoalId, TriggerOn},
     expr::EvalError,
-    known_name,
 };
 
 use crate::{
@@ -20,15 +19,14 @@ use crate::{
 };
 
 impl<'p> AgentMachine<'p> {
-    /// The names of its program; `None` if it cannot be run.
-    pub(crate) fn names(&self) -> Option<LogNames<'_, 'p>> {
-        Some(LogNames { mind: &self.mind, program: self.mind.program, agent: self.mind.agent? })
+    /// The names of its program.
+    pub(crate) fn names(&self) -> LogNames<'_, 'p> {
+        LogNames { mind: &self.mind, program: self.mind.program, agent: self.mind.agent }
     }
 
     /// An entry of this agent's log, without time and agent.
     pub fn describe(&self, entry: &LogEntry) -> String {
-        let Some(names) = self.names() else { return String::new() };
-        let what = names.entry(entry);
+        let what = self.names().entry(entry);
         let alone = matches!(&entry.what, LogItem::Selected { fresh: true, .. });
         if entry.intention == 0 || alone { what } else { format!("#{} {what}", entry.intention) }
     }
@@ -78,11 +76,7 @@ impl LogNames<'_, '_> {
                 format!("warning: {} does not fit its declaration", call(self.belief(*belief), args))
             }
             LogItem::Perceived { event, args } => {
-                let name = known_name(
-                    "event",
-                    self.program.events.get(usize::from(event.0)).map(|e| e.name.as_str()),
-                );
-                format!("perceives {}", call(name, args))
+                format!("perceives {}", call(&self.program.event(*event).name, args))
             }
             LogItem::Heard { from, performative: p, content, args } => {
                 let what = call(self.content(*content), args.iter().map(slot));
@@ -111,26 +105,23 @@ impl LogNames<'_, '_> {
     }
 
     fn plan(&self, index: u16) -> &str {
-        known_name("plan", self.agent.plans.get(usize::from(index)).map(|p| p.label.as_str()))
+        &self.agent.plan(index).label
     }
 
     fn belief(&self, id: BeliefId) -> &str {
-        known_name("belief", self.agent.beliefs.get(usize::from(id.0)).map(|b| b.name.as_str()))
+        &self.agent.belief(id).name
     }
 
     fn goal(&self, id: GoalId) -> &str {
-        known_name("goal", self.agent.goals.get(usize::from(id.0)).map(|g| g.name.as_str()))
+        &self.agent.goal(id).name
     }
 
     fn content(&self, id: ContentId) -> &str {
-        known_name(
-            "subject of messages",
-            self.program.contents.get(usize::from(id.0)).map(|c| c.name.as_str()),
-        )
+        &self.program.content(id).name
     }
 
     fn peer(&self, place: u16) -> &'static str {
-        known_name("agent", self.mind.me.peers.agents.get(usize::from(place)).map(|(name, _)| name.name()))
+        self.mind.me.peers.agents[usize::from(place)].0.name()
     }
 
     pub(crate) fn on(&self, on: TriggerOn, args: &EventArguments) -> String {
@@ -141,32 +132,24 @@ impl LogNames<'_, '_> {
             TriggerOn::GoalFailed(g) => ("-!", self.goal(g)),
             TriggerOn::TestAdded(b) => ("+?", self.belief(b)),
             TriggerOn::TestFailed(b) => ("-?", self.belief(b)),
-            TriggerOn::Perceived(e) => (
-                "on ",
-                known_name("event", self.program.events.get(usize::from(e.0)).map(|e| e.name.as_str())),
-            ),
+            TriggerOn::Perceived(e) => ("on ", self.program.event(e).name.as_str()),
         };
         format!("{sign}{}", call(name, args.iter().map(slot)))
     }
 
     /// ` (N = 0, M = 2)`: the variables that have a value.
     fn bound(&self, plan: u16, vars: &[VariableSlot]) -> String {
-        let Some(plan) = self.agent.plans.get(usize::from(plan)) else { return String::new() };
+        let plan = self.agent.plan(plan);
         let bound = plan.vars.iter().zip(vars).filter_map(|(name, v)| Some(format!("{name} = {}", (*v)?)));
         let bound: Vec<String> = bound.collect();
         if bound.is_empty() { String::new() } else { format!(" ({})", bound.join(", ")) }
     }
 
     fn annotations(&self, belief: BeliefId, all: &FactAnnotations) -> String {
-        let declared = self.agent.beliefs.get(usize::from(belief.0)).map_or(&[][..], |b| &b.annotations);
+        let declared = self.agent.belief(belief);
         let one = |(what, value): &(BeliefAnnotation, Value)| match what {
             BeliefAnnotation::Source => format!("source({value})"),
-            BeliefAnnotation::Declared(at) => {
-                format!(
-                    "{}({value})",
-                    known_name("annotation", declared.get(usize::from(*at)).map(|p| p.name.as_str()))
-                )
-            }
+            BeliefAnnotation::Declared(at) => format!("{}({value})", declared.annotation(*at).name),
         };
         let all: Vec<String> = all.iter().map(one).collect();
         format!("[{}]", all.join(", "))
@@ -196,9 +179,8 @@ impl LogNames<'_, '_> {
             }
             ApplicabilityVerdict::Applicable => format!("{label} is applicable"),
             ApplicabilityVerdict::False { part } => {
-                let plan = &self.agent.plans[usize::from(plan)];
-                let parts = if let PlanContext::And(all) = &plan.context { all.get(part) } else { None };
-                let context = parts.unwrap_or(&plan.context);
+                let plan = self.agent.plan(plan);
+                let context = plan.context.conjuncts().get(part).unwrap_or(&plan.context);
                 // What the event says is known; what the parts before found is not, and need not be the same each time.
                 let mut slots = vec![None; plan.vars.len()];
                 let likes = unify_all(
@@ -245,26 +227,26 @@ impl LogNames<'_, '_> {
         if var == u16::MAX {
             return "`_` has no value".to_owned();
         }
-        let plan = self.agent.plans.get(usize::from(plan));
-        let name = plan.and_then(|p| p.vars.get(usize::from(var)));
-        format!("`{}` has no value", known_name("variable", name.map(String::as_str)))
+        format!("`{}` has no value", self.agent.plan(plan).variable(var))
     }
 
     fn step(&self, plan: u16, line: u16, vars: &[VariableSlot], outcome: StepOutcome) -> String {
-        let code = self.mind.library.code(plan);
-        let names = &self.agent.plans[usize::from(plan)].vars;
+        let names = &self.agent.plan(plan).vars;
         let show = FormulaPrinter { program: self.program, agent: self.agent, names, slots: vars };
-        match (code.get(usize::from(line)).map(|l| &l.op), outcome) {
-            (Some(PlanOp::Plain(step)), _) => show.step(step),
-            (Some(PlanOp::Branch { .. }), StepOutcome::Holds(holds)) => format!("if {holds}"),
-            (Some(PlanOp::While { .. }), StepOutcome::Holds(holds)) => format!("while {holds}"),
-            (Some(PlanOp::Branch { .. }), _) => "if".to_owned(),
-            (Some(PlanOp::While { .. }), _) => "while".to_owned(),
-            (Some(PlanOp::For { .. }), StepOutcome::Faulty) => "for".to_owned(),
-            (_, StepOutcome::Answers(1)) => "for: 1 answer".to_owned(),
-            (_, StepOutcome::Answers(n)) => format!("for: {n} answers"),
-            (_, StepOutcome::Branches(n)) => format!("fork: {n} branches"),
-            _ => "?".to_owned(),
+        let word = match &self.mind.library.code(plan)[usize::from(line)].op {
+            PlanOp::Plain(step) => return show.step(step),
+            PlanOp::Branch { .. } => "if",
+            PlanOp::Enter(_) | PlanOp::While { .. } => "while",
+            PlanOp::For { .. } | PlanOp::Next { .. } => "for",
+            PlanOp::Fork { .. } | PlanOp::Join => "fork",
+            PlanOp::Jump(_) => "jump",
+        };
+        match outcome {
+            StepOutcome::Done | StepOutcome::Faulty => word.to_owned(),
+            StepOutcome::Holds(holds) => format!("{word} {holds}"),
+            StepOutcome::Answers(1) => format!("{word}: 1 answer"),
+            StepOutcome::Answers(n) => format!("{word}: {n} answers"),
+            StepOutcome::Branches(n) => format!("{word}: {n} branches"),
         }
     }
 }

@@ -27,7 +27,7 @@ impl ActionToken {
 }
 
 /// A stimulus, or a plain event, that the agent does now. Its intention goes on when the harness calls
-/// [`Society::stimulus_done`](crate::Society::stimulus_done) with the token.
+/// [`stimulus_done`](crate::AgentSociety::stimulus_done) with the token.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AgentAction {
     pub token: ActionToken,

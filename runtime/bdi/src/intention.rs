@@ -150,6 +150,11 @@ impl Intention<'_> {
         &self.slots[frame.args as usize..frame.vars as usize]
     }
 
+    /// The plan whose step it does, or waits for.
+    pub fn top(&self) -> &PlanFrame {
+        &self.frames[self.frames.len() - 1]
+    }
+
     /// The top plan's variables.
     pub fn vars(&self) -> &[VariableSlot] {
         let start = self.frames.last().map_or(self.slots.len(), |f| f.vars as usize);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_ir::bdi::{Agent, ContentId, Performative, PlanContext, TriggerOn};
+use hrdsl_ir::bdi::{Agent, ContentId, Performative, TriggerOn};
 
 use crate::intention::NO_PLAN;
 
@@ -39,14 +39,13 @@ impl AgentCounts {
     #[must_use]
     pub fn new(agent: &Agent) -> Self {
         let plans = agent.plans.len();
-        let parts = |context: &PlanContext| if let PlanContext::And(all) = context { all.len() } else { 1 };
         Self {
             selected: vec![0; plans],
             completed: vec![0; plans],
             failed: vec![0; plans],
             unmatched: vec![0; plans],
             contexts: vec![[0; 2]; plans],
-            blocked: agent.plans.iter().map(|p| vec![0; parts(&p.context)]).collect(),
+            blocked: agent.plans.iter().map(|p| vec![0; p.context.conjuncts().len()]).collect(),
             faults: vec![0; plans],
             ..Self::default()
         }

@@ -1,9 +1,12 @@
 //! What an agent reasons with: its program, beliefs and intentions, and who it is among the others.
 
-use std::{collections::VecDeque, sync::Arc};
+use std::{
+    collections::VecDeque,
+    sync::{Arc, LazyLock},
+};
 
 use hrdsl_ir::{
-    List, Nanos, Program, Symbol, Value,
+    ActorId, List, Nanos, Program, Span, Symbol, Value,
     bdi::{Agent, AgentId, GoalId, TriggerOn},
     list::same,
 };
@@ -30,8 +33,9 @@ pub(crate) struct PeerTable {
 impl PeerTable {
     pub fn new(program: &Program, agents: impl Iterator<Item = AgentId>) -> Self {
         let name = |id: AgentId| {
-            let agent = program.agents.get(usize::from(id.0));
-            Symbol::intern(agent.map_or("?", |a| &a.name))
+            // One that is not declared is shown by its number; its machine is malformed.
+            let undeclared = || Symbol::intern(&format!("#{}", id.0));
+            program.agents.get(usize::from(id.0)).map_or_else(undeclared, |a| Symbol::intern(&a.name))
         };
         let agents: Vec<(Symbol, AgentId)> = agents.map(|id| (name(id), id)).collect();
         let mut places = FxHashMap::default();
@@ -47,6 +51,19 @@ impl PeerTable {
         self.places.get(&name.number()).copied().filter(|p| self.agents[usize::from(*p)].0 == name)
     }
 }
+
+/// What an agent reasons with whose program cannot be run: nothing.
+static NO_PROGRAM: LazyLock<Agent> = LazyLock::new(|| Agent {
+    name: String::new(),
+    actor: ActorId(0),
+    beliefs: Vec::new(),
+    goals: Vec::new(),
+    rules: Vec::new(),
+    initial_beliefs: Vec::new(),
+    initial_goals: Vec::new(),
+    plans: Vec::new(),
+    origin: Span::default(),
+});
 
 /// Who an agent is among the others.
 #[derive(Clone, Debug)]
@@ -69,7 +86,7 @@ pub(crate) enum GoalAttitude {
 #[derive(Debug)]
 pub(crate) struct MentalState<'p> {
     pub program: &'p Program,
-    pub agent: Option<&'p Agent>,
+    pub agent: &'p Agent,
     pub library: PlanLibrary<'p>,
     pub beliefs: BeliefBase,
     pub pool: IntentionPool<'p>,
@@ -89,13 +106,13 @@ pub(crate) fn agree(args: &[VariableSlot], wanted: &[VariableSlot]) -> bool {
 }
 
 impl<'p> MentalState<'p> {
-    /// At time 0, without beliefs.
+    /// At time 0, without beliefs; without an agent, one that does nothing.
     pub fn new(program: &'p Program, agent: Option<&'p Agent>, me: AgentIdentity) -> Self {
         let library = agent.map_or_else(PlanLibrary::default, |a| PlanLibrary::new(program, me.id, a));
         let beliefs = agent.map_or_else(BeliefBase::default, BeliefBase::new);
         Self {
             program,
-            agent,
+            agent: agent.unwrap_or_else(|| &NO_PROGRAM),
             library,
             beliefs,
             pool: IntentionPool::default(),

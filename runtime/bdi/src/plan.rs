@@ -3,8 +3,8 @@
 use hrdsl_ir::{
     EventId, Program,
     bdi::{
-        Agent, AgentId, AgentTerm, BeliefId, BeliefRule, GoalId, InternalAct, MessageSubject, Performative,
-        Plan, PlanContext, PlanStepKind, TriggerOn, each_step,
+        Agent, AgentId, AgentTerm, BeliefId, BeliefRule, GoalId, MessageSubject, Performative, Plan,
+        PlanContext, PlanStepKind, TriggerOn, each_step,
     },
 };
 use smallvec::SmallVec;
@@ -134,11 +134,7 @@ fn named_goals(program: &Program, id: AgentId, agent: &Agent) -> Vec<bool> {
         each_step(&plan.body, &mut |step| {
             if let PlanStepKind::Control { goal: Some((goal, _)), .. } = &step.kind {
                 name(*goal, &mut named);
-            } else if let PlanStepKind::Test(condition)
-            | PlanStepKind::If { condition, .. }
-            | PlanStepKind::While { condition, .. }
-            | PlanStepKind::For { condition, .. } = &step.kind
-            {
+            } else if let Some(condition) = step.condition() {
                 in_context(condition, &mut named);
             }
         });
@@ -165,25 +161,11 @@ fn name(goal: GoalId, named: &mut [bool]) {
 }
 
 fn in_context(context: &PlanContext, named: &mut [bool]) {
-    match context {
-        PlanContext::True | PlanContext::Belief(_) | PlanContext::Test(_) | PlanContext::Unify(..) => {}
-        PlanContext::Not(inner) => in_context(inner, named),
-        PlanContext::And(all) | PlanContext::Or(all) => all.iter().for_each(|c| in_context(c, named)),
-        PlanContext::Internal(internal, _) => match &**internal {
-            InternalAct::Intend { goal, .. }
-            | InternalAct::Desire { goal, .. }
-            | InternalAct::Suspended { goal, .. } => name(*goal, named),
-            InternalAct::FindAll { formula, .. } | InternalAct::Count { formula, .. } => {
-                in_context(formula, named)
-            }
-            InternalAct::Member { .. }
-            | InternalAct::Apply { .. }
-            | InternalAct::Holds { .. }
-            | InternalAct::Random { .. }
-            | InternalAct::Shuffle { .. }
-            | InternalAct::Time { .. }
-            | InternalAct::MyName { .. }
-            | InternalAct::AllNames { .. } => {}
-        },
-    }
+    context.each(&mut |part| {
+        if let PlanContext::Internal(action, _) = part
+            && let Some((goal, _)) = action.goal()
+        {
+            name(goal, named);
+        }
+    });
 }

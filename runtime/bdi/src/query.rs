@@ -10,7 +10,7 @@ use std::fmt;
 
 use hrdsl_ir::{
     List, Value,
-    bdi::{AgentTerm, BeliefLiteral, BeliefRule, InternalAct, PlanContext},
+    bdi::{AgentTerm, BeliefLiteral, BeliefRule, PlanContext},
     expr::EvalError,
 };
 
@@ -103,7 +103,22 @@ enum AnswerSource<'p> {
     /// There are no more answers; those from `start` on are collected.
     Collection {
         start: usize,
-        what: &'p InternalAct,
+        into: AnswerCollection<'p>,
+    },
+}
+
+/// What all answers together become, and what that is matched with.
+#[derive(Clone, Copy, Debug)]
+enum AnswerCollection<'p> {
+    List {
+        out: &'p AgentTerm,
+    },
+    /// Sorted, each once.
+    Set {
+        out: &'p AgentTerm,
+    },
+    Count {
+        out: &'p AgentTerm,
     },
 }
 
@@ -506,7 +521,7 @@ impl<'p> QuerySolver<'p> {
                 AnswerSource::Member { element, rest } => self.member(element, rest, at)?,
                 AnswerSource::Goals { args, from, to } => self.goals(args, from, to, at)?,
                 AnswerSource::Negation => Some(at.next),
-                AnswerSource::Collection { start, what } => self.gathered(start, what, at)?,
+                AnswerSource::Collection { start, into } => self.gathered(start, into, at)?,
             };
             if next.is_some() {
                 return Ok(next);

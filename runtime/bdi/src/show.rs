@@ -8,8 +8,7 @@ use hrdsl_ir::{
         Agent, AgentTerm, Assertion, BeliefAnnotation, BeliefId, BeliefLiteral, ContentId, ControlAct,
         GoalId, InternalAct, Performative, PlanContext, PlanStepKind,
     },
-    expr::{BinaryOp, NumberFunction, UnaryOp},
-    known_name,
+    expr::{BinaryOp, NumberFunction, OperatorSort, UnaryOp},
     list::ListFunction,
     value::seconds,
 };
@@ -76,23 +75,19 @@ pub fn step(program: &Program, agent: &Agent, names: &[String], of: &PlanStepKin
 
 impl FormulaPrinter<'_> {
     fn belief(&self, id: BeliefId) -> &str {
-        known_name("belief", self.agent.beliefs.get(usize::from(id.0)).map(|b| b.name.as_str()))
+        &self.agent.belief(id).name
     }
 
     fn goal(&self, id: GoalId, args: impl IntoIterator<Item = String>) -> String {
-        call(known_name("goal", self.agent.goals.get(usize::from(id.0)).map(|g| g.name.as_str())), args)
+        call(&self.agent.goal(id).name, args)
     }
 
     fn event(&self, id: hrdsl_ir::EventId, args: impl IntoIterator<Item = String>) -> String {
-        call(known_name("event", self.program.events.get(usize::from(id.0)).map(|e| e.name.as_str())), args)
+        call(&self.program.event(id).name, args)
     }
 
     fn content(&self, id: ContentId, args: &[AgentTerm]) -> String {
-        let name = known_name(
-            "subject of messages",
-            self.program.contents.get(usize::from(id.0)).map(|c| c.name.as_str()),
-        );
-        call(name, args.iter().map(|t| self.term(t)))
+        call(&self.program.content(id).name, args.iter().map(|t| self.term(t)))
     }
 
     pub fn step(&self, step: &PlanStepKind) -> String {
@@ -152,15 +147,10 @@ impl FormulaPrinter<'_> {
         if of.is_empty() {
             return String::new();
         }
-        let declared = self.agent.beliefs.get(usize::from(belief.0)).map_or(&[][..], |b| &b.annotations);
+        let declared = self.agent.belief(belief);
         let one = |(what, text): (BeliefAnnotation, String)| match what {
             BeliefAnnotation::Source => format!("source({text})"),
-            BeliefAnnotation::Declared(at) => {
-                format!(
-                    "{}({text})",
-                    known_name("annotation", declared.get(usize::from(at)).map(|p| p.name.as_str()))
-                )
-            }
+            BeliefAnnotation::Declared(at) => format!("{}({text})", declared.annotation(at).name),
         };
         let all: Vec<String> = of.into_iter().map(one).collect();
         format!("[{}]", all.join(", "))
@@ -254,13 +244,8 @@ impl FormulaPrinter<'_> {
     }
 
     fn binary(&self, op: BinaryOp, operands: [&Expr; 2], within: ParenContext) -> String {
-        let (logical, compared) = match op {
-            BinaryOp::And | BinaryOp::Or => (true, false),
-            BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
-                (false, true)
-            }
-            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => (false, false),
-        };
+        let logical = op.sort() == OperatorSort::Logic;
+        let compared = matches!(op.sort(), OperatorSort::Equality | OperatorSort::Order);
         let here = if logical { ParenContext::Logical } else { ParenContext::Other };
         let [a, b] = operands.map(|e| if compared { self.expr(e) } else { self.expression(e, here) });
         let text = format!("{a} {} {b}", operator(op));

@@ -101,7 +101,7 @@ impl<'p> AgentSociety<'p> {
     /// Counts what the run takes of each program: see [`measured`](Self::measured).
     pub fn measure(&mut self) {
         for machine in &mut self.machines {
-            machine.measured = machine.mind.agent.map(|a| Box::new(AgentCounts::new(a)));
+            machine.measured = Some(Box::new(AgentCounts::new(machine.mind.agent)));
         }
     }
 
@@ -319,7 +319,7 @@ impl<'p> AgentSociety<'p> {
     /// The agents that did not come to rest, or cannot be run, by name.
     #[must_use]
     pub fn at_fault(&self) -> Vec<&'p str> {
-        let name = |m: &AgentMachine<'p>| m.mind.agent.map_or("?", |a| a.name.as_str());
+        let name = |m: &AgentMachine<'p>| m.mind.me.name.name();
         let own = self.machines.iter().filter(|m| m.halted.is_some());
         let own: Vec<&str> = own.map(name).collect();
         if !own.is_empty() || self.halted.is_none() {

@@ -7,7 +7,7 @@ use crate::{
     belief::FactAnnotations,
     cycle::AgentMachine,
     event::{EventArguments, QueuedEvent},
-    intention::{Intention, IntentionState, IntentionTimer, NO_LINE},
+    intention::{Intention, IntentionState, IntentionTimer},
     log::{LogEntry, LogItem},
     show::{self, call},
 };
@@ -33,7 +33,7 @@ impl AgentMachine<'_> {
         else {
             return None;
         };
-        Some(self.names()?.on(*on, args))
+        Some(self.names().on(*on, args))
     }
 
     /// What it intends, in the order of adoption.
@@ -70,7 +70,7 @@ impl AgentMachine<'_> {
         };
         match intention.state {
             IntentionState::Free | IntentionState::Ready | IntentionState::Held => "for its turn".to_owned(),
-            IntentionState::Posted => match posted.and_then(|e| Some(self.names()?.on(e.on, &e.args))) {
+            IntentionState::Posted => match posted.map(|e| self.names().on(e.on, &e.args)) {
                 Some(event) => format!("for a plan for {event}"),
                 None => "for a plan".to_owned(),
             },
@@ -88,14 +88,13 @@ impl AgentMachine<'_> {
 
     /// The step that the top plan is at.
     fn step_of(&self, intention: &Intention) -> String {
-        let top = intention.frames.last().filter(|f| f.at != NO_LINE);
-        let text = top.and_then(|f| Some(self.names()?.line(f.plan, f.at, intention.vars())));
-        text.unwrap_or_else(|| "?".to_owned())
+        let top = intention.top();
+        self.names().line(top.plan, top.at, intention.vars())
     }
 
     /// What it believes, in the order of declarations, then oldest first: `wants(2)[source(self)]`.
     pub fn believed(&self) -> Vec<String> {
-        let Some(names) = self.names() else { return Vec::new() };
+        let names = self.names();
         let text = |fact: hrdsl_ir::bdi::InitialFact| {
             let args: EventArguments = fact.args.iter().map(|v| Some(*v)).collect();
             names.fact(fact.belief, &args, &FactAnnotations::from_slice(&fact.annotations))

@@ -221,8 +221,8 @@ impl<'p> AgentMachine<'p> {
         args: &[Expr],
         of: Option<u32>,
     ) -> Result<(), FailureCause> {
-        let declared = self.mind.agent.and_then(|a| a.goals.get(usize::from(goal.0)));
-        if declared.is_some_and(|g| g.params.is_some()) || self.mind.pool.see(here.place).atomic > 0 {
+        let is_typed = self.mind.agent.goal(goal).params.is_some();
+        if is_typed || self.mind.pool.see(here.place).atomic > 0 {
             let event = self.goal_event(here, goal, args, of)?;
             self.post(event);
             return Ok(());
@@ -267,8 +267,7 @@ impl<'p> AgentMachine<'p> {
         for expr in args {
             event.args.push(Some(eval(expr, slots)?));
         }
-        let declared = self.mind.agent.and_then(|a| a.goals.get(usize::from(goal.0)));
-        if let Some(params) = declared.and_then(|g| g.params.as_ref()) {
+        if let Some(params) = &self.mind.agent.goal(goal).params {
             let ground = event.args.iter().copied().flatten().collect();
             let typed = typed(params, ground).ok_or(FailureCause::OutOfRange)?;
             event.args = typed.into_iter().map(Some).collect();
@@ -291,8 +290,7 @@ impl<'p> AgentMachine<'p> {
 
     /// The arguments, as the belief's declaration has them.
     pub fn declared(&self, belief: BeliefId, args: GroundArguments) -> Option<GroundArguments> {
-        let declared = self.mind.agent.and_then(|a| a.beliefs.get(usize::from(belief.0)));
-        declared.and_then(|b| typed(&b.params, args))
+        typed(&self.mind.agent.belief(belief).params, args)
     }
 
     fn asserted(
@@ -304,11 +302,11 @@ impl<'p> AgentMachine<'p> {
         let args = values(&assertion.args, slots, |v| v)?;
         let args = self.declared(assertion.belief, args).ok_or(FailureCause::OutOfRange)?;
         let mut annotations = FactAnnotations::new();
-        let declared = self.mind.agent.map(|a| &a.beliefs[usize::from(assertion.belief.0)].annotations);
+        let declared = self.mind.agent.belief(assertion.belief);
         for (what, value) in &assertion.annotations {
             let mut value = eval(value, slots)?;
             if let BeliefAnnotation::Declared(at) = what {
-                let param = declared.and_then(|d| d.get(usize::from(*at))).ok_or(FailureCause::OutOfRange)?;
+                let param = declared.annotation(*at);
                 let one = typed(std::slice::from_ref(param), GroundArguments::from_slice(&[value]));
                 value = one.ok_or(FailureCause::OutOfRange)?[0];
             }

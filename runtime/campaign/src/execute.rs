@@ -7,7 +7,7 @@ use hrdsl_harness::{
     SystemFault, SystemPlayer, TimedSystem, TimedWorld, WorldBackend, WorldStage,
 };
 use hrdsl_ir::{test::Test, value::seconds};
-use hrdsl_sim::{SimError, SimWorld};
+use hrdsl_sim::{SimulatedWorld, SimulationError};
 use hrdsl_sut::{FinishedProcess, HarnessReply, LockStep, ReplyAnswer, SutProcess};
 
 use super::{CampaignSetup, CampaignSystem, failed, forks::WorkerServers, times::TestTimes};
@@ -69,8 +69,12 @@ impl CampaignSetup<'_> {
     }
 
     /// The world of a test, behind a stopwatch if there is one.
-    fn stage(&self, seed: u64, watch: Option<&RunStopwatch>) -> Result<Option<WorldStage<'_>>, SimError> {
-        let Some(world) = SimWorld::new(self.program, seed)? else { return Ok(None) };
+    fn stage(
+        &self,
+        seed: u64,
+        watch: Option<&RunStopwatch>,
+    ) -> Result<Option<WorldStage<'_>>, SimulationError> {
+        let Some(world) = SimulatedWorld::new(self.program, seed)? else { return Ok(None) };
         let world: Box<dyn WorldBackend> = match (self.clocks, watch) {
             (Some(clocks), Some(watch)) => {
                 Box::new(TimedWorld { world: world.timed(clocks.thread), watch: watch.clone() })

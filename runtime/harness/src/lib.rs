@@ -51,7 +51,9 @@ pub use stimulus::{StimulusPerformance, draw_samples};
 pub use stopwatch::{RunStopwatch, SeamTimes, TimedSystem, TimedWorld};
 pub use system::player::SystemPlayer;
 pub use system::seam::{
-    CanceledGoals, ParameterRequest, PlanForm, RequestTicket, SystemActor, SystemAnswer, SystemArrival,
-    SystemRequest,
+    CallRequest, CanceledGoals, ParameterRequest, PlanForm, RequestTicket, SystemActor, SystemAnswer,
+    SystemArrival, SystemRequest,
 };
-pub use world::{ArmTarget, CommandId, PlannedPoint, PlannedWay, WayRequest, WorldAccuracy, WorldBackend};
+pub use world::{
+    ArmTarget, CommandId, MotionPlanRequest, PlannedPoint, PlannedTrajectory, WorldAccuracy, WorldBackend,
+};

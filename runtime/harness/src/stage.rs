@@ -14,7 +14,7 @@ use crate::{
     edge::EdgeWatch,
     message::PlayerMessage,
     recorder::SignalRecorder,
-    world::{CommandId, PlannedWay, WayRequest, WorldAccuracy, WorldBackend},
+    world::{CommandId, MotionPlanRequest, PlannedTrajectory, WorldAccuracy, WorldBackend},
 };
 
 /// The world of one run.
@@ -161,7 +161,7 @@ impl<'p> WorldStage<'p> {
     ///
     /// # Errors
     /// That there is no such arm, or no such way.
-    pub fn plan(&self, device: &str, wanted: &WayRequest) -> Result<PlannedWay, NotBegun> {
+    pub fn plan(&self, device: &str, wanted: &MotionPlanRequest) -> Result<PlannedTrajectory, NotBegun> {
         let found = self.device(device)?;
         self.world.plan(found.body, wanted).map_err(NotBegun::Failed)
     }

@@ -14,7 +14,7 @@ use crate::{
     fault::SystemFault,
     spent::{SpentTime, ThreadClock},
     system::seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
-    world::{CommandId, PlannedWay, WayRequest, WorldAccuracy, WorldBackend},
+    world::{CommandId, MotionPlanRequest, PlannedTrajectory, WorldAccuracy, WorldBackend},
 };
 
 /// What the parts of a run took that are beyond the harness's seams.
@@ -117,7 +117,7 @@ impl<W: WorldBackend> WorldBackend for TimedWorld<W> {
         self.world.sampled_at(device)
     }
 
-    fn plan(&self, device: DeviceBody, wanted: &WayRequest) -> Result<PlannedWay, String> {
+    fn plan(&self, device: DeviceBody, wanted: &MotionPlanRequest) -> Result<PlannedTrajectory, String> {
         self.watch.measure(|t| &mut t.planning, || self.world.plan(device, wanted))
     }
 

@@ -70,11 +70,11 @@ pub trait WorldBackend {
         None
     }
 
-    /// A free way of an arm; nothing moves.
+    /// A free path of an arm, with times; nothing moves.
     ///
     /// # Errors
     /// Why there is none.
-    fn plan(&self, device: DeviceBody, wanted: &WayRequest) -> Result<PlannedWay, String> {
+    fn plan(&self, device: DeviceBody, wanted: &MotionPlanRequest) -> Result<PlannedTrajectory, String> {
         let _ = (device, wanted);
         Err("this device plans nothing".to_owned())
     }
@@ -103,9 +103,9 @@ pub enum ArmTarget {
     Posture(Vec<f64>),
 }
 
-/// A way that is asked for.
+/// A motion that an arm is asked to plan.
 #[derive(Clone, Debug, PartialEq)]
-pub struct WayRequest {
+pub struct MotionPlanRequest {
     pub to: ArmTarget,
     /// Where it begins, rad or m; `None`: where the arm is.
     pub from: Option<Vec<f64>>,
@@ -115,16 +115,16 @@ pub struct WayRequest {
     pub accelerations: Option<Vec<f64>>,
 }
 
-/// A way of an arm, as it would go it.
+/// A trajectory of an arm: a path, and when the arm would be where on it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlannedWay {
+pub struct PlannedTrajectory {
     /// The postures between which it is straight, from where it begins to where it ends.
     pub corners: Vec<Vec<f64>>,
-    /// Points of the way with their times, of which the first is its beginning and the last its end; corners are rounded.
+    /// Points of the path with their times, of which the first is its beginning and the last its end; corners are rounded.
     pub points: Vec<PlannedPoint>,
 }
 
-/// Where an arm is at a time on its way.
+/// Where an arm is at a time on its path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedPoint {
     /// Seconds from the beginning.

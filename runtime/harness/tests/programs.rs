@@ -6,10 +6,10 @@ use std::{cell::RefCell, rc::Rc};
 
 use common::{ROBOT, ask, emit, go, program, sleep, system, told, wait};
 use hrdsl_harness::{
-    AwaitedPort, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun, MachineDeclaration,
-    MachineEdge, MachineStep, PortDeclaration, PortKind, PortQos, QosDurability, QosPolicy, QosReliability,
-    RunTermination, SystemAnswer, SystemArrival, SystemFault, SystemFaultKind, SystemPlayer, SystemRequest,
-    WorldStage,
+    AwaitedPort, CallRequest, CanceledGoals, GoalEnd, HarnessError, HarnessLoop, HarnessRun,
+    MachineDeclaration, MachineEdge, MachineStep, PortDeclaration, PortKind, PortQos, QosDurability,
+    QosPolicy, QosReliability, RunTermination, SystemAnswer, SystemArrival, SystemFault, SystemFaultKind,
+    SystemPlayer, SystemRequest, WorldStage,
     doubles::{ToldCommand, ToldStep, ToldSystem, ToldWorld},
 };
 use hrdsl_ir::{test::TestStep, value::SECOND};
@@ -59,7 +59,7 @@ fn publish(port: u64, text: &str) -> SystemRequest {
 }
 
 fn call(port: u64, call: u64, text: &str) -> SystemRequest {
-    SystemRequest::Call { port, call, message: text.into() }
+    CallRequest::Begin { port, call, message: text.into() }.into()
 }
 
 fn arrivals() -> SystemRequest {
@@ -147,7 +147,7 @@ fn what_makes_no_sense_is_refused() {
         Then(open(4, Server, "/s")),
         Then(open(5, Server, "/s")),
         Then(call(1, 1, "0")),
-        Then(SystemRequest::Respond { call: 3, answer: Ok("0".into()) }),
+        Then(CallRequest::Respond { call: 3, answer: Ok("0".into()) }.into()),
         Then(SystemRequest::Close { port: 8 }),
     ];
     let (told, _) = run(Vec::new(), vec![a], None);
@@ -248,10 +248,10 @@ fn a_service_answers_fails_or_is_not_there() {
         Then(sleep(1)),
         Then(open(6, Server, "/add")),
         Then(arrivals()),
-        Then(SystemRequest::Respond { call: 1, answer: Ok("3".into()) }),
+        Then(CallRequest::Respond { call: 1, answer: Ok("3".into()) }.into()),
         Then(arrivals()),
         Then(sleep(2)),
-        Then(SystemRequest::Respond { call: 2, answer: Err("nothing to add".into()) }),
+        Then(CallRequest::Respond { call: 2, answer: Err("nothing to add".into()) }.into()),
         Then(arrivals()),
         Then(SystemRequest::Done),
     ];
@@ -279,17 +279,17 @@ fn an_action_gives_feedback_and_ends_or_is_canceled() {
     let server = vec![
         Then(open(1, ActionServer, "/move")),
         Then(arrivals()),
-        Then(SystemRequest::AnswerCancel { call: 1, granted: true, text: String::new() }),
-        Then(SystemRequest::Accept { call: 1, text: "on the way".into() }),
-        Then(SystemRequest::Accept { call: 1, text: String::new() }),
-        Then(SystemRequest::Feedback { call: 1, message: "0.5".into() }),
+        Then(CallRequest::AnswerCancel { call: 1, granted: true, text: String::new() }.into()),
+        Then(CallRequest::Accept { call: 1, text: "on the way".into() }.into()),
+        Then(CallRequest::Accept { call: 1, text: String::new() }.into()),
+        Then(CallRequest::Feedback { call: 1, message: "0.5".into() }.into()),
         Then(sleep(1)),
         Then(finish(1, GoalEnd::Succeeded, "there")),
         Then(arrivals()),
         Then(arrivals()),
-        Then(SystemRequest::AnswerCancel { call: 2, granted: false, text: "nearly there".into() }),
+        Then(CallRequest::AnswerCancel { call: 2, granted: false, text: "nearly there".into() }.into()),
         Then(arrivals()),
-        Then(SystemRequest::AnswerCancel { call: 2, granted: true, text: String::new() }),
+        Then(CallRequest::AnswerCancel { call: 2, granted: true, text: String::new() }.into()),
         Then(finish(2, GoalEnd::Canceled, "")),
     ];
     let client = vec![
@@ -300,13 +300,13 @@ fn an_action_gives_feedback_and_ends_or_is_canceled() {
         Then(arrivals()),
         Then(call(1, 7, "away")),
         Then(sleep(2)),
-        Then(SystemRequest::Cancel(CanceledGoals::Own(7))),
+        Then(CallRequest::Cancel(CanceledGoals::Own(7)).into()),
         Then(arrivals()),
-        Then(SystemRequest::Cancel(CanceledGoals::AllAt(1))),
+        Then(CallRequest::Cancel(CanceledGoals::AllAt(1)).into()),
         Then(arrivals()),
-        Then(SystemRequest::Cancel(CanceledGoals::Own(7))),
-        Then(SystemRequest::Cancel(CanceledGoals::AllAt(1))),
-        Then(SystemRequest::Cancel(CanceledGoals::AllAt(2))),
+        Then(CallRequest::Cancel(CanceledGoals::Own(7)).into()),
+        Then(CallRequest::Cancel(CanceledGoals::AllAt(1)).into()),
+        Then(CallRequest::Cancel(CanceledGoals::AllAt(2)).into()),
     ];
     let (told, _) = run(Vec::new(), vec![server, client], None);
     let called = |call, text: &str| SystemArrival::Called { port: 1, call, message: text.into() };
@@ -338,7 +338,7 @@ fn an_action_gives_feedback_and_ends_or_is_canceled() {
 }
 
 fn finish(call: u64, end: GoalEnd, text: &str) -> SystemRequest {
-    SystemRequest::Finish { call, end, message: "{}".into(), text: text.into() }
+    CallRequest::Finish { call, end, message: "{}".into(), text: text.into() }.into()
 }
 
 #[test]
@@ -346,15 +346,15 @@ fn only_a_goal_can_be_accepted_or_canceled() {
     let server = vec![
         Then(open(1, Server, "/add")),
         Then(arrivals()),
-        Then(SystemRequest::Accept { call: 1, text: String::new() }),
+        Then(CallRequest::Accept { call: 1, text: String::new() }.into()),
         Then(finish(1, GoalEnd::Aborted, "")),
-        Then(SystemRequest::Accept { call: 9, text: String::new() }),
+        Then(CallRequest::Accept { call: 9, text: String::new() }.into()),
     ];
     let client = vec![
         Then(open(1, Client, "/add")),
         Then(call(1, 5, "[]")),
-        Then(SystemRequest::Cancel(CanceledGoals::Own(5))),
-        Then(SystemRequest::Cancel(CanceledGoals::AllAt(1))),
+        Then(CallRequest::Cancel(CanceledGoals::Own(5)).into()),
+        Then(CallRequest::Cancel(CanceledGoals::AllAt(1)).into()),
     ];
     let (told, _) = run(Vec::new(), vec![server, client], None);
     let expected = [

@@ -10,8 +10,7 @@ use hrdsl_ir::{
     EventId, Program,
     event::StimulusStep,
     expr::Expr,
-    known_name,
-    ta::{Automaton, Edge, Location, LocationId, LocationKind, Network, SyncLabel},
+    ta::{Automaton, AutomatonId, Edge, Location, LocationId, LocationKind, Network, SyncLabel},
 };
 use hrdsl_ta::WitnessRun;
 
@@ -21,8 +20,8 @@ use super::{observer::number, settings::ProofOptions};
 pub struct TimedHolds {
     pub program: Program,
     places: Vec<HoldLocation>,
-    /// By member of the network: its name, and where it starts.
-    members: Vec<(String, LocationId)>,
+    /// By member of the network, with where it starts.
+    members: Vec<(AutomatonId, LocationId)>,
 }
 
 /// A location that stands for a hold.
@@ -38,7 +37,7 @@ impl TimedHolds {
         let mut held = Self { program: program.clone(), places: Vec::new(), members: Vec::new() };
         for (member, id) in network.automata.iter().enumerate() {
             let automaton = held.program.automata.get_mut(usize::from(id.0))?;
-            held.members.push((automaton.name.clone(), automaton.initial));
+            held.members.push((*id, automaton.initial));
             for first in 0..automaton.edges.len() {
                 let SyncLabel::Send { event: stimulus, .. } = automaton.edges[first].sync else { continue };
                 let Some(body) = &program.events.get(usize::from(stimulus.0))?.stimulus else { continue };
@@ -87,10 +86,11 @@ impl TimedHolds {
         let stimuli: BTreeSet<String> = holding.iter().map(|p| stimulus(p)).collect();
         let stimuli: Vec<String> = stimuli.into_iter().collect();
         let place = |(member, here): (usize, &LocationId)| {
-            let name = &self.members[member].0;
+            let automaton = self.program.automaton(self.members[member].0);
+            let name = &automaton.name;
             match holding.iter().find(|p| p.member == member) {
                 Some(p) => format!("{name} doing {}", stimulus(p)),
-                None => format!("{name} in `{}`", self.location(member, *here)),
+                None => format!("{name} in `{}`", automaton.location(*here).name),
             }
         };
         let nearest: Vec<String> = at.iter().enumerate().map(place).collect();
@@ -99,12 +99,6 @@ impl TimedHolds {
             stimuli.join(" and "),
             nearest.join(", ")
         )
-    }
-
-    fn location(&self, member: usize, location: LocationId) -> &str {
-        let automaton = self.program.automata.iter().find(|a| a.name == self.members[member].0);
-        let found = automaton.and_then(|a| a.locations.get(usize::from(location.0)));
-        known_name("location", found.map(|l| l.name.as_str()))
     }
 }
 
@@ -157,14 +151,8 @@ fn let_pass(automaton: &mut Automaton, first: usize, holds: &HoldSites) -> Vec<L
     while is_generated(automaton, here) {
         let out = |e: &usize| automaton.edges[*e].from == here;
         ends = (0..automaton.edges.len()).filter(out).collect();
-        let waits = ends.iter().any(|e| match &automaton.edges[*e].sync {
-            SyncLabel::Send { event, .. } => holds.before.contains(event),
-            SyncLabel::Internal
-            | SyncLabel::Receive { .. }
-            | SyncLabel::Offer { .. }
-            | SyncLabel::Accept { .. }
-            | SyncLabel::Join { .. } => false,
-        });
+        let sent = |e: &usize| automaton.edges[*e].sync.as_send();
+        let waits = ends.iter().filter_map(sent).any(|(event, _)| holds.before.contains(&event));
         if waits {
             automaton.locations[usize::from(here.0)].kind = LocationKind::Normal;
             places.push(here);

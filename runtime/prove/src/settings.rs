@@ -68,14 +68,7 @@ impl ProofOptions {
 }
 
 fn formula(goal: &ReachabilityGoal) -> Option<QueryFormula> {
-    match &goal.what {
-        GoalKind::Formula(f) => Some(f.clone()),
-        GoalKind::Edge { .. }
-        | GoalKind::Location { .. }
-        | GoalKind::Pair { .. }
-        | GoalKind::Use { .. }
-        | GoalKind::Condition(_) => None,
-    }
+    if let GoalKind::Formula(f) = &goal.what { Some(f.clone()) } else { None }
 }
 
 pub(crate) fn search(

@@ -1,4 +1,4 @@
-//! Reports: [`Results`](hrdsl_results::Results) to what people look at, and nothing else: the same results give the same bytes.
+//! Reports: [`CampaignResults`](hrdsl_results::CampaignResults) to what people look at, and nothing else: the same results give the same bytes.
 //!
 //! # Map
 //! - [`html`] is a page, [`junit`] XML for continuous integration, [`summary`] for a terminal;

@@ -1,4 +1,4 @@
-//! The arm's controller: has a way planned, lets the motors follow it as far as they can, and tells when it has arrived, or why
+//! The arm's controller: has a path planned, lets the motors follow it as far as they can, and tells when it has arrived, or why
 //! not.
 
 mod plan;
@@ -12,7 +12,7 @@ use nalgebra::DVector;
 
 use crate::{
     clearance::ArmFigure,
-    error::{CommandError, SimError},
+    error::{CommandError, SimulationError},
     kinematics::{KinematicChain, KinematicLink},
     math::{BodyFrame, SpaceVector, v3},
     motion::{ArmGoal, ArmMotion, ArmPath},
@@ -87,13 +87,13 @@ pub(crate) struct ArmMoment<'a> {
 }
 
 impl ArmControl {
-    pub fn new(arm: &Arm, world: &World, physics: &PhysicsAdapter) -> Result<ArmControl, SimError> {
+    pub fn new(arm: &Arm, world: &World, physics: &PhysicsAdapter) -> Result<ArmControl, SimulationError> {
         let what = || format!("arm `{}`", arm.name);
         if index(arm.tip) >= world.bodies.len() {
             return Err(bad(what(), "body", index(arm.tip)));
         }
         if !(arm.max_speed.is_finite() && arm.max_speed > 0.0) {
-            return Err(SimError::BadNumber { what: format!("the speed of arm `{}`", arm.name) });
+            return Err(SimulationError::BadNumber { what: format!("the speed of arm `{}`", arm.name) });
         }
         let (mut links, mut speeds, mut lags, mut losses) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut end: Option<BodyId> = None;
@@ -101,11 +101,11 @@ impl ArmControl {
             let at = usize::from(id.0);
             let joint = world.joints.get(at).ok_or_else(|| bad(what(), "joint", at))?;
             if end.is_some_and(|e| physics.root(e) != physics.root(joint.parent)) {
-                return Err(SimError::NotAChain { arm: arm.name.clone(), joint: joint.name.clone() });
+                return Err(SimulationError::NotAChain { arm: arm.name.clone(), joint: joint.name.clone() });
             }
             end = Some(joint.child);
             if joint.is_rigid() {
-                return Err(SimError::NotAChain { arm: arm.name.clone(), joint: joint.name.clone() });
+                return Err(SimulationError::NotAChain { arm: arm.name.clone(), joint: joint.name.clone() });
             }
             let axis = v3(joint.axis).normalize();
             let (motion, anchor) = (joint.motion, v3(joint.anchor));
@@ -116,7 +116,7 @@ impl ArmControl {
             lags.push(if motion == JointMotion::Slider { SLIDER_LAG } else { LAG });
         }
         if end.is_none_or(|e| physics.root(e) != physics.root(arm.tip)) {
-            return Err(SimError::TipNotOnArm { arm: arm.name.clone() });
+            return Err(SimulationError::TipNotOnArm { arm: arm.name.clone() });
         }
         let tool = v3(arm.tool);
         let chain = KinematicChain { links, tool: physics.start(arm.tip).point(tool) };
@@ -159,7 +159,7 @@ impl ArmControl {
         Ok(())
     }
 
-    /// Begins to go along a way; what the arm was doing is given up, and its command is returned.
+    /// Begins to go along a path; what the arm was doing is given up, and its command is returned.
     pub fn go(&mut self, id: CommandId, route: JointRoute, place: Option<Vec3>) -> Option<CommandId> {
         let goal = place.map_or(ArmGoal::Joints, |p| ArmGoal::Place(v3(p)));
         self.begin(ArmMotion::new(id, goal, self.aim(), ArmPath::along(route, RISE)))

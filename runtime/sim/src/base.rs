@@ -9,7 +9,7 @@ use hrdsl_ir::world::{Base, BodyId, BodyMotion, World};
 use hrdsl_harness::CommandId;
 
 use crate::{
-    error::{CommandError, SimError},
+    error::{CommandError, SimulationError},
     math::{BodyFrame, SpaceVector, about, wrap},
     physics::{PhysicsAdapter, bad, index, wheels::RollingBase},
 };
@@ -149,7 +149,11 @@ impl PlanarPose {
 }
 
 impl BaseControl {
-    pub fn new(base: &Base, world: &World, physics: &mut PhysicsAdapter) -> Result<BaseControl, SimError> {
+    pub fn new(
+        base: &Base,
+        world: &World,
+        physics: &mut PhysicsAdapter,
+    ) -> Result<BaseControl, SimulationError> {
         let what = || format!("base `{}`", base.name);
         let Some(body) = world.bodies.get(index(base.body)) else {
             return Err(bad(what(), "body", index(base.body)));
@@ -158,14 +162,14 @@ impl BaseControl {
             BodyMotion::Kinematic => false,
             BodyMotion::Dynamic => true,
             BodyMotion::Fixed | BodyMotion::Guided => {
-                return Err(SimError::NotDriven { body: body.name.clone() });
+                return Err(SimulationError::NotDriven { body: body.name.clone() });
             }
         };
         let positive = [base.max_speed, base.max_turn, base.acceleration];
         if positive.iter().any(|x| !(x.is_finite() && *x > 0.0))
             || !(base.max_sideways.is_finite() && base.max_sideways >= 0.0)
         {
-            return Err(SimError::BadNumber { what: format!("a limit of {}", what()) });
+            return Err(SimulationError::BadNumber { what: format!("a limit of {}", what()) });
         }
         let (start, yaw) = (physics.start(base.body), body.rotation[2]);
         let limit =

@@ -2,10 +2,10 @@
 
 use hrdsl_ir::world::{ArmId, BaseId, GripperId, Vec3};
 
-/// A request to a motor or hand. It takes time; its end is told by [`Sim::finished`](crate::Sim::finished).
+/// A request to a motor or hand. It takes time; its end is told by [`finished`](crate::WorldSimulation::finished).
 #[derive(Clone, Debug, PartialEq)]
 pub enum MotorCommand {
-    /// Brings the arm's tool point to a place in the world (m), along whatever way the planner finds.
+    /// Brings the arm's tool point to a place in the world (m), along whatever path the planner finds.
     ReachPoint {
         arm: ArmId,
         target: Vec3,

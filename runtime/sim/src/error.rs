@@ -4,7 +4,7 @@ use hrdsl_ir::expr::EvalError;
 
 /// The world's data, or an environment actor's action, cannot be carried out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SimError {
+pub enum SimulationError {
     #[error("{what} refers to {kind} {index}, which does not exist")]
     BadReference { what: String, kind: &'static str, index: usize },
     #[error("{what} must be a positive finite number")]

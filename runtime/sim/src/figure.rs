@@ -13,7 +13,7 @@ use hrdsl_ir::value::{nanos, seconds};
 use hrdsl_ir::world::{BodyId, BodyMotion, Figure, World};
 
 use crate::{
-    error::SimError,
+    error::SimulationError,
     math::{BodyFrame, SpaceVector, about, v3, wrap},
     mover::KinematicPath,
     physics::{PhysicsAdapter, bad, index},
@@ -75,7 +75,11 @@ pub(crate) struct FigureControl {
 }
 
 impl FigureControl {
-    pub fn new(figure: &Figure, world: &World, physics: &PhysicsAdapter) -> Result<FigureControl, SimError> {
+    pub fn new(
+        figure: &Figure,
+        world: &World,
+        physics: &PhysicsAdapter,
+    ) -> Result<FigureControl, SimulationError> {
         let what = || format!("figure `{}`", figure.name);
         let limbs = figure.limbs.iter().flat_map(|l| [l.of, l.upper, l.lower].into_iter().chain(l.end));
         for body in [figure.pelvis, figure.trunk, figure.head].into_iter().chain(limbs) {
@@ -83,17 +87,17 @@ impl FigureControl {
                 return Err(bad(what(), "body", index(body)));
             };
             if data.motion != BodyMotion::Guided {
-                return Err(SimError::NotGuided { body: data.name.clone() });
+                return Err(SimulationError::NotGuided { body: data.name.clone() });
             }
         }
         let positive = [figure.speed, figure.turn, figure.mass];
         let places = figure.limbs.iter().flat_map(|l| l.pivots.into_iter().flatten()).chain(figure.hip);
         if positive.iter().any(|x| !(x.is_finite() && *x > 0.0)) || !places.into_iter().all(f64::is_finite) {
-            return Err(SimError::BadNumber { what: format!("a measure of {}", what()) });
+            return Err(SimulationError::BadNumber { what: format!("a measure of {}", what()) });
         }
         let straight = |l: &hrdsl_ir::world::Limb| (v3(l.pivots[0]) - v3(l.pivots[1])).norm() > 1e-3;
         if !figure.limbs.iter().all(straight) {
-            return Err(SimError::BadNumber { what: format!("the length of a limb of {}", what()) });
+            return Err(SimulationError::BadNumber { what: format!("the length of a limb of {}", what()) });
         }
         let (build, at) = FigureBuild::new(figure, physics);
         let ahead = at.x_axis();
@@ -157,7 +161,7 @@ impl FigureControl {
         to: BodyFrame,
         over: f64,
         physics: &PhysicsAdapter,
-    ) -> Result<(), SimError> {
+    ) -> Result<(), SimulationError> {
         let (from, to) = (self.unpushed(physics.aim(body)), self.unpushed(to));
         if body == self.build.head {
             let far = level(to.at - from.at).norm();
@@ -173,7 +177,7 @@ impl FigureControl {
         } else {
             let hand = self.build.limbs.iter().position(|limb| limb.is_arm && limb.end == Some(body));
             let Some(slot) = hand.and_then(|at| self.hands[at].as_mut()) else {
-                return Err(SimError::GoesAlong { body: physics.name(body).to_owned() });
+                return Err(SimulationError::GoesAlong { body: physics.name(body).to_owned() });
             };
             let over = over.max((to.at - from.at).norm() * PEAK / SWIFT);
             *slot = PartAim { in_world: true, path: KinematicPath::new(from, to, self.clock, over) };

@@ -17,7 +17,7 @@ use rapier3d::prelude::ImpulseJointHandle;
 use hrdsl_harness::CommandId;
 
 use crate::{
-    error::{CommandError, SimError},
+    error::{CommandError, SimulationError},
     math::{SpaceVector, v3},
     physics::{PhysicsAdapter, bad, body_id, index},
 };
@@ -132,7 +132,11 @@ impl Finger {
 }
 
 impl GripperHand {
-    fn new(gripper: &Gripper, world: &World, physics: &PhysicsAdapter) -> Result<GripperHand, SimError> {
+    fn new(
+        gripper: &Gripper,
+        world: &World,
+        physics: &PhysicsAdapter,
+    ) -> Result<GripperHand, SimulationError> {
         let what = || format!("gripper `{}`", gripper.name);
         for body in gripper.holds.iter().chain([&gripper.palm]) {
             if index(*body) >= world.bodies.len() {
@@ -142,13 +146,13 @@ impl GripperHand {
         let unfit = |b: &&BodyId| physics.motion(physics.root(**b)) != BodyMotion::Dynamic;
         if let Some(body) = gripper.holds.iter().find(unfit) {
             let body = world.bodies[index(*body)].name.clone();
-            return Err(SimError::NotHoldable { gripper: gripper.name.clone(), body });
+            return Err(SimulationError::NotHoldable { gripper: gripper.name.clone(), body });
         }
         if !(gripper.reach.is_finite() && gripper.reach >= 0.0 && gripper.delay >= 0) {
-            return Err(SimError::BadNumber { what: format!("reach or delay of {}", what()) });
+            return Err(SimulationError::BadNumber { what: format!("reach or delay of {}", what()) });
         }
         if !(gripper.force.is_finite() && gripper.force > 0.0) {
-            return Err(SimError::BadNumber { what: format!("the force of {}", what()) });
+            return Err(SimulationError::BadNumber { what: format!("the force of {}", what()) });
         }
         let mut fingers = Vec::new();
         for id in &gripper.fingers {
@@ -291,7 +295,7 @@ pub(crate) struct HandSet {
 }
 
 impl HandSet {
-    pub fn new(world: &World, physics: &mut PhysicsAdapter) -> Result<HandSet, SimError> {
+    pub fn new(world: &World, physics: &mut PhysicsAdapter) -> Result<HandSet, SimulationError> {
         let hands = world.grippers.iter().map(|g| GripperHand::new(g, world, physics));
         let mut hands = hands.collect::<Result<Vec<_>, _>>()?;
         hands.iter().flat_map(|hand| &hand.fingers).filter(|finger| finger.follows).for_each(|finger| {

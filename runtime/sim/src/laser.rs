@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 use hrdsl_ir::world::{Laser, World};
 
 use crate::{
-    error::SimError,
+    error::SimulationError,
     math::{BodyFrame, RotationQuat, SpaceVector, v3},
     physics::{PhysicsAdapter, bad, index},
 };
 
 /// Checks that a scan can be made.
-pub(crate) fn check(laser: &Laser, world: &World) -> Result<(), SimError> {
+pub(crate) fn check(laser: &Laser, world: &World) -> Result<(), SimulationError> {
     let what = || format!("laser `{}`", laser.name);
     if index(laser.body) >= world.bodies.len() {
         return Err(bad(what(), "body", index(laser.body)));
@@ -19,7 +19,7 @@ pub(crate) fn check(laser: &Laser, world: &World) -> Result<(), SimError> {
     let measures = [laser.lo, laser.hi, laser.nearest, laser.farthest];
     let finite = measures.iter().chain(&laser.at).all(|x| x.is_finite());
     if !finite || laser.lo > laser.hi || laser.nearest < 0.0 || laser.farthest <= 0.0 || laser.beams == 0 {
-        return Err(SimError::BadNumber { what: format!("a measure of {}", what()) });
+        return Err(SimulationError::BadNumber { what: format!("a measure of {}", what()) });
     }
     Ok(())
 }

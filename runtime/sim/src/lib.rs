@@ -6,7 +6,7 @@
 //! 3. [`WorldSimulation::advance`] brings it to a time: in physics steps while anything moves, at once while everything rests.
 //! 4. [`WorldSimulation::read`] gives a signal's value, [`WorldSimulation::finished`] the commands that have ended.
 //!
-//! [`SimWorld`] is such a world for the harness.
+//! [`SimulatedWorld`] is such a world for the harness.
 //!
 //! # What is idealised
 //! - Links of an arm are joined by constraints that are solved step by step: they hang apart by up to a millimetre.
@@ -63,11 +63,13 @@ use hrdsl_ir::{Expr, Nanos, Value};
 use arm::{ArmControl, ArmMoment};
 use base::{BaseControl, PlanarVelocity};
 pub use command::MotorCommand;
-pub use error::{CommandError, SimError};
+pub use error::{CommandError, SimulationError};
 use figure::FigureControl;
 use hand::HandSet;
 use hrdsl_harness::ThreadClock;
-pub use hrdsl_harness::{ArmTarget, CommandId, PlannedWay, SpentTime, WayRequest, WorldAccuracy};
+pub use hrdsl_harness::{
+    ArmTarget, CommandId, MotionPlanRequest, PlannedTrajectory, SpentTime, WorldAccuracy,
+};
 pub use hulls::{HullStore, warm_hulls};
 use math::{BodyFrame, SpaceVector};
 use mover::{KinematicPath, LookRequest};
@@ -75,7 +77,7 @@ use past::SignalPast;
 use physics::{PhysicsAdapter, bad, index};
 use sense::SensorView;
 use sensor::SensorBank;
-pub use world::SimWorld;
+pub use world::SimulatedWorld;
 
 /// How long nothing may have moved before the world counts as at rest.
 const REST_AFTER: Nanos = 300_000_000;
@@ -114,9 +116,9 @@ impl WorldSimulation {
     ///
     /// # Errors
     /// If the data refer to what does not exist, an arm's joints do not form a chain, or a measure is not positive.
-    pub fn new(world: &World, signals: &[Signal]) -> Result<WorldSimulation, SimError> {
+    pub fn new(world: &World, signals: &[Signal]) -> Result<WorldSimulation, SimulationError> {
         if world.step <= 0 {
-            return Err(SimError::BadNumber { what: "the physics step".into() });
+            return Err(SimulationError::BadNumber { what: "the physics step".into() });
         }
         for gripper in &world.grippers {
             if index(gripper.palm) >= world.bodies.len() {
@@ -357,7 +359,7 @@ impl WorldSimulation {
     ///
     /// # Errors
     /// If an expression has no finite value, or the body is not kinematic, or what is named does not exist.
-    pub fn act(&mut self, action: &WorldAction, var: VariableLookup<'_>) -> Result<(), SimError> {
+    pub fn act(&mut self, action: &WorldAction, var: VariableLookup<'_>) -> Result<(), SimulationError> {
         match action {
             WorldAction::Move { body, to, over } => {
                 let from = self.moved(*body)?;
@@ -391,7 +393,7 @@ impl WorldSimulation {
                 let along = along.iter().map(|to| self.place(to, var)).collect::<Result<Vec<_>, _>>()?;
                 let speed = number(speed, var, "the speed of a walk")?;
                 if speed <= 0.0 {
-                    return Err(SimError::BadNumber { what: "the speed of a walk".into() });
+                    return Err(SimulationError::BadNumber { what: "the speed of a walk".into() });
                 }
                 let along: Vec<[f64; 2]> = along.iter().map(|to| [to.x, to.y]).collect();
                 self.figure(*figure)?.walk_along(&along, speed);
@@ -405,18 +407,18 @@ impl WorldSimulation {
         Ok(())
     }
 
-    fn figure(&mut self, figure: FigureId) -> Result<&mut FigureControl, SimError> {
+    fn figure(&mut self, figure: FigureId) -> Result<&mut FigureControl, SimulationError> {
         let at = usize::from(figure.0);
         self.figures.get_mut(at).ok_or_else(|| bad("an action".into(), "figure", at))
     }
 
-    /// Where a kinematic or guided body is at this moment, on its way.
-    fn moved(&self, body: BodyId) -> Result<BodyFrame, SimError> {
+    /// Where a kinematic or guided body is at this moment, on its path.
+    fn moved(&self, body: BodyId) -> Result<BodyFrame, SimulationError> {
         let Some(data) = self.world.bodies.get(index(body)) else {
             return Err(bad("an action".into(), "body", index(body)));
         };
         if !matches!(data.motion, BodyMotion::Kinematic | BodyMotion::Guided) {
-            return Err(SimError::NotMoved { body: data.name.clone() });
+            return Err(SimulationError::NotMoved { body: data.name.clone() });
         }
         Ok(match &self.paths[index(body)] {
             Some(path) => path.at(self.now),
@@ -424,7 +426,13 @@ impl WorldSimulation {
         })
     }
 
-    fn send(&mut self, body: BodyId, from: BodyFrame, to: BodyFrame, over: f64) -> Result<(), SimError> {
+    fn send(
+        &mut self,
+        body: BodyId,
+        from: BodyFrame,
+        to: BodyFrame,
+        over: f64,
+    ) -> Result<(), SimulationError> {
         if let Some(figure) = self.figures.iter_mut().find(|figure| figure.has(body)) {
             return figure.send(body, to, over, &self.physics);
         }
@@ -441,7 +449,7 @@ impl WorldSimulation {
         self.wake();
     }
 
-    fn place(&self, point: &WorldPoint, var: VariableLookup<'_>) -> Result<SpaceVector, SimError> {
+    fn place(&self, point: &WorldPoint, var: VariableLookup<'_>) -> Result<SpaceVector, SimulationError> {
         let mut offset = SpaceVector::zeros();
         for (i, expr) in point.offset.iter().enumerate() {
             offset[i] = number(expr, var, "a place")?;
@@ -555,13 +563,13 @@ impl WorldSimulation {
         self.finished.extend(id.map(|id| (id, Err(CommandError::Replaced))));
     }
 
-    /// A free way of an arm, from the posture in which it would stop now if no other one is asked for.
+    /// A free path of an arm, from the posture in which it would stop now if no other one is asked for.
     ///
     /// # Errors
-    /// That the target is out of reach or beyond limits, that there is no free way, or that numbers make no sense.
-    pub fn plan(&self, arm: ArmId, wanted: &WayRequest) -> Result<PlannedWay, CommandError> {
+    /// That the target is out of reach or beyond limits, that there is no free path, or that numbers make no sense.
+    pub fn plan(&self, arm: ArmId, wanted: &MotionPlanRequest) -> Result<PlannedTrajectory, CommandError> {
         let at = self.arm(arm, None)?;
-        self.arms[at].plan_way(wanted, &self.world, &self.moment(at))
+        self.arms[at].plan_motion(wanted, &self.world, &self.moment(at))
     }
 
     /// What the planner of an arm knows: everything, but where people are only if it avoids them. What hangs on a joint of its own, such
@@ -592,14 +600,14 @@ impl WorldSimulation {
     }
 }
 
-fn no_gripper(gripper: GripperId) -> SimError {
+fn no_gripper(gripper: GripperId) -> SimulationError {
     bad("an action".into(), "gripper", usize::from(gripper.0))
 }
 
-fn number(expr: &Expr, var: VariableLookup<'_>, what: &str) -> Result<f64, SimError> {
-    let value = expr.eval(var).map_err(|error| SimError::Eval { what: what.into(), error })?;
+fn number(expr: &Expr, var: VariableLookup<'_>, what: &str) -> Result<f64, SimulationError> {
+    let value = expr.eval(var).map_err(|error| SimulationError::Eval { what: what.into(), error })?;
     match value.as_f64() {
         Some(x) if x.is_finite() => Ok(x),
-        Some(_) | None => Err(SimError::BadNumber { what: what.into() }),
+        Some(_) | None => Err(SimulationError::BadNumber { what: what.into() }),
     }
 }

@@ -1,4 +1,4 @@
-//! A motion of an arm on its way: where its joints should be, on a clock of its own that waits for an arm that lags behind.
+//! A motion of an arm on its path: where its joints should be, on a clock of its own that waits for an arm that lags behind.
 
 use hrdsl_harness::{CommandId, PlannedPoint};
 
@@ -16,15 +16,15 @@ pub(crate) enum ArmGoal {
 
 /// How an arm goes to its goal.
 pub(crate) enum ArmPath {
-    /// Along a straight way, by a smooth ramp.
+    /// Along a straight path, by a smooth ramp.
     Straight(JointRoute, MotionProfile),
-    /// Along a way with corners.
+    /// Along a path with corners.
     Route(JointRoute, LimitedPace),
     /// As was given.
     Track(JointTrack),
 }
 
-/// How far points of a way are apart at most, s.
+/// How far points of a path are apart at most, s.
 const POINTS: f64 = 0.05;
 
 pub(crate) struct ArmMotion {
@@ -43,7 +43,7 @@ pub(crate) struct ArmMotion {
 }
 
 impl ArmPath {
-    /// Along a way, at full speed after so many seconds.
+    /// Along a path, at full speed after so many seconds.
     pub fn along(route: JointRoute, rise: f64) -> ArmPath {
         if route.has_corners() {
             let pace = LimitedPace::new(route.length(), rise, |s| route.limit(s));

@@ -27,7 +27,7 @@ use hrdsl_ir::world::{Body, BodyId, BodyMotion, Joint, JointId, JointMotion, Wor
 use rapier3d::prelude::*;
 
 use crate::{
-    error::SimError,
+    error::SimulationError,
     math::{BodyFrame, from_pose, from_vector, to_pose, to_vector, v3},
 };
 use state::{
@@ -53,7 +53,7 @@ const SWEEPS: usize = 2;
 const SWEEPS_OF_DESCRIBED: usize = 8;
 
 impl PhysicsAdapter {
-    pub fn new(world: &World) -> Result<PhysicsAdapter, SimError> {
+    pub fn new(world: &World) -> Result<PhysicsAdapter, SimulationError> {
         let roots = rigid_roots(world)?;
         let mut engine = PhysicsWorld::new();
         engine.gravity = to_vector(v3(world.gravity));
@@ -98,7 +98,7 @@ impl PhysicsAdapter {
         Ok(physics)
     }
 
-    fn add_bodies(&mut self, world: &World, roots: &[BodyId]) -> Result<(), SimError> {
+    fn add_bodies(&mut self, world: &World, roots: &[BodyId]) -> Result<(), SimulationError> {
         let figure_of = figure_of(world);
         let handles: Vec<Option<RigidBodyHandle>> = (0..world.bodies.len())
             .map(|i| (index(roots[i]) == i).then(|| self.add_rigid(body_id(i), world, roots)))
@@ -403,10 +403,10 @@ fn sweeps(world: &World) -> usize {
     if world.bodies.iter().any(is_link) { SWEEPS_OF_DESCRIBED } else { SWEEPS }
 }
 
-fn checked_mass(body: &Body) -> Result<f32, SimError> {
+fn checked_mass(body: &Body) -> Result<f32, SimulationError> {
     if body.mass.is_finite() && body.mass > 0.0 {
         Ok(body.mass as f32)
     } else {
-        Err(SimError::BadNumber { what: format!("the mass of body `{}`", body.name) })
+        Err(SimulationError::BadNumber { what: format!("the mass of body `{}`", body.name) })
     }
 }

@@ -1,7 +1,7 @@
-//! The planner: a posture that brings the tool to a place, and a way to it that touches nothing.
+//! The planner: a posture that brings the tool to a place, and a path to it that touches nothing.
 //!
-//! Where the straight way is not free, trees grow from both ends towards each other and towards random postures (RRT-Connect;
-//! Kuffner and LaValle 2000); the way found is then shortened between random points. The random numbers are the same in every
+//! Where the straight path is not free, trees grow from both ends towards each other and towards random postures (RRT-Connect;
+//! Kuffner and LaValle 2000); the path found is then shortened between random points. The random numbers are the same in every
 //! search, so that the same question has the same answer.
 
 use rand_chacha::ChaCha8Rng;
@@ -16,24 +16,24 @@ use crate::{
     route::{JointRoute, between, span},
 };
 
-/// How closely ways are looked at, rad or m.
+/// How closely paths are looked at, rad or m.
 const GRAIN: f64 = 0.01;
 /// How far a tree grows at once, rad or m.
 const GROWTH: f64 = 0.15;
 /// How often trees grow before the search is given up.
 const GROWTHS: usize = 3000;
-/// How often a way is tried to be shortened.
+/// How often a path is tried to be shortened.
 const SHORTCUTS: usize = 120;
-/// To how many postures ways are searched.
+/// To how many postures paths are searched.
 const POSTURES: usize = 3;
 
-/// How many seconds of way a radian of tilt is worth, beyond what counts as upright (rad).
+/// How many seconds of path a radian of tilt is worth, beyond what counts as upright (rad).
 const TILT: f64 = 30.0;
 const UPRIGHT: f64 = 0.1;
 /// And how many a posture is worth that keeps off everything.
 const NARROW: f64 = 10.0;
 
-/// Why there is no way.
+/// Why there is no path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum NoRoute {
     /// Metres from the place of the nearest posture.
@@ -51,7 +51,7 @@ pub(crate) struct RoutePlanner<'a> {
 }
 
 impl RoutePlanner<'_> {
-    /// A way of the tool to a place, from a posture.
+    /// A path of the tool to a place, from a posture.
     pub fn reach_place(&mut self, from: &[f64], target: SpaceVector) -> Result<JointRoute, NoRoute> {
         self.clearance.allow_start(from);
         let mut found = self.chain.postures(from, target, &|q| {
@@ -85,7 +85,7 @@ impl RoutePlanner<'_> {
         best.ok_or(why)
     }
 
-    /// A way to a posture.
+    /// A path to a posture.
     pub fn reach_posture(&mut self, from: &[f64], to: &[f64]) -> Result<JointRoute, NoRoute> {
         self.clearance.allow_start(from);
         if let Some((a, b)) = self.clearance.goal_conflict(to) {
@@ -94,7 +94,7 @@ impl RoutePlanner<'_> {
         self.straight(from, to).map_or_else(|| self.around(from, to), Ok)
     }
 
-    /// The straight way, if it is free.
+    /// The straight path, if it is free.
     fn straight(&mut self, from: &[f64], to: &[f64]) -> Option<JointRoute> {
         let before = self.clearance.allow_goal(to);
         let free = self.blocked(from, to).is_none();
@@ -213,15 +213,15 @@ impl PostureTree {
         Some(self.nodes.len() - 1)
     }
 
-    /// The way from a posture back to the root.
+    /// The path from a posture back to the root.
     fn back(&self, from: usize) -> Vec<Vec<f64>> {
-        let mut way = vec![self.nodes[from].0.clone()];
+        let mut path = vec![self.nodes[from].0.clone()];
         let mut at = from;
         while at != 0 {
             at = self.nodes[at].1;
-            way.push(self.nodes[at].0.clone());
+            path.push(self.nodes[at].0.clone());
         }
-        way
+        path
     }
 }
 

@@ -1,7 +1,7 @@
 //! The ramp of a motion: how far along it is, and how fast, at each time.
 //!
 //! The speed rises from zero to its peak along a smooth step, stays, and falls the same way, so that neither speed nor
-//! acceleration jumps. All joints share the ramp: they start and arrive together, and the one with the longest way keeps
+//! acceleration jumps. All joints share the ramp: they start and arrive together, and the one that has the farthest to go keeps
 //! the limit.
 
 /// Seconds to come to full speed, and to stop, if nobody asks for others.
@@ -19,7 +19,7 @@ pub(crate) struct MotionProfile {
 }
 
 impl MotionProfile {
-    /// `travel` is the longest way of any joint (rad, or m); `limit` its greatest speed, to which it comes in `rise` seconds.
+    /// `travel` is the farthest that any joint goes (rad, or m); `limit` its greatest speed, to which it comes in `rise` seconds.
     pub fn new(travel: f64, limit: f64, rise: f64) -> Self {
         let travel = travel.abs();
         if travel < 1e-9 {
@@ -37,7 +37,7 @@ impl MotionProfile {
         self.length
     }
 
-    /// The part of the way done, 0..1, after `t` seconds.
+    /// The part of the path done, 0..1, after `t` seconds.
     pub fn at(&self, t: f64) -> f64 {
         if t >= self.length {
             return 1.0;
@@ -54,7 +54,7 @@ impl MotionProfile {
     }
 }
 
-/// The pace along a way with limits of its own, such as at corners: as fast as they and the acceleration of [`MotionProfile`]'s mean
+/// The pace along a path with limits of its own, such as at corners: as fast as they and the acceleration of [`MotionProfile`]'s mean
 /// allow (Bobrow, Dubowsky and Gibson 1985, with a limit that does not depend on the place).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LimitedPace {
@@ -64,7 +64,7 @@ pub(crate) struct LimitedPace {
 }
 
 impl LimitedPace {
-    /// `limit` is the greatest speed so far along the way, 0 to 1, and never 0; full speed is come to in `rise` seconds.
+    /// `limit` is the greatest speed so far along the path, 0 to 1, and never 0; full speed is come to in `rise` seconds.
     pub fn new(length: f64, rise: f64, limit: impl Fn(f64) -> f64) -> LimitedPace {
         let cells = (length / 0.005).ceil().max(1.0) as usize;
         let grid = length / cells as f64;
@@ -92,7 +92,7 @@ impl LimitedPace {
         self.points[self.points.len() - 1].1
     }
 
-    /// How far along the way after `t` seconds.
+    /// How far along the path after `t` seconds.
     pub fn at(&self, t: f64) -> f64 {
         let next = self.points.partition_point(|(_, time)| *time <= t);
         if next == self.points.len() {

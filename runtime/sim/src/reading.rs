@@ -10,7 +10,7 @@ use hrdsl_ir::{
 
 use crate::{
     WorldSimulation,
-    error::SimError,
+    error::SimulationError,
     math::{BodyFrame, RotationQuat, SpaceVector, about},
     sensor::{SensedTruth, SensorBank},
 };
@@ -20,7 +20,7 @@ impl WorldSimulation {
     ///
     /// # Errors
     /// If a sensor is of what does not exist, or has a bad measure.
-    pub fn seeded(mut self, seed: u64) -> Result<Self, SimError> {
+    pub fn seeded(mut self, seed: u64) -> Result<Self, SimulationError> {
         let truth = |source| self.truth(source);
         self.sensors = SensorBank::new(&self.world, &self.signals, seed, &truth)?;
         Ok(self)

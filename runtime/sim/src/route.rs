@@ -3,7 +3,7 @@
 /// How far before a corner its rounding begins at most, in seconds at full speed.
 const ROUNDING: f64 = 0.2;
 
-/// How far around a corner, beyond its rounding, a way is slow, in seconds at full speed.
+/// How far around a corner, beyond its rounding, a path is slow, in seconds at full speed.
 const CORNER: f64 = 0.01;
 /// The least speed at a corner, as a part of the full one.
 const SLOWEST: f64 = 0.05;
@@ -18,11 +18,11 @@ pub(crate) fn between(a: &[f64], b: &[f64], part: f64) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + part * (b - a)).collect()
 }
 
-/// A way through at least one posture.
+/// A path through at least one posture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct JointRoute {
     points: Vec<Vec<f64>>,
-    /// How far each of them is from the first along the way, in seconds at full speed.
+    /// How far each of them is from the first along the path, in seconds at full speed.
     along: Vec<f64>,
     rounding: f64,
 }
@@ -56,7 +56,7 @@ impl JointRoute {
         points.filter(move |(_, along)| is_wanted(**along)).map(|(point, _)| point.clone())
     }
 
-    /// The posture so far along the way.
+    /// The posture so far along the path.
     pub fn at(&self, s: f64) -> Vec<f64> {
         let last = self.points.len() - 1;
         if let Some(corner) = (1..last).find(|i| (s - self.along[*i]).abs() < self.reach(*i)) {
@@ -71,7 +71,7 @@ impl JointRoute {
         self.on_lines(s)
     }
 
-    /// The greatest part of its full speed so far along the way: full, but slower around corners that could not be rounded well.
+    /// The greatest part of its full speed so far along the path: full, but slower around corners that could not be rounded well.
     pub fn limit(&self, s: f64) -> f64 {
         let corners = 1..self.points.len() - 1;
         let near = corners.filter(|i| (s - self.along[*i]).abs() <= self.reach(*i) + CORNER);

@@ -7,7 +7,7 @@ use hrdsl_ir::{Nanos, Type, Value, sensor::SensorSource};
 
 use crate::{
     arm::ArmControl,
-    error::SimError,
+    error::SimulationError,
     hand::HandSet,
     laser,
     mover::sight_angle,
@@ -163,7 +163,7 @@ fn without_value(ty: Type) -> Value {
 }
 
 /// Checks that everything a signal or a current names exists.
-pub(crate) fn check(world: &World, signals: &[Signal]) -> Result<(), SimError> {
+pub(crate) fn check(world: &World, signals: &[Signal]) -> Result<(), SimulationError> {
     for current in &world.currents {
         let what = || format!("current `{}`", current.name);
         if current.of.is_empty() {
@@ -190,7 +190,7 @@ pub(crate) fn check_term(
     world: &World,
     signals: usize,
     what: impl Fn() -> String,
-) -> Result<(), SimError> {
+) -> Result<(), SimulationError> {
     let gripper = |i: u16| exists(usize::from(i), world.grippers.len(), "gripper", &what);
     match *term {
         SignalTerm::Distance(a, b)
@@ -220,7 +220,9 @@ pub(crate) fn check_term(
         }
         SignalTerm::Pressure { body, by, area } => {
             if !(area.is_finite() && area > 0.0) {
-                return Err(SimError::BadNumber { what: format!("the area of a pressure in {}", what()) });
+                return Err(SimulationError::BadNumber {
+                    what: format!("the area of a pressure in {}", what()),
+                });
             }
             check_body(body, world, &what)?;
             by.map_or(Ok(()), |by| check_body(by, world, &what))
@@ -243,13 +245,22 @@ pub(crate) fn check_term(
 }
 
 /// Checks that a body that is referred to exists.
-pub(crate) fn check_body(b: BodyRef, world: &World, what: impl Fn() -> String) -> Result<(), SimError> {
+pub(crate) fn check_body(
+    b: BodyRef,
+    world: &World,
+    what: impl Fn() -> String,
+) -> Result<(), SimulationError> {
     match b {
         BodyRef::Body(id) => exists(index(id), world.bodies.len(), "body", what),
         BodyRef::Current(id) => exists(usize::from(id.0), world.currents.len(), "current", what),
     }
 }
 
-fn exists(at: usize, count: usize, kind: &'static str, what: impl Fn() -> String) -> Result<(), SimError> {
+fn exists(
+    at: usize,
+    count: usize,
+    kind: &'static str,
+    what: impl Fn() -> String,
+) -> Result<(), SimulationError> {
     if at < count { Ok(()) } else { Err(bad(what(), kind, at)) }
 }

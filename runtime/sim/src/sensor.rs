@@ -13,7 +13,7 @@ use hrdsl_ir::{
 
 use crate::{
     chance::{SampleDraws, SensorChance},
-    error::SimError,
+    error::SimulationError,
     math::{BodyFrame, wrap},
     odometer::{DriftingOdometer, GroundPose},
     physics::bad,
@@ -84,7 +84,7 @@ impl SensorBank {
         signals: &[Signal],
         seed: u64,
         start: &dyn Fn(SensorSource) -> SensedTruth,
-    ) -> Result<Self, SimError> {
+    ) -> Result<Self, SimulationError> {
         let mut sensors = Vec::new();
         for sensor in &world.sensors {
             check(sensor, world, signals)?;
@@ -383,7 +383,7 @@ impl SensorLine {
     }
 }
 
-fn check(sensor: &ImperfectSensor, world: &World, signals: &[Signal]) -> Result<(), SimError> {
+fn check(sensor: &ImperfectSensor, world: &World, signals: &[Signal]) -> Result<(), SimulationError> {
     let what = || format!("a measure of {} `{}`", sensor.source.sort(), sensor.name);
     let is_probability = |p: f64| (0.0..=1.0).contains(&p);
     let deviations = sensor.noise.iter().map(|noise| noise.deviation);
@@ -406,5 +406,5 @@ fn check(sensor: &ImperfectSensor, world: &World, signals: &[Signal]) -> Result<
         && ranges
         && outliers.map(|outlier| outlier.probability).all(is_probability)
         && deviations.chain(drifts).all(|x| x.is_finite() && x >= 0.0);
-    if is_good { Ok(()) } else { Err(SimError::BadNumber { what: what() }) }
+    if is_good { Ok(()) } else { Err(SimulationError::BadNumber { what: what() }) }
 }

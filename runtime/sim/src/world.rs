@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use hrdsl_harness::{
-    CheckedCommand, CommandId, PlannedWay, SpentTime, ThreadClock, WayRequest, WorldAccuracy, WorldBackend,
+    CheckedCommand, CommandId, MotionPlanRequest, PlannedTrajectory, SpentTime, ThreadClock, WorldAccuracy,
+    WorldBackend,
 };
 use hrdsl_ir::{
     Nanos, Program, Value,
@@ -13,10 +14,10 @@ use hrdsl_ir::{
     world::{SignalId, SignalTerm, WorldAction},
 };
 
-use crate::{WorldSimulation, command::MotorCommand, error::SimError};
+use crate::{WorldSimulation, command::MotorCommand, error::SimulationError};
 
 /// A [`WorldSimulation`] behind the seam.
-pub struct SimWorld {
+pub struct SimulatedWorld {
     sim: WorldSimulation,
     /// Of commands under way: what must be measured at their end.
     expected: BTreeMap<CommandId, CommandExpectation>,
@@ -28,12 +29,12 @@ struct CommandExpectation {
     otherwise: String,
 }
 
-impl SimWorld {
+impl SimulatedWorld {
     /// The program's world at its start, in a test with this seed; `None` if the scenario has none.
     ///
     /// # Errors
     /// Why the world cannot be built.
-    pub fn new(program: &Program, seed: u64) -> Result<Option<Self>, SimError> {
+    pub fn new(program: &Program, seed: u64) -> Result<Option<Self>, SimulationError> {
         let Some(world) = &program.world else { return Ok(None) };
         let sim = WorldSimulation::new(world, &program.signals)?.seeded(seed)?;
         Ok(Some(Self { sim, expected: BTreeMap::new() }))
@@ -48,43 +49,34 @@ impl SimWorld {
 
 /// What a device is to do; `None`: it is for one of another sort to do.
 fn meant(body: DeviceBody, call: &PrimitiveCall) -> Option<MotorCommand> {
-    Some(match (body, call) {
-        (DeviceBody::Arm(arm), PrimitiveCall::ReachPoint { to, speed }) => {
-            MotorCommand::ReachPoint { arm, target: *to, max_speed: *speed }
+    // INVARIANT: the checker gives each kind of device the primitives of its own sort; a laser has none.
+    let arm = || if let DeviceBody::Arm(arm) = body { Some(arm) } else { None };
+    let gripper = || if let DeviceBody::Gripper(gripper) = body { Some(gripper) } else { None };
+    let base = || if let DeviceBody::Base(base) = body { Some(base) } else { None };
+    Some(match call {
+        PrimitiveCall::ReachPoint { to, speed } => {
+            MotorCommand::ReachPoint { arm: arm()?, target: *to, max_speed: *speed }
         }
-        (DeviceBody::Arm(arm), PrimitiveCall::ReachJoints { to, speed }) => {
-            MotorCommand::ReachJoints { arm, positions: to.clone(), max_speed: *speed }
+        PrimitiveCall::ReachJoints { to, speed } => {
+            MotorCommand::ReachJoints { arm: arm()?, positions: to.clone(), max_speed: *speed }
         }
-        (DeviceBody::Arm(arm), PrimitiveCall::FollowJoints { positions, times }) => {
-            MotorCommand::FollowJoints { arm, positions: positions.clone(), times: times.clone() }
+        PrimitiveCall::FollowJoints { positions, times } => {
+            MotorCommand::FollowJoints { arm: arm()?, positions: positions.clone(), times: times.clone() }
         }
-        (DeviceBody::Arm(arm), PrimitiveCall::AimJoint { joint, to }) => {
-            MotorCommand::AimJoint { arm, joint: *joint, to: *to }
+        PrimitiveCall::AimJoint { joint, to } => {
+            MotorCommand::AimJoint { arm: arm()?, joint: *joint, to: *to }
         }
-        (DeviceBody::Arm(arm), PrimitiveCall::StopJoints) => MotorCommand::StopJoints { arm },
-        (DeviceBody::Gripper(gripper), PrimitiveCall::CloseFingers) => MotorCommand::CloseFingers { gripper },
-        (DeviceBody::Gripper(gripper), PrimitiveCall::OpenFingers) => MotorCommand::OpenFingers { gripper },
-        (DeviceBody::Base(base), PrimitiveCall::DriveWheels { forward, sideways, turn }) => {
-            MotorCommand::DriveWheels { base, forward: *forward, sideways: *sideways, turn: *turn }
+        PrimitiveCall::StopJoints => MotorCommand::StopJoints { arm: arm()? },
+        PrimitiveCall::CloseFingers => MotorCommand::CloseFingers { gripper: gripper()? },
+        PrimitiveCall::OpenFingers => MotorCommand::OpenFingers { gripper: gripper()? },
+        PrimitiveCall::DriveWheels { forward, sideways, turn } => {
+            MotorCommand::DriveWheels { base: base()?, forward: *forward, sideways: *sideways, turn: *turn }
         }
-        (DeviceBody::Base(base), PrimitiveCall::StopWheels) => MotorCommand::StopWheels { base },
-        // INVARIANT: the checker gives each kind of device the primitives of its own sort; a laser has none.
-        (
-            DeviceBody::Arm(_) | DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_),
-            PrimitiveCall::ReachPoint { .. }
-            | PrimitiveCall::ReachJoints { .. }
-            | PrimitiveCall::FollowJoints { .. }
-            | PrimitiveCall::AimJoint { .. }
-            | PrimitiveCall::StopJoints
-            | PrimitiveCall::CloseFingers
-            | PrimitiveCall::OpenFingers
-            | PrimitiveCall::DriveWheels { .. }
-            | PrimitiveCall::StopWheels,
-        ) => return None,
+        PrimitiveCall::StopWheels => MotorCommand::StopWheels { base: base()? },
     })
 }
 
-impl WorldBackend for SimWorld {
+impl WorldBackend for SimulatedWorld {
     fn next_wake(&self) -> Option<Nanos> {
         self.sim.next_wake()
     }
@@ -142,7 +134,7 @@ impl WorldBackend for SimWorld {
         self.sim.sampled_at(device)
     }
 
-    fn plan(&self, device: DeviceBody, wanted: &WayRequest) -> Result<PlannedWay, String> {
+    fn plan(&self, device: DeviceBody, wanted: &MotionPlanRequest) -> Result<PlannedTrajectory, String> {
         match device {
             DeviceBody::Arm(arm) => self.sim.plan(arm, wanted).map_err(|e| e.to_string()),
             DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_) => {

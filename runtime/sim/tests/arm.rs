@@ -4,7 +4,9 @@ mod common;
 use common::*;
 use hrdsl_ir::Expr;
 use hrdsl_ir::{device::DeviceBody, device_state::DeviceState, world::*};
-use hrdsl_sim::{ArmTarget, CommandError, CommandId, MotorCommand, PlannedWay, WayRequest, WorldSimulation};
+use hrdsl_sim::{
+    ArmTarget, CommandError, CommandId, MotionPlanRequest, MotorCommand, PlannedTrajectory, WorldSimulation,
+};
 use proptest::prelude::*;
 
 fn speeds() -> Vec<Signal> {
@@ -179,14 +181,15 @@ fn an_arm_goes_round_what_is_in_its_way() {
 }
 
 /// The way to a place within the speed, and the acceleration to that in half a second or another one.
-fn timed(sim: &WorldSimulation, target: Vec3, speed: f64, rise: f64) -> PlannedWay {
+fn timed(sim: &WorldSimulation, target: Vec3, speed: f64, rise: f64) -> PlannedTrajectory {
     let limits = |limit: f64| Some(vec![limit; 9]);
     let (speeds, accelerations) = (limits(speed), limits(speed / rise));
-    sim.plan(ARM, &WayRequest { to: ArmTarget::Place(target), from: None, speeds, accelerations }).unwrap()
+    sim.plan(ARM, &MotionPlanRequest { to: ArmTarget::Place(target), from: None, speeds, accelerations })
+        .unwrap()
 }
 
 /// Begins to go along a plan.
-fn follow(sim: &mut WorldSimulation, way: &PlannedWay) -> CommandId {
+fn follow(sim: &mut WorldSimulation, way: &PlannedTrajectory) -> CommandId {
     let positions = way.points.iter().flat_map(|point| point.positions.clone()).collect();
     let times = way.points.iter().map(|point| point.time).collect();
     sim.command(MotorCommand::FollowJoints { arm: ARM, positions, times }).unwrap()
@@ -255,11 +258,11 @@ fn a_plan_may_begin_elsewhere_and_refuses_numbers_that_make_no_sense() {
     let mut from = vec![0.0; 9];
     from[2] = 0.3;
     let to = ArmTarget::Posture(vec![0.0; 9]);
-    let wanted = WayRequest { to, from: Some(from.clone()), speeds: None, accelerations: None };
+    let wanted = MotionPlanRequest { to, from: Some(from.clone()), speeds: None, accelerations: None };
     let way = sim.plan(ARM, &wanted).unwrap();
     assert_eq!((&way.corners[0], &way.points[0].positions), (&from, &from));
     assert_eq!(way.points.last().unwrap().positions, vec![0.0; 9]);
-    let asks = |change: &dyn Fn(&mut WayRequest)| {
+    let asks = |change: &dyn Fn(&mut MotionPlanRequest)| {
         let mut wanted = wanted.clone();
         change(&mut wanted);
         sim.plan(ARM, &wanted).unwrap_err()

@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Expr, Type};
-use hrdsl_sim::{CommandError, MotorCommand, SimError, WorldSimulation};
+use hrdsl_sim::{CommandError, MotorCommand, SimulationError, WorldSimulation};
 
 const LEG: BodyRef = BodyRef::Current(CurrentId(0));
 
@@ -162,12 +162,12 @@ fn actions_that_cannot_be_are_refused() {
     let mut sim = WorldSimulation::new(&world, &[]).unwrap();
     let leg1 = leg(&world, 1);
     let action = WorldAction::Move { body: leg1, to: at(None, REST), over: Expr::float(1.0) };
-    assert_eq!(sim.act(&action, &none), Err(SimError::NotMoved { body: "leg1".into() }));
+    assert_eq!(sim.act(&action, &none), Err(SimulationError::NotMoved { body: "leg1".into() }));
     let hand = named(&world, "person.hand");
     let action = WorldAction::Move { body: hand, to: at(None, REST), over: Expr::Var(0) };
-    assert!(matches!(sim.act(&action, &none), Err(SimError::Eval { .. })));
+    assert!(matches!(sim.act(&action, &none), Err(SimulationError::Eval { .. })));
     let action = WorldAction::Grasp { gripper: GripperId(9) };
-    assert!(matches!(sim.act(&action, &none), Err(SimError::BadReference { .. })));
+    assert!(matches!(sim.act(&action, &none), Err(SimulationError::BadReference { .. })));
 }
 
 #[test]
@@ -255,7 +255,7 @@ fn a_world_that_starts_in_collision_is_refused() {
     let first = leg(&world, 1);
     world.bodies[usize::from(first.0)].position = [0.3, -0.3, 0.40];
     match WorldSimulation::new(&world, &[]) {
-        Err(SimError::StartsInside { body, other, depth }) => {
+        Err(SimulationError::StartsInside { body, other, depth }) => {
             assert_eq!((body.as_str(), other.as_str()), ("stand", "leg1"));
             assert!(depth > 0.05, "{depth}");
         }

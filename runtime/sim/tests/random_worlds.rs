@@ -7,7 +7,7 @@ mod common;
 use common::{SECOND, body};
 use hrdsl_ir::Expr;
 use hrdsl_ir::world::*;
-use hrdsl_sim::{MotorCommand, SimError, WorldSimulation};
+use hrdsl_sim::{MotorCommand, SimulationError, WorldSimulation};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
@@ -132,7 +132,7 @@ fn world(recipe: &Recipe) -> World {
 }
 
 /// Everything that can be seen of a run, as bits.
-fn run(recipe: &Recipe) -> Result<Vec<u64>, SimError> {
+fn run(recipe: &Recipe) -> Result<Vec<u64>, SimulationError> {
     let world = world(recipe);
     let mut sim = WorldSimulation::new(&world, &[])?;
     let mut seen = Vec::new();
@@ -217,7 +217,7 @@ fn nothing_explodes_and_nothing_differs() {
         match run(&recipe) {
             Ok(seen) => prop_assert_eq!(run(&recipe).expect("as before"), seen),
             // Things that are drawn inside each other are an error that names them.
-            Err(SimError::StartsInside { .. }) => refused.set(refused.get() + 1),
+            Err(SimulationError::StartsInside { .. }) => refused.set(refused.get() + 1),
             Err(other) => prop_assert!(false, "{}", other),
         }
         Ok(())

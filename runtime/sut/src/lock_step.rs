@@ -1,9 +1,9 @@
 //! A process as the harness's system: it asks one thing at a time, and simulated time stands still until it waits.
 
 use hrdsl_harness::{
-    AwaitedPort, CanceledGoals, CommandRequest, LogRecord, MachineDeclaration, MachineEdge, MachineStep,
-    ParameterRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault, SystemFaultKind,
-    SystemRequest,
+    AwaitedPort, CallRequest, CanceledGoals, CommandRequest, LogRecord, MachineDeclaration, MachineEdge,
+    MachineStep, ParameterRequest, RequestTicket, SystemActor, SystemAnswer, SystemArgument, SystemFault,
+    SystemFaultKind, SystemRequest,
 };
 use hrdsl_ir::{Nanos, value::nanos};
 
@@ -124,13 +124,15 @@ fn meant(request: ProgramRequest) -> SystemRequest {
             SystemRequest::Await(AwaitedPort { kind: kind.into(), name, type_name, give_up })
         }
         // INVARIANT: `fault` refuses a request with neither, or with both.
-        ProgramRequest::Cancel { call: Some(call), .. } => SystemRequest::Cancel(CanceledGoals::Own(call)),
-        ProgramRequest::Cancel { call: None, port } => {
-            SystemRequest::Cancel(CanceledGoals::AllAt(port.unwrap_or_default()))
+        ProgramRequest::Cancel { call: Some(call), .. } => {
+            CallRequest::Cancel(CanceledGoals::Own(call)).into()
         }
-        ProgramRequest::Accept { call, text } => SystemRequest::Accept { call, text },
+        ProgramRequest::Cancel { call: None, port } => {
+            CallRequest::Cancel(CanceledGoals::AllAt(port.unwrap_or_default())).into()
+        }
+        ProgramRequest::Accept { call, text } => CallRequest::Accept { call, text }.into(),
         ProgramRequest::AnswerCancel { call, granted, text } => {
-            SystemRequest::AnswerCancel { call, granted, text }
+            CallRequest::AnswerCancel { call, granted, text }.into()
         }
         ProgramRequest::State { device, what } => SystemRequest::State { device, what },
         ProgramRequest::Plan(plan) => plan.asked(),
@@ -162,11 +164,11 @@ fn meant(request: ProgramRequest) -> SystemRequest {
 fn carried(request: MessageRequest) -> SystemRequest {
     match request {
         MessageRequest::Publish { port, message } => SystemRequest::Publish { port, message },
-        MessageRequest::Call { port, call, message } => SystemRequest::Call { port, call, message },
-        MessageRequest::Respond { call, answer } => SystemRequest::Respond { call, answer },
-        MessageRequest::Feedback { call, message } => SystemRequest::Feedback { call, message },
+        MessageRequest::Call { port, call, message } => CallRequest::Begin { port, call, message }.into(),
+        MessageRequest::Respond { call, answer } => CallRequest::Respond { call, answer }.into(),
+        MessageRequest::Feedback { call, message } => CallRequest::Feedback { call, message }.into(),
         MessageRequest::Finish { call, end, message, text } => {
-            SystemRequest::Finish { call, end, message, text }
+            CallRequest::Finish { call, end, message, text }.into()
         }
         MessageRequest::SetParameter { name, value } => {
             SystemRequest::Parameter(ParameterRequest::Set { name, value })

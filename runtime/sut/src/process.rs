@@ -173,7 +173,7 @@ impl SutProcess {
     /// kind, wrong types, another protocol version) are refused here, and the wait goes on.
     ///
     /// # Errors
-    /// [`SutError::Exited`], [`SutError::LimitOverrun`], [`SutError::Rubbish`], [`SutError::Stopped`]; [`SutError::Io`] if the
+    /// [`SutError::Exited`], [`SutError::Overrun`], [`SutError::Rubbish`], [`SutError::Stopped`]; [`SutError::Io`] if the
     /// system fails. After an error, [`finish`](Self::finish) is the only sensible call.
     #[allow(
         clippy::should_implement_trait,
@@ -230,7 +230,7 @@ impl SutProcess {
     /// Answers the request. That the program has ended meanwhile is for [`next`](Self::next) to say.
     ///
     /// # Errors
-    /// [`SutError::LimitOverrun`] if the program does not read its replies; [`SutError::Io`] if the system fails.
+    /// [`SutError::Overrun`] if the program does not read its replies; [`SutError::Io`] if the system fails.
     pub fn reply(&mut self, reply: &HarnessReply) -> Result<(), SutError> {
         if self.overran {
             return Ok(()); // it has had its time, and may read nothing

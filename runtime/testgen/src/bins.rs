@@ -2,10 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_ir::{
-    coverage::{BinCondition, CoverBin, Coverage, CoverpointId},
-    known_name,
-};
+use hrdsl_ir::coverage::{BinCondition, CoverBin, Coverage, CoverpointId};
 
 /// Values that are listed one by one, at most.
 const LISTED: usize = 8;
@@ -54,12 +51,12 @@ fn number(numbers: &[i64], point: CoverpointId) -> i64 {
 fn unmet(coverage: &Coverage, condition: &BinCondition, seen: &BTreeSet<Vec<i64>>) -> String {
     match condition {
         BinCondition::In { point, bin } => {
-            let Some((name, bin)) = declared(coverage, *point, *bin) else { return no_bin() };
+            let (name, bin) = declared(coverage, *point, *bin);
             format!("`{name}` was {}, needs {}", values(*point, seen), needed(bin))
         }
         BinCondition::Not(inner) => match &**inner {
             BinCondition::In { point, bin } => {
-                let Some((name, bin)) = declared(coverage, *point, *bin) else { return no_bin() };
+                let (name, bin) = declared(coverage, *point, *bin);
                 format!("`{name}` was {}, must not be {}", values(*point, seen), needed(bin))
             }
             BinCondition::Not(_) | BinCondition::And(_) | BinCondition::Or(_) => {
@@ -69,11 +66,8 @@ fn unmet(coverage: &Coverage, condition: &BinCondition, seen: &BTreeSet<Vec<i64>
         BinCondition::And(_) | BinCondition::Or(_) => {
             let mut points = BTreeSet::new();
             points_of(condition, &mut points);
-            let name = |p: &CoverpointId| {
-                known_name("coverpoint", coverage.points.get(usize::from(p.0)).map(|p| p.name.as_str()))
-            };
-            let were: Vec<String> =
-                points.iter().map(|p| format!("`{}` was {}", name(p), values(*p, seen))).collect();
+            let was = |p: &CoverpointId| format!("`{}` was {}", coverage.point(*p).name, values(*p, seen));
+            let were: Vec<String> = points.iter().map(was).collect();
             format!("`{}` was never met: {}", text(coverage, condition, false), were.join(", "))
         }
     }
@@ -89,14 +83,9 @@ fn points_of(condition: &BinCondition, points: &mut BTreeSet<CoverpointId>) {
     }
 }
 
-fn declared(coverage: &Coverage, point: CoverpointId, bin: u16) -> Option<(&str, &CoverBin)> {
-    let point = coverage.points.get(usize::from(point.0))?;
-    Some((&point.name, point.bins.get(usize::from(bin))?))
-}
-
-/// What a condition asks for is declared.
-fn no_bin() -> String {
-    known_name("bin", None).to_owned()
+fn declared(coverage: &Coverage, point: CoverpointId, bin: u16) -> (&str, &CoverBin) {
+    let point = coverage.point(point);
+    (&point.name, point.bin(bin))
 }
 
 /// `0..3`, `0, 2, 5`
@@ -132,7 +121,8 @@ fn text(coverage: &Coverage, condition: &BinCondition, is_inner: bool) -> String
     };
     match condition {
         BinCondition::In { point, bin } => {
-            declared(coverage, *point, *bin).map_or_else(no_bin, |(name, bin)| format!("{name}.{}", bin.name))
+            let (name, bin) = declared(coverage, *point, *bin);
+            format!("{name}.{}", bin.name)
         }
         BinCondition::Not(c) => format!("!{}", text(coverage, c, true)),
         BinCondition::And(cs) => joined(cs, " && "),

@@ -115,20 +115,12 @@ fn any(program: &Program, event: EventId) -> EventPattern {
 }
 
 fn received(sync: &SyncLabel) -> Option<EventPattern> {
-    match sync {
-        SyncLabel::Receive { event, args } => {
-            let args = args.iter().map(|a| match a {
-                ReceiveArg::Match(pattern) => *pattern,
-                ReceiveArg::Bind => ArgPattern::Any,
-            });
-            Some(EventPattern { event: *event, args: args.collect() })
-        }
-        SyncLabel::Internal
-        | SyncLabel::Send { .. }
-        | SyncLabel::Offer { .. }
-        | SyncLabel::Accept { .. }
-        | SyncLabel::Join { .. } => None,
-    }
+    let (event, args) = sync.as_receive()?;
+    let args = args.iter().map(|a| match a {
+        ReceiveArg::Match(pattern) => *pattern,
+        ReceiveArg::Bind => ArgPattern::Any,
+    });
+    Some(EventPattern { event, args: args.collect() })
 }
 
 /// A stimulus of a trace.

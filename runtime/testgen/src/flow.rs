@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     Expr, Program,
     expr::Lvalue,
-    ta::{Automaton, Edge, EdgeAssignment, FunctionId, FunctionStatement, Network, SyncLabel},
+    ta::{Automaton, Edge, EdgeAssignment, FunctionId, FunctionStatement, Network},
 };
 use hrdsl_results::SuiteGoalId;
 use hrdsl_ta::{GoalKind, ReachabilityGoal};
@@ -152,15 +152,7 @@ impl DataFlowCollector<'_> {
         for c in &edge.clock_guard {
             c.bound.terms.iter().for_each(|t| self.read(&t.value));
         }
-        match &edge.sync {
-            SyncLabel::Send { args, .. } | SyncLabel::Offer { args, .. } => {
-                args.iter().for_each(|e| self.read(e))
-            }
-            SyncLabel::Internal
-            | SyncLabel::Receive { .. }
-            | SyncLabel::Accept { .. }
-            | SyncLabel::Join { .. } => {}
-        }
+        edge.sync.given().iter().for_each(|e| self.read(e));
         for update in &edge.updates {
             match update {
                 EdgeAssignment::Assign { place, value } => {

@@ -7,7 +7,7 @@
 //! 2. [equal](distinct) abstract tests become one, and [`mod@minimise`] keeps those that are needed for the suite's [`goals`];
 //! 3. [`concrete`] draws the second tier's values: test number n of a suite has seed n (Section "Experimental setup");
 //! 4. [`model`] says what of the agents' programs was reached, what each test is for, and why goals stayed uncovered;
-//! 5. [`write`] prints tests in the language.
+//! 5. [`write()`] prints tests in the language.
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod agents;

@@ -4,7 +4,7 @@
 //! nothing else. A run in virtual time on a model, a run in simulation and a recording, whoever wrote it, all have this form.
 //!
 //! A trace is kept as text: [`record`] writes the recording format, [`parse`] reads it back, step by step if it is long.
-//! [`print`] shows a step to people, [`decimal`] turns nanoseconds into seconds and back without loss, [`vocabulary`] tells
+//! [`print`](mod@print) shows a step to people, [`decimal`] turns nanoseconds into seconds and back without loss, [`vocabulary`] tells
 //! scenarios apart whose recordings are not each other's. `spec/traces.md` defines the format.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 

@@ -1,8 +1,8 @@
 //! Shows the steps of a trace to people.
 
-use hrdsl_ir::{Event, EventId, Nanos, Program, Type, Unit, Value, world::SignalId};
+use hrdsl_ir::{EventId, Nanos, Program, Type, Unit, Value, world::SignalId};
 
-use crate::{TraceStep, TraceStepKind, record};
+use crate::{TraceStep, TraceStepKind};
 
 /// What stands in the column of the actors when a signal is sampled.
 const SIGNAL: &str = "signal";
@@ -36,17 +36,16 @@ pub fn who_did_what<'p>(program: &'p Program, what: &TraceStepKind) -> (&'p str,
 /// An event with its arguments: `sensed(gaze: true, distance: 0.25 m)`.
 #[must_use]
 pub fn event_text(program: &Program, event: EventId, args: &[Value]) -> String {
-    let name = record::event_name(program, event);
+    let declared = program.event(event);
     if args.is_empty() {
-        return name.to_owned();
+        return declared.name.clone();
     }
-    let declared = program.events.get(usize::from(event.0));
-    let unit =
-        |index: usize| declared.and_then(|e| e.params.get(index)).map_or(Unit::None, |p| unit_of(p.ty));
-    let shown = args.iter().enumerate().map(|(index, arg)| {
-        format!("{}: {}", record::param_name(program, event, index), value(*arg, unit(index)))
-    });
-    format!("{name}({})", shown.collect::<Vec<_>>().join(", "))
+    let shown = |(index, arg): (u16, &Value)| {
+        let param = declared.param(index);
+        format!("{}: {}", param.name, value(*arg, unit_of(param.ty)))
+    };
+    let shown: Vec<String> = (0u16..).zip(args).map(shown).collect();
+    format!("{}({})", declared.name, shown.join(", "))
 }
 
 /// A value with the symbol of its unit; a float to five significant digits.
@@ -63,14 +62,12 @@ pub fn value(value: Value, unit: Unit) -> String {
 }
 
 fn maker(program: &Program, event: EventId) -> &str {
-    let from = |e: &Event| program.actors.get(usize::from(e.from.0));
-    // A step may be of another program: it is shown all the same.
-    program.events.get(usize::from(event.0)).and_then(from).map_or("?", |actor| actor.name.as_str())
+    &program.actor(program.event(event).from).name
 }
 
 fn sample(program: &Program, signal: SignalId, sampled: Value) -> String {
-    let unit = program.signals.get(usize::from(signal.0)).map_or(Unit::None, |s| unit_of(s.ty));
-    format!("{} = {}", record::signal_name(program, signal), value(sampled, unit))
+    let signal = program.signal(signal);
+    format!("{} = {}", signal.name, value(sampled, unit_of(signal.ty)))
 }
 
 fn unit_of(ty: Type) -> Unit {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hrdsl_ir::{EventId, Nanos, Program, Value, world::SignalId};
+use hrdsl_ir::{Nanos, Program, Value};
 
 use crate::{
     MachineDeclaration, MachineEdge, MachineStep, RunEnd, Trace, TraceStep, TraceStepKind, decimal,
@@ -20,7 +20,7 @@ const WITHOUT_MACHINES: u64 = 2;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordingHeader {
     pub scenario: String,
-    /// The digest of the scenario's [`vocabulary`](crate::vocabulary); recordings by other programs may lack it.
+    /// The digest of the scenario's [`vocabulary`]; recordings by other programs may lack it.
     pub vocabulary: Option<String>,
     /// The test that was run; none: a recording of something else.
     pub test: Option<String>,
@@ -81,19 +81,19 @@ fn step_line(program: &Program, step: &TraceStep) -> String {
     match &step.what {
         TraceStepKind::Event { event, args } => {
             line.push_str(",\"event\":");
-            line.push_str(&text(event_name(program, *event)));
+            line.push_str(&text(&program.event(*event).name));
             if !args.is_empty() {
                 line.push_str(",\"args\":{");
-                for (index, arg) in args.iter().enumerate() {
+                for (index, arg) in (0u16..).zip(args) {
                     let comma = if index == 0 { "" } else { "," };
-                    let name = text(param_name(program, *event, index));
+                    let name = text(&program.event(*event).param(index).name);
                     let _ = write!(line, "{comma}{name}:{}", value(*arg));
                 }
                 line.push('}');
             }
         }
         TraceStepKind::Sample { signal, value: sampled } => {
-            let name = text(signal_name(program, *signal));
+            let name = text(&program.signal(*signal).name);
             let _ = write!(line, ",\"signal\":{name},\"value\":{}", value(*sampled));
         }
         TraceStepKind::Machine(step) => line.push_str(&machine_text(step)),
@@ -138,22 +138,6 @@ fn end_line(time: Nanos, ending: &RecordingEnd) -> String {
     }
     line.push('}');
     line
-}
-
-/// What stands for a name that the program does not have; a reader will refuse it.
-const UNKNOWN: &str = "?";
-
-pub(crate) fn event_name(program: &Program, event: EventId) -> &str {
-    program.events.get(usize::from(event.0)).map_or(UNKNOWN, |e| &e.name)
-}
-
-pub(crate) fn param_name(program: &Program, event: EventId, index: usize) -> &str {
-    let event = program.events.get(usize::from(event.0));
-    event.and_then(|e| e.params.get(index)).map_or(UNKNOWN, |p| &p.name)
-}
-
-pub(crate) fn signal_name(program: &Program, signal: SignalId) -> &str {
-    program.signals.get(usize::from(signal.0)).map_or(UNKNOWN, |s| &s.name)
 }
 
 fn text(text: &str) -> String {

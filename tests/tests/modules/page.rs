@@ -41,7 +41,9 @@ pub fn page(packages: &[Package]) -> String {
 fn section(out: &mut String, package: &Package) {
     let _ = writeln!(out, "\n### {}\n", package.name);
     let root = package.files.iter().find(|(name, _)| ["lib.rs", "main.rs"].contains(&name.as_str()));
-    let said = without_links(root.and_then(|(_, f)| f.sentence.as_deref()).unwrap_or("?"));
+    let said = root.and_then(|(_, f)| f.sentence.as_deref());
+    let said =
+        without_links(said.unwrap_or_else(|| panic!("{} does not say what it is for", package.folder)));
     let _ = writeln!(out, "`{}`: {said}.", package.folder);
     let rooms = package.rooms();
     if rooms.is_empty() {
@@ -71,7 +73,9 @@ fn row_by_row(out: &mut String, package: &Package, name: &str, shown: &str, uses
     let uses = uses.iter().cloned().collect::<Vec<_>>().join(", ");
     for (at, (file, said)) in files.into_iter().enumerate() {
         let (room, uses) = if at == 0 { (shown, uses.as_str()) } else { ("", "") };
-        let said = without_links(said.sentence.as_deref().unwrap_or("?")).replace('|', "\\|");
+        let said = said.sentence.as_deref();
+        let said = said.unwrap_or_else(|| panic!("{}/{file} does not say what it is for", package.folder));
+        let said = without_links(said).replace('|', "\\|");
         let _ = writeln!(out, "| {room} | `{file}` | {said} | {uses} |");
     }
 }

@@ -77,10 +77,10 @@ fn ended(ended: &RunTermination) -> String {
         RunTermination::Quiescent => "quiescent".to_owned(),
         RunTermination::Limit => "horizon".to_owned(),
         RunTermination::Fault(HarnessError::Model(text)) => {
-            let agent = text.split('`').nth(1).unwrap_or("?");
+            let agent = || text.split('`').nth(1).expect("the fault names an agent");
             match () {
-                () if text.contains("livelock") => format!("livelock of {agent}"),
-                () if text.contains("cycle bound") => format!("cycle bound of {agent}"),
+                () if text.contains("livelock") => format!("livelock of {}", agent()),
+                () if text.contains("cycle bound") => format!("cycle bound of {}", agent()),
                 () if text.contains("events at one instant") => "too many events".to_owned(),
                 () => text.clone(),
             }

@@ -71,7 +71,7 @@ pub struct SimArgs {
     /// Everything random comes from this.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// The folder for the results [default: hrdsl-out/<scenario>].
+    /// The folder for the results [default: hrdsl-out/SCENARIO].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Exit with 0 even if requirements were violated or tests broke off.

@@ -143,6 +143,55 @@ pub enum TermKind {
     Plan,
 }
 
+/// What a term is where a formula stands.
+pub enum AgentSpeakFormula<'a> {
+    Truth(bool),
+    /// A belief, or an internal action.
+    Literal(&'a AgentSpeakLiteral),
+    Not(&'a AgentSpeakTerm),
+    /// `&`, `|`
+    Connective {
+        op: AgentSpeakOperator,
+        left: &'a AgentSpeakTerm,
+        right: &'a AgentSpeakTerm,
+    },
+    Relation {
+        op: AgentSpeakOperator,
+        left: &'a AgentSpeakTerm,
+        right: &'a AgentSpeakTerm,
+    },
+}
+
+impl AgentSpeakTerm {
+    /// The formula that it is; `None`: a value.
+    pub fn as_formula(&self) -> Option<AgentSpeakFormula<'_>> {
+        match &self.kind {
+            TermKind::Bool(b) => Some(AgentSpeakFormula::Truth(*b)),
+            TermKind::Literal(l) => Some(AgentSpeakFormula::Literal(l)),
+            TermKind::Not(inner) => Some(AgentSpeakFormula::Not(inner)),
+            TermKind::Binary { op, left, right } => match op.sort() {
+                AgentSpeakOperatorSort::Connective => {
+                    Some(AgentSpeakFormula::Connective { op: *op, left, right })
+                }
+                AgentSpeakOperatorSort::Order | AgentSpeakOperatorSort::Likeness => {
+                    Some(AgentSpeakFormula::Relation { op: *op, left, right })
+                }
+                AgentSpeakOperatorSort::Arithmetic => None,
+            },
+            TermKind::Int(_)
+            | TermKind::Float(_)
+            | TermKind::Text(_)
+            | TermKind::Any
+            | TermKind::Var { .. }
+            | TermKind::List { .. }
+            | TermKind::Neg(_)
+            | TermKind::Body(_)
+            | TermKind::Trigger(_)
+            | TermKind::Plan => None,
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AgentSpeakOperator {
     Or,
@@ -166,34 +215,42 @@ pub enum AgentSpeakOperator {
     Pow,
 }
 
+/// What sort of operator one is, by what it takes and gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AgentSpeakOperatorSort {
+    /// Of formulas.
+    Connective,
+    /// Which of two terms is less.
+    Order,
+    /// Whether, or how, two terms are alike.
+    Likeness,
+    Arithmetic,
+}
+
 impl AgentSpeakOperator {
+    pub fn sort(self) -> AgentSpeakOperatorSort {
+        match self {
+            Self::Or | Self::And => AgentSpeakOperatorSort::Connective,
+            Self::Less | Self::LessEqual | Self::Greater | Self::GreaterEqual => {
+                AgentSpeakOperatorSort::Order
+            }
+            Self::Equal | Self::Different | Self::Unify | Self::NotUnify | Self::Univ => {
+                AgentSpeakOperatorSort::Likeness
+            }
+            Self::Add | Self::Sub | Self::Mul | Self::Div | Self::IntDiv | Self::Mod | Self::Pow => {
+                AgentSpeakOperatorSort::Arithmetic
+            }
+        }
+    }
+
     /// Whether it compares two terms.
     pub fn is_relation(self) -> bool {
-        match self {
-            Self::Less
-            | Self::LessEqual
-            | Self::Greater
-            | Self::GreaterEqual
-            | Self::Equal
-            | Self::Different
-            | Self::Unify
-            | Self::NotUnify
-            | Self::Univ => true,
-            Self::Or
-            | Self::And
-            | Self::Add
-            | Self::Sub
-            | Self::Mul
-            | Self::Div
-            | Self::IntDiv
-            | Self::Mod
-            | Self::Pow => false,
-        }
+        matches!(self.sort(), AgentSpeakOperatorSort::Order | AgentSpeakOperatorSort::Likeness)
     }
 
     /// Whether it computes a number.
     pub fn is_arithmetic(self) -> bool {
-        !self.is_relation() && !matches!(self, Self::Or | Self::And)
+        self.sort() == AgentSpeakOperatorSort::Arithmetic
     }
 }
 
@@ -247,21 +304,15 @@ pub enum AgentSpeakStepKind {
     Block(Vec<AgentSpeakStep>),
 }
 
-/// Calls `f` with each step, those within blocks too, in the order of the text.
-pub fn each_step<'a>(steps: &'a [AgentSpeakStep], f: &mut dyn FnMut(&'a AgentSpeakStep)) {
-    for step in steps {
-        f(step);
-        match &step.kind {
-            AgentSpeakStepKind::If { then, otherwise, .. } => {
-                each_step(then, f);
-                each_step(otherwise, f);
-            }
+impl AgentSpeakStep {
+    /// The steps within it; `None`: it is a plain step.
+    pub fn blocks(&self) -> Option<Vec<&[AgentSpeakStep]>> {
+        match &self.kind {
+            AgentSpeakStepKind::If { then, otherwise, .. } => Some(vec![then, otherwise]),
             AgentSpeakStepKind::While { body, .. }
             | AgentSpeakStepKind::For { body, .. }
-            | AgentSpeakStepKind::Block(body) => {
-                each_step(body, f);
-            }
-            AgentSpeakStepKind::Fork { branches, .. } => branches.iter().for_each(|b| each_step(b, f)),
+            | AgentSpeakStepKind::Block(body) => Some(vec![body]),
+            AgentSpeakStepKind::Fork { branches, .. } => Some(branches.iter().map(Vec::as_slice).collect()),
             AgentSpeakStepKind::Achieve(_)
             | AgentSpeakStepKind::Spawn(_)
             | AgentSpeakStepKind::Query(_)
@@ -269,8 +320,16 @@ pub fn each_step<'a>(steps: &'a [AgentSpeakStep], f: &mut dyn FnMut(&'a AgentSpe
             | AgentSpeakStepKind::Remove(_)
             | AgentSpeakStepKind::Replace(_)
             | AgentSpeakStepKind::Action(_)
-            | AgentSpeakStepKind::Formula(_) => {}
+            | AgentSpeakStepKind::Formula(_) => None,
         }
+    }
+}
+
+/// Calls `f` with each step, those within blocks too, in the order of the text.
+pub fn each_step<'a>(steps: &'a [AgentSpeakStep], f: &mut dyn FnMut(&'a AgentSpeakStep)) {
+    for step in steps {
+        f(step);
+        step.blocks().into_iter().flatten().for_each(|block| each_step(block, f));
     }
 }
 

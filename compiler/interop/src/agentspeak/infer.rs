@@ -6,9 +6,9 @@ use indexmap::IndexMap;
 
 use super::{
     ast::{
-        AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakPlan,
-        AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm, AgentSpeakTriggerKind, PredicateIndicator,
-        TermKind,
+        AgentSpeakFormula, AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakOperator,
+        AgentSpeakOperatorSort, AgentSpeakPlan, AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm,
+        AgentSpeakTriggerKind, PredicateIndicator, TermKind,
     },
     internal,
     system::AgentSpeakSystem,
@@ -124,31 +124,16 @@ impl TypeInferrer {
 
     /// The steps within a step.
     fn within(&mut self, step: &AgentSpeakStep) {
-        match &step.kind {
-            AgentSpeakStepKind::If { then, otherwise, .. } => {
-                self.steps(then);
-                self.steps(otherwise);
-            }
-            AgentSpeakStepKind::While { body, .. }
-            | AgentSpeakStepKind::For { body, .. }
-            | AgentSpeakStepKind::Block(body) => self.steps(body),
-            AgentSpeakStepKind::Fork { branches, .. } => branches.iter().for_each(|b| self.steps(b)),
-            AgentSpeakStepKind::Action(action) if action.functor == ".fork" => {
-                for arg in &action.args {
-                    if let TermKind::Body(body) = &arg.kind {
-                        self.steps(body);
-                    }
+        if let AgentSpeakStepKind::Action(action) = &step.kind
+            && action.functor == ".fork"
+        {
+            for arg in &action.args {
+                if let TermKind::Body(body) = &arg.kind {
+                    self.steps(body);
                 }
             }
-            AgentSpeakStepKind::Achieve(_)
-            | AgentSpeakStepKind::Spawn(_)
-            | AgentSpeakStepKind::Query(_)
-            | AgentSpeakStepKind::Add(..)
-            | AgentSpeakStepKind::Remove(_)
-            | AgentSpeakStepKind::Replace(_)
-            | AgentSpeakStepKind::Action(_)
-            | AgentSpeakStepKind::Formula(_) => {}
         }
+        step.blocks().into_iter().flatten().for_each(|block| self.steps(block));
     }
 
     fn step(&mut self, step: &AgentSpeakStep) -> Result<(), OmissionReason> {
@@ -231,42 +216,33 @@ impl TypeInferrer {
     }
 
     pub fn formula(&mut self, of: &AgentSpeakTerm) -> Result<(), OmissionReason> {
-        match &of.kind {
-            TermKind::Bool(_) => Ok(()),
-            TermKind::Literal(l) if l.is_internal() => internal::infer(self, l),
-            TermKind::Literal(l) => self.belief(l),
-            TermKind::Not(inner) => self.formula(inner),
-            TermKind::Binary { op: AgentSpeakOperator::And | AgentSpeakOperator::Or, left, right } => {
+        let Some(formula) = of.as_formula() else {
+            let is_variable = matches!(of.kind, TermKind::Var { .. });
+            let why =
+                if is_variable { "a variable cannot stand for a formula" } else { "this is no formula" };
+            return Err(why.to_owned());
+        };
+        match formula {
+            AgentSpeakFormula::Truth(_) => Ok(()),
+            AgentSpeakFormula::Literal(l) if l.is_internal() => internal::infer(self, l),
+            AgentSpeakFormula::Literal(l) => self.belief(l),
+            AgentSpeakFormula::Not(inner) => self.formula(inner),
+            AgentSpeakFormula::Connective { left, right, .. } => {
                 self.formula(left)?;
                 self.formula(right)
             }
-            TermKind::Binary { op: AgentSpeakOperator::Univ, .. } => Err("hrdsl has no `=..`".to_owned()),
-            TermKind::Binary { op, left, right } if op.is_relation() => {
+            AgentSpeakFormula::Relation { op: AgentSpeakOperator::Univ, .. } => {
+                Err("hrdsl has no `=..`".to_owned())
+            }
+            AgentSpeakFormula::Relation { op, left, right } => {
                 let (l, r) = (self.term(left)?, self.term(right)?);
                 self.types.unify(l, r)?;
-                if matches!(
-                    op,
-                    AgentSpeakOperator::Less
-                        | AgentSpeakOperator::LessEqual
-                        | AgentSpeakOperator::Greater
-                        | AgentSpeakOperator::GreaterEqual
-                ) {
+                if op.sort() == AgentSpeakOperatorSort::Order {
                     let number = self.types.number(false);
                     self.types.unify(l, number)?;
                 }
                 Ok(())
             }
-            TermKind::Var { .. } => Err("a variable cannot stand for a formula".to_owned()),
-            TermKind::Int(_)
-            | TermKind::Float(_)
-            | TermKind::Text(_)
-            | TermKind::Any
-            | TermKind::List { .. }
-            | TermKind::Neg(_)
-            | TermKind::Binary { .. }
-            | TermKind::Body(_)
-            | TermKind::Trigger(_)
-            | TermKind::Plan => Err("this is no formula".to_owned()),
         }
     }
 

@@ -41,6 +41,18 @@ pub struct AgentSpeakNames {
     ambiguous: IndexSet<String>,
 }
 
+impl AgentSpeakNames {
+    /// What a belief is called; one that no agent has keeps its own name.
+    pub fn belief(&self, key: &PredicateIndicator) -> String {
+        self.beliefs.get(key).cloned().unwrap_or_else(|| ident(&key.0))
+    }
+
+    /// What a goal is called; one that no agent has keeps its own name.
+    pub fn goal(&self, key: &PredicateIndicator) -> String {
+        self.goals.get(key).cloned().unwrap_or_else(|| ident(&key.0))
+    }
+}
+
 /// A name of the language, with its namespace.
 fn clean(name: &str) -> String {
     crate::exchange::name::clean(&name.replace("::", "_"))

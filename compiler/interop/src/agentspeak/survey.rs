@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 
 use super::{
     ast::{
-        AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakPlan, AgentSpeakProgram,
+        AgentSpeakFormula, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakPlan, AgentSpeakProgram,
         AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm, AgentSpeakTriggerKind, BeliefAddition,
         PredicateIndicator, TermKind, each_step, each_term,
     },
@@ -156,33 +156,24 @@ impl PredicateSurvey {
     }
 
     fn formula(&mut self, of: &AgentSpeakTerm, waits: bool) {
-        match &of.kind {
-            TermKind::Literal(l) if l.is_internal() => self.internal(l),
-            TermKind::Literal(l) => {
+        if let (true, TermKind::Trigger(t)) = (waits, &of.kind) {
+            self.belief_term(&t.of, OccurrenceKind::Waited);
+        }
+        match of.as_formula() {
+            Some(AgentSpeakFormula::Literal(l)) if l.is_internal() => self.internal(l),
+            Some(AgentSpeakFormula::Literal(l)) => {
                 let mut open = false;
                 l.args
                     .iter()
                     .for_each(|a| each_term(a, &mut |t| open |= matches!(t.kind, TermKind::Var { .. })));
                 self.belief(l, if waits { OccurrenceKind::Waited } else { OccurrenceKind::Tested(open) });
             }
-            TermKind::Not(inner) => self.formula(inner, waits),
-            TermKind::Binary { op: AgentSpeakOperator::And | AgentSpeakOperator::Or, left, right } => {
+            Some(AgentSpeakFormula::Not(inner)) => self.formula(inner, waits),
+            Some(AgentSpeakFormula::Connective { left, right, .. }) => {
                 self.formula(left, waits);
                 self.formula(right, waits);
             }
-            TermKind::Trigger(t) if waits => self.belief_term(&t.of, OccurrenceKind::Waited),
-            TermKind::Trigger(_)
-            | TermKind::Binary { .. }
-            | TermKind::Int(_)
-            | TermKind::Float(_)
-            | TermKind::Text(_)
-            | TermKind::Bool(_)
-            | TermKind::Any
-            | TermKind::Var { .. }
-            | TermKind::List { .. }
-            | TermKind::Neg(_)
-            | TermKind::Body(_)
-            | TermKind::Plan => {}
+            Some(AgentSpeakFormula::Truth(_) | AgentSpeakFormula::Relation { .. }) | None => {}
         }
     }
 

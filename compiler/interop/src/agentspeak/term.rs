@@ -7,21 +7,10 @@ pub type OmissionReason = String;
 
 /// The literal that a term is.
 pub fn literal(of: &AgentSpeakTerm) -> Result<&AgentSpeakLiteral, OmissionReason> {
-    match &of.kind {
-        TermKind::Literal(l) => Ok(l),
-        TermKind::Int(_)
-        | TermKind::Float(_)
-        | TermKind::Text(_)
-        | TermKind::Bool(_)
-        | TermKind::Any
-        | TermKind::Var { .. }
-        | TermKind::List { .. }
-        | TermKind::Not(_)
-        | TermKind::Neg(_)
-        | TermKind::Binary { .. }
-        | TermKind::Body(_)
-        | TermKind::Trigger(_)
-        | TermKind::Plan => Err("what this is about is known only when it runs".to_owned()),
+    if let TermKind::Literal(literal) = &of.kind {
+        Ok(literal)
+    } else {
+        Err("what this is about is known only when it runs".to_owned())
     }
 }
 
@@ -74,9 +63,12 @@ pub fn message(of: &AgentSpeakLiteral) -> Result<AgentSpeakMessage<'_>, Omission
     let Some((to, said, content, rest)) = parts else {
         return Err(format!("`{}` has other arguments", of.functor));
     };
-    let Some(name) = atom(said).filter(|p| performative(p).is_some()) else {
-        return Err(format!("hrdsl has no messages of the sort `{}`", atom(said).unwrap_or("?")));
+    let Some(name) = atom(said) else {
+        return Err("of what sort this message is is known only when it runs".to_owned());
     };
+    if performative(name).is_none() {
+        return Err(format!("hrdsl has no messages of the sort `{name}`"));
+    }
     if !rest.is_empty() && !matches!(name, "askOne" | "askAll") {
         return Err(format!("a message of the sort `{name}` has no answer"));
     }

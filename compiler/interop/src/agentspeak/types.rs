@@ -247,15 +247,10 @@ impl UnificationTable {
 
     /// Whether the values of a class are agents' names.
     pub fn is_of_agents(&self, id: TyId) -> bool {
-        match self.get(id) {
-            AgentSpeakType::Atoms { names, agent } => *agent || names.iter().all(|n| self.is_agent(n)),
-            AgentSpeakType::Unknown
-            | AgentSpeakType::Number { .. }
-            | AgentSpeakType::Text
-            | AgentSpeakType::Bool
-            | AgentSpeakType::List(_)
-            | AgentSpeakType::Struct(..) => false,
-        }
+        matches!(
+            self.get(id),
+            AgentSpeakType::Atoms { names, agent } if *agent || names.iter().all(|n| self.is_agent(n))
+        )
     }
 
     /// In a few words, for people.

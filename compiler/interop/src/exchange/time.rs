@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Nanos, Program,
-    ta::{Automaton, EdgeAssignment, QueryFormula, QueryKind, TimeSum},
+    ta::{Automaton, EdgeAssignment, QueryFormula, TimeSum},
     value::SECOND,
 };
 
@@ -28,19 +28,7 @@ pub(crate) fn unit(program: &Program, automata: &[&Automaton]) -> Nanos {
         }
     }
     for query in &program.queries {
-        match &query.ask {
-            QueryKind::Possibly(f)
-            | QueryKind::Invariantly(f)
-            | QueryKind::PotentiallyAlways(f)
-            | QueryKind::Eventually(f) => {
-                formula(f, &mut see);
-            }
-            QueryKind::LeadsTo(f, g) => {
-                formula(f, &mut see);
-                formula(g, &mut see);
-            }
-            QueryKind::Sup { when, .. } | QueryKind::Inf { when, .. } => formula(when, &mut see),
-        }
+        query.ask.formulas().into_iter().for_each(|f| formula(f, &mut see));
     }
     Nanos::try_from(all).ok().filter(|n| *n > 0).unwrap_or(SECOND)
 }

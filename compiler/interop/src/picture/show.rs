@@ -28,24 +28,14 @@ impl<'p> AutomatonPrinter<'p> {
     /// In an edge: with the names of its selects, and of the parameters of what it takes.
     pub fn edge(&self, edge: &Edge) -> Self {
         let mut binders: Vec<String> = edge.selects.iter().map(|s| s.name.clone()).collect();
-        let (args, names): (&[ReceiveArg], Vec<&str>) = match &edge.sync {
-            SyncLabel::Receive { event, args } => {
-                (args, self.program.event(*event).params.iter().map(|p| p.name.as_str()).collect())
-            }
-            SyncLabel::Accept { channel, args } => {
-                let channel = &self.program.channels[usize::from(channel.0)];
-                (args, channel.params.iter().map(|p| p.name.as_str()).collect())
-            }
-            SyncLabel::Internal
-            | SyncLabel::Send { .. }
-            | SyncLabel::Offer { .. }
-            | SyncLabel::Join { .. } => (&[], Vec::new()),
-        };
-        for (arg, name) in args.iter().zip(names) {
-            match arg {
-                ReceiveArg::Bind => binders.push(name.to_owned()),
-                ReceiveArg::Match(_) => {}
-            }
+        let bind = |arg: &ReceiveArg, name: &String| (*arg == ReceiveArg::Bind).then(|| name.clone());
+        if let Some((event, args)) = edge.sync.as_receive() {
+            let params = &self.program.event(event).params;
+            binders.extend(args.iter().zip(params).filter_map(|(arg, param)| bind(arg, &param.name)));
+        }
+        if let Some((channel, args)) = edge.sync.as_accept() {
+            let params = &self.program.channel(channel).params;
+            binders.extend(args.iter().zip(params).filter_map(|(arg, param)| bind(arg, &param.name)));
         }
         Self { binders, ..*self }
     }
@@ -103,13 +93,7 @@ impl<'p> AutomatonPrinter<'p> {
                 (format!("[{}]", items.join(", ")), 9)
             }
             Expr::Element(place) => (self.place(place), 9),
-            Expr::Apply(f, args) => {
-                let name = known_name(
-                    "function",
-                    self.program.functions.get(usize::from(f.0)).map(|f| f.name.as_str()),
-                );
-                (self.call(name, args), 9)
-            }
+            Expr::Apply(f, args) => (self.call(&self.program.function(*f).name, args), 9),
         };
         if level < around { format!("({text})") } else { text }
     }

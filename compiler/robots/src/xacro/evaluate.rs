@@ -253,18 +253,10 @@ fn path_of(expr: &XacroExpr) -> Option<Vec<String>> {
 
 /// `value.name`: the key of a dictionary.
 fn member(of: &XacroValue, name: &str) -> EvalResult<XacroValue> {
-    match of {
-        XacroValue::Dict(_) => indexed(of, &XacroValue::text(name)?),
-        XacroValue::None
-        | XacroValue::Bool(_)
-        | XacroValue::Int(_)
-        | XacroValue::Float(_)
-        | XacroValue::Text(_)
-        | XacroValue::List(_)
-        | XacroValue::Tuple(_)
-        | XacroValue::Function(_) => {
-            wrong(format!("{} has no `{name}`", of.noun()), "only dictionaries have keys behind a point")
-        }
+    if let XacroValue::Dict(_) = of {
+        indexed(of, &XacroValue::text(name)?)
+    } else {
+        wrong(format!("{} has no `{name}`", of.noun()), "only dictionaries have keys behind a point")
     }
 }
 

@@ -159,17 +159,7 @@ impl XacroValue {
 
     /// As a number, if it is one; booleans are.
     pub fn number(&self) -> Option<f64> {
-        match self {
-            Self::Bool(value) => Some(f64::from(u8::from(*value))),
-            Self::Int(value) => Some(*value as f64),
-            Self::Float(value) => Some(*value),
-            Self::None
-            | Self::Text(_)
-            | Self::List(_)
-            | Self::Tuple(_)
-            | Self::Dict(_)
-            | Self::Function(_) => None,
-        }
+        if let Self::Float(value) = self { Some(*value) } else { self.whole().map(|n| n as f64) }
     }
 
     /// As a whole number, if it is one; booleans are.

@@ -4,7 +4,7 @@ use crate::print::marks::BlockKind;
 use crate::print::shape::{BlockShape, MemberPart, MemberShape};
 use crate::print::spacing::{blank, ends_line};
 use crate::print::trivia::PrintToken;
-use crate::token::TokenKind;
+use crate::token::{TokenKind, TokenTrait};
 
 /// A text on one line, and where its columns start.
 #[derive(Debug, Default)]
@@ -131,14 +131,7 @@ pub(super) fn columns(
     let find = |kind, from| find(toks, kind, from, member.end);
     let start = member.first + 1;
     match first {
-        TokenKind::Const
-        | TokenKind::Network
-        | TokenKind::Part
-        | TokenKind::Belief
-        | TokenKind::Agent
-        | TokenKind::Automaton
-        | TokenKind::Require
-        | TokenKind::Cross => (Some(first), [find(TokenKind::Assign, start), None]),
+        kind if kind.is(TokenTrait::AlignedAtAssign) => (Some(first), [find(TokenKind::Assign, start), None]),
         TokenKind::Cover => {
             let assign = find(TokenKind::Assign, start);
             (Some(first), [assign, assign.and_then(|at| find(TokenKind::Bins, at))])

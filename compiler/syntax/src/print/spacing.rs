@@ -1,7 +1,7 @@
 //! Blanks between two tokens, and where a line may break.
 
 use crate::print::trivia::PrintToken;
-use crate::token::{KeywordTrait, TokenKind};
+use crate::token::{TokenKind, TokenTrait};
 
 /// How weakly two tokens hold together: the lower, the sooner a line breaks there.
 pub(super) type BindingStrength = u16;
@@ -24,13 +24,7 @@ pub(super) fn blank(toks: &[PrintToken<'_>], at: usize) -> bool {
         return false;
     }
     match p.kind {
-        TokenKind::LParen
-        | TokenKind::LBracket
-        | TokenKind::Dot
-        | TokenKind::Internal
-        | TokenKind::At_
-        | TokenKind::Tilde
-        | TokenKind::MinusPlus => return false,
+        kind if kind.is(TokenTrait::NoBlankAfter) => return false,
         // A participant that may stay away, and not a question.
         TokenKind::Question if n.kind != TokenKind::Pipe => return false,
         TokenKind::Bang | TokenKind::BangBang => {
@@ -89,7 +83,7 @@ fn operator(n: &PrintToken<'_>) -> Option<BindingStrength> {
 
 /// A word that starts a clause, after the end of another one.
 fn clause(p: TokenKind, n: TokenKind) -> bool {
-    n.is(KeywordTrait::Clause) && p.ends_operand()
+    n.is(TokenTrait::Clause) && p.ends_operand()
 }
 
 /// A line ends before the token at `at`, whatever the room: for a comment, or because the author decided so and may.
@@ -113,7 +107,7 @@ fn would_join(toks: &[PrintToken<'_>], before: usize) -> bool {
             matches!(n.kind, TokenKind::Ident | TokenKind::Percent) && !counts
         }
         TokenKind::Quantity => {
-            p.text.ends_with('%') && n.kind.starts_operand() && !n.kind.is(KeywordTrait::Sensing)
+            p.text.ends_with('%') && n.kind.starts_operand() && !n.kind.is(TokenTrait::Sensing)
         }
         _ => false,
     }

@@ -8,7 +8,7 @@ use super::RecoveringParser;
 use crate::ast::{StepSyntax, StepSyntaxKind};
 use crate::context::ParsedUnit;
 use crate::run::run;
-use crate::token::{Lexeme, TokenKind};
+use crate::token::{Lexeme, TokenKind, TokenTrait};
 use crate::{
     expected::ParseFault,
     report::{found, report},
@@ -299,34 +299,10 @@ fn filled(kind: StepSyntaxKind, bodies: &mut Vec<Vec<StepSyntax>>) -> StepSyntax
 
 /// A token that starts a step of a plan.
 fn starts_step(kind: TokenKind) -> bool {
-    kind.starts_call()
-        || matches!(
-            kind,
-            TokenKind::Await
-                | TokenKind::If
-                | TokenKind::Internal
-                | TokenKind::Bang
-                | TokenKind::BangBang
-                | TokenKind::Question
-                | TokenKind::Plus
-                | TokenKind::Minus
-                | TokenKind::MinusPlus
-        )
+    kind.starts_call() || kind.is(TokenTrait::StartsStep)
 }
 
 /// A token that starts a step and, at the start of a line, is nothing else.
 fn starts_only_steps(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::Await
-            | TokenKind::If
-            | TokenKind::While
-            | TokenKind::For
-            | TokenKind::Fork
-            | TokenKind::Internal
-            | TokenKind::Bang
-            | TokenKind::BangBang
-            | TokenKind::Question
-            | TokenKind::MinusPlus
-    )
+    kind.is(TokenTrait::StartsOnlyStep)
 }

@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, sync::Arc};
 use hrdsl_ir::{
     Program,
     abstract_test::BeliefSet,
-    bdi::{Agent, AgentId, BeliefId, InitialFact, InternalAct, PlanContext},
+    bdi::{Agent, AgentId, BeliefId, InitialFact, PlanContext},
     suite::{BeliefChoice, BeliefCondition},
 };
 
@@ -144,8 +144,8 @@ impl<'p> ConditionEvaluator<'p> {
 
 /// As an agent does when it starts; a fact that does not fit its declaration is left out.
 fn believe(mind: &mut MentalState<'_>, fact: &InitialFact) {
-    let declared = mind.agent.and_then(|a| a.beliefs.get(usize::from(fact.belief.0)));
-    if let Some(args) = declared.and_then(|b| typed(&b.params, GroundArguments::from_slice(&fact.args))) {
+    let declared = mind.agent.belief(fact.belief);
+    if let Some(args) = typed(&declared.params, GroundArguments::from_slice(&fact.args)) {
         let annotations = sourced(FactAnnotations::from_slice(&fact.annotations));
         mind.beliefs.insert(fact.belief, &args, annotations);
     }
@@ -165,22 +165,7 @@ fn reads(agent: &Agent, formula: &PlanContext) -> BTreeSet<BeliefId> {
             }
             PlanContext::Not(inner) => open.push(inner),
             PlanContext::And(all) | PlanContext::Or(all) => open.extend(all),
-            PlanContext::Internal(internal, _) => match &**internal {
-                InternalAct::FindAll { formula, .. } | InternalAct::Count { formula, .. } => {
-                    open.push(formula)
-                }
-                InternalAct::Member { .. }
-                | InternalAct::Apply { .. }
-                | InternalAct::Holds { .. }
-                | InternalAct::Intend { .. }
-                | InternalAct::Desire { .. }
-                | InternalAct::Suspended { .. }
-                | InternalAct::Random { .. }
-                | InternalAct::Shuffle { .. }
-                | InternalAct::Time { .. }
-                | InternalAct::MyName { .. }
-                | InternalAct::AllNames { .. } => {}
-            },
+            PlanContext::Internal(action, _) => open.extend(action.formula()),
         }
     }
     reads

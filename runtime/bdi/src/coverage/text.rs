@@ -14,7 +14,7 @@ use crate::show::performative as performative_name;
 /// `Human.table#1 -> leg#2 (step 3)`.
 #[must_use]
 pub fn place(program: &Program, agent: &Agent, item: AgentCoverItem) -> String {
-    let label = |plan: u16| known_name("plan", agent.plans.get(usize::from(plan)).map(|p| p.label.as_str()));
+    let label = |plan: u16| &agent.plan(plan).label;
     let owner = &agent.name;
     match item {
         AgentCoverItem::Selected(plan)
@@ -44,29 +44,25 @@ pub fn place(program: &Program, agent: &Agent, item: AgentCoverItem) -> String {
 
 /// `tell seen`
 fn message(program: &Program, agent: &Agent, plan: u16, site: u16) -> String {
-    let name = |content: ContentId| {
-        known_name(
-            "subject of messages",
-            program.contents.get(usize::from(content.0)).map(|c| c.name.as_str()),
-        )
-    };
-    let steps = agent.plans.get(usize::from(plan)).map(sites).unwrap_or_default();
-    match steps.get(usize::from(site)).map(|s| &s.kind) {
+    let name = |content: ContentId| &program.content(content).name;
+    let steps = sites(agent.plan(plan));
+    let said = match steps.get(usize::from(site)).map(|s| &s.kind) {
         Some(PlanStepKind::Send { performative, content, .. }) => {
-            format!("{} {}", performative_name(*performative), name(*content))
+            Some(format!("{} {}", performative_name(*performative), name(*content)))
         }
-        Some(PlanStepKind::Ask { content, .. }) => format!("ask {}", name(*content)),
-        Some(PlanStepKind::AskAll { content, .. }) => format!("ask_all {}", name(*content)),
-        Some(_) | None => known_name("message in this step", None).to_owned(),
-    }
+        Some(PlanStepKind::Ask { content, .. }) => Some(format!("ask {}", name(*content))),
+        Some(PlanStepKind::AskAll { content, .. }) => Some(format!("ask_all {}", name(*content))),
+        Some(_) | None => None,
+    };
+    known_name("message in this step", said.as_deref()).to_owned()
 }
 
 pub(super) fn belief(agent: &Agent, id: BeliefId) -> &str {
-    known_name("belief", agent.beliefs.get(usize::from(id.0)).map(|b| b.name.as_str()))
+    &agent.belief(id).name
 }
 
 pub(super) fn goal(agent: &Agent, id: GoalId) -> &str {
-    known_name("goal", agent.goals.get(usize::from(id.0)).map(|g| g.name.as_str()))
+    &agent.goal(id).name
 }
 
 /// A trigger without its arguments: `+!leg`, `on discarded`.
@@ -79,12 +75,7 @@ pub fn trigger(program: &Program, agent: &Agent, on: TriggerOn) -> String {
         TriggerOn::GoalFailed(g) => format!("-!{}", goal(agent, g)),
         TriggerOn::TestAdded(b) => format!("+?{}", belief(agent, b)),
         TriggerOn::TestFailed(b) => format!("-?{}", belief(agent, b)),
-        TriggerOn::Perceived(e) => {
-            format!(
-                "on {}",
-                known_name("event", program.events.get(usize::from(e.0)).map(|e| e.name.as_str()))
-            )
-        }
+        TriggerOn::Perceived(e) => format!("on {}", program.event(e).name),
     }
 }
 

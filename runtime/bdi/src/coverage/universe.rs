@@ -58,7 +58,7 @@ pub(super) fn numbered(agent: &Agent) -> impl Iterator<Item = (u16, &Plan)> {
     (0u16..).zip(&agent.plans)
 }
 
-/// All items of an agent, by kind in the order of [`CoverItemKind::ALL`], in each in the order of the text.
+/// All items of an agent, by kind in the order of [`CoverItemKind::ALL`](hrdsl_ir::suite::CoverItemKind::ALL), in each in the order of the text.
 #[must_use]
 pub fn universe(agent: &Agent) -> Vec<AgentCoverItem> {
     let selected = numbered(agent).map(|(p, _)| AgentCoverItem::Selected(p));

@@ -5,11 +5,10 @@ use std::collections::BTreeSet;
 use hrdsl_ir::{
     Program,
     bdi::{
-        Agent, AgentId, BeliefId, ContentId, GoalId, MessageSubject, Performative, Plan, PlanContext,
-        PlanStepKind, TriggerOn,
+        Agent, AgentId, BeliefId, ContentId, GoalId, MessageSubject, Performative, Plan, PlanStepKind,
+        TriggerOn,
     },
     cover_item::{AgentCoverItem, ApplicableCount},
-    known_name,
 };
 
 use super::{
@@ -90,7 +89,7 @@ impl<'a> TeamMember<'a> {
     }
 
     fn label(&self, plan: u16) -> &'a str {
-        known_name("plan", self.plan(plan).map(|p| p.label.as_str()))
+        &self.agent.plan(plan).label
     }
 
     fn selected(&self, plan: u16) -> u64 {
@@ -181,16 +180,7 @@ impl<'a> TeamMember<'a> {
         let blocked = self.measured.blocked.get(usize::from(plan))?;
         let most = blocked.iter().copied().max().filter(|n| *n > 0)?;
         let at = blocked.iter().position(|n| *n == most)?;
-        let part = match &declared.context {
-            PlanContext::And(parts) => parts.get(at)?,
-            PlanContext::True
-            | PlanContext::Belief(_)
-            | PlanContext::Not(_)
-            | PlanContext::Or(_)
-            | PlanContext::Test(_)
-            | PlanContext::Unify(..)
-            | PlanContext::Internal(_, _) => &declared.context,
-        };
+        let part = declared.context.conjuncts().get(at)?;
         let text = show::context(self.team.program, self.agent, &declared.vars, part);
         Some(match blocked.len() {
             1 => format!("`{text}`"),
@@ -304,13 +294,8 @@ impl<'a> TeamMember<'a> {
             }
             TriggerOn::GoalFailed(wanted) => self.why_never_failed(wanted, depth),
             TriggerOn::BeliefAdded(wanted) => {
-                let percept = self.agent.beliefs.get(usize::from(wanted.0)).and_then(|b| b.percept);
-                if let Some(event) = percept {
-                    let name = known_name(
-                        "event",
-                        program.events.get(usize::from(event.0)).map(|e| e.name.as_str()),
-                    );
-                    return format!("`{name}` was never perceived");
+                if let Some(event) = self.agent.belief(wanted).percept {
+                    return format!("`{}` was never perceived", program.event(event).name);
                 }
                 let is_it =
                     |content: &ContentId| self.subject(*content) == Some(MessageSubject::Belief(wanted));
@@ -334,16 +319,11 @@ impl<'a> TeamMember<'a> {
             TriggerOn::TestFailed(wanted) => {
                 format!("no plan for `+?{}` failed", belief(self.agent, wanted))
             }
-            TriggerOn::Perceived(event) => match program.events.get(usize::from(event.0)) {
-                Some(e) => {
-                    let maker = known_name(
-                        "actor",
-                        program.actors.get(usize::from(e.from.0)).map(|a| a.name.as_str()),
-                    );
-                    format!("`{maker}` never made `{}` when the agent could perceive it", e.name)
-                }
-                None => "there is no such event".to_owned(),
-            },
+            TriggerOn::Perceived(event) => {
+                let event = program.event(event);
+                let maker = &program.actor(event.from).name;
+                format!("`{maker}` never made `{}` when the agent could perceive it", event.name)
+            }
         }
     }
 

@@ -8,7 +8,9 @@ use hrdsl_ir::{
     value::seconds,
 };
 
-use super::{AnswerSource, BeliefQueryError, FormulaPosition, QuerySolver, SolverContinuation};
+use super::{
+    AnswerCollection, AnswerSource, BeliefQueryError, FormulaPosition, QuerySolver, SolverContinuation,
+};
 use crate::{
     dice::AgentRng,
     mind::{GoalAttitude, MentalState},
@@ -26,10 +28,13 @@ impl<'p> QuerySolver<'p> {
         let base = at.base as usize;
         let value = |e, slots: &[VariableSlot]| eval(e, &slots[base..]);
         let (out, result) = match internal {
-            InternalAct::FindAll { template, formula, .. } => {
-                return Ok(Some(self.collect(internal, formula, Some(template), at)));
+            InternalAct::FindAll { template, formula, set, out } => {
+                let into = if *set { AnswerCollection::Set { out } } else { AnswerCollection::List { out } };
+                return Ok(Some(self.collect(into, formula, Some(template), at)));
             }
-            InternalAct::Count { formula, .. } => return Ok(Some(self.collect(internal, formula, None, at))),
+            InternalAct::Count { formula, out } => {
+                return Ok(Some(self.collect(AnswerCollection::Count { out }, formula, None, at)));
+            }
             InternalAct::Member { element, list } => {
                 let list = value(list, &self.slots)?.as_list().ok_or(EvalError::Type)?;
                 return self.member(element, list, at);
@@ -117,12 +122,12 @@ impl<'p> QuerySolver<'p> {
 
     fn collect(
         &mut self,
-        what: &'p InternalAct,
+        into: AnswerCollection<'p>,
         formula: &'p PlanContext,
         template: Option<&'p hrdsl_ir::Expr>,
         at: FormulaPosition,
     ) -> u32 {
-        self.choose(AnswerSource::Collection { start: self.collected.len(), what }, at);
+        self.choose(AnswerSource::Collection { start: self.collected.len(), into }, at);
         let end = self.push(SolverContinuation::Collected(template), at);
         self.push(
             SolverContinuation::Goals(std::slice::from_ref(formula)),
@@ -156,31 +161,18 @@ impl<'p> QuerySolver<'p> {
     pub(super) fn gathered(
         &mut self,
         start: usize,
-        what: &'p InternalAct,
+        into: AnswerCollection<'p>,
         at: FormulaPosition,
     ) -> Result<Option<u32>, BeliefQueryError> {
         let mut all: Vec<Value> = self.collected.drain(start..).collect();
-        let (out, value) = match what {
-            InternalAct::FindAll { set, out, .. } => {
-                if *set {
-                    all.sort_by(|a, b| order(*a, *b));
-                    all.dedup_by(|a, b| same(*a, *b));
-                }
+        let (out, value) = match into {
+            AnswerCollection::List { out } => (out, Value::List(List::of(&all))),
+            AnswerCollection::Set { out } => {
+                all.sort_by(|a, b| order(*a, *b));
+                all.dedup_by(|a, b| same(*a, *b));
                 (out, Value::List(List::of(&all)))
             }
-            InternalAct::Count { out, .. } => (out, Value::Int(all.len() as i64)),
-            // INVARIANT: only these two collect.
-            InternalAct::Member { .. }
-            | InternalAct::Apply { .. }
-            | InternalAct::Holds { .. }
-            | InternalAct::Intend { .. }
-            | InternalAct::Desire { .. }
-            | InternalAct::Suspended { .. }
-            | InternalAct::Random { .. }
-            | InternalAct::Shuffle { .. }
-            | InternalAct::Time { .. }
-            | InternalAct::MyName { .. }
-            | InternalAct::AllNames { .. } => return Ok(None),
+            AnswerCollection::Count { out } => (out, Value::Int(all.len() as i64)),
         };
         Ok(self.matches(out, value, at)?.then_some(at.next))
     }

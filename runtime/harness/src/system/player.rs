@@ -11,7 +11,7 @@ use super::{
     mailbox::HeardEvent,
     parameters::ParameterTree,
     program::{RequestWait, ServedProgram},
-    seam::{PlanForm, RequestTicket, SystemActor, SystemAnswer, SystemRequest},
+    seam::{CallRequest, PlanForm, RequestTicket, SystemActor, SystemAnswer, SystemRequest},
     vocabulary::{ActorVocabulary, refuse},
 };
 use crate::{
@@ -23,7 +23,7 @@ use crate::{
     player::{ActorPlayer, HarnessError, PlayerContext},
     port::{PortDeclaration, PortHistory},
     stage::WorldStage,
-    world::{CommandId, PlannedWay},
+    world::{CommandId, PlannedTrajectory},
 };
 
 /// Plays the system actor by its programs, each a [`SystemActor`].
@@ -179,7 +179,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 Answer(asked(cx, |stage| stage.state(&device, &what).map(SystemAnswer::Numbers)))
             }
             SystemRequest::Plan { device, wanted, form } => {
-                Answer(asked(cx, |stage| stage.plan(&device, &wanted).map(|way| told_way(way, form))))
+                Answer(asked(cx, |stage| stage.plan(&device, &wanted).map(|way| told_trajectory(way, form))))
             }
             SystemRequest::Machine(step) => Answer(self.machine(index, step, cx)),
             SystemRequest::List => Answer(self.listed(index)),
@@ -205,13 +205,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
                 let published = self.graph.publish(index, port, &message);
                 Answer(self.told(published, cx)?)
             }
-            request @ (SystemRequest::Call { .. }
-            | SystemRequest::Respond { .. }
-            | SystemRequest::Accept { .. }
-            | SystemRequest::Feedback { .. }
-            | SystemRequest::AnswerCancel { .. }
-            | SystemRequest::Finish { .. }
-            | SystemRequest::Cancel(_)) => {
+            SystemRequest::Call(request) => {
                 let called = self.called(index, request);
                 Answer(self.told(called, cx)?)
             }
@@ -277,40 +271,19 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
         Ok(out)
     }
 
-    /// Calls of services and goals of actions; nothing else has such an outcome.
-    fn called(&mut self, index: ProgramIndex, request: SystemRequest) -> GraphOutcome {
+    fn called(&mut self, index: ProgramIndex, request: CallRequest) -> GraphOutcome {
         match request {
-            SystemRequest::Call { port, call, message } => self.graph.call(index, port, call, message),
-            SystemRequest::Respond { call, answer } => self.graph.respond(index, call, answer),
-            SystemRequest::Accept { call, text } => self.graph.accept(index, call, text),
-            SystemRequest::Feedback { call, message } => self.graph.feedback(index, call, message),
-            SystemRequest::AnswerCancel { call, granted, text } => {
+            CallRequest::Begin { port, call, message } => self.graph.call(index, port, call, message),
+            CallRequest::Respond { call, answer } => self.graph.respond(index, call, answer),
+            CallRequest::Accept { call, text } => self.graph.accept(index, call, text),
+            CallRequest::Feedback { call, message } => self.graph.feedback(index, call, message),
+            CallRequest::AnswerCancel { call, granted, text } => {
                 self.graph.answer_cancel(index, call, granted, text)
             }
-            SystemRequest::Finish { call, end, message, text } => {
+            CallRequest::Finish { call, end, message, text } => {
                 self.graph.finish(index, call, end, (message, text))
             }
-            SystemRequest::Cancel(which) => self.graph.cancel(index, which),
-            SystemRequest::Now
-            | SystemRequest::Done
-            | SystemRequest::Sleep { .. }
-            | SystemRequest::Wait { .. }
-            | SystemRequest::WaitFor { .. }
-            | SystemRequest::Drop { .. }
-            | SystemRequest::Read { .. }
-            | SystemRequest::Emit { .. }
-            | SystemRequest::Command(_)
-            | SystemRequest::Begin { .. }
-            | SystemRequest::State { .. }
-            | SystemRequest::Plan { .. }
-            | SystemRequest::Machine(_)
-            | SystemRequest::Parameter(_)
-            | SystemRequest::Log(_)
-            | SystemRequest::List
-            | SystemRequest::Await(_)
-            | SystemRequest::Open(_)
-            | SystemRequest::Close { .. }
-            | SystemRequest::Publish { .. } => Ok(Vec::new()),
+            CallRequest::Cancel(which) => self.graph.cancel(index, which),
         }
     }
 
@@ -422,8 +395,8 @@ fn asked(
     }
 }
 
-fn told_way(way: PlannedWay, form: PlanForm) -> SystemAnswer {
-    let PlannedWay { mut corners, points } = way;
+fn told_trajectory(way: PlannedTrajectory, form: PlanForm) -> SystemAnswer {
+    let PlannedTrajectory { mut corners, points } = way;
     match form {
         PlanForm::End => SystemAnswer::Numbers(corners.pop().unwrap_or_default()),
         PlanForm::Corners => SystemAnswer::Numbers(corners.concat()),

@@ -15,7 +15,7 @@ use crate::{
     fault::SystemFault,
     log::LogRecord,
     port::{AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortListing, QosPolicy},
-    world::{PlannedPoint, WayRequest},
+    world::{MotionPlanRequest, PlannedPoint},
 };
 
 /// Whatever plays the system actor.
@@ -93,8 +93,34 @@ pub enum SystemRequest {
         port: u64,
         message: MessageText,
     },
+    /// Do something about a call of a service or a goal of an action.
+    Call(CallRequest),
+    /// Numbers that a device can tell of itself: the angles of its joints, the place of its tool.
+    State {
+        device: String,
+        what: String,
+    },
+    /// A free path of an arm to a target.
+    Plan {
+        device: String,
+        wanted: MotionPlanRequest,
+        form: PlanForm,
+    },
+    /// A state machine of its own was declared, was begun or has moved.
+    Machine(MachineStep),
+    /// What all programs of the system share.
+    Parameter(ParameterRequest),
+    /// It logs something, which changes nothing.
+    Log(LogRecord),
+    /// It has come to its normal end.
+    Done,
+}
+
+/// What a program does about calls of services and goals of actions, its own and those of others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CallRequest {
     /// Ask a service, or send an action a goal: the answer will arrive by this number of the program's own.
-    Call {
+    Begin {
         port: u64,
         call: u64,
         message: MessageText,
@@ -104,10 +130,9 @@ pub enum SystemRequest {
         call: u64,
         answer: Result<MessageText, String>,
     },
-    /// Take a goal on.
+    /// Take a goal on; `text` says why, or how, to the client.
     Accept {
         call: u64,
-        /// Why, or how, for the client.
         text: String,
     },
     Feedback {
@@ -128,25 +153,12 @@ pub enum SystemRequest {
     },
     /// Ask for the end of a goal.
     Cancel(CanceledGoals),
-    /// Numbers that a device can tell of itself: the angles of its joints, the place of its tool.
-    State {
-        device: String,
-        what: String,
-    },
-    /// A free way of an arm to a target.
-    Plan {
-        device: String,
-        wanted: WayRequest,
-        form: PlanForm,
-    },
-    /// A state machine of its own was declared, was begun or has moved.
-    Machine(MachineStep),
-    /// What all programs of the system share.
-    Parameter(ParameterRequest),
-    /// It logs something, which changes nothing.
-    Log(LogRecord),
-    /// It has come to its normal end.
-    Done,
+}
+
+impl From<CallRequest> for SystemRequest {
+    fn from(request: CallRequest) -> Self {
+        SystemRequest::Call(request)
+    }
 }
 
 /// What a program asks of the parameters of the system, by names with slashes.
@@ -157,7 +169,7 @@ pub enum ParameterRequest {
     Delete { name: String },
 }
 
-/// What a system wants to know of a way.
+/// What a system wants to know of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlanForm {
     /// The posture at its end.

@@ -1,6 +1,6 @@
-//! What an arm plans: ways to places and postures, at the speeds that are asked for, and when it is where on them.
+//! What an arm plans: paths to places and postures, at the speeds that are asked for, and when it is where on them.
 
-use hrdsl_harness::{ArmTarget, PlannedWay, WayRequest};
+use hrdsl_harness::{ArmTarget, MotionPlanRequest, PlannedTrajectory};
 use hrdsl_ir::world::{Vec3, World};
 
 use super::{ArmControl, ArmMoment};
@@ -16,7 +16,7 @@ use crate::{
 };
 
 impl ArmControl {
-    /// Plans a way of the tool to a place, from where the arm would stand if it were stopped now.
+    /// Plans a path of the tool to a place, from where the arm would stand if it were stopped now.
     pub fn plan_place(
         &self,
         target: Vec3,
@@ -26,7 +26,7 @@ impl ArmControl {
         self.route(&ArmTarget::Place(target), &self.stop(), &self.speeds_within(limit), at)
     }
 
-    /// Plans a way to a posture.
+    /// Plans a path to a posture.
     pub fn plan_posture(
         &self,
         posture: &[f64],
@@ -36,13 +36,13 @@ impl ArmControl {
         self.route(&ArmTarget::Posture(posture.to_vec()), &self.stop(), &self.speeds_within(limit), at)
     }
 
-    /// The way that is asked for, with the times at which the arm would go it.
-    pub fn plan_way(
+    /// The path that is asked for, with the times at which the arm would go it.
+    pub fn plan_motion(
         &self,
-        wanted: &WayRequest,
+        wanted: &MotionPlanRequest,
         world: &World,
         at: &ArmMoment<'_>,
-    ) -> Result<PlannedWay, CommandError> {
+    ) -> Result<PlannedTrajectory, CommandError> {
         let numbers = match &wanted.to {
             ArmTarget::Place(place) => &place[..],
             ArmTarget::Posture(posture) => posture,
@@ -74,7 +74,7 @@ impl ArmControl {
             None => RISE,
         };
         let corners = route.points_where(|_| true).collect();
-        Ok(PlannedWay { corners, points: ArmPath::along(route, rise).points(&from) })
+        Ok(PlannedTrajectory { corners, points: ArmPath::along(route, rise).points(&from) })
     }
 
     /// Limits, if there is one for each joint.

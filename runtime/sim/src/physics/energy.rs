@@ -66,9 +66,10 @@ impl PhysicsAdapter {
             + self.motor_work()
             + std::mem::take(&mut self.energy.wheels);
         let gained: f64 = gains.iter().map(|(_, gain)| gain).sum();
-        if gained > allowed {
-            let most = gains.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-            let name = most.map_or("", |(at, _)| self.parts[*at].name.as_str());
+        if gained > allowed
+            && let Some((most, _)) = gains.iter().max_by(|a, b| a.1.total_cmp(&b.1))
+        {
+            let name = &self.parts[*most].name;
             self.energy.fault =
                 Some(format!("the physics failed: `{name}` gains {gained:.0} J in a step without cause"));
         }

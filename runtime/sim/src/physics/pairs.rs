@@ -9,7 +9,7 @@ use super::state::{
     bodies::{body_id, index},
     pairs::JointGraph,
 };
-use crate::{error::SimError, math::to_pose};
+use crate::{error::SimulationError, math::to_pose};
 
 /// How near two bodies of one figure may be at the start to count as overlapping, m.
 const NEAR: f32 = 1e-3;
@@ -28,7 +28,7 @@ impl PhysicsAdapter {
         world: &World,
         graph: &JointGraph,
         figure_of: &[Option<usize>],
-    ) -> Result<(), SimError> {
+    ) -> Result<(), SimulationError> {
         self.exempt_apart(world);
         self.group_figures(figure_of);
         for a in 0..self.parts.len() {
@@ -47,7 +47,7 @@ impl PhysicsAdapter {
                     }
                 } else if depth > SUNK && [a, b].iter().any(|i| self.parts[*i].gives_way()) {
                     let name = |i: usize| world.bodies[i].name.clone();
-                    return Err(SimError::StartsInside {
+                    return Err(SimulationError::StartsInside {
                         body: name(a),
                         other: name(b),
                         depth: f64::from(depth),

@@ -50,7 +50,7 @@ const INSIDE: &str = "inside";
 /// its child, the program, and of a descriptor on which that waits.
 const FORKED: &str = "forked";
 
-/// Runs a cell; what [`Supervisor`](super::Supervisor) starts must call this, with its remaining arguments, before anything
+/// Runs a cell; what a [`SupervisorCommand`](super::SupervisorCommand) starts must call this, with its remaining arguments, before anything
 /// else. Standard input is the connection to the harness.
 #[must_use]
 pub fn supervise(args: &[OsString]) -> ExitCode {

@@ -20,7 +20,7 @@ pub use reply::{HarnessReply, RefusedLine, ReplyAnswer};
 /// The newest version that this crate speaks; it speaks the older ones, too.
 pub const PROTOCOL_VERSION: u32 = 2;
 
-/// What the program asks for. Durations are in seconds, finite and not negative ([`Process::next`](crate::Process::next)
+/// What the program asks for. Durations are in seconds, finite and not negative ([`SutProcess::next`](crate::SutProcess::next)
 /// refuses others).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "request", rename_all = "snake_case")]
@@ -216,120 +216,96 @@ impl fmt::Display for ProtocolArgument {
     }
 }
 
+/// What holds for a request whatever the scenario.
+struct RequestRules {
+    /// The version that brought it.
+    since: u32,
+    /// Whether it has no reply of its own.
+    is_one_way: bool,
+    /// Why it makes no sense, if it does not.
+    fault: Option<String>,
+}
+
+impl RequestRules {
+    /// One that has a reply, since this version.
+    fn replied(since: u32) -> Self {
+        Self { since, is_one_way: false, fault: None }
+    }
+
+    /// One that has none, as there are since version 2.
+    fn one_way() -> Self {
+        Self { is_one_way: true, ..Self::replied(2) }
+    }
+
+    fn with(self, fault: Option<String>) -> Self {
+        Self { fault, ..self }
+    }
+}
+
+fn no_duration(seconds: f64) -> Option<String> {
+    (!seconds.is_finite() || seconds < 0.0).then(|| format!("{seconds} is no duration"))
+}
+
 impl ProgramRequest {
     /// Why the request makes no sense whatever the scenario, to a program that speaks this version, if it does not.
     pub(crate) fn fault(&self, version: u32) -> Option<String> {
-        let bad = |s: f64| (!s.is_finite() || s < 0.0).then(|| format!("{s} is no duration"));
-        if version < self.since() {
-            return Some(format!(
-                "this request is one of version {}, and `hello` said {version}",
-                self.since()
-            ));
+        let RequestRules { since, fault, .. } = self.rules();
+        if version < since {
+            return Some(format!("this request is one of version {since}, and `hello` said {version}"));
         }
-        match self {
-            ProgramRequest::Hello { version, .. } => (!(1..=PROTOCOL_VERSION).contains(version)).then(|| {
-                format!("protocol version {version} is not spoken here, only 1 to {PROTOCOL_VERSION}")
-            }),
-            ProgramRequest::Sleep { seconds } => bad(*seconds),
-            ProgramRequest::WaitFor { events, .. } if events.is_empty() => {
-                Some("wait_for without events".to_owned())
-            }
-            ProgramRequest::WaitFor { timeout, .. } => timeout.and_then(bad),
-            ProgramRequest::Act { wait: false, call: None, .. } => {
-                Some("act without wait needs the number of a `call`".to_owned())
-            }
-            ProgramRequest::Cancel { call: None, port: None }
-            | ProgramRequest::Cancel { call: Some(_), port: Some(_) } => {
-                Some("cancel needs either a `call` or a `port`".to_owned())
-            }
-            ProgramRequest::Open(open) => open.fault(),
-            ProgramRequest::Plan(plan) => plan.fault(),
-            ProgramRequest::Now
-            | ProgramRequest::Emit { .. }
-            | ProgramRequest::Drop { .. }
-            | ProgramRequest::Read { .. }
-            | ProgramRequest::Act { .. }
-            | ProgramRequest::Wait { .. }
-            | ProgramRequest::Close { .. }
-            | ProgramRequest::List
-            | ProgramRequest::Await { .. }
-            | ProgramRequest::Cancel { .. }
-            | ProgramRequest::Accept { .. }
-            | ProgramRequest::AnswerCancel { .. }
-            | ProgramRequest::State { .. }
-            | ProgramRequest::Transition { .. }
-            | ProgramRequest::Machine { .. }
-            | ProgramRequest::Failed { .. }
-            | ProgramRequest::GetParameter { .. }
-            | ProgramRequest::DeleteParameter { .. }
-            | ProgramRequest::Log { .. }
-            | ProgramRequest::Message(_)
-            | ProgramRequest::Done => None,
-        }
-    }
-
-    /// The version that brought it.
-    fn since(&self) -> u32 {
-        match self {
-            ProgramRequest::Act { wait: false, .. }
-            | ProgramRequest::Wait { .. }
-            | ProgramRequest::Open(_)
-            | ProgramRequest::Close { .. }
-            | ProgramRequest::List
-            | ProgramRequest::Await { .. }
-            | ProgramRequest::Cancel { .. }
-            | ProgramRequest::Accept { .. }
-            | ProgramRequest::AnswerCancel { .. }
-            | ProgramRequest::State { .. }
-            | ProgramRequest::Plan(_)
-            | ProgramRequest::Transition { .. }
-            | ProgramRequest::Machine { .. }
-            | ProgramRequest::Failed { .. }
-            | ProgramRequest::GetParameter { .. }
-            | ProgramRequest::DeleteParameter { .. }
-            | ProgramRequest::Log { .. }
-            | ProgramRequest::Message(_) => 2,
-            ProgramRequest::Hello { .. }
-            | ProgramRequest::Now
-            | ProgramRequest::Emit { .. }
-            | ProgramRequest::Sleep { .. }
-            | ProgramRequest::WaitFor { .. }
-            | ProgramRequest::Drop { .. }
-            | ProgramRequest::Read { .. }
-            | ProgramRequest::Act { .. }
-            | ProgramRequest::Done => 1,
-        }
+        fault
     }
 
     /// Whether it has no reply of its own.
     pub(crate) fn is_one_way(&self) -> bool {
+        self.rules().is_one_way
+    }
+
+    fn rules(&self) -> RequestRules {
         match self {
+            ProgramRequest::Hello { version, .. } => {
+                let is_spoken = (1..=PROTOCOL_VERSION).contains(version);
+                RequestRules::replied(1).with((!is_spoken).then(|| {
+                    format!("protocol version {version} is not spoken here, only 1 to {PROTOCOL_VERSION}")
+                }))
+            }
+            ProgramRequest::Sleep { seconds } => RequestRules::replied(1).with(no_duration(*seconds)),
+            ProgramRequest::WaitFor { events, timeout } => {
+                let none = events.is_empty().then(|| "wait_for without events".to_owned());
+                RequestRules::replied(1).with(none.or_else(|| timeout.and_then(no_duration)))
+            }
+            ProgramRequest::Act { wait: false, call, .. } => {
+                let unnumbered = || "act without wait needs the number of a `call`".to_owned();
+                RequestRules::replied(2).with(call.is_none().then(unnumbered))
+            }
+            ProgramRequest::Now
+            | ProgramRequest::Emit { .. }
+            | ProgramRequest::Drop { .. }
+            | ProgramRequest::Read { .. }
+            | ProgramRequest::Act { wait: true, .. }
+            | ProgramRequest::Done => RequestRules::replied(1),
+            ProgramRequest::Open(open) => RequestRules::replied(2).with(open.fault()),
+            ProgramRequest::Plan(plan) => RequestRules::replied(2).with(plan.fault()),
+            ProgramRequest::Wait { .. }
+            | ProgramRequest::List
+            | ProgramRequest::State { .. }
+            | ProgramRequest::GetParameter { .. }
+            | ProgramRequest::DeleteParameter { .. } => RequestRules::replied(2),
+            ProgramRequest::Cancel { call, port } => {
+                let either = || "cancel needs either a `call` or a `port`".to_owned();
+                RequestRules::one_way().with((call.is_some() == port.is_some()).then(either))
+            }
             ProgramRequest::Close { .. }
             | ProgramRequest::Await { .. }
-            | ProgramRequest::Cancel { .. }
             | ProgramRequest::Accept { .. }
             | ProgramRequest::AnswerCancel { .. }
             | ProgramRequest::Transition { .. }
             | ProgramRequest::Machine { .. }
             | ProgramRequest::Failed { .. }
-            | ProgramRequest::Log { .. } => true,
-            ProgramRequest::Message(request) => request.is_one_way(),
-            ProgramRequest::Hello { .. }
-            | ProgramRequest::Now
-            | ProgramRequest::Emit { .. }
-            | ProgramRequest::Sleep { .. }
-            | ProgramRequest::WaitFor { .. }
-            | ProgramRequest::Drop { .. }
-            | ProgramRequest::Read { .. }
-            | ProgramRequest::Act { .. }
-            | ProgramRequest::Wait { .. }
-            | ProgramRequest::Open(_)
-            | ProgramRequest::List
-            | ProgramRequest::State { .. }
-            | ProgramRequest::Plan(_)
-            | ProgramRequest::GetParameter { .. }
-            | ProgramRequest::DeleteParameter { .. }
-            | ProgramRequest::Done => false,
+            | ProgramRequest::Log { .. } => RequestRules::one_way(),
+            ProgramRequest::Message(request) => {
+                RequestRules { is_one_way: request.is_one_way(), ..RequestRules::replied(2) }
+            }
         }
     }
 }

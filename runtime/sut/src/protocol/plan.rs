@@ -1,6 +1,6 @@
 //! The request for a way of an arm.
 
-use hrdsl_harness::{ArmTarget, PlanForm, SystemRequest, WayRequest};
+use hrdsl_harness::{ArmTarget, MotionPlanRequest, PlanForm, SystemRequest};
 use serde::{Deserialize, Serialize};
 
 /// A way that a program asks for: to a place or to a posture.
@@ -42,6 +42,6 @@ impl PlanRequest {
             (false, true) => PlanForm::Corners,
             (false, false) => PlanForm::End,
         };
-        SystemRequest::Plan { device, wanted: WayRequest { to, from, speeds, accelerations }, form }
+        SystemRequest::Plan { device, wanted: MotionPlanRequest { to, from, speeds, accelerations }, form }
     }
 }

@@ -20,14 +20,7 @@ pub enum MessageRequest {
 impl MessageRequest {
     /// Whether it has no reply of its own.
     pub(super) fn is_one_way(&self) -> bool {
-        match self {
-            MessageRequest::Publish { .. }
-            | MessageRequest::Call { .. }
-            | MessageRequest::Respond { .. }
-            | MessageRequest::Feedback { .. }
-            | MessageRequest::Finish { .. } => true,
-            MessageRequest::SetParameter { .. } => false,
-        }
+        !matches!(self, MessageRequest::SetParameter { .. })
     }
 }
 

@@ -7,7 +7,7 @@ use hrdsl_ir::{
     expr::Lvalue,
     ta::{
         Automaton, ClockConstraint, ClockId, Edge, EdgeAssignment, FunctionId, FunctionStatement, Location,
-        SyncLabel, TimeSum,
+        TimeSum,
     },
 };
 
@@ -135,14 +135,9 @@ fn shape(program: &Program, a: &Automaton) -> Result<(), NotApplicableError> {
         return Err(NotApplicableError::Difference(a.name.clone()));
     }
     for e in &a.edges {
-        let (SyncLabel::Offer { channel: c, .. }
-        | SyncLabel::Accept { channel: c, .. }
-        | SyncLabel::Join { channel: c }) = &e.sync
-        else {
-            continue;
-        };
-        if let Some(c) = program.channels.get(usize::from(c.0)).filter(|c| c.urgent) {
-            return Err(NotApplicableError::Urgent(c.name.clone()));
+        let channel = e.sync.channel().map(|c| program.channel(c));
+        if let Some(urgent) = channel.filter(|c| c.urgent) {
+            return Err(NotApplicableError::Urgent(urgent.name.clone()));
         }
     }
     Ok(())
@@ -192,11 +187,10 @@ fn steady(
 }
 
 fn name(program: &Program, thing: SharedResource) -> String {
-    let name = match thing {
-        SharedResource::Var(v) => program.shared.get(usize::from(v)).map(|v| &v.name),
-        SharedResource::Clock(c) => program.clocks.get(usize::from(c)),
-    };
-    name.cloned().unwrap_or_default()
+    match thing {
+        SharedResource::Var(v) => program.shared[usize::from(v)].name.clone(),
+        SharedResource::Clock(c) => program.clocks[usize::from(c)].clone(),
+    }
 }
 
 /// One medium for all things that the same edges use, numbered after the automata; and the number of processes.
@@ -249,15 +243,7 @@ impl<'p> AccessCollector<'p> {
     fn edge(mut self, e: &Edge) -> ResourceAccesses {
         e.clock_guard.iter().for_each(|c| self.constraint(c));
         e.guard.iter().for_each(|g| self.expr(g));
-        match &e.sync {
-            SyncLabel::Send { args, .. } | SyncLabel::Offer { args, .. } => {
-                args.iter().for_each(|a| self.expr(a))
-            }
-            SyncLabel::Internal
-            | SyncLabel::Receive { .. }
-            | SyncLabel::Accept { .. }
-            | SyncLabel::Join { .. } => {}
-        }
+        e.sync.given().iter().for_each(|a| self.expr(a));
         for u in &e.updates {
             match u {
                 EdgeAssignment::Assign { place, value } => {

@@ -72,6 +72,32 @@ pub(crate) enum ArithmeticOp {
     Max,
 }
 
+/// What an operator does with numbers.
+enum NumericOp {
+    Arith(ArithmeticOp),
+    Compare(NumberComparison),
+    And,
+    Or,
+}
+
+fn numeric(op: BinaryOp) -> NumericOp {
+    match op {
+        BinaryOp::Add => NumericOp::Arith(ArithmeticOp::Add),
+        BinaryOp::Sub => NumericOp::Arith(ArithmeticOp::Sub),
+        BinaryOp::Mul => NumericOp::Arith(ArithmeticOp::Mul),
+        BinaryOp::Div => NumericOp::Arith(ArithmeticOp::Div),
+        BinaryOp::Rem => NumericOp::Arith(ArithmeticOp::Rem),
+        BinaryOp::Eq => NumericOp::Compare(NumberComparison::Eq),
+        BinaryOp::Ne => NumericOp::Compare(NumberComparison::Ne),
+        BinaryOp::Lt => NumericOp::Compare(NumberComparison::Lt),
+        BinaryOp::Le => NumericOp::Compare(NumberComparison::Le),
+        BinaryOp::Gt => NumericOp::Compare(NumberComparison::Gt),
+        BinaryOp::Ge => NumericOp::Compare(NumberComparison::Ge),
+        BinaryOp::And => NumericOp::And,
+        BinaryOp::Or => NumericOp::Or,
+    }
+}
+
 /// A compiled expression.
 #[derive(Clone, Debug)]
 pub(crate) enum CompiledExpr {
@@ -857,45 +883,20 @@ impl CodeLibrary {
         b: &Expr,
     ) -> Option<(CompiledExpr, NumberType)> {
         let (a, b, ty) = self.both(names, a, b, None)?;
-        let arith = |op, a, b| Some((fold(CompiledExpr::Arith(op, Box::new((a, b)))), NumberType::Int));
-        let compare = |op, a, b| Some((comparison(op, a, b), NumberType::Bool));
-        match (op, ty) {
-            (BinaryOp::And, NumberType::Bool) => {
-                Some((CompiledExpr::And(Box::new((a, b))), NumberType::Bool))
-            }
-            (BinaryOp::Or, NumberType::Bool) => Some((CompiledExpr::Or(Box::new((a, b))), NumberType::Bool)),
-            (BinaryOp::Eq, NumberType::Bool | NumberType::Int | NumberType::Enum(_)) => {
-                compare(NumberComparison::Eq, a, b)
-            }
-            (BinaryOp::Ne, NumberType::Bool | NumberType::Int | NumberType::Enum(_)) => {
-                compare(NumberComparison::Ne, a, b)
-            }
-            (BinaryOp::Lt, NumberType::Int) => compare(NumberComparison::Lt, a, b),
-            (BinaryOp::Le, NumberType::Int) => compare(NumberComparison::Le, a, b),
-            (BinaryOp::Gt, NumberType::Int) => compare(NumberComparison::Gt, a, b),
-            (BinaryOp::Ge, NumberType::Int) => compare(NumberComparison::Ge, a, b),
-            (BinaryOp::Add, NumberType::Int) => arith(ArithmeticOp::Add, a, b),
-            (BinaryOp::Sub, NumberType::Int) => arith(ArithmeticOp::Sub, a, b),
-            (BinaryOp::Mul, NumberType::Int) => arith(ArithmeticOp::Mul, a, b),
-            (BinaryOp::Div, NumberType::Int) => arith(ArithmeticOp::Div, a, b),
-            (BinaryOp::Rem, NumberType::Int) => arith(ArithmeticOp::Rem, a, b),
+        let both = Box::new((a, b));
+        Some(match (numeric(op), ty) {
+            (NumericOp::And, NumberType::Bool) => (CompiledExpr::And(both), NumberType::Bool),
+            (NumericOp::Or, NumberType::Bool) => (CompiledExpr::Or(both), NumberType::Bool),
             (
-                BinaryOp::Add
-                | BinaryOp::Sub
-                | BinaryOp::Mul
-                | BinaryOp::Div
-                | BinaryOp::Rem
-                | BinaryOp::Eq
-                | BinaryOp::Ne
-                | BinaryOp::Lt
-                | BinaryOp::Le
-                | BinaryOp::Gt
-                | BinaryOp::Ge
-                | BinaryOp::And
-                | BinaryOp::Or,
-                _,
-            ) => None,
-        }
+                NumericOp::Compare(how @ (NumberComparison::Eq | NumberComparison::Ne)),
+                NumberType::Bool | NumberType::Int | NumberType::Enum(_),
+            )
+            | (NumericOp::Compare(how), NumberType::Int) => {
+                (comparison(how, both.0, both.1), NumberType::Bool)
+            }
+            (NumericOp::Arith(op), NumberType::Int) => (fold(CompiledExpr::Arith(op, both)), NumberType::Int),
+            (NumericOp::And | NumericOp::Or | NumericOp::Compare(_) | NumericOp::Arith(_), _) => return None,
+        })
     }
 
     pub(crate) fn reach(&self, names: &VariableScope, place: &Lvalue) -> Option<CompiledLvalue> {

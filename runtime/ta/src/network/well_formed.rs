@@ -69,7 +69,7 @@ fn fault(program: &Program, id: AutomatonId, a: &Automaton) -> Option<String> {
             return Some(format!("edge {i} has an unknown event or channel or a wrong number of arguments"));
         }
         let guards = e.guard.iter().chain(e.clock_guard.iter().flat_map(|c| terms(&c.bound)));
-        if guards.chain(sent(&e.sync)).any(|e| !spot.functions_exist(e)) {
+        if guards.chain(e.sync.given()).any(|e| !spot.functions_exist(e)) {
             return Some(format!("edge {i} calls an unknown function"));
         }
     }
@@ -91,17 +91,6 @@ fn range_has_values(v: &AutomatonVar) -> bool {
 
 fn terms(time: &TimeSum) -> impl Iterator<Item = &Expr> {
     time.terms.iter().map(|t| &t.value)
-}
-
-/// The arguments that an edge sends.
-fn sent(sync: &SyncLabel) -> &[Expr] {
-    match sync {
-        SyncLabel::Send { args, .. } | SyncLabel::Offer { args, .. } => args,
-        SyncLabel::Internal
-        | SyncLabel::Receive { .. }
-        | SyncLabel::Accept { .. }
-        | SyncLabel::Join { .. } => &[],
-    }
 }
 
 /// Where names are looked up.

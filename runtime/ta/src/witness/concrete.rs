@@ -336,20 +336,7 @@ impl<'p> ConcreteInterpreter<'p> {
     ) -> Result<Vec<AutomatonMove>, ModelError> {
         let mut out = Vec::new();
         for (i, edge) in self.members[member].edges.iter().enumerate() {
-            let pattern: &[ReceiveArg] = match (&edge.sync, medium) {
-                (SyncLabel::Receive { event, args }, SyncMedium::Event(e)) if *event == e => args,
-                (SyncLabel::Accept { channel, args }, SyncMedium::Channel(c)) if *channel == c => args,
-                (SyncLabel::Join { channel }, SyncMedium::Channel(c)) if *channel == c => &[],
-                (
-                    SyncLabel::Internal
-                    | SyncLabel::Send { .. }
-                    | SyncLabel::Receive { .. }
-                    | SyncLabel::Offer { .. }
-                    | SyncLabel::Accept { .. }
-                    | SyncLabel::Join { .. },
-                    _,
-                ) => continue,
-            };
+            let Some((_, pattern)) = taken(&edge.sync).filter(|(over, _)| *over == medium) else { continue };
             let mut bound = BinderValues::new();
             let here = edge.from == self.location[member];
             if !here || pattern.len() != args.len() || !bind(pattern, args, &mut bound) {
@@ -641,14 +628,21 @@ pub(crate) fn compare(value: i128, op: ClockOp, bound: i128) -> bool {
     }
 }
 
+/// What an edge takes part in that others begin, and in which of it by the arguments.
+fn taken(sync: &SyncLabel) -> Option<(SyncMedium, &[ReceiveArg])> {
+    match sync {
+        SyncLabel::Receive { event, args } => Some((SyncMedium::Event(*event), args)),
+        SyncLabel::Accept { channel, args } => Some((SyncMedium::Channel(*channel), args)),
+        SyncLabel::Join { channel } => Some((SyncMedium::Channel(*channel), &[])),
+        SyncLabel::Internal | SyncLabel::Send { .. } | SyncLabel::Offer { .. } => None,
+    }
+}
+
 /// The name of a clock as an automaton numbers it.
 pub(crate) fn clock_name(program: &Program, automaton: &Automaton, clock: ClockId) -> String {
     let at = usize::from(clock.0);
     match program.clocks.get(at) {
         Some(shared) => shared.clone(),
-        None => {
-            let own = automaton.clocks.get(at - program.clocks.len());
-            own.map_or_else(|| format!("#{at}"), |c| format!("{}.{c}", automaton.name))
-        }
+        None => format!("{}.{}", automaton.name, automaton.clocks[at - program.clocks.len()]),
     }
 }

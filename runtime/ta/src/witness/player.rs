@@ -106,15 +106,8 @@ impl<'p> VirtualTimePlayer<'p> {
     pub fn run(&mut self, now: Nanos, out: &mut Vec<(EventId, Vec<Value>)>) -> Result<(), ModelError> {
         self.advance(now)?;
         while let Some(edge) = self.next_move()? {
-            match &self.machine.edge(&edge.step).sync {
-                SyncLabel::Send { event, args } => {
-                    out.push((*event, self.machine.arguments(&edge.step, *event, args)?));
-                }
-                SyncLabel::Internal
-                | SyncLabel::Receive { .. }
-                | SyncLabel::Offer { .. }
-                | SyncLabel::Accept { .. }
-                | SyncLabel::Join { .. } => {}
+            if let Some((event, args)) = self.machine.edge(&edge.step).sync.as_send() {
+                out.push((event, self.machine.arguments(&edge.step, event, args)?));
             }
             self.go(edge)?;
         }

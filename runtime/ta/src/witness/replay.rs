@@ -235,30 +235,29 @@ fn starts(machine: &ConcreteInterpreter, first: &AutomatonMove, s: &WitnessRunSt
     }
     let same =
         |own: &[Value], values: &[Value]| own.iter().map(|v| v.key()).eq(values.iter().map(|v| v.key()));
-    match (&edge.sync, &s.event, &s.channel) {
-        (SyncLabel::Internal, None, None) => Ok(()),
-        (SyncLabel::Send { event, args }, Some((sent, values)), None) if event == sent => {
-            let own = machine.arguments(first, *event, args).map_err(|e| e.to_string())?;
-            if same(&own, values) { Ok(()) } else { Err("the sender sends other arguments".into()) }
-        }
-        (SyncLabel::Offer { channel, args }, None, Some((over, values))) if channel == over => {
-            let declared = machine.channel(*channel).ok_or("the channel is not there")?;
-            let own = machine.offered(first, declared, args).map_err(|e| e.to_string())?;
-            if same(&own, values) { Ok(()) } else { Err("other arguments are offered".into()) }
-        }
-        (SyncLabel::Join { channel }, None, Some((over, values))) if channel == over && values.is_empty() => {
-            Ok(())
-        }
-        (
-            SyncLabel::Internal
-            | SyncLabel::Send { .. }
-            | SyncLabel::Receive { .. }
-            | SyncLabel::Offer { .. }
-            | SyncLabel::Accept { .. }
-            | SyncLabel::Join { .. },
-            _,
-            _,
-        ) => Err("the first edge does something else".into()),
+    let another = || Err("the first edge does something else".to_owned());
+    match &edge.sync {
+        SyncLabel::Internal if s.event.is_none() && s.channel.is_none() => Ok(()),
+        SyncLabel::Send { event, args } => match (&s.event, &s.channel) {
+            (Some((sent, values)), None) if event == sent => {
+                let own = machine.arguments(first, *event, args).map_err(|e| e.to_string())?;
+                if same(&own, values) { Ok(()) } else { Err("the sender sends other arguments".into()) }
+            }
+            _ => another(),
+        },
+        SyncLabel::Offer { channel, args } => match (&s.event, &s.channel) {
+            (None, Some((over, values))) if channel == over => {
+                let declared = machine.channel(*channel).ok_or("the channel is not there")?;
+                let own = machine.offered(first, declared, args).map_err(|e| e.to_string())?;
+                if same(&own, values) { Ok(()) } else { Err("other arguments are offered".into()) }
+            }
+            _ => another(),
+        },
+        SyncLabel::Join { channel } => match (&s.event, &s.channel) {
+            (None, Some((over, values))) if channel == over && values.is_empty() => Ok(()),
+            _ => another(),
+        },
+        SyncLabel::Internal | SyncLabel::Receive { .. } | SyncLabel::Accept { .. } => another(),
     }
 }
 

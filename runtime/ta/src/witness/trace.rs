@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use hrdsl_ir::{
-    Nanos, Program, Value, known_name,
-    ta::{Automaton, ChannelId, ChannelKind, ClockId, EdgeAssignment, LocationId, Network},
+    Nanos, Program, Value,
+    ta::{Automaton, ChannelId, ChannelKind, ClockId, EdgeAssignment, Network},
 };
 use serde::Serialize;
 
@@ -77,7 +77,7 @@ impl WitnessTrace {
     #[must_use]
     pub fn from_run(program: &Program, network: &Network, witness: &WitnessRun) -> Self {
         let builder = WitnessTraceBuilder { program, network, slots: slot_names(program, network) };
-        let automata = (0..network.automata.len()).map(|m| builder.name(m)).collect();
+        let automata = (0..network.automata.len()).map(|m| builder.member(m).name.clone()).collect();
         WitnessTrace {
             network: witness.network.clone(),
             automata,
@@ -93,14 +93,14 @@ impl WitnessTrace {
     pub fn text(&self) -> String {
         let wide = |f: &dyn Fn(&WitnessTransition) -> usize| self.steps.iter().map(f).max().unwrap_or(0);
         let time = wide(&|s| s.time.len()).max(self.end.len());
-        let who = wide(&|s| s.parts.first().map_or(0, |p| p.automaton.chars().count()));
+        let who = wide(&|s| s.starter().automaton.chars().count());
         let over = wide(&|s| s.over.as_ref().map_or(0, |o| o.chars().count()));
         let mut out = String::new();
         for (i, step) in self.steps.iter().enumerate() {
             if self.ending == RunEnding::Again(i) {
                 let _ = writeln!(out, "{:time$}    from here on again and again:", "");
             }
-            let first = step.parts.first().map_or("?", |p| p.automaton.as_str());
+            let first = &step.starter().automaton;
             let gap = if over == 0 { 0 } else { over + 2 };
             let what = step.over.as_deref().unwrap_or("");
             let moves: Vec<String> = step.parts.iter().enumerate().map(|(n, p)| p.movement(n > 0)).collect();
@@ -139,6 +139,13 @@ impl WitnessRun {
     }
 }
 
+impl WitnessTransition {
+    /// Who starts it: nothing happens by itself.
+    fn starter(&self) -> &TransitionParticipant {
+        &self.parts[0]
+    }
+}
+
 impl TransitionParticipant {
     fn movement(&self, named: bool) -> String {
         let text = if self.from == self.to {
@@ -157,22 +164,14 @@ struct WitnessTraceBuilder<'a> {
 }
 
 impl<'a> WitnessTraceBuilder<'a> {
-    fn member(&self, m: usize) -> Option<&'a Automaton> {
-        self.program.automata.get(usize::from(self.network.automata.get(m)?.0))
-    }
-
-    fn name(&self, m: usize) -> String {
-        self.member(m).map_or_else(|| format!("#{m}"), |a| a.name.clone())
+    fn member(&self, m: usize) -> &'a Automaton {
+        self.program.automaton(self.network.automata[m])
     }
 
     fn transition(&self, witness: &WitnessRun, step: &WitnessRunStep) -> WitnessTransition {
         let (over, medium) = match (&step.event, &step.channel) {
             (Some((event, args)), _) => {
-                let event = self.program.events.get(usize::from(event.0));
-                (
-                    Some(applied(known_name("event", event.map(|e| e.name.as_str())), args)),
-                    TransitionMedium::Event,
-                )
+                (Some(applied(&self.program.event(*event).name, args)), TransitionMedium::Event)
             }
             (None, Some((channel, args))) => {
                 let (name, medium) = self.channel(*channel);
@@ -180,50 +179,41 @@ impl<'a> WitnessTraceBuilder<'a> {
             }
             (None, None) => (None, TransitionMedium::Internal),
         };
-        let variables = step.variables.iter().map(|(slot, from, to)| {
-            format!("{}: {from} -> {to}", known_name("variable", self.slots.get(*slot).map(String::as_str)))
-        });
+        let changed = step.variables.iter();
+        let variables = changed.map(|(slot, from, to)| format!("{}: {from} -> {to}", self.slots[*slot]));
         WitnessTransition {
             time: seconds(step.time, witness.ticks),
             nanos: witness.nanos(step),
             over,
             medium,
-            parts: step.moves.iter().filter_map(|m| self.part(m)).collect(),
+            parts: step.moves.iter().map(|m| self.part(m)).collect(),
             variables: variables.collect(),
             clocks: step.moves.iter().flat_map(|m| self.clocks(m)).collect(),
         }
     }
 
     fn channel(&self, id: ChannelId) -> (&'a str, TransitionMedium) {
-        match self.program.channels.get(usize::from(id.0)) {
-            None => (known_name("channel", None), TransitionMedium::Binary),
-            Some(c) => {
-                let medium = match c.kind {
-                    ChannelKind::Binary => TransitionMedium::Binary,
-                    ChannelKind::Broadcast => TransitionMedium::Broadcast,
-                    ChannelKind::MultiWay(_) => TransitionMedium::MultiWay,
-                };
-                (&c.name, medium)
-            }
-        }
+        let channel = self.program.channel(id);
+        let medium = match channel.kind {
+            ChannelKind::Binary => TransitionMedium::Binary,
+            ChannelKind::Broadcast => TransitionMedium::Broadcast,
+            ChannelKind::MultiWay(_) => TransitionMedium::MultiWay,
+        };
+        (&channel.name, medium)
     }
 
-    fn part(&self, m: &AutomatonMove) -> Option<TransitionParticipant> {
-        let a = self.member(m.automaton)?;
-        let edge = a.edges.get(m.edge)?;
-        let name = |l: LocationId| {
-            known_name("location", a.locations.get(usize::from(l.0)).map(|l| l.name.as_str())).to_owned()
-        };
-        let (from, to) = (name(edge.from), name(edge.to));
-        Some(TransitionParticipant { member: m.automaton, automaton: a.name.clone(), from, to })
+    fn part(&self, m: &AutomatonMove) -> TransitionParticipant {
+        let a = self.member(m.automaton);
+        let [from, to] = [a.edges[m.edge].from, a.edges[m.edge].to].map(|l| a.location(l).name.clone());
+        TransitionParticipant { member: m.automaton, automaton: a.name.clone(), from, to }
     }
 
     /// The clocks that an edge sets; a value is shown if it is a constant.
     fn clocks(&self, m: &AutomatonMove) -> Vec<String> {
-        let Some(a) = self.member(m.automaton) else { return Vec::new() };
-        let Some(edge) = a.edges.get(m.edge) else { return Vec::new() };
+        let a = self.member(m.automaton);
         let name = |c: ClockId| clock_name(self.program, a, c);
-        edge.updates
+        a.edges[m.edge]
+            .updates
             .iter()
             .filter_map(|u| match u {
                 EdgeAssignment::Assign { .. } | EdgeAssignment::Call { .. } => None,

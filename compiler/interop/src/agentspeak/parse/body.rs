@@ -13,17 +13,7 @@ impl AgentSpeakParser {
             let mut steps = Vec::new();
             while !p.is(".") && !p.is("}") && *p.peek() != AgentSpeakTokenKind::End {
                 let step = p.branches()?;
-                let is_block = !matches!(
-                    step.kind,
-                    AgentSpeakStepKind::Achieve(_)
-                        | AgentSpeakStepKind::Spawn(_)
-                        | AgentSpeakStepKind::Query(_)
-                        | AgentSpeakStepKind::Add(..)
-                        | AgentSpeakStepKind::Remove(_)
-                        | AgentSpeakStepKind::Replace(_)
-                        | AgentSpeakStepKind::Action(_)
-                        | AgentSpeakStepKind::Formula(_)
-                );
+                let is_block = step.blocks().is_some();
                 steps.push(step);
                 if !p.take(";") && !is_block && !p.is(".") && !p.is("}") {
                     return Err(p.expected("`;` or the end of the body after the step"));

@@ -6,7 +6,10 @@ use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
 use super::super::{
-    ast::{AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakTerm, PredicateIndicator, TermKind, each_term},
+    ast::{
+        AgentSpeakFormula, AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakTerm, PredicateIndicator,
+        TermKind, each_term,
+    },
     names::{AgentSpeakNames, ident, unused, variable},
     system::AgentSpeakSystem,
     term::{OmissionReason, valued},
@@ -323,21 +326,24 @@ impl<'a> ClauseTranslator<'a> {
     // ── Formulas ──
 
     pub fn formula(&mut self, of: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
-        match &of.kind {
-            TermKind::Bool(b) => Ok(ClauseFragment::new(b.to_string(), ATOM)),
-            TermKind::Literal(l) if l.is_internal() => self.internal_formula(l),
-            TermKind::Literal(l) => Ok(ClauseFragment::new(self.belief(l, BindingMode::Pattern)?, ATOM)),
-            TermKind::Not(inner) => {
+        let Some(formula) = of.as_formula() else { return Err("this is no formula".into()) };
+        match formula {
+            AgentSpeakFormula::Truth(b) => Ok(ClauseFragment::new(b.to_string(), ATOM)),
+            AgentSpeakFormula::Literal(l) if l.is_internal() => self.internal_formula(l),
+            AgentSpeakFormula::Literal(l) => {
+                Ok(ClauseFragment::new(self.belief(l, BindingMode::Pattern)?, ATOM))
+            }
+            AgentSpeakFormula::Not(inner) => {
                 let before = self.bound.clone();
                 let inner = self.formula(inner);
                 self.bound = before;
                 Ok(ClauseFragment::new(format!("not {}", inner?.at(ATOM)), NOT))
             }
-            TermKind::Binary { op: AgentSpeakOperator::And, left, right } => {
+            AgentSpeakFormula::Connective { op: AgentSpeakOperator::And, left, right } => {
                 let (l, r) = (self.formula(left)?, self.formula(right)?);
                 Ok(ClauseFragment::new(format!("{} && {}", l.at(AND), r.at(AND)), AND))
             }
-            TermKind::Binary { op: AgentSpeakOperator::Or, left, right } => {
+            AgentSpeakFormula::Connective { left, right, .. } => {
                 let before = self.bound.clone();
                 let l = self.formula(left)?;
                 let after = std::mem::replace(&mut self.bound, before);
@@ -345,9 +351,10 @@ impl<'a> ClauseTranslator<'a> {
                 self.bound = self.bound.intersection(&after).cloned().collect();
                 Ok(ClauseFragment::new(format!("{} || {}", l.at(OR), r.at(OR)), OR))
             }
-            TermKind::Binary { op: AgentSpeakOperator::Unify, left, right } => self.unify(left, right),
-            TermKind::Binary { op, left, right } => self.compare(*op, left, right),
-            _ => Err("this is no formula".into()),
+            AgentSpeakFormula::Relation { op: AgentSpeakOperator::Unify, left, right } => {
+                self.unify(left, right)
+            }
+            AgentSpeakFormula::Relation { op, left, right } => self.compare(op, left, right),
         }
     }
 
@@ -422,7 +429,7 @@ impl<'a> ClauseTranslator<'a> {
         let args = of.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?.concat();
         self.used.beliefs.insert(key.clone());
         let annotations = self.annotations(of, &key, want)?;
-        let name = self.cx.names.beliefs.get(&key).cloned().unwrap_or_else(|| ident(&key.0));
+        let name = self.cx.names.belief(&key);
         Ok(format!("{}{}{annotations}", if of.negated { "~" } else { "" }, call(&name, &args)))
     }
 
@@ -464,7 +471,7 @@ impl<'a> ClauseTranslator<'a> {
                 )),
             }
         }
-        let name = self.cx.names.goals.get(&key).cloned().unwrap_or_else(|| ident(&key.0));
+        let name = self.cx.names.goal(&key);
         Ok(call(&name, &args) + &source)
     }
 }

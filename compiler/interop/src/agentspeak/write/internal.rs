@@ -427,7 +427,7 @@ impl ClauseTranslator<'_> {
                 (false, None) => args.extend(mine),
             }
         }
-        let name = self.cx.names.beliefs.get(&question.key()).cloned().unwrap_or_default();
+        let name = self.cx.names.belief(&question.key());
         let sign = if question.negated { "~" } else { "" };
         let mut steps = vec![format!(".ask({whom}, {sign}{}{time})", super::clause::call(&name, &args))];
         if !after.is_empty() {
@@ -458,7 +458,7 @@ impl ClauseTranslator<'_> {
             template = self.fresh("Each");
         }
         let list = self.value(answer, BindingMode::Pattern)?;
-        let name = self.cx.names.beliefs.get(&question.key()).cloned().unwrap_or_default();
+        let name = self.cx.names.belief(&question.key());
         Ok(vec![format!(".ask_all({whom}, {template}, {name}({template}), {list}{time})")])
     }
 

@@ -159,7 +159,7 @@ impl ClauseTranslator<'_> {
             }
         }
         let key = head.key();
-        let name = self.cx.names.beliefs.get(&key).cloned().unwrap_or_default();
+        let name = self.cx.names.belief(&key);
         self.used.beliefs.insert(key);
         Ok(format!("{}{}", if head.negated { "~" } else { "" }, super::clause::call(&name, &args)))
     }

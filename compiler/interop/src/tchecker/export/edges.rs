@@ -205,11 +205,8 @@ impl TcheckerWriter<'_> {
             },
             SyncLabel::Join { channel } => EdgeSyncRole::Joins(usize::from(channel.0)),
         };
-        if let SyncLabel::Offer { channel, .. }
-        | SyncLabel::Accept { channel, .. }
-        | SyncLabel::Join { channel } = &edge.sync
-        {
-            let channel = &self.program.channels[usize::from(channel.0)];
+        if let Some(channel) = edge.sync.channel() {
+            let channel = self.program.channel(channel);
             if channel.urgent {
                 let message =
                     format!("the channel `{}` is urgent: TChecker has no urgent channels", channel.name);

@@ -471,39 +471,37 @@ fn enumerations(program: &Program) -> Vec<Enumeration> {
     all
 }
 
+/// How an operator is written.
+enum OperatorSigns {
+    Arithmetic(&'static str),
+    /// With the sign of the opposite.
+    Comparison(&'static str, &'static str),
+    /// `&&` and `||` have no signs: guards are split up.
+    Logic,
+}
+
+fn signs(op: BinaryOp) -> OperatorSigns {
+    match op {
+        BinaryOp::Add => OperatorSigns::Arithmetic("+"),
+        BinaryOp::Sub => OperatorSigns::Arithmetic("-"),
+        BinaryOp::Mul => OperatorSigns::Arithmetic("*"),
+        BinaryOp::Div => OperatorSigns::Arithmetic("/"),
+        BinaryOp::Rem => OperatorSigns::Arithmetic("%"),
+        BinaryOp::Eq => OperatorSigns::Comparison("==", "!="),
+        BinaryOp::Ne => OperatorSigns::Comparison("!=", "=="),
+        BinaryOp::Lt => OperatorSigns::Comparison("<", ">="),
+        BinaryOp::Le => OperatorSigns::Comparison("<=", ">"),
+        BinaryOp::Gt => OperatorSigns::Comparison(">", "<="),
+        BinaryOp::Ge => OperatorSigns::Comparison(">=", "<"),
+        BinaryOp::And | BinaryOp::Or => OperatorSigns::Logic,
+    }
+}
+
 fn comparison(op: BinaryOp, wanted: bool) -> Option<&'static str> {
-    let (yes, no) = match op {
-        BinaryOp::Eq => ("==", "!="),
-        BinaryOp::Ne => ("!=", "=="),
-        BinaryOp::Lt => ("<", ">="),
-        BinaryOp::Le => ("<=", ">"),
-        BinaryOp::Gt => (">", "<="),
-        BinaryOp::Ge => (">=", "<"),
-        BinaryOp::Add
-        | BinaryOp::Sub
-        | BinaryOp::Mul
-        | BinaryOp::Div
-        | BinaryOp::Rem
-        | BinaryOp::And
-        | BinaryOp::Or => return None,
-    };
+    let OperatorSigns::Comparison(yes, no) = signs(op) else { return None };
     Some(if wanted { yes } else { no })
 }
 
 fn arithmetic(op: BinaryOp) -> Option<&'static str> {
-    match op {
-        BinaryOp::Add => Some("+"),
-        BinaryOp::Sub => Some("-"),
-        BinaryOp::Mul => Some("*"),
-        BinaryOp::Div => Some("/"),
-        BinaryOp::Rem => Some("%"),
-        BinaryOp::Eq
-        | BinaryOp::Ne
-        | BinaryOp::Lt
-        | BinaryOp::Le
-        | BinaryOp::Gt
-        | BinaryOp::Ge
-        | BinaryOp::And
-        | BinaryOp::Or => None,
-    }
+    if let OperatorSigns::Arithmetic(sign) = signs(op) { Some(sign) } else { None }
 }

@@ -69,14 +69,12 @@ impl ScenarioExprWriter<'_> {
 
     /// One part of a conjunction.
     pub fn part(&self, e: &TcheckerExpr) -> ScenarioTextResult {
-        let (e, negated) = match &e.kind {
-            TcheckerExprKind::Not(inner) if self.is_clock_bound(inner)? => (&**inner, true),
-            TcheckerExprKind::Int(_)
-            | TcheckerExprKind::Name(..)
-            | TcheckerExprKind::Neg(_)
-            | TcheckerExprKind::Not(_)
-            | TcheckerExprKind::Binary(..)
-            | TcheckerExprKind::If(..) => (e, false),
+        let (e, negated) = if let TcheckerExprKind::Not(inner) = &e.kind
+            && self.is_clock_bound(inner)?
+        {
+            (&**inner, true)
+        } else {
+            (e, false)
         };
         let TcheckerExprKind::Binary(op, left, right) = &e.kind else {
             return self.condition(e, SurroundingPrecedence::And);

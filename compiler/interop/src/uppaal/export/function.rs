@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use hrdsl_ir::{
     Expr, Program,
-    ta::{Automaton, AutomatonFunction, EdgeAssignment, FunctionId, FunctionStatement, SyncLabel, TimeSum},
+    ta::{Automaton, AutomatonFunction, EdgeAssignment, FunctionId, FunctionStatement, TimeSum},
 };
 use indexmap::IndexSet;
 
@@ -53,15 +53,7 @@ pub fn called_by(automaton: &Automaton, note: &mut dyn FnMut(FunctionId)) {
     for edge in &automaton.edges {
         edge.clock_guard.iter().for_each(|c| in_time(&c.bound, note));
         edge.guard.iter().for_each(|e| in_expr(e, note));
-        match &edge.sync {
-            SyncLabel::Send { args, .. } | SyncLabel::Offer { args, .. } => {
-                args.iter().for_each(|e| in_expr(e, note))
-            }
-            SyncLabel::Internal
-            | SyncLabel::Receive { .. }
-            | SyncLabel::Accept { .. }
-            | SyncLabel::Join { .. } => {}
-        }
+        edge.sync.given().iter().for_each(|e| in_expr(e, note));
         for update in &edge.updates {
             match update {
                 EdgeAssignment::Assign { place, value } => {

@@ -247,14 +247,11 @@ impl<'p> UppaalExporter<'p> {
         let syncs: Vec<(&'p SyncLabel, Span)> =
             self.automata().flat_map(|a| a.edges.iter().map(|e| (&e.sync, e.origin))).collect();
         for (sync, span) in syncs {
-            match sync {
-                SyncLabel::Internal => {}
-                SyncLabel::Send { event, .. } | SyncLabel::Receive { event, .. } => self.event(*event, span),
-                SyncLabel::Offer { channel, .. }
-                | SyncLabel::Accept { channel, .. }
-                | SyncLabel::Join { channel } => {
-                    self.channel(*channel);
-                }
+            if let Some(event) = sync.event() {
+                self.event(event, span);
+            }
+            if let Some(channel) = sync.channel() {
+                self.channel(channel);
             }
         }
     }
@@ -369,17 +366,6 @@ fn duration(nanos: Nanos) -> String {
     found.map_or_else(|| format!("{nanos} ns"), |(n, unit)| format!("{} {unit}", nanos / n))
 }
 
-fn formulas(ask: &QueryKind) -> Vec<&QueryFormula> {
-    match ask {
-        QueryKind::Possibly(f)
-        | QueryKind::Invariantly(f)
-        | QueryKind::PotentiallyAlways(f)
-        | QueryKind::Eventually(f) => vec![f],
-        QueryKind::LeadsTo(f, g) => vec![f, g],
-        QueryKind::Sup { when, .. } | QueryKind::Inf { when, .. } => vec![when],
-    }
-}
-
 fn called_in(ask: &QueryKind, note: &mut dyn FnMut(FunctionId)) {
     fn each(formula: &QueryFormula, note: &mut dyn FnMut(FunctionId)) {
         match formula {
@@ -390,7 +376,7 @@ fn called_in(ask: &QueryKind, note: &mut dyn FnMut(FunctionId)) {
             QueryFormula::At { .. } | QueryFormula::Deadlock => {}
         }
     }
-    formulas(ask).into_iter().for_each(|f| each(f, note));
+    ask.formulas().into_iter().for_each(|f| each(f, note));
     if let QueryKind::Sup { of, .. } | QueryKind::Inf { of, .. } = ask {
         for measure in of {
             if let QueryMeasure::Data(e) = measure {

@@ -67,16 +67,10 @@ impl UppaalExporter<'_> {
         when: &QueryFormula,
         context: &UppaalExprContext,
     ) -> UppaalTextResult<String> {
-        let when = match when {
-            QueryFormula::And(all) if all.is_empty() => String::new(),
-            QueryFormula::Data(hrdsl_ir::Expr::Const(hrdsl_ir::Value::Bool(true))) => String::new(),
-            QueryFormula::At { .. }
-            | QueryFormula::Data(_)
-            | QueryFormula::Clock(_)
-            | QueryFormula::Deadlock
-            | QueryFormula::Not(_)
-            | QueryFormula::And(_)
-            | QueryFormula::Or(_) => format!("{{{}}}", self.formula(when, context)?.text),
+        let when = if when.is_always() {
+            String::new()
+        } else {
+            format!("{{{}}}", self.formula(when, context)?.text)
         };
         let measure = |m: &QueryMeasure| match m {
             QueryMeasure::Clock(id) => context

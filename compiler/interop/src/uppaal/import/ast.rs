@@ -185,12 +185,28 @@ pub enum UppaalQuery {
     Inf(Option<UppaalExpr>, Vec<UppaalExpr>),
 }
 
+/// An expression that names something: `x`, `q[0]`, `P.x`.
+pub enum UppaalPlace<'a> {
+    Name(&'a str),
+    Index(&'a UppaalExpr, &'a UppaalExpr),
+    Field(&'a UppaalExpr, &'a str),
+}
+
 impl UppaalExpr {
     /// The name at the bottom of a chain of indices and fields.
     pub fn root(&self) -> Option<&str> {
+        match self.as_place()? {
+            UppaalPlace::Name(name) => Some(name),
+            UppaalPlace::Index(of, _) | UppaalPlace::Field(of, _) => of.root(),
+        }
+    }
+
+    /// What is named, if something is.
+    pub fn as_place(&self) -> Option<UppaalPlace<'_>> {
         match &self.kind {
-            UppaalExprKind::Name(name) => Some(name),
-            UppaalExprKind::Index(of, _) | UppaalExprKind::Field(of, _) => of.root(),
+            UppaalExprKind::Name(name) => Some(UppaalPlace::Name(name)),
+            UppaalExprKind::Index(of, index) => Some(UppaalPlace::Index(of, index)),
+            UppaalExprKind::Field(of, name) => Some(UppaalPlace::Field(of, name)),
             UppaalExprKind::Int(_)
             | UppaalExprKind::Bool(_)
             | UppaalExprKind::Neg(_)

@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier},
+    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalPlace, UppaalQuantifier},
     expr::{all, not},
     fault::{UppaalFault, fault},
     scope::{ScenarioExprText, ScenarioPrecedence, UppaalSymbol},
@@ -43,21 +43,10 @@ struct UppaalClockSum {
 impl UppaalTranslation<'_> {
     pub fn mentions_clock(&mut self, e: &UppaalExpr) -> bool {
         let mut names = Vec::new();
-        e.each(&mut |part| match &part.kind {
-            UppaalExprKind::Name(_) | UppaalExprKind::Field(..) => names.push(part.clone()),
-            UppaalExprKind::Int(_)
-            | UppaalExprKind::Bool(_)
-            | UppaalExprKind::Neg(_)
-            | UppaalExprKind::Not(_)
-            | UppaalExprKind::Binary(..)
-            | UppaalExprKind::Choice(..)
-            | UppaalExprKind::Index(..)
-            | UppaalExprKind::Call(..)
-            | UppaalExprKind::Assign(..)
-            | UppaalExprKind::Step { .. }
-            | UppaalExprKind::Quantified(..)
-            | UppaalExprKind::Rate
-            | UppaalExprKind::Deadlock => {}
+        e.each(&mut |part| {
+            if let Some(UppaalPlace::Name(_) | UppaalPlace::Field(..)) = part.as_place() {
+                names.push(part.clone());
+            }
         });
         names.iter().any(|n| self.names_clock(n))
     }

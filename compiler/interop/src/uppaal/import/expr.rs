@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier, UppaalType},
+    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalPlace, UppaalQuantifier, UppaalType},
     fault::{UppaalFault, fault, unsupported},
     scope::{
         ArrayOf, ChanSym, ClockSym, ScenarioExprText, ScenarioPrecedence, UppaalScalarType, UppaalScope,
@@ -233,36 +233,23 @@ impl UppaalTranslation<'_> {
 
     /// What a name with indices stands for.
     pub fn place(&mut self, e: &UppaalExpr) -> Result<UppaalSymbol, UppaalFault> {
-        match &e.kind {
-            UppaalExprKind::Name(name) => match self.find(name) {
+        match e.as_place() {
+            Some(UppaalPlace::Name(name)) => match self.find(name) {
                 Some(sym) => Ok(sym.clone()),
-                None if self.in_query && self.processes.iter().any(|p| p.model_name == *name) => fault(
+                None if self.in_query && self.processes.iter().any(|p| p.model_name == name) => fault(
                     e.span,
                     format!("`{name}` is a process: `{name}.` and the name of a location or variable"),
                 ),
                 None => fault(e.span, format!("there is no `{name}` here")),
             },
-            UppaalExprKind::Index(of, index) => {
+            Some(UppaalPlace::Index(of, index)) => {
                 let sym = self.place(of)?;
                 let index_span = index.span;
                 let index = self.expr(index)?.into_int();
                 self.element(sym, index, index_span)
             }
-            UppaalExprKind::Field(of, name) => self.member(of, name, e.span),
-            UppaalExprKind::Int(_)
-            | UppaalExprKind::Bool(_)
-            | UppaalExprKind::Neg(_)
-            | UppaalExprKind::Not(_)
-            | UppaalExprKind::Binary(..)
-            | UppaalExprKind::Choice(..)
-            | UppaalExprKind::Call(..)
-            | UppaalExprKind::Assign(..)
-            | UppaalExprKind::Step { .. }
-            | UppaalExprKind::Quantified(..)
-            | UppaalExprKind::Rate
-            | UppaalExprKind::Deadlock => {
-                fault(e.span, "expected the name of a variable, a clock or a channel")
-            }
+            Some(UppaalPlace::Field(of, name)) => self.member(of, name, e.span),
+            None => fault(e.span, "expected the name of a variable, a clock or a channel"),
         }
     }
 

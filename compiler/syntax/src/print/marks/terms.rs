@@ -147,27 +147,8 @@ impl TokenMarker<'_> {
 
 /// Needs no blanks around its `..`.
 fn small(expr: &ExprSyntax) -> bool {
-    match &expr.kind {
-        ExprSyntaxKind::Int(_) => true,
-        ExprSyntaxKind::Path(path) => path.names.len() == 1,
-        ExprSyntaxKind::Unary { op: UnaryOp::Neg, operand } => matches!(operand.kind, ExprSyntaxKind::Int(_)),
-        ExprSyntaxKind::Unary { op: UnaryOp::Not, .. }
-        | ExprSyntaxKind::Bool(_)
-        | ExprSyntaxKind::Float(_)
-        | ExprSyntaxKind::Quantity { .. }
-        | ExprSyntaxKind::Any
-        | ExprSyntaxKind::Call { .. }
-        | ExprSyntaxKind::Index { .. }
-        | ExprSyntaxKind::Field { .. }
-        | ExprSyntaxKind::Binary { .. }
-        | ExprSyntaxKind::If { .. }
-        | ExprSyntaxKind::Tuple(_)
-        | ExprSyntaxKind::Text(_)
-        | ExprSyntaxKind::List { .. }
-        | ExprSyntaxKind::Strong(_)
-        | ExprSyntaxKind::Annotated { .. }
-        | ExprSyntaxKind::Internal(_)
-        | ExprSyntaxKind::Unify { .. }
-        | ExprSyntaxKind::Error => false,
-    }
+    let is_number = |of: &ExprSyntax| matches!(of.kind, ExprSyntaxKind::Int(_));
+    is_number(expr)
+        || matches!(&expr.kind, ExprSyntaxKind::Path(path) if path.names.len() == 1)
+        || matches!(&expr.kind, ExprSyntaxKind::Unary { op: UnaryOp::Neg, operand } if is_number(operand))
 }

@@ -172,15 +172,7 @@ impl GapContext<'_, '_> {
 /// When that was so which a message tells of a device.
 fn sampled_at(template: &MessageTemplate, stage: &WorldStage<'_>) -> Option<Nanos> {
     let gaps = if stage.has_sensors() { template.leaves() } else { Vec::new() };
-    gaps.into_iter().find_map(|gap| match gap {
-        GapValue::Told { device, .. } => stage.sampled_at(*device),
-        GapValue::Held { .. }
-        | GapValue::Value { .. }
-        | GapValue::Now
-        | GapValue::Fixed(_)
-        | GapValue::Whole(_)
-        | GapValue::Chosen { .. } => None,
-    })
+    gaps.into_iter().filter_map(GapValue::teller).find_map(|device| stage.sampled_at(device))
 }
 
 /// Where the value stands that comes next in a JSON text which breaks off there.

@@ -493,15 +493,7 @@ fn declaration(port: u64, kind: PortKind, name: &str, interface: &str, latched: 
 
 /// When the first of what holds is over.
 fn held_until(message: &MessageTemplate, heard: &HeardEvents, now: Nanos) -> Option<Nanos> {
-    let ends = message.leaves().into_iter().filter_map(|value| match value {
-        GapValue::Held { events, time } if *time > 0 => Some(heard.last_of(events)?.saturating_add(*time)),
-        GapValue::Held { .. }
-        | GapValue::Value { .. }
-        | GapValue::Now
-        | GapValue::Told { .. }
-        | GapValue::Fixed(_)
-        | GapValue::Whole(_)
-        | GapValue::Chosen { .. } => None,
-    });
+    let held = message.leaves().into_iter().filter_map(GapValue::as_held).filter(|(_, time)| *time > 0);
+    let ends = held.filter_map(|(events, time)| Some(heard.last_of(events)?.saturating_add(time)));
     ends.filter(|end| *end > now).min()
 }

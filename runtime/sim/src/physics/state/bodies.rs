@@ -3,7 +3,7 @@
 use hrdsl_ir::world::{Body, BodyId};
 
 use crate::{
-    error::SimError,
+    error::SimulationError,
     math::{BodyFrame, from_rpy, v3},
 };
 
@@ -15,8 +15,8 @@ pub fn body_id(i: usize) -> BodyId {
     BodyId(u16::try_from(i).unwrap_or(u16::MAX))
 }
 
-pub fn bad(what: String, kind: &'static str, index: usize) -> SimError {
-    SimError::BadReference { what, kind, index }
+pub fn bad(what: String, kind: &'static str, index: usize) -> SimulationError {
+    SimulationError::BadReference { what, kind, index }
 }
 
 pub fn start_of(body: &Body) -> BodyFrame {

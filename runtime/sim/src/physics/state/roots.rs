@@ -3,7 +3,7 @@
 use hrdsl_ir::world::{BodyId, BodyMotion, World};
 
 use super::bodies::{bad, body_id, index};
-use crate::{error::SimError, math::v3};
+use crate::{error::SimulationError, math::v3};
 
 /// For each body the figure that it is of.
 pub fn figure_of(world: &World) -> Vec<Option<usize>> {
@@ -20,7 +20,7 @@ pub fn figure_of(world: &World) -> Vec<Option<usize>> {
 }
 
 /// For each body the one that it is rigidly one with: the topmost over joints that cannot move.
-pub fn rigid_roots(world: &World) -> Result<Vec<BodyId>, SimError> {
+pub fn rigid_roots(world: &World) -> Result<Vec<BodyId>, SimulationError> {
     let count = world.bodies.len();
     let mut above: Vec<Option<BodyId>> = vec![None; count];
     for joint in &world.joints {
@@ -32,14 +32,14 @@ pub fn rigid_roots(world: &World) -> Result<Vec<BodyId>, SimError> {
         let numbers = joint.anchor.iter().chain(&joint.axis).chain([&joint.lo, &joint.hi]);
         if !numbers.into_iter().all(|x| x.is_finite()) || v3(joint.axis).norm() < 1e-9 || joint.lo > joint.hi
         {
-            return Err(SimError::BadNumber { what: format!("a measure of joint `{}`", joint.name) });
+            return Err(SimulationError::BadNumber { what: format!("a measure of joint `{}`", joint.name) });
         }
         let child = index(joint.child);
         if world.bodies[child].motion != BodyMotion::Dynamic || joint.parent == joint.child {
-            return Err(SimError::BadChild { joint: joint.name.clone() });
+            return Err(SimulationError::BadChild { joint: joint.name.clone() });
         }
         if joint.is_rigid() && above[child].replace(joint.parent).is_some() {
-            return Err(SimError::BadChild { joint: joint.name.clone() });
+            return Err(SimulationError::BadChild { joint: joint.name.clone() });
         }
     }
     let root = |start: usize| {
@@ -50,7 +50,7 @@ pub fn rigid_roots(world: &World) -> Result<Vec<BodyId>, SimError> {
                 None => return Ok(at),
             }
         }
-        Err(SimError::BadChild { joint: world.bodies[start].name.clone() })
+        Err(SimulationError::BadChild { joint: world.bodies[start].name.clone() })
     };
     (0..count).map(root).collect()
 }

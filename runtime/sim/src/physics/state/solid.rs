@@ -9,7 +9,7 @@ use rapier3d::prelude::*;
 
 use super::bodies::{index, start_of};
 use crate::{
-    error::SimError,
+    error::SimulationError,
     hulls::hulls_of,
     math::{BodyFrame, SpaceVector, from_rpy, from_vector, to_pose, v3},
 };
@@ -50,7 +50,7 @@ impl SolidExtent {
 ///
 /// # Errors
 /// If a measure is no number that it can have.
-pub fn solid_shape(solid: &SolidBody, name: &str) -> Result<(SharedShape, SolidExtent), SimError> {
+pub fn solid_shape(solid: &SolidBody, name: &str) -> Result<(SharedShape, SolidExtent), SimulationError> {
     let (mut parts, mut plain, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     for placed in &solid.shapes {
         let frame = frame_of(placed, name)?;
@@ -79,11 +79,11 @@ pub fn solid_shape(solid: &SolidBody, name: &str) -> Result<(SharedShape, SolidE
     Ok((shape, SolidExtent { plain, corners, middle, half: longest, is_frame }))
 }
 
-fn frame_of(placed: &PlacedSolid, name: &str) -> Result<BodyFrame, SimError> {
+fn frame_of(placed: &PlacedSolid, name: &str) -> Result<BodyFrame, SimulationError> {
     if placed.position.iter().chain(&placed.rotation).all(|x| x.is_finite()) {
         Ok(BodyFrame::new(v3(placed.position), from_rpy(placed.rotation)))
     } else {
-        Err(SimError::BadNumber { what: format!("a measure of body `{name}`") })
+        Err(SimulationError::BadNumber { what: format!("a measure of body `{name}`") })
     }
 }
 
@@ -186,9 +186,9 @@ fn load(world: &World, roots: &[BodyId], id: BodyId) -> f64 {
 }
 
 /// The shape of a body, and what is measured of it if it has several.
-pub fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), SimError> {
+pub fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), SimulationError> {
     if !body.position.iter().chain(&body.rotation).all(|x| x.is_finite()) {
-        return Err(SimError::BadNumber { what: format!("a measure of body `{}`", body.name) });
+        return Err(SimulationError::BadNumber { what: format!("a measure of body `{}`", body.name) });
     }
     match &body.solid {
         Some(solid) => solid_shape(solid, &body.name).map(|(shape, extent)| (shape, Some(extent))),
@@ -196,7 +196,7 @@ pub fn surface_of(body: &Body) -> Result<(SharedShape, Option<SolidExtent>), Sim
     }
 }
 
-fn shape_of(shape: BodyShape, name: &str) -> Result<SharedShape, SimError> {
+fn shape_of(shape: BodyShape, name: &str) -> Result<SharedShape, SimulationError> {
     let measures: Vec<f64> = match shape {
         BodyShape::Box { size } => size.to_vec(),
         BodyShape::Sphere { radius } => vec![radius],
@@ -205,7 +205,7 @@ fn shape_of(shape: BodyShape, name: &str) -> Result<SharedShape, SimError> {
         }
     };
     if measures.iter().any(|m| !m.is_finite() || *m <= 0.0) {
-        return Err(SimError::BadNumber { what: format!("a measure of body `{name}`") });
+        return Err(SimulationError::BadNumber { what: format!("a measure of body `{name}`") });
     }
     let half = |x: f64| (x / 2.0) as f32;
     Ok(match shape {

@@ -208,15 +208,7 @@ impl<'p> Net<'p> {
     fn takers(&self, s: &State, member: usize, over: Over, values: &[Value]) -> Result<Vec<Part>, Stop> {
         let mut found = Vec::new();
         for (e, edge) in self.automaton(member).edges.iter().enumerate() {
-            let this = match &edge.sync {
-                SyncLabel::Receive { event, .. } => over == Over::Event(*event),
-                SyncLabel::Accept { channel, .. } => over == Over::Channel(*channel),
-                SyncLabel::Internal
-                | SyncLabel::Send { .. }
-                | SyncLabel::Offer { .. }
-                | SyncLabel::Join { .. } => false,
-            };
-            if this {
+            if takes(edge, over) {
                 found.extend(self.ways(s, member, e, values)?);
             }
         }
@@ -240,14 +232,7 @@ impl<'p> Net<'p> {
         let data = RefCell::new(s.data.clone());
         let here = Here::of_member(&self.layout, &data, part.member, &part.binders, &self.statements);
         let p = self.layout.p;
-        let (over, args) = match &self.edge(part).sync {
-            SyncLabel::Send { event, args } => (Over::Event(*event), args),
-            SyncLabel::Offer { channel, args } => (Over::Channel(*channel), args),
-            SyncLabel::Internal
-            | SyncLabel::Receive { .. }
-            | SyncLabel::Accept { .. }
-            | SyncLabel::Join { .. } => unreachable!(),
-        };
+        let (over, args) = begun(self.edge(part)).expect("a sender sends or offers");
         let mut values = Vec::new();
         for (at, arg) in args.iter().enumerate() {
             let value = here.value(arg)?;
@@ -398,25 +383,10 @@ impl<'p> Net<'p> {
 
     /// Whether an automaton in a committed location has an edge for what this one sends or offers.
     fn calls_committed(&self, s: &State, sender: &Part) -> bool {
-        let over = match &self.edge(sender).sync {
-            SyncLabel::Send { event, .. } => Over::Event(*event),
-            SyncLabel::Offer { channel, .. } => Over::Channel(*channel),
-            SyncLabel::Internal
-            | SyncLabel::Receive { .. }
-            | SyncLabel::Accept { .. }
-            | SyncLabel::Join { .. } => return false,
-        };
+        let Some((over, _)) = begun(self.edge(sender)) else { return false };
         (0..self.members()).any(|m| {
-            let takes = |e: &Edge| match &e.sync {
-                SyncLabel::Receive { event, .. } => over == Over::Event(*event),
-                SyncLabel::Accept { channel, .. } => over == Over::Channel(*channel),
-                SyncLabel::Internal
-                | SyncLabel::Send { .. }
-                | SyncLabel::Offer { .. }
-                | SyncLabel::Join { .. } => false,
-            };
             let committed = m != sender.member && self.location(s, m).kind == LocationKind::Committed;
-            committed && self.automaton(m).edges.iter().any(|e| e.from.0 == s.at[m] && takes(e))
+            committed && self.automaton(m).edges.iter().any(|e| e.from.0 == s.at[m] && takes(e, over))
         })
     }
 
@@ -472,4 +442,18 @@ fn choices(selects: &[AutomatonVar]) -> Vec<Vec<Value>> {
         all = all.iter().flat_map(|old| values.iter().map(move |v| with(old, v))).collect();
     }
     all
+}
+
+/// What an edge begins that others take part in, with its arguments.
+fn begun(edge: &Edge) -> Option<(Over, &[Expr])> {
+    let sent = edge.sync.as_send().map(|(event, args)| (Over::Event(event), args));
+    sent.or(edge.sync.as_offer().map(|(channel, args)| (Over::Channel(channel), args)))
+}
+
+/// Whether an edge takes this event, or accepts over this channel.
+fn takes(edge: &Edge, over: Over) -> bool {
+    match over {
+        Over::Event(event) => edge.sync.as_receive().is_some_and(|(taken, _)| taken == event),
+        Over::Channel(channel) => edge.sync.as_accept().is_some_and(|(taken, _)| taken == channel),
+    }
 }
