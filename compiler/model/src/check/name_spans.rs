@@ -12,41 +12,23 @@ use crate::{AgentPlaces, AutomatonPlaces, TypedAutomaton, VarPlace};
 impl Checker<'_> {
     pub(in crate::check) fn places(&mut self) {
         for (item, span) in self.each_item() {
-            match item {
-                ItemSyntaxKind::Event(event) => {
-                    self.s.places.events.extend(event.names.iter().map(|one| one.name.span));
-                }
-                ItemSyntaxKind::Stimulus(stimulus) => self.s.places.events.push(stimulus.name.span),
-                ItemSyntaxKind::Var(var) => {
-                    let name = var.name.text.as_str();
-                    let parts = self.s.shared.iter().filter(|v| whole_name(&v.name) == name).count();
-                    let place = VarPlace { name: var.name.span, whole: span };
-                    self.s.places.shared.extend(std::iter::repeat_n(place, parts));
-                }
-                ItemSyntaxKind::Network { name, .. } => self.s.places.networks.push(name.span),
-                ItemSyntaxKind::Suite(suite) => self.s.places.awaits.push(awaits(suite)),
-                ItemSyntaxKind::Enum { .. }
-                | ItemSyntaxKind::Record { .. }
-                | ItemSyntaxKind::Const { .. }
-                | ItemSyntaxKind::Part(_)
-                | ItemSyntaxKind::Agent(_)
-                | ItemSyntaxKind::Automaton(_)
-                | ItemSyntaxKind::Require(_)
-                | ItemSyntaxKind::Cover(_)
-                | ItemSyntaxKind::Cross(_)
-                | ItemSyntaxKind::Use(_)
-                | ItemSyntaxKind::Allow(_)
-                | ItemSyntaxKind::Channel(_)
-                | ItemSyntaxKind::Function(_)
-                | ItemSyntaxKind::Query(_)
-                | ItemSyntaxKind::Instance(_)
-                | ItemSyntaxKind::Actor { .. }
-                | ItemSyntaxKind::Assume(_)
-                | ItemSyntaxKind::Device(_)
-                | ItemSyntaxKind::World(_)
-                | ItemSyntaxKind::System(_)
-                | ItemSyntaxKind::Test(_)
-                | ItemSyntaxKind::Error => {}
+            if let ItemSyntaxKind::Event(event) = item {
+                self.s.places.events.extend(event.names.iter().map(|one| one.name.span));
+            }
+            if let ItemSyntaxKind::Stimulus(stimulus) = item {
+                self.s.places.events.push(stimulus.name.span);
+            }
+            if let ItemSyntaxKind::Var(var) = item {
+                let name = var.name.text.as_str();
+                let parts = self.s.shared.iter().filter(|v| whole_name(&v.name) == name).count();
+                let place = VarPlace { name: var.name.span, whole: span };
+                self.s.places.shared.extend(std::iter::repeat_n(place, parts));
+            }
+            if let ItemSyntaxKind::Network { name, .. } = item {
+                self.s.places.networks.push(name.span);
+            }
+            if let ItemSyntaxKind::Suite(suite) = item {
+                self.s.places.awaits.push(awaits(suite));
             }
         }
         let agents = self.players.agents.iter();
@@ -70,14 +52,11 @@ impl<T> DeclaredPlayer<'_, T> {
 fn agent_places(agent: &ast::AgentSyntax, name: Span) -> AgentPlaces {
     let mut places = AgentPlaces { name, ..AgentPlaces::default() };
     for member in &agent.members {
-        match &member.kind {
-            AgentMember::Belief { name, .. } => places.beliefs.push(name.span),
-            AgentMember::Plan(plan) => places.triggers.push(plan.trigger.literal.span),
-            AgentMember::Rule { .. }
-            | AgentMember::GoalType { .. }
-            | AgentMember::Goal(_)
-            | AgentMember::Allow(_)
-            | AgentMember::Error => {}
+        if let AgentMember::Belief { name, .. } = &member.kind {
+            places.beliefs.push(name.span);
+        }
+        if let AgentMember::Plan(plan) = &member.kind {
+            places.triggers.push(plan.trigger.literal.span);
         }
     }
     places

@@ -19,8 +19,8 @@ use crate::check::{
         table::{MAX_NAMES, NameTable, OrderedMap},
         template::DeclaredTemplate,
     },
+    template::CheckerPhase,
     unread,
-    vocabulary::template::CheckerPhase,
 };
 use crate::{
     AgentId, BeliefDecl, BeliefId, GoalDecl, GoalId, InferredType, InitialFact, MessageSubject, Parameter,

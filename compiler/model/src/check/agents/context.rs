@@ -10,8 +10,8 @@ use crate::check::{
         terms::{TermMode, literal_of},
     },
     state::scope::{ExprEnv, is_variable_name},
+    template::CheckerPhase,
     value::{expr::FUNCTIONS, range},
-    vocabulary::template::CheckerPhase,
 };
 use crate::{
     BinaryOp, Dimension, InferredType, TypedContext, TypedTerm, UnaryOp,

@@ -12,7 +12,7 @@ use crate::check::{
     },
     checker::Checker,
     state::scope::ExprEnv,
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 use crate::{
     Dimension, GoalId, InferredType, ListFunction, TypedContext, TypedExpr, TypedInternalAct, TypedStepKind,

@@ -14,8 +14,8 @@ use crate::check::{
     },
     checker::Checker,
     state::{issues::too_many, names::DeclaredPlayer, record::DeclaredFields, scope::ExprEnv},
+    template::CheckerPhase,
     unread,
-    vocabulary::template::CheckerPhase,
 };
 use crate::{
     AgentId, AgentSpeech, BeliefId, ContentId, GoalId, InferredType, MessageContent, Parameter, Performative,

@@ -7,7 +7,7 @@ use crate::check::{
     agents::{agent::AgentScope, phase::AgentsPhase},
     checker::Checker,
     state::{item::ArgumentPart, names::ArgumentMode, record::DeclaredFields, scope::ExprEnv},
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 use crate::{
     BeliefAnnotation, BeliefId, InferredType, Parameter, Type, TypedAssertion, TypedExpr, TypedExprKind,

@@ -11,12 +11,13 @@ use crate::check::{
     state::{record::MAX_PARTS, scope::ExprEnv},
     value::{
         linear::{LinearTime, linear},
-        lookup::names_in,
+        operands::names_in,
     },
 };
 use crate::{
     BinaryOp, ClockId, ClockOp, Dimension, InferredType, TypedClockConstraint, TypedTime, TypedUpdate,
     UnaryOp, Value, VarPlace,
+    expr::ComparisonOp,
     noun::Noun,
     report::{automata, types},
 };
@@ -214,7 +215,7 @@ impl Checker<'_> {
         env: &mut ExprEnv,
     ) -> Option<Option<TypedClockConstraint>> {
         let Syntax::Binary { op, left, right } = &e.kind else { return None };
-        let op = comparison(*op)?;
+        let op = clock_op(ComparisonOp::of(*op)?);
         if !mentions_clock(left, env) && !mentions_clock(right, env) {
             return None;
         }
@@ -292,27 +293,18 @@ pub(in crate::check) fn is_clock(name: &NameSyntax, env: &ExprEnv) -> bool {
 }
 
 pub(in crate::check) fn mentions_clock(e: &ast::ExprSyntax, env: &ExprEnv) -> bool {
-    let mut names = Vec::new();
-    names_in(e, &mut names);
-    names.iter().any(|name| is_clock(name, env))
+    names_in(e).into_iter().any(|name| is_clock(name, env))
 }
 
-/// A comparison; `Some(None)`: `!=`, which no clock has.
-fn comparison(op: BinaryOp) -> Option<Option<ClockOp>> {
+/// How clocks are compared; `None`: they are not compared by `!=`.
+fn clock_op(op: ComparisonOp) -> Option<ClockOp> {
     match op {
-        BinaryOp::Lt => Some(Some(ClockOp::Lt)),
-        BinaryOp::Le => Some(Some(ClockOp::Le)),
-        BinaryOp::Eq => Some(Some(ClockOp::Eq)),
-        BinaryOp::Ge => Some(Some(ClockOp::Ge)),
-        BinaryOp::Gt => Some(Some(ClockOp::Gt)),
-        BinaryOp::Ne => Some(None),
-        BinaryOp::Or
-        | BinaryOp::And
-        | BinaryOp::Add
-        | BinaryOp::Sub
-        | BinaryOp::Mul
-        | BinaryOp::Div
-        | BinaryOp::Rem => None,
+        ComparisonOp::Lt => Some(ClockOp::Lt),
+        ComparisonOp::Le => Some(ClockOp::Le),
+        ComparisonOp::Eq => Some(ClockOp::Eq),
+        ComparisonOp::Ge => Some(ClockOp::Ge),
+        ComparisonOp::Gt => Some(ClockOp::Gt),
+        ComparisonOp::Ne => None,
     }
 }
 

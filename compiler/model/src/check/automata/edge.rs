@@ -13,7 +13,7 @@ use crate::check::{
         item::ArgumentPart,
         scope::{ExprEnv, is_variable_name},
     },
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 use crate::{
     ArgPattern, AutomatonVar, EventId, InferredType, LocationId, ReceiveArg, Type, TypedClockConstraint,

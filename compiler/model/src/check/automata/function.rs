@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeSet, rc::Rc};
 
+use hrdsl_ir::known_name;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AutomatonMemberKind as Member, CallSyntax, ItemSyntaxKind, NameSyntax};
 
@@ -143,19 +144,10 @@ impl Checker<'_> {
         } else {
             match self.kind_of(text) {
                 // These are called in places of their own.
-                Some(
-                    Noun::Actor
-                    | Noun::Agent
-                    | Noun::Automaton
-                    | Noun::Network
-                    | Noun::Query
-                    | Noun::Requirement
-                    | Noun::Point
-                    | Noun::Cross
-                    | Noun::Suite
-                    | Noun::Template,
-                )
-                | None => self.check_free(env, Noun::Function, name),
+                Some(Noun::Actor | Noun::Agent | Noun::Automaton | Noun::Template) | None => {
+                    self.check_free(env, Noun::Function, name);
+                }
+                Some(apart) if apart.is_apart() => self.check_free(env, Noun::Function, name),
                 Some(noun @ (Noun::Constant | Noun::Parameter | Noun::EnumValue | Noun::Variable)) => {
                     let before = self.issues.list.len();
                     self.check_free(env, Noun::Function, name);
@@ -415,7 +407,7 @@ impl Checker<'_> {
                 (VariableRef::Shared(i), _) => self.s.shared.get(usize::from(*i)),
                 (VariableRef::Own(_) | VariableRef::Local(_) | VariableRef::Signal(_), _) => None,
             };
-            let whole = var.map_or("?", |v| v.name.split(['.', '[']).next().unwrap_or(&v.name));
+            let whole = known_name("variable", var.and_then(|v| v.name.split(['.', '[']).next()));
             let issue = functions::impure(&routine.name, whole, span);
             self.report(issue);
         }

@@ -143,7 +143,7 @@ impl Checker<'_> {
         let given = values.len() == leaves.len();
         let mut values = values.into_iter();
         for ((name, ty), i) in leaves.into_iter().zip(first..) {
-            let init = crate::check::vocabulary::nearest_to_zero(ty);
+            let init = crate::check::value::variable::nearest_to_zero(ty);
             body.locals.push((starting_var(&name, ty, init), span));
             let value = values.next().filter(|_| given);
             // In a loop it starts anew each time.

@@ -8,7 +8,8 @@ use super::{
     rules::MessageEnv,
     shape::{FieldShape, MessageShape},
 };
-use crate::check::{checker::Checker, state::scope::ExprEnv};
+use crate::check::state::scope::ExprEnv;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{
     InferredType, Value,
     report::{bindings, types},
@@ -65,7 +66,7 @@ pub(super) fn names_at(shape: &MessageShape, path: &[MessageStep]) -> Vec<String
     }
 }
 
-impl Checker<'_> {
+impl BindingPhase<'_, '_> {
     /// The place, if it is one of the message; says where the way leaves it.
     pub(super) fn place(
         &mut self,

@@ -15,19 +15,16 @@ use hrdsl_syntax::ast::{
 
 use super::{
     places::{WrittenStep, steps_of},
-    scope::{BindingPlace, BindingScope},
+    scope::BindingPlace,
     shape::{FieldShape, MessageShape},
 };
-use crate::check::{
-    checker::Checker,
-    state::{item::ExprItem, scope::ExprEnv},
-};
+use crate::check::state::{item::ExprItem, scope::ExprEnv};
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{
     ActorId, Dimension, EventId, InferredType, Type, TypedExpr, TypedExprKind, VariableRef,
     noun::Noun,
     report::{bindings, names, types},
     types::TypeLayout,
-    world::TypedRuleTrigger,
 };
 
 /// What the rules of a message can read.
@@ -98,16 +95,15 @@ impl<'s> MessageEnv<'s> {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> BindingPhase<'_, 'a> {
     pub(super) fn message_rule(
         &mut self,
-        scope: BindingScope<'a>,
         env: &mut MessageEnv<'_>,
         entry: &BindingEntry,
     ) -> Option<MessageRule<TypedExpr>> {
         let (effect, when) = match &entry.kind {
             Entry::Emit { emit, when } => {
-                let (event, args) = self.emission_of(scope.actor, emit, env)?;
+                let (event, args) = self.emission_of(self.actor, emit, env)?;
                 (Some(MessageEffect::Emit { event, args }), when)
             }
             Entry::Command { command, device, args, when } => {
@@ -222,11 +218,7 @@ impl<'a> Checker<'a> {
         span: Span,
         env: &mut MessageEnv<'_>,
     ) -> Option<MessageEffect<TypedExpr>> {
-        let TypedRuleTrigger::Commanded { device: body, command: id } =
-            self.commanded(command, device, "")?
-        else {
-            return None;
-        };
+        let (body, id) = self.commanded(command, device, "")?;
         let params = self.command_params(body, id);
         let given = args.unwrap_or_default();
         let needed = params.iter().filter(|p| !p.optional).count();

@@ -10,7 +10,7 @@ use hrdsl_syntax::ast::{
 use super::phase::TestingPhase;
 use crate::check::{
     state::{scope::ExprEnv, table::NameTable, template::TemplateArgument},
-    vocabulary::template::{CheckerPhase, template},
+    template::{CheckerPhase, template},
 };
 use crate::{
     BinCondition, BinaryOp, CoverBin, CoverCross, CoverPoint, CoverpointId, CrossBin, EventPattern, UnaryOp,

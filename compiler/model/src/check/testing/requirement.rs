@@ -1,5 +1,6 @@
 //! Requirements and assumptions.
 
+use hrdsl_ir::value::nanos;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind};
 
@@ -7,7 +8,7 @@ use super::phase::TestingPhase;
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
     state::scope::ExprEnv,
-    vocabulary::template::{CheckerPhase, template},
+    template::{CheckerPhase, template},
 };
 use crate::{
     EventPattern, InferredType, RequirementKind, TypedAssumption, TypedExpr, TypedExprKind, TypedPattern,
@@ -105,8 +106,8 @@ impl TestingPhase<'_, '_> {
     fn assume(&mut self, assume: &ast::AssumeSyntax, span: Span) {
         let at_most = self.count(&assume.at_most, "the number", 0);
         let events = self.patterns(&assume.events);
-        let within = assume.within.as_ref().and_then(|e| self.time(e, "the time", true));
+        let within = assume.within.as_ref().and_then(|e| self.time(e, "the time", true)).map(nanos);
         let at_most = at_most.and_then(|n| u32::try_from(n).ok()).unwrap_or(0);
-        self.s.assumptions.push(TypedAssumption { events, at_most, within, span });
+        self.s.assumptions.push(TypedAssumption { text: span, events, at_most, within, origin: span });
     }
 }

@@ -5,7 +5,7 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, SystemMemberKind as Member};
 
 use super::phase::TestingPhase;
-use crate::check::vocabulary::template::CheckerPhase;
+use crate::check::{binding::phase::BindingPhase, checker::NOBODY, template::CheckerPhase};
 use crate::{
     ActorId, Role, SystemProgram, SystemUnderTest, TypedExpr,
     noun::Noun,
@@ -33,7 +33,7 @@ impl TestingPhase<'_, '_> {
 
     fn system(&mut self, system: &ast::SystemSyntax, span: Span) -> SystemUnderTest<TypedExpr> {
         let actor = self.actor(&system.actor);
-        if let Some(actor) = actor.filter(|a| self.role_of(*a) == Role::Environment) {
+        if let Some(actor) = actor.filter(|a| *a != NOBODY && self.role_of(*a) == Role::Environment) {
             let issue = roles::system_plays_environment(self.actor_name(actor), system.actor.span);
             self.report(issue);
         }
@@ -80,7 +80,8 @@ impl TestingPhase<'_, '_> {
                     self.report(systems::second_binding(&middleware.version.text, member.span, kind, first));
                     return;
                 }
-                resolved.binding = self.middleware(middleware, resolved.actor, member.span);
+                resolved.binding =
+                    BindingPhase::check(self.checker, &self.robots, middleware, resolved.actor, member.span);
             }
             Member::Run(_) | Member::Coverage(_) | Member::Program(_) | Member::Error => {}
         }

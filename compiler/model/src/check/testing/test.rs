@@ -10,7 +10,7 @@ use hrdsl_syntax::ast::{self, CallSyntax, ItemSyntaxKind, NameSyntax, TestMember
 
 use super::phase::TestingPhase;
 use crate::check::state::phase::CheckPhase;
-use crate::check::vocabulary::template::CheckerPhase;
+use crate::check::template::CheckerPhase;
 use crate::check::{
     checker::NOBODY,
     state::{scope::ExprEnv, table::NameTable},

@@ -2,7 +2,7 @@
 
 use hrdsl_source::Span;
 
-use crate::check::value::expr::MAX_TIME;
+use crate::check::value::quantity::MAX_TIME;
 use crate::report::automata::BadTime;
 use crate::{BinaryOp, InferredType, TypedExpr, TypedExprKind, TypedTime, TypedTimeTerm, UnaryOp, Value};
 

@@ -4,13 +4,11 @@ use hrdsl_syntax::ast::{
     self, ExprSyntaxKind, PathSyntax, PlaceSide, PlaceSyntax, TurnSyntax, WorldMemberKind as Member,
 };
 
-use crate::check::{
-    checker::Checker,
-    world::{
-        locate::{PlacedThing, PlacementSolver, PlacementSpec, ThingKind, ThingName},
-        parts::{PlacedMember, compose},
-    },
+use crate::check::world::{
+    locate::{PlacedThing, PlacementSolver, PlacementSpec, ThingKind, ThingName},
+    parts::{PlacedMember, compose},
 };
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     Dimension,
     noun::Noun,
@@ -37,36 +35,16 @@ pub(super) fn angles(turn: Option<&TurnSyntax>) -> Option<&ast::ExprSyntax> {
 }
 
 fn place_of(member: &Member) -> Option<(&ast::NameSyntax, &PlaceSyntax, Option<&TurnSyntax>)> {
-    match member {
-        Member::Body(body) => Some((&body.name, &body.place, body.turn.as_ref())),
-        Member::Part { name, place, turn, .. } => Some((name, place, turn.as_ref())),
-        Member::Step(_)
-        | Member::Sample(_)
-        | Member::Gravity(_)
-        | Member::Joint(_)
-        | Member::Arm(_)
-        | Member::Gripper(_)
-        | Member::Base(_)
-        | Member::Laser(_)
-        | Member::Scanner { .. }
-        | Member::Robot(_)
-        | Member::Packages(_)
-        | Member::Argument { .. }
-        | Member::Semantics(_)
-        | Member::Start(_)
-        | Member::Walls(_)
-        | Member::Limb(_)
-        | Member::Figure(_)
-        | Member::Posture(_)
-        | Member::Current { .. }
-        | Member::Signal { .. }
-        | Member::Rule(_)
-        | Member::Allow(_)
-        | Member::Error => None,
+    if let Member::Body(body) = member {
+        Some((&body.name, &body.place, body.turn.as_ref()))
+    } else if let Member::Part { name, place, turn, .. } = member {
+        Some((name, place, turn.as_ref()))
+    } else {
+        None
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     /// Brings to its place what is placed by something else, with all that is in it.
     pub(super) fn place_by_others(&mut self, placed: &mut [PlacedMember<'a>]) {
         let relative =

@@ -12,7 +12,7 @@ use crate::check::{
     state::{
         item::ExprItem,
         scope::ExprEnv,
-        template::{BoundParam, DeclaredTemplate, TemplateArgument, TemplateArguments},
+        template::{BoundParam, DeclaredTemplate, TemplateArgument, TemplateArguments, kind_word},
     },
     value::measure,
 };
@@ -46,29 +46,6 @@ impl TemplateTrial {
             TemplateTrial::Mirrored => !index.is_multiple_of(2),
         }
     }
-}
-
-/// A kind of parameter that is no type of values.
-fn kind_word(text: &str) -> Option<Noun> {
-    Some(match text {
-        "event" => Noun::Event,
-        "actor" => Noun::Actor,
-        "cover" => Noun::Point,
-        "place" => Noun::Body,
-        "arm" => Noun::Arm,
-        "gripper" => Noun::Gripper,
-        "base" => Noun::Base,
-        "laser" => Noun::Laser,
-        _ => return None,
-    })
-}
-
-/// What parameters of templates can be besides values.
-pub(in crate::check) const KIND_WORDS: [&str; 8] =
-    ["event", "actor", "cover", "place", "arm", "gripper", "base", "laser"];
-
-pub(in crate::check) fn is_kind_word(text: &str) -> bool {
-    kind_word(text).is_some()
 }
 
 /// The kind of a parameter that is no value.
@@ -116,20 +93,6 @@ pub(in crate::check) fn template(
 }
 
 impl<'a> Checker<'a> {
-    pub(in crate::check) fn declare_templates(&mut self) {
-        for (item, _) in self.each_item() {
-            let Some((sort, template)) = template(item) else { continue };
-            let name = template.name;
-            let key = (sort, name.text.as_str());
-            if let Some(first) = self.templates.declared.get(&key) {
-                let issue = names::duplicate(Noun::Template, &name.text, name.span, Some(first.name.span));
-                self.report(issue);
-                continue;
-            }
-            self.templates.declared.insert(key, template);
-        }
-    }
-
     /// A name that a template of the sort has already.
     pub(in crate::check) fn not_a_template(&mut self, sort: TemplateSyntaxKind, name: &NameSyntax) {
         let first = self.templates.declared.get(&(sort, name.text.as_str())).map(|t| t.name.span);
