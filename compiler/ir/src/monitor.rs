@@ -100,8 +100,9 @@ pub struct MonitorMargin {
 
 /// `assume at most N e within D`: restricts which stimuli are generated; never gives a verdict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Assumption {
-    pub text: String,
+pub struct Assumption<T = String> {
+    /// As written in the source; for the checker, where that stands.
+    pub text: T,
     pub events: Vec<EventPattern>,
     pub at_most: u32,
     /// Within any window of this length; `None`: within the test.

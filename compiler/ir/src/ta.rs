@@ -445,11 +445,11 @@ impl<E, V> FunctionStatement<E, V> {
 
 /// A question about a network, after UPPAAL's query language.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Query<E = Expr> {
+pub struct Query<E = Expr, T = String> {
     pub name: String,
     pub title: String,
-    /// The formal part as written in the source.
-    pub text: String,
+    /// The formal part as written in the source; for the checker, where that stands.
+    pub text: T,
     pub network: NetworkId,
     pub ask: QueryKind<E>,
     pub origin: Span,

@@ -332,19 +332,19 @@ pub struct CurrentBody {
 
 /// `on trigger when guard emit event(args)`: what the world answers as an environment actor, or what it sees the system do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WorldRule {
-    pub on: RuleTrigger,
+pub struct WorldRule<E = Expr> {
+    pub on: RuleTrigger<E>,
     /// A boolean over signals: `Expr::Var(i)` is `signals[i]`.
-    pub guard: Option<Expr>,
+    pub guard: Option<E>,
     pub event: EventId,
-    pub args: Vec<Expr>,
+    pub args: Vec<E>,
     pub signals: Vec<SignalId>,
     pub origin: Span,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RuleTrigger {
+pub enum RuleTrigger<E = Expr> {
     Event(crate::event::EventPattern),
     /// The system told a device to do this.
     Commanded {
@@ -355,7 +355,7 @@ pub enum RuleTrigger {
     /// held for so long.
     Edge {
         rising: bool,
-        condition: Expr,
+        condition: E,
         held: Nanos,
     },
 }

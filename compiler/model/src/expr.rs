@@ -67,6 +67,57 @@ pub enum VariableRef {
     Signal(SignalId),
 }
 
+/// The operators that compare.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ComparisonOp {
+    Eq,
+    Ne,
+    Lt,
+    Le,
+    Gt,
+    Ge,
+}
+
+impl ComparisonOp {
+    /// `None`: the operator compares nothing.
+    pub fn of(op: BinaryOp) -> Option<Self> {
+        match op {
+            BinaryOp::Eq => Some(Self::Eq),
+            BinaryOp::Ne => Some(Self::Ne),
+            BinaryOp::Lt => Some(Self::Lt),
+            BinaryOp::Le => Some(Self::Le),
+            BinaryOp::Gt => Some(Self::Gt),
+            BinaryOp::Ge => Some(Self::Ge),
+            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => None,
+            BinaryOp::And | BinaryOp::Or => None,
+        }
+    }
+
+    /// What holds where this does not.
+    pub fn negated(self) -> Self {
+        match self {
+            Self::Eq => Self::Ne,
+            Self::Ne => Self::Eq,
+            Self::Lt => Self::Ge,
+            Self::Le => Self::Gt,
+            Self::Gt => Self::Le,
+            Self::Ge => Self::Lt,
+        }
+    }
+
+    /// The same with the sides exchanged.
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::Eq => Self::Eq,
+            Self::Ne => Self::Ne,
+            Self::Lt => Self::Gt,
+            Self::Le => Self::Ge,
+            Self::Gt => Self::Lt,
+            Self::Ge => Self::Le,
+        }
+    }
+}
+
 impl VariableRef {
     /// The variable so many places after it.
     #[must_use]
@@ -140,29 +191,22 @@ impl TypedExpr {
     /// Calls `f` with the expression and each part of it, the whole first.
     pub fn each(&self, f: &mut dyn FnMut(&TypedExpr)) {
         f(self);
+        self.operands().into_iter().for_each(|operand| operand.each(f));
+    }
+
+    /// The expressions that it is made of.
+    pub(crate) fn operands(&self) -> Vec<&TypedExpr> {
         match &self.kind {
             TypedExprKind::Const(_)
             | TypedExprKind::Leaf(_)
             | TypedExprKind::Term(_)
-            | TypedExprKind::Error => {}
-            TypedExprKind::Unary(_, a) => a.each(f),
-            TypedExprKind::Binary(_, a, b) => {
-                a.each(f);
-                b.each(f);
-            }
-            TypedExprKind::If(c, a, b) => {
-                c.each(f);
-                a.each(f);
-                b.each(f);
-            }
-            TypedExprKind::Call(_, args) | TypedExprKind::Apply(_, args, _) => {
-                args.iter().for_each(|a| a.each(f))
-            }
-            TypedExprKind::Element(place) => place.indices.iter().for_each(|i| i.at.each(f)),
-            TypedExprKind::List(items, rest) => {
-                items.iter().for_each(|e| e.each(f));
-                rest.iter().for_each(|e| e.each(f));
-            }
+            | TypedExprKind::Error => Vec::new(),
+            TypedExprKind::Unary(_, a) => vec![a],
+            TypedExprKind::Binary(_, a, b) => vec![a, b],
+            TypedExprKind::If(c, a, b) => vec![c, a, b],
+            TypedExprKind::Call(_, args) | TypedExprKind::Apply(_, args, _) => args.iter().collect(),
+            TypedExprKind::Element(place) => place.indices.iter().map(|i| &i.at).collect(),
+            TypedExprKind::List(items, rest) => items.iter().chain(rest.as_deref()).collect(),
         }
     }
 }

@@ -94,6 +94,33 @@ pub(crate) enum Noun {
     Program,
 }
 
+/// What of a text declares names of a kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NounSource {
+    /// They are the language's own words.
+    Language,
+    /// One piece with the place that uses them.
+    Beside,
+    /// A member of an agent or automaton.
+    Member,
+    ItemOrMember,
+    /// A declaration, or a member of a world or part.
+    Item,
+}
+
+struct NounRow {
+    word: &'static str,
+    /// Where it is not the word with an `s`.
+    plural: Option<&'static str>,
+    declared_by: NounSource,
+}
+
+impl NounRow {
+    fn plural(self, plural: &'static str) -> Self {
+        Self { plural: Some(plural), ..self }
+    }
+}
+
 impl Noun {
     /// `a clock`
     pub fn with_article(self) -> String {
@@ -102,82 +129,9 @@ impl Noun {
         format!("{article} {word}")
     }
 
-    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub fn plural(self) -> String {
-        match self {
-            Noun::Stimulus => "stimuli".to_owned(),
-            Noun::Automaton => "automata".to_owned(),
-            Noun::Body => "bodies".to_owned(),
-            Noun::EventOrStimulus => "events and stimuli".to_owned(),
-            Noun::Medium => "events, stimuli and channels".to_owned(),
-            Noun::Player => "agents and automata".to_owned(),
-            Noun::RequirementKind => "kinds of requirement".to_owned(),
-            Noun::Explore => "explore options".to_owned(),
-            Noun::Reach => "things that a suite by agents reaches".to_owned(),
-            Noun::Query => "queries".to_owned(),
-            Noun::Member => "locations, variables and clocks of this automaton".to_owned(),
-            Noun::SearchReach => "things that a suite by search reaches".to_owned(),
-            Noun::ReachOf => "things of a requirement that a suite by search reaches".to_owned(),
-            Noun::Witness => "kinds of witness".to_owned(),
-            Noun::Delays => "kinds of delays".to_owned(),
-            Noun::Cross => "cross products".to_owned(),
-            Noun::Motion => "kinds of body".to_owned(),
-            Noun::DeviceKind => "kinds of device".to_owned(),
-            Noun::DeviceMeasure => "measurements of this kind of device".to_owned(),
-            Noun::PartInstance => "parts of the world".to_owned(),
-            Noun::Coordinate
-            | Noun::Actor
-            | Noun::Role
-            | Noun::Constant
-            | Noun::Event
-            | Noun::Channel
-            | Noun::Parameter
-            | Noun::Sample
-            | Noun::Unit
-            | Noun::Type
-            | Noun::Enum
-            | Noun::EnumValue
-            | Noun::Record
-            | Noun::Field
-            | Noun::Template
-            | Noun::Function
-            | Noun::Agent
-            | Noun::Belief
-            | Noun::Goal
-            | Noun::Label
-            | Noun::Variable
-            | Noun::Clock
-            | Noun::Location
-            | Noun::Network
-            | Noun::Requirement
-            | Noun::Point
-            | Noun::Bin
-            | Noun::Suite
-            | Noun::Method
-            | Noun::Test
-            | Noun::Part
-            | Noun::Shape
-            | Noun::Joint
-            | Noun::Arm
-            | Noun::Gripper
-            | Noun::Base
-            | Noun::Laser
-            | Noun::Limb
-            | Noun::Figure
-            | Noun::Posture
-            | Noun::Group
-            | Noun::Device
-            | Noun::Command
-            | Noun::Primitive
-            | Noun::Current
-            | Noun::Signal
-            | Noun::Annotation
-            | Noun::InternalAction
-            | Noun::Performative
-            | Noun::System
-            | Noun::Program
-            | Noun::Action => format!("{self}s"),
-        }
+        let row = self.row();
+        row.plural.map_or_else(|| format!("{}s", row.word), str::to_owned)
     }
 
     /// Networks, and what is judged and covered: other declarations do not speak of them in expressions, so that whoever writes
@@ -187,81 +141,103 @@ impl Noun {
     }
 
     /// `clock`
-    #[expect(clippy::too_many_lines, reason = "a flat match")]
     pub fn word(self) -> &'static str {
+        self.row().word
+    }
+
+    /// What of a text declares names of this kind.
+    pub fn declared_by(self) -> NounSource {
+        self.row().declared_by
+    }
+
+    /// All that is known of a kind of names.
+    #[expect(clippy::too_many_lines, reason = "a flat match")]
+    fn row(self) -> NounRow {
+        let of = |declared_by| move |word| NounRow { word, plural: None, declared_by };
+        let language = of(NounSource::Language);
+        let beside = of(NounSource::Beside);
+        let member = of(NounSource::Member);
+        let either = of(NounSource::ItemOrMember);
+        let item = of(NounSource::Item);
         match self {
-            Noun::Actor => "actor",
-            Noun::Role => "role",
-            Noun::Constant => "constant",
-            Noun::Event => "event",
-            Noun::Stimulus => "stimulus",
-            Noun::EventOrStimulus => "event or stimulus",
-            Noun::Channel => "channel",
-            Noun::Medium => "event, stimulus or channel",
-            Noun::Parameter => "parameter",
-            Noun::Sample => "sample",
-            Noun::Unit => "unit",
-            Noun::Type => "type",
-            Noun::Enum => "enumeration",
-            Noun::EnumValue => "value",
-            Noun::Record => "record",
-            Noun::Field => "field",
-            Noun::Template => "template",
-            Noun::Function => "function",
-            Noun::Agent => "agent",
-            Noun::Automaton => "automaton",
-            Noun::Player => "agent or automaton",
-            Noun::Belief => "belief",
-            Noun::Goal => "goal",
-            Noun::Label => "plan label",
-            Noun::Variable => "variable",
-            Noun::Clock => "clock",
-            Noun::Location => "location",
-            Noun::Network => "network",
-            Noun::Query => "query",
-            Noun::Member => "location, variable or clock of this automaton",
-            Noun::SearchReach => "thing that a suite by search reaches",
-            Noun::ReachOf => "thing of a requirement that a suite by search reaches",
-            Noun::Witness => "kind of witness",
-            Noun::Delays => "kind of delays",
-            Noun::Requirement => "requirement",
-            Noun::RequirementKind => "kind of requirement",
-            Noun::Point => "coverpoint",
-            Noun::Bin => "bin",
-            Noun::Cross => "cross product",
-            Noun::Suite => "suite",
-            Noun::Method => "method",
-            Noun::Explore => "explore option",
-            Noun::Reach => "thing that a suite by agents reaches",
-            Noun::Annotation => "annotation",
-            Noun::InternalAction => "internal action",
-            Noun::Performative => "performative",
-            Noun::Test => "test",
-            Noun::System => "system",
-            Noun::Program => "program",
-            Noun::Part => "part",
-            Noun::PartInstance => "part of the world",
-            Noun::Body => "body",
-            Noun::Motion => "kind of body",
-            Noun::Shape => "shape",
-            Noun::Joint => "joint",
-            Noun::Arm => "arm",
-            Noun::Gripper => "gripper",
-            Noun::Base => "base",
-            Noun::Laser => "laser",
-            Noun::Device => "device",
-            Noun::Limb => "limb",
-            Noun::Figure => "figure",
-            Noun::Posture => "posture",
-            Noun::Group => "group",
-            Noun::DeviceKind => "kind of device",
-            Noun::Command => "command",
-            Noun::Primitive => "primitive",
-            Noun::DeviceMeasure => "measurement of this kind of device",
-            Noun::Current => "current body",
-            Noun::Signal => "signal",
-            Noun::Action => "action",
-            Noun::Coordinate => "coordinate",
+            Noun::Actor => item("actor"),
+            Noun::Role => language("role"),
+            Noun::Constant => item("constant"),
+            Noun::Event => item("event"),
+            Noun::Stimulus => item("stimulus").plural("stimuli"),
+            Noun::EventOrStimulus => item("event or stimulus").plural("events and stimuli"),
+            Noun::Channel => item("channel"),
+            Noun::Medium => item("event, stimulus or channel").plural("events, stimuli and channels"),
+            Noun::Parameter => beside("parameter"),
+            Noun::Sample => beside("sample"),
+            Noun::Unit => language("unit"),
+            Noun::Type => item("type"),
+            Noun::Enum => item("enumeration"),
+            Noun::EnumValue => beside("value"),
+            Noun::Record => item("record"),
+            Noun::Field => beside("field"),
+            Noun::Template => item("template"),
+            Noun::Function => either("function"),
+            Noun::Agent => item("agent"),
+            Noun::Automaton => item("automaton").plural("automata"),
+            Noun::Player => item("agent or automaton").plural("agents and automata"),
+            Noun::Belief => member("belief"),
+            Noun::Goal => member("goal"),
+            Noun::Label => beside("plan label"),
+            Noun::Variable => either("variable"),
+            Noun::Clock => member("clock"),
+            Noun::Location => member("location"),
+            Noun::Network => item("network"),
+            Noun::Query => item("query").plural("queries"),
+            Noun::Member => member("location, variable or clock of this automaton")
+                .plural("locations, variables and clocks of this automaton"),
+            Noun::SearchReach => language("thing that a suite by search reaches")
+                .plural("things that a suite by search reaches"),
+            Noun::ReachOf => language("thing of a requirement that a suite by search reaches")
+                .plural("things of a requirement that a suite by search reaches"),
+            Noun::Witness => language("kind of witness").plural("kinds of witness"),
+            Noun::Delays => language("kind of delays").plural("kinds of delays"),
+            Noun::Requirement => item("requirement"),
+            Noun::RequirementKind => language("kind of requirement").plural("kinds of requirement"),
+            Noun::Point => item("coverpoint"),
+            Noun::Bin => beside("bin"),
+            Noun::Cross => item("cross product").plural("cross products"),
+            Noun::Suite => item("suite"),
+            Noun::Method => language("method"),
+            Noun::Explore => language("explore option"),
+            Noun::Reach => language("thing that a suite by agents reaches")
+                .plural("things that a suite by agents reaches"),
+            Noun::Annotation => member("annotation"),
+            Noun::InternalAction => language("internal action"),
+            Noun::Performative => language("performative"),
+            Noun::Test => item("test"),
+            Noun::System => item("system"),
+            Noun::Program => item("program"),
+            Noun::Part => item("part"),
+            Noun::PartInstance => item("part of the world").plural("parts of the world"),
+            Noun::Body => item("body").plural("bodies"),
+            Noun::Motion => language("kind of body").plural("kinds of body"),
+            Noun::Shape => language("shape"),
+            Noun::Joint => item("joint"),
+            Noun::Arm => item("arm"),
+            Noun::Gripper => item("gripper"),
+            Noun::Base => item("base"),
+            Noun::Laser => item("laser"),
+            Noun::Device => item("device"),
+            Noun::Limb => item("limb"),
+            Noun::Figure => item("figure"),
+            Noun::Posture => item("posture"),
+            Noun::Group => item("group"),
+            Noun::DeviceKind => language("kind of device").plural("kinds of device"),
+            Noun::Command => item("command"),
+            Noun::Primitive => language("primitive"),
+            Noun::DeviceMeasure => {
+                language("measurement of this kind of device").plural("measurements of this kind of device")
+            }
+            Noun::Current => item("current body"),
+            Noun::Signal => item("signal"),
+            Noun::Action => language("action"),
+            Noun::Coordinate => language("coordinate"),
         }
     }
 }

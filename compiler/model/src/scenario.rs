@@ -64,6 +64,8 @@ pub type TypedTime = hrdsl_ir::ta::TimeSum<TypedExpr>;
 pub type TypedTimeTerm = hrdsl_ir::ta::TimeTerm<TypedExpr>;
 pub type TypedFunction = hrdsl_ir::ta::AutomatonFunction<TypedExpr, VariableRef>;
 pub type TypedStatement = hrdsl_ir::ta::FunctionStatement<TypedExpr, VariableRef>;
+/// In its expressions, [`VariableRef::Own`] counts the variables of all automata, in the network's order.
+pub type TypedQuery = hrdsl_ir::ta::Query<TypedExpr, Span>;
 pub type TypedQueryKind = hrdsl_ir::ta::QueryKind<TypedExpr>;
 pub type TypedFormula = hrdsl_ir::ta::QueryFormula<TypedExpr>;
 pub type TypedMeasure = hrdsl_ir::ta::QueryMeasure<TypedExpr>;
@@ -71,6 +73,9 @@ pub type TypedSuite = hrdsl_ir::suite::Suite<TypedExpr>;
 pub type TypedMethod = hrdsl_ir::suite::SuiteMethod<TypedExpr>;
 pub type TypedChoice = hrdsl_ir::suite::BeliefChoice<TypedExpr>;
 pub type TypedChoiceCondition = hrdsl_ir::suite::BeliefCondition<TypedExpr>;
+pub type TypedAssumption = hrdsl_ir::monitor::Assumption<Span>;
+/// Over terms and signals; which signals it reads is found when it is lowered.
+pub type TypedWorldRule = hrdsl_ir::world::WorldRule<TypedExpr>;
 
 /// A whole scenario, resolved. If there were errors, what they concern is missing from it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -207,25 +212,3 @@ pub struct TypedRequirement {
 
 /// Times in seconds.
 pub type TypedPattern = hrdsl_syntax::RequirementPattern<EventPattern, TypedExpr, f64>;
-
-/// `assume at most N e within D`
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedAssumption {
-    pub events: Vec<EventPattern>,
-    pub at_most: u32,
-    /// Seconds.
-    pub within: Option<f64>,
-    pub span: Span,
-}
-
-/// A question about a network. In its expressions, [`VariableRef::Own`] counts the variables of all automata, in the network's order.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedQuery {
-    pub name: String,
-    pub title: String,
-    /// The formal part.
-    pub text: Span,
-    pub network: NetworkId,
-    pub ask: TypedQueryKind,
-    pub span: Span,
-}

@@ -5,12 +5,12 @@ use hrdsl_ir::{
     device::DeviceBody,
     sensor::ImperfectSensor,
     solid::{SharedData, SolidBody},
-    world::{Arm, Base, DeviceCommandId, DeviceId, Figure, Gripper, JointDrive, JointMotion, Laser, Limb},
+    world::{Arm, Base, DeviceId, Figure, Gripper, JointDrive, JointMotion, Laser, Limb},
 };
 use hrdsl_source::Span;
 use serde::Serialize;
 
-use crate::{ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, EventId, EventPattern, Type, TypedExpr};
+use crate::{ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, Type, TypedExpr, TypedWorldRule};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TypedWorld {
@@ -116,44 +116,6 @@ pub struct TypedSignal {
     /// Over terms and earlier signals.
     pub value: TypedExpr,
     pub span: Span,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TypedWorldRule {
-    pub on: TypedRuleTrigger,
-    /// Over terms and signals.
-    pub guard: Option<TypedExpr>,
-    pub event: EventId,
-    pub args: Vec<TypedExpr>,
-    pub span: Span,
-}
-
-/// What a rule waits for.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TypedRuleTrigger {
-    Event(EventPattern),
-    Commanded {
-        device: DeviceBody,
-        command: DeviceCommandId,
-    },
-    Edge {
-        rising: bool,
-        condition: TypedExpr,
-        /// Seconds.
-        held: f64,
-    },
-}
-
-impl TypedWorldRule {
-    /// The condition that it waits for.
-    #[must_use]
-    pub fn condition(&self) -> Option<&TypedExpr> {
-        match &self.on {
-            TypedRuleTrigger::Edge { condition, .. } => Some(condition),
-            TypedRuleTrigger::Event(_) | TypedRuleTrigger::Commanded { .. } => None,
-        }
-    }
 }
 
 impl PartFrame {

@@ -59,11 +59,11 @@ pub(crate) fn monitor(
 
 pub(crate) fn assumption(a: &model::TypedAssumption, files: &SourceFiles) -> Assumption {
     Assumption {
-        text: one_line(files.text(a.span)),
+        text: one_line(files.text(a.text)),
         events: a.events.clone(),
         at_most: a.at_most,
-        within: a.within.map(nanos),
-        origin: a.span,
+        within: a.within,
+        origin: a.origin,
     }
 }
 

@@ -33,7 +33,7 @@ pub(crate) fn query(
         text: one_line(files.text(q.text)),
         network: q.network,
         ask: q.ask.lower(&slots),
-        origin: q.span,
+        origin: q.origin,
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn world(w: &from::TypedWorld, kinds: &[DeviceKind], signals: &mut Si
         sensors: w.sensors.clone(),
         devices: devices(w, kinds),
         device_kinds: kinds.to_vec(),
-        rules: w.rules.iter().map(|r| rule(r, w, signals)).collect(),
+        rules: w.rules.iter().map(|r| rule(r, signals)).collect(),
         origin: w.span,
     }
 }
@@ -81,28 +81,20 @@ fn joint(j: &from::TypedJoint) -> Joint {
     }
 }
 
-fn rule(r: &from::TypedWorldRule, world: &from::TypedWorld, signals: &mut SignalTable<'_>) -> WorldRule {
+fn rule(r: &model::TypedWorldRule, signals: &mut SignalTable<'_>) -> WorldRule {
     let mut reader = SignalReader { signals, read: Vec::new(), recorded: false };
     let guard = r.guard.as_ref().map(|g| reader.expr(g));
-    let condition = r.condition().map(|c| reader.expr(c));
+    let on = match &r.on {
+        RuleTrigger::Event(pattern) => RuleTrigger::Event(pattern.clone()),
+        RuleTrigger::Commanded { device, command } => {
+            RuleTrigger::Commanded { device: *device, command: *command }
+        }
+        RuleTrigger::Edge { rising, condition, held } => {
+            RuleTrigger::Edge { rising: *rising, condition: reader.expr(condition), held: *held }
+        }
+    };
     let args = r.args.iter().map(|a| reader.expr(a)).collect();
-    WorldRule {
-        on: match &r.on {
-            from::TypedRuleTrigger::Event(p) => RuleTrigger::Event(p.clone()),
-            from::TypedRuleTrigger::Commanded { device, command } => {
-                RuleTrigger::Commanded { device: world.device_id(*device), command: *command }
-            }
-            from::TypedRuleTrigger::Edge { rising, held, .. } => {
-                let condition = condition.unwrap_or_else(|| expr::ruled_out("edge without a condition"));
-                RuleTrigger::Edge { rising: *rising, condition, held: nanos(*held) }
-            }
-        },
-        guard,
-        event: r.event,
-        args,
-        signals: reader.read(),
-        origin: r.span,
-    }
+    WorldRule { on, guard, event: r.event, args, signals: reader.read(), origin: r.origin }
 }
 
 fn type_of(t: SignalTerm, world: Option<&from::TypedWorld>) -> Type {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use hrdsl_ir::known_name;
 use hrdsl_source::{Diagnostic, Enumeration, Span};
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax};
 
@@ -12,7 +13,6 @@ use super::{
             CheckedSource, ConstEntry, EventNames, PlayerNames, SharedNames, TemplateNames, TypeNames,
             WorldState,
         },
-        solids::SolidMaker,
         table::{NameTable, OrderedMap},
         template::TemplateArgument,
         world::WorldNames,
@@ -45,11 +45,11 @@ pub(crate) struct Checker<'a> {
     pub(super) consts: OrderedMap<&'a str, ConstEntry<'a>>,
     pub(super) types: TypeNames<'a>,
     pub(super) templates: TemplateNames<'a>,
-    pub(super) events: EventNames<'a>,
+    pub(super) events: EventNames,
     pub(super) players: PlayerNames<'a>,
     pub(super) shared: SharedNames,
     // the world
-    pub(super) world: WorldState<'a>,
+    pub(super) world: WorldState,
     // what is met on the way
     /// The variables of agents without a value that were read since this was emptied.
     pub(super) unbound: BTreeSet<String>,
@@ -77,15 +77,7 @@ impl<'a> Checker<'a> {
                 agent_names: Enumeration::intern("agent", &["self", "percept"]),
             },
             shared: SharedNames::default(),
-            world: WorldState {
-                exists,
-                parts: OrderedMap::default(),
-                open_parts: Vec::new(),
-                names: WorldNames::default(),
-                robots: Vec::new(),
-                solids: SolidMaker::default(),
-                missed: Vec::new(),
-            },
+            world: WorldState { exists, names: WorldNames::default(), missed: Vec::new() },
             unbound: BTreeSet::new(),
             points: NameTable::default(),
         }
@@ -296,6 +288,6 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn actor_name(&self, actor: ActorId) -> &str {
-        self.s.actors.get(usize::from(actor.0)).map_or("?", |a| a.name.as_str())
+        known_name("actor", self.s.actors.get(usize::from(actor.0)).map(|a| a.name.as_str()))
     }
 }

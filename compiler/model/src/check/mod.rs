@@ -5,7 +5,9 @@ mod automata;
 mod binding;
 mod checker;
 mod name_spans;
+mod players;
 mod state;
+mod template;
 mod testing;
 mod unread;
 mod value;
@@ -25,19 +27,21 @@ use state::{
     phase::CheckPhase,
 };
 use testing::phase::TestingPhase;
+use vocabulary::phase::{DeclaredBodies, VocabularyPhase};
+use world::phase::WorldPhase;
 
 pub use agents::internal_table::{ArgumentSlot, INTERNAL_ACTIONS, InternalAction};
 
 /// Resolves and checks a scenario with the modules it uses and files of tests in its vocabulary.
 ///
 /// # Steps
-/// 1. [`Checker::vocabulary`], [`Checker::channels`]: actors, types, constants, events, stimuli, shared variables, templates,
-///    the names of agents and automata, and channels
-/// 2. [`Checker::devices`], [`Checker::world`]: what devices can be told; bodies with their parts, signals, rules
-/// 3. [`Checker::stimuli`]: what stimuli do to the world
-/// 4. [`AgentsPhase`], which gives what agents have declared
-/// 5. [`AutomataPhase`], which takes the channels and gives the networks
-/// 6. [`TestingPhase`], which takes both: requirements, coverage, suites, systems, tests
+/// 1. [`VocabularyPhase`]: actors, types, constants, events, stimuli, shared variables, templates, the names of agents and
+///    automata, which all see; it gives the parts, the bodies of stimuli, and channels
+/// 2. [`WorldPhase`], which takes parts and stimuli, and gives the parts that are made from descriptions: what devices can be
+///    told, bodies with their parts, signals, rules, and what stimuli do to the world
+/// 3. [`AgentsPhase`], which gives what agents have declared
+/// 4. [`AutomataPhase`], which takes the channels and gives the networks
+/// 5. [`TestingPhase`], which takes all three, and binds systems in a phase of their own for each: requirements, coverage, suites, systems, tests
 #[must_use]
 pub fn resolve(
     scenario: &ast::FileSyntax,
@@ -68,9 +72,10 @@ pub fn resolve_part(
 ) -> (Scenario, Vec<Diagnostic>) {
     let items = scenario.items.iter().collect();
     let source = source(items, modules, known);
-    let mut checker = phases(source, scenario.scenario.as_ref(), tests);
-    checker.places();
-    (checker.s, checker.issues.distinct())
+    let checker = phases(source, scenario.scenario.as_ref(), tests);
+    let Checker { s: mut scenario, source, players, world, issues, .. } = checker;
+    name_spans::complete(&mut scenario, &source.items, &players, &world.names.signals);
+    (scenario, issues.distinct())
 }
 
 /// One declaration of a scenario that stands in place of that with this index: only what is said of it is given. It is the
@@ -122,16 +127,11 @@ fn phases<'a>(
 ) -> Checker<'a> {
     let mut checker = Checker::new(source);
     checker.s.name = name.map_or_else(String::new, |n| n.text.clone());
-    checker.vocabulary();
-    let channels = checker.channels();
-    checker.devices();
-    checker.world();
-    if checker.source.reaches(CheckPhase::Stimuli) {
-        checker.stimuli();
-    }
+    let DeclaredBodies { parts, stimuli, channels } = VocabularyPhase::check(&mut checker);
+    let robots = WorldPhase::check(&mut checker, &parts, &stimuli);
     let agents = AgentsPhase::check(&mut checker);
     let networks = AutomataPhase::check(&mut checker, channels);
-    TestingPhase::check(&mut checker, (agents, networks), tests);
+    TestingPhase::check(&mut checker, (robots, agents, networks), tests);
     checker.say_without_world();
     checker
 }

@@ -5,39 +5,24 @@ use hrdsl_syntax::ast::{
     WorldMember, WorldMemberKind,
 };
 
-use crate::noun::Noun;
+use crate::noun::{Noun, NounSource};
 
 /// Whether a declaration, or a member of a world or part, could not be read.
 pub(in crate::check) fn in_item(item: &ItemSyntaxKind) -> bool {
-    let broken = |members: &[WorldMember]| members.iter().any(|m| matches!(m.kind, WorldMemberKind::Error));
-    match item {
-        ItemSyntaxKind::Error => true,
-        ItemSyntaxKind::World(world) => broken(&world.members),
-        ItemSyntaxKind::Part(part) => broken(&part.members),
-        ItemSyntaxKind::Device(device) => device.members.iter().any(|m| m.kind == DeviceMemberKind::Error),
-        ItemSyntaxKind::Use(_)
-        | ItemSyntaxKind::Allow(_)
-        | ItemSyntaxKind::Enum { .. }
-        | ItemSyntaxKind::Record { .. }
-        | ItemSyntaxKind::Instance(_)
-        | ItemSyntaxKind::Actor { .. }
-        | ItemSyntaxKind::Const { .. }
-        | ItemSyntaxKind::Event(_)
-        | ItemSyntaxKind::Stimulus(_)
-        | ItemSyntaxKind::Agent(_)
-        | ItemSyntaxKind::Var(_)
-        | ItemSyntaxKind::Automaton(_)
-        | ItemSyntaxKind::Channel(_)
-        | ItemSyntaxKind::Function(_)
-        | ItemSyntaxKind::Query(_)
-        | ItemSyntaxKind::Network { .. }
-        | ItemSyntaxKind::Require(_)
-        | ItemSyntaxKind::Assume(_)
-        | ItemSyntaxKind::Cover(_)
-        | ItemSyntaxKind::Cross(_)
-        | ItemSyntaxKind::Suite(_)
-        | ItemSyntaxKind::System(_)
-        | ItemSyntaxKind::Test(_) => false,
+    let device = matches!(item, ItemSyntaxKind::Device(device)
+        if device.members.iter().any(|m| m.kind == DeviceMemberKind::Error));
+    let world = world_members(item).iter().any(|m| m.kind == WorldMemberKind::Error);
+    matches!(item, ItemSyntaxKind::Error) || device || world
+}
+
+/// The members of a world or part.
+fn world_members(item: &ItemSyntaxKind) -> &[WorldMember] {
+    if let ItemSyntaxKind::World(world) = item {
+        &world.members
+    } else if let ItemSyntaxKind::Part(part) = item {
+        &part.members
+    } else {
+        &[]
     }
 }
 
@@ -52,71 +37,11 @@ pub(in crate::check) fn in_automaton(automaton: &AutomatonSyntax) -> bool {
 }
 
 /// Whether a name of this kind may have been declared by what could not be read.
-#[expect(clippy::too_many_lines, reason = "a flat match")]
 pub(in crate::check) fn may_declare(noun: Noun, items: bool, members: bool) -> bool {
-    match noun {
-        // The language's own words.
-        Noun::Role
-        | Noun::Unit
-        | Noun::RequirementKind
-        | Noun::Method
-        | Noun::Explore
-        | Noun::Reach
-        | Noun::SearchReach
-        | Noun::ReachOf
-        | Noun::Witness
-        | Noun::Delays
-        | Noun::InternalAction
-        | Noun::Performative
-        | Noun::Motion
-        | Noun::Shape
-        | Noun::Action
-        | Noun::DeviceKind
-        | Noun::DeviceMeasure
-        | Noun::Primitive
-        | Noun::Coordinate => false,
-        // Declared in one piece with the place that uses them.
-        Noun::Parameter | Noun::Sample | Noun::Label | Noun::Bin | Noun::Field | Noun::EnumValue => false,
-        Noun::Annotation | Noun::Belief | Noun::Goal | Noun::Clock | Noun::Location | Noun::Member => members,
-        Noun::Variable | Noun::Function => items || members,
-        Noun::Actor
-        | Noun::Type
-        | Noun::Enum
-        | Noun::Record
-        | Noun::Template
-        | Noun::Constant
-        | Noun::Event
-        | Noun::Stimulus
-        | Noun::EventOrStimulus
-        | Noun::Channel
-        | Noun::Medium
-        | Noun::Agent
-        | Noun::Automaton
-        | Noun::Player
-        | Noun::Network
-        | Noun::Query
-        | Noun::Requirement
-        | Noun::Point
-        | Noun::Cross
-        | Noun::Suite
-        | Noun::System
-        | Noun::Program
-        | Noun::Test
-        | Noun::Part
-        | Noun::PartInstance
-        | Noun::Body
-        | Noun::Joint
-        | Noun::Arm
-        | Noun::Gripper
-        | Noun::Base
-        | Noun::Laser
-        | Noun::Limb
-        | Noun::Figure
-        | Noun::Posture
-        | Noun::Group
-        | Noun::Device
-        | Noun::Command
-        | Noun::Current
-        | Noun::Signal => items,
+    match noun.declared_by() {
+        NounSource::Language | NounSource::Beside => false,
+        NounSource::Member => members,
+        NounSource::ItemOrMember => items || members,
+        NounSource::Item => items,
     }
 }

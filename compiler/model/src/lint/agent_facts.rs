@@ -11,6 +11,7 @@ use super::{
     agent_index::{AgentIndex, AgentWork, SentMessage},
     facts::ScenarioFacts,
     plan_terms::{PlanTerm, alternatives, may_unify, of_args, of_exprs, of_values},
+    triggers::goal_of,
 };
 
 /// One agent, with what the scenario says about it.
@@ -114,6 +115,11 @@ pub(crate) fn change(step: &TypedStep) -> Option<BeliefChange<'_>> {
     let added = step.kind.as_assertion().map(|a| BeliefChange::Adds(a.belief, of_exprs(&a.args)));
     let removed = || step.kind.as_removal().map(|l| BeliefChange::Removes(l.belief, of_args(&l.args)));
     added.or_else(removed)
+}
+
+/// Neither does a belief change in the step, nor time pass.
+pub(crate) fn is_quiet(step: &TypedStep) -> bool {
+    matches!(step.kind, TypedStepKind::Spawn { .. } | TypedStepKind::Print { .. })
 }
 
 /// The steps, those within blocks too, in the order of the text.
@@ -361,14 +367,7 @@ impl<'a> AgentFacts<'a> {
 
     /// The plan is for a goal that nothing adopts, which has a diagnostic of its own.
     pub fn is_unadopted(&self, plan: &TypedPlan) -> bool {
-        match plan.trigger.on {
-            TriggerOn::GoalAdded(goal) | TriggerOn::GoalFailed(goal) => !self.is_adopted(goal),
-            TriggerOn::BeliefAdded(_)
-            | TriggerOn::BeliefRemoved(_)
-            | TriggerOn::TestAdded(_)
-            | TriggerOn::TestFailed(_)
-            | TriggerOn::Perceived(_) => false,
-        }
+        goal_of(plan.trigger.on).is_some_and(|goal| !self.is_adopted(goal))
     }
 
     /// What happens to a belief that a plan waits for never happens.
@@ -421,23 +420,13 @@ impl<'a> AgentFacts<'a> {
 
 /// Whether the plan can run with these beliefs alone, as far as its trigger and the literals of its context say.
 fn needs_only(plan: &TypedPlan, is_known: &dyn Fn(BeliefId) -> bool) -> bool {
-    let trigger = match plan.trigger.on {
-        TriggerOn::BeliefAdded(b) | TriggerOn::BeliefRemoved(b) => is_known(b),
-        TriggerOn::GoalAdded(_)
-        | TriggerOn::GoalFailed(_)
-        | TriggerOn::TestAdded(_)
-        | TriggerOn::TestFailed(_)
-        | TriggerOn::Perceived(_) => true,
+    let trigger = if let TriggerOn::BeliefAdded(b) | TriggerOn::BeliefRemoved(b) = plan.trigger.on {
+        is_known(b)
+    } else {
+        true
     };
-    let holds = |part: &&TypedContext| match part {
-        TypedContext::Belief(literal) => is_known(literal.belief),
-        TypedContext::True
-        | TypedContext::Not(_)
-        | TypedContext::And(_)
-        | TypedContext::Or(_)
-        | TypedContext::Test(_)
-        | TypedContext::Unify(..)
-        | TypedContext::Internal(..) => true,
+    let holds = |part: &&TypedContext| {
+        if let TypedContext::Belief(literal) = part { is_known(literal.belief) } else { true }
     };
     trigger && alternatives(&plan.context).is_none_or(|all| all.iter().any(|parts| parts.iter().all(holds)))
 }

@@ -5,13 +5,14 @@
 use std::cmp::Ordering;
 
 use super::{
-    agent_facts::{AgentFacts, BeliefChange, HeldBeliefs, change},
+    agent_facts::{AgentFacts, HeldBeliefs, change, is_quiet},
     plan_terms::{alternatives, same_value},
     simple::{is_simple, is_simple_literal, is_simple_step},
+    triggers::matched,
 };
 use crate::{
-    BeliefId, BinaryOp, GoalId, Parameter, TriggerOn, Type, TypedContext, TypedExpr, TypedExprKind,
-    TypedPlan, TypedStepKind, TypedTerm, UnaryOp, Value, VariableRef,
+    BeliefId, BinaryOp, GoalId, TriggerOn, Type, TypedContext, TypedExpr, TypedExprKind, TypedPlan,
+    TypedTerm, UnaryOp, Value, VariableRef, expr::ComparisonOp,
 };
 
 /// Steps of the search.
@@ -177,11 +178,10 @@ fn always(is_so: &dyn Fn(&PossibleWorld) -> AskedLiteral<bool>, world: &mut Poss
 
 /// Whether an achieve or query step has a plan or fact whenever it is reached.
 pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &TypedPlan, at: usize) -> bool {
-    let answers = match &plan.body[at].kind {
-        TypedStepKind::Achieve { goal, .. } => facts.plans(TriggerOn::GoalAdded(*goal)).all(is_simple),
-        TypedStepKind::Query(literal) => is_simple_literal(literal),
-        _ => true,
-    };
+    let asks = &plan.body[at].kind;
+    let answers =
+        asks.as_achieve().is_none_or(|(goal, _)| facts.plans(TriggerOn::GoalAdded(goal)).all(is_simple))
+            && asks.as_query().is_none_or(is_simple_literal);
     if at > LONG || !facts.work(1) {
         return true;
     }
@@ -237,14 +237,7 @@ impl<'a> ContextPlace<'a> {
     }
 
     fn head(&mut self, plan: &TypedPlan) -> AskedLiteral<()> {
-        let params: &[Parameter] = match plan.trigger.on {
-            TriggerOn::BeliefAdded(b)
-            | TriggerOn::BeliefRemoved(b)
-            | TriggerOn::TestAdded(b)
-            | TriggerOn::TestFailed(b) => &self.facts.belief(b).params,
-            TriggerOn::Perceived(e) => &self.facts.scenario.events[usize::from(e.0)].params,
-            TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) => &[],
-        };
+        let params = matched(self.facts.scenario, self.facts.agent, plan.trigger.on);
         for (i, arg) in plan.trigger.args.iter().enumerate() {
             if let TypedTerm::Var(var) = arg
                 && self.vars[usize::from(*var)].is_none()
@@ -263,37 +256,20 @@ impl<'a> ContextPlace<'a> {
     /// What the plan's own steps before `at` have added, and what its queries have found.
     fn facts_since(&mut self, plan: &TypedPlan, at: usize) -> AskedLiteral<()> {
         for step in &plan.body[..at] {
-            match &step.kind {
-                TypedStepKind::Query(literal) => {
-                    for var in super::plan_terms::vars_of(&literal.args) {
-                        let name = format!("{}.{var}", self.name);
-                        self.vars[usize::from(var)].get_or_insert(SymbolicTerm::Named(name));
-                    }
+            if let Some(literal) = step.kind.as_query() {
+                for var in super::plan_terms::vars_of(&literal.args) {
+                    let name = format!("{}.{var}", self.name);
+                    self.vars[usize::from(var)].get_or_insert(SymbolicTerm::Named(name));
                 }
-                TypedStepKind::Add(made) | TypedStepKind::Replace(made) => {
-                    let args: Vec<SymbolicTerm> =
-                        made.args.iter().map(|e| self.sym(e)).collect::<AskedLiteral<_>>()?;
-                    self.added.push((made.belief, args));
-                }
-                TypedStepKind::Remove(l) | TypedStepKind::Abolish(l) => {
-                    self.added.retain(|(b, _)| *b != l.belief)
-                }
-                TypedStepKind::Spawn { .. } | TypedStepKind::Print { .. } => {}
-                // Time may pass. Others than these are not simple.
-                TypedStepKind::Do { .. }
-                | TypedStepKind::Achieve { .. }
-                | TypedStepKind::Test(_)
-                | TypedStepKind::Await { .. }
-                | TypedStepKind::Wait { .. }
-                | TypedStepKind::If { .. }
-                | TypedStepKind::While { .. }
-                | TypedStepKind::For { .. }
-                | TypedStepKind::Fork { .. }
-                | TypedStepKind::Send { .. }
-                | TypedStepKind::Ask { .. }
-                | TypedStepKind::AskAll { .. }
-                | TypedStepKind::Control { .. }
-                | TypedStepKind::Fail => self.added.clear(),
+            } else if let Some(made) = step.kind.as_assertion() {
+                let args: Vec<SymbolicTerm> =
+                    made.args.iter().map(|e| self.sym(e)).collect::<AskedLiteral<_>>()?;
+                self.added.push((made.belief, args));
+            } else if let Some(gone) = step.kind.as_removal() {
+                self.added.retain(|(b, _)| *b != gone.belief);
+            } else if !is_quiet(step) {
+                // Time may pass.
+                self.added.clear();
             }
         }
         Ok(())
@@ -445,18 +421,22 @@ impl<'a> ContextPlace<'a> {
 
     fn test(&self, e: &TypedExpr) -> AskedLiteral<bool> {
         if let TypedExprKind::Binary(op, a, b) = &e.kind {
-            let compared =
-                |holds: fn(Ordering) -> bool| Ok(holds(self.world.compare(&self.sym(a)?, &self.sym(b)?)?));
-            match op {
-                BinaryOp::Lt => return compared(Ordering::is_lt),
-                BinaryOp::Le => return compared(Ordering::is_le),
-                BinaryOp::Gt => return compared(Ordering::is_gt),
-                BinaryOp::Ge => return compared(Ordering::is_ge),
-                BinaryOp::Eq => return compared(Ordering::is_eq),
-                BinaryOp::Ne => return compared(Ordering::is_ne),
-                BinaryOp::And => return Ok(self.test(a)? && self.test(b)?),
-                BinaryOp::Or => return Ok(self.test(a)? || self.test(b)?),
-                BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => {}
+            if *op == BinaryOp::And {
+                return Ok(self.test(a)? && self.test(b)?);
+            }
+            if *op == BinaryOp::Or {
+                return Ok(self.test(a)? || self.test(b)?);
+            }
+            if let Some(op) = ComparisonOp::of(*op) {
+                let order = self.world.compare(&self.sym(a)?, &self.sym(b)?)?;
+                return Ok(match op {
+                    ComparisonOp::Lt => order.is_lt(),
+                    ComparisonOp::Le => order.is_le(),
+                    ComparisonOp::Gt => order.is_gt(),
+                    ComparisonOp::Ge => order.is_ge(),
+                    ComparisonOp::Eq => order.is_eq(),
+                    ComparisonOp::Ne => order.is_ne(),
+                });
             }
         }
         if let TypedExprKind::Unary(UnaryOp::Not, a) = &e.kind {
@@ -480,31 +460,27 @@ impl<'a> ContextPlace<'a> {
         if let Some(value) = e.value_with(&value) {
             return Ok(SymbolicTerm::Value(value));
         }
-        let all = |parts: &[&TypedExpr]| -> AskedLiteral<String> {
-            let texts: Vec<String> =
-                parts.iter().map(|p| Ok(self.sym(p)?.text())).collect::<AskedLiteral<_>>()?;
-            Ok(texts.join(", "))
-        };
-        Ok(SymbolicTerm::Named(match &e.kind {
-            TypedExprKind::Leaf(VariableRef::Local(var)) => match &self.vars[usize::from(*var)] {
-                Some(sym) => return Ok(sym.clone()),
-                None => format!("{}.{var}", self.name),
-            },
-            TypedExprKind::Unary(op, a) => format!("{op:?}({})", all(&[a])?),
-            TypedExprKind::Binary(op, a, b) => format!("{op:?}({})", all(&[a, b])?),
-            TypedExprKind::If(c, a, b) => format!("if({})", all(&[c, a, b])?),
-            TypedExprKind::Call(f, args) => format!("{f:?}({})", all(&args.iter().collect::<Vec<_>>())?),
-            TypedExprKind::List(items, rest) => {
-                format!("list({})", all(&items.iter().chain(rest.as_deref()).collect::<Vec<_>>())?)
+        let of = match &e.kind {
+            TypedExprKind::Unary(op, _) => format!("{op:?}"),
+            TypedExprKind::Binary(op, ..) => format!("{op:?}"),
+            TypedExprKind::If(..) => "if".to_owned(),
+            TypedExprKind::Call(f, _) => format!("{f:?}"),
+            TypedExprKind::List(..) => "list".to_owned(),
+            TypedExprKind::Leaf(VariableRef::Local(var)) => {
+                let known = self.vars[usize::from(*var)].clone();
+                return Ok(known.unwrap_or_else(|| SymbolicTerm::Named(format!("{}.{var}", self.name))));
             }
-            // Elements and functions are automata's alone.
+            // No agent reads these: they are told apart by what they are.
             TypedExprKind::Const(_)
             | TypedExprKind::Leaf(_)
             | TypedExprKind::Term(_)
             | TypedExprKind::Element(_)
             | TypedExprKind::Apply(..)
-            | TypedExprKind::Error => "?".to_owned(),
-        }))
+            | TypedExprKind::Error => return Ok(SymbolicTerm::Named(format!("{:?}", e.kind))),
+        };
+        let operands = e.operands().into_iter();
+        let parts: Vec<String> = operands.map(|p| Ok(self.sym(p)?.text())).collect::<AskedLiteral<_>>()?;
+        Ok(SymbolicTerm::Named(format!("{of}({})", parts.join(", "))))
     }
 }
 
@@ -518,32 +494,11 @@ fn distinct(args: &[TypedTerm]) -> bool {
 fn changed(facts: &AgentFacts<'_>, plan: &TypedPlan, at: usize) -> Vec<BeliefId> {
     let mut all: Vec<BeliefId> = Vec::new();
     for step in &plan.body[..at] {
-        match &step.kind {
-            TypedStepKind::Query(l) if facts.plans(TriggerOn::TestAdded(l.belief)).next().is_none() => {}
-            TypedStepKind::Spawn { .. } | TypedStepKind::Print { .. } => {}
-            TypedStepKind::Add(_)
-            | TypedStepKind::Remove(_)
-            | TypedStepKind::Replace(_)
-            | TypedStepKind::Abolish(_) => {
-                all.extend(change(step).map(|c: BeliefChange<'_>| c.belief()));
-            }
-            TypedStepKind::Do { .. }
-            | TypedStepKind::Achieve { .. }
-            | TypedStepKind::Query(_)
-            | TypedStepKind::Test(_)
-            | TypedStepKind::Await { .. }
-            | TypedStepKind::Wait { .. }
-            | TypedStepKind::If { .. }
-            | TypedStepKind::While { .. }
-            | TypedStepKind::For { .. }
-            | TypedStepKind::Fork { .. }
-            | TypedStepKind::Send { .. }
-            | TypedStepKind::Ask { .. }
-            | TypedStepKind::AskAll { .. }
-            | TypedStepKind::Control { .. }
-            | TypedStepKind::Fail => {
-                return facts.changed().collect();
-            }
+        let by_facts = |belief| facts.plans(TriggerOn::TestAdded(belief)).next().is_none();
+        if let Some(changed) = change(step) {
+            all.push(changed.belief());
+        } else if !is_quiet(step) && !step.kind.as_query().is_some_and(|l| by_facts(l.belief)) {
+            return facts.changed().collect();
         }
     }
     all

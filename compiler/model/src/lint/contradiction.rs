@@ -6,11 +6,12 @@ use hrdsl_source::Span;
 
 use super::{
     agent_facts::AgentFacts,
-    plan_terms::{PlanTerm, alternatives, bound_before, of_args, same, same_value},
+    plan_terms::{PlanTerm, alternatives, bound_before, of_args, same, same_value, tested},
+    triggers::matched,
 };
 use crate::{
-    BinaryOp, Parameter, TriggerOn, Type, TypedContext, TypedExpr, TypedExprKind, TypedPlan, TypedTerm,
-    VariableRef,
+    Parameter, Type, TypedContext, TypedExpr, TypedExprKind, TypedPlan, TypedTerm, VariableRef,
+    expr::ComparisonOp,
 };
 
 /// Why a context can never hold.
@@ -46,28 +47,10 @@ fn in_conjunction(
 
 fn constant(parts: &[&TypedContext]) -> Option<FoundContradiction> {
     parts.iter().find_map(|part| {
-        let (e, fails) = match part {
-            TypedContext::Test(e) => (e, false),
-            TypedContext::Not(inner) => match inner.as_ref() {
-                TypedContext::Test(e) => (e, true),
-                TypedContext::True
-                | TypedContext::Belief(..)
-                | TypedContext::Not(_)
-                | TypedContext::And(_)
-                | TypedContext::Or(_)
-                | TypedContext::Unify(..)
-                | TypedContext::Internal(..) => return None,
-            },
-            TypedContext::True
-            | TypedContext::Belief(..)
-            | TypedContext::And(_)
-            | TypedContext::Or(_)
-            | TypedContext::Unify(..)
-            | TypedContext::Internal(..) => return None,
-        };
-        (e.constant() == Some(crate::Value::Bool(fails))).then(|| FoundContradiction {
+        let (e, holds) = tested(part)?;
+        (e.constant() == Some(crate::Value::Bool(!holds))).then(|| FoundContradiction {
             span: e.span,
-            why: format!("this is always {fails}"),
+            why: format!("this is always {}", !holds),
             with: None,
         })
     })
@@ -83,24 +66,14 @@ fn negated_belief(plan: &TypedPlan, parts: &[&TypedContext]) -> Option<FoundCont
         if !denied.annotations.is_empty() {
             return None;
         }
-        parts.iter().find_map(|part| match part {
-            TypedContext::Belief(held)
-                if held.belief == denied.belief && denies(&denied.args, &held.args, bound) =>
-            {
-                Some(FoundContradiction {
-                    span: denied.origin,
-                    why: "this cannot be absent".to_owned(),
-                    with: Some((held.origin, "since the context needs it here".to_owned())),
-                })
-            }
-            TypedContext::Belief(..)
-            | TypedContext::True
-            | TypedContext::Not(_)
-            | TypedContext::And(_)
-            | TypedContext::Or(_)
-            | TypedContext::Test(_)
-            | TypedContext::Unify(..)
-            | TypedContext::Internal(..) => None,
+        parts.iter().find_map(|part| {
+            let TypedContext::Belief(held) = part else { return None };
+            let clashes = held.belief == denied.belief && denies(&denied.args, &held.args, bound);
+            clashes.then(|| FoundContradiction {
+                span: denied.origin,
+                why: "this cannot be absent".to_owned(),
+                with: Some((held.origin, "since the context needs it here".to_owned())),
+            })
         })
     })
 }
@@ -135,33 +108,9 @@ fn same_term(a: PlanTerm<'_>, b: PlanTerm<'_>) -> bool {
     }
 }
 
-/// The tests of a conjunction, with whether they must hold.
-fn tests<'a>(parts: &[&'a TypedContext]) -> Vec<(&'a TypedExpr, bool)> {
-    let test = |part: &&'a TypedContext| match *part {
-        TypedContext::Test(e) => Some((e, true)),
-        TypedContext::Not(inner) => match inner.as_ref() {
-            TypedContext::Test(e) => Some((e, false)),
-            TypedContext::True
-            | TypedContext::Belief(..)
-            | TypedContext::Not(_)
-            | TypedContext::And(_)
-            | TypedContext::Or(_)
-            | TypedContext::Unify(..)
-            | TypedContext::Internal(..) => None,
-        },
-        TypedContext::True
-        | TypedContext::Belief(..)
-        | TypedContext::And(_)
-        | TypedContext::Or(_)
-        | TypedContext::Unify(..)
-        | TypedContext::Internal(..) => None,
-    };
-    parts.iter().filter_map(test).collect()
-}
-
 /// `X && not X`
 fn negated_test(parts: &[&TypedContext]) -> Option<FoundContradiction> {
-    let tests = tests(parts);
+    let tests: Vec<(&TypedExpr, bool)> = parts.iter().filter_map(|part| tested(part)).collect();
     tests.iter().enumerate().find_map(|(i, (e, holds))| {
         let (other, _) = tests[..i].iter().find(|(other, held)| held != holds && same(e, other))?;
         Some(clash(e.span, other.span))
@@ -190,20 +139,13 @@ struct VarComparison<'a> {
 
 fn comparison(e: &TypedExpr, holds: bool) -> Option<VarComparison<'_>> {
     let TypedExprKind::Binary(op, left, right) = &e.kind else { return None };
-    let orders = match op {
-        BinaryOp::Lt => LESS,
-        BinaryOp::Le => LESS | EQUAL,
-        BinaryOp::Gt => MORE,
-        BinaryOp::Ge => MORE | EQUAL,
-        BinaryOp::Eq => EQUAL,
-        BinaryOp::Ne => LESS | MORE,
-        BinaryOp::Add
-        | BinaryOp::Sub
-        | BinaryOp::Mul
-        | BinaryOp::Div
-        | BinaryOp::Rem
-        | BinaryOp::And
-        | BinaryOp::Or => return None,
+    let orders = match ComparisonOp::of(*op)? {
+        ComparisonOp::Lt => LESS,
+        ComparisonOp::Le => LESS | EQUAL,
+        ComparisonOp::Gt => MORE,
+        ComparisonOp::Ge => MORE | EQUAL,
+        ComparisonOp::Eq => EQUAL,
+        ComparisonOp::Ne => LESS | MORE,
     };
     let orders = if holds { orders } else { !orders & (LESS | EQUAL | MORE) };
     Some(VarComparison { left, right, orders, span: e.span })
@@ -215,7 +157,7 @@ fn mirrored(orders: u8) -> u8 {
 }
 
 fn comparisons<'a>(parts: &[&'a TypedContext]) -> Vec<VarComparison<'a>> {
-    tests(parts).into_iter().filter_map(|(e, holds)| comparison(e, holds)).collect()
+    parts.iter().filter_map(|part| tested(part)).filter_map(|(e, holds)| comparison(e, holds)).collect()
 }
 
 /// `N < M && N > M`
@@ -322,14 +264,7 @@ fn out_of_range(
 ) -> Option<FoundContradiction> {
     let mut values: BTreeMap<u16, BoundInterval> = BTreeMap::new();
     let params = |belief: crate::BeliefId| facts.belief(belief).params.as_slice();
-    let head: &[Parameter] = match plan.trigger.on {
-        TriggerOn::BeliefAdded(b)
-        | TriggerOn::BeliefRemoved(b)
-        | TriggerOn::TestAdded(b)
-        | TriggerOn::TestFailed(b) => params(b),
-        TriggerOn::Perceived(e) => &facts.scenario.events[usize::from(e.0)].params,
-        TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) => &[],
-    };
+    let head = matched(facts.scenario, facts.agent, plan.trigger.on);
     declare(&mut values, &plan.trigger.args, head, plan.trigger.origin);
     for part in parts {
         if let TypedContext::Belief(l) = part {

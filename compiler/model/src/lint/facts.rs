@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use hrdsl_ir::world::RuleTrigger;
 use hrdsl_source::Span;
 
 use super::{
@@ -11,7 +12,7 @@ use super::{
 };
 use crate::{
     ArgPattern, EventId, EventPattern, ReceiveArg, Role, Scenario, TestStep, TriggerOn, TypedExpr,
-    TypedMethod, TypedStimulusStep, TypedSync, TypedTerm, Value, world::TypedRuleTrigger,
+    TypedMethod, TypedStimulusStep, TypedSync, TypedTerm, Value,
 };
 
 /// So many different combinations of arguments are told apart; a maker beyond them counts as making any.
@@ -263,8 +264,8 @@ impl<'a> ScenarioFacts<'a> {
         for rule in scenario.world.iter().flat_map(|w| &w.rules) {
             self.makes_exprs(rule.event, &rule.args);
             match &rule.on {
-                TypedRuleTrigger::Event(pattern) => self.waits_for(rule.span, vec![WantedFact::of(pattern)]),
-                TypedRuleTrigger::Commanded { .. } | TypedRuleTrigger::Edge { .. } => {}
+                RuleTrigger::Event(pattern) => self.waits_for(rule.origin, vec![WantedFact::of(pattern)]),
+                RuleTrigger::Commanded { .. } | RuleTrigger::Edge { .. } => {}
             }
         }
     }

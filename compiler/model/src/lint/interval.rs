@@ -2,6 +2,7 @@
 
 use crate::{
     BinaryOp, InferredType, NumberFunction, TypedExpr, TypedExprKind, UnaryOp, VariableRef,
+    expr::ComparisonOp,
     interval::{MAX, MIN, ValueInterval},
     leaves,
     lint::plan_terms::same,
@@ -150,14 +151,15 @@ impl<'a> IntervalEnv<'a> {
     }
 
     fn narrow(&mut self, e: &TypedExpr, want: bool) -> bool {
-        match (&e.kind, want) {
-            (TypedExprKind::Unary(UnaryOp::Not, a), _) => self.narrow(a, !want),
-            (TypedExprKind::Binary(BinaryOp::And, a, b), true)
-            | (TypedExprKind::Binary(BinaryOp::Or, a, b), false) => {
-                self.narrow(a, want) && self.narrow(b, want)
-            }
-            (TypedExprKind::Binary(BinaryOp::Or, a, b), true)
-            | (TypedExprKind::Binary(BinaryOp::And, a, b), false) => {
+        if let TypedExprKind::Unary(UnaryOp::Not, a) = &e.kind {
+            return self.narrow(a, !want);
+        }
+        let TypedExprKind::Binary(op, a, b) = &e.kind else {
+            return self.leave(e, ValueInterval::bool(Some(want)));
+        };
+        match (op, want) {
+            (BinaryOp::And, true) | (BinaryOp::Or, false) => self.narrow(a, want) && self.narrow(b, want),
+            (BinaryOp::Or, true) | (BinaryOp::And, false) => {
                 let (mut left, mut right) = (self.clone(), self.clone());
                 match (left.narrow(a, want), right.narrow(b, want)) {
                     (true, true) => self.less = left.or(&right).less,
@@ -167,38 +169,23 @@ impl<'a> IntervalEnv<'a> {
                 }
                 true
             }
-            (TypedExprKind::Binary(op, a, b), _) => self.narrow_comparison(*op, a, b, want),
-            (
-                TypedExprKind::Const(_)
-                | TypedExprKind::Leaf(_)
-                | TypedExprKind::Term(_)
-                | TypedExprKind::Unary(UnaryOp::Neg, _)
-                | TypedExprKind::If(..)
-                | TypedExprKind::Call(..)
-                | TypedExprKind::List(..)
-                | TypedExprKind::Element(_)
-                | TypedExprKind::Apply(..)
-                | TypedExprKind::Error,
-                _,
-            ) => self.leave(e, ValueInterval::bool(Some(want))),
+            (op, _) => ComparisonOp::of(*op).is_none_or(|op| self.narrow_comparison(op, a, b, want)),
         }
     }
 
-    fn narrow_comparison(&mut self, op: BinaryOp, a: &TypedExpr, b: &TypedExpr, want: bool) -> bool {
+    fn narrow_comparison(&mut self, op: ComparisonOp, a: &TypedExpr, b: &TypedExpr, want: bool) -> bool {
         if matches!(a.ty, InferredType::Float(_)) || matches!(b.ty, InferredType::Float(_)) {
             return true;
         }
-        let op = if want { op } else { negated(op) };
+        let op = if want { op } else { op.negated() };
         let (x, y) = (self.eval(a), self.eval(b));
         let (left, right) = match op {
-            BinaryOp::Lt => (below(y.hi - 1), above(x.lo + 1)),
-            BinaryOp::Le => (below(y.hi), above(x.lo)),
-            BinaryOp::Gt => (above(y.lo + 1), below(x.hi - 1)),
-            BinaryOp::Ge => (above(y.lo), below(x.hi)),
-            BinaryOp::Eq => (y, x),
-            BinaryOp::Ne => (without(x, y), without(y, x)),
-            BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div => return true,
-            BinaryOp::Rem | BinaryOp::And | BinaryOp::Or => return true,
+            ComparisonOp::Lt => (below(y.hi - 1), above(x.lo + 1)),
+            ComparisonOp::Le => (below(y.hi), above(x.lo)),
+            ComparisonOp::Gt => (above(y.lo + 1), below(x.hi - 1)),
+            ComparisonOp::Ge => (above(y.lo), below(x.hi)),
+            ComparisonOp::Eq => (y, x),
+            ComparisonOp::Ne => (without(x, y), without(y, x)),
         };
         self.leave(a, left) && self.leave(b, right)
     }
@@ -206,42 +193,23 @@ impl<'a> IntervalEnv<'a> {
     /// Leaves of an expression's variables what makes it lie in an interval, where that is easy to tell.
     fn leave(&mut self, e: &TypedExpr, into: ValueInterval) -> bool {
         let Some(into) = self.eval(e).meet(into) else { return false };
-        match &e.kind {
-            TypedExprKind::Leaf(leaf) => {
-                self.set(*leaf, into);
-                true
-            }
-            TypedExprKind::Unary(UnaryOp::Neg, a) => {
-                self.leave(a, ValueInterval { lo: -into.hi, hi: -into.lo })
-            }
-            TypedExprKind::Binary(op, a, b) => {
-                self.terms.push((e.clone(), into));
-                let (x, y) = (self.eval(a), self.eval(b));
-                match op {
-                    BinaryOp::Add => self.leave(a, wide_sub(into, y)) && self.leave(b, wide_sub(into, x)),
-                    BinaryOp::Sub => {
-                        let sum = ValueInterval { lo: into.lo + y.lo, hi: into.hi + y.hi };
-                        self.leave(a, sum) && self.leave(b, wide_sub(x, into))
-                    }
-                    BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem | BinaryOp::And | BinaryOp::Or => true,
-                    BinaryOp::Eq
-                    | BinaryOp::Ne
-                    | BinaryOp::Lt
-                    | BinaryOp::Le
-                    | BinaryOp::Gt
-                    | BinaryOp::Ge => true,
-                }
-            }
-            TypedExprKind::Const(_)
-            | TypedExprKind::Term(_)
-            | TypedExprKind::Unary(UnaryOp::Not, _)
-            | TypedExprKind::If(..)
-            | TypedExprKind::Call(..)
-            | TypedExprKind::List(..)
-            | TypedExprKind::Element(_)
-            | TypedExprKind::Apply(..)
-            | TypedExprKind::Error => true,
+        if let TypedExprKind::Leaf(leaf) = &e.kind {
+            self.set(*leaf, into);
         }
+        if let TypedExprKind::Unary(UnaryOp::Neg, a) = &e.kind {
+            return self.leave(a, ValueInterval { lo: -into.hi, hi: -into.lo });
+        }
+        let TypedExprKind::Binary(op, a, b) = &e.kind else { return true };
+        self.terms.push((e.clone(), into));
+        let (x, y) = (self.eval(a), self.eval(b));
+        if *op == BinaryOp::Add {
+            return self.leave(a, wide_sub(into, y)) && self.leave(b, wide_sub(into, x));
+        }
+        if *op == BinaryOp::Sub {
+            let sum = ValueInterval { lo: into.lo + y.lo, hi: into.hi + y.hi };
+            return self.leave(a, sum) && self.leave(b, wide_sub(x, into));
+        }
+        true
     }
 }
 
@@ -264,24 +232,6 @@ fn without(x: ValueInterval, y: ValueInterval) -> ValueInterval {
         return x;
     }
     ValueInterval { lo: x.lo + i128::from(x.lo == y.lo), hi: x.hi - i128::from(x.hi == y.lo) }
-}
-
-fn negated(op: BinaryOp) -> BinaryOp {
-    match op {
-        BinaryOp::Eq => BinaryOp::Ne,
-        BinaryOp::Ne => BinaryOp::Eq,
-        BinaryOp::Lt => BinaryOp::Ge,
-        BinaryOp::Le => BinaryOp::Gt,
-        BinaryOp::Gt => BinaryOp::Le,
-        BinaryOp::Ge => BinaryOp::Lt,
-        BinaryOp::Add
-        | BinaryOp::Sub
-        | BinaryOp::Mul
-        | BinaryOp::Div
-        | BinaryOp::Rem
-        | BinaryOp::And
-        | BinaryOp::Or => op,
-    }
 }
 
 #[cfg(test)]

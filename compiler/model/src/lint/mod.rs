@@ -28,6 +28,7 @@ mod requirements;
 mod shadowed_plan;
 mod simple;
 mod time_stops;
+mod triggers;
 mod unreachable_location;
 mod unused;
 

@@ -6,7 +6,7 @@ use hrdsl_source::{Diagnostic, DiagnosticCode};
 use super::facts::ScenarioFacts;
 use crate::{
     BinaryOp, NumberFunction, Scenario, SignalTerm, TypedExpr, TypedExprKind, TypedPattern, UnaryOp, Value,
-    VariableRef,
+    VariableRef, expr::ComparisonOp,
 };
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
@@ -68,15 +68,13 @@ fn truth(scenario: &Scenario, e: &TypedExpr, depth: u32) -> Option<bool> {
         },
         TypedExprKind::Binary(op, a, b) => {
             let ((a_lo, a_hi), (b_lo, b_hi)) = (range(scenario, a, depth)?, range(scenario, b, depth)?);
-            match op {
-                BinaryOp::Lt => decided(a_hi < b_lo, a_lo >= b_hi),
-                BinaryOp::Le => decided(a_hi <= b_lo, a_lo > b_hi),
-                BinaryOp::Gt => decided(a_lo > b_hi, a_hi <= b_lo),
-                BinaryOp::Ge => decided(a_lo >= b_hi, a_hi < b_lo),
-                BinaryOp::Eq => decided(false, a_hi < b_lo || a_lo > b_hi),
-                BinaryOp::Ne => decided(a_hi < b_lo || a_lo > b_hi, false),
-                BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem => None,
-                BinaryOp::And | BinaryOp::Or => None,
+            match ComparisonOp::of(*op)? {
+                ComparisonOp::Lt => decided(a_hi < b_lo, a_lo >= b_hi),
+                ComparisonOp::Le => decided(a_hi <= b_lo, a_lo > b_hi),
+                ComparisonOp::Gt => decided(a_lo > b_hi, a_hi <= b_lo),
+                ComparisonOp::Ge => decided(a_lo >= b_hi, a_hi < b_lo),
+                ComparisonOp::Eq => decided(false, a_hi < b_lo || a_lo > b_hi),
+                ComparisonOp::Ne => decided(a_hi < b_lo || a_lo > b_hi, false),
             }
         }
         TypedExprKind::If(c, a, b) => match of(c) {

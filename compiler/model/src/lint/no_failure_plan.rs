@@ -13,6 +13,7 @@ use super::{
     dead_plan::never_runs,
     facts::ScenarioFacts,
     plan_terms::{PlanTerm, may_unify, of_args, of_exprs},
+    triggers::{achieved, goal_of},
 };
 use crate::{GoalId, Scenario, TriggerOn, TypedPlan, TypedStep, TypedStepKind};
 
@@ -29,15 +30,8 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, all: &'a ScenarioFacts<'a>, issu
         let mut by_goal: BTreeMap<GoalId, usize> = BTreeMap::new();
         for plan in facts.agent.plans.iter().filter(|p| !never_runs(&facts, p)) {
             let found = in_plan(&facts, plan);
-            let group = match plan.trigger.on {
-                TriggerOn::GoalAdded(goal) => *by_goal.entry(goal).or_insert(all.len()),
-                TriggerOn::GoalFailed(_)
-                | TriggerOn::BeliefAdded(_)
-                | TriggerOn::BeliefRemoved(_)
-                | TriggerOn::TestAdded(_)
-                | TriggerOn::TestFailed(_)
-                | TriggerOn::Perceived(_) => all.len(),
-            };
+            let group =
+                achieved(plan.trigger.on).map_or(all.len(), |goal| *by_goal.entry(goal).or_insert(all.len()));
             match all.get_mut(group) {
                 Some(group) => group.join(found),
                 None => all.push(found),
@@ -187,18 +181,12 @@ impl<'a> UnhandledFailure<'a> {
             issue = issue.label(step.origin, format!("here too: {why}"));
         }
         for root in &self.roots.plans {
-            let text = match root.trigger.on {
-                TriggerOn::GoalAdded(goal) | TriggerOn::GoalFailed(goal) => {
+            let text = goal_of(root.trigger.on).map_or_else(
+                || "then this plan dies, with all that it still was to do".to_owned(),
+                |goal| {
                     format!("then the goal `!{}` dies, with all that it still was to do", facts.goal(goal))
-                }
-                TriggerOn::BeliefAdded(_)
-                | TriggerOn::BeliefRemoved(_)
-                | TriggerOn::TestAdded(_)
-                | TriggerOn::TestFailed(_)
-                | TriggerOn::Perceived(_) => {
-                    "then this plan dies, with all that it still was to do".to_owned()
-                }
-            };
+                },
+            );
             issue = issue.label(root.trigger.origin, text);
         }
         Some(self.with_fix(facts, step, issue))
@@ -207,15 +195,7 @@ impl<'a> UnhandledFailure<'a> {
     /// Adds what to type.
     fn with_fix(&self, facts: &AgentFacts<'_>, step: &TypedStep, issue: Diagnostic) -> Diagnostic {
         let mut all = [self.plan].into_iter().chain(self.roots.plans.iter().copied());
-        let handler = all.find_map(|p| match p.trigger.on {
-            TriggerOn::GoalAdded(goal) => Some((shown(facts, goal), p)),
-            TriggerOn::GoalFailed(_)
-            | TriggerOn::BeliefAdded(_)
-            | TriggerOn::BeliefRemoved(_)
-            | TriggerOn::TestAdded(_)
-            | TriggerOn::TestFailed(_)
-            | TriggerOn::Perceived(_) => None,
-        });
+        let handler = all.find_map(|p| achieved(p.trigger.on).map(|goal| (shown(facts, goal), p)));
         let say = handler.as_ref().map_or_else(
             || "put it into a goal of its own with a plan `-!goal` that says what then".to_owned(),
             |(head, _)| format!("say what then: `plan -!{head} {{ … }}`"),

@@ -2,10 +2,12 @@
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 
-use super::{facts::ScenarioFacts, flow::ValueFlow, interval::IntervalEnv};
+use super::{
+    facts::ScenarioFacts, flow::ValueFlow, interval::IntervalEnv, plan_terms::tested, triggers::matched,
+};
 use crate::{
-    EventId, Parameter, Scenario, TriggerOn, Type, TypedAgent, TypedAutomaton, TypedContext, TypedEvent,
-    TypedExpr, TypedStep, TypedStepKind, TypedStimulusStep, TypedSync, TypedTerm, TypedUpdate, VariableRef,
+    EventId, Parameter, Scenario, Type, TypedAgent, TypedAutomaton, TypedContext, TypedEvent, TypedExpr,
+    TypedStep, TypedStepKind, TypedStimulusStep, TypedSync, TypedTerm, TypedUpdate, VariableRef,
     interval::ValueInterval,
 };
 
@@ -152,18 +154,9 @@ impl<'a> OverflowChecker<'a> {
     // ── agents ──
 
     fn agent(&mut self, agent: &TypedAgent) {
-        let params = |b: crate::BeliefId| agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
         for plan in &agent.plans {
             let mut env = IntervalEnv::new(&[], &[], vec![ValueInterval::ALL; plan.vars.len()]);
-            let matched: &[Parameter] = match plan.trigger.on {
-                TriggerOn::BeliefAdded(b)
-                | TriggerOn::BeliefRemoved(b)
-                | TriggerOn::TestAdded(b)
-                | TriggerOn::TestFailed(b) => params(b),
-                TriggerOn::Perceived(event) => self.params(event),
-                // What a goal is adopted with has no range.
-                TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) => &[],
-            };
+            let matched = matched(self.scenario, agent, plan.trigger.on);
             if !bind(&mut env, &plan.trigger.args, matched) || !context(&mut env, &plan.context, agent) {
                 continue;
             }
@@ -174,54 +167,39 @@ impl<'a> OverflowChecker<'a> {
     fn plan_body(&mut self, agent: &TypedAgent, steps: &[TypedStep], mut env: IntervalEnv<'_>) {
         let params = |b: crate::BeliefId| agent.beliefs.get(usize::from(b.0)).map_or(&[][..], |b| &b.params);
         for step in steps {
-            match &step.kind {
-                TypedStepKind::Do { event, args } => self.args(&env, args, self.params(*event)),
-                TypedStepKind::Add(a) | TypedStepKind::Replace(a) => {
-                    self.args(&env, &a.args, params(a.belief))
-                }
-                TypedStepKind::Query(l) => {
-                    if !bind(&mut env, &l.args, params(l.belief)) {
-                        return;
-                    }
-                }
-                TypedStepKind::Test(condition) => {
-                    if !context(&mut env, condition, agent) {
-                        return;
-                    }
-                }
-                TypedStepKind::If { condition, then, otherwise } => {
-                    let mut inner = env.clone();
-                    if context(&mut inner, condition, agent) {
-                        self.plan_body(agent, then, inner);
-                    }
-                    self.plan_body(agent, otherwise, env.clone());
-                    self.forget(step, &mut env);
-                }
-                TypedStepKind::While { condition, body } | TypedStepKind::For { condition, body } => {
-                    let mut inner = env.clone();
-                    if context(&mut inner, condition, agent) {
-                        self.plan_body(agent, body, inner);
-                    }
-                    self.forget(step, &mut env);
-                }
-                TypedStepKind::Fork { branches, .. } => {
-                    branches.iter().for_each(|b| self.plan_body(agent, b, env.clone()));
-                    self.forget(step, &mut env);
-                }
-                TypedStepKind::Achieve { .. }
-                | TypedStepKind::Spawn { .. }
-                | TypedStepKind::Remove(_)
-                | TypedStepKind::Abolish(_)
-                | TypedStepKind::Await { .. }
-                | TypedStepKind::Wait { .. }
-                | TypedStepKind::Send { .. }
-                | TypedStepKind::Ask { .. }
-                | TypedStepKind::AskAll { .. }
-                | TypedStepKind::Print { .. }
-                | TypedStepKind::Control { .. }
-                | TypedStepKind::Fail => {}
+            let kind = &step.kind;
+            if let Some((event, args)) = kind.as_do() {
+                self.args(&env, args, self.params(event));
+            }
+            if let Some(made) = kind.as_assertion() {
+                self.args(&env, &made.args, params(made.belief));
+            }
+            if kind.as_query().is_some_and(|l| !bind(&mut env, &l.args, params(l.belief))) {
+                return;
+            }
+            if let TypedStepKind::Test(condition) = kind
+                && !context(&mut env, condition, agent)
+            {
+                return;
+            }
+            self.blocks(agent, step, &mut env);
+        }
+    }
+
+    /// The steps within a step. Only the first block stands under its condition: the other one of an `if` does not.
+    fn blocks(&mut self, agent: &TypedAgent, step: &TypedStep, env: &mut IntervalEnv<'_>) {
+        let blocks = step.blocks();
+        if blocks.is_empty() {
+            return;
+        }
+        for (i, block) in blocks.into_iter().enumerate() {
+            let mut inner = env.clone();
+            let condition = step.condition().filter(|_| i == 0);
+            if condition.is_none_or(|c| context(&mut inner, c, agent)) {
+                self.plan_body(agent, block, inner);
             }
         }
+        self.forget(step, env);
     }
 
     /// A name that a block binds may stand for something else afterwards; what was known before is still so.
@@ -253,24 +231,16 @@ fn bind(env: &mut IntervalEnv<'_>, args: &[TypedTerm], params: &[Parameter]) -> 
 
 /// What a context leaves of the variables; `false`: it is never met.
 fn context(env: &mut IntervalEnv<'_>, c: &TypedContext, agent: &TypedAgent) -> bool {
+    if let Some((e, holds)) = tested(c) {
+        return env.assume(e, holds);
+    }
     match c {
-        TypedContext::True => true,
+        // A negation binds nothing.
+        TypedContext::True | TypedContext::Not(_) | TypedContext::Test(_) => true,
         TypedContext::Belief(l) => {
             let params = agent.beliefs.get(usize::from(l.belief.0)).map_or(&[][..], |b| &b.params);
             bind(env, &l.args, params)
         }
-        TypedContext::Test(e) => env.assume(e, true),
-        TypedContext::Not(inner) => match inner.as_ref() {
-            TypedContext::Test(e) => env.assume(e, false),
-            // A negation binds nothing.
-            TypedContext::True
-            | TypedContext::Belief(..)
-            | TypedContext::Not(_)
-            | TypedContext::And(_)
-            | TypedContext::Or(_)
-            | TypedContext::Unify(..)
-            | TypedContext::Internal(..) => true,
-        },
         TypedContext::Unify(TypedTerm::Var(i), e) => {
             let value = env.eval(e);
             match env.get(VariableRef::Local(*i)).meet(value) {

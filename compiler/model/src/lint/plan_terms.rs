@@ -242,6 +242,14 @@ fn expand<'a>(
     (so_far.len() <= MANY).then_some(so_far)
 }
 
+/// The test that a literal of a conjunction is, with whether it must hold: `N > 3`, `not N > 3`.
+pub(crate) fn tested(part: &TypedContext) -> Option<(&TypedExpr, bool)> {
+    if let TypedContext::Not(inner) = part {
+        return if let TypedContext::Test(e) = inner.as_ref() { Some((e, false)) } else { None };
+    }
+    if let TypedContext::Test(e) = part { Some((e, true)) } else { None }
+}
+
 /// For each part of a conjunction, the variables that have a value before it.
 pub(crate) fn bound_before(plan: &TypedPlan, parts: &[&TypedContext]) -> Vec<Vec<u16>> {
     let mut bound: Vec<u16> = vars_of(&plan.trigger.args);

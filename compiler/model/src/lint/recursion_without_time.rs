@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use hrdsl_source::{Diagnostic, DiagnosticCode, Span};
 
 use super::{
-    agent_facts::{AgentFacts, agents, all_steps, change},
+    agent_facts::{AgentFacts, agents, all_steps, is_quiet},
     dead_plan::never_runs,
     facts::ScenarioFacts,
     plan_terms::{PlanTerm, of_args, of_exprs, same_value},
+    triggers::achieved,
 };
 use crate::{
     GoalId, Scenario, TriggerOn, TypedContext, TypedInternalAct, TypedPlan, TypedStep, TypedStepKind,
@@ -169,28 +170,9 @@ impl<'a> RecursionSearch<'a, '_> {
 /// A `while` whose body does nothing that could change the answer of its condition, nor fails.
 fn is_endless(facts: &AgentFacts<'_>, step: &TypedStep) -> bool {
     let TypedStepKind::While { condition, body } = &step.kind else { return false };
-    let quiet = |step: &&TypedStep| match &step.kind {
-        TypedStepKind::Print { .. } => true,
-        TypedStepKind::Do { .. }
-        | TypedStepKind::If { .. }
-        | TypedStepKind::For { .. }
-        | TypedStepKind::Fork { .. }
-        | TypedStepKind::While { .. } => !progresses(facts, step, &mut BTreeSet::new()),
-        TypedStepKind::Achieve { .. }
-        | TypedStepKind::Spawn { .. }
-        | TypedStepKind::Query(_)
-        | TypedStepKind::Test(_)
-        | TypedStepKind::Add(_)
-        | TypedStepKind::Remove(_)
-        | TypedStepKind::Replace(_)
-        | TypedStepKind::Abolish(_)
-        | TypedStepKind::Await { .. }
-        | TypedStepKind::Wait { .. }
-        | TypedStepKind::Send { .. }
-        | TypedStepKind::Ask { .. }
-        | TypedStepKind::AskAll { .. }
-        | TypedStepKind::Control { .. }
-        | TypedStepKind::Fail => false,
+    let quiet = |step: &&TypedStep| {
+        let may_be = matches!(step.kind, TypedStepKind::Print { .. } | TypedStepKind::Do { .. });
+        (may_be || !step.blocks().is_empty()) && !progresses(facts, step, &mut BTreeSet::new())
     };
     !draws(condition) && all_steps(body).iter().all(quiet)
 }
@@ -234,36 +216,22 @@ fn given(plan: &TypedPlan, passed: &[PassedTime], term: PlanTerm<'_>) -> PassedT
 
 /// Whether time may pass in a step, or a belief change.
 fn progresses(facts: &AgentFacts<'_>, step: &TypedStep, seen: &mut BTreeSet<TriggerOn>) -> bool {
-    let on = match &step.kind {
-        TypedStepKind::Do { event, args: _ } => {
-            return facts.scenario.events[usize::from(event.0)].stimulus.is_some();
-        }
-        // A message may be answered by another; what is dropped or suspended may be this goal.
-        TypedStepKind::Await { .. }
-        | TypedStepKind::Wait { .. }
-        | TypedStepKind::Send { .. }
-        | TypedStepKind::Ask { .. }
-        | TypedStepKind::AskAll { .. }
-        | TypedStepKind::Control { .. }
-        | TypedStepKind::Fail => return true,
-        TypedStepKind::Add(..)
-        | TypedStepKind::Remove(..)
-        | TypedStepKind::Replace(..)
-        | TypedStepKind::Abolish(_) => {
-            return change(step).is_some();
-        }
-        TypedStepKind::Spawn { .. } | TypedStepKind::Print { .. } => return false,
-        // What is drawn at random may be another thing each time.
-        TypedStepKind::Test(condition) => return draws(condition),
-        TypedStepKind::If { .. }
-        | TypedStepKind::While { .. }
-        | TypedStepKind::For { .. }
-        | TypedStepKind::Fork { .. } => {
-            return step.condition().is_some_and(draws)
-                || step.blocks().into_iter().flatten().any(|inner| progresses(facts, inner, seen));
-        }
-        TypedStepKind::Achieve { goal, .. } => TriggerOn::GoalAdded(*goal),
-        TypedStepKind::Query(l) => TriggerOn::TestAdded(l.belief),
+    let (kind, blocks) = (&step.kind, step.blocks());
+    if let Some((event, _)) = kind.as_do() {
+        return facts.scenario.events[usize::from(event.0)].stimulus.is_some();
+    }
+    // What is drawn at random may be another thing each time.
+    if !blocks.is_empty() || matches!(kind, TypedStepKind::Test(_)) {
+        return step.condition().is_some_and(draws)
+            || blocks.into_iter().flatten().any(|inner| progresses(facts, inner, seen));
+    }
+    if is_quiet(step) {
+        return false;
+    }
+    let goal = kind.as_achieve().map(|(goal, _)| TriggerOn::GoalAdded(goal));
+    // All others wait, or change a belief; a message may be answered by another; what is dropped or suspended may be this goal.
+    let Some(on) = goal.or_else(|| kind.as_query().map(|l| TriggerOn::TestAdded(l.belief))) else {
+        return true;
     };
     // Where there is that much on the way, something may well change.
     if seen.len() == FAR || !facts.work(1) {
@@ -272,15 +240,7 @@ fn progresses(facts: &AgentFacts<'_>, step: &TypedStep, seen: &mut BTreeSet<Trig
     if !seen.insert(on) {
         return false;
     }
-    let failed = match on {
-        TriggerOn::GoalAdded(goal) => Some(TriggerOn::GoalFailed(goal)),
-        TriggerOn::BeliefAdded(_)
-        | TriggerOn::BeliefRemoved(_)
-        | TriggerOn::GoalFailed(_)
-        | TriggerOn::TestAdded(_)
-        | TriggerOn::TestFailed(_)
-        | TriggerOn::Perceived(_) => None,
-    };
+    let failed = achieved(on).map(TriggerOn::GoalFailed);
     [Some(on), failed]
         .into_iter()
         .flatten()

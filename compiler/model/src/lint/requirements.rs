@@ -6,7 +6,10 @@ use super::{
     facts::{ScenarioFacts, WantedFact},
     plan_terms::same,
 };
-use crate::{ArgPattern, BinaryOp, EventPattern, Scenario, TypedExpr, TypedExprKind, TypedPattern, UnaryOp};
+use crate::{
+    ArgPattern, BinaryOp, EventPattern, Scenario, TypedExpr, TypedExprKind, TypedPattern, UnaryOp,
+    expr::ComparisonOp,
+};
 
 /// Beyond so many pairs nothing is said.
 const PAIRS: usize = 1 << 16;
@@ -143,25 +146,14 @@ fn bounds(e: &TypedExpr) -> Option<(&TypedExpr, TimeBounds)> {
         (None, None) | (Some(_), Some(_)) => return None,
     };
     let none = f64::INFINITY;
-    let up_to = |open| TimeBounds { lo: (-none, false), hi: (limit, open) };
-    let down_to = |open| TimeBounds { lo: (limit, open), hi: (none, false) };
-    let bounds = match (op, turned) {
-        (BinaryOp::Lt, false) | (BinaryOp::Gt, true) => up_to(true),
-        (BinaryOp::Le, false) | (BinaryOp::Ge, true) => up_to(false),
-        (BinaryOp::Gt, false) | (BinaryOp::Lt, true) => down_to(true),
-        (BinaryOp::Ge, false) | (BinaryOp::Le, true) => down_to(false),
-        (BinaryOp::Eq, _) => TimeBounds { lo: (limit, false), hi: (limit, false) },
-        (
-            BinaryOp::Ne
-            | BinaryOp::And
-            | BinaryOp::Or
-            | BinaryOp::Add
-            | BinaryOp::Sub
-            | BinaryOp::Mul
-            | BinaryOp::Div
-            | BinaryOp::Rem,
-            _,
-        ) => return None,
+    let op = ComparisonOp::of(*op)?;
+    let bounds = match if turned { op.mirrored() } else { op } {
+        ComparisonOp::Lt => TimeBounds { lo: (-none, false), hi: (limit, true) },
+        ComparisonOp::Le => TimeBounds { lo: (-none, false), hi: (limit, false) },
+        ComparisonOp::Gt => TimeBounds { lo: (limit, true), hi: (none, false) },
+        ComparisonOp::Ge => TimeBounds { lo: (limit, false), hi: (none, false) },
+        ComparisonOp::Eq => TimeBounds { lo: (limit, false), hi: (limit, false) },
+        ComparisonOp::Ne => return None,
     };
     Some((x, bounds))
 }

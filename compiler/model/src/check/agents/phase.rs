@@ -8,7 +8,7 @@ use std::{
 use crate::check::{
     checker::Checker,
     state::{names::AgentNames, phase::CheckPhase},
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 
 /// Gives what agents have declared. Later phases that speak of it go on from there.

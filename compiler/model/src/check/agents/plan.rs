@@ -6,7 +6,7 @@ use hrdsl_syntax::ast::{self, TriggerSyntaxKind};
 use crate::check::{
     agents::{agent::AgentScope, phase::AgentsPhase},
     state::{issues::too_many, scope::ExprEnv, table::MAX_NAMES},
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 use crate::{
     BeliefAnnotation, BeliefId, TriggerOn, TypedContext, TypedPlan, TypedTerm, TypedTrigger,

@@ -8,7 +8,7 @@ use hrdsl_syntax::ast::{self, AgentMemberKind as Member};
 use crate::check::{
     agents::{agent::AgentScope, phase::AgentsPhase},
     state::{names::ArgumentMode, scope::ExprEnv},
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 use crate::{
     BeliefId, InferredType, TypedBeliefRule, TypedContext, TypedExprKind, TypedTerm, VariableRef,

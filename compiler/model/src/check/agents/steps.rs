@@ -9,8 +9,8 @@ use crate::check::{
         phase::AgentsPhase,
     },
     state::scope::ExprEnv,
-    value::expr::MAX_TIME,
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
+    value::quantity::MAX_TIME,
 };
 use crate::{
     Dimension, GoalId, InferredType, TypedContext, TypedExpr, TypedStep, TypedStepKind, Value, noun::Noun,

@@ -5,7 +5,7 @@ use hrdsl_syntax::ast::{self, AccessSyntax, NameSyntax};
 use crate::check::{
     automata::{automaton::EdgeScope, clock::is_clock, phase::AutomataPhase},
     state::scope::{ExprEnv, LocalName},
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 use crate::{
     BinaryOp, Type, TypedExpr, TypedLvalue, TypedUpdate, VariableRef, noun::Noun, report::automata,

@@ -16,8 +16,8 @@ use crate::check::{
         scope::{ExprEnv, IndexedArrays},
         table::{MAX_NAMES, NameTable},
     },
+    template::CheckerPhase,
     unread,
-    vocabulary::template::CheckerPhase,
 };
 use crate::{
     ActorId, AutomatonId, LocationId, Network, PlayerRef, TypedLocation, TypedStimulusStep, TypedSync,

@@ -1,22 +1,21 @@
 //! Clocks: those that all automata share, what clocks are compared with, and what they are set to.
 
-use std::rc::Rc;
-
 use hrdsl_source::Span;
-use hrdsl_syntax::ast::{self, AccessSyntax, ExprSyntaxKind as Syntax, NameSyntax, TypeExpr};
+use hrdsl_syntax::ast::{self, AccessSyntax, ExprSyntaxKind as Syntax, NameSyntax};
 
 use crate::check::{
-    automata::automaton::EdgeScope,
-    checker::Checker,
-    state::{record::MAX_PARTS, scope::ExprEnv},
+    automata::{automaton::EdgeScope, phase::AutomataPhase},
+    state::scope::ExprEnv,
+    template::CheckerPhase,
     value::{
         linear::{LinearTime, linear},
-        lookup::names_in,
+        operands::names_in,
     },
 };
 use crate::{
     BinaryOp, ClockId, ClockOp, Dimension, InferredType, TypedClockConstraint, TypedTime, TypedUpdate,
-    UnaryOp, Value, VarPlace,
+    UnaryOp, Value,
+    expr::ComparisonOp,
     noun::Noun,
     report::{automata, types},
 };
@@ -42,64 +41,7 @@ impl ClockSum {
     }
 }
 
-/// The sizes of an array of clocks, and none for one clock. `None`: the type is another.
-fn sizes(ty: &TypeExpr) -> Option<Vec<&ast::ExprSyntax>> {
-    match ty {
-        TypeExpr::Named(name) => (name.text == "clock").then(Vec::new),
-        TypeExpr::Array(of, size) => {
-            let mut sizes = sizes(of)?;
-            sizes.push(size);
-            Some(sizes)
-        }
-        TypeExpr::Range(..) | TypeExpr::List(_) | TypeExpr::Error => None,
-    }
-}
-
-impl Checker<'_> {
-    /// `var total: clock`, `var t: clock[3]`; whether it is one.
-    pub(in crate::check) fn declare_shared_clocks(&mut self, var: &ast::VarSyntax, whole: Span) -> bool {
-        let named = self.types.enums.get("clock").is_some() || self.types.record_names.get("clock").is_some();
-        let Some(sizes) = sizes(&var.ty).filter(|_| !named) else { return false };
-        if let Some(init) = &var.init {
-            self.report(automata::clock_init(&var.name.text, init.span));
-        }
-        let mut counts = Vec::new();
-        for size in &sizes {
-            let n = self.count(size, "the size of an array", 1).and_then(|n| u16::try_from(n).ok());
-            counts.extend(n.filter(|n| usize::from(*n) <= MAX_PARTS));
-        }
-        let total = counts.iter().fold(1, |n: usize, c| n.saturating_mul(usize::from(*c)));
-        if counts.len() != sizes.len() || total > MAX_PARTS {
-            self.report(types::must_be(
-                "the size of an array",
-                &format!("at most {MAX_PARTS}"),
-                var.name.span,
-            ));
-            return true;
-        }
-        let mut names = vec![var.name.text.clone()];
-        for count in &counts {
-            let elements = |name: &String| (0..*count).map(|i| format!("{name}[{i}]")).collect::<Vec<_>>();
-            names = names.iter().flat_map(elements).collect();
-        }
-        let place = VarPlace { name: var.name.span, whole };
-        for name in names {
-            let (issues, table) = (&mut self.issues, &mut self.shared.clocks);
-            if issues.declare_as(table, Noun::Clock, &name, var.name.span).is_none() {
-                return true;
-            }
-            Rc::make_mut(&mut self.shared.scope).add_clock(&name, var.name.span);
-            self.s.clocks.push(name);
-            self.s.places.clocks.push(place);
-        }
-        if !counts.is_empty() {
-            let scope = Rc::make_mut(&mut self.shared.scope);
-            scope.add_clock(&var.name.text, var.name.span);
-            scope.clock_arrays.insert(var.name.text.clone(), counts);
-        }
-        true
-    }
-
+impl AutomataPhase<'_, '_> {
     /// The clock of this name: `x`, `t[1]`.
     fn clock_named(&self, name: &str, scope: &EdgeScope) -> Option<ClockId> {
         let own = || {
@@ -168,16 +110,13 @@ impl Checker<'_> {
             return Some(());
         }
         if mentions_clock(e, env) {
-            match &e.kind {
-                Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right } => {
-                    let right_sign = if *op == BinaryOp::Add { sign } else { -sign };
-                    let left = self.add_to(sum, left, sign, scope, env);
-                    return self.add_to(sum, right, right_sign, scope, env).and(left);
-                }
-                Syntax::Unary { op: UnaryOp::Neg, operand } => {
-                    return self.add_to(sum, operand, -sign, scope, env);
-                }
-                _ => {}
+            if let Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right } = &e.kind {
+                let right_sign = if *op == BinaryOp::Add { sign } else { -sign };
+                let left = self.add_to(sum, left, sign, scope, env);
+                return self.add_to(sum, right, right_sign, scope, env).and(left);
+            }
+            if let Syntax::Unary { op: UnaryOp::Neg, operand } = &e.kind {
+                return self.add_to(sum, operand, -sign, scope, env);
             }
         }
         let e = self.expr_of(e, InferredType::Float(Dimension::TIME), env);
@@ -214,7 +153,7 @@ impl Checker<'_> {
         env: &mut ExprEnv,
     ) -> Option<Option<TypedClockConstraint>> {
         let Syntax::Binary { op, left, right } = &e.kind else { return None };
-        let op = comparison(*op)?;
+        let op = clock_op(ComparisonOp::of(*op)?);
         if !mentions_clock(left, env) && !mentions_clock(right, env) {
             return None;
         }
@@ -292,27 +231,18 @@ pub(in crate::check) fn is_clock(name: &NameSyntax, env: &ExprEnv) -> bool {
 }
 
 pub(in crate::check) fn mentions_clock(e: &ast::ExprSyntax, env: &ExprEnv) -> bool {
-    let mut names = Vec::new();
-    names_in(e, &mut names);
-    names.iter().any(|name| is_clock(name, env))
+    names_in(e).into_iter().any(|name| is_clock(name, env))
 }
 
-/// A comparison; `Some(None)`: `!=`, which no clock has.
-fn comparison(op: BinaryOp) -> Option<Option<ClockOp>> {
+/// How clocks are compared; `None`: they are not compared by `!=`.
+fn clock_op(op: ComparisonOp) -> Option<ClockOp> {
     match op {
-        BinaryOp::Lt => Some(Some(ClockOp::Lt)),
-        BinaryOp::Le => Some(Some(ClockOp::Le)),
-        BinaryOp::Eq => Some(Some(ClockOp::Eq)),
-        BinaryOp::Ge => Some(Some(ClockOp::Ge)),
-        BinaryOp::Gt => Some(Some(ClockOp::Gt)),
-        BinaryOp::Ne => Some(None),
-        BinaryOp::Or
-        | BinaryOp::And
-        | BinaryOp::Add
-        | BinaryOp::Sub
-        | BinaryOp::Mul
-        | BinaryOp::Div
-        | BinaryOp::Rem => None,
+        ComparisonOp::Lt => Some(ClockOp::Lt),
+        ComparisonOp::Le => Some(ClockOp::Le),
+        ComparisonOp::Eq => Some(ClockOp::Eq),
+        ComparisonOp::Ge => Some(ClockOp::Ge),
+        ComparisonOp::Gt => Some(ClockOp::Gt),
+        ComparisonOp::Ne => None,
     }
 }
 

@@ -13,7 +13,7 @@ use crate::check::{
         item::ArgumentPart,
         scope::{ExprEnv, is_variable_name},
     },
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 use crate::{
     ArgPattern, AutomatonVar, EventId, InferredType, LocationId, ReceiveArg, Type, TypedClockConstraint,
@@ -291,14 +291,10 @@ impl AutomataPhase<'_, '_> {
 
 /// The parts of a conjunction, in order.
 pub(in crate::check) fn conjuncts(e: &ast::ExprSyntax) -> Vec<&ast::ExprSyntax> {
-    match &e.kind {
-        Syntax::Binary { op: ast::BinaryOp::And, left, right } => {
-            let mut parts = conjuncts(left);
-            parts.extend(conjuncts(right));
-            parts
-        }
-        _ => vec![e],
-    }
+    let Syntax::Binary { op: ast::BinaryOp::And, left, right } = &e.kind else { return vec![e] };
+    let mut parts = conjuncts(left);
+    parts.extend(conjuncts(right));
+    parts
 }
 
 pub(in crate::check) fn and(a: TypedExpr, b: TypedExpr) -> TypedExpr {

@@ -13,7 +13,7 @@ use crate::check::{
         phase::CheckPhase,
         scope::NameScope,
     },
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 
 /// Takes the channels that are declared, and gives the networks.

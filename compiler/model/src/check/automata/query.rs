@@ -11,12 +11,16 @@ use crate::check::{
         scope::{ExprEnv, LocalName, NameScope},
         table::OrderedMap,
     },
-    value::linear::{LinearTime, linear},
+    value::{
+        linear::{LinearTime, linear},
+        operands::each_path,
+    },
 };
-use crate::check::{state::phase::CheckPhase, vocabulary::template::CheckerPhase};
+use crate::check::{state::phase::CheckPhase, template::CheckerPhase};
 use crate::{
     ClockId, ClockOp, Dimension, InferredType, LocationId, NetworkId, PlayerRef, TypedClockConstraint,
     TypedExprKind, TypedFormula, TypedMeasure, TypedQuery, TypedQueryKind, VariableRef,
+    expr::ComparisonOp,
     noun::Noun,
     report::{names, queries},
 };
@@ -72,7 +76,7 @@ impl AutomataPhase<'_, '_> {
             text: query.span,
             network,
             ask,
-            span,
+            origin: span,
         })
     }
 
@@ -233,42 +237,23 @@ impl AutomataPhase<'_, '_> {
     // ── formulas ──
 
     fn formula(&mut self, e: &ast::ExprSyntax, net: &mut QueryNetwork) -> TypedFormula {
-        match &e.kind {
-            Syntax::Binary { op: BinaryOp::And, left, right } => {
-                let left = self.formula(left, net);
-                joined_by(TypedFormula::And, left, self.formula(right, net))
-            }
-            Syntax::Binary { op: BinaryOp::Or, left, right } => {
-                let left = self.formula(left, net);
-                joined_by(TypedFormula::Or, left, self.formula(right, net))
-            }
-            Syntax::Unary { op: UnaryOp::Not, operand } => {
-                TypedFormula::Not(Box::new(self.formula(operand, net)))
-            }
-            Syntax::Binary { op, left, right } => match self.clock_formula(*op, (left, right), e.span, net) {
-                Some(formula) => formula,
-                None => self.data(e, net),
-            },
-            Syntax::Path(path) => self.state(path, net).unwrap_or_else(|| self.data(e, net)),
-            Syntax::Bool(_)
-            | Syntax::Int(_)
-            | Syntax::Float(_)
-            | Syntax::Quantity { .. }
-            | Syntax::Any
-            | Syntax::Call { .. }
-            | Syntax::Index { .. }
-            | Syntax::Field { .. }
-            | Syntax::Unary { op: UnaryOp::Neg, .. }
-            | Syntax::If { .. }
-            | Syntax::Tuple(_)
-            | Syntax::Text(_)
-            | Syntax::List { .. }
-            | Syntax::Strong(_)
-            | Syntax::Annotated { .. }
-            | Syntax::Internal(_)
-            | Syntax::Unify { .. }
-            | Syntax::Error => self.data(e, net),
+        if let Syntax::Unary { op: UnaryOp::Not, operand } = &e.kind {
+            return TypedFormula::Not(Box::new(self.formula(operand, net)));
         }
+        if let Syntax::Path(path) = &e.kind {
+            return self.state(path, net).unwrap_or_else(|| self.data(e, net));
+        }
+        let Syntax::Binary { op, left, right } = &e.kind else { return self.data(e, net) };
+        let join: fn(Vec<TypedFormula>) -> TypedFormula = if *op == BinaryOp::And {
+            TypedFormula::And
+        } else if *op == BinaryOp::Or {
+            TypedFormula::Or
+        } else {
+            let clocks = self.clock_formula(*op, (left, right), e.span, net);
+            return clocks.unwrap_or_else(|| self.data(e, net));
+        };
+        let left = self.formula(left, net);
+        joined_by(join, left, self.formula(right, net))
     }
 
     /// `deadlock`, or `Automaton.location`.
@@ -342,6 +327,7 @@ impl AutomataPhase<'_, '_> {
         span: Span,
         net: &mut QueryNetwork,
     ) -> Option<TypedFormula> {
+        let op = ComparisonOp::of(op)?;
         let mut sum = QuerySum::default();
         sum.add(left, false, net);
         sum.add(right, true, net);
@@ -349,19 +335,12 @@ impl AutomataPhase<'_, '_> {
             return None;
         }
         let ops: &[ClockOp] = match op {
-            BinaryOp::Lt => &[ClockOp::Lt],
-            BinaryOp::Le => &[ClockOp::Le],
-            BinaryOp::Eq => &[ClockOp::Eq],
-            BinaryOp::Ge => &[ClockOp::Ge],
-            BinaryOp::Gt => &[ClockOp::Gt],
-            BinaryOp::Ne => &[ClockOp::Lt, ClockOp::Gt],
-            BinaryOp::And
-            | BinaryOp::Or
-            | BinaryOp::Add
-            | BinaryOp::Sub
-            | BinaryOp::Mul
-            | BinaryOp::Div
-            | BinaryOp::Rem => return None,
+            ComparisonOp::Lt => &[ClockOp::Lt],
+            ComparisonOp::Le => &[ClockOp::Le],
+            ComparisonOp::Eq => &[ClockOp::Eq],
+            ComparisonOp::Ge => &[ClockOp::Ge],
+            ComparisonOp::Gt => &[ClockOp::Gt],
+            ComparisonOp::Ne => &[ClockOp::Lt, ClockOp::Gt],
         };
         let Some(bound) = self.times_on_the_right(&sum, net) else { return Some(nothing()) };
         let (clock, minus, flipped) = match (sum.plus.as_slice(), sum.minus.as_slice()) {
@@ -416,16 +395,11 @@ impl<'e> QuerySum<'e> {
             }
             return;
         }
-        match &e.kind {
-            Syntax::Binary { op: BinaryOp::Add, left, right } => {
-                self.add(left, negative, net);
-                self.add(right, negative, net);
-            }
-            Syntax::Binary { op: BinaryOp::Sub, left, right } => {
-                self.add(left, negative, net);
-                self.add(right, !negative, net);
-            }
-            _ => self.rest.push((e, negative)),
+        if let Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right } = &e.kind {
+            self.add(left, negative, net);
+            self.add(right, negative != (*op == BinaryOp::Sub), net);
+        } else {
+            self.rest.push((e, negative));
         }
     }
 }
@@ -465,13 +439,14 @@ fn joined(names: &[NameSyntax]) -> String {
 
 /// The clock that an expression names: `x`, `P.x`, `x[2]`.
 fn clock_named(e: &ast::ExprSyntax, net: &QueryNetwork) -> Option<ClockId> {
-    let name = match &e.kind {
-        Syntax::Path(path) => joined(&path.names),
-        Syntax::Index { of, index } => match (&of.kind, &index.kind) {
-            (Syntax::Path(path), Syntax::Int(n)) => format!("{}[{n}]", joined(&path.names)),
-            _ => return None,
-        },
-        _ => return None,
+    let name = if let Syntax::Index { of, index } = &e.kind
+        && let (Syntax::Path(path), Syntax::Int(n)) = (&of.kind, &index.kind)
+    {
+        format!("{}[{n}]", joined(&path.names))
+    } else if let Syntax::Path(path) = &e.kind {
+        joined(&path.names)
+    } else {
+        return None;
     };
     net.clocks.get(&name).copied()
 }
@@ -483,42 +458,5 @@ fn mirrored(op: ClockOp) -> ClockOp {
         ClockOp::Eq => ClockOp::Eq,
         ClockOp::Ge => ClockOp::Le,
         ClockOp::Gt => ClockOp::Lt,
-    }
-}
-
-/// Calls `f` with each name, dotted or not, that an expression reads.
-fn each_path(e: &ast::ExprSyntax, f: &mut dyn FnMut(&ast::PathSyntax)) {
-    match &e.kind {
-        Syntax::Path(path) => f(path),
-        Syntax::Call { args, .. } | Syntax::Tuple(args) => args.iter().for_each(|a| each_path(a, f)),
-        Syntax::Field { of, .. } => each_path(of, f),
-        Syntax::Unary { operand, .. } | Syntax::Strong(operand) => each_path(operand, f),
-        Syntax::Binary { left, right, .. }
-        | Syntax::Unify { left, right }
-        | Syntax::Index { of: left, index: right } => {
-            each_path(left, f);
-            each_path(right, f);
-        }
-        Syntax::If { condition, then, otherwise } => {
-            each_path(condition, f);
-            each_path(then, f);
-            each_path(otherwise, f);
-        }
-        Syntax::List { items, rest } => {
-            items.iter().for_each(|a| each_path(a, f));
-            rest.iter().for_each(|a| each_path(a, f));
-        }
-        Syntax::Annotated { of, annotations } => {
-            each_path(of, f);
-            annotations.iter().for_each(|a| each_path(a, f));
-        }
-        Syntax::Bool(_)
-        | Syntax::Int(_)
-        | Syntax::Float(_)
-        | Syntax::Quantity { .. }
-        | Syntax::Any
-        | Syntax::Text(_)
-        | Syntax::Internal(_)
-        | Syntax::Error => {}
     }
 }

@@ -4,8 +4,9 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AccessSyntax, NameSyntax, StatementSyntaxKind as Syntax};
 
 use crate::check::{
-    checker::Checker,
+    automata::phase::AutomataPhase,
     state::scope::ExprEnv,
+    template::CheckerPhase,
     value::{element::type_of, range},
 };
 use crate::{
@@ -55,7 +56,7 @@ pub(in crate::check) fn returns(statements: &[TypedStatement]) -> bool {
     })
 }
 
-impl Checker<'_> {
+impl AutomataPhase<'_, '_> {
     /// What is declared in a block is known to its end.
     pub(in crate::check) fn block(
         &mut self,
@@ -143,7 +144,7 @@ impl Checker<'_> {
         let given = values.len() == leaves.len();
         let mut values = values.into_iter();
         for ((name, ty), i) in leaves.into_iter().zip(first..) {
-            let init = crate::check::vocabulary::nearest_to_zero(ty);
+            let init = crate::check::value::variable::nearest_to_zero(ty);
             body.locals.push((starting_var(&name, ty, init), span));
             let value = values.next().filter(|_| given);
             // In a loop it starts anew each time.

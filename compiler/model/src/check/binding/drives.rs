@@ -7,8 +7,7 @@ use hrdsl_ir::{
 use hrdsl_messages::InterfaceName;
 use hrdsl_syntax::ast::TopicOutSyntax;
 
-use super::scope::BindingScope;
-use crate::check::checker::Checker;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{TypedExpr, report::bindings};
 
 /// A message that drives devices of a sort.
@@ -108,11 +107,10 @@ const DRIVES: [DeviceDrive; 4] = [
     },
 ];
 
-impl<'a> Checker<'a> {
+impl<'a> BindingPhase<'_, 'a> {
     /// Adds the rule.
     pub(super) fn driven(
         &mut self,
-        scope: BindingScope<'a>,
         topic: &TopicOutSyntax,
         message: &InterfaceName,
         rules: &mut MessageRules<TypedExpr>,
@@ -125,7 +123,7 @@ impl<'a> Checker<'a> {
         };
         let Some(drive) = DRIVES.iter().find(is) else {
             let ways: Vec<&str> = DRIVES.iter().map(|d| d.says).collect();
-            let written = message.written(scope.library.version());
+            let written = message.written(self.library.version());
             let issue =
                 bindings::no_way_to_drive(body.sort().name(), &written, &ways.join(", "), device.span);
             self.report(issue);

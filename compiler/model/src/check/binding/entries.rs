@@ -7,10 +7,10 @@ use hrdsl_syntax::ast::{BindingEntry, BindingEntryKind as Entry};
 use super::{
     fields::{FieldValues, GivenFields},
     rules::MessageEnv,
-    scope::{BindingPlace, BindingScope},
+    scope::BindingPlace,
     shape::MessageShape,
 };
-use crate::check::checker::Checker;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{TypedExpr, report::bindings};
 
 /// What a block comes to.
@@ -19,23 +19,21 @@ pub(super) struct BoundEntries {
     pub rules: MessageRules<TypedExpr>,
 }
 
-impl<'a> Checker<'a> {
+impl<'a> BindingPhase<'_, 'a> {
     /// `read` is the message that comes, `written` the one that goes.
     pub(super) fn entries(
         &mut self,
-        scope: BindingScope<'a>,
         place: BindingPlace,
         read: Option<&InterfaceName>,
         written: Option<&InterfaceName>,
         entries: &[BindingEntry],
     ) -> Option<BoundEntries> {
-        self.entries_with(scope, place, read, written, entries, FieldValues::new())
+        self.entries_with(place, read, written, entries, FieldValues::new())
     }
 
     /// The same; fields of which nothing else is said hold what is told.
     pub(super) fn entries_with(
         &mut self,
-        scope: BindingScope<'a>,
         place: BindingPlace,
         read: Option<&InterfaceName>,
         written: Option<&InterfaceName>,
@@ -43,7 +41,7 @@ impl<'a> Checker<'a> {
         told: FieldValues,
     ) -> Option<BoundEntries> {
         let shape = |name: Option<&InterfaceName>| {
-            name.map_or(Some(MessageShape::default()), |n| MessageShape::new(scope.library, n))
+            name.map_or(Some(MessageShape::default()), |n| MessageShape::new(self.library, n))
         };
         let (Some(heard), Some(said)) = (shape(read), shape(written)) else {
             let span = entries.first().map(|e| e.span).unwrap_or_default();
@@ -58,14 +56,14 @@ impl<'a> Checker<'a> {
                 Entry::Field { .. } if !place.fields => self.report(bindings::no_fields(entry.span)),
                 Entry::Field { field, value, when } => {
                     let condition = when.as_ref().map(|when| self.field_condition(place, when, &mut env));
-                    self.field_value(scope, place, &said, (field, value, condition), &mut given);
+                    self.field_value(place, &said, (field, value, condition), &mut given);
                 }
                 Entry::Joint { .. } if !place.joints => self.report(bindings::no_joints(entry.span)),
                 Entry::Emit { .. } | Entry::Command { .. } if !place.rules => {
                     self.report(bindings::no_rules(entry.span));
                 }
                 Entry::Emit { .. } | Entry::Command { .. } => {
-                    rules.extend(self.message_rule(scope, &mut env, entry));
+                    rules.extend(self.message_rule(&mut env, entry));
                 }
                 Entry::Joint { .. } | Entry::Error => {}
             }

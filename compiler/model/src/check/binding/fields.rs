@@ -10,10 +10,10 @@ use hrdsl_syntax::ast::{self, FieldSyntax};
 
 use super::{
     places::steps_of_field,
-    scope::{BindingPlace, BindingScope},
+    scope::BindingPlace,
     shape::{FieldShape, MessageGaps, MessageShape},
 };
-use crate::check::checker::Checker;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{
     TypedExpr,
     noun::Noun,
@@ -135,11 +135,10 @@ impl MessageGaps for FilledShape<'_> {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> BindingPhase<'_, 'a> {
     /// `FIELD = VALUE`, perhaps under a condition.
     pub(super) fn field_value(
         &mut self,
-        scope: BindingScope<'a>,
         place: BindingPlace,
         shape: &MessageShape,
         (field, value, condition): (&FieldSyntax, &ast::ExprSyntax, Option<TypedExpr>),
@@ -157,14 +156,12 @@ impl<'a> Checker<'a> {
         let field = shape.at(&path)?;
         let gap = match field {
             FieldShape::Scalar(scalar, _) => {
-                let value = self.gap_value(scope, place, *scalar, value)?;
+                let value = self.gap_value(place, *scalar, value)?;
                 MessageGap { value, scalar: *scalar }
             }
-            FieldShape::Message(message) => {
-                self.message_value(scope, place, (message, &text, span), value)?
-            }
+            FieldShape::Message(message) => self.message_value(place, (message, &text, span), value)?,
             FieldShape::Array(_) | FieldShape::Sequence { .. } => {
-                self.row_value(scope, place, (field, &text, span), value)?
+                self.row_value(place, (field, &text, span), value)?
             }
         };
         given.add(&path, gap, condition);

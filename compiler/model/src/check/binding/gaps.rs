@@ -5,35 +5,35 @@ use hrdsl_ir::value::nanos;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, BinaryOp, CallSyntax, ExprSyntaxKind as Syntax};
 
-use super::scope::{BindingPlace, BindingScope};
-use crate::check::{checker::Checker, state::scope::ExprEnv};
+use super::scope::BindingPlace;
+use crate::check::state::scope::ExprEnv;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{
     ActorId, Dimension, EventId, InferredType, Type, TypedExpr, Value, VariableRef,
     noun::Noun,
     report::{bindings, names},
 };
 
-impl<'a> Checker<'a> {
+impl<'a> BindingPhase<'_, 'a> {
     pub(super) fn gap_value(
         &mut self,
-        scope: BindingScope<'a>,
         place: BindingPlace,
         scalar: MessageScalar,
         value: &ast::ExprSyntax,
     ) -> Option<GapValue<TypedExpr>> {
         if let Some((what, time)) = held(value) {
             let time = self.time(time, "the time", true).map_or(0, nanos);
-            return self.held(scope, scalar, what, time);
+            return self.held(scalar, what, time);
         }
         if self.names_event(value) {
             if place.periodic {
                 self.report(bindings::held_for_how_long(value.span));
                 return None;
             }
-            return self.held(scope, scalar, value, 0);
+            return self.held(scalar, value, 0);
         }
-        let (mut env, reads) = self.heard_arguments(scope.actor);
-        self.known_arguments(scope.actor, value, &env)?;
+        let (mut env, reads) = self.heard_arguments(self.actor);
+        self.known_arguments(self.actor, value, &env)?;
         let value = self.expr(value, &mut env);
         self.read_value(value, scalar, &reads)
     }
@@ -81,7 +81,6 @@ impl<'a> Checker<'a> {
     /// `held(leg_request, 5 s)`
     fn held(
         &mut self,
-        scope: BindingScope<'a>,
         scalar: MessageScalar,
         what: &ast::ExprSyntax,
         time: i64,
@@ -96,7 +95,8 @@ impl<'a> Checker<'a> {
         };
         let found = self.patterns_with(&calls, &mut ExprEnv::constants());
         for (pattern, span) in &found {
-            self.perceives(scope.actor, pattern.event, *span, false);
+            let actor = self.actor;
+            self.perceives(actor, pattern.event, *span, false);
         }
         let events: Vec<_> = found.into_iter().map(|(pattern, _)| pattern).collect();
         (!events.is_empty()).then_some(GapValue::Held { events, time })
@@ -170,7 +170,10 @@ fn paths_in<'e>(e: &'e ast::ExprSyntax, all: &mut Vec<&'e ast::PathSyntax>) {
             [condition, then, otherwise].into_iter().for_each(|part| paths_in(part, all));
         }
         Syntax::Index { of, .. } | Syntax::Field { of, .. } => paths_in(of, all),
-        _ => {}
+        Syntax::Bool(_) | Syntax::Int(_) | Syntax::Float(_) | Syntax::Quantity { .. } => {}
+        Syntax::Any | Syntax::Text(_) | Syntax::Internal(_) | Syntax::Error => {}
+        // Agents have these, messages do not.
+        Syntax::List { .. } | Syntax::Strong(_) | Syntax::Annotated { .. } | Syntax::Unify { .. } => {}
     }
 }
 
@@ -198,14 +201,14 @@ fn events(what: &ast::ExprSyntax) -> Option<Vec<CallSyntax>> {
         let [name] = callee.names.as_slice() else { return None };
         Some(vec![CallSyntax { name: name.clone(), args, span }])
     };
-    match &what.kind {
-        Syntax::Path(path) => call(path, None, what.span),
-        Syntax::Call { callee, args } => call(callee, Some(args.clone()), what.span),
-        Syntax::Binary { op: BinaryOp::Or, left, right } => {
-            let (mut all, more) = (events(left)?, events(right)?);
-            all.extend(more);
-            Some(all)
-        }
-        _ => None,
+    if let Syntax::Path(path) = &what.kind {
+        return call(path, None, what.span);
     }
+    if let Syntax::Call { callee, args } = &what.kind {
+        return call(callee, Some(args.clone()), what.span);
+    }
+    let Syntax::Binary { op: BinaryOp::Or, left, right } = &what.kind else { return None };
+    let (mut all, more) = (events(left)?, events(right)?);
+    all.extend(more);
+    Some(all)
 }

@@ -7,10 +7,10 @@ use hrdsl_ir::{
 };
 use hrdsl_syntax::ast::{BindingEntryKind as Entry, GroupSyntax};
 
-use crate::check::checker::Checker;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{Dimension, noun::Noun, report::bindings};
 
-impl Checker<'_> {
+impl BindingPhase<'_, '_> {
     pub(super) fn planning_group(&mut self, group: &GroupSyntax) -> Option<PlanningGroup> {
         let written = group.acceleration.as_ref();
         let acceleration =

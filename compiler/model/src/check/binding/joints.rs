@@ -3,13 +3,13 @@
 use hrdsl_ir::device::DeviceBody;
 use hrdsl_syntax::ast::{BindingEntry, BindingEntryKind as Entry, NameSyntax, PathSyntax, TextSyntax};
 
-use crate::check::checker::Checker;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{
     noun::Noun,
     report::{bindings, names},
 };
 
-impl Checker<'_> {
+impl BindingPhase<'_, '_> {
     /// The names of an arm's joints to the programs, from its base: those of the table in the block, or its own.
     pub(super) fn joint_texts(
         &mut self,

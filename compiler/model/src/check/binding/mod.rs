@@ -7,6 +7,7 @@ mod gaps;
 mod groups;
 mod joints;
 mod parameters;
+pub(in crate::check) mod phase;
 mod places;
 mod rules;
 mod scope;
@@ -20,32 +21,29 @@ use hrdsl_ir::binding::{
     BoundAction, BoundService, MiddlewareBinding, MiddlewareKind, TopicInput, TopicOutput, TransitionRule,
 };
 use hrdsl_ir::value::nanos;
-use hrdsl_messages::{InterfaceName, InterfaceSpace, MessageLibrary};
+use hrdsl_messages::{InterfaceName, InterfaceSpace};
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     BindingMember, BindingMemberKind as Member, InterfaceSyntax, MiddlewareSyntax, ServedSyntax, TextSyntax,
     TopicInSyntax, TopicOutSyntax,
 };
 
-use crate::check::{checker::Checker, state::scope::ExprEnv};
-use crate::{ActorId, Dimension, TypedExpr, Value, report::bindings};
-use scope::{BindingPlace, BindingScope};
+use crate::check::state::scope::ExprEnv;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
+use crate::{Dimension, TypedExpr, Value, report::bindings};
+use scope::BindingPlace;
 
 /// Messages faster than this are more than any scenario samples.
 const HIGHEST_RATE: f64 = 10_000.0;
 
-impl<'a> Checker<'a> {
-    /// `None` where the definitions are not there: they were not asked for.
-    pub(in crate::check) fn middleware(
+impl<'a> BindingPhase<'_, 'a> {
+    fn middleware(
         &mut self,
         middleware: &MiddlewareSyntax,
-        actor: ActorId,
+        kind: MiddlewareKind,
         origin: Span,
-    ) -> Option<MiddlewareBinding<TypedExpr>> {
-        let kind =
-            if middleware.version.text == "ros1" { MiddlewareKind::Ros1 } else { MiddlewareKind::Ros2 };
-        let library = self.source.interfaces.iter().find(|l| kind_of(l) == kind)?;
-        let scope = BindingScope { actor, library };
+    ) -> MiddlewareBinding<TypedExpr> {
+        let library = self.library;
         for fault in library.faults() {
             self.report(bindings::fault(fault));
         }
@@ -62,28 +60,23 @@ impl<'a> Checker<'a> {
             origin,
         };
         for member in &middleware.members {
-            self.binding_member(scope, member, &mut binding);
+            self.binding_member(member, &mut binding);
         }
-        Some(binding)
+        binding
     }
 
-    fn binding_member(
-        &mut self,
-        scope: BindingScope<'a>,
-        member: &BindingMember,
-        binding: &mut MiddlewareBinding<TypedExpr>,
-    ) {
+    fn binding_member(&mut self, member: &BindingMember, binding: &mut MiddlewareBinding<TypedExpr>) {
         let origin = member.span;
         match &member.kind {
-            Member::TopicIn(topic) => binding.inputs.extend(self.topic_in(scope, topic, origin)),
-            Member::TopicOut(topic) => binding.outputs.extend(self.topic_out(scope, topic, origin)),
-            Member::Service(served) => binding.services.extend(self.bound_service(scope, served, origin)),
-            Member::Action(served) => binding.actions.extend(self.bound_action(scope, served, origin)),
+            Member::TopicIn(topic) => binding.inputs.extend(self.topic_in(topic, origin)),
+            Member::TopicOut(topic) => binding.outputs.extend(self.topic_out(topic, origin)),
+            Member::Service(served) => binding.services.extend(self.bound_service(served, origin)),
+            Member::Action(served) => binding.actions.extend(self.bound_action(served, origin)),
             Member::Group(group) => binding.groups.extend(self.planning_group(group)),
             Member::Parameter { name, value } => self.parameter(name, value, binding),
             Member::Transition { from, to, emit } => {
                 let mut env = ExprEnv::constants();
-                if let Some((event, args)) = self.emission(scope.actor, emit, &mut env) {
+                if let Some((event, args)) = self.emission(self.actor, emit, &mut env) {
                     let constant = |e: &TypedExpr| e.constant().unwrap_or(Value::Bool(false));
                     let args = args.iter().map(constant).collect();
                     let (from, to) = (from.text.clone(), to.text.clone());
@@ -94,12 +87,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn topic_in(
-        &mut self,
-        scope: BindingScope<'a>,
-        topic: &TopicInSyntax,
-        origin: Span,
-    ) -> Option<TopicInput<TypedExpr>> {
+    fn topic_in(&mut self, topic: &TopicInSyntax, origin: Span) -> Option<TopicInput<TypedExpr>> {
         self.binding_name(&topic.name, false);
         let rate = topic.rate.as_ref().and_then(|e| {
             let rate = self.quantity_of(e, Dimension::FREQUENCY)?;
@@ -110,19 +98,19 @@ impl<'a> Checker<'a> {
             }
             Some(rate)
         });
-        let message = self.interface(scope, &topic.interface, InterfaceSpace::Msg)?;
+        let message = self.interface(&topic.interface, InterfaceSpace::Msg)?;
         let said_before = self.issues.list.len();
         let place = BindingPlace::input(topic.rate.is_some());
-        let told = self.source(scope, topic, &message, rate);
+        let told = self.source(topic, &message, rate);
         let place = BindingPlace { joints: topic.from.is_some(), ..place };
-        let bound = self.entries_with(scope, place, Some(&message), Some(&message), &topic.entries, told)?;
+        let bound = self.entries_with(place, Some(&message), Some(&message), &topic.entries, told)?;
         let has_fault = self.issues.list.len() > said_before;
         if topic.rate.is_none() && !topic.latched && !bound.template.is_of_events() && !has_fault {
             self.report(bindings::never_published(topic.name.span));
         }
         Some(TopicInput {
             topic: topic.name.text.clone(),
-            interface: message.written(scope.library.version()),
+            interface: message.written(self.library.version()),
             period: rate.map(|rate| nanos(1.0 / rate)),
             latched: topic.latched,
             message: bound.template,
@@ -130,37 +118,26 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn topic_out(
-        &mut self,
-        scope: BindingScope<'a>,
-        topic: &TopicOutSyntax,
-        origin: Span,
-    ) -> Option<TopicOutput<TypedExpr>> {
+    fn topic_out(&mut self, topic: &TopicOutSyntax, origin: Span) -> Option<TopicOutput<TypedExpr>> {
         self.binding_name(&topic.name, true);
-        let message = self.interface(scope, &topic.interface, InterfaceSpace::Msg)?;
+        let message = self.interface(&topic.interface, InterfaceSpace::Msg)?;
         let place = BindingPlace { joints: topic.drives.is_some(), ..BindingPlace::OUTPUT };
-        let bound = self.entries(scope, place, Some(&message), None, &topic.entries)?;
+        let bound = self.entries(place, Some(&message), None, &topic.entries)?;
         let mut rules = bound.rules;
-        self.driven(scope, topic, &message, &mut rules);
+        self.driven(topic, &message, &mut rules);
         Some(TopicOutput {
             topic: topic.name.text.clone(),
-            interface: message.written(scope.library.version()),
+            interface: message.written(self.library.version()),
             rules,
             origin,
         })
     }
 
-    fn bound_service(
-        &mut self,
-        scope: BindingScope<'a>,
-        served: &ServedSyntax,
-        origin: Span,
-    ) -> Option<BoundService<TypedExpr>> {
+    fn bound_service(&mut self, served: &ServedSyntax, origin: Span) -> Option<BoundService<TypedExpr>> {
         self.binding_name(&served.name, false);
-        let name = self.interface(scope, &served.interface, InterfaceSpace::Srv)?;
-        let service = scope.library.service(&name)?;
+        let name = self.interface(&served.interface, InterfaceSpace::Srv)?;
+        let service = self.library.service(&name)?;
         let bound = self.entries(
-            scope,
             BindingPlace::SERVICE,
             Some(&service.request),
             Some(&service.response),
@@ -168,27 +145,22 @@ impl<'a> Checker<'a> {
         )?;
         Some(BoundService {
             service: served.name.text.clone(),
-            interface: name.written(scope.library.version()),
+            interface: name.written(self.library.version()),
             rules: bound.rules,
             response: bound.template,
             origin,
         })
     }
 
-    fn bound_action(
-        &mut self,
-        scope: BindingScope<'a>,
-        served: &ServedSyntax,
-        origin: Span,
-    ) -> Option<BoundAction<TypedExpr>> {
+    fn bound_action(&mut self, served: &ServedSyntax, origin: Span) -> Option<BoundAction<TypedExpr>> {
         self.binding_name(&served.name, false);
-        let name = self.interface(scope, &served.interface, InterfaceSpace::Action)?;
-        let action = scope.library.action(&name)?;
+        let name = self.interface(&served.interface, InterfaceSpace::Action)?;
+        let action = self.library.action(&name)?;
         let place = BindingPlace::SERVICE;
-        let bound = self.entries(scope, place, Some(&action.goal), Some(&action.result), &served.entries)?;
+        let bound = self.entries(place, Some(&action.goal), Some(&action.result), &served.entries)?;
         Some(BoundAction {
             action: served.name.text.clone(),
-            interface: name.written(scope.library.version()),
+            interface: name.written(self.library.version()),
             rules: bound.rules,
             result: bound.template,
             origin,
@@ -196,20 +168,15 @@ impl<'a> Checker<'a> {
     }
 
     /// The definition that a name means, if it is there and nothing is wrong with it.
-    fn interface(
-        &mut self,
-        scope: BindingScope<'a>,
-        written: &InterfaceSyntax,
-        space: InterfaceSpace,
-    ) -> Option<InterfaceName> {
-        let name = match scope.library.find(&written.text(), space) {
+    fn interface(&mut self, written: &InterfaceSyntax, space: InterfaceSpace) -> Option<InterfaceName> {
+        let name = match self.library.find(&written.text(), space) {
             Ok(name) => name.clone(),
             Err(unknown) => {
                 self.report(bindings::unknown_interface(&unknown, written.span));
                 return None;
             }
         };
-        match scope.library.closure(std::slice::from_ref(&name)) {
+        match self.library.closure(std::slice::from_ref(&name)) {
             Ok(_) => Some(name),
             Err(faults) => {
                 for fault in &faults {
@@ -228,12 +195,5 @@ impl<'a> Checker<'a> {
         if !fits || name.text.matches('*').count() > 1 {
             self.report(bindings::bad_name(&name.text, wild, name.span));
         }
-    }
-}
-
-fn kind_of(library: &MessageLibrary) -> MiddlewareKind {
-    match library.version() {
-        hrdsl_messages::RosVersion::Ros1 => MiddlewareKind::Ros1,
-        hrdsl_messages::RosVersion::Ros2 => MiddlewareKind::Ros2,
     }
 }

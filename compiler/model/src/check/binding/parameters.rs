@@ -3,14 +3,15 @@
 use hrdsl_ir::binding::{MiddlewareBinding, MiddlewareKind};
 use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax, TextSyntax};
 
-use crate::check::{checker::Checker, state::scope::ExprEnv};
+use crate::check::state::scope::ExprEnv;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{
     TypedExpr, TypedExprKind, Value,
     noun::Noun,
     report::{bindings, names, types},
 };
 
-impl Checker<'_> {
+impl BindingPhase<'_, '_> {
     /// `parameter "/brew_time" = 2.5`
     pub(super) fn parameter(
         &mut self,

@@ -15,19 +15,16 @@ use hrdsl_syntax::ast::{
 
 use super::{
     places::{WrittenStep, steps_of},
-    scope::{BindingPlace, BindingScope},
+    scope::BindingPlace,
     shape::{FieldShape, MessageShape},
 };
-use crate::check::{
-    checker::Checker,
-    state::{item::ExprItem, scope::ExprEnv},
-};
+use crate::check::state::{item::ExprItem, scope::ExprEnv};
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{
     ActorId, Dimension, EventId, InferredType, Type, TypedExpr, TypedExprKind, VariableRef,
     noun::Noun,
     report::{bindings, names, types},
     types::TypeLayout,
-    world::TypedRuleTrigger,
 };
 
 /// What the rules of a message can read.
@@ -98,16 +95,15 @@ impl<'s> MessageEnv<'s> {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> BindingPhase<'_, 'a> {
     pub(super) fn message_rule(
         &mut self,
-        scope: BindingScope<'a>,
         env: &mut MessageEnv<'_>,
         entry: &BindingEntry,
     ) -> Option<MessageRule<TypedExpr>> {
         let (effect, when) = match &entry.kind {
             Entry::Emit { emit, when } => {
-                let (event, args) = self.emission_of(scope.actor, emit, env)?;
+                let (event, args) = self.emission_of(self.actor, emit, env)?;
                 (Some(MessageEffect::Emit { event, args }), when)
             }
             Entry::Command { command, device, args, when } => {
@@ -193,9 +189,8 @@ impl<'a> Checker<'a> {
     /// An argument in which the places of the message are names already.
     fn message_argument(&mut self, arg: &ast::ExprSyntax, ty: Type, env: &mut MessageEnv<'_>) -> TypedExpr {
         let want = InferredType::of(ty);
-        let value = match self.item_due(arg, want, &mut env.env) {
-            ExprItem::One(value) => value,
-            _ => return self.expr_for(arg, ty, &mut env.env),
+        let ExprItem::One(value) = self.item_due(arg, want, &mut env.env) else {
+            return self.expr_for(arg, ty, &mut env.env);
         };
         if let (Type::Enum(_), InferredType::Text) = (ty, value.ty)
             && let Some(value) = env.as_enumeration(&value, ty)
@@ -222,11 +217,7 @@ impl<'a> Checker<'a> {
         span: Span,
         env: &mut MessageEnv<'_>,
     ) -> Option<MessageEffect<TypedExpr>> {
-        let TypedRuleTrigger::Commanded { device: body, command: id } =
-            self.commanded(command, device, "")?
-        else {
-            return None;
-        };
+        let (body, id) = self.commanded(command, device, "")?;
         let params = self.command_params(body, id);
         let given = args.unwrap_or_default();
         let needed = params.iter().filter(|p| !p.optional).count();

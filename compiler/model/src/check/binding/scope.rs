@@ -1,15 +1,4 @@
-//! For whom something is bound, and where it stands.
-
-use hrdsl_messages::MessageLibrary;
-
-use crate::ActorId;
-
-/// What is being bound: for whom, and to which definitions.
-#[derive(Clone, Copy)]
-pub(super) struct BindingScope<'a> {
-    pub actor: ActorId,
-    pub library: &'a MessageLibrary,
-}
+//! Where something is bound.
 
 /// Whose entries they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

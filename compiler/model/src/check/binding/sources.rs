@@ -9,8 +9,8 @@ use hrdsl_ir::{
 use hrdsl_messages::InterfaceName;
 use hrdsl_syntax::ast::TopicInSyntax;
 
-use super::{fields::FieldValues, scope::BindingScope};
-use crate::check::checker::Checker;
+use super::fields::FieldValues;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::{TypedExpr, report::bindings};
 
 /// A message that holds what devices of a sort tell.
@@ -43,11 +43,10 @@ const SOURCES: [DeviceSource; 3] = [
     },
 ];
 
-impl<'a> Checker<'a> {
+impl<'a> BindingPhase<'_, 'a> {
     /// The fields that the device fills; `rate` is that of the topic, Hz.
     pub(super) fn source(
         &mut self,
-        scope: BindingScope<'a>,
         topic: &TopicInSyntax,
         message: &InterfaceName,
         rate: Option<f64>,
@@ -60,7 +59,7 @@ impl<'a> Checker<'a> {
         };
         if !SOURCES.iter().any(|s| is(&s)) {
             let ways: Vec<&str> = SOURCES.iter().map(|s| s.says).collect();
-            let written = message.written(scope.library.version());
+            let written = message.written(self.library.version());
             let issue = bindings::no_source(body.sort().name(), &written, &ways.join(", "), device.span);
             self.report(issue);
             return FieldValues::new();
@@ -87,8 +86,7 @@ impl<'a> Checker<'a> {
 
     /// What its description calls a body; `None`: it has none.
     fn link_name(&self, body: crate::BodyId) -> Option<String> {
-        let robots = &self.world.robots;
-        let link = robots.iter().find_map(|placed| Some((placed.link_of(body)?, placed.robot()?)));
+        let link = self.robots.iter().find_map(|placed| Some((placed.link_of(body)?, placed.robot()?)));
         link.and_then(|(link, robot)| robot.link(link)).map(|link| link.name.clone())
     }
 }

@@ -9,10 +9,11 @@ use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax};
 
 use super::{
     fields::{FieldValues, MOST_ELEMENTS, row_of, template_of},
-    scope::{BindingPlace, BindingScope},
+    scope::BindingPlace,
     shape::{FieldShape, MessageShape},
 };
-use crate::check::{checker::Checker, state::item::ExprItem};
+use crate::check::state::item::ExprItem;
+use crate::check::{binding::phase::BindingPhase, template::CheckerPhase};
 use crate::noun::Noun;
 use crate::{
     Axis, BodyRef, Dimension, InferredType, SignalTerm, TypedExpr, TypedExprKind,
@@ -59,16 +60,15 @@ fn aspect(message: &MessageShape) -> Option<BodyAspect> {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> BindingPhase<'_, 'a> {
     /// What the elements of an array or a sequence hold: `[a, b]`, `(x, y, z)`, or a constant of several parts.
     pub(super) fn row_value(
         &mut self,
-        scope: BindingScope<'a>,
         place: BindingPlace,
         (whole, text, span): (&FieldShape, &str, Span),
         value: &ast::ExprSyntax,
     ) -> Option<MessageGap<TypedExpr>> {
-        let Some(parts) = self.given_parts(scope, value)? else {
+        let Some(parts) = self.given_parts(value)? else {
             self.report(bindings::not_one_value(text, span));
             return None;
         };
@@ -88,14 +88,13 @@ impl<'a> Checker<'a> {
             Some(FieldShape::Array(_) | FieldShape::Sequence { .. }) | None => return None,
         };
         let scalars = vec![scalar; parts.count()];
-        let gaps = self.gaps_of(scope, place, parts, &scalars)?;
+        let gaps = self.gaps_of(place, parts, &scalars)?;
         Some(whole_gap(GapValue::Whole(row_of(gaps))))
     }
 
     /// What a message in the message holds: where a body is, a heading, or a value for each field.
     pub(super) fn message_value(
         &mut self,
-        scope: BindingScope<'a>,
         place: BindingPlace,
         (message, text, span): (&MessageShape, &str, Span),
         value: &ast::ExprSyntax,
@@ -110,7 +109,7 @@ impl<'a> Checker<'a> {
                 self.body_ref(&path.names, "")?;
             }
             (Some(BodyAspect::Orientation), kind) if !matches!(kind, Syntax::Tuple(_)) => {
-                let value = self.gap_value(scope, place, MessageScalar::Heading, value)?;
+                let value = self.gap_value(place, MessageScalar::Heading, value)?;
                 return Some(MessageGap { value, scalar: MessageScalar::Heading });
             }
             (Some(_) | None, _) => {}
@@ -122,7 +121,7 @@ impl<'a> Checker<'a> {
         };
         let scalars: Option<Vec<MessageScalar>> = message.fields.iter().map(scalar).collect();
         let parts = match &scalars {
-            Some(_) => self.given_parts(scope, value)?,
+            Some(_) => self.given_parts(value)?,
             None => None,
         };
         let (Some(scalars), Some(parts)) = (scalars, parts) else {
@@ -134,39 +133,35 @@ impl<'a> Checker<'a> {
             self.report(types::other_shape(&want, &format!("a row of {}", parts.count()), value.span));
             return None;
         }
-        let gaps = self.gaps_of(scope, place, parts, &scalars)?;
+        let gaps = self.gaps_of(place, parts, &scalars)?;
         let values = names.into_iter().zip(gaps).collect();
         Some(whole_gap(GapValue::Whole(template_of(message, values))))
     }
 
     /// `None`: something is wrong with it, which is said. `Some(None)`: it is one value.
     #[expect(clippy::option_option, reason = "the outer one is a fault that has been said")]
-    fn given_parts<'e>(
-        &mut self,
-        scope: BindingScope<'a>,
-        value: &'e ast::ExprSyntax,
-    ) -> Option<Option<GivenParts<'e>>> {
-        match &value.kind {
-            Syntax::List { items, rest: None } => return Some(Some(GivenParts::Written(items))),
-            Syntax::Tuple(items) => return Some(Some(GivenParts::Written(items))),
-            _ => {}
+    fn given_parts<'e>(&mut self, value: &'e ast::ExprSyntax) -> Option<Option<GivenParts<'e>>> {
+        if let Syntax::List { items, rest: None } | Syntax::Tuple(items) = &value.kind {
+            return Some(Some(GivenParts::Written(items)));
         }
-        let (mut env, reads) = self.heard_arguments(scope.actor);
-        match self.item(value, &mut env) {
-            item @ (ExprItem::Array(..) | ExprItem::Tuple(..)) => {
+        let (mut env, reads) = self.heard_arguments(self.actor);
+        let item = self.item(value, &mut env);
+        if item.is_unknown() {
+            return None;
+        }
+        match item {
+            ExprItem::One(_) | ExprItem::Record(..) => Some(None),
+            ExprItem::Array(..) | ExprItem::Tuple(..) => {
                 let mut parts = Vec::new();
                 item.flatten(&mut parts);
                 Some(Some(GivenParts::Worked(parts, reads)))
             }
-            item if item.is_unknown() => None,
-            ExprItem::One(_) | ExprItem::Record(..) => Some(None),
         }
     }
 
     /// A value for each part, of its kind.
     fn gaps_of(
         &mut self,
-        scope: BindingScope<'a>,
         place: BindingPlace,
         parts: GivenParts<'_>,
         scalars: &[MessageScalar],
@@ -174,7 +169,7 @@ impl<'a> Checker<'a> {
         let gaps: Vec<Option<MessageGap<TypedExpr>>> = match parts {
             GivenParts::Written(items) => {
                 let gap = |(item, scalar): (&ast::ExprSyntax, &MessageScalar)| {
-                    let value = self.gap_value(scope, place, *scalar, item)?;
+                    let value = self.gap_value(place, *scalar, item)?;
                     Some(MessageGap { value, scalar: *scalar })
                 };
                 items.iter().zip(scalars).map(gap).collect()

@@ -14,9 +14,7 @@ use super::{
     item::ExprItem,
     phase::CheckPhase,
     record::{DeclaredFields, RecordEntry},
-    robot::PlacedRobot,
     scope::NameScope,
-    solids::SolidMaker,
     table::{NameTable, OrderedMap},
     template::{DeclaredTemplate, TemplateArguments},
     world::WorldNames,
@@ -115,12 +113,10 @@ pub(crate) struct TemplateNames<'a> {
 
 /// Events and stimuli, which are numbered together.
 #[derive(Default)]
-pub(crate) struct EventNames<'a> {
+pub(crate) struct EventNames {
     pub table: NameTable,
     /// By [`EventId`](crate::EventId): the parameters as declared.
     pub fields: Vec<DeclaredFields>,
-    /// By [`EventId`](crate::EventId): the body of each stimulus.
-    pub stimuli: Vec<Option<&'a ast::StimulusSyntax>>,
 }
 
 /// Agents and automata.
@@ -136,8 +132,6 @@ pub(crate) struct PlayerNames<'a> {
 /// What all automata share: variables, clocks and functions.
 #[derive(Default)]
 pub(crate) struct SharedNames {
-    /// The single values of the variables.
-    pub values: NameTable,
     pub names: NameTable,
     /// What every automaton sees of them, and of the shared clocks.
     pub scope: Rc<NameScope>,
@@ -156,17 +150,10 @@ pub(crate) struct ChannelNames {
     pub vague: BTreeSet<String>,
 }
 
-/// The world's parts and names.
-pub(crate) struct WorldState<'a> {
+/// The world's names.
+pub(crate) struct WorldState {
     pub exists: bool,
-    pub parts: OrderedMap<&'a str, (&'a ast::PartSyntax, Span)>,
-    /// The parts that are being taken apart, the outermost first.
-    pub open_parts: Vec<&'a str>,
     pub names: WorldNames,
-    /// The parts that are made from descriptions.
-    pub robots: Vec<PlacedRobot>,
-    /// Makes their bodies.
-    pub solids: SolidMaker,
     /// What needs a world where the scenario has none: one cause, which is said once.
     pub missed: Vec<(Span, String)>,
 }

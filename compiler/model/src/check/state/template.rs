@@ -56,3 +56,26 @@ pub(crate) struct DeclaredTemplate<'a> {
     pub name: &'a NameSyntax,
     pub params: &'a [ast::ParamSyntax],
 }
+
+/// A kind of parameter that is no type of values.
+pub(crate) fn kind_word(text: &str) -> Option<Noun> {
+    Some(match text {
+        "event" => Noun::Event,
+        "actor" => Noun::Actor,
+        "cover" => Noun::Point,
+        "place" => Noun::Body,
+        "arm" => Noun::Arm,
+        "gripper" => Noun::Gripper,
+        "base" => Noun::Base,
+        "laser" => Noun::Laser,
+        _ => return None,
+    })
+}
+
+/// What parameters of templates can be besides values.
+pub(crate) const KIND_WORDS: [&str; 8] =
+    ["event", "actor", "cover", "place", "arm", "gripper", "base", "laser"];
+
+pub(crate) fn is_kind_word(text: &str) -> bool {
+    kind_word(text).is_some()
+}

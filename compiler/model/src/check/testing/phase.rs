@@ -9,14 +9,17 @@ use crate::check::{
     state::{
         names::{AgentNames, NetworkNames},
         phase::CheckPhase,
+        robot::PlacedRobot,
         table::NameTable,
     },
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
 };
 
 /// The last phase: nothing is declared in it that others speak of.
 pub(in crate::check) struct TestingPhase<'c, 'a> {
     pub(super) checker: &'c mut Checker<'a>,
+    /// The parts of the world that are made from descriptions.
+    pub(super) robots: Vec<PlacedRobot>,
     pub(super) agents: AgentNames,
     pub(super) networks: NetworkNames,
     pub(super) requirements: NameTable,
@@ -30,11 +33,12 @@ impl<'c, 'a> TestingPhase<'c, 'a> {
     /// Checks requirements, coverage, suites and systems, then the tests of the scenario and of the files of tests.
     pub(in crate::check) fn check(
         checker: &'c mut Checker<'a>,
-        (agents, networks): (AgentNames, NetworkNames),
+        (robots, agents, networks): (Vec<PlacedRobot>, AgentNames, NetworkNames),
         tests: &[&ast::FileSyntax],
     ) {
         let mut phase = Self {
             checker,
+            robots,
             agents,
             networks,
             requirements: NameTable::default(),

@@ -1,5 +1,6 @@
 //! Requirements and assumptions.
 
+use hrdsl_ir::value::nanos;
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind};
 
@@ -7,7 +8,7 @@ use super::phase::TestingPhase;
 use crate::check::state::phase::CheckPhase;
 use crate::check::{
     state::scope::ExprEnv,
-    vocabulary::template::{CheckerPhase, template},
+    template::{CheckerPhase, template},
 };
 use crate::{
     EventPattern, InferredType, RequirementKind, TypedAssumption, TypedExpr, TypedExprKind, TypedPattern,
@@ -22,26 +23,25 @@ impl TestingPhase<'_, '_> {
             }
         });
         for (item, span) in self.each_item() {
-            match item {
-                _ if template(item).is_some() => {}
-                ItemSyntaxKind::Require(require) => {
-                    let looked_at = self.source.looks_at(CheckPhase::Requirements, span);
-                    let resolved = if looked_at { self.resolved(require) } else { None };
-                    self.requirement(&require.name, resolved, require.pattern.span, span);
-                }
-                ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Require => {
-                    let Some((template, given)) = self.instance(instance, &ExprEnv::measured("")) else {
-                        continue;
-                    };
-                    let ItemSyntaxKind::Require(require) = template.kind else { continue };
-                    let place = Some((&instance.name, instance.span));
-                    let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
-                    self.requirement(&instance.name, resolved, instance.span, span);
-                }
-                ItemSyntaxKind::Assume(assume) if self.source.looks_at(CheckPhase::Requirements, span) => {
-                    self.assume(assume, span);
-                }
-                _ => {}
+            if template(item).is_some() {
+                continue;
+            }
+            let looked_at = self.source.looks_at(CheckPhase::Requirements, span);
+            if let ItemSyntaxKind::Require(require) = item {
+                let resolved = if looked_at { self.resolved(require) } else { None };
+                self.requirement(&require.name, resolved, require.pattern.span, span);
+            } else if let ItemSyntaxKind::Instance(instance) = item
+                && instance.sort == TemplateSyntaxKind::Require
+                && let Some((template, given)) = self.instance(instance, &ExprEnv::measured(""))
+                && let ItemSyntaxKind::Require(require) = template.kind
+            {
+                let place = Some((&instance.name, instance.span));
+                let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
+                self.requirement(&instance.name, resolved, instance.span, span);
+            } else if let ItemSyntaxKind::Assume(assume) = item
+                && looked_at
+            {
+                self.assume(assume, span);
             }
         }
     }
@@ -105,8 +105,8 @@ impl TestingPhase<'_, '_> {
     fn assume(&mut self, assume: &ast::AssumeSyntax, span: Span) {
         let at_most = self.count(&assume.at_most, "the number", 0);
         let events = self.patterns(&assume.events);
-        let within = assume.within.as_ref().and_then(|e| self.time(e, "the time", true));
+        let within = assume.within.as_ref().and_then(|e| self.time(e, "the time", true)).map(nanos);
         let at_most = at_most.and_then(|n| u32::try_from(n).ok()).unwrap_or(0);
-        self.s.assumptions.push(TypedAssumption { events, at_most, within, span });
+        self.s.assumptions.push(TypedAssumption { text: span, events, at_most, within, origin: span });
     }
 }

@@ -9,8 +9,8 @@ use hrdsl_syntax::ast::{
 
 use super::phase::TestingPhase;
 use crate::check::state::phase::CheckPhase;
+use crate::check::template::CheckerPhase;
 use crate::check::unread;
-use crate::check::vocabulary::template::CheckerPhase;
 use crate::check::{
     agents::{agent::AgentScope, phase::AgentsPhase},
     checker::NOBODY,

@@ -3,7 +3,7 @@
 use hrdsl_syntax::ast::{self, NameSyntax};
 
 use super::{phase::TestingPhase, suite::SuiteMembers};
-use crate::check::vocabulary::template::CheckerPhase;
+use crate::check::template::CheckerPhase;
 use crate::{
     NetworkId, QueryId, RequirementId, SearchGoal, TypedQueryKind, noun::Noun, report::coverage::bad_suite,
 };

@@ -5,7 +5,7 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind, SystemMemberKind as Member};
 
 use super::phase::TestingPhase;
-use crate::check::vocabulary::template::CheckerPhase;
+use crate::check::{binding::phase::BindingPhase, checker::NOBODY, template::CheckerPhase};
 use crate::{
     ActorId, Role, SystemProgram, SystemUnderTest, TypedExpr,
     noun::Noun,
@@ -33,7 +33,7 @@ impl TestingPhase<'_, '_> {
 
     fn system(&mut self, system: &ast::SystemSyntax, span: Span) -> SystemUnderTest<TypedExpr> {
         let actor = self.actor(&system.actor);
-        if let Some(actor) = actor.filter(|a| self.role_of(*a) == Role::Environment) {
+        if let Some(actor) = actor.filter(|a| *a != NOBODY && self.role_of(*a) == Role::Environment) {
             let issue = roles::system_plays_environment(self.actor_name(actor), system.actor.span);
             self.report(issue);
         }
@@ -80,7 +80,8 @@ impl TestingPhase<'_, '_> {
                     self.report(systems::second_binding(&middleware.version.text, member.span, kind, first));
                     return;
                 }
-                resolved.binding = self.middleware(middleware, resolved.actor, member.span);
+                resolved.binding =
+                    BindingPhase::check(self.checker, &self.robots, middleware, resolved.actor, member.span);
             }
             Member::Run(_) | Member::Coverage(_) | Member::Program(_) | Member::Error => {}
         }
@@ -136,16 +137,15 @@ impl TestingPhase<'_, '_> {
             origin: name.span,
         };
         for member in members {
-            match &member.kind {
-                Member::Run(text) => {
-                    program.run = words(&text.text);
-                    if text.text.trim().is_empty() {
-                        let message = "the command is empty";
-                        self.report(names::missing(text.span, message, "write `run \"python3 robot.py\"`"));
-                    }
+            if let Member::Run(text) = &member.kind {
+                program.run = words(&text.text);
+                if text.text.trim().is_empty() {
+                    let message = "the command is empty";
+                    self.report(names::missing(text.span, message, "write `run \"python3 robot.py\"`"));
                 }
-                Member::Coverage(files) => program.coverage.extend(files.iter().map(|f| f.text.clone())),
-                _ => {}
+            }
+            if let Member::Coverage(files) = &member.kind {
+                program.coverage.extend(files.iter().map(|f| f.text.clone()));
             }
         }
         program

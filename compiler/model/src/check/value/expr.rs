@@ -24,12 +24,6 @@ pub(in crate::check) const FUNCTIONS: [(&str, NumberFunction); 4] = [
     ("norm", NumberFunction::Norm),
 ];
 
-/// The longest time, in seconds: some thirty years. Twice as much still is a number of nanoseconds.
-pub(in crate::check) const MAX_TIME: f64 = 1e9;
-
-/// More bytes than any machine has.
-const MAX_DATA: f64 = 1e15;
-
 impl<'a> Checker<'a> {
     /// Resolves and types an expression of one value, and folds it if it is constant.
     pub(in crate::check) fn expr(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> TypedExpr {
@@ -38,14 +32,12 @@ impl<'a> Checker<'a> {
     }
 
     fn one(&mut self, item: ExprItem) -> TypedExpr {
-        match item {
-            ExprItem::One(e) => e,
-            other => {
-                let got = self.shown(&other);
-                self.report(types::several_values(&got, other.span()));
-                TypedExpr::error(other.span())
-            }
+        if let ExprItem::One(e) = item {
+            return e;
         }
+        let got = self.shown(&item);
+        self.report(types::several_values(&got, item.span()));
+        TypedExpr::error(item.span())
     }
 
     /// Resolves and types an expression of one or more values.
@@ -118,10 +110,8 @@ impl<'a> Checker<'a> {
         want: InferredType,
         env: &mut ExprEnv,
     ) -> TypedExpr {
-        let e = match self.item_due(e, want, env) {
-            ExprItem::One(e) => e,
-            other => self.one(other),
-        };
+        let item = self.item_due(e, want, env);
+        let e = self.one(item);
         self.fit(e, want, env)
     }
 
@@ -139,32 +129,36 @@ impl<'a> Checker<'a> {
         if let Some(symbol) = self.symbol_of(e, of) {
             return ExprItem::One(symbol);
         }
-        match &e.kind {
-            Syntax::If { condition, then, otherwise } if self.needs_due(e) => {
-                let condition = self.expr_of(condition, InferredType::Bool, env);
-                let then = self.expr_of(then, want, env);
-                let otherwise = self.expr_of(otherwise, want, env);
-                ExprItem::One(self.conditional(condition, then, otherwise, e.span, env))
-            }
-            Syntax::Path(path) if path.names.len() == 1 && self.means_nothing(&path.names[0], env) => {
-                let name = &path.names[0];
-                let values = of.values().iter().map(|v| v.name());
-                let others = self.names_with_value(env);
-                // Another name is offered only if it is near.
-                let near = hrdsl_source::nearest(
-                    &name.text,
-                    values.clone().chain(others.iter().map(String::as_str)),
-                );
-                let issue = match near {
-                    Some(near) => names::unknown(Noun::EnumValue, &name.text, name.span, [near]),
-                    None => names::unknown(Noun::EnumValue, &name.text, name.span, values),
-                };
-                if !self.source.unread_items {
-                    self.report(issue);
-                }
-                ExprItem::error(e.span)
-            }
-            _ => self.item(e, env),
+        if let Syntax::If { condition, then, otherwise } = &e.kind
+            && self.needs_due(e)
+        {
+            let condition = self.expr_of(condition, InferredType::Bool, env);
+            let then = self.expr_of(then, want, env);
+            let otherwise = self.expr_of(otherwise, want, env);
+            return ExprItem::One(self.conditional(condition, then, otherwise, e.span, env));
+        }
+        if let Syntax::Path(path) = &e.kind
+            && let [name] = path.names.as_slice()
+            && self.means_nothing(name, env)
+        {
+            self.unknown_value(name, of, env);
+            return ExprItem::error(e.span);
+        }
+        self.item(e, env)
+    }
+
+    /// A name that is none of the enumeration's values, and nothing else either.
+    fn unknown_value(&mut self, name: &NameSyntax, of: Enumeration, env: &ExprEnv) {
+        let values = of.values().iter().map(|v| v.name());
+        let others = self.names_with_value(env);
+        // Another name is offered only if it is near.
+        let all = values.clone().chain(others.iter().map(String::as_str));
+        let issue = match hrdsl_source::nearest(&name.text, all) {
+            Some(near) => names::unknown(Noun::EnumValue, &name.text, name.span, [near]),
+            None => names::unknown(Noun::EnumValue, &name.text, name.span, values),
+        };
+        if !self.source.unread_items {
+            self.report(issue);
         }
     }
 
@@ -208,65 +202,6 @@ impl<'a> Checker<'a> {
             }
             (_, _) => {}
         }
-    }
-
-    /// A constant of this kind; `None` with a diagnostic otherwise.
-    pub(in crate::check) fn constant(
-        &mut self,
-        e: &ast::ExprSyntax,
-        want: InferredType,
-        env: &mut ExprEnv,
-    ) -> Option<Value> {
-        let e = self.expr_of(e, want, env);
-        if e.constant().is_none() && e.ty != InferredType::Unknown {
-            self.report(types::not_constant(e.span));
-        }
-        e.constant().filter(|_| e.ty != InferredType::Unknown)
-    }
-
-    /// A constant quantity, in SI units.
-    pub(in crate::check) fn quantity_of(&mut self, e: &ast::ExprSyntax, dim: Dimension) -> Option<f64> {
-        self.constant(e, InferredType::Float(dim), &mut ExprEnv::constants()).and_then(Value::as_f64)
-    }
-
-    /// A constant time in seconds, not negative; or more than zero.
-    pub(in crate::check) fn time(&mut self, e: &ast::ExprSyntax, what: &str, positive: bool) -> Option<f64> {
-        let t = self.quantity_of(e, Dimension::TIME)?;
-        if t < 0.0 || positive && t == 0.0 {
-            let rule = if positive { "more than 0 s" } else { "at least 0 s" };
-            self.report(types::must_be(what, rule, e.span));
-            return None;
-        }
-        if t > MAX_TIME {
-            self.report(types::must_be(what, &format!("at most {MAX_TIME} s"), e.span));
-            return None;
-        }
-        Some(t)
-    }
-
-    /// A constant amount of data, in bytes: at least one.
-    pub(in crate::check) fn amount_of_data(&mut self, e: &ast::ExprSyntax, what: &str) -> Option<u64> {
-        let bytes = self.quantity_of(e, Dimension::DATA)?;
-        if (1.0..=MAX_DATA).contains(&bytes) {
-            return Some(bytes as u64);
-        }
-        let rule = if bytes < 1.0 { "at least 1 B".to_owned() } else { format!("at most {MAX_DATA} B") };
-        self.report(types::must_be(what, &rule, e.span));
-        None
-    }
-
-    /// A constant whole number of at least `lo`.
-    pub(in crate::check) fn count(&mut self, e: &ast::ExprSyntax, what: &str, lo: i64) -> Option<i64> {
-        let Value::Int(n) = self.constant(e, InferredType::Int, &mut ExprEnv::constants())? else {
-            return None;
-        };
-        let most = i64::from(u32::MAX);
-        if n < lo || n > most {
-            let rule = if n < lo { format!("at least {lo}") } else { format!("at most {most}") };
-            self.report(types::must_be(what, &rule, e.span));
-            return None;
-        }
-        Some(n)
     }
 
     /// Makes an expression fit the kind that its place needs, or says that it does not.

@@ -2,7 +2,7 @@
 
 use hrdsl_source::Span;
 
-use crate::check::value::expr::MAX_TIME;
+use crate::check::value::quantity::MAX_TIME;
 use crate::report::automata::BadTime;
 use crate::{BinaryOp, InferredType, TypedExpr, TypedExprKind, TypedTime, TypedTimeTerm, UnaryOp, Value};
 
@@ -108,7 +108,10 @@ pub(in crate::check) fn linear(e: &TypedExpr) -> Result<LinearTime, Option<Span>
         },
         TypedExprKind::If(condition, a, b) => Ok(linear(a)?.either(linear(b)?, condition)),
         TypedExprKind::Error => Err(None),
-        _ => Err(Some(e.span)),
+        TypedExprKind::Const(_) | TypedExprKind::Leaf(_) | TypedExprKind::Term(_) => Err(Some(e.span)),
+        TypedExprKind::Unary(UnaryOp::Not, _) | TypedExprKind::Binary(..) => Err(Some(e.span)),
+        TypedExprKind::Call(..) | TypedExprKind::List(..) => Err(Some(e.span)),
+        TypedExprKind::Element(_) | TypedExprKind::Apply(..) => Err(Some(e.span)),
     }
 }
 

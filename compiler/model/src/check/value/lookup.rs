@@ -1,7 +1,7 @@
 //! What names in expressions stand for: locals, parameters of templates, constants, values of enumerations, signals.
 
 use hrdsl_source::{Enumeration, Span, Symbol};
-use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax, NameSyntax};
+use hrdsl_syntax::ast::{self, NameSyntax};
 
 use crate::check::{
     checker::Checker,
@@ -11,7 +11,7 @@ use crate::check::{
         scope::{ExprEnv, LocalName, is_variable_name},
         template::TemplateArgument,
     },
-    value::{expr::symbol_value, measure::text},
+    value::{expr::symbol_value, measure::text, operands::names_in},
 };
 use crate::{
     TypedExpr, TypedExprKind,
@@ -316,10 +316,8 @@ impl<'a> Checker<'a> {
 
     /// The constants that the value of a constant names and that are not worked out, the first last.
     fn unseen_in(&self, name: &NameSyntax) -> Vec<&'a NameSyntax> {
-        let mut names = Vec::new();
-        if let Some(entry) = self.consts.get(name.text.as_str()) {
-            names_in(entry.value, &mut names);
-        }
+        let entry = self.consts.get(name.text.as_str());
+        let mut names = entry.map_or_else(Vec::new, |entry| names_in(entry.value));
         let unseen = |n: &&NameSyntax| {
             self.consts.get(n.text.as_str()).is_some_and(|c| matches!(c.state, ConstState::Unseen))
         };
@@ -334,43 +332,5 @@ impl<'a> Checker<'a> {
         for name in names {
             self.const_value(&name);
         }
-    }
-}
-
-/// The first names of all paths in an expression.
-pub(in crate::check) fn names_in<'e>(e: &'e ast::ExprSyntax, names: &mut Vec<&'e NameSyntax>) {
-    match &e.kind {
-        Syntax::Bool(_)
-        | Syntax::Int(_)
-        | Syntax::Float(_)
-        | Syntax::Quantity { .. }
-        | Syntax::Any
-        | Syntax::Text(_)
-        | Syntax::Internal(_)
-        | Syntax::Error => {}
-        Syntax::List { items, rest } => items.iter().chain(rest.as_deref()).for_each(|e| names_in(e, names)),
-        Syntax::Strong(of) | Syntax::Annotated { of, .. } => names_in(of, names),
-        Syntax::Unify { left, right } => {
-            names_in(left, names);
-            names_in(right, names);
-        }
-        Syntax::Path(path) => names.extend(path.names.first()),
-        Syntax::Call { args, .. } => args.iter().for_each(|a| names_in(a, names)),
-        Syntax::Unary { operand, .. } => names_in(operand, names),
-        Syntax::Binary { left, right, .. } => {
-            names_in(left, names);
-            names_in(right, names);
-        }
-        Syntax::If { condition, then, otherwise } => {
-            names_in(condition, names);
-            names_in(then, names);
-            names_in(otherwise, names);
-        }
-        Syntax::Tuple(parts) => parts.iter().for_each(|p| names_in(p, names)),
-        Syntax::Index { of, index } => {
-            names_in(of, names);
-            names_in(index, names);
-        }
-        Syntax::Field { of, .. } => names_in(of, names),
     }
 }

@@ -1,7 +1,9 @@
 //! Declarations that everything else speaks of: actors, constants, events, shared variables, and the names of players.
 
-pub(in crate::check) mod layout;
-pub(in crate::check) mod template;
+mod channel;
+mod clock;
+pub(in crate::check) mod phase;
+mod types;
 
 use std::rc::Rc;
 
@@ -9,45 +11,49 @@ use hrdsl_source::{Enumeration, Span};
 use hrdsl_syntax::ast::{self, InstanceSyntax, ItemSyntaxKind, NameSyntax, TemplateSyntaxKind};
 
 use crate::check::{
-    checker::{Checker, NOBODY},
+    checker::NOBODY,
     state::{
         names::{ConstEntry, ConstState, DeclaredPlayer},
         record::DeclaredFields,
         scope::ExprEnv,
+        template::TemplateArguments,
     },
-    vocabulary::template::{CheckerPhase, template},
+    template::{CheckerPhase, template},
+    vocabulary::phase::VocabularyPhase,
 };
 use crate::{
-    Actor, ActorId, AgentId, AutomatonId, AutomatonVar, LocationId, PlayerRef, Role, Type, TypedAgent,
-    TypedAutomaton, TypedEvent, TypedExpr, TypedStimulus, Value, VariableRef,
+    Actor, ActorId, AgentId, AutomatonId, PlayerRef, Role, TypedEvent, TypedStimulus, VariableRef,
     noun::Noun,
-    report::{names, roles, types},
-    types::{TypeLayout, starting_var},
+    report::{names, roles},
+    types::TypeLayout,
 };
 
-impl<'a> Checker<'a> {
+impl<'a> VocabularyPhase<'_, 'a> {
     /// The names of all agents, `self` and `percept`: the values of the type `agent`.
     fn name_agents(&mut self) {
-        let named = self.each_item().filter_map(|(item, _)| match item {
-            ItemSyntaxKind::Agent(agent) if agent.params.is_none() => Some(agent.name.text.as_str()),
-            ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Agent => {
-                Some(instance.name.text.as_str())
+        let named = |(item, _): (&'a ItemSyntaxKind, Span)| {
+            if let ItemSyntaxKind::Agent(agent) = item {
+                return agent.params.is_none().then_some(agent.name.text.as_str());
             }
-            _ => None,
-        });
-        let names: Vec<&str> = named.chain(["self", "percept"]).collect();
+            let ItemSyntaxKind::Instance(instance) = item else { return None };
+            (instance.sort == TemplateSyntaxKind::Agent).then_some(instance.name.text.as_str())
+        };
+        let names: Vec<&str> = self.each_item().filter_map(named).chain(["self", "percept"]).collect();
         self.players.agent_names = Enumeration::intern("agent", &names);
     }
 
-    pub(in crate::check) fn vocabulary(&mut self) {
+    /// Declares all but channels.
+    pub(super) fn names(&mut self) {
         self.name_agents();
         for (item, _) in self.each_item() {
-            match item {
-                ItemSyntaxKind::Actor { name, role } => self.declare_actor(name, role),
-                ItemSyntaxKind::Const { name, value } => self.declare_const(name, value),
-                ItemSyntaxKind::Part(part) => self.declare_part(part),
-                ItemSyntaxKind::Record { name, fields } => self.declare_record(name, fields),
-                _ => {}
+            if let ItemSyntaxKind::Actor { name, role } = item {
+                self.declare_actor(name, role);
+            } else if let ItemSyntaxKind::Const { name, value } = item {
+                self.declare_const(name, value);
+            } else if let ItemSyntaxKind::Part(part) = item {
+                self.declare_part(part);
+            } else if let ItemSyntaxKind::Record { name, fields } = item {
+                self.declare_record(name, fields);
             }
         }
         for (item, span) in self.each_item() {
@@ -59,27 +65,41 @@ impl<'a> Checker<'a> {
         self.all_records();
         self.all_consts();
         for (item, span) in self.each_item() {
-            match item {
-                ItemSyntaxKind::Event(event) => self.declare_events(event, span),
-                ItemSyntaxKind::Stimulus(stimulus) => self.declare_stimulus(stimulus, span),
-                _ => {}
+            if let ItemSyntaxKind::Event(event) = item {
+                self.declare_events(event, span);
+            } else if let ItemSyntaxKind::Stimulus(stimulus) = item {
+                self.declare_stimulus(stimulus, span);
             }
         }
         for (item, span) in self.each_item() {
-            match item {
-                _ if template(item).is_some() => {}
-                ItemSyntaxKind::Agent(syntax) => {
-                    let plain = DeclaredPlayer { syntax, given: None, instance: None };
-                    self.declare_agent(plain, &syntax.name, span);
-                }
-                ItemSyntaxKind::Automaton(syntax) => {
-                    let plain = DeclaredPlayer { syntax, given: None, instance: None };
-                    self.declare_automaton(plain, &syntax.name, span);
-                }
-                ItemSyntaxKind::Instance(instance) => self.declare_instance(instance, span),
-                ItemSyntaxKind::Var(var) => self.declare_shared(var, span),
-                _ => {}
+            if template(item).is_some() {
+                continue;
             }
+            if let ItemSyntaxKind::Instance(instance) = item {
+                self.declare_instance(instance, span);
+            } else if let ItemSyntaxKind::Var(var) = item {
+                self.declare_shared(var, span);
+            } else {
+                self.declare_player(item, None, span);
+            }
+        }
+    }
+
+    /// An agent or automaton, if it is one; with the instance that it is of a template, and what that gives.
+    fn declare_player(
+        &mut self,
+        item: &'a ItemSyntaxKind,
+        of: Option<(&'a InstanceSyntax, Rc<TemplateArguments>)>,
+        span: Span,
+    ) {
+        let (instance, given) = of.unzip();
+        let named = |plain: &'a NameSyntax| instance.map_or(plain, |instance| &instance.name);
+        if let ItemSyntaxKind::Agent(syntax) = item {
+            let declared = DeclaredPlayer { syntax, given, instance };
+            self.declare_agent(declared, named(&syntax.name), span);
+        } else if let ItemSyntaxKind::Automaton(syntax) = item {
+            let declared = DeclaredPlayer { syntax, given, instance };
+            self.declare_automaton(declared, named(&syntax.name), span);
         }
     }
 
@@ -89,17 +109,20 @@ impl<'a> Checker<'a> {
             return;
         }
         let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else { return };
-        let (given, instance_of) = (Some(given), Some(instance));
-        match template.kind {
-            ItemSyntaxKind::Agent(syntax) => {
-                let declared = DeclaredPlayer { syntax, given, instance: instance_of };
-                self.declare_agent(declared, &instance.name, span);
+        self.declare_player(template.kind, Some((instance, given)), span);
+    }
+
+    fn declare_templates(&mut self) {
+        for (item, _) in self.each_item() {
+            let Some((sort, template)) = template(item) else { continue };
+            let name = template.name;
+            let key = (sort, name.text.as_str());
+            if let Some(first) = self.templates.declared.get(&key) {
+                let issue = names::duplicate(Noun::Template, &name.text, name.span, Some(first.name.span));
+                self.report(issue);
+                continue;
             }
-            ItemSyntaxKind::Automaton(syntax) => {
-                let declared = DeclaredPlayer { syntax, given, instance: instance_of };
-                self.declare_automaton(declared, &instance.name, span);
-            }
-            _ => {}
+            self.templates.declared.insert(key, template);
         }
     }
 
@@ -108,7 +131,7 @@ impl<'a> Checker<'a> {
             Some(1) => Role::System,
             Some(_) | None => Role::Environment,
         };
-        if self.issues.declare(&mut self.actors, Noun::Actor, name).is_some() {
+        if self.checker.issues.declare(&mut self.checker.actors, Noun::Actor, name).is_some() {
             self.s.actors.push(Actor { name: name.text.clone(), role, origin: name.span });
         }
     }
@@ -123,11 +146,11 @@ impl<'a> Checker<'a> {
 
     fn declare_part(&mut self, part: &'a ast::PartSyntax) {
         let name = &part.name;
-        if let Some((_, first)) = self.world.parts.get(name.text.as_str()) {
+        if let Some((_, first)) = self.parts.get(name.text.as_str()) {
             let issue = names::duplicate(Noun::Part, &name.text, name.span, Some(*first));
             return self.report(issue);
         }
-        self.world.parts.insert(&name.text, (part, name.span));
+        self.parts.insert(&name.text, (part, name.span));
     }
 
     fn declare_events(&mut self, event: &'a ast::EventSyntax, span: Span) {
@@ -171,7 +194,7 @@ impl<'a> Checker<'a> {
         span: Span,
     ) {
         let noun = if stimulus.is_some() { Noun::Stimulus } else { Noun::Event };
-        if self.issues.declare(&mut self.events.table, noun, name).is_some() {
+        if self.checker.issues.declare(&mut self.checker.events.table, noun, name).is_some() {
             // Without its actor, which has a diagnostic, the event still is a name.
             let from = from.unwrap_or(NOBODY);
             let body = stimulus.map(|_| TypedStimulus { samples: Vec::new(), steps: Vec::new() });
@@ -185,40 +208,18 @@ impl<'a> Checker<'a> {
                 stimulus: body,
                 origin: span,
             });
-            self.events.stimuli.push(stimulus);
+            self.stimuli.push(stimulus);
         }
     }
 
     fn declare_agent(&mut self, agent: DeclaredPlayer<'a, ast::AgentSyntax>, name: &NameSyntax, span: Span) {
         self.not_a_template(TemplateSyntaxKind::Agent, name);
-        if self.issues.declare(&mut self.players.table, Noun::Agent, name).is_some() {
+        if self.checker.issues.declare(&mut self.checker.players.table, Noun::Agent, name).is_some() {
             let id = AgentId(u16::try_from(self.s.agents.len()).unwrap_or(u16::MAX));
             self.players.ids.push(PlayerRef::Agent(id));
             self.push_agent(&agent, name, span);
             self.players.agents.push(agent);
         }
-    }
-
-    /// An agent that has nothing yet.
-    pub(in crate::check) fn push_agent(
-        &mut self,
-        agent: &DeclaredPlayer<'a, ast::AgentSyntax>,
-        name: &NameSyntax,
-        span: Span,
-    ) {
-        let plays = &agent.syntax.plays;
-        let actor = self.as_instance(agent.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
-        self.s.agents.push(TypedAgent {
-            name: name.text.clone(),
-            actor,
-            beliefs: Vec::new(),
-            goals: Vec::new(),
-            rules: Vec::new(),
-            initial_beliefs: Vec::new(),
-            initial_goals: Vec::new(),
-            plans: Vec::new(),
-            origin: span,
-        });
     }
 
     fn declare_automaton(
@@ -228,7 +229,7 @@ impl<'a> Checker<'a> {
         span: Span,
     ) {
         self.not_a_template(TemplateSyntaxKind::Automaton, name);
-        if self.issues.declare(&mut self.players.table, Noun::Automaton, name).is_some() {
+        if self.checker.issues.declare(&mut self.checker.players.table, Noun::Automaton, name).is_some() {
             let id = AutomatonId(u16::try_from(self.s.automata.len()).unwrap_or(u16::MAX));
             self.players.ids.push(PlayerRef::Automaton(id));
             self.push_automaton(&automaton, name, span);
@@ -236,32 +237,9 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// An automaton that has nothing yet.
-    pub(in crate::check) fn push_automaton(
-        &mut self,
-        automaton: &DeclaredPlayer<'a, ast::AutomatonSyntax>,
-        name: &NameSyntax,
-        span: Span,
-    ) {
-        let plays = automaton.syntax.plays.as_ref();
-        let actor = plays.map(|plays| {
-            self.as_instance(automaton.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY)
-        });
-        self.s.automata.push(TypedAutomaton {
-            name: name.text.clone(),
-            actor,
-            clocks: Vec::new(),
-            vars: Vec::new(),
-            locations: Vec::new(),
-            initial: LocationId(0),
-            edges: Vec::new(),
-            origin: span,
-        });
-    }
-
     fn declare_shared(&mut self, var: &ast::VarSyntax, span: Span) {
         self.check_free(&ExprEnv::constants(), Noun::Variable, &var.name);
-        let (issues, names) = (&mut self.issues, &mut self.shared.names);
+        let (issues, names) = (&mut self.checker.issues, &mut self.checker.shared.names);
         if issues.declare(names, Noun::Variable, &var.name).is_none() {
             return;
         }
@@ -272,7 +250,7 @@ impl<'a> Checker<'a> {
         let place = var.name.span;
         for var in vars {
             // The parts of one variable have names that no other can have.
-            let (issues, table) = (&mut self.issues, &mut self.shared.values);
+            let (issues, table) = (&mut self.checker.issues, &mut self.shared_values);
             let Some(i) = issues.declare_as(table, Noun::Variable, &var.name, place) else {
                 return;
             };
@@ -282,40 +260,5 @@ impl<'a> Checker<'a> {
         if !matches!(layout, TypeLayout::Scalar(_)) {
             Rc::make_mut(&mut self.shared.scope).layouts.insert(var.name.text.clone(), layout);
         }
-    }
-
-    /// A variable of an automaton or shared: of finite types, each part with a value at the start.
-    pub(in crate::check) fn var(&mut self, var: &ast::VarSyntax) -> (TypeLayout, Vec<AutomatonVar>) {
-        let span = var.name.span;
-        let layout = self.layout(&var.ty).filter(|l| {
-            self.plain(l, &var.name.text, span) && self.finite_layout(l, "a variable of automata", span)
-        });
-        let layout = layout.unwrap_or(TypeLayout::Unknown);
-        let mut values = Vec::new();
-        if let Some(e) = &var.init {
-            self.item_for(e, &layout, &mut ExprEnv::constants()).flatten(&mut values);
-        }
-        for e in &values {
-            if e.constant().is_none() && e.ty != crate::InferredType::Unknown {
-                self.report(types::not_constant(e.span));
-            }
-        }
-        let mut leaves = Vec::new();
-        self.leaves(&var.name.text, &layout, &mut leaves);
-        let mut values = values.into_iter();
-        let vars = leaves.into_iter().map(|(name, ty)| {
-            let init = values.next().and_then(|e: TypedExpr| e.constant());
-            starting_var(&name, ty, init.unwrap_or(nearest_to_zero(ty)))
-        });
-        (layout, vars.collect())
-    }
-}
-
-/// What a variable holds that is given no value.
-pub(in crate::check) fn nearest_to_zero(ty: Type) -> Value {
-    match ty {
-        Type::Bool | Type::Float(_) | Type::Text | Type::List(_) => Value::Bool(false),
-        Type::Int { lo, hi } => Value::Int(0.clamp(lo, hi)),
-        Type::Enum(of) => of.values().first().map_or(Value::Bool(false), |v| Value::Symbol(*v)),
     }
 }

@@ -10,10 +10,10 @@ use hrdsl_syntax::ast::{
 };
 
 use crate::check::{
-    checker::Checker,
     state::scope::ExprEnv,
     world::{parts::PlacedMember, sensing::SensedKind},
 };
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{BodyId, Dimension, JointId, noun::Noun, report::world::bad_world, world::TypedJoint};
 
 use super::{LENGTH, NUMBER};
@@ -21,7 +21,7 @@ use super::{LENGTH, NUMBER};
 /// With how much a finger presses if nothing is said, N.
 const FORCE: f64 = 40.0;
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     pub(super) fn joint(&mut self, p: &PlacedMember<'a>) {
         let Member::Joint(joint) = &p.member.kind else { return };
         let JointSyntax { name, parent, child, at, axis, .. } = &**joint;
@@ -39,7 +39,7 @@ impl<'a> Checker<'a> {
         let (lo, hi) = self.limits(&joint.limits, motion);
         let drive = self.joint_drive(joint, motion);
         let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.joints);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.joints);
         if issues.declare_as(table, Noun::Joint, &full, name.span).is_some() {
             self.world_mut().joints.push(TypedJoint {
                 name: full,
@@ -122,7 +122,7 @@ impl<'a> Checker<'a> {
         let force =
             gripper.force.as_ref().and_then(|e| self.more_than_zero(e, Dimension::FORCE, "the force"));
         let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.grippers);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.grippers);
         if issues.declare_as(table, Noun::Gripper, &full, name.span).is_some() {
             let force = force.unwrap_or(FORCE);
             // All bodies are there: they were the passes before.
@@ -211,7 +211,7 @@ impl<'a> Checker<'a> {
             arm.contact.as_ref().and_then(|e| self.more_than_zero(e, Dimension::FORCE, "the contact force"));
         let avoids_people = arm.avoids.as_ref().is_some_and(|what| self.avoids_people(what));
         let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.arms);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.arms);
         if let Some(id) = issues.declare_as(table, Noun::Arm, &full, name.span) {
             self.sensing(&arm.sensing, SensedKind::Arm, (&full, SensorSource::Arm(ArmId(id))));
             let (tip, postures) = (tip_id.unwrap_or(BodyId(0)), Vec::new());

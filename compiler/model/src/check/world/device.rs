@@ -1,29 +1,25 @@
 //! Devices: the commands of each kind, checked against the primitives of the world, and the rules that wait for them.
 
-use hrdsl_ir::world::DeviceId;
 use hrdsl_ir::{
     ListOf,
     device::{
-        CommandParam, CommandType, DeviceBody, DeviceCommand, DeviceKind, DeviceMeasure, DevicePrimitive,
-        DeviceSort, Expectation, NumberCount, PrimitiveParam,
+        CommandParam, CommandType, DeviceCommand, DeviceKind, DeviceMeasure, DevicePrimitive, DeviceSort,
+        Expectation, NumberCount, PrimitiveParam,
     },
 };
 use hrdsl_syntax::ast::{self, DeviceMemberKind as Member, ItemSyntaxKind, NameSyntax};
 
-use crate::check::{
-    checker::Checker,
-    state::{table::OrderedMap, template::TemplateArgument},
-};
+use crate::check::{state::table::OrderedMap, value::devices::noun_of};
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::resolution::type_span;
 use crate::{
-    ArmId, BaseId, GripperId, InferredType, LaserId, Type,
+    InferredType, Type,
     noun::Noun,
     report::{devices, names},
     types::TypeLayout,
-    world::TypedRuleTrigger,
 };
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     /// All kinds of devices with the commands that are declared for them, the library's first.
     pub(in crate::check) fn devices(&mut self) {
         let kind = |sort: DeviceSort| DeviceKind {
@@ -63,10 +59,6 @@ impl<'a> Checker<'a> {
     fn kind_mut(&mut self, sort: DeviceSort) -> &mut DeviceKind {
         let at = DeviceSort::ALL.iter().position(|s| *s == sort).unwrap_or(0);
         &mut self.s.device_kinds[at]
-    }
-
-    fn device_kind(&self, sort: DeviceSort) -> Option<&DeviceKind> {
-        self.s.device_kinds.iter().find(|kind| kind.sort == sort)
     }
 
     fn device_sort(&mut self, kind: &NameSyntax) -> Option<DeviceSort> {
@@ -155,92 +147,6 @@ impl<'a> Checker<'a> {
             return None;
         };
         Some(Expectation { measure: *measure, is: !expect.negated, otherwise: expect.otherwise.text.clone() })
-    }
-
-    // ── Rules ──
-
-    /// `on close robot.grip`
-    pub(in crate::check) fn commanded(
-        &mut self,
-        command: &NameSyntax,
-        device: &ast::PathSyntax,
-        prefix: &str,
-    ) -> Option<TypedRuleTrigger> {
-        let knows = |kind: &&DeviceKind| kind.command(&command.text).is_some();
-        let knowing: Vec<DeviceSort> = self.s.device_kinds.iter().filter(knows).map(|k| k.sort).collect();
-        let Some(body) = self.device_of(device, &knowing, prefix) else {
-            if knowing.is_empty() && !self.source.unread_items {
-                let all: Vec<DeviceKind> = self.s.device_kinds.clone();
-                let all = all.iter().flat_map(|kind| &kind.commands).map(|c| c.name.as_str());
-                self.report(names::unknown(Noun::Command, &command.text, command.span, all));
-            }
-            return None;
-        };
-        let place = self.s.places.commands.get(&(body.sort().name(), command.text.clone())).copied();
-        let kind = self.device_kind(body.sort())?;
-        if let Some(id) = kind.command(&command.text) {
-            self.refer(command, place);
-            return Some(TypedRuleTrigger::Commanded { device: body, command: id });
-        }
-        let all = kind.commands.iter().map(|c| c.name.as_str());
-        let issue = devices::cannot(command, &kind.with_article(), all);
-        if !self.source.unread_items {
-            self.report(issue);
-        }
-        None
-    }
-
-    /// The device that a path names; if there is none, one of these sorts was meant.
-    pub(in crate::check) fn device_of(
-        &mut self,
-        path: &ast::PathSyntax,
-        meant: &[DeviceSort],
-        prefix: &str,
-    ) -> Option<DeviceBody> {
-        // A parameter stands for what it is declared to be.
-        if let [only] = path.names.as_slice()
-            && let Some(TemplateArgument::Thing(is, _)) = self.given(&only.text)
-        {
-            let is = *is;
-            let sort = DeviceSort::ALL.into_iter().find(|sort| noun_of(*sort) == is);
-            let id = self.world_name(if sort.is_some() { is } else { Noun::Device }, &path.names, prefix)?;
-            return sort.map(|sort| body(sort, id));
-        }
-        let full = self.full_name(&path.names, prefix)?;
-        for sort in DeviceSort::ALL {
-            if let Some(id) = self.world.names.get(noun_of(sort), &full) {
-                self.refer_in_world(noun_of(sort), &path.names, &full);
-                return Some(body(sort, id));
-            }
-        }
-        let noun = if let [only] = meant { noun_of(*only) } else { Noun::Device };
-        self.world_name(noun, &path.names, prefix);
-        None
-    }
-}
-
-impl Checker<'_> {
-    /// Its place among all devices of the world.
-    pub(in crate::check) fn device_id(&self, body: DeviceBody) -> DeviceId {
-        self.s.world.as_ref().map_or(DeviceId(0), |world| world.device_id(body))
-    }
-}
-
-fn body(sort: DeviceSort, id: u16) -> DeviceBody {
-    match sort {
-        DeviceSort::Arm => DeviceBody::Arm(ArmId(id)),
-        DeviceSort::Gripper => DeviceBody::Gripper(GripperId(id)),
-        DeviceSort::Base => DeviceBody::Base(BaseId(id)),
-        DeviceSort::Laser => DeviceBody::Laser(LaserId(id)),
-    }
-}
-
-fn noun_of(sort: DeviceSort) -> Noun {
-    match sort {
-        DeviceSort::Arm => Noun::Arm,
-        DeviceSort::Gripper => Noun::Gripper,
-        DeviceSort::Base => Noun::Base,
-        DeviceSort::Laser => Noun::Laser,
     }
 }
 

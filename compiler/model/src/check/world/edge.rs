@@ -1,19 +1,20 @@
 //! Rules that wait for a condition: `on rising(C)`, `on falling(C, D)`.
 
+use hrdsl_ir::{value::nanos, world::RuleTrigger};
 use hrdsl_syntax::ast;
 
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
-    InferredType, TypedExprKind,
-    check::{checker::Checker, state::scope::ExprEnv},
+    InferredType, TypedExpr, TypedExprKind,
+    check::state::scope::ExprEnv,
     noun::Noun,
     report::{types, world::bad_world},
-    world::TypedRuleTrigger,
 };
 
 const RISING: &str = "rising";
 const FALLING: &str = "falling";
 
-impl Checker<'_> {
+impl WorldPhase<'_, '_> {
     /// Whether a rule waits for a condition. A scenario that has an event of this name means the event.
     pub(super) fn is_edge(&self, call: &ast::CallSyntax) -> bool {
         let name = call.name.text.as_str();
@@ -22,7 +23,7 @@ impl Checker<'_> {
             && self.given(name).is_none()
     }
 
-    pub(super) fn edge_of(&mut self, call: &ast::CallSyntax, prefix: &str) -> Option<TypedRuleTrigger> {
+    pub(super) fn edge_of(&mut self, call: &ast::CallSyntax, prefix: &str) -> Option<RuleTrigger<TypedExpr>> {
         let name = &call.name.text;
         let args = call.args.as_deref().unwrap_or_default();
         let (condition, held) = match args {
@@ -54,6 +55,6 @@ impl Checker<'_> {
             ));
             return None;
         }
-        Some(TypedRuleTrigger::Edge { rising: name == RISING, condition, held })
+        Some(RuleTrigger::Edge { rising: name == RISING, condition, held: nanos(held) })
     }
 }

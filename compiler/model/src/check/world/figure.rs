@@ -3,7 +3,8 @@
 use hrdsl_ir::world::{Figure, Limb};
 use hrdsl_syntax::ast::{NameSyntax, WorldMemberKind as Member};
 
-use crate::check::{checker::Checker, world::parts::PlacedMember};
+use crate::check::world::parts::PlacedMember;
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     BodyId, BodyMotion, Dimension,
     noun::Noun,
@@ -12,7 +13,7 @@ use crate::{
 
 use super::LENGTH;
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     pub(super) fn limb(&mut self, p: &PlacedMember<'a>) {
         let Member::Limb(limb) = &p.member.kind else { return };
         if !(3..=4).contains(&limb.bodies.len()) {
@@ -29,7 +30,7 @@ impl<'a> Checker<'a> {
         let pivots: Vec<Option<[f64; 3]>> =
             limb.pivots.iter().map(|pivot| self.vector(pivot, LENGTH)).collect();
         let full = format!("{}{}", p.prefix, limb.name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.limbs);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.limbs);
         if issues.declare_as(table, Noun::Limb, &full, limb.name.span).is_some() {
             let body = |i: usize| bodies.get(i).copied().flatten();
             let pivot = |i: usize| p.frame.place(pivots.get(i).copied().flatten().unwrap_or_default());
@@ -71,7 +72,7 @@ impl<'a> Checker<'a> {
             limbs.push(known);
         }
         let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.figures);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.figures);
         if issues.declare_as(table, Noun::Figure, &full, name.span).is_some() {
             self.world_mut().figures.push(Figure {
                 name: full,

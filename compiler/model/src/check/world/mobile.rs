@@ -9,10 +9,8 @@ use hrdsl_ir::{
 };
 use hrdsl_syntax::ast::{NameSyntax, WorldMemberKind as Member};
 
-use crate::check::{
-    checker::Checker,
-    world::{parts::PlacedMember, sensing::SensedKind},
-};
+use crate::check::world::{parts::PlacedMember, sensing::SensedKind};
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     BodyId, BodyMotion, Dimension,
     noun::Noun,
@@ -27,7 +25,7 @@ const MOST_BEAMS: i64 = 10_000;
 /// What the angles of a full turn may have too much, from being written in decimal radians.
 const ROUNDING: f64 = 1e-6;
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     pub(super) fn base(&mut self, p: &PlacedMember<'a>) {
         let Member::Base(base) = &p.member.kind else { return };
         let name = &base.name;
@@ -44,7 +42,7 @@ impl<'a> Checker<'a> {
             self.more_than_zero(&base.acceleration, Dimension::ACCELERATION, "the acceleration");
         let timeout = base.timeout.as_ref().map(|e| self.time(e, "the timeout", false));
         let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.bases);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.bases);
         if let Some(id) = issues.declare_as(table, Noun::Base, &full, name.span) {
             self.sensing(&base.sensing, SensedKind::Base, (&full, SensorSource::Base(BaseId(id))));
             self.world_mut().bases.push(Base {
@@ -61,7 +59,7 @@ impl<'a> Checker<'a> {
     }
 
     fn driven_root(&self, body: BodyId) -> BodyId {
-        let described = self.world.robots.iter().any(|robot| robot.link_of(body).is_some());
+        let described = self.robots.iter().any(|robot| robot.link_of(body).is_some());
         if described { self.rigid_root(body) } else { body }
     }
 
@@ -106,7 +104,7 @@ impl<'a> Checker<'a> {
             self.report(bad_world(link.span, message, help));
             return;
         };
-        let (issues, table) = (&mut self.issues, &mut self.world.names.lasers);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.lasers);
         if issues.declare_as(table, Noun::Laser, &scan.name, name.span).is_some() {
             self.world_mut().lasers.push(scan);
         }
@@ -157,7 +155,7 @@ impl<'a> Checker<'a> {
             self.report(types::must_be("the range", rule, laser.range.span));
         }
         let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.lasers);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.lasers);
         if let Some(id) = issues.declare_as(table, Noun::Laser, &full, name.span) {
             let (lo, hi) = angles.unwrap_or_default();
             let (nearest, farthest) = range.unwrap_or_default();

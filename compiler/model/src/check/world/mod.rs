@@ -8,13 +8,14 @@ mod figure;
 mod locate;
 mod mobile;
 pub(in crate::check) mod parts;
+pub(in crate::check) mod phase;
 mod placement;
 mod posture;
 pub(in crate::check) mod robot;
 mod sensing;
 pub(in crate::check) mod stimulus;
 
-use hrdsl_ir::sensor::SensorSource;
+use hrdsl_ir::{sensor::SensorSource, world::RuleTrigger};
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, ItemSyntaxKind, NameSyntax, RuleTriggerSyntax as SyntaxRuleOn, WorldMember,
@@ -22,29 +23,30 @@ use hrdsl_syntax::ast::{
 };
 
 use crate::check::{
-    checker::Checker,
     state::{scope::ExprEnv, world::WorldNames},
-    vocabulary::template::CheckerPhase,
+    template::CheckerPhase,
     world::{
         parts::PlacedMember,
+        phase::WorldPhase,
         placement::{angles, outright},
         sensing::SensedKind,
     },
 };
 use crate::{
-    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, Dimension, GripperId, InferredType, SignalId, Value,
+    ActorId, BodyId, BodyMotion, BodyShape, CurrentBody, Dimension, GripperId, InferredType, SignalId,
+    TypedWorldRule, Value,
     noun::Noun,
     report::{names, types, world::bad_world},
-    world::{PartFrame, TypedBody, TypedRuleTrigger, TypedSignal, TypedWorld, TypedWorldRule},
+    world::{PartFrame, TypedBody, TypedSignal, TypedWorld},
 };
 
 const LENGTH: InferredType = InferredType::Float(Dimension::LENGTH);
 const ANGLE: InferredType = InferredType::Float(Dimension::ANGLE);
 const NUMBER: InferredType = InferredType::Float(Dimension::NUMBER);
 
-type MemberPass<'a> = fn(&mut Checker<'a>, &PlacedMember<'a>);
+type MemberPass<'c, 'a> = fn(&mut WorldPhase<'c, 'a>, &PlacedMember<'a>);
 
-impl<'a> Checker<'a> {
+impl<'c, 'a> WorldPhase<'c, 'a> {
     pub(in crate::check) fn world(&mut self) {
         let mut found: Option<Span> = None;
         for (item, span) in self.each_item() {
@@ -85,14 +87,15 @@ impl<'a> Checker<'a> {
             let given = self.templates.given.clone();
             placed.push(PlacedMember { given, ..PlacedMember::alone(member) });
         }
-        self.world.robots.clear();
+        self.robots.clear();
         // What is named first must exist first: by kind, not by place.
-        let bodies: [MemberPass<'a>; 3] = [Self::described_bodies, Self::settings_and_bodies, Self::walls];
+        let bodies: [MemberPass<'c, 'a>; 3] =
+            [Self::described_bodies, Self::settings_and_bodies, Self::walls];
         for pass in bodies {
             self.pass(&placed, pass);
         }
         self.place_by_others(&mut placed);
-        let passes: [MemberPass<'a>; 16] = [
+        let passes: [MemberPass<'c, 'a>; 16] = [
             Self::of_descriptions,
             Self::described_joints,
             Self::joint,
@@ -116,7 +119,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Checks all members for one of their kinds.
-    fn pass(&mut self, placed: &[PlacedMember<'a>], check: MemberPass<'a>) {
+    fn pass(&mut self, placed: &[PlacedMember<'a>], check: MemberPass<'c, 'a>) {
         for p in placed {
             let outer = std::mem::replace(&mut self.templates.given, p.given.clone());
             let before = self.issues.list.len();
@@ -138,10 +141,11 @@ impl<'a> Checker<'a> {
             if self.s.names.is_used(part.name.span) {
                 continue;
             }
-            let kept_names = std::mem::take(&mut self.world.names);
+            let kept_names = std::mem::take(&mut self.checker.world.names);
             // What is checked for itself counts, too.
             self.world.names.members = kept_names.members;
             let kept_world = self.s.world.take();
+            let kept_robots = std::mem::take(&mut self.robots);
             let kept_flag = std::mem::replace(&mut self.world.exists, true);
             match &part.params {
                 Some(params) => self.by_itself(params, |c| {
@@ -154,6 +158,7 @@ impl<'a> Checker<'a> {
             self.world.names = kept_names;
             self.world.names.members = members;
             self.s.world = kept_world;
+            self.robots = kept_robots;
             self.world.exists = kept_flag;
         }
     }
@@ -163,48 +168,30 @@ impl<'a> Checker<'a> {
     }
 
     fn settings_and_bodies(&mut self, p: &PlacedMember<'a>) {
-        match &p.member.kind {
-            Member::Step(_) | Member::Sample(_) | Member::Gravity(_) if !p.prefix.is_empty() => {
-                let message = "a part has no step, sample or gravity of its own";
-                self.report(bad_world(p.member.span, message, "write it in the `world`"));
-            }
-            Member::Step(e) => {
-                if let Some(t) = self.time(e, "the step", true) {
-                    self.world_mut().step = t;
-                }
-            }
-            Member::Sample(e) => {
-                if let Some(t) = self.time(e, "the sampling period", true) {
-                    self.world_mut().sample = t;
-                }
-            }
-            Member::Gravity(e) => {
-                if let Some(g) = self.vector(e, NUMBER) {
-                    self.world_mut().gravity = g;
-                }
-            }
-            Member::Body(body) => self.body(p, body),
-            Member::Part { .. }
-            | Member::Joint(_)
-            | Member::Arm(_)
-            | Member::Gripper(_)
-            | Member::Base(_)
-            | Member::Laser(_)
-            | Member::Limb(_)
-            | Member::Figure(_)
-            | Member::Scanner { .. }
-            | Member::Robot(_)
-            | Member::Packages(_)
-            | Member::Argument { .. }
-            | Member::Semantics(_)
-            | Member::Start(_)
-            | Member::Walls(_)
-            | Member::Posture(_)
-            | Member::Current { .. }
-            | Member::Signal { .. }
-            | Member::Rule(_)
-            | Member::Allow(_)
-            | Member::Error => {}
+        let kind = &p.member.kind;
+        if let Member::Body(body) = kind {
+            self.body(p, body);
+        }
+        let of_the_world = matches!(kind, Member::Step(_) | Member::Sample(_) | Member::Gravity(_));
+        if of_the_world && !p.prefix.is_empty() {
+            let message = "a part has no step, sample or gravity of its own";
+            self.report(bad_world(p.member.span, message, "write it in the `world`"));
+            return;
+        }
+        if let Member::Step(e) = kind
+            && let Some(t) = self.time(e, "the step", true)
+        {
+            self.world_mut().step = t;
+        }
+        if let Member::Sample(e) = kind
+            && let Some(t) = self.time(e, "the sampling period", true)
+        {
+            self.world_mut().sample = t;
+        }
+        if let Member::Gravity(e) = kind
+            && let Some(g) = self.vector(e, NUMBER)
+        {
+            self.world_mut().gravity = g;
         }
     }
 
@@ -228,7 +215,7 @@ impl<'a> Checker<'a> {
             self.report(bad_world(body.name.span, message, "add `mass 1 kg`"));
         }
         let name = format!("{}{}", p.prefix, body.name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.bodies);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.bodies);
         if issues.declare_as(table, Noun::Body, &name, body.name.span).is_some() {
             let body = TypedBody {
                 name,
@@ -271,21 +258,6 @@ impl<'a> Checker<'a> {
         })
     }
 
-    pub(in crate::check) fn more_than_zero(
-        &mut self,
-        e: &ast::ExprSyntax,
-        dim: Dimension,
-        what: &str,
-    ) -> Option<f64> {
-        let x = self.quantity_of(e, dim)?;
-        if x <= 0.0 {
-            let rule = format!("more than 0 {}", dim.symbol().unwrap_or_default());
-            self.report(types::must_be(what, &rule, e.span));
-            return None;
-        }
-        Some(x)
-    }
-
     pub(super) fn local_body(&mut self, name: &NameSyntax, prefix: &str) -> Option<BodyId> {
         self.world_name(Noun::Body, std::slice::from_ref(name), prefix).map(BodyId)
     }
@@ -320,7 +292,7 @@ impl<'a> Checker<'a> {
             let first = self.world.names.bodies.span(id);
             self.report(names::duplicate(Noun::Body, &full, name.span, first));
         }
-        let (issues, table) = (&mut self.issues, &mut self.world.names.currents);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.currents);
         if issues.declare_as(table, Noun::Current, &full, name.span).is_some() {
             self.world_mut().currents.push(CurrentBody { name: full, of, by });
         }
@@ -341,7 +313,7 @@ impl<'a> Checker<'a> {
         };
         self.senses_the_world(sensing, &value);
         let full = format!("{}{}", p.prefix, name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.signals);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.signals);
         if let Some(id) = issues.declare_as(table, Noun::Signal, &full, name.span) {
             if ty.is_none() {
                 self.world.names.broken.insert(full.clone());
@@ -364,9 +336,11 @@ impl<'a> Checker<'a> {
                 if patterns.next().is_some() {
                     self.report(types::several_events(&call.name.text, call.span));
                 }
-                first.map(TypedRuleTrigger::Event)
+                first.map(RuleTrigger::Event)
             }
-            SyntaxRuleOn::Commanded { command, device } => self.commanded(command, device, &p.prefix),
+            SyntaxRuleOn::Commanded { command, device } => self
+                .commanded(command, device, &p.prefix)
+                .map(|(body, command)| RuleTrigger::Commanded { device: self.device_id(body), command }),
         };
         let mut env = ExprEnv::measured(&p.prefix);
         let guard = rule.when.as_ref().map(|e| self.expr_of(e, InferredType::Bool, &mut env));
@@ -374,7 +348,15 @@ impl<'a> Checker<'a> {
         let fields = self.fields_of(event);
         let args = self.args(Noun::Event, &rule.emit, &fields, &mut env);
         if let Some(on) = on {
-            self.world_mut().rules.push(TypedWorldRule { on, guard, event, args, span: p.member.span });
+            let origin = p.member.span;
+            self.world_mut().rules.push(TypedWorldRule {
+                on,
+                guard,
+                event,
+                args,
+                signals: Vec::new(),
+                origin,
+            });
         }
     }
 }

@@ -6,10 +6,10 @@ use hrdsl_source::{Diagnostic, Span};
 use hrdsl_syntax::ast::{self, NameSyntax, WorldMember, WorldMemberKind as Member};
 
 use crate::check::{
-    checker::Checker,
     state::{issues::too_many, item::ExprItem, scope::ExprEnv, template::TemplateArguments},
     world::placement::{angles, outright},
 };
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     Dimension, InferredType,
     noun::Noun,
@@ -43,7 +43,7 @@ impl<'a> PlacedMember<'a> {
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     /// The world's members and those of its parts, in source order, parts in place of their use.
     pub(in crate::check) fn flatten(
         &mut self,
@@ -63,40 +63,12 @@ impl<'a> Checker<'a> {
                 }
                 return all;
             }
-            match &member.kind {
-                Member::Part { .. } => {
-                    let (given, instance) = (self.templates.given.clone(), instance.clone());
-                    all.push(PlacedMember { prefix: prefix.to_owned(), frame, member, given, instance });
-                    all.extend(self.flatten_part(member, prefix, frame));
-                }
-                Member::Step(_)
-                | Member::Sample(_)
-                | Member::Gravity(_)
-                | Member::Body(_)
-                | Member::Joint(_)
-                | Member::Arm(_)
-                | Member::Gripper(_)
-                | Member::Base(_)
-                | Member::Laser(_)
-                | Member::Limb(_)
-                | Member::Figure(_)
-                | Member::Scanner { .. }
-                | Member::Robot(_)
-                | Member::Packages(_)
-                | Member::Argument { .. }
-                | Member::Semantics(_)
-                | Member::Start(_)
-                | Member::Walls(_)
-                | Member::Posture(_)
-                | Member::Current { .. }
-                | Member::Signal { .. }
-                | Member::Rule(_)
-                | Member::Error => {
-                    let (given, instance) = (self.templates.given.clone(), instance.clone());
-                    all.push(PlacedMember { prefix: prefix.to_owned(), frame, member, given, instance });
-                }
-                Member::Allow(_) => {}
+            if matches!(member.kind, Member::Allow(_)) {
+                continue;
             }
+            let (given, instance) = (self.templates.given.clone(), instance.clone());
+            all.push(PlacedMember { prefix: prefix.to_owned(), frame, member, given, instance });
+            all.extend(self.flatten_part(member, prefix, frame));
         }
         all
     }
@@ -111,9 +83,9 @@ impl<'a> Checker<'a> {
         let Member::Part { name, of, args, place, turn } = &member.kind else { return Vec::new() };
         let inner = self.frame(outright(place), angles(turn.as_ref()));
         let full = format!("{prefix}{}", name.text);
-        let instances = &mut self.world.names.instances;
+        let instances = &mut self.checker.world.names.instances;
         let noun = Noun::PartInstance;
-        let new = self.issues.declare_as(instances, noun, &full, name.span).is_some();
+        let new = self.checker.issues.declare_as(instances, noun, &full, name.span).is_some();
         let Some(part) = self.part(of) else {
             self.world.names.broken.insert(full);
             return Vec::new();
@@ -133,13 +105,13 @@ impl<'a> Checker<'a> {
         let instance = given.is_some().then(|| (here, name.span.to(end)));
         let outer = std::mem::replace(&mut self.templates.given, given);
         let (before, prefix) = (self.issues.list.len(), format!("{full}."));
-        self.world.open_parts.push(&part.name.text);
+        self.open_parts.push(&part.name.text);
         let mut inner = self.flatten(&part.members, &prefix, frame, instance.clone());
         if let Some(member) = part.description.as_deref() {
             let (given, instance) = (self.templates.given.clone(), instance.clone());
             inner.insert(0, PlacedMember { prefix, frame, member, given, instance });
         }
-        self.world.open_parts.pop();
+        self.open_parts.pop();
         self.templates.given = outer;
         if let Some((name, span)) = &instance {
             self.said_in(before, Some((name, *span)));
@@ -169,7 +141,7 @@ impl<'a> Checker<'a> {
     }
 
     fn part(&mut self, of: &NameSyntax) -> Option<&'a ast::PartSyntax> {
-        let Some((part, _)) = self.world.parts.get(of.text.as_str()) else {
+        let Some((part, _)) = self.parts.get(of.text.as_str()) else {
             let names = self.near_of(&[Noun::Part]);
             if self.source.unread_items || self.source.missing_modules {
                 return None;
@@ -177,18 +149,18 @@ impl<'a> Checker<'a> {
             // A part often has the name of an actor or of its instance, which would say nothing.
             let said = self.issues.list.len();
             self.unknown(Noun::Part, of, &names, Some(Noun::Part));
-            if let Some(issue) = self.issues.list.get_mut(said) {
-                crate::report::world::missing_part(issue, &of.text, self.world.parts.is_empty());
+            if let Some(issue) = self.checker.issues.list.get_mut(said) {
+                crate::report::world::missing_part(issue, &of.text, self.parts.is_empty());
             }
             return None;
         };
         // A part in itself would be doubled at each level if it is there twice.
-        if self.world.open_parts.contains(&of.text.as_str()) {
+        if self.open_parts.contains(&of.text.as_str()) {
             let message = format!("the part `{}` contains itself", of.text);
             self.report(bad_world(of.span, message, "remove it from its own members"));
             return None;
         }
-        if self.world.open_parts.len() >= MAX_DEPTH {
+        if self.open_parts.len() >= MAX_DEPTH {
             let message = format!("parts are in parts more than {MAX_DEPTH} levels deep");
             self.report(bad_world(of.span, message, "put the parts side by side in the world"));
             return None;

@@ -4,13 +4,11 @@ use hrdsl_syntax::ast::{
     self, ExprSyntaxKind, PathSyntax, PlaceSide, PlaceSyntax, TurnSyntax, WorldMemberKind as Member,
 };
 
-use crate::check::{
-    checker::Checker,
-    world::{
-        locate::{PlacedThing, PlacementSolver, PlacementSpec, ThingKind, ThingName},
-        parts::{PlacedMember, compose},
-    },
+use crate::check::world::{
+    locate::{PlacedThing, PlacementSolver, PlacementSpec, ThingKind, ThingName},
+    parts::{PlacedMember, compose},
 };
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     Dimension,
     noun::Noun,
@@ -37,36 +35,16 @@ pub(super) fn angles(turn: Option<&TurnSyntax>) -> Option<&ast::ExprSyntax> {
 }
 
 fn place_of(member: &Member) -> Option<(&ast::NameSyntax, &PlaceSyntax, Option<&TurnSyntax>)> {
-    match member {
-        Member::Body(body) => Some((&body.name, &body.place, body.turn.as_ref())),
-        Member::Part { name, place, turn, .. } => Some((name, place, turn.as_ref())),
-        Member::Step(_)
-        | Member::Sample(_)
-        | Member::Gravity(_)
-        | Member::Joint(_)
-        | Member::Arm(_)
-        | Member::Gripper(_)
-        | Member::Base(_)
-        | Member::Laser(_)
-        | Member::Scanner { .. }
-        | Member::Robot(_)
-        | Member::Packages(_)
-        | Member::Argument { .. }
-        | Member::Semantics(_)
-        | Member::Start(_)
-        | Member::Walls(_)
-        | Member::Limb(_)
-        | Member::Figure(_)
-        | Member::Posture(_)
-        | Member::Current { .. }
-        | Member::Signal { .. }
-        | Member::Rule(_)
-        | Member::Allow(_)
-        | Member::Error => None,
+    if let Member::Body(body) = member {
+        Some((&body.name, &body.place, body.turn.as_ref()))
+    } else if let Member::Part { name, place, turn, .. } = member {
+        Some((name, place, turn.as_ref()))
+    } else {
+        None
     }
 }
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     /// Brings to its place what is placed by something else, with all that is in it.
     pub(super) fn place_by_others(&mut self, placed: &mut [PlacedMember<'a>]) {
         let relative =
@@ -171,19 +149,17 @@ impl<'a> Checker<'a> {
 
     /// `(10 cm, -20 cm)`
     fn on_the_top(&mut self, at: &ast::ExprSyntax) -> Option<[f64; 2]> {
-        match &at.kind {
-            ExprSyntaxKind::Tuple(parts) if parts.len() == 2 => {
-                let (x, y) = (parts.first()?, parts.get(1)?);
-                let x = self.quantity_of(x, Dimension::LENGTH);
-                Some([x?, self.quantity_of(y, Dimension::LENGTH)?])
-            }
-            ExprSyntaxKind::Error => None,
-            _ => {
-                let help = "write two lengths: `(0 m, 0 m)` is its middle, x is ahead, y to the left";
-                self.report(bad_world(at.span, "a place on top of something is said by two lengths", help));
-                None
-            }
+        if let ExprSyntaxKind::Tuple(parts) = &at.kind
+            && let [x, y] = parts.as_slice()
+        {
+            let x = self.quantity_of(x, Dimension::LENGTH);
+            return Some([x?, self.quantity_of(y, Dimension::LENGTH)?]);
         }
+        if at.kind != ExprSyntaxKind::Error {
+            let help = "write two lengths: `(0 m, 0 m)` is its middle, x is ahead, y to the left";
+            self.report(bad_world(at.span, "a place on top of something is said by two lengths", help));
+        }
+        None
     }
 
     /// Where everything has come to is where it is.

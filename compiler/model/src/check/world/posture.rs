@@ -3,7 +3,8 @@
 use hrdsl_ir::world::{JointMotion, NamedPosture};
 use hrdsl_syntax::ast::{ExprSyntax, ExprSyntaxKind as Syntax, WorldMemberKind as Member};
 
-use crate::check::{checker::Checker, world::parts::PlacedMember};
+use crate::check::world::parts::PlacedMember;
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     Dimension, JointId,
     noun::Noun,
@@ -13,7 +14,7 @@ use crate::{
 /// What limits may be exceeded by, from being written in decimal degrees.
 const ROUNDING: f64 = 1e-9;
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     pub(super) fn posture(&mut self, p: &PlacedMember<'a>) {
         let Member::Posture(posture) = &p.member.kind else { return };
         let arm = self.world_name(Noun::Arm, &posture.arm.names, &p.prefix);

@@ -7,10 +7,10 @@ use hrdsl_ir::{
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{ExprSyntax, SensorClause, SensorClauseKind as Clause};
 
-use crate::check::{checker::Checker, state::scope::ExprEnv};
+use crate::check::state::scope::ExprEnv;
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
-    Dimension, InferredType, SignalTerm, Type, TypedExpr, TypedExprKind, VariableRef,
-    noun::Noun,
+    Dimension, InferredType, Type, TypedExpr,
     report::{types, world::bad_world},
 };
 
@@ -74,7 +74,7 @@ impl SensedKind {
     }
 }
 
-impl Checker<'_> {
+impl WorldPhase<'_, '_> {
     pub(super) fn sensing(
         &mut self,
         clauses: &[SensorClause],
@@ -298,34 +298,6 @@ impl Checker<'_> {
             self.report(types::must_be(&format!("each value of `{what}`"), &rule, found.span));
         }
         None
-    }
-
-    /// What the system could read of a signal: `reading(near)`.
-    pub(in crate::check) fn reading(
-        &mut self,
-        of: &ExprSyntax,
-        prefix: &str,
-    ) -> Option<(SignalTerm, InferredType)> {
-        let id = self.world_arg(Noun::Signal, of, prefix)?;
-        let signal = self.s.world.as_ref()?.signals.get(usize::from(id))?;
-        if self.world.names.broken.contains(&signal.name) {
-            return None;
-        }
-        let ty = InferredType::of(signal.ty);
-        Some((SignalTerm::Reading(crate::SignalId(id)), ty))
-    }
-
-    /// Whether an expression depends on what the system could read.
-    pub(in crate::check) fn depends_on_a_reading(&self, e: &TypedExpr) -> bool {
-        let mut found = false;
-        e.each(&mut |part| {
-            found |= matches!(part.kind, TypedExprKind::Term(SignalTerm::Reading(_)));
-            if let TypedExprKind::Leaf(VariableRef::Signal(id)) = part.kind {
-                let signal = self.s.world.as_ref().and_then(|w| w.signals.get(usize::from(id.0)));
-                found |= signal.is_some_and(|s| self.depends_on_a_reading(&s.value));
-            }
-        });
-        found
     }
 
     /// A sensor measures the world, not what other sensors say of it.

@@ -5,11 +5,8 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, ExprSyntaxKind as Syntax, NameSyntax, SampleRange, StimulusStepKind as Step};
 
 use crate::check::state::phase::CheckPhase;
-use crate::check::{
-    checker::{Checker, NOBODY},
-    state::scope::ExprEnv,
-    value::measure::text,
-};
+use crate::check::{checker::NOBODY, state::scope::ExprEnv, value::measure::text};
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     ActorId, BinaryOp, BodyMotion, BodyRef, Dimension, EventId, FigureId, GripperId, InferredType, Type,
     TypedExpr, TypedPoint, TypedSample, TypedStimulus, TypedStimulusStep, TypedWorldAction, Value,
@@ -20,9 +17,9 @@ use crate::{
 
 const ACTIONS: [&str; 6] = ["move_to", "look_at", "grasp", "let_go", "walk_to", "turn_to"];
 
-impl Checker<'_> {
-    pub(in crate::check) fn stimuli(&mut self) {
-        for (index, body) in self.events.stimuli.clone().into_iter().enumerate() {
+impl WorldPhase<'_, '_> {
+    pub(super) fn stimuli(&mut self, stimuli: &[Option<&ast::StimulusSyntax>]) {
+        for (index, body) in stimuli.iter().enumerate() {
             if let Some(body) = body
                 && self.source.looks_at(CheckPhase::Stimuli, body.name.span)
             {

@@ -3,14 +3,14 @@
 use hrdsl_robots::{UrdfJointId, UrdfLinkId};
 use hrdsl_syntax::ast::{JointListSyntax, NameSyntax, TextSyntax};
 
-use crate::check::checker::Checker;
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     BodyId, JointId,
     noun::Noun,
     report::{names, world::bad_world},
 };
 
-impl Checker<'_> {
+impl WorldPhase<'_, '_> {
     /// Joints by their names, or those of a group that move by themselves, in the order of the tree; each with where it is
     /// named. `None`: something is wrong with one.
     pub(in crate::check::world) fn joint_list(
@@ -85,7 +85,7 @@ impl Checker<'_> {
     /// The body that this one is rigidly one with: the topmost over joints that cannot move.
     pub(in crate::check::world) fn rigid_root(&self, body: BodyId) -> BodyId {
         let Some(world) = &self.s.world else { return body };
-        if let Some(placed) = self.world.robots.iter().find(|robot| robot.link_of(body).is_some())
+        if let Some(placed) = self.robots.iter().find(|robot| robot.link_of(body).is_some())
             && let (Some(link), Some(robot)) = (placed.link_of(body), placed.robot())
         {
             let top: Option<UrdfLinkId> = robot.rigid_groups().get(link.0).copied();

@@ -3,13 +3,13 @@
 use hrdsl_ir::world::{JointMotion, Vec3};
 use hrdsl_robots::{RigidTransform, UrdfLink};
 
-use crate::check::checker::Checker;
+use crate::check::world::phase::WorldPhase;
 use crate::{BodyId, JointId, world::TypedJoint};
 
-impl Checker<'_> {
+impl WorldPhase<'_, '_> {
     /// Whether a joint is one of a description.
     pub(in crate::check::world) fn is_described(&self, id: JointId) -> bool {
-        self.world.robots.iter().any(|robot| robot.joints.contains(&id))
+        self.robots.iter().any(|robot| robot.joints.contains(&id))
     }
 
     /// The fingers that are closed at their lower limits. Those of hand-made parts never are.
@@ -20,7 +20,7 @@ impl Checker<'_> {
         tool: Vec3,
     ) -> Vec<JointId> {
         let is = |id: &JointId| {
-            let placed = self.world.robots.iter().find(|robot| robot.joints.contains(id))?;
+            let placed = self.robots.iter().find(|robot| robot.joints.contains(id))?;
             let joint = self.s.world.as_ref()?.joints.get(usize::from(id.0))?;
             let meeting = placed.poses.get(placed.link_of(palm)?.0)?.place(tool);
             let child = placed.link_of(joint.child)?;

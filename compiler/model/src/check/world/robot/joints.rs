@@ -4,7 +4,8 @@ use hrdsl_ir::world::{ENDLESS, JointDrive, JointMimic, JointMotion};
 use hrdsl_robots::{RigidTransform, UrdfJoint, UrdfJointKind, UrdfRobot};
 use hrdsl_syntax::ast::WorldMemberKind as Member;
 
-use crate::check::{checker::Checker, world::parts::PlacedMember};
+use crate::check::world::parts::PlacedMember;
+use crate::check::world::phase::WorldPhase;
 use crate::{BodyId, JointId, noun::Noun, world::TypedJoint};
 
 /// The inertia of a hinge's rotor is that which its effort brings to this in a second, rad/s²: descriptions do not say it.
@@ -12,13 +13,13 @@ const ROTOR_RATE: f64 = 800.0;
 /// The least and the most of it, kg·m².
 const ROTORS: (f64, f64) = (1e-3, 0.2);
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     pub(in crate::check::world) fn described_joints(&mut self, p: &PlacedMember<'a>) {
         if !matches!(p.member.kind, Member::Robot(_)) {
             return;
         }
-        let Some(at) = self.world.robots.iter().position(|robot| robot.prefix == p.prefix) else { return };
-        let reading = std::sync::Arc::clone(&self.world.robots[at].reading);
+        let Some(at) = self.robots.iter().position(|robot| robot.prefix == p.prefix) else { return };
+        let reading = std::sync::Arc::clone(&self.robots[at].reading);
         let Some(robot) = reading.robot.as_ref() else { return };
         let own = |joint: &UrdfJoint| (joint.name.clone(), joint.place);
         let Some(names) = self.spelled(robot.joints.iter().map(own), Noun::Joint) else {
@@ -28,10 +29,10 @@ impl<'a> Checker<'a> {
         let mut ids = Vec::new();
         for (joint, name) in robot.joints.iter().zip(&names) {
             let full = format!("{}{name}", p.prefix);
-            let (issues, table) = (&mut self.issues, &mut self.world.names.joints);
+            let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.joints);
             let Some(id) = issues.declare_as(table, Noun::Joint, &full, joint.place.span) else { return };
             ids.push(JointId(id));
-            let placed = &self.world.robots[at];
+            let placed = &self.robots[at];
             let (parent, child) = (placed.bodies.get(joint.parent.0), placed.bodies.get(joint.child.0));
             let pose = placed.poses.get(joint.child.0).copied().unwrap_or(RigidTransform::IDENTITY);
             let value = placed.values.get(ids.len() - 1).copied().unwrap_or_default();
@@ -52,7 +53,7 @@ impl<'a> Checker<'a> {
             self.world_mut().joints.push(typed);
         }
         self.gears(robot, &ids);
-        self.world.robots[at].joints = ids;
+        self.robots[at].joints = ids;
     }
 
     /// What mimics another that mimics follows the last.

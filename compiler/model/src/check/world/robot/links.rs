@@ -8,7 +8,8 @@ use hrdsl_syntax::{
     token::{KEYWORDS, KeywordClass},
 };
 
-use crate::check::{checker::Checker, state::robot::PlacedRobot, world::parts::PlacedMember};
+use crate::check::{state::robot::PlacedRobot, world::parts::PlacedMember};
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     BodyId, BodyMotion,
     descriptions::DescriptionRequest,
@@ -19,7 +20,7 @@ use crate::{
 
 use super::start::StartValues;
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     /// The bodies of a part's description. What is wrong with the description itself was said when it was read.
     pub(in crate::check::world) fn described_bodies(&mut self, p: &PlacedMember<'a>) {
         if !matches!(p.member.kind, Member::Robot(_)) {
@@ -39,7 +40,7 @@ impl<'a> Checker<'a> {
             self.world.names.broken.insert(p.prefix.trim_end_matches('.').to_owned());
             return;
         };
-        let mut maker = std::mem::take(&mut self.world.solids);
+        let mut maker = std::mem::take(&mut self.solids);
         let mut bodies = Vec::new();
         for ((at, link), (name, pose)) in robot.links.iter().enumerate().zip(names.iter().zip(&poses)) {
             let is_root = robot.root.0 == at;
@@ -51,7 +52,7 @@ impl<'a> Checker<'a> {
             let full = format!("{}{name}", p.prefix);
             let span = link.place.span;
             self.world.names.members += 1;
-            let (issues, table) = (&mut self.issues, &mut self.world.names.bodies);
+            let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.bodies);
             let Some(id) = issues.declare_as(table, Noun::Body, &full, span) else { continue };
             let (solid, shape) = maker.solid(link, &reading);
             let own_name = (*name != link.name).then(|| link.name.clone());
@@ -73,19 +74,19 @@ impl<'a> Checker<'a> {
                 span,
             });
         }
-        self.world.solids = maker;
+        self.solids = maker;
         let (joints, values) = (Vec::new(), start.values);
         let whole = bodies.len() == robot.links.len();
         let placed = PlacedRobot { prefix: p.prefix.clone(), reading, bodies, joints, values, poses };
         if whole {
-            self.world.robots.push(placed);
+            self.robots.push(placed);
         }
     }
 
     /// The part that a member is of, and its description, if nothing is wrong with that.
     fn reading_of(&self, p: &PlacedMember<'a>) -> Option<(&'a PartSyntax, Arc<RobotReading>)> {
         let is = |part: &&'a PartSyntax| part.description.as_ref().is_some_and(|d| d.span == p.member.span);
-        let part = self.world.parts.values().map(|(part, _)| *part).find(is)?;
+        let part = self.parts.values().map(|(part, _)| *part).find(is)?;
         let library = self.source.descriptions?;
         let reading = library.robot(p.member.span.file, &DescriptionRequest::of(part)?)?;
         reading.is_sound().then_some((part, reading))
@@ -93,7 +94,7 @@ impl<'a> Checker<'a> {
 
     /// The description of the part with this prefix.
     pub(in crate::check) fn robot_at(&self, prefix: &str) -> Option<&PlacedRobot> {
-        self.world.robots.iter().find(|robot| robot.prefix == prefix)
+        self.robots.iter().find(|robot| robot.prefix == prefix)
     }
 
     /// Names of a description as they are written in the language; `None`: two are written alike.
@@ -118,13 +119,14 @@ impl<'a> Checker<'a> {
 
     /// What only a part from a description has.
     pub(in crate::check::world) fn of_descriptions(&mut self, p: &PlacedMember<'a>) {
-        let word = match &p.member.kind {
-            Member::Packages(_) => "packages",
-            Member::Argument { .. } => "argument",
-            Member::Semantics(_) => "semantics",
-            Member::Start(_) => "start",
-            _ => return,
-        };
+        let kind = &p.member.kind;
+        let words = [
+            ("packages", matches!(kind, Member::Packages(_))),
+            ("argument", matches!(kind, Member::Argument { .. })),
+            ("semantics", matches!(kind, Member::Semantics(_))),
+            ("start", matches!(kind, Member::Start(_))),
+        ];
+        let Some((word, _)) = words.into_iter().find(|(_, is)| *is) else { return };
         let prefix = p.prefix.trim_end_matches('.');
         if self.robot_at(&p.prefix).is_none() && !self.world.names.broken.contains(prefix) {
             let message = format!("`{word}` speaks of a description, and nothing here is made from one");

@@ -6,13 +6,14 @@ use hrdsl_ir::solid::{SharedData, SolidBody};
 use hrdsl_robots::{UrdfJoint, UrdfJointKind, UrdfLinkId, UrdfRobot};
 use hrdsl_syntax::ast::WorldMemberKind as Member;
 
-use crate::check::{checker::Checker, state::robot::PlacedRobot, world::parts::PlacedMember};
+use crate::check::world::phase::WorldPhase;
+use crate::check::{state::robot::PlacedRobot, world::parts::PlacedMember};
 use crate::{BodyId, JointId};
 
 /// Between the joints of what counts as short, m.
 const SHORT: f64 = 0.15;
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     pub(in crate::check::world) fn settle(&mut self, p: &PlacedMember<'a>) {
         if !matches!(p.member.kind, Member::Robot(_)) {
             return;

@@ -5,7 +5,7 @@ use hrdsl_syntax::ast::{
     ExprSyntax, NameSyntax, PartSyntax, StartSyntax, TextSyntax, WorldMemberKind as Member,
 };
 
-use crate::check::checker::Checker;
+use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     Dimension,
     noun::Noun,
@@ -24,16 +24,16 @@ pub(super) struct StartValues {
 
 impl StartValues {
     /// What a part says of the start; all other joints are at 0, or in the middle of their limits if these do not have it.
-    pub fn of(checker: &mut Checker<'_>, part: &PartSyntax, reading: &RobotReading) -> Self {
+    pub fn of(world: &mut WorldPhase<'_, '_>, part: &PartSyntax, reading: &RobotReading) -> Self {
         let Some(robot) = &reading.robot else { return Self { values: Vec::new() } };
         let mut values: Vec<f64> = robot.joints.iter().map(by_itself).collect();
         for member in &part.members {
             let Member::Start(starts) = &member.kind else { continue };
             for start in starts {
                 match start {
-                    StartSyntax::State(name) => checker.start_as(name, reading, &mut values),
+                    StartSyntax::State(name) => world.start_as(name, reading, &mut values),
                     StartSyntax::Joint { joint, value } => {
-                        checker.start_at(joint, value, reading, &mut values);
+                        world.start_at(joint, value, reading, &mut values);
                     }
                 }
             }
@@ -51,7 +51,7 @@ fn by_itself(joint: &UrdfJoint) -> f64 {
     }
 }
 
-impl Checker<'_> {
+impl WorldPhase<'_, '_> {
     /// `start "ready"`
     fn start_as(&mut self, name: &TextSyntax, reading: &RobotReading, values: &mut [f64]) {
         let (Some(robot), Some(semantics)) = (&reading.robot, &reading.semantics) else {

@@ -4,9 +4,10 @@ use hrdsl_ir::world::{Arm, NamedPosture};
 use hrdsl_robots::SrdfState;
 use hrdsl_syntax::ast::WorldMemberKind as Member;
 
-use crate::check::{checker::Checker, state::robot::PlacedRobot, world::parts::PlacedMember};
+use crate::check::world::phase::WorldPhase;
+use crate::check::{state::robot::PlacedRobot, world::parts::PlacedMember};
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     pub(in crate::check::world) fn described_postures(&mut self, p: &PlacedMember<'a>) {
         if !matches!(p.member.kind, Member::Robot(_)) {
             return;

@@ -3,10 +3,11 @@
 use hrdsl_ir::solid::{PlacedSolid, SharedData, SolidBody, SolidGeometry};
 use hrdsl_syntax::ast::WorldMemberKind as Member;
 
-use crate::check::{checker::Checker, world::parts::PlacedMember};
+use crate::check::world::parts::PlacedMember;
+use crate::check::world::phase::WorldPhase;
 use crate::{BodyMotion, BodyShape, Dimension, InferredType, noun::Noun, world::TypedBody};
 
-impl<'a> Checker<'a> {
+impl<'a> WorldPhase<'_, 'a> {
     pub(in crate::check::world) fn walls(&mut self, p: &PlacedMember<'a>) {
         let Member::Walls(walls) = &p.member.kind else { return };
         let height = self.more_than_zero(&walls.height, Dimension::LENGTH, "the height of walls");
@@ -29,7 +30,7 @@ impl<'a> Checker<'a> {
             })
             .collect();
         let name = format!("{}{}", p.prefix, walls.name.text);
-        let (issues, table) = (&mut self.issues, &mut self.world.names.bodies);
+        let (issues, table) = (&mut self.checker.issues, &mut self.checker.world.names.bodies);
         if issues.declare_as(table, Noun::Body, &name, walls.name.span).is_none() {
             return;
         }

@@ -12,7 +12,7 @@ use crate::check::{
     state::{
         item::ExprItem,
         scope::ExprEnv,
-        template::{BoundParam, DeclaredTemplate, TemplateArgument, TemplateArguments},
+        template::{BoundParam, DeclaredTemplate, TemplateArgument, TemplateArguments, kind_word},
     },
     value::measure,
 };
@@ -46,29 +46,6 @@ impl TemplateTrial {
             TemplateTrial::Mirrored => !index.is_multiple_of(2),
         }
     }
-}
-
-/// A kind of parameter that is no type of values.
-fn kind_word(text: &str) -> Option<Noun> {
-    Some(match text {
-        "event" => Noun::Event,
-        "actor" => Noun::Actor,
-        "cover" => Noun::Point,
-        "place" => Noun::Body,
-        "arm" => Noun::Arm,
-        "gripper" => Noun::Gripper,
-        "base" => Noun::Base,
-        "laser" => Noun::Laser,
-        _ => return None,
-    })
-}
-
-/// What parameters of templates can be besides values.
-pub(in crate::check) const KIND_WORDS: [&str; 8] =
-    ["event", "actor", "cover", "place", "arm", "gripper", "base", "laser"];
-
-pub(in crate::check) fn is_kind_word(text: &str) -> bool {
-    kind_word(text).is_some()
 }
 
 /// The kind of a parameter that is no value.
@@ -116,20 +93,6 @@ pub(in crate::check) fn template(
 }
 
 impl<'a> Checker<'a> {
-    pub(in crate::check) fn declare_templates(&mut self) {
-        for (item, _) in self.each_item() {
-            let Some((sort, template)) = template(item) else { continue };
-            let name = template.name;
-            let key = (sort, name.text.as_str());
-            if let Some(first) = self.templates.declared.get(&key) {
-                let issue = names::duplicate(Noun::Template, &name.text, name.span, Some(first.name.span));
-                self.report(issue);
-                continue;
-            }
-            self.templates.declared.insert(key, template);
-        }
-    }
-
     /// A name that a template of the sort has already.
     pub(in crate::check) fn not_a_template(&mut self, sort: TemplateSyntaxKind, name: &NameSyntax) {
         let first = self.templates.declared.get(&(sort, name.text.as_str())).map(|t| t.name.span);
@@ -279,9 +242,10 @@ impl<'a> Checker<'a> {
             (_, _) => {
                 let prefix = env.world.clone().unwrap_or_default();
                 let known = !whole
-                    || match kind {
-                        Noun::Body => self.body_ref(&path.names, &prefix).is_some(),
-                        _ => self.world_name(kind, &path.names, &prefix).is_some(),
+                    || if kind == Noun::Body {
+                        self.body_ref(&path.names, &prefix).is_some()
+                    } else {
+                        self.world_name(kind, &path.names, &prefix).is_some()
                     };
                 let full = format!("{prefix}{}", measure::text(&path.names));
                 if known { TemplateArgument::Thing(kind, full) } else { TemplateArgument::Unknown }
@@ -291,25 +255,22 @@ impl<'a> Checker<'a> {
 
     /// `a`, `a(true)`, `a or b(_)`: `None` if it is nothing of this form.
     fn alternatives(&mut self, arg: &ast::ExprSyntax) -> Option<Option<Vec<EventPattern>>> {
-        match &arg.kind {
-            Syntax::Binary { op: BinaryOp::Or, left, right } => {
-                let (left, right) = (self.alternatives(left)?, self.alternatives(right)?);
-                Some(left.zip(right).map(|(mut l, r)| {
-                    l.extend(r);
-                    l
-                }))
-            }
-            Syntax::Path(path) if path.names.len() == 1 => {
-                let call = ast::CallSyntax { name: path.names[0].clone(), args: None, span: arg.span };
-                Some(self.pattern_of(&call))
-            }
-            Syntax::Call { callee, args } if callee.names.len() == 1 => {
-                let args = Some(args.clone());
-                let call = ast::CallSyntax { name: callee.names[0].clone(), args, span: arg.span };
-                Some(self.pattern_of(&call))
-            }
-            _ => None,
+        if let Syntax::Binary { op: BinaryOp::Or, left, right } = &arg.kind {
+            let (left, right) = (self.alternatives(left)?, self.alternatives(right)?);
+            return Some(left.zip(right).map(|(mut l, r)| {
+                l.extend(r);
+                l
+            }));
         }
+        let (path, args) = if let Syntax::Call { callee, args } = &arg.kind {
+            (callee, Some(args.clone()))
+        } else if let Syntax::Path(path) = &arg.kind {
+            (path, None)
+        } else {
+            return None;
+        };
+        let [name] = path.names.as_slice() else { return None };
+        Some(self.pattern_of(&ast::CallSyntax { name: name.clone(), args, span: arg.span }))
     }
 
     fn pattern_of(&mut self, call: &ast::CallSyntax) -> Option<Vec<EventPattern>> {

@@ -2,22 +2,22 @@
 
 use hrdsl_ir::ListOf;
 
-use hrdsl_source::{Enumeration, Span};
+use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, NameSyntax, ParamSyntax as SyntaxParam, TypeExpr};
 
 use crate::check::{
     checker::Checker,
     state::{
         issues::too_many,
-        record::{DeclaredFields, MAX_PARTS, RecordEntry, RecordState},
+        record::{DeclaredFields, MAX_PARTS, RecordState},
         scope::ExprEnv,
         table::NameTable,
+        template::{KIND_WORDS, is_kind_word},
     },
-    vocabulary::{template, template::KIND_WORDS},
 };
 use crate::resolution::type_span;
 use crate::{
-    EnumDecl, InferredType, Parameter, Type, Value,
+    InferredType, Parameter, Type, Value,
     noun::Noun,
     report::{automata, names, types},
     type_named, type_names,
@@ -28,68 +28,6 @@ use crate::{
 const MAX_RECORDS: usize = 64;
 
 impl<'a> Checker<'a> {
-    pub(in crate::check) fn declare_enum(
-        &mut self,
-        name: &'a NameSyntax,
-        values: &'a [NameSyntax],
-        span: Span,
-    ) {
-        if self.type_is_taken(name) {
-            return;
-        }
-        for value in values {
-            let constant = self.consts.get(value.text.as_str()).map(|c| c.name.span);
-            if constant.is_some() {
-                self.report(names::duplicate(Noun::Constant, &value.text, value.span, constant));
-            }
-        }
-        if values.is_empty() {
-            let help = format!("write `enum {} {{ first, second }}`", name.text);
-            self.report(names::missing(name.span, "an enumeration has values", help));
-        }
-        let mut table = NameTable::default();
-        if self.issues.declare(&mut self.types.enums, Noun::Enum, name).is_none() {
-            return;
-        }
-        for value in values {
-            self.issues.declare(&mut table, Noun::EnumValue, value);
-        }
-        let of = Enumeration::intern(&name.text, &table.names().collect::<Vec<_>>());
-        for value in values.iter().filter(|v| table.span_of(&v.text) == Some(v.span)) {
-            self.types.values.entry(&value.text).or_default().push(of);
-        }
-        self.s.enums.push(EnumDecl { of, span });
-    }
-
-    pub(in crate::check) fn declare_record(&mut self, name: &'a NameSyntax, syntax: &'a [SyntaxParam]) {
-        if self.type_is_taken(name) {
-            return;
-        }
-        if self.issues.declare(&mut self.types.record_names, Noun::Record, name).is_some() {
-            let state = RecordState::Unseen;
-            self.types.records.push(RecordEntry {
-                name,
-                syntax,
-                fields: DeclaredFields::default(),
-                state,
-                size: 0,
-            });
-        }
-    }
-
-    /// Types have one namespace, which the language's own are in too.
-    fn type_is_taken(&mut self, name: &NameSyntax) -> bool {
-        let first = self.types.enums.get(&name.text).and_then(|id| self.types.enums.span(id));
-        let first = first.or_else(|| {
-            self.types.record_names.get(&name.text).and_then(|id| self.types.record_names.span(id))
-        });
-        let taken = first.is_some() || type_named(&name.text).is_some();
-        if taken {
-            self.report(names::duplicate(Noun::Type, &name.text, name.span, first));
-        }
-        taken
-    }
-
     pub(in crate::check) fn all_records(&mut self) {
         for id in 0..self.types.records.len() {
             self.resolve_record(id, 0);
@@ -277,7 +215,7 @@ impl<'a> Checker<'a> {
         }
         let issue_before = self.issues.list.len();
         self.unknown(Noun::Type, name, &all, None);
-        if template::is_kind_word(&name.text)
+        if is_kind_word(&name.text)
             && let Some(issue) = self.issues.list.get_mut(issue_before)
         {
             issue.help = Some("only a template has parameters of this kind".to_owned());
