@@ -2,7 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 
-use hrdsl_ir::{ArgPattern, EventId};
+use hrdsl_ir::{ArgPattern, EventId, expr::Expr};
 use hrdsl_ir::{
     Program, Value,
     ta::{
