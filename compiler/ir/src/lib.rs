@@ -28,6 +28,7 @@ pub mod sensor;
 pub mod shape;
 pub mod solid;
 pub mod suite;
+mod sync_label;
 pub mod system;
 pub mod ta;
 pub mod test;

@@ -40,7 +40,6 @@ pub(crate) struct LogNames<'a, 'p> {
 }
 
 impl LogNames<'_, '_> {
-    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn entry(&self, entry: &LogEntry) -> String {
         match &entry.what {
             LogItem::Selected { on, args, plan, vars, fresh } => {

@@ -103,22 +103,7 @@ enum AnswerSource<'p> {
     /// There are no more answers; those from `start` on are collected.
     Collection {
         start: usize,
-        into: AnswerCollection<'p>,
-    },
-}
-
-/// What all answers together become, and what that is matched with.
-#[derive(Clone, Copy, Debug)]
-enum AnswerCollection<'p> {
-    List {
-        out: &'p AgentTerm,
-    },
-    /// Sorted, each once.
-    Set {
-        out: &'p AgentTerm,
-    },
-    Count {
-        out: &'p AgentTerm,
+        into: internal::AnswerCollection<'p>,
     },
 }
 

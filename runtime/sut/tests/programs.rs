@@ -437,8 +437,8 @@ fn the_sdks_own_tests_pass() {
     let coverage = tests.env.coverage_package().as_os_str().to_owned();
     tests.variables.push(("HRDSL_COVERAGE_PACKAGE".into(), coverage));
     tests.dir = tests.dir.join("../../../../sdk/python/tests");
-    tests.limits.budget = Duration::from_secs(600);
-    let finished = SutProcess::spawn(&tests).unwrap().finish(Duration::from_secs(600));
+    tests.limits.budget = Duration::from_secs(1800);
+    let finished = SutProcess::spawn(&tests).unwrap().finish(Duration::from_secs(1800));
     let text = finished.output.stderr.text();
     assert!(finished.exit == ProgramExit::Code(0) && is_ok(&text), "{text}");
 }

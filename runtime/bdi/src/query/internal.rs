@@ -8,14 +8,27 @@ use hrdsl_ir::{
     value::seconds,
 };
 
-use super::{
-    AnswerCollection, AnswerSource, BeliefQueryError, FormulaPosition, QuerySolver, SolverContinuation,
-};
+use super::{AnswerSource, BeliefQueryError, FormulaPosition, QuerySolver, SolverContinuation};
 use crate::{
     dice::AgentRng,
     mind::{GoalAttitude, MentalState},
     unify::{VariableSlot, eval, undo, unify_all},
 };
+
+/// What all answers together become, and what that is matched with.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum AnswerCollection<'p> {
+    List {
+        out: &'p AgentTerm,
+    },
+    /// Sorted, each once.
+    Set {
+        out: &'p AgentTerm,
+    },
+    Count {
+        out: &'p AgentTerm,
+    },
+}
 
 impl<'p> QuerySolver<'p> {
     pub(super) fn internal(

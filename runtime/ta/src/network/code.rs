@@ -887,11 +887,9 @@ impl CodeLibrary {
         Some(match (numeric(op), ty) {
             (NumericOp::And, NumberType::Bool) => (CompiledExpr::And(both), NumberType::Bool),
             (NumericOp::Or, NumberType::Bool) => (CompiledExpr::Or(both), NumberType::Bool),
-            (
-                NumericOp::Compare(how @ (NumberComparison::Eq | NumberComparison::Ne)),
-                NumberType::Bool | NumberType::Int | NumberType::Enum(_),
-            )
-            | (NumericOp::Compare(how), NumberType::Int) => {
+            (NumericOp::Compare(how), _)
+                if ty == NumberType::Int || how.is_equality() && ty != NumberType::Constant =>
+            {
                 (comparison(how, both.0, both.1), NumberType::Bool)
             }
             (NumericOp::Arith(op), NumberType::Int) => (fold(CompiledExpr::Arith(op, both)), NumberType::Int),

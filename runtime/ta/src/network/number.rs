@@ -54,6 +54,11 @@ pub(crate) enum NumberComparison {
 }
 
 impl NumberComparison {
+    /// Whether it compares values of any type.
+    pub(crate) fn is_equality(self) -> bool {
+        matches!(self, NumberComparison::Eq | NumberComparison::Ne)
+    }
+
     pub(crate) fn holds(self, a: i64, b: i64) -> bool {
         match self {
             NumberComparison::Eq => a == b,

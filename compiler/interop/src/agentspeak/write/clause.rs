@@ -277,27 +277,19 @@ impl<'a> ClauseTranslator<'a> {
                 }
             }
         }
-        Ok(match op {
-            AgentSpeakOperator::Add => ClauseFragment::new(format!("{} + {}", l.at(SUM), r.at(PRODUCT)), SUM),
-            AgentSpeakOperator::Sub => ClauseFragment::new(format!("{} - {}", l.at(SUM), r.at(PRODUCT)), SUM),
-            AgentSpeakOperator::Mul => {
-                ClauseFragment::new(format!("{} * {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT)
-            }
-            AgentSpeakOperator::Mod => {
-                ClauseFragment::new(format!("{} % {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT)
-            }
+        let (sign, level, right_level) = match op {
+            AgentSpeakOperator::Add => ("+", SUM, PRODUCT),
+            AgentSpeakOperator::Sub => ("-", SUM, PRODUCT),
+            AgentSpeakOperator::Mul => ("*", PRODUCT, ATOM),
+            AgentSpeakOperator::Mod => ("%", PRODUCT, ATOM),
             AgentSpeakOperator::IntDiv if float => {
                 return Err("`div` of numbers that may have decimals".into());
             }
-            AgentSpeakOperator::IntDiv => {
-                ClauseFragment::new(format!("{} / {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT)
-            }
             AgentSpeakOperator::Div if [left, right].iter().all(|t| !is_number(t)) => {
-                ClauseFragment::new(format!("1.0 * {} / {}", l.at(ATOM), r.at(ATOM)), PRODUCT)
+                let text = format!("1.0 * {} / {}", l.at(ATOM), r.at(ATOM));
+                return Ok(ClauseFragment::new(text, PRODUCT));
             }
-            AgentSpeakOperator::Div => {
-                ClauseFragment::new(format!("{} / {}", l.at(PRODUCT), r.at(ATOM)), PRODUCT)
-            }
+            AgentSpeakOperator::IntDiv | AgentSpeakOperator::Div => ("/", PRODUCT, ATOM),
             AgentSpeakOperator::Pow
             | AgentSpeakOperator::Or
             | AgentSpeakOperator::And
@@ -310,7 +302,8 @@ impl<'a> ClauseTranslator<'a> {
             | AgentSpeakOperator::Unify
             | AgentSpeakOperator::NotUnify
             | AgentSpeakOperator::Univ => return Err("a formula stands where a value should".into()),
-        })
+        };
+        Ok(ClauseFragment::new(format!("{} {sign} {}", l.at(level), r.at(right_level)), level))
     }
 
     fn power(&mut self, base: &AgentSpeakTerm, exponent: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
