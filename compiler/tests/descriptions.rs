@@ -267,3 +267,19 @@ fn joints_made_by_hand_follow_others() {
     let errors = said(&compiled(&text.replace("mimic left", "mimic right"), &files()));
     assert!(errors[0].contains("cannot follow"), "{errors:?}");
 }
+
+/// A link's name is told as the frame of what is on it, whatever else the scenario declares.
+#[test]
+fn a_part_that_the_world_does_not_use_changes_no_frame() {
+    let laser = "laser eye: arm_1 at (0 m, 0 m, 0 m) angles -90 deg .. 90 deg beams 3 range 5 cm .. 10 m";
+    let system = "system robot {\n  run \"python3 robot.py\"\n  ros1 {\n    \
+                  topic \"/scan\" : sensor_msgs/LaserScan in at 10 Hz from robot.eye\n  }\n}\n";
+    let spare = "part spare { body ball: fixed sphere(10 cm) at (0 m, 0 m, 0 m) }\n";
+    for more in ["", spare] {
+        let result = compiled(&format!("{}{system}{more}", scenario(laser, "")), &files());
+        let program = result.program.unwrap_or_else(|| panic!("{:#?}", result.diagnostics));
+        let binding = program.systems[0].binding.as_ref().unwrap();
+        let message = format!("{:?}", binding.inputs[0].message);
+        assert!(message.contains("arm-1"), "{message}");
+    }
+}

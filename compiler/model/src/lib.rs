@@ -1,5 +1,9 @@
 //! AST → [`Scenario`]: every name resolved to an id, every expression typed and its constants folded. What does not fit is
 //! said where it was written, with the nearest right name; nothing stops at the first error.
+//!
+//! The check goes in phases ([`resolve`] has them in their order). Each is a type that says what it takes and what it gives; what the
+//! scenario has in common with the Program is of the Program's types from the start.
+#![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
 mod check;
 mod descriptions;

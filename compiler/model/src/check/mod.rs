@@ -72,9 +72,10 @@ pub fn resolve_part(
 ) -> (Scenario, Vec<Diagnostic>) {
     let items = scenario.items.iter().collect();
     let source = source(items, modules, known);
-    let mut checker = phases(source, scenario.scenario.as_ref(), tests);
-    checker.places();
-    (checker.s, checker.issues.distinct())
+    let checker = phases(source, scenario.scenario.as_ref(), tests);
+    let Checker { s: mut scenario, source, players, world, issues, .. } = checker;
+    name_spans::complete(&mut scenario, &source.items, &players, &world.names.signals);
+    (scenario, issues.distinct())
 }
 
 /// One declaration of a scenario that stands in place of that with this index: only what is said of it is given. It is the

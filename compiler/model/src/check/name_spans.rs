@@ -6,40 +6,46 @@ use hrdsl_syntax::ast::{
     self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemSyntaxKind, SuiteMemberKind,
 };
 
-use crate::check::{checker::Checker, state::names::DeclaredPlayer};
-use crate::{AgentPlaces, AutomatonPlaces, TypedAutomaton, VarPlace};
+use crate::check::state::{
+    names::{DeclaredPlayer, PlayerNames},
+    table::NameTable,
+};
+use crate::{AgentPlaces, AutomatonPlaces, Scenario, TypedAutomaton, VarPlace};
 
-impl Checker<'_> {
-    pub(in crate::check) fn places(&mut self) {
-        for (item, span) in self.each_item() {
-            if let ItemSyntaxKind::Event(event) = item {
-                self.s.places.events.extend(event.names.iter().map(|one| one.name.span));
-            }
-            if let ItemSyntaxKind::Stimulus(stimulus) = item {
-                self.s.places.events.push(stimulus.name.span);
-            }
-            if let ItemSyntaxKind::Var(var) = item {
-                let name = var.name.text.as_str();
-                let parts = self.s.shared.iter().filter(|v| whole_name(&v.name) == name).count();
-                let place = VarPlace { name: var.name.span, whole: span };
-                self.s.places.shared.extend(std::iter::repeat_n(place, parts));
-            }
-            if let ItemSyntaxKind::Network { name, .. } = item {
-                self.s.places.networks.push(name.span);
-            }
-            if let ItemSyntaxKind::Suite(suite) = item {
-                self.s.places.awaits.push(awaits(suite));
-            }
+/// Completes the places of a scenario, whose items these are.
+pub(in crate::check) fn complete(
+    scenario: &mut Scenario,
+    items: &[&ast::ItemSyntax],
+    players: &PlayerNames<'_>,
+    signals: &NameTable,
+) {
+    let (shared, typed, places) = (&scenario.shared, &scenario.automata, &mut scenario.places);
+    for (item, span) in items.iter().map(|item| (&item.kind, item.span)) {
+        if let ItemSyntaxKind::Event(event) = item {
+            places.events.extend(event.names.iter().map(|one| one.name.span));
         }
-        let agents = self.players.agents.iter();
-        self.s.places.agents =
-            agents.map(|a| agent_places(a.syntax, a.name_span(a.syntax.name.span))).collect();
-        let automata = self.players.automata.iter().zip(&self.s.automata);
-        self.s.places.automata =
-            automata.map(|(a, of)| automaton_places(a.syntax, of, a.name_span(a.syntax.name.span))).collect();
-        let signals = &self.world.names.signals;
-        self.s.places.signals = signals.entries().filter_map(|(_, id)| signals.span(id)).collect();
+        if let ItemSyntaxKind::Stimulus(stimulus) = item {
+            places.events.push(stimulus.name.span);
+        }
+        if let ItemSyntaxKind::Var(var) = item {
+            let name = var.name.text.as_str();
+            let parts = shared.iter().filter(|v| whole_name(&v.name) == name).count();
+            let place = VarPlace { name: var.name.span, whole: span };
+            places.shared.extend(std::iter::repeat_n(place, parts));
+        }
+        if let ItemSyntaxKind::Network { name, .. } = item {
+            places.networks.push(name.span);
+        }
+        if let ItemSyntaxKind::Suite(suite) = item {
+            places.awaits.push(awaits(suite));
+        }
     }
+    let agents = players.agents.iter();
+    places.agents = agents.map(|a| agent_places(a.syntax, a.name_span(a.syntax.name.span))).collect();
+    let automata = players.automata.iter().zip(typed);
+    places.automata =
+        automata.map(|(a, of)| automaton_places(a.syntax, of, a.name_span(a.syntax.name.span))).collect();
+    places.signals = signals.entries().filter_map(|(_, id)| signals.span(id)).collect();
 }
 
 impl<T> DeclaredPlayer<'_, T> {

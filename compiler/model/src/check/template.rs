@@ -242,9 +242,10 @@ impl<'a> Checker<'a> {
             (_, _) => {
                 let prefix = env.world.clone().unwrap_or_default();
                 let known = !whole
-                    || match kind {
-                        Noun::Body => self.body_ref(&path.names, &prefix).is_some(),
-                        _ => self.world_name(kind, &path.names, &prefix).is_some(),
+                    || if kind == Noun::Body {
+                        self.body_ref(&path.names, &prefix).is_some()
+                    } else {
+                        self.world_name(kind, &path.names, &prefix).is_some()
                     };
                 let full = format!("{prefix}{}", measure::text(&path.names));
                 if known { TemplateArgument::Thing(kind, full) } else { TemplateArgument::Unknown }
@@ -254,25 +255,22 @@ impl<'a> Checker<'a> {
 
     /// `a`, `a(true)`, `a or b(_)`: `None` if it is nothing of this form.
     fn alternatives(&mut self, arg: &ast::ExprSyntax) -> Option<Option<Vec<EventPattern>>> {
-        match &arg.kind {
-            Syntax::Binary { op: BinaryOp::Or, left, right } => {
-                let (left, right) = (self.alternatives(left)?, self.alternatives(right)?);
-                Some(left.zip(right).map(|(mut l, r)| {
-                    l.extend(r);
-                    l
-                }))
-            }
-            Syntax::Path(path) if path.names.len() == 1 => {
-                let call = ast::CallSyntax { name: path.names[0].clone(), args: None, span: arg.span };
-                Some(self.pattern_of(&call))
-            }
-            Syntax::Call { callee, args } if callee.names.len() == 1 => {
-                let args = Some(args.clone());
-                let call = ast::CallSyntax { name: callee.names[0].clone(), args, span: arg.span };
-                Some(self.pattern_of(&call))
-            }
-            _ => None,
+        if let Syntax::Binary { op: BinaryOp::Or, left, right } = &arg.kind {
+            let (left, right) = (self.alternatives(left)?, self.alternatives(right)?);
+            return Some(left.zip(right).map(|(mut l, r)| {
+                l.extend(r);
+                l
+            }));
         }
+        let (path, args) = if let Syntax::Call { callee, args } = &arg.kind {
+            (callee, Some(args.clone()))
+        } else if let Syntax::Path(path) = &arg.kind {
+            (path, None)
+        } else {
+            return None;
+        };
+        let [name] = path.names.as_slice() else { return None };
+        Some(self.pattern_of(&ast::CallSyntax { name: name.clone(), args, span: arg.span }))
     }
 
     fn pattern_of(&mut self, call: &ast::CallSyntax) -> Option<Vec<EventPattern>> {

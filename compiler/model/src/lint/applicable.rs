@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     BeliefId, BinaryOp, GoalId, TriggerOn, Type, TypedContext, TypedExpr, TypedExprKind, TypedPlan,
-    TypedStepKind, TypedTerm, UnaryOp, Value, VariableRef, expr::ComparisonOp,
+    TypedTerm, UnaryOp, Value, VariableRef, expr::ComparisonOp,
 };
 
 /// Steps of the search.
@@ -178,11 +178,10 @@ fn always(is_so: &dyn Fn(&PossibleWorld) -> AskedLiteral<bool>, world: &mut Poss
 
 /// Whether an achieve or query step has a plan or fact whenever it is reached.
 pub(crate) fn never_stuck(facts: &AgentFacts<'_>, plan: &TypedPlan, at: usize) -> bool {
-    let answers = match &plan.body[at].kind {
-        TypedStepKind::Achieve { goal, .. } => facts.plans(TriggerOn::GoalAdded(*goal)).all(is_simple),
-        TypedStepKind::Query(literal) => is_simple_literal(literal),
-        _ => true,
-    };
+    let asks = &plan.body[at].kind;
+    let answers =
+        asks.as_achieve().is_none_or(|(goal, _)| facts.plans(TriggerOn::GoalAdded(goal)).all(is_simple))
+            && asks.as_query().is_none_or(is_simple_literal);
     if at > LONG || !facts.work(1) {
         return true;
     }
@@ -495,10 +494,10 @@ fn distinct(args: &[TypedTerm]) -> bool {
 fn changed(facts: &AgentFacts<'_>, plan: &TypedPlan, at: usize) -> Vec<BeliefId> {
     let mut all: Vec<BeliefId> = Vec::new();
     for step in &plan.body[..at] {
-        let asks = |belief| facts.plans(TriggerOn::TestAdded(belief)).next().is_none();
+        let by_facts = |belief| facts.plans(TriggerOn::TestAdded(belief)).next().is_none();
         if let Some(changed) = change(step) {
             all.push(changed.belief());
-        } else if !is_quiet(step) && !step.kind.as_query().is_some_and(|l| asks(l.belief)) {
+        } else if !is_quiet(step) && !step.kind.as_query().is_some_and(|l| by_facts(l.belief)) {
             return facts.changed().collect();
         }
     }

@@ -315,10 +315,8 @@ pub(crate) fn type_span(ty: &TypeExpr) -> Span {
     match ty {
         TypeExpr::Named(name) => name.span,
         TypeExpr::Range(lo, hi) => lo.span.to(hi.span),
-        TypeExpr::Array(of, size) => match of.as_ref() {
-            TypeExpr::Error => size.span,
-            of => type_span(of).to(size.span),
-        },
+        TypeExpr::Array(of, size) if **of == TypeExpr::Error => size.span,
+        TypeExpr::Array(of, size) => type_span(of).to(size.span),
         TypeExpr::List(of) => type_span(of),
         TypeExpr::Error => Span::default(),
     }

@@ -79,9 +79,9 @@ fn adopts(agent: &ast::AgentSyntax, goal: &str) -> bool {
 
 /// The declaration of a goal's types, as it would be adopted.
 fn declared(agent: &ast::AgentSyntax, goal: &str) -> Option<(String, Span)> {
-    agent.members.iter().find_map(|m| match &m.kind {
-        Member::GoalType { name, params } if name.text == goal => Some((written(name, params), name.span)),
-        _ => None,
+    agent.members.iter().find_map(|m| {
+        let Member::GoalType { name, params } = &m.kind else { return None };
+        (name.text == goal).then(|| (written(name, params), name.span))
     })
 }
 
@@ -286,13 +286,12 @@ impl<'a> AgentsPhase<'_, 'a> {
         for member in &agent.members {
             match &member.kind {
                 Member::Goal(call) => here.extend([call.name.text.as_str()]),
-                Member::Plan(plan) => each_step(&plan.body, &mut |step| match &step.kind {
-                    StepSyntaxKind::Achieve { call, .. } | StepSyntaxKind::Spawn(call) => {
+                Member::Plan(plan) => each_step(&plan.body, &mut |step| {
+                    if let StepSyntaxKind::Achieve { call, .. } | StepSyntaxKind::Spawn(call) = &step.kind {
                         here.extend([call.name.text.as_str()]);
                     }
                     // It may have been an adoption.
-                    StepSyntaxKind::Error => broken = true,
-                    _ => {}
+                    broken |= step.kind == StepSyntaxKind::Error;
                 }),
                 Member::Belief { .. } | Member::Rule { .. } | Member::GoalType { .. } | Member::Allow(_) => {}
                 Member::Error => broken = true,
@@ -533,14 +532,13 @@ fn achieved(agent: &ast::AgentSyntax) -> OrderedMap<String, GoalEntry> {
 fn each_step<'a>(steps: &'a [ast::StepSyntax], f: &mut dyn FnMut(&'a ast::StepSyntax)) {
     for step in steps {
         f(step);
-        match &step.kind {
-            StepSyntaxKind::If { then, otherwise, .. } => {
-                each_step(then, f);
-                each_step(otherwise, f);
-            }
-            StepSyntaxKind::While { body, .. } | StepSyntaxKind::For { body, .. } => each_step(body, f),
-            StepSyntaxKind::Fork { branches, .. } => branches.iter().for_each(|b| each_step(b, f)),
-            _ => {}
+        if let StepSyntaxKind::If { then, otherwise, .. } = &step.kind {
+            each_step(then, f);
+            each_step(otherwise, f);
+        } else if let StepSyntaxKind::While { body, .. } | StepSyntaxKind::For { body, .. } = &step.kind {
+            each_step(body, f);
+        } else if let StepSyntaxKind::Fork { branches, .. } = &step.kind {
+            branches.iter().for_each(|b| each_step(b, f));
         }
     }
 }

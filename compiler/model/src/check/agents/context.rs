@@ -51,10 +51,8 @@ impl AgentsPhase<'_, '_> {
             Syntax::Binary { op: BinaryOp::And, left, right } => {
                 let mut parts = Vec::new();
                 for side in [left, right] {
-                    match self.context(scope, side, env) {
-                        TypedContext::And(more) => parts.extend(more),
-                        one => parts.push(one),
-                    }
+                    let side = self.context(scope, side, env);
+                    if let TypedContext::And(more) = side { parts.extend(more) } else { parts.push(side) }
                 }
                 Self::all_of(parts)
             }
@@ -85,9 +83,20 @@ impl AgentsPhase<'_, '_> {
                     None => TypedContext::True,
                 }
             }
-            _ if self.belief_in_test(scope, e) => TypedContext::True,
-            _ => TypedContext::Test(self.expr_of(e, InferredType::Bool, env)),
+            Syntax::Path(_) | Syntax::Index { .. } | Syntax::Field { .. } => self.test(scope, e, env),
+            Syntax::Bool(_) | Syntax::Int(_) | Syntax::Float(_) => self.test(scope, e, env),
+            Syntax::Quantity { .. } | Syntax::Text(_) | Syntax::Any => self.test(scope, e, env),
+            Syntax::Unary { .. } | Syntax::Binary { .. } | Syntax::If { .. } => self.test(scope, e, env),
+            Syntax::Tuple(_) | Syntax::List { .. } | Syntax::Error => self.test(scope, e, env),
         }
+    }
+
+    /// A condition on values; one in which a belief is written as if it had one has been said.
+    fn test(&mut self, scope: &AgentScope, e: &ast::ExprSyntax, env: &mut ExprEnv) -> TypedContext {
+        if self.belief_in_test(scope, e) {
+            return TypedContext::True;
+        }
+        TypedContext::Test(self.expr_of(e, InferredType::Bool, env))
     }
 
     /// A single name that is neither a variable nor a constant is meant as a belief.
@@ -118,12 +127,12 @@ impl AgentsPhase<'_, '_> {
     ) -> TypedContext {
         let swapped = self.is_pattern(right, env) && !self.is_pattern(left, env);
         let (term, value) = if swapped { (right, left) } else { (left, right) };
-        let due = match &term.kind {
-            Syntax::Path(path) if path.names.len() == 1 => {
-                let local = env.find(&path.names[0].text).filter(|l| l.bound);
-                local.map_or(InferredType::Unknown, |l| l.ty)
-            }
-            _ => InferredType::Unknown,
+        let due = if let Syntax::Path(path) = &term.kind
+            && let [name] = path.names.as_slice()
+        {
+            env.find(&name.text).filter(|l| l.bound).map_or(InferredType::Unknown, |l| l.ty)
+        } else {
+            InferredType::Unknown
         };
         // A whole number and a float are compared as numbers.
         let value = self.single(value, if due.is_bare() { InferredType::Unknown } else { due }, env);
@@ -150,9 +159,11 @@ impl AgentsPhase<'_, '_> {
         let mut parts = Vec::new();
         let mut sides = Vec::new();
         for side in [left, right] {
-            match self.context(scope, side, env) {
-                TypedContext::Or(more) => parts.extend(more),
-                one => parts.push(one),
+            let side = self.context(scope, side, env);
+            if let TypedContext::Or(more) = side {
+                parts.extend(more)
+            } else {
+                parts.push(side)
             }
             sides.push(known(env));
             restore(env, &before);

@@ -102,12 +102,7 @@ impl AgentsPhase<'_, '_> {
                 TypedInternalAct::Holds { function, args }
             }
             (op @ (InternalOp::Intend | InternalOp::Desire | InternalOp::Suspended), [goal]) => {
-                let (goal, args) = self.goal_term(scope, goal, env, true)?;
-                match op {
-                    InternalOp::Intend => TypedInternalAct::Intend { goal, args },
-                    InternalOp::Desire => TypedInternalAct::Desire { goal, args },
-                    _ => TypedInternalAct::Suspended { goal, args },
-                }
+                self.of_goal(scope, op, goal, env)?
             }
             (InternalOp::Random, [out]) => TypedInternalAct::Random {
                 from: None,
@@ -134,6 +129,24 @@ impl AgentsPhase<'_, '_> {
         })
     }
 
+    /// What is asked of a goal: whether it is suspended, if nothing else.
+    fn of_goal(
+        &mut self,
+        scope: &AgentScope,
+        op: InternalOp,
+        goal: &ast::ExprSyntax,
+        env: &mut ExprEnv,
+    ) -> Option<TypedInternalAct> {
+        let (goal, args) = self.goal_term(scope, goal, env, true)?;
+        Some(if op == InternalOp::Intend {
+            TypedInternalAct::Intend { goal, args }
+        } else if op == InternalOp::Desire {
+            TypedInternalAct::Desire { goal, args }
+        } else {
+            TypedInternalAct::Suspended { goal, args }
+        })
+    }
+
     /// A result: a term that is matched with it.
     pub(in crate::check) fn out(
         &mut self,
@@ -154,13 +167,15 @@ impl AgentsPhase<'_, '_> {
         use ListFunction as F;
         let list = InferredType::list(InferredType::Unknown);
         Some(match (f, args) {
-            (F::Length | F::Reverse | F::Empty, [arg]) => {
+            (F::Length, [arg]) => {
+                (vec![self.list_or_text(arg, InferredType::Unknown, env)], InferredType::Int)
+            }
+            (F::Empty, [arg]) => {
+                (vec![self.list_or_text(arg, InferredType::Unknown, env)], InferredType::Bool)
+            }
+            (F::Reverse, [arg]) => {
                 let arg = self.list_or_text(arg, InferredType::Unknown, env);
-                let result = match f {
-                    F::Length => InferredType::Int,
-                    F::Empty => InferredType::Bool,
-                    _ => arg.ty,
-                };
+                let result = arg.ty;
                 (vec![arg], result)
             }
             (F::Sort, [arg]) => {

@@ -309,11 +309,11 @@ impl AgentsPhase<'_, '_> {
         let mut names: Vec<String> = Vec::new();
         for agent in receivers {
             let index = usize::from(agent.0);
-            match noun {
-                Noun::Goal => names.extend(self.names.goals[index].keys().cloned()),
-                _ => names.extend(
-                    self.names.beliefs[index].names().filter(|n| !n.starts_with('~')).map(str::to_owned),
-                ),
+            if noun == Noun::Goal {
+                names.extend(self.names.goals[index].keys().cloned());
+            } else {
+                let beliefs = self.names.beliefs[index].names();
+                names.extend(beliefs.filter(|n| !n.starts_with('~')).map(str::to_owned));
             }
         }
         names.dedup();

@@ -52,32 +52,31 @@ impl TermMode {
 
 /// A literal that is written as an expression: `~b(X)[source(S)]`.
 pub(in crate::check) fn literal_of(e: &ast::ExprSyntax) -> Option<ast::LiteralSyntax> {
-    let literal = match &e.kind {
-        Syntax::Path(path) => {
-            let [name] = path.names.as_slice() else { return None };
-            let call = CallSyntax { name: name.clone(), args: None, span: e.span };
-            ast::LiteralSyntax { negated: false, call, annotations: Vec::new(), span: e.span }
-        }
-        Syntax::Call { callee, args } => {
-            let [name] = callee.names.as_slice() else { return None };
-            let call = CallSyntax { name: name.clone(), args: Some(args.clone()), span: e.span };
-            ast::LiteralSyntax { negated: false, call, annotations: Vec::new(), span: e.span }
-        }
-        Syntax::Strong(inner) => {
-            let inner = literal_of(inner).filter(|l| !l.negated)?;
-            ast::LiteralSyntax { negated: true, span: e.span, ..inner }
-        }
-        Syntax::Annotated { of, annotations } => {
-            let of = literal_of(of).filter(|l| l.annotations.is_empty())?;
-            ast::LiteralSyntax { annotations: annotations.clone(), span: e.span, ..of }
-        }
-        Syntax::Index { of, index } => {
-            let of = literal_of(of).filter(|l| l.annotations.is_empty())?;
-            ast::LiteralSyntax { annotations: vec![(**index).clone()], span: e.span, ..of }
-        }
-        _ => return None,
+    if let Syntax::Strong(inner) = &e.kind {
+        let inner = literal_of(inner).filter(|l| !l.negated)?;
+        return Some(ast::LiteralSyntax { negated: true, span: e.span, ..inner });
+    }
+    let annotated = if let Syntax::Annotated { of, annotations } = &e.kind {
+        Some((of, annotations.clone()))
+    } else if let Syntax::Index { of, index } = &e.kind {
+        Some((of, vec![(**index).clone()]))
+    } else {
+        None
     };
-    Some(literal)
+    if let Some((of, annotations)) = annotated {
+        let of = literal_of(of).filter(|l| l.annotations.is_empty())?;
+        return Some(ast::LiteralSyntax { annotations, span: e.span, ..of });
+    }
+    let (path, args) = if let Syntax::Call { callee, args } = &e.kind {
+        (callee, Some(args.clone()))
+    } else if let Syntax::Path(path) = &e.kind {
+        (path, None)
+    } else {
+        return None;
+    };
+    let [name] = path.names.as_slice() else { return None };
+    let call = CallSyntax { name: name.clone(), args, span: e.span };
+    Some(ast::LiteralSyntax { negated: false, call, annotations: Vec::new(), span: e.span })
 }
 
 impl AgentsPhase<'_, '_> {
@@ -132,20 +131,20 @@ impl AgentsPhase<'_, '_> {
         env: &mut ExprEnv,
         binds: bool,
     ) -> TypedTerm {
-        match &arg.kind {
-            Syntax::Any => return TypedTerm::Any,
-            Syntax::Path(path) => {
-                if let [name] = path.names.as_slice()
-                    && self.is_variable(&name.text)
-                    && env.layout(&name.text).is_none()
-                {
-                    return self.matched_variable(name, due, env, binds);
-                }
-            }
-            Syntax::List { items, rest } if self.is_pattern(arg, env) => {
-                return self.matched_list(items, rest.as_deref(), due, arg.span, env, binds);
-            }
-            _ => {}
+        if arg.kind == Syntax::Any {
+            return TypedTerm::Any;
+        }
+        if let Syntax::Path(path) = &arg.kind
+            && let [name] = path.names.as_slice()
+            && self.is_variable(&name.text)
+            && env.layout(&name.text).is_none()
+        {
+            return self.matched_variable(name, due, env, binds);
+        }
+        if let Syntax::List { items, rest } = &arg.kind
+            && self.is_pattern(arg, env)
+        {
+            return self.matched_list(items, rest.as_deref(), due, arg.span, env, binds);
         }
         TypedTerm::Expr(match due {
             TermMode::Type(ty) => self.expr_for(arg, ty, env),
@@ -183,23 +182,16 @@ impl AgentsPhase<'_, '_> {
 
     /// Whether something in a list is matched, and not only computed.
     pub(in crate::check) fn is_pattern(&self, e: &ast::ExprSyntax, env: &ExprEnv) -> bool {
-        match &e.kind {
-            Syntax::Any => true,
-            Syntax::Path(path) => match path.names.as_slice() {
-                [name] => {
-                    let open = env.find(&name.text).is_none_or(|l| !l.bound);
-                    self.is_variable(&name.text)
-                        && open
-                        && env.layout(&name.text).is_none()
-                        && !env.broken.contains(&name.text)
-                }
-                _ => false,
-            },
-            Syntax::List { items, rest } => {
-                items.iter().chain(rest.as_deref()).any(|part| self.is_pattern(part, env))
-            }
-            _ => false,
+        if let Syntax::List { items, rest } = &e.kind {
+            return items.iter().chain(rest.as_deref()).any(|part| self.is_pattern(part, env));
         }
+        let Syntax::Path(path) = &e.kind else { return e.kind == Syntax::Any };
+        let [name] = path.names.as_slice() else { return false };
+        let open = env.find(&name.text).is_none_or(|l| !l.bound);
+        self.is_variable(&name.text)
+            && open
+            && env.layout(&name.text).is_none()
+            && !env.broken.contains(&name.text)
     }
 
     /// Binds a variable, or compares with its value.
@@ -314,14 +306,19 @@ impl AgentsPhase<'_, '_> {
         declared: Option<&[Parameter]>,
     ) -> Option<(BeliefAnnotation, &'e ast::ExprSyntax, Type)> {
         let declared = declared?;
-        let (name, args): (&ast::NameSyntax, &[ast::ExprSyntax]) = match &e.kind {
-            Syntax::Call { callee, args } if callee.names.len() == 1 => (&callee.names[0], args),
-            Syntax::Path(path) if path.names.len() == 1 => (&path.names[0], &[]),
-            Syntax::Error => return None,
-            _ => {
+        let (path, args): (Option<&ast::PathSyntax>, &[ast::ExprSyntax]) = if let Syntax::Path(path) = &e.kind
+        {
+            (Some(path), &[])
+        } else if let Syntax::Call { callee, args } = &e.kind {
+            (Some(callee), args)
+        } else {
+            (None, &[])
+        };
+        let Some([name]) = path.map(|path| path.names.as_slice()) else {
+            if e.kind != Syntax::Error {
                 self.report(agents::no_annotation(e.span));
-                return None;
             }
+            return None;
         };
         let at = declared.iter().position(|p| p.name == name.text);
         let (annotation, ty) = match at {

@@ -291,14 +291,10 @@ impl AutomataPhase<'_, '_> {
 
 /// The parts of a conjunction, in order.
 pub(in crate::check) fn conjuncts(e: &ast::ExprSyntax) -> Vec<&ast::ExprSyntax> {
-    match &e.kind {
-        Syntax::Binary { op: ast::BinaryOp::And, left, right } => {
-            let mut parts = conjuncts(left);
-            parts.extend(conjuncts(right));
-            parts
-        }
-        _ => vec![e],
-    }
+    let Syntax::Binary { op: ast::BinaryOp::And, left, right } = &e.kind else { return vec![e] };
+    let mut parts = conjuncts(left);
+    parts.extend(conjuncts(right));
+    parts
 }
 
 pub(in crate::check) fn and(a: TypedExpr, b: TypedExpr) -> TypedExpr {

@@ -395,16 +395,11 @@ impl<'e> QuerySum<'e> {
             }
             return;
         }
-        match &e.kind {
-            Syntax::Binary { op: BinaryOp::Add, left, right } => {
-                self.add(left, negative, net);
-                self.add(right, negative, net);
-            }
-            Syntax::Binary { op: BinaryOp::Sub, left, right } => {
-                self.add(left, negative, net);
-                self.add(right, !negative, net);
-            }
-            _ => self.rest.push((e, negative)),
+        if let Syntax::Binary { op: op @ (BinaryOp::Add | BinaryOp::Sub), left, right } = &e.kind {
+            self.add(left, negative, net);
+            self.add(right, negative != (*op == BinaryOp::Sub), net);
+        } else {
+            self.rest.push((e, negative));
         }
     }
 }
@@ -444,13 +439,14 @@ fn joined(names: &[NameSyntax]) -> String {
 
 /// The clock that an expression names: `x`, `P.x`, `x[2]`.
 fn clock_named(e: &ast::ExprSyntax, net: &QueryNetwork) -> Option<ClockId> {
-    let name = match &e.kind {
-        Syntax::Path(path) => joined(&path.names),
-        Syntax::Index { of, index } => match (&of.kind, &index.kind) {
-            (Syntax::Path(path), Syntax::Int(n)) => format!("{}[{n}]", joined(&path.names)),
-            _ => return None,
-        },
-        _ => return None,
+    let name = if let Syntax::Index { of, index } = &e.kind
+        && let (Syntax::Path(path), Syntax::Int(n)) = (&of.kind, &index.kind)
+    {
+        format!("{}[{n}]", joined(&path.names))
+    } else if let Syntax::Path(path) = &e.kind {
+        joined(&path.names)
+    } else {
+        return None;
     };
     net.clocks.get(&name).copied()
 }

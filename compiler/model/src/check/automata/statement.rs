@@ -4,8 +4,9 @@ use hrdsl_source::Span;
 use hrdsl_syntax::ast::{self, AccessSyntax, NameSyntax, StatementSyntaxKind as Syntax};
 
 use crate::check::{
-    checker::Checker,
+    automata::phase::AutomataPhase,
     state::scope::ExprEnv,
+    template::CheckerPhase,
     value::{element::type_of, range},
 };
 use crate::{
@@ -55,7 +56,7 @@ pub(in crate::check) fn returns(statements: &[TypedStatement]) -> bool {
     })
 }
 
-impl Checker<'_> {
+impl AutomataPhase<'_, '_> {
     /// What is declared in a block is known to its end.
     pub(in crate::check) fn block(
         &mut self,

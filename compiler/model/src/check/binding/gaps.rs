@@ -170,7 +170,10 @@ fn paths_in<'e>(e: &'e ast::ExprSyntax, all: &mut Vec<&'e ast::PathSyntax>) {
             [condition, then, otherwise].into_iter().for_each(|part| paths_in(part, all));
         }
         Syntax::Index { of, .. } | Syntax::Field { of, .. } => paths_in(of, all),
-        _ => {}
+        Syntax::Bool(_) | Syntax::Int(_) | Syntax::Float(_) | Syntax::Quantity { .. } => {}
+        Syntax::Any | Syntax::Text(_) | Syntax::Internal(_) | Syntax::Error => {}
+        // Agents have these, messages do not.
+        Syntax::List { .. } | Syntax::Strong(_) | Syntax::Annotated { .. } | Syntax::Unify { .. } => {}
     }
 }
 
@@ -198,14 +201,14 @@ fn events(what: &ast::ExprSyntax) -> Option<Vec<CallSyntax>> {
         let [name] = callee.names.as_slice() else { return None };
         Some(vec![CallSyntax { name: name.clone(), args, span }])
     };
-    match &what.kind {
-        Syntax::Path(path) => call(path, None, what.span),
-        Syntax::Call { callee, args } => call(callee, Some(args.clone()), what.span),
-        Syntax::Binary { op: BinaryOp::Or, left, right } => {
-            let (mut all, more) = (events(left)?, events(right)?);
-            all.extend(more);
-            Some(all)
-        }
-        _ => None,
+    if let Syntax::Path(path) = &what.kind {
+        return call(path, None, what.span);
     }
+    if let Syntax::Call { callee, args } = &what.kind {
+        return call(callee, Some(args.clone()), what.span);
+    }
+    let Syntax::Binary { op: BinaryOp::Or, left, right } = &what.kind else { return None };
+    let (mut all, more) = (events(left)?, events(right)?);
+    all.extend(more);
+    Some(all)
 }

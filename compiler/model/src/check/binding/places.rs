@@ -36,20 +36,19 @@ pub(super) fn steps_of_field(field: &FieldSyntax) -> Vec<WrittenStep<'_>> {
 
 /// The same in an expression; `None`: it is no place.
 pub(super) fn steps_of(e: &ast::ExprSyntax) -> Option<Vec<WrittenStep<'_>>> {
-    match &e.kind {
-        Syntax::Path(path) => Some(path.names.iter().map(WrittenStep::Field).collect()),
-        Syntax::Index { of, index } => {
-            let mut steps = steps_of(of)?;
-            steps.push(WrittenStep::Element(index));
-            Some(steps)
-        }
-        Syntax::Field { of, name } => {
-            let mut steps = steps_of(of)?;
-            steps.push(WrittenStep::Field(name));
-            Some(steps)
-        }
-        _ => None,
+    if let Syntax::Path(path) = &e.kind {
+        return Some(path.names.iter().map(WrittenStep::Field).collect());
     }
+    let (of, step) = if let Syntax::Index { of, index } = &e.kind {
+        (of, WrittenStep::Element(index))
+    } else if let Syntax::Field { of, name } = &e.kind {
+        (of, WrittenStep::Field(name))
+    } else {
+        return None;
+    };
+    let mut steps = steps_of(of)?;
+    steps.push(step);
+    Some(steps)
 }
 
 /// The fields of what lies at a place.
@@ -159,7 +158,10 @@ impl BindingPhase<'_, '_> {
                 otherwise: boxed(part(otherwise)?),
             },
             Syntax::Tuple(parts) => Syntax::Tuple(parts.iter().map(part).collect::<Option<_>>()?),
-            _ => return Some(e.clone()),
+            Syntax::Bool(_) | Syntax::Int(_) | Syntax::Float(_) | Syntax::Text(_) => return Some(e.clone()),
+            Syntax::Quantity { .. } | Syntax::Any | Syntax::Internal(_) => return Some(e.clone()),
+            Syntax::List { .. } | Syntax::Strong(_) | Syntax::Annotated { .. } => return Some(e.clone()),
+            Syntax::Unify { .. } | Syntax::Error => return Some(e.clone()),
         };
         Some(ast::ExprSyntax { kind, span: e.span })
     }

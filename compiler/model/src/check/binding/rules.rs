@@ -189,9 +189,8 @@ impl<'a> BindingPhase<'_, 'a> {
     /// An argument in which the places of the message are names already.
     fn message_argument(&mut self, arg: &ast::ExprSyntax, ty: Type, env: &mut MessageEnv<'_>) -> TypedExpr {
         let want = InferredType::of(ty);
-        let value = match self.item_due(arg, want, &mut env.env) {
-            ExprItem::One(value) => value,
-            _ => return self.expr_for(arg, ty, &mut env.env),
+        let ExprItem::One(value) = self.item_due(arg, want, &mut env.env) else {
+            return self.expr_for(arg, ty, &mut env.env);
         };
         if let (Type::Enum(_), InferredType::Text) = (ty, value.ty)
             && let Some(value) = env.as_enumeration(&value, ty)

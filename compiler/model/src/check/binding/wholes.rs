@@ -141,20 +141,21 @@ impl<'a> BindingPhase<'_, 'a> {
     /// `None`: something is wrong with it, which is said. `Some(None)`: it is one value.
     #[expect(clippy::option_option, reason = "the outer one is a fault that has been said")]
     fn given_parts<'e>(&mut self, value: &'e ast::ExprSyntax) -> Option<Option<GivenParts<'e>>> {
-        match &value.kind {
-            Syntax::List { items, rest: None } => return Some(Some(GivenParts::Written(items))),
-            Syntax::Tuple(items) => return Some(Some(GivenParts::Written(items))),
-            _ => {}
+        if let Syntax::List { items, rest: None } | Syntax::Tuple(items) = &value.kind {
+            return Some(Some(GivenParts::Written(items)));
         }
         let (mut env, reads) = self.heard_arguments(self.actor);
-        match self.item(value, &mut env) {
-            item @ (ExprItem::Array(..) | ExprItem::Tuple(..)) => {
+        let item = self.item(value, &mut env);
+        if item.is_unknown() {
+            return None;
+        }
+        match item {
+            ExprItem::One(_) | ExprItem::Record(..) => Some(None),
+            ExprItem::Array(..) | ExprItem::Tuple(..) => {
                 let mut parts = Vec::new();
                 item.flatten(&mut parts);
                 Some(Some(GivenParts::Worked(parts, reads)))
             }
-            item if item.is_unknown() => None,
-            ExprItem::One(_) | ExprItem::Record(..) => Some(None),
         }
     }
 

@@ -71,10 +71,10 @@ impl WorldNames {
     /// The names of this kind directly below a prefix. Where a body is meant, a current body will do;
     /// where a device is, whatever is one.
     pub fn below(&self, noun: Noun, prefix: &str) -> Vec<String> {
-        let fits = |n: Noun| match noun {
-            Noun::Body if n == Noun::Current => true,
-            Noun::Device => matches!(n, Noun::Arm | Noun::Gripper | Noun::Base | Noun::Laser),
-            other => n == other,
+        let fits = |n: Noun| {
+            n == noun
+                || noun == Noun::Body && n == Noun::Current
+                || noun == Noun::Device && matches!(n, Noun::Arm | Noun::Gripper | Noun::Base | Noun::Laser)
         };
         let tables = self.tables().into_iter().filter(|(n, _)| fits(*n));
         let names = tables.flat_map(|(_, t)| t.names().filter_map(|n| n.strip_prefix(prefix)));

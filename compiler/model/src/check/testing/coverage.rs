@@ -27,22 +27,20 @@ impl TestingPhase<'_, '_> {
             }
         });
         for (item, span) in self.each_item() {
-            match item {
-                _ if template(item).is_some() => {}
-                ItemSyntaxKind::Cover(cover) => {
-                    let resolved = self.point_of(cover);
-                    self.add_point(&cover.name, cover, resolved, span);
-                }
-                ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Cover => {
-                    let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else {
-                        continue;
-                    };
-                    let ItemSyntaxKind::Cover(cover) = template.kind else { continue };
-                    let place = Some((&instance.name, instance.span));
-                    let resolved = self.as_instance(Some(given), place, |c| c.point_of(cover));
-                    self.add_point(&instance.name, cover, resolved, span);
-                }
-                _ => {}
+            if template(item).is_some() {
+                continue;
+            }
+            if let ItemSyntaxKind::Cover(cover) = item {
+                let resolved = self.point_of(cover);
+                self.add_point(&cover.name, cover, resolved, span);
+            } else if let ItemSyntaxKind::Instance(instance) = item
+                && instance.sort == TemplateSyntaxKind::Cover
+                && let Some((template, given)) = self.instance(instance, &ExprEnv::constants())
+                && let ItemSyntaxKind::Cover(cover) = template.kind
+            {
+                let place = Some((&instance.name, instance.span));
+                let resolved = self.as_instance(Some(given), place, |c| c.point_of(cover));
+                self.add_point(&instance.name, cover, resolved, span);
             }
         }
         self.templates_of(TemplateSyntaxKind::Cross, |c, template| {
@@ -51,22 +49,20 @@ impl TestingPhase<'_, '_> {
             }
         });
         for (item, span) in self.each_item() {
-            match item {
-                _ if template(item).is_some() => {}
-                ItemSyntaxKind::Cross(cross) => {
-                    let resolved = self.cross_of(cross, span);
-                    self.cross(&cross.name, resolved);
-                }
-                ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Cross => {
-                    let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else {
-                        continue;
-                    };
-                    let ItemSyntaxKind::Cross(cross) = template.kind else { continue };
-                    let place = Some((&instance.name, instance.span));
-                    let resolved = self.as_instance(Some(given), place, |c| c.cross_of(cross, span));
-                    self.cross(&instance.name, resolved);
-                }
-                _ => {}
+            if template(item).is_some() {
+                continue;
+            }
+            if let ItemSyntaxKind::Cross(cross) = item {
+                let resolved = self.cross_of(cross, span);
+                self.cross(&cross.name, resolved);
+            } else if let ItemSyntaxKind::Instance(instance) = item
+                && instance.sort == TemplateSyntaxKind::Cross
+                && let Some((template, given)) = self.instance(instance, &ExprEnv::constants())
+                && let ItemSyntaxKind::Cross(cross) = template.kind
+            {
+                let place = Some((&instance.name, instance.span));
+                let resolved = self.as_instance(Some(given), place, |c| c.cross_of(cross, span));
+                self.cross(&instance.name, resolved);
             }
         }
     }
@@ -157,29 +153,24 @@ impl TestingPhase<'_, '_> {
         points: &[CoverpointId],
         whole: bool,
     ) -> Option<BinCondition> {
-        match &e.kind {
-            Syntax::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } => {
-                let (l, r) =
-                    (self.cross_condition(left, points, whole), self.cross_condition(right, points, whole));
-                let both = vec![l?, r?];
-                Some(if *op == BinaryOp::And { BinCondition::And(both) } else { BinCondition::Or(both) })
-            }
-            Syntax::Unary { op: UnaryOp::Not, operand } => {
-                Some(BinCondition::Not(Box::new(self.cross_condition(operand, points, whole)?)))
-            }
-            Syntax::Path(path) => match path.names.as_slice() {
-                [point, bin] => self.in_bin(point, bin, points, whole),
-                _ => {
-                    self.report(types::no_value("this", e.span).help("name a bin of a point: `legs.four`"));
-                    None
-                }
-            },
-            Syntax::Error => None,
-            _ => {
-                self.report(types::no_value("this", e.span).help("name a bin of a point: `legs.four`"));
-                None
-            }
+        if let Syntax::Binary { op: op @ (BinaryOp::And | BinaryOp::Or), left, right } = &e.kind {
+            let (l, r) =
+                (self.cross_condition(left, points, whole), self.cross_condition(right, points, whole));
+            let both = vec![l?, r?];
+            return Some(if *op == BinaryOp::And { BinCondition::And(both) } else { BinCondition::Or(both) });
         }
+        if let Syntax::Unary { op: UnaryOp::Not, operand } = &e.kind {
+            return Some(BinCondition::Not(Box::new(self.cross_condition(operand, points, whole)?)));
+        }
+        if let Syntax::Path(path) = &e.kind
+            && let [point, bin] = path.names.as_slice()
+        {
+            return self.in_bin(point, bin, points, whole);
+        }
+        if e.kind != Syntax::Error {
+            self.report(types::no_value("this", e.span).help("name a bin of a point: `legs.four`"));
+        }
+        None
     }
 
     fn in_bin(

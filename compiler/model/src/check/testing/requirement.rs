@@ -23,26 +23,25 @@ impl TestingPhase<'_, '_> {
             }
         });
         for (item, span) in self.each_item() {
-            match item {
-                _ if template(item).is_some() => {}
-                ItemSyntaxKind::Require(require) => {
-                    let looked_at = self.source.looks_at(CheckPhase::Requirements, span);
-                    let resolved = if looked_at { self.resolved(require) } else { None };
-                    self.requirement(&require.name, resolved, require.pattern.span, span);
-                }
-                ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Require => {
-                    let Some((template, given)) = self.instance(instance, &ExprEnv::measured("")) else {
-                        continue;
-                    };
-                    let ItemSyntaxKind::Require(require) = template.kind else { continue };
-                    let place = Some((&instance.name, instance.span));
-                    let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
-                    self.requirement(&instance.name, resolved, instance.span, span);
-                }
-                ItemSyntaxKind::Assume(assume) if self.source.looks_at(CheckPhase::Requirements, span) => {
-                    self.assume(assume, span);
-                }
-                _ => {}
+            if template(item).is_some() {
+                continue;
+            }
+            let looked_at = self.source.looks_at(CheckPhase::Requirements, span);
+            if let ItemSyntaxKind::Require(require) = item {
+                let resolved = if looked_at { self.resolved(require) } else { None };
+                self.requirement(&require.name, resolved, require.pattern.span, span);
+            } else if let ItemSyntaxKind::Instance(instance) = item
+                && instance.sort == TemplateSyntaxKind::Require
+                && let Some((template, given)) = self.instance(instance, &ExprEnv::measured(""))
+                && let ItemSyntaxKind::Require(require) = template.kind
+            {
+                let place = Some((&instance.name, instance.span));
+                let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
+                self.requirement(&instance.name, resolved, instance.span, span);
+            } else if let ItemSyntaxKind::Assume(assume) = item
+                && looked_at
+            {
+                self.assume(assume, span);
             }
         }
     }

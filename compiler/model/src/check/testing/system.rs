@@ -137,16 +137,15 @@ impl TestingPhase<'_, '_> {
             origin: name.span,
         };
         for member in members {
-            match &member.kind {
-                Member::Run(text) => {
-                    program.run = words(&text.text);
-                    if text.text.trim().is_empty() {
-                        let message = "the command is empty";
-                        self.report(names::missing(text.span, message, "write `run \"python3 robot.py\"`"));
-                    }
+            if let Member::Run(text) = &member.kind {
+                program.run = words(&text.text);
+                if text.text.trim().is_empty() {
+                    let message = "the command is empty";
+                    self.report(names::missing(text.span, message, "write `run \"python3 robot.py\"`"));
                 }
-                Member::Coverage(files) => program.coverage.extend(files.iter().map(|f| f.text.clone())),
-                _ => {}
+            }
+            if let Member::Coverage(files) = &member.kind {
+                program.coverage.extend(files.iter().map(|f| f.text.clone()));
             }
         }
         program

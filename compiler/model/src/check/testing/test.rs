@@ -32,13 +32,11 @@ impl TestingPhase<'_, '_> {
             }
         }
         for item in files.iter().flat_map(|f| &f.items) {
-            match &item.kind {
-                ItemSyntaxKind::Test(test) => self.test(test, item.span, &mut table),
-                ItemSyntaxKind::Error => {}
-                _ => {
-                    let message = "a file of tests holds tests only";
-                    self.report(bad_test(item.span, message, "move this to the scenario"));
-                }
+            if let ItemSyntaxKind::Test(test) = &item.kind {
+                self.test(test, item.span, &mut table);
+            } else if item.kind != ItemSyntaxKind::Error {
+                let message = "a file of tests holds tests only";
+                self.report(bad_test(item.span, message, "move this to the scenario"));
             }
         }
         for scenario in files.iter().filter_map(|f| f.scenario.as_ref()) {
@@ -77,16 +75,15 @@ impl TestingPhase<'_, '_> {
         let mut steps = Vec::new();
         let mut first = None;
         for member in members {
-            match &member.kind {
-                Member::Script { actor, members } => self.script(actor, members, test),
-                kind => {
-                    if let Some(step) = self.script_step(kind, None) {
-                        first.get_or_insert(member.span);
-                        steps.push(step);
-                    }
-                    self.test_header(kind, test);
-                }
+            if let Member::Script { actor, members } = &member.kind {
+                self.script(actor, members, test);
+                continue;
             }
+            if let Some(step) = self.script_step(&member.kind, None) {
+                first.get_or_insert(member.span);
+                steps.push(step);
+            }
+            self.test_header(&member.kind, test);
         }
         if test.scripts.is_empty() {
             test.scripts = TestScript::of_all(steps);

@@ -128,14 +128,13 @@ impl Checker<'_> {
 
     /// The bare name of some enumeration's value, or something that holds one: what is due says which it is.
     pub(in crate::check) fn needs_due(&self, e: &ast::ExprSyntax) -> bool {
-        match &e.kind {
-            Syntax::Path(path) => {
-                path.names.len() == 1 && self.types.values.contains_key(path.names[0].text.as_str())
-            }
-            Syntax::Tuple(parts) => parts.iter().any(|p| self.needs_due(p)),
-            Syntax::If { then, otherwise, .. } => self.needs_due(then) || self.needs_due(otherwise),
-            _ => false,
+        if let Syntax::Path(path) = &e.kind {
+            return matches!(&path.names[..], [name] if self.types.values.contains_key(name.text.as_str()));
         }
+        if let Syntax::If { then, otherwise, .. } = &e.kind {
+            return self.needs_due(then) || self.needs_due(otherwise);
+        }
+        if let Syntax::Tuple(parts) = &e.kind { parts.iter().any(|p| self.needs_due(p)) } else { false }
     }
 
     /// An expression beside something that it is compared with, which says of which enumeration its bare names are.
@@ -182,10 +181,12 @@ impl Checker<'_> {
             return self.bind_names(arg, env, variable);
         }
         let due = self.parts_of(layout);
-        let given: Option<&[ast::ExprSyntax]> = match &arg.kind {
-            Syntax::Tuple(parts) => Some(parts),
-            Syntax::Call { callee, args } if self.is_record(callee, layout) => Some(args),
-            _ => None,
+        let given: Option<&[ast::ExprSyntax]> = if let Syntax::Tuple(parts) = &arg.kind {
+            Some(parts)
+        } else if let Syntax::Call { callee, args } = &arg.kind {
+            self.is_record(callee, layout).then_some(args)
+        } else {
+            None
         };
         if let (Some(of), Syntax::Tuple(_) | Syntax::Call { .. }) = (self.only_part(layout), &arg.kind)
             && !matches!(&arg.kind, Syntax::Call { callee, .. } if self.is_record(callee, layout))
@@ -273,21 +274,17 @@ impl Checker<'_> {
         env: &mut ExprEnv,
         variable: &dyn Fn(&Checker<'_>, &NameSyntax) -> bool,
     ) {
-        match &e.kind {
-            Syntax::Path(path) => {
-                if let [name] = path.names.as_slice()
-                    && variable(self, name)
-                    && env.find(&name.text).is_none()
-                    && env.layout(&name.text).is_none()
-                {
-                    env.push_local(&name.text, name.span, Noun::Variable, InferredType::Unknown);
-                    env.broken.push(name.text.clone());
-                }
-            }
-            Syntax::Tuple(parts) | Syntax::Call { args: parts, .. } => {
-                parts.iter().for_each(|p| self.bind_names(p, env, variable));
-            }
-            _ => {}
+        if let Syntax::Path(path) = &e.kind
+            && let [name] = path.names.as_slice()
+            && variable(self, name)
+            && env.find(&name.text).is_none()
+            && env.layout(&name.text).is_none()
+        {
+            env.push_local(&name.text, name.span, Noun::Variable, InferredType::Unknown);
+            env.broken.push(name.text.clone());
+        }
+        if let Syntax::Tuple(parts) | Syntax::Call { args: parts, .. } = &e.kind {
+            parts.iter().for_each(|p| self.bind_names(p, env, variable));
         }
     }
 

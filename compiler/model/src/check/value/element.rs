@@ -50,11 +50,10 @@ pub(in crate::check) fn type_of(local: &LocalName) -> Type {
 
 /// The name that an expression of indices and fields starts with.
 fn root(e: &ast::ExprSyntax) -> Option<&ast::PathSyntax> {
-    match &e.kind {
-        Syntax::Index { of, .. } | Syntax::Field { of, .. } => root(of),
-        Syntax::Path(path) => Some(path),
-        _ => None,
+    if let Syntax::Index { of, .. } | Syntax::Field { of, .. } = &e.kind {
+        return root(of);
     }
+    if let Syntax::Path(path) = &e.kind { Some(path) } else { None }
 }
 
 impl Checker<'_> {
@@ -86,22 +85,18 @@ impl Checker<'_> {
     }
 
     fn reach(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> Option<ReachedElements> {
-        match &e.kind {
-            Syntax::Index { of, index } => {
-                let reached = self.reach(of, env)?;
-                self.at_index(reached, index, of.span, env)
-            }
-            Syntax::Field { of, name } => {
-                let reached = self.reach(of, env)?;
-                self.at_field(reached, name)
-            }
-            Syntax::Path(path) => {
-                let (first, fields) = path.names.split_first()?;
-                let whole = ReachedElements::whole(&first.text, env.layout(&first.text)?.clone());
-                fields.iter().try_fold(whole, |reached, field| self.at_field(reached, field))
-            }
-            _ => None,
+        if let Syntax::Index { of, index } = &e.kind {
+            let reached = self.reach(of, env)?;
+            return self.at_index(reached, index, of.span, env);
         }
+        if let Syntax::Field { of, name } = &e.kind {
+            let reached = self.reach(of, env)?;
+            return self.at_field(reached, name);
+        }
+        let Syntax::Path(path) = &e.kind else { return None };
+        let (first, fields) = path.names.split_first()?;
+        let whole = ReachedElements::whole(&first.text, env.layout(&first.text)?.clone());
+        fields.iter().try_fold(whole, |reached, field| self.at_field(reached, field))
     }
 
     fn at_field(&mut self, reached: ReachedElements, field: &NameSyntax) -> Option<ReachedElements> {

@@ -32,14 +32,12 @@ impl<'a> Checker<'a> {
     }
 
     fn one(&mut self, item: ExprItem) -> TypedExpr {
-        match item {
-            ExprItem::One(e) => e,
-            other => {
-                let got = self.shown(&other);
-                self.report(types::several_values(&got, other.span()));
-                TypedExpr::error(other.span())
-            }
+        if let ExprItem::One(e) = item {
+            return e;
         }
+        let got = self.shown(&item);
+        self.report(types::several_values(&got, item.span()));
+        TypedExpr::error(item.span())
     }
 
     /// Resolves and types an expression of one or more values.
@@ -112,10 +110,8 @@ impl<'a> Checker<'a> {
         want: InferredType,
         env: &mut ExprEnv,
     ) -> TypedExpr {
-        let e = match self.item_due(e, want, env) {
-            ExprItem::One(e) => e,
-            other => self.one(other),
-        };
+        let item = self.item_due(e, want, env);
+        let e = self.one(item);
         self.fit(e, want, env)
     }
 
@@ -133,32 +129,36 @@ impl<'a> Checker<'a> {
         if let Some(symbol) = self.symbol_of(e, of) {
             return ExprItem::One(symbol);
         }
-        match &e.kind {
-            Syntax::If { condition, then, otherwise } if self.needs_due(e) => {
-                let condition = self.expr_of(condition, InferredType::Bool, env);
-                let then = self.expr_of(then, want, env);
-                let otherwise = self.expr_of(otherwise, want, env);
-                ExprItem::One(self.conditional(condition, then, otherwise, e.span, env))
-            }
-            Syntax::Path(path) if path.names.len() == 1 && self.means_nothing(&path.names[0], env) => {
-                let name = &path.names[0];
-                let values = of.values().iter().map(|v| v.name());
-                let others = self.names_with_value(env);
-                // Another name is offered only if it is near.
-                let near = hrdsl_source::nearest(
-                    &name.text,
-                    values.clone().chain(others.iter().map(String::as_str)),
-                );
-                let issue = match near {
-                    Some(near) => names::unknown(Noun::EnumValue, &name.text, name.span, [near]),
-                    None => names::unknown(Noun::EnumValue, &name.text, name.span, values),
-                };
-                if !self.source.unread_items {
-                    self.report(issue);
-                }
-                ExprItem::error(e.span)
-            }
-            _ => self.item(e, env),
+        if let Syntax::If { condition, then, otherwise } = &e.kind
+            && self.needs_due(e)
+        {
+            let condition = self.expr_of(condition, InferredType::Bool, env);
+            let then = self.expr_of(then, want, env);
+            let otherwise = self.expr_of(otherwise, want, env);
+            return ExprItem::One(self.conditional(condition, then, otherwise, e.span, env));
+        }
+        if let Syntax::Path(path) = &e.kind
+            && let [name] = path.names.as_slice()
+            && self.means_nothing(name, env)
+        {
+            self.unknown_value(name, of, env);
+            return ExprItem::error(e.span);
+        }
+        self.item(e, env)
+    }
+
+    /// A name that is none of the enumeration's values, and nothing else either.
+    fn unknown_value(&mut self, name: &NameSyntax, of: Enumeration, env: &ExprEnv) {
+        let values = of.values().iter().map(|v| v.name());
+        let others = self.names_with_value(env);
+        // Another name is offered only if it is near.
+        let all = values.clone().chain(others.iter().map(String::as_str));
+        let issue = match hrdsl_source::nearest(&name.text, all) {
+            Some(near) => names::unknown(Noun::EnumValue, &name.text, name.span, [near]),
+            None => names::unknown(Noun::EnumValue, &name.text, name.span, values),
+        };
+        if !self.source.unread_items {
+            self.report(issue);
         }
     }
 

@@ -108,7 +108,10 @@ pub(in crate::check) fn linear(e: &TypedExpr) -> Result<LinearTime, Option<Span>
         },
         TypedExprKind::If(condition, a, b) => Ok(linear(a)?.either(linear(b)?, condition)),
         TypedExprKind::Error => Err(None),
-        _ => Err(Some(e.span)),
+        TypedExprKind::Const(_) | TypedExprKind::Leaf(_) | TypedExprKind::Term(_) => Err(Some(e.span)),
+        TypedExprKind::Unary(UnaryOp::Not, _) | TypedExprKind::Binary(..) => Err(Some(e.span)),
+        TypedExprKind::Call(..) | TypedExprKind::List(..) => Err(Some(e.span)),
+        TypedExprKind::Element(_) | TypedExprKind::Apply(..) => Err(Some(e.span)),
     }
 }
 

@@ -12,18 +12,18 @@ use crate::{
 impl Checker<'_> {
     /// What belongs into a formula stands where a value is needed.
     pub(in crate::check) fn no_value_here(&mut self, e: &ast::ExprSyntax, env: &ExprEnv) {
-        let issue = match &e.kind {
-            Syntax::Unify { .. } => agents::no_binding(e.span, env.plan),
-            Syntax::Internal(call) => {
-                let what = format!("`.{}`", call.name.text);
-                let help = if env.plan {
-                    "it is a formula of its own: let it bind a variable, and use that: `.count(F, N) && N > 2`"
-                } else {
-                    "internal actions are part of the plans and rules of agents"
-                };
-                agents::no_formula(&what, e.span, help)
-            }
-            _ => agents::no_formula("a belief", e.span, "bind its value first: `b(X) && X …`"),
+        let issue = if let Syntax::Internal(call) = &e.kind {
+            let what = format!("`.{}`", call.name.text);
+            let help = if env.plan {
+                "it is a formula of its own: let it bind a variable, and use that: `.count(F, N) && N > 2`"
+            } else {
+                "internal actions are part of the plans and rules of agents"
+            };
+            agents::no_formula(&what, e.span, help)
+        } else if matches!(e.kind, Syntax::Unify { .. }) {
+            agents::no_binding(e.span, env.plan)
+        } else {
+            agents::no_formula("a belief", e.span, "bind its value first: `b(X) && X …`")
         };
         self.report(issue);
     }
@@ -43,13 +43,12 @@ impl Checker<'_> {
         };
         let mut values = Vec::new();
         for item in items {
-            let value = match &item.kind {
-                Syntax::List { items, rest } => {
-                    let inner = element.element().unwrap_or(InferredType::Unknown);
-                    let value = self.list(items, rest.as_deref(), inner, item.span, env);
-                    self.fit(value, element, env)
-                }
-                _ => self.expr_of(item, due(element), env),
+            let value = if let Syntax::List { items, rest } = &item.kind {
+                let inner = element.element().unwrap_or(InferredType::Unknown);
+                let value = self.list(items, rest.as_deref(), inner, item.span, env);
+                self.fit(value, element, env)
+            } else {
+                self.expr_of(item, due(element), env)
             };
             element = match (element, value.ty) {
                 (InferredType::Int, InferredType::Float(Dimension::NUMBER)) => value.ty,

@@ -203,13 +203,11 @@ impl Checker<'_> {
 
     /// An argument that names a body.
     pub(in crate::check) fn body_arg(&mut self, arg: &ast::ExprSyntax, prefix: &str) -> Option<BodyRef> {
-        match &arg.kind {
-            Syntax::Path(path) => self.body_ref(&path.names, prefix),
-            _ => {
-                self.report(not_a_name(Noun::Body, arg.span));
-                None
-            }
-        }
+        let Syntax::Path(path) = &arg.kind else {
+            self.report(not_a_name(Noun::Body, arg.span));
+            return None;
+        };
+        self.body_ref(&path.names, prefix)
     }
 
     pub(in crate::check) fn world_arg(
@@ -218,13 +216,11 @@ impl Checker<'_> {
         arg: &ast::ExprSyntax,
         prefix: &str,
     ) -> Option<u16> {
-        match &arg.kind {
-            Syntax::Path(path) => self.world_name(noun, &path.names, prefix),
-            _ => {
-                self.report(not_a_name(noun, arg.span));
-                None
-            }
-        }
+        let Syntax::Path(path) = &arg.kind else {
+            self.report(not_a_name(noun, arg.span));
+            return None;
+        };
+        self.world_name(noun, &path.names, prefix)
     }
 
     /// A body or current body.
@@ -396,10 +392,10 @@ impl Checker<'_> {
 
     /// Checks what can be checked about an argument of an unknown function: nothing is said about names of bodies.
     fn item_quietly(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) {
-        match &e.kind {
-            Syntax::Path(_) | Syntax::Any => {}
-            Syntax::Tuple(parts) => parts.iter().for_each(|p| self.item_quietly(p, env)),
-            _ => drop(self.item(e, env)),
+        if let Syntax::Tuple(parts) = &e.kind {
+            parts.iter().for_each(|p| self.item_quietly(p, env));
+        } else if !matches!(e.kind, Syntax::Path(_) | Syntax::Any) {
+            self.item(e, env);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Values: what types and expressions mean, of one part and of several.
 
 pub(super) mod args;
+pub(super) mod call;
 pub(super) mod combine;
 pub(super) mod contact;
 pub(super) mod devices;

@@ -1,6 +1,7 @@
 //! Declarations that everything else speaks of: actors, constants, events, shared variables, and the names of players.
 
 mod channel;
+mod clock;
 pub(in crate::check) mod phase;
 mod types;
 
@@ -15,6 +16,7 @@ use crate::check::{
         names::{ConstEntry, ConstState, DeclaredPlayer},
         record::DeclaredFields,
         scope::ExprEnv,
+        template::TemplateArguments,
     },
     template::{CheckerPhase, template},
     vocabulary::phase::VocabularyPhase,
@@ -29,14 +31,14 @@ use crate::{
 impl<'a> VocabularyPhase<'_, 'a> {
     /// The names of all agents, `self` and `percept`: the values of the type `agent`.
     fn name_agents(&mut self) {
-        let named = self.each_item().filter_map(|(item, _)| match item {
-            ItemSyntaxKind::Agent(agent) if agent.params.is_none() => Some(agent.name.text.as_str()),
-            ItemSyntaxKind::Instance(instance) if instance.sort == TemplateSyntaxKind::Agent => {
-                Some(instance.name.text.as_str())
+        let named = |(item, _): (&'a ItemSyntaxKind, Span)| {
+            if let ItemSyntaxKind::Agent(agent) = item {
+                return agent.params.is_none().then_some(agent.name.text.as_str());
             }
-            _ => None,
-        });
-        let names: Vec<&str> = named.chain(["self", "percept"]).collect();
+            let ItemSyntaxKind::Instance(instance) = item else { return None };
+            (instance.sort == TemplateSyntaxKind::Agent).then_some(instance.name.text.as_str())
+        };
+        let names: Vec<&str> = self.each_item().filter_map(named).chain(["self", "percept"]).collect();
         self.players.agent_names = Enumeration::intern("agent", &names);
     }
 
@@ -44,12 +46,14 @@ impl<'a> VocabularyPhase<'_, 'a> {
     pub(super) fn names(&mut self) {
         self.name_agents();
         for (item, _) in self.each_item() {
-            match item {
-                ItemSyntaxKind::Actor { name, role } => self.declare_actor(name, role),
-                ItemSyntaxKind::Const { name, value } => self.declare_const(name, value),
-                ItemSyntaxKind::Part(part) => self.declare_part(part),
-                ItemSyntaxKind::Record { name, fields } => self.declare_record(name, fields),
-                _ => {}
+            if let ItemSyntaxKind::Actor { name, role } = item {
+                self.declare_actor(name, role);
+            } else if let ItemSyntaxKind::Const { name, value } = item {
+                self.declare_const(name, value);
+            } else if let ItemSyntaxKind::Part(part) = item {
+                self.declare_part(part);
+            } else if let ItemSyntaxKind::Record { name, fields } = item {
+                self.declare_record(name, fields);
             }
         }
         for (item, span) in self.each_item() {
@@ -61,27 +65,41 @@ impl<'a> VocabularyPhase<'_, 'a> {
         self.all_records();
         self.all_consts();
         for (item, span) in self.each_item() {
-            match item {
-                ItemSyntaxKind::Event(event) => self.declare_events(event, span),
-                ItemSyntaxKind::Stimulus(stimulus) => self.declare_stimulus(stimulus, span),
-                _ => {}
+            if let ItemSyntaxKind::Event(event) = item {
+                self.declare_events(event, span);
+            } else if let ItemSyntaxKind::Stimulus(stimulus) = item {
+                self.declare_stimulus(stimulus, span);
             }
         }
         for (item, span) in self.each_item() {
-            match item {
-                _ if template(item).is_some() => {}
-                ItemSyntaxKind::Agent(syntax) => {
-                    let plain = DeclaredPlayer { syntax, given: None, instance: None };
-                    self.declare_agent(plain, &syntax.name, span);
-                }
-                ItemSyntaxKind::Automaton(syntax) => {
-                    let plain = DeclaredPlayer { syntax, given: None, instance: None };
-                    self.declare_automaton(plain, &syntax.name, span);
-                }
-                ItemSyntaxKind::Instance(instance) => self.declare_instance(instance, span),
-                ItemSyntaxKind::Var(var) => self.declare_shared(var, span),
-                _ => {}
+            if template(item).is_some() {
+                continue;
             }
+            if let ItemSyntaxKind::Instance(instance) = item {
+                self.declare_instance(instance, span);
+            } else if let ItemSyntaxKind::Var(var) = item {
+                self.declare_shared(var, span);
+            } else {
+                self.declare_player(item, None, span);
+            }
+        }
+    }
+
+    /// An agent or automaton, if it is one; with the instance that it is of a template, and what that gives.
+    fn declare_player(
+        &mut self,
+        item: &'a ItemSyntaxKind,
+        of: Option<(&'a InstanceSyntax, Rc<TemplateArguments>)>,
+        span: Span,
+    ) {
+        let (instance, given) = of.unzip();
+        let named = |plain: &'a NameSyntax| instance.map_or(plain, |instance| &instance.name);
+        if let ItemSyntaxKind::Agent(syntax) = item {
+            let declared = DeclaredPlayer { syntax, given, instance };
+            self.declare_agent(declared, named(&syntax.name), span);
+        } else if let ItemSyntaxKind::Automaton(syntax) = item {
+            let declared = DeclaredPlayer { syntax, given, instance };
+            self.declare_automaton(declared, named(&syntax.name), span);
         }
     }
 
@@ -91,18 +109,7 @@ impl<'a> VocabularyPhase<'_, 'a> {
             return;
         }
         let Some((template, given)) = self.instance(instance, &ExprEnv::constants()) else { return };
-        let (given, instance_of) = (Some(given), Some(instance));
-        match template.kind {
-            ItemSyntaxKind::Agent(syntax) => {
-                let declared = DeclaredPlayer { syntax, given, instance: instance_of };
-                self.declare_agent(declared, &instance.name, span);
-            }
-            ItemSyntaxKind::Automaton(syntax) => {
-                let declared = DeclaredPlayer { syntax, given, instance: instance_of };
-                self.declare_automaton(declared, &instance.name, span);
-            }
-            _ => {}
-        }
+        self.declare_player(template.kind, Some((instance, given)), span);
     }
 
     fn declare_templates(&mut self) {

@@ -149,19 +149,17 @@ impl<'a> WorldPhase<'_, 'a> {
 
     /// `(10 cm, -20 cm)`
     fn on_the_top(&mut self, at: &ast::ExprSyntax) -> Option<[f64; 2]> {
-        match &at.kind {
-            ExprSyntaxKind::Tuple(parts) if parts.len() == 2 => {
-                let (x, y) = (parts.first()?, parts.get(1)?);
-                let x = self.quantity_of(x, Dimension::LENGTH);
-                Some([x?, self.quantity_of(y, Dimension::LENGTH)?])
-            }
-            ExprSyntaxKind::Error => None,
-            _ => {
-                let help = "write two lengths: `(0 m, 0 m)` is its middle, x is ahead, y to the left";
-                self.report(bad_world(at.span, "a place on top of something is said by two lengths", help));
-                None
-            }
+        if let ExprSyntaxKind::Tuple(parts) = &at.kind
+            && let [x, y] = parts.as_slice()
+        {
+            let x = self.quantity_of(x, Dimension::LENGTH);
+            return Some([x?, self.quantity_of(y, Dimension::LENGTH)?]);
         }
+        if at.kind != ExprSyntaxKind::Error {
+            let help = "write two lengths: `(0 m, 0 m)` is its middle, x is ahead, y to the left";
+            self.report(bad_world(at.span, "a place on top of something is said by two lengths", help));
+        }
+        None
     }
 
     /// Where everything has come to is where it is.

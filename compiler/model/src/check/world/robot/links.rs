@@ -119,13 +119,14 @@ impl<'a> WorldPhase<'_, 'a> {
 
     /// What only a part from a description has.
     pub(in crate::check::world) fn of_descriptions(&mut self, p: &PlacedMember<'a>) {
-        let word = match &p.member.kind {
-            Member::Packages(_) => "packages",
-            Member::Argument { .. } => "argument",
-            Member::Semantics(_) => "semantics",
-            Member::Start(_) => "start",
-            _ => return,
-        };
+        let kind = &p.member.kind;
+        let words = [
+            ("packages", matches!(kind, Member::Packages(_))),
+            ("argument", matches!(kind, Member::Argument { .. })),
+            ("semantics", matches!(kind, Member::Semantics(_))),
+            ("start", matches!(kind, Member::Start(_))),
+        ];
+        let Some((word, _)) = words.into_iter().find(|(_, is)| *is) else { return };
         let prefix = p.prefix.trim_end_matches('.');
         if self.robot_at(&p.prefix).is_none() && !self.world.names.broken.contains(prefix) {
             let message = format!("`{word}` speaks of a description, and nothing here is made from one");
