@@ -204,9 +204,12 @@ fn blanks_do_not_matter() {
     }
 }
 
+/// Words that are names of stimuli where they are alone on a line of a test.
+const STEPS: [&str; 8] = ["await", "wait", "seed", "method", "because", "predicts", "meanwhile", "with"];
+
 /// A line must not end here: a number takes its unit on the same line only, a name after a dot is any word.
 fn holds(before: &str) -> bool {
-    before.starts_with(|c: char| c.is_ascii_digit()) || matches!(before, "%" | ".")
+    before.starts_with(|c: char| c.is_ascii_digit()) || matches!(before, "%" | ".") || STEPS.contains(&before)
 }
 
 /// The text with other line ends; `None` if that has made it another text.
