@@ -26,6 +26,9 @@ _STACK = 1 << 20
 #: begins, and whatever both make, they make in the same order in every run.
 _SWITCH = 0.5
 
+#: The same while there is a fault to be told of, beside a thread that does not wait.
+_PROMPT = 0.001
+
 #: The clock of what the process has computed.
 _COMPUTED = getattr(time, "CLOCK_PROCESS_CPUTIME_ID", None)
 
@@ -46,14 +49,15 @@ class Watcher:
         self._scheduler = scheduler
         self._threads = threads
         self._budget = budget
-        self._every = min(1.0, max(0.01, budget / 4))  # seconds between looks
+        self._every = max(0.01, budget / 6)  # seconds between looks, while all is well
+        self._switch = min(_SWITCH, self._every / 4)
         self._stop: Any = None  # released to end it, while it runs
         self._stopped: Any = None
         self._begun: Any = None
 
     def start(self) -> None:
         """Begins to look, until the process forks."""
-        sys.setswitchinterval(min(_SWITCH, self._every))
+        sys.setswitchinterval(self._switch)
         self._go()
         if hasattr(os, "register_at_fork"):
             os.register_at_fork(before=self._end)
@@ -90,7 +94,9 @@ class Watcher:
         seen, since = (-1, -1), 0.0
         heard, silent_since = -1, 0.0  # requests, which let nobody else run
         self._begun.release()  # nobody else runs before this thread waits (`_SWITCH`)
-        while not self._wait(stop):
+        seconds = self._every
+        while not self._wait(stop, seconds):
+            seconds = self._every
             task = self._scheduler.running
             used = _processor_time(task)
             if used is None or (task.ident, self._scheduler.calls) != seen:
@@ -104,15 +110,18 @@ class Watcher:
             elif used - silent_since > self._budget:
                 self._tell(task)
                 silent_since = float("inf")  # once is enough, until something is asked again
+            if used is not None:  # the next look is when the budget is used up, if all stays as it is
+                left = self._budget - (used - min(since, silent_since))
+                seconds = left if 0 < left < self._budget else self._every
         stopped.release()
 
-    def _wait(self, stop: Any) -> bool:
-        """Until it is time to look: whether it is the end instead."""
-        every = self._every
+    def _wait(self, stop: Any, seconds: float) -> bool:
+        """Until the process has used so much of its processor: whether it is the end instead."""
         if _real_nanos is None or _COMPUTED is None:
-            return bool(stop.acquire(True, every))
-        until = _real_nanos(_COMPUTED) + int(every * 1e9)
-        while not stop.acquire(True, every):
+            return bool(stop.acquire(True, seconds))
+        step = self._every / 16
+        until = _real_nanos(_COMPUTED) + int(seconds * 1e9)
+        while not stop.acquire(True, step):
             # The number that this line makes is gone at once, and its place is the next again, so that the program's objects are
             # where they would be without it. (A float would be kept for the next float.)
             if _real_nanos(_COMPUTED) >= until:
@@ -127,12 +136,15 @@ class Watcher:
         return scheduler.outside.can_arrive()
 
     def _tell(self, task: Task) -> None:
+        sys.setswitchinterval(_PROMPT)
         from hrdsl import report
 
         sys.stderr.write(report.silent(self._scheduler, task, self._budget))
         sys.stderr.flush()
+        sys.setswitchinterval(self._switch)
 
     def _found(self, task: Task) -> None:
+        sys.setswitchinterval(_PROMPT)
         from hrdsl import report
 
         sys.stderr.write(report.busy(self._scheduler, task, self._budget))
