@@ -20,7 +20,7 @@ const LONG: &[(&str, usize)] = &[
     ("compiler/model/src/check/value/expr.rs", 581),
     ("compiler/model/src/lint/applicable.rs", 505),
     ("compiler/syntax/src/ast.rs", 760),
-    ("compiler/syntax/tests/format.rs", 761),
+    ("compiler/syntax/tests/format.rs", 764),
     ("compiler/tests/lower.rs", 1035),
     ("runtime/bdi/src/cycle.rs", 507),
     ("runtime/bdi/src/query.rs", 521),
