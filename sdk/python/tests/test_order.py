@@ -182,9 +182,9 @@ class Faults(Case):
             ("import hrdsl\nnode = hrdsl.Node('a')\nnode.emit('a')\n", "or with Node.wait_for or Node.sleep"),
             ("import asyncio\n", "with `await asyncio.sleep(seconds)`, or for an asyncio.Event"),
         ):
-            text = begin + "async def look():\n    left = 10**7\n    while left:\n        left -= 1\n"
+            text = begin + "async def look():\n    left = 3 * 10**7\n    while left:\n        left -= 1\n"
             text += "asyncio.run(look())" if "asyncio" in begin else "try:\n    look().send(None)\nexcept StopIteration:\n    print('end')"
-            finished = run_text(text, env={"HRDSL_BUSY_SECONDS": "0.05"})
+            finished = run_text(text, env={"HRDSL_BUSY_SECONDS": "0.3"})
             lines = [place + 1 for place, line in enumerate(text.splitlines()) if "left" in line]
             self.assertEqual(finished.code, 0, "it is no fault")
             self.assertRegex(finished.err, r"^hrdsl: .*/program.py:(%s): thread MainThread has" % "|".join(map(str, lines)))
