@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use glob::{MatchOptions, Pattern};
+use hrdsl_compiler::is_file_pattern;
 use hrdsl_ir::system::SystemUnderTest;
 
 /// A `*` stays within a folder, and what is hidden is named in full.
@@ -26,7 +27,7 @@ pub fn named(system: &SystemUnderTest, folder: &Path) -> SystemUnderTest {
 
 /// The files that a name means, in the order of their names. One without wildcards means itself, whether or not it is there.
 fn matching(folder: &Path, name: &str) -> Vec<String> {
-    if !name.contains(['*', '?', '[']) || folder.join(name).is_file() {
+    if !is_file_pattern(name) || folder.join(name).is_file() {
         return vec![name.to_owned()];
     }
     let whole = Path::new(&Pattern::escape(&folder.display().to_string())).join(name);

@@ -245,13 +245,16 @@ fn parts_of_scenarios(sources: &[ProjectSource]) -> BTreeSet<&Path> {
 
 fn units(sources: &[ProjectSource]) -> Result<Vec<CompilationUnit>, CommandFault> {
     let parts = parts_of_scenarios(sources);
-    let is_with_others = |s: &ProjectSource| match s.kind {
-        SourceKind::Tests | SourceKind::System => true,
-        SourceKind::Module => !s.named && parts.iter().any(|place| s.is_at(place)),
-        SourceKind::Scenario => false,
+    let has_owner = |s: &ProjectSource| matches!(s.kind, SourceKind::Tests | SourceKind::System);
+    let is_part = |s: &ProjectSource| {
+        s.kind == SourceKind::Module && !s.named && s.place.as_deref().is_some_and(|p| parts.contains(p))
     };
     let head = |(i, s): (usize, &ProjectSource)| {
-        (!is_with_others(s)).then(|| CompilationUnit { head: i, tests: Vec::new(), systems: Vec::new() })
+        (!has_owner(s) && !is_part(s)).then(|| CompilationUnit {
+            head: i,
+            tests: Vec::new(),
+            systems: Vec::new(),
+        })
     };
     let mut units: Vec<CompilationUnit> = sources.iter().enumerate().filter_map(head).collect();
     let scenarios: Vec<(usize, PathBuf)> = sources
@@ -260,7 +263,6 @@ fn units(sources: &[ProjectSource]) -> Result<Vec<CompilationUnit>, CommandFault
         .filter(|(_, s)| s.kind == SourceKind::Scenario)
         .map(|(i, s)| (i, s.folder()))
         .collect();
-    let has_owner = |s: &ProjectSource| matches!(s.kind, SourceKind::Tests | SourceKind::System);
     for (i, source) in sources.iter().enumerate().filter(|(_, s)| has_owner(s)) {
         let owner = owner(source, sources, &scenarios)?;
         for unit in units.iter_mut().filter(|u| u.head == owner) {

@@ -3,7 +3,7 @@
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 use hrdsl_syntax::ast::{FileSyntax, ItemSyntaxKind, SystemMemberKind as Member, TextSyntax};
 
-use crate::ModuleLoader;
+use crate::{ModuleLoader, is_file_pattern};
 
 /// The files whose coverage is to be measured, and that are no files beside the scenario.
 pub(crate) fn missing(files: &[FileSyntax], loader: &dyn ModuleLoader) -> Vec<Diagnostic> {
@@ -20,7 +20,7 @@ pub(crate) fn missing(files: &[FileSyntax], loader: &dyn ModuleLoader) -> Vec<Di
     let missing = named.flatten().filter(|f| loader.means_a_file(&f.text) == Some(false));
     missing
         .map(|f| {
-            let is = if f.text.contains(['*', '?', '[']) { "that matches " } else { "" };
+            let is = if is_file_pattern(&f.text) { "that matches " } else { "" };
             let message = format!("there is no file {is}`{}`, so no coverage is measured of it", f.text);
             Diagnostic::warning(DiagnosticCode::NO_SUCH_FILE, f.span, message)
                 .help("name a file of the program, or several by a pattern (`*.py`, `src/**/*.py`), from the scenario's folder")

@@ -28,7 +28,7 @@ pub use hrdsl_robots::{RobotEntry, RobotReader};
 use hrdsl_source::{Diagnostic, FileId, SourceFiles};
 pub use hrdsl_syntax::{GRAMMAR, MAX_BYTES, ast, format, parse, token};
 
-pub use modules::{LibraryOnlyLoader, ModuleLoader, ModuleText};
+pub use modules::{LibraryOnlyLoader, ModuleLoader, ModuleText, is_file_pattern};
 pub use recheck::{RecheckResult, recheck};
 
 /// A file: its name as it is to be shown, and its text.

@@ -40,6 +40,12 @@ pub trait ModuleLoader {
     }
 }
 
+/// Whether the name of a file that `coverage` has is a pattern, which may mean several.
+#[must_use]
+pub fn is_file_pattern(name: &str) -> bool {
+    name.contains(['*', '?', '['])
+}
+
 /// Where there are no files: only modules of the library can be used.
 pub struct LibraryOnlyLoader;
 
