@@ -48,6 +48,15 @@ const NEAR: f64 = 0.005;
 /// How fast lasting errors are made good, as a part of that.
 const LEARNING: f64 = 0.3;
 
+/// How much of its pace an aim keeps, 0 to 1, when a joint is so far behind, as a part of what it may be: all of it up to a half.
+fn pace_kept(behind: f64) -> f64 {
+    (2.0 - 2.0 * behind).clamp(0.0, 1.0)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
 pub(crate) struct ArmControl {
     pub name: String,
     joints: Vec<JointId>,
@@ -249,34 +258,54 @@ impl ArmControl {
         }
     }
 
-    /// How much of its pace the aim keeps, 0 to 1: all of it while every joint follows.
-    fn rate(&self, aim: &[f64], physics: &PhysicsAdapter) -> f64 {
+    /// How far each joint is behind an aim, as a part of what it may be.
+    fn behind(&self, aim: &[f64], physics: &PhysicsAdapter) -> Vec<f64> {
         let measured = self.joints.iter().map(|id| physics.joint_position(usize::from(id.0)));
-        let behind = measured.zip(aim).zip(&self.lags).map(|((q, aim), lag)| (aim - q).abs() / lag);
-        let most = behind.fold(0.0, f64::max);
-        (2.0 - 2.0 * most).clamp(0.0, 1.0)
+        measured.zip(aim).zip(&self.lags).map(|((q, aim), lag)| (aim - q).abs() / lag).collect()
     }
 
     /// Sets the motors for the step from `now` to `next`.
     pub fn drive(&mut self, now: Nanos, next: Nanos, physics: &mut PhysicsAdapter) {
         let h = seconds(next - now);
         let (a, _) = self.aim();
-        let rate = self.rate(&a, physics);
-        let b = match &mut self.motion {
-            Some(motion) => {
-                motion.pass(h, rate);
-                motion.aim()
-            }
-            None => {
-                let part = (SMOOTHING * h).min(1.0);
-                for ((q, aimed), speed) in self.rest.iter_mut().zip(&self.aimed).zip(&self.speeds) {
-                    let (left, most) = (aimed - *q, speed * h * rate);
-                    *q = if left.abs() < THERE { *aimed } else { *q + (left * part).clamp(-most, most) };
-                }
-                self.rest.clone()
-            }
-        };
+        let behind = self.behind(&a, physics);
+        let most = largest(&behind);
+        let rate = pace_kept(most);
+        // An aim that comes back to where the arm is need not wait for it: so an arm that presses on something can be freed.
+        let comes_back = rate < 1.0
+            && self
+                .motion
+                .as_ref()
+                .is_some_and(|motion| largest(&self.behind(&motion.aim_after(h), physics)) < most);
+        if let Some(motion) = &mut self.motion {
+            motion.pass(h, if comes_back { 1.0 } else { rate });
+        } else {
+            self.approach_set_points(h);
+        }
+        let (b, _) = self.aim();
         self.steer(&a, &b, (h, rate), physics);
+        self.give_way(physics);
+    }
+
+    /// Brings the motors' aims nearer to the set-points, each by itself, as fast as its joint may.
+    fn approach_set_points(&mut self, h: f64) {
+        let part = (SMOOTHING * h).min(1.0);
+        for ((q, aimed), speed) in self.rest.iter_mut().zip(&self.aimed).zip(&self.speeds) {
+            let (left, most) = (aimed - *q, speed * h);
+            *q = if left.abs() < THERE { *aimed } else { *q + (left * part).clamp(-most, most) };
+        }
+    }
+
+    /// No aim at set-points is farther from its joint than it may be. One that is left behind would have its joint press on, and leap
+    /// when it comes free; this one goes with what pushes the joint, and back to its set-point after it.
+    fn give_way(&mut self, physics: &PhysicsAdapter) {
+        if self.motion.is_some() {
+            return;
+        }
+        for ((q, id), lag) in self.rest.iter_mut().zip(&self.joints).zip(&self.lags) {
+            let is = physics.joint_position(usize::from(id.0));
+            *q = q.clamp(is - lag, is + lag);
+        }
     }
 
     /// Computed torque (Luh, Walker and Paul 1980): the accelerations that bring the joints from `a` to `b` in the time `h`, with
@@ -287,7 +316,9 @@ impl ArmControl {
         let mut wanted = DVector::zeros(n);
         for i in 0..n {
             let pace = (b[i] - a[i]) / h;
-            let (error, slip) = (a[i] - positions[i], self.pace[i] - speeds[i]);
+            // A motor that can do no more would have the others make good its error, through the inertia that they share.
+            let error = (a[i] - positions[i]).clamp(-self.lags[i], self.lags[i]);
+            let slip = self.pace[i] - speeds[i];
             wanted[i] =
                 (pace - self.pace[i]) / h + rigid * rigid * error + 2.0 * rigid * slip + self.lasting[i];
             self.pace[i] = pace;
@@ -388,11 +419,11 @@ impl ArmControl {
         self.figure.has(body)
     }
 
-    /// Whether it stands still, and is left out of the next step, with what it holds. It wakes when it has something to do, and before
-    /// anything touches it.
-    pub fn sleeps(&self, held: &[BodyId], physics: &mut PhysicsAdapter) -> bool {
+    /// Whether it stands still, and is left out of the next step, with what it holds. It wakes when it has something to do, while its
+    /// hand is used, since fingers would sleep with it on their way, and before anything touches it.
+    pub fn sleeps(&self, held: &[BodyId], is_used: bool, physics: &mut PhysicsAdapter) -> bool {
         let own = self.joints.iter().map(|id| usize::from(id.0));
-        let is_left = !self.is_busy() && !physics.is_approached(self.figure.base, held);
+        let is_left = !is_used && !self.is_busy() && !physics.is_approached(self.figure.base, held);
         own.clone().for_each(|joint| physics.let_sleep(joint, is_left));
         let sleeps = is_left && own.clone().all(|joint| physics.is_asleep(joint));
         if !sleeps {

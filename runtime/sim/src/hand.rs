@@ -338,6 +338,11 @@ impl HandSet {
         self.hands.iter().any(GripperHand::is_busy)
     }
 
+    /// Whether the fingers of some of the hands are on their way.
+    pub fn is_any_busy(&self, hands: &[usize]) -> bool {
+        hands.iter().any(|hand| self.hands[*hand].is_busy())
+    }
+
     /// Tells a hand to close; gives the command that this one replaces.
     pub fn close(
         &mut self,

@@ -127,6 +127,11 @@ impl ArmMotion {
         self.at(self.clock)
     }
 
+    /// The posture aimed at when so many seconds of the motion have passed from now.
+    pub fn aim_after(&self, time: f64) -> Vec<f64> {
+        self.at(self.clock + time)
+    }
+
     /// Lets time pass, at a rate of 0 to 1.
     pub fn pass(&mut self, time: f64, rate: f64) {
         self.clock += time * rate;

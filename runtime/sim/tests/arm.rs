@@ -295,6 +295,46 @@ fn a_blocked_arm_gives_up_and_stays() {
     }
 }
 
+/// Lets the motors aim at one posture after the other, a step each.
+fn stream<'a>(sim: &mut WorldSimulation, postures: impl Iterator<Item = &'a Vec<f64>>) {
+    for posture in postures {
+        for (joint, to) in posture.iter().enumerate() {
+            sim.command(MotorCommand::AimJoint { arm: ARM, joint: joint as f64, to: *to }).unwrap();
+        }
+        sim.advance(sim.now() + STEP);
+    }
+}
+
+/// Set-points that lead it into a head and back again: it presses, and comes free, and so it does by a motion of its own.
+#[test]
+fn an_arm_that_presses_is_freed_by_what_leads_it_away() {
+    let mut free = WorldSimulation::new(&table(), &[]).unwrap();
+    let id = free.command(move_to(OFFER)).unwrap();
+    let mut way = Vec::new();
+    wait(&mut free, id, |sim| way.push(sim.joint_positions(ARM).to_vec())).1.unwrap();
+    let mut world = table();
+    let head = named(&world, "person.head");
+    world.bodies[usize::from(head.0)].position = [0.48, 0.0, 0.75];
+    let press = number("press", SignalTerm::ForceOn(BodyRef::Body(head)));
+    for own_motion in [false, true] {
+        let mut sim = WorldSimulation::new(&world, std::slice::from_ref(&press)).unwrap();
+        let pressing = if own_motion { &way[..way.len() / 2] } else { &way };
+        stream(&mut sim, pressing.iter());
+        assert!(float(&sim, 0) > 50.0, "it does not press: {}", float(&sim, 0));
+        if own_motion {
+            let positions = way[0].clone();
+            run(&mut sim, MotorCommand::ReachJoints { arm: ARM, positions, max_speed: None });
+        } else {
+            stream(&mut sim, way.iter().rev());
+            settle(&mut sim);
+        }
+        assert_eq!(float(&sim, 0), 0.0, "it presses still");
+        for (is, should) in sim.joint_positions(ARM).iter().zip(&way[0]) {
+            assert!((is - should).abs() < 0.01, "{is} {should}");
+        }
+    }
+}
+
 #[test]
 fn an_arm_that_feels_contacts_stops_at_them() {
     let mut world = table();
