@@ -22,7 +22,7 @@ use std::{
 };
 
 use hrdsl_harness::{
-    HarnessError, HarnessRun, PortHistory, RunTermination, SpentTime, SystemFaultKind, SystemLog,
+    AwaitInVain, HarnessError, HarnessRun, PortHistory, RunTermination, SpentTime, SystemFaultKind, SystemLog,
 };
 use hrdsl_ir::{
     Program,
@@ -32,8 +32,8 @@ use hrdsl_ir::{
 };
 use hrdsl_judge::{CampaignOutcome, FinishedTest, TraceJudge};
 use hrdsl_results::{
-    CoverageRatios, FileCoverage, OutputSummary, PhysicsAccuracy, RunEnd, RunMark, TestName, TestResult,
-    TraceJudgement,
+    CoverageRatios, FileCoverage, OutputSummary, PhysicsAccuracy, PredictedRun, PredictionVerdict, RunEnd,
+    RunMark, TestName, TestResult, TraceJudgement, UnmetAwait,
 };
 pub use hrdsl_sim::HullStore;
 pub use hrdsl_sut::{
@@ -371,7 +371,7 @@ fn hash_seed(seed: u64) -> u32 {
 /// A run that never began.
 fn failed(fault: HarnessError) -> HarnessRun {
     let (trace, ports, log) = (Trace::default(), PortHistory::default(), SystemLog::default());
-    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, log, accuracy: None }
+    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, log, unmet: Vec::new(), accuracy: None }
 }
 
 /// What is known about a test when its run is over.
@@ -385,6 +385,15 @@ fn test_result(
     let output = summary(&finished);
     let others = finished.iter().any(|(_, f)| f.others);
     let executed = FileCoverage::united(finished.into_iter().filter_map(|(_, f)| f.coverage).flatten());
+    let unmet: Vec<UnmetAwait> = run.unmet.iter().map(unmet_await).collect();
+    let predicted = &test.provenance.predicts;
+    let prediction = PredictionVerdict::of(PredictedRun {
+        method: test.provenance.method,
+        ended: ending.kind,
+        predicted,
+        hit: &judgement.bins,
+        unmet: &unmet,
+    });
     let result = TestResult {
         name: test.name.as_str().into(),
         suite: test.provenance.suite.as_str().into(),
@@ -397,7 +406,9 @@ fn test_result(
         log: log::summary(&run.log),
         duration: seconds(run.trace.end),
         judgement,
-        predicted: test.provenance.predicts.clone(),
+        predicted: predicted.clone(),
+        prediction,
+        unmet,
         because: test.provenance.because.clone(),
         code: ratios(&executed),
         steps: step_lines(program, test),
@@ -406,6 +417,10 @@ fn test_result(
     };
     let finished = FinishedTest { result, executed, ..FinishedTest::default() };
     PortedTest { finished, ports: run.ports }
+}
+
+fn unmet_await(vain: &AwaitInVain) -> UnmetAwait {
+    UnmetAwait { step: vain.step, since: seconds(vain.since), until: seconds(vain.until) }
 }
 
 fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> (TraceJudgement, Vec<MachineDeclaration>) {

@@ -38,7 +38,7 @@ pub use fault::{SystemFault, SystemFaultKind};
 pub use hrdsl_trace::{MachineDeclaration, MachineEdge, MachineStep};
 pub use log::{KeptRecord, LogRecord, ProgramLogLevel, SystemLog};
 pub use message::PlayerMessage;
-pub use player::{ActorPlayer, HarnessError, PlayerContext, is_perceived};
+pub use player::{ActorPlayer, AwaitInVain, HarnessError, PlayerContext, is_perceived};
 pub use port::{
     AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing, PortQos, PortUse,
     QosDurability, QosPolicy, QosReliability, VainWait,

@@ -46,10 +46,25 @@ pub trait ActorPlayer {
         let _ = end;
         PortHistory::default()
     }
+    /// What it awaited in vain, in a run that ends now, in the order in which that was given up.
+    fn unmet_awaits(&self, end: Nanos) -> Vec<AwaitInVain> {
+        let _ = end;
+        Vec::new()
+    }
     /// What its programs have logged.
     fn log(&self) -> SystemLog {
         SystemLog::default()
     }
+}
+
+/// A step of a test that awaited something which did not come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AwaitInVain {
+    /// Its place among all steps of the test, script after script, from 0.
+    pub step: usize,
+    pub since: Nanos,
+    /// When it was given up, or the run ended.
+    pub until: Nanos,
 }
 
 /// Why a run could not go on.

@@ -9,7 +9,7 @@ use crate::{
     clock::{TimeSource, VirtualClock},
     log::SystemLog,
     message::PlayerMessage,
-    player::{ActorPlayer, HarnessError, PlayerContext, is_perceived},
+    player::{ActorPlayer, AwaitInVain, HarnessError, PlayerContext, is_perceived},
     port::PortHistory,
     stage::WorldStage,
     world::WorldAccuracy,
@@ -36,6 +36,8 @@ pub struct HarnessRun {
     pub ports: PortHistory,
     /// What they have logged.
     pub log: SystemLog,
+    /// What the steps of its test awaited in vain, in the order in which that was given up.
+    pub unmet: Vec<AwaitInVain>,
     /// How far the world strayed from what cannot be; `None`: there is none, or it cannot tell.
     pub accuracy: Option<WorldAccuracy>,
 }
@@ -99,8 +101,10 @@ impl<'p> HarnessLoop<'p> {
         let system = self.players.iter().find(|p| plays_the_system(self.program, p.actors()));
         let ports = system.map(|p| p.ports(self.now)).unwrap_or_default();
         let log = system.map(|p| p.log()).unwrap_or_default();
+        let mut unmet: Vec<_> = self.players.iter().flat_map(|p| p.unmet_awaits(self.now)).collect();
+        unmet.sort_by_key(|vain| (vain.until, vain.step));
         let accuracy = self.stage.as_ref().and_then(WorldStage::accuracy);
-        HarnessRun { trace: self.trace, ended, ports, log, accuracy }
+        HarnessRun { trace: self.trace, ended, ports, log, unmet, accuracy }
     }
 
     fn run_loop(&mut self) -> Result<RunTermination, HarnessError> {

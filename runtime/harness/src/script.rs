@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::{
-    player::{ActorPlayer, HarnessError, PlayerContext},
+    player::{ActorPlayer, AwaitInVain, HarnessError, PlayerContext},
     stimulus::{StimulusPerformance, draw_samples},
 };
 
@@ -17,6 +17,8 @@ pub struct ScriptPlayer<'p> {
     script: &'p TestScript,
     actors: Vec<ActorId>,
     rng: ChaCha8Rng,
+    /// How many steps the scripts before it have.
+    first: usize,
     /// The step under way, or the next.
     at: usize,
     state: ScriptState,
@@ -24,12 +26,15 @@ pub struct ScriptPlayer<'p> {
     beside: Vec<StimulusPerformance>,
     /// What was heard since the last await ended.
     heard: Vec<(EventId, Vec<Value>)>,
+    /// What did not come in its time.
+    unmet: Vec<AwaitInVain>,
 }
 
 enum ScriptState {
     Ready,
     Performing(StimulusPerformance),
     Awaiting {
+        since: Nanos,
         until: Nanos,
     },
     Waiting {
@@ -51,9 +56,12 @@ impl<'p> ScriptPlayer<'p> {
     /// The players of all scripts of a test, in their order. A script without an actor plays all environment actors at once, and
     /// hears whatever any of them hears.
     pub fn all(program: &'p Program, test: &'p Test) -> impl Iterator<Item = Self> {
+        let steps_before =
+            move |at: usize| test.scripts.iter().take(at).map(|script| script.steps.len()).sum();
         test.scripts.iter().enumerate().map(move |(at, script)| Self {
             program,
             script,
+            first: steps_before(at),
             actors: match script.actor {
                 Some(actor) => vec![actor],
                 None => program.actors_of(Role::Environment).collect(),
@@ -63,6 +71,7 @@ impl<'p> ScriptPlayer<'p> {
             state: ScriptState::Ready,
             beside: Vec::new(),
             heard: Vec::new(),
+            unmet: Vec::new(),
         })
     }
 
@@ -83,7 +92,7 @@ impl<'p> ScriptPlayer<'p> {
                     ScriptState::Performing(begun)
                 }
             }
-            TestStep::Await { within, .. } => ScriptState::Awaiting { until: cx.now + within },
+            TestStep::Await { within, .. } => ScriptState::Awaiting { since: cx.now, until: cx.now + within },
             TestStep::Wait { time } => ScriptState::Waiting { until: cx.now + time },
         };
         Ok(())
@@ -111,9 +120,14 @@ impl<'p> ScriptPlayer<'p> {
                     performance.is_done(cx.now)
                 }
                 ScriptState::Waiting { until } => *until <= cx.now,
-                ScriptState::Awaiting { until } => {
-                    let in_vain = cx.expire && *until <= cx.now;
-                    let over = in_vain || self.awaited_was_heard();
+                ScriptState::Awaiting { since, until } => {
+                    let (since, until) = (*since, *until);
+                    let is_heard = self.awaited_was_heard();
+                    let in_vain = cx.expire && until <= cx.now && !is_heard;
+                    let over = in_vain || is_heard;
+                    if in_vain {
+                        self.unmet.push(AwaitInVain { step: self.first + self.at, since, until });
+                    }
                     if over {
                         self.heard.clear();
                     }
@@ -163,10 +177,23 @@ impl ActorPlayer for ScriptPlayer<'_> {
         let step = match &self.state {
             ScriptState::Ready => Some(0),
             ScriptState::Performing(performance) => Some(performance.until),
-            ScriptState::Awaiting { until } | ScriptState::Waiting { until } => Some(*until),
+            ScriptState::Awaiting { until, .. } | ScriptState::Waiting { until } => Some(*until),
             ScriptState::Finished => None,
         };
         self.beside.iter().map(|performance| performance.until).chain(step).min()
+    }
+
+    fn unmet_awaits(&self, end: Nanos) -> Vec<AwaitInVain> {
+        let open = match self.state {
+            ScriptState::Awaiting { since, .. } => {
+                Some(AwaitInVain { step: self.first + self.at, since, until: end })
+            }
+            ScriptState::Ready
+            | ScriptState::Performing(_)
+            | ScriptState::Waiting { .. }
+            | ScriptState::Finished => None,
+        };
+        self.unmet.iter().copied().chain(open).collect()
     }
 
     fn is_finished(&self) -> bool {

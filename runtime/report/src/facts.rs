@@ -222,10 +222,12 @@ pub fn warnings(results: &CampaignResults) -> Vec<&InterfaceWarning> {
     results.warnings.iter().filter(|w| !w.is_note()).collect()
 }
 
-/// What must be known about a run: its marks, and what was awaited in it in vain.
+/// What must be known about a run: its marks, where it left its prediction, and what its programs waited for in vain.
 pub fn notes(test: &TestResult) -> Vec<String> {
     let marks = test.marks.iter().map(|mark| mark.sentence().to_owned());
-    marks.chain(test.waits.iter().map(UnservedWait::sentence)).collect()
+    let departure = test.prediction.as_ref().and_then(|p| p.departure(&test.steps));
+    let left = departure.map(|how| format!("not as predicted: {how}"));
+    marks.chain(left).chain(test.waits.iter().map(UnservedWait::sentence)).collect()
 }
 
 /// Whether everything of a state machine was reached.

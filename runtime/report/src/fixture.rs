@@ -5,9 +5,9 @@ mod system;
 
 use hrdsl_results::{
     BinName, BinResult, CampaignResults, CodeFile, CounterexampleStep, CoverageRatios, FORMAT, FirstFailure,
-    GoalReport, GoalStatus, LogSummary, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
-    SmallestMargin, SuiteGoalId, SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION,
-    VerdictOutcome as Outcome, VerdictResult, VerdictTally,
+    GoalReport, GoalStatus, LogSummary, OutputSummary, PredictedRun, PredictionVerdict, RequirementKind,
+    RequirementResult, RunEnd, RunMark, SmallestMargin, SuiteGoalId, SuiteInfo, TestMethod, TestResult,
+    TraceJudgement, UnmetAwait, VERSION, VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
 pub(crate) use model::model;
@@ -193,14 +193,31 @@ fn test(s: usize, i: usize) -> TestFixture {
     });
     let seen = ((mix(s, i, 1) % 5) as usize, mix(s, i, 2));
     let bins = if s == 2 { vec![bin_name(12 + i % 2)] } else { vec![bin_name(i % 11), bin_name(seen.0 * 2)] };
-    let predicted = if s == 2 { vec![] } else { vec![bin_name(i % 11), bin_name((i + 4) % 12)] };
+    // Now and then a run goes another way.
+    let predicted = match (s, i % 5) {
+        (2, _) => vec![],
+        (_, 3) => vec![bin_name(i % 11), bin_name((i + 4) % 12)],
+        _ => bins.clone(),
+    };
     let executed = executed(s, i);
+    let unmet: Vec<UnmetAwait> = match i % 15 {
+        3 => vec![UnmetAwait { step: 1, since: 12.5, until: 72.5 }],
+        _ => Vec::new(),
+    };
+    let ended = if error.is_some() { RunEnd::Error } else { [RunEnd::Quiescent, RunEnd::Limit][i % 2] };
+    let prediction = PredictionVerdict::of(PredictedRun {
+        method,
+        ended,
+        predicted: &predicted,
+        hit: &bins,
+        unmet: &unmet,
+    });
     let result = TestResult {
         name: format!("handover.{suite}.t{number:03}").into(),
         suite: suite.into(),
         method,
         seed: number as u64,
-        ended: if error.is_some() { RunEnd::Error } else { [RunEnd::Quiescent, RunEnd::Limit][i % 2] },
+        ended,
         duration: if error.is_some() { 141.3 } else { 60.0 + (mix(s, i, 3) % 24000) as f64 / 100.0 },
         judgement: TraceJudgement {
             verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
@@ -208,6 +225,8 @@ fn test(s: usize, i: usize) -> TestFixture {
             machines: Vec::new(),
         },
         predicted,
+        prediction,
+        unmet,
         because: because(s, i),
         code: ratios(&executed),
         steps: steps(s, i),

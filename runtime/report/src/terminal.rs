@@ -4,8 +4,8 @@ mod page;
 mod system;
 
 use hrdsl_results::{
-    BinResult, CampaignResults, CoverItemKind, CoverageRatios, RequirementResult, RunMark, SuiteInfo,
-    TestResult, VerdictOutcome as Outcome,
+    BinResult, CampaignResults, CoverItemKind, CoverageRatios, PredictionOutcome, RequirementResult, RunMark,
+    SuiteInfo, TestResult, VerdictOutcome as Outcome,
 };
 
 use crate::{
@@ -18,6 +18,8 @@ use system::{interfaces, machines};
 /// Bins and errors that are listed, at most.
 const BINS: usize = 16;
 const ERRORS: usize = 3;
+/// Tests that left their predictions that are listed, at most.
+const DEPARTURES: usize = 3;
 /// Goals of a model that are listed for a suite, at most.
 const GOALS: usize = 5;
 
@@ -29,6 +31,7 @@ pub fn summary(results: &CampaignResults, width: usize, color: bool) -> String {
     requirements(&mut page, results);
     violations(&mut page, results);
     bins(&mut page, results);
+    predictions(&mut page, results);
     models(&mut page, results);
     machines(&mut page, results);
     code(&mut page, results);
@@ -425,6 +428,36 @@ fn errors(page: &mut TerminalPage, results: &CampaignResults) {
     }
     if broken.len() > ERRORS {
         page.line(&[StyledSpan(format!("  and {} more", broken.len() - ERRORS), TerminalStyle::Dim)]);
+    }
+}
+
+/// Where model and code differ: the tests that went another way than the model of their suite said.
+fn predictions(page: &mut TerminalPage, results: &CampaignResults) {
+    let verdicts = || results.tests.iter().filter_map(|t| t.prediction.as_ref().map(|p| (t, p)));
+    let number = |outcome| verdicts().filter(|(_, p)| p.outcome == outcome).count();
+    let (kept, left) = (number(PredictionOutcome::Kept), number(PredictionOutcome::Left));
+    if kept + left == 0 {
+        return;
+    }
+    page.out.push('\n');
+    page.line(&[
+        StyledSpan("Predictions".into(), TerminalStyle::Bold),
+        StyledSpan(
+            format!("  kept by {kept} of {}", text::count(kept + left, "test")),
+            if left > 0 { TerminalStyle::Warn } else { TerminalStyle::Dim },
+        ),
+    ]);
+    let departures = verdicts().filter_map(|(test, p)| p.departure(&test.steps).map(|how| (test, how)));
+    for (test, how) in departures.take(DEPARTURES) {
+        let name = text::line(facts::short(results, &test.name));
+        page.line(&[
+            StyledSpan("○ ".into(), TerminalStyle::Warn),
+            StyledSpan(format!("{}  ", text::cut(&name, page.width / 3)), TerminalStyle::Plain),
+            StyledSpan(text::line(&how), TerminalStyle::Plain),
+        ]);
+    }
+    if left > DEPARTURES {
+        page.line(&[StyledSpan(format!("  and {} more", left - DEPARTURES), TerminalStyle::Dim)]);
     }
 }
 

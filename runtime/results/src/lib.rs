@@ -21,6 +21,7 @@ mod judgement;
 mod log;
 mod machine;
 mod names;
+mod prediction;
 mod schema;
 mod suite;
 mod tally;
@@ -41,6 +42,7 @@ pub use judgement::{CounterexampleStep, FirstFailure, TraceJudgement, VerdictOut
 pub use log::{LogCounts, LogSummary, LoggedLevel, LoggedText};
 pub use machine::{MachineCoverage, MachineResult, MachineStateResult, MachineTransitionResult};
 pub use names::{RequirementName, SuiteName, TestName};
+pub use prediction::{PredictedRun, PredictionOutcome, PredictionVerdict, UnmetAwait};
 pub use suite::{
     AgentCoverage, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteExplanation, SuiteInfo,
     TestExplanation, UncoveredGoal, UnreachedItem,

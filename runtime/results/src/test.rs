@@ -11,6 +11,7 @@ use crate::{
     judgement::TraceJudgement,
     log::LogSummary,
     names::{SuiteName, TestName},
+    prediction::{PredictionVerdict, UnmetAwait},
     schema,
 };
 
@@ -42,6 +43,12 @@ pub struct TestResult {
     /// The bins that the model predicted.
     #[schemars(with = "Vec<String>")]
     pub predicted: Vec<BinName>,
+    /// Whether the run went as the model said; left out where nothing was predicted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prediction: Option<PredictionVerdict>,
+    /// The awaits of the test that came to nothing, in the order in which they were given up.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unmet: Vec<UnmetAwait>,
     /// Where the test came from.
     pub because: Vec<String>,
     pub code: CoverageRatios,
@@ -125,5 +132,6 @@ impl TestResult {
         self.ended = RunEnd::Error;
         self.error.get_or_insert(why);
         self.judgement.break_off();
+        self.prediction = self.prediction.as_ref().map(|_| PredictionVerdict::broken_off());
     }
 }
