@@ -3,7 +3,7 @@
 //! # Steps
 //! 1. [`hrdsl_syntax::parse`]: text → AST, of the scenario and the files of tests
 //! 2. [`modules::load`]: the modules that are used, and those that they use; [`modules::load_devices`]: what devices can do
-//! 3. `descriptions::load`: the robots and maps that it is made from; [`hrdsl_model::resolve`]: AST → [`Scenario`], every name resolved, every expression typed
+//! 3. `descriptions::load`: the robots and maps that it is made from; [`hrdsl_model::resolve_part`]: AST → [`Scenario`], every name resolved, every expression typed
 //! 4. [`hrdsl_model::lint`]: what is well formed and yet cannot be meant; `allow` takes away what is
 //! 5. [`lower::lower`]: [`Scenario`] → [`Program`], if there were no errors
 //!

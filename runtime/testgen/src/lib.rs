@@ -5,7 +5,7 @@
 //! 1. [`agents`], [`search`] and [`random`] make abstract tests: each the stimuli of the environment's actors, and the
 //!    awaits and waits between them, with where it came from and the bins that the model predicts;
 //! 2. [equal](distinct) abstract tests become one, and [`mod@minimise`] keeps those that are needed for the suite's [`goals`];
-//! 3. [`concrete`] draws the second tier's values: test number n of a suite has seed n (Section "Experimental setup");
+//! 3. [`concrete`] draws the second tier's values: test number n of a suite has the seed s · 10⁶ + n, where s is that of the generation;
 //! 4. [`model`] says what of the agents' programs was reached, what each test is for, and why goals stayed uncovered;
 //! 5. [`write()`] prints tests in the language.
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]

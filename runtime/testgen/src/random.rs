@@ -1,4 +1,4 @@
-//! The baseline: stimuli, awaits and pauses drawn at random (Section "Baseline: Pseudorandom Test Generation").
+//! The baseline: stimuli, awaits and pauses drawn at random.
 
 use hrdsl_coverage::assume::AssumptionChecker;
 use hrdsl_ir::{
