@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value};
-use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
+use hrdsl_trace::{Trace, TraceStep, TraceStepKind, picture::WorldPicture};
 
 use crate::{
     clock::{TimeSource, VirtualClock},
@@ -38,6 +38,8 @@ pub struct HarnessRun {
     pub log: SystemLog,
     /// How far the world strayed from what cannot be; `None`: there is none, or it cannot tell.
     pub accuracy: Option<WorldAccuracy>,
+    /// What could be seen of the world; empty if nobody asked for it.
+    pub picture: WorldPicture,
 }
 
 /// The loop's state.
@@ -100,7 +102,8 @@ impl<'p> HarnessLoop<'p> {
         let ports = system.map(|p| p.ports(self.now)).unwrap_or_default();
         let log = system.map(|p| p.log()).unwrap_or_default();
         let accuracy = self.stage.as_ref().and_then(WorldStage::accuracy);
-        HarnessRun { trace: self.trace, ended, ports, log, accuracy }
+        let picture = self.stage.as_mut().map(WorldStage::take_picture).unwrap_or_default();
+        HarnessRun { trace: self.trace, ended, ports, log, accuracy, picture }
     }
 
     fn run_loop(&mut self) -> Result<RunTermination, HarnessError> {
