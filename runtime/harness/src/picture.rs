@@ -19,12 +19,12 @@ use crate::{
 };
 
 /// How often poses are looked at.
-const PERIOD: Nanos = 20_000_000;
-/// How far a body may be drawn from where it was: half a millimetre, and about a tenth of a degree.
-const PLACE: f64 = 0.0005;
-const TURN: f64 = 0.001;
+const PERIOD: Nanos = 40_000_000;
+/// How far a body may be drawn from where it was: a millimetre, and about a quarter of a degree.
+const PLACE: f64 = 0.001;
+const TURN: f64 = 0.002;
 /// The same of a joint, rad or m.
-const JOINT: f64 = 0.001;
+const JOINT: f64 = 0.003;
 /// What presses with less is not shown, N.
 const LEAST_FORCE: f64 = 1.0;
 /// A force is told again when it has changed by this part of it.

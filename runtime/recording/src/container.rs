@@ -12,7 +12,7 @@ const CHUNK: usize = 256 * 1024;
 /// No chunk of ours is larger than this when it is unpacked, nor is one of a file that is read.
 const MOST_UNPACKED: u64 = 256 << 20;
 /// Of zstd: what is behind it takes much longer than it saves.
-const LEVEL: i32 = 3;
+const LEVEL: i32 = 6;
 
 mod op {
     pub const HEADER: u8 = 0x01;
@@ -80,7 +80,8 @@ impl ContainerWriter {
         if self.chunk.len() >= CHUNK { self.close_chunk() } else { Ok(()) }
     }
 
-    fn close_chunk(&mut self) -> std::io::Result<()> {
+    /// What comes next lies in a chunk of its own.
+    pub fn close_chunk(&mut self) -> std::io::Result<()> {
         let records = std::mem::take(&mut self.chunk);
         if records.is_empty() {
             return Ok(());

@@ -45,27 +45,29 @@ struct PlannedMessage {
 /// # Errors
 /// That the run is too large for the format.
 pub fn write(run: &RunOnFile<'_>) -> Result<Vec<u8>, String> {
-    let mut planned = judged(run);
-    planned.extend(seen(run));
-    // Stable: what is of one time stays in order, and the judged lines among each other always do.
-    planned.sort_by_key(|message| message.time);
-    file(&planned).map_err(|e| format!("the recording cannot be written: {e}"))
+    let mut seen = seen(run);
+    seen.sort_by_key(|message| message.time);
+    file(&[judged(run), seen]).map_err(|e| format!("the recording cannot be written: {e}"))
 }
 
-fn file(planned: &[PlannedMessage]) -> std::io::Result<Vec<u8>> {
+/// Each part in chunks of its own: what is alike is packed together, and if a file is cut, what is judged is still there.
+fn file(parts: &[Vec<PlannedMessage>; 2]) -> std::io::Result<Vec<u8>> {
     let mut writer = ContainerWriter::new(concat!("hrdsl ", env!("CARGO_PKG_VERSION")));
     let mut channels = BTreeMap::new();
     for channel in RecordingChannel::ALL {
-        if planned.iter().any(|message| message.channel == channel) {
+        if parts.iter().flatten().any(|message| message.channel == channel) {
             let (name, schema) = schema::of_channel(channel);
             channels.insert(channel, writer.channel(channel.topic(), name, &schema.to_string()));
         }
     }
-    for message in planned {
-        let Some(channel) = channels.get(&message.channel).copied() else { continue };
-        let time = message.time.max(0).unsigned_abs();
-        let sequence = u32::try_from(message.sequence).unwrap_or(u32::MAX);
-        writer.message(channel, sequence, time, &message.data)?;
+    for part in parts {
+        for message in part {
+            let Some(channel) = channels.get(&message.channel).copied() else { continue };
+            let time = message.time.max(0).unsigned_abs();
+            let sequence = u32::try_from(message.sequence).unwrap_or(u32::MAX);
+            writer.message(channel, sequence, time, &message.data)?;
+        }
+        writer.close_chunk()?;
     }
     writer.finish()
 }
@@ -73,7 +75,6 @@ fn file(planned: &[PlannedMessage]) -> std::io::Result<Vec<u8>> {
 /// The lines of the text form, each on the channel of what it says.
 fn judged(run: &RunOnFile<'_>) -> Vec<PlannedMessage> {
     let lines: Vec<&str> = run.text.lines().collect();
-    let mut last = 0;
     let message = |(at, line): (usize, &&str)| {
         let step = at.checked_sub(1).and_then(|step| run.trace.steps.get(step));
         let (time, channel) = match step {
@@ -81,9 +82,7 @@ fn judged(run: &RunOnFile<'_>) -> Vec<PlannedMessage> {
             None if at == 0 => (0, RecordingChannel::Header),
             None => (run.trace.end, RecordingChannel::End),
         };
-        // Lines stay in order, whatever their times say.
-        last = time.max(last);
-        PlannedMessage { time: last, channel, sequence: at, data: line.as_bytes().to_vec() }
+        PlannedMessage { time, channel, sequence: at, data: line.as_bytes().to_vec() }
     };
     lines.iter().enumerate().map(message).collect()
 }

@@ -192,7 +192,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let sources = sources.collect::<BTreeMap<_, _>>();
     let results = tally(program, args.seed, &generated, outcome, &sources, rerun::words(args, &out));
     publish(&results, &campaign, times.as_ref(), folder)?;
-    summarise(&results, &campaign, &out, begun.elapsed())?;
+    summarise(&results, &campaign, (args, &out), begun.elapsed())?;
     if let Some(times) = &times {
         terminal::print(&timings::table(times))?;
     }
@@ -500,7 +500,7 @@ fn publish(
 fn summarise(
     results: &CampaignResults,
     campaign: &CampaignSetup<'_>,
-    out: &Path,
+    (args, out): (&SimArgs, &Path),
     wall: Duration,
 ) -> Result<(), CommandFault> {
     let summary = report::summary(results, super::report::WIDTH, color::stdout_has());
@@ -515,7 +515,9 @@ fn summarise(
         wall.as_secs_f64()
     );
     let again = if !results.is_clean() {
-        format!("to run one test again: (cd {} && {} NAME)\n", rerun::quoted(out), results.rerun)
+        let again = format!("to run one test again: (cd {} && {} NAME)\n", rerun::quoted(out), results.rerun);
+        let looks = args.replays != ReplaysArg::None;
+        again + &if looks { rerun::view_words(args) } else { String::new() }
     } else {
         String::new()
     };

@@ -1,11 +1,12 @@
 //! What a requirement compares with a limit, as far as it can be drawn.
 
 use hrdsl_ir::{
-    Expr, Nanos, Type,
-    expr::BinaryOp,
+    Expr, Nanos, Type, Value,
+    expr::{BinaryOp, NumberFunction},
     monitor::Monitor,
-    world::{Signal, SignalTerm},
+    world::{Signal, SignalId, SignalTerm},
 };
+use hrdsl_trace::TraceStepKind;
 
 use super::{
     ReplayedRun,
@@ -20,27 +21,66 @@ pub(super) fn measures(run: &ReplayedRun<'_>, monitor: &Monitor, at: Nanos) -> V
         compared(&margin.value, &mut found);
     }
     let measure = |(slot, relation, limit): (u16, LimitRelation, f64)| {
-        let id = monitor.signals.get(usize::from(slot))?;
-        Some(measure_of(run, run.program.signal(*id), relation, limit, at))
+        let id = *monitor.signals.get(usize::from(slot))?;
+        let value = value_at(run, id, at).unwrap_or(f64::NAN);
+        let margin = match relation {
+            LimitRelation::Below | LimitRelation::AtMost => limit - value,
+            LimitRelation::Above | LimitRelation::AtLeast => value - limit,
+        };
+        Some((margin, measure_of(run, run.program.signal(id), relation, limit, at)))
     };
-    found.into_iter().filter_map(measure).collect()
+    let mut measures: Vec<(f64, ViewMeasure)> = found.into_iter().filter_map(measure).collect();
+    // The first is drawn: the one that is worst then.
+    measures.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    measures.into_iter().map(|(_, measure)| measure).collect()
 }
 
-/// A margin is `a − b` of a comparison, or the least or greatest of several.
+/// The latest value of a signal at a time.
+fn value_at(run: &ReplayedRun<'_>, id: SignalId, at: Nanos) -> Option<f64> {
+    let known = run.trace.steps.iter().rev().filter(|step| step.time <= at);
+    let mut samples = known.filter_map(|step| match &step.what {
+        TraceStepKind::Sample { signal, value } if *signal == id => Some(*value),
+        TraceStepKind::Sample { .. } | TraceStepKind::Event { .. } | TraceStepKind::Machine(_) => None,
+    });
+    samples.next().and_then(Value::as_f64)
+}
+
+/// A margin is `a − b` of a comparison, or the least or greatest of several; so may be what is compared.
 fn compared(expr: &Expr, found: &mut Vec<(u16, LimitRelation, f64)>) {
     match expr {
-        Expr::Binary(BinaryOp::Sub, large, small) => match (large.as_ref(), small.as_ref()) {
-            (Expr::Var(slot), Expr::Const(limit)) => {
-                found.extend(limit.as_f64().map(|limit| (*slot, LimitRelation::AtLeast, limit)));
+        Expr::Binary(BinaryOp::Sub, large, small) => {
+            let sides = [(large, small, LimitRelation::AtLeast), (small, large, LimitRelation::AtMost)];
+            for (measured, limit, relation) in sides {
+                if let Expr::Const(limit) = limit.as_ref()
+                    && let Some(limit) = limit.as_f64()
+                {
+                    let mut slots = Vec::new();
+                    measured_slots(measured, &mut slots);
+                    found.extend(slots.into_iter().map(|slot| (slot, relation, limit)));
+                }
             }
-            (Expr::Const(limit), Expr::Var(slot)) => {
-                found.extend(limit.as_f64().map(|limit| (*slot, LimitRelation::AtMost, limit)));
-            }
-            (_, _) => {}
-        },
+        }
         Expr::Call(_, parts) => parts.iter().for_each(|part| compared(part, found)),
         Expr::Const(_)
         | Expr::Var(_)
+        | Expr::Unary(..)
+        | Expr::Binary(..)
+        | Expr::If(..)
+        | Expr::List(..)
+        | Expr::Element(_)
+        | Expr::Apply(..) => {}
+    }
+}
+
+/// The signals of which the least or the greatest is compared, or the one that is.
+fn measured_slots(expr: &Expr, slots: &mut Vec<u16>) {
+    match expr {
+        Expr::Var(slot) => slots.push(*slot),
+        Expr::Call(NumberFunction::Min | NumberFunction::Max, parts) => {
+            parts.iter().for_each(|part| measured_slots(part, slots));
+        }
+        Expr::Call(..)
+        | Expr::Const(_)
         | Expr::Unary(..)
         | Expr::Binary(..)
         | Expr::If(..)
