@@ -51,11 +51,19 @@ fn text(bytes: Vec<u8>, name: &str) -> Result<String, CommandFault> {
 /// # Errors
 /// The file's name and what is wrong.
 pub fn write(path: &Path, text: &str) -> Result<(), CommandFault> {
+    write_bytes(path, text.as_bytes())
+}
+
+/// The same of a file that is not text.
+///
+/// # Errors
+/// The same.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CommandFault> {
     let fault = |e: std::io::Error| format!("cannot write {}: {e}", terminal::shown(path));
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(fault)?;
     }
-    fs::write(path, text).map_err(fault)
+    fs::write(path, bytes).map_err(fault)
 }
 
 /// Puts another text in a file's place, all of it or nothing: it is written beside the file, and renamed.

@@ -68,6 +68,7 @@ enum TopLevelCommand {
     Prove(commands::prove::ProveArgs),
     Report(commands::report::ReportArgs),
     Sim(commands::sim::SimArgs),
+    View(commands::view::ViewArgs),
 }
 
 fn main() -> ExitCode {
@@ -110,6 +111,7 @@ fn run() -> ExitCode {
         TopLevelCommand::Prove(args) => commands::prove::run(&args),
         TopLevelCommand::Report(args) => commands::report::run(&args),
         TopLevelCommand::Sim(args) => commands::sim::run(&args),
+        TopLevelCommand::View(args) => commands::view::run(&args),
     });
     result
         .unwrap_or_else(|fault| {

@@ -16,6 +16,8 @@ use crate::{fault::CommandFault, files, terminal::shown};
 pub const MARKER: &str = ".hrdsl-results";
 /// The folder of a campaign's recordings.
 pub const TRACES: &str = "traces";
+/// The folder of what can be looked at of its tests.
+pub const REPLAYS: &str = "replays";
 /// Where results are collected until the run is over.
 const STAGING: &str = ".hrdsl-partial";
 const FIRST_LINE: &str = "hrdsl results 1";

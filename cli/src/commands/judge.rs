@@ -3,14 +3,14 @@
 use std::{
     collections::BTreeMap,
     fs::File,
-    io::BufReader,
+    io::{BufRead, BufReader, Cursor, Read},
     path::{Path, PathBuf},
 };
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
     judge::{CampaignOutcome, FinishedTest, JudgedRecording, judge_recording, tally},
-    report,
+    recording, report,
     results::{
         BinName, BinResult, CampaignResults, MachineCoverage, MachineResult, RequirementResult, RunEnd,
         TestName, TestResult, VerdictResult,
@@ -23,7 +23,7 @@ use crate::{color, exit::CommandExit, fault::CommandFault, files, input, results
 
 /// Judge recordings: verdicts and bins as a campaign gives them, without running anything.
 ///
-/// A recording is a file that `sim` wrote into traces/, or that another program wrote in the same form (spec/traces.md).
+/// A recording is a file that `sim` wrote into traces/ or replays/, or that another program wrote in the same form (spec/traces.md).
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json"
@@ -31,7 +31,7 @@ use crate::{color, exit::CommandExit, fault::CommandFault, files, input, results
 pub struct JudgeArgs {
     /// The scenario.
     file: PathBuf,
-    /// Recordings, or folders with recordings (`.jsonl`) in them.
+    /// Recordings (`.jsonl`, `.mcap`), or folders with recordings in them; of the results of `sim`, those in traces/.
     #[arg(required = true)]
     recordings: Vec<PathBuf>,
     /// Print the verdicts, failures and bins as JSON.
@@ -116,11 +116,15 @@ fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFault> {
             let path = if traces.is_dir() { &traces } else { path };
             let files = results_folder::files_below(path)?;
             // Links are not followed: they may lead in circles.
-            let is_recording = |p: &PathBuf| p.extension().is_some_and(|e| e == "jsonl") && !p.is_symlink();
+            let is_recording =
+                |p: &PathBuf| p.extension().is_some_and(|e| e == "jsonl" || e == "mcap") && !p.is_symlink();
             let before = all.len();
             all.extend(files.iter().map(|file| path.join(file)).filter(is_recording));
             if all.len() == before {
-                return Err(format!("there is no recording (`.jsonl`) in {}", terminal::shown(path)));
+                return Err(format!(
+                    "there is no recording (`.jsonl`, `.mcap`) in {}",
+                    terminal::shown(path)
+                ));
             }
         } else {
             all.push(path.clone());
@@ -129,10 +133,24 @@ fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFault> {
     Ok(all)
 }
 
+/// The lines of a recording, in whichever form it is.
+fn opened(path: &Path) -> Result<Box<dyn BufRead>, CommandFault> {
+    let mut file = BufReader::new(File::open(path).map_err(|e| e.to_string())?);
+    if !recording::is_mcap(file.fill_buf().map_err(|e| e.to_string())?) {
+        return Ok(Box::new(file));
+    }
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).map_err(|e| e.to_string())?;
+    let found = recording::read(&bytes).map_err(|e| e.to_string())?;
+    match found.faults.first() {
+        Some(fault) => Err(fault.clone()),
+        None => Ok(Box::new(Cursor::new(found.text))),
+    }
+}
+
 /// What a recording shows, as the result of its test.
 fn judged(program: &Program, path: &Path, changed: bool) -> Result<FinishedTest, CommandFault> {
-    let file = File::open(path).map_err(|e| e.to_string())?;
-    let judged = judge_recording(program, BufReader::new(file), changed).map_err(|e| e.to_string())?;
+    let judged = judge_recording(program, opened(path)?, changed).map_err(|e| e.to_string())?;
     let duration = judged.duration();
     let JudgedRecording { recorded, judgement, machines } = judged;
     // What is no test is called as its file is.

@@ -17,3 +17,4 @@ pub mod prove;
 pub mod report;
 pub mod search_options;
 pub mod sim;
+pub mod view;

@@ -81,7 +81,8 @@ impl CampaignSetup<'_> {
             }
             (Some(_) | None, Some(_) | None) => Box::new(world),
         };
-        Ok(Some(WorldStage::new(self.program, world)))
+        let stage = WorldStage::new(self.program, world);
+        Ok(Some(if self.replays.looks() { stage.picturing() } else { stage }))
     }
 }
 

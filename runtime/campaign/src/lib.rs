@@ -10,6 +10,7 @@ mod hulls;
 mod interfaces;
 mod internal;
 mod log;
+mod replay;
 mod times;
 
 use std::{
@@ -33,7 +34,7 @@ use hrdsl_ir::{
 use hrdsl_judge::{CampaignOutcome, FinishedTest, TraceJudge};
 use hrdsl_results::{
     CoverageRatios, FileCoverage, OutputSummary, PhysicsAccuracy, PredictedRun, PredictionVerdict, RunEnd,
-    RunMark, TestName, TestResult, TraceJudgement, UnmetAwait,
+    RunMark, TestName, TestResult, TraceJudgement, UnmetAwait, VerdictOutcome,
 };
 pub use hrdsl_sim::HullStore;
 pub use hrdsl_sut::{
@@ -44,6 +45,7 @@ pub use hrdsl_sut::{
 use hrdsl_sut::{EnvironmentNeeds, FinishedProcess, LaunchMiddleware, LaunchSpec, SutError};
 use hrdsl_trace::{
     MachineDeclaration, Trace,
+    picture::WorldPicture,
     record::{self, RecordingEnd, RecordingHeader},
 };
 
@@ -54,6 +56,7 @@ pub use forks::ForkPlan;
 use forks::WorkerServers;
 pub use hulls::{FoundHulls, find_hulls};
 pub use internal::{InternalError, guarded, record_panics};
+pub use replay::ReplayChoice;
 pub use times::CampaignTimes;
 use times::{CampaignStopwatch, TestTimes};
 
@@ -88,6 +91,8 @@ pub struct CampaignSetup<'a> {
     pub jobs: usize,
     /// Set when the campaign is to end before its last test.
     pub stop: StopFlag,
+    /// Of which tests there are files by which they can be looked at again.
+    pub replays: ReplayChoice,
     /// What measures where processor time goes; `None`: nobody asks, and no clock is looked at.
     pub clocks: Option<ProcessorClocks>,
 }
@@ -98,6 +103,8 @@ pub struct FinishedRun<'a> {
     pub result: &'a TestResult,
     /// JSON Lines.
     pub recording: &'a str,
+    /// The file by which it can be looked at again, if there is to be one.
+    pub replay: Option<&'a [u8]>,
     pub output: &'a [ProgramOutput],
 }
 
@@ -127,6 +134,7 @@ pub struct CampaignRun {
 struct TestAttempt {
     finished: PortedTest,
     recording: String,
+    replay: Option<Vec<u8>>,
     output: Vec<ProgramOutput>,
     fault: Option<SystemFaultKind>,
     times: TestTimes,
@@ -172,10 +180,11 @@ impl CampaignSetup<'_> {
         let results: Mutex<Vec<Option<PortedTest>>> = Mutex::new(vec![None; tests.len()]);
         let finish = |index: usize, mut attempt: TestAttempt| {
             let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
-            let TestAttempt { finished, recording, output, .. } = &attempt;
+            let TestAttempt { finished, recording, replay, output, .. } = &attempt;
             let result = &finished.finished.result;
             let mut writing = SpentTime::default();
-            let done = || on_done(FinishedRun { index, result, recording, output });
+            let replay = replay.as_deref();
+            let done = || on_done(FinishedRun { index, result, recording, replay, output });
             if let Err(why) = self.measured(&mut writing, done) {
                 attempt.finished.finished.result.break_off(why);
             }
@@ -297,6 +306,14 @@ impl CampaignSetup<'_> {
             .measured(&mut times.recordings, || record::write(self.program, &header, &run.trace, &ending));
         let judgement = || judge(self.program, &run.trace, ending.kind);
         let (judgement, machines) = self.measured(&mut times.judgement, judgement);
+        let fails = ending.kind == RunEnd::Error
+            || judgement.verdicts.iter().any(|v| v.outcome == VerdictOutcome::Fail);
+        let replay = self.replays.takes(fails).then(|| {
+            let file = || replay::file(self.program, &run, &recording, &judgement);
+            self.measured(&mut times.recordings, file)
+        });
+        // One that cannot be written is not there; the test counts all the same.
+        let replay = replay.and_then(Result::ok);
         let fault = match &run.ended {
             RunTermination::Fault(HarnessError::System(fault)) => Some(fault.kind),
             RunTermination::Fault(
@@ -312,7 +329,7 @@ impl CampaignSetup<'_> {
         let output = finished.iter().map(output).collect();
         let mut finished = test_result(self.program, test, run, (ending, judgement), finished);
         finished.finished.machines = machines;
-        TestAttempt { finished, recording, output, fault, times: TestTimes::default() }
+        TestAttempt { finished, recording, replay, output, fault, times: TestTimes::default() }
     }
 
     /// What programs find out about their middleware.
@@ -371,7 +388,8 @@ fn hash_seed(seed: u64) -> u32 {
 /// A run that never began.
 fn failed(fault: HarnessError) -> HarnessRun {
     let (trace, ports, log) = (Trace::default(), PortHistory::default(), SystemLog::default());
-    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, log, unmet: Vec::new(), accuracy: None }
+    let (unmet, picture) = (Vec::new(), WorldPicture::default());
+    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, log, unmet, accuracy: None, picture }
 }
 
 /// What is known about a test when its run is over.

@@ -17,8 +17,10 @@ mod command;
 pub mod doubles;
 mod edge;
 mod fault;
+mod keyframes;
 mod log;
 mod message;
+mod picture;
 mod player;
 mod port;
 mod recorder;
@@ -55,5 +57,6 @@ pub use system::seam::{
     SystemArrival, SystemRequest,
 };
 pub use world::{
-    ArmTarget, CommandId, MotionPlanRequest, PlannedPoint, PlannedTrajectory, WorldAccuracy, WorldBackend,
+    ArmTarget, BodyPose, CommandId, MotionPlanRequest, PlannedPoint, PlannedTrajectory, WorldAccuracy,
+    WorldBackend,
 };

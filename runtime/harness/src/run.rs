@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value};
-use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
+use hrdsl_trace::{Trace, TraceStep, TraceStepKind, picture::WorldPicture};
 
 use crate::{
     clock::{TimeSource, VirtualClock},
@@ -40,6 +40,8 @@ pub struct HarnessRun {
     pub unmet: Vec<AwaitInVain>,
     /// How far the world strayed from what cannot be; `None`: there is none, or it cannot tell.
     pub accuracy: Option<WorldAccuracy>,
+    /// What could be seen of the world; empty if nobody asked for it.
+    pub picture: WorldPicture,
 }
 
 /// The loop's state.
@@ -104,7 +106,8 @@ impl<'p> HarnessLoop<'p> {
         let mut unmet: Vec<_> = self.players.iter().flat_map(|p| p.unmet_awaits(self.now)).collect();
         unmet.sort_by_key(|vain| (vain.until, vain.step));
         let accuracy = self.stage.as_ref().and_then(WorldStage::accuracy);
-        HarnessRun { trace: self.trace, ended, ports, log, unmet, accuracy }
+        let picture = self.stage.as_mut().map(WorldStage::take_picture).unwrap_or_default();
+        HarnessRun { trace: self.trace, ended, ports, log, unmet, accuracy, picture }
     }
 
     fn run_loop(&mut self) -> Result<RunTermination, HarnessError> {

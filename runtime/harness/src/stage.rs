@@ -7,12 +7,13 @@ use hrdsl_ir::{
     expr::Expr,
     world::{DeviceId, RuleTrigger, SignalId, WorldAction, WorldRule},
 };
-use hrdsl_trace::Trace;
+use hrdsl_trace::{Trace, picture::WorldPicture};
 
 use crate::{
     command::{CommandRequest, NotBegun},
     edge::EdgeWatch,
     message::PlayerMessage,
+    picture::PictureRecorder,
     recorder::SignalRecorder,
     world::{CommandId, MotionPlanRequest, PlannedTrajectory, WorldAccuracy, WorldBackend},
 };
@@ -26,6 +27,8 @@ pub struct WorldStage<'p> {
     /// Of those rules that wait for conditions, in their order.
     edges: Vec<EdgeWatch<'p>>,
     recorder: SignalRecorder<'p>,
+    /// What people will look at; `None`: nobody will.
+    picture: Option<PictureRecorder>,
     /// Commands that ended and that their maker has not yet been told of.
     ended: Vec<(CommandId, Result<(), String>)>,
     /// Events set off by commands and by conditions.
@@ -44,6 +47,7 @@ impl<'p> WorldStage<'p> {
             declared: program.world.as_ref(),
             rules,
             recorder: SignalRecorder::new(program),
+            picture: None,
             ended: Vec::new(),
             answers: Vec::new(),
         }
@@ -57,6 +61,18 @@ impl<'p> WorldStage<'p> {
         self
     }
 
+    /// The same, with a picture of the world, which changes nothing else.
+    #[must_use]
+    pub fn picturing(mut self) -> Self {
+        self.picture = Some(PictureRecorder::default());
+        self
+    }
+
+    /// The picture so far; empty if none was taken.
+    pub fn take_picture(&mut self) -> WorldPicture {
+        self.picture.take().map(PictureRecorder::finish).unwrap_or_default()
+    }
+
     /// When it next changes by itself; `None`: at rest.
     #[must_use]
     pub fn next_wake(&self) -> Option<Nanos> {
@@ -68,6 +84,9 @@ impl<'p> WorldStage<'p> {
         self.world.advance(to);
         self.ended.extend(self.world.take_ended());
         self.recorder.pass(to, self.world.as_mut(), trace);
+        if let Some(picture) = &mut self.picture {
+            picture.look(to, self.world.as_ref());
+        }
         for edge in &mut self.edges {
             if edge.look(to, self.world.as_mut()) {
                 self.answers.extend(answer(edge.rule, self.world.as_mut()));

@@ -6,7 +6,7 @@ use hrdsl_ir::{
     Nanos, Value,
     device::DeviceBody,
     device_state::DeviceState,
-    world::{SignalId, WorldAction},
+    world::{BodyId, JointId, SignalId, Vec3, WorldAction},
 };
 
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
     fault::SystemFault,
     spent::{SpentTime, ThreadClock},
     system::seam::{RequestTicket, SystemActor, SystemAnswer, SystemRequest},
-    world::{CommandId, MotionPlanRequest, PlannedTrajectory, WorldAccuracy, WorldBackend},
+    world::{BodyPose, CommandId, MotionPlanRequest, PlannedTrajectory, WorldAccuracy, WorldBackend},
 };
 
 /// What the parts of a run took that are beyond the harness's seams.
@@ -119,6 +119,22 @@ impl<W: WorldBackend> WorldBackend for TimedWorld<W> {
 
     fn plan(&self, device: DeviceBody, wanted: &MotionPlanRequest) -> Result<PlannedTrajectory, String> {
         self.watch.measure(|t| &mut t.planning, || self.world.plan(device, wanted))
+    }
+
+    fn poses(&self, tell: &mut dyn FnMut(BodyPose)) {
+        self.watch.measure(|t| &mut t.sensing, || self.world.poses(tell));
+    }
+
+    fn joints(&self, tell: &mut dyn FnMut(JointId, f64)) {
+        self.watch.measure(|t| &mut t.sensing, || self.world.joints(tell));
+    }
+
+    fn contacts(&self, least: f64, tell: &mut dyn FnMut([BodyId; 2], Vec3)) {
+        self.watch.measure(|t| &mut t.sensing, || self.world.contacts(least, tell));
+    }
+
+    fn contact_point(&self, bodies: [BodyId; 2]) -> Option<Vec3> {
+        self.watch.measure(|t| &mut t.sensing, || self.world.contact_point(bodies))
     }
 
     fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)> {

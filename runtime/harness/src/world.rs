@@ -4,7 +4,7 @@ use hrdsl_ir::{
     Nanos, Value,
     device::DeviceBody,
     device_state::DeviceState,
-    world::{SignalId, Vec3, WorldAction},
+    world::{BodyId, JointId, SignalId, Vec3, WorldAction},
 };
 
 use crate::{command::CheckedCommand, spent::SpentTime};
@@ -79,8 +79,39 @@ pub trait WorldBackend {
         Err("this device plans nothing".to_owned())
     }
 
+    /// Tells of each body where it is, but of those that rest, or are rigidly one with another; for looking only.
+    fn poses(&self, tell: &mut dyn FnMut(BodyPose)) {
+        let _ = tell;
+    }
+
+    /// Tells where its joints are, but of those that rest, rad or m; for looking only.
+    fn joints(&self, tell: &mut dyn FnMut(JointId, f64)) {
+        let _ = tell;
+    }
+
+    /// Tells which bodies press on each other with at least so much (N), each pair once, in order: the force on the second; for looking only.
+    fn contacts(&self, least: f64, tell: &mut dyn FnMut([BodyId; 2], Vec3)) {
+        let _ = (least, tell);
+    }
+
+    /// Where about two bodies touch, m; `None`: nobody knows.
+    fn contact_point(&self, bodies: [BodyId; 2]) -> Option<Vec3> {
+        let _ = bodies;
+        None
+    }
+
     /// The commands that have ended since the last call, in the order in which they did, and why those failed that did.
     fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)>;
+}
+
+/// Where a body is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyPose {
+    pub body: BodyId,
+    /// m
+    pub place: Vec3,
+    /// A unit quaternion: x, y, z, w.
+    pub turn: [f64; 4],
 }
 
 /// What a simulation of rigid bodies says of itself: how far it strayed at worst from what cannot be, and where.

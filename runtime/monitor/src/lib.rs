@@ -22,7 +22,7 @@ use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
 
 use latest::{LatestSamples, SampleReading};
 use machine::{MonitorMachine, TraceMoment};
-pub use verdict::{MonitorOutcome, MonitorVerdict, SeenStep, Violation};
+pub use verdict::{MonitorHappening, MonitorOutcome, MonitorVerdict, SeenStep, Violation};
 
 /// Runs all monitors of a program over one trace.
 #[derive(Clone, Debug)]
@@ -75,6 +75,24 @@ impl MonitorRunner {
     pub fn verdicts(mut self) -> Vec<MonitorVerdict> {
         self.take_all_samples();
         self.machines.into_iter().enumerate().map(|(index, machine)| machine.verdict(index)).collect()
+    }
+
+    /// The same, which keeps all that the monitors do, in memory that grows with the trace.
+    #[must_use]
+    pub fn recounting(mut self) -> Self {
+        self.machines.iter_mut().for_each(MonitorMachine::recount);
+        self
+    }
+
+    /// The verdicts, each with what its monitor did, in order, if it [recounts](Self::recounting).
+    #[must_use]
+    pub fn recounted(mut self) -> Vec<(MonitorVerdict, Vec<MonitorHappening>)> {
+        self.take_all_samples();
+        let told = |(index, mut machine): (usize, MonitorMachine)| {
+            let history = machine.take_history();
+            (machine.verdict(index), history)
+        };
+        self.machines.into_iter().enumerate().map(told).collect()
     }
 
     /// Lets a monitor react to the samples of this instant, as to one: a condition over several signals never sees some of

@@ -9,7 +9,7 @@ use hrdsl_trace::{TraceStep, TraceStepKind};
 
 use crate::{
     latest::LatestSamples,
-    verdict::{MonitorOutcome, MonitorVerdict, SeenStep, Violation},
+    verdict::{MonitorHappening, MonitorOutcome, MonitorVerdict, SeenStep, Violation},
 };
 
 /// When something happened, and by which step of the trace; a deadline has none.
@@ -50,6 +50,8 @@ pub(crate) struct MonitorMachine {
     failures: u32,
     first_failure: Option<Violation>,
     worst_margin: Option<(f64, Nanos)>,
+    /// All that it did; `None`: nobody asks for it.
+    history: Option<Vec<MonitorHappening>>,
 }
 
 /// What an edge may be waiting for.
@@ -100,10 +102,20 @@ impl MonitorMachine {
             failures: 0,
             first_failure: None,
             worst_margin: None,
+            history: None,
             monitor,
         };
         machine.arm(0);
         machine
+    }
+
+    /// From now on it keeps all that it does.
+    pub fn recount(&mut self) {
+        self.history = Some(Vec::new());
+    }
+
+    pub fn take_history(&mut self) -> Vec<MonitorHappening> {
+        self.history.take().unwrap_or_default()
     }
 
     /// When the next deadline is reached, if nothing happens before.
@@ -142,6 +154,11 @@ impl MonitorMachine {
         if self.watches && self.triggered == 0 && complete() {
             self.triggered = 1;
             self.obligation = Some(obligation(EdgeCause::Sample, at, signals));
+            if let Some(history) = &mut self.history {
+                let effects = vec![MonitorEffect::Trigger];
+                let (time, step, values) = (at.time, at.step, Vec::new());
+                history.push(MonitorHappening { time, step, effects, pending: false, due: None, values });
+            }
         }
         self.react(EdgeCause::Sample, at, signals);
     }
@@ -191,6 +208,21 @@ impl MonitorMachine {
         if moves || resets {
             self.arm(at.time);
         }
+        self.note(edge, at, signals);
+    }
+
+    /// Keeps what an edge did, if somebody asks for it.
+    fn note(&mut self, edge: usize, at: TraceMoment, signals: &LatestSamples) {
+        if self.history.is_none() {
+            return;
+        }
+        let effects = self.monitor.edges[edge].effects.clone();
+        let pending = self.monitor.states.get(self.state).is_some_and(|s| s.pending);
+        let read = self.monitor.signals.iter().filter_map(|s| signals.get(*s).map(|r| (*s, r.value)));
+        let values = if effects.contains(&MonitorEffect::Fail) { read.collect() } else { Vec::new() };
+        let happening =
+            MonitorHappening { time: at.time, step: at.step, effects, pending, due: self.due, values };
+        self.history.get_or_insert_default().push(happening);
     }
 
     /// Sets when the state's deadline is due: at once if the clock is already past it.

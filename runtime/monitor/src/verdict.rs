@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use hrdsl_ir::{Nanos, Value, world::SignalId};
+use hrdsl_ir::{Nanos, Value, monitor::MonitorEffect, world::SignalId};
 use hrdsl_trace::TraceStep;
 
 /// The judgement on one requirement in one trace.
@@ -57,6 +57,20 @@ pub struct Violation {
     /// The trigger, the violating step, then the latest sample of each signal of the monitor; each step once.
     pub counterexample: Vec<SeenStep>,
     /// The values of the monitor's signals at that time, so far as they had any.
+    pub values: Vec<(SignalId, Value)>,
+}
+
+/// What a monitor did at an instant, for those who tell its story.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MonitorHappening {
+    pub time: Nanos,
+    /// The step that did it; `None`: a deadline.
+    pub step: Option<usize>,
+    pub effects: Vec<MonitorEffect>,
+    /// Whether an obligation is pending from then on, and by when it has to be met.
+    pub pending: bool,
+    pub due: Option<Nanos>,
+    /// The values of the monitor's signals, so far as they have any; only of what fails.
     pub values: Vec<(SignalId, Value)>,
 }
 

@@ -42,6 +42,7 @@ mod mover;
 mod odometer;
 mod past;
 mod physics;
+mod picture;
 mod planner;
 mod profile;
 mod reading;

@@ -10,6 +10,7 @@ mod guide;
 mod joints;
 mod losses;
 mod pairs;
+mod seen;
 mod state;
 mod surface;
 pub(crate) mod wheels;

@@ -4,14 +4,14 @@
 use std::collections::BTreeMap;
 
 use hrdsl_harness::{
-    CheckedCommand, CommandId, MotionPlanRequest, PlannedTrajectory, SpentTime, ThreadClock, WorldAccuracy,
-    WorldBackend,
+    BodyPose, CheckedCommand, CommandId, MotionPlanRequest, PlannedTrajectory, SpentTime, ThreadClock,
+    WorldAccuracy, WorldBackend,
 };
 use hrdsl_ir::{
     Nanos, Program, Value,
     device::{DeviceBody, PrimitiveCall},
     device_state::DeviceState,
-    world::{SignalId, SignalTerm, WorldAction},
+    world::{BodyId, JointId, SignalId, SignalTerm, Vec3, WorldAction},
 };
 
 use crate::{WorldSimulation, command::MotorCommand, error::SimulationError};
@@ -141,6 +141,22 @@ impl WorldBackend for SimulatedWorld {
                 Err(format!("a {} plans nothing", device.sort().name()))
             }
         }
+    }
+
+    fn poses(&self, tell: &mut dyn FnMut(BodyPose)) {
+        self.sim.poses(tell);
+    }
+
+    fn joints(&self, tell: &mut dyn FnMut(JointId, f64)) {
+        self.sim.joints(tell);
+    }
+
+    fn contacts(&self, least: f64, tell: &mut dyn FnMut([BodyId; 2], Vec3)) {
+        self.sim.contacts(least, tell);
+    }
+
+    fn contact_point(&self, bodies: [BodyId; 2]) -> Option<Vec3> {
+        self.sim.contact_point(bodies)
     }
 
     fn take_ended(&mut self) -> Vec<(CommandId, Result<(), String>)> {

@@ -5,12 +5,14 @@
 //!
 //! A trace is kept as text: [`record`] writes the recording format, [`parse`] reads it back, step by step if it is long.
 //! [`print`](mod@print) shows a step to people, [`decimal`] turns nanoseconds into seconds and back without loss, [`vocabulary`] tells
-//! scenarios apart whose recordings are not each other's. `spec/traces.md` defines the format.
+//! scenarios apart whose recordings are not each other's. `spec/traces.md` defines the format. Beside the trace, and judged by nobody, there may be
+//! a [`picture`] of the world.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 pub mod decimal;
 mod machine;
 pub mod parse;
+pub mod picture;
 pub mod print;
 pub mod record;
 pub mod vocabulary;

@@ -6,12 +6,14 @@
 //! - [`ViewDocument`] is the data of one run; `spec/view.schema.json` is its schema, [`schema`] prints it;
 //! - [`requirement`] is what it says of requirements;
 //! - [`columns`] makes the columns of whole numbers that documents have, tracks of bodies among them;
+//! - [`replay`] makes a document of a program and a recording;
 //! - [`page()`] puts runs into the page.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 pub mod columns;
 pub mod document;
 mod page;
+pub mod replay;
 pub mod requirement;
 
 pub use document::{SharedAssets, ViewDocument};

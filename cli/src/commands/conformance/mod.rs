@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use hrdsl_compiler::{CompilationResult, InputFile, compile};
 use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_runtime::campaign::{
-    CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, StopFlag,
+    CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, ReplayChoice, StopFlag,
     SupervisorCommand, prepare,
 };
 use serde_json::Value;
@@ -165,6 +165,7 @@ impl<'a> ConformanceRun<'a> {
             forks: ForkPlan::default(),
             jobs: 1,
             stop: self.stop.clone(),
+            replays: ReplayChoice::None,
             clocks: None,
         };
         let found = std::sync::Mutex::new(CaseVerdict::Failed("  it did not run\n".to_owned()));

@@ -17,7 +17,7 @@ use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{
         CampaignRun, CampaignSetup, CampaignTimes, CellIsolation, CellSettings, ForkPlan, ProcessorClocks,
-        ProgramLimits, StopFlag, SupervisorCommand, find_hulls, prepare,
+        ProgramLimits, ReplayChoice, StopFlag, SupervisorCommand, find_hulls, prepare,
     },
     judge::tally,
     report,
@@ -33,8 +33,8 @@ use crate::{
 };
 
 /// What `sim` writes into its folder, the reports last.
-const NAMES: [&str; 8] =
-    ["tests", "traces", "output", "files", "run.json", "results.json", "junit.xml", "report.html"];
+const NAMES: [&str; 9] =
+    ["tests", "traces", "replays", "output", "files", "run.json", "results.json", "junit.xml", "report.html"];
 const REPORTS: [&str; 4] = ["run.json", "results.json", "junit.xml", "report.html"];
 
 /// The argument that makes this program the supervisor of a cell.
@@ -46,7 +46,7 @@ pub const SUPERVISE: &str = "supervise-cell";
 /// run.json, the tests, a recording of each, and what the program wrote in each.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --system with_rospy/system.hri\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --suite ta_tests -n 4 --repeat 100\n  hrdsl sim scenario.hri --schedules 20"
+    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --replays all\n  hrdsl sim scenario.hri --system with_rospy/system.hri\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --suite ta_tests -n 4 --repeat 100\n  hrdsl sim scenario.hri --schedules 20"
 )]
 pub struct SimArgs {
     /// The scenario.
@@ -95,6 +95,9 @@ pub struct SimArgs {
     /// Keep the files that the program writes in each test, in `files/`.
     #[arg(long)]
     keep_files: bool,
+    /// Of which tests there is a file in `replays/` that `hrdsl view` shows, and other tools open.
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t = ReplaysArg::Failing)]
+    replays: ReplaysArg,
     /// Let `breakpoint()` in the program under test have the terminal; of one test, named by --test.
     #[arg(long, requires = "test", conflicts_with_all = ["check_determinism", "jobs"])]
     debug: bool,
@@ -116,6 +119,27 @@ pub struct SimArgs {
     /// Output that the program may write in a test.
     #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
     output_limit: Option<u64>,
+}
+
+/// Which tests can be looked at again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum ReplaysArg {
+    /// Those that violate a requirement or break off.
+    Failing,
+    /// All.
+    All,
+    /// None: nothing is spent on it.
+    None,
+}
+
+impl ReplaysArg {
+    fn choice(self) -> ReplayChoice {
+        match self {
+            ReplaysArg::Failing => ReplayChoice::Failing,
+            ReplaysArg::All => ReplayChoice::All,
+            ReplaysArg::None => ReplayChoice::None,
+        }
+    }
 }
 
 /// How tests are kept apart.
@@ -168,7 +192,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let sources = sources.collect::<BTreeMap<_, _>>();
     let results = tally(program, args.seed, &generated, outcome, &sources, rerun::words(args, &out));
     publish(&results, &campaign, times.as_ref(), folder)?;
-    summarise(&results, &campaign, &out, begun.elapsed())?;
+    summarise(&results, &campaign, (args, &out), begun.elapsed())?;
     if let Some(times) = &times {
         terminal::print(&timings::table(times))?;
     }
@@ -266,6 +290,7 @@ fn prepared<'p>(
         jobs: if args.debug { 1 } else { args.jobs.map_or_else(cores, usize::from) },
         forks: ForkPlan::default(),
         stop: stop_flag(args.debug)?,
+        replays: args.replays.choice(),
         clocks: args.timings.then_some(ProcessorClocks::SYSTEM),
     };
     for complaint in campaign.plan_forks(args.no_fork)? {
@@ -475,7 +500,7 @@ fn publish(
 fn summarise(
     results: &CampaignResults,
     campaign: &CampaignSetup<'_>,
-    out: &Path,
+    (args, out): (&SimArgs, &Path),
     wall: Duration,
 ) -> Result<(), CommandFault> {
     let summary = report::summary(results, super::report::WIDTH, color::stdout_has());
@@ -490,7 +515,9 @@ fn summarise(
         wall.as_secs_f64()
     );
     let again = if !results.is_clean() {
-        format!("to run one test again: (cd {} && {} NAME)\n", rerun::quoted(out), results.rerun)
+        let again = format!("to run one test again: (cd {} && {} NAME)\n", rerun::quoted(out), results.rerun);
+        let looks = args.replays != ReplaysArg::None;
+        again + &if looks { rerun::view_words(args) } else { String::new() }
     } else {
         String::new()
     };

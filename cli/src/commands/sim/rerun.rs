@@ -29,6 +29,12 @@ pub fn words(args: &SimArgs, out: &Path) -> String {
     words.join(" ")
 }
 
+/// The line that says how a test is looked at.
+pub fn view_words(args: &SimArgs) -> String {
+    let results = args.out.as_ref().map(|out| format!(" --results {}", quoted(out))).unwrap_or_default();
+    format!("to look at one test: hrdsl view {} NAME{results}\n", quoted(&args.file))
+}
+
 /// A word for a shell.
 pub fn quoted(path: &Path) -> String {
     let text = path.display().to_string();

@@ -59,6 +59,9 @@ pub fn recording(to: &Path, stem: &str) -> std::path::PathBuf {
 fn write(done: &FinishedRun<'_>, to: &Path) -> Result<(), CommandFault> {
     let stem = done.result.name.file_stem();
     files::write(&recording(to, &stem), done.recording)?;
+    if let Some(replay) = done.replay {
+        files::write_bytes(&to.join(results_folder::REPLAYS).join(format!("{stem}.mcap")), replay)?;
+    }
     let text = output_text(done.output);
     if !text.is_empty() {
         files::write(&to.join("output").join(format!("{stem}.txt")), &text)?;

@@ -35,6 +35,11 @@ impl ContactLoads {
         }
     }
 
+    /// All pairs, in order, with the force on the second.
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize, SpaceVector)> + '_ {
+        self.of.iter().map(|((a, b), force)| (*a, *b, *force))
+    }
+
     /// The force on a body of each other.
     pub fn on(&self, body: usize) -> impl Iterator<Item = (usize, SpaceVector)> + '_ {
         self.of.iter().filter_map(move |((a, b), force)| {

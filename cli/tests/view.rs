@@ -1,0 +1,190 @@
+//! Recordings with a picture, and the page that shows them, with the real binary.
+
+mod support;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use support::{expect_code, handover, hrdsl, hrdsl_in, root, stderr, stdout};
+
+/// A few tests of the hand-over, each recorded.
+fn campaign(out: &Path, more: &[&str]) {
+    let scenario = handover();
+    let args = ["sim", scenario.to_str().unwrap(), "-o", out.to_str().unwrap(), "-n", "3", "--exit-zero"];
+    expect_code(&hrdsl(args.iter().chain(more)), 0);
+}
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten();
+    let mut all: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn the_same_tests_give_the_same_files_and_both_forms_the_same_verdicts() {
+    let folder = tempfile::tempdir().unwrap();
+    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+    campaign(&one, &["--replays", "all", "-j", "1"]);
+    campaign(&two, &["--replays", "all", "-j", "2"]);
+    let (a, b) = (files(&one.join("replays")), files(&two.join("replays")));
+    assert_eq!(a.len(), files(&one.join("traces")).len());
+    for (a, b) in a.iter().zip(&b) {
+        assert_eq!(a.file_name(), b.file_name());
+        assert!(fs::read(a).unwrap() == fs::read(b).unwrap(), "{} differs with two workers", a.display());
+    }
+    let largest = a.iter().map(|file| fs::metadata(file).unwrap().len()).max().unwrap();
+    assert!(largest <= 300 * 1024, "a test has {largest} bytes");
+    let scenario = handover();
+    let judged = |of: &Path| {
+        let judged =
+            hrdsl(["judge", scenario.to_str().unwrap(), of.to_str().unwrap(), "--json", "--exit-zero"]);
+        expect_code(&judged, 0);
+        stdout(&judged)
+    };
+    assert_eq!(judged(&one.join("traces")), judged(&one.join("replays")), "byte for byte");
+    // A run is the same with a picture and without.
+    let none = folder.path().join("none");
+    campaign(&none, &["--replays", "none"]);
+    assert!(!none.join("replays").exists());
+    for (a, b) in files(&one.join("traces")).iter().zip(files(&none.join("traces"))) {
+        assert!(fs::read(a).unwrap() == fs::read(b).unwrap(), "{}", a.display());
+    }
+    the_page_is_made(&one, folder.path());
+    an_independent_reader_opens_them(&a);
+}
+
+/// A test that violates something, by the name of its file.
+fn failing(results: &Path) -> String {
+    let text = fs::read_to_string(results.join("results.json")).unwrap();
+    let results: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let tests = results["tests"].as_array().unwrap();
+    let fails = |test: &&serde_json::Value| {
+        test["verdicts"].as_array().unwrap().iter().any(|verdict| verdict["outcome"] == "fail")
+    };
+    tests.iter().find(fails).expect("a test fails")["name"].as_str().unwrap().to_owned()
+}
+
+fn the_page_is_made(results: &Path, folder: &Path) {
+    let (scenario, name) = (handover(), failing(results));
+    let short = name.trim_start_matches("handover.");
+    let view = |more: &[&str]| {
+        let args = ["view", scenario.to_str().unwrap(), "--results", results.to_str().unwrap()];
+        hrdsl_in_words(folder, args.iter().chain(more))
+    };
+    let made = view(&[short, "-o", "one.html"]);
+    expect_code(&made, 0);
+    assert_eq!(stderr(&made), "", "nothing is left out");
+    let html = fs::read_to_string(folder.join("one.html")).unwrap();
+    assert!(html.contains(&format!("\"open\":\"{short}\"")) && html.contains("\"group\":\"failure\""));
+    let data = html.split_once("id=\"hrdsl-run-0\">").unwrap().1.split_once('<').unwrap().0.len();
+    assert!(data <= 200 * 1024, "a test has {data} bytes in the page");
+    // Another one beside it, and all of them.
+    let other =
+        files(&results.join("replays")).into_iter().find(|path| !path.to_string_lossy().contains(&name));
+    let both = view(&[short, "--beside", other.unwrap().to_str().unwrap(), "-o", "both.html"]);
+    expect_code(&both, 0);
+    let html = fs::read_to_string(folder.join("both.html")).unwrap();
+    assert!(html.contains("\"compare\":") && html.contains("id=\"hrdsl-run-1\""));
+    expect_code(&view(&["-o", "all.html"]), 0);
+    assert!(fs::metadata(folder.join("all.html")).unwrap().len() <= 8 << 20);
+    // What is not there, and what is somebody else's.
+    let unknown = view(&["bdi_tests.t999"]);
+    expect_code(&unknown, 2);
+    assert!(stderr(&unknown).contains("`bdi_tests.t999` is no recording, and no test of the results"));
+    assert!(stderr(&unknown).contains("there are bdi_tests.t"), "{}", stderr(&unknown));
+    fs::write(folder.join("mine.html"), "mine").unwrap();
+    expect_code(&view(&[short, "-o", "mine.html"]), 2);
+    assert_eq!(fs::read_to_string(folder.join("mine.html")).unwrap(), "mine");
+    what_is_wrong_is_named(results, folder, &name);
+    looked_at(&folder.join("one.html"));
+}
+
+fn hrdsl_in_words<'a>(folder: &Path, args: impl Iterator<Item = &'a &'a str>) -> std::process::Output {
+    support::command().args(args).current_dir(folder).output().unwrap()
+}
+
+/// A cut file and one in text are shown as far as they go; one of another scenario is refused.
+fn what_is_wrong_is_named(results: &Path, folder: &Path, name: &str) {
+    let scenario = handover();
+    let bytes = fs::read(results.join(format!("replays/{name}.mcap"))).unwrap();
+    fs::write(folder.join("cut.mcap"), &bytes[..bytes.len() * 3 / 4]).unwrap();
+    let view = |what: &str| hrdsl_in(folder, &format!("view {} {what} -o cut.html", scenario.display()));
+    let cut = view("cut.mcap");
+    expect_code(&cut, 0);
+    assert!(stderr(&cut).contains("the file is cut off"), "{}", stderr(&cut));
+    let judged = hrdsl_in(folder, &format!("judge {} cut.mcap", scenario.display()));
+    expect_code(&judged, 2);
+    let text = view(&format!("{}/traces/{name}.jsonl", results.display()));
+    expect_code(&text, 0);
+    assert!(stderr(&text).contains("no picture of the world"), "{}", stderr(&text));
+    let corridor = root().join("examples/corridor/scenario.hri");
+    let foreign = hrdsl_in(folder, &format!("view {} cut.mcap -o foreign.html", corridor.display()));
+    expect_code(&foreign, 2);
+    assert!(stderr(&foreign).contains("of the scenario `handover`, not of"), "{}", stderr(&foreign));
+}
+
+/// The page opens in Chromium, if there is one, at the violation and without an error.
+fn looked_at(page: &Path) {
+    let places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+    let Some(browser) = places.into_iter().find(|place| Path::new(place).exists()) else {
+        eprintln!("the page is not looked at: there is no Chromium");
+        return;
+    };
+    let mut command = Command::new(browser);
+    command.args([
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--enable-unsafe-swiftshader",
+        "--dump-dom",
+    ]);
+    command.args(["--disable-dev-shm-usage", "--virtual-time-budget=20000"]);
+    let shown = command.arg(format!("file://{}", page.display())).output().unwrap();
+    let shown = String::from_utf8_lossy(&shown.stdout).into_owned();
+    assert!(shown.contains("data-opened"), "the page did not open: {}", &shown[..shown.len().min(2_000)]);
+    assert!(shown.contains("✗"), "no violation is shown");
+}
+
+const PINNED: &str = "mcap==1.6.0";
+
+/// Python's own reader of MCAP takes them apart, and each message keeps to the schema that the file says it has.
+fn an_independent_reader_opens_them(replays: &[PathBuf]) {
+    let cache = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let packages = cache.join("mcap-reader");
+    let wheels = [PINNED, "zstandard", "lz4", "jsonschema"];
+    if !packages.exists() {
+        let scratch = tempfile::tempdir_in(cache).unwrap();
+        let environment = scratch.path().join("venv");
+        let made = Command::new("python3").args(["-m", "venv"]).arg(&environment).output().unwrap();
+        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+        let target = scratch.path().join("packages");
+        let mut pip = Command::new(environment.join("bin/python"));
+        pip.args(["-m", "pip", "install", "--no-input", "--disable-pip-version-check", "--target"]);
+        let installed = pip.arg(&target).args(wheels).output().unwrap();
+        if !installed.status.success() {
+            let why = String::from_utf8_lossy(&installed.stderr).into_owned();
+            let is_away =
+                ["Failed to establish", "Temporary failure", "No matching distribution", "Connection"];
+            assert!(is_away.iter().any(|sign| why.contains(sign)), "{why}");
+            eprintln!("no independent reader has read the files: the package index cannot be reached");
+            return;
+        }
+        let moved = fs::rename(&target, &packages);
+        assert!(moved.is_ok() || packages.exists());
+    }
+    let script = root().join("cli/tests/support/read_mcap.py");
+    let mut python = Command::new("python3");
+    let read = python.arg("-I").arg(&script).arg(&packages).args(replays).output().unwrap();
+    let said = String::from_utf8_lossy(&read.stdout).into_owned();
+    assert!(read.status.success(), "{said}{}", String::from_utf8_lossy(&read.stderr));
+    assert_eq!(said.lines().count(), replays.len(), "{said}");
+    for line in said.lines() {
+        for topic in ["/hrdsl/header", "/hrdsl/events", "/hrdsl/end", "/hrdsl/scene", "/scene", "/tf"] {
+            assert!(line.contains(topic), "{line}");
+        }
+    }
+}

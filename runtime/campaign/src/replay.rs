@@ -1,0 +1,105 @@
+//! The file by which a run can be looked at again.
+
+use hrdsl_harness::{HarnessRun, ProgramLogLevel};
+use hrdsl_ir::{Program, value::seconds};
+use hrdsl_recording::{
+    RunOnFile,
+    message::{LogEntry, LogEntryLevel, VerdictMessage},
+    scene,
+};
+use hrdsl_results::{TraceJudgement, VerdictOutcome};
+
+/// Of which tests a file is made by which they can be looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ReplayChoice {
+    /// Of none: nobody looks at the world, and nothing is spent on it.
+    #[default]
+    None,
+    /// Of those that violate a requirement or break off.
+    Failing,
+    All,
+}
+
+impl ReplayChoice {
+    /// Whether a picture of the world is taken.
+    pub(crate) fn looks(self) -> bool {
+        match self {
+            ReplayChoice::None => false,
+            ReplayChoice::Failing | ReplayChoice::All => true,
+        }
+    }
+
+    pub(crate) fn takes(self, has_failed: bool) -> bool {
+        match self {
+            ReplayChoice::None => false,
+            ReplayChoice::Failing => has_failed,
+            ReplayChoice::All => true,
+        }
+    }
+}
+
+/// The file of a run, of which `text` is the recording.
+///
+/// # Errors
+/// That the run is too large for the format.
+pub(crate) fn file(
+    program: &Program,
+    run: &HarnessRun,
+    text: &str,
+    judgement: &TraceJudgement,
+) -> Result<Vec<u8>, String> {
+    let level = |level| match level {
+        ProgramLogLevel::Debug => LogEntryLevel::Debug,
+        ProgramLogLevel::Info => LogEntryLevel::Info,
+        ProgramLogLevel::Warn => LogEntryLevel::Warning,
+        ProgramLogLevel::Error => LogEntryLevel::Error,
+        ProgramLogLevel::Fatal => LogEntryLevel::Fatal,
+    };
+    let log: Vec<LogEntry> = run
+        .log
+        .first
+        .iter()
+        .map(|kept| LogEntry {
+            time: kept.time,
+            level: level(kept.record.level),
+            program: if kept.record.node.is_empty() {
+                kept.program.clone()
+            } else {
+                kept.record.node.clone()
+            },
+            text: kept.record.text.clone(),
+        })
+        .collect();
+    let verdicts: Vec<VerdictMessage> = judgement
+        .verdicts
+        .iter()
+        .map(|verdict| VerdictMessage {
+            requirement: verdict.requirement.to_string(),
+            verdict: word(verdict.outcome).to_owned(),
+            failures: verdict.failures,
+            violated: verdict.failure.as_ref().map(|failure| failure.time),
+            margin: verdict.worst_margin.as_ref().map(|(margin, _)| *margin),
+            unit: verdict.worst_margin.as_ref().map(|(_, unit)| unit.clone()),
+        })
+        .collect();
+    let scene = program.world.as_ref().map(scene::scene).unwrap_or_default();
+    let file = hrdsl_recording::write(&RunOnFile {
+        trace: &run.trace,
+        text,
+        scene: &scene,
+        picture: &run.picture,
+        log: &log,
+        verdicts: &verdicts,
+    });
+    file.map_err(|why| format!("{why} (it lasted {} s)", seconds(run.trace.end)))
+}
+
+fn word(outcome: VerdictOutcome) -> &'static str {
+    match outcome {
+        VerdictOutcome::Pass => "pass",
+        VerdictOutcome::Fail => "fail",
+        VerdictOutcome::Vacuous => "vacuous",
+        VerdictOutcome::Inconclusive => "inconclusive",
+        VerdictOutcome::Error => "error",
+    }
+}

@@ -1,0 +1,23 @@
+//! A run as a file that other tools open, too: MCAP, with the steps that are judged, and a picture of the world beside them.
+//!
+//! # Map
+//! - [`scene`] is what there is to be seen, from the data of a world;
+//! - [`message`] is what hrdsl's own messages consist of, and [`schema`] their schemas; [`foxglove`] those that other tools know;
+//! - [`write`](write()) makes the file, [`read`](read()) takes it apart, as far as it goes.
+//!
+//! The judged steps are the very lines of a recording in text (`hrdsl_trace::record`), a message each: so both forms have the same verdicts.
+//! `spec/recordings.md` lists the channels.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
+
+mod channel;
+mod container;
+pub mod foxglove;
+pub mod message;
+mod number;
+mod read;
+pub mod scene;
+pub mod schema;
+mod write;
+
+pub use read::{RecordingError, RecordingFile, is_mcap, read};
+pub use write::{RunOnFile, write};

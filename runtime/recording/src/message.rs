@@ -1,0 +1,146 @@
+//! What hrdsl's own messages consist of, for their schemas, and for those that are read back. Times are in seconds.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// What the recording is of: the first line of its text form.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HeaderMessage {
+    /// `trace`
+    pub hrdsl: String,
+    /// The version of the text form.
+    pub version: u64,
+    pub scenario: String,
+    /// A digest of the scenario's events and signals.
+    pub vocabulary: Option<String>,
+    pub test: Option<String>,
+    pub seed: Option<u64>,
+}
+
+/// An event or a stimulus that happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct EventMessage {
+    pub t: f64,
+    pub event: String,
+    /// By their names.
+    #[serde(default)]
+    pub args: BTreeMap<String, Value>,
+}
+
+/// A signal has this value from now on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SignalMessage {
+    pub t: f64,
+    pub signal: String,
+    /// A bool, a number in the SI unit of the signal, the name of an enumeration's value, or `nan`, `inf`, `-inf`.
+    pub value: Value,
+}
+
+/// A state machine of the system was declared (`states`, `transitions`, `outcomes`), was begun (`to`), or has moved (`from`, `outcome`, `to`).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MachineMessage {
+    pub t: f64,
+    pub machine: String,
+    #[serde(default)]
+    pub states: Option<Vec<String>>,
+    /// From, outcome, to.
+    #[serde(default)]
+    pub transitions: Option<Vec<[String; 3]>>,
+    #[serde(default)]
+    pub outcomes: Option<Vec<String>>,
+    #[serde(default)]
+    pub from: Option<String>,
+    #[serde(default)]
+    pub outcome: Option<String>,
+    #[serde(default)]
+    pub to: Option<String>,
+}
+
+/// The end of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct EndMessage {
+    pub end: f64,
+    /// `quiescent`, `limit` or `error`
+    pub ended: String,
+    /// Why it broke off.
+    #[serde(default)]
+    pub error: Option<String>,
+}
+
+/// What the run came to by a requirement when it was made. `hrdsl judge` reads none of these, and judges the steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct VerdictMessage {
+    pub requirement: String,
+    /// `pass`, `fail`, `vacuous`, `inconclusive` or `error`
+    pub verdict: String,
+    /// How often it was violated.
+    pub failures: u32,
+    /// When it was first violated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub violated: Option<f64>,
+    /// The least margin, in `unit`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margin: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+}
+
+/// Bodies that press on each other from now on, each pair until it is told again.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ContactsMessage {
+    pub contacts: Vec<ContactEntry>,
+}
+
+/// Two bodies that press on each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ContactEntry {
+    /// The names of both.
+    pub bodies: [String; 2],
+    /// In the world, m.
+    pub point: [f64; 3],
+    /// On the first of the two, N; three zeros end the contact.
+    pub force: [f64; 3],
+}
+
+/// What a program logged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LogEntry {
+    pub time: hrdsl_ir::Nanos,
+    pub level: LogEntryLevel,
+    pub program: String,
+    pub text: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LogEntryLevel {
+    Debug,
+    Info,
+    Warning,
+    Error,
+    Fatal,
+}
+
+impl LogEntryLevel {
+    pub const ALL: [LogEntryLevel; 5] = [
+        LogEntryLevel::Debug,
+        LogEntryLevel::Info,
+        LogEntryLevel::Warning,
+        LogEntryLevel::Error,
+        LogEntryLevel::Fatal,
+    ];
+
+    /// Its number in `foxglove.Log`.
+    #[must_use]
+    pub fn number(self) -> u8 {
+        match self {
+            LogEntryLevel::Debug => 1,
+            LogEntryLevel::Info => 2,
+            LogEntryLevel::Warning => 3,
+            LogEntryLevel::Error => 4,
+            LogEntryLevel::Fatal => 5,
+        }
+    }
+}

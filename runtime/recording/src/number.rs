@@ -1,0 +1,36 @@
+//! Whole numbers of a fine unit as decimal text, and back.
+
+/// `n` of `1/scale`, where `scale` is a power of ten: as many digits as it needs.
+pub(crate) fn decimal(n: i64, scale: u64) -> String {
+    let (whole, rest) = (n.unsigned_abs() / scale, n.unsigned_abs() % scale);
+    let sign = if n < 0 { "-" } else { "" };
+    if rest == 0 {
+        return format!("{sign}{whole}");
+    }
+    let width = scale.ilog10() as usize;
+    let digits = format!("{rest:0width$}");
+    format!("{sign}{whole}.{}", digits.trim_end_matches('0'))
+}
+
+/// The nearest whole number of `1/scale`.
+pub(crate) fn whole(x: f64, scale: f64) -> i64 {
+    (x * scale).round() as i64
+}
+
+/// The same number with at most so many digits behind the point, and never a negative zero.
+pub(crate) fn rounded(x: f64, scale: f64) -> f64 {
+    (x * scale).round() / scale + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{decimal, whole};
+
+    #[test]
+    fn numbers_have_no_more_digits_than_they_need() {
+        for (n, text) in [(0, "0"), (10_000, "1"), (-5, "-0.0005"), (12_340, "1.234"), (-20_001, "-2.0001")] {
+            assert_eq!(decimal(n, 10_000), text);
+            assert_eq!(whole(text.parse().unwrap(), 10_000.0), n);
+        }
+    }
+}

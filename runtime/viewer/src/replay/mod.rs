@@ -1,0 +1,166 @@
+//! A recording as a document: what can be shown of it is, and the rest is named in the document's notes.
+
+mod measure;
+mod scene;
+mod story;
+mod tracks;
+mod violation;
+
+use hrdsl_ir::{Nanos, Program};
+use hrdsl_recording::{
+    RecordingFile,
+    message::LogEntryLevel,
+    scene::{RecordedScene, scene as scene_of},
+};
+use hrdsl_trace::{
+    RunEnd, Trace,
+    parse::{OpenRecording, ReadError},
+    record::RecordingHeader,
+    vocabulary,
+};
+
+use crate::{
+    ViewDocument,
+    document::{LogLevel, ViewEnd, ViewLogLine},
+};
+
+pub use scene::mesh_assets;
+
+/// The length of a tick, ns.
+const TICK: Nanos = 1_000_000;
+
+/// The tick that is nearest to a time.
+fn tick(time: Nanos) -> u64 {
+    ((time.max(0) + TICK / 2) / TICK).unsigned_abs()
+}
+
+/// A run as it was read, and what it is shown with.
+struct ReplayedRun<'a> {
+    program: &'a Program,
+    scene: RecordedScene,
+    file: &'a RecordingFile,
+    trace: Trace,
+    /// Whether it was read to its end, and the run did not break off.
+    is_whole: bool,
+    ended: RunEnd,
+}
+
+/// The document of a recording; one in text has nothing but its [text](RecordingFile::text).
+///
+/// # Errors
+/// A recording without a header, or of another scenario.
+pub fn replay(program: &Program, file: &RecordingFile) -> Result<ViewDocument, String> {
+    let recording = OpenRecording::open(file.text.as_bytes()).map_err(|e| e.to_string())?;
+    let header = recording.header().clone();
+    if header.scenario != program.name {
+        return Err(format!(
+            "this is a recording of the scenario `{}`, not of `{}`",
+            header.scenario, program.name
+        ));
+    }
+    let mut notes = file.faults.clone();
+    let mut trace = Trace::default();
+    let read = recording.replay(program, &mut trace);
+    let (ended, error) = match read {
+        Ok(summary) => (summary.ending.kind, summary.ending.error),
+        Err(error) => {
+            trace.end = last_time(&trace, file);
+            notes.push(unread(&error, &header, program));
+            (RunEnd::Error, Some("the recording could not be read to its end".to_owned()))
+        }
+    };
+    let scene = shown_scene(program, file, &mut notes);
+    let run = ReplayedRun { program, scene, file, is_whole: ended != RunEnd::Error, trace, ended };
+    Ok(document(&run, header, error, notes))
+}
+
+fn document(
+    run: &ReplayedRun<'_>,
+    header: RecordingHeader,
+    error: Option<String>,
+    notes: Vec<String>,
+) -> ViewDocument {
+    let test = header.test.map(|name| {
+        name.strip_prefix(&format!("{}.", run.program.name)).map_or_else(|| name.clone(), str::to_owned)
+    });
+    ViewDocument {
+        scenario: run.program.name.clone(),
+        test,
+        seed: header.seed,
+        tick: u32::try_from(TICK).unwrap_or(u32::MAX),
+        end: tick(run.trace.end),
+        ended: match run.ended {
+            RunEnd::Quiescent => ViewEnd::Quiescent,
+            RunEnd::Limit => ViewEnd::Limit,
+            RunEnd::Error => ViewEnd::Error,
+        },
+        error,
+        scene: scene::scene(&run.scene),
+        poses: tracks::poses(run),
+        joints: tracks::joints(run),
+        signals: tracks::signals(run),
+        contacts: tracks::contacts(run),
+        events: story::events(run),
+        machines: story::machines(run),
+        log: log(run),
+        requirements: violation::requirements(run),
+        notes,
+        ..ViewDocument::new()
+    }
+}
+
+/// What a recording without an end knows last.
+fn last_time(trace: &Trace, file: &RecordingFile) -> Nanos {
+    let steps = trace.steps.iter().map(|step| step.time);
+    let poses = file.picture.bodies.iter().flat_map(|track| &track.frames).map(|frame| frame.time);
+    steps.chain(poses).max().unwrap_or(0)
+}
+
+fn unread(error: &ReadError, header: &RecordingHeader, program: &Program) -> String {
+    let has_changed = header.vocabulary.as_ref().is_some_and(|found| *found != vocabulary::digest(program));
+    let changed = if has_changed { "; the scenario has changed since: other events or signals" } else { "" };
+    format!("The recording is shown as far as it could be read: {error}{changed}.")
+}
+
+/// The scene of the recording; without one, that of the scenario as it is now.
+fn shown_scene(program: &Program, file: &RecordingFile, notes: &mut Vec<String>) -> RecordedScene {
+    let now = program.world.as_ref().map(scene_of).unwrap_or_default();
+    let Some(then) = &file.scene else {
+        if !now.bodies.is_empty() {
+            notes.push(
+                "This recording has no picture of the world: bodies stand where they start. `hrdsl sim --replays \
+                 all` records one."
+                    .to_owned(),
+            );
+        }
+        return now;
+    };
+    if *then != now {
+        notes.push(
+            "The world of the scenario has changed since: the one of the recording is shown.".to_owned(),
+        );
+    }
+    then.clone()
+}
+
+fn log(run: &ReplayedRun<'_>) -> Vec<ViewLogLine> {
+    let level = |level| match level {
+        LogEntryLevel::Debug => LogLevel::Debug,
+        LogEntryLevel::Info => LogLevel::Info,
+        LogEntryLevel::Warning => LogLevel::Warning,
+        LogEntryLevel::Error | LogEntryLevel::Fatal => LogLevel::Error,
+    };
+    let line = |entry: &hrdsl_recording::message::LogEntry| ViewLogLine {
+        t: tick(entry.time),
+        level: level(entry.level),
+        program: (!entry.program.is_empty()).then(|| entry.program.clone()),
+        text: entry.text.clone(),
+    };
+    run.file.log.iter().map(line).collect()
+}
+
+/// The actor of a name such as `robot.palm`, if there is one.
+fn actor_of(program: &Program, name: &str) -> Option<String> {
+    let owner = name.split('.').next()?;
+    program.actors.iter().find(|actor| actor.name == owner).map(|actor| actor.name.clone())
+}

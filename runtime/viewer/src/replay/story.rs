@@ -1,0 +1,104 @@
+//! Events and state machines of a recording.
+
+use hrdsl_ir::{Event, EventId, Program, Role, world::RuleTrigger};
+use hrdsl_trace::{MachineStep, TraceStepKind, print};
+
+use super::{ReplayedRun, tick};
+use crate::{
+    columns::differences,
+    document::{EventKind, MachineTrack, ViewEvent},
+};
+
+pub(super) fn events(run: &ReplayedRun<'_>) -> Vec<ViewEvent> {
+    let mut events = Vec::new();
+    for (at, step) in run.trace.steps.iter().enumerate() {
+        let TraceStepKind::Event { event, args } = &step.what else { continue };
+        let declared = run.program.event(*event);
+        let text = print::event_text(run.program, *event, args);
+        let args = text
+            .strip_prefix(&declared.name)
+            .map(|args| args.trim_start_matches('(').strip_suffix(')').unwrap_or_default().to_owned());
+        events.push(ViewEvent {
+            t: tick(step.time),
+            until: None,
+            name: declared.name.clone(),
+            actor: Some(run.program.actor(declared.from).name.clone()),
+            kind: kind(run.program, *event, declared),
+            args: args.filter(|args| !args.is_empty()),
+            step: Some(at as u64),
+        });
+    }
+    events
+}
+
+fn kind(program: &Program, id: EventId, event: &Event) -> EventKind {
+    if event.is_stimulus() {
+        return EventKind::Stimulus;
+    }
+    let rules = program.world.iter().flat_map(|world| &world.rules);
+    let mut triggers = rules.filter(|rule| rule.event == id).map(|rule| &rule.on);
+    match triggers.next() {
+        Some(RuleTrigger::Commanded { .. }) => EventKind::Commanded,
+        Some(RuleTrigger::Event(_) | RuleTrigger::Edge { .. }) => EventKind::Seen,
+        None if program.actor(event.from).role == Role::System => EventKind::Said,
+        None => EventKind::Said,
+    }
+}
+
+/// What is known of one machine so far.
+struct MachineSoFar {
+    name: String,
+    states: Vec<String>,
+    times: Vec<i64>,
+    state: Vec<i64>,
+    outcome: Vec<Option<String>>,
+}
+
+impl MachineSoFar {
+    fn comes_to(&mut self, time: u64, state: &str, outcome: Option<String>) {
+        let known = self.states.iter().position(|known| known == state);
+        let at = known.unwrap_or_else(|| {
+            self.states.push(state.to_owned());
+            self.states.len() - 1
+        });
+        self.times.push(time as i64);
+        self.state.push(at as i64);
+        self.outcome.push(outcome);
+    }
+}
+
+pub(super) fn machines(run: &ReplayedRun<'_>) -> Vec<MachineTrack> {
+    let mut machines: Vec<MachineSoFar> = Vec::new();
+    for step in &run.trace.steps {
+        let TraceStepKind::Machine(what) = &step.what else { continue };
+        let name = match what.as_ref() {
+            MachineStep::Declared(declared) => &declared.machine,
+            MachineStep::Begun { machine, .. } | MachineStep::Moved { machine, .. } => machine,
+        };
+        let at = machines.iter().position(|known| known.name == *name).unwrap_or_else(|| {
+            let (states, times, state, outcome) = Default::default();
+            machines.push(MachineSoFar { name: name.clone(), states, times, state, outcome });
+            machines.len() - 1
+        });
+        let Some(machine) = machines.get_mut(at) else { continue };
+        match what.as_ref() {
+            MachineStep::Declared(declared) => {
+                machine.states = declared.states.iter().chain(&declared.outcomes).cloned().collect();
+            }
+            MachineStep::Begun { state, .. } => machine.comes_to(tick(step.time), state, None),
+            MachineStep::Moved { edge, .. } => {
+                machine.comes_to(tick(step.time), &edge.to, Some(edge.outcome.clone()));
+            }
+        }
+    }
+    let system = run.program.actors.iter().find(|actor| actor.role == Role::System);
+    let track = |machine: MachineSoFar| MachineTrack {
+        name: machine.name,
+        actor: system.map(|actor| actor.name.clone()),
+        states: machine.states,
+        t: differences(machine.times),
+        state: machine.state,
+        outcome: machine.outcome,
+    };
+    machines.into_iter().filter(|machine| !machine.times.is_empty()).map(track).collect()
+}

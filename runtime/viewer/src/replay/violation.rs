@@ -1,0 +1,164 @@
+//! Requirements over a recording: the monitors run over it again, and tell all that they do.
+
+use hrdsl_ir::{
+    Type, Unit, Value,
+    monitor::{Monitor, MonitorEffect, RequirementKind},
+    value::seconds,
+    world::SignalId,
+};
+use hrdsl_monitor::{MonitorHappening, MonitorOutcome, MonitorRunner, MonitorVerdict};
+use hrdsl_trace::{TraceObserver, print};
+
+use super::{ReplayedRun, measure, tick};
+use crate::{
+    columns::differences,
+    requirement::{ObligationOutcome, ViewObligation, ViewRequirement, ViewVerdict, ViewViolation},
+};
+
+pub(super) fn requirements(run: &ReplayedRun<'_>) -> Vec<ViewRequirement> {
+    let mut runner = MonitorRunner::new(run.program).recounting();
+    for (at, step) in run.trace.steps.iter().enumerate() {
+        runner.step(at, step);
+    }
+    // What a run that broke off did not do, it might have done.
+    if run.is_whole {
+        runner.end(run.trace.end);
+    }
+    let monitors = run.program.monitors.iter().zip(runner.recounted());
+    monitors.map(|(monitor, (verdict, history))| requirement(run, monitor, &verdict, &history)).collect()
+}
+
+fn requirement(
+    run: &ReplayedRun<'_>,
+    monitor: &Monitor,
+    verdict: &MonitorVerdict,
+    history: &[MonitorHappening],
+) -> ViewRequirement {
+    let triggers = history.iter().filter(|h| h.effects.contains(&MonitorEffect::Trigger));
+    let told = told(run, monitor, history);
+    let unit = monitor.margin.as_ref().map(|margin| margin.unit.symbol().to_owned());
+    let looked_at = verdict.first_failure.as_ref().map(|failure| failure.time);
+    let looked_at = looked_at.or(verdict.worst_margin.map(|(_, time)| time)).unwrap_or_default();
+    ViewRequirement {
+        id: monitor.name.clone(),
+        title: (!monitor.title.is_empty()).then(|| monitor.title.clone()),
+        kind: Some(
+            match monitor.kind {
+                RequirementKind::Safety => "safety",
+                RequirementKind::Functional => "functional",
+            }
+            .to_owned(),
+        ),
+        text: Some(monitor.text.clone()),
+        verdict: match verdict.outcome {
+            MonitorOutcome::Fail => ViewVerdict::Fail,
+            MonitorOutcome::Pass | MonitorOutcome::Vacuous | MonitorOutcome::Inconclusive
+                if !run.is_whole =>
+            {
+                ViewVerdict::Error
+            }
+            MonitorOutcome::Pass => ViewVerdict::Pass,
+            MonitorOutcome::Vacuous => ViewVerdict::Vacuous,
+            MonitorOutcome::Inconclusive => ViewVerdict::Inconclusive,
+        },
+        margin: verdict.worst_margin.map(|(margin, _)| margin),
+        unit: unit.filter(|unit| !unit.is_empty()),
+        triggers: differences(triggers.map(|h| tick(h.time) as i64)),
+        obligations: told.obligations,
+        violations: told.violations,
+        measures: measure::measures(run, monitor, looked_at),
+    }
+}
+
+/// The story of one requirement.
+#[derive(Default)]
+struct ToldRequirement {
+    obligations: Vec<ViewObligation>,
+    violations: Vec<ViewViolation>,
+}
+
+/// What is pending, and the step that made it.
+type OpenObligation = Option<(ViewObligation, Option<usize>)>;
+
+fn told(run: &ReplayedRun<'_>, monitor: &Monitor, history: &[MonitorHappening]) -> ToldRequirement {
+    let mut told = ToldRequirement::default();
+    let mut open: OpenObligation = None;
+    for happening in history {
+        let has = |effect| happening.effects.contains(&effect);
+        let now = tick(happening.time);
+        if has(MonitorEffect::Fail) {
+            told.violations.push(violation(run, monitor, happening, &open));
+        }
+        let outcome = if has(MonitorEffect::Fail) {
+            Some(ObligationOutcome::Violated)
+        } else if has(MonitorEffect::Discharge) {
+            Some(ObligationOutcome::Met)
+        } else {
+            (!happening.pending).then_some(ObligationOutcome::Dropped)
+        };
+        if let Some(outcome) = outcome
+            && let Some((obligation, _)) = open.take()
+        {
+            told.obligations.push(ViewObligation { until: Some(now), outcome, ..obligation });
+        }
+        if has(MonitorEffect::Trigger) && happening.pending && open.is_none() {
+            let obligation = ViewObligation {
+                from: now,
+                until: None,
+                deadline: happening.due.map(tick),
+                outcome: ObligationOutcome::Pending,
+                trigger: happening.step.and_then(|step| step_text(run, step)),
+            };
+            open = Some((obligation, happening.step));
+        }
+    }
+    told.obligations.extend(open.map(|(obligation, _)| obligation));
+    told
+}
+
+fn violation(
+    run: &ReplayedRun<'_>,
+    monitor: &Monitor,
+    happening: &MonitorHappening,
+    open: &OpenObligation,
+) -> ViewViolation {
+    let values: Vec<String> =
+        happening.values.iter().map(|(signal, value)| signal_text(run, *signal, *value)).collect();
+    let values = values.join(", ");
+    let event = happening.step.and_then(|step| step_text(run, step));
+    let is_event = monitor.edges.iter().any(|edge| {
+        edge.effects.contains(&MonitorEffect::Fail)
+            && matches!(edge.on, hrdsl_ir::monitor::MonitorTrigger::Event(_))
+    });
+    let text = match (event.filter(|_| is_event), open) {
+        (Some(event), _) if values.is_empty() => format!("`{event}` happened."),
+        (Some(event), _) => format!("`{event}` happened while {values}."),
+        (None, Some((obligation, _))) => {
+            let made = obligation.trigger.as_deref().unwrap_or("an obligation");
+            format!("Nothing met `{made}`, and its time was over at {} s.", seconds(happening.time))
+        }
+        (None, None) if values.is_empty() => "It was violated.".to_owned(),
+        (None, None) => format!("It was violated by {values}."),
+    };
+    let steps = open.iter().filter_map(|(_, step)| *step).chain(happening.step);
+    ViewViolation {
+        t: tick(happening.time),
+        text,
+        since: open.as_ref().map(|(obligation, _)| obligation.from),
+        steps: steps.map(|step| step as u64).collect(),
+    }
+}
+
+fn step_text(run: &ReplayedRun<'_>, step: usize) -> Option<String> {
+    let step = run.trace.steps.get(step)?;
+    Some(print::who_did_what(run.program, &step.what).1)
+}
+
+fn signal_text(run: &ReplayedRun<'_>, signal: SignalId, value: Value) -> String {
+    let signal = run.program.signal(signal);
+    let unit = match signal.ty {
+        Type::Float(unit) => unit,
+        Type::Bool | Type::Int { .. } | Type::Enum(_) | Type::Text | Type::List(_) => Unit::None,
+    };
+    format!("{} = {}", signal.name, print::value(value, unit))
+}
