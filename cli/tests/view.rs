@@ -183,8 +183,11 @@ fn an_independent_reader_opens_them(replays: &[PathBuf]) {
     assert!(read.status.success(), "{said}{}", String::from_utf8_lossy(&read.stderr));
     assert_eq!(said.lines().count(), replays.len(), "{said}");
     for line in said.lines() {
-        for topic in ["/hrdsl/header", "/hrdsl/events", "/hrdsl/end", "/hrdsl/scene", "/scene", "/tf"] {
+        for topic in ["/hrdsl/header", "/hrdsl/end", "/hrdsl/scene", "/scene", "/tf"] {
             assert!(line.contains(topic), "{line}");
         }
+    }
+    for topic in ["/hrdsl/events", "/hrdsl/signals", "/hrdsl/contacts", "/joint_states"] {
+        assert!(said.contains(topic), "{said}");
     }
 }

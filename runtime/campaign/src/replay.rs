@@ -4,7 +4,7 @@ use hrdsl_harness::{HarnessRun, ProgramLogLevel};
 use hrdsl_ir::{Program, value::seconds};
 use hrdsl_recording::{
     RunOnFile,
-    message::{LogEntry, LogEntryLevel, VerdictMessage},
+    message::{RecordedLogLevel, RecordedLogLine, VerdictMessage},
     scene,
 };
 use hrdsl_results::{TraceJudgement, VerdictOutcome};
@@ -49,17 +49,17 @@ pub(crate) fn file(
     judgement: &TraceJudgement,
 ) -> Result<Vec<u8>, String> {
     let level = |level| match level {
-        ProgramLogLevel::Debug => LogEntryLevel::Debug,
-        ProgramLogLevel::Info => LogEntryLevel::Info,
-        ProgramLogLevel::Warn => LogEntryLevel::Warning,
-        ProgramLogLevel::Error => LogEntryLevel::Error,
-        ProgramLogLevel::Fatal => LogEntryLevel::Fatal,
+        ProgramLogLevel::Debug => RecordedLogLevel::Debug,
+        ProgramLogLevel::Info => RecordedLogLevel::Info,
+        ProgramLogLevel::Warn => RecordedLogLevel::Warning,
+        ProgramLogLevel::Error => RecordedLogLevel::Error,
+        ProgramLogLevel::Fatal => RecordedLogLevel::Fatal,
     };
-    let log: Vec<LogEntry> = run
+    let log: Vec<RecordedLogLine> = run
         .log
         .first
         .iter()
-        .map(|kept| LogEntry {
+        .map(|kept| RecordedLogLine {
             time: kept.time,
             level: level(kept.record.level),
             program: if kept.record.node.is_empty() {

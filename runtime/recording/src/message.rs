@@ -107,15 +107,15 @@ pub struct ContactEntry {
 
 /// What a program logged.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LogEntry {
+pub struct RecordedLogLine {
     pub time: hrdsl_ir::Nanos,
-    pub level: LogEntryLevel,
+    pub level: RecordedLogLevel,
     pub program: String,
     pub text: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LogEntryLevel {
+pub enum RecordedLogLevel {
     Debug,
     Info,
     Warning,
@@ -123,24 +123,24 @@ pub enum LogEntryLevel {
     Fatal,
 }
 
-impl LogEntryLevel {
-    pub const ALL: [LogEntryLevel; 5] = [
-        LogEntryLevel::Debug,
-        LogEntryLevel::Info,
-        LogEntryLevel::Warning,
-        LogEntryLevel::Error,
-        LogEntryLevel::Fatal,
+impl RecordedLogLevel {
+    pub const ALL: [RecordedLogLevel; 5] = [
+        RecordedLogLevel::Debug,
+        RecordedLogLevel::Info,
+        RecordedLogLevel::Warning,
+        RecordedLogLevel::Error,
+        RecordedLogLevel::Fatal,
     ];
 
     /// Its number in `foxglove.Log`.
     #[must_use]
     pub fn number(self) -> u8 {
         match self {
-            LogEntryLevel::Debug => 1,
-            LogEntryLevel::Info => 2,
-            LogEntryLevel::Warning => 3,
-            LogEntryLevel::Error => 4,
-            LogEntryLevel::Fatal => 5,
+            RecordedLogLevel::Debug => 1,
+            RecordedLogLevel::Info => 2,
+            RecordedLogLevel::Warning => 3,
+            RecordedLogLevel::Error => 4,
+            RecordedLogLevel::Fatal => 5,
         }
     }
 }

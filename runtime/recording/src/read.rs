@@ -16,7 +16,7 @@ use thiserror::Error;
 use crate::{
     channel::RecordingChannel,
     container::{self, ContainedMessage, ContainerError, MAGIC},
-    message::{ContactsMessage, LogEntry, LogEntryLevel},
+    message::{ContactsMessage, RecordedLogLevel, RecordedLogLine},
     number::whole,
     scene::RecordedScene,
 };
@@ -28,7 +28,7 @@ pub struct RecordingFile {
     pub text: String,
     pub scene: Option<RecordedScene>,
     pub picture: WorldPicture,
-    pub log: Vec<LogEntry>,
+    pub log: Vec<RecordedLogLine>,
     /// What could not be read, a sentence each.
     pub faults: Vec<String>,
 }
@@ -78,7 +78,7 @@ struct TakenApart {
     bodies: BTreeMap<String, Vec<BodyKeyframe>>,
     joints: BTreeMap<String, Vec<JointKeyframe>>,
     contacts: BTreeMap<[String; 2], Vec<ContactKeyframe>>,
-    log: Vec<LogEntry>,
+    log: Vec<RecordedLogLine>,
     faults: Vec<String>,
 }
 
@@ -168,9 +168,9 @@ impl TakenApart {
             }
             RecordingChannel::Log => {
                 let LogMessage { level, message: text, name: program } = serde_json::from_slice(data)?;
-                let level = LogEntryLevel::ALL.into_iter().find(|known| known.number() == level);
-                let level = level.unwrap_or(LogEntryLevel::Info);
-                self.log.push(LogEntry { time, level, program, text });
+                let level = RecordedLogLevel::ALL.into_iter().find(|known| known.number() == level);
+                let level = level.unwrap_or(RecordedLogLevel::Info);
+                self.log.push(RecordedLogLine { time, level, program, text });
             }
             RecordingChannel::Header
             | RecordingChannel::Events

@@ -13,7 +13,7 @@ use crate::{
     channel::RecordingChannel,
     container::ContainerWriter,
     foxglove::{self, WORLD},
-    message::{LogEntry, VerdictMessage},
+    message::{RecordedLogLine, VerdictMessage},
     number::decimal,
     scene::RecordedScene,
     schema,
@@ -27,7 +27,7 @@ pub struct RunOnFile<'a> {
     pub text: &'a str,
     pub scene: &'a RecordedScene,
     pub picture: &'a WorldPicture,
-    pub log: &'a [LogEntry],
+    pub log: &'a [RecordedLogLine],
     pub verdicts: &'a [VerdictMessage],
 }
 

@@ -10,7 +10,7 @@ use hrdsl_ir::{
 };
 use hrdsl_recording::{
     RecordingError, RunOnFile,
-    message::{LogEntry, LogEntryLevel, VerdictMessage},
+    message::{RecordedLogLevel, RecordedLogLine, VerdictMessage},
     read,
     scene::{RecordedBody, RecordedBodyKind, RecordedJoint, RecordedScene, RecordedShape},
     schema, write,
@@ -93,9 +93,9 @@ fn file() -> (String, Vec<u8>) {
     let trace = Trace { end: 400_000_000_000, ..Trace::default() };
     let header = RecordingHeader { test: Some("cup.a.t001".to_owned()), ..RecordingHeader::of(&program) };
     let text = hrdsl_trace::record::write(&program, &header, &trace, &RecordingEnd::default());
-    let log = [LogEntry {
+    let log = [RecordedLogLine {
         time: 1_500_000_000,
-        level: LogEntryLevel::Warning,
+        level: RecordedLogLevel::Warning,
         program: "/brain".to_owned(),
         text: "low \"battery\"".to_owned(),
     }];
@@ -128,9 +128,9 @@ fn what_is_written_reads_back() {
     assert_eq!(found.text, text, "the judged lines, byte for byte");
     assert_eq!(found.scene, Some(scene()));
     assert_eq!(found.picture, picture());
-    let log: Vec<(i64, LogEntryLevel, &str)> =
+    let log: Vec<(i64, RecordedLogLevel, &str)> =
         found.log.iter().map(|entry| (entry.time, entry.level, entry.text.as_str())).collect();
-    assert_eq!(log, [(1_500_000_000, LogEntryLevel::Warning, "low \"battery\"")]);
+    assert_eq!(log, [(1_500_000_000, RecordedLogLevel::Warning, "low \"battery\"")]);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `hrdsl sim`: the tests against the code under test, and the reports.
 
+mod choices;
 mod determinism;
 mod rerun;
 mod run;
@@ -17,7 +18,7 @@ use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{
         CampaignRun, CampaignSetup, CampaignTimes, CellIsolation, CellSettings, ForkPlan, ProcessorClocks,
-        ProgramLimits, ReplayChoice, StopFlag, SupervisorCommand, find_hulls, prepare,
+        ProgramLimits, StopFlag, SupervisorCommand, find_hulls, prepare,
     },
     judge::tally,
     report,
@@ -25,6 +26,8 @@ use hrdsl_runtime::{
     testgen::generate,
 };
 use serde::Serialize;
+
+use choices::{IsolationArg, ReplaysArg};
 
 use super::generate::{chosen, describe, save};
 use crate::{
@@ -119,36 +122,6 @@ pub struct SimArgs {
     /// Output that the program may write in a test.
     #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
     output_limit: Option<u64>,
-}
-
-/// Which tests can be looked at again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum ReplaysArg {
-    /// Those that violate a requirement or break off.
-    Failing,
-    /// All.
-    All,
-    /// None: nothing is spent on it.
-    None,
-}
-
-impl ReplaysArg {
-    fn choice(self) -> ReplayChoice {
-        match self {
-            ReplaysArg::Failing => ReplayChoice::Failing,
-            ReplaysArg::All => ReplayChoice::All,
-            ReplaysArg::None => ReplayChoice::None,
-        }
-    }
-}
-
-/// How tests are kept apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum IsolationArg {
-    /// Namespaces of the kernel: everything that a test writes is its own.
-    Namespaces,
-    /// A copy of the scenario's folder for each test.
-    Copies,
 }
 
 /// # Errors

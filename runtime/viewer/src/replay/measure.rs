@@ -9,7 +9,7 @@ use hrdsl_ir::{
 use hrdsl_trace::TraceStepKind;
 
 use super::{
-    ReplayedRun,
+    run::ReplayedRun,
     tracks::{bodies_of, place_at},
 };
 use crate::requirement::{LimitRelation, MeasureKind, ViewMeasure};

@@ -1,6 +1,7 @@
 //! A recording as a document: what can be shown of it is, and the rest is named in the document's notes.
 
 mod measure;
+mod run;
 mod scene;
 mod story;
 mod tracks;
@@ -9,7 +10,7 @@ mod violation;
 use hrdsl_ir::{Nanos, Program};
 use hrdsl_recording::{
     RecordingFile,
-    message::LogEntryLevel,
+    message::RecordedLogLevel,
     scene::{RecordedScene, scene as scene_of},
 };
 use hrdsl_trace::{
@@ -24,26 +25,8 @@ use crate::{
     document::{LogLevel, ViewEnd, ViewLogLine},
 };
 
+use run::{ReplayedRun, TICK, tick};
 pub use scene::mesh_assets;
-
-/// The length of a tick, ns.
-const TICK: Nanos = 1_000_000;
-
-/// The tick that is nearest to a time.
-fn tick(time: Nanos) -> u64 {
-    ((time.max(0) + TICK / 2) / TICK).unsigned_abs()
-}
-
-/// A run as it was read, and what it is shown with.
-struct ReplayedRun<'a> {
-    program: &'a Program,
-    scene: RecordedScene,
-    file: &'a RecordingFile,
-    trace: Trace,
-    /// Whether it was read to its end, and the run did not break off.
-    is_whole: bool,
-    ended: RunEnd,
-}
 
 /// The document of a recording; one in text has nothing but its [text](RecordingFile::text).
 ///
@@ -145,22 +128,16 @@ fn shown_scene(program: &Program, file: &RecordingFile, notes: &mut Vec<String>)
 
 fn log(run: &ReplayedRun<'_>) -> Vec<ViewLogLine> {
     let level = |level| match level {
-        LogEntryLevel::Debug => LogLevel::Debug,
-        LogEntryLevel::Info => LogLevel::Info,
-        LogEntryLevel::Warning => LogLevel::Warning,
-        LogEntryLevel::Error | LogEntryLevel::Fatal => LogLevel::Error,
+        RecordedLogLevel::Debug => LogLevel::Debug,
+        RecordedLogLevel::Info => LogLevel::Info,
+        RecordedLogLevel::Warning => LogLevel::Warning,
+        RecordedLogLevel::Error | RecordedLogLevel::Fatal => LogLevel::Error,
     };
-    let line = |entry: &hrdsl_recording::message::LogEntry| ViewLogLine {
+    let line = |entry: &hrdsl_recording::message::RecordedLogLine| ViewLogLine {
         t: tick(entry.time),
         level: level(entry.level),
         program: (!entry.program.is_empty()).then(|| entry.program.clone()),
         text: entry.text.clone(),
     };
     run.file.log.iter().map(line).collect()
-}
-
-/// The actor of a name such as `robot.palm`, if there is one.
-fn actor_of(program: &Program, name: &str) -> Option<String> {
-    let owner = name.split('.').next()?;
-    program.actors.iter().find(|actor| actor.name == owner).map(|actor| actor.name.clone())
 }

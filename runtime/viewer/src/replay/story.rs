@@ -3,7 +3,7 @@
 use hrdsl_ir::{Event, EventId, Program, Role, world::RuleTrigger};
 use hrdsl_trace::{MachineStep, TraceStepKind, print};
 
-use super::{ReplayedRun, tick};
+use super::run::{ReplayedRun, tick};
 use crate::{
     columns::differences,
     document::{EventKind, MachineTrack, ViewEvent},

@@ -12,7 +12,7 @@ use hrdsl_trace::{
     picture::{BodyKeyframe, ContactKeyframe, JointKeyframe},
 };
 
-use super::{ReplayedRun, actor_of, tick};
+use super::run::{ReplayedRun, actor_of, tick};
 use crate::{
     columns::{FINE, differences, rows, samples},
     document::{ContactTrack, PoseTrack, SignalKind, SignalTrack},

@@ -9,7 +9,10 @@ use hrdsl_ir::{
 use hrdsl_monitor::{MonitorHappening, MonitorOutcome, MonitorRunner, MonitorVerdict};
 use hrdsl_trace::{TraceObserver, print};
 
-use super::{ReplayedRun, measure, tick};
+use super::{
+    measure,
+    run::{ReplayedRun, tick},
+};
 use crate::{
     columns::differences,
     requirement::{ObligationOutcome, ViewObligation, ViewRequirement, ViewVerdict, ViewViolation},

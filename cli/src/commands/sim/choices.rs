@@ -1,0 +1,33 @@
+//! What can be chosen among of a campaign, by words.
+
+use hrdsl_runtime::campaign::ReplayChoice;
+
+/// Which tests can be looked at again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum ReplaysArg {
+    /// Those that violate a requirement or break off.
+    Failing,
+    /// All.
+    All,
+    /// None: nothing is spent on it.
+    None,
+}
+
+impl ReplaysArg {
+    pub fn choice(self) -> ReplayChoice {
+        match self {
+            ReplaysArg::Failing => ReplayChoice::Failing,
+            ReplaysArg::All => ReplayChoice::All,
+            ReplaysArg::None => ReplayChoice::None,
+        }
+    }
+}
+
+/// How tests are kept apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum IsolationArg {
+    /// Namespaces of the kernel: everything that a test writes is its own.
+    Namespaces,
+    /// A copy of the scenario's folder for each test.
+    Copies,
+}
