@@ -35,6 +35,11 @@ impl ContactLoads {
         }
     }
 
+    /// Those that press on each other.
+    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.of.keys().copied()
+    }
+
     /// The force on a body of each other.
     pub fn on(&self, body: usize) -> impl Iterator<Item = (usize, SpaceVector)> + '_ {
         self.of.iter().filter_map(move |((a, b), force)| {
