@@ -131,8 +131,8 @@ fn world(recipe: &Recipe) -> World {
     world
 }
 
-/// Everything that can be seen of a run, as bits.
-fn run(recipe: &Recipe) -> Result<Vec<u64>, SimulationError> {
+/// Everything that can be seen of a run, as bits; and whether a joint was torn in it.
+fn run(recipe: &Recipe) -> Result<(Vec<u64>, bool), SimulationError> {
     let world = world(recipe);
     let mut sim = WorldSimulation::new(&world, &[])?;
     let mut seen = Vec::new();
@@ -154,7 +154,8 @@ fn run(recipe: &Recipe) -> Result<Vec<u64>, SimulationError> {
             let _ = sim.act(&WorldAction::Move { body, to, over: Expr::float(*over) }, &common::none);
         }
         sim.advance(sim.now() + SECOND);
-        assert_eq!(sim.fault(), None, "{recipe:?}");
+        // What is led whatever is in its way, or is heavy and fast, may tear a joint, and that is told; nothing else may go wrong.
+        assert!(sim.fault().is_none_or(|fault| fault.contains("` is torn")), "{:?} {recipe:?}", sim.fault());
         for at in 0..world.bodies.len() {
             let (place, turn) = sim.pose(BodyId(u16::try_from(at).expect("few bodies"))).expect("a body");
             for x in place.iter().chain(&turn) {
@@ -163,7 +164,7 @@ fn run(recipe: &Recipe) -> Result<Vec<u64>, SimulationError> {
             }
         }
     }
-    Ok(seen)
+    Ok((seen, sim.fault().is_some()))
 }
 
 /// What is led whatever is in its way goes through a robot on a post, at 18 m/s: the robot is torn from its place, and comes back to it.
@@ -199,7 +200,12 @@ fn what_tears_a_robot_apart_does_not_fling_it_off() {
     }
     let back = common::distance(sim.pose(end).expect("a link").0, start);
     println!("{fastest:.1} m/s, {farthest:.2} m off, {back:.3} m in the end");
-    assert_eq!(sim.fault(), None);
+    // And the run is at fault, by name.
+    let fault = sim.fault().unwrap_or_default();
+    assert!(
+        fault.starts_with("the physics failed: joint `joint0_") && fault.contains("` is torn"),
+        "{fault}"
+    );
     assert!(farthest > 0.2 && fastest < 40.0 && back < 0.1, "{fastest} {farthest} {back}");
 }
 
@@ -212,10 +218,13 @@ fn nothing_explodes_and_nothing_differs() {
         Config { cases, failure_persistence: None, ..Config::default() },
         proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha),
     );
-    let refused = std::cell::Cell::new(0);
+    let (refused, torn) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
     let result = runner.run(&recipe(), |recipe| {
         match run(&recipe) {
-            Ok(seen) => prop_assert_eq!(run(&recipe).expect("as before"), seen),
+            Ok((seen, is_torn)) => {
+                torn.set(torn.get() + u32::from(is_torn));
+                prop_assert_eq!(run(&recipe).expect("as before"), (seen, is_torn));
+            }
             // Things that are drawn inside each other are an error that names them.
             Err(SimulationError::StartsInside { .. }) => refused.set(refused.get() + 1),
             Err(other) => prop_assert!(false, "{}", other),
@@ -223,6 +232,10 @@ fn nothing_explodes_and_nothing_differs() {
         Ok(())
     });
     result.unwrap_or_else(|e| panic!("{e}"));
-    println!("{cases} worlds, {} of them refused since things are inside each other", refused.get());
-    assert!(refused.get() * 2 < cases);
+    println!(
+        "{cases} worlds, {} of them refused since things are inside each other; in {} a joint was torn",
+        refused.get(),
+        torn.get()
+    );
+    assert!(refused.get() * 2 < cases && torn.get() * 20 < cases);
 }

@@ -22,12 +22,27 @@ const WAY: f64 = 5e-3;
 /// The most parts that rigid bodies ask for.
 const MOST_PARTS: f64 = 32.0;
 
+/// Where bodies can be within a step: of each its greatest speed, m/s, and the box that it stays in; and which of them are fast. Without
+/// what yields, and what is fast, nobody asks for the boxes.
+pub(super) struct SweptBodies {
+    pub speeds: Vec<f64>,
+    fast: Vec<usize>,
+    boxes: Vec<Aabb>,
+}
+
+impl SweptBodies {
+    pub(super) fn may_meet(&self, a: usize, b: usize) -> bool {
+        self.boxes[a].intersects(&self.boxes[b])
+    }
+}
+
 impl PhysicsAdapter {
     /// Does a step, in as many parts as the bodies that meet ask for.
     pub(super) fn step_parts(&mut self) {
         let dt = f64::from(self.world.integration_parameters.dt);
-        let near = self.near_pairs(dt);
-        let parts = near.iter().map(|pair| pair.parts(dt)).fold(self.rigid_parts(dt), f64::max);
+        let swept = self.swept(dt);
+        let near = self.near_pairs(&swept, dt);
+        let parts = near.iter().map(|pair| pair.parts(dt)).fold(self.rigid_parts(&swept, dt), f64::max);
         let h = dt / parts;
         self.part = (h, (self.substeps() as f64 / parts).ceil() as usize);
         self.world.integration_parameters.dt = h as f32;
@@ -64,16 +79,26 @@ impl PhysicsAdapter {
         }
     }
 
-    /// How many parts the rigid bodies ask for that may meet within a step.
-    fn rigid_parts(&self, dt: f64) -> f64 {
-        let is_fast = |part: &usize| self.is_loose_or_led(*part) && self.speed_of(*part) * dt > WAY;
+    /// Where everything can be within the next step, found once: of each body it is asked for many times.
+    fn swept(&self, dt: f64) -> SweptBodies {
+        let speeds: Vec<f64> = (0..self.parts.len()).map(|part| self.speed_of(part)).collect();
+        let is_fast = |part: &usize| self.is_loose_or_led(*part) && speeds[*part] * dt > WAY;
         let fast: Vec<usize> = (0..self.parts.len()).filter(is_fast).collect();
+        let boxes = if fast.is_empty() && self.yielding.is_empty() {
+            Vec::new()
+        } else {
+            speeds.iter().enumerate().map(|(part, speed)| self.box_at_speed(part, *speed, dt)).collect()
+        };
+        SweptBodies { speeds, fast, boxes }
+    }
+
+    /// How many parts the rigid bodies ask for that may meet within a step.
+    fn rigid_parts(&self, swept: &SweptBodies, dt: f64) -> f64 {
         let mut parts: f64 = 1.0;
-        for one in &fast {
-            let swept = self.box_in_step(*one, dt);
+        for one in &swept.fast {
             for other in 0..self.parts.len() {
-                if self.meet_rigidly(*one, other) && swept.intersects(&self.box_in_step(other, dt)) {
-                    parts = parts.max((self.approach(*one, other, dt) * dt / WAY).ceil());
+                if swept.may_meet(*one, other) && self.meet_rigidly(*one, other) {
+                    parts = parts.max((self.approach(*one, other, swept, dt) * dt / WAY).ceil());
                 }
             }
         }
@@ -94,8 +119,8 @@ impl PhysicsAdapter {
     }
 
     /// How fast two surfaces may come together within a step, m/s; 0 if they do not come near.
-    fn approach(&self, a: usize, b: usize, dt: f64) -> f64 {
-        let reach = NEAR + (self.speed_of(a) + self.speed_of(b)) * dt;
+    fn approach(&self, a: usize, b: usize, swept: &SweptBodies, dt: f64) -> f64 {
+        let reach = NEAR + (swept.speeds[a] + swept.speeds[b]) * dt;
         let Some(found) = self.closest(a, b, reach) else { return 0.0 };
         let ((at_a, turning_a), (at_b, turning_b)) = (self.coming(a), self.coming(b));
         let straight = from_vector(at_a - at_b).dot(&from_vector(found.normal1)).max(0.0);
@@ -108,6 +133,9 @@ impl PhysicsAdapter {
     fn coming(&self, part: usize) -> (Vector, f64) {
         let own = &self.parts[part];
         let body = &self.world.bodies[own.handle];
+        if body.is_fixed() {
+            return (Vector::ZERO, 0.0);
+        }
         let Some(collider) = self.world.colliders.get(own.collider) else { return (Vector::ZERO, 0.0) };
         let radius = collider.shape().compute_local_bounding_sphere().radius();
         let turning = f64::from(body.angvel().length() * radius);
@@ -127,12 +155,16 @@ impl PhysicsAdapter {
 
     /// Where a body can be within a step.
     pub(super) fn box_in_step(&self, part: usize, dt: f64) -> Aabb {
+        self.box_at_speed(part, self.speed_of(part), dt)
+    }
+
+    fn box_at_speed(&self, part: usize, speed: f64, dt: f64) -> Aabb {
         // A mere frame has no surface.
         let Some(collider) = self.world.colliders.get(self.parts[part].collider) else {
             return Aabb::new_invalid();
         };
         let around = collider.compute_aabb();
-        around.loosened((NEAR / 2.0 + self.speed_of(part) * dt) as f32)
+        around.loosened((NEAR / 2.0 + speed * dt) as f32)
     }
 
     pub(super) fn closest(&self, a: usize, b: usize, far: f64) -> Option<parry::query::Contact> {

@@ -29,6 +29,8 @@ const TORN: f64 = 4e-3;
 const TORN_TURN: f64 = 0.04;
 const MENDS_AT_MOST: f64 = 2.0;
 const MENDS_AT_MOST_TURN: f64 = 10.0;
+/// So far apart a joint is no joint any more, m: the run is at fault.
+const BROKEN: f64 = 0.02;
 /// How fast it stops what tears it, s.
 const TORN_STOPS: f64 = 3e-3;
 /// What is so near to a robot that sleeps wakes it, m: contacts begin before surfaces meet.
@@ -87,6 +89,7 @@ impl PhysicsAdapter {
         let dynamic = beyond.into_iter().filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
         let carried: Vec<RigidBodyHandle> = dynamic.map(|b| self.parts[index(b)].handle).collect();
         DrivenJoint {
+            name: joint.name.clone(),
             handle,
             parent: parent_handle,
             child: child_handle,
@@ -236,6 +239,12 @@ impl PhysicsAdapter {
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };
             let (apart, tilted) = self.apart(driven);
+            if self.energy.fault.is_none() && apart > BROKEN {
+                let (name, by) = (&driven.name, 1e3 * apart);
+                self.energy.fault = Some(format!(
+                    "the physics failed: joint `{name}` is torn, its bodies are {by:.0} mm apart"
+                ));
+            }
             let is_torn = apart > TORN || tilted > TORN_TURN;
             if !is_torn && !driven.is_torn {
                 continue;

@@ -9,10 +9,9 @@
 //! Blows last for few milliseconds: a step in which such bodies meet is divided, as finely as stiffness and masses ask for.
 
 use hrdsl_ir::world::{BodyId, BodyMotion, ContactPhase, World};
-use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;
 
-use super::division::NEAR;
+use super::division::{NEAR, SweptBodies};
 use super::state::{
     adapter::PhysicsAdapter,
     bodies::{body_id, index},
@@ -85,11 +84,10 @@ impl PhysicsAdapter {
     }
 
     /// The pairs that may touch within a step.
-    pub(super) fn near_pairs(&mut self, dt: f64) -> Vec<NearPair> {
+    pub(super) fn near_pairs(&mut self, swept: &SweptBodies, dt: f64) -> Vec<NearPair> {
         if self.yielding.is_empty() {
             return Vec::new();
         }
-        let boxes: Vec<Aabb> = (0..self.parts.len()).map(|i| self.box_in_step(i, dt)).collect();
         let mut near = Vec::new();
         for at in 0..self.yielding.len() {
             let pair = &mut self.yielding[at];
@@ -99,10 +97,10 @@ impl PhysicsAdapter {
                 contact.parted += dt;
             }
             pair.contact = pair.contact.filter(|contact| contact.parted < SAME);
-            if pair.is_suspended || !boxes[soft].intersects(&boxes[other]) {
+            if pair.is_suspended || !swept.may_meet(soft, other) {
                 continue;
             }
-            let reach = NEAR + (self.speed_of(soft) + self.speed_of(other)) * dt;
+            let reach = NEAR + (swept.speeds[soft] + swept.speeds[other]) * dt;
             let Some(found) = self.closest(soft, other, reach) else { continue };
             let pair = &self.yielding[at];
             let (a, b) =

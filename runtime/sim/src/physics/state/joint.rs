@@ -7,6 +7,7 @@ use crate::math::{BodyFrame, SpaceVector};
 
 /// A joint of the engine.
 pub(crate) struct DrivenJoint {
+    pub name: String,
     pub handle: ImpulseJointHandle,
     pub parent: RigidBodyHandle,
     pub child: RigidBodyHandle,
