@@ -10,7 +10,7 @@
 //!
 //! # What is idealised
 //! - Links of an arm are joined by constraints that are solved step by step: they hang apart by up to a millimetre.
-//! - What is kinematic may tear joints, which then give way and come together again; torn 2 cm apart the run is at fault.
+//! - What is kinematic may tear joints, which then give way and come together again; torn 10 cm apart the run is at fault.
 //! - A motor's rotor is added to its link's inertia about all axes.
 //! - What a hand holds is fixed to the palm by a joint that bears as much as friction would, and slips beyond.
 //! - An arm's planner knows exactly where everything is but people, and by choice where these are, too.

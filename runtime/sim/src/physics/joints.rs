@@ -30,7 +30,7 @@ const TORN_TURN: f64 = 0.04;
 const MENDS_AT_MOST: f64 = 2.0;
 const MENDS_AT_MOST_TURN: f64 = 10.0;
 /// So far apart a joint is no joint any more, m: the run is at fault.
-const BROKEN: f64 = 0.02;
+const BROKEN: f64 = 0.1;
 /// How fast it stops what tears it, s.
 const TORN_STOPS: f64 = 3e-3;
 /// What is so near to a robot that sleeps wakes it, m: contacts begin before surfaces meet.
