@@ -1,4 +1,5 @@
 //! Recordings with a picture, and the page that shows them, with the real binary.
+#![allow(clippy::disallowed_methods, reason = "tests start a browser and an independent reader")]
 
 mod support;
 

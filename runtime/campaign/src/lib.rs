@@ -226,13 +226,17 @@ impl CampaignSetup<'_> {
             });
         });
         let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Ok(CampaignRun { outcome: self.outcome(results), times: sum.end() })
+    }
+
+    /// What came of the tests, one result for each that was run.
+    fn outcome(&self, results: Vec<Option<PortedTest>>) -> CampaignOutcome {
         let interrupted = self.stop.is_set() && results.iter().any(Option::is_none);
-        let planned = tests.len();
+        let planned = results.len();
         let tests: Vec<PortedTest> = results.into_iter().flatten().collect();
         let warnings = interfaces::warnings(self.system.binding.as_ref(), &tests);
         let tests = tests.into_iter().map(|test| test.finished).collect();
-        let outcome = CampaignOutcome { tests, planned, interrupted, warnings };
-        Ok(CampaignRun { outcome, times: sum.end() })
+        CampaignOutcome { tests, planned, interrupted, warnings }
     }
 
     fn next_test(&self, tests: &[Test], next: &AtomicUsize) -> Option<usize> {

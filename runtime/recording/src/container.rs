@@ -118,11 +118,8 @@ impl ContainerWriter {
         let schemas = u16::try_from(kinds).unwrap_or(u16::MAX);
         let body = RecordBody::default().u64(self.counts.values().sum()).u16(schemas);
         let body = body.u32(u32::from(schemas)).u32(0).u32(0).u32(self.chunks).u64(first).u64(last);
-        let counts = self
-            .counts
-            .iter()
-            .fold(body.u32(10 * u32::from(schemas)), |body, (channel, count)| body.u16(*channel).u64(*count));
-        counts
+        let body = body.u32(10 * u32::from(schemas));
+        self.counts.iter().fold(body, |body, (channel, count)| body.u16(*channel).u64(*count))
     }
 }
 

@@ -1,13 +1,14 @@
 //! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
 
 mod model;
+mod prediction;
 mod system;
 
 use hrdsl_results::{
     BinName, BinResult, CampaignResults, CodeFile, CounterexampleStep, CoverageRatios, FORMAT, FirstFailure,
-    GoalReport, GoalStatus, LogSummary, OutputSummary, PredictedRun, PredictionVerdict, RequirementKind,
-    RequirementResult, RunEnd, RunMark, SmallestMargin, SuiteGoalId, SuiteInfo, TestMethod, TestResult,
-    TraceJudgement, UnmetAwait, VERSION, VerdictOutcome as Outcome, VerdictResult, VerdictTally,
+    GoalReport, GoalStatus, LogSummary, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
+    SmallestMargin, SuiteGoalId, SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION,
+    VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
 pub(crate) use model::model;
@@ -193,25 +194,11 @@ fn test(s: usize, i: usize) -> TestFixture {
     });
     let seen = ((mix(s, i, 1) % 5) as usize, mix(s, i, 2));
     let bins = if s == 2 { vec![bin_name(12 + i % 2)] } else { vec![bin_name(i % 11), bin_name(seen.0 * 2)] };
-    // Now and then a run goes another way.
-    let predicted = match (s, i % 5) {
-        (2, _) => vec![],
-        (_, 3) => vec![bin_name(i % 11), bin_name((i + 4) % 12)],
-        _ => bins.clone(),
-    };
+    let predicted = prediction::predicted(s, i, &bins);
     let executed = executed(s, i);
-    let unmet: Vec<UnmetAwait> = match i % 15 {
-        3 => vec![UnmetAwait { step: 1, since: 12.5, until: 72.5 }],
-        _ => Vec::new(),
-    };
+    let unmet = prediction::unmet(i);
     let ended = if error.is_some() { RunEnd::Error } else { [RunEnd::Quiescent, RunEnd::Limit][i % 2] };
-    let prediction = PredictionVerdict::of(PredictedRun {
-        method,
-        ended,
-        predicted: &predicted,
-        hit: &bins,
-        unmet: &unmet,
-    });
+    let prediction = prediction::verdict((method, ended), (&predicted, &bins), &unmet);
     let result = TestResult {
         name: format!("handover.{suite}.t{number:03}").into(),
         suite: suite.into(),

@@ -87,7 +87,9 @@ impl PhysicsAdapter {
             |part: &PhysicsBody| self.world.impulse_joints.attached_joints(part.handle).next().is_some();
         let mut meet: Vec<bool> = self.parts.iter().map(joined).collect();
         let yielding = self.yielding.iter().filter(|pair| pair.contact.is_some());
-        for (a, b) in self.loads.pairs().map(|(a, b, _)| (a, b)).chain(yielding.map(|pair| (pair.soft, pair.other))) {
+        for (a, b) in
+            self.loads.pairs().map(|(a, b, _)| (a, b)).chain(yielding.map(|pair| (pair.soft, pair.other)))
+        {
             meet[a] |= is_loose(b);
             meet[b] |= is_loose(a);
         }
