@@ -34,7 +34,7 @@ use hrdsl_ir::{
 use hrdsl_judge::{CampaignOutcome, FinishedTest, TraceJudge};
 use hrdsl_results::{
     CoverageRatios, FileCoverage, OutputSummary, PhysicsAccuracy, PredictedRun, PredictionVerdict, RunEnd,
-    RunMark, TestName, TestResult, TraceJudgement, UnmetAwait, VerdictOutcome,
+    RunMark, TestName, TestResult, TraceJudgement, UnmetAwait,
 };
 pub use hrdsl_sim::HullStore;
 pub use hrdsl_sut::{
@@ -310,8 +310,7 @@ impl CampaignSetup<'_> {
             .measured(&mut times.recordings, || record::write(self.program, &header, &run.trace, &ending));
         let judgement = || judge(self.program, &run.trace, ending.kind);
         let (judgement, machines) = self.measured(&mut times.judgement, judgement);
-        let fails = ending.kind == RunEnd::Error
-            || judgement.verdicts.iter().any(|v| v.outcome == VerdictOutcome::Fail);
+        let fails = ending.kind == RunEnd::Error || judgement.has_failed();
         let replay = self.replays.takes(fails).then(|| {
             let file = || replay::file(self.program, &run, &recording, &judgement);
             self.measured(&mut times.recordings, file)

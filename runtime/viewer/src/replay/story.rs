@@ -40,7 +40,6 @@ fn kind(program: &Program, id: EventId, event: &Event) -> EventKind {
     match triggers.next() {
         Some(RuleTrigger::Commanded { .. }) => EventKind::Commanded,
         Some(RuleTrigger::Event(_) | RuleTrigger::Edge { .. }) => EventKind::Seen,
-        None if program.actor(event.from).role == Role::System => EventKind::Said,
         None => EventKind::Said,
     }
 }
