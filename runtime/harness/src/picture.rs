@@ -10,7 +10,7 @@ use hrdsl_ir::{
 };
 use hrdsl_trace::picture::{
     BodyKeyframe, BodyKeyframes, ContactKeyframe, ContactKeyframes, FINE, FORCE, JointKeyframe,
-    JointKeyframes, WorldPicture,
+    JointKeyframes, WorldPicture, whole,
 };
 
 use crate::{
@@ -136,10 +136,6 @@ fn has_changed(told: Vec3, force: Vec3) -> bool {
     let [i, j, k] = force;
     let by = square([i - x, j - y, k - z]);
     by > LEAST_FORCE * LEAST_FORCE && by > CHANGE * CHANGE * square(told)
-}
-
-fn whole(x: f64, scale: f64) -> i64 {
-    (x * scale).round() as i64
 }
 
 #[cfg(test)]

@@ -12,11 +12,6 @@ pub(crate) fn decimal(n: i64, scale: u64) -> String {
     format!("{sign}{whole}.{}", digits.trim_end_matches('0'))
 }
 
-/// The nearest whole number of `1/scale`.
-pub(crate) fn whole(x: f64, scale: f64) -> i64 {
-    (x * scale).round() as i64
-}
-
 /// The same number with at most so many digits behind the point, and never a negative zero.
 pub(crate) fn rounded(x: f64, scale: f64) -> f64 {
     (x * scale).round() / scale + 0.0
@@ -24,7 +19,9 @@ pub(crate) fn rounded(x: f64, scale: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{decimal, whole};
+    use hrdsl_trace::picture::whole;
+
+    use super::decimal;
 
     #[test]
     fn numbers_have_no_more_digits_than_they_need() {

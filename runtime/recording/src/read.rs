@@ -8,7 +8,7 @@ use hrdsl_ir::{
 };
 use hrdsl_trace::picture::{
     BodyKeyframe, BodyKeyframes, ContactKeyframe, ContactKeyframes, FINE, FORCE, JointKeyframe,
-    JointKeyframes, WorldPicture,
+    JointKeyframes, WorldPicture, whole,
 };
 use serde::Deserialize;
 use thiserror::Error;
@@ -17,7 +17,6 @@ use crate::{
     channel::RecordingChannel,
     container::{self, ContainedMessage, ContainerError, MAGIC},
     message::{ContactsMessage, RecordedLogLevel, RecordedLogLine},
-    number::whole,
     scene::RecordedScene,
 };
 

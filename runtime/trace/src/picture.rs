@@ -14,6 +14,12 @@ pub const FINE: f64 = 10_000.0;
 /// Of a newton.
 pub const FORCE: f64 = 100.0;
 
+/// The nearest whole number of `1/scale`.
+#[must_use]
+pub fn whole(x: f64, scale: f64) -> i64 {
+    (x * scale).round() as i64
+}
+
 /// All that was seen of the world in a run, each list in the order of its numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WorldPicture {

@@ -9,7 +9,7 @@ use hrdsl_ir::{
 use hrdsl_recording::scene::{RecordedPose, composed, relative};
 use hrdsl_trace::{
     TraceStepKind,
-    picture::{BodyKeyframe, ContactKeyframe, JointKeyframe},
+    picture::{BodyKeyframe, ContactKeyframe, JointKeyframe, whole},
 };
 
 use super::run::{ReplayedRun, actor_of, tick};
@@ -50,7 +50,7 @@ fn pose_of(frame: &BodyKeyframe) -> RecordedPose {
 
 fn carried(frame: &BodyKeyframe, within: &RecordedPose) -> BodyKeyframe {
     let [x, y, z, turn @ ..] = composed(&pose_of(frame), within);
-    let whole = |x: f64| (x * FINE).round() as i64;
+    let whole = |x: f64| whole(x, FINE);
     BodyKeyframe { time: frame.time, place: [x, y, z].map(whole), turn: turn.map(whole) }
 }
 
