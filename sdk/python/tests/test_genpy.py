@@ -191,5 +191,59 @@ class Times(unittest.TestCase):
             Time(1.5, 5)
 
 
+class Filling(Case):
+    def filled(self, message, given, **keys):
+        from genpy.message import fill_message_args
+
+        fill_message_args(message, given, keys=keys)
+        return message
+
+    def test_lists_dictionaries_and_keys(self):
+        from genpy import Duration, Time
+        from geometry_msgs.msg import Twist
+        from sensor_msgs.msg import JointState
+        from std_msgs.msg import Header, String
+        from trajectory_msgs.msg import JointTrajectory
+
+        self.assertEqual(self.filled(String(), ["a"]).data, "a")
+        self.assertEqual(self.filled(String(), [{"data": None}]).data, "")
+        self.assertEqual(self.filled(String("as before"), [{}]).data, "as before")
+        twist = self.filled(Twist(), [[1, 2, 3], {"z": 0.5}])
+        self.assertEqual((twist.linear.y, twist.angular.x, twist.angular.z), (2, 0.0, 0.5))
+        header = Header(frame_id="map")
+        self.assertIs(self.filled(JointState(), [{"header": "auto", "position": (1, 2)}], auto=header).header, header)
+        self.assertEqual(self.filled(Header(), [1, "now", "base"], now=Time(5, 6)).stamp, Time(5, 6))
+        self.assertEqual(self.filled(Header(), [{"stamp": 2500000000}]).stamp, Time(2, 500000000))
+        self.assertEqual(self.filled(Header(), [{"stamp": {"secs": 3, "nsecs": 4}}]).stamp, Time(3, 4))
+        points = [{"time_from_start": 1500000000}, {"positions": [1, 2], "time_from_start": [4, 5]}]
+        way = self.filled(JointTrajectory(), [{"points": points}])
+        self.assertEqual([p.time_from_start for p in way.points], [Duration(1, 500000000), Duration(4, 5)])
+        self.assertEqual(way.points[1].positions, [1, 2])
+
+    def test_what_does_not_fit(self):
+        from genpy import MessageException
+        from geometry_msgs.msg import PoseWithCovariance, Twist
+        from std_msgs.msg import Header, String
+        from trajectory_msgs.msg import JointTrajectory
+
+        for message, given, error, text in (
+            (String(), [], MessageException, "Not enough arguments:\n * Given: []\n * Expected: ['data']"),
+            (String(), ["a", "b"], MessageException, "Too many arguments:\n * Given: ['a', 'b']\n * Expected: ['data']"),
+            (String(), None, MessageException, "Not enough arguments:\n * Given: []\n * Expected: ['data']"),
+            (Twist(), [{"linear": {"w": 1}}], MessageException, "No field name [linear.w]"),
+            (Twist(), [{"linear": 1}], ValueError, "invalid msg_args type: 1"),
+            (Header(), [{"stamp": "now"}], MessageException, "No key named [now]"),
+            (JointTrajectory(), [{"points": {}}], MessageException, "Field [points] must be a list or tuple instead of: dict"),
+            (
+                PoseWithCovariance(), [{"covariance": [1]}], MessageException,
+                "Field [covariance] has incorrect number of elements: 1 != 36",
+            ),
+            (1, ["a"], ValueError, "msg must be a Message instance: 1"),
+        ):  # fmt: skip
+            with self.subTest(given), self.assertRaises(error) as raised:
+                self.filled(message, given)
+            self.assertEqual(str(raised.exception), text)
+
+
 if __name__ == "__main__":
     unittest.main()

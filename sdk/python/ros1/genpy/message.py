@@ -291,3 +291,13 @@ def _class(space: str, name: str) -> Any:
         if found is not None:
             return known.class_of(*found)
     return None
+
+
+# ── from what YAML has ──
+
+
+def fill_message_args(msg: Any, msg_args: list[Any] | None, keys: dict[str, Any] = {}) -> None:
+    """Gives a message's fields their values, see `genpy.fill`, which few programs need."""
+    from genpy.fill import fill
+
+    fill(msg, msg_args, keys)
