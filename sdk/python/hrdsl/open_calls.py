@@ -37,7 +37,7 @@ class OpenCalls:
     def report(self) -> str:
         """What is said of those that have waited when the test ends; empty if nothing is."""
         lines = [
-            "hrdsl: the test is over, and the %s has no answer to its call of %.3f s, in %s\n" % (port, since / 1e9, where)
+            "hrdsl: at the end the %s has no answer to its call of %.3f s, in %s\n" % (port, since / 1e9, where)
             for port, since, where in self._asked.values()
         ]
         if lines:

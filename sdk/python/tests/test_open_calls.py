@@ -38,7 +38,7 @@ class OpenCalls(unittest.TestCase):
         grip()
     """)
         self.assertEqual(len(said), 2, said)
-        self.assertIn("hrdsl: the test is over, and the client of /grip (std_srvs/Trigger) has no answer to its call of 1.000 s, in ServiceProxy.__call__ at ", said[0])
+        self.assertIn("hrdsl: at the end the client of /grip (std_srvs/Trigger) has no answer to its call of 1.000 s, in ServiceProxy.__call__ at ", said[0])
         self.assertEqual(said[1], "hrdsl: nor has this program answered a call of /grip (std_srvs/Trigger) of 1.000 s: programs that wait for each other never go on")
 
     def test_nothing_is_said_of_calls_that_were_answered(self):
