@@ -1,0 +1,47 @@
+//! The faults that stand beside the hand-over's code: each can be put in, and one of them is noticed.
+
+#![allow(clippy::disallowed_methods, reason = "tests start interpreters")]
+
+mod support;
+
+use std::{fs, path::Path, process::Command};
+
+use serde_json::Value;
+use support::{expect_code, root, stdout};
+
+fn python(script: &str, args: &[&str]) -> std::process::Output {
+    let path = root().join("examples/handover/mutants").join(script);
+    // What the scripts import is not to leave compiled files in the example.
+    Command::new("python3").arg("-B").arg(path).args(args).output().unwrap()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+#[test]
+fn every_fault_fits_the_code_and_is_one_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let copies = folder.path().join("copies");
+    expect_code(&python("apply.py", &["--all", text(&copies)]), 0);
+    let original = fs::read(root().join("examples/handover/robot.py")).unwrap();
+    let made: Vec<_> = fs::read_dir(&copies).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert!(made.len() >= 40, "{} copies", made.len());
+    let differ = made.iter().filter(|copy| fs::read(copy.join("robot.py")).unwrap() != original);
+    // One is in the state machine's container.
+    assert_eq!(differ.count(), made.len() - 1);
+}
+
+#[test]
+fn a_robot_that_lets_go_of_what_nobody_is_ready_for_is_noticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = [text(folder.path()), "-n", "4", "--hrdsl", env!("CARGO_BIN_EXE_hrdsl")];
+    let only = ["--only", "any_sensor", "gaze_and_pressure_swapped"];
+    let out = python("measure.py", &[&args[..], &only[..]].concat());
+    expect_code(&out, 0);
+    let table: Value = serde_json::from_slice(&fs::read(folder.path().join("table.json")).unwrap()).unwrap();
+    assert_eq!(table["any_sensor"]["R3"], serde_json::json!(["agents"]), "{table}");
+    // Both must hold for the robot to be ready: which is which makes no difference.
+    assert_eq!(table["gaze_and_pressure_swapped"], serde_json::json!({}), "{table}");
+    assert!(stdout(&out).contains("1 of 2 faults are noticed"), "{}", stdout(&out));
+}
