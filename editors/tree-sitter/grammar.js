@@ -1064,10 +1064,10 @@ module.exports = grammar({
         field("emits", $.call),
       ),
 
-    // What devices can be told.
+    // What devices can be told, and what they tell.
     device_declaration: ($) =>
       seq(keyword($, "device"), field("kind", $.identifier), field("body", $.device_body)),
-    device_body: ($) => block($, $.command),
+    device_body: ($) => block($, choice($.command, $.state)),
     command: ($) =>
       seq(
         keyword($, "command"),
@@ -1077,6 +1077,8 @@ module.exports = grammar({
         field("primitive", $.identifier),
         optional($.expectation),
       ),
+    state: ($) =>
+      seq(keyword($, "state"), field("name", $.identifier), keyword($, "from"), field("told", $.identifier)),
     command_parameters: ($) => seq("(", listed(seq($.parameter, optional("?"))), ")"),
     expectation: ($) =>
       seq(

@@ -2,44 +2,21 @@
 //!
 //! A *kind* of device has commands, each of which does one *primitive*: what a world knows how to begin. Which commands there
 //! are, what they are called, what they take and what must be true at their end is data. The primitives, with the names and
-//! types of what they take, are the table here: [`DevicePrimitive`].
+//! types of what they take, are the table here: [`DevicePrimitive`]. So it is with the states that the system can ask for; what
+//! a world can tell is in [`DeviceState`].
 
 use std::{collections::BTreeMap, fmt};
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::device_sort::DeviceSort;
 use crate::{
     Unit,
+    device_state::DeviceState,
     sensor::SensorSource,
     shape::Vec3,
     world::{ArmId, BaseId, DeviceCommandId, DeviceKindId, GripperId, LaserId, SignalTerm},
 };
-
-/// What the world has of which devices can be made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DeviceSort {
-    Arm,
-    Gripper,
-    Base,
-    Laser,
-}
-
-impl DeviceSort {
-    pub const ALL: [DeviceSort; 4] =
-        [DeviceSort::Arm, DeviceSort::Gripper, DeviceSort::Base, DeviceSort::Laser];
-
-    /// As the member of a world or part is written that makes one.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            DeviceSort::Arm => "arm",
-            DeviceSort::Gripper => "gripper",
-            DeviceSort::Base => "base",
-            DeviceSort::Laser => "laser",
-        }
-    }
-}
 
 /// What a device is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -90,6 +67,7 @@ pub struct DeviceKind {
     pub doc: String,
     pub sort: DeviceSort,
     pub commands: Vec<DeviceCommand>,
+    pub states: Vec<DeclaredState>,
 }
 
 impl DeviceKind {
@@ -105,6 +83,24 @@ impl DeviceKind {
     pub fn command_doing(&self, primitive: DevicePrimitive) -> Option<DeviceCommandId> {
         let at = self.commands.iter().position(|c| c.primitive == primitive)?;
         u16::try_from(at).ok().map(DeviceCommandId)
+    }
+
+    /// What the world tells when the system asks for this; `None`: devices of this kind have no such state.
+    #[must_use]
+    pub fn state(&self, name: &str) -> Option<DeviceState> {
+        self.states.iter().find(|s| s.name == name).map(|s| s.told)
+    }
+
+    /// ``an arm tells `joints`, `speeds` and `tool` ``
+    #[must_use]
+    pub fn tells(&self) -> String {
+        let names: Vec<String> = self.states.iter().map(|state| format!("`{}`", state.name)).collect();
+        let names = match names.as_slice() {
+            [] => "nothing".to_owned(),
+            [one] => one.clone(),
+            [first @ .., last] => format!("{} and {last}", first.join(", ")),
+        };
+        format!("{} tells {names}", self.with_article())
     }
 
     /// The command that ends what the device is doing, if there is one.
@@ -191,6 +187,14 @@ impl fmt::Display for CommandType {
             symbol => write!(f, " in {symbol}"),
         }
     }
+}
+
+/// `state joints from joint_angles`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeclaredState {
+    pub name: String,
+    pub doc: String,
+    pub told: DeviceState,
 }
 
 /// What must be true of the device when a command has ended; if it is not, the command has failed, and this is why.
@@ -471,10 +475,17 @@ mod tests {
                 command("halt", DevicePrimitive::StopWheels),
                 command("crawl", DevicePrimitive::DriveWheels),
             ],
+            states: vec![
+                DeclaredState { name: "where".into(), doc: String::new(), told: DeviceState::BasePose },
+                DeclaredState { name: "pace".into(), doc: String::new(), told: DeviceState::BaseVelocity },
+            ],
         };
         assert_eq!(kind.stop().map(|c| c.name.as_str()), Some("halt"));
         assert_eq!(kind.command_doing(DevicePrimitive::DriveWheels), Some(DeviceCommandId(0)));
         assert_eq!(kind.command_doing(DevicePrimitive::AimJoint), None);
+        assert_eq!(kind.state("pace"), Some(DeviceState::BaseVelocity));
+        assert_eq!(kind.state("base_pose"), None);
+        assert_eq!(kind.tells(), "a base tells `where` and `pace`");
     }
 
     #[test]

@@ -1,59 +1,63 @@
-//! What devices tell of themselves: each state has a name, by which programs ask for it, and is of one sort of device.
+//! What a world knows how to tell of a device: the primitives by which the library declares the states of each kind of device.
 
 use serde::{Deserialize, Serialize};
 
-use crate::device::DeviceSort;
+use crate::device_sort::DeviceSort;
 
-/// Something that a device tells the system of itself.
+/// Something that a world can tell of a device, as numbers in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DeviceState {
-    /// Of an arm: the angle of each joint.
-    Joints,
+    /// Of an arm: the angle of each joint, from the base.
+    JointAngles,
     /// Of an arm: the speed of each joint.
-    Speeds,
-    /// Of an arm: where its tool point is.
-    Tool,
+    JointSpeeds,
+    /// Of an arm: where its tool point is, and how the tip is turned, as a quaternion x, y, z, w.
+    ToolPose,
+    /// Of a gripper: how far each finger has moved, m or rad.
+    FingerPlaces,
     /// Of a base: x, y, and how it is turned.
-    Pose,
+    BasePose,
     /// Of a base: how it is turned, as a quaternion x, y, z, w.
-    Orientation,
+    BaseOrientation,
     /// Of a base: forward, to the left, and about the vertical.
-    Velocity,
+    BaseVelocity,
     /// Of a laser: how far each beam comes.
-    Ranges,
+    BeamRanges,
     /// Of a laser: the angles of its first and last beam.
-    Angles,
+    BeamAngles,
     /// Of a laser: the nearest and the farthest that it sees.
-    Limits,
+    BeamLimits,
 }
 
 impl DeviceState {
-    pub const ALL: [DeviceState; 9] = [
-        DeviceState::Joints,
-        DeviceState::Speeds,
-        DeviceState::Tool,
-        DeviceState::Pose,
-        DeviceState::Orientation,
-        DeviceState::Velocity,
-        DeviceState::Ranges,
-        DeviceState::Angles,
-        DeviceState::Limits,
+    pub const ALL: [DeviceState; 10] = [
+        DeviceState::JointAngles,
+        DeviceState::JointSpeeds,
+        DeviceState::ToolPose,
+        DeviceState::FingerPlaces,
+        DeviceState::BasePose,
+        DeviceState::BaseOrientation,
+        DeviceState::BaseVelocity,
+        DeviceState::BeamRanges,
+        DeviceState::BeamAngles,
+        DeviceState::BeamLimits,
     ];
 
-    /// As a program asks for it.
+    /// As it is written after `from`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            DeviceState::Joints => "joints",
-            DeviceState::Speeds => "speeds",
-            DeviceState::Tool => "tool",
-            DeviceState::Pose => "pose",
-            DeviceState::Orientation => "orientation",
-            DeviceState::Velocity => "velocity",
-            DeviceState::Ranges => "ranges",
-            DeviceState::Angles => "angles",
-            DeviceState::Limits => "limits",
+            DeviceState::JointAngles => "joint_angles",
+            DeviceState::JointSpeeds => "joint_speeds",
+            DeviceState::ToolPose => "tool_pose",
+            DeviceState::FingerPlaces => "finger_places",
+            DeviceState::BasePose => "base_pose",
+            DeviceState::BaseOrientation => "base_orientation",
+            DeviceState::BaseVelocity => "base_velocity",
+            DeviceState::BeamRanges => "beam_ranges",
+            DeviceState::BeamAngles => "beam_angles",
+            DeviceState::BeamLimits => "beam_limits",
         }
     }
 
@@ -66,30 +70,38 @@ impl DeviceState {
     #[must_use]
     pub fn sort(self) -> DeviceSort {
         match self {
-            DeviceState::Joints | DeviceState::Speeds | DeviceState::Tool => DeviceSort::Arm,
-            DeviceState::Pose | DeviceState::Orientation | DeviceState::Velocity => DeviceSort::Base,
-            DeviceState::Ranges | DeviceState::Angles | DeviceState::Limits => DeviceSort::Laser,
+            DeviceState::JointAngles | DeviceState::JointSpeeds | DeviceState::ToolPose => DeviceSort::Arm,
+            DeviceState::FingerPlaces => DeviceSort::Gripper,
+            DeviceState::BasePose | DeviceState::BaseOrientation | DeviceState::BaseVelocity => {
+                DeviceSort::Base
+            }
+            DeviceState::BeamRanges | DeviceState::BeamAngles | DeviceState::BeamLimits => DeviceSort::Laser,
         }
     }
 
-    /// What each sort of device can tell: ``an arm can tell `joints`, `speeds` and `tool`, …, a gripper nothing``.
+    /// What the numbers are, for those who declare a state.
     #[must_use]
-    pub fn of_all_sorts() -> String {
-        let sorts = [DeviceSort::Arm, DeviceSort::Base, DeviceSort::Laser, DeviceSort::Gripper];
-        let mut told = Vec::new();
-        for (at, sort) in sorts.into_iter().enumerate() {
-            let own = Self::ALL.into_iter().filter(|state| state.sort() == sort);
-            let names: Vec<String> = own.map(|state| format!("`{}`", state.name())).collect();
-            let names = match names.as_slice() {
-                [] => "nothing".to_owned(),
-                [one] => one.clone(),
-                [first @ .., last] => format!("{} and {last}", first.join(", ")),
-            };
-            let article = if sort == DeviceSort::Arm { "an" } else { "a" };
-            let can = if at == 0 { "can tell " } else { "" };
-            told.push(format!("{article} {} {can}{names}", sort.name()));
+    pub fn numbers(self) -> &'static str {
+        match self {
+            DeviceState::JointAngles => {
+                "the angle of each joint (rad; m where one slides), from the base to the tip"
+            }
+            DeviceState::JointSpeeds => "the speed of each joint (rad/s; m/s where one slides)",
+            DeviceState::ToolPose => {
+                "x, y and z of the tool point (m), and how the tip is turned, as a quaternion x, y, z, w"
+            }
+            DeviceState::FingerPlaces => {
+                "how far each finger has moved on its joint (m or rad), in the order of their declaration"
+            }
+            DeviceState::BasePose => "x and y of its centre in the world (m), and its heading, −π..π",
+            DeviceState::BaseOrientation => "the heading as a quaternion x, y, z, w",
+            DeviceState::BaseVelocity => "forward and sideways (m/s) and turn (rad/s), as it really moves",
+            DeviceState::BeamRanges => {
+                "along each beam (m); infinite if nothing is met up to FAR, minus infinite if something is nearer than NEAR"
+            }
+            DeviceState::BeamAngles => "LO and HI (rad)",
+            DeviceState::BeamLimits => "NEAR and FAR (m)",
         }
-        told.join(", ")
     }
 }
 
@@ -104,14 +116,5 @@ mod tests {
             assert_eq!(serde_json::to_value(state).unwrap(), state.name());
         }
         assert_eq!(DeviceState::named("mood"), None);
-    }
-
-    #[test]
-    fn who_asks_in_vain_is_told_what_there_is() {
-        assert_eq!(
-            DeviceState::of_all_sorts(),
-            "an arm can tell `joints`, `speeds` and `tool`, a base `pose`, `orientation` and `velocity`, a laser \
-             `ranges`, `angles` and `limits`, a gripper nothing"
-        );
     }
 }

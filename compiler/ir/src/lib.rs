@@ -14,6 +14,7 @@ pub mod cover_item;
 pub mod coverage;
 mod declared;
 pub mod device;
+mod device_sort;
 pub mod device_state;
 mod eval_error;
 pub mod event;

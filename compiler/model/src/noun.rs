@@ -76,6 +76,7 @@ pub(crate) enum Noun {
     DeviceKind,
     /// What a device can be told.
     Command,
+    DeviceState,
     /// What a command does.
     Primitive,
     /// What a device can say of itself.
@@ -230,6 +231,7 @@ impl Noun {
             Noun::Group => item("group"),
             Noun::DeviceKind => language("kind of device").plural("kinds of device"),
             Noun::Command => item("command"),
+            Noun::DeviceState => item("state"),
             Noun::Primitive => language("primitive"),
             Noun::DeviceMeasure => {
                 language("measurement of this kind of device").plural("measurements of this kind of device")

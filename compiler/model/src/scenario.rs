@@ -129,6 +129,8 @@ pub struct DeclarationPlaces {
     pub bins: Vec<Vec<Span>>,
     /// By kind of device and name: the commands.
     pub commands: BTreeMap<(&'static str, String), Span>,
+    /// By kind of device and name: the states.
+    pub states: BTreeMap<(&'static str, String), Span>,
     /// By suite: what it awaits.
     pub awaits: Vec<Vec<Span>>,
     pub signals: Vec<Span>,

@@ -367,7 +367,7 @@ pub enum RuleTriggerSyntax {
     },
 }
 
-/// `device gripper { … }`: what all devices of a kind can be told
+/// `device gripper { … }`: what all devices of a kind can be told, and what they tell
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DeviceSyntax {
     pub kind: NameSyntax,
@@ -385,6 +385,7 @@ pub struct DeviceMember {
 #[serde(rename_all = "snake_case")]
 pub enum DeviceMemberKind {
     Command(DeviceCommandSyntax),
+    State(DeviceStateSyntax),
     Error,
 }
 
@@ -395,6 +396,13 @@ pub struct DeviceCommandSyntax {
     pub params: Vec<CommandParamSyntax>,
     pub primitive: NameSyntax,
     pub expect: Option<ExpectationSyntax>,
+}
+
+/// `state joints from joint_angles`
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DeviceStateSyntax {
+    pub name: NameSyntax,
+    pub told: NameSyntax,
 }
 
 /// `speed: angular_speed?`

@@ -691,7 +691,7 @@ command close do close_fingers expect holds else"the gripper closed on nothing"
   command open do   open_fingers expect not holds else "the gripper still holds something, and this is a long line";command wave do wave
 
 }
-device laser{}
+device laser{state   near from beam_ranges}
 device arm{ command go ( to:length [3] ? ,speed : angular_speed ? )do reach_point
 command turn(to:[angle],speed:angular_speed)
   do reach_joints }

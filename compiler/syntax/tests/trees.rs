@@ -254,6 +254,8 @@ device gripper {
   /// Closes.
   command close do close_fingers expect holds else "nothing"; command open do open_fingers expect not holds else "more"
   command reach(speed: length[3]?, to: [angle]) do step
+  /// How far.
+  state fingers from finger_places
 }
 "#
 }

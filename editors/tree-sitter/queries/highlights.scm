@@ -36,9 +36,9 @@
   "packages" "argument" "semantics" "start" "walls" "current" "signal" "rotated" "mass" "stiffness" "ghost" "graspable"
   "axis" "limits" "effort" "rotor" "damping" "friction" "mimic" "times" "height" "contact" "avoids" "fingers" "force"
   "limbs" "tip" "tool" "speed" "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams" "range" "every"
-  "late" "noise" "drift" "dropout" "flip" "outlier" "facing" "left" "right" "ahead" "behind" "command" "expect" "run"
-  "coverage" "limit" "budget" "cpu" "wall" "memory" "output" "env" "online" "program" "ros1" "ros2" "messages" "topic"
-  "service" "action" "group" "parameter" "transition" "out" "drives" "latched" "plans"
+  "late" "noise" "drift" "dropout" "flip" "outlier" "facing" "left" "right" "ahead" "behind" "command" "state" "expect"
+  "run" "coverage" "limit" "budget" "cpu" "wall" "memory" "output" "env" "online" "program" "ros1" "ros2" "messages"
+  "topic" "service" "action" "group" "parameter" "transition" "out" "drives" "latched" "plans"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return
@@ -121,6 +121,8 @@
 (device_declaration kind: (identifier) @type.builtin)
 (command name: (identifier) @function)
 (command primitive: (identifier) @function.builtin)
+(state name: (identifier) @property)
+(state told: (identifier) @function.builtin)
 (expectation measure: (identifier) @function.builtin)
 (system_declaration name: (identifier) @type)
 (system_declaration actor: (identifier) @type)

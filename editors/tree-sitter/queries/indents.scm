@@ -35,6 +35,7 @@
   (signal)
   (rule)
   (command)
+  (state)
   (belief_rule)
 ] @indent.begin
 

@@ -24,6 +24,7 @@
 
 (belief name: (identifier) @name) @definition.field
 (command name: (identifier) @name) @definition.method
+(state name: (identifier) @name) @definition.field
 (belief_rule head: (call name: (identifier) @name)) @definition.method
 (goal_type name: (identifier) @name) @definition.field
 (plan trigger: (trigger call: (call name: (identifier) @name))) @definition.method

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     EventId, EventPattern, Nanos, Program, Value,
-    device::Device,
+    device::{Device, DeviceKind},
     device_state::DeviceState,
     expr::Expr,
     world::{DeviceId, RuleTrigger, SignalId, WorldAction, WorldRule},
@@ -149,10 +149,12 @@ impl<'p> WorldStage<'p> {
     /// That there is no such device, or that it cannot tell this.
     pub fn state(&self, device: &str, what: &str) -> Result<Vec<f64>, NotBegun> {
         let found = self.device(device)?;
-        let told = DeviceState::named(what).and_then(|state| self.world.state(found.body, state));
+        let kind = self.declared.map(|world| world.kind_of(found));
+        let told =
+            kind.and_then(|kind| kind.state(what)).and_then(|state| self.world.state(found.body, state));
         told.ok_or_else(|| NotBegun::Refused {
-            error: format!("`{device}` cannot tell its `{what}`"),
-            help: Some(DeviceState::of_all_sorts()),
+            error: format!("`{device}` has no state `{what}`"),
+            help: kind.map(DeviceKind::tells),
         })
     }
 

@@ -29,7 +29,7 @@ fn scanning(what: DeviceState) -> (Program, MiddlewareBinding) {
     if let Some(world) = &mut program.world {
         let (name, kind) = ("laser".to_owned(), world.device_kinds.len() as u16);
         let (doc, sort, commands) = (String::new(), DeviceSort::Laser, Vec::new());
-        world.device_kinds.push(DeviceKind { name: name.clone(), doc, sort, commands });
+        world.device_kinds.push(DeviceKind { name: name.clone(), doc, sort, commands, states: Vec::new() });
         device = DeviceId(world.devices.len() as u16);
         world.devices.push(Device { name, kind: DeviceKindId(kind), body: LASER });
     }
@@ -77,7 +77,7 @@ fn heard(what: DeviceState) -> (Vec<(Nanos, String)>, HarnessRun) {
     let players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(player)];
     let near = vec![1.0, f64::NEG_INFINITY, 0.25];
     let states = [(0, vec![f64::INFINITY, 2.5]), (3 * SECOND / 2, near)];
-    let states = states.map(|(time, numbers)| (time, LASER, DeviceState::Ranges, numbers)).to_vec();
+    let states = states.map(|(time, numbers)| (time, LASER, DeviceState::BeamRanges, numbers)).to_vec();
     let world = ToldWorld::default().with_states(states);
     let stage = WorldStage::new(&program, Box::new(world));
     let run = HarnessLoop::new(&program, players, Some(stage), 5 * SECOND / 2).run();
@@ -94,7 +94,7 @@ fn heard(what: DeviceState) -> (Vec<(Nanos, String)>, HarnessRun) {
 
 #[test]
 fn a_topic_from_a_device_holds_what_it_tells_at_that_moment() {
-    let (messages, _) = heard(DeviceState::Ranges);
+    let (messages, _) = heard(DeviceState::BeamRanges);
     let far = r#"{"frame_id":"laser","ranges":["inf",2.5],"first":2.5}"#;
     let near = r#"{"frame_id":"laser","ranges":[1.0,"-inf",0.25],"first":"-inf"}"#;
     let later: Vec<_> = messages.iter().filter(|(time, _)| *time > 0).cloned().collect();
@@ -103,8 +103,8 @@ fn a_topic_from_a_device_holds_what_it_tells_at_that_moment() {
 
 #[test]
 fn what_a_device_cannot_tell_is_said() {
-    let (messages, run) = heard(DeviceState::Joints);
+    let (messages, run) = heard(DeviceState::JointAngles);
     assert_eq!(messages, []);
     let said = format!("{:?}", run.ended);
-    assert!(said.contains("the world does not tell the `joints` of this device"), "{said}");
+    assert!(said.contains("the world does not tell the `joint_angles` of this device"), "{said}");
 }

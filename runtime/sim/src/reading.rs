@@ -65,15 +65,20 @@ impl WorldSimulation {
     /// What is true of a device; `None`: it has no such state.
     fn state(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
         match (device, what) {
-            (DeviceBody::Arm(arm), DeviceState::Joints) => Some(self.joint_positions(arm)),
-            (DeviceBody::Arm(arm), DeviceState::Speeds) => Some(self.joint_speeds(arm)),
-            (DeviceBody::Arm(arm), DeviceState::Tool) => self.tool_pose(arm).map(Vec::from),
-            (DeviceBody::Base(base), DeviceState::Pose) => self.base_pose(base).map(Vec::from),
-            (DeviceBody::Base(base), DeviceState::Orientation) => self.base_orientation(base).map(Vec::from),
-            (DeviceBody::Base(base), DeviceState::Velocity) => self.base_velocity(base).map(Vec::from),
-            (DeviceBody::Laser(laser), DeviceState::Ranges) => self.scan(laser),
-            (DeviceBody::Laser(laser), DeviceState::Angles) => self.laser(laser).map(|l| vec![l.lo, l.hi]),
-            (DeviceBody::Laser(laser), DeviceState::Limits) => {
+            (DeviceBody::Arm(arm), DeviceState::JointAngles) => Some(self.joint_positions(arm)),
+            (DeviceBody::Arm(arm), DeviceState::JointSpeeds) => Some(self.joint_speeds(arm)),
+            (DeviceBody::Arm(arm), DeviceState::ToolPose) => self.tool_pose(arm).map(Vec::from),
+            (DeviceBody::Gripper(gripper), DeviceState::FingerPlaces) => Some(self.finger_places(gripper)),
+            (DeviceBody::Base(base), DeviceState::BasePose) => self.base_pose(base).map(Vec::from),
+            (DeviceBody::Base(base), DeviceState::BaseOrientation) => {
+                self.base_orientation(base).map(Vec::from)
+            }
+            (DeviceBody::Base(base), DeviceState::BaseVelocity) => self.base_velocity(base).map(Vec::from),
+            (DeviceBody::Laser(laser), DeviceState::BeamRanges) => self.scan(laser),
+            (DeviceBody::Laser(laser), DeviceState::BeamAngles) => {
+                self.laser(laser).map(|l| vec![l.lo, l.hi])
+            }
+            (DeviceBody::Laser(laser), DeviceState::BeamLimits) => {
                 self.laser(laser).map(|l| vec![l.nearest, l.farthest])
             }
             (DeviceBody::Arm(_) | DeviceBody::Gripper(_) | DeviceBody::Base(_) | DeviceBody::Laser(_), _) => {
@@ -87,7 +92,7 @@ impl WorldSimulation {
     pub fn told(&self, device: DeviceBody, what: DeviceState) -> Option<Vec<f64>> {
         let exact = self.state(device, what)?;
         // What a laser is, is known.
-        if matches!(device, DeviceBody::Laser(_)) && what != DeviceState::Ranges {
+        if matches!(device, DeviceBody::Laser(_)) && what != DeviceState::BeamRanges {
             return Some(exact);
         }
         let Some(source) = device.source() else { return Some(exact) };
@@ -95,14 +100,14 @@ impl WorldSimulation {
         let Some((seen, _)) = sensed else { return Some(vec![f64::NAN; exact.len()]) };
         Some(match (seen, what) {
             (SensedTruth::Ranges(ranges), _) => ranges,
-            (SensedTruth::Base { velocity, .. }, DeviceState::Velocity) => velocity.to_vec(),
-            (SensedTruth::Base { pose: [_, _, yaw], .. }, DeviceState::Orientation) => {
+            (SensedTruth::Base { velocity, .. }, DeviceState::BaseVelocity) => velocity.to_vec(),
+            (SensedTruth::Base { pose: [_, _, yaw], .. }, DeviceState::BaseOrientation) => {
                 let turn = about(SpaceVector::z(), yaw);
                 vec![turn.i, turn.j, turn.k, turn.w]
             }
             (SensedTruth::Base { pose, .. }, _) => pose.to_vec(),
-            (SensedTruth::Arm { speeds, .. }, DeviceState::Speeds) => speeds,
-            (SensedTruth::Arm { tool, .. }, DeviceState::Tool) => seven(&tool).to_vec(),
+            (SensedTruth::Arm { speeds, .. }, DeviceState::JointSpeeds) => speeds,
+            (SensedTruth::Arm { tool, .. }, DeviceState::ToolPose) => seven(&tool).to_vec(),
             (SensedTruth::Arm { joints, .. }, _) => joints,
             (SensedTruth::Signal(_), _) => exact,
         })

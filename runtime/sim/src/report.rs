@@ -74,6 +74,13 @@ impl WorldSimulation {
         self.arms.get(usize::from(arm.0)).map_or_else(Vec::new, |a| a.positions(&self.physics))
     }
 
+    /// How far each finger of a gripper has moved on its joint, m or rad; empty if there is no such gripper, or it has no fingers.
+    #[must_use]
+    pub fn finger_places(&self, gripper: GripperId) -> Vec<f64> {
+        let fingers = self.world.grippers.get(usize::from(gripper.0)).map_or(&[][..], |g| &g.fingers);
+        fingers.iter().map(|joint| self.physics.joint_position(usize::from(joint.0))).collect()
+    }
+
     /// Their measured speeds, rad/s.
     #[must_use]
     pub fn joint_speeds(&self, arm: ArmId) -> Vec<f64> {

@@ -416,7 +416,7 @@ fn a_blow_elsewhere_does_not_jolt_the_arm() {
         let id = sim.command(move_to(LEGS[0])).unwrap();
         let (_, result) = wait(&mut sim, id, |sim| {
             fastest = fastest.max(float(sim, 0));
-            ways.push(sim.told(DeviceBody::Arm(ARM), DeviceState::Joints).unwrap());
+            ways.push(sim.told(DeviceBody::Arm(ARM), DeviceState::JointAngles).unwrap());
         });
         result.unwrap();
         (fastest, ways)

@@ -2,6 +2,8 @@
 
 mod common;
 use common::*;
+use hrdsl_ir::device::DeviceBody;
+use hrdsl_ir::device_state::DeviceState;
 use hrdsl_ir::world::*;
 use hrdsl_ir::{Expr, Type};
 use hrdsl_sim::{CommandError, MotorCommand, SimulationError, WorldSimulation};
@@ -236,6 +238,29 @@ fn what_the_fingers_can_bear_comes_along_and_what_they_cannot_slips() {
     };
     assert!((lifted(2.0, 40.0) - 0.15).abs() < 0.02);
     assert!(lifted(2.0, 8.0) < 0.05, "12.8 N are too little for 2 kg");
+}
+
+#[test]
+fn a_gripper_tells_where_its_fingers_are() {
+    let world = table();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
+    let fingers =
+        |sim: &WorldSimulation| sim.told(DeviceBody::Gripper(GRIP), DeviceState::FingerPlaces).unwrap();
+    let open = fingers(&sim);
+    assert_eq!(open.len(), world.grippers[0].fingers.len());
+    run(&mut sim, MotorCommand::CloseFingers { gripper: GRIP });
+    let closed = fingers(&sim);
+    assert!(
+        open.iter().zip(&closed).all(|(open, closed)| (open - closed).abs() > 0.01),
+        "{open:?} to {closed:?}"
+    );
+    run(&mut sim, MotorCommand::OpenFingers { gripper: GRIP });
+    let again = fingers(&sim);
+    assert!(
+        open.iter().zip(&again).all(|(open, again)| (open - again).abs() < 0.002),
+        "{open:?} to {again:?}"
+    );
+    assert_eq!(sim.told(DeviceBody::Gripper(GRIP), DeviceState::JointAngles), None);
 }
 
 #[test]

@@ -181,11 +181,11 @@ fn a_laser_sees_what_is_not_there_beam_by_beam() {
     let outlier = Some(SensorOutlier { probability: 0.03, lo: 0.1, hi: 10.0 });
     let sensor = ImperfectSensor { every: Some(100 * MS), outlier, ..of_eye };
     let mut sim = running(vec![sensor], 3);
-    let truth = running(Vec::new(), 0).told(eye, DeviceState::Ranges).unwrap();
+    let truth = running(Vec::new(), 0).told(eye, DeviceState::BeamRanges).unwrap();
     let mut false_returns = Vec::new();
     for sample in 0..1000 {
         sim.advance(sample * 100 * MS);
-        let seen = sim.told(eye, DeviceState::Ranges).unwrap();
+        let seen = sim.told(eye, DeviceState::BeamRanges).unwrap();
         let wrong = seen.iter().zip(&truth).filter(|(a, b)| a != b).map(|(a, _)| *a);
         false_returns.extend(wrong);
     }
@@ -203,7 +203,7 @@ fn the_nearest_is_the_least_of_a_scan_as_it_is_true() {
     let noisy = WorldSimulation::new(&world, &[]).unwrap();
     world.sensors = Vec::new();
     let exact = WorldSimulation::new(&world, &[]).unwrap();
-    let ranges = exact.told(DeviceBody::Laser(LaserId(0)), DeviceState::Ranges).unwrap();
+    let ranges = exact.told(DeviceBody::Laser(LaserId(0)), DeviceState::BeamRanges).unwrap();
     let mut found = Vec::new();
     for (from, to) in [(-0.2, 0.2), (-0.2, 0.0), (0.1, 0.16), (0.02, 0.02)] {
         let (first, last) = laser.beams_between(from, to).unwrap();
@@ -254,11 +254,11 @@ fn a_scan_is_late_noisy_and_full_of_holes() {
         ..of_eye
     };
     let mut sim = running(vec![sensor], 3);
-    let truth = running(Vec::new(), 0).told(eye, DeviceState::Ranges).unwrap();
+    let truth = running(Vec::new(), 0).told(eye, DeviceState::BeamRanges).unwrap();
     let (mut errors, mut holes) = (Vec::new(), 0);
     for sample in 0..1000 {
         sim.advance(sample * 100 * MS + 20 * MS);
-        let seen = sim.told(eye, DeviceState::Ranges).unwrap();
+        let seen = sim.told(eye, DeviceState::BeamRanges).unwrap();
         assert_eq!(sim.sampled_at(eye), Some(sample * 100 * MS));
         holes += seen.iter().filter(|range| **range == f64::INFINITY).count();
         errors.extend(seen.iter().zip(&truth).map(|(a, b)| a - b).filter(|error| error.is_finite()));
@@ -267,7 +267,7 @@ fn a_scan_is_late_noisy_and_full_of_holes() {
     let deviation = (errors.iter().map(|x| x * x).sum::<f64>() / count).sqrt();
     let lost = f64::from(u32::try_from(holes).unwrap()) / 21_000.0;
     assert!((deviation - 0.01).abs() < 0.0005 && (lost - 0.05).abs() < 0.005, "{deviation} {lost}");
-    assert_eq!(sim.told(eye, DeviceState::Limits), Some(vec![0.1, 10.0]), "what it is, is known");
+    assert_eq!(sim.told(eye, DeviceState::BeamLimits), Some(vec![0.1, 10.0]), "what it is, is known");
 }
 
 #[test]
@@ -280,7 +280,7 @@ fn a_base_that_drifts_believes_to_be_elsewhere() {
         let drive = MotorCommand::DriveWheels { base: BaseId(0), forward: 0.5, sideways: 0.0, turn: 0.0 };
         sim.command(drive).unwrap();
         sim.advance(4 * SECOND);
-        let told = sim.told(wheels, DeviceState::Pose).unwrap()[0];
+        let told = sim.told(wheels, DeviceState::BasePose).unwrap()[0];
         let truth = sim.base_pose(BaseId(0)).unwrap()[0];
         (told - truth) / truth.sqrt()
     };

@@ -100,9 +100,9 @@ class Device:
         return motion.error is None
 
     def state(self, what: str) -> list[float]:
-        """How the device is now, in SI units: `joints`, `speeds` or `tool` of an arm, `pose`, `orientation` or `velocity` of a base,
-        `ranges`, `angles` or `limits` of a laser. An imperfect sensor that shows nothing says NaN. Raises `ProtocolError` if it has no such
-        state."""
+        """How the device is now, in SI units: `joints`, `speeds` or `tool` of an arm, `fingers` of a gripper, `pose`, `orientation` or
+        `velocity` of a base, `ranges`, `angles` or `limits` of a laser, and what the scenario declares beside them. An imperfect sensor that
+        shows nothing says NaN. Raises `ProtocolError` if it has no such state."""
         return self._exchange.state(self.name, what)
 
 

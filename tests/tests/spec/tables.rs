@@ -7,6 +7,7 @@ use hrdsl_compiler::token::{KEYWORDS, KeywordClass};
 use hrdsl_ir::{
     Type,
     device::{CommandType, DevicePrimitive, NumberCount},
+    device_state::DeviceState,
 };
 use hrdsl_model::{Dimension, UNITS, type_named, type_names};
 use hrdsl_source::{GROUPS, REGISTRY};
@@ -124,6 +125,15 @@ fn the_primitives() {
         let _ = writeln!(table, "| `{name}` | {of} | {} | {} |", params(false), params(true));
     }
     generated("spec/world.md", "primitives", &table);
+}
+
+#[test]
+fn what_a_world_can_tell() {
+    let mut table = String::from("| primitive | of | numbers |\n|---|---|---|\n");
+    for state in DeviceState::ALL {
+        let _ = writeln!(table, "| `{}` | {} | {} |", state.name(), state.sort().name(), state.numbers());
+    }
+    generated("spec/world.md", "states", &table);
 }
 
 #[test]

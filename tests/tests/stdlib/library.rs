@@ -66,6 +66,10 @@ fn module(path: &'static str, text: &str) -> Module {
                         let span = hrdsl_source::Span { start: from, end: to, ..m.span };
                         Some(("command", files.text(span).to_owned(), m.doc.clone()))
                     }
+                    DeviceMemberKind::State(state) => {
+                        let span = hrdsl_source::Span { start: state.name.span.start, ..m.span };
+                        Some(("state", files.text(span).to_owned(), m.doc.clone()))
+                    }
                     DeviceMemberKind::Error => None,
                 });
                 let text = format!("device {}", device.kind.text);

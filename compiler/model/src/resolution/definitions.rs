@@ -249,10 +249,16 @@ impl DefinitionReader {
     fn device(&mut self, device: &ast::DeviceSyntax) {
         for member in &device.members {
             (self.whole, self.doc) = (member.span, member.doc.clone());
-            let DeviceMemberKind::Command(command) = &member.kind else { continue };
-            self.define(Noun::Command, &command.name);
-            let params: Vec<ast::ParamSyntax> = command.params.iter().map(|p| p.param.clone()).collect();
-            self.params(Noun::Parameter, &params);
+            match &member.kind {
+                DeviceMemberKind::Command(command) => {
+                    self.define(Noun::Command, &command.name);
+                    let params: Vec<ast::ParamSyntax> =
+                        command.params.iter().map(|p| p.param.clone()).collect();
+                    self.params(Noun::Parameter, &params);
+                }
+                DeviceMemberKind::State(state) => self.define(Noun::DeviceState, &state.name),
+                DeviceMemberKind::Error => {}
+            }
         }
     }
 

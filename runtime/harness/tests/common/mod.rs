@@ -116,8 +116,13 @@ pub fn kinds() -> Vec<DeviceKind> {
         primitive,
         expect: None,
     };
-    let kind =
-        |name: &str, sort, commands| DeviceKind { name: name.into(), doc: String::new(), sort, commands };
+    let kind = |name: &str, sort, commands| DeviceKind {
+        name: name.into(),
+        doc: String::new(),
+        sort,
+        commands,
+        states: Vec::new(),
+    };
     let to = param("to", Unit::Metre, NumberCount::Array(3), false);
     let speed = param("speed", Unit::RadianPerSecond, NumberCount::One, true);
     let angles = param("to", Unit::Radian, NumberCount::List, false);

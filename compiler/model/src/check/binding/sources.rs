@@ -118,22 +118,22 @@ impl ToldFields {
     fn arm(&mut self, joints: Vec<String>) {
         let names: Vec<String> = joints.iter().map(|name| json(name)).collect();
         self.add("name", GapValue::Fixed(format!("[{}]", names.join(","))), MessageScalar::Text);
-        self.told("position", DeviceState::Joints, ToldNumbers::All);
-        self.told("velocity", DeviceState::Speeds, ToldNumbers::All);
+        self.told("position", DeviceState::JointAngles, ToldNumbers::All);
+        self.told("velocity", DeviceState::JointSpeeds, ToldNumbers::All);
     }
 
     fn base(&mut self, frame: &str) {
         self.text("header.frame_id", "odom");
         self.text("child_frame_id", frame);
         for (at, axis) in (0u16..).zip(["x", "y"]) {
-            self.told(&format!("pose.pose.position.{axis}"), DeviceState::Pose, ToldNumbers::One(at));
-            self.told(&format!("twist.twist.linear.{axis}"), DeviceState::Velocity, ToldNumbers::One(at));
+            self.told(&format!("pose.pose.position.{axis}"), DeviceState::BasePose, ToldNumbers::One(at));
+            self.told(&format!("twist.twist.linear.{axis}"), DeviceState::BaseVelocity, ToldNumbers::One(at));
         }
         for (at, axis) in (0u16..).zip(["x", "y", "z", "w"]) {
             let field = format!("pose.pose.orientation.{axis}");
-            self.told(&field, DeviceState::Orientation, ToldNumbers::One(at));
+            self.told(&field, DeviceState::BaseOrientation, ToldNumbers::One(at));
         }
-        self.told("twist.twist.angular.z", DeviceState::Velocity, ToldNumbers::One(2));
+        self.told("twist.twist.angular.z", DeviceState::BaseVelocity, ToldNumbers::One(2));
     }
 
     fn laser(&mut self, laser: &Laser, rate: Option<f64>, frame: &str) {
@@ -145,7 +145,7 @@ impl ToldFields {
         self.number("scan_time", rate.map_or(0.0, |rate| 1.0 / rate));
         self.number("range_min", laser.nearest);
         self.number("range_max", laser.farthest);
-        self.told("ranges", DeviceState::Ranges, ToldNumbers::All);
+        self.told("ranges", DeviceState::BeamRanges, ToldNumbers::All);
     }
 }
 

@@ -1,15 +1,16 @@
-//! Devices: the commands of each kind, checked against the primitives of the world, and the rules that wait for them.
+//! Devices: the commands and states of each kind, checked against the primitives of the world.
 
 use hrdsl_ir::{
     ListOf,
     device::{
-        CommandParam, CommandType, DeviceCommand, DeviceKind, DeviceMeasure, DevicePrimitive, DeviceSort,
-        Expectation, NumberCount, PrimitiveParam,
+        CommandParam, CommandType, DeclaredState, DeviceCommand, DeviceKind, DeviceMeasure, DevicePrimitive,
+        DeviceSort, Expectation, NumberCount, PrimitiveParam,
     },
+    device_state::DeviceState,
 };
 use hrdsl_syntax::ast::{self, DeviceMemberKind as Member, ItemSyntaxKind, NameSyntax};
 
-use crate::check::{state::table::OrderedMap, value::devices::noun_of};
+use crate::check::value::devices::noun_of;
 use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::resolution::type_span;
 use crate::{
@@ -20,16 +21,16 @@ use crate::{
 };
 
 impl<'a> WorldPhase<'_, 'a> {
-    /// All kinds of devices with the commands that are declared for them, the library's first.
+    /// All kinds of devices with the commands and states that are declared for them, the library's first.
     pub(in crate::check) fn devices(&mut self) {
         let kind = |sort: DeviceSort| DeviceKind {
             name: sort.name().to_owned(),
             doc: String::new(),
             sort,
             commands: Vec::new(),
+            states: Vec::new(),
         };
         self.s.device_kinds = DeviceSort::ALL.map(kind).into();
-        let mut known = OrderedMap::default();
         for item in self.source.items.clone() {
             let ItemSyntaxKind::Device(device) = &item.kind else { continue };
             let sort = self.device_sort(&device.kind);
@@ -40,20 +41,63 @@ impl<'a> WorldPhase<'_, 'a> {
                 }
             }
             for member in &device.members {
-                let Member::Command(command) = &member.kind else { continue };
-                let checked = self.device_command(sort, command, &member.doc);
-                let Some(sort) = sort else { continue };
-                let name = &command.name;
-                if let Some(first) = known.get(&(sort.name(), name.text.as_str())) {
-                    let issue = names::duplicate(Noun::Command, &name.text, name.span, Some(*first));
-                    self.report(issue);
-                    continue;
+                match &member.kind {
+                    Member::Command(command) => {
+                        let checked = self.device_command(sort, command, &member.doc);
+                        let Some(sort) = sort else { continue };
+                        let first =
+                            self.s.places.commands.get(&(sort.name(), command.name.text.clone())).copied();
+                        if self.is_first(Noun::Command, &command.name, first) {
+                            let place = (sort.name(), command.name.text.clone());
+                            self.s.places.commands.insert(place, command.name.span);
+                            self.kind_mut(sort).commands.extend(checked);
+                        }
+                    }
+                    Member::State(state) => {
+                        let Some(sort) = sort else { continue };
+                        let checked = self.device_state(sort, state, &member.doc);
+                        let first =
+                            self.s.places.states.get(&(sort.name(), state.name.text.clone())).copied();
+                        if self.is_first(Noun::DeviceState, &state.name, first) {
+                            self.s
+                                .places
+                                .states
+                                .insert((sort.name(), state.name.text.clone()), state.name.span);
+                            self.kind_mut(sort).states.extend(checked);
+                        }
+                    }
+                    Member::Error => {}
                 }
-                known.insert((sort.name(), name.text.as_str()), name.span);
-                self.s.places.commands.insert((sort.name(), name.text.clone()), name.span);
-                self.kind_mut(sort).commands.extend(checked);
             }
         }
+    }
+
+    /// Whether nothing of the kind has this name; reports it otherwise.
+    fn is_first(&mut self, noun: Noun, name: &NameSyntax, first: Option<hrdsl_source::Span>) -> bool {
+        if first.is_some() {
+            self.report(names::duplicate(noun, &name.text, name.span, first));
+        }
+        first.is_none()
+    }
+
+    /// `state joints from joint_angles`
+    fn device_state(
+        &mut self,
+        sort: DeviceSort,
+        state: &ast::DeviceStateSyntax,
+        doc: &str,
+    ) -> Option<DeclaredState> {
+        let own = || DeviceState::ALL.into_iter().filter(|s| s.sort() == sort).map(DeviceState::name);
+        let name = &state.told;
+        let issue = match DeviceState::named(&name.text) {
+            Some(told) if told.sort() == sort => {
+                return Some(DeclaredState { name: state.name.text.clone(), doc: doc.to_owned(), told });
+            }
+            Some(told) => devices::of_another(name, noun_of(told.sort()), noun_of(sort), own()),
+            None => names::unknown(Noun::Primitive, &name.text, name.span, own()),
+        };
+        self.report(issue);
+        None
     }
 
     fn kind_mut(&mut self, sort: DeviceSort) -> &mut DeviceKind {

@@ -423,7 +423,7 @@ impl TokenMarker<'_> {
                 self.call_after(command.name.span.end);
                 command.params.iter().for_each(|p| self.param(&p.param));
             }
-            DeviceMemberKind::Error => {}
+            DeviceMemberKind::State(_) | DeviceMemberKind::Error => {}
         }
     }
 }
