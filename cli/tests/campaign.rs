@@ -215,6 +215,30 @@ fn a_robot_that_hurries_violates_the_limit_of_speed() {
     );
 }
 
+/// Requirements rest on what is seen: a robot whose hand never opens, and that says all that it has to say, is found out.
+#[test]
+fn a_robot_that_only_says_released_is_found_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let example = root().join("examples/handover");
+    for name in ["scenario.hri", "fsm.py", "robot.py"] {
+        let text = fs::read_to_string(example.join(name)).unwrap();
+        let opens = "if not self.gripper.open():";
+        assert!(name != "robot.py" || text.contains(opens));
+        fs::write(folder.path().join(name), text.replace(opens, "if self.node.sleep(0.5) is not None:"))
+            .unwrap();
+    }
+    let out = folder.path().join("out");
+    expect_code(&sim(&folder.path().join("scenario.hri"), &out, &["--suite", "bdi_tests", "-n", "6"]), 3);
+    let results = results(&out);
+    let said = fs::read_to_string(out.join("traces/handover.bdi_tests.t002.jsonl")).unwrap();
+    assert!(said.contains(r#""event":"discarded""#) && !said.contains(r#""event":"let_go""#), "{said}");
+    let failing = |name: &str| {
+        let all = results["requirements"].as_array().unwrap();
+        all.iter().find(|r| r["name"] == name).unwrap()["failing"].as_array().unwrap().len()
+    };
+    assert!(failing("R1") > 0, "{results}");
+}
+
 /// What is recorded is what is judged: each counterexample's lines are in the recording at their place.
 #[test]
 fn failures_are_borne_out_by_recordings() {

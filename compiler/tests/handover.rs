@@ -1,6 +1,7 @@
 //! The reference scenario.
 
 use hrdsl_compiler::{CompilationResult, InputFile, compile};
+use hrdsl_ir::Provenance;
 
 const SCENARIO: &str = include_str!("../../examples/handover/scenario.hri");
 
@@ -29,7 +30,23 @@ fn its_program_means_what_it_says() {
     let names = |signals: &[hrdsl_ir::world::Signal], recorded: bool| -> Vec<String> {
         signals.iter().filter(|s| s.recorded == recorded).map(|s| s.name.clone()).collect()
     };
-    assert_eq!(names(&p.signals, false), ["gaze", "pressure", "location", "range(person.head, robot.torso)"]);
+    let for_the_world = [
+        "gaze",
+        "pressure",
+        "location",
+        "range(person.head, robot.torso)",
+        "holds(robot.grip)",
+        "robot.palm.z",
+        "holds(person.grasp)",
+    ];
+    assert_eq!(names(&p.signals, false), for_the_world);
+    let whose = |name: &str| p.provenance(p.event_named(name).unwrap());
+    assert_eq!(whose("released"), Provenance::Said);
+    assert_eq!(whose("gripper_closing"), Provenance::Commanded);
+    assert_eq!(whose("leg_request"), Provenance::Played);
+    assert_eq!(whose("let_go"), Provenance::Seen);
+    // The code asks, and somebody must be there to be sensed.
+    assert_eq!(whose("sensed"), Provenance::Seen);
     assert!(names(&p.signals, true).iter().any(|n| n == "joint_speed(robot.arm)"));
     let world = p.world.as_ref().unwrap();
     let graspable = |g: &hrdsl_ir::world::Gripper| g.holds.len();

@@ -7,7 +7,7 @@ use crate::{
     Program,
     bdi::{Agent, AgentId, BeliefDecl, BeliefId, ContentId, GoalDecl, GoalId, MessageContent, Plan},
     coverage::{CoverBin, Coverage, Coverpoint, CoverpointId},
-    event::{Actor, ActorId, Event, EventId, Parameter},
+    event::{Actor, ActorId, Event, EventId, Parameter, Provenance},
     expr::FunctionId,
     ta::{Automaton, AutomatonFunction, AutomatonId, Channel, ChannelId, Location, LocationId},
     world::{Signal, SignalId},
@@ -24,6 +24,13 @@ impl Program {
     #[track_caller]
     pub fn event(&self, id: EventId) -> &Event {
         numbered("event", &self.events, id.0)
+    }
+
+    /// Whose word an event is.
+    #[must_use]
+    #[track_caller]
+    pub fn provenance(&self, id: EventId) -> Provenance {
+        *numbered("provenance of the event", &self.provenance, id.0)
     }
 
     #[must_use]

@@ -33,6 +33,33 @@ pub enum Role {
     System,
 }
 
+/// Whose word an event is: what there is to show that it happened. From the weakest to the strongest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Provenance {
+    /// The code says it, and nothing else shows it.
+    Said,
+    /// The code told a device to do it: what came of it is another matter.
+    Commanded,
+    /// The environment does it: the script of a test, as `gen` has found it.
+    Played,
+    /// The world shows it.
+    Seen,
+}
+
+impl Provenance {
+    /// The word for it, as the specification has it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Provenance::Said => "said",
+            Provenance::Commanded => "commanded",
+            Provenance::Played => "played",
+            Provenance::Seen => "seen",
+        }
+    }
+}
+
 /// A named parameter of an event, belief or goal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {

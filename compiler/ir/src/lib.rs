@@ -40,7 +40,7 @@ mod world_point;
 
 use serde::{Deserialize, Serialize};
 
-pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Parameter, Role};
+pub use event::{Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Parameter, Provenance, Role};
 pub use expr::Expr;
 pub use hrdsl_source::{Enumeration, Span, Symbol};
 pub use known::known_name;
@@ -55,6 +55,9 @@ pub struct Program {
     pub actors: Vec<Actor>,
     /// Events and stimuli, in source order; a stimulus is an event that carries a body.
     pub events: Vec<Event>,
+    /// By event: whose word it is.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub provenance: Vec<Provenance>,
     pub agents: Vec<bdi::Agent>,
     /// What the agents' messages are about.
     pub contents: Vec<bdi::MessageContent>,

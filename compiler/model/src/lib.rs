@@ -11,6 +11,7 @@ mod expr;
 mod interval;
 mod lint;
 mod noun;
+mod provenance;
 mod report;
 mod resolution;
 mod scenario;

@@ -13,7 +13,8 @@ use serde::Serialize;
 use crate::{TypedExpr, VariableRef, world::TypedWorld};
 
 pub use hrdsl_ir::{
-    Actor, ActorId, ArgPattern, EventId, EventPattern, List, Parameter, Role, Symbol, Text, Type, Value,
+    Actor, ActorId, ArgPattern, EventId, EventPattern, List, Parameter, Provenance, Role, Symbol, Text, Type,
+    Value,
     bdi::{
         AgentId, BeliefAnnotation, BeliefDecl, BeliefId, ContentId, ControlAct, GoalDecl, GoalId,
         InitialFact, MessageContent, MessageSubject, Performative, TriggerOn,
@@ -84,6 +85,8 @@ pub struct Scenario {
     pub actors: Vec<Actor>,
     pub enums: Vec<EnumDecl>,
     pub events: Vec<TypedEvent>,
+    /// By event: whose word it is.
+    pub provenance: Vec<Provenance>,
     pub agents: Vec<TypedAgent>,
     pub contents: Vec<MessageContent>,
     /// How the contents are used, by their ids.

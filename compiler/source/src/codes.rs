@@ -129,6 +129,8 @@ codes! {
     BAD_PATTERN = 601 "a requirement that says nothing",
     NEVER_TRIGGERED = 602 "a requirement that can never be triggered",
     CONTRADICTING_REQUIREMENTS = 603 "requirements that contradict each other",
+    SAID_DISCHARGES = 604 "a requirement that takes the code at its word",
+    CANNOT_FAIL = 605 "a requirement that cannot fail",
     OVERLAPPING_BINS = 701 "bins that overlap",
     BAD_SUITE = 702 "a suite that cannot make tests",
     EMPTY_BIN = 703 "a bin that contradicts itself",

@@ -26,6 +26,7 @@ pub fn lower(scenario: &Scenario, files: &SourceFiles) -> Program {
         name: scenario.name.clone(),
         actors: scenario.actors.clone(),
         events: scenario.events.iter().map(|e| e.lower(&local)).collect(),
+        provenance: scenario.provenance.clone(),
         agents: scenario.agents.iter().map(|a| a.lower(&local)).collect(),
         contents: scenario.contents.clone(),
         shared: scenario.shared.clone(),

@@ -11,7 +11,7 @@
 //! judged more strictly by the monitor, which knows that nothing comes any more.
 
 use hrdsl_ir::{
-    ActorId, EventPattern, Expr, Nanos, Program,
+    ActorId, EventId, EventPattern, Expr, Nanos, Program, Provenance,
     expr::Lvalue,
     monitor::{Monitor, MonitorEffect, MonitorTrigger},
     ta::{
@@ -52,6 +52,9 @@ impl ObservedNetwork {
     /// Why the requirement cannot be judged on a model.
     pub fn add(&mut self, monitor: &Monitor) -> Result<ObserverFormulas, String> {
         let plan = ObserverPlan::of(monitor)?;
+        if let Some(event) = self.only_seen(&plan) {
+            return Err(format!("the world makes `{event}`, and no automaton of the network"));
+        }
         let shared_clocks = self.program.clocks.len();
         let before = self.members().map(|a| a.clocks.len()).sum::<usize>();
         let automaton = plan.automaton(&self.program)?;
@@ -62,6 +65,23 @@ impl ObservedNetwork {
         );
         self.push(automaton);
         Ok(verdicts)
+    }
+
+    /// The first event of the requirement that is the world's to show, and that no automaton plays: to the network it never happens, which
+    /// says nothing.
+    fn only_seen(&self, plan: &ObserverPlan<'_>) -> Option<&str> {
+        let shown = |event: &EventId| match self.program.provenance.get(usize::from(event.0)) {
+            Some(Provenance::Seen | Provenance::Commanded) => true,
+            Some(Provenance::Said | Provenance::Played) | None => false,
+        };
+        let edges = || self.members().flat_map(|automaton| &automaton.edges);
+        let sent = |event: EventId| {
+            edges().any(|e| matches!(&e.sync, SyncLabel::Send { event: sent, .. } if *sent == event))
+        };
+        let mut events = plan.on_events().flat_map(|(_, patterns)| patterns).map(|p| p.event);
+        events
+            .find(|event| shown(event) && !sent(*event))
+            .map(|event| self.program.event(event).name.as_str())
     }
 
     /// Adds an automaton to the program and to the network.

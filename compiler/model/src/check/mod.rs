@@ -18,7 +18,7 @@ use hrdsl_messages::MessageLibrary;
 use hrdsl_source::Diagnostic;
 use hrdsl_syntax::ast::{self, ItemSyntaxKind};
 
-use crate::{Scenario, descriptions::DescriptionLibrary};
+use crate::{Scenario, descriptions::DescriptionLibrary, provenance};
 use agents::phase::AgentsPhase;
 use automata::phase::AutomataPhase;
 use checker::Checker;
@@ -133,6 +133,7 @@ fn phases<'a>(
     let networks = AutomataPhase::check(&mut checker, channels);
     TestingPhase::check(&mut checker, (robots, agents, networks), tests);
     checker.say_without_world();
+    checker.s.provenance = provenance::of_events(&checker.s);
     checker
 }
 

@@ -6,6 +6,7 @@ mod agent_facts;
 mod agent_index;
 mod applicable;
 mod belief_never_added;
+mod cannot_fail;
 mod channels;
 mod committed_cycle;
 mod contradiction;
@@ -25,12 +26,14 @@ mod query_reads;
 mod recursion_without_time;
 mod removes_nothing;
 mod requirements;
+mod said_discharges;
 mod shadowed_plan;
 mod simple;
 mod time_stops;
 mod triggers;
 mod unreachable_location;
 mod unused;
+mod world_range;
 
 use std::collections::BTreeSet;
 
@@ -61,7 +64,9 @@ const RULES: &[LintRule] = &[
     committed_cycle::check,
     channels::check,
     never_triggered::check,
+    cannot_fail::check,
     requirements::contradicting,
+    said_discharges::check,
     cross_bins::empty,
     cross_bins::equal,
     nothing_carries::check,

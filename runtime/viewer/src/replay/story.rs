@@ -1,6 +1,6 @@
 //! Events and state machines of a recording.
 
-use hrdsl_ir::{Event, EventId, Program, Role, world::RuleTrigger};
+use hrdsl_ir::{Event, EventId, Program, Provenance, Role};
 use hrdsl_trace::{MachineStep, TraceStepKind, print};
 
 use super::run::{ReplayedRun, tick};
@@ -35,12 +35,10 @@ fn kind(program: &Program, id: EventId, event: &Event) -> EventKind {
     if event.is_stimulus() {
         return EventKind::Stimulus;
     }
-    let rules = program.world.iter().flat_map(|world| &world.rules);
-    let mut triggers = rules.filter(|rule| rule.event == id).map(|rule| &rule.on);
-    match triggers.next() {
-        Some(RuleTrigger::Commanded { .. }) => EventKind::Commanded,
-        Some(RuleTrigger::Event(_) | RuleTrigger::Edge { .. }) => EventKind::Seen,
-        None => EventKind::Said,
+    match program.provenance(id) {
+        Provenance::Commanded => EventKind::Commanded,
+        Provenance::Seen => EventKind::Seen,
+        Provenance::Said | Provenance::Played => EventKind::Said,
     }
 }
 
