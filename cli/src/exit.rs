@@ -26,8 +26,8 @@ pub const HELP: &str = "\
 Exit codes:
   0  all is well
   1  a scenario has errors, or warnings that `check --deny` makes errors; `fmt --check`: a file would change;
-     `import`: a file is no program, or `--strict` and something is left out; `inspect`: the agents cannot go on
-     (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault
+     `import`: a file is no program, or `--strict` and something is left out; `inspect`, `run`: the agents cannot go
+     on (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault
   2  the command line is wrong, or a file cannot be read or written
   3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism, --repeat or
      --schedules found a difference;

@@ -67,6 +67,7 @@ enum TopLevelCommand {
     New(commands::new::NewArgs),
     Prove(commands::prove::ProveArgs),
     Report(commands::report::ReportArgs),
+    Run(commands::run::RunArgs),
     Sim(commands::sim::SimArgs),
     View(commands::view::ViewArgs),
 }
@@ -110,6 +111,7 @@ fn run() -> ExitCode {
         TopLevelCommand::New(args) => commands::new::run(&args),
         TopLevelCommand::Prove(args) => commands::prove::run(&args),
         TopLevelCommand::Report(args) => commands::report::run(&args),
+        TopLevelCommand::Run(args) => commands::run::run(&args),
         TopLevelCommand::Sim(args) => commands::sim::run(&args),
         TopLevelCommand::View(args) => commands::view::run(&args),
     });

@@ -362,6 +362,7 @@ module.exports = grammar({
         optional(field("parameters", $.parameters)),
         keyword($, "plays"),
         field("plays", $.identifier),
+        optional(seq("[", field("annotation", $.identifier), "]")),
         field("body", $.agent_body),
       ),
     agent_body: ($) => block($, choice($.belief, $.belief_rule, $.goal_type, $.goal, $.plan, $.allow)),

@@ -110,7 +110,7 @@ struct ImportOutputArgs {
 }
 
 /// Files that programs and projects name, relative to them.
-struct DiskPrograms(FileReach);
+pub struct DiskPrograms(pub FileReach);
 
 impl ForeignLoader for DiskPrograms {
     fn load(&self, from: &str, path: &str) -> Result<ForeignSource, String> {
@@ -164,7 +164,11 @@ fn from_uppaal(args: &UppaalImportArgs) -> Result<CommandExit, CommandFault> {
     finished(&args.to, uppaal::import(&model, queries.as_ref(), &options))
 }
 
-fn source(path: &Path) -> Result<ForeignSource, CommandFault> {
+/// A file as it is named on the command line.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn source(path: &Path) -> Result<ForeignSource, CommandFault> {
     Ok(ForeignSource { name: path.display().to_string(), text: files::read(path)? })
 }
 

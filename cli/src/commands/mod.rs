@@ -15,6 +15,7 @@ pub mod man;
 pub mod new;
 pub mod prove;
 pub mod report;
+pub mod run;
 pub mod search_options;
 pub mod sim;
 pub mod view;

@@ -35,6 +35,10 @@ pub struct Agent<E = Expr> {
     pub name: String,
     /// The actor it plays.
     pub actor: ActorId,
+    /// `[jason]`: facts are asked newest first, atomic plans exclude every other, and plans for changes of beliefs run
+    /// before the next step.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub jason: bool,
     pub beliefs: Vec<BeliefDecl>,
     pub goals: Vec<GoalDecl>,
     /// Rules, in source order: those of a belief are tried after its facts.

@@ -33,6 +33,7 @@ impl<E> Agent<E> {
         Agent {
             name: self.name.clone(),
             actor: self.actor,
+            jason: self.jason,
             beliefs: self.beliefs.clone(),
             goals: self.goals.clone(),
             rules: self.rules.iter().map(|r| r.lower(f)).collect(),

@@ -199,6 +199,9 @@ pub struct AgentSyntax {
     /// `Some`: a template.
     pub params: Option<Vec<ParamSyntax>>,
     pub plays: NameSyntax,
+    /// What is in the brackets after it: `jason`, or a mistake.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub annotation: Option<NameSyntax>,
     pub members: Vec<AgentMember>,
 }
 

@@ -475,7 +475,7 @@ agent Human plays person{
 }
 "#
     steps r#"
-agent Human plays person{
+agent Human plays person [ jason ]{
   plan@one [ atomic ]+! deliver ( L ) [ source(S),sure(9) ]when ~ broken(L)&&X=L+1&& .count(seen(_),N)&&N>2{}
   plan- ? at(_,_){.fail}
   plan -~seen(L)[source ( percept )]when .empty([ ]){.print ;}

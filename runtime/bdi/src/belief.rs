@@ -30,6 +30,10 @@ pub(crate) struct FactTable {
     annotations: Vec<FactAnnotations>,
     /// The rows before this one are dead.
     start: usize,
+    /// Its facts are asked newest first.
+    newest_first: bool,
+    /// The rows before this one were held at the start.
+    initial: usize,
     /// Rows by [`hash`] of the first argument, upwards, dead ones too; made when there are many.
     index: Option<FxHashMap<u64, Vec<u32>>>,
 }
@@ -72,12 +76,35 @@ pub(crate) enum FactWithdrawal {
     Fact(FactAnnotations),
 }
 
-/// Goes through live rows, upwards.
+/// Goes through live rows, upwards or downwards.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FactCursor {
     All(usize),
     /// A place in the index's list.
     Keyed(u64, usize),
+    /// Downwards: before this row, down to the floor. The initial ones may be a part of their own.
+    Down {
+        at: u32,
+        floor: u32,
+        initial: bool,
+    },
+    /// The same in the index's list, before this place in it.
+    KeyedDown {
+        key: u64,
+        at: u32,
+        floor: u32,
+        initial: bool,
+    },
+}
+
+impl FactCursor {
+    /// Whether these are the facts held at the start, which some rules come before.
+    pub fn is_initial(self) -> bool {
+        match self {
+            FactCursor::All(_) | FactCursor::Keyed(..) => false,
+            FactCursor::Down { initial, .. } | FactCursor::KeyedDown { initial, .. } => initial,
+        }
+    }
 }
 
 impl FactTable {
@@ -99,12 +126,51 @@ impl FactTable {
         self.held
     }
 
-    /// From the oldest row; if the first argument is known, perhaps only rows that have it.
+    /// From the row that is asked first; if the first argument is known, perhaps only rows that have it.
     pub fn cursor(&self, first: Option<Value>) -> FactCursor {
+        if self.newest_first {
+            return self.down(first, 0, self.annotations.len(), false);
+        }
         match (&self.index, first) {
             (Some(_), Some(value)) => FactCursor::Keyed(hash(value), 0),
             _ => FactCursor::All(self.start),
         }
+    }
+
+    /// The facts that came after the start, newest first.
+    pub fn later(&self, first: Option<Value>) -> FactCursor {
+        self.down(first, self.initial, self.annotations.len(), false)
+    }
+
+    /// The facts held at the start, in the order of the text.
+    pub fn initial(&self, first: Option<Value>) -> FactCursor {
+        self.down(first, 0, self.initial, true)
+    }
+
+    fn down(&self, first: Option<Value>, floor: usize, end: usize, initial: bool) -> FactCursor {
+        let floor = floor as u32;
+        match (&self.index, first) {
+            (Some(index), Some(value)) => {
+                let key = hash(value);
+                let at = index.get(&key).map_or(0, |rows| rows.partition_point(|r| (*r as usize) < end));
+                FactCursor::KeyedDown { key, at: at as u32, floor, initial }
+            }
+            _ => FactCursor::Down { at: end as u32, floor, initial },
+        }
+    }
+
+    /// What is held now was held at the start.
+    fn begin(&mut self) {
+        self.initial = self.annotations.len();
+    }
+
+    /// The live rows, in the order in which they are asked.
+    pub fn asked(&self) -> Vec<usize> {
+        let mut rows: Vec<usize> = self.iter().collect();
+        if self.newest_first {
+            rows.reverse();
+        }
+        rows
     }
 
     /// The next live row.
@@ -126,6 +192,29 @@ impl FactTable {
                     *at += 1;
                     if !self.annotations[*row as usize].is_empty() {
                         return Some(*row as usize);
+                    }
+                }
+                None
+            }
+            FactCursor::Down { at, floor, .. } => {
+                while *at > *floor {
+                    *at -= 1;
+                    if !self.annotations[*at as usize].is_empty() {
+                        return Some(*at as usize);
+                    }
+                }
+                None
+            }
+            FactCursor::KeyedDown { key, at, floor, .. } => {
+                let rows = self.index.as_ref()?.get(key)?;
+                while *at > 0 {
+                    *at -= 1;
+                    let row = *rows.get(*at as usize)?;
+                    if row < *floor {
+                        return None;
+                    }
+                    if !self.annotations[row as usize].is_empty() {
+                        return Some(row as usize);
                     }
                 }
                 None
@@ -212,12 +301,14 @@ impl FactTable {
     fn compact(&mut self) {
         let mut values = Vec::with_capacity(self.live * self.arity);
         let mut annotations = Vec::with_capacity(self.live);
+        let kept_before = self.annotations.iter().take(self.initial).filter(|a| !a.is_empty()).count();
         for row in 0..self.annotations.len() {
             if !self.annotations[row].is_empty() {
                 values.extend_from_slice(self.row(row));
                 annotations.push(std::mem::take(&mut self.annotations[row]));
             }
         }
+        self.initial = kept_before;
         (self.values, self.annotations, self.start) = (values, annotations, 0);
         if self.index.is_some() {
             self.make_index();
@@ -249,11 +340,19 @@ pub(crate) struct BeliefBase {
 
 impl BeliefBase {
     pub fn new(agent: &Agent) -> Self {
+        let newest_first = agent.jason;
         let rows = agent.beliefs.iter();
         Self {
-            rows: rows.map(|b| FactTable { arity: b.params.len(), ..FactTable::default() }).collect(),
+            rows: rows
+                .map(|b| FactTable { arity: b.params.len(), newest_first, ..FactTable::default() })
+                .collect(),
             held: 0,
         }
+    }
+
+    /// What is held now was held at the start.
+    pub fn begin(&mut self) {
+        self.rows.iter_mut().for_each(FactTable::begin);
     }
 
     /// The facts of this name; the id must be one of the agent's.

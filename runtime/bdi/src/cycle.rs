@@ -67,6 +67,10 @@ pub(crate) struct AgentMachine<'p> {
     pub outbox: Vec<OutgoingMail>,
     pub actions: Vec<AgentAction>,
     pub ready: VecDeque<u32>,
+    /// In an agent as in Jason: the atomic intention, beside which nothing else goes on while it is atomic.
+    pub exclusive: Option<u32>,
+    /// The plan that is begun takes the place of an atomic one that failed.
+    pub stays_atomic: bool,
     /// Cycles at the instant `now`.
     pub cycles: u64,
     pub cycle_limit: u64,
@@ -113,6 +117,8 @@ impl<'p> AgentMachine<'p> {
             outbox: Vec::new(),
             actions: Vec::new(),
             ready: VecDeque::new(),
+            exclusive: None,
+            stays_atomic: false,
             cycles: 0,
             cycle_limit: CYCLE_LIMIT,
             repetition: RepetitionDetector::default(),
@@ -132,7 +138,12 @@ impl<'p> AgentMachine<'p> {
 
     fn start(&mut self, chosen: &[InitialFact]) {
         let agent = self.mind.agent;
-        for fact in agent.initial_beliefs.iter().chain(chosen) {
+        let mut facts: Vec<&InitialFact> = agent.initial_beliefs.iter().chain(chosen).collect();
+        if agent.jason {
+            // The first of the text is asked first, and its event comes last.
+            facts.reverse();
+        }
+        for fact in facts {
             let declared = agent.beliefs.get(usize::from(fact.belief.0));
             match declared.and_then(|b| typed(&b.params, GroundArguments::from_slice(&fact.args))) {
                 Some(args) => {
@@ -142,6 +153,7 @@ impl<'p> AgentMachine<'p> {
                 None => self.enter(0, LogItem::Refused { belief: fact.belief, args: fact.args.clone() }),
             }
         }
+        self.mind.beliefs.begin();
         for (goal, args) in &agent.initial_goals {
             let args = args.iter().map(|v| Some(*v)).collect();
             self.post(QueuedEvent::new(TriggerOn::GoalAdded(*goal), args));
@@ -172,7 +184,7 @@ impl<'p> AgentMachine<'p> {
         self.repetition.forget();
         let mut done = 0;
         while self.halted.is_none() && !self.is_overfull() {
-            if self.mind.events.is_empty() && self.ready.is_empty() {
+            if !self.has_turn() {
                 let Some(incoming) = self.inbox.pop_front() else { return };
                 self.take_in(incoming);
                 continue;
@@ -214,8 +226,38 @@ impl<'p> AgentMachine<'p> {
     }
 
     pub fn has_work(&self) -> bool {
-        let queued = !(self.mind.events.is_empty() && self.ready.is_empty() && self.inbox.is_empty());
-        self.halted.is_none() && queued
+        self.halted.is_none() && (self.has_turn() || !self.inbox.is_empty())
+    }
+
+    /// Whether there is an event or an intention whose turn it is.
+    fn has_turn(&self) -> bool {
+        let queued = !(self.mind.events.is_empty() && self.ready.is_empty());
+        queued && (self.holder().is_none() || self.own_event().is_some() || self.own_ready().is_some())
+    }
+
+    /// The intention beside which nothing else goes on.
+    fn holder(&self) -> Option<u32> {
+        self.exclusive.filter(|place| self.mind.pool.see(*place).atomic > 0)
+    }
+
+    fn is_atomic(&self, place: u32) -> bool {
+        self.mind.pool.see(place).atomic > 0
+    }
+
+    /// Where the atomic intention's event, or that of a branch of it, is in the queue.
+    fn own_event(&self) -> Option<usize> {
+        self.mind.events.iter().position(|e| e.of.is_some_and(|place| self.is_atomic(place)))
+    }
+
+    fn own_ready(&self) -> Option<usize> {
+        self.ready.iter().position(|place| self.is_atomic(*place))
+    }
+
+    /// The plan of the atomic intention that keeps others from their turn, if it waits for what does not come.
+    pub fn blocked_by(&self) -> Option<u16> {
+        let waits = !self.has_turn() && !(self.mind.events.is_empty() && self.ready.is_empty());
+        let holder = self.holder().filter(|_| waits && self.halted.is_none())?;
+        self.mind.pool.see(holder).frames.iter().find(|f| f.atomic).map(|f| f.plan)
     }
 
     pub fn status(&self) -> RunStatus {
@@ -257,7 +299,7 @@ impl<'p> AgentMachine<'p> {
             }
             self.resume(place);
         }
-        self.announce(TriggerOn::Perceived(event), args, None);
+        self.announce(TriggerOn::Perceived(event), args, None, None);
     }
 
     /// A belief that holds the arguments of the latest event.
@@ -306,16 +348,39 @@ impl<'p> AgentMachine<'p> {
     }
 
     fn cycle(&mut self) {
-        if let Some(event) = self.mind.events.pop_front() {
+        let event = match self.exclusive {
+            None => self.mind.events.pop_front(),
+            Some(_) => self.exclusive_event(),
+        };
+        if let Some(event) = event {
             self.deliberate(&event);
         }
-        if let Some(place) = self.ready.pop_front() {
+        let ready = match self.exclusive {
+            None => self.ready.pop_front(),
+            Some(_) if self.holder().is_none() => self.ready.pop_front(),
+            Some(_) => self.own_ready().and_then(|at| self.ready.remove(at)),
+        };
+        if let Some(place) = ready {
             self.step(place);
         }
     }
 
+    /// The next event while an atomic intention goes on, or the first after it.
+    fn exclusive_event(&mut self) -> Option<QueuedEvent> {
+        if self.holder().is_none() {
+            self.exclusive = None;
+            return self.mind.events.pop_front();
+        }
+        self.own_event().and_then(|at| self.mind.events.remove(at))
+    }
+
     /// Finds a plan for an event and puts it on the event's intention, or on one of its own.
     fn deliberate(&mut self, event: &QueuedEvent) {
+        if let (TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_), Some(place)) = (event.on, event.of)
+            && self.mind.library.relevant(event.on).is_empty()
+        {
+            return self.resume(place);
+        }
         let plan = self.select(event, event.of);
         match (plan, event.on) {
             (Some(plan), _) => self.adopt(plan, event),
@@ -374,10 +439,18 @@ impl<'p> AgentMachine<'p> {
         let vars = &self.solver.slots[..selected.vars.len()];
         let fresh = self.mind.pool.count(place);
         self.mind.pool.push(place, plan, first, &event.args, vars);
+        let atomic = selected.atomic || self.stays_atomic;
+        if atomic {
+            self.stays_atomic = false;
+            if self.mind.agent.jason && self.holder().is_none() {
+                self.exclusive = Some(place);
+            }
+        }
         let intention = self.mind.pool.at(place);
-        intention.atomic += u32::from(selected.atomic);
+        intention.atomic += u32::from(atomic);
         let number = intention.number;
         if let Some(top) = intention.frames.last_mut() {
+            top.atomic = atomic;
             top.under = under.unwrap_or(top.under);
             top.told = event.told;
         }
@@ -419,45 +492,72 @@ impl<'p> AgentMachine<'p> {
         }
     }
 
-    /// Posts an event that matters only if a plan is relevant to it.
-    pub fn announce(&mut self, on: TriggerOn, args: &[Value], annotations: Option<FactAnnotations>) {
-        if !self.mind.library.relevant(on).is_empty() {
-            let args: EventArguments = args.iter().map(|v| Some(*v)).collect();
-            self.post(QueuedEvent::new(on, args).annotated(annotations.unwrap_or_default()));
+    /// Posts an event that matters only if a plan is relevant to it, or if an intention waits for its turn to be over; whether
+    /// it did.
+    pub fn announce(
+        &mut self,
+        on: TriggerOn,
+        args: &[Value],
+        annotations: Option<FactAnnotations>,
+        of: Option<u32>,
+    ) -> bool {
+        if of.is_none() && self.mind.library.relevant(on).is_empty() {
+            return false;
         }
+        let args: EventArguments = args.iter().map(|v| Some(*v)).collect();
+        let event = QueuedEvent { of, ..QueuedEvent::new(on, args) };
+        self.post(event.annotated(annotations.unwrap_or_default()));
+        true
     }
 
     /// Adds a belief.
     pub fn believe(&mut self, belief: BeliefId, args: &[Value], annotations: FactAnnotations) {
+        self.believe_for(None, belief, args, annotations);
+    }
+
+    /// The same; the plan for it goes on this intention, if any. Whether the intention waits for it.
+    pub fn believe_for(
+        &mut self,
+        of: Option<u32>,
+        belief: BeliefId,
+        args: &[Value],
+        annotations: FactAnnotations,
+    ) -> bool {
         let new = self.mind.beliefs.insert(belief, args, annotations);
         if new.is_empty() {
-            return;
+            return false;
         }
         self.entry(0, || LogItem::Added { belief, args: args.to_vec(), annotations: new.clone() });
-        self.announce(TriggerOn::BeliefAdded(belief), args, Some(new));
+        self.announce(TriggerOn::BeliefAdded(belief), args, Some(new), of) && of.is_some()
     }
 
     /// A belief leaves the base.
     pub fn remove(&mut self, belief: BeliefId, row: usize) {
         let fact = GroundArguments::from_slice(self.mind.beliefs.of(belief).row(row));
         let had = self.mind.beliefs.remove(belief, row);
-        self.left(belief, &fact, had);
+        self.left(None, belief, &fact, had);
     }
 
-    fn left(&mut self, belief: BeliefId, args: &[Value], had: FactAnnotations) {
+    fn left(&mut self, of: Option<u32>, belief: BeliefId, args: &[Value], had: FactAnnotations) -> bool {
         self.entry(0, || LogItem::Left { belief, args: args.to_vec() });
-        self.announce(TriggerOn::BeliefRemoved(belief), args, Some(had));
+        self.announce(TriggerOn::BeliefRemoved(belief), args, Some(had), of) && of.is_some()
     }
 
     /// Takes a source away from a fact, if it has it.
     pub fn take(&mut self, belief: BeliefId, row: usize, source: Value) {
+        self.take_for(None, belief, row, source);
+    }
+
+    /// The same; the plan for what leaves goes on this intention, if any. Whether the intention waits for it.
+    pub fn take_for(&mut self, of: Option<u32>, belief: BeliefId, row: usize, source: Value) -> bool {
         let fact = GroundArguments::from_slice(self.mind.beliefs.of(belief).row(row));
         match self.mind.beliefs.withdraw(belief, row, source) {
-            FactWithdrawal::Nothing => {}
+            FactWithdrawal::Nothing => false,
             FactWithdrawal::Source => {
                 self.entry(0, || LogItem::Taken { belief, args: fact.to_vec(), source });
+                false
             }
-            FactWithdrawal::Fact(had) => self.left(belief, &fact, had),
+            FactWithdrawal::Fact(had) => self.left(of, belief, &fact, had),
         }
     }
 

@@ -22,6 +22,8 @@ pub(crate) struct PlanFrame {
     pub under: [u16; 2],
     /// A branch of a `fork`: the goal is its parent's.
     pub branch: bool,
+    /// Of an atomic plan.
+    pub atomic: bool,
     /// Of a goal: the other agent that asked for it.
     pub told: Option<Symbol>,
 }
@@ -115,6 +117,7 @@ impl Intention<'_> {
             vars: vars_at,
             under,
             branch: false,
+            atomic: false,
             told: None,
         });
         self.slots.extend_from_slice(args);

@@ -59,6 +59,7 @@ static NO_PROGRAM: LazyLock<Agent> = LazyLock::new(|| Agent {
     beliefs: Vec::new(),
     goals: Vec::new(),
     rules: Vec::new(),
+    jason: false,
     initial_beliefs: Vec::new(),
     initial_goals: Vec::new(),
     plans: Vec::new(),

@@ -3,13 +3,13 @@
 use hrdsl_ir::{
     EventId, Program,
     bdi::{
-        Agent, AgentId, AgentTerm, BeliefId, BeliefRule, GoalId, MessageSubject, Performative, Plan,
-        PlanContext, PlanStepKind, TriggerOn, each_step,
+        Agent, AgentId, AgentTerm, BeliefDecl, BeliefId, BeliefRule, GoalId, MessageSubject, Performative,
+        Plan, PlanContext, PlanStepKind, TriggerOn, each_step,
     },
 };
 use smallvec::SmallVec;
 
-use crate::code::{PlanLine, compile};
+use crate::code::{PlanLine, PlanOp, compile};
 
 /// An agent's plans, indexed by what triggers them.
 #[derive(Debug, Default)]
@@ -26,6 +26,8 @@ pub(crate) struct PlanLibrary<'p> {
     leaves_early: Vec<bool>,
     /// By belief.
     rules: Vec<Vec<&'p BeliefRule>>,
+    /// By belief, if it matters: how many of its rules stand before it in the text.
+    early: Vec<usize>,
     /// The beliefs that hold the arguments of an event, by event.
     percepts: Vec<SmallVec<[BeliefId; 1]>>,
 }
@@ -46,6 +48,15 @@ impl<'p> PlanLibrary<'p> {
         library.rules.resize(beliefs, Vec::new());
         for rule in &agent.rules {
             library.rules[usize::from(rule.belief.0)].push(rule);
+        }
+        if agent.jason {
+            let early = |(rules, belief): (&Vec<&BeliefRule>, &BeliefDecl)| {
+                rules
+                    .iter()
+                    .filter(|r| r.origin.file == belief.origin.file && r.origin.start < belief.origin.start)
+                    .count()
+            };
+            library.early = library.rules.iter().zip(&agent.beliefs).map(early).collect();
         }
         library.percepts.resize(program.events.len(), SmallVec::new());
         for (belief, declared) in (0u16..).zip(&agent.beliefs) {
@@ -106,12 +117,26 @@ impl<'p> PlanLibrary<'p> {
         &self.code[usize::from(index)]
     }
 
+    /// The event that the step at this line makes, or the stimulus that it does.
+    pub fn event_at(&self, index: u16, line: u16) -> Option<EventId> {
+        match &self.code.get(usize::from(index))?.get(usize::from(line))?.op {
+            PlanOp::Plain(PlanStepKind::Do { event, .. }) => Some(*event),
+            // INVARIANT: no other line does anything in the world.
+            _ => None,
+        }
+    }
+
     pub fn leaves_early(&self, index: u16) -> bool {
         self.leaves_early[usize::from(index)]
     }
 
     pub fn rules(&self, belief: BeliefId) -> &[&'p BeliefRule] {
         &self.rules[usize::from(belief.0)]
+    }
+
+    /// How many of a belief's rules are asked before the facts that it is held with at the start.
+    pub fn early(&self, belief: BeliefId) -> usize {
+        self.early.get(usize::from(belief.0)).copied().unwrap_or(0)
     }
 
     pub fn percepts(&self, event: EventId) -> &[BeliefId] {

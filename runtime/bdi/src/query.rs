@@ -215,7 +215,9 @@ impl<'p> QuerySolver<'p> {
         let slots = &self.slots[at.base as usize..];
         well_bound(&literal.args, slots)?;
         let first = literal.args.first().and_then(|t| known(t, slots));
-        let cursor = mind.beliefs.of(literal.belief).cursor(first);
+        let rows = mind.beliefs.of(literal.belief);
+        let divided = literal.annotations.is_empty() && mind.library.early(literal.belief) > 0;
+        let cursor = if divided { rows.later(first) } else { rows.cursor(first) };
         self.facts(mind, literal, cursor, None, at)
     }
 
@@ -357,7 +359,10 @@ impl<'p> QuerySolver<'p> {
                 Some(row) => row,
                 None => match rows.next(&mut cursor) {
                     Some(index) => (index, 0),
-                    None => return self.rules(mind, literal, 0, at),
+                    None => {
+                        let after = if cursor.is_initial() { mind.library.early(literal.belief) } else { 0 };
+                        return self.rules(mind, literal, after, at);
+                    }
                 },
             };
             let annotations = rows.annotations(index);
@@ -401,7 +406,7 @@ impl<'p> QuerySolver<'p> {
         Ok(true)
     }
 
-    /// The next rule whose head matches.
+    /// The next rule whose head matches. Those that stand before the facts of the text are followed by these.
     fn rules(
         &mut self,
         mind: &MentalState<'p>,
@@ -417,12 +422,27 @@ impl<'p> QuerySolver<'p> {
         if at.depth >= MAX_DEPTH {
             return Err(BeliefQueryError::TooDeep);
         }
-        for (index, rule) in rules.iter().copied().enumerate().skip(from) {
+        let early = mind.library.early(literal.belief);
+        let is_early = from < early;
+        let end = if is_early { early } else { rules.len() };
+        let initial = |solver: &Self| {
+            let slots = &solver.slots[at.base as usize..];
+            let first = literal.args.first().and_then(|t| known(t, slots));
+            mind.beliefs.of(literal.belief).initial(first)
+        };
+        for (index, rule) in rules[..end].iter().copied().enumerate().skip(from) {
             let (mark, base) = (self.trail.len(), self.slots.len());
-            self.choose(AnswerSource::Rules { literal, from: index + 1 }, at);
+            self.choose(
+                if is_early && index + 1 == end {
+                    AnswerSource::Facts { literal, cursor: initial(self), row: None }
+                } else {
+                    AnswerSource::Rules { literal, from: index + 1 }
+                },
+                at,
+            );
             self.slots.resize(base + rule.vars.len(), None);
             if self.call(rule, literal, at.base as usize, base)? {
-                if index + 1 == rules.len() {
+                if !is_early && index + 1 == end {
                     self.choices.pop();
                 }
                 let back = SolverContinuation::Return { rule, literal, caller: at.base };
@@ -436,6 +456,10 @@ impl<'p> QuerySolver<'p> {
             self.choices.pop();
             undo(&mut self.slots, &mut self.trail, mark);
             self.slots.truncate(base);
+        }
+        if is_early {
+            let cursor = initial(self);
+            return self.facts(mind, literal, cursor, None, at);
         }
         Ok(None)
     }

@@ -76,7 +76,7 @@ impl<'p> AgentMachine<'p> {
         let frame = self.mind.pool.pop(place)?;
         let intention = self.mind.pool.at(place);
         if intention.atomic > 0 && !frame.branch {
-            intention.atomic -= u32::from(self.mind.library.plan(frame.plan).atomic);
+            intention.atomic -= u32::from(frame.atomic);
         }
         if !intention.deadlines.is_empty() {
             let height = intention.frames.len();
@@ -193,11 +193,17 @@ impl<'p> AgentMachine<'p> {
             let height = self.mind.pool.see(place).frames.len();
             self.drop_deadlines(place, height);
         }
-        let Some(on) = failed(event.on) else { return };
+        let Some(on) = failed(event.on) else {
+            // A belief that changed, whose step goes on if nothing is to be done about it.
+            return event.of.into_iter().for_each(|place| self.resume(place));
+        };
         let event = QueuedEvent { on, by: None, ..event.clone() };
         if let Some(plan) = self.select(&event, event.of) {
             self.adopt(plan, &event);
         } else if let Some(place) = event.of {
+            if self.is_lost(on) {
+                self.drop_plans(place);
+            }
             self.unwind(place);
         } else if let Some(reply) = event.reply() {
             self.answer_nothing(reply);
@@ -224,6 +230,7 @@ impl<'p> AgentMachine<'p> {
     fn unwind(&mut self, place: u32) {
         while let Some(top) = self.mind.pool.see(place).frames.last().copied() {
             let on = failed(self.mind.library.plan(top.plan).trigger.on).filter(|_| !top.branch);
+            let is_lost = on.is_some_and(|on| self.is_lost(on));
             let selected = on.filter(|on| !self.mind.library.relevant(*on).is_empty()).and_then(|on| {
                 let args = EventArguments::from_slice(self.mind.pool.see(place).args(top));
                 let event = QueuedEvent { of: Some(place), told: top.told, ..QueuedEvent::new(on, args) };
@@ -234,8 +241,12 @@ impl<'p> AgentMachine<'p> {
                 self.measure(|m| m.failed[usize::from(top.plan)] += 1);
             }
             if let Some((plan, event)) = selected {
+                self.stays_atomic = top.atomic && self.mind.agent.jason;
                 self.begin(place, plan, &event);
                 return;
+            }
+            if is_lost {
+                self.drop_plans(place);
             }
         }
         let (parent, reply) = (self.mind.pool.see(place).parent, self.mind.pool.see(place).reply);
@@ -245,6 +256,21 @@ impl<'p> AgentMachine<'p> {
         }
         if let Some(parent) = parent {
             self.lose(parent, place);
+        }
+    }
+
+    /// Whether a failure goes no further down than to this goal, whether or not a plan for it is applicable: in an agent as in
+    /// Jason.
+    fn is_lost(&self, on: TriggerOn) -> bool {
+        self.mind.agent.jason && !self.mind.library.relevant(on).is_empty()
+    }
+
+    /// All plans leave, failed.
+    fn drop_plans(&mut self, place: u32) {
+        while let Some(frame) = self.leave(place) {
+            if !frame.branch {
+                self.measure(|m| m.failed[usize::from(frame.plan)] += 1);
+            }
         }
     }
 

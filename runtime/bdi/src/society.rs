@@ -379,6 +379,21 @@ impl<'p> AgentSociety<'p> {
         self.machines.get(agent).and_then(|m| m.event_of(entry))
     }
 
+    /// The event that a step of an agent's log makes, or the stimulus that it does: the entry's text has its arguments.
+    #[must_use]
+    pub fn done_in(&self, agent: usize, entry: &LogEntry) -> Option<EventId> {
+        let LogItem::Step { plan, line, .. } = &entry.what else { return None };
+        self.machines.get(agent).and_then(|m| m.mind.library.event_at(*plan, *line))
+    }
+
+    /// The atomic plan that waits, at the end of a run, for what only its own agent could bring, so that nothing else of the
+    /// agent goes on.
+    #[must_use]
+    pub fn blocked_by(&self, agent: usize) -> Option<&str> {
+        let machine = self.machines.get(agent)?;
+        machine.blocked_by().map(|plan| machine.mind.library.plan(plan).label.as_str())
+    }
+
     /// What an agent intends, in the order of adoption.
     #[must_use]
     pub fn standing(&self, agent: usize) -> Vec<IntentionSummary> {

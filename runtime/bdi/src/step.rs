@@ -175,8 +175,8 @@ impl<'p> AgentMachine<'p> {
             }
             PlanStepKind::Add(assertion) => {
                 let (args, annotations) = self.asserted(place, assertion)?;
-                self.believe(assertion.belief, &args, annotations);
-                Ok(StepFlow::Next)
+                let of = self.handled_by(place);
+                Ok(waits(self.believe_for(of, assertion.belief, &args, annotations)))
             }
             PlanStepKind::Remove(literal) => self.forget(place, literal),
             PlanStepKind::Replace(assertion) => self.replace(place, assertion),
@@ -199,7 +199,8 @@ impl<'p> AgentMachine<'p> {
             }
             PlanStepKind::Print { args } => {
                 let args: Vec<Value> = values(args, slots, |v| v)?;
-                let text: String = args.iter().map(|v| plain(*v)).collect();
+                let print = if self.mind.agent.jason { as_jason } else { plain };
+                let text: String = args.iter().map(|v| print(*v)).collect();
                 self.entry(0, || LogItem::Printed(text));
                 Ok(StepFlow::Next)
             }
@@ -355,10 +356,10 @@ impl<'p> AgentMachine<'p> {
         well_bound(&literal.args, &self.solver.slots)?;
         let belief = literal.belief;
         let mut kept = None;
-        for row in self.mind.beliefs.of(belief).iter().collect::<Vec<_>>() {
+        for row in self.mind.beliefs.of(belief).asked() {
             if let Some(gone) = self.source_of(literal, row, source, &others)? {
-                self.take(belief, row, gone);
-                return Ok(StepFlow::Next);
+                let of = self.handled_by(place);
+                return Ok(waits(self.take_for(of, belief, row, gone)));
             }
             if kept.is_none() && self.agrees(literal, row, &plain)? {
                 kept = Some(row);
@@ -423,11 +424,37 @@ impl<'p> AgentMachine<'p> {
     fn replace(&mut self, place: u32, assertion: &Assertion) -> Result<StepFlow, FailureCause> {
         let (args, annotations) = self.asserted(place, assertion)?;
         let belief = assertion.belief;
+        if let Some(place) = self.handled_by(place) {
+            return Ok(waits(self.replace_one(place, belief, &args, annotations)));
+        }
         for row in self.mind.beliefs.of(belief).others(&args) {
             self.remove(belief, row);
         }
         self.believe(belief, &args, annotations);
         Ok(StepFlow::Next)
+    }
+
+    /// As Jason does it: the first fact that the agent holds itself makes room. What its removal triggers has an intention
+    /// of its own.
+    fn replace_one(
+        &mut self,
+        place: u32,
+        belief: BeliefId,
+        args: &[Value],
+        annotations: FactAnnotations,
+    ) -> bool {
+        let own = Value::Symbol(source_self());
+        let facts = self.mind.beliefs.of(belief);
+        let held = |row: &usize| sources(facts.annotations(*row)).contains(&own);
+        if let Some(row) = facts.asked().into_iter().find(held) {
+            self.take(belief, row, own);
+        }
+        self.believe_for(Some(place), belief, args, annotations)
+    }
+
+    /// The intention on which the plan for a belief that it changes goes: in agents as in Jason.
+    fn handled_by(&self, place: u32) -> Option<u32> {
+        self.mind.agent.jason.then_some(place)
     }
 
     fn abolish(&mut self, place: u32, literal: &'p BeliefLiteral) -> Result<StepFlow, FailureCause> {
@@ -497,6 +524,11 @@ pub(crate) fn annotated(
     Ok(false)
 }
 
+/// What becomes of a step that changed a belief, by whether its intention waits for a plan.
+fn waits(posted: bool) -> StepFlow {
+    if posted { StepFlow::Suspended } else { StepFlow::Next }
+}
+
 /// A value as it is printed: a string without its quotes.
 fn plain(value: Value) -> String {
     match value {
@@ -504,6 +536,36 @@ fn plain(value: Value) -> String {
         Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::List(_) => {
             value.to_string()
         }
+    }
+}
+
+/// The same as Jason prints it: lists without spaces, numbers as Java writes them.
+fn as_jason(value: Value) -> String {
+    let within = |v: Value| match v {
+        Value::Text(_) => v.to_string(),
+        Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::List(_) => as_jason(v),
+    };
+    match value {
+        Value::Float(x) => as_java(x),
+        Value::List(list) => format!("[{}]", list.iter().map(within).collect::<Vec<_>>().join(",")),
+        Value::Text(_) | Value::Bool(_) | Value::Int(_) | Value::Symbol(_) => plain(value),
+    }
+}
+
+/// A number: whole ones without a point, very small and large ones with an exponent.
+fn as_java(x: f64) -> String {
+    /// Up to here a float is one whole number.
+    const WHOLE: f64 = 9.0e18;
+    if x.fract() == 0.0 && x.abs() < WHOLE {
+        return if x == 0.0 { "0".to_owned() } else { format!("{x:.0}") };
+    }
+    if (1e-3..1e7).contains(&x.abs()) || !x.is_finite() {
+        return x.to_string();
+    }
+    let text = format!("{x:E}");
+    match text.split_once('E') {
+        Some((digits, exponent)) if !digits.contains('.') => format!("{digits}.0E{exponent}"),
+        _ => text,
     }
 }
 

@@ -333,6 +333,7 @@ mod tests {
             beliefs: vec![belief(None), belief(Some(EventId(1)))],
             goals: vec![],
             rules: vec![],
+            jason: false,
             initial_beliefs: vec![],
             initial_goals: vec![],
             plans: vec![

@@ -26,7 +26,8 @@ use crate::{color, exit::CommandExit, fault::CommandFault, input, terminal};
 
 /// Show how the agents of a suite reason: what they take up, which plans they try and why, what they do.
 ///
-/// The agents are run in virtual time with one set of beliefs, as `hrdsl gen` runs them.
+/// The agents are run in virtual time with one set of beliefs, as `hrdsl gen` runs them. `hrdsl run` prints only what they
+/// print and do.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -86,7 +87,10 @@ pub struct InspectArgs {
 }
 
 /// A time: a number with `ms`, `s` or `min`; without, in seconds.
-fn time(text: &str) -> Result<Nanos, String> {
+///
+/// # Errors
+/// What is no time, and how one is written.
+pub fn time(text: &str) -> Result<Nanos, String> {
     let text = text.trim();
     let at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
     let scale = match &text[at..] {

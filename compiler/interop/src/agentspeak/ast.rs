@@ -26,6 +26,8 @@ pub enum AgentSpeakItemKind {
     Plan(AgentSpeakPlan),
     /// A directive that means nothing here, with what is to be said of it.
     Skipped(String),
+    /// A clause that cannot be read, with what was expected.
+    Broken(String),
 }
 
 #[derive(Clone, Debug)]
@@ -241,11 +243,6 @@ impl AgentSpeakOperator {
                 AgentSpeakOperatorSort::Arithmetic
             }
         }
-    }
-
-    /// Whether it compares two terms.
-    pub fn is_relation(self) -> bool {
-        matches!(self.sort(), AgentSpeakOperatorSort::Order | AgentSpeakOperatorSort::Likeness)
     }
 
     /// Whether it computes a number.

@@ -12,7 +12,7 @@ use super::{
     },
     internal,
     system::AgentSpeakSystem,
-    term::{OmissionReason, literal, valued},
+    term::{OmissionReason, literal, texts, valued},
     types::{AgentSpeakType, TyId, UnificationTable},
 };
 
@@ -87,7 +87,8 @@ impl TypeInferrer {
                 | AgentSpeakItemKind::Rule { .. }
                 | AgentSpeakItemKind::Goal(_)
                 | AgentSpeakItemKind::Plan(_)
-                | AgentSpeakItemKind::Skipped(_),
+                | AgentSpeakItemKind::Skipped(_)
+                | AgentSpeakItemKind::Broken(_),
                 _,
             ) => {}
         }
@@ -233,6 +234,12 @@ impl TypeInferrer {
             }
             AgentSpeakFormula::Relation { op: AgentSpeakOperator::Univ, .. } => {
                 Err("hrdsl has no `=..`".to_owned())
+            }
+            // Which of two texts comes first is known at once.
+            AgentSpeakFormula::Relation { op, left, right }
+                if op.sort() == AgentSpeakOperatorSort::Order && texts(left, right).is_some() =>
+            {
+                Ok(())
             }
             AgentSpeakFormula::Relation { op, left, right } => {
                 let (l, r) = (self.term(left)?, self.term(right)?);

@@ -140,6 +140,7 @@ fn lists(walk: &mut TypeInferrer, all: &[&AgentSpeakTerm]) -> Result<(), Omissio
 fn printed(walk: &mut TypeInferrer, of: &AgentSpeakTerm) -> Result<(), OmissionReason> {
     match &of.kind {
         TermKind::Literal(l) if !l.is_internal() => l.args.iter().try_for_each(|a| printed(walk, a)),
+        TermKind::List { items, rest: None } => items.iter().try_for_each(|a| printed(walk, a)),
         _ => walk.term(of).map(|_| ()),
     }
 }
@@ -159,8 +160,20 @@ fn sent(walk: &mut TypeInferrer, message: &AgentSpeakMessage<'_>) -> Result<(), 
             }
         }
     }
-    let content = literal(message.content)
-        .map_err(|_| "what the message says is known only when it runs".to_owned())?;
+    if let Some(items) = message.each() {
+        return items.iter().try_for_each(|item| said(walk, message, item));
+    }
+    said(walk, message, message.content)
+}
+
+/// One literal of what is sent.
+fn said(
+    walk: &mut TypeInferrer,
+    message: &AgentSpeakMessage<'_>,
+    content: &AgentSpeakTerm,
+) -> Result<(), OmissionReason> {
+    let content =
+        literal(content).map_err(|_| "what the message says is known only when it runs".to_owned())?;
     if performative(message.performative) == Some(true) {
         return walk.goal(content);
     }

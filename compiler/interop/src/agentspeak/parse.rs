@@ -61,16 +61,28 @@ impl<'l> AgentSpeakReader<'l> {
     fn read(&mut self, name: &str, text: &str, program: &mut AgentSpeakProgram) {
         self.open.push(name.to_owned());
         let mut parser = self.parser(name, text);
+        let (before, mut broken) = (program.items.len(), Vec::new());
         loop {
+            let start = parser.here();
             match parser.item() {
                 Ok(None) => break,
                 Ok(Some(AgentSpeakEntry::Item(item))) => program.items.push(*item),
                 Ok(Some(AgentSpeakEntry::Include(path, span))) => self.include(name, &path, span, program),
                 Err(fault) => {
-                    self.error(fault.span, fault.message);
                     parser.skip();
+                    broken.push((parser.since(start), fault));
                 }
             }
+        }
+        // A clause that cannot be read is left out; where there is no other, this is no program.
+        if program.items.len() == before {
+            broken.into_iter().for_each(|(_, fault)| self.error(fault.span, fault.message));
+        } else {
+            program.items.extend(broken.into_iter().map(|(clause, fault)| {
+                let (_, line, column) = place(&self.files, fault.span);
+                let message = format!("line {line}, column {column}: {}", fault.message);
+                AgentSpeakItem { kind: AgentSpeakItemKind::Broken(message), span: clause }
+            }));
         }
         self.open.pop();
     }

@@ -8,7 +8,7 @@ use super::{
         AgentSpeakItemKind, AgentSpeakPlan, AgentSpeakProgram, AgentSpeakTriggerKind, BeliefAddition,
         PredicateIndicator, TermKind,
     },
-    survey::{OccurrenceKind, PredicateOccurrence, PredicateSurvey},
+    survey::{OccurrenceKind, PredicateOccurrence, PredicateSurvey, survey},
     system::{AgentSpeakAgent, AgentSpeakSystem},
     term::literal,
 };
@@ -25,11 +25,11 @@ pub fn quirks(system: &AgentSpeakSystem, surveys: &[PredicateSurvey]) -> Vec<Age
         look.unknown_beliefs(&mut all);
         look.unwanted_goals(&mut all);
         look.changes(&mut all);
-        look.many_facts(&mut all);
     }
     for program in &system.programs {
         shadowed(system, program, &mut all);
         several_goals(program, &mut all);
+        namesakes(program, &mut all);
     }
     all
 }
@@ -142,22 +142,32 @@ impl<'a> AgentQuirkCheck<'a> {
         }
     }
 
+    /// Whether all that the agent ever does with a belief is to remove it.
+    fn is_only_removed(&self, of: &PredicateOccurrence) -> bool {
+        let name = (of.key.clone(), of.negated);
+        let same = |o: &&PredicateOccurrence| o.key == of.key && o.negated == of.negated;
+        let only =
+            self.survey.beliefs.iter().filter(same).all(|o| matches!(o.what, OccurrenceKind::Removed(_)));
+        only && !self.own.contains(&name) && !self.told.contains(&name)
+    }
+
     /// Steps that change beliefs and do it otherwise.
     #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn changes(&self, all: &mut Vec<AgentSpeakQuirk>) {
-        let count = |m: &PredicateOccurrence, what: &OccurrenceKind| {
-            self.survey
-                .beliefs
-                .iter()
-                .filter(|o| o.key == m.key && o.negated == m.negated && o.what == *what)
-                .count()
-        };
-        let mut said = IndexSet::new();
         for m in &self.survey.beliefs {
             let name = (m.key.clone(), m.negated);
             let functor = &m.key.0;
-            let handled = count(m, &OccurrenceKind::Trigger(AgentSpeakTriggerKind::Added)) > 0;
             match &m.what {
+                OccurrenceKind::Removed(_) if self.is_only_removed(m) => {
+                    let known = self.own.iter().chain(&self.told).map(|(k, _)| k.0.as_str());
+                    let near = nearest(functor, known);
+                    let help = near.map(|n| format!("did you mean `{n}`?"));
+                    let message = format!(
+                        "`{functor}` is only ever removed: nobody adds it to `{}`, and nothing asks for it",
+                        self.agent.name
+                    );
+                    all.push((m.span, NoteSeverity::Warning, message, help));
+                }
                 OccurrenceKind::Removed(false) if !self.own.contains(&name) => {
                     let who = if self.told.contains(&name) {
                         "is told by others"
@@ -171,36 +181,16 @@ impl<'a> AgentQuirkCheck<'a> {
                         Some(format!("write `-{functor}(…)[source(_)]`")),
                     ));
                 }
-                OccurrenceKind::Replaced
-                    if count(m, &OccurrenceKind::Initial) > 1
-                        || count(m, &OccurrenceKind::Added(BeliefAddition::Plain)) > 0
-                        || self.told.contains(&name) =>
-                {
-                    let message = format!(
-                        "`{functor}` may have several facts: in Jason `-+{functor}` takes away one of them, in hrdsl all"
-                    );
-                    all.push((m.span, NoteSeverity::Warning, message, None));
-                }
                 OccurrenceKind::Added(BeliefAddition::NewFocus) => {
                     let message = format!(
-                        "`++{functor}` becomes `+{functor}`: in hrdsl its event has an intention of its own"
-                    );
-                    all.push((m.span, NoteSeverity::Info, message, None));
-                }
-                OccurrenceKind::Added(BeliefAddition::First) => {
-                    let message = format!(
-                        "`+<{functor}` becomes `+{functor}`: in hrdsl the youngest fact is asked last"
+                        "`++{functor}` becomes `+{functor}`: its event has no intention of its own, and the next step waits for its plan"
                     );
                     all.push((m.span, NoteSeverity::Warning, message, None));
                 }
-                OccurrenceKind::Added(BeliefAddition::Plain | BeliefAddition::Last)
-                | OccurrenceKind::Replaced
-                    if handled && said.insert(name.clone()) =>
-                {
-                    let message = format!(
-                        "in hrdsl the plan for `+{functor}` has an intention of its own: the step after this one does not wait for it"
-                    );
-                    all.push((m.span, NoteSeverity::Info, message, None));
+                OccurrenceKind::Added(BeliefAddition::Last) => {
+                    let message =
+                        format!("`+>{functor}` becomes `+{functor}`: the newest fact is asked first");
+                    all.push((m.span, NoteSeverity::Warning, message, None));
                 }
                 OccurrenceKind::Initial
                 | OccurrenceKind::Rule
@@ -212,26 +202,6 @@ impl<'a> AgentQuirkCheck<'a> {
                 | OccurrenceKind::Trigger(_)
                 | OccurrenceKind::Adopted
                 | OccurrenceKind::Sent { .. } => {}
-            }
-        }
-    }
-
-    /// Facts are asked in another order.
-    fn many_facts(&self, all: &mut Vec<AgentSpeakQuirk>) {
-        let mut said = IndexSet::new();
-        for m in self.survey.beliefs.iter().filter(|m| m.what == OccurrenceKind::Tested(true) && m.key.1 > 0)
-        {
-            let same = |o: &&PredicateOccurrence| o.key == m.key && o.negated == m.negated;
-            let facts = self.survey.beliefs.iter().filter(same);
-            let many = facts.clone().filter(|o| o.what == OccurrenceKind::Initial).count() > 1
-                || facts.clone().any(|o| matches!(o.what, OccurrenceKind::Added(_)))
-                || self.told.contains(&(m.key.clone(), m.negated));
-            if many && said.insert(m.key.clone()) {
-                let message = format!(
-                    "if there are several facts of `{}`, Jason takes the newest, hrdsl the oldest",
-                    m.key.0
-                );
-                all.push((m.span, NoteSeverity::Info, message, None));
             }
         }
     }
@@ -278,6 +248,35 @@ fn several_goals(program: &AgentSpeakProgram, all: &mut Vec<AgentSpeakQuirk>) {
     if let [_, second, ..] = goals.as_slice() {
         let message = "several initial goals: hrdsl adopts them in this order, after all events of initial beliefs, and their plans take turns step by step";
         all.push((*second, NoteSeverity::Info, message.to_owned(), None));
+    }
+}
+
+/// A plan that tests a belief, and removes one that is called nearly so and that it does not test.
+fn namesakes(program: &AgentSpeakProgram, all: &mut Vec<AgentSpeakQuirk>) {
+    /// Shorter names are often alike.
+    const SHORTEST: usize = 4;
+    for item in &program.items {
+        if !matches!(item.kind, AgentSpeakItemKind::Plan(_)) {
+            continue;
+        }
+        let survey = survey(&AgentSpeakProgram { items: vec![item.clone()] });
+        let named = |is: fn(&OccurrenceKind) -> bool| {
+            let found = survey.beliefs.iter().filter(move |m| is(&m.what));
+            found.map(|m| (m.key.0.as_str(), m.span)).collect::<Vec<_>>()
+        };
+        let tested = named(|w| {
+            matches!(w, OccurrenceKind::Tested(_) | OccurrenceKind::Trigger(AgentSpeakTriggerKind::Added))
+        });
+        for (removed, span) in named(|w| matches!(w, OccurrenceKind::Removed(_))) {
+            let long = tested.iter().map(|(n, _)| *n).filter(|n| n.len() >= SHORTEST);
+            if removed.len() >= SHORTEST
+                && tested.iter().all(|(n, _)| *n != removed)
+                && let Some(near) = nearest(removed, long)
+            {
+                let message = format!("this plan tests `{near}` and removes `{removed}`");
+                all.push((span, NoteSeverity::Warning, message, Some("are both meant?".to_owned())));
+            }
+        }
     }
 }
 

@@ -77,7 +77,7 @@ pub fn survey(program: &AgentSpeakProgram) -> PredicateSurvey {
             }
             AgentSpeakItemKind::Goal(goal) => survey.goal_term(goal, OccurrenceKind::Adopted),
             AgentSpeakItemKind::Plan(plan) => survey.plan(plan),
-            AgentSpeakItemKind::Skipped(_) => {}
+            AgentSpeakItemKind::Skipped(_) | AgentSpeakItemKind::Broken(_) => {}
         }
     }
     survey
@@ -185,10 +185,12 @@ impl PredicateSurvey {
                 let told = matches!(message.performative, "tell" | "achieve");
                 let to = message.to.and_then(atom).map(str::to_owned);
                 let what = OccurrenceKind::Sent { to, goal, told };
-                if goal {
-                    self.goal_term(message.content, what)
-                } else {
-                    self.belief_term(message.content, what)
+                for content in message.each().unwrap_or(std::slice::from_ref(message.content)) {
+                    if goal {
+                        self.goal_term(content, what.clone())
+                    } else {
+                        self.belief_term(content, what.clone())
+                    }
                 }
             }
             (".findall" | ".setof", [_, formula, _]) | (".count", [formula, _]) => {

@@ -43,6 +43,12 @@ pub fn atom(of: &AgentSpeakTerm) -> Option<&str> {
     }
 }
 
+/// Two atoms, or two strings.
+pub fn texts<'a>(left: &'a AgentSpeakTerm, right: &'a AgentSpeakTerm) -> Option<(&'a str, &'a str)> {
+    let is_text = |t: &AgentSpeakTerm| matches!(t.kind, TermKind::Text(_));
+    if is_text(left) == is_text(right) { Some((atom(left)?, atom(right)?)) } else { None }
+}
+
 /// What one or more agents are told.
 pub struct AgentSpeakMessage<'a> {
     /// `None`: all others.
@@ -51,6 +57,16 @@ pub struct AgentSpeakMessage<'a> {
     pub content: &'a AgentSpeakTerm,
     /// The answer, the time to wait for it in milliseconds.
     pub rest: &'a [AgentSpeakTerm],
+}
+
+impl<'a> AgentSpeakMessage<'a> {
+    /// Several literals that are sent as a list, one by one.
+    pub fn each(&self) -> Option<&'a [AgentSpeakTerm]> {
+        match &self.content.kind {
+            TermKind::List { items, rest: None } if self.rest.is_empty() => Some(items),
+            _ => None,
+        }
+    }
 }
 
 /// The message that `.send` or `.broadcast` sends.

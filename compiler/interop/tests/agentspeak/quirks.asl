@@ -57,3 +57,5 @@ open_fact(_).
 +!unused.
 { end }
 { register_function("my.f", 1, "p") }
+
++!tidy : cupboard(open) <- -cupbord(open); -drawrs.

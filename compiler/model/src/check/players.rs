@@ -8,7 +8,7 @@ use crate::check::{
     state::names::DeclaredPlayer,
     template::CheckerPhase,
 };
-use crate::{LocationId, TypedAgent, TypedAutomaton};
+use crate::{LocationId, TypedAgent, TypedAutomaton, noun::Noun, report::names};
 
 impl<'a> Checker<'a> {
     /// An agent that has nothing yet.
@@ -19,10 +19,19 @@ impl<'a> Checker<'a> {
         span: Span,
     ) {
         let plays = &agent.syntax.plays;
+        let jason = match &agent.syntax.annotation {
+            Some(name) if name.text == "jason" => true,
+            Some(name) => {
+                self.report(names::unknown(Noun::Annotation, &name.text, name.span, ["jason"]));
+                false
+            }
+            None => false,
+        };
         let actor = self.as_instance(agent.given.clone(), None, |c| c.actor(plays)).unwrap_or(NOBODY);
         self.s.agents.push(TypedAgent {
             name: name.text.clone(),
             actor,
+            jason,
             beliefs: Vec::new(),
             goals: Vec::new(),
             rules: Vec::new(),

@@ -235,6 +235,7 @@ mod tests {
             ],
             goals: vec![],
             rules: vec![],
+            jason: false,
             initial_beliefs: vec![],
             initial_goals: vec![],
             plans: vec![],

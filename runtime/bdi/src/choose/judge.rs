@@ -226,6 +226,7 @@ mod tests {
                 vars: vec!["N".into()],
                 origin: Default::default(),
             }],
+            jason: false,
             initial_beliefs: vec![InitialFact {
                 belief: BeliefId(2),
                 args: vec![Value::Int(2)],

@@ -81,6 +81,7 @@ fn agent(name: &str, actor: u16, beliefs: Vec<BeliefDecl>, goals: &[(&str, u16)]
         beliefs,
         goals: goals.iter().map(goal).collect(),
         rules: vec![],
+        jason: false,
         initial_beliefs: vec![],
         initial_goals: vec![],
         plans,

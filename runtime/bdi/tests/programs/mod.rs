@@ -29,6 +29,7 @@ pub fn agent(name: &str) -> Agent {
         beliefs: Vec::new(),
         goals: Vec::new(),
         rules: Vec::new(),
+        jason: false,
         initial_beliefs: Vec::new(),
         initial_goals: Vec::new(),
         plans: Vec::new(),

@@ -77,6 +77,7 @@ impl Maker {
             beliefs: (0..BELIEFS).map(belief).collect(),
             goals: (0..GOALS).map(goal).collect(),
             rules: Vec::new(),
+            jason: false,
             initial_beliefs: (0..3).map(|_| fact(self.belief(), self.rng.random_range(-3..4))).collect(),
             initial_goals: vec![(GoalId(0), vec![Value::Int(i64::from(number))])],
             plans: (0..plans).map(|at| self.plan(number, at)).collect(),

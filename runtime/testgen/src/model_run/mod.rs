@@ -9,7 +9,7 @@ use hrdsl_bdi::{AgentSociety, CYCLE_LIMIT, LogItem, measure::AgentCounts};
 pub use hrdsl_bdi::{IntentionSummary, LogDetail, RunStatus, show};
 use hrdsl_harness::{ActorPlayer, HarnessLoop, HarnessRun, RunTermination};
 use hrdsl_ir::{
-    Nanos, Program,
+    EventId, Nanos, Program,
     bdi::{AgentId, InitialFact},
     suite::PlayerRef,
 };
@@ -53,6 +53,9 @@ pub struct LogLine {
     /// Where the step or plan stands that the line is about, if it is a failure or a fault.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<hrdsl_ir::Span>,
+    /// Of a step: the event that it makes, or the stimulus that it does.
+    #[serde(skip)]
+    pub does: Option<EventId>,
 }
 
 impl LogLine {
@@ -104,6 +107,8 @@ pub struct ModelInspection {
     pub snapshots: Vec<AgentSnapshot>,
     /// What each agent believes at the end.
     pub beliefs: Vec<Vec<String>>,
+    /// The agents of which nothing goes on beside an atomic plan that waits, each with the plan.
+    pub blocked: Vec<(String, String)>,
     /// How the agents stand together at the end.
     pub status: RunStatus,
     /// How many entries of the logs were left out, since there are too many.
@@ -125,7 +130,10 @@ pub fn inspect(
     let society = &company.society;
     let snapshots = snapshots.finish(society);
     let agents: Vec<String> = society.names().map(str::to_owned).collect();
+    let blocked = agents.iter().enumerate();
+    let blocked = blocked.filter_map(|(i, name)| Some((name.clone(), society.blocked_by(i)?.to_owned())));
     ModelInspection {
+        blocked: blocked.collect(),
         run,
         snapshots,
         beliefs: (0..agents.len()).map(|agent| society.believed(agent)).collect(),
@@ -209,8 +217,9 @@ fn told(company: &AgentCompany<'_>, run: HarnessRun, detail: LogDetail) -> Model
         if detail >= LogDetail::Steps {
             let (time, round, cycle, intention) = (entry.time, entry.round, entry.cycle, entry.intention);
             let (kind, event) = (entry.what.kind(), society.event_of(agent, entry));
+            let does = society.done_in(agent, entry);
             let agent = names[agent].to_owned();
-            log.push(LogLine { time, round, cycle, agent, intention, kind, event, text, origin });
+            log.push(LogLine { time, round, cycle, agent, intention, kind, event, text, origin, does });
         }
     }
     let measured = society.agents().zip(society.measured().into_iter().cloned()).collect();

@@ -26,6 +26,8 @@ pub struct TranslatedAgent {
     /// Comments on those that are left out.
     pub no_facts: String,
     pub rules: String,
+    /// Rules that stand before all facts of their name.
+    pub early_rules: String,
     pub goals: String,
     pub plans: String,
     pub used: PredicateUsage,
@@ -46,6 +48,7 @@ pub fn agent(
         facts: IndexMap::new(),
         no_facts: String::new(),
         rules: String::new(),
+        early_rules: String::new(),
         goals: String::new(),
         plans: String::new(),
         used: PredicateUsage::default(),
@@ -73,7 +76,18 @@ impl TranslatedAgent {
             }
             AgentSpeakItemKind::Belief(_) | AgentSpeakItemKind::Rule { .. } => match rules.get(&item.span) {
                 Some(Ok((text, used))) => {
-                    self.rules += &format!("{text}\n");
+                    let head = match &item.kind {
+                        AgentSpeakItemKind::Belief(head) | AgentSpeakItemKind::Rule { head, .. } => {
+                            Some(head)
+                        }
+                        AgentSpeakItemKind::Goal(_)
+                        | AgentSpeakItemKind::Plan(_)
+                        | AgentSpeakItemKind::Skipped(_)
+                        | AgentSpeakItemKind::Broken(_) => None,
+                    };
+                    let facts_before = head.is_some_and(|h| self.facts.contains_key(&h.key()));
+                    let rules = if facts_before { &mut self.rules } else { &mut self.early_rules };
+                    *rules += &format!("{text}\n");
                     self.used.beliefs.extend(used.beliefs.iter().cloned());
                     self.used.annotations.extend(used.annotations.iter().cloned());
                     self.used.adopted.extend(used.adopted.iter().cloned());
@@ -93,6 +107,10 @@ impl TranslatedAgent {
                 }
             },
             AgentSpeakItemKind::Plan(plan) => self.plan(cx, plan, item.span),
+            AgentSpeakItemKind::Broken(message) => {
+                let comment = self.leave(cx, item.span, message);
+                self.plans += &comment;
+            }
             AgentSpeakItemKind::Skipped(message) => self.remarks.push((item.span, message.clone())),
         }
     }
@@ -257,9 +275,9 @@ fn failure(
 
 fn unbound(stop: ClauseFailure) -> ClauseFailure {
     match stop {
-        ClauseFailure::Unbound(name) if name != "_" => ClauseFailure::Other(format!(
-            "`{name}` has no value here: in Jason the comparison is never true, and the plan never selected; in hrdsl it is an error"
-        )),
+        ClauseFailure::Unbound(name) if name != "_" => {
+            ClauseFailure::Other(format!("`{name}` has no value here, and one is needed"))
+        }
         other => other,
     }
 }

@@ -1,18 +1,18 @@
 //! A plan, rule or fact in the scenario's words: terms and formulas, with what has a value where.
 
-use std::collections::BTreeSet;
+use std::{cmp::Ordering, collections::BTreeSet};
 
 use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
 use super::super::{
     ast::{
-        AgentSpeakFormula, AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakTerm, PredicateIndicator,
-        TermKind, each_term,
+        AgentSpeakFormula, AgentSpeakLiteral, AgentSpeakOperator, AgentSpeakOperatorSort, AgentSpeakTerm,
+        PredicateIndicator, TermKind, each_term,
     },
     names::{AgentSpeakNames, ident, unused, variable},
     system::AgentSpeakSystem,
-    term::{OmissionReason, valued},
+    term::{OmissionReason, texts, valued},
     types::{AgentSpeakType, TyId, UnificationTable},
 };
 
@@ -129,12 +129,14 @@ pub struct ClauseTranslator<'a> {
     pub used: PredicateUsage,
     /// Places that are carried over otherwise than they were meant, with what is to be said.
     pub remarks: Vec<(Span, String)>,
+    /// Variables that hold an agent's answer, with the agent: its name in the program, or how it is written as an error.
+    pub answers: IndexMap<String, Result<String, String>>,
 }
 
 impl<'a> ClauseTranslator<'a> {
     pub fn new(cx: &'a ClauseContext<'a>, agent: &'a str, used: PredicateUsage) -> Self {
         let (bound, vars) = (BTreeSet::new(), IndexMap::new());
-        Self { cx, agent, bound, vars, fresh: 0, used, remarks: Vec::new() }
+        Self { cx, agent, bound, vars, fresh: 0, used, remarks: Vec::new(), answers: IndexMap::new() }
     }
 
     /// A variable that the program does not have.
@@ -357,6 +359,9 @@ impl<'a> ClauseTranslator<'a> {
         left: &AgentSpeakTerm,
         right: &AgentSpeakTerm,
     ) -> ClauseResult<ClauseFragment> {
+        if let Some(holds) = self.decided(op, left, right) {
+            return Ok(ClauseFragment::new(holds.to_string(), ATOM));
+        }
         let sign = match op {
             AgentSpeakOperator::Less => "<",
             AgentSpeakOperator::LessEqual => "<=",
@@ -391,6 +396,33 @@ impl<'a> ClauseTranslator<'a> {
         }
         let pairs: Vec<String> = pairs.into_iter().map(|p: ClauseFragment| p.text).collect();
         Ok(ClauseFragment::new(pairs.join(" || "), OR))
+    }
+
+    /// A comparison of which the outcome is known: of two texts, or of a variable without a value, which stands above every
+    /// number in Jason.
+    fn decided(
+        &mut self,
+        op: AgentSpeakOperator,
+        left: &AgentSpeakTerm,
+        right: &AgentSpeakTerm,
+    ) -> Option<bool> {
+        if op.sort() == AgentSpeakOperatorSort::Order
+            && let Some((l, r)) = texts(left, right)
+        {
+            return holds(op, l.cmp(r));
+        }
+        let open = |c: &Self, t: &AgentSpeakTerm| matches!(&t.kind, TermKind::Var { name, .. } if !c.bound.contains(name));
+        let (span, order) = match (open(self, left), open(self, right)) {
+            (true, false) if self.is_bound(right) => (left.span, Ordering::Greater),
+            (false, true) if self.is_bound(left) => (right.span, Ordering::Less),
+            _ => return None,
+        };
+        let holds = holds(op, order)?;
+        let always = if holds { "always holds" } else { "never holds" };
+        let message =
+            format!("the variable has no value here, and stands above every number, so that this {always}");
+        self.remarks.push((span, message));
+        Some(holds)
     }
 
     /// `l = r`: one of them has a value, the other is matched with it.
@@ -458,6 +490,7 @@ impl<'a> ClauseTranslator<'a> {
                     source = format!("[source({})]", self.value(value, want)?);
                 }
                 Some(("source", _)) => {}
+                Some(("hard_deadline", time)) if want == BindingMode::Value && is_number(time) => {}
                 _ => self.remarks.push((
                     annotation.span,
                     "of a goal's annotations only the source is carried over".to_owned(),
@@ -466,6 +499,30 @@ impl<'a> ClauseTranslator<'a> {
         }
         let name = self.cx.names.goal(&key);
         Ok(call(&name, &args) + &source)
+    }
+}
+
+/// Whether a comparison holds of two terms in this order; `None`: it is none.
+fn holds(op: AgentSpeakOperator, order: Ordering) -> Option<bool> {
+    match op {
+        AgentSpeakOperator::Less => Some(order.is_lt()),
+        AgentSpeakOperator::LessEqual => Some(order.is_le()),
+        AgentSpeakOperator::Greater => Some(order.is_gt()),
+        AgentSpeakOperator::GreaterEqual => Some(order.is_ge()),
+        AgentSpeakOperator::Equal => Some(order.is_eq()),
+        AgentSpeakOperator::Different => Some(order.is_ne()),
+        AgentSpeakOperator::NotUnify
+        | AgentSpeakOperator::Or
+        | AgentSpeakOperator::And
+        | AgentSpeakOperator::Unify
+        | AgentSpeakOperator::Univ
+        | AgentSpeakOperator::Add
+        | AgentSpeakOperator::Sub
+        | AgentSpeakOperator::Mul
+        | AgentSpeakOperator::Div
+        | AgentSpeakOperator::IntDiv
+        | AgentSpeakOperator::Mod
+        | AgentSpeakOperator::Pow => None,
     }
 }
 

@@ -58,10 +58,15 @@ impl ClauseTranslator<'_> {
                 let x = self.value(x, BindingMode::Pattern)?;
                 self.between(&x, &lo, &hi)
             }
-            (
-                ".sort" | ".shuffle" | ".union" | ".intersection" | ".difference" | ".delete",
-                [args @ .., result],
-            ) => {
+            (".union" | ".intersection" | ".difference", [a, b, result]) => {
+                // In Jason sets are sorted.
+                let (a, b) = (self.value(a, BindingMode::Value)?, self.value(b, BindingMode::Value)?);
+                let set = self.fresh("Set");
+                let made = ClauseFragment::new(format!("{name}({a}, {b}, {set})"), ATOM);
+                let sorted = format!(".sort({set}, {})", self.value(result, BindingMode::Pattern)?);
+                return Ok(ClauseFragment::all(vec![made, ClauseFragment::new(sorted, ATOM)]));
+            }
+            (".sort" | ".shuffle" | ".delete", [args @ .., result]) => {
                 let args = args
                     .iter()
                     .map(|a| self.value(a, BindingMode::Value))
@@ -241,7 +246,7 @@ impl ClauseTranslator<'_> {
     fn print(&mut self, args: &[AgentSpeakTerm]) -> ClauseResult<String> {
         let mut parts: Vec<Result<String, String>> = Vec::new();
         for arg in args {
-            self.printed(arg, &mut parts)?;
+            self.printed(arg, false, &mut parts)?;
         }
         // Texts next to each other are one.
         let mut merged: Vec<Result<String, String>> = Vec::new();
@@ -255,38 +260,86 @@ impl ClauseTranslator<'_> {
         Ok(format!(".print({})", args.join(", ")))
     }
 
-    /// What is printed of a term: texts, and expressions as errors.
-    fn printed(&mut self, of: &AgentSpeakTerm, parts: &mut Vec<Result<String, String>>) -> ClauseResult<()> {
+    /// What is printed of a term: texts, and expressions as errors. Within lists and structures strings have quotes.
+    fn printed(
+        &mut self,
+        of: &AgentSpeakTerm,
+        within: bool,
+        parts: &mut Vec<Result<String, String>>,
+    ) -> ClauseResult<()> {
         match &of.kind {
+            TermKind::Text(text) if within => parts.push(Ok(format!("\"{text}\""))),
             TermKind::Text(text) => parts.push(Ok(text.clone())),
             TermKind::Literal(l) if !l.is_internal() => {
                 parts.push(Ok(format!("{}{}", if l.negated { "~" } else { "" }, l.functor)));
-                for (i, arg) in l.args.iter().enumerate() {
-                    parts.push(Ok(if i == 0 { "(" } else { "," }.to_owned()));
-                    self.printed(arg, parts)?;
-                }
                 if !l.args.is_empty() {
-                    parts.push(Ok(")".to_owned()));
+                    self.printed_each(["(", ")"], &l.args, parts)?;
                 }
             }
+            TermKind::List { items, rest: None } => self.printed_each(["[", "]"], items, parts)?,
             TermKind::Any => parts.push(Ok("_".to_owned())),
-            TermKind::Var { name, .. } if !self.bound.contains(name) => parts.push(Ok("_".to_owned())),
-            TermKind::Binary { .. } | TermKind::Neg(_) => parts.push(Err(self.expr(of)?.text)),
-            _ => {
-                let id = self.type_of(of)?;
-                let functor = match self.cx.types.get(id) {
-                    AgentSpeakType::Struct(functor, _) => Some(functor.clone()),
-                    _ => None,
-                };
-                parts.extend(functor.iter().map(|f| Ok(format!("{f}("))));
-                for (i, value) in self.values(of, BindingMode::Value)?.into_iter().enumerate() {
-                    if i > 0 {
-                        parts.push(Ok(",".to_owned()));
-                    }
-                    parts.push(Err(value));
-                }
-                parts.extend(functor.iter().map(|_| Ok(")".to_owned())));
+            TermKind::Var { name, .. } if !self.bound.contains(name) => {
+                let message = format!(
+                    "`{name}` may have no value here: Jason makes up a name to print, hrdsl prints `_`"
+                );
+                self.remarks.push((of.span, message));
+                parts.push(Ok("_".to_owned()));
             }
+            TermKind::Binary { .. } | TermKind::Neg(_) => parts.push(Err(self.expr(of)?.text)),
+            _ => self.printed_value(of, within, parts)?,
+        }
+        Ok(())
+    }
+
+    fn printed_each(
+        &mut self,
+        [open, close]: [&str; 2],
+        items: &[AgentSpeakTerm],
+        parts: &mut Vec<Result<String, String>>,
+    ) -> ClauseResult<()> {
+        parts.push(Ok(open.to_owned()));
+        for (i, item) in items.iter().enumerate() {
+            if i > 0 {
+                parts.push(Ok(",".to_owned()));
+            }
+            self.printed(item, true, parts)?;
+        }
+        parts.push(Ok(close.to_owned()));
+        Ok(())
+    }
+
+    fn printed_value(
+        &mut self,
+        of: &AgentSpeakTerm,
+        within: bool,
+        parts: &mut Vec<Result<String, String>>,
+    ) -> ClauseResult<()> {
+        let id = self.type_of(of)?;
+        let functor = match self.cx.types.get(id) {
+            AgentSpeakType::Struct(functor, _) => Some(functor.clone()),
+            _ => None,
+        };
+        let quote =
+            (within && matches!(self.cx.types.get(id), AgentSpeakType::Text)).then(|| Ok("\"".to_owned()));
+        let leaves = self.cx.types.leaves(id);
+        if leaves.len() > 1 && leaves.iter().all(|l| l.lists > 0) {
+            let message = "a list of structures is printed as the lists of their parts";
+            self.remarks.push((of.span, message.to_owned()));
+        }
+        parts.extend(functor.iter().map(|f| Ok(format!("{f}("))));
+        parts.extend(quote.clone());
+        for (i, value) in self.values(of, BindingMode::Value)?.into_iter().enumerate() {
+            if i > 0 {
+                parts.push(Ok(",".to_owned()));
+            }
+            parts.push(Err(value));
+        }
+        parts.extend(quote);
+        parts.extend(functor.iter().map(|_| Ok(")".to_owned())));
+        if let TermKind::Var { name, .. } = &of.kind
+            && let Some(source) = self.answers.get(name)
+        {
+            parts.extend([Ok("[source(".to_owned()), source.clone(), Ok(")]".to_owned())]);
         }
         Ok(())
     }
@@ -298,6 +351,11 @@ impl ClauseTranslator<'_> {
             message.to.is_some_and(|to| atom(to).is_some() || matches!(to.kind, TermKind::List { .. }));
         if !named && self.cx.system.agents.len() < 2 {
             return Err("there is no other agent to send this to".into());
+        }
+        if let Some(items) = message.each() {
+            let one = |c: &mut Self, content| c.send(&AgentSpeakMessage { content, ..*message });
+            let each = items.iter().map(|item| one(self, item)).collect::<ClauseResult<Vec<_>>>()?;
+            return Ok(each.concat());
         }
         let Some(to) = message.to else {
             let content = self.content(message, None)?;
@@ -342,7 +400,13 @@ impl ClauseTranslator<'_> {
     }
 
     fn content(&mut self, message: &AgentSpeakMessage<'_>, to: Option<String>) -> ClauseResult<String> {
-        let of = literal(message.content)?;
+        let mut of = literal(message.content)?;
+        let plain = AgentSpeakLiteral { annotations: Vec::new(), ..of.clone() };
+        if let Some(annotation) = of.annotations.first() {
+            let message = "what is sent has no annotations in hrdsl: these are dropped";
+            self.remarks.push((annotation.span, message.to_owned()));
+            of = &plain;
+        }
         let goal = performative(message.performative) == Some(true);
         self.used.sent.insert((to, goal, of.key()));
         let want = if matches!(message.performative, "tell" | "achieve") {
@@ -357,8 +421,8 @@ impl ClauseTranslator<'_> {
             let declared = self.used.beliefs.contains(&of.key());
             (declared, self.belief(of, want))
         };
-        // What is sent is declared where it arrives.
-        if !mentioned {
+        // What is sent is declared where it arrives; of an answer that is the sender.
+        if !mentioned && !matches!(message.performative, "askOne" | "askAll") {
             self.used.beliefs.shift_remove(&of.key());
         }
         self.bound = before;
@@ -369,7 +433,7 @@ impl ClauseTranslator<'_> {
         time.first().map_or(Ok(String::new()), |t| Ok(format!(", {}", self.milliseconds(t)?)))
     }
 
-    fn milliseconds(&mut self, of: &AgentSpeakTerm) -> ClauseResult<String> {
+    pub(super) fn milliseconds(&mut self, of: &AgentSpeakTerm) -> ClauseResult<String> {
         Ok(match of.kind {
             TermKind::Int(n) if n % 1000 == 0 => format!("{} s", n / 1000),
             TermKind::Int(n) => format!("{n} ms"),
@@ -388,6 +452,13 @@ impl ClauseTranslator<'_> {
     ) -> ClauseResult<Vec<String>> {
         let question = literal(message.content)?;
         let time = self.timeout(time)?;
+        let otherwise =
+            "without an answer in time this step fails; in Jason the answer is `false` or `timeout` then";
+        self.remarks.push((answer.span, otherwise.to_owned()));
+        if let TermKind::Var { name, .. } = &answer.kind {
+            let source = known.clone().map_or_else(|| Err(whom.to_owned()), Ok);
+            self.answers.insert(name.clone(), source);
+        }
         self.used.sent.insert((known, false, question.key()));
         let answers: Vec<Option<&AgentSpeakTerm>> = match &answer.kind {
             TermKind::Literal(l) if l.key() == question.key() => l.args.iter().map(Some).collect(),

@@ -117,7 +117,8 @@ impl AgentSpeakTranslator<'_> {
 
     fn agent(&self, agent: &TranslatedAgent, remarks: &mut Vec<(hrdsl_source::Span, String)>) -> String {
         let name = &self.names.agents[&agent.name];
-        let mut text = format!("agent {name} plays {name} {{\n");
+        let mut text = format!("agent {name} plays {name}[jason] {{\n");
+        text += &agent.early_rules;
         text += &self.beliefs(agent);
         text += &agent.rules;
         if agent.used.between {

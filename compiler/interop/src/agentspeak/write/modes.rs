@@ -67,7 +67,8 @@ fn clause_of(item: &AgentSpeakItem) -> Option<AgentSpeakClause<'_>> {
         AgentSpeakItemKind::Belief(_)
         | AgentSpeakItemKind::Goal(_)
         | AgentSpeakItemKind::Plan(_)
-        | AgentSpeakItemKind::Skipped(_) => None,
+        | AgentSpeakItemKind::Skipped(_)
+        | AgentSpeakItemKind::Broken(_) => None,
     }
 }
 

@@ -63,33 +63,12 @@ impl ClauseTranslator<'_> {
                     self.remarks.truncate(before.2);
                     out.truncate(before.3);
                     (self.bound, self.used) = (before.0, before.1);
-                    if let Some(failing) = self.never(step, &stop) {
-                        lines.push(PlanBodyLine::Step(failing));
-                        continue;
-                    }
                     lines.push(PlanBodyLine::Comment(self.cx.system.comment(step.span, &stop.reason())));
                     out.push((step.span, stop.reason()));
                 }
             }
         }
         lines
-    }
-
-    /// A comparison with a variable that has no value is never true: the step fails.
-    fn never(&mut self, step: &AgentSpeakStep, stop: &ClauseFailure) -> Option<String> {
-        let (AgentSpeakStepKind::Formula(of) | AgentSpeakStepKind::Query(of)) = &step.kind else {
-            return None;
-        };
-        let (TermKind::Binary { op, .. }, ClauseFailure::Unbound(name)) = (&of.kind, stop) else {
-            return None;
-        };
-        if !op.is_relation() {
-            return None;
-        }
-        let message =
-            format!("`{name}` has no value here, so the comparison is never true, and the step always fails");
-        self.remarks.push((step.span, message));
-        Some(".fail".to_owned())
     }
 
     #[expect(clippy::too_many_lines, reason = "a flat match")]
@@ -111,7 +90,14 @@ impl ClauseTranslator<'_> {
                 })?;
                 self.used.adopted.insert(goal.key());
                 let sign = if matches!(step.kind, AgentSpeakStepKind::Achieve(_)) { "!" } else { "!!" };
-                one(format!("{sign}{text}"))
+                let deadline = goal.annotations.iter().find_map(|a| match super::super::term::valued(a) {
+                    Some(("hard_deadline", time)) if sign == "!" => Some(time),
+                    Some(_) | None => None,
+                });
+                match deadline.map(|time| self.milliseconds(time)).transpose()? {
+                    Some(time) => one(format!("{sign}{text} within {time}")),
+                    None => one(format!("{sign}{text}")),
+                }
             }
             AgentSpeakStepKind::Query(of) => match &of.kind {
                 TermKind::Literal(l) if !l.is_internal() => {
