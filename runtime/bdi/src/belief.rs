@@ -174,6 +174,7 @@ impl FactTable {
     }
 
     /// The next live row.
+    #[inline]
     pub fn next(&self, cursor: &mut FactCursor) -> Option<usize> {
         match cursor {
             FactCursor::All(at) => {
@@ -196,6 +197,15 @@ impl FactTable {
                 }
                 None
             }
+            FactCursor::Down { .. } | FactCursor::KeyedDown { .. } => self.next_down(cursor),
+        }
+    }
+
+    /// The same, downwards. Apart, so that the loops upwards stay small.
+    #[inline(never)]
+    fn next_down(&self, cursor: &mut FactCursor) -> Option<usize> {
+        match cursor {
+            FactCursor::All(_) | FactCursor::Keyed(..) => None,
             FactCursor::Down { at, floor, .. } => {
                 while *at > *floor {
                     *at -= 1;
