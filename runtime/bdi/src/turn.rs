@@ -29,7 +29,8 @@ impl AgentMachine<'_> {
 
     /// The plan of the atomic intention that keeps others from their turn, if it waits for what does not come.
     pub fn blocked_by(&self) -> Option<u16> {
-        let waits = !self.has_turn() && !(self.mind.events.is_empty() && self.ready.is_empty());
+        let queued = !self.mind.events.is_empty() || !self.ready.is_empty();
+        let waits = queued && !self.has_turn();
         let holder = self.holder().filter(|_| waits && self.halted.is_none())?;
         self.mind.pool.see(holder).frames.iter().find(|f| f.atomic).map(|f| f.plan)
     }
