@@ -139,8 +139,8 @@ fn deep_texts_are_refused() {
         format!("+!g <- {}x.", "x |&| ".repeat(100_000)),
     ] {
         let files = [ForeignSource { name: "bob.asl".to_owned(), text }];
-        let errors = import(&files, &NoForeignFiles, &AgentSpeakOptions::default()).unwrap_err();
-        assert!(errors[0].message.contains("too deep"), "{errors:?}");
+        let said = report(&import(&files, &NoForeignFiles, &AgentSpeakOptions::default()));
+        assert!(said.contains("too deep"), "{said}");
     }
 }
 
@@ -210,8 +210,8 @@ fn agents_of_a_number_have_numbers() {
     }
     let text = import(&files, &One, &AgentSpeakOptions::default()).unwrap().text;
     for piece in [
-        "agent w1 plays w1 {",
-        "agent w2 plays w2 {",
+        "agent w1 plays w1[jason] {",
+        "agent w2 plays w2[jason] {",
         "stimulus w1_dig(n: int) by w1",
         "goal !go(2)",
         "w2_dig(N)",

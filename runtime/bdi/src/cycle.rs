@@ -12,10 +12,10 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    belief::{FactAnnotations, FactWithdrawal, GroundArguments, from, sourced, typed},
+    belief::{FactAnnotations, GroundArguments, from, sourced, typed},
     check::{self, MalformedAgentError},
     dice::AgentRng,
-    event::{ActionToken, AgentAction, EventArguments, IncomingItem, OutgoingMail, QueuedEvent, SpeechAct},
+    event::{ActionToken, AgentAction, IncomingItem, OutgoingMail, QueuedEvent, SpeechAct},
     holding::HoldingKind,
     intention::{IntentionState, IntentionTimer, NO_PLAN},
     log::{FailureCause, LogDetail, LogEntry, LogItem, ReasoningLog},
@@ -229,37 +229,6 @@ impl<'p> AgentMachine<'p> {
         self.halted.is_none() && (self.has_turn() || !self.inbox.is_empty())
     }
 
-    /// Whether there is an event or an intention whose turn it is.
-    fn has_turn(&self) -> bool {
-        let queued = !(self.mind.events.is_empty() && self.ready.is_empty());
-        queued && (self.holder().is_none() || self.own_event().is_some() || self.own_ready().is_some())
-    }
-
-    /// The intention beside which nothing else goes on.
-    fn holder(&self) -> Option<u32> {
-        self.exclusive.filter(|place| self.mind.pool.see(*place).atomic > 0)
-    }
-
-    fn is_atomic(&self, place: u32) -> bool {
-        self.mind.pool.see(place).atomic > 0
-    }
-
-    /// Where the atomic intention's event, or that of a branch of it, is in the queue.
-    fn own_event(&self) -> Option<usize> {
-        self.mind.events.iter().position(|e| e.of.is_some_and(|place| self.is_atomic(place)))
-    }
-
-    fn own_ready(&self) -> Option<usize> {
-        self.ready.iter().position(|place| self.is_atomic(*place))
-    }
-
-    /// The plan of the atomic intention that keeps others from their turn, if it waits for what does not come.
-    pub fn blocked_by(&self) -> Option<u16> {
-        let waits = !self.has_turn() && !(self.mind.events.is_empty() && self.ready.is_empty());
-        let holder = self.holder().filter(|_| waits && self.halted.is_none())?;
-        self.mind.pool.see(holder).frames.iter().find(|f| f.atomic).map(|f| f.plan)
-    }
-
     pub fn status(&self) -> RunStatus {
         if let Some(halted) = self.halted {
             halted
@@ -363,15 +332,6 @@ impl<'p> AgentMachine<'p> {
         if let Some(place) = ready {
             self.step(place);
         }
-    }
-
-    /// The next event while an atomic intention goes on, or the first after it.
-    fn exclusive_event(&mut self) -> Option<QueuedEvent> {
-        if self.holder().is_none() {
-            self.exclusive = None;
-            return self.mind.events.pop_front();
-        }
-        self.own_event().and_then(|at| self.mind.events.remove(at))
     }
 
     /// Finds a plan for an event and puts it on the event's intention, or on one of its own.
@@ -489,75 +449,6 @@ impl<'p> AgentMachine<'p> {
             self.mind.events.push_front(event);
         } else {
             self.mind.events.push_back(event);
-        }
-    }
-
-    /// Posts an event that matters only if a plan is relevant to it, or if an intention waits for its turn to be over; whether
-    /// it did.
-    pub fn announce(
-        &mut self,
-        on: TriggerOn,
-        args: &[Value],
-        annotations: Option<FactAnnotations>,
-        of: Option<u32>,
-    ) -> bool {
-        if of.is_none() && self.mind.library.relevant(on).is_empty() {
-            return false;
-        }
-        let args: EventArguments = args.iter().map(|v| Some(*v)).collect();
-        let event = QueuedEvent { of, ..QueuedEvent::new(on, args) };
-        self.post(event.annotated(annotations.unwrap_or_default()));
-        true
-    }
-
-    /// Adds a belief.
-    pub fn believe(&mut self, belief: BeliefId, args: &[Value], annotations: FactAnnotations) {
-        self.believe_for(None, belief, args, annotations);
-    }
-
-    /// The same; the plan for it goes on this intention, if any. Whether the intention waits for it.
-    pub fn believe_for(
-        &mut self,
-        of: Option<u32>,
-        belief: BeliefId,
-        args: &[Value],
-        annotations: FactAnnotations,
-    ) -> bool {
-        let new = self.mind.beliefs.insert(belief, args, annotations);
-        if new.is_empty() {
-            return false;
-        }
-        self.entry(0, || LogItem::Added { belief, args: args.to_vec(), annotations: new.clone() });
-        self.announce(TriggerOn::BeliefAdded(belief), args, Some(new), of) && of.is_some()
-    }
-
-    /// A belief leaves the base.
-    pub fn remove(&mut self, belief: BeliefId, row: usize) {
-        let fact = GroundArguments::from_slice(self.mind.beliefs.of(belief).row(row));
-        let had = self.mind.beliefs.remove(belief, row);
-        self.left(None, belief, &fact, had);
-    }
-
-    fn left(&mut self, of: Option<u32>, belief: BeliefId, args: &[Value], had: FactAnnotations) -> bool {
-        self.entry(0, || LogItem::Left { belief, args: args.to_vec() });
-        self.announce(TriggerOn::BeliefRemoved(belief), args, Some(had), of) && of.is_some()
-    }
-
-    /// Takes a source away from a fact, if it has it.
-    pub fn take(&mut self, belief: BeliefId, row: usize, source: Value) {
-        self.take_for(None, belief, row, source);
-    }
-
-    /// The same; the plan for what leaves goes on this intention, if any. Whether the intention waits for it.
-    pub fn take_for(&mut self, of: Option<u32>, belief: BeliefId, row: usize, source: Value) -> bool {
-        let fact = GroundArguments::from_slice(self.mind.beliefs.of(belief).row(row));
-        match self.mind.beliefs.withdraw(belief, row, source) {
-            FactWithdrawal::Nothing => false,
-            FactWithdrawal::Source => {
-                self.entry(0, || LogItem::Taken { belief, args: fact.to_vec(), source });
-                false
-            }
-            FactWithdrawal::Fact(had) => self.left(of, belief, &fact, had),
         }
     }
 

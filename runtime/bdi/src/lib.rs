@@ -24,6 +24,7 @@
 mod belief;
 mod block;
 mod bounds;
+mod change;
 mod check;
 pub mod choose;
 mod code;
@@ -40,6 +41,7 @@ mod mail;
 pub mod measure;
 mod mind;
 mod plan;
+mod print;
 mod query;
 mod recover;
 mod repeat;
@@ -49,6 +51,7 @@ mod society;
 mod standing;
 mod state;
 mod step;
+mod turn;
 mod unify;
 
 pub use belief::FactAnnotations;

@@ -119,11 +119,8 @@ impl<'p> PlanLibrary<'p> {
 
     /// The event that the step at this line makes, or the stimulus that it does.
     pub fn event_at(&self, index: u16, line: u16) -> Option<EventId> {
-        match &self.code.get(usize::from(index))?.get(usize::from(line))?.op {
-            PlanOp::Plain(PlanStepKind::Do { event, .. }) => Some(*event),
-            // INVARIANT: no other line does anything in the world.
-            _ => None,
-        }
+        let op = &self.code.get(usize::from(index))?.get(usize::from(line))?.op;
+        if let PlanOp::Plain(PlanStepKind::Do { event, .. }) = op { Some(*event) } else { None }
     }
 
     pub fn leaves_early(&self, index: u16) -> bool {

@@ -2,20 +2,19 @@
 
 use crate::{
     belief::{FactAnnotations, GroundArguments, sourced, typed},
+    change::waits,
     code::{PlanOp, settle},
     cycle::AgentMachine,
     event::{ActionToken, AgentAction, EventArguments, QueuedEvent},
     intention::{GoalDeadline, IntentionState, IntentionTimer},
-    log::{FailureCause, LogItem, StepOutcome, sources},
+    log::{FailureCause, LogItem, StepOutcome},
     mind::MentalState,
-    unify::{BindingTrail, VariableSlot, eval, known, undo, unify, unify_all, well_bound},
+    print::{as_jason, plain},
+    unify::{BindingTrail, VariableSlot, eval, known, undo, unify},
 };
 use hrdsl_ir::{
     EventId, EventPattern, Expr, Nanos, Value,
-    bdi::{
-        AgentTerm, Assertion, BeliefAnnotation, BeliefId, BeliefLiteral, GoalId, PlanStepKind, TriggerOn,
-        source_self,
-    },
+    bdi::{AgentTerm, Assertion, BeliefAnnotation, BeliefId, BeliefLiteral, GoalId, PlanStepKind, TriggerOn},
     expr::EvalError,
     value::nanos,
 };
@@ -294,7 +293,7 @@ impl<'p> AgentMachine<'p> {
         typed(&self.mind.agent.belief(belief).params, args)
     }
 
-    fn asserted(
+    pub fn asserted(
         &self,
         place: u32,
         assertion: &Assertion,
@@ -341,132 +340,6 @@ impl<'p> AgentMachine<'p> {
     pub fn plans_answer(&self, belief: BeliefId) -> bool {
         let on = [TriggerOn::TestAdded(belief), TriggerOn::TestFailed(belief)];
         on.iter().any(|on| !self.mind.library.relevant(*on).is_empty())
-    }
-
-    /// Takes one source away from the first fact that has it.
-    fn forget(&mut self, place: u32, literal: &'p BeliefLiteral) -> Result<StepFlow, FailureCause> {
-        let own = AgentTerm::Expr(Expr::Const(Value::Symbol(source_self())));
-        let wanted = literal.annotations.iter().position(|(what, _)| *what == BeliefAnnotation::Source);
-        let source = wanted.map_or(&own, |at| &literal.annotations[at].1);
-        let others = literal.annotations.iter().enumerate().filter(|(at, _)| Some(*at) != wanted);
-        let others: Vec<&(BeliefAnnotation, AgentTerm)> = others.map(|(_, a)| a).collect();
-        let plain: Vec<&(BeliefAnnotation, AgentTerm)> =
-            literal.annotations.iter().filter(|(what, _)| *what != BeliefAnnotation::Source).collect();
-        self.solver.with(self.mind.pool.see(place).vars());
-        well_bound(&literal.args, &self.solver.slots)?;
-        let belief = literal.belief;
-        let mut kept = None;
-        for row in self.mind.beliefs.of(belief).asked() {
-            if let Some(gone) = self.source_of(literal, row, source, &others)? {
-                let of = self.handled_by(place);
-                return Ok(waits(self.take_for(of, belief, row, gone)));
-            }
-            if kept.is_none() && self.agrees(literal, row, &plain)? {
-                kept = Some(row);
-            }
-        }
-        if let Some(row) = kept {
-            let facts = self.mind.beliefs.of(belief);
-            let (args, from) = (facts.row(row).to_vec(), sources(facts.annotations(row)));
-            let meant = known(source, &self.solver.slots);
-            // An entry of its own accord: the step may have been meant otherwise.
-            self.enter(0, LogItem::StillHeld { belief, args, meant, from });
-        }
-        Ok(StepFlow::Next)
-    }
-
-    /// The fact's first source that the term means, if the fact matches with it.
-    fn source_of(
-        &mut self,
-        literal: &BeliefLiteral,
-        row: usize,
-        source: &AgentTerm,
-        others: &[&(BeliefAnnotation, AgentTerm)],
-    ) -> Result<Option<Value>, FailureCause> {
-        let facts = self.mind.beliefs.of(literal.belief);
-        let (slots, trail) = (&mut self.solver.slots, &mut self.solver.trail);
-        let mark = trail.len();
-        let args = facts.row(row).iter().map(|v| Some(*v));
-        let mut found = None;
-        if unify_all(&literal.args, args, 0, slots, trail)? {
-            for one in sources(facts.annotations(row)) {
-                let here = trail.len();
-                if unify(source, one, 0, slots, trail)?
-                    && annotated(others, facts.annotations(row), slots, trail)?
-                {
-                    found = Some(one);
-                    break;
-                }
-                undo(slots, trail, here);
-            }
-        }
-        undo(&mut self.solver.slots, &mut self.solver.trail, mark);
-        Ok(found)
-    }
-
-    /// Whether the fact matches, with these annotations; nothing is bound.
-    fn agrees(
-        &mut self,
-        literal: &BeliefLiteral,
-        row: usize,
-        annotations: &[&(BeliefAnnotation, AgentTerm)],
-    ) -> Result<bool, FailureCause> {
-        let facts = self.mind.beliefs.of(literal.belief);
-        let (slots, trail) = (&mut self.solver.slots, &mut self.solver.trail);
-        let mark = trail.len();
-        let args = facts.row(row).iter().map(|v| Some(*v));
-        let agrees = unify_all(&literal.args, args, 0, slots, trail)?
-            && annotated(annotations, facts.annotations(row), slots, trail)?;
-        undo(&mut self.solver.slots, &mut self.solver.trail, mark);
-        Ok(agrees)
-    }
-
-    fn replace(&mut self, place: u32, assertion: &Assertion) -> Result<StepFlow, FailureCause> {
-        let (args, annotations) = self.asserted(place, assertion)?;
-        let belief = assertion.belief;
-        if let Some(place) = self.handled_by(place) {
-            return Ok(waits(self.replace_one(place, belief, &args, annotations)));
-        }
-        for row in self.mind.beliefs.of(belief).others(&args) {
-            self.remove(belief, row);
-        }
-        self.believe(belief, &args, annotations);
-        Ok(StepFlow::Next)
-    }
-
-    /// As Jason does it: the first fact that the agent holds itself makes room. What its removal triggers has an intention
-    /// of its own.
-    fn replace_one(
-        &mut self,
-        place: u32,
-        belief: BeliefId,
-        args: &[Value],
-        annotations: FactAnnotations,
-    ) -> bool {
-        let own = Value::Symbol(source_self());
-        let facts = self.mind.beliefs.of(belief);
-        let held = |row: &usize| sources(facts.annotations(*row)).contains(&own);
-        if let Some(row) = facts.asked().into_iter().find(held) {
-            self.take(belief, row, own);
-        }
-        self.believe_for(Some(place), belief, args, annotations)
-    }
-
-    /// The intention on which the plan for a belief that it changes goes: in agents as in Jason.
-    fn handled_by(&self, place: u32) -> Option<u32> {
-        self.mind.agent.jason.then_some(place)
-    }
-
-    fn abolish(&mut self, place: u32, literal: &'p BeliefLiteral) -> Result<StepFlow, FailureCause> {
-        self.solver.with(self.mind.pool.see(place).vars());
-        well_bound(&literal.args, &self.solver.slots)?;
-        let annotations: Vec<&(BeliefAnnotation, AgentTerm)> = literal.annotations.iter().collect();
-        for row in self.mind.beliefs.of(literal.belief).iter().collect::<Vec<_>>() {
-            if self.agrees(literal, row, &annotations)? {
-                self.remove(literal.belief, row);
-            }
-        }
-        Ok(StepFlow::Next)
     }
 
     // ── Time ──
@@ -522,51 +395,6 @@ pub(crate) fn annotated(
         undo(slots, trail, mark);
     }
     Ok(false)
-}
-
-/// What becomes of a step that changed a belief, by whether its intention waits for a plan.
-fn waits(posted: bool) -> StepFlow {
-    if posted { StepFlow::Suspended } else { StepFlow::Next }
-}
-
-/// A value as it is printed: a string without its quotes.
-fn plain(value: Value) -> String {
-    match value {
-        Value::Text(text) => text.as_str().to_owned(),
-        Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::List(_) => {
-            value.to_string()
-        }
-    }
-}
-
-/// The same as Jason prints it: lists without spaces, numbers as Java writes them.
-fn as_jason(value: Value) -> String {
-    let within = |v: Value| match v {
-        Value::Text(_) => v.to_string(),
-        Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_) | Value::List(_) => as_jason(v),
-    };
-    match value {
-        Value::Float(x) => as_java(x),
-        Value::List(list) => format!("[{}]", list.iter().map(within).collect::<Vec<_>>().join(",")),
-        Value::Text(_) | Value::Bool(_) | Value::Int(_) | Value::Symbol(_) => plain(value),
-    }
-}
-
-/// A number: whole ones without a point, very small and large ones with an exponent.
-fn as_java(x: f64) -> String {
-    /// Up to here a float is one whole number.
-    const WHOLE: f64 = 9.0e18;
-    if x.fract() == 0.0 && x.abs() < WHOLE {
-        return if x == 0.0 { "0".to_owned() } else { format!("{x:.0}") };
-    }
-    if (1e-3..1e7).contains(&x.abs()) || !x.is_finite() {
-        return x.to_string();
-    }
-    let text = format!("{x:E}");
-    match text.split_once('E') {
-        Some((digits, exponent)) if !digits.contains('.') => format!("{digits}.0E{exponent}"),
-        _ => text,
-    }
 }
 
 /// The slots that the terms of a test goal's plan stand for at its end, for the query that asked.

@@ -152,7 +152,6 @@ impl<'a> AgentQuirkCheck<'a> {
     }
 
     /// Steps that change beliefs and do it otherwise.
-    #[expect(clippy::too_many_lines, reason = "a flat match")]
     fn changes(&self, all: &mut Vec<AgentSpeakQuirk>) {
         for m in &self.survey.beliefs {
             let name = (m.key.clone(), m.negated);

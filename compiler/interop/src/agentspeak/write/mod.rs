@@ -8,8 +8,10 @@
 
 mod agent;
 mod clause;
+mod compare;
 mod internal;
 mod modes;
+mod print;
 mod steps;
 mod writer;
 
