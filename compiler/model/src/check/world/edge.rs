@@ -1,9 +1,10 @@
 //! Rules that wait for a condition: `on rising(C)`, `on falling(C, D)`.
 
 use hrdsl_ir::{value::nanos, world::RuleTrigger};
+use hrdsl_source::nearest;
 use hrdsl_syntax::ast;
 
-use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
+use crate::check::{checker::EVENTS, template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     InferredType, TypedExpr, TypedExprKind,
     check::state::scope::ExprEnv,
@@ -21,6 +22,19 @@ impl WorldPhase<'_, '_> {
         (name == RISING || name == FALLING)
             && self.events.table.get(name).is_none()
             && self.given(name).is_none()
+    }
+
+    /// Whether a word that names nothing, and stands before a condition, was meant for one of these; says so.
+    pub(super) fn is_misspelt_edge(&mut self, call: &ast::CallSyntax) -> bool {
+        let name = &call.name;
+        let is_known = self.s.names.kind_of(&name.text).is_some() || self.given(&name.text).is_some();
+        if is_known || call.args.is_none() || nearest(&name.text, [RISING, FALLING]).is_none() {
+            return false;
+        }
+        let mut words = self.near_of(&EVENTS);
+        words.extend([RISING, FALLING].map(str::to_owned));
+        self.unknown(Noun::EventOrStimulus, name, &words, None);
+        true
     }
 
     pub(super) fn edge_of(&mut self, call: &ast::CallSyntax, prefix: &str) -> Option<RuleTrigger<TypedExpr>> {
