@@ -251,7 +251,7 @@ fn names_survive_their_broken_values() {
         ItemSyntaxKind::Const { name, value } if name.text == "LEGS" && value.kind == ExprSyntaxKind::Error))
     );
     let (file, _) =
-        with("sensed(true, true, true) causes released", "sensed(true, true, true) cause released");
+        with("sensed(true, true, true) causes handed_over", "sensed(true, true, true) cause released");
     assert!(file.items.iter().any(|i| matches!(&i.kind,
         ItemSyntaxKind::Require(r) if r.name.text == "R2" && r.title.is_some() && r.pattern.kind.is_none())));
 }
