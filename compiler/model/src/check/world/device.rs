@@ -45,24 +45,14 @@ impl<'a> WorldPhase<'_, 'a> {
                     Member::Command(command) => {
                         let checked = self.device_command(sort, command, &member.doc);
                         let Some(sort) = sort else { continue };
-                        let first =
-                            self.s.places.commands.get(&(sort.name(), command.name.text.clone())).copied();
-                        if self.is_first(Noun::Command, &command.name, first) {
-                            let place = (sort.name(), command.name.text.clone());
-                            self.s.places.commands.insert(place, command.name.span);
+                        if self.is_first(Noun::Command, sort, &command.name) {
                             self.kind_mut(sort).commands.extend(checked);
                         }
                     }
                     Member::State(state) => {
                         let Some(sort) = sort else { continue };
                         let checked = self.device_state(sort, state, &member.doc);
-                        let first =
-                            self.s.places.states.get(&(sort.name(), state.name.text.clone())).copied();
-                        if self.is_first(Noun::DeviceState, &state.name, first) {
-                            self.s
-                                .places
-                                .states
-                                .insert((sort.name(), state.name.text.clone()), state.name.span);
+                        if self.is_first(Noun::DeviceState, sort, &state.name) {
                             self.kind_mut(sort).states.extend(checked);
                         }
                     }
@@ -72,10 +62,15 @@ impl<'a> WorldPhase<'_, 'a> {
         }
     }
 
-    /// Whether nothing of the kind has this name; reports it otherwise.
-    fn is_first(&mut self, noun: Noun, name: &NameSyntax, first: Option<hrdsl_source::Span>) -> bool {
-        if first.is_some() {
-            self.report(names::duplicate(noun, &name.text, name.span, first));
+    /// Whether no command, or no state, of these devices has the name yet; reports it otherwise.
+    fn is_first(&mut self, noun: Noun, sort: DeviceSort, name: &NameSyntax) -> bool {
+        let places = &mut self.s.places;
+        let known = if noun == Noun::Command { &mut places.commands } else { &mut places.states };
+        let key = (sort.name(), name.text.clone());
+        let first = known.get(&key).copied();
+        match first {
+            Some(_) => self.report(names::duplicate(noun, &name.text, name.span, first)),
+            None => drop(known.insert(key, name.span)),
         }
         first.is_none()
     }
@@ -87,17 +82,10 @@ impl<'a> WorldPhase<'_, 'a> {
         state: &ast::DeviceStateSyntax,
         doc: &str,
     ) -> Option<DeclaredState> {
-        let own = || DeviceState::ALL.into_iter().filter(|s| s.sort() == sort).map(DeviceState::name);
-        let name = &state.told;
-        let issue = match DeviceState::named(&name.text) {
-            Some(told) if told.sort() == sort => {
-                return Some(DeclaredState { name: state.name.text.clone(), doc: doc.to_owned(), told });
-            }
-            Some(told) => devices::of_another(name, noun_of(told.sort()), noun_of(sort), own()),
-            None => names::unknown(Noun::Primitive, &name.text, name.span, own()),
-        };
-        self.report(issue);
-        None
+        let own = DeviceState::ALL.into_iter().filter(|s| s.sort() == sort).map(DeviceState::name);
+        let found = DeviceState::named(&state.told.text).map(|told| (told, told.sort()));
+        let told = self.of_sort(sort, &state.told, found, own)?;
+        Some(DeclaredState { name: state.name.text.clone(), doc: doc.to_owned(), told })
     }
 
     fn kind_mut(&mut self, sort: DeviceSort) -> &mut DeviceKind {
@@ -148,11 +136,23 @@ impl<'a> WorldPhase<'_, 'a> {
     }
 
     fn primitive(&mut self, sort: DeviceSort, name: &NameSyntax) -> Option<DevicePrimitive> {
-        let own = || DevicePrimitive::ALL.into_iter().filter(|p| p.sort() == sort).map(DevicePrimitive::name);
-        let issue = match DevicePrimitive::named(&name.text) {
-            Some(primitive) if primitive.sort() == sort => return Some(primitive),
-            Some(primitive) => devices::of_another(name, noun_of(primitive.sort()), noun_of(sort), own()),
-            None => names::unknown(Noun::Primitive, &name.text, name.span, own()),
+        let own = DevicePrimitive::ALL.into_iter().filter(|p| p.sort() == sort).map(DevicePrimitive::name);
+        let found = DevicePrimitive::named(&name.text).map(|primitive| (primitive, primitive.sort()));
+        self.of_sort(sort, name, found, own)
+    }
+
+    /// What was found under a name, if it is of this sort of device; `own` are the names that there are.
+    fn of_sort<P>(
+        &mut self,
+        sort: DeviceSort,
+        name: &NameSyntax,
+        found: Option<(P, DeviceSort)>,
+        own: impl Iterator<Item = &'static str>,
+    ) -> Option<P> {
+        let issue = match found {
+            Some((primitive, of)) if of == sort => return Some(primitive),
+            Some((_, of)) => devices::of_another(name, noun_of(of), noun_of(sort), own),
+            None => names::unknown(Noun::Primitive, &name.text, name.span, own),
         };
         self.report(issue);
         None
