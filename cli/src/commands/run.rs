@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use hrdsl_compiler::{CompilationResult, InputFile, compile_beside};
 use hrdsl_interop::{
-    ImportNote, NoteSeverity, SyntaxError,
+    ImportNote, NoteSeverity,
     agentspeak::{self, AgentSpeakOptions},
 };
 use hrdsl_ir::{Nanos, Program, bdi::AgentId, suite::PlayerRef};
@@ -101,8 +101,6 @@ fn imported(files: &[PathBuf]) -> Result<Option<CompilationResult>, CommandFault
     let sources = files.iter().map(|f| source(f)).collect::<Result<Vec<_>, _>>()?;
     let first: Option<&Path> = files.first().map(PathBuf::as_path);
     let loader = DiskPrograms(FileReach::of(first, &["asl"]));
-    let said =
-        |faults: &[SyntaxError]| faults.iter().for_each(|e| terminal::say_line(format_args!("error: {e}")));
     match agentspeak::import(&sources, &loader, &AgentSpeakOptions::default()) {
         Ok(imported) => {
             let matters = |n: &&ImportNote| n.severity != NoteSeverity::Info;
@@ -111,7 +109,7 @@ fn imported(files: &[PathBuf]) -> Result<Option<CompilationResult>, CommandFault
             Ok(Some(compile_beside(input, &[], &[], &DiskModules::of(None))))
         }
         Err(faults) => {
-            said(&faults);
+            faults.iter().for_each(|fault| terminal::say_line(format_args!("error: {fault}")));
             Ok(None)
         }
     }

@@ -11,6 +11,7 @@ fails, the test leaves its prediction, or it ends in an error. DEST/table.json h
 import argparse
 import json
 import os
+import shutil
 import subprocess
 import sys
 
@@ -21,7 +22,7 @@ def run(hrdsl, folder, arguments, out):
     """The results of the tests on the code in a folder; made in a folder of their own, which has its name when it is whole."""
     part = out + ".part"
     command = [hrdsl, "sim", os.path.join(folder, "scenario.hri"), *arguments, "-o", part, "--exit-zero", "--replays", "none"]
-    subprocess.run(["rm", "-rf", part], check=True)
+    shutil.rmtree(part, ignore_errors=True)
     done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode:
         sys.exit("%s\n%s" % (" ".join(command), done.stderr))

@@ -5,8 +5,12 @@ use crate::{cycle::AgentMachine, event::QueuedEvent};
 impl AgentMachine<'_> {
     /// Whether there is an event or an intention whose turn it is.
     pub fn has_turn(&self) -> bool {
-        let queued = !(self.mind.events.is_empty() && self.ready.is_empty());
-        queued && (self.holder().is_none() || self.own_event().is_some() || self.own_ready().is_some())
+        self.has_queued()
+            && (self.holder().is_none() || self.own_event().is_some() || self.own_ready().is_some())
+    }
+
+    fn has_queued(&self) -> bool {
+        !(self.mind.events.is_empty() && self.ready.is_empty())
     }
 
     /// The intention beside which nothing else goes on.
@@ -29,8 +33,7 @@ impl AgentMachine<'_> {
 
     /// The plan of the atomic intention that keeps others from their turn, if it waits for what does not come.
     pub fn blocked_by(&self) -> Option<u16> {
-        let queued = !self.mind.events.is_empty() || !self.ready.is_empty();
-        let waits = queued && !self.has_turn();
+        let waits = self.has_queued() && !self.has_turn();
         let holder = self.holder().filter(|_| waits && self.halted.is_none())?;
         self.mind.pool.see(holder).frames.iter().find(|f| f.atomic).map(|f| f.plan)
     }

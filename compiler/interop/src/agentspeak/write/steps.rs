@@ -3,7 +3,7 @@
 use super::{
     super::{
         ast::{AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm, TermKind},
-        term::literal,
+        term::{literal, valued},
         types::AgentSpeakType,
     },
     clause::{BindingMode, ClauseFailure, ClauseResult, ClauseTranslator, call},
@@ -90,7 +90,7 @@ impl ClauseTranslator<'_> {
                 })?;
                 self.used.adopted.insert(goal.key());
                 let sign = if matches!(step.kind, AgentSpeakStepKind::Achieve(_)) { "!" } else { "!!" };
-                let deadline = goal.annotations.iter().find_map(|a| match super::super::term::valued(a) {
+                let deadline = goal.annotations.iter().find_map(|a| match valued(a) {
                     Some(("hard_deadline", time)) if sign == "!" => Some(time),
                     Some(_) | None => None,
                 });
