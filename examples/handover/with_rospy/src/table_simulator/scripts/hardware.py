@@ -15,7 +15,7 @@ from std_srvs.srv import Trigger
 from table_simulator.msg import Readings, Voice
 
 SET_POINT_RATE = 100  # Hz
-CONTROLLER_LAG = 0.1  # s, by which joints come after their set-points: in 10 ms by a tenth of what is left
+CONTROLLER_LAG = 0.1  # s: a joint comes nearer to its set-point by a tenth of what is left in each period
 MAX_JOINT_SPEED = 1.0  # rad/s, as in joint_limits.yaml
 MAX_JOINT_ACCELERATION = 1.0  # rad/s^2, as in joint_limits.yaml
 RAMP_TIME = 0.5  # s, to come to full speed and to stop
@@ -105,25 +105,26 @@ def set_points(points):
     """Set-points of the joints along a plan, one for each period of the controllers: as far ahead of the plan as the joints
     come after them. The last one is the plan's end, and is for the period in which the plan ends."""
     at = 0
-    duration = points[-1].time_from_start.to_sec()
-    for step in range(int(math.ceil(duration * SET_POINT_RATE)) - 1):
-        time = float(step) / SET_POINT_RATE
+    before = points[0].positions
+    for period in range(1, int(math.ceil(points[-1].time_from_start.to_sec() * SET_POINT_RATE))):
+        time = float(period) / SET_POINT_RATE
         while points[at + 1].time_from_start.to_sec() <= time:
             at += 1
-        yield [q + v * CONTROLLER_LAG for q, v in between(points[at], points[at + 1], time)]
+        after = between(points[at], points[at + 1], time)
+        yield [a + (b - a) * CONTROLLER_LAG * SET_POINT_RATE for a, b in zip(before, after)]
+        before = after
     yield points[-1].positions
 
 
 def between(begin, end, time):
-    """The joints' positions and velocities at a time between two points of a plan: cubic, with the points' velocities."""
+    """The joints' positions at a time between two points of a plan: cubic, with the points' velocities."""
     start = begin.time_from_start.to_sec()
     span = end.time_from_start.to_sec() - start
     u = (time - start) / span
     p0, m0 = (1 + 2 * u) * (1 - u) ** 2, u * (1 - u) ** 2 * span
     p1, m1 = u * u * (3 - 2 * u), u * u * (u - 1) * span
-    dp, d0, d1 = 6 * u * (1 - u) / span, (1 - u) * (1 - 3 * u), u * (3 * u - 2)
     return [
-        (p0 * q0 + m0 * v0 + p1 * q1 + m1 * v1, dp * (q1 - q0) + d0 * v0 + d1 * v1)
+        p0 * q0 + m0 * v0 + p1 * q1 + m1 * v1
         for q0, v0, q1, v1 in zip(begin.positions, begin.velocities, end.positions, end.velocities)
     ]
 
