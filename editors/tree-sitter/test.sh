@@ -14,7 +14,7 @@ version=0.27.1
 cli=$tools/bin/tree-sitter
 
 if ! [ "$("$cli" --version 2>/dev/null)" = "tree-sitter $version" ]; then
-  CARGO_TARGET_DIR=$tools/build CARGO_PROFILE_RELEASE_OPT_LEVEL=1 \
+  CARGO_TARGET_DIR=$tools/build CARGO_PROFILE_RELEASE_OPT_LEVEL=0 \
     CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 \
     cargo install tree-sitter-cli --version "$version" --locked --no-default-features --root "$tools" --force
   rm -rf "$tools/build"

@@ -203,6 +203,9 @@ fn summary(project: &CheckedProject, checked: &[CheckedUnit]) -> String {
             .map(|(n, one, many)| format!("{n} {}", if n == 1 { one } else { many }))
             .collect();
         let scenario = &program.name;
+        if counts.is_empty() {
+            return Some(format!("{name}: scenario `{scenario}` is well formed, and has no behaviour yet\n"));
+        }
         Some(format!("{name}: scenario `{scenario}` is well formed: {}\n", counts.join(", ")))
     };
     checked.iter().filter_map(line).collect()

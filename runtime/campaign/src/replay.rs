@@ -7,7 +7,7 @@ use hrdsl_recording::{
     message::{RecordedLogLevel, RecordedLogLine, VerdictMessage},
     scene,
 };
-use hrdsl_results::{TraceJudgement, VerdictOutcome};
+use hrdsl_results::TraceJudgement;
 
 /// Of which tests a file is made by which they can be looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,7 +75,7 @@ pub(crate) fn file(
         .iter()
         .map(|verdict| VerdictMessage {
             requirement: verdict.requirement.to_string(),
-            verdict: word(verdict.outcome).to_owned(),
+            verdict: verdict.outcome.name().to_owned(),
             failures: verdict.failures,
             violated: verdict.failure.as_ref().map(|failure| failure.time),
             margin: verdict.worst_margin.as_ref().map(|(margin, _)| *margin),
@@ -92,14 +92,4 @@ pub(crate) fn file(
         verdicts: &verdicts,
     });
     file.map_err(|why| format!("{why} (it lasted {} s)", seconds(run.trace.end)))
-}
-
-fn word(outcome: VerdictOutcome) -> &'static str {
-    match outcome {
-        VerdictOutcome::Pass => "pass",
-        VerdictOutcome::Fail => "fail",
-        VerdictOutcome::Vacuous => "vacuous",
-        VerdictOutcome::Inconclusive => "inconclusive",
-        VerdictOutcome::Error => "error",
-    }
 }

@@ -36,6 +36,19 @@ pub enum VerdictOutcome {
 }
 
 impl VerdictOutcome {
+    /// As results, reports and recordings write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            VerdictOutcome::Pass => "pass",
+            VerdictOutcome::Fail => "fail",
+            VerdictOutcome::Vacuous => "vacuous",
+            VerdictOutcome::Inconclusive => "inconclusive",
+            VerdictOutcome::Error => "error",
+        }
+    }
+}
+
+impl VerdictOutcome {
     pub const ALL: [VerdictOutcome; 5] = [
         VerdictOutcome::Pass,
         VerdictOutcome::Fail,

@@ -3,12 +3,14 @@
 
 use std::{
     path::{Path, PathBuf},
+    process::Command,
     time::Duration,
 };
 
 use hrdsl_sut::{
-    CellSettings, EnvironmentNeeds, FinishedProcess, ForkServer, HarnessReply, LaunchSpec, ProgramLimits,
-    ProgramRequest, PythonEnv, ReplyAnswer, StopFlag, SutProcess, cell::SupervisorCommand, pin_to_free_core,
+    CellSettings, EnvironmentNeeds, FinishedProcess, ForkServer, HarnessReply, LaunchMiddleware, LaunchSpec,
+    ProgramLimits, ProgramRequest, PythonEnv, ReplyAnswer, StopFlag, SutProcess, cell::SupervisorCommand,
+    pin_to_free_core,
 };
 
 fn main() {
@@ -127,6 +129,32 @@ fn fork_to_hello(bencher: divan::Bencher, coverage: bool) {
         answer(&mut process);
         process
     });
+}
+
+/// The same for a node of rospy, which asks for its time once it is one.
+#[divan::bench(args = [false, true], sample_count = 100)]
+fn fork_to_node(bencher: divan::Bencher, coverage: bool) {
+    let mut launch = launch("hello_rospy.py", coverage);
+    let folder = tempfile::tempdir().expect("a folder");
+    launch.middleware = Some(rospy(folder.path()));
+    let mut server = server(&launch);
+    bencher.bench_local(|| {
+        let mut process = SutProcess::fork(&launch, &mut server).expect("a process");
+        answer(&mut process);
+        process
+    });
+}
+
+/// What a program of ROS 1 is told, with the definitions of two packages.
+fn rospy(folder: &Path) -> LaunchMiddleware {
+    const WRITE: &str = "import json, sys, tables; json.dump(dict(ros=1, base_frame='world', groups={}, packages={}, \
+                         interfaces=tables.table(['std_msgs', 'rosgraph_msgs'])), open(sys.argv[1], 'w'))";
+    let tables = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sdk/python/tests");
+    let binding = folder.join("binding.json");
+    let mut python = Command::new("python3");
+    python.args(["-c", WRITE]).arg(&binding).env("PYTHONPATH", tables);
+    assert!(python.status().expect("Python 3").success(), "no table of definitions");
+    LaunchMiddleware { name: "ros1", binding, modules: Vec::new() }
 }
 
 /// What a worker does once: an interpreter with its imports, that waits for tests.

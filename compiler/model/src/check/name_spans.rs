@@ -1,6 +1,8 @@
 //! Where the names of a scenario stand: read off the AST once all is resolved. Without errors the elements of the scenario are
 //! those of the AST, in the same order, those of an instance the template's.
 
+use std::collections::BTreeMap;
+
 use hrdsl_source::Span;
 use hrdsl_syntax::ast::{
     self, AgentMemberKind as AgentMember, AutomatonMemberKind as Member, ItemSyntaxKind, SuiteMemberKind,
@@ -10,7 +12,7 @@ use crate::check::state::{
     names::{DeclaredPlayer, PlayerNames},
     table::NameTable,
 };
-use crate::{AgentPlaces, AutomatonPlaces, Scenario, TypedAutomaton, VarPlace};
+use crate::{AgentPlaces, AutomatonPlaces, AutomatonVar, Scenario, TypedAutomaton, VarPlace};
 
 /// Completes the places of a scenario, whose items these are.
 pub(in crate::check) fn complete(
@@ -19,7 +21,8 @@ pub(in crate::check) fn complete(
     players: &PlayerNames<'_>,
     signals: &NameTable,
 ) {
-    let (shared, typed, places) = (&scenario.shared, &scenario.automata, &mut scenario.places);
+    let (typed, places) = (&scenario.automata, &mut scenario.places);
+    let shared = parts_of_each(&scenario.shared);
     for (item, span) in items.iter().map(|item| (&item.kind, item.span)) {
         if let ItemSyntaxKind::Event(event) = item {
             places.events.extend(event.names.iter().map(|one| one.name.span));
@@ -28,8 +31,7 @@ pub(in crate::check) fn complete(
             places.events.push(stimulus.name.span);
         }
         if let ItemSyntaxKind::Var(var) = item {
-            let name = var.name.text.as_str();
-            let parts = shared.iter().filter(|v| whole_name(&v.name) == name).count();
+            let parts = shared.get(var.name.text.as_str()).copied().unwrap_or_default();
             let place = VarPlace { name: var.name.span, whole: span };
             places.shared.extend(std::iter::repeat_n(place, parts));
         }
@@ -70,11 +72,12 @@ fn agent_places(agent: &ast::AgentSyntax, name: Span) -> AgentPlaces {
 
 fn automaton_places(automaton: &ast::AutomatonSyntax, of: &TypedAutomaton, name: Span) -> AutomatonPlaces {
     let mut places = AutomatonPlaces { name, ..AutomatonPlaces::default() };
+    let vars = parts_of_each(&of.vars);
     for member in &automaton.members {
         match &member.kind {
             Member::Clock(clocks) => places.clocks.extend(clocks.iter().map(|c| c.span)),
             Member::Var(var) => {
-                let parts = of.vars.iter().filter(|v| whole_name(&v.name) == var.name.text).count();
+                let parts = vars.get(var.name.text.as_str()).copied().unwrap_or_default();
                 let place = VarPlace { name: var.name.span, whole: member.span };
                 places.vars.extend(std::iter::repeat_n(place, parts));
             }
@@ -84,6 +87,15 @@ fn automaton_places(automaton: &ast::AutomatonSyntax, of: &TypedAutomaton, name:
         }
     }
     places
+}
+
+/// Of how many single values each variable is made, by its name.
+fn parts_of_each(vars: &[AutomatonVar]) -> BTreeMap<&str, usize> {
+    let mut parts = BTreeMap::new();
+    for var in vars {
+        *parts.entry(whole_name(&var.name)).or_default() += 1;
+    }
+    parts
 }
 
 /// The variable that a single value is a part of: `to` of `to.x`, `a` of `a[0]`.

@@ -1,6 +1,6 @@
 //! Agents: beliefs, goals, and what holds at the start.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_source::{Diagnostic, Span};
 use hrdsl_syntax::ast::{
@@ -77,12 +77,15 @@ fn adopts(agent: &ast::AgentSyntax, goal: &str) -> bool {
     found
 }
 
-/// The declaration of a goal's types, as it would be adopted.
-fn declared(agent: &ast::AgentSyntax, goal: &str) -> Option<(String, Span)> {
-    agent.members.iter().find_map(|m| {
-        let Member::GoalType { name, params } = &m.kind else { return None };
-        (name.text == goal).then(|| (written(name, params), name.span))
-    })
+/// The goals whose types are declared: each as it would be adopted.
+fn typed_goals(agent: &ast::AgentSyntax) -> BTreeMap<&str, (String, Span)> {
+    let mut goals = BTreeMap::new();
+    for member in &agent.members {
+        if let Member::GoalType { name, params } = &member.kind {
+            goals.entry(name.text.as_str()).or_insert_with(|| (written(name, params), name.span));
+        }
+    }
+    goals
 }
 
 impl<'a> AgentsPhase<'_, 'a> {
@@ -303,6 +306,7 @@ impl<'a> AgentsPhase<'_, 'a> {
             return;
         }
         adopted.extend(here.iter().copied());
+        let typed = typed_goals(agent);
         for member in &agent.members {
             if let Member::Plan(plan) = &member.kind
                 && plan.trigger.kind == TriggerSyntaxKind::Achieve
@@ -310,8 +314,8 @@ impl<'a> AgentsPhase<'_, 'a> {
             {
                 let name = &plan.trigger.literal.call.name;
                 let issue = not_adopted(&name.text, name.span, here.iter().copied());
-                let issue = match declared(agent, &name.text) {
-                    Some((written, span)) => only_declared(issue, &written, span),
+                let issue = match typed.get(name.text.as_str()) {
+                    Some((written, span)) => only_declared(issue, written, *span),
                     None => issue,
                 };
                 self.report(issue);
