@@ -3,7 +3,7 @@
 # the repository that the compiler reads without fault.
 #
 # Needs a C compiler, cargo and Node (which runs grammar.js). The command line of tree-sitter is built once, into
-# target/tools.
+# target/tools; `test.sh --tools` does that alone.
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -18,6 +18,9 @@ if ! [ "$("$cli" --version 2>/dev/null)" = "tree-sitter $version" ]; then
     CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 \
     cargo install tree-sitter-cli --version "$version" --locked --no-default-features --root "$tools" --force
   rm -rf "$tools/build"
+fi
+if [ "${1:-}" = --tools ]; then
+  exit 0
 fi
 
 work=$(mktemp -d)
