@@ -62,7 +62,7 @@ fn traces_have_the_verdicts_of_the_page() {
         trace(&program, &code(told)).replay(&mut checker);
         let found = checker.finish(RunEnd::Limit);
         let said = found[0].sentence().unwrap_or_else(|| "conforms".to_owned());
-        assert_eq!(said, verdict, "{told} {with}");
+        assert_eq!(said, code(verdict), "{told} {with}");
         rows += 1;
     }
     assert_eq!(rows, 15);
