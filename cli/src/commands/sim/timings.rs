@@ -14,7 +14,7 @@ pub fn table(times: &CampaignTimes) -> String {
         ("plans, commands, actions", times.planning),
         ("messages of programs", times.exchange),
         ("harness", times.harness),
-        ("monitors, coverpoints, models", times.judgement),
+        ("monitors and coverpoints", times.judgement),
         ("recordings", times.recordings),
         ("results", times.results),
         ("worlds and programs, begun and ended", times.start_up),
