@@ -17,6 +17,7 @@ mod fix;
 mod hulls;
 mod input;
 mod installing;
+mod observation;
 mod project;
 mod quantity;
 mod reach;
@@ -52,6 +53,7 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum TopLevelCommand {
+    Calibrate(commands::calibrate::CalibrateArgs),
     Check(commands::check::CheckArgs),
     Completions(commands::completions::CompletionsArgs),
     Conformance(commands::conformance::ConformanceArgs),
@@ -96,6 +98,7 @@ fn run() -> ExitCode {
     color::choose(cli.color);
     let allowed = reach::allow(&cli.allow_path);
     let result = allowed.and_then(|()| match cli.command {
+        TopLevelCommand::Calibrate(args) => commands::calibrate::run(&args),
         TopLevelCommand::Check(args) => commands::check::run(&args),
         TopLevelCommand::Completions(args) => commands::completions::run(&args, CommandLine::command()),
         TopLevelCommand::Conformance(args) => commands::conformance::run(&args),

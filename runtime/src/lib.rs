@@ -15,6 +15,7 @@
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 pub use hrdsl_campaign as campaign;
+pub use hrdsl_conformance as conformance;
 pub use hrdsl_harness as harness;
 pub use hrdsl_judge as judge;
 pub use hrdsl_prove as prove;

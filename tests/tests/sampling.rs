@@ -9,7 +9,7 @@ use hrdsl_harness::{
 };
 use hrdsl_ir::{Nanos, Program, Value, value::SECOND, world::SignalId};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict};
-use hrdsl_runtime::judge::judge_recording;
+use hrdsl_runtime::{conformance::ConformanceOptions, judge::judge_recording};
 use hrdsl_sim::SimulatedWorld;
 use hrdsl_trace::{
     RunEnd, Trace, TraceStepKind,
@@ -178,7 +178,7 @@ fn what_lasts_less_than_the_grid_is_found_and_the_recording_says_the_same() {
     let (header, ending) =
         (RecordingHeader::of(&program), RecordingEnd { kind: RunEnd::Quiescent, error: None });
     let text = record::write(&program, &header, &ended.trace, &ending);
-    let read = judge_recording(&program, text.as_bytes(), false).unwrap();
+    let read = judge_recording(&program, text.as_bytes(), false, &ConformanceOptions::default()).unwrap();
     let results: Vec<_> =
         read.judgement.verdicts.iter().map(|v| (v.failures, v.worst_margin.clone())).collect();
     let expected: Vec<_> = judged.iter().map(|v| (v.failures, v.worst_margin.map(|(m, _)| m))).collect();

@@ -23,6 +23,8 @@ mod network;
 mod page;
 #[path = "spec/tables.rs"]
 mod tables;
+#[path = "spec/timed_conformance.rs"]
+mod timed_conformance;
 
 use std::{collections::BTreeMap, fs, path::PathBuf};
 

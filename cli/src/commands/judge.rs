@@ -1,4 +1,4 @@
-//! `hrdsl judge`: verdicts and bins from recordings.
+//! `hrdsl judge`: verdicts, bins and conformance to models from recordings.
 
 use std::{
     collections::BTreeMap,
@@ -9,24 +9,32 @@ use std::{
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
+    conformance::ConformanceOptions,
     judge::{CampaignOutcome, FinishedTest, JudgedRecording, judge_recording, tally},
     recording, report,
     results::{
-        BinName, BinResult, CampaignResults, MachineCoverage, MachineResult, RequirementResult, RunEnd,
-        TestName, TestResult, VerdictResult,
+        BinName, BinResult, CampaignResults, ConformanceVerdict, MachineCoverage, MachineResult,
+        RequirementResult, RunEnd, TestName, TestResult, VerdictResult,
     },
 };
 use serde::Serialize;
 
 use super::report::WIDTH;
-use crate::{color, exit::CommandExit, fault::CommandFault, files, input, results_folder, terminal};
+use crate::{
+    color,
+    exit::CommandExit,
+    fault::CommandFault,
+    files, input,
+    observation::{ObservationArgs, locate},
+    results_folder, terminal,
+};
 
-/// Judge recordings: verdicts and bins as a campaign gives them, without running anything.
+/// Judge recordings: verdicts, bins and conformance to the model as a campaign gives them, without running anything.
 ///
 /// A recording is a file that `sim` wrote into traces/ or replays/, or that another program wrote in the same form (spec/traces.md).
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json"
+    after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json\n  hrdsl judge scenario.hri robot.mcap --latency 50ms"
 )]
 pub struct JudgeArgs {
     /// The scenario.
@@ -40,6 +48,8 @@ pub struct JudgeArgs {
     /// Judge recordings of another scenario, or of other events and signals, too, as long as every name in them is known.
     #[arg(long)]
     changed: bool,
+    #[command(flatten)]
+    observation: ObservationArgs,
     /// Exit with 0 even if requirements were violated or runs broke off.
     #[arg(long)]
     exit_zero: bool,
@@ -69,6 +79,8 @@ struct JudgedTest<'a> {
     bins: &'a [BinName],
     #[serde(skip_serializing_if = "<[MachineCoverage]>::is_empty")]
     machines: &'a [MachineCoverage],
+    #[serde(skip_serializing_if = "<[ConformanceVerdict]>::is_empty")]
+    conformance: &'a [ConformanceVerdict],
 }
 
 /// # Errors
@@ -78,10 +90,11 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
     let Some(program) = input::report_errors(&args.file, &compilation) else {
         return Ok(CommandExit::Errors);
     };
+    let options = args.observation.options(program)?;
     let mut tests = Vec::new();
     let mut refused = 0_usize;
     for path in paths(&args.recordings)? {
-        match judged(program, &path, args.changed) {
+        match judged(program, &path, (args.changed, &options)) {
             Ok(test) => tests.push(test),
             Err(why) => {
                 terminal::say_line(format_args!("error: {}: {why}", terminal::shown(&path)));
@@ -91,7 +104,8 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
     }
     let planned = tests.len() + refused;
     let outcome = CampaignOutcome { tests, planned, ..CampaignOutcome::default() };
-    let results = tally(program, 0, &[], outcome, &BTreeMap::new(), String::new());
+    let mut results = tally(program, 0, &[], outcome, &BTreeMap::new(), String::new());
+    locate(&mut results, &compilation);
     if args.json {
         terminal::print_data(&json(&results)?)?;
     } else if !results.tests.is_empty() {
@@ -108,7 +122,7 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
 
 /// The recordings: files as they are given, of a folder those in and below it, in order. Of a campaign's folder it is those in
 /// `traces`: what else ends in `.jsonl` there, the code under test wrote.
-fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFault> {
+pub(super) fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFault> {
     let mut all = Vec::new();
     for path in given {
         if path.is_dir() {
@@ -134,7 +148,7 @@ fn paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFault> {
 }
 
 /// The lines of a recording, in whichever form it is.
-fn opened(path: &Path) -> Result<Box<dyn BufRead>, CommandFault> {
+pub(super) fn opened(path: &Path) -> Result<Box<dyn BufRead>, CommandFault> {
     let mut file = BufReader::new(File::open(path).map_err(|e| e.to_string())?);
     if !recording::is_mcap(file.fill_buf().map_err(|e| e.to_string())?) {
         return Ok(Box::new(file));
@@ -149,8 +163,12 @@ fn opened(path: &Path) -> Result<Box<dyn BufRead>, CommandFault> {
 }
 
 /// What a recording shows, as the result of its test.
-fn judged(program: &Program, path: &Path, changed: bool) -> Result<FinishedTest, CommandFault> {
-    let judged = judge_recording(program, opened(path)?, changed).map_err(|e| e.to_string())?;
+fn judged(
+    program: &Program,
+    path: &Path,
+    (changed, options): (bool, &ConformanceOptions),
+) -> Result<FinishedTest, CommandFault> {
+    let judged = judge_recording(program, opened(path)?, changed, options).map_err(|e| e.to_string())?;
     let duration = judged.duration();
     let JudgedRecording { recorded, judgement, machines } = judged;
     // What is no test is called as its file is.
@@ -188,6 +206,7 @@ fn json(results: &CampaignResults) -> Result<String, CommandFault> {
             verdicts: &judgement.verdicts,
             bins: &judgement.bins,
             machines: &judgement.machines,
+            conformance: &judgement.conformance,
         }
     }
     let document = JudgementDocument {

@@ -10,6 +10,7 @@ mod hulls;
 mod interfaces;
 mod internal;
 mod log;
+mod output;
 mod replay;
 mod times;
 
@@ -22,6 +23,7 @@ use std::{
     },
 };
 
+use hrdsl_conformance::ConformanceOptions;
 use hrdsl_harness::{
     AwaitInVain, HarnessError, HarnessRun, PortHistory, RunTermination, SpentTime, SystemFaultKind, SystemLog,
 };
@@ -33,8 +35,8 @@ use hrdsl_ir::{
 };
 use hrdsl_judge::{CampaignOutcome, FinishedTest, TraceJudge};
 use hrdsl_results::{
-    CoverageRatios, FileCoverage, OutputSummary, PhysicsAccuracy, PredictedRun, PredictionVerdict, RunEnd,
-    RunMark, TestName, TestResult, TraceJudgement, UnmetAwait,
+    FileCoverage, PhysicsAccuracy, PredictedRun, PredictionVerdict, RunEnd, RunMark, TestName, TestResult,
+    TraceJudgement, UnmetAwait,
 };
 pub use hrdsl_sim::HullStore;
 pub use hrdsl_sut::{
@@ -91,6 +93,8 @@ pub struct CampaignSetup<'a> {
     pub jobs: usize,
     /// Set when the campaign is to end before its last test.
     pub stop: StopFlag,
+    /// How traces show what the code did, to the models that it is held against.
+    pub conformance: ConformanceOptions,
     /// Of which tests there are files by which they can be looked at again.
     pub replays: ReplayChoice,
     /// What measures where processor time goes; `None`: nobody asks, and no clock is looked at.
@@ -308,7 +312,7 @@ impl CampaignSetup<'_> {
         let ending = ending(&run, &finished);
         let recording = self
             .measured(&mut times.recordings, || record::write(self.program, &header, &run.trace, &ending));
-        let judgement = || judge(self.program, &run.trace, ending.kind);
+        let judgement = || judge(self.program, &self.conformance, &run.trace, ending.kind);
         let (judgement, machines) = self.measured(&mut times.judgement, judgement);
         let fails = ending.kind == RunEnd::Error || judgement.has_failed();
         let replay = self.replays.takes(fails).then(|| {
@@ -403,7 +407,7 @@ fn test_result(
     (ending, judgement): (RecordingEnd, TraceJudgement),
     finished: Vec<(String, FinishedProcess)>,
 ) -> PortedTest {
-    let output = summary(&finished);
+    let output = output::summary(&finished);
     let others = finished.iter().any(|(_, f)| f.others);
     let executed = FileCoverage::united(finished.into_iter().filter_map(|(_, f)| f.coverage).flatten());
     let unmet: Vec<UnmetAwait> = run.unmet.iter().map(unmet_await).collect();
@@ -431,7 +435,7 @@ fn test_result(
         prediction,
         unmet,
         because: test.provenance.because.clone(),
-        code: ratios(&executed),
+        code: output::ratios(&executed),
         steps: step_lines(program, test),
         output,
         physics: run.accuracy.map(accuracy::physics).filter(|p| *p != PhysicsAccuracy::default()),
@@ -444,8 +448,13 @@ fn unmet_await(vain: &AwaitInVain) -> UnmetAwait {
     UnmetAwait { step: vain.step, since: seconds(vain.since), until: seconds(vain.until) }
 }
 
-fn judge(program: &Program, trace: &Trace, ended: RunEnd) -> (TraceJudgement, Vec<MachineDeclaration>) {
-    let mut judge = TraceJudge::new(program);
+fn judge(
+    program: &Program,
+    options: &ConformanceOptions,
+    trace: &Trace,
+    ended: RunEnd,
+) -> (TraceJudgement, Vec<MachineDeclaration>) {
+    let mut judge = TraceJudge::new(program, options);
     trace.replay(&mut judge);
     judge.finish(ended)
 }
@@ -463,35 +472,4 @@ fn ending(run: &HarnessRun, finished: &[(String, FinishedProcess)]) -> Recording
         Some(file) => broke_off(format!("a file of the program could not be kept: {file}")),
         None => RecordingEnd { kind, error: None },
     }
-}
-
-/// Of several programs, the last lines of each stand under its name.
-fn summary(finished: &[(String, FinishedProcess)]) -> OutputSummary {
-    let mut ends = Vec::new();
-    for (name, f) in finished {
-        let end = f.output.stderr.last_lines(LAST_LINES);
-        if finished.len() == 1 {
-            ends.push(end);
-        } else if !end.is_empty() {
-            ends.push(format!("── {name} ──\n{end}"));
-        }
-    }
-    OutputSummary {
-        stdout_bytes: finished.iter().map(|(_, f)| f.output.stdout.bytes).sum(),
-        stderr_bytes: finished.iter().map(|(_, f)| f.output.stderr.bytes).sum(),
-        stderr_end: ends.join("\n"),
-    }
-}
-
-/// Lines and branches of one run over all files.
-fn ratios(files: &[FileCoverage]) -> CoverageRatios {
-    let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    let mut sum = CoverageRatios::default();
-    for file in files {
-        sum.lines += count(file.executed.len());
-        sum.lines_total += count(file.statements.len());
-        sum.branches += count(file.executed_branches.len());
-        sum.branches_total += count(file.branches.len());
-    }
-    sum
 }

@@ -1,10 +1,10 @@
-//! Judgement: from a [`Program`] and a trace to verdicts and bins, whoever made the trace, and from tests to a campaign's results.
+//! Judgement: from a [`Program`] and a trace to verdicts, bins and conformance to models, whoever made the trace, and from tests to a campaign's results.
 //!
 //! A campaign judges the trace of each run, and `hrdsl judge` a recording; both do it here, so that a recording has the
 //! verdicts of its run.
 //!
 //! # Steps
-//! 1. [`TraceJudge::new`] readies the requirements' monitors and the coverpoints;
+//! 1. [`TraceJudge::new`] readies the requirements' monitors, the coverpoints and the models of the system;
 //! 2. the trace is shown to it, step by step ([`TraceObserver`]), in memory that does not grow with the trace;
 //! 3. [`TraceJudge::finish`] gives the [`TraceJudgement`], and what the state machines of the system consist of.
 //!
@@ -15,6 +15,7 @@ mod machines;
 mod recording;
 mod tally;
 
+use hrdsl_conformance::{ConformanceChecker, ConformanceOptions};
 use hrdsl_coverage::{CoverageCollector, MachineCollector, MachineHits};
 use hrdsl_ir::{Nanos, Program, value::seconds};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict, SeenStep};
@@ -23,26 +24,29 @@ use hrdsl_results::{
 };
 use hrdsl_trace::{MachineDeclaration, RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
 
-pub use recording::{JudgeError, JudgedRecording, judge_recording};
+pub use recording::{JudgeError, JudgedRecording, judge_recording, recorded_run};
 pub use tally::{CampaignOutcome, FinishedTest, tally};
 
 /// Judges one trace.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct TraceJudge<'p> {
     program: &'p Program,
     checker: MonitorRunner,
     collector: CoverageCollector,
     machines: MachineCollector,
+    conformance: ConformanceChecker<'p>,
 }
 
 impl<'p> TraceJudge<'p> {
+    /// `options` say how the trace shows what the code did.
     #[must_use]
-    pub fn new(program: &'p Program) -> Self {
+    pub fn new(program: &'p Program, options: &ConformanceOptions) -> Self {
         Self {
             program,
             checker: MonitorRunner::new(program),
             collector: CoverageCollector::new(program),
             machines: MachineCollector::default(),
+            conformance: ConformanceChecker::new(program, options),
         }
     }
 
@@ -56,6 +60,7 @@ impl<'p> TraceJudge<'p> {
             verdicts: verdicts.iter().map(|v| verdict_result(self.program, v)).collect(),
             bins: self.collector.finish().cross_names(&self.program.coverage),
             machines,
+            conformance: self.conformance.finish(ended),
         };
         if ended == RunEnd::Error {
             judgement.break_off();
@@ -67,6 +72,7 @@ impl<'p> TraceJudge<'p> {
 impl TraceObserver for TraceJudge<'_> {
     fn step(&mut self, index: usize, step: &TraceStep) {
         self.checker.step(index, step);
+        self.conformance.step(index, step);
         match &step.what {
             TraceStepKind::Event { event, args } => self.collector.event(*event, args),
             TraceStepKind::Machine(step) => self.machines.step(step),
@@ -76,6 +82,7 @@ impl TraceObserver for TraceJudge<'_> {
 
     fn end(&mut self, time: Nanos) {
         self.checker.end(time);
+        self.conformance.end(time);
     }
 }
 

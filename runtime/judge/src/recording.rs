@@ -2,10 +2,11 @@
 
 use std::io::BufRead;
 
+use hrdsl_conformance::ConformanceOptions;
 use hrdsl_ir::{Program, value::seconds};
 use hrdsl_results::TraceJudgement;
 use hrdsl_trace::{
-    MachineDeclaration, RunEnd,
+    MachineDeclaration, RunEnd, Trace, TraceObserver,
     parse::{OpenRecording, ReadError, RecordingSummary},
     record::RecordingHeader,
     vocabulary,
@@ -51,7 +52,7 @@ pub enum JudgeError {
 }
 
 /// Reads a recording in one pass, and judges it. Unless `changed` is allowed, the recording must be of this scenario and its
-/// vocabulary; where it is allowed, every name in the recording must still be known.
+/// vocabulary; where it is allowed, every name in the recording must still be known. `options` say how the recording shows what the code did.
 ///
 /// # Errors
 /// A recording of another scenario, and the first line that is wrong.
@@ -59,15 +60,39 @@ pub fn judge_recording(
     program: &Program,
     source: impl BufRead,
     changed: bool,
+    options: &ConformanceOptions,
 ) -> Result<JudgedRecording, JudgeError> {
+    let mut judge = TraceJudge::new(program, options);
+    let recorded = observe(program, source, changed, &mut judge)?;
+    let (judgement, machines) = judge.finish(recorded.ending.kind);
+    Ok(JudgedRecording { recorded, judgement, machines })
+}
+
+/// What a recording has, and how its run ended, without a judgement; `changed` as in [`judge_recording`].
+///
+/// # Errors
+/// A recording of another scenario, and the first line that is wrong.
+pub fn recorded_run(
+    program: &Program,
+    source: impl BufRead,
+    changed: bool,
+) -> Result<(Trace, RunEnd), JudgeError> {
+    let mut trace = Trace::default();
+    let recorded = observe(program, source, changed, &mut trace)?;
+    Ok((trace, recorded.ending.kind))
+}
+
+fn observe(
+    program: &Program,
+    source: impl BufRead,
+    changed: bool,
+    observer: &mut dyn TraceObserver,
+) -> Result<RecordingSummary, JudgeError> {
     let recording = OpenRecording::open(source)?;
     if !changed {
         is_of(program, recording.header())?;
     }
-    let mut judge = TraceJudge::new(program);
-    let recorded = recording.replay(program, &mut judge)?;
-    let (judgement, machines) = judge.finish(recorded.ending.kind);
-    Ok(JudgedRecording { recorded, judgement, machines })
+    Ok(recording.replay(program, observer)?)
 }
 
 /// Whether a recording is of this scenario as it is now. Recordings by other programs need not have a vocabulary.

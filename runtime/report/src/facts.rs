@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use hrdsl_results::{
-    BinResult, CampaignResults, CoverageRatios, FirstFailure, GoalStatus, InterfaceWarning, MachineResult,
-    RequirementKind, RequirementResult, TestName, TestResult, UnservedWait, VerdictOutcome as Outcome,
-    VerdictResult, VerdictTally,
+    BinResult, CampaignResults, ConformanceOutcome, CoverageRatios, FirstFailure, GoalStatus,
+    InterfaceWarning, MachineResult, RequirementKind, RequirementResult, TestName, TestResult, UnservedWait,
+    VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
 use crate::text;
@@ -222,12 +222,21 @@ pub fn warnings(results: &CampaignResults) -> Vec<&InterfaceWarning> {
     results.warnings.iter().filter(|w| !w.is_note()).collect()
 }
 
-/// What must be known about a run: its marks, where it left its prediction, and what its programs waited for in vain.
+/// What must be known about a run: its marks, where it left its prediction and the model, and what its programs waited for in vain.
 pub fn notes(test: &TestResult) -> Vec<String> {
     let marks = test.marks.iter().map(|mark| mark.sentence().to_owned());
     let departure = test.prediction.as_ref().and_then(|p| p.departure(&test.steps));
     let left = departure.map(|how| format!("not as predicted: {how}"));
-    marks.chain(left).chain(test.waits.iter().map(UnservedWait::sentence)).collect()
+    let models = test.judgement.conformance.iter().filter_map(|verdict| {
+        let sentence = verdict.sentence()?;
+        Some(match verdict.outcome {
+            ConformanceOutcome::Departs => format!("not as the model: {sentence}"),
+            ConformanceOutcome::Conforms | ConformanceOutcome::Inconclusive => {
+                format!("conformance inconclusive: {sentence}")
+            }
+        })
+    });
+    marks.chain(left).chain(models).chain(test.waits.iter().map(UnservedWait::sentence)).collect()
 }
 
 /// Whether everything of a state machine was reached.

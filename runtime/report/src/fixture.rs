@@ -6,7 +6,7 @@ mod system;
 
 use hrdsl_results::{
     BinName, BinResult, CampaignResults, CodeFile, CounterexampleStep, CoverageRatios, FORMAT, FirstFailure,
-    GoalReport, GoalStatus, LogSummary, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
+    GoalReport, GoalStatus, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
     SmallestMargin, SuiteGoalId, SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION,
     VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
@@ -209,7 +209,8 @@ fn test(s: usize, i: usize) -> TestFixture {
         judgement: TraceJudgement {
             verdicts: (0..REQUIREMENTS.len()).map(|r| verdict(s, i, r, error.is_some())).collect(),
             bins,
-            machines: Vec::new(),
+            conformance: prediction::conformance(i),
+            ..TraceJudgement::default()
         },
         predicted,
         prediction,
@@ -218,8 +219,6 @@ fn test(s: usize, i: usize) -> TestFixture {
         code: ratios(&executed),
         steps: steps(s, i),
         marks: if i % 29 == 6 { vec![RunMark::DependsOnLoad] } else { Vec::new() },
-        waits: Vec::new(),
-        log: LogSummary::default(),
         output: OutputSummary {
             stdout_bytes: 120,
             stderr_bytes: if error.is_some() { 42 } else { 0 },
@@ -228,8 +227,8 @@ fn test(s: usize, i: usize) -> TestFixture {
                 .map(|_| "RuntimeError: no leg in the gripper".into())
                 .unwrap_or_default(),
         },
-        physics: None,
         error,
+        ..TestResult::default()
     };
     TestFixture { result, executed }
 }

@@ -1,25 +1,25 @@
 //! The summary for a terminal: requirements, first violations, bins, code and errors, in aligned columns.
 
+mod agreement;
 mod page;
 mod system;
 
 use hrdsl_results::{
-    BinResult, CampaignResults, CoverItemKind, CoverageRatios, PredictionOutcome, RequirementResult, RunMark,
-    SuiteInfo, TestResult, VerdictOutcome as Outcome,
+    BinResult, CampaignResults, CoverItemKind, CoverageRatios, RequirementResult, RunMark, SuiteInfo,
+    TestResult, VerdictOutcome as Outcome,
 };
 
 use crate::{
     facts::{self, BinStatus, ShownOutcome},
     model, text,
 };
+use agreement::{conformance, predictions};
 use page::{LABEL, StyledSpan, TerminalPage, TerminalStyle, left, right};
 use system::{interfaces, machines};
 
 /// Bins and errors that are listed, at most.
 const BINS: usize = 16;
 const ERRORS: usize = 3;
-/// Tests that left their predictions that are listed, at most.
-const DEPARTURES: usize = 3;
 /// Goals of a model that are listed for a suite, at most.
 const GOALS: usize = 5;
 
@@ -32,6 +32,7 @@ pub fn summary(results: &CampaignResults, width: usize, color: bool) -> String {
     violations(&mut page, results);
     bins(&mut page, results);
     predictions(&mut page, results);
+    conformance(&mut page, results);
     models(&mut page, results);
     machines(&mut page, results);
     code(&mut page, results);
@@ -54,6 +55,7 @@ pub fn summary_of_recordings(results: &CampaignResults, width: usize, color: boo
     requirements(&mut page, results);
     violations(&mut page, results);
     bins(&mut page, results);
+    conformance(&mut page, results);
     machines(&mut page, results);
     errors(&mut page, results);
     page.out
@@ -431,36 +433,6 @@ fn errors(page: &mut TerminalPage, results: &CampaignResults) {
     }
 }
 
-/// Where model and code differ: the tests that went another way than the model of their suite said.
-fn predictions(page: &mut TerminalPage, results: &CampaignResults) {
-    let verdicts = || results.tests.iter().filter_map(|t| t.prediction.as_ref().map(|p| (t, p)));
-    let number = |outcome| verdicts().filter(|(_, p)| p.outcome == outcome).count();
-    let (kept, left) = (number(PredictionOutcome::Kept), number(PredictionOutcome::Left));
-    if kept + left == 0 {
-        return;
-    }
-    page.out.push('\n');
-    page.line(&[
-        StyledSpan("Predictions".into(), TerminalStyle::Bold),
-        StyledSpan(
-            format!("  kept by {kept} of {}", text::count(kept + left, "test")),
-            if left > 0 { TerminalStyle::Warn } else { TerminalStyle::Dim },
-        ),
-    ]);
-    let departures = verdicts().filter_map(|(test, p)| p.departure(&test.steps).map(|how| (test, how)));
-    for (test, how) in departures.take(DEPARTURES) {
-        let name = text::line(facts::short(results, &test.name));
-        page.line(&[
-            StyledSpan("○ ".into(), TerminalStyle::Warn),
-            StyledSpan(format!("{}  ", text::cut(&name, page.width / 3)), TerminalStyle::Plain),
-            StyledSpan(text::line(&how), TerminalStyle::Plain),
-        ]);
-    }
-    if left > DEPARTURES {
-        page.line(&[StyledSpan(format!("  and {} more", left - DEPARTURES), TerminalStyle::Dim)]);
-    }
-}
-
 /// What must be known about some runs to trust them.
 fn marks(page: &mut TerminalPage, results: &CampaignResults) {
     for mark in [RunMark::DependsOnLoad, RunMark::OtherProcesses] {
@@ -499,7 +471,7 @@ mod tests {
                 let widest = text.lines().map(|l| l.chars().count()).max();
                 assert!(widest <= Some(width), "{widest:?} > {width}\n{text}");
             }
-            assert!(summary(&results, 100, false).lines().count() <= 65);
+            assert!(summary(&results, 100, false).lines().count() <= 71);
         }
     }
 

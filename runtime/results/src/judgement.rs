@@ -1,10 +1,10 @@
-//! The judgement on one run: verdicts and bins.
+//! The judgement on one run: verdicts, bins, and conformance to models.
 
 use hrdsl_ir::coverage::BinName;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{machine::MachineCoverage, names::RequirementName};
+use crate::{conformance::ConformanceVerdict, machine::MachineCoverage, names::RequirementName};
 
 /// What a trace says about the requirements, and what it covers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -17,6 +17,9 @@ pub struct TraceJudgement {
     /// What was reached of the system's state machines.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub machines: Vec<MachineCoverage>,
+    /// By each model of the system, whether what the code did is what the model does; left out if there is no model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conformance: Vec<ConformanceVerdict>,
 }
 
 /// What a run says about a requirement.
@@ -110,5 +113,6 @@ impl TraceJudgement {
         for verdict in self.verdicts.iter_mut().filter(|v| v.outcome != VerdictOutcome::Fail) {
             verdict.outcome = VerdictOutcome::Error;
         }
+        self.conformance.iter_mut().for_each(ConformanceVerdict::break_off);
     }
 }

@@ -13,6 +13,7 @@
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod code;
+mod conformance;
 mod executed;
 mod generated;
 mod goal;
@@ -27,11 +28,16 @@ mod suite;
 mod tally;
 mod test;
 
+use hrdsl_ir::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use code::{CodeFile, CoverageRatios};
+pub use conformance::{
+    AllowedEvent, ConformanceOutcome, ConformanceVerdict, DepartedEvent, DepartureKind, ModelDeparture,
+    ModelPlace,
+};
 pub use executed::FileCoverage;
 pub use generated::{AbstractTests, AgentFindings, GeneratedSuite};
 pub use goal::SuiteGoalId;
@@ -151,6 +157,13 @@ impl CampaignResults {
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.tests.iter().all(|t| t.error.is_none() && !t.has_failed())
+    }
+
+    /// Asks for the line of each place of a model that it names.
+    pub fn locate(&mut self, line: &dyn Fn(Span) -> Option<usize>) {
+        for verdict in self.tests.iter_mut().flat_map(|t| &mut t.judgement.conformance) {
+            verdict.locate(line);
+        }
     }
 
     /// The command that runs a test again, as it is typed in the folder of the results; `None` if there is none.

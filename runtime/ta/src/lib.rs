@@ -16,7 +16,7 @@
 //! Each uses only those above it.
 //! - `zone`: matrices ([`dbm`]) and [`federation`]s of them, and the extrapolation that keeps them finite.
 //! - `network`: `compile` makes the `model` and `bounds` what its clocks are compared with; `code` evaluates; `semantics`
-//!   enumerates what may happen; `graph` makes it symbolic; [`query`] has the questions.
+//!   enumerates what may happen; `graph` makes it symbolic; `open` takes events from outside; [`query`] has the questions.
 //! - `witness`: the interpreter (`concrete`), and the runs that it replays and plays.
 //! - `search`: `rounds` goes over the waiting states (`waiting`), `expand` makes the successors of one with zones of the clocks
 //!   that matter (`stepper`), as narrow as the constants allow; `store` keeps what is new, `slice` says which variables
@@ -51,6 +51,7 @@ pub use decide::fastest::{fastest, shortest};
 pub use network::code::SyncMedium;
 pub use network::error::{EdgeName, ModelError};
 pub use network::model::{CompiledNetwork, ObservationOptions, slot_names};
+pub use network::open::{OpenNetwork, OpenTransition, StateStay};
 pub use network::query::{
     self, EventCounter, EventLimit, GoalKind, ReachabilityGoal, SearchBudget, StateFormula, clock_names,
 };

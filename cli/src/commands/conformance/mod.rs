@@ -7,9 +7,12 @@ use std::path::PathBuf;
 
 use hrdsl_compiler::{CompilationResult, InputFile, compile};
 use hrdsl_ir::{Program, system::SystemUnderTest};
-use hrdsl_runtime::campaign::{
-    CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, ReplayChoice, StopFlag,
-    SupervisorCommand, prepare,
+use hrdsl_runtime::{
+    campaign::{
+        CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, ReplayChoice,
+        StopFlag, SupervisorCommand, prepare,
+    },
+    conformance::ConformanceOptions,
 };
 use serde_json::Value;
 
@@ -165,6 +168,7 @@ impl<'a> ConformanceRun<'a> {
             forks: ForkPlan::default(),
             jobs: 1,
             stop: self.stop.clone(),
+            conformance: ConformanceOptions::default(),
             replays: ReplayChoice::None,
             clocks: None,
         };

@@ -1,6 +1,7 @@
 //! `hrdsl sim`: the tests against the code under test, and the reports.
 
 mod choices;
+mod chosen_system;
 mod determinism;
 mod rerun;
 mod run;
@@ -28,11 +29,21 @@ use hrdsl_runtime::{
 use serde::Serialize;
 
 use choices::{IsolationArg, ReplaysArg};
+use chosen_system::{chosen_system, system_file};
 
 use super::generate::{chosen, describe, save};
 use crate::{
-    color, covered_files, exit::CommandExit, fault::CommandFault, files, hulls::HullFolder, input,
-    installing::InstallProgress, quantity, results_folder::ResultsFolder, terminal,
+    color, covered_files,
+    exit::CommandExit,
+    fault::CommandFault,
+    files,
+    hulls::HullFolder,
+    input,
+    installing::InstallProgress,
+    observation::{ObservationArgs, locate},
+    quantity,
+    results_folder::ResultsFolder,
+    terminal,
 };
 
 /// What `sim` writes into its folder, the reports last.
@@ -122,6 +133,8 @@ pub struct SimArgs {
     /// Output that the program may write in a test.
     #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
     output_limit: Option<u64>,
+    #[command(flatten)]
+    observation: ObservationArgs,
 }
 
 /// # Errors
@@ -163,7 +176,8 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let sources =
         system.coverage().into_iter().filter_map(|f| files::read(&dir.join(&f)).ok().map(|text| (f, text)));
     let sources = sources.collect::<BTreeMap<_, _>>();
-    let results = tally(program, args.seed, &generated, outcome, &sources, rerun::words(args, &out));
+    let mut results = tally(program, args.seed, &generated, outcome, &sources, rerun::words(args, &out));
+    locate(&mut results, &compilation);
     publish(&results, &campaign, times.as_ref(), folder)?;
     summarise(&results, &campaign, (args, &out), begun.elapsed())?;
     if let Some(times) = &times {
@@ -184,40 +198,6 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     } else {
         CommandExit::Ok
     })
-}
-
-/// The file of `--system FILE`, seen from the scenario's folder.
-fn system_file(args: &SimArgs) -> Result<Option<String>, CommandFault> {
-    let Some(file) = args.system.as_deref().filter(|name| is_file_name(name)) else { return Ok(None) };
-    let path = Path::new(file);
-    if !path.is_file() {
-        return Err(format!("--system: there is no file {}", terminal::shown(path)));
-    }
-    Ok(Some(files::relative(path, &files::folder(&args.file)).display().to_string()))
-}
-
-fn is_file_name(name: &str) -> bool {
-    name.ends_with(".hri")
-}
-
-/// The system of this name, or of that file, which was read last; or the first.
-fn chosen_system<'p>(program: &'p Program, name: Option<&str>) -> Result<&'p SystemUnderTest, CommandFault> {
-    let last = program.systems.last().map(|system| system.origin.file);
-    if let Some(name) = name.filter(|name| is_file_name(name)) {
-        let own = program.systems.first().is_some_and(|system| Some(system.origin.file) == last);
-        let found = program.systems.iter().find(|s| Some(s.origin.file) == last && !own);
-        return found.ok_or_else(|| format!("{name} has no `system`"));
-    }
-    let Some(first) = program.systems.first() else {
-        return Err("the scenario has no `system` block: there is nothing to run".to_owned());
-    };
-    let Some(name) = name else { return Ok(first) };
-    let names: Vec<&str> = program.systems.iter().map(|s| s.name.as_str()).collect();
-    program
-        .systems
-        .iter()
-        .find(|s| s.name == name)
-        .ok_or_else(|| format!("no system is called `{name}`; there are {}", names.join(", ")))
 }
 
 /// Installs what the code needs, and finds out how its tests can be kept apart.
@@ -263,6 +243,7 @@ fn prepared<'p>(
         jobs: if args.debug { 1 } else { args.jobs.map_or_else(cores, usize::from) },
         forks: ForkPlan::default(),
         stop: stop_flag(args.debug)?,
+        conformance: args.observation.options(program)?,
         replays: args.replays.choice(),
         clocks: args.timings.then_some(ProcessorClocks::SYSTEM),
     };

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{SimArgs, is_file_name};
+use super::{SimArgs, chosen_system::is_file_name};
 use crate::files::relative;
 
 /// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
@@ -25,6 +25,7 @@ pub fn words(args: &SimArgs, out: &Path) -> String {
     };
     words.extend(args.system.iter().map(|name| format!("--system {}", system(name))));
     words.extend(times.chain(sizes));
+    words.extend(args.observation.words());
     words.push("--test".to_owned());
     words.join(" ")
 }

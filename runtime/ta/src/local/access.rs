@@ -54,7 +54,7 @@ impl NetworkProcesses {
             invariants.push(locations.collect::<Vec<ResourceAccesses>>());
         }
         if model.extrapolation.diagonals.is_some() {
-            return Err(NotApplicableError::Difference(model.name.to_owned()));
+            return Err(NotApplicableError::Difference(model.name.clone()));
         }
         let shared = shared(&uses, &invariants);
         steady(model, &uses, &invariants, &shared)?;

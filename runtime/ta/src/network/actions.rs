@@ -2,6 +2,8 @@
 
 use std::{ops::ControlFlow, rc::Rc};
 
+use hrdsl_ir::EventId;
+
 use crate::{
     network::{
         code::{CodeEvalError, SyncMedium},
@@ -51,12 +53,33 @@ impl DelayCondition {
     }
 }
 
+/// What an enumeration tells what it has found.
+type FoundFiring<'f> = dyn FnMut(FiringOrError) -> ControlFlow<()> + 'f;
+
 impl CompiledNetwork<'_> {
     /// All that may happen in a discrete state, in the network's order.
     pub(crate) fn actions(&self, state: &[i64]) -> Vec<EnabledTransition> {
+        let mut own = state.to_vec();
+        self.collected(state, &mut |scratch, found| {
+            let _ = self.enumerate(&mut own, &NoConstraintFilter, scratch, found);
+        })
+    }
+
+    /// All that the network may do about an event from outside.
+    pub(crate) fn receptions(&self, state: &[i64], event: EventId, args: &[i64]) -> Vec<EnabledTransition> {
+        let mut own = state.to_vec();
+        self.collected(state, &mut |scratch, found| {
+            let _ = self.received(&mut own, (event, args), scratch, found);
+        })
+    }
+
+    fn collected(
+        &self,
+        state: &[i64],
+        enumerate: &mut dyn FnMut(&mut EnumerationScratch, &mut FoundFiring),
+    ) -> Vec<EnabledTransition> {
         let (mut scratch, mut stack, mut effect) =
             (EnumerationScratch::default(), Vec::new(), TransitionEffect::default());
-        let mut own = state.to_vec();
         let mut out = Vec::new();
         let mut found = |found: FiringOrError| -> ControlFlow<()> {
             out.extend(match found {
@@ -74,7 +97,7 @@ impl CompiledNetwork<'_> {
             });
             ControlFlow::Continue(())
         };
-        let _ = self.enumerate(&mut own, &NoConstraintFilter, &mut scratch, &mut found);
+        enumerate(&mut scratch, &mut found);
         out
     }
 

@@ -37,9 +37,9 @@ const FAR: u64 = 1 << 50;
 /// A number that no argument has.
 const NEVER: i64 = i64::MIN;
 
-struct NetworkCompiler<'p> {
+struct NetworkCompiler<'p, 'n> {
     program: &'p Program,
-    network: &'p Network,
+    network: &'n Network,
     unit: Nanos,
     library: CodeLibrary,
 }
@@ -51,18 +51,14 @@ impl<'p> CompiledNetwork<'p> {
     ///
     /// # Errors
     /// If the program is malformed or its constants are too far apart.
-    pub fn new(
-        program: &'p Program,
-        network: &'p Network,
-        observe: &ObservationOptions,
-    ) -> ModelResult<Self> {
+    pub fn new(program: &'p Program, network: &Network, observe: &ObservationOptions) -> ModelResult<Self> {
         compiled(program, network, observe)
     }
 }
 
 fn compiled<'p>(
     program: &'p Program,
-    network: &'p Network,
+    network: &Network,
     observe: &ObservationOptions,
 ) -> ModelResult<CompiledNetwork<'p>> {
     let automata: Vec<&Automaton> =
@@ -75,7 +71,7 @@ fn compiled<'p>(
     // The order of what follows matters: members give names to variables, functions are compiled over those names and may call each
     // other, edges call functions, and partners and extrapolation look at compiled edges.
     let library = CodeLibrary { ranges: ranges(&automata, &slots, observe), ..CodeLibrary::default() };
-    let unit = unit(&automata, &observe.formulas);
+    let unit = if observe.nanoseconds { 1 } else { unit(&automata, &observe.formulas) };
     let mut compiler = NetworkCompiler { program, network, unit, library };
     let mut members = compiler.members(network, &automata)?;
     compiler.functions(network, &members)?;
@@ -100,7 +96,7 @@ fn compiled<'p>(
     let watch = compiler.watch(observe);
     Ok(CompiledNetwork {
         program,
-        name: &network.name,
+        name: network.name.clone(),
         shared: program.shared.len(),
         slots,
         counters: observe.counters.clone(),
@@ -176,7 +172,7 @@ fn malformed(automaton: &str, what: &str) -> ModelError {
     ModelError::Malformed { automaton: automaton.to_owned(), what: what.to_owned() }
 }
 
-impl<'p> NetworkCompiler<'p> {
+impl<'p> NetworkCompiler<'p, '_> {
     /// The members with their names, without locations and edges.
     fn members(
         &self,

@@ -8,6 +8,7 @@ pub(crate) mod error;
 pub(crate) mod graph;
 pub(crate) mod model;
 pub(crate) mod number;
+pub(crate) mod open;
 pub(crate) mod parts;
 pub mod query;
 pub(crate) mod selects;

@@ -32,6 +32,8 @@ pub struct ObservationOptions {
     pub formulas: Vec<hrdsl_ir::ta::QueryFormula>,
     /// Zones have all clocks, not only those that matter in their locations: then a clock's number is its index.
     pub all_clocks: bool,
+    /// Times are counted in nanoseconds, not in the greatest unit in which all constants are whole.
+    pub nanoseconds: bool,
 }
 
 /// How many bits the entries of matrices need.
@@ -45,7 +47,7 @@ pub(crate) enum BoundWidth {
 /// A network made ready to explore.
 pub struct CompiledNetwork<'p> {
     pub(crate) program: &'p Program,
-    pub(crate) name: &'p str,
+    pub(crate) name: String,
     pub(crate) members: Vec<CompiledAutomaton<'p>>,
     pub(crate) slots: Vec<&'p AutomatonVar>,
     /// How many of the slots are shared.

@@ -122,10 +122,12 @@ impl ConstraintFilter for NoConstraintFilter {
 }
 
 /// The state of an enumeration.
-struct FiringEnumeration<'a, 'p, M, F> {
+struct FiringEnumeration<'a, 'p, M, F: ?Sized> {
     model: &'a CompiledNetwork<'p>,
     state: &'a mut [i64],
     committed: bool,
+    /// That nobody takes something is a transition, too: it comes from outside.
+    outside: bool,
     may: &'a M,
     found: &'a mut F,
     s: &'a mut EnumerationScratch,
@@ -135,7 +137,7 @@ type EnumerationFlow = ControlFlow<()>;
 
 impl<'p> CompiledNetwork<'p> {
     /// Calls `found` with all that may happen, until it breaks off. The state is not changed.
-    pub(crate) fn enumerate<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow>(
+    pub(crate) fn enumerate<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>(
         &self,
         state: &mut [i64],
         may: &M,
@@ -144,7 +146,8 @@ impl<'p> CompiledNetwork<'p> {
     ) -> EnumerationFlow {
         // A path is kept as numbers of transitions, so that this order is part of what the search remembers.
         let committed = self.any_committed(state);
-        let mut e = FiringEnumeration { model: self, state, committed, may, found, s: scratch };
+        let mut e =
+            FiringEnumeration { model: self, state, committed, outside: false, may, found, s: scratch };
         for m in 0..self.members.len() {
             for &edge in &self.place(e.state, m).active {
                 e.active(m, usize::from(edge))?;
@@ -154,6 +157,39 @@ impl<'p> CompiledNetwork<'p> {
             e.multiway(index)?;
         }
         ControlFlow::Continue(())
+    }
+
+    /// Calls `found` with all that the network may do about an event from outside: what no committed location holds back, for the world does
+    /// not wait. Where nobody takes it, that is found as well.
+    pub(crate) fn received<F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>(
+        &self,
+        state: &mut [i64],
+        (event, args): (EventId, &[i64]),
+        scratch: &mut EnumerationScratch,
+        found: &mut F,
+    ) -> EnumerationFlow {
+        let medium = SyncMedium::Event(event);
+        let (may, committed) = (&NoConstraintFilter, false);
+        let mut e =
+            FiringEnumeration { model: self, state, committed, outside: true, may, found, s: scratch };
+        e.s.parts.clear();
+        e.s.guard.clear();
+        e.s.args.clear();
+        e.s.args.extend_from_slice(args);
+        let mut options = Vec::new();
+        for m in 0..self.members.len() {
+            let is = |edge: &u16| {
+                matches!(&self.members[m].edges[usize::from(*edge)].sync,
+                    EdgeSync::In(pattern) if pattern.medium == medium)
+            };
+            let edges = self.place(e.state, m).receiving.iter().copied().filter(is);
+            let edges: SmallVec<[u16; 8]> = edges.collect();
+            let responses = e.responses(m, &edges, true);
+            if !responses.is_empty() {
+                options.push(responses);
+            }
+        }
+        e.combine(&options, Some(medium))
     }
 
     fn is_committed(&self, state: &[i64], member: usize) -> bool {
@@ -331,6 +367,7 @@ impl<'p> CompiledNetwork<'p> {
             model: self,
             state,
             committed: false,
+            outside: false,
             may: &NoConstraintFilter,
             found: &mut hurry,
             s: scratch,
@@ -355,7 +392,9 @@ impl<'p> CompiledNetwork<'p> {
     }
 }
 
-impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnumeration<'_, '_, M, F> {
+impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>
+    FiringEnumeration<'_, '_, M, F>
+{
     fn arrow(&self, member: usize, edge: usize) -> &'_ CompiledEdge<'_> {
         &self.model.members[member].edges[edge]
     }
@@ -637,7 +676,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow> FiringEnum
                 }
                 Some(_) => {}
                 // All of a multi-way channel's optional participants stay away: nothing happens.
-                None if self.s.parts.is_empty() => {}
+                None if self.s.parts.is_empty() && !self.outside => {}
                 None => self.fire(medium)?,
             }
             self.s.parts.truncate(parts);

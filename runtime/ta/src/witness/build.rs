@@ -160,7 +160,7 @@ fn finish(
         step.time = times.at[at];
     }
     let end = times.at.last().copied().unwrap_or(0);
-    let witness = WitnessRun { network: graph.model.name.to_owned(), ticks: times.ticks, steps, end, ending };
+    let witness = WitnessRun { network: graph.model.name.clone(), ticks: times.ticks, steps, end, ending };
     believe(graph.model, &witness, &w.state, goal)?;
     Ok(witness)
 }

@@ -387,7 +387,7 @@ impl<N: DbmNumber> Dbm<N> {
     /// Becomes a zone of other clocks: clock `k` of it has the value of clock `from[k].0` of `old`, plus `from[k].1`.
     ///
     /// Clock 0 of `old` stands for zero; `from[0]` must be `(0, 0)`.
-    pub(crate) fn gather(&mut self, old: &Self, from: &[(u16, i64)]) {
+    pub fn gather(&mut self, old: &Self, from: &[(u16, i64)]) {
         self.resize(from.len());
         let shifted = from.iter().any(|f| f.1 != 0);
         for (i, &(x, a)) in from.iter().enumerate() {
