@@ -6,12 +6,15 @@ use common::{add, automaton, bin, clock, edge, event, location, n, normal, progr
 use hrdsl_ir::{
     ArgPattern, Enumeration, EventId, EventPattern, Expr, Program, Symbol, Type, Value,
     expr::BinaryOp,
-    ta::{AutomatonId, ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, ReceiveArg},
+    ta::{
+        AutomatonId, ClockConstraint, ClockId, ClockOp, EdgeAssignment, LocationId, LocationKind, ReceiveArg,
+    },
     value::SECOND,
 };
 use hrdsl_ta::{
-    EventCounter, EventLimit, GoalKind, GoalOutcome, ModelError, ReachabilityGoal, SearchBudget,
-    SearchCutoff, SearchError, SearchReport, StateFormula, WitnessRun, check, slot_names,
+    CompiledNetwork, EventCounter, EventLimit, GoalKind, GoalOutcome, ModelError, ObservationOptions,
+    ReachabilityGoal, SearchBudget, SearchCutoff, SearchError, SearchOptions, SearchReport, StateFormula,
+    WitnessRun, check, explore, slot_names,
 };
 
 fn condition(f: StateFormula) -> ReachabilityGoal {
@@ -157,6 +160,58 @@ fn leaving_a_range_is_a_fault_with_the_way_to_it() {
     let Err(SearchError::Model { error, witness }) = search(&p, &[], &[], &[]) else { panic!("no fault") };
     assert_eq!(error.to_string(), "automaton `A`, edge l -> l: `count` becomes 3, outside 0..2");
     assert_eq!(witness.unwrap().steps.iter().map(|s| s.time).collect::<Vec<_>>(), [3 * SECOND, 6 * SECOND]);
+}
+
+#[test]
+fn the_run_to_a_fault_ends_when_it_happens() {
+    let mut p = program();
+    let mut a = automaton("A", &["x", "y"]);
+    let (l, m) = (normal(&mut a, "l"), normal(&mut a, "m"));
+    edge(l, m).clock(0, ClockOp::Ge, 1).reset(1).to(&mut a);
+    // Two seconds later at the earliest, and `y` is not yet 4 s then.
+    let mut back = edge(m, m).clock(0, ClockOp::Ge, 3);
+    let to = hrdsl_ir::ta::TimeSum::constant(-4 * SECOND);
+    back.0.updates.push(EdgeAssignment::Reset { clock: ClockId(0), from: Some(ClockId(1)), to });
+    back.to(&mut a);
+    add(&mut p, a);
+    let Err(SearchError::Model { error, witness }) = search(&p, &[], &[], &[]) else { panic!("no fault") };
+    assert_eq!(error.to_string(), "automaton `A`, edge m -> m: the clock `A.x` becomes less than zero");
+    let witness = witness.unwrap();
+    assert_eq!((witness.steps.len(), witness.end / witness.ticks), (1, 3 * SECOND));
+}
+
+/// `x` is set to `y - 1`; nothing but that asks for `y`. After `y >= 2` it never makes `x` negative.
+fn set_back(first: i64) -> Program {
+    let mut p = program();
+    let mut a = automaton("A", &["x", "y"]);
+    let [l, m, k] = ["l", "m", "k"].map(|name| normal(&mut a, name));
+    edge(l, m).clock(1, ClockOp::Ge, first).to(&mut a);
+    edge(m, m).clock(0, ClockOp::Ge, 1).reset(0).to(&mut a);
+    let mut back = edge(m, k);
+    let to = hrdsl_ir::ta::TimeSum::constant(-SECOND);
+    back.0.updates.push(EdgeAssignment::Reset { clock: ClockId(0), from: Some(ClockId(1)), to });
+    back.to(&mut a);
+    edge(k, k).clock(0, ClockOp::Ge, 1).to(&mut a);
+    add(&mut p, a);
+    p
+}
+
+#[test]
+fn a_clock_that_is_set_back_is_known_well_enough() {
+    let network = |p: &Program, options: &SearchOptions| {
+        let model = CompiledNetwork::new(p, &p.networks[0], &ObservationOptions::default()).unwrap();
+        explore(&model, &[], options, &|_| true)
+    };
+    let all = [SearchOptions::default(), SearchOptions::reference(), SearchOptions::shortest()];
+    for options in all {
+        assert!(network(&set_back(2), &options).unwrap().complete);
+        // One second after the start `y` is 1 s, and before that less.
+        let Err(SearchError::Model { error, witness }) = network(&set_back(0), &options) else {
+            panic!("no fault")
+        };
+        assert_eq!(error.to_string(), "automaton `A`, edge m -> k: the clock `A.x` becomes less than zero");
+        assert_eq!(witness.unwrap().end, 0);
+    }
 }
 
 #[test]

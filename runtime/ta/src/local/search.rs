@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     network::{
-        error::ModelError,
+        actions::PathTransition,
         model::CompiledNetwork,
         query::{ReachabilityGoal, SearchBudget},
         semantics::{EnumerationScratch, FiringOrError, TransitionFiring},
@@ -330,17 +330,15 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
     /// A fault of the model with the path to it.
     fn led_to(&self, id: u32, failure: LocalSearchError) -> LocalSearchError {
         if let LocalSearchError::Search(SearchError::Model { error, witness: None }) = failure {
-            match self.faulty(id, error) {
-                Ok(error) | Err(error) => error.into(),
+            match self.path(&LocalGoalPath { node: id, last: None }) {
+                Ok(taken) => {
+                    build::fault_after(self.space.model, taken.into_iter().map(Rc::new), error).into()
+                }
+                Err(internal) => internal.into(),
             }
         } else {
             failure
         }
-    }
-
-    fn faulty(&self, id: u32, error: ModelError) -> Result<SearchError, SearchError> {
-        let witness = self.witness(&LocalGoalPath { node: id, last: None }, None)?;
-        Ok(SearchError::Model { error, witness: Some(Box::new(witness)) })
     }
 
     fn witness(
@@ -348,6 +346,10 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         path: &LocalGoalPath,
         goal: Option<&ReachabilityGoal>,
     ) -> Result<WitnessRun, SearchError> {
+        build::witness(self.space.model, self.path(path)?, goal, ScheduleOptions::default())
+    }
+
+    fn path(&self, path: &LocalGoalPath) -> Result<Vec<PathTransition>, SearchError> {
         let mut numbers: Vec<u32> = path.last.into_iter().collect();
         let mut at = self.store.nodes[path.node as usize];
         while at.parent != NIL {
@@ -355,8 +357,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             at = self.store.nodes[at.parent as usize];
         }
         numbers.reverse();
-        let taken = order::by_time(&self.space, &numbers, path.last.is_some())?;
-        build::witness(self.space.model, taken, goal, ScheduleOptions::default())
+        order::by_time(&self.space, &numbers, path.last.is_some())
     }
 }
 

@@ -143,6 +143,19 @@ pub(crate) struct VariableScope {
     pub vars: Vec<(VariablePlace, NumberType)>,
     /// The automaton (index in the network) whose functions may be called.
     pub member: Option<u16>,
+    /// Of the network's formulas: so many automata, whose locations have numbers.
+    pub located: usize,
+}
+
+impl VariableScope {
+    /// Where a variable is, and its type.
+    fn variable(&self, slot: u16) -> Option<(VariablePlace, NumberType)> {
+        let location = || {
+            let automaton = hrdsl_ir::ta::located_automaton(slot, self.located)?;
+            Some((VariablePlace::State(u32::from(automaton)), NumberType::Int))
+        };
+        self.vars.get(usize::from(slot)).copied().or_else(location)
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -568,9 +581,10 @@ impl CompiledExpr {
             }
             // Not looked into: it may read all that it could name.
             CompiledExpr::Generic(g) => {
-                for (at, _) in &g.scope.vars {
+                let located = (0..g.scope.located).map(|m| (VariablePlace::State(m as u32), NumberType::Int));
+                for (at, _) in g.scope.vars.iter().copied().chain(located) {
                     if let VariablePlace::State(i) = at {
-                        read(*i);
+                        read(i);
                     }
                 }
             }
@@ -698,7 +712,7 @@ struct CodeValueScope<'a, 'e> {
 
 impl EvalScope for CodeValueScope<'_, '_> {
     fn var(&self, slot: u16) -> Option<Value> {
-        let (at, ty) = *self.scope.vars.get(usize::from(slot))?;
+        let (at, ty) = self.scope.variable(slot)?;
         // While a function that this expression calls runs, nobody asks this scope: the function's code has the environment itself.
         let env = self.env.try_borrow().ok()?;
         ty.value(env.get(at), &env.library.constants)
@@ -786,7 +800,7 @@ impl CodeLibrary {
                 Some((CompiledExpr::Const(e.index_of(*s)? as i64), NumberType::Enum(e)))
             }
             Expr::Const(Value::Float(_) | Value::Text(_) | Value::List(_)) | Expr::List(..) => None,
-            Expr::Var(i) => match *names.vars.get(usize::from(*i))? {
+            Expr::Var(i) => match names.variable(*i)? {
                 (_, NumberType::Constant) => None,
                 (VariablePlace::State(i), ty) => Some((CompiledExpr::Var(i), ty)),
                 (VariablePlace::Local(i), ty) => Some((CompiledExpr::Local(i), ty)),

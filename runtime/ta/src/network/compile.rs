@@ -199,7 +199,7 @@ impl<'p> NetworkCompiler<'p> {
                 automaton,
                 base,
                 first_clock: clock,
-                names: VariableScope { vars, member: u16::try_from(m).ok() },
+                names: VariableScope { vars, member: u16::try_from(m).ok(), located: 0 },
                 locations: Vec::new(),
                 edges: Vec::new(),
             });
@@ -241,7 +241,10 @@ impl<'p> NetworkCompiler<'p> {
             });
             let frame = f.params.iter().chain(&f.locals).enumerate();
             let locals = frame.map(|(i, v)| (VariablePlace::Local(i as u32), NumberType::of(v)));
-            todo.push((f, VariableScope { vars: vars.into_iter().chain(locals).collect(), member }));
+            todo.push((
+                f,
+                VariableScope { vars: vars.into_iter().chain(locals).collect(), member, located: 0 },
+            ));
         }
         for (n, (f, names)) in todo.iter().enumerate() {
             let first = names.vars.len() - f.params.len() - f.locals.len();
@@ -698,7 +701,7 @@ impl<'p> NetworkCompiler<'p> {
             .iter()
             .enumerate()
             .map(|(i, v)| (VariablePlace::State((members + i) as u32), NumberType::of(v)));
-        let names = VariableScope { vars: vars.collect(), member: None };
+        let names = VariableScope { vars: vars.collect(), member: None, located: members };
         let mut all = ClockConstraints::default();
         let mut parts = Vec::new();
         observe.formulas.iter().for_each(|f| clock_parts(f, &mut |c| parts.push(c.clone())));

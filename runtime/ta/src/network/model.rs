@@ -7,7 +7,7 @@
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Type, Value,
-    ta::{AutomatonId, AutomatonVar, ChannelId, LocationId, LocationKind, Network},
+    ta::{AutomatonId, AutomatonVar, ChannelId, LocationId, LocationKind, Network, located_automaton},
 };
 
 use crate::network::{
@@ -172,7 +172,10 @@ impl<'p> CompiledNetwork<'p> {
             StateFormula::At { .. } => Err(unknown()),
             StateFormula::Data(e) => {
                 let mut known = true;
-                e.each_var(&mut |i| known &= usize::from(i) < self.slots.len());
+                e.each_var(&mut |i| {
+                    known &= usize::from(i) < self.slots.len()
+                        || located_automaton(i, self.members.len()).is_some();
+                });
                 if known { Ok(()) } else { Err(unknown()) }
             }
             StateFormula::CounterIn { counter, lo, hi } => {
@@ -202,7 +205,7 @@ impl<'p> CompiledNetwork<'p> {
     pub(crate) fn slot_scope(&self) -> VariableScope {
         let at = |slot| VariablePlace::State(self.slot_at(slot) as u32);
         let vars = self.slots.iter().enumerate().map(|(i, v)| (at(i), NumberType::of(v))).collect();
-        VariableScope { vars, member: None }
+        VariableScope { vars, member: None, located: self.members.len() }
     }
 
     pub(crate) fn edge_name(&self, member: usize, edge: usize) -> Box<EdgeName> {

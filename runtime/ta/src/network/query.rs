@@ -79,7 +79,8 @@ pub enum StateFormula {
         automaton: usize,
         location: LocationId,
     },
-    /// A boolean expression; `Expr::Var(i)` is the network's slot `i`: see [`slot_names`](crate::slot_names).
+    /// A boolean expression; `Expr::Var(i)` is the network's slot `i`: see [`slot_names`](crate::slot_names). A
+    /// [location](hrdsl_ir::ta::location_variable) counts as an int.
     Data(Expr),
     /// `lo <= n`, and `n <= hi` if there is such a bound.
     CounterIn {

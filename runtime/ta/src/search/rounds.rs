@@ -5,7 +5,10 @@
 //! is stored unless one of the same discrete part covers its zone, and it drives out those that it covers: of these only
 //! the path to them is kept, for witnesses. When nothing waits any more, a goal that was not met is proved unreachable.
 
-use std::sync::{Mutex, PoisonError};
+use std::{
+    rc::Rc,
+    sync::{Mutex, PoisonError},
+};
 
 use rayon::prelude::*;
 
@@ -112,7 +115,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         let mut outcomes = Vec::new();
         for i in 0..self.goals.len() {
             outcomes.push(match (self.hits[i], exhausted) {
-                (Some(path), _) => GoalOutcome::Reached(Box::new(self.witness(path, Some(i))?)),
+                (Some(path), _) => GoalOutcome::Reached(Box::new(self.witness(path, i)?)),
                 (None, Some(what)) => GoalOutcome::Inconclusive(what),
                 (None, None) => GoalOutcome::Unreachable,
             });
@@ -307,14 +310,19 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
     }
 
     fn fault(&mut self, error: ModelError, path: GoalPath) -> SearchError {
-        match self.witness(path, None) {
-            Ok(witness) => SearchError::Model { error, witness: Some(Box::new(witness)) },
+        match self.path(path) {
+            Ok(taken) => build::fault_after(self.model, taken.into_iter().map(Rc::new), error),
             Err(internal) => internal,
         }
     }
 
     /// The path's transitions, made concrete and replayed.
-    fn witness(&mut self, path: GoalPath, goal: Option<usize>) -> Result<WitnessRun, SearchError> {
+    fn witness(&mut self, path: GoalPath, goal: usize) -> Result<WitnessRun, SearchError> {
+        let taken = self.path(path)?;
+        build::witness(self.model, taken, Some(&self.goals[goal]), ScheduleOptions::default())
+    }
+
+    fn path(&mut self, path: GoalPath) -> Result<Vec<PathTransition>, SearchError> {
         let mut vias = Vec::new();
         let mut at = path.node;
         vias.extend(path.via.map(|via| (path.node, via)));
@@ -335,6 +343,6 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         for (node, via) in vias {
             self.workers[0].retrace(&context, node, via, &mut taken)?;
         }
-        build::witness(self.model, taken, goal.map(|g| &self.goals[g]), ScheduleOptions::default())
+        Ok(taken)
     }
 }
