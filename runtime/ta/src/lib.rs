@@ -56,7 +56,7 @@ pub use network::query::{
 };
 pub use network::{selects::BinderValues, semantics::AutomatonMove};
 pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
-pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport};
+pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable};
 pub use witness::build::retimed;
 pub use witness::error::SearchError;
 pub use witness::player::VirtualTimePlayer;

@@ -236,7 +236,42 @@ fn what_the_budget_leaves_is_open() {
     ] {
         let report = check(&p, &p.networks[0], &goals, &[], &[], budget).unwrap();
         assert_eq!(report.goals[1], GoalOutcome::Inconclusive(why));
+        assert_eq!(report.widest, None);
         assert!(!report.complete);
+    }
+}
+
+#[test]
+fn a_budget_that_ends_names_the_int_that_has_the_most_values() {
+    let mut p = program();
+    let few = shared(&mut p, "few", 0, 3, 0);
+    let mut a = automaton("A", &["x"]);
+    a.vars.push(var("many", -5, 1000, -5));
+    let (many, l) = (few + 1, normal(&mut a, "l"));
+    let up = |slot, most| {
+        let below = bin(BinaryOp::Lt, v(slot), n(most));
+        edge(l, l).clock(0, ClockOp::Ge, 1).when(below).set(slot, bin(BinaryOp::Add, v(slot), n(1))).reset(0)
+    };
+    up(few, 3).to(&mut a);
+    up(many, 1000).to(&mut a);
+    add(&mut p, a);
+    // With an equality it is a part of the discrete state, without one it is a counter.
+    for test in [BinaryOp::Eq, BinaryOp::Lt] {
+        let goals = [condition(StateFormula::And(vec![
+            StateFormula::Data(bin(test, v(many), n(-1))),
+            StateFormula::Data(bin(BinaryOp::Gt, v(few), n(3))),
+        ]))];
+        let budget = SearchBudget { states: 20, ..SearchBudget::default() };
+        let options = SearchOptions { budget, ..SearchOptions::shortest() };
+        let model = CompiledNetwork::new(&p, &p.networks[0], &ObservationOptions::default()).unwrap();
+        let report = explore(&model, &goals, &options, &|_| true).unwrap();
+        if report.complete {
+            // Of each value of `few` one state, with the least of `many`.
+            assert_eq!((test, report.states_stored), (BinaryOp::Lt, 4));
+            continue;
+        }
+        let widest = report.widest.unwrap().to_string();
+        assert!(widest.starts_with("`A.many` has the most values so far, from -5 to "), "{widest}");
     }
 }
 

@@ -49,7 +49,6 @@ pub struct CompiledNetwork<'p> {
     pub(crate) members: Vec<CompiledAutomaton<'p>>,
     pub(crate) slots: Vec<&'p AutomatonVar>,
     /// How many of the slots are shared.
-    #[allow(dead_code, reason = "for whoever takes names of an automaton for names of the network")]
     pub(crate) shared: usize,
     pub(crate) counters: Vec<EventCounter>,
     pub(crate) limits: Vec<EventLimit>,
@@ -206,6 +205,15 @@ impl<'p> CompiledNetwork<'p> {
         let at = |slot| VariablePlace::State(self.slot_at(slot) as u32);
         let vars = self.slots.iter().enumerate().map(|(i, v)| (at(i), NumberType::of(v))).collect();
         VariableScope { vars, member: None, located: self.members.len() }
+    }
+
+    /// A slot as [`slot_names`] calls it.
+    pub(crate) fn slot_name(&self, slot: usize) -> String {
+        let name = &self.slots[slot].name;
+        match self.members.iter().rfind(|m| m.base <= slot) {
+            Some(owner) if slot >= self.shared => format!("{}.{name}", owner.automaton.name),
+            Some(_) | None => name.clone(),
+        }
     }
 
     pub(crate) fn edge_name(&self, member: usize, edge: usize) -> Box<EdgeName> {

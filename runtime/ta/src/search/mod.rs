@@ -3,6 +3,7 @@
 mod covering;
 pub(crate) mod expand;
 pub(crate) mod goals;
+pub(crate) mod monotone;
 pub(crate) mod options;
 pub(crate) mod report;
 pub(crate) mod rounds;

@@ -22,8 +22,9 @@ use crate::{
     search::{
         expand::{ExpansionBatch, ExpansionContext, ExpansionWorker, GoalPath},
         goals::CompiledGoals,
+        monotone::{self, OneWayCounter},
         options::{SearchOptions, SubsumptionRelation},
-        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport},
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
         slice,
         store::{NIL, PassedList, StateLayout},
         waiting::WaitingList,
@@ -51,6 +52,7 @@ struct ZoneGraphSearch<'m, 'p, N> {
     goals: &'m [ReachabilityGoal],
     options: SearchOptions,
     compiled: CompiledGoals,
+    counters: Vec<OneWayCounter>,
     hits: Vec<Option<GoalPath>>,
     open: Vec<bool>,
     left: usize,
@@ -76,8 +78,14 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         options: &SearchOptions,
     ) -> Result<Self, SearchError> {
         let compiled = CompiledGoals::new(model, goals)?;
-        let matters =
+        let mut matters =
             if options.reduce { slice::relevant(model, &compiled) } else { vec![true; model.size()] };
+        let counters = if options.counters && options.subsumption != SubsumptionRelation::Equality {
+            monotone::counters(model, &compiled, &matters)
+        } else {
+            Vec::new()
+        };
+        counters.iter().for_each(|c| matters[c.place] = false);
         let mut options = *options;
         // With differences of clocks a simulation by bounds of single clocks is none.
         if model.extrapolation.diagonals.is_some() && options.subsumption == SubsumptionRelation::Simulation {
@@ -96,7 +104,8 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            store: PassedList::new(StateLayout::new(model.ranges(), &matters)),
+            store: PassedList::new(StateLayout::new(model.ranges(), &matters), counters.len()),
+            counters,
             waiting: WaitingList::new(model, options.order, options.seed),
             workers: (0..options.threads.max(1))
                 .map(|_| ExpansionWorker::new(model, options.abstraction))
@@ -129,7 +138,18 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             peak_bytes: self.peak,
             complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes),
             global_because: None,
+            widest: exhausted.and_then(|_| WidestVariable::of(self.model, &self.extremes())),
         })
+    }
+
+    /// The least and greatest of each number of the states.
+    fn extremes(&self) -> Vec<(i64, i64)> {
+        let mut all = self.store.extremes();
+        for (i, counter) in self.counters.iter().enumerate() {
+            let seen = (0..self.store.nodes.len() as u32).map(|n| counter.value(self.store.ranks(n)[i]));
+            all[counter.place] = seen.fold((i64::MAX, i64::MIN), |(lo, hi), n| (lo.min(n), hi.max(n)));
+        }
+        all
     }
 
     fn decided(&self) -> bool {
@@ -183,6 +203,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             goals: &self.compiled,
             open: &self.open,
             options: &self.options,
+            counters: &self.counters,
         };
         self.workers[0].begin(&context, &mut batch).map_err(SearchError::from)?;
         self.batches = vec![batch];
@@ -199,6 +220,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             goals: &self.compiled,
             open: &self.open,
             options: &self.options,
+            counters: &self.counters,
         };
         let work = |worker: &mut ExpansionWorker<'m, 'p, N>, nodes: &[u32], batch: &mut ExpansionBatch<N>| {
             batch.clear();
@@ -277,13 +299,14 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             let zone = batch.zone(item);
             let known =
                 if item.discrete == NIL { self.store.find(item.hash, packed) } else { Some(item.discrete) };
+            let ranks = batch.ranks(item, self.counters.len());
             let mut lost = false;
             let discrete = match known {
                 None => self.store.add_discrete(item.hash, packed),
                 Some(d) => {
                     // What was there before the round was looked at already.
                     let Some(covers) =
-                        worker.compare(&self.store, self.options.subsumption, d, first, zone, item.dim)
+                        worker.compare(&self.store, &self.options, d, first, (zone, item.dim), ranks)
                     else {
                         continue;
                     };
@@ -303,7 +326,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             if self.store.nodes.len() >= self.options.budget.states || !self.store.has_room(zone.len()) {
                 return Some(SearchCutoff::States);
             }
-            let id = self.store.add(item.parent, item.via, discrete, zone);
+            let id = self.store.add(item.parent, item.via, discrete, zone, ranks);
             self.waiting.push(id, lost, item.level);
         }
         None
@@ -337,6 +360,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             goals: &self.compiled,
             open: &self.open,
             options: &self.options,
+            counters: &self.counters,
         };
         let mut taken: Vec<PathTransition> = Vec::new();
         // A path through committed states that are not stored begins at the initial state itself.
