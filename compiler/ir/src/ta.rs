@@ -3,6 +3,8 @@
 use hrdsl_source::{Enumeration, Span};
 use serde::{Deserialize, Serialize};
 
+pub use crate::located::{located_automaton, location_variable};
+
 pub use hrdsl_source::LocationKind;
 
 pub use crate::expr::FunctionId;
@@ -423,19 +425,6 @@ pub enum QueryKind<E = Expr> {
     Sup { of: Vec<QueryMeasure<E>>, when: QueryFormula<E> },
     /// The greatest lower bound.
     Inf { of: Vec<QueryMeasure<E>>, when: QueryFormula<E> },
-}
-
-/// What stands in a query's expressions for the location of the network's automaton of this index, as its number. They are counted
-/// from the last number down, so that a variable more or less leaves them what they are.
-#[must_use]
-pub fn location_variable(automaton: u16) -> u16 {
-    u16::MAX - automaton
-}
-
-/// The automaton, of so many, whose location a variable of a query stands for.
-#[must_use]
-pub fn located_automaton(variable: u16, automata: usize) -> Option<u16> {
-    Some(u16::MAX - variable).filter(|a| usize::from(*a) < automata)
 }
 
 /// A formula over a network's states. Automata are given by their index in the network; clocks are numbered with the

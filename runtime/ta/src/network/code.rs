@@ -18,6 +18,8 @@ const STEPS: u32 = 1_000_000;
 /// Calls within calls.
 const DEPTH: u32 = 100;
 
+pub(crate) use crate::network::scope::{VariablePlace, VariableScope};
+
 /// Why there is no value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CodeEvalError {
@@ -50,15 +52,6 @@ impl From<EvalError> for CodeEvalError {
 pub enum SyncMedium {
     Event(EventId),
     Channel(ChannelId),
-}
-
-/// Where a variable of an expression lives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum VariablePlace {
-    /// An index into the state's vector.
-    State(u32),
-    /// Of the frame: selects and bound arguments of an edge, or parameters and locals of a function.
-    Local(u32),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,27 +128,6 @@ pub(crate) struct GenericExpr {
     expr: Expr,
     want: NumberType,
     scope: VariableScope,
-}
-
-/// What the variables of an expression are.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct VariableScope {
-    pub vars: Vec<(VariablePlace, NumberType)>,
-    /// The automaton (index in the network) whose functions may be called.
-    pub member: Option<u16>,
-    /// Of the network's formulas: so many automata, whose locations have numbers.
-    pub located: usize,
-}
-
-impl VariableScope {
-    /// Where a variable is, and its type.
-    fn variable(&self, slot: u16) -> Option<(VariablePlace, NumberType)> {
-        let location = || {
-            let automaton = hrdsl_ir::ta::located_automaton(slot, self.located)?;
-            Some((VariablePlace::State(u32::from(automaton)), NumberType::Int))
-        };
-        self.vars.get(usize::from(slot)).copied().or_else(location)
-    }
 }
 
 #[derive(Clone, Debug)]

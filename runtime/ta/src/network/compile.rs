@@ -199,7 +199,7 @@ impl<'p> NetworkCompiler<'p> {
                 automaton,
                 base,
                 first_clock: clock,
-                names: VariableScope { vars, member: u16::try_from(m).ok(), located: 0 },
+                names: VariableScope::own(vars, u16::try_from(m).ok()),
                 locations: Vec::new(),
                 edges: Vec::new(),
             });
@@ -241,10 +241,7 @@ impl<'p> NetworkCompiler<'p> {
             });
             let frame = f.params.iter().chain(&f.locals).enumerate();
             let locals = frame.map(|(i, v)| (VariablePlace::Local(i as u32), NumberType::of(v)));
-            todo.push((
-                f,
-                VariableScope { vars: vars.into_iter().chain(locals).collect(), member, located: 0 },
-            ));
+            todo.push((f, VariableScope::own(vars.into_iter().chain(locals).collect(), member)));
         }
         for (n, (f, names)) in todo.iter().enumerate() {
             let first = names.vars.len() - f.params.len() - f.locals.len();
@@ -701,7 +698,7 @@ impl<'p> NetworkCompiler<'p> {
             .iter()
             .enumerate()
             .map(|(i, v)| (VariablePlace::State((members + i) as u32), NumberType::of(v)));
-        let names = VariableScope { vars: vars.collect(), member: None, located: members };
+        let names = VariableScope::of_network(vars.collect(), members);
         let mut all = ClockConstraints::default();
         let mut parts = Vec::new();
         observe.formulas.iter().for_each(|f| clock_parts(f, &mut |c| parts.push(c.clone())));

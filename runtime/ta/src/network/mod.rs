@@ -10,6 +10,7 @@ pub(crate) mod model;
 pub(crate) mod number;
 pub(crate) mod parts;
 pub mod query;
+mod scope;
 pub(crate) mod selects;
 pub(crate) mod semantics;
 pub(crate) mod well_formed;

@@ -204,7 +204,7 @@ impl<'p> CompiledNetwork<'p> {
     pub(crate) fn slot_scope(&self) -> VariableScope {
         let at = |slot| VariablePlace::State(self.slot_at(slot) as u32);
         let vars = self.slots.iter().enumerate().map(|(i, v)| (at(i), NumberType::of(v))).collect();
-        VariableScope { vars, member: None, located: self.members.len() }
+        VariableScope::of_network(vars, self.members.len())
     }
 
     /// A slot as [`slot_names`] calls it.

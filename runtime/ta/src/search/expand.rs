@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 use crate::{
     network::{actions::PathTransition, error::ModelError, model::CompiledNetwork},
     search::{
+        batch::{ExpansionBatch, GoalHit, GoalPath, PendingState},
         covering::{covers, demands, subsumes},
         goals::{CompiledGoals, SymbolicStateRef},
         monotone::{OneWayCounter, may_drive_out, no_worse},
@@ -27,13 +28,6 @@ use crate::{
 /// Committed states that one expansion goes through without storing them. Of more, each would be expanded again and again.
 const AT_ONCE: usize = 4;
 
-/// A path to a goal: a node, then perhaps one transition more of its expansion. No node: the initial state.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GoalPath {
-    pub node: u32,
-    pub via: Option<u32>,
-}
-
 /// What an expansion may look at.
 pub(crate) struct ExpansionContext<'a, N> {
     pub store: &'a PassedList<N>,
@@ -43,96 +37,6 @@ pub(crate) struct ExpansionContext<'a, N> {
     pub options: &'a SearchOptions,
     /// Their ranks stand with the nodes.
     pub counters: &'a [OneWayCounter],
-}
-
-/// A symbolic state to store.
-pub(crate) struct PendingState {
-    pub parent: u32,
-    pub via: u32,
-    /// `NIL`: it was not there when the round began.
-    pub discrete: u32,
-    pub hash: u64,
-    /// Its place in the topological order of locations.
-    pub level: u32,
-    pub dim: usize,
-    words: usize,
-    zone: usize,
-    ranks: usize,
-    covered: (usize, usize),
-}
-
-/// A goal that is met.
-pub(crate) struct GoalHit {
-    pub goal: usize,
-    pub path: GoalPath,
-}
-
-/// What expansions lead to.
-pub(crate) struct ExpansionBatch<N> {
-    pub items: Vec<PendingState>,
-    pub hits: Vec<GoalHit>,
-    pub fault: Option<(ModelError, GoalPath)>,
-    pub visited: usize,
-    pub transitions: usize,
-    words: Vec<u64>,
-    zones: Vec<N>,
-    ranks: Vec<u32>,
-    covered: Vec<u32>,
-}
-
-impl<N> Default for ExpansionBatch<N> {
-    fn default() -> Self {
-        Self {
-            items: Vec::new(),
-            hits: Vec::new(),
-            fault: None,
-            visited: 0,
-            transitions: 0,
-            words: Vec::new(),
-            zones: Vec::new(),
-            ranks: Vec::new(),
-            covered: Vec::new(),
-        }
-    }
-}
-
-impl<N> ExpansionBatch<N> {
-    pub(crate) fn clear(&mut self) {
-        self.items.clear();
-        self.hits.clear();
-        self.fault = None;
-        self.visited = 0;
-        self.transitions = 0;
-        self.words.clear();
-        self.zones.clear();
-        self.ranks.clear();
-        self.covered.clear();
-    }
-
-    pub(crate) fn packed(&self, item: &PendingState, words: usize) -> &[u64] {
-        &self.words[item.words..item.words + words]
-    }
-
-    pub(crate) fn zone(&self, item: &PendingState) -> &[N] {
-        &self.zones[item.zone..item.zone + item.dim * item.dim]
-    }
-
-    /// The ranks of so many one-way counters.
-    pub(crate) fn ranks(&self, item: &PendingState, counters: usize) -> &[u32] {
-        &self.ranks[item.ranks..item.ranks + counters]
-    }
-
-    /// Stored states that the item covers.
-    pub(crate) fn covered(&self, item: &PendingState) -> &[u32] {
-        &self.covered[item.covered.0..item.covered.1]
-    }
-
-    pub(crate) fn bytes(&self) -> usize {
-        self.items.capacity() * size_of::<PendingState>()
-            + self.words.capacity() * 8
-            + self.zones.capacity() * size_of::<N>()
-            + (self.ranks.capacity() + self.covered.capacity()) * 4
-    }
 }
 
 /// A state of an expansion: the one that is expanded, or a committed one on the path.

@@ -1,5 +1,6 @@
 //! The search for goals: zones with one time for all automata, many goals at once, no state twice.
 
+mod batch;
 mod counter_steps;
 mod covering;
 pub(crate) mod expand;

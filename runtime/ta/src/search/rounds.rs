@@ -20,7 +20,8 @@ use crate::{
         query::ReachabilityGoal,
     },
     search::{
-        expand::{ExpansionBatch, ExpansionContext, ExpansionWorker, GoalPath},
+        batch::{ExpansionBatch, GoalPath},
+        expand::{ExpansionContext, ExpansionWorker},
         goals::CompiledGoals,
         monotone::{self, OneWayCounter},
         options::{SearchOptions, SubsumptionRelation},
