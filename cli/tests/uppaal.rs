@@ -101,3 +101,43 @@ fn errors_name_file_line_and_next_step() {
     let out = hrdsl_in(path, "export uppaal none.hri");
     assert!(stderr(&out).contains("has no network"), "{}", stderr(&out));
 }
+
+/// Three processes, of which one at a time is in `cs`, and the ways in which UPPAAL's models ask for that.
+#[test]
+fn locations_are_counted_as_uppaal_counts_them() {
+    let template = "<template><name>P</name><parameter>const int[0,2] i</parameter>\n\
+        <location id=\"a\"><name>idle</name></location><location id=\"b\"><name>cs</name></location><init ref=\"a\"/>\n\
+        <transition><source ref=\"a\"/><target ref=\"b\"/><label kind=\"guard\">free</label>\
+        <label kind=\"assignment\">free = false</label></transition>\n\
+        <transition><source ref=\"b\"/><target ref=\"a\"/><label kind=\"assignment\">free = true</label></transition>\
+        </template>";
+    let model = format!(
+        "<nta><declaration>bool free = true;</declaration>{template}<system>system P;</system></nta>"
+    );
+    let asked = [
+        ("A[] (sum(i : int[0,2]) P(i).cs) <= 1", "satisfied"),
+        ("A[] P(0).cs + P(1).cs + P(2).cs <= 1", "satisfied"),
+        ("A[] P(0).cs + P(1).cs + P(2).cs == 1", "not_satisfied"),
+        ("A[] P(0).idle + P(1).idle + P(2).idle >= 2", "satisfied"),
+        ("E<> P(2).cs == 1", "satisfied"),
+        ("E<> P(0).cs == P(1).cs && P(2).cs", "satisfied"),
+        ("A[] P(0).cs == P(1).cs", "not_satisfied"),
+        ("E<> (P(0).cs ? P(1).cs : P(2).cs)", "satisfied"),
+        ("E<> P(0).cs && (P(0).cs ? P(1).cs : P(2).cs)", "not_satisfied"),
+        ("A<> P(0).cs + P(1).cs > 0", "not_satisfied"),
+        ("A[] (P(0).cs ? 2 : 1) < 3", "satisfied"),
+    ];
+    let queries: Vec<&str> = asked.iter().map(|a| a.0).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("m.xml"), model).unwrap();
+    fs::write(path.join("m.q"), queries.join("\n")).unwrap();
+    expect_code(&hrdsl_in(path, "import uppaal m.xml m.q -o there.hri"), 0);
+    expect_code(&hrdsl_in(path, "check there.hri"), 0);
+    let verdicts = |file: &str| -> Vec<String> { answers(path, file).into_iter().map(|a| a.0).collect() };
+    let stated: Vec<&str> = asked.iter().map(|a| a.1).collect();
+    assert_eq!(verdicts("there.hri"), stated);
+    expect_code(&hrdsl_in(path, "export uppaal there.hri -o back.xml"), 0);
+    expect_code(&hrdsl_in(path, "import uppaal back.xml -o back.hri"), 0);
+    assert_eq!(verdicts("back.hri"), stated);
+}

@@ -138,6 +138,27 @@ fn quantifiers_are_expanded() {
     compiles(&from_text(&model(global, "", "", &labels, "system P;"), "").unwrap().text);
 }
 
+/// Each idiom becomes a formula that checks; what it answers is a test of the command line.
+#[test]
+fn locations_are_counted() {
+    let text = model("", "const int[0,2] i", "", &[], "system P;");
+    let idioms = [
+        ("A[] (sum(i : int[0,2]) P(i).a) <= 1", "if P0.a { 1 } else { 0 } + if P1.a { 1 } else { 0 } + "),
+        ("A[] P(0).a + P(1).a + P(2).a <= 1", "if P0.a { 1 } else { 0 } + if P1.a { 1 } else { 0 } + "),
+        ("E<> P(0).a == 1", "if P0.a { 1 } else { 0 } == 1"),
+        ("E<> P(0).a == P(1).a", "P0.a == P1.a"),
+        ("E<> (P(0).a ? P(1).a : P(2).a)", "if P0.a { P1.a } else { P2.a }"),
+        ("E<> (P(0).a ? 1 : 2) > 1", "if P0.a { 1 } else { 2 } > 1"),
+    ];
+    for (query, expected) in idioms {
+        let imported = from_text(&text, query).unwrap_or_else(|e| panic!("{query}: {e:?}"));
+        let made = imported.text.lines().find(|l| l.starts_with("query ")).unwrap_or_default();
+        assert!(made.contains(expected), "{query}: {made}");
+        is_readable(&imported.text);
+        compiles(&imported.text);
+    }
+}
+
 #[test]
 fn the_old_language_is_read() {
     let text = model(

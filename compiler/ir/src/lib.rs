@@ -22,6 +22,7 @@ pub mod exec;
 pub mod expr;
 mod known;
 pub mod list;
+mod located;
 pub mod lowering;
 pub mod monitor;
 mod plan_steps;

@@ -3,6 +3,8 @@
 use hrdsl_source::{Enumeration, Span};
 use serde::{Deserialize, Serialize};
 
+pub use crate::located::{located_automaton, location_variable};
+
 pub use hrdsl_source::LocationKind;
 
 pub use crate::expr::FunctionId;

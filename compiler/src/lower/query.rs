@@ -1,8 +1,10 @@
 //! Queries: variables get the slots that they have in their network.
 
 use hrdsl_ir::{
-    Expr, lowering,
-    ta::{Automaton, Query},
+    Expr,
+    expr::BinaryOp,
+    lowering,
+    ta::{Automaton, Query, location_variable},
 };
 use hrdsl_model::{self as model, Scenario, VariableRef};
 use hrdsl_source::SourceFiles;
@@ -21,12 +23,14 @@ pub(crate) fn query(
 ) -> Query {
     let network = &scenario.networks[usize::from(q.network.0)];
     let (mut own, mut next) = (Vec::new(), slot(scenario.shared.len()));
-    for id in &network.automata {
+    let mut locations = Vec::new();
+    for (place, id) in (0..).zip(&network.automata) {
         let at = usize::from(id.0);
+        locations.extend((0..scenario.automata[at].locations.len()).map(|l| (place, l)));
         own.extend((0..slot(scenario.automata[at].vars.len())).map(|v| next + v));
         next += slot(automata[at].vars.len());
     }
-    let slots = QueryVariableSlots { own };
+    let slots = QueryVariableSlots { own, locations };
     Query {
         name: q.name.clone(),
         title: q.title.clone(),
@@ -44,12 +48,29 @@ fn slot(n: usize) -> u16 {
 /// The network's slot of each variable of the automata as they were written.
 struct QueryVariableSlots {
     own: Vec<u16>,
+    /// After them, each location: the automaton in the network, and its number there.
+    locations: Vec<(u16, usize)>,
+}
+
+impl QueryVariableSlots {
+    fn leaf(&self, leaf: &VariableRef) -> Expr {
+        let after =
+            if let VariableRef::Own(i) = leaf { usize::from(*i).checked_sub(self.own.len()) } else { None };
+        match after.and_then(|at| self.locations.get(at)) {
+            Some(&(automaton, location)) => Expr::binary(
+                BinaryOp::Eq,
+                Expr::Var(location_variable(automaton)),
+                Expr::int(i64::try_from(location).unwrap_or(i64::MAX)),
+            ),
+            None => Expr::Var(lowering::VariableSlots::slot(self, leaf)),
+        }
+    }
 }
 
 impl lowering::VariableSlots<model::TypedExpr, VariableRef> for QueryVariableSlots {
     fn expr(&self, e: &model::TypedExpr) -> Expr {
         expr::expr(e, &mut |source| match source {
-            LeafSource::Leaf(leaf) => Expr::Var(self.slot(&leaf)),
+            LeafSource::Leaf(leaf) => self.leaf(&leaf),
             LeafSource::Term(..) => expr::ruled_out("measurement in a query"),
         })
     }

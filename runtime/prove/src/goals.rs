@@ -128,7 +128,7 @@ fn settled(
                 (treatment != WindowTreatment::Whole).then_some(GoalFate::Unreachable)
             }
             GoalOutcome::Inconclusive(what) => {
-                *why = exhausted(*what);
+                *why = exhausted(*what, report);
                 None
             }
         });
@@ -136,12 +136,13 @@ fn settled(
     fates
 }
 
-pub(super) fn exhausted(what: SearchCutoff) -> String {
-    match what {
-        SearchCutoff::States => "the budget of states was used up".to_owned(),
-        SearchCutoff::Memory => "the budget of memory was used up".to_owned(),
-        SearchCutoff::Stopped => "the time was over".to_owned(),
-    }
+pub(super) fn exhausted(what: SearchCutoff, report: &SearchReport) -> String {
+    let why = match what {
+        SearchCutoff::States => "the budget of states was used up",
+        SearchCutoff::Memory => "the budget of memory was used up",
+        SearchCutoff::Stopped => "the time was over",
+    };
+    report.widest.as_ref().map_or_else(|| why.to_owned(), |widest| format!("{why}; {widest}"))
 }
 
 /// The network and the limits of one search.

@@ -161,13 +161,13 @@ fn by_search(
     if let Some(reason) = &report.global_because {
         notes.push(format!("searched without local time: {reason}"));
     }
-    let answered = asked.iter().zip(report.goals).map(|((query, sought), outcome)| {
+    let answered = asked.iter().zip(&report.goals).map(|((query, sought), outcome)| {
         let (found, run) = match outcome {
             GoalOutcome::Reached(witness) => (
                 sought.reached.clone(),
-                Some(Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),
+                Some(Box::new(ObservedRun { observed: plain.clone(), witness: (**witness).clone() })),
             ),
-            GoalOutcome::Inconclusive(what) => (QueryFinding::Inconclusive(exhausted(what)), None),
+            GoalOutcome::Inconclusive(what) => (QueryFinding::Inconclusive(exhausted(*what, &report)), None),
             GoalOutcome::Unreachable => (sought.not.clone(), None),
         };
         QueryResult { query: *query, found, run, notes: notes.clone(), states }

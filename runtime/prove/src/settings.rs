@@ -23,8 +23,10 @@ pub struct ProofOptions {
     pub order: Option<SearchOrder>,
     /// Each automaton has a time of its own, where that serves.
     pub local_time: bool,
-    /// States with a committed location are not stored: less memory, more time.
+    /// States with a committed location are not stored: often less memory, and less time.
     pub skip_committed: bool,
+    /// States that differ in one-way counters alone are kept apart.
+    pub exact_counters: bool,
     /// Threads that search at once; 0 is 1.
     pub threads: usize,
     pub witness: WitnessKind,
@@ -56,6 +58,7 @@ impl ProofOptions {
             threads: self.threads.max(1),
             local_time: self.local_time,
             keep_committed: !self.skip_committed,
+            counters: !self.exact_counters,
             budget: self.budget,
             seed: self.seed,
             ..usual

@@ -20,7 +20,7 @@
 //! - `witness`: the interpreter (`concrete`), and the runs that it replays and plays.
 //! - `search`: `rounds` goes over the waiting states (`waiting`), `expand` makes the successors of one with zones of the clocks
 //!   that matter (`stepper`), as narrow as the constants allow; `store` keeps what is new, `slice` says which variables
-//!   matter, `goals` looks at what is asked.
+//!   matter, `monotone` which are read one way, `goals` looks at what is asked.
 //! - [`local`]: the same search with a time for each automaton.
 //! - `decide`: the answers, by these searches and by walks of the plain zone graph.
 //!
@@ -57,7 +57,7 @@ pub use network::query::{
 };
 pub use network::{selects::BinderValues, semantics::AutomatonMove};
 pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
-pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport};
+pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable};
 pub use witness::build::retimed;
 pub use witness::error::SearchError;
 pub use witness::player::VirtualTimePlayer;

@@ -6,12 +6,15 @@ use common::{add, automaton, bin, clock, edge, event, location, n, normal, progr
 use hrdsl_ir::{
     ArgPattern, Enumeration, EventId, EventPattern, Expr, Program, Symbol, Type, Value,
     expr::BinaryOp,
-    ta::{AutomatonId, ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, ReceiveArg},
+    ta::{
+        AutomatonId, ClockConstraint, ClockId, ClockOp, EdgeAssignment, LocationId, LocationKind, ReceiveArg,
+    },
     value::SECOND,
 };
 use hrdsl_ta::{
-    EventCounter, EventLimit, GoalKind, GoalOutcome, ModelError, ReachabilityGoal, SearchBudget,
-    SearchCutoff, SearchError, SearchReport, StateFormula, WitnessRun, check, slot_names,
+    CompiledNetwork, EventCounter, EventLimit, GoalKind, GoalOutcome, ModelError, ObservationOptions,
+    ReachabilityGoal, SearchBudget, SearchCutoff, SearchError, SearchOptions, SearchReport, StateFormula,
+    WitnessRun, check, explore, slot_names,
 };
 
 fn condition(f: StateFormula) -> ReachabilityGoal {
@@ -160,6 +163,58 @@ fn leaving_a_range_is_a_fault_with_the_way_to_it() {
 }
 
 #[test]
+fn the_run_to_a_fault_ends_when_it_happens() {
+    let mut p = program();
+    let mut a = automaton("A", &["x", "y"]);
+    let (l, m) = (normal(&mut a, "l"), normal(&mut a, "m"));
+    edge(l, m).clock(0, ClockOp::Ge, 1).reset(1).to(&mut a);
+    // Two seconds later at the earliest, and `y` is not yet 4 s then.
+    let mut back = edge(m, m).clock(0, ClockOp::Ge, 3);
+    let to = hrdsl_ir::ta::TimeSum::constant(-4 * SECOND);
+    back.0.updates.push(EdgeAssignment::Reset { clock: ClockId(0), from: Some(ClockId(1)), to });
+    back.to(&mut a);
+    add(&mut p, a);
+    let Err(SearchError::Model { error, witness }) = search(&p, &[], &[], &[]) else { panic!("no fault") };
+    assert_eq!(error.to_string(), "automaton `A`, edge m -> m: the clock `A.x` becomes less than zero");
+    let witness = witness.unwrap();
+    assert_eq!((witness.steps.len(), witness.end / witness.ticks), (1, 3 * SECOND));
+}
+
+/// `x` is set to `y - 1`; nothing but that asks for `y`. After `y >= 2` it never makes `x` negative.
+fn set_back(first: i64) -> Program {
+    let mut p = program();
+    let mut a = automaton("A", &["x", "y"]);
+    let [l, m, k] = ["l", "m", "k"].map(|name| normal(&mut a, name));
+    edge(l, m).clock(1, ClockOp::Ge, first).to(&mut a);
+    edge(m, m).clock(0, ClockOp::Ge, 1).reset(0).to(&mut a);
+    let mut back = edge(m, k);
+    let to = hrdsl_ir::ta::TimeSum::constant(-SECOND);
+    back.0.updates.push(EdgeAssignment::Reset { clock: ClockId(0), from: Some(ClockId(1)), to });
+    back.to(&mut a);
+    edge(k, k).clock(0, ClockOp::Ge, 1).to(&mut a);
+    add(&mut p, a);
+    p
+}
+
+#[test]
+fn a_clock_that_is_set_back_is_known_well_enough() {
+    let network = |p: &Program, options: &SearchOptions| {
+        let model = CompiledNetwork::new(p, &p.networks[0], &ObservationOptions::default()).unwrap();
+        explore(&model, &[], options, &|_| true)
+    };
+    let all = [SearchOptions::default(), SearchOptions::reference(), SearchOptions::shortest()];
+    for options in all {
+        assert!(network(&set_back(2), &options).unwrap().complete);
+        // One second after the start `y` is 1 s, and before that less.
+        let Err(SearchError::Model { error, witness }) = network(&set_back(0), &options) else {
+            panic!("no fault")
+        };
+        assert_eq!(error.to_string(), "automaton `A`, edge m -> k: the clock `A.x` becomes less than zero");
+        assert_eq!(witness.unwrap().end, 0);
+    }
+}
+
+#[test]
 fn a_fault_that_no_time_allows_is_none() {
     let mut p = program();
     let count = shared(&mut p, "count", 0, 2, 0);
@@ -181,7 +236,42 @@ fn what_the_budget_leaves_is_open() {
     ] {
         let report = check(&p, &p.networks[0], &goals, &[], &[], budget).unwrap();
         assert_eq!(report.goals[1], GoalOutcome::Inconclusive(why));
+        assert_eq!(report.widest, None);
         assert!(!report.complete);
+    }
+}
+
+#[test]
+fn a_budget_that_ends_names_the_int_that_has_the_most_values() {
+    let mut p = program();
+    let few = shared(&mut p, "few", 0, 3, 0);
+    let mut a = automaton("A", &["x"]);
+    a.vars.push(var("many", -5, 1000, -5));
+    let (many, l) = (few + 1, normal(&mut a, "l"));
+    let up = |slot, most| {
+        let below = bin(BinaryOp::Lt, v(slot), n(most));
+        edge(l, l).clock(0, ClockOp::Ge, 1).when(below).set(slot, bin(BinaryOp::Add, v(slot), n(1))).reset(0)
+    };
+    up(few, 3).to(&mut a);
+    up(many, 1000).to(&mut a);
+    add(&mut p, a);
+    // With an equality it is a part of the discrete state, without one it is a counter.
+    for test in [BinaryOp::Eq, BinaryOp::Lt] {
+        let goals = [condition(StateFormula::And(vec![
+            StateFormula::Data(bin(test, v(many), n(-1))),
+            StateFormula::Data(bin(BinaryOp::Gt, v(few), n(3))),
+        ]))];
+        let budget = SearchBudget { states: 20, ..SearchBudget::default() };
+        let options = SearchOptions { budget, ..SearchOptions::shortest() };
+        let model = CompiledNetwork::new(&p, &p.networks[0], &ObservationOptions::default()).unwrap();
+        let report = explore(&model, &goals, &options, &|_| true).unwrap();
+        if report.complete {
+            // Of each value of `few` one state, with the least of `many`.
+            assert_eq!((test, report.states_stored), (BinaryOp::Lt, 4));
+            continue;
+        }
+        let widest = report.widest.unwrap().to_string();
+        assert!(widest.starts_with("`A.many` has the most values so far, from -5 to "), "{widest}");
     }
 }
 

@@ -87,16 +87,19 @@ pub struct ProveSearchArgs {
     /// Give each automaton a time of its own, where that serves: often fewer states if automata share little.
     #[arg(long)]
     local_time: bool,
-    /// Do not store states with a committed location: less memory, more time. Runs may not be the shortest.
+    /// Do not store states with a committed location: often less memory, and less time. Runs may not be the shortest.
     #[arg(long)]
     skip_committed: bool,
+    /// Keep states apart that differ in one-way counters alone: the same answers from more states.
+    #[arg(long)]
+    exact_counters: bool,
     /// Threads that search at once.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
     /// Everything random comes from this.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// The most symbolic states that one search stores.
+    /// The most symbolic states that one search stores; otherwise memory alone decides.
     #[arg(long, value_name = "N")]
     budget_states: Option<usize>,
     /// The most memory for them, like `2GB` or `500MB`.
@@ -113,6 +116,7 @@ impl ProveSearchArgs {
             order: self.order.map(Into::into),
             local_time: self.local_time,
             skip_committed: self.skip_committed,
+            exact_counters: self.exact_counters,
             threads: usize::from(self.threads),
             seed: self.seed,
             ..ProofOptions::default()

@@ -20,7 +20,7 @@ use crate::{
         semantics::CompiledMove,
     },
     witness::{
-        build::{concrete, reach_goal, takes},
+        build::{concrete, fault_after, reach_goal, takes},
         error::SearchError,
         run::{RunEnding, WitnessRun},
         schedule::ScheduleOptions,
@@ -152,7 +152,7 @@ impl FastestSearch<'_, '_, '_> {
         let (state, zone) = (self.nodes[at].state.clone(), self.nodes[at].zone.clone());
         for action in self.graph.actions(&state) {
             let followed = self.graph.follow(&action, &zone);
-            let followed = followed.map_err(|error| SearchError::Model { error, witness: None })?;
+            let followed = followed.map_err(|error| fault_after(self.graph.model, self.path(at), error))?;
             if let Some((target, there, next)) = followed {
                 let met = self.takes_goal(&action);
                 self.insert(target.into(), &there, next, Some((at, action.taken.clone())), met)?;

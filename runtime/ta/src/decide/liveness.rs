@@ -31,10 +31,9 @@ use crate::{
     },
     search::report::SearchCutoff,
     witness::{
-        build::{PathSegment, bounds_of, concrete},
+        build::{PathSegment, bounds_of, fault},
         error::SearchError,
         run::RunEnding,
-        schedule::ScheduleOptions,
     },
     zone::{
         constraint::{DifferenceConstraint, keep},
@@ -269,11 +268,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
 
     /// A fault of the model, with the path to it if that can be made concrete.
     fn fault(&self, at: usize, error: &ModelError) -> SearchError {
-        let stops = self.path(at);
-        match concrete(self.graph, &stops, RunEnding::Reached, None, ScheduleOptions::default()) {
-            Ok(w) => SearchError::Model { error: error.clone(), witness: Some(Box::new(w)) },
-            Err(e) => e,
-        }
+        fault(self.graph, self.path(at), error.clone())
     }
 
     fn path(&self, mut at: usize) -> Vec<PathSegment> {
@@ -392,7 +387,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         if !bounds.iter().chain(&spot.stay.invariant).all(|c| keep(&mut all, *c)) {
             return Ok(None);
         }
-        let mut left: Federation = self.graph.deadlocked_by(&spot.actions, &spot.stay, &all)?;
+        let mut left: Federation = self.graph.deadlocked_by(&spot.actions, &spot.stay, &all);
         if left.is_empty() {
             return Ok(None);
         }

@@ -14,10 +14,8 @@ use crate::{
     },
     search::report::SearchCutoff,
     witness::{
-        build::{PathSegment, concrete, takes},
+        build::{self, PathSegment, takes},
         error::SearchError,
-        run::RunEnding,
-        schedule::ScheduleOptions,
     },
     zone::dbm::Dbm,
 };
@@ -94,11 +92,7 @@ impl<'g, 'm, 'p> ReachabilityGraph<'g, 'm, 'p> {
     }
 
     fn fault(&self, at: u32, error: &ModelError) -> SearchError {
-        let stops = self.path(at);
-        match concrete(self.graph, &stops, RunEnding::Reached, None, ScheduleOptions::default()) {
-            Ok(w) => SearchError::Model { error: error.clone(), witness: Some(Box::new(w)) },
-            Err(e) => e,
-        }
+        build::fault(self.graph, self.path(at), error.clone())
     }
 
     fn insert(

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     network::{
-        error::ModelError,
+        actions::PathTransition,
         model::CompiledNetwork,
         query::{ReachabilityGoal, SearchBudget},
         semantics::{EnumerationScratch, FiringOrError, TransitionFiring},
@@ -18,7 +18,7 @@ use crate::{
     search::{
         goals::CompiledGoals,
         options::SearchOrder,
-        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport},
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
         slice,
         store::{NIL, PassedList, StateLayout, hash_words},
         waiting::{WaitingList, level, levels},
@@ -106,6 +106,7 @@ pub fn explore(
         peak_bytes: search.peak,
         complete: exhausted.is_none() && search.waiting.is_empty(&search.store.nodes),
         global_because: None,
+        widest: exhausted.and_then(|_| WidestVariable::of(search.space.model, &search.store.extremes())),
     })
 }
 
@@ -128,7 +129,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            store: PassedList::new(layout),
+            store: PassedList::new(layout, 0),
             zones: Vec::new(),
             waiting: WaitingList::new(model, options.order, options.seed),
             levels: levels(model),
@@ -267,12 +268,12 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
                 discrete
             }
         };
-        let id = self.store.add(parent, number, discrete, &w.together);
+        let id = self.store.add(parent, number, discrete, &w.together, &[]);
         self.look(w, known.is_none(), id)?;
         let zone = std::mem::replace(&mut w.zone, self.pool.pop().unwrap_or_default());
         self.bytes += zone.heap_bytes();
         self.zones.push(Some(zone));
-        self.waiting.push(id, lost, level(&self.levels, &w.effect.target));
+        self.waiting.push(id, lost, level(&self.levels, &w.effect.target, &[]));
         Ok(())
     }
 
@@ -320,7 +321,8 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         let settled = !model.any_committed(&w.effect.target);
         let state = &mut w.effect.target;
         if new {
-            let states = self.compiled.states(state, &mut w.stack, model, settled, &self.open, &mut self.met);
+            let states =
+                self.compiled.states(state, None, &mut w.stack, model, settled, &self.open, &mut self.met);
             states.map_err(SearchError::from)?;
         }
         self.hit(LocalGoalPath { node, last: None });
@@ -330,17 +332,15 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
     /// A fault of the model with the path to it.
     fn led_to(&self, id: u32, failure: LocalSearchError) -> LocalSearchError {
         if let LocalSearchError::Search(SearchError::Model { error, witness: None }) = failure {
-            match self.faulty(id, error) {
-                Ok(error) | Err(error) => error.into(),
+            match self.path(&LocalGoalPath { node: id, last: None }) {
+                Ok(taken) => {
+                    build::fault_after(self.space.model, taken.into_iter().map(Rc::new), error).into()
+                }
+                Err(internal) => internal.into(),
             }
         } else {
             failure
         }
-    }
-
-    fn faulty(&self, id: u32, error: ModelError) -> Result<SearchError, SearchError> {
-        let witness = self.witness(&LocalGoalPath { node: id, last: None }, None)?;
-        Ok(SearchError::Model { error, witness: Some(Box::new(witness)) })
     }
 
     fn witness(
@@ -348,6 +348,10 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         path: &LocalGoalPath,
         goal: Option<&ReachabilityGoal>,
     ) -> Result<WitnessRun, SearchError> {
+        build::witness(self.space.model, self.path(path)?, goal, ScheduleOptions::default())
+    }
+
+    fn path(&self, path: &LocalGoalPath) -> Result<Vec<PathTransition>, SearchError> {
         let mut numbers: Vec<u32> = path.last.into_iter().collect();
         let mut at = self.store.nodes[path.node as usize];
         while at.parent != NIL {
@@ -355,8 +359,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             at = self.store.nodes[at.parent as usize];
         }
         numbers.reverse();
-        let taken = order::by_time(&self.space, &numbers, path.last.is_some())?;
-        build::witness(self.space.model, taken, goal, ScheduleOptions::default())
+        order::by_time(&self.space, &numbers, path.last.is_some())
     }
 }
 

@@ -185,6 +185,28 @@ impl<'m, 'p> BoundsAnalysis<'m, 'p> {
                 EdgeSync::Internal | EdgeSync::Out(_) => false,
             };
             self.note(m, arrow.from(), &arrow.guard, negated);
+            self.note_negative(m, arrow);
+        }
+    }
+
+    /// Setting a clock to `y - k` asks whether `y < k`, which is a fault: as a guard would.
+    fn note_negative(&mut self, m: usize, arrow: &CompiledEdge) {
+        let locals = arrow.locals(self.library);
+        // What the edge itself has set so far: a clock before it and what was added, at least.
+        let mut known: Vec<(u16, Option<(u16, i64)>)> = Vec::new();
+        for u in &arrow.updates {
+            let EdgeUpdate::Reset { clock, from, to } = u else { continue };
+            let least = to.span(self.library, &locals).0;
+            let source = from.and_then(|y| known.iter().rfind(|k| k.0 == y).map_or(Some((y, 0)), |k| k.1));
+            let source = source.map(|(y, by)| (y, by.saturating_add(least)));
+            if let Some((y, by)) = source
+                && by < 0
+                && let Some(x) = self.column(m, y)
+            {
+                let own = &mut self.bounds[m][arrow.from()][x];
+                own.upper = own.upper.max(by.saturating_neg());
+            }
+            known.push((*clock, source));
         }
     }
 

@@ -18,6 +18,8 @@ const STEPS: u32 = 1_000_000;
 /// Calls within calls.
 const DEPTH: u32 = 100;
 
+pub(crate) use crate::network::scope::{VariablePlace, VariableScope};
+
 /// Why there is no value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CodeEvalError {
@@ -50,15 +52,6 @@ impl From<EvalError> for CodeEvalError {
 pub enum SyncMedium {
     Event(EventId),
     Channel(ChannelId),
-}
-
-/// Where a variable of an expression lives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum VariablePlace {
-    /// An index into the state's vector.
-    State(u32),
-    /// Of the frame: selects and bound arguments of an edge, or parameters and locals of a function.
-    Local(u32),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,14 +128,6 @@ pub(crate) struct GenericExpr {
     expr: Expr,
     want: NumberType,
     scope: VariableScope,
-}
-
-/// What the variables of an expression are.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct VariableScope {
-    pub vars: Vec<(VariablePlace, NumberType)>,
-    /// The automaton (index in the network) whose functions may be called.
-    pub member: Option<u16>,
 }
 
 #[derive(Clone, Debug)]
@@ -568,9 +553,10 @@ impl CompiledExpr {
             }
             // Not looked into: it may read all that it could name.
             CompiledExpr::Generic(g) => {
-                for (at, _) in &g.scope.vars {
+                let located = (0..g.scope.located).map(|m| (VariablePlace::State(m as u32), NumberType::Int));
+                for (at, _) in g.scope.vars.iter().copied().chain(located) {
                     if let VariablePlace::State(i) = at {
-                        read(*i);
+                        read(i);
                     }
                 }
             }
@@ -698,7 +684,7 @@ struct CodeValueScope<'a, 'e> {
 
 impl EvalScope for CodeValueScope<'_, '_> {
     fn var(&self, slot: u16) -> Option<Value> {
-        let (at, ty) = *self.scope.vars.get(usize::from(slot))?;
+        let (at, ty) = self.scope.variable(slot)?;
         // While a function that this expression calls runs, nobody asks this scope: the function's code has the environment itself.
         let env = self.env.try_borrow().ok()?;
         ty.value(env.get(at), &env.library.constants)
@@ -786,7 +772,7 @@ impl CodeLibrary {
                 Some((CompiledExpr::Const(e.index_of(*s)? as i64), NumberType::Enum(e)))
             }
             Expr::Const(Value::Float(_) | Value::Text(_) | Value::List(_)) | Expr::List(..) => None,
-            Expr::Var(i) => match *names.vars.get(usize::from(*i))? {
+            Expr::Var(i) => match names.variable(*i)? {
                 (_, NumberType::Constant) => None,
                 (VariablePlace::State(i), ty) => Some((CompiledExpr::Var(i), ty)),
                 (VariablePlace::Local(i), ty) => Some((CompiledExpr::Local(i), ty)),

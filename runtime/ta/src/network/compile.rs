@@ -195,7 +195,7 @@ impl<'p> NetworkCompiler<'p, '_> {
                 automaton,
                 base,
                 first_clock: clock,
-                names: VariableScope { vars, member: u16::try_from(m).ok() },
+                names: VariableScope::own(vars, u16::try_from(m).ok()),
                 locations: Vec::new(),
                 edges: Vec::new(),
             });
@@ -237,7 +237,7 @@ impl<'p> NetworkCompiler<'p, '_> {
             });
             let frame = f.params.iter().chain(&f.locals).enumerate();
             let locals = frame.map(|(i, v)| (VariablePlace::Local(i as u32), NumberType::of(v)));
-            todo.push((f, VariableScope { vars: vars.into_iter().chain(locals).collect(), member }));
+            todo.push((f, VariableScope::own(vars.into_iter().chain(locals).collect(), member)));
         }
         for (n, (f, names)) in todo.iter().enumerate() {
             let first = names.vars.len() - f.params.len() - f.locals.len();
@@ -694,7 +694,7 @@ impl<'p> NetworkCompiler<'p, '_> {
             .iter()
             .enumerate()
             .map(|(i, v)| (VariablePlace::State((members + i) as u32), NumberType::of(v)));
-        let names = VariableScope { vars: vars.collect(), member: None };
+        let names = VariableScope::of_network(vars.collect(), members);
         let mut all = ClockConstraints::default();
         let mut parts = Vec::new();
         observe.formulas.iter().for_each(|f| clock_parts(f, &mut |c| parts.push(c.clone())));

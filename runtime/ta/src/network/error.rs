@@ -63,6 +63,25 @@ pub enum ModelError {
     Zeno { automaton: String, location: String },
 }
 
+impl ModelError {
+    /// Whether taking a transition is what the fault is met by.
+    pub(crate) fn is_of_a_transition(&self) -> bool {
+        match self {
+            ModelError::Evaluation { .. }
+            | ModelError::Range { .. }
+            | ModelError::Argument { .. }
+            | ModelError::NegativeClock { .. }
+            | ModelError::Invariant { .. } => true,
+            ModelError::Malformed { .. }
+            | ModelError::Question(_)
+            | ModelError::Constants { .. }
+            | ModelError::Initial
+            | ModelError::Timelock { .. }
+            | ModelError::Zeno { .. } => false,
+        }
+    }
+}
+
 pub(crate) fn range_fault(edge: Box<EdgeName>, var: &AutomatonVar, value: i64) -> ModelError {
     ModelError::Range { edge, variable: var.name.clone(), value, lo: var.lo, hi: var.hi }
 }

@@ -7,7 +7,7 @@ use hrdsl_ir::{
     Nanos, Value,
     exec::{self, FunctionTable, VariableMemory},
     expr::{EvalError, EvalScope},
-    ta::{FunctionId, LocationId},
+    ta::{FunctionId, LocationId, located_automaton},
 };
 
 use crate::{
@@ -210,6 +210,29 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         Ok(self.take(action, &stay, &mut zone).then_some((target.as_slice(), stay, zone)))
     }
 
+    /// The clocks with which a transition of the state is this fault: one conjunction for each way to it.
+    pub(crate) fn faulty(&self, state: &[i64], error: &ModelError) -> Vec<Vec<DifferenceConstraint>> {
+        let mut all = Vec::new();
+        for action in self.actions(state) {
+            let guard = &action.taken.guard;
+            let target = match &action.target {
+                Err(e) if **e == *error => {
+                    all.push(guard.clone());
+                    continue;
+                }
+                Err(_) => continue,
+                Ok(target) => target,
+            };
+            for (below, _) in action.below.iter().filter(|(_, e)| e == error) {
+                all.push(guard.iter().chain([below]).copied().collect());
+            }
+            if self.stay(target).is_err_and(|e| e == *error) {
+                all.push(guard.clone());
+            }
+        }
+        all
+    }
+
     /// `false`: the target's invariant forbids it.
     fn take(&self, action: &EnabledTransition, target: &DelayCondition, zone: &mut Dbm) -> bool {
         if !action.taken.resets.is_empty() {
@@ -264,48 +287,48 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     /// If an invariant has no value.
     pub(crate) fn deadlocked(&self, state: &[i64], zone: &Dbm) -> Result<Federation, ModelError> {
         let Some(stay) = self.stay(state)? else { return Ok(Federation::empty()) };
-        self.deadlocked_by(&self.actions(state), &stay, zone)
+        Ok(self.deadlocked_by(&self.actions(state), &stay, zone))
     }
 
     /// As [`deadlocked`](Self::deadlocked), with what is known of the state.
-    ///
-    /// # Errors
-    /// If an invariant has no value.
     pub(crate) fn deadlocked_by(
         &self,
         actions: &[EnabledTransition],
         stay: &DelayCondition,
         zone: &Dbm,
-    ) -> Result<Federation, ModelError> {
+    ) -> Federation {
         let mut left = Federation::from_zone(zone.clone());
         for action in actions {
             if left.is_empty() {
                 break;
             }
-            if let Some(from) = self.leaves(action, stay)? {
+            if let Some(from) = self.leaves(action, stay) {
                 left = left.minus(&from);
             }
         }
-        Ok(left)
+        left
     }
 
     /// From where a transition is possible, now or later.
-    fn leaves(&self, action: &EnabledTransition, stay: &DelayCondition) -> Result<Option<Dbm>, ModelError> {
+    ///
+    /// A transition that is a fault is one, whether its updates or the invariant that it leads to have no value: whether its guard
+    /// ever holds is not known here, and the walk that takes it says so.
+    fn leaves(&self, action: &EnabledTransition, stay: &DelayCondition) -> Option<Dbm> {
         let mut zone = Dbm::universe(self.dim());
-        // A transition that is a fault is one: the search says so.
-        if let Ok(target) = &action.target {
-            let Some(there) = self.stay(target)? else { return Ok(None) };
-            if !there.invariant.iter().all(|c| keep(&mut zone, *c)) {
-                return Ok(None);
+        if let Ok(target) = &action.target
+            && let Ok(there) = self.stay(target)
+        {
+            if !there?.invariant.iter().all(|c| keep(&mut zone, *c)) {
+                return None;
             }
             if !action.taken.resets.is_empty() {
                 zone = unset(&zone, &self.sources(&action.taken.resets));
             }
         }
         if !action.taken.guard.iter().chain(&stay.invariant).all(|c| keep(&mut zone, *c)) {
-            return Ok(None);
+            return None;
         }
-        Ok(Some(if stay.waits { past(&zone) } else { zone }))
+        Some(if stay.waits { past(&zone) } else { zone })
     }
 }
 
@@ -356,8 +379,11 @@ impl StateView for DiscreteStateView<'_, '_, '_> {
     }
 
     fn slot(&self, slot: u16) -> Option<Value> {
-        let slot = usize::from(slot);
         let model = self.graph.model;
+        if let Some(automaton) = located_automaton(slot, model.members.len()) {
+            return Some(Value::Int(self.state[usize::from(automaton)]));
+        }
+        let slot = usize::from(slot);
         if slot < model.slots.len() { model.slot_value(self.state, slot) } else { None }
     }
 

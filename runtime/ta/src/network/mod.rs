@@ -11,6 +11,7 @@ pub(crate) mod number;
 pub(crate) mod open;
 pub(crate) mod parts;
 pub mod query;
+mod scope;
 pub(crate) mod selects;
 pub(crate) mod semantics;
 pub(crate) mod well_formed;

@@ -7,7 +7,7 @@
 
 use hrdsl_ir::{
     EventId, Nanos, Program, Type, Value,
-    ta::{AutomatonId, AutomatonVar, ChannelId, LocationId, LocationKind, Network},
+    ta::{AutomatonId, AutomatonVar, ChannelId, LocationId, LocationKind, Network, located_automaton},
 };
 
 use crate::network::{
@@ -51,7 +51,6 @@ pub struct CompiledNetwork<'p> {
     pub(crate) members: Vec<CompiledAutomaton<'p>>,
     pub(crate) slots: Vec<&'p AutomatonVar>,
     /// How many of the slots are shared.
-    #[allow(dead_code, reason = "for whoever takes names of an automaton for names of the network")]
     pub(crate) shared: usize,
     pub(crate) counters: Vec<EventCounter>,
     pub(crate) limits: Vec<EventLimit>,
@@ -174,7 +173,10 @@ impl<'p> CompiledNetwork<'p> {
             StateFormula::At { .. } => Err(unknown()),
             StateFormula::Data(e) => {
                 let mut known = true;
-                e.each_var(&mut |i| known &= usize::from(i) < self.slots.len());
+                e.each_var(&mut |i| {
+                    known &= usize::from(i) < self.slots.len()
+                        || located_automaton(i, self.members.len()).is_some();
+                });
                 if known { Ok(()) } else { Err(unknown()) }
             }
             StateFormula::CounterIn { counter, lo, hi } => {
@@ -204,7 +206,16 @@ impl<'p> CompiledNetwork<'p> {
     pub(crate) fn slot_scope(&self) -> VariableScope {
         let at = |slot| VariablePlace::State(self.slot_at(slot) as u32);
         let vars = self.slots.iter().enumerate().map(|(i, v)| (at(i), NumberType::of(v))).collect();
-        VariableScope { vars, member: None }
+        VariableScope::of_network(vars, self.members.len())
+    }
+
+    /// A slot as [`slot_names`] calls it.
+    pub(crate) fn slot_name(&self, slot: usize) -> String {
+        let name = &self.slots[slot].name;
+        match self.members.iter().rfind(|m| m.base <= slot) {
+            Some(owner) if slot >= self.shared => format!("{}.{name}", owner.automaton.name),
+            Some(_) | None => name.clone(),
+        }
     }
 
     pub(crate) fn edge_name(&self, member: usize, edge: usize) -> Box<EdgeName> {

@@ -59,6 +59,18 @@ impl NumberComparison {
         matches!(self, NumberComparison::Eq | NumberComparison::Ne)
     }
 
+    /// What holds where this one does not.
+    pub(crate) fn negated(self) -> Self {
+        match self {
+            NumberComparison::Eq => NumberComparison::Ne,
+            NumberComparison::Ne => NumberComparison::Eq,
+            NumberComparison::Lt => NumberComparison::Ge,
+            NumberComparison::Le => NumberComparison::Gt,
+            NumberComparison::Gt => NumberComparison::Le,
+            NumberComparison::Ge => NumberComparison::Lt,
+        }
+    }
+
     pub(crate) fn holds(self, a: i64, b: i64) -> bool {
         match self {
             NumberComparison::Eq => a == b,

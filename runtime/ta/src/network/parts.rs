@@ -78,7 +78,6 @@ impl ClockConstraints {
 pub(crate) struct CompiledAutomaton<'p> {
     pub automaton: &'p hrdsl_ir::ta::Automaton,
     /// The slot of its first own variable.
-    #[allow(dead_code, reason = "for whoever takes names of an automaton for names of the network")]
     pub base: usize,
     /// The number of its first own clock in the network.
     pub first_clock: usize,

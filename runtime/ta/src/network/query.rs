@@ -79,7 +79,8 @@ pub enum StateFormula {
         automaton: usize,
         location: LocationId,
     },
-    /// A boolean expression; `Expr::Var(i)` is the network's slot `i`: see [`slot_names`](crate::slot_names).
+    /// A boolean expression; `Expr::Var(i)` is the network's slot `i`: see [`slot_names`](crate::slot_names). A
+    /// [location](hrdsl_ir::ta::location_variable) counts as an int.
     Data(Expr),
     /// `lo <= n`, and `n <= hi` if there is such a bound.
     CounterIn {
@@ -111,7 +112,7 @@ pub struct EventLimit {
 /// How much a search may use; when it is used up, the goals that are left are [`GoalOutcome::Inconclusive`](crate::GoalOutcome::Inconclusive).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchBudget {
-    /// Symbolic states ever stored, including those that a greater one replaced.
+    /// Symbolic states ever stored, including those that a greater one replaced. By default the memory alone decides.
     pub states: usize,
     /// Bytes for states, an estimate from below.
     pub bytes: usize,
@@ -119,7 +120,7 @@ pub struct SearchBudget {
 
 impl Default for SearchBudget {
     fn default() -> Self {
-        Self { states: 2_000_000, bytes: 2 << 30 }
+        Self { states: usize::MAX, bytes: 2 << 30 }
     }
 }
 

@@ -7,8 +7,10 @@ use std::ops::ControlFlow;
 use crate::{
     network::{actions::PathTransition, error::ModelError, model::CompiledNetwork},
     search::{
+        batch::{ExpansionBatch, GoalHit, GoalPath, PendingState},
         covering::{covers, demands, subsumes},
         goals::{CompiledGoals, SymbolicStateRef},
+        monotone::{OneWayCounter, may_drive_out, no_worse},
         options::{SearchOptions, SubsumptionRelation},
         stepper::{SymbolicStepper, SymbolicSuccessor},
         store::{NIL, PassedList, hash_words},
@@ -26,13 +28,6 @@ use crate::{
 /// Committed states that one expansion goes through without storing them. Of more, each would be expanded again and again.
 const AT_ONCE: usize = 4;
 
-/// A path to a goal: a node, then perhaps one transition more of its expansion. No node: the initial state.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GoalPath {
-    pub node: u32,
-    pub via: Option<u32>,
-}
-
 /// What an expansion may look at.
 pub(crate) struct ExpansionContext<'a, N> {
     pub store: &'a PassedList<N>,
@@ -40,87 +35,8 @@ pub(crate) struct ExpansionContext<'a, N> {
     /// The goals that are not met yet.
     pub open: &'a [bool],
     pub options: &'a SearchOptions,
-}
-
-/// A symbolic state to store.
-pub(crate) struct PendingState {
-    pub parent: u32,
-    pub via: u32,
-    /// `NIL`: it was not there when the round began.
-    pub discrete: u32,
-    pub hash: u64,
-    /// Its place in the topological order of locations.
-    pub level: u32,
-    pub dim: usize,
-    words: usize,
-    zone: usize,
-    covered: (usize, usize),
-}
-
-/// A goal that is met.
-pub(crate) struct GoalHit {
-    pub goal: usize,
-    pub path: GoalPath,
-}
-
-/// What expansions lead to.
-pub(crate) struct ExpansionBatch<N> {
-    pub items: Vec<PendingState>,
-    pub hits: Vec<GoalHit>,
-    pub fault: Option<(ModelError, GoalPath)>,
-    pub visited: usize,
-    pub transitions: usize,
-    words: Vec<u64>,
-    zones: Vec<N>,
-    covered: Vec<u32>,
-}
-
-impl<N> Default for ExpansionBatch<N> {
-    fn default() -> Self {
-        Self {
-            items: Vec::new(),
-            hits: Vec::new(),
-            fault: None,
-            visited: 0,
-            transitions: 0,
-            words: Vec::new(),
-            zones: Vec::new(),
-            covered: Vec::new(),
-        }
-    }
-}
-
-impl<N> ExpansionBatch<N> {
-    pub(crate) fn clear(&mut self) {
-        self.items.clear();
-        self.hits.clear();
-        self.fault = None;
-        self.visited = 0;
-        self.transitions = 0;
-        self.words.clear();
-        self.zones.clear();
-        self.covered.clear();
-    }
-
-    pub(crate) fn packed(&self, item: &PendingState, words: usize) -> &[u64] {
-        &self.words[item.words..item.words + words]
-    }
-
-    pub(crate) fn zone(&self, item: &PendingState) -> &[N] {
-        &self.zones[item.zone..item.zone + item.dim * item.dim]
-    }
-
-    /// Stored states that the item covers.
-    pub(crate) fn covered(&self, item: &PendingState) -> &[u32] {
-        &self.covered[item.covered.0..item.covered.1]
-    }
-
-    pub(crate) fn bytes(&self) -> usize {
-        self.items.capacity() * size_of::<PendingState>()
-            + self.words.capacity() * 8
-            + self.zones.capacity() * size_of::<N>()
-            + self.covered.capacity() * 4
-    }
+    /// Their ranks stand with the nodes.
+    pub counters: &'a [OneWayCounter],
 }
 
 /// A state of an expansion: the one that is expanded, or a committed one on the path.
@@ -146,6 +62,7 @@ pub(crate) struct ExpansionWorker<'m, 'p, N> {
 struct WorkerMemory<N> {
     stack: Vec<i64>,
     packed: Vec<u64>,
+    ranks: Vec<u32>,
     bounds: Vec<N>,
     flat: Vec<N>,
     met: Vec<usize>,
@@ -167,6 +84,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         let m = WorkerMemory {
             stack: Vec::new(),
             packed: Vec::new(),
+            ranks: Vec::new(),
             bounds: Vec::new(),
             flat: Vec::new(),
             met: Vec::new(),
@@ -189,7 +107,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     ) -> Result<(), ModelError> {
         let (mut state, frame, mut zone) = self.stepper.initial()?;
         let visit = NodeExpansion { model: self.model, c, node: NIL, keep: true };
-        visit.arrive(&mut self.m, &mut state, &frame, &mut zone, (NIL, 0), batch)
+        visit.arrive(&mut self.m, (&mut state, None), &frame, &mut zone, (NIL, 0), batch)
     }
 
     fn local(&mut self) -> &mut ExpansionState<N> {
@@ -207,12 +125,15 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     }
 
     /// Makes the node the first local state.
-    fn load(&mut self, c: &ExpansionContext<N>, node: u32) {
-        let node = c.store.nodes[node as usize];
+    fn load(&mut self, c: &ExpansionContext<N>, id: u32) {
+        let node = c.store.nodes[id as usize];
         let (model, abstraction) = (self.model, c.options.abstraction);
         self.count = 0;
         let local = self.local();
         c.store.layout.unpack(c.store.packed(node.discrete), &mut local.state);
+        for (counter, &rank) in c.counters.iter().zip(c.store.ranks(id)) {
+            local.state[counter.place] = counter.value(rank);
+        }
         model.extrapolation.frame(&local.state, abstraction, &mut local.frame);
         let dim = local.frame.dim();
         local.zone.load(dim, c.store.zone(&node, dim));
@@ -262,6 +183,9 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         let mut fault = None;
         // Goals over two edges ask which edge was the last one before this transition, and the stepper works on the state itself.
         let before = &if visit.c.open.is_empty() { Vec::new() } else { current.state.clone() };
+        // Goals that wait until no location is committed were not asked in a committed state.
+        let settled = !before.is_empty() && !visit.model.any_committed(before);
+        let asked = settled.then_some(before.as_slice());
         let result = self.stepper.each(&mut current.state, &current.frame, &current.zone, |s| {
             let number = *via;
             *via += 1;
@@ -272,7 +196,8 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             if visit.keep || *count > AT_ONCE || !visit.model.any_committed(s.state) {
                 // Who retraces has stored the state already.
                 if until.is_none()
-                    && let Err(error) = visit.arrive(m, s.state, s.frame, s.zone, (visit.node, number), batch)
+                    && let Err(error) =
+                        visit.arrive(m, (s.state, asked), s.frame, s.zone, (visit.node, number), batch)
                 {
                     fault = Some(error);
                     return ControlFlow::Break(());
@@ -364,12 +289,13 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     pub(crate) fn compare(
         &mut self,
         store: &PassedList<N>,
-        subsumption: SubsumptionRelation,
+        options: &SearchOptions,
         discrete: u32,
         first: u32,
-        zone: &[N],
-        dim: usize,
+        (zone, dim): (&[N], usize),
+        ranks: &[u32],
     ) -> Option<&[u32]> {
+        let subsumption = options.subsumption;
         self.m.covers.clear();
         let head = store.head(discrete);
         // The newest node stands first: what was stored before the round was compared when the state was expanded.
@@ -385,10 +311,12 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         while at != NIL && at >= first {
             let node = &store.nodes[at as usize];
             let old = store.zone(node, dim);
-            if subsumes(subsumption, old, &self.m.bounds) {
+            if no_worse(store.ranks(at), ranks) && subsumes(subsumption, old, &self.m.bounds) {
                 return None;
             }
-            if covers(subsumption, &self.m.frame, zone, old) {
+            if may_drive_out(options.order, ranks, store.ranks(at))
+                && covers(subsumption, &self.m.frame, zone, old)
+            {
                 self.m.covers.push(at);
             }
             at = node.next;
@@ -447,7 +375,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
     ) -> Result<(), ModelError> {
         let path = GoalPath { node: self.node, via: Some(via) };
         m.met.clear();
-        self.c.goals.states(s.state, &mut m.stack, self.model, false, self.c.open, &mut m.met)?;
+        self.c.goals.states(s.state, None, &mut m.stack, self.model, false, self.c.open, &mut m.met)?;
         self.look_at_zone(m, s.state, s.frame, s.zone, false)?;
         batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path }));
         self.split(m, s.frame, s.zone);
@@ -521,7 +449,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
     fn arrive(
         &self,
         m: &mut WorkerMemory<N>,
-        state: &mut [i64],
+        (state, asked): (&mut [i64], Option<&[i64]>),
         frame: &ActiveClocks,
         zone: &mut Dbm<N>,
         (parent, via): (u32, u32),
@@ -530,6 +458,8 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         let store = self.c.store;
         let subsumption = self.c.options.subsumption;
         store.layout.pack(state, &mut m.packed);
+        m.ranks.clear();
+        m.ranks.extend(self.c.counters.iter().map(|counter| counter.rank(state[counter.place])));
         let hash = hash_words(&m.packed);
         let known = store.find(hash, &m.packed);
         let simple = self.model.extrapolation.diagonals.is_none();
@@ -539,7 +469,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         {
             // What is covered before extrapolation is so after it: most of the work is saved.
             thresholds(frame, zone, &mut m.bounds);
-            if self.is_covered(discrete, frame.dim(), &m.bounds) {
+            if self.is_covered(discrete, frame.dim(), &m.bounds, &m.ranks) {
                 return Ok(());
             }
         }
@@ -548,9 +478,18 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         if self.c.open.iter().any(|o| *o) {
             let settled = !self.model.any_committed(state);
             m.met.clear();
-            // Goals without clocks are the discrete state's: where that is stored, they were looked at when it came.
-            if known.is_none() {
-                self.c.goals.states(state, &mut m.stack, self.model, settled, self.c.open, &mut m.met)?;
+            // Goals without clocks are the discrete state's: where that is stored, they were looked at when it came. Its counters are not
+            // stored with it.
+            if known.is_none() || !self.c.counters.is_empty() {
+                self.c.goals.states(
+                    state,
+                    asked,
+                    &mut m.stack,
+                    self.model,
+                    settled,
+                    self.c.open,
+                    &mut m.met,
+                )?;
             }
             self.look_at_zone(m, state, frame, zone, settled)?;
             batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path }));
@@ -564,11 +503,13 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         Ok(())
     }
 
-    fn is_covered(&self, discrete: u32, dim: usize, demands: &[N]) -> bool {
+    fn is_covered(&self, discrete: u32, dim: usize, demands: &[N], ranks: &[u32]) -> bool {
         let mut at = self.c.store.head(discrete);
         while at != NIL {
             let node = &self.c.store.nodes[at as usize];
-            if subsumes(self.c.options.subsumption, self.c.store.zone(node, dim), demands) {
+            if no_worse(self.c.store.ranks(at), ranks)
+                && subsumes(self.c.options.subsumption, self.c.store.zone(node, dim), demands)
+            {
                 return true;
             }
             at = node.next;
@@ -609,27 +550,33 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
             while at != NIL {
                 let node = &self.c.store.nodes[at as usize];
                 let old = self.c.store.zone(node, dim);
-                if !looked && subsumes(subsumption, old, &m.bounds) {
+                let ranks = self.c.store.ranks(at);
+                if !looked && no_worse(ranks, &m.ranks) && subsumes(subsumption, old, &m.bounds) {
                     batch.zones.truncate(place);
                     batch.covered.truncate(first);
                     return;
                 }
-                if covers(subsumption, frame, flat, old) {
+                if may_drive_out(self.c.options.order, &m.ranks, ranks)
+                    && covers(subsumption, frame, flat, old)
+                {
                     batch.covered.push(at);
                 }
                 at = node.next;
             }
         }
         batch.words.extend_from_slice(&m.packed);
+        let ranks = batch.ranks.len();
+        batch.ranks.extend_from_slice(&m.ranks);
         batch.items.push(PendingState {
             parent,
             via,
             discrete: known.unwrap_or(NIL),
             hash,
-            level: waiting::level(&m.levels, state),
+            level: waiting::level(&m.levels, state, &m.ranks),
             dim,
             words,
             zone: place,
+            ranks,
             covered: (first, batch.covered.len()),
         });
     }

@@ -24,6 +24,76 @@ pub(crate) struct StateTest {
     /// No automaton may be in a committed location.
     pub settled: bool,
     pub code: CompiledExpr,
+    /// The same code as comparisons with numbers, and what is left of it.
+    literals: Vec<(NumberComparison, u32, i64)>,
+    rest: Vec<CompiledExpr>,
+    /// The numbers of the state that it reads, as bits of their places.
+    reads: u64,
+}
+
+impl StateTest {
+    fn new(model: &CompiledNetwork, goal: usize, settled: bool, code: CompiledExpr) -> Self {
+        let (mut literals, mut rest, mut reads) = (Vec::new(), Vec::new(), 0);
+        code.each_var(&model.library, &mut |i| reads |= place_bit(i as usize));
+        // What may have no value keeps its order: a part that does not hold protects those after it.
+        if code.span(&model.library, &[]).2 {
+            conjuncts(&code, &mut literals, &mut rest);
+        } else {
+            rest.push(code.clone());
+        }
+        Self { goal, settled, code, literals, rest, reads }
+    }
+
+    /// A location without which it does not hold.
+    fn location(&self, members: usize) -> Option<(usize, usize)> {
+        let at = |&(op, place, n): &(NumberComparison, u32, i64)| {
+            let member = place as usize;
+            (op == NumberComparison::Eq && member < members).then_some((member, usize::try_from(n).ok()?))
+        };
+        self.literals.iter().find_map(at)
+    }
+
+    fn holds(
+        &self,
+        state: &mut [i64],
+        stack: &mut Vec<i64>,
+        model: &CompiledNetwork,
+    ) -> Result<bool, CodeEvalError> {
+        if !self.literals.iter().all(|&(op, place, n)| op.holds(state[place as usize], n)) {
+            return Ok(false);
+        }
+        for code in &self.rest {
+            if code.eval(&mut CodeEvalContext::new(&model.library, state, stack))? == 0 {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// The bit of a place of the state; some share one.
+fn place_bit(place: usize) -> u64 {
+    1 << (place % 64)
+}
+
+/// Takes a conjunction apart.
+fn conjuncts(
+    code: &CompiledExpr,
+    literals: &mut Vec<(NumberComparison, u32, i64)>,
+    rest: &mut Vec<CompiledExpr>,
+) {
+    if let CompiledExpr::And(ab) = code {
+        conjuncts(&ab.0, literals, rest);
+        conjuncts(&ab.1, literals, rest);
+    } else if let CompiledExpr::VarConst(op, place, n) = code {
+        literals.push((*op, *place, *n));
+    } else if let CompiledExpr::Not(a) = code
+        && let CompiledExpr::VarConst(op, place, n) = **a
+    {
+        literals.push((op.negated(), place, n));
+    } else {
+        rest.push(code.clone());
+    }
 }
 
 /// A formula that looks at clocks.
@@ -47,6 +117,9 @@ pub(crate) struct CompiledGoals {
     /// By member and location: goal, settled.
     pub locations: Vec<Vec<Vec<(usize, bool)>>>,
     pub tests: Vec<StateTest>,
+    /// By member and location: the tests that hold there at most; last, those that may hold anywhere.
+    tests_at: Vec<Vec<Vec<u32>>>,
+    tests_anywhere: Vec<u32>,
     pub symbolic: Vec<(usize, bool, SymbolicFormula)>,
     any_locations: bool,
 }
@@ -64,6 +137,16 @@ impl CompiledGoals {
         for (i, goal) in goals.iter().enumerate() {
             model.check_goal(goal)?;
             all.add(model, i, goal)?;
+        }
+        all.tests_at = model.members.iter().map(|m| vec![Vec::new(); m.locations.len()]).collect();
+        for (number, test) in (0u32..).zip(&all.tests) {
+            match test.location(model.members.len()) {
+                // A location that is not there: the test never holds.
+                Some((member, at)) => {
+                    all.tests_at[member].get_mut(at).into_iter().for_each(|t| t.push(number))
+                }
+                None => all.tests_anywhere.push(number),
+            }
         }
         Ok(all)
     }
@@ -87,12 +170,12 @@ impl CompiledGoals {
             }
             GoalKind::Condition(f) => {
                 let code = state_formula(model, &model.slot_scope(), f);
-                self.tests.push(StateTest { goal: i, settled: goal.settled, code });
+                self.tests.push(StateTest::new(model, i, goal.settled, code));
             }
             GoalKind::Formula(f) => {
                 let formula = symbolic(model, &model.slot_scope(), f)?;
                 if let SymbolicFormula::Data(code) = formula {
-                    self.tests.push(StateTest { goal: i, settled: goal.settled, code });
+                    self.tests.push(StateTest::new(model, i, goal.settled, code));
                 } else {
                     self.symbolic.push((i, goal.settled, formula));
                 }
@@ -111,10 +194,16 @@ impl CompiledGoals {
         self.uses[n].iter().filter(|u| before[u.0] == u.1).for_each(|u| met(u.2));
     }
 
-    /// The goals that a discrete state meets, of those still open.
+    /// The goals that a discrete state meets, of those still open. `before` is a state in which all that this one is asked was asked:
+    /// only goals over what has changed since can be met now.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "what a worker has at hand, taken apart for the borrow checker"
+    )]
     pub(crate) fn states(
         &self,
         state: &mut [i64],
+        before: Option<&[i64]>,
         stack: &mut Vec<i64>,
         model: &CompiledNetwork,
         settled: bool,
@@ -127,9 +216,37 @@ impl CompiledGoals {
                 met.extend(here.map(|g| g.0));
             }
         }
-        for test in self.tests.iter().filter(|t| open[t.goal] && (settled || !t.settled)) {
-            if test.code.eval(&mut CodeEvalContext::new(&model.library, state, stack)).map_err(no_value)? != 0
-            {
+        if self.tests.is_empty() {
+            return Ok(());
+        }
+        let changed = before.map_or(u64::MAX, |before| {
+            let differs = before.iter().zip(&*state).enumerate().filter(|(_, (a, b))| a != b);
+            differs.fold(0, |bits, (place, _)| bits | place_bit(place))
+        });
+        for member in 0..self.tests_at.len() {
+            let at = state[member] as usize;
+            self.some_tests(&self.tests_at[member][at], changed, (state, stack), model, settled, open, met)?;
+        }
+        self.some_tests(&self.tests_anywhere, changed, (state, stack), model, settled, open, met)
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "as `states`")]
+    fn some_tests(
+        &self,
+        which: &[u32],
+        changed: u64,
+        (state, stack): (&mut [i64], &mut Vec<i64>),
+        model: &CompiledNetwork,
+        settled: bool,
+        open: &[bool],
+        met: &mut Vec<usize>,
+    ) -> Result<(), ModelError> {
+        for &number in which {
+            let test = &self.tests[number as usize];
+            // A test that reads nothing is one of the first state.
+            let asked = changed == u64::MAX || test.reads & changed != 0;
+            let looks = asked && open[test.goal] && (settled || !test.settled);
+            if looks && test.holds(state, stack, model).map_err(no_value)? {
                 met.push(test.goal);
             }
         }

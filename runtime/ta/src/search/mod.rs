@@ -1,9 +1,13 @@
 //! The search for goals: zones with one time for all automata, many goals at once, no state twice.
 
+mod batch;
+mod counter_steps;
 mod covering;
 pub(crate) mod expand;
 pub(crate) mod goals;
+pub(crate) mod monotone;
 pub(crate) mod options;
+mod reach_of_counter;
 pub(crate) mod report;
 pub(crate) mod rounds;
 pub(crate) mod slice;

@@ -42,8 +42,11 @@ pub struct SearchOptions {
     pub keep_committed: bool,
     /// Variables that nothing depends on are left out of the state.
     pub reduce: bool,
+    /// A state covers others that differ in worse values of one-way counters alone, too: see `search/monotone.rs`. Not with
+    /// `Equality`.
+    pub counters: bool,
     /// Each automaton has a time of its own, where that serves the network and the goals: see [`local`](crate::local). Then
-    /// `subsumption`, `abstraction`, `threads`, `keep_committed` and `reduce` have no meaning.
+    /// `subsumption`, `abstraction`, `threads`, `keep_committed`, `reduce` and `counters` have no meaning.
     pub local_time: bool,
     pub budget: SearchBudget,
     pub seed: u64,
@@ -58,6 +61,7 @@ impl Default for SearchOptions {
             threads: 1,
             keep_committed: true,
             reduce: true,
+            counters: true,
             local_time: false,
             budget: SearchBudget::default(),
             seed: 0,
@@ -73,6 +77,7 @@ impl SearchOptions {
             order: SearchOrder::Breadth,
             subsumption: SubsumptionRelation::Inclusion,
             reduce: false,
+            counters: false,
             ..Self::default()
         }
     }

@@ -1,6 +1,6 @@
 //! What a search found, and how far it is.
 
-use crate::witness::run::WitnessRun;
+use crate::{network::model::CompiledNetwork, witness::run::WitnessRun};
 
 /// How a goal ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +22,31 @@ pub enum SearchCutoff {
     Stopped,
 }
 
+/// An int of the network, and between what it was seen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WidestVariable {
+    pub name: String,
+    pub lo: i64,
+    pub hi: i64,
+}
+
+impl WidestVariable {
+    /// Of the least and greatest of each number of the state.
+    pub(crate) fn of(model: &CompiledNetwork, extremes: &[(i64, i64)]) -> Option<Self> {
+        let is_int = |slot: &usize| !model.slots[*slot].is_bool && model.slots[*slot].enumeration.is_none();
+        let spans = (0..model.slots.len()).filter(is_int).map(|slot| (slot, extremes[model.slot_at(slot)]));
+        let (slot, (lo, hi)) = spans.max_by_key(|(_, (lo, hi))| hi.saturating_sub(*lo))?;
+        (hi.saturating_sub(lo) > 1).then(|| Self { name: model.slot_name(slot), lo, hi })
+    }
+}
+
+impl std::fmt::Display for WidestVariable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { name, lo, hi } = self;
+        write!(f, "`{name}` has the most values so far, from {lo} to {hi}")
+    }
+}
+
 /// What a search found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchReport {
@@ -41,6 +66,8 @@ pub struct SearchReport {
     pub complete: bool,
     /// Why local time, which was asked for, does not serve this network or these goals.
     pub global_because: Option<String>,
+    /// Of a search that ended before its end: the int with the most values so far, if there is one with more than two.
+    pub widest: Option<WidestVariable>,
 }
 
 /// How far a search is.

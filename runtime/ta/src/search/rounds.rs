@@ -5,7 +5,10 @@
 //! is stored unless one of the same discrete part covers its zone, and it drives out those that it covers: of these only
 //! the path to them is kept, for witnesses. When nothing waits any more, a goal that was not met is proved unreachable.
 
-use std::sync::{Mutex, PoisonError};
+use std::{
+    rc::Rc,
+    sync::{Mutex, PoisonError},
+};
 
 use rayon::prelude::*;
 
@@ -17,10 +20,12 @@ use crate::{
         query::ReachabilityGoal,
     },
     search::{
-        expand::{ExpansionBatch, ExpansionContext, ExpansionWorker, GoalPath},
+        batch::{ExpansionBatch, GoalPath},
+        expand::{ExpansionContext, ExpansionWorker},
         goals::CompiledGoals,
+        monotone::{self, OneWayCounter},
         options::{SearchOptions, SubsumptionRelation},
-        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport},
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
         slice,
         store::{NIL, PassedList, StateLayout},
         waiting::WaitingList,
@@ -48,6 +53,7 @@ struct ZoneGraphSearch<'m, 'p, N> {
     goals: &'m [ReachabilityGoal],
     options: SearchOptions,
     compiled: CompiledGoals,
+    counters: Vec<OneWayCounter>,
     hits: Vec<Option<GoalPath>>,
     open: Vec<bool>,
     left: usize,
@@ -73,8 +79,14 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         options: &SearchOptions,
     ) -> Result<Self, SearchError> {
         let compiled = CompiledGoals::new(model, goals)?;
-        let matters =
+        let mut matters =
             if options.reduce { slice::relevant(model, &compiled) } else { vec![true; model.size()] };
+        let counters = if options.counters && options.subsumption != SubsumptionRelation::Equality {
+            monotone::counters(model, &compiled, &matters)
+        } else {
+            Vec::new()
+        };
+        counters.iter().for_each(|c| matters[c.place] = false);
         let mut options = *options;
         // With differences of clocks a simulation by bounds of single clocks is none.
         if model.extrapolation.diagonals.is_some() && options.subsumption == SubsumptionRelation::Simulation {
@@ -93,7 +105,8 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            store: PassedList::new(StateLayout::new(model.ranges(), &matters)),
+            store: PassedList::new(StateLayout::new(model.ranges(), &matters), counters.len()),
+            counters,
             waiting: WaitingList::new(model, options.order, options.seed),
             workers: (0..options.threads.max(1))
                 .map(|_| ExpansionWorker::new(model, options.abstraction))
@@ -112,7 +125,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         let mut outcomes = Vec::new();
         for i in 0..self.goals.len() {
             outcomes.push(match (self.hits[i], exhausted) {
-                (Some(path), _) => GoalOutcome::Reached(Box::new(self.witness(path, Some(i))?)),
+                (Some(path), _) => GoalOutcome::Reached(Box::new(self.witness(path, i)?)),
                 (None, Some(what)) => GoalOutcome::Inconclusive(what),
                 (None, None) => GoalOutcome::Unreachable,
             });
@@ -126,7 +139,18 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             peak_bytes: self.peak,
             complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes),
             global_because: None,
+            widest: exhausted.and_then(|_| WidestVariable::of(self.model, &self.extremes())),
         })
+    }
+
+    /// The least and greatest of each number of the states.
+    fn extremes(&self) -> Vec<(i64, i64)> {
+        let mut all = self.store.extremes();
+        for (i, counter) in self.counters.iter().enumerate() {
+            let seen = (0..self.store.nodes.len() as u32).map(|n| counter.value(self.store.ranks(n)[i]));
+            all[counter.place] = seen.fold((i64::MAX, i64::MIN), |(lo, hi), n| (lo.min(n), hi.max(n)));
+        }
+        all
     }
 
     fn decided(&self) -> bool {
@@ -180,6 +204,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             goals: &self.compiled,
             open: &self.open,
             options: &self.options,
+            counters: &self.counters,
         };
         self.workers[0].begin(&context, &mut batch).map_err(SearchError::from)?;
         self.batches = vec![batch];
@@ -196,6 +221,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             goals: &self.compiled,
             open: &self.open,
             options: &self.options,
+            counters: &self.counters,
         };
         let work = |worker: &mut ExpansionWorker<'m, 'p, N>, nodes: &[u32], batch: &mut ExpansionBatch<N>| {
             batch.clear();
@@ -274,13 +300,14 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             let zone = batch.zone(item);
             let known =
                 if item.discrete == NIL { self.store.find(item.hash, packed) } else { Some(item.discrete) };
+            let ranks = batch.ranks(item, self.counters.len());
             let mut lost = false;
             let discrete = match known {
                 None => self.store.add_discrete(item.hash, packed),
                 Some(d) => {
                     // What was there before the round was looked at already.
                     let Some(covers) =
-                        worker.compare(&self.store, self.options.subsumption, d, first, zone, item.dim)
+                        worker.compare(&self.store, &self.options, d, first, (zone, item.dim), ranks)
                     else {
                         continue;
                     };
@@ -300,21 +327,26 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             if self.store.nodes.len() >= self.options.budget.states || !self.store.has_room(zone.len()) {
                 return Some(SearchCutoff::States);
             }
-            let id = self.store.add(item.parent, item.via, discrete, zone);
+            let id = self.store.add(item.parent, item.via, discrete, zone, ranks);
             self.waiting.push(id, lost, item.level);
         }
         None
     }
 
     fn fault(&mut self, error: ModelError, path: GoalPath) -> SearchError {
-        match self.witness(path, None) {
-            Ok(witness) => SearchError::Model { error, witness: Some(Box::new(witness)) },
+        match self.path(path) {
+            Ok(taken) => build::fault_after(self.model, taken.into_iter().map(Rc::new), error),
             Err(internal) => internal,
         }
     }
 
     /// The path's transitions, made concrete and replayed.
-    fn witness(&mut self, path: GoalPath, goal: Option<usize>) -> Result<WitnessRun, SearchError> {
+    fn witness(&mut self, path: GoalPath, goal: usize) -> Result<WitnessRun, SearchError> {
+        let taken = self.path(path)?;
+        build::witness(self.model, taken, Some(&self.goals[goal]), ScheduleOptions::default())
+    }
+
+    fn path(&mut self, path: GoalPath) -> Result<Vec<PathTransition>, SearchError> {
         let mut vias = Vec::new();
         let mut at = path.node;
         vias.extend(path.via.map(|via| (path.node, via)));
@@ -329,12 +361,13 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             goals: &self.compiled,
             open: &self.open,
             options: &self.options,
+            counters: &self.counters,
         };
         let mut taken: Vec<PathTransition> = Vec::new();
         // A path through committed states that are not stored begins at the initial state itself.
         for (node, via) in vias {
             self.workers[0].retrace(&context, node, via, &mut taken)?;
         }
-        build::witness(self.model, taken, goal.map(|g| &self.goals[g]), ScheduleOptions::default())
+        Ok(taken)
     }
 }

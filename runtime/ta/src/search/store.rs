@@ -99,11 +99,15 @@ pub(crate) struct PassedList<N> {
     pub nodes: Vec<SymbolicNode>,
     zones: Vec<N>,
     places: HashTable<(u32, u32)>,
+    /// The ranks of the one-way counters of each node, so many of each.
+    ranks: Vec<u32>,
+    counters: usize,
     pub stored: usize,
 }
 
 impl<N: DbmNumber> PassedList<N> {
-    pub(crate) fn new(layout: StateLayout) -> Self {
+    /// The layout leaves out so many one-way counters, whose ranks stand with the nodes.
+    pub(crate) fn new(layout: StateLayout, counters: usize) -> Self {
         Self {
             layout,
             words: Vec::new(),
@@ -112,6 +116,8 @@ impl<N: DbmNumber> PassedList<N> {
             nodes: Vec::new(),
             zones: Vec::new(),
             places: HashTable::new(),
+            ranks: Vec::new(),
+            counters,
             stored: 0,
         }
     }
@@ -128,6 +134,25 @@ impl<N: DbmNumber> PassedList<N> {
             + self.nodes.len() * size_of::<SymbolicNode>()
             + self.zones.len() * size_of::<N>()
             + self.places.capacity() * 9
+            + self.ranks.len() * 4
+    }
+
+    /// The ranks of a node's one-way counters.
+    pub(crate) fn ranks(&self, node: u32) -> &[u32] {
+        &self.ranks[node as usize * self.counters..(node as usize + 1) * self.counters]
+    }
+
+    /// The least and greatest of each number of the discrete states; of numbers that the layout leaves out, their least possible.
+    pub(crate) fn extremes(&self) -> Vec<(i64, i64)> {
+        let mut all = vec![(i64::MAX, i64::MIN); self.layout.fields.len()];
+        let mut state = Vec::new();
+        for words in self.words.chunks_exact(self.layout.words) {
+            self.layout.unpack(words, &mut state);
+            for (seen, &n) in all.iter_mut().zip(&state) {
+                *seen = (seen.0.min(n), seen.1.max(n));
+            }
+        }
+        all
     }
 
     pub(crate) fn packed(&self, discrete: u32) -> &[u64] {
@@ -179,7 +204,8 @@ impl<N: DbmNumber> PassedList<N> {
         self.zones.len() + entries < NIL as usize && self.nodes.len() + 1 < NIL as usize
     }
 
-    pub(crate) fn add(&mut self, parent: u32, via: u32, discrete: u32, zone: &[N]) -> u32 {
+    pub(crate) fn add(&mut self, parent: u32, via: u32, discrete: u32, zone: &[N], ranks: &[u32]) -> u32 {
+        self.ranks.extend_from_slice(ranks);
         let zone = self.intern(zone);
         let id = self.nodes.len() as u32;
         let next = std::mem::replace(&mut self.heads[discrete as usize], id);
@@ -259,9 +285,9 @@ mod tests {
 
     #[test]
     fn a_chain_loses_what_is_covered() {
-        let mut store = PassedList::<i16>::new(StateLayout::new(&[(0, 3)], &[true]));
+        let mut store = PassedList::<i16>::new(StateLayout::new(&[(0, 3)], &[true]), 0);
         let d = store.add_discrete(hash_words(&[2]), &[2]);
-        let ids: Vec<u32> = (0..4).map(|k| store.add(NIL, 0, d, &[k])).collect();
+        let ids: Vec<u32> = (0..4).map(|k| store.add(NIL, 0, d, &[k], &[])).collect();
         store.cover(ids[3]);
         store.cover(ids[1]);
         store.unlink(d);
@@ -270,7 +296,7 @@ mod tests {
         assert_eq!(store.nodes[ids[2] as usize].next, ids[0]);
         assert_eq!(store.nodes[ids[0] as usize].next, NIL);
         // The same zone is kept once.
-        let again = store.add(NIL, 0, d, &[2]);
+        let again = store.add(NIL, 0, d, &[2], &[]);
         assert_eq!(store.nodes[again as usize].zone, store.nodes[ids[2] as usize].zone);
     }
 }

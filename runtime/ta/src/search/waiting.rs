@@ -231,7 +231,17 @@ pub(crate) fn levels(model: &CompiledNetwork) -> Vec<Vec<u32>> {
         .collect()
 }
 
-/// Of a state: the sum over its locations.
-pub(crate) fn level(levels: &[Vec<u32>], state: &[i64]) -> u32 {
-    levels.iter().zip(state).map(|(by_location, &at)| by_location[at as usize]).sum()
+/// Of a state: the sum over its locations, after those with better counters.
+pub(crate) fn level(levels: &[Vec<u32>], state: &[i64], ranks: &[u32]) -> u32 {
+    let place: u32 = levels.iter().zip(state).map(|(by_location, &at)| by_location[at as usize]).sum();
+    if ranks.is_empty() {
+        return place;
+    }
+    // What a better counter leads to covers the rest, so that it is expanded once. The place in the order decides among the like.
+    let total = ranks.iter().fold(0u32, |sum, r| sum.saturating_add(*r));
+    if total < PRECISE { total * PLACES + place.min(PLACES - 1) } else { PRECISE * PLACES + total.ilog2() }
 }
+
+/// Up to this sum of ranks each has its own levels, so many for places.
+const PRECISE: u32 = 1 << 14;
+const PLACES: u32 = 16;

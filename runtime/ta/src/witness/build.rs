@@ -10,6 +10,7 @@ use crate::{
     network::{
         actions::{DelayCondition, PathTransition},
         code::SyncMedium,
+        error::ModelError,
         graph::{ZoneDetail, ZoneGraph},
         model::{CompiledNetwork, values},
         query::{GoalKind, ReachabilityGoal, StateFormula},
@@ -110,9 +111,7 @@ fn reach_in_time(
         let w = walk(graph, &stops)?;
         let Some(times) = w.schedule.solve(graph.model.unit, timing) else { continue };
         let witness = finish(graph, w, &times, RunEnding::Reached, goal)?;
-        // The earliest of them, as nanoseconds and their parts.
-        let key = |w: &WitnessRun| (i128::from(w.end) << 32) / i128::from(w.ticks);
-        if best.as_ref().is_none_or(|b| key(&witness) < key(b)) {
+        if best.as_ref().is_none_or(|b| earliness(&witness) < earliness(b)) {
             best = Some(witness);
         }
     }
@@ -165,15 +164,66 @@ fn finish(
     Ok(witness)
 }
 
+fn replayed<'p>(model: &CompiledNetwork<'p>, witness: &WitnessRun) -> Result<ReplayedState<'p>, SearchError> {
+    let ids: Vec<_> = model.members.iter().map(|m| m.automaton).collect();
+    replay::replay(model.program, &ids, &model.counters, &model.limits, witness)
+        .map_err(|m| SearchError::Internal(format!("a witness does not replay: {m}")))
+}
+
+/// A fault of the model with the run to it, up to the instant at which the interpreter meets the fault, too. A fault that it does
+/// not meet is one of the engine's own.
+pub(crate) fn fault(graph: &ZoneGraph, stops: Vec<PathSegment>, error: ModelError) -> SearchError {
+    match led_to(graph, stops, &error) {
+        Ok(witness) => SearchError::Model { error, witness: Some(Box::new(witness)) },
+        Err(internal) => internal,
+    }
+}
+
+/// As [`fault`], of a path of transitions alone.
+pub(crate) fn fault_after(
+    model: &CompiledNetwork,
+    path: impl IntoIterator<Item = Rc<PathTransition>>,
+    error: ModelError,
+) -> SearchError {
+    match ZoneGraph::new(model, ZoneDetail::Tell, &[], 0) {
+        Ok(graph) => fault(&graph, takes(path), error),
+        Err(e) => e.into(),
+    }
+}
+
+fn led_to(graph: &ZoneGraph, stops: Vec<PathSegment>, error: &ModelError) -> Result<WitnessRun, SearchError> {
+    if !error.is_of_a_transition() {
+        return concrete(graph, &stops, RunEnding::Reached, None, ScheduleOptions::default());
+    }
+    let state = walk(graph, &stops)?.state;
+    let mut best: Option<WitnessRun> = None;
+    for conditions in graph.faulty(&state, error) {
+        let mut stops = stops.clone();
+        stops.push(PathSegment::Wait(conditions));
+        let w = walk(graph, &stops)?;
+        let Some(times) = w.schedule.solve(graph.model.unit, ScheduleOptions::default()) else { continue };
+        let witness = finish(graph, w, &times, RunEnding::Reached, None)?;
+        if replayed(graph.model, &witness)?.faults().contains(error)
+            && best.as_ref().is_none_or(|b| earliness(&witness) < earliness(b))
+        {
+            best = Some(witness);
+        }
+    }
+    best.ok_or_else(|| SearchError::Internal(format!("a fault does not replay: {error}")))
+}
+
+/// When a run ends, as nanoseconds and their parts.
+fn earliness(run: &WitnessRun) -> i128 {
+    (i128::from(run.end) << 32) / i128::from(run.ticks)
+}
+
 fn believe(
     model: &CompiledNetwork,
     witness: &WitnessRun,
     state: &[i64],
     goal: Option<&ReachabilityGoal>,
 ) -> Result<(), SearchError> {
-    let ids: Vec<_> = model.members.iter().map(|m| m.automaton).collect();
-    let end = replay::replay(model.program, &ids, &model.counters, &model.limits, witness)
-        .map_err(|m| SearchError::Internal(format!("a witness does not replay: {m}")))?;
+    let end = replayed(model, witness)?;
     if end.numbers() != state[..model.limit_at(0)] {
         return Err(internal("a witness ends in another state than the search"));
     }

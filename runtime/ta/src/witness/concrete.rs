@@ -4,7 +4,7 @@
 //! believed for good reason; and it plays a single automaton in a harness ([`VirtualTimePlayer`](crate::VirtualTimePlayer)). What functions mean
 //! it takes from [`hrdsl_ir::exec`], as everybody does.
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::sync::Arc;
 
 use hrdsl_ir::{
     EventId, Expr, Program, Value,
@@ -119,20 +119,34 @@ impl<'p> ConcreteInterpreter<'p> {
         binders: &[Value],
         constraints: &[ClockConstraint],
     ) -> Result<bool, EvalError> {
+        let mut result = Ok(true);
         for c in constraints {
             let clock = |c: ClockId| self.now - self.zero_at(member, c);
             let value = clock(c.clock) - c.minus.map_or(0, clock);
-            if !compare(value, c.op, self.span(member, binders, &c.bound)?) {
-                return Ok(false);
+            match self.span(member, binders, &c.bound) {
+                Ok(bound) if compare(value, c.op, bound) => {}
+                Ok(_) => return Ok(false),
+                // Another constraint that does not hold protects this one.
+                Err(fault) => result = result.and(Err(fault)),
             }
         }
-        Ok(true)
+        result
     }
 
     /// Whether a member's invariant holds now, its variables' part included.
     pub(crate) fn invariant_holds(&self, member: usize) -> Result<bool, ModelError> {
+        Ok(self.invariant_parts(member)? == (true, true))
+    }
+
+    /// Whether the invariant's part over variables holds now, and its part over clocks, which has no meaning where the first does not.
+    fn invariant_parts(&self, member: usize) -> Result<(bool, bool), ModelError> {
         let place = self.place(member);
-        let all = self.data_holds(member).and_then(|h| Ok(h && self.holds(member, &[], &place.invariant)?));
+        let clocks = || {
+            // A bound without a value is a fault whatever the other bounds are.
+            place.invariant.iter().try_for_each(|c| self.span(member, &[], &c.bound).map(drop))?;
+            self.holds(member, &[], &place.invariant)
+        };
+        let all = self.data_holds(member).and_then(|data| Ok((data, data && clocks()?)));
         all.map_err(|error| ModelError::Invariant {
             automaton: self.members[member].name.clone(),
             location: place.name.clone(),
@@ -150,12 +164,16 @@ impl<'p> ConcreteInterpreter<'p> {
 
     /// The first member whose invariant does not hold now.
     pub(crate) fn broken_invariant(&self) -> Result<Option<usize>, ModelError> {
+        let mut broken = None;
         for m in 0..self.members.len() {
-            if !self.invariant_holds(m)? {
-                return Ok(Some(m));
+            match self.invariant_parts(m)? {
+                (true, true) => {}
+                // Those after it may have no value for this very reason.
+                (false, _) => return Ok(Some(m)),
+                (true, false) => broken = broken.or(Some(m)),
             }
         }
-        Ok(None)
+        Ok(broken)
     }
 
     /// Whether the edge leaves the current location and its data guard holds; clocks are not looked at.
@@ -345,12 +363,18 @@ impl<'p> ConcreteInterpreter<'p> {
             for mut binders in choices(&edge.selects) {
                 binders.extend_from_slice(&bound);
                 let m = AutomatonMove { automaton: member, edge: i, binders };
-                if self.guard(&m)? && (!clocks || self.clock_guard(&m)?) {
+                if if clocks { self.is_open(&m)? } else { self.guard(&m)? } {
                     out.push(m);
                 }
             }
         }
         Ok(out)
+    }
+
+    /// Whether both guards of the edge hold now. A clock guard that does not hold protects the other from faults, and the other way round.
+    pub(crate) fn is_open(&self, m: &AutomatonMove) -> Result<bool, ModelError> {
+        let clocks = self.clock_guard(m);
+        if clocks == Ok(false) || self.guard(m)? { clocks } else { Ok(false) }
     }
 
     /// Whether a transition over an urgent channel is possible: then no time passes. Clock guards do not matter, since the
@@ -414,207 +438,6 @@ impl<'p> ConcreteInterpreter<'p> {
     /// Whether time may pass as far as locations and channels tell.
     pub(crate) fn may_wait(&self) -> bool {
         (0..self.members.len()).all(|m| self.kind(m) == LocationKind::Normal) && !self.is_urged()
-    }
-
-    /// Whether some transition is possible right now.
-    ///
-    /// # Errors
-    /// If the model is at fault.
-    pub(crate) fn can_move(&self) -> Result<bool, ModelError> {
-        Ok(self.each_next(&mut |_| ControlFlow::Break(()))?.is_break())
-    }
-
-    /// Shows what each transition that is possible right now leads to, until it breaks off.
-    ///
-    /// # Errors
-    /// If the model is at fault.
-    pub(crate) fn each_next(
-        &self,
-        f: &mut dyn FnMut(ConcreteInterpreter<'p>) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<()>, ModelError> {
-        let mut groups: Vec<Vec<Vec<AutomatonMove>>> = Vec::new();
-        for (automaton, a) in self.members.iter().enumerate() {
-            for (edge, e) in a.edges.iter().enumerate().filter(|(_, e)| e.from == self.location[automaton]) {
-                // What takes something moves with whoever sends it, and binds the arguments then.
-                if matches!(e.sync, SyncLabel::Receive { .. } | SyncLabel::Accept { .. }) {
-                    continue;
-                }
-                for binders in choices(&e.selects) {
-                    let m = AutomatonMove { automaton, edge, binders };
-                    if starts(&e.sync) && self.guard(&m)? && self.clock_guard(&m)? {
-                        self.partners(&m, &mut groups)?;
-                    }
-                }
-            }
-        }
-        for group in groups {
-            if self.each_combination(&group, f)?.is_break() {
-                return Ok(ControlFlow::Break(()));
-            }
-        }
-        Ok(ControlFlow::Continue(()))
-    }
-
-    /// The transitions that an open edge starts: for each, what each automaton that takes part may do.
-    fn partners(
-        &self,
-        m: &AutomatonMove,
-        groups: &mut Vec<Vec<Vec<AutomatonMove>>>,
-    ) -> Result<(), ModelError> {
-        let hear = |medium: SyncMedium, args: &[Value]| -> Result<Vec<Vec<AutomatonMove>>, ModelError> {
-            let mut all = vec![vec![m.clone()]];
-            for o in self.others(m.automaton) {
-                let moves = self.receptions(o, medium, args, true)?;
-                if !moves.is_empty() {
-                    all.push(moves);
-                }
-            }
-            Ok(all)
-        };
-        match &self.edge(m).sync {
-            SyncLabel::Internal => groups.push(vec![vec![m.clone()]]),
-            SyncLabel::Send { event, args } => {
-                let args = self.arguments(m, *event, args)?;
-                groups.push(hear(SyncMedium::Event(*event), &args)?);
-            }
-            SyncLabel::Offer { channel, args } => {
-                let Some(declared) = self.channel(*channel) else { return Ok(()) };
-                let args = self.offered(m, declared, args)?;
-                let all = hear(SyncMedium::Channel(*channel), &args)?;
-                match declared.kind {
-                    ChannelKind::Broadcast => groups.push(all),
-                    // One partner at a time: each of those that could accept is another transition.
-                    ChannelKind::Binary | ChannelKind::MultiWay(_) => {
-                        groups.extend(all.into_iter().skip(1).map(|moves| vec![vec![m.clone()], moves]));
-                    }
-                }
-            }
-            SyncLabel::Join { channel } => groups.extend(self.multiway(*channel, m)?),
-            SyncLabel::Receive { .. } | SyncLabel::Accept { .. } => {}
-        }
-        Ok(())
-    }
-
-    /// What each participant of a multi-way channel may do; nothing if a participant that must take part cannot, or if the given move is
-    /// not the first participant's, which starts it.
-    pub(crate) fn multiway(
-        &self,
-        id: ChannelId,
-        first: &AutomatonMove,
-    ) -> Result<Option<Vec<Vec<AutomatonMove>>>, ModelError> {
-        let Some(ChannelKind::MultiWay(participants)) = self.channel(id).map(|c| &c.kind) else {
-            return Ok(None);
-        };
-        let mut all = Vec::new();
-        for p in participants {
-            let Some(member) = self.member(p.automaton) else { continue };
-            let moves = self.receptions(member, SyncMedium::Channel(id), &[], true)?;
-            match (moves.is_empty(), p.optional) {
-                (true, true) => {}
-                (true, false) => return Ok(None),
-                (false, _) => all.push(moves),
-            }
-        }
-        // Every open edge of a participant is asked whether it starts this; only the first participant's do, or each combination would come
-        // once for each of its parts.
-        Ok(all.first().is_some_and(|moves| moves.contains(first)).then_some(all))
-    }
-
-    /// Each choice of a move for each automaton.
-    fn each_combination(
-        &self,
-        group: &[Vec<AutomatonMove>],
-        f: &mut dyn FnMut(ConcreteInterpreter<'p>) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<()>, ModelError> {
-        let takes_committed =
-            group.iter().any(|moves| self.kind(moves[0].automaton) == LocationKind::Committed);
-        // INVARIANT: a list of the group is of one automaton, and none is empty. One committed part lets all the others move with it.
-        if self.any_committed() && !takes_committed {
-            return Ok(ControlFlow::Continue(()));
-        }
-        let mut at = vec![0; group.len()];
-        loop {
-            // Guards and arguments were worked out in the state before; updates go one after the other, in the order of the parts.
-            let mut next = self.clone();
-            for (moves, &i) in group.iter().zip(&at) {
-                next.take(&moves[i])?;
-            }
-            // A transition into an invariant that does not hold is not there; it is no fault.
-            if next.broken_invariant()?.is_none() && f(next).is_break() {
-                return Ok(ControlFlow::Break(()));
-            }
-            let Some(turn) = (0..at.len()).rev().find(|&i| at[i] + 1 < group[i].len()) else {
-                return Ok(ControlFlow::Continue(()));
-            };
-            at[turn] += 1;
-            at[turn + 1..].fill(0);
-        }
-    }
-
-    /// Whether some transition is possible now or after some delay.
-    ///
-    /// Between two neighbouring bounds of the clocks' constraints nothing changes, so it looks at each bound and a tick to
-    /// either side.
-    ///
-    /// # Errors
-    /// If the model is at fault.
-    pub(crate) fn can_ever_move(&self) -> Result<bool, ModelError> {
-        if self.can_move()? {
-            return Ok(true);
-        }
-        if !self.may_wait() {
-            return Ok(false);
-        }
-        for later in self.turns() {
-            let mut then = self.clone();
-            then.now = later;
-            if then.broken_invariant()?.is_none() && then.can_move()? {
-                return Ok(true);
-            }
-        }
-        Ok(false)
-    }
-
-    /// The times from now on at which a constraint may change its value, in order.
-    fn turns(&self) -> Vec<i128> {
-        let mut times = Vec::new();
-        for (member, a) in self.members.iter().enumerate() {
-            let edges = a.edges.iter().filter(|e| e.from == self.location[member]);
-            // Invariants of targets count, too: an edge may be open before the location that it leads to can be entered.
-            let targets = edges.clone().flat_map(|e| &a.locations[usize::from(e.to.0)].invariant);
-            let guards = edges.clone().flat_map(|e| e.clock_guard.iter().map(move |c| (e, c)));
-            for c in targets.chain(&self.place(member).invariant) {
-                self.note_turn(member, &[], c, &mut times);
-            }
-            for (e, c) in guards {
-                for binders in choices(&e.selects) {
-                    self.note_turn(member, &binders, c, &mut times);
-                }
-            }
-        }
-        times.retain(|t| *t > self.now);
-        times.sort_unstable();
-        times.dedup();
-        times
-    }
-
-    fn note_turn(&self, member: usize, binders: &[Value], c: &ClockConstraint, times: &mut Vec<i128>) {
-        // The difference of two clocks does not change with time. A bound without a value is a fault of its edge, which is met where the
-        // edge is tried.
-        if let (None, Ok(bound)) = (c.minus, self.span(member, binders, &c.bound)) {
-            let at = self.zero_at(member, c.clock) + bound;
-            times.extend([at - 1, at, at + 1]);
-        }
-    }
-}
-
-/// Whether such an edge can begin a transition.
-fn starts(sync: &SyncLabel) -> bool {
-    match sync {
-        SyncLabel::Internal | SyncLabel::Send { .. } | SyncLabel::Offer { .. } | SyncLabel::Join { .. } => {
-            true
-        }
-        SyncLabel::Receive { .. } | SyncLabel::Accept { .. } => false,
     }
 }
 

@@ -5,6 +5,7 @@ pub(crate) mod build;
 pub(crate) mod concrete;
 pub(crate) mod error;
 mod memory;
+mod outcomes;
 pub(crate) mod player;
 mod replay;
 pub(crate) mod run;

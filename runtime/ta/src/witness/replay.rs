@@ -8,7 +8,7 @@ use hrdsl_ir::{
     expr::EvalError,
     ta::{
         Automaton, AutomatonVar, ChannelId, ChannelKind, ClockConstraint, FunctionId, LocationId,
-        LocationKind, SyncLabel,
+        LocationKind, SyncLabel, located_automaton,
     },
 };
 
@@ -53,6 +53,11 @@ pub(crate) struct ReplayedState<'p> {
 }
 
 impl ReplayedState<'_> {
+    /// The faults that are met by what may happen right now.
+    pub(crate) fn faults(&self) -> Vec<ModelError> {
+        self.machine.faults()
+    }
+
     /// Locations, variables, counters, in the search's order.
     pub(crate) fn numbers(&self) -> Vec<i64> {
         discrete(&self.machine).into_iter().chain(self.counters.iter().copied()).collect()
@@ -105,6 +110,9 @@ impl StateView for ReplayedState<'_> {
     }
 
     fn slot(&self, slot: u16) -> Option<Value> {
+        if let Some(automaton) = located_automaton(slot, self.machine.location.len()) {
+            return self.location(usize::from(automaton)).map(|l| Value::Int(i64::from(l.0)));
+        }
         let (var, n) = self.slots.get(usize::from(slot))?;
         var.value(*n)
     }

@@ -3,7 +3,10 @@
 use hrdsl_ir::{
     Program, Span,
     ta::NetworkId,
-    ta::{ClockConstraint, ClockId, ClockOp, LocationId, Query, QueryFormula, QueryKind, TimeSum},
+    ta::{
+        ClockConstraint, ClockId, ClockOp, LocationId, Query, QueryFormula, QueryKind, TimeSum,
+        location_variable,
+    },
     value::SECOND,
 };
 use hrdsl_ta::{
@@ -118,7 +121,10 @@ pub fn formulas(p: &Program) -> Vec<QueryFormula> {
         for (m, a) in network.iter().enumerate() {
             let at = LocationId(below(p.automata[usize::from(a.0)].locations.len()) as u16);
             if below(3) > 0 {
-                parts.push(QueryFormula::At { automaton: m as u16, location: at });
+                parts.push(match below(3) {
+                    0 => QueryFormula::Data(eq(v(location_variable(m as u16)), n(i64::from(at.0)))),
+                    _ => QueryFormula::At { automaton: m as u16, location: at },
+                });
             }
         }
         if below(2) == 0 {

@@ -11,7 +11,7 @@ use hrdsl_ir::{
 };
 
 use crate::{
-    common::{add, automaton, bin, edge, eq, location, n, normal, program, shared, v, var},
+    common::{add, automaton, bin, clock, edge, eq, location, n, normal, program, shared, v, var},
     engine::{LIMITS, asks, disagreement},
     oracle::explore,
 };
@@ -133,4 +133,31 @@ fn a_bound_argument_is_not_asked_for_without_a_sender() {
 fn a_receiver_that_stays_away_has_time_to() {
     let p = crate::dice::network(569, crate::dice::Flavour::Differences);
     agrees(&p);
+}
+
+/// The way out of `l` is closed by the time that `l` allows, and would lead to where a bound has no value.
+#[test]
+fn an_edge_that_cannot_be_taken_is_no_fault_of_a_deadlock() {
+    for closed in [clock(0, ClockOp::Gt, 3), clock(0, ClockOp::Ge, 2)] {
+        let (mut p, bound) = array();
+        let mut a = automaton("A", &["x"]);
+        let l = location(&mut a, "l", LocationKind::Normal, &[clock(0, ClockOp::Lt, 2)]);
+        let m = location(
+            &mut a,
+            "m",
+            LocationKind::Normal,
+            &[ClockConstraint { op: ClockOp::Le, ..at_least(bound) }],
+        );
+        let mut never = edge(l, m).set(0, n(2));
+        never.0.clock_guard.push(closed);
+        never.to(&mut a);
+        add(&mut p, a);
+        agrees(&p);
+    }
+}
+
+/// The network in which a deadlock's search once told the fault of an edge that is never taken.
+#[test]
+fn the_invariant_of_a_target_is_looked_at_after_the_guard() {
+    agrees(&crate::dice::network(100_819, crate::dice::Flavour::Whole));
 }

@@ -3,7 +3,7 @@
 use hrdsl_ir::{
     Enumeration, Expr, Value,
     expr::{BinaryOp, Lvalue, NumberFunction, UnaryOp},
-    ta::{ClockConstraint, ClockOp, TimeSum},
+    ta::{ClockConstraint, ClockOp, TimeSum, located_automaton},
 };
 
 use super::slots::UppaalSlotTable;
@@ -56,6 +56,8 @@ pub struct UppaalExprContext {
     pub symbols: Vec<(Enumeration, Vec<String>)>,
     /// Nanoseconds of one unit of time.
     pub unit: i64,
+    /// In queries: each automaton's locations, with its process.
+    pub locations: Vec<Vec<String>>,
 }
 
 impl UppaalExprContext {
@@ -72,7 +74,10 @@ impl UppaalExprContext {
                 format!("-{}", self.expr(a, None)?.at(UppaalPrecedence::Atom)),
                 UppaalPrecedence::Unary,
             )),
-            Expr::Binary(op, a, b) => self.binary(*op, a, b),
+            Expr::Binary(op, a, b) => match self.location(*op, a, b) {
+                Some(name) => Ok(UppaalExprText::new(name.to_owned(), UppaalPrecedence::Atom)),
+                None => self.binary(*op, a, b),
+            },
             Expr::If(c, a, b) => {
                 let (c, a, b) = (self.expr(c, None)?, self.expr(a, of)?, self.expr(b, of)?);
                 let text = format!(
@@ -90,6 +95,13 @@ impl UppaalExprContext {
                 Ok(UppaalExprText::new(self.apply(function.0, args)?, UppaalPrecedence::Atom))
             }
         }
+    }
+
+    /// The location that a query's expression asks for.
+    fn location(&self, op: BinaryOp, a: &Expr, b: &Expr) -> Option<&str> {
+        let (BinaryOp::Eq, Expr::Var(slot), Expr::Const(Value::Int(n))) = (op, a, b) else { return None };
+        let of = &self.locations[usize::from(located_automaton(*slot, self.locations.len())?)];
+        of.get(usize::try_from(*n).ok()?).map(String::as_str)
     }
 
     /// A constant; a value of an enumeration is the constant for its number.

@@ -44,6 +44,9 @@ impl UppaalExporter<'_> {
             let clocks = context.clocks.iter().skip(self.global.clocks.len());
             all.clocks.extend(clocks.map(|c| prefix.clone() + c));
         }
+        let named =
+            |(process, of): (&String, &Vec<String>)| of.iter().map(|l| format!("{process}.{l}")).collect();
+        all.locations = self.processes.iter().zip(&self.locations).map(named).collect();
         all
     }
 

@@ -35,6 +35,8 @@ struct QueryNetwork {
     clocks: OrderedMap<String, ClockId>,
     /// Variables: shared ones by their names, others as `Automaton.variable`.
     env: ExprEnv,
+    /// The same, and each location as a bool. Their numbers follow those of the variables, in the network's order.
+    values: ExprEnv,
 }
 
 /// One side of a comparison: clocks with their signs, and what remains.
@@ -118,6 +120,7 @@ impl AutomataPhase<'_, '_> {
                 shared: self.shared.scope.clone(),
                 ..ExprEnv::default()
             },
+            values: ExprEnv::default(),
         };
         for clock in self.shared.scope.clocks.keys() {
             add_clock(&mut net.clocks, clock.clone());
@@ -147,11 +150,25 @@ impl AutomataPhase<'_, '_> {
                 add_clock(&mut net.clocks, format!("{of}.{clock}"));
             }
         }
-        net.env.own = Rc::new(own);
+        net.env.own = Rc::new(own.clone());
+        for name in net.locations.keys() {
+            let number = u16::try_from(own.names.len()).ok().map(VariableRef::Own);
+            let local = LocalName {
+                name: name.clone(),
+                noun: Noun::Location,
+                leaf: number,
+                ty: InferredType::Bool,
+                range: None,
+                bound: true,
+                place: Span::default(),
+            };
+            own.names.insert(name.clone(), local);
+        }
+        net.values = ExprEnv { own: Rc::new(own), ..net.env.clone() };
         net
     }
 
-    /// Whether all names are known, and are variables, constants or functions; says what is not.
+    /// Whether all names are known, and are variables, locations, constants or functions; says what is not.
     fn data_names(&mut self, e: &ast::ExprSyntax, net: &QueryNetwork) -> bool {
         let mut known = true;
         each_path(e, &mut |path| known &= self.data_name(path, net));
@@ -184,12 +201,7 @@ impl AutomataPhase<'_, '_> {
                 if !self.has_member(automaton, member, net) {
                     return false;
                 }
-                let name = format!("{}.{}", automaton.text, member.text);
-                let location = net.locations.contains_key(&name);
-                if location {
-                    self.report(queries::state_value(&name, path.span));
-                }
-                !location
+                true
             }
             [..] => true,
         }
@@ -276,7 +288,7 @@ impl AutomataPhase<'_, '_> {
         if !self.data_names(e, net) {
             return nothing();
         }
-        TypedFormula::Data(self.expr_of(e, InferredType::Bool, &mut net.env))
+        TypedFormula::Data(self.expr_of(e, InferredType::Bool, &mut net.values))
     }
 
     fn measures(&mut self, of: &[ast::ExprSyntax], net: &mut QueryNetwork) -> Vec<TypedMeasure> {
@@ -285,7 +297,7 @@ impl AutomataPhase<'_, '_> {
             if let Some(clock) = clock_named(e, net) {
                 measures.push(TypedMeasure::Clock(clock));
             } else if self.data_names(e, net) {
-                measures.push(TypedMeasure::Data(self.expr_of(e, InferredType::Int, &mut net.env)));
+                measures.push(TypedMeasure::Data(self.expr_of(e, InferredType::Int, &mut net.values)));
             }
         }
         measures
@@ -302,7 +314,7 @@ impl AutomataPhase<'_, '_> {
             if !self.data_names(e, net) {
                 return None;
             }
-            let time = self.expr_of(e, InferredType::Float(Dimension::TIME), &mut net.env);
+            let time = self.expr_of(e, InferredType::Float(Dimension::TIME), &mut net.values);
             if time.kind == TypedExprKind::Error {
                 return None;
             }

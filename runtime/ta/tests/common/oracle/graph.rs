@@ -6,8 +6,12 @@ use std::{
 };
 
 use hrdsl_ir::{
-    Program,
-    ta::{ClockConstraint, EdgeAssignment, Location, Network, QueryFormula, TimeSum},
+    Program, Value,
+    expr::{EvalError, EvalScope},
+    ta::{
+        ClockConstraint, EdgeAssignment, FunctionId, Location, Network, QueryFormula, TimeSum,
+        located_automaton,
+    },
 };
 use rustc_hash::FxHashMap;
 
@@ -220,7 +224,8 @@ impl Graph<'_> {
             QueryFormula::At { automaton, location } => Ok(s.at[usize::from(*automaton)] == location.0),
             QueryFormula::Data(e) => {
                 let (data, statements) = (RefCell::new(s.data.clone()), Cell::new(0));
-                Here::of_query(&self.net.layout, &data, &statements).truth(e)
+                let data = Here::of_query(&self.net.layout, &data, &statements);
+                Ok(e.eval_in(&Whole { data, at: &s.at })?.as_bool().ok_or(EvalError::Type)?)
             }
             QueryFormula::Clock(c) => {
                 let of = |c: hrdsl_ir::ta::ClockId| s.clocks[usize::from(c.0)];
@@ -307,5 +312,24 @@ fn why(stop: Stop) -> String {
     match stop {
         Stop::Fault(fault) => format!("{fault:?}"),
         Stop::Outside(why) => why,
+    }
+}
+
+/// What a query sees: the variables, and where the automata are.
+struct Whole<'a> {
+    data: Here<'a>,
+    at: &'a [u16],
+}
+
+impl EvalScope for Whole<'_> {
+    fn var(&self, slot: u16) -> Option<Value> {
+        match located_automaton(slot, self.at.len()) {
+            Some(m) => Some(Value::Int(i64::from(self.at[usize::from(m)]))),
+            None => self.data.var(slot),
+        }
+    }
+
+    fn apply(&self, function: FunctionId, args: &[Value]) -> Result<Value, EvalError> {
+        self.data.apply(function, args)
     }
 }
