@@ -14,7 +14,6 @@ const LONG: &[(&str, usize)] = &[
     ("cli/tests/robust.rs", 572),
     ("compiler/interop/src/tchecker/export/expr.rs", 509),
     ("compiler/ir/src/lowering.rs", 561),
-    ("compiler/model/src/check/agents/agent.rs", 565),
     ("compiler/model/src/check/value/expr.rs", 581),
     ("compiler/model/src/lint/applicable.rs", 505),
     ("compiler/syntax/src/ast.rs", 760),

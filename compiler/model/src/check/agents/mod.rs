@@ -1,5 +1,6 @@
 //! Agents: beliefs, goals, rules, plans and what they do.
 
+pub(super) mod adoption;
 pub(super) mod agent;
 pub(super) mod context;
 pub(super) mod internal;
