@@ -74,6 +74,12 @@ pub enum TokenTrait {
     InBinding,
 }
 
+impl TokenTrait {
+    const fn bit(self) -> u64 {
+        1 << self as u32
+    }
+}
+
 /// One row of the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct Keyword {
@@ -124,12 +130,13 @@ macro_rules! tokens {
 
             /// Whether the registry says this of it.
             pub(crate) fn is(self, what: TokenTrait) -> bool {
-                let traits: &[TokenTrait] = match self {
-                    $(Self::$kind => &[$(TokenTrait::$holds),*],)*
-                    $(Self::$sign_kind => &[$(TokenTrait::$sign_holds),*],)*
-                    $(Self::$other => &[$(TokenTrait::$other_holds),*],)*
+                // A bit for each trait: this is asked several times of each token.
+                let traits: u64 = match self {
+                    $(Self::$kind => 0 $(| TokenTrait::$holds.bit())*,)*
+                    $(Self::$sign_kind => 0 $(| TokenTrait::$sign_holds.bit())*,)*
+                    $(Self::$other => 0 $(| TokenTrait::$other_holds.bit())*,)*
                 };
-                traits.contains(&what)
+                traits & what.bit() != 0
             }
         }
     };
