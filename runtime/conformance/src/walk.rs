@@ -162,9 +162,7 @@ impl<'p> ModelWalk<'p> {
                 seen(VisibleOutput { output, from, until });
             }
             for transition in self.transitions(&here.discrete).iter() {
-                let Some((discrete, zone)) = self.open().follow(transition, &here.zone)? else { continue };
-                let there = PossibleState { discrete, zone, extras: here.extras.clone() };
-                let there = self.marked(&here, there, transition);
+                let Some(there) = self.taken(&here, transition)? else { continue };
                 match self.output(transition) {
                     None => self.enter(there, until, &mut reached)?,
                     Some(output) if self.latency > 0 => {
@@ -186,6 +184,17 @@ impl<'p> ModelWalk<'p> {
         let (event, args) = transition.sent.as_ref().filter(|(event, _)| !self.hidden.contains(event))?;
         let sender = transition.parts.first()?;
         Some(SentOutput { event: *event, args: args.clone(), edge: (sender.automaton, sender.edge) })
+    }
+
+    /// The state after a transition, if it can be taken.
+    fn taken(
+        &self,
+        from: &PossibleState,
+        transition: &OpenTransition,
+    ) -> Result<Option<PossibleState>, WalkFault> {
+        let Some((discrete, zone)) = self.open().follow(transition, &from.zone)? else { return Ok(None) };
+        let there = PossibleState { discrete, zone, extras: from.extras.clone() };
+        Ok(Some(self.marked(from, there, transition)))
     }
 
     /// A state after a transition, with the clocks of the bounds that are watched as they were before it.
@@ -262,9 +271,7 @@ impl<'p> ModelWalk<'p> {
         let mut next = Vec::new();
         for state in &arrived {
             for reception in self.open().receptions(&state.discrete, event, args) {
-                let Some((discrete, zone)) = self.open().follow(&reception, &state.zone)? else { continue };
-                let there = PossibleState { discrete, zone, extras: state.extras.clone() };
-                next.push(self.marked(state, there, &reception));
+                next.extend(self.taken(state, &reception)?);
             }
         }
         Ok(if next.is_empty() { ObservationEffect::Refused } else { ObservationEffect::Now(next) })
@@ -293,9 +300,7 @@ impl<'p> ModelWalk<'p> {
                 if !self.output(transition).is_some_and(|output| output.is(event, args)) {
                     continue;
                 }
-                let Some((discrete, zone)) = self.open().follow(transition, &state.zone)? else { continue };
-                let there = PossibleState { discrete, zone, extras: state.extras.clone() };
-                next.push(self.marked(state, there, transition));
+                next.extend(self.taken(state, transition)?);
             }
         }
         Ok(if next.is_empty() { ObservationEffect::Wrong(arrived) } else { ObservationEffect::Now(next) })
