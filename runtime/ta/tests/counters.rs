@@ -8,7 +8,8 @@ mod common;
 mod oracle;
 
 use common::{
-    add, and, automaton, bin, channel, clock, deadlines, edge, eq, location, n, program, shared, v,
+    add, and, asked::asked, automaton, bin, channel, clock, deadlines, edge, eq, location, n, program,
+    shared, v,
 };
 use hrdsl_ir::{
     Expr, Program,
@@ -17,8 +18,7 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_ta::{
-    CompiledNetwork, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal, SearchError, SearchOptions,
-    SearchOrder, SearchReport, SubsumptionRelation, explore as search,
+    GoalKind, GoalOutcome, ReachabilityGoal, SearchError, SearchOptions, SearchOrder, SubsumptionRelation,
 };
 use oracle::{Graph, Limits, explore};
 use rand::{RngExt, SeedableRng};
@@ -179,24 +179,6 @@ fn expected(graph: &Graph, goal: &GoalKind) -> Result<bool, String> {
         GoalKind::Formula(f) => graph.possibly(f),
         GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Condition(_) => Err("no such goal".into()),
     }
-}
-
-fn asked(
-    p: &Program,
-    goals: &[ReachabilityGoal],
-    options: &SearchOptions,
-) -> Result<SearchReport, SearchError> {
-    let formulas = goals.iter().filter_map(|g| match &g.what {
-        GoalKind::Formula(f) => Some(f.clone()),
-        GoalKind::Location { .. }
-        | GoalKind::Edge { .. }
-        | GoalKind::Pair { .. }
-        | GoalKind::Use { .. }
-        | GoalKind::Condition(_) => None,
-    });
-    let observe = ObservationOptions { formulas: formulas.collect(), ..ObservationOptions::default() };
-    let model = CompiledNetwork::new(p, &p.networks[0], &observe)?;
-    search(&model, goals, options, &|_| true)
 }
 
 /// What a search says: of each goal, or that there is a fault.

@@ -1,6 +1,7 @@
 //! Builds programs of timed automata, and the standard families.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+pub mod asked;
 pub mod deadlines;
 pub mod families;
 

@@ -10,15 +10,14 @@ use hrdsl_ir::{
     value::SECOND,
 };
 use hrdsl_ta::{
-    CompiledNetwork, ExtrapolationAbstraction, GoalKind, GoalOutcome, ModelError, ObservationOptions,
-    QueryOptions, QueryVerdict, ReachabilityGoal, SearchError, SearchOptions, SearchOrder, SearchReport,
-    SubsumptionRelation, answer, explore as search,
+    ExtrapolationAbstraction, GoalKind, GoalOutcome, ModelError, QueryOptions, QueryVerdict,
+    ReachabilityGoal, SearchError, SearchOptions, SearchOrder, SubsumptionRelation, answer,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::{
-    common::{eq, n, v},
+    common::{asked::asked, eq, n, v},
     oracle::{Graph, Limits, explore},
 };
 
@@ -166,24 +165,6 @@ fn way(graph: &Graph, goal: &GoalKind) -> String {
         GoalKind::Pair { .. } | GoalKind::Use { .. } | GoalKind::Condition(_) => None,
     };
     first.map_or(String::new(), |s| graph.path(s))
-}
-
-fn asked(
-    p: &Program,
-    goals: &[ReachabilityGoal],
-    options: &SearchOptions,
-) -> Result<SearchReport, SearchError> {
-    let formulas = goals.iter().filter_map(|g| match &g.what {
-        GoalKind::Formula(f) => Some(f.clone()),
-        GoalKind::Location { .. }
-        | GoalKind::Edge { .. }
-        | GoalKind::Pair { .. }
-        | GoalKind::Use { .. }
-        | GoalKind::Condition(_) => None,
-    });
-    let observe = ObservationOptions { formulas: formulas.collect(), ..ObservationOptions::default() };
-    let model = CompiledNetwork::new(p, &p.networks[0], &observe)?;
-    search(&model, goals, options, &|_| true)
 }
 
 fn compared(
