@@ -79,8 +79,13 @@ fn judged(results: &Path, parts: &mut Parts) {
 fn exact(test: &Value) {
     let worst = |pointer: &str| test["physics"].pointer(pointer).and_then(Value::as_f64).unwrap_or(0.0);
     let (own, others) = (worst("/self_penetration/depth"), worst("/penetration/depth"));
-    let beyond = worst("/beyond_limit/by");
-    assert!(own < 1e-3 && others < 2e-3 && beyond < 1e-3, "{}: {}", test["name"], test["physics"]);
+    let (beyond, apart) = (worst("/beyond_limit/by"), worst("/joint_gap/apart"));
+    assert!(
+        own < 1e-3 && others < 2e-3 && beyond < 1e-3 && apart < 1e-3,
+        "{}: {}",
+        test["name"],
+        test["physics"]
+    );
 }
 
 /// The examples whose campaigns have no digests here: the same holds in reduced ones, and none ends as an error.

@@ -123,6 +123,8 @@ pub struct WorldAccuracy {
     pub penetration: Option<(f64, [String; 2])>,
     /// How far a joint was beyond one of its limits, rad or m.
     pub beyond_limit: Option<(f64, String)>,
+    /// How far the two sides of a joint were apart, m.
+    pub joint_gap: Option<(f64, String)>,
 }
 
 /// Where an arm is to be.

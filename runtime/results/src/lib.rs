@@ -54,7 +54,7 @@ pub use suite::{
     TestExplanation, UncoveredGoal, UnreachedItem,
 };
 pub use tally::{BinResult, RequirementResult, SmallestMargin, VerdictTally};
-pub use test::{BodyPenetration, LimitExcess, OutputSummary, PhysicsAccuracy, RunMark, TestResult};
+pub use test::{BodyPenetration, JointGap, LimitExcess, OutputSummary, PhysicsAccuracy, RunMark, TestResult};
 
 /// What kind of file `results.json` is: its `format`.
 pub const FORMAT: &str = "hrdsl-results";

@@ -61,7 +61,8 @@ pub struct TestResult {
     pub physics: Option<PhysicsAccuracy>,
 }
 
-/// How far the physics strayed at worst in a run from what cannot be: rigid bodies in each other, joints beyond their limits.
+/// How far the physics strayed at worst in a run from what cannot be: rigid bodies in each other, joints beyond their limits or
+/// apart.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PhysicsAccuracy {
     /// Of two bodies of one robot.
@@ -72,6 +73,8 @@ pub struct PhysicsAccuracy {
     pub penetration: Option<BodyPenetration>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beyond_limit: Option<LimitExcess>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_gap: Option<JointGap>,
 }
 
 /// Two rigid bodies that were in each other.
@@ -87,6 +90,14 @@ pub struct BodyPenetration {
 pub struct LimitExcess {
     /// rad, or m of a slider
     pub by: f64,
+    pub joint: String,
+}
+
+/// A joint whose two sides were apart.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct JointGap {
+    /// m
+    pub apart: f64,
     pub joint: String,
 }
 

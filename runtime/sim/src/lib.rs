@@ -200,6 +200,7 @@ impl WorldSimulation {
             self_penetration: found.own.map(pair),
             penetration: found.others.map(pair),
             beyond_limit: found.beyond.map(joint),
+            joint_gap: found.apart.map(joint),
         }
     }
 

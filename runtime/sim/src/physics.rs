@@ -97,6 +97,7 @@ impl PhysicsAdapter {
             robots: Vec::new(),
             led: Vec::new(),
             step: seconds(world.step),
+            sweeps: sweeps(world),
             part: (seconds(world.step), SUBSTEPS),
             solved: vec![(seconds(world.step), SUBSTEPS); world.bodies.len()],
             scene: (Vector::ZERO, Vector::ZERO),

@@ -63,6 +63,31 @@ fn a_slow_door_goes_on() {
     assert!((way - 2.0 * swing).abs() < 0.1 * swing, "{way} rad at {swing} rad/s");
 }
 
+/// A crank that stands nearly upright, and falls over: it would come round nearly whole, and swing to and fro.
+fn crank(lo: f64, hi: f64) -> Scene {
+    let members = format!(
+        "body post: fixed box(10 cm, 10 cm, 2 m) at (0 m, 0 m, 1 m)
+        body weight: dynamic box(10 cm, 10 cm, 10 cm) at (2 cm, 30 cm, 240 cm) mass 2 kg
+        joint crank: post -> weight at (0 m, 30 cm, 2 m) axis (0, 1, 0) limits {lo} deg .. {hi} deg
+        signal turned: angle to robot = joint_position(crank)"
+    );
+    Scene::new(&members, &[])
+}
+
+/// Farther than half round, and farther than a turn from end to end.
+#[test]
+fn a_hinge_ends_where_it_ends_however_far_it_turns() {
+    for (lo, hi) in [(-20.0, 250.0), (-250.0, 20.0), (-200.0, 300.0), (-300.0, 300.0)] {
+        let mut scene = crank(lo, hi);
+        let mut farthest: f64 = 0.0;
+        scene.go_on(4.0, |scene| farthest = farthest.max(scene.read("turned").to_degrees()));
+        // Falling forwards, it meets the upper end, or comes to where it began, less what a blow takes.
+        let end = hi;
+        assert!(farthest < end + 0.5, "{lo} .. {hi}: {farthest}°");
+        assert!(farthest > end - 0.5, "{lo} .. {hi}: {farthest}°");
+    }
+}
+
 #[test]
 fn a_drawer_stays_shut_by_itself() {
     let mut scene = desk("", &[]);

@@ -7,7 +7,7 @@ use rapier3d::prelude::*;
 use super::state::{
     adapter::{PhysicsAdapter, PhysicsBody},
     bodies::index,
-    joint::DrivenJoint,
+    joint::{DrivenJoint, JointStop},
     pairs::JointGraph,
 };
 use crate::math::{
@@ -24,19 +24,22 @@ const MENDS: f32 = 2000.0;
 const STIFF: f32 = 1000.0;
 /// A joint that is so far apart is torn, m and rad. What is led whatever is in its way can do that, which no joint would let happen: two
 /// forces without limit are against each other. So a torn joint gives way, as a spring with a damper, and comes together no faster
-/// than so, m/s and rad/s.
+/// than so, m/s and rad/s. Not so fingers on loose things, which would stand askew under what they hold, nor the joints of a robot that falls: against
+/// what it falls on they are not without limit, and the solver does more instead.
 const TORN: f64 = 4e-3;
 const TORN_TURN: f64 = 0.04;
 const MENDS_AT_MOST: f64 = 2.0;
 const MENDS_AT_MOST_TURN: f64 = 10.0;
 /// So far apart a joint is no joint any more, m: the run is at fault.
 const BROKEN: f64 = 0.1;
+/// A robot that leans so far from where it stood falls, or has fallen: the cosine of 10°.
+const LEANS: f64 = 0.985;
+/// A finger that is so far apart, or beyond its limits, is struck, m.
+const STRUCK: f64 = 3e-4;
 /// How fast it stops what tears it, s.
 const TORN_STOPS: f64 = 3e-3;
 /// What is so near to a robot that sleeps wakes it, m: contacts begin before surfaces meet.
 const APPROACHED: f32 = 0.02;
-/// How far from its start the engine can limit a hinge, rad.
-const MOST_LIMIT: f64 = 3.1;
 /// The effort of a motor without a limit, N·m or N.
 const UNLIMITED: f64 = 1e9;
 
@@ -76,9 +79,12 @@ impl PhysicsAdapter {
         let softness = data.softness;
         let start = joint.drive.start;
         let (least, most) = (joint.lo - start, joint.hi - start);
-        let is_wide = joint.motion == JointMotion::Hinge && (least <= -MOST_LIMIT || most >= MOST_LIMIT);
-        // Beyond half a turn the engine knows no limits: arms keep them by themselves.
-        if !is_wide {
+        let is_wide = joint.motion == JointMotion::Hinge && !JointStop::is_plain(least, most);
+        // The engine knows an angle within half a turn of its zero, which is where the joint is at the start, if that will do.
+        let first_frame = data.local_frame1;
+        if is_wide {
+            JointStop::about(0.0, least, most).set(&mut data, &first_frame);
+        } else {
             data.set_limits(moving, [least as f32, most as f32]);
         }
         let (parent_start, child_start) = (p.start, c.start);
@@ -106,7 +112,14 @@ impl PhysicsAdapter {
             lo: joint.lo,
             hi: joint.hi,
             wound: is_wide.then_some(0.0),
+            first_frame,
+            stop: JointStop::about(0.0, least, most),
             softness,
+            loose: self.loose_root(child, world),
+            is_finger: world
+                .grippers
+                .iter()
+                .any(|gripper| gripper.fingers.iter().any(|f| usize::from(f.0) == self.joints.len())),
             is_torn: false,
             is_run: false,
         }
@@ -125,8 +138,19 @@ impl PhysicsAdapter {
         at
     }
 
+    /// Whether a loose body leans far from how it stood at the start.
+    fn leans(&self, loose: BodyId) -> bool {
+        let upright = self.start(loose).turn.inverse() * SpaceVector::z();
+        (self.pose(loose).turn * upright).z < LEANS
+    }
+
     /// Whether a body, and what it hangs on in the end, is held by nothing fixed or led.
     pub fn is_loose(&self, body: BodyId, world: &World) -> bool {
+        self.loose_root(body, world).is_some()
+    }
+
+    /// What a body hangs on in the end, if that is held by nothing fixed or led.
+    fn loose_root(&self, body: BodyId, world: &World) -> Option<BodyId> {
         let mut at = self.root(body);
         for _ in &world.joints {
             let Some(above) = world.joints.iter().find(|j| !j.is_rigid() && self.root(j.child) == at) else {
@@ -134,7 +158,7 @@ impl PhysicsAdapter {
             };
             at = self.root(above.parent);
         }
-        world.bodies[index(at)].motion == BodyMotion::Dynamic
+        (world.bodies[index(at)].motion == BodyMotion::Dynamic).then_some(at)
     }
 
     // ── What joints measure ──
@@ -233,19 +257,30 @@ impl PhysicsAdapter {
         }
     }
 
-    /// Lets torn joints give way, and those that have come together again not.
-    pub(super) fn ease_joints(&mut self) {
+    /// Lets torn joints give way, and those that have come together again not; gives how far the worst one is apart, m, of the
+    /// robots that fall, and of fingers that are struck.
+    pub(super) fn ease_joints(&mut self) -> Option<f64> {
+        let mut worst: Option<f64> = None;
         let h = self.part.0 / self.part.1 as f64;
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };
             let (apart, tilted) = self.apart(driven);
+            self.accuracy.look_at_gap(at, apart);
+            let falls = driven.loose.is_some_and(|loose| self.leans(loose));
+            let is_struck = driven.is_finger && self.meets_loose(driven.child);
+            // So light as a finger is, what strikes it shows in that it is where it cannot be.
+            let off = if is_struck { apart.max(self.beyond_limits(at)) } else { apart };
+            if falls || is_struck && off > STRUCK {
+                worst = Some(worst.map_or(off, |worst| worst.max(off)));
+            }
             if self.energy.fault.is_none() && apart > BROKEN {
                 let (name, by) = (&driven.name, 1e3 * apart);
                 self.energy.fault = Some(format!(
                     "the physics failed: joint `{name}` is torn, its bodies are {by:.0} mm apart"
                 ));
             }
-            let is_torn = apart > TORN || tilted > TORN_TURN;
+            let may_tear = !falls && !is_struck;
+            let is_torn = may_tear && (apart > TORN || tilted > TORN_TURN);
             if !is_torn && !driven.is_torn {
                 continue;
             }
@@ -259,6 +294,7 @@ impl PhysicsAdapter {
                 driven.is_torn = is_torn;
             }
         }
+        worst
     }
 
     /// How far the two sides of a joint have come apart: m, and rad.
@@ -279,20 +315,41 @@ impl PhysicsAdapter {
         }
     }
 
+    /// Whether something pressed on a body in the last step that is free to go.
+    fn meets_loose(&self, body: RigidBodyHandle) -> bool {
+        let own = (0..self.parts.len()).filter(|part| self.parts[*part].handle == body);
+        own.flat_map(|part| self.loads.on(part)).any(|(other, _)| {
+            let other = &self.parts[other];
+            other.motion == BodyMotion::Dynamic && self.guides[index(other.root)].is_none()
+        })
+    }
+
+    /// How far a joint is beyond one of its limits, rad or m.
+    fn beyond_limits(&self, joint: usize) -> f64 {
+        let (at, (lo, hi)) = (self.joint_position(joint), self.joint_limits(joint));
+        (lo - at).max(at - hi).max(0.0)
+    }
+
     /// Where a joint ends, rad or m.
     pub fn joint_limits(&self, joint: usize) -> (f64, f64) {
         self.joints[joint].as_ref().map_or((0.0, 0.0), |driven| (driven.lo, driven.hi))
     }
 
-    /// Follows the joints that may turn farther than half round.
+    /// Follows the joints that may turn farther than half round, and puts the stops where they are.
     pub(super) fn wind_joints(&mut self) {
         for at in 0..self.joints.len() {
             let Some(driven) = self.joints[at].as_ref().filter(|driven| driven.wound.is_some()) else {
                 continue;
             };
             let way = self.way(driven);
+            let stop = JointStop::about(way, driven.lo - driven.start, driven.hi - driven.start);
+            if stop != driven.stop
+                && let Some(joint) = self.world.impulse_joints.get_mut(driven.handle, false)
+            {
+                stop.set(&mut joint.data, &driven.first_frame);
+            }
             if let Some(driven) = &mut self.joints[at] {
-                driven.wound = Some(way);
+                (driven.wound, driven.stop) = (Some(way), stop);
             }
         }
     }

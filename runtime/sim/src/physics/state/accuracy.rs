@@ -1,6 +1,6 @@
-//! How far the engine strays from what cannot be: rigid bodies that are in each other, joints that are beyond their limits.
+//! How far the engine strays from what cannot be: rigid bodies that are in each other, joints that are beyond their limits or come apart.
 //!
-//! The solver keeps both only nearly. The worst of a run is kept, so that whoever reads its results can see what they rest on. Surfaces
+//! The solver keeps all of it only nearly. The worst of a run is kept, so that whoever reads its results can see what they rest on. Surfaces
 //! that yield are meant to be pressed in, and pairs that overlap by design never meet: neither counts.
 
 use rapier3d::prelude::*;
@@ -16,7 +16,12 @@ pub(crate) struct AccuracyWatch {
     pub others: Option<PenetratingPair>,
     /// A joint, and how far it was beyond a limit, rad or m.
     pub beyond: Option<(f64, usize)>,
+    /// A joint, and how far its two sides were apart, m.
+    pub apart: Option<(f64, usize)>,
 }
+
+/// What is less is rounding, m.
+const EXACT: f64 = 1e-5;
 
 impl AccuracyWatch {
     /// Looks at all contacts as the last step began; `robots` gives for each body a number of what it is joined to.
@@ -45,6 +50,13 @@ impl AccuracyWatch {
         let by = (lo - at).max(at - hi);
         if by > 0.0 && self.beyond.is_none_or(|(worst, _)| by > worst) {
             self.beyond = Some((by, joint));
+        }
+    }
+
+    /// Looks at how far the two sides of a joint are apart, m.
+    pub fn look_at_gap(&mut self, joint: usize, apart: f64) {
+        if apart > EXACT && self.apart.is_none_or(|(worst, _)| apart > worst) {
+            self.apart = Some((apart, joint));
         }
     }
 }

@@ -58,6 +58,8 @@ pub(crate) struct PhysicsAdapter {
     pub led: Vec<(RigidBodyHandle, Pose)>,
     /// The time of a step, s.
     pub step: f64,
+    /// How often the solver goes over all joints and contacts in each part of one.
+    pub sweeps: usize,
     /// The time of the last part of a step, s, and how often the solver divided it.
     pub part: (f64, usize),
     /// By body: the same of when the solver last had to do with it. What sleeps keeps the impulses of then.

@@ -1,6 +1,6 @@
 //! A joint of the engine, with what its motor does.
 
-use hrdsl_ir::world::JointMotion;
+use hrdsl_ir::world::{BodyId, JointMotion};
 use rapier3d::prelude::*;
 
 use crate::math::{BodyFrame, SpaceVector};
@@ -31,9 +31,74 @@ pub(crate) struct DrivenJoint {
     pub hi: f64,
     /// Of a hinge that may turn farther than half round: where it was last.
     pub wound: Option<f64>,
+    /// The engine's frame on the parent, with its zero at the start; and where such a hinge is stopped.
+    pub first_frame: Pose,
+    pub stop: JointStop,
     /// How the solver mends what has come apart at it; and whether it has come so far apart that it gives way.
     pub softness: SpringCoefficients<f32>,
     pub is_torn: bool,
+    /// What its robot stands on, if that can fall.
+    pub loose: Option<BodyId>,
+    pub is_finger: bool,
     /// The engine's motor runs it.
     pub is_run: bool,
+}
+
+/// How far from its zero the engine can limit a hinge, rad.
+const MOST_LIMIT: f64 = 3.1;
+/// So near to an end a hinge of more than a turn is stopped there, rad: less than half a turn, and more than any goes in a step.
+const STOP_NEAR: f64 = 1.5;
+
+/// Where the engine stops a hinge that may turn farther than half round: it is told of limits about a zero of its own, and of one end at
+/// a time if they are more than a turn apart. Angles count from the start, rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum JointStop {
+    /// Both ends are within half a turn of the middle: the middle, and how far they are from it.
+    Both {
+        middle: f64,
+        half: f64,
+    },
+    Low(f64),
+    High(f64),
+    /// Neither is near.
+    Nowhere,
+}
+
+impl JointStop {
+    /// Of a hinge that is at `way` and ends at `lo` and `hi`.
+    pub fn about(way: f64, lo: f64, hi: f64) -> JointStop {
+        let (middle, half) = (f64::midpoint(lo, hi), (hi - lo) / 2.0);
+        if half < MOST_LIMIT {
+            JointStop::Both { middle, half }
+        } else if way - lo < STOP_NEAR {
+            JointStop::Low(lo)
+        } else if hi - way < STOP_NEAR {
+            JointStop::High(hi)
+        } else {
+            JointStop::Nowhere
+        }
+    }
+
+    /// Whether the engine's own zero, at the start, will do.
+    pub fn is_plain(lo: f64, hi: f64) -> bool {
+        lo > -MOST_LIMIT && hi < MOST_LIMIT
+    }
+
+    /// Tells a joint of the engine, whose frame on the parent has its zero at the start.
+    pub fn set(self, joint: &mut GenericJoint, first_frame: &Pose) {
+        let (zero, limits) = match self {
+            JointStop::Both { middle, half } => (middle, [-half, half]),
+            JointStop::Low(lo) => (lo, [0.0, MOST_LIMIT]),
+            JointStop::High(hi) => (hi, [-MOST_LIMIT, 0.0]),
+            JointStop::Nowhere => {
+                joint.limit_axes.remove(JointAxesMask::ANG_X);
+                return;
+            }
+        };
+        // The function of the engine's quaternions differs between platforms.
+        let (sin, cos) = libm::sincos(zero / 2.0);
+        let turn = Rotation::from_xyzw(sin as f32, 0.0, 0.0, cos as f32);
+        joint.local_frame1 = Pose::from_parts(first_frame.translation, first_frame.rotation * turn);
+        joint.set_limits(JointAxis::AngX, limits.map(|end| end as f32));
+    }
 }
