@@ -53,6 +53,64 @@ fn codes_that_do_not_exist_have_neighbours() {
     assert!(stderr(&out).contains("`hrdsl explain` lists them"), "{}", stderr(&out));
 }
 
+const LAMP: &str = "\
+scenario lamp
+actor person : environment
+actor robot  : system
+event asked  from person to robot
+event lit(bright: bool) from robot
+stimulus ask by person { emit asked }
+require R1 functional \"it is lit\" asked causes lit(true) not before 1 s within 3 s
+require R2 safety at most 2 lit between asked and lit(false)
+require R3 safety never asked
+";
+
+#[test]
+fn requirements_are_read_out() {
+    let here = tempfile::tempdir().unwrap();
+    fs::write(here.path().join("lamp.hri"), LAMP).unwrap();
+    let out = hrdsl_in(here.path(), "explain lamp.hri R1");
+    expect_code(&out, 0);
+    let text = stdout(&out);
+    for part in [
+        "R1 \"it is lit\"\n  asked causes lit(true) not before 1 s within 3 s\n",
+        "In the whole run, each `asked` is answered by `lit(true)` not before 1 s and within 3 s",
+        "  fail          `lit(true)` comes less than 1 s after `asked`; or no `lit(true)` has come 3 s after the first `asked`",
+        "  vacuous       no `asked` happens\n",
+        "  inconclusive  the run ends while `asked` waits for its answer\n",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    assert!(!text.contains("R2"), "{text}");
+    let out = hrdsl_in(here.path(), "explain lamp.hri --json");
+    let all: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert_eq!(all.as_array().unwrap().len(), 3);
+    assert_eq!(all[1]["vacuous"], "no such part of the run ends");
+    assert_eq!((&all[2]["pass"], &all[2]["vacuous"]), (&Value::Null, &Value::from("no `asked` happens")));
+    let out = hrdsl_in(here.path(), "explain lamp.hri R9");
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("no requirement is called `R9`; there are R1, R2, R3"), "{}", stderr(&out));
+    expect_code(&hrdsl_in(here.path(), "explain HR0101 R1"), 2);
+}
+
+#[test]
+fn monitors_are_drawn() {
+    let here = tempfile::tempdir().unwrap();
+    fs::write(here.path().join("lamp.hri"), LAMP).unwrap();
+    let out = hrdsl_in(here.path(), "emit monitors lamp.hri --dot");
+    expect_code(&out, 0);
+    let text = stdout(&out);
+    for part in [
+        "label = \"R1: asked causes lit(true) not before 1 s within 3 s\"",
+        "[label = \"pending\\nuntil 3 s\", peripheries = 2]",
+        "[label = \"lit(true)\\nsooner than 1 s\\nfail\"]",
+        "[label = \"lit(_)\\nsuspect\"]",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    expect_code(&hrdsl_in(here.path(), "emit ta lamp.hri --dot"), 2);
+}
+
 #[test]
 fn colours_obey_the_option_and_the_environment() {
     let colourful = |args: &[&str], env: &[(&str, &str)]| {

@@ -335,3 +335,61 @@ fn what_only_a_hold_keeps_from_happening_is_said() {
     );
     assert_eq!(generated.matches(why).count(), 2, "{generated}");
 }
+
+/// A lamp that is lit 2 s to 3 s after it was asked for, and somebody who goes 4 s to 5 s after asking.
+const LAMP: &str = "\
+scenario lamp
+actor person : environment
+actor robot  : system
+event asked, gone from person to robot
+event lit from robot
+automaton Person plays person {
+  clock x
+  init location idle { invariant x <= 2 s }
+  location waits { invariant x <= 5 s }
+  location over
+  idle -> waits when x >= 1 s do asked; x = 0
+  waits -> over when x >= 4 s do gone
+}
+automaton Robot plays robot {
+  clock y
+  init location off
+  location on { invariant y <= 3 s }
+  location done
+  off -> on on asked do y = 0
+  on -> done when y >= 2 s do lit
+}
+network all = Person | Robot
+require R1 functional asked causes lit not before 2 s within 3 s
+require R2 functional asked causes lit not before 2500 ms
+require R3 functional eventually lit within 3 s between asked and gone
+require R4 functional eventually lit within 2500 ms between asked and gone
+require R5 safety never lit before gone
+require R6 safety exactly 1 lit after asked until gone
+require R7 safety asked precedes lit within 2 s
+require R8 functional eventually lit within 2 s
+require R9 safety at most 0 lit after gone
+";
+
+#[test]
+fn scopes_times_and_counts_are_proved() {
+    let here = tempfile::tempdir().unwrap();
+    std::fs::write(here.path().join("lamp.hri"), LAMP).unwrap();
+    let out = hrdsl_in(here.path(), "prove lamp.hri");
+    let text = stdout(&out);
+    for (requirement, verdict) in [
+        ("R1", "holds"),
+        ("R2", "violated"),
+        ("R3", "holds"),
+        ("R4", "violated"),
+        ("R5", "violated"),
+        ("R6", "holds"),
+        ("R7", "violated"),
+        ("R8", "violated"),
+        ("R9", "holds"),
+    ] {
+        let line = text.lines().find(|l| l.trim_start().starts_with(requirement));
+        assert!(line.is_some_and(|l| l.contains(verdict)), "{requirement}: {verdict}\n{text}");
+    }
+    expect_code(&out, 3);
+}

@@ -17,6 +17,7 @@ mod interfaces;
 pub mod lower;
 pub mod modules;
 pub mod pages;
+pub mod reading;
 mod recheck;
 mod spoken;
 

@@ -561,7 +561,7 @@ fn edges(p: &Program, monitor: usize) -> Vec<(u16, u16, String, bool, Vec<Monito
         MonitorTrigger::Event(patterns) => {
             patterns.iter().map(|e| p.event(e.event).name.clone()).collect::<Vec<_>>().join("|")
         }
-        MonitorTrigger::Sample => "sample".to_owned(),
+        MonitorTrigger::Becomes { .. } | MonitorTrigger::Sample => "sample".to_owned(),
         MonitorTrigger::Deadline => "deadline".to_owned(),
     };
     p.monitors[monitor]

@@ -594,6 +594,7 @@ module.exports = grammar({
         field("kind", $.identifier),
         optional(field("title", $.string)),
         field("pattern", $._pattern),
+        optional(field("scope", $._scope)),
       ),
     _pattern: ($) =>
       choice(
@@ -603,6 +604,9 @@ module.exports = grammar({
         $.precedes_pattern,
         $.never_pattern,
         $.globally_pattern,
+        $.eventually_pattern,
+        $.count_pattern,
+        $.duration_pattern,
       ),
     after_pattern: ($) =>
       seq(
@@ -610,6 +614,7 @@ module.exports = grammar({
         field("trigger", $.events),
         ":",
         field("response", $.events),
+        optional($._not_before),
         optional($._within),
       ),
     causes_pattern: ($) =>
@@ -617,6 +622,7 @@ module.exports = grammar({
         field("trigger", $.events),
         keyword($, "causes"),
         field("response", $.events),
+        optional($._not_before),
         optional($._within),
       ),
     forbids_pattern: ($) =>
@@ -628,14 +634,64 @@ module.exports = grammar({
         field("until", $.events),
       ),
     precedes_pattern: ($) =>
-      seq(field("first", $.events), keyword($, "precedes"), field("then", $.events)),
-    never_pattern: ($) =>
       seq(
-        keyword($, "never"),
-        field("events", $.events),
-        optional(seq(keyword($, "while"), field("condition", $.expression))),
+        field("first", $.events),
+        keyword($, "precedes"),
+        field("then", $.events),
+        optional($._not_before),
+        optional($._within),
       ),
-    globally_pattern: ($) => seq(keyword($, "globally"), field("condition", $.expression)),
+    // Its own `while` comes before its scope.
+    never_pattern: ($) =>
+      prec.right(
+        seq(
+          keyword($, "never"),
+          field("events", $.events),
+          optional(seq(keyword($, "while"), field("condition", $.expression))),
+        ),
+      ),
+    globally_pattern: ($) =>
+      seq(choice(keyword($, "globally"), keyword($, "always")), field("condition", $.expression)),
+    eventually_pattern: ($) =>
+      seq(keyword($, "eventually"), field("condition", $.expression), optional($._within)),
+    count_pattern: ($) =>
+      seq(
+        choice(
+          seq(keyword($, "at"), choice(keyword($, "most"), keyword($, "least"))),
+          keyword($, "exactly"),
+        ),
+        field("count", choice($.integer, $.identifier)),
+        field("events", $.events),
+      ),
+    duration_pattern: ($) =>
+      seq(
+        keyword($, "whenever"),
+        field("condition", $.expression),
+        keyword($, "for"),
+        keyword($, "at"),
+        choice(keyword($, "most"), keyword($, "least")),
+        field("time", $.expression),
+      ),
+    _not_before: ($) =>
+      seq(keyword($, "not"), keyword($, "before"), field("not_before", $.expression)),
+
+    _scope: ($) =>
+      choice($.before_scope, $.after_scope, $.between_scope, $.while_scope),
+    before_scope: ($) => seq(keyword($, "before"), field("until", $.events)),
+    after_scope: ($) =>
+      seq(
+        keyword($, "after"),
+        field("from", $.events),
+        optional(seq(keyword($, "until"), field("until", $.events))),
+      ),
+    between_scope: ($) =>
+      seq(
+        keyword($, "between"),
+        field("from", $.events),
+        keyword($, "and"),
+        field("until", $.events),
+      ),
+    while_scope: ($) => seq(keyword($, "while"), field("condition", $.expression)),
 
     assume_declaration: ($) =>
       seq(

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use hrdsl_compiler::CompilationResult;
+use hrdsl_interop::picture;
 use serde::Serialize;
 
 use crate::{exit::CommandExit, fault::CommandFault, input, terminal};
@@ -11,13 +12,16 @@ use crate::{exit::CommandExit, fault::CommandFault, input, terminal};
 /// Print what the compiler makes of a scenario, at any stage, as JSON.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl emit ast scenario.hri\n  hrdsl emit ta scenario.hri | jq '.automata[0].locations'"
+    after_help = "Examples:\n  hrdsl emit ast scenario.hri\n  hrdsl emit ta scenario.hri | jq '.automata[0].locations'\n  hrdsl emit monitors scenario.hri --dot | dot -Tsvg > monitors.svg"
 )]
 pub struct EmitArgs {
     /// Which stop.
     stage: EmitStage,
     /// The scenario.
     file: PathBuf,
+    /// Of monitors: draw them, in DOT (Graphviz).
+    #[arg(long)]
+    dot: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -43,6 +47,14 @@ enum EmitStage {
 pub fn run(args: &EmitArgs) -> Result<CommandExit, CommandFault> {
     let compilation = input::load(&args.file, &[])?;
     let has_errors = input::report(&compilation).is_none();
+    if args.dot {
+        if !matches!(args.stage, EmitStage::Monitors) {
+            return Err("only monitors are drawn: write `hrdsl emit monitors FILE --dot`".to_owned());
+        }
+        let Some(program) = &compilation.program else { return Ok(CommandExit::Errors) };
+        terminal::print_data(&picture::monitors_dot(program))?;
+        return Ok(CommandExit::Ok);
+    }
     let Some(text) = emit(args.stage, &compilation) else { return Ok(CommandExit::Errors) };
     terminal::print_data(&(text? + "\n"))?;
     Ok(if has_errors { CommandExit::Errors } else { CommandExit::Ok })

@@ -1,6 +1,11 @@
-//! `hrdsl explain`: the page of a diagnostic code.
+//! `hrdsl explain`: the page of a diagnostic code, or what the requirements of a scenario say.
 
-use hrdsl_compiler::pages;
+use std::path::Path;
+
+use hrdsl_compiler::{
+    pages,
+    reading::{RequirementReading, readings},
+};
 use hrdsl_source::{CodeInfo, DiagnosticCode, GROUPS, REGISTRY};
 use serde::Serialize;
 
@@ -8,20 +13,26 @@ use crate::{
     color::{self, TextStyle, paint},
     exit::CommandExit,
     fault::CommandFault,
-    files, render, terminal,
+    files, input, render, terminal,
 };
 
-/// Explain a diagnostic code, with an example that fails and the same fixed; without a code, list them all.
+/// Explain a diagnostic code, with an example that fails and the same fixed, or what a scenario's requirements say; without
+/// either, list all codes.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   hrdsl explain HR0101
   hrdsl explain
+  hrdsl explain scenario.hri R3
   hrdsl explain HR0101 --json | jq -r .text")]
 pub struct ExplainArgs {
-    /// The code: `HR0101`, or `101`.
-    code: Option<String>,
-    /// Print JSON: the page's `code`, `title`, `group`, `page` and `text`, or a list of all but the texts.
+    /// The code: `HR0101`, or `101`; or a scenario.
+    #[arg(value_name = "CODE|FILE")]
+    what: Option<String>,
+    /// Of a scenario, the requirements to explain; all without one.
+    requirements: Vec<String>,
+    /// Print JSON: the page's `code`, `title`, `group`, `page` and `text`, or a list of all but the texts; of requirements a list
+    /// of `requirement`, `title`, `text`, `says` and what each verdict means.
     #[arg(long)]
     json: bool,
 }
@@ -47,7 +58,13 @@ impl ExplainedCode {
 /// A code that does not exist.
 pub fn run(args: &ExplainArgs) -> Result<CommandExit, CommandFault> {
     let colour = color::stdout_has();
-    let text = match (&args.code, args.json) {
+    if let Some(file) = args.what.as_deref().filter(|what| is_scenario(what)) {
+        return of_scenario(Path::new(file), args);
+    }
+    if !args.requirements.is_empty() {
+        return Err("a code stands alone: after a scenario come the names of requirements".to_owned());
+    }
+    let text = match (&args.what, args.json) {
         (None, false) => list(colour),
         (None, true) => {
             files::json(&REGISTRY.iter().map(|info| ExplainedCode::of(info, None)).collect::<Vec<_>>())?
@@ -64,6 +81,86 @@ pub fn run(args: &ExplainArgs) -> Result<CommandExit, CommandFault> {
     };
     terminal::print(&text)?;
     Ok(CommandExit::Ok)
+}
+
+/// A requirement's reading, as JSON.
+#[derive(Serialize)]
+struct ExplainedRequirement<'a> {
+    requirement: &'a str,
+    title: &'a str,
+    text: &'a str,
+    says: &'a str,
+    pass: Option<&'a str>,
+    fail: Option<&'a str>,
+    vacuous: Option<&'a str>,
+    inconclusive: Option<&'a str>,
+}
+
+impl<'a> From<&&'a RequirementReading> for ExplainedRequirement<'a> {
+    fn from(reading: &&'a RequirementReading) -> Self {
+        Self {
+            requirement: &reading.requirement,
+            title: &reading.title,
+            text: &reading.text,
+            says: &reading.says,
+            pass: reading.pass.as_deref(),
+            fail: reading.fail.as_deref(),
+            vacuous: reading.vacuous.as_deref(),
+            inconclusive: reading.inconclusive.as_deref(),
+        }
+    }
+}
+
+fn is_scenario(what: &str) -> bool {
+    Path::new(what).extension().is_some_and(|e| e == "hri")
+}
+
+fn of_scenario(file: &Path, args: &ExplainArgs) -> Result<CommandExit, CommandFault> {
+    let compilation = input::load(file, &[])?;
+    if input::report_errors(file, &compilation).is_none() {
+        return Ok(CommandExit::Errors);
+    }
+    let all = compilation.scenario.as_ref().map(|s| readings(s, &compilation.files)).unwrap_or_default();
+    let wanted = |name: &String| {
+        all.iter().find(|r| r.requirement == *name).ok_or_else(|| {
+            let names: Vec<&str> = all.iter().map(|r| r.requirement.as_str()).collect();
+            format!("no requirement is called `{name}`; there are {}", names.join(", "))
+        })
+    };
+    let chosen: Vec<&RequirementReading> = if args.requirements.is_empty() {
+        all.iter().collect()
+    } else {
+        args.requirements.iter().map(wanted).collect::<Result<_, _>>()?
+    };
+    let colour = color::stdout_has();
+    let text = if args.json {
+        files::json(&chosen.iter().map(ExplainedRequirement::from).collect::<Vec<_>>())?
+    } else {
+        chosen.iter().map(|r| read_out(r, colour)).collect::<Vec<_>>().join("\n")
+    };
+    terminal::print(&text)?;
+    Ok(CommandExit::Ok)
+}
+
+fn read_out(reading: &RequirementReading, colour: bool) -> String {
+    let title = if reading.title.is_empty() { String::new() } else { format!(" \"{}\"", reading.title) };
+    let mut out = format!("{}{title}\n", paint(colour, TextStyle::Bold, &reading.requirement));
+    out += &format!("  {}\n\n  {}\n\n", reading.text, reading.says);
+    let verdicts = [
+        ("pass", &reading.pass),
+        ("fail", &reading.fail),
+        ("vacuous", &reading.vacuous),
+        ("inconclusive", &reading.inconclusive),
+    ];
+    for (verdict, when) in verdicts {
+        let when = when.as_deref().unwrap_or("never");
+        out += &format!(
+            "  {}{}{when}\n",
+            paint(colour, TextStyle::Code, verdict),
+            " ".repeat(14 - verdict.len())
+        );
+    }
+    out
 }
 
 /// All codes with their titles, by hundreds.

@@ -26,8 +26,14 @@ pub struct Monitor {
     pub text: String,
     /// Signals that guards and margins read: `Expr::Var(i)` is `signals[i]`.
     pub signals: Vec<SignalId>,
+    /// Conditions over the signals of which each new truth is a cause; of those that change at one instant the first comes first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conditions: Vec<Expr>,
     pub states: Vec<MonitorState>,
     pub initial: StateId,
+    /// What happens at time 0, before anything else.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub at_start: Vec<MonitorEffect>,
     /// In each state the first edge, in order, whose trigger and guard hold is taken; none: the state stays.
     pub edges: Vec<MonitorEdge>,
     /// The robustness of a numeric requirement: positive as long as it holds. The verdict keeps the least.
@@ -62,7 +68,29 @@ pub struct MonitorEdge {
     pub on: MonitorTrigger,
     /// A boolean expression over the signals.
     pub guard: Option<Expr>,
+    /// What the clock has to read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clock: Option<MonitorClockGuard>,
     pub effects: Vec<MonitorEffect>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MonitorClockGuard {
+    /// Less than this.
+    Before(Nanos),
+    /// More than this.
+    After(Nanos),
+}
+
+impl MonitorClockGuard {
+    #[must_use]
+    pub fn allows(self, reading: Nanos) -> bool {
+        match self {
+            Self::Before(bound) => reading < bound,
+            Self::After(bound) => reading > bound,
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,6 +98,8 @@ pub struct MonitorEdge {
 pub enum MonitorTrigger {
     /// Any of these events.
     Event(Vec<EventPattern>),
+    /// A condition has got this truth from the other one or, if `first` is set, is known for the first time.
+    Becomes { condition: u16, truth: bool, first: bool },
     /// Any new sample of a signal that the monitor reads.
     Sample,
     /// The clock reached the state's deadline. An event at the very instant of the deadline comes first.
@@ -85,6 +115,8 @@ pub enum MonitorEffect {
     Trigger,
     /// An obligation was met.
     Discharge,
+    /// What happens here is a violation if a [`Fail`](Self::Fail) follows.
+    Suspect,
     /// The requirement is violated; the first violation is reported, the monitor goes on to count.
     Fail,
 }
@@ -96,6 +128,9 @@ pub struct MonitorMargin {
     pub unit: Unit,
     /// Only at these events; empty: on every sample.
     pub at: Vec<EventPattern>,
+    /// Only in these states; empty: in all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub within: Vec<StateId>,
 }
 
 /// `assume at most N e within D`: restricts which stimuli are generated; never gives a verdict.

@@ -215,5 +215,38 @@ pub struct TypedRequirement {
     pub span: Span,
 }
 
+impl TypedRequirement {
+    /// Whether it speaks of more than events.
+    #[must_use]
+    pub fn reads_the_world(&self) -> bool {
+        let mut conditions = self.pattern.conditions();
+        conditions.next().is_some() || self.pattern.events().any(|e| e.as_edge().is_some())
+    }
+}
+
 /// Times in seconds.
-pub type TypedPattern = hrdsl_syntax::RequirementPattern<EventPattern, TypedExpr, f64>;
+pub type TypedPattern = hrdsl_syntax::RequirementSentence<TypedOccurrence, TypedExpr, f64, u32>;
+
+/// What a requirement takes for an event.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum TypedOccurrence {
+    Event(EventPattern),
+    /// `rising(P)`, `falling(P)`
+    Edge {
+        rising: bool,
+        condition: TypedExpr,
+    },
+}
+
+impl TypedOccurrence {
+    #[must_use]
+    pub fn as_event(&self) -> Option<&EventPattern> {
+        if let Self::Event(pattern) = self { Some(pattern) } else { None }
+    }
+
+    #[must_use]
+    pub fn as_edge(&self) -> Option<(bool, &TypedExpr)> {
+        if let Self::Edge { rising, condition } = self { Some((*rising, condition)) } else { None }
+    }
+}

@@ -1,59 +1,43 @@
-//! Requirements → monitor automata.
+//! Requirements → monitor automata: a pattern becomes a part with ways in and out, and its scope says when those are gone.
+
+mod parts;
+mod patterns;
+mod scopes;
 
 use hrdsl_ir::{
-    EventPattern, Expr, Nanos, Unit,
-    expr::{BinaryOp, NumberFunction, OperatorSort, UnaryOp},
-    monitor::{
-        Assumption, Monitor, MonitorEdge, MonitorEffect, MonitorMargin, MonitorState, MonitorTrigger, StateId,
-    },
-    value::nanos,
-    world::SignalId,
+    Expr, Unit,
+    expr::{BinaryOp, NumberFunction, OperatorSort},
+    monitor::{Assumption, Monitor},
 };
 use hrdsl_model::{self as model, InferredType, TypedExprKind};
 use hrdsl_source::SourceFiles;
-use hrdsl_syntax::{RequirementPattern, ast};
+use hrdsl_syntax::ast;
 
 use super::world::{SignalReader, SignalTable};
-use MonitorEffect::{Discharge, Fail, ResetClock, Trigger};
-
-/// The part of a monitor that its pattern decides.
-#[derive(Default)]
-struct PatternMachine {
-    states: Vec<MonitorState>,
-    edges: Vec<MonitorEdge>,
-    signals: Vec<SignalId>,
-    margin: Option<MonitorMargin>,
-}
+use parts::MonitorParts;
 
 pub(crate) fn monitor(
     r: &model::TypedRequirement,
     files: &SourceFiles,
     signals: &mut SignalTable<'_>,
 ) -> Monitor {
-    let machine = match &r.pattern {
-        RequirementPattern::Causes { trigger, response, within } => {
-            causes(trigger.clone(), response.clone(), within.map(nanos))
-        }
-        RequirementPattern::Forbids { trigger, forbidden, until } => {
-            forbids(trigger.clone(), forbidden.clone(), until.clone())
-        }
-        RequirementPattern::Precedes { first, then } => precedes(first.clone(), then.clone()),
-        RequirementPattern::NeverWhile { events, condition } => {
-            never(events.clone(), condition.as_ref(), signals)
-        }
-        RequirementPattern::Globally(condition) => globally(condition, signals),
-    };
+    let mut parts = MonitorParts::new(signals);
+    let scope = parts.scope(&r.pattern.scope);
+    let part = parts.pattern(&r.pattern.pattern, scope.sort());
+    let machine = scope.around(part);
     Monitor {
         name: r.name.clone(),
         kind: r.kind,
         title: r.title.clone(),
         text: one_line(files.text(r.text)),
-        signals: machine.signals,
         states: machine.states,
-        initial: StateId(0),
+        initial: machine.initial,
+        at_start: machine.at_start,
         edges: machine.edges,
         margin: machine.margin,
         origin: r.span,
+        conditions: parts.conditions.clone(),
+        signals: parts.signals(),
     }
 }
 
@@ -69,108 +53,6 @@ pub(crate) fn assumption(a: &model::TypedAssumption, files: &SourceFiles) -> Ass
 
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-fn state(name: &str, pending: bool, deadline: Option<Nanos>) -> MonitorState {
-    MonitorState { name: name.to_owned(), pending, deadline }
-}
-
-fn edge(
-    from: u16,
-    to: u16,
-    on: MonitorTrigger,
-    guard: Option<Expr>,
-    effects: &[MonitorEffect],
-) -> MonitorEdge {
-    MonitorEdge { from: StateId(from), to: StateId(to), on, guard, effects: effects.to_vec() }
-}
-
-/// While an answer is due, an event that is both answer and trigger answers.
-fn causes(trigger: Vec<EventPattern>, response: Vec<EventPattern>, within: Option<Nanos>) -> PatternMachine {
-    let mut edges = vec![
-        edge(0, 1, MonitorTrigger::Event(trigger.clone()), None, &[Trigger, ResetClock]),
-        edge(1, 0, MonitorTrigger::Event(response), None, &[Discharge]),
-        edge(1, 1, MonitorTrigger::Event(trigger), None, &[Trigger]),
-    ];
-    if within.is_some() {
-        edges.push(edge(1, 0, MonitorTrigger::Deadline, None, &[Fail]));
-    }
-    let states = vec![state("idle", false, None), state("pending", true, within)];
-    PatternMachine { states, edges, ..PatternMachine::default() }
-}
-
-fn forbids(
-    trigger: Vec<EventPattern>,
-    forbidden: Vec<EventPattern>,
-    until: Vec<EventPattern>,
-) -> PatternMachine {
-    let edges = vec![
-        edge(0, 1, MonitorTrigger::Event(trigger.clone()), None, &[Trigger]),
-        edge(1, 1, MonitorTrigger::Event(forbidden), None, &[Fail]),
-        edge(1, 0, MonitorTrigger::Event(until), None, &[Discharge]),
-        edge(1, 1, MonitorTrigger::Event(trigger), None, &[Trigger]),
-    ];
-    let states = vec![state("idle", false, None), state("armed", false, None)];
-    PatternMachine { states, edges, ..PatternMachine::default() }
-}
-
-/// An event that is both comes first, and is allowed.
-fn precedes(first: Vec<EventPattern>, then: Vec<EventPattern>) -> PatternMachine {
-    let then = MonitorTrigger::Event(then);
-    let edges = vec![
-        edge(0, 1, MonitorTrigger::Event(first), None, &[]),
-        edge(0, 0, then.clone(), None, &[Trigger, Fail]),
-        edge(1, 1, then, None, &[Trigger, Discharge]),
-    ];
-    let states = vec![state("before", false, None), state("after", false, None)];
-    PatternMachine { states, edges, ..PatternMachine::default() }
-}
-
-/// The margin is that of the negated condition, at the events.
-fn never(
-    events: Vec<EventPattern>,
-    condition: Option<&model::TypedExpr>,
-    signals: &mut SignalTable<'_>,
-) -> PatternMachine {
-    let mut reader = SignalReader::new(signals);
-    let guard = condition.map(|c| reader.expr(c));
-    let margin = condition.and_then(|c| margin(c, false, &mut reader));
-    let mut edges = vec![edge(0, 0, MonitorTrigger::Event(events.clone()), guard, &[Trigger, Fail])];
-    if condition.is_some() {
-        edges.push(edge(0, 0, MonitorTrigger::Event(events.clone()), None, &[Trigger, Discharge]));
-    }
-    PatternMachine {
-        states: vec![state("watch", false, None)],
-        edges,
-        signals: reader.read(),
-        margin: margin.map(|(value, unit)| MonitorMargin { value, unit, at: events }),
-    }
-}
-
-/// The first sample triggers; each time the condition ceases to hold is one failure.
-fn globally(condition: &model::TypedExpr, signals: &mut SignalTable<'_>) -> PatternMachine {
-    let mut reader = SignalReader::new(signals);
-    let holds = reader.expr(condition);
-    let broken = not(holds.clone());
-    let margin = margin(condition, true, &mut reader);
-    let edges = vec![
-        edge(0, 2, MonitorTrigger::Sample, Some(broken.clone()), &[Trigger, Fail]),
-        edge(0, 1, MonitorTrigger::Sample, Some(holds.clone()), &[Trigger]),
-        edge(1, 2, MonitorTrigger::Sample, Some(broken), &[Fail]),
-        edge(2, 1, MonitorTrigger::Sample, Some(holds), &[]),
-    ];
-    let states =
-        vec![state("unseen", false, None), state("seen", false, None), state("violated", false, None)];
-    PatternMachine {
-        states,
-        edges,
-        signals: reader.read(),
-        margin: margin.map(|(value, unit)| MonitorMargin { value, unit, at: Vec::new() }),
-    }
-}
-
-fn not(e: Expr) -> Expr {
-    Expr::Unary(UnaryOp::Not, Box::new(e))
 }
 
 /// The robustness of a condition (of its negation, if not `positive`): `a < c` has c − a, a conjunction the least of its

@@ -15,7 +15,7 @@ pub use crate::expr::{
     AllowSyntax, CallSyntax, ExprSyntax, ExprSyntaxKind, LiteralSyntax, NameSyntax, ParamSyntax, PathSyntax,
     RangeSyntax, TextSyntax, TypeExpr,
 };
-use crate::pattern::RequirementPattern;
+use crate::scope::RequirementSentence;
 pub use crate::system::{ProgramSyntax, SystemMember, SystemMemberKind, SystemSyntax};
 pub use crate::world::*;
 
@@ -554,7 +554,7 @@ pub struct RequireSyntax {
 }
 
 /// What a requirement says, as it is written.
-pub type ParsedPattern = RequirementPattern<CallSyntax, ExprSyntax, ExprSyntax>;
+pub type ParsedPattern = RequirementSentence<CallSyntax, ExprSyntax, ExprSyntax, ExprSyntax>;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PatternSyntax {

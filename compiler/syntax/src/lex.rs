@@ -406,8 +406,16 @@ impl LexemeJoiner<'_> {
         usize::from(!is_name)
     }
 
-    /// In `at most 4 leg_request` the word after the number is an event.
+    /// In `at most 4 leg_request` and `exactly 4 leg_request` the word after the number is an event.
     fn counts_events(&self) -> bool {
-        matches!(self.out.as_slice(), [.., at, most] if at.kind == TokenKind::At && most.kind == TokenKind::Most)
+        let bounds = |kind| matches!(kind, TokenKind::Most | TokenKind::Least);
+        match self.out.as_slice() {
+            // In `for at most 4 s` it is a unit.
+            [.., word, at, bound] if at.kind == TokenKind::At && bounds(bound.kind) => {
+                word.kind != TokenKind::For
+            }
+            [.., exactly] => exactly.kind == TokenKind::Exactly,
+            [] => false,
+        }
     }
 }

@@ -28,6 +28,7 @@ mod print;
 mod recover;
 mod report;
 mod run;
+mod scope;
 mod system;
 pub mod token;
 mod words;
@@ -42,8 +43,9 @@ mod grammar {
 pub use item_rules::ItemRules;
 pub use outline::{MAX_HEIGHT, MAX_NESTING};
 pub use parse::{MAX_BYTES, parse};
-pub use pattern::{BannedEvents, DemandedEvents, RequirementPattern};
+pub use pattern::{CountBound, LastingBound, RequirementPattern, SentenceMapping};
 pub use print::format;
+pub use scope::{BannedEvents, DemandedCount, DemandedEvents, RequirementScope, RequirementSentence};
 
 /// The grammar as the parser is made of it: `src/grammar.lalrpop` with the registry of keywords put in.
 pub const GRAMMAR: &str = include_str!(concat!(env!("OUT_DIR"), "/grammar.lalrpop"));

@@ -68,7 +68,12 @@ fn lacks_its_rest(tokens: &[Lexeme], at: usize, does: bool) -> bool {
             });
             !operand || follows
         }
-        TokenKind::After | TokenKind::Never | TokenKind::Globally => {
+        TokenKind::After
+        | TokenKind::Never
+        | TokenKind::Globally
+        | TokenKind::Always
+        | TokenKind::EventuallyWord
+        | TokenKind::Whenever => {
             next.kind == TokenKind::Or || starts_a_response(tokens.get(at + 1..).unwrap_or_default())
         }
         _ => false,
@@ -111,7 +116,9 @@ fn called_before(kind: TokenKind, next: Option<Lexeme>) -> bool {
         TokenKind::After | TokenKind::Never => {
             after.is_some_and(|k| k == TokenKind::Or || k.is(TokenTrait::Response))
         }
-        TokenKind::Globally => after.is_some_and(|k| k.is(TokenTrait::Response)),
+        TokenKind::Globally | TokenKind::Always | TokenKind::EventuallyWord | TokenKind::Whenever => {
+            after.is_some_and(|k| k.is(TokenTrait::Response))
+        }
         _ => false,
     }
 }

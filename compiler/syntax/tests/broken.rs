@@ -228,6 +228,12 @@ broken! {
         "require R safety never a when b"
         "require R safety a forbids b"
         "require R safety (a or b causes c"
+        "require R safety never a between b"
+        "require R safety at most a"
+        "require R safety whenever p for 2 s"
+        "require R safety a causes b not after 2 s"
+        "require R safety never a while p while q"
+        "require R safety a forbids b until c until d"
         "require safety a causes b"
     ]
     suites_and_tests [

@@ -189,6 +189,17 @@ require R4 safety a or b causes c within 10 s
 require R5 safety "x" never closing while distance(p.hand, r.palm) < 5 cm
 require R6 safety never (a or b)
 require R7 safety globally speed(arm) < 0.25 rad/s
+require R8 functional a causes b not before 1 s within 2 s before c
+require R9 safety a precedes b within 2 s after c until (d or e)
+require R10 functional eventually a or b within 3 s between c and d
+require R11 safety at most N (a or b) while x < 1
+require R12 safety exactly 2 a after b
+require R13 safety at least 2 a
+require R14 safety never a while x < 1 before b
+require R15 safety whenever x < 1 for at least 2 s
+require R16 safety rising(x < 1) forbids b until falling(x < 1)
+require R17 safety always x < 1 after c
+require R18 safety exactly causes always
 assume at most 4 leg_request within 300 s
 assume at most LEGS (a or b(1))
 assume at most 2 reach or c within 1 s

@@ -29,21 +29,24 @@
   "scenario" "actor" "const" "event" "stimulus" "agent" "var" "channel" "automaton" "network" "query" "require"
   "assume" "cover" "cross" "suite" "part" "device" "world" "system" "test" "from" "to" "by" "in" "plays" "when" "on"
   "do" "emit" "within" "sample" "hold" "belief" "goal" "plan" "rule" "clock" "location" "invariant" "select" "after"
-  "causes" "forbids" "precedes" "until" "never" "globally" "at" "most" "count" "bins" "bin" "ignore" "agents" "search"
-  "random" "of" "choose" "one" "any" "per" "where" "explore" "stop" "minimise" "witness" "delays" "tests" "warmup"
-  "horizon" "patience" "reach" "each" "edge" "stimuli" "length" "pause" "seed" "method" "because" "predicts"
-  "meanwhile" "with" "step" "gravity" "body" "joint" "arm" "gripper" "base" "laser" "limb" "figure" "posture"
-  "packages" "argument" "semantics" "start" "walls" "current" "signal" "rotated" "mass" "stiffness" "ghost" "graspable"
-  "axis" "limits" "effort" "rotor" "damping" "friction" "mimic" "times" "height" "contact" "avoids" "fingers" "force"
-  "limbs" "tip" "tool" "speed" "delay" "sideways" "turn" "acceleration" "timeout" "angles" "beams" "range" "every"
-  "late" "noise" "drift" "dropout" "flip" "outlier" "facing" "left" "right" "ahead" "behind" "command" "state" "expect"
-  "run" "coverage" "limit" "budget" "cpu" "wall" "memory" "output" "env" "online" "program" "ros1" "ros2" "messages"
-  "topic" "service" "action" "group" "parameter" "transition" "out" "drives" "latched" "plans"
+  "causes" "forbids" "precedes" "until" "never" "globally" "always" "eventually" "whenever" "before" "between" "at"
+  "most" "least" "exactly" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per"
+  "where" "explore" "stop" "minimise" "witness" "delays" "tests" "warmup" "horizon" "patience" "reach" "each" "edge"
+  "stimuli" "length" "pause" "seed" "method" "because" "predicts" "meanwhile" "with" "step" "gravity" "body" "joint"
+  "arm" "gripper" "base" "laser" "limb" "figure" "posture" "packages" "argument" "semantics" "start" "walls" "current"
+  "signal" "rotated" "mass" "stiffness" "ghost" "graspable" "axis" "limits" "effort" "rotor" "damping" "friction"
+  "mimic" "times" "height" "contact" "avoids" "fingers" "force" "limbs" "tip" "tool" "speed" "delay" "sideways" "turn"
+  "acceleration" "timeout" "angles" "beams" "range" "every" "late" "noise" "drift" "dropout" "flip" "outlier" "facing"
+  "left" "right" "ahead" "behind" "command" "state" "expect" "run" "coverage" "limit" "budget" "cpu" "wall" "memory"
+  "output" "env" "online" "program" "ros1" "ros2" "messages" "topic" "service" "action" "group" "parameter"
+  "transition" "out" "drives" "latched" "plans"
 ] @keyword
 "fn" @keyword.function
 "return" @keyword.return
 ["for" "fork" "while"] @keyword.repeat
 (never_pattern "while" @keyword)
+(while_scope "while" @keyword)
+(duration_pattern "for" @keyword)
 ["enum" "record"] @keyword.type
 ["init" "urgent" "committed" "broadcast"] @keyword.modifier
 (channel_declaration "joint" @keyword.modifier)
@@ -52,6 +55,7 @@
 "use" @keyword.import
 "allow" @keyword.directive
 ["not" "and" "or" "imply"] @keyword.operator
+(between_scope "and" @keyword)
 ["sup" "inf"] @function.builtin
 (quantifier) @operator
 (fork_step ["and" "or"] @keyword.repeat)

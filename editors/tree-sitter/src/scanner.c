@@ -203,6 +203,22 @@ static bool take_quantifier(TSLexer *lexer, const Word *word) {
   return true;
 }
 
+// Whether a word that may begin a requirement's pattern is an event: `at causes x`.
+static bool is_event(TSLexer *lexer, const Word *word) {
+  static const char *const WORDS[] = {"at", "exactly", "always", "eventually", "whenever"};
+  static const char *const NEXT[] = {"causes", "forbids", "precedes", "or"};
+  bool begins = false;
+  for (unsigned i = 0; i < sizeof WORDS / sizeof *WORDS; i++) begins = begins || equals(word, WORDS[i]);
+  if (!begins) return false;
+  take_blanks(lexer);
+  if (!is_letter(lexer->lookahead)) return false;
+  Word next = take_word(lexer);
+  for (unsigned i = 0; i < sizeof NEXT / sizeof *NEXT; i++) {
+    if (equals(&next, NEXT[i])) return true;
+  }
+  return false;
+}
+
 // What a word is here. A word is always taken, also where none fits: its parts must not be read as keywords.
 static enum Token role(TSLexer *lexer, const Word *word, bool same_line, bool failed, const bool *valid) {
   const Keyword *keyword = keyword_of(word);
@@ -210,7 +226,8 @@ static enum Token role(TSLexer *lexer, const Word *word, bool same_line, bool fa
   if (!failed && valid[MEMBER] && (name || same_line)) return MEMBER;
   if (name && valid[ORIGIN] && before_arrow(lexer)) return ORIGIN;
   if (keyword == NULL) return IDENTIFIER;
-  if (valid[keyword->token] || !valid[IDENTIFIER]) return keyword->token;
+  if (!valid[IDENTIFIER]) return keyword->token;
+  if (valid[keyword->token]) return !failed && is_event(lexer, word) ? IDENTIFIER : keyword->token;
   // No declaration begins within a line where a name is due: `body cover: …`.
   bool head_as_name = keyword->class == CLASS_HEAD && same_line;
   return name || head_as_name ? IDENTIFIER : keyword->token;

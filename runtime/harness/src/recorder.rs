@@ -146,10 +146,9 @@ impl<'p> SignalRecorder<'p> {
 impl<'p> SampleWatch<'p> {
     fn new(monitor: &'p Monitor, watched: &[SignalId]) -> Self {
         let mut guards: Vec<(&Expr, Option<Value>)> = Vec::new();
-        for edge in monitor.edges.iter().filter(|edge| edge.on == MonitorTrigger::Sample) {
-            if let Some(guard) = &edge.guard
-                && guards.iter().all(|(known, _)| *known != guard)
-            {
+        let edges = monitor.edges.iter().filter(|edge| edge.on == MonitorTrigger::Sample);
+        for guard in monitor.conditions.iter().chain(edges.filter_map(|edge| edge.guard.as_ref())) {
+            if guards.iter().all(|(known, _)| *known != guard) {
                 guards.push((guard, None));
             }
         }
@@ -187,7 +186,8 @@ impl<'p> SampleWatch<'p> {
 
 /// Whether a monitor reacts to samples, or takes its margin at each.
 fn judges_samples(monitor: &Monitor) -> bool {
-    monitor.edges.iter().any(|edge| edge.on == MonitorTrigger::Sample)
+    !monitor.conditions.is_empty()
+        || monitor.edges.iter().any(|edge| edge.on == MonitorTrigger::Sample)
         || monitor.margin.as_ref().is_some_and(|margin| margin.at.is_empty())
 }
 

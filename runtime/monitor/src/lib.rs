@@ -52,7 +52,7 @@ impl MonitorRunner {
         for (index, monitor) in program.monitors.iter().enumerate() {
             let on_edges = monitor.edges.iter().flat_map(|edge| match &edge.on {
                 MonitorTrigger::Event(patterns) => patterns.as_slice(),
-                MonitorTrigger::Sample | MonitorTrigger::Deadline => &[],
+                MonitorTrigger::Becomes { .. } | MonitorTrigger::Sample | MonitorTrigger::Deadline => &[],
             });
             let at_margin = monitor.margin.iter().flat_map(|margin| &margin.at);
             for pattern in on_edges.chain(at_margin) {

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     EventId, Expr, Nanos, Value,
-    monitor::{Monitor, MonitorEdge, MonitorEffect, MonitorTrigger},
+    monitor::{Monitor, MonitorEdge, MonitorEffect, MonitorTrigger, StateId},
 };
 
 use hrdsl_trace::{TraceStep, TraceStepKind};
@@ -33,6 +33,8 @@ pub(crate) struct MonitorMachine {
     monitor: Monitor,
     /// For each state the indices of its edges, in order.
     leaving: Vec<Vec<usize>>,
+    /// For each condition its latest truth.
+    truths: Vec<Option<bool>>,
     /// No edge triggers, but some watch samples: the first complete sample is the trigger.
     watches: bool,
     state: usize,
@@ -49,6 +51,8 @@ pub(crate) struct MonitorMachine {
     discharged: u32,
     failures: u32,
     first_failure: Option<Violation>,
+    /// What is a violation if the requirement fails next.
+    suspect: Option<Violation>,
     worst_margin: Option<(f64, Nanos)>,
     /// All that it did; `None`: nobody asks for it.
     history: Option<Vec<MonitorHappening>>,
@@ -58,6 +62,12 @@ pub(crate) struct MonitorMachine {
 #[derive(Clone, Copy)]
 enum EdgeCause<'a> {
     Event(EventId, &'a [Value]),
+    /// A condition has got a truth, the first that it has.
+    Becomes {
+        condition: u16,
+        truth: bool,
+        first: bool,
+    },
     Sample,
     Deadline,
 }
@@ -68,12 +78,19 @@ impl EdgeCause<'_> {
             (EdgeCause::Event(event, args), MonitorTrigger::Event(patterns)) => {
                 patterns.iter().any(|p| p.matches(event, args))
             }
+            (
+                EdgeCause::Becomes { condition, truth, first },
+                MonitorTrigger::Becomes { condition: on, truth: to, first: also_first },
+            ) => condition == *on && truth == *to && (!first || *also_first),
             (EdgeCause::Sample, MonitorTrigger::Sample) | (EdgeCause::Deadline, MonitorTrigger::Deadline) => {
                 true
             }
             (
-                EdgeCause::Event(..) | EdgeCause::Sample | EdgeCause::Deadline,
-                MonitorTrigger::Event(_) | MonitorTrigger::Sample | MonitorTrigger::Deadline,
+                EdgeCause::Event(..) | EdgeCause::Becomes { .. } | EdgeCause::Sample | EdgeCause::Deadline,
+                MonitorTrigger::Event(_)
+                | MonitorTrigger::Becomes { .. }
+                | MonitorTrigger::Sample
+                | MonitorTrigger::Deadline,
             ) => false,
         }
     }
@@ -90,6 +107,7 @@ impl MonitorMachine {
         let triggers = monitor.edges.iter().any(|e| e.effects.contains(&MonitorEffect::Trigger));
         let mut machine = Self {
             leaving,
+            truths: vec![None; monitor.conditions.len()],
             watches: !triggers && monitor.edges.iter().any(|e| e.on == MonitorTrigger::Sample),
             state: usize::from(monitor.initial.0),
             entered: 0,
@@ -101,17 +119,33 @@ impl MonitorMachine {
             discharged: 0,
             failures: 0,
             first_failure: None,
+            suspect: None,
             worst_margin: None,
             history: None,
             monitor,
         };
+        if machine.monitor.at_start.contains(&MonitorEffect::Trigger) {
+            machine.triggered = 1;
+            machine.obligation = Some(TriggerObligation { time: 0, step: None });
+        }
         machine.arm(0);
         machine
     }
 
     /// From now on it keeps all that it does.
     pub fn recount(&mut self) {
-        self.history = Some(Vec::new());
+        let mut history = Vec::new();
+        if !self.monitor.at_start.is_empty() {
+            history.push(MonitorHappening {
+                time: 0,
+                step: None,
+                effects: self.monitor.at_start.clone(),
+                pending: self.is_pending(),
+                due: self.due,
+                values: Vec::new(),
+            });
+        }
+        self.history = Some(history);
     }
 
     pub fn take_history(&mut self) -> Vec<MonitorHappening> {
@@ -139,15 +173,23 @@ impl MonitorMachine {
         let measured = |m: &Monitor| {
             m.margin.as_ref().is_some_and(|margin| margin.at.iter().any(|p| p.matches(event, args)))
         };
-        if measured(&self.monitor) {
-            self.measure(at.time, signals);
+        let inside = self.measures_here();
+        if !measured(&self.monitor) {
+            return self.react(EdgeCause::Event(event, args), at, signals);
         }
         self.react(EdgeCause::Event(event, args), at, signals);
+        // An event that opens or closes what the requirement is about is not in it.
+        if inside && self.measures_here() {
+            self.measure(at.time, signals);
+        }
     }
 
     /// One of the monitor's signals has a new sample.
     pub fn sample(&mut self, at: TraceMoment, signals: &LatestSamples) {
-        if self.monitor.margin.as_ref().is_some_and(|margin| margin.at.is_empty()) {
+        for condition in 0..self.truths.len() {
+            self.look(condition, at, signals);
+        }
+        if self.measures_samples() && self.measures_here() {
             self.measure(at.time, signals);
         }
         let complete = || self.monitor.signals.iter().all(|s| signals.get(*s).is_some());
@@ -163,10 +205,22 @@ impl MonitorMachine {
         self.react(EdgeCause::Sample, at, signals);
     }
 
+    /// Looks at a condition again. One without a value is as it was before.
+    fn look(&mut self, condition: usize, at: TraceMoment, signals: &LatestSamples) {
+        let value = self.value(&self.monitor.conditions[condition], signals);
+        let Some(Value::Bool(truth)) = value else { return };
+        let before = self.truths[condition].replace(truth);
+        if before != Some(truth) {
+            let condition = u16::try_from(condition).unwrap_or(u16::MAX);
+            self.react(EdgeCause::Becomes { condition, truth, first: before.is_none() }, at, signals);
+        }
+    }
+
     /// Takes the first edge that the cause starts and whose guard holds.
     fn react(&mut self, cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) {
         let enabled = |edge: &MonitorEdge| {
             cause.starts(&edge.on)
+                && edge.clock.is_none_or(|clock| clock.allows(at.time.saturating_sub(self.zero)))
                 && edge.guard.as_ref().is_none_or(|g| self.value(g, signals) == Some(Value::Bool(true)))
         };
         let edges = self.leaving.get(self.state).map_or(&[][..], Vec::as_slice);
@@ -179,6 +233,7 @@ impl MonitorMachine {
         let to = usize::from(self.monitor.edges[edge].to.0);
         let moves = to != self.state;
         let has = |effect| self.monitor.edges[edge].effects.contains(&effect);
+        let outside = !self.measures_here();
         let (resets, fails) = (has(MonitorEffect::ResetClock), has(MonitorEffect::Fail));
         for index in 0..self.monitor.edges[edge].effects.len() {
             match self.monitor.edges[edge].effects[index] {
@@ -195,6 +250,7 @@ impl MonitorMachine {
                     self.discharged = self.discharged.saturating_add(1);
                     self.obligation = None;
                 }
+                MonitorEffect::Suspect => self.suspect = Some(self.violation(cause, at, signals)),
                 MonitorEffect::Fail => self.fail(cause, at, signals),
             }
         }
@@ -208,6 +264,9 @@ impl MonitorMachine {
         if moves || resets {
             self.arm(at.time);
         }
+        if outside && self.measures_samples() && self.measures_here() {
+            self.measure(at.time, signals);
+        }
         self.note(edge, at, signals);
     }
 
@@ -217,7 +276,7 @@ impl MonitorMachine {
             return;
         }
         let effects = self.monitor.edges[edge].effects.clone();
-        let pending = self.monitor.states.get(self.state).is_some_and(|s| s.pending);
+        let pending = self.is_pending();
         let read = self.monitor.signals.iter().filter_map(|s| signals.get(*s).map(|r| (*s, r.value)));
         let values = if effects.contains(&MonitorEffect::Fail) { read.collect() } else { Vec::new() };
         let happening =
@@ -233,9 +292,27 @@ impl MonitorMachine {
 
     fn fail(&mut self, cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) {
         self.failures = self.failures.saturating_add(1);
+        let suspect = self.suspect.take();
         if self.first_failure.is_some() {
             return;
         }
+        let violation = match suspect {
+            Some(mut violation) => {
+                // What makes a violation of it is the end of what shows it.
+                let closing = obligation(cause, at, signals).step;
+                let known = |step: &SeenStep| violation.counterexample.iter().all(|k| k.index != step.index);
+                if let Some(step) = closing.filter(known) {
+                    violation.counterexample.push(step);
+                }
+                violation
+            }
+            None => self.violation(cause, at, signals),
+        };
+        self.first_failure = Some(violation);
+    }
+
+    /// What there is to show for a violation that happens here.
+    fn violation(&self, cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) -> Violation {
         let here = obligation(cause, at, signals);
         let trigger = self.obligation.clone().unwrap_or_else(|| here.clone());
         let read = self.monitor.signals.iter().filter_map(|s| signals.get(*s).map(|r| (*s, r)));
@@ -246,13 +323,21 @@ impl MonitorMachine {
             }
         }
         let values = read.map(|(signal, r)| (signal, r.value)).collect();
-        self.first_failure = Some(Violation {
-            time: at.time,
-            step: at.step,
-            trigger_time: trigger.time,
-            counterexample,
-            values,
-        });
+        Violation { time: at.time, step: at.step, trigger_time: trigger.time, counterexample, values }
+    }
+
+    fn is_pending(&self) -> bool {
+        self.monitor.states.get(self.state).is_some_and(|s| s.pending)
+    }
+
+    fn measures_samples(&self) -> bool {
+        self.monitor.margin.as_ref().is_some_and(|margin| margin.at.is_empty())
+    }
+
+    /// Whether the margin is taken in the state that it is in.
+    fn measures_here(&self) -> bool {
+        let is_here = |s: &StateId| usize::from(s.0) == self.state;
+        self.monitor.margin.as_ref().is_some_and(|m| m.within.is_empty() || m.within.iter().any(is_here))
     }
 
     fn measure(&mut self, time: Nanos, signals: &LatestSamples) {
@@ -275,7 +360,7 @@ impl MonitorMachine {
     }
 
     pub fn verdict(self, index: usize) -> MonitorVerdict {
-        let pending = self.monitor.states.get(self.state).is_some_and(|s| s.pending);
+        let pending = self.is_pending();
         let outcome = if self.failures > 0 {
             MonitorOutcome::Fail
         } else if pending {
@@ -306,7 +391,7 @@ fn obligation(cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) ->
             let what = TraceStepKind::Event { event, args: args.to_vec() };
             Some(SeenStep { index, step: TraceStep { time: at.time, what } })
         }
-        EdgeCause::Sample => signals.of_step(index),
+        EdgeCause::Sample | EdgeCause::Becomes { .. } => signals.of_step(index),
         EdgeCause::Deadline => None,
     });
     TriggerObligation { time: at.time, step }

@@ -54,6 +54,8 @@ fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<MonitorEdge>) -> Monitor
         signals: vec![SignalId(0), SignalId(1)],
         states: states.iter().map(state).collect(),
         initial: StateId(0),
+        at_start: Vec::new(),
+        conditions: Vec::new(),
         edges,
         margin: None,
         origin: Span::default(),
@@ -61,7 +63,14 @@ fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<MonitorEdge>) -> Monitor
 }
 
 fn edge(from: u16, to: u16, on: MonitorTrigger, effects: &[MonitorEffect]) -> MonitorEdge {
-    MonitorEdge { from: StateId(from), to: StateId(to), on, guard: None, effects: effects.to_vec() }
+    MonitorEdge {
+        from: StateId(from),
+        to: StateId(to),
+        on,
+        guard: None,
+        clock: None,
+        effects: effects.to_vec(),
+    }
 }
 
 fn on(event: u16) -> MonitorTrigger {
@@ -194,6 +203,7 @@ fn never_close() -> Monitor {
         value: Expr::binary(BinaryOp::Sub, Expr::Var(0), Expr::float(0.05)),
         unit: Unit::Metre,
         at: vec![EventPattern { event: EventId(0), args: Vec::new() }],
+        within: Vec::new(),
     });
     never
 }

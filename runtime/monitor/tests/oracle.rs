@@ -35,7 +35,7 @@ fn edge(
     guard: Option<Expr>,
     effects: &[MonitorEffect],
 ) -> MonitorEdge {
-    MonitorEdge { from: StateId(from), to: StateId(to), on, guard, effects: effects.to_vec() }
+    MonitorEdge { from: StateId(from), to: StateId(to), on, guard, clock: None, effects: effects.to_vec() }
 }
 
 fn monitor(
@@ -55,6 +55,8 @@ fn monitor(
         signals,
         states,
         initial: StateId(0),
+        at_start: Vec::new(),
+        conditions: Vec::new(),
         edges,
         margin: None,
         origin: Span::default(),
@@ -104,7 +106,7 @@ fn never() -> Monitor {
         vec![SignalId(0)],
     );
     let value = Expr::binary(BinaryOp::Sub, Expr::Var(0), Expr::float(LIMIT));
-    never.margin = Some(MonitorMargin { value, unit: Unit::Metre, at: vec![pattern(E)] });
+    never.margin = Some(MonitorMargin { value, unit: Unit::Metre, at: vec![pattern(E)], within: Vec::new() });
     never
 }
 
@@ -122,7 +124,7 @@ fn globally() -> Monitor {
         vec![SignalId(0)],
     );
     let value = Expr::binary(BinaryOp::Sub, Expr::float(LIMIT), Expr::Var(0));
-    globally.margin = Some(MonitorMargin { value, unit: Unit::Metre, at: Vec::new() });
+    globally.margin = Some(MonitorMargin { value, unit: Unit::Metre, at: Vec::new(), within: Vec::new() });
     globally
 }
 

@@ -13,7 +13,7 @@
 use hrdsl_ir::{
     ActorId, EventId, EventPattern, Expr, Nanos, Program, Provenance,
     expr::Lvalue,
-    monitor::{Monitor, MonitorEffect, MonitorTrigger},
+    monitor::{Monitor, MonitorClockGuard, MonitorEdge, MonitorEffect, MonitorTrigger},
     ta::{
         Automaton, AutomatonId, AutomatonVar, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment,
         Location, LocationId, LocationKind, Network, QueryFormula, SyncLabel, TimeSum,
@@ -102,8 +102,8 @@ pub(super) fn number(n: usize) -> u16 {
 /// How a monitor is made an automaton.
 struct ObserverPlan<'m> {
     monitor: &'m Monitor,
-    /// For each state: when it fails.
-    deadlines: Vec<Option<Nanos>>,
+    /// For each state: when it fails, or goes on as another.
+    deadlines: Vec<Option<StateDeadline>>,
     fails: bool,
     /// The locations that tell that it was triggered; `None`: a variable does.
     telling: Option<Vec<u16>>,
@@ -112,7 +112,7 @@ struct ObserverPlan<'m> {
 impl<'m> ObserverPlan<'m> {
     fn of(monitor: &'m Monitor) -> Result<Self, String> {
         let samples = monitor.edges.iter().any(|e| e.guard.is_some() || e.on == MonitorTrigger::Sample);
-        if samples || !monitor.signals.is_empty() {
+        if samples || !monitor.conditions.is_empty() || !monitor.signals.is_empty() {
             return Err("it reads signals of the world, which a network does not have".to_owned());
         }
         let deadlines =
@@ -121,7 +121,7 @@ impl<'m> ObserverPlan<'m> {
             .edges
             .iter()
             .any(|e| e.effects.contains(&MonitorEffect::Fail) && e.on != MonitorTrigger::Deadline)
-            || deadlines.iter().any(Option::is_some);
+            || deadlines.iter().flatten().any(|d| d.goes_on.is_none());
         let mut plan = Self { monitor, deadlines, fails, telling: None };
         plan.telling = plan.telling_locations();
         Ok(plan)
@@ -132,21 +132,21 @@ impl<'m> ObserverPlan<'m> {
         number(self.monitor.states.len())
     }
 
-    fn target(&self, edge: &hrdsl_ir::monitor::MonitorEdge) -> u16 {
+    fn target(&self, edge: &MonitorEdge) -> u16 {
         if edge.effects.contains(&MonitorEffect::Fail) { self.violated() } else { edge.to.0 }
     }
 
-    fn on_events(&self) -> impl Iterator<Item = (&'m hrdsl_ir::monitor::MonitorEdge, &'m [EventPattern])> {
+    fn on_events(&self) -> impl Iterator<Item = MonitorRule<'m>> {
         self.monitor.edges.iter().filter_map(|e| match &e.on {
             MonitorTrigger::Event(patterns) => Some((e, patterns.as_slice())),
-            MonitorTrigger::Sample | MonitorTrigger::Deadline => None,
+            MonitorTrigger::Becomes { .. } | MonitorTrigger::Sample | MonitorTrigger::Deadline => None,
         })
     }
 
     /// The targets of the edges that trigger, if to be in one of them means that it was triggered: each edge that leads there
     /// from elsewhere triggers.
     fn telling_locations(&self) -> Option<Vec<u16>> {
-        let triggers = |e: &hrdsl_ir::monitor::MonitorEdge| e.effects.contains(&MonitorEffect::Trigger);
+        let triggers = |e: &MonitorEdge| e.effects.contains(&MonitorEffect::Trigger);
         let mut targets: Vec<u16> =
             self.on_events().filter(|(e, _)| triggers(e)).map(|(e, _)| self.target(e)).collect();
         targets.sort_unstable();
@@ -177,7 +177,8 @@ impl<'m> ObserverPlan<'m> {
             enumeration: None,
         };
         let vars = if self.telling.is_none() { vec![flag] } else { Vec::new() };
-        let timed = self.deadlines.iter().any(Option::is_some);
+        let timed =
+            self.deadlines.iter().any(Option::is_some) || monitor.edges.iter().any(|e| e.clock.is_some());
         let mut edges = Vec::new();
         for state in 0..monitor.states.len() {
             self.edges_of(program, state, number(program.shared.len() + vars.len()), timed, &mut edges)?;
@@ -202,11 +203,42 @@ impl<'m> ObserverPlan<'m> {
         timed: bool,
         out: &mut Vec<Edge>,
     ) -> Result<(), String> {
-        let rules: Vec<_> = self.on_events().filter(|(e, _)| usize::from(e.from.0) == state).collect();
+        let here = |at: usize| self.on_events().filter(move |(e, _)| usize::from(e.from.0) == at).collect();
+        let rules: Vec<MonitorRule<'m>> = here(state);
+        let clock = ClockId(number(program.clocks.len()));
+        let reads = |op, bound| ClockConstraint { clock, minus: None, op, bound: TimeSum::constant(bound) };
+        let deadline = self.deadlines[state].as_ref();
+        let in_time: Vec<ClockConstraint> = deadline.iter().map(|d| reads(ClockOp::Le, d.after)).collect();
+        match clock_guard(&rules)? {
+            None => self.receiving(program, state, (&rules, &in_time), (binders, timed), out)?,
+            Some(guard) => {
+                // First what is done when the clock fits, then what is done when it does not.
+                let (op, other, bound) = match guard {
+                    MonitorClockGuard::Before(bound) => (ClockOp::Lt, ClockOp::Ge, bound),
+                    MonitorClockGuard::After(bound) => (ClockOp::Gt, ClockOp::Le, bound),
+                };
+                let also = |op| [in_time.as_slice(), &[reads(op, bound)]].concat();
+                self.receiving(program, state, (&rules, &also(op)), (binders, timed), out)?;
+                let untimed: Vec<_> = rules.into_iter().filter(|(e, _)| e.clock.is_none()).collect();
+                self.receiving(program, state, (&untimed, &also(other)), (binders, timed), out)?;
+            }
+        }
+        let Some((late, goes_on)) = deadline.and_then(|d| Some((d.after, d.goes_on?))) else { return Ok(()) };
+        let late = [reads(ClockOp::Gt, late)];
+        self.receiving(program, state, (&here(usize::from(goes_on)), &late), (binders, timed), out)
+    }
+
+    /// Edges out of a state that receive what these rules are for, while the clock reads this.
+    fn receiving(
+        &self,
+        program: &Program,
+        state: usize,
+        (rules, reads): (&[MonitorRule<'m>], &[ClockConstraint]),
+        (binders, timed): (u16, bool),
+        out: &mut Vec<Edge>,
+    ) -> Result<(), String> {
         let patterns: Vec<&[EventPattern]> = rules.iter().map(|(_, p)| *p).collect();
         let clock = ClockId(number(program.clocks.len()));
-        let in_time =
-            |d: Nanos| ClockConstraint { clock, minus: None, op: ClockOp::Le, bound: TimeSum::constant(d) };
         for reception in receptions(program, &patterns, binders)? {
             let edge = rules[reception.rule].0;
             let to = self.target(edge);
@@ -223,10 +255,10 @@ impl<'m> ObserverPlan<'m> {
                 continue;
             }
             out.push(Edge {
-                from: LocationId(edge.from.0),
+                from: LocationId(number(state)),
                 to: LocationId(to),
                 selects: Vec::new(),
-                clock_guard: self.deadlines[state].map(in_time).into_iter().collect(),
+                clock_guard: reads.to_vec(),
                 guard: reception.guard,
                 sync: SyncLabel::Receive { event: reception.event, args: reception.args },
                 updates,
@@ -240,8 +272,9 @@ impl<'m> ObserverPlan<'m> {
     fn verdicts(&self, automaton: u16, clock: ClockId, flag: u16) -> ObserverFormulas {
         let at = |location: u16| QueryFormula::At { automaton, location: LocationId(location) };
         let late = self.deadlines.iter().zip(0u16..).filter_map(|(d, state)| {
+            let after = d.as_ref().filter(|d| d.goes_on.is_none())?.after;
             let past =
-                ClockConstraint { clock, minus: None, op: ClockOp::Gt, bound: TimeSum::constant((*d)?) };
+                ClockConstraint { clock, minus: None, op: ClockOp::Gt, bound: TimeSum::constant(after) };
             Some(QueryFormula::And(vec![at(state), QueryFormula::Clock(past)]))
         });
         let violated = QueryFormula::Or(std::iter::once(at(self.violated())).chain(late).collect());
@@ -249,18 +282,42 @@ impl<'m> ObserverPlan<'m> {
             Some(locations) => QueryFormula::Or(locations.iter().map(|l| at(*l)).collect()),
             None => QueryFormula::Data(Expr::Var(flag)),
         };
+        let at_once = self.monitor.at_start.contains(&MonitorEffect::Trigger);
+        let triggered = if at_once { QueryFormula::Data(Expr::bool(true)) } else { triggered };
         ObserverFormulas { violated: self.fails.then_some(violated), triggered }
     }
 }
 
-/// When a state fails if nothing happens.
-fn deadline(monitor: &Monitor, state: usize) -> Result<Option<Nanos>, String> {
+/// An edge of a monitor with the events that it is for.
+type MonitorRule<'m> = (&'m MonitorEdge, &'m [EventPattern]);
+
+/// What the clock has to read for some rules of a state.
+fn clock_guard(rules: &[MonitorRule<'_>]) -> Result<Option<MonitorClockGuard>, String> {
+    let mut guards = rules.iter().filter_map(|(e, _)| e.clock);
+    let first = guards.next();
+    if guards.any(|guard| Some(guard) != first) {
+        return Err("its monitor compares the clock with several times in one state".to_owned());
+    }
+    Ok(first)
+}
+
+/// When nothing may happen any longer in a state.
+struct StateDeadline {
+    after: Nanos,
+    /// The state as which it goes on; `None`: the requirement is violated.
+    goes_on: Option<u16>,
+}
+
+/// What becomes of a state if nothing happens.
+fn deadline(monitor: &Monitor, state: usize) -> Result<Option<StateDeadline>, String> {
     let Some(after) = monitor.states[state].deadline else { return Ok(None) };
-    let here = |e: &&hrdsl_ir::monitor::MonitorEdge| {
-        usize::from(e.from.0) == state && e.on == MonitorTrigger::Deadline
-    };
+    let here = |e: &&MonitorEdge| usize::from(e.from.0) == state && e.on == MonitorTrigger::Deadline;
     let Some(edge) = monitor.edges.iter().find(here) else { return Ok(None) };
-    if !edge.effects.contains(&MonitorEffect::Fail) {
+    let fails = edge.effects.contains(&MonitorEffect::Fail);
+    // INVARIANT: the state as which it goes on does not look at the clock.
+    let timeless = monitor.states[usize::from(edge.to.0)].deadline.is_none()
+        && monitor.edges.iter().all(|e| e.from != edge.to || e.clock.is_none());
+    if !fails && (edge.effects != [MonitorEffect::Suspect] || !timeless) {
         return Err("a deadline of its monitor passes without a violation".to_owned());
     }
     // INVARIANT: the clock counts from when the state is entered, so that at the entry it is not past the deadline.
@@ -273,5 +330,5 @@ fn deadline(monitor: &Monitor, state: usize) -> Result<Option<Nanos>, String> {
     if entered_late {
         return Err("a deadline of its monitor does not count from the trigger".to_owned());
     }
-    Ok(Some(after))
+    Ok(Some(StateDeadline { after, goes_on: (!fails).then_some(edge.to.0) }))
 }

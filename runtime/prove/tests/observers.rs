@@ -6,8 +6,8 @@ use hrdsl_ir::{
     Actor, ActorId, ArgPattern, Event, EventId, EventPattern, Expr, Nanos, Parameter, Program, Role, Span,
     Type, Value,
     monitor::{
-        Assumption, Monitor, MonitorEdge as Rule, MonitorEffect, MonitorState, MonitorTrigger,
-        RequirementKind, StateId,
+        Assumption, Monitor, MonitorClockGuard, MonitorEdge as Rule, MonitorEffect, MonitorState,
+        MonitorTrigger, RequirementKind, StateId,
     },
     ta::{
         Automaton, AutomatonId, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment, Location,
@@ -128,12 +128,39 @@ fn patterns(dice: &mut Dice) -> Vec<EventPattern> {
     (0..=dice.roll(2)).map(|_| pattern(dice)).collect()
 }
 
+fn clock_guard(dice: &mut Dice) -> MonitorClockGuard {
+    let bound = (1 + dice.roll(6) as i64) * SECOND / 2;
+    if dice.one_in(2) { MonitorClockGuard::Before(bound) } else { MonitorClockGuard::After(bound) }
+}
+
+/// What happens at most of the deadlines.
+fn deadline_edges(dice: &mut Dice, states: &[MonitorState]) -> Vec<Rule> {
+    let count = states.len();
+    let mut edges = Vec::new();
+    for (n, state) in states.iter().enumerate() {
+        if state.deadline.is_some() && !dice.one_in(4) {
+            let to = StateId(dice.roll(count as u64) as u16);
+            let from = StateId(n as u16);
+            edges.push(Rule {
+                from,
+                to,
+                on: MonitorTrigger::Deadline,
+                guard: None,
+                clock: None,
+                effects: vec![if dice.one_in(3) { MonitorEffect::Suspect } else { MonitorEffect::Fail }],
+            });
+        }
+    }
+    edges
+}
+
 fn monitor(dice: &mut Dice) -> Monitor {
     let count = 1 + dice.roll(4) as usize;
     let deadline = |dice: &mut Dice| (dice.one_in(2)).then(|| (1 + dice.roll(4) as i64) * SECOND);
     let states: Vec<MonitorState> = (0..count)
         .map(|n| MonitorState { name: format!("s{n}"), pending: dice.one_in(2), deadline: deadline(dice) })
         .collect();
+    let clocks: Vec<MonitorClockGuard> = (0..count).map(|_| clock_guard(dice)).collect();
     let mut edges = Vec::new();
     for _ in 0..dice.roll(10) {
         let (from, to) = (dice.roll(count as u64) as usize, dice.roll(count as u64) as usize);
@@ -152,21 +179,16 @@ fn monitor(dice: &mut Dice) -> Monitor {
             effects.push(MonitorEffect::Fail);
         }
         let on = MonitorTrigger::Event(patterns(dice));
-        edges.push(Rule { from: StateId(from as u16), to: StateId(to as u16), on, guard: None, effects });
+        edges.push(Rule {
+            from: StateId(from as u16),
+            to: StateId(to as u16),
+            on,
+            guard: None,
+            clock: dice.one_in(4).then(|| clocks[from]),
+            effects,
+        });
     }
-    for (n, state) in states.iter().enumerate() {
-        if state.deadline.is_some() && !dice.one_in(4) {
-            let to = StateId(dice.roll(count as u64) as u16);
-            let from = StateId(n as u16);
-            edges.push(Rule {
-                from,
-                to,
-                on: MonitorTrigger::Deadline,
-                guard: None,
-                effects: vec![MonitorEffect::Fail],
-            });
-        }
-    }
+    edges.extend(deadline_edges(dice, &states));
     Monitor {
         name: "R".into(),
         kind: RequirementKind::Functional,
@@ -175,6 +197,8 @@ fn monitor(dice: &mut Dice) -> Monitor {
         signals: vec![],
         states,
         initial: StateId(0),
+        at_start: if dice.one_in(8) { vec![MonitorEffect::Trigger] } else { Vec::new() },
+        conditions: Vec::new(),
         edges,
         margin: None,
         origin: Span::default(),

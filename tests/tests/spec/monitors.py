@@ -14,8 +14,11 @@ class Monitor:
     def __init__(self, given, number):
         self.it, self.number = given, number
         self.q, self.z, self.f = given["initial"], 0, 0
-        self.o = self.s = self.V = self.margin = None
+        self.o = self.s = self.V = self.w = self.margin = None
         self.n = self.k = self.g = 0
+        self.truths = [None for _ in given.get("conditions", [])]
+        if "trigger" in given.get("at_start", []):
+            self.n, self.o = 1, (0, None)
         self.sigma, self.burst = {}, (None, 0)
         self.d = self.deadline(0)
         self.triggers = any("trigger" in e["effects"] for e in given["edges"])
@@ -33,10 +36,12 @@ class Monitor:
 
     def react(self, cause, t, i):
         for e in self.it["edges"]:
-            if e["from"] == self.q and cause(e["on"]) and (e["guard"] is None or self.value(e["guard"]) is True):
+            fits = self.clock_allows(e.get("clock"), t)
+            if e["from"] == self.q and cause(e["on"]) and fits and (e["guard"] is None or self.value(e["guard"]) is True):
                 break
         else:
             return
+        outside = not self.measures_here()
         moves, effects = e["to"] != self.q, e["effects"]
         for effect in effects:
             if effect == "reset_clock":
@@ -48,14 +53,33 @@ class Monitor:
                     self.o = (t, i)
             elif effect == "discharge":
                 self.k, self.o = self.k + 1, None
+            elif effect == "suspect":
+                self.w = self.violation(t, i)
             elif effect == "fail":
                 self.g += 1
-                self.V = self.V or self.violation(t, i)
+                if self.w and not self.V and i is not None and i not in self.w["counterexample"]:
+                    self.w["counterexample"].append(i)
+                self.V, self.w = self.V or self.w or self.violation(t, i), None
         if moves:
             self.q, self.f = e["to"], t
             self.o = None if "fail" in effects else self.o
         if moves or "reset_clock" in effects:
             self.d = self.deadline(t)
+        if outside and self.measures_samples() and self.measures_here():
+            self.take_margin(t)
+
+    def clock_allows(self, guard, t):
+        if guard is None:
+            return True
+        (kind, bound), = guard.items()
+        return t - self.z < bound if kind == "before" else t - self.z > bound
+
+    def measures_samples(self):
+        return self.it["margin"] is not None and not self.it["margin"]["at"]
+
+    def measures_here(self):
+        within = (self.it["margin"] or {}).get("within", [])
+        return self.it["margin"] is not None and (not within or self.q in within)
 
     def violation(self, t, i):
         o, read = self.o or (t, i), [s for s in self.it["signals"] if s in self.sigma]
@@ -79,12 +103,21 @@ class Monitor:
     def sampled(self):
         if self.s:
             (t, i), self.s = self.s, None
-            if self.it["margin"] and not self.it["margin"]["at"]:
+            for number, condition in enumerate(self.it.get("conditions", [])):
+                self.look(number, condition, t, i)
+            if self.measures_samples() and self.measures_here():
                 self.take_margin(t)
             watches = any(e["on"] == "sample" for e in self.it["edges"]) and not self.triggers
             if watches and self.n == 0 and all(s in self.sigma for s in self.it["signals"]):
                 self.n, self.o = 1, (t, i)
             self.react(lambda on: on == "sample", t, i)
+
+    def look(self, number, condition, t, i):
+        now, before = self.value(condition), self.truths[number]
+        if now in (True, False) and now != before:
+            self.truths[number] = now
+            fits = lambda c: c["condition"] == number and c["truth"] == now and (before is not None or c["first"])
+            self.react(lambda on: isinstance(on, dict) and "becomes" in on and fits(on["becomes"]), t, i)
 
     def step(self, i, t, before, what, value):
         if t > before:
@@ -95,14 +128,16 @@ class Monitor:
                 self.sigma[what["signal"]] = (value, i)
                 self.s = (t, i)
             return
-        is_it = lambda on: on not in ("sample", "deadline") and fits_one(on["event"], what, value)
+        is_event = lambda on: isinstance(on, dict) and "event" in on
+        is_it = lambda on: is_event(on) and fits_one(on["event"], what, value)
         at = self.it["margin"]["at"] if self.it["margin"] else []
         named = lambda patterns: any(p["event"] == what for p in patterns)
-        if named(at) or any(e["on"] not in ("sample", "deadline") and named(e["on"]["event"]) for e in self.it["edges"]):
+        if named(at) or any(is_event(e["on"]) and named(e["on"]["event"]) for e in self.it["edges"]):
             self.sampled()
-        if fits_one(at, what, value):
-            self.take_margin(t)
+        inside = self.measures_here()
         self.react(is_it, t, i)
+        if fits_one(at, what, value) and inside and self.measures_here():
+            self.take_margin(t)
 
     def verdict(self, end):
         self.sampled()

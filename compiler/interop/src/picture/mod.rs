@@ -1,5 +1,6 @@
-//! A network as a picture: each automaton's locations and edges, in DOT (Graphviz) or as a Mermaid state diagram.
+//! A network as a picture: each automaton's locations and edges, in DOT (Graphviz) or as a Mermaid state diagram; monitors in DOT.
 
+mod monitors;
 mod show;
 
 use std::fmt::Write;
@@ -9,6 +10,7 @@ use hrdsl_ir::{
     ta::{Automaton, Edge, LocationKind, Network},
 };
 
+pub use self::monitors::monitors_dot;
 use self::show::AutomatonPrinter;
 
 /// The network in DOT: a cluster for each automaton. Committed locations are marked `C`, urgent ones `U`.

@@ -9,15 +9,20 @@ use super::{
 use crate::Scenario;
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
-    for (requirement, trigger) in scenario.requirements.iter().zip(&facts.triggers) {
-        let Some(condition) = requirement.pattern.condition().filter(|_| !facts.in_vain(trigger)) else {
-            continue;
-        };
-        let harmless = requirement.pattern.harmless();
-        if truth(scenario, condition, 0) != Some(harmless) {
+    for (i, requirement) in scenario.requirements.iter().enumerate() {
+        if facts.untested(i).is_some() {
             continue;
         }
-        let why = if harmless { "the condition is always true" } else { "the condition is never true" };
+        let sentence = &requirement.pattern;
+        let harmless = |condition, is: &dyn Fn(bool) -> bool| {
+            truth(scenario, condition, 0).filter(|truth| is(*truth)).map(|truth| (condition, truth))
+        };
+        let in_pattern =
+            sentence.pattern.condition().and_then(|c| harmless(c, &|truth| sentence.is_harmless(truth)));
+        // A part of a run that never comes.
+        let in_scope = || sentence.scope.condition().and_then(|c| harmless(c, &|truth| !truth));
+        let Some((condition, truth)) = in_pattern.or_else(in_scope) else { continue };
+        let why = if truth { "the condition is always true" } else { "the condition is never true" };
         let why = cap(scenario, condition).map_or(why.to_owned(), |cap| format!("{why}: {cap}"));
         let message = format!("the requirement `{}` cannot fail", requirement.name);
         let issue = Diagnostic::warning(DiagnosticCode::CANNOT_FAIL, requirement.text, message);

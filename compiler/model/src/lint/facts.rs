@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     ArgPattern, EventId, EventPattern, ReceiveArg, Role, Scenario, TestStep, TriggerOn, TypedExpr,
-    TypedMethod, TypedStimulusStep, TypedSync, TypedTerm, Value,
+    TypedMethod, TypedOccurrence, TypedStimulusStep, TypedSync, TypedTerm, Value,
 };
 
 /// So many different combinations of arguments are told apart; a maker beyond them counts as making any.
@@ -69,8 +69,8 @@ struct EventFacts {
 pub(crate) struct ScenarioFacts<'a> {
     events: Vec<EventFacts>,
     pub waits: Vec<EventWait>,
-    /// The triggers of requirements, by requirement; empty for those without.
-    pub triggers: Vec<Vec<WantedFact>>,
+    /// By requirement the lists of events without any of each of which it says nothing.
+    needs: Vec<Vec<Vec<WantedFact>>>,
     /// There are suites or tests: what they do not use is not used.
     pub has_tests: bool,
     /// By automaton: the values of its variables.
@@ -88,7 +88,7 @@ impl<'a> ScenarioFacts<'a> {
         let mut facts = Self {
             events,
             waits: Vec::new(),
-            triggers: Vec::new(),
+            needs: Vec::new(),
             has_tests,
             flows: flows(scenario),
             agents: indices(scenario),
@@ -127,6 +127,12 @@ impl<'a> ScenarioFacts<'a> {
     /// Whether nothing can ever make any of these.
     pub fn in_vain(&self, any_of: &[WantedFact]) -> bool {
         !any_of.is_empty() && !any_of.iter().any(|w| self.can_happen(w))
+    }
+
+    /// The events for want of which nothing can ever put a requirement to the test.
+    pub fn untested(&self, requirement: usize) -> Option<&[WantedFact]> {
+        let needs = self.needs.get(requirement)?;
+        needs.iter().find(|any_of| self.in_vain(any_of)).map(Vec::as_slice)
     }
 
     fn can_happen(&self, wanted: &WantedFact) -> bool {
@@ -251,8 +257,13 @@ impl<'a> ScenarioFacts<'a> {
 
     fn judgement(&mut self, scenario: &Scenario) {
         for requirement in &scenario.requirements {
-            requirement.pattern.events().for_each(|p| self.reads(p.event));
-            self.triggers.push(requirement.pattern.triggers().iter().map(WantedFact::of).collect());
+            let named = requirement.pattern.events().filter_map(TypedOccurrence::as_event);
+            named.for_each(|p| self.reads(p.event));
+            // What the world does is not known.
+            let wanted = |list: &&[TypedOccurrence]| -> Option<Vec<WantedFact>> {
+                list.iter().map(|o| o.as_event().map(WantedFact::of)).collect()
+            };
+            self.needs.push(requirement.pattern.needs().iter().filter_map(wanted).collect());
         }
         let counted = scenario.points.iter().flat_map(|p| &p.count);
         for pattern in scenario.assumptions.iter().flat_map(|a| &a.events).chain(counted) {
@@ -293,7 +304,7 @@ impl<'a> ScenarioFacts<'a> {
 
     /// Marks the events whose absence is said at a wait or a requirement; that of a stimulus is said at itself.
     fn tell(&mut self) {
-        let all = self.waits.iter().map(|w| &w.any_of).chain(&self.triggers);
+        let all = self.waits.iter().map(|w| &w.any_of).chain(self.needs.iter().flatten());
         let told: Vec<EventId> =
             all.filter(|any_of| self.in_vain(any_of)).flatten().map(|w| w.event).collect();
         for event in told {

@@ -7,10 +7,8 @@ use super::facts::ScenarioFacts;
 use crate::Scenario;
 
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
-    for (requirement, trigger) in scenario.requirements.iter().zip(&facts.triggers) {
-        if !facts.in_vain(trigger) {
-            continue;
-        }
+    for (i, requirement) in scenario.requirements.iter().enumerate() {
+        let Some(trigger) = facts.untested(i) else { continue };
         let event = trigger.first().and_then(|w| scenario.events.get(usize::from(w.event.0)));
         let name = known_name("event", event.map(|e| e.name.as_str()));
         let made = trigger.iter().any(|w| facts.made(w.event));

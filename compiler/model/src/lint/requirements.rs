@@ -1,13 +1,14 @@
 //! HR0603: two requirements that no run can meet both.
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
+use hrdsl_syntax::RequirementPattern;
 
 use super::{
     facts::{ScenarioFacts, WantedFact},
     plan_terms::same,
 };
 use crate::{
-    ArgPattern, BinaryOp, EventPattern, Scenario, TypedExpr, TypedExprKind, TypedPattern, UnaryOp,
+    ArgPattern, BinaryOp, Scenario, TypedExpr, TypedExprKind, TypedOccurrence, TypedPattern, UnaryOp,
     expr::ComparisonOp,
 };
 
@@ -25,7 +26,7 @@ pub(crate) fn contradicting<'a>(
     }
     for (i, later) in all.iter().enumerate() {
         // What nothing triggers is said already.
-        let vain = |i: usize| facts.triggers.get(i).is_some_and(|t| facts.in_vain(t));
+        let vain = |i: usize| facts.untested(i).is_some();
         let clash = all[..i].iter().enumerate().find_map(|(j, earlier)| {
             let clash = clash(facts, &earlier.pattern, &later.pattern)?;
             (!vain(i) && !vain(j)).then_some((earlier, clash))
@@ -48,6 +49,8 @@ enum RequirementClash {
     WantedFirst,
     ForbiddenFirst,
     Conditions,
+    /// The answers of one come too early for the other.
+    Times,
 }
 
 impl RequirementClash {
@@ -57,38 +60,79 @@ impl RequirementClash {
         match self {
             RequirementClash::WantedFirst => (forbids, wants),
             RequirementClash::ForbiddenFirst => (wants, forbids),
+            RequirementClash::Times => ("no answer has the time of both", "this answer"),
             RequirementClash::Conditions => ("never true together with the other", "this condition"),
         }
     }
 }
 
 fn clash(facts: &ScenarioFacts<'_>, first: &TypedPattern, second: &TypedPattern) -> Option<RequirementClash> {
-    if let (Some(a), Some(b)) = (first.always(), second.always()) {
-        return exclude(a, b).then_some(RequirementClash::Conditions);
+    let (once, twice) = (first.sometime(), second.sometime());
+    let pairs = [(first.always(), second.always()), (first.always(), twice), (once, second.always())];
+    if pairs.iter().any(|(a, b)| a.zip(*b).is_some_and(|(a, b)| exclude(a, b))) {
+        return Some(RequirementClash::Conditions);
     }
-    if forbids(facts, first, second) {
+    if too_early(first, second) || too_early(second, first) {
+        return Some(RequirementClash::Times);
+    }
+    if too_often(first, second) || forbids(facts, first, second) {
         return Some(RequirementClash::WantedFirst);
     }
-    forbids(facts, second, first).then_some(RequirementClash::ForbiddenFirst)
+    let forbidden_first = too_often(second, first) || forbids(facts, second, first);
+    forbidden_first.then_some(RequirementClash::ForbiddenFirst)
+}
+
+/// Whether what the second says of its scope is said of that of the first, too.
+fn says_of_the_same(wants: &TypedPattern, bans: &TypedPattern) -> bool {
+    bans.scope.is_whole() || (bans.scope == wants.scope && wants.scope.condition().is_none())
+}
+
+/// Whether `wants` has events happen more often than `caps` lets them, in whatever run there is the scope of the first.
+fn too_often(wants: &TypedPattern, caps: &TypedPattern) -> bool {
+    let (Some(least), Some(most)) = (wants.at_least(), caps.at_most()) else { return false };
+    says_of_the_same(wants, caps)
+        && covers(most.events, least.events)
+        && least.count.map_or(1, |n| *n) > most.count.map_or(0, |n| *n)
+}
+
+/// Whether each answer that `late` has time for is too early for `early`, after the first trigger of both.
+fn too_early(early: &TypedPattern, late: &TypedPattern) -> bool {
+    let (
+        RequirementPattern::Causes { trigger, response, not_before: Some(not_before), .. },
+        RequirementPattern::Causes { trigger: other, response: answer, within: Some(within), .. },
+    ) = (&early.pattern, &late.pattern)
+    else {
+        return false;
+    };
+    let whole = early.scope.is_whole() && late.scope.is_whole();
+    whole && within < not_before && trigger == other && covers(response, answer)
 }
 
 /// Whether every answer that `wants` asks for is forbidden by `ban` from its trigger on, in whatever run triggers both.
 fn forbids(facts: &ScenarioFacts<'_>, wants: &TypedPattern, ban: &TypedPattern) -> bool {
     let (Some(wanted), Some(banned)) = (wants.demands(), ban.bans()) else { return false };
     // Whatever lifts the ban may come before the answer, unless nobody makes it or it is forbidden itself.
-    let lifts = |p: &&EventPattern| {
-        !facts.in_vain(&[WantedFact::of(p)]) && !covers(banned.events, std::slice::from_ref(p))
+    let lifts = |p: &&TypedOccurrence| {
+        let in_vain = p.as_event().is_some_and(|p| facts.in_vain(&[WantedFact::of(p)]));
+        !in_vain && !covers(banned.events, std::slice::from_ref(p))
     };
     let lifted = banned.until.iter().any(|p| lifts(&p));
     let both_begin =
         banned.from.is_none_or(|from| covers(from, wanted.trigger) || covers(wanted.trigger, from));
-    !lifted && covers(banned.events, wanted.response) && both_begin
+    says_of_the_same(wants, ban) && !lifted && covers(banned.events, wanted.response) && both_begin
 }
 
 /// Whether each event that fits one of `some` fits one of `all`.
-fn covers(all: &[EventPattern], some: &[EventPattern]) -> bool {
-    let within = |p: &EventPattern, q: &EventPattern| {
-        p.event == q.event && p.args.iter().zip(&q.args).all(|(p, q)| *p == ArgPattern::Any || p == q)
+fn covers(all: &[TypedOccurrence], some: &[TypedOccurrence]) -> bool {
+    let within = |p: &TypedOccurrence, q: &TypedOccurrence| match (p, q) {
+        (TypedOccurrence::Event(p), TypedOccurrence::Event(q)) => {
+            p.event == q.event && p.args.iter().zip(&q.args).all(|(p, q)| *p == ArgPattern::Any || p == q)
+        }
+        (
+            TypedOccurrence::Edge { rising, condition },
+            TypedOccurrence::Edge { rising: other, condition: of },
+        ) => rising == other && same(condition, of),
+        (TypedOccurrence::Event(_) | TypedOccurrence::Edge { .. }, _) => false,
     };
     some.iter().all(|q| all.iter().any(|p| within(p, q)))
 }

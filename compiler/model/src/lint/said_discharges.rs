@@ -1,11 +1,11 @@
 //! HR0604: a requirement that the code's own word is enough to meet.
 
 use hrdsl_source::{Diagnostic, DiagnosticCode};
-use hrdsl_syntax::RequirementPattern;
+use hrdsl_syntax::{CountBound, RequirementPattern, RequirementScope};
 
 use super::facts::ScenarioFacts;
 use crate::{
-    EventPattern, Provenance, Scenario, TypedPattern,
+    EventPattern, Provenance, Scenario, TypedOccurrence, TypedPattern,
     provenance::{is_the_systems, of_pattern},
     world::TypedWorld,
 };
@@ -20,8 +20,8 @@ struct WeakEvidence<'a> {
 pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, issues: &mut Vec<Diagnostic>) {
     // Without devices there is nothing that the code does but talk.
     let Some(instead) = scenario.world.as_ref().and_then(observations) else { return };
-    for (requirement, trigger) in scenario.requirements.iter().zip(&facts.triggers) {
-        if facts.in_vain(trigger) {
+    for (i, requirement) in scenario.requirements.iter().enumerate() {
+        if facts.untested(i).is_some() {
             continue;
         }
         let Some(weak) = weak(scenario, &requirement.pattern) else { continue };
@@ -36,13 +36,39 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, is
 
 /// What is weakest in a requirement: what it asks for, if the code's word or command is enough for it; what it forbids, if nothing
 /// but the code's word would tell. Where each event that it names is a trigger, who keeps silent gets a vacuous verdict, and no pass.
-fn weak<'a>(scenario: &Scenario, pattern: &'a TypedPattern) -> Option<WeakEvidence<'a>> {
-    match pattern {
+fn weak<'a>(scenario: &Scenario, sentence: &'a TypedPattern) -> Option<WeakEvidence<'a>> {
+    in_pattern(scenario, sentence).or_else(|| match &sentence.scope {
+        RequirementScope::AfterUntil(_, until) => asked(scenario, "has a scope that is closed by", until),
+        // What does not begin, or is to end and does not, is not passed.
+        RequirementScope::Whole
+        | RequirementScope::Before(_)
+        | RequirementScope::After(_)
+        | RequirementScope::Between(..)
+        | RequirementScope::While(_) => None,
+    })
+}
+
+fn in_pattern<'a>(scenario: &Scenario, sentence: &'a TypedPattern) -> Option<WeakEvidence<'a>> {
+    match &sentence.pattern {
         RequirementPattern::Causes { response, .. } => asked(scenario, "is answered by", response),
         RequirementPattern::Forbids { forbidden, until, .. } => forbidden_events(scenario, forbidden)
             .or_else(|| asked(scenario, "has a ban that is lifted by", until)),
         RequirementPattern::Precedes { first, .. } => asked(scenario, "allows what comes after", first),
-        RequirementPattern::NeverWhile { .. } | RequirementPattern::Globally(_) => None,
+        RequirementPattern::Eventually { events, .. } => asked(scenario, "waits for", events),
+        RequirementPattern::Counts { events, bound: CountBound::AtLeast | CountBound::Exactly, .. } => {
+            asked(scenario, "counts", events)
+        }
+        // Its scope alone triggers it: who keeps silent passes.
+        RequirementPattern::NeverWhile { events, condition: None }
+        | RequirementPattern::Counts { events, bound: CountBound::AtMost, .. }
+            if !sentence.scope.is_whole() =>
+        {
+            forbidden_events(scenario, events)
+        }
+        RequirementPattern::NeverWhile { .. }
+        | RequirementPattern::Counts { bound: CountBound::AtMost, .. }
+        | RequirementPattern::Globally(_)
+        | RequirementPattern::Lasts { .. } => None,
     }
 }
 
@@ -50,17 +76,21 @@ fn weak<'a>(scenario: &Scenario, pattern: &'a TypedPattern) -> Option<WeakEviden
 fn asked<'a>(
     scenario: &Scenario,
     role: &'static str,
-    patterns: &'a [EventPattern],
+    asked: &'a [TypedOccurrence],
 ) -> Option<WeakEvidence<'a>> {
-    let events: Vec<_> = patterns.iter().map(|p| (p, evidence(scenario, p))).collect();
+    let patterns = asked.iter().filter_map(TypedOccurrence::as_event);
+    let events: Vec<_> = patterns.map(|p| (p, evidence(scenario, p))).collect();
     let events: Vec<_> = events.into_iter().filter(|(_, p)| *p < Provenance::Played).collect();
     (!events.is_empty()).then_some(WeakEvidence { role, events })
 }
 
 /// What is forbidden may be commanded: without the command the device does nothing. Only silence must not be enough.
-fn forbidden_events<'a>(scenario: &Scenario, patterns: &'a [EventPattern]) -> Option<WeakEvidence<'a>> {
-    let events: Vec<_> = patterns.iter().map(|p| (p, of_pattern(scenario, p))).collect();
-    let silent = !events.is_empty() && events.iter().all(|(_, p)| *p == Provenance::Said);
+fn forbidden_events<'a>(scenario: &Scenario, forbidden: &'a [TypedOccurrence]) -> Option<WeakEvidence<'a>> {
+    let patterns = forbidden.iter().filter_map(TypedOccurrence::as_event);
+    let events: Vec<_> = patterns.map(|p| (p, of_pattern(scenario, p))).collect();
+    let silent = !events.is_empty()
+        && events.len() == forbidden.len()
+        && events.iter().all(|(_, p)| *p == Provenance::Said);
     silent.then_some(WeakEvidence { role: "looks for nothing but", events })
 }
 

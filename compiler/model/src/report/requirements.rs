@@ -7,3 +7,17 @@ pub(crate) fn says_nothing(span: Span) -> Diagnostic {
     Diagnostic::error(DiagnosticCode::BAD_PATTERN, span, "this condition does not depend on the world")
         .help("compare something measured, such as `distance(a, b) < 5 cm`")
 }
+
+/// HR0207
+pub(crate) fn no_time(early: f64, late: f64, span: Span) -> Diagnostic {
+    let message = format!("no answer comes not before {early} s and within {late} s");
+    Diagnostic::error(DiagnosticCode::EMPTY_RANGE, span, message)
+        .help("write the shorter time after `not before`")
+}
+
+/// HR0601
+pub(crate) fn two_clocks(span: Span) -> Diagnostic {
+    let message = "`not before` counts from the first of the events that come before, `within` from the last";
+    Diagnostic::error(DiagnosticCode::BAD_PATTERN, span, message)
+        .help("make two requirements of it, one with each bound")
+}

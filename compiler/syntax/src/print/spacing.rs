@@ -103,7 +103,8 @@ fn would_join(toks: &[PrintToken<'_>], before: usize) -> bool {
     let (p, n) = (&toks[before], &toks[before + 1]);
     match p.kind {
         TokenKind::Int | TokenKind::Float => {
-            let counts = before > 0 && toks[before - 1].kind == TokenKind::Most;
+            let counts = before > 0
+                && matches!(toks[before - 1].kind, TokenKind::Most | TokenKind::Least | TokenKind::Exactly);
             matches!(n.kind, TokenKind::Ident | TokenKind::Percent) && !counts
         }
         TokenKind::Quantity => {

@@ -7,7 +7,7 @@ use hrdsl_ir::{
     world::SignalId,
 };
 use hrdsl_monitor::{MonitorHappening, MonitorOutcome, MonitorRunner, MonitorVerdict};
-use hrdsl_trace::{TraceObserver, print};
+use hrdsl_trace::{TraceObserver, TraceStepKind, print};
 
 use super::{
     measure,
@@ -38,7 +38,7 @@ fn requirement(
     history: &[MonitorHappening],
 ) -> ViewRequirement {
     let triggers = history.iter().filter(|h| h.effects.contains(&MonitorEffect::Trigger));
-    let told = told(run, monitor, history);
+    let told = told(run, history);
     let unit = monitor.margin.as_ref().map(|margin| margin.unit.symbol().to_owned());
     let looked_at = verdict.first_failure.as_ref().map(|failure| failure.time);
     let looked_at = looked_at.or(verdict.worst_margin.map(|(_, time)| time)).unwrap_or_default();
@@ -83,14 +83,14 @@ struct ToldRequirement {
 /// What is pending, and the step that made it.
 type OpenObligation = Option<(ViewObligation, Option<usize>)>;
 
-fn told(run: &ReplayedRun<'_>, monitor: &Monitor, history: &[MonitorHappening]) -> ToldRequirement {
+fn told(run: &ReplayedRun<'_>, history: &[MonitorHappening]) -> ToldRequirement {
     let mut told = ToldRequirement::default();
     let mut open: OpenObligation = None;
     for happening in history {
         let has = |effect| happening.effects.contains(&effect);
         let now = tick(happening.time);
         if has(MonitorEffect::Fail) {
-            told.violations.push(violation(run, monitor, happening, &open));
+            told.violations.push(violation(run, happening, &open));
         }
         let outcome = if has(MonitorEffect::Fail) {
             Some(ObligationOutcome::Violated)
@@ -119,20 +119,13 @@ fn told(run: &ReplayedRun<'_>, monitor: &Monitor, history: &[MonitorHappening]) 
     told
 }
 
-fn violation(
-    run: &ReplayedRun<'_>,
-    monitor: &Monitor,
-    happening: &MonitorHappening,
-    open: &OpenObligation,
-) -> ViewViolation {
+fn violation(run: &ReplayedRun<'_>, happening: &MonitorHappening, open: &OpenObligation) -> ViewViolation {
     let values: Vec<String> =
         happening.values.iter().map(|(signal, value)| signal_text(run, *signal, *value)).collect();
     let values = values.join(", ");
     let event = happening.step.and_then(|step| step_text(run, step));
-    let is_event = monitor.edges.iter().any(|edge| {
-        edge.effects.contains(&MonitorEffect::Fail)
-            && matches!(edge.on, hrdsl_ir::monitor::MonitorTrigger::Event(_))
-    });
+    let step = happening.step.and_then(|step| run.trace.steps.get(step));
+    let is_event = step.is_some_and(|step| matches!(step.what, TraceStepKind::Event { .. }));
     let text = match (event.filter(|_| is_event), open) {
         (Some(event), _) if values.is_empty() => format!("`{event}` happened."),
         (Some(event), _) => format!("`{event}` happened while {values}."),

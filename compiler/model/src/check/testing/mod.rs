@@ -3,6 +3,7 @@
 mod coverage;
 pub(super) mod phase;
 mod requirement;
+mod sentence;
 mod suite;
 mod suite_goals;
 mod system;

@@ -11,8 +11,8 @@ use crate::check::{
     template::{CheckerPhase, template},
 };
 use crate::{
-    EventPattern, InferredType, RequirementKind, TypedAssumption, TypedExpr, TypedExprKind, TypedPattern,
-    TypedRequirement, VariableRef, noun::Noun, report::requirements::says_nothing,
+    InferredType, RequirementKind, TypedAssumption, TypedExpr, TypedExprKind, TypedPattern, TypedRequirement,
+    VariableRef, noun::Noun, report::requirements::says_nothing,
 };
 
 impl TestingPhase<'_, '_> {
@@ -52,7 +52,7 @@ impl TestingPhase<'_, '_> {
             Some(0) => RequirementKind::Safety,
             Some(_) | None => RequirementKind::Functional,
         };
-        let pattern = self.requirement_pattern(&require.pattern)?;
+        let pattern = self.sentence(require.pattern.kind.as_ref()?);
         let title = require.title.as_ref().map_or_else(String::new, |t| t.text.clone());
         Some((kind, title, pattern))
     }
@@ -72,21 +72,8 @@ impl TestingPhase<'_, '_> {
         }
     }
 
-    fn requirement_pattern(&mut self, pattern: &ast::PatternSyntax) -> Option<TypedPattern> {
-        let pattern = pattern.kind.as_ref()?;
-        Some(
-            pattern.map(self, Self::pattern_list, Self::condition, |c, e| {
-                c.time(e, "the time to respond", true)
-            }),
-        )
-    }
-
-    fn pattern_list(&mut self, events: &[ast::CallSyntax]) -> Vec<EventPattern> {
-        self.patterns(events)
-    }
-
     /// A boolean that depends on the world.
-    fn condition(&mut self, e: &ast::ExprSyntax) -> TypedExpr {
+    pub(super) fn condition(&mut self, e: &ast::ExprSyntax) -> TypedExpr {
         let e = self.expr_of(e, InferredType::Bool, &mut ExprEnv::measured(""));
         let mut reads = false;
         e.each(&mut |part| {

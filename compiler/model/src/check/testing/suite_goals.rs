@@ -21,7 +21,7 @@ impl TestingPhase<'_, '_> {
             self.refer(name, self.requirements.span_of(&name.text));
             // One with a diagnostic is in no list.
             let Some(at) = self.s.requirements.iter().position(|r| r.name == name.text) else { continue };
-            if self.s.requirements[at].pattern.condition().is_some() {
+            if self.s.requirements[at].reads_the_world() {
                 let message =
                     format!("`{}` reads signals of the world, which a network does not have", name.text);
                 self.report(bad_suite(name.span, message, "remove it: `hrdsl sim` judges it in every run"));

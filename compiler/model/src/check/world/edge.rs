@@ -4,7 +4,11 @@ use hrdsl_ir::{value::nanos, world::RuleTrigger};
 use hrdsl_source::nearest;
 use hrdsl_syntax::ast;
 
-use crate::check::{checker::EVENTS, template::CheckerPhase, world::phase::WorldPhase};
+use crate::check::{
+    checker::{Checker, EVENTS},
+    template::CheckerPhase,
+    world::phase::WorldPhase,
+};
 use crate::{
     InferredType, TypedExpr, TypedExprKind,
     check::state::scope::ExprEnv,
@@ -12,18 +16,20 @@ use crate::{
     report::{types, world::bad_world},
 };
 
-const RISING: &str = "rising";
+pub(in crate::check) const RISING: &str = "rising";
 const FALLING: &str = "falling";
 
-impl WorldPhase<'_, '_> {
-    /// Whether a rule waits for a condition. A scenario that has an event of this name means the event.
-    pub(super) fn is_edge(&self, call: &ast::CallSyntax) -> bool {
+impl Checker<'_> {
+    /// Whether a condition's edge is meant. A scenario that has an event of this name means the event.
+    pub(in crate::check) fn is_edge(&self, call: &ast::CallSyntax) -> bool {
         let name = call.name.text.as_str();
         (name == RISING || name == FALLING)
             && self.events.table.get(name).is_none()
             && self.given(name).is_none()
     }
+}
 
+impl WorldPhase<'_, '_> {
     /// Whether a word that names nothing, and stands before a condition, was meant for one of these; says so.
     pub(super) fn is_misspelt_edge(&mut self, call: &ast::CallSyntax) -> bool {
         let name = &call.name;

@@ -2,7 +2,7 @@
 
 mod arms;
 pub(in crate::check) mod device;
-mod edge;
+pub(in crate::check) mod edge;
 mod extent;
 mod figure;
 mod locate;

@@ -201,8 +201,8 @@ impl TokenMarker<'_> {
         self.set(require.pattern.span.start, |m| m.pattern = true);
         let Some(pattern) = &require.pattern.kind else { return };
         pattern.events().for_each(|e| self.call(e));
-        self.maybe(pattern.condition());
-        self.maybe(pattern.time());
+        let parts = pattern.conditions().chain(pattern.times()).chain(pattern.count());
+        parts.for_each(|e| self.expr(e));
     }
 
     fn cover(&mut self, cover: &CoverSyntax) {
