@@ -116,7 +116,7 @@ fn chosen(
     let by_time = !matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. });
     if settings.witness == WitnessKind::Fastest
         && by_time
-        && let Some(run) = hrdsl_ta::fastest(model, goal, settings.budget, settings.timing())?
+        && let Some(run) = hrdsl_ta::fastest(model, goal, found, settings.budget, settings.timing())?
     {
         return Ok(Some(run));
     }

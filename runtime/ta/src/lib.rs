@@ -44,10 +44,11 @@ mod search;
 mod witness;
 mod zone;
 
-pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, SHORTEST, answer, answers};
+pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, answer, answers};
+pub use decide::deadlock::SHORTEST;
 pub use decide::explore::{check, explore};
 pub use decide::extremum::{ExtremumLimit, ExtremumValue, MeasureExtremum, RAISES};
-pub use decide::fastest::{fastest, shortest};
+pub use decide::fastest::fastest;
 pub use network::code::SyncMedium;
 pub use network::error::{EdgeName, ModelError};
 pub use network::model::{CompiledNetwork, ObservationOptions, slot_names};

@@ -363,9 +363,18 @@ fn fastest_is_finite_where_a_goal_cannot_be_reached() {
         settled: false,
     };
     let model = model(&p);
+    // As if a run were known that takes long.
+    let known = hrdsl_ta::WitnessRun {
+        network: String::new(),
+        ticks: 1,
+        steps: Vec::new(),
+        end: 1000 * SECOND,
+        ending: RunEnding::Reached,
+    };
     let run = hrdsl_ta::fastest(
         &model,
         &goal,
+        &known,
         hrdsl_ta::SearchBudget::default(),
         hrdsl_ta::ScheduleOptions::default(),
     );

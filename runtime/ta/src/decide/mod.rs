@@ -2,10 +2,11 @@
 
 pub(crate) mod answer;
 mod cells;
+pub(crate) mod deadlock;
 pub(crate) mod explore;
 pub(crate) mod extremum;
 pub(crate) mod fastest;
 #[cfg(test)]
 mod interpreter_tests;
 mod liveness;
-mod plain;
+mod places;

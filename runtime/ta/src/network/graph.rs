@@ -1,7 +1,10 @@
-//! The plain zone graph of a network: what the searches for liveness, deadlocks, bounds and fastest witnesses walk on.
+//! The plain zone graph of a network: what the search for liveness walks on, and what formulas are evaluated in.
 //!
 //! A node is a discrete state and a zone, after time has passed if it may. Unlike the search for goals, which may keep of a
-//! zone what can do most, a walk for infinite runs must keep apart what can be told apart: see [`ZoneDetail`].
+//! zone what can do most, a walk for infinite runs must keep apart what can be told apart: zones are extrapolated by ExtraM+, which is
+//! a bisimulation.
+
+use std::ops::ControlFlow;
 
 use hrdsl_ir::{
     Nanos, Value,
@@ -24,7 +27,7 @@ use crate::{
         constraint::{DifferenceConstraint, keep},
         dbm::{Dbm, DbmBound},
         diagonals::split,
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction, KEEP, MaximalConstants, NONE, extra},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, MaximalConstants, NONE, extra},
         federation::{Federation, past},
     },
 };
@@ -32,26 +35,14 @@ use crate::{
 /// A state, what staying there means, and the clocks on entering it.
 pub(crate) type SuccessorState<'a> = (&'a [i64], DelayCondition, Dbm);
 
-/// What a walk keeps of zones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ZoneDetail {
-    /// What is needed to say what can be reached: ExtraLU+.
-    Reach,
-    /// What tells valuations apart: ExtraM+, which is a bisimulation.
-    Tell,
-}
-
 /// The zone graph of a network, with what formulas tell apart.
 pub(crate) struct ZoneGraph<'m, 'p> {
     pub(crate) model: &'m CompiledNetwork<'p>,
-    detail: ZoneDetail,
-    /// Bounds that formulas add everywhere.
-    raised: MaximalConstants,
+    /// The greatest constants that formulas add everywhere.
+    raised: Vec<i64>,
     diagonals: Vec<DifferenceConstraint>,
     /// With comparisons of clocks: the greatest constant of each clock.
     greatest: Vec<i64>,
-    /// Clocks after the network's that only run.
-    spare: usize,
 }
 
 impl<'m, 'p> ZoneGraph<'m, 'p> {
@@ -59,21 +50,14 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     /// If a comparison in a formula has no bound that is known beforehand.
     pub(crate) fn new(
         model: &'m CompiledNetwork<'p>,
-        detail: ZoneDetail,
         formulas: &[&StateFormula],
-        spare: usize,
     ) -> Result<Self, ModelError> {
         let mut graph = Self {
             model,
-            detail,
-            raised: MaximalConstants::none(model.dim + spare),
+            raised: vec![NONE; model.dim],
             diagonals: model.extrapolation.differences(),
             greatest: Vec::new(),
-            spare,
         };
-        for clock in model.dim..model.dim + spare {
-            (graph.raised.lower[clock], graph.raised.upper[clock]) = (NONE, KEEP);
-        }
         let mut fault = None;
         for formula in formulas {
             formula.each_clock(&mut |c| {
@@ -88,9 +72,6 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
                     graph.note(c, lo, hi);
                 }
             });
-            if formula.asks_deadlock() {
-                graph.detail = ZoneDetail::Tell;
-            }
         }
         if let Some(e) = fault {
             return Err(e);
@@ -102,9 +83,10 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     fn note(&mut self, c: &hrdsl_ir::ta::ClockConstraint, lo: i64, hi: i64) {
         let most = lo.abs().max(hi.abs());
         let clock = |x: hrdsl_ir::ta::ClockId| usize::from(x.0) + 1;
-        self.raised.note(clock(c.clock), most);
+        let mut note = |x: usize| self.raised[x] = self.raised[x].max(most);
+        note(clock(c.clock));
         let Some(minus) = c.minus else { return };
-        self.raised.note(clock(minus), most);
+        note(clock(minus));
         for bound in lo..=hi {
             for d in as_bounds(c, bound) {
                 if !self.diagonals.contains(&d) && !self.diagonals.contains(&d.negated()) {
@@ -116,26 +98,12 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
 
     fn greatest(&self) -> Vec<i64> {
         let mut all = self.model.extrapolation.greatest(self.model.dim);
-        all.resize(self.dim(), KEEP);
-        for (g, l) in all.iter_mut().zip(&self.raised.lower).take(self.model.dim) {
-            *g = (*g).max(*l).max(0);
-        }
+        all.iter_mut().zip(&self.raised).for_each(|(most, raised)| *most = (*most).max(*raised).max(0));
         all
     }
 
-    /// A clock's bounds up to this many units are kept.
-    pub(crate) fn keep_up_to(&mut self, clock: usize, most: i64) {
-        self.raised.note(clock, most);
-        self.greatest = self.greatest();
-    }
-
-    /// The greatest constant that a clock is compared with anywhere.
-    pub(crate) fn most(&self, clock: usize) -> i64 {
-        self.greatest[clock]
-    }
-
     pub(crate) fn dim(&self) -> usize {
-        self.model.dim + self.spare
+        self.model.dim
     }
 
     pub(crate) fn initial(&self) -> Vec<i64> {
@@ -152,6 +120,12 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     /// If an invariant has no value.
     pub(crate) fn stay(&self, state: &[i64]) -> Result<Option<DelayCondition>, ModelError> {
         self.model.stay(state)
+    }
+
+    fn invariant(&self, state: &[i64]) -> Result<Option<Vec<DifferenceConstraint>>, ModelError> {
+        let mut all = Vec::new();
+        let holds = self.model.invariant(&mut state.to_vec(), &mut Vec::new(), &mut all)?;
+        Ok(holds.then_some(all))
     }
 
     /// The clocks at the start, before time passes.
@@ -243,28 +217,14 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
 
     /// Widens a zone to one of finitely many, in one or several pieces.
     pub(crate) fn widen(&self, state: &[i64], zone: Dbm, out: &mut dyn FnMut(Dbm)) {
-        let mut zone = zone;
-        // A clock that only runs is kept from below: who comes later can do no more.
-        for clock in self.model.dim..self.dim() {
-            for j in (0..self.dim()).filter(|&j| j != clock) {
-                zone.put(clock, j, DbmBound::INFINITY);
-            }
-        }
         if !self.diagonals.is_empty() {
             return split(&zone, &self.diagonals, &self.greatest, out);
         }
-        let mut bounds = MaximalConstants::none(self.dim());
-        self.model.bounds(state, &mut bounds);
-        bounds.raise(&self.raised);
-        if self.detail == ZoneDetail::Tell {
-            let spare: Vec<(i64, i64)> =
-                (self.model.dim..self.dim()).map(|x| (bounds.lower[x], bounds.upper[x])).collect();
-            bounds.level();
-            for (x, (l, u)) in (self.model.dim..).zip(spare) {
-                (bounds.lower[x], bounds.upper[x]) = (l, u);
-            }
-        }
-        extra(&mut zone, &bounds);
+        let mut zone = zone;
+        let mut most = self.model.most_compared(state);
+        most.iter_mut().zip(&self.raised).for_each(|(most, raised)| *most = (*most).max(*raised));
+        // The same both ways: a bisimulation.
+        extra(&mut zone, &MaximalConstants { lower: most.clone(), upper: most });
         out(zone);
     }
 
@@ -287,7 +247,15 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     /// If an invariant has no value.
     pub(crate) fn deadlocked(&self, state: &[i64], zone: &Dbm) -> Result<Federation, ModelError> {
         let Some(stay) = self.stay(state)? else { return Ok(Federation::empty()) };
-        Ok(self.deadlocked_by(&self.actions(state), &stay, zone))
+        let mut left = Federation::from_zone(zone.clone());
+        // Of most states the first few transitions leave nothing.
+        self.model.each_action(state, &mut |action| {
+            if let Some(from) = self.leaves(&action, &stay) {
+                left = left.minus(&from);
+            }
+            if left.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        Ok(left)
     }
 
     /// As [`deadlocked`](Self::deadlocked), with what is known of the state.
@@ -316,9 +284,9 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     fn leaves(&self, action: &EnabledTransition, stay: &DelayCondition) -> Option<Dbm> {
         let mut zone = Dbm::universe(self.dim());
         if let Ok(target) = &action.target
-            && let Ok(there) = self.stay(target)
+            && let Ok(there) = self.invariant(target)
         {
-            if !there?.invariant.iter().all(|c| keep(&mut zone, *c)) {
+            if !there?.iter().all(|c| keep(&mut zone, *c)) {
                 return None;
             }
             if !action.taken.resets.is_empty() {
@@ -409,13 +377,14 @@ impl SymbolicView for DiscreteStateView<'_, '_, '_> {
 // ── What the network tells ──
 
 impl CompiledNetwork<'_> {
-    fn bounds(&self, state: &[i64], out: &mut MaximalConstants) {
-        let mut frame = ActiveClocks::default();
-        self.extrapolation.frame(state, ExtrapolationAbstraction::LowerUpper, &mut frame);
+    /// The greatest constant that each clock is compared with from a state on, until it is set.
+    fn most_compared(&self, state: &[i64]) -> Vec<i64> {
+        let (mut frame, mut most) = (ActiveClocks::default(), vec![NONE; self.dim]);
+        self.extrapolation.frame(state, ExtrapolationAbstraction::Greatest, &mut frame);
         for (&clock, lu) in frame.clocks.iter().zip(&frame.bounds) {
-            let x = usize::from(clock);
-            (out.lower[x], out.upper[x]) = (lu.lower, lu.upper);
+            most[usize::from(clock)] = lu.lower;
         }
+        most
     }
 
     /// The least and greatest that a time of a formula can be, in units.

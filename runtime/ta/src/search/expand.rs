@@ -12,7 +12,8 @@ use crate::{
         goals::{CompiledGoals, SymbolicStateRef},
         monotone::{OneWayCounter, may_drive_out, no_worse},
         options::{SearchOptions, SubsumptionRelation},
-        stepper::{SymbolicStepper, SymbolicSuccessor},
+        probe::{ProbeFinding, ProbedState, StateProbe, widened},
+        stepper::{SymbolicStepper, SymbolicSuccessor, ZoneClocks},
         store::{NIL, PassedList, hash_words},
         waiting,
     },
@@ -21,7 +22,7 @@ use crate::{
         constraint::DifferenceConstraint,
         dbm::{Dbm, DbmNumber},
         diagonals::split,
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction, extra_lu, thresholds},
+        extrapolation::{ActiveClocks, extra_lu, thresholds},
     },
 };
 
@@ -37,6 +38,15 @@ pub(crate) struct ExpansionContext<'a, N> {
     pub options: &'a SearchOptions,
     /// Their ranks stand with the nodes.
     pub counters: &'a [OneWayCounter],
+    pub probe: Option<&'a dyn StateProbe>,
+    /// If the time since the start is a clock: what [arrives](arrival) later is left out.
+    pub latest: Option<i64>,
+}
+
+/// The least value of the last clock of a zone, the time since the start, so that the earlier is the less: a bound `≤ n` is before `< n`.
+pub(crate) fn arrival<N: DbmNumber>(zone: &Dbm<N>) -> i64 {
+    let least: i64 = zone.entry(0, zone.dim() - 1).into();
+    -least
 }
 
 /// A state of an expansion: the one that is expanded, or a committed one on the path.
@@ -74,13 +84,21 @@ struct WorkerMemory<N> {
     beyond: Vec<bool>,
     /// What a search by the topological order knows of locations.
     levels: Vec<Vec<u32>>,
+    /// The lower bound of the time at which a goal over clocks is met.
+    earliest: Option<N>,
+    /// With comparisons of clocks: the greatest constants, also of the time if that is a clock.
+    greatest: Vec<i64>,
+    wide: Dbm,
+    /// By discrete state: whether the probe can find anything there, if it was asked.
+    worth: Vec<Option<bool>>,
 }
 
 /// An expansion that met a fault.
 pub(crate) struct ExpansionError;
 
 impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
-    pub(crate) fn new(model: &'m CompiledNetwork<'p>, abstraction: ExtrapolationAbstraction) -> Self {
+    pub(crate) fn new(model: &'m CompiledNetwork<'p>, clocks: ZoneClocks) -> Self {
+        let greatest = model.extrapolation.diagonals.as_ref().map_or(Vec::new(), |d| d.greatest.clone());
         let m = WorkerMemory {
             stack: Vec::new(),
             packed: Vec::new(),
@@ -95,8 +113,12 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             covers: Vec::new(),
             beyond: Vec::new(),
             levels: waiting::levels(model),
+            earliest: None,
+            greatest: greatest.into_iter().chain(clocks.time).collect(),
+            wide: Dbm::zero(1),
+            worth: Vec::new(),
         };
-        Self { model, stepper: SymbolicStepper::new(model, abstraction), locals: Vec::new(), count: 0, m }
+        Self { model, stepper: SymbolicStepper::new(model, clocks), locals: Vec::new(), count: 0, m }
     }
 
     /// The initial state, which is stored even if it is committed.
@@ -110,7 +132,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         visit.arrive(&mut self.m, (&mut state, None), &frame, &mut zone, (NIL, 0), batch)
     }
 
-    fn local(&mut self) -> &mut ExpansionState<N> {
+    fn local(&mut self) {
         if self.count == self.locals.len() {
             self.locals.push(ExpansionState {
                 state: Vec::new(),
@@ -121,20 +143,19 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             });
         }
         self.count += 1;
-        &mut self.locals[self.count - 1]
     }
 
     /// Makes the node the first local state.
     fn load(&mut self, c: &ExpansionContext<N>, id: u32) {
         let node = c.store.nodes[id as usize];
-        let (model, abstraction) = (self.model, c.options.abstraction);
         self.count = 0;
-        let local = self.local();
+        self.local();
+        let local = &mut self.locals[0];
         c.store.layout.unpack(c.store.packed(node.discrete), &mut local.state);
         for (counter, &rank) in c.counters.iter().zip(c.store.ranks(id)) {
             local.state[counter.place] = counter.value(rank);
         }
-        model.extrapolation.frame(&local.state, abstraction, &mut local.frame);
+        self.stepper.frame(&local.state, &mut local.frame);
         let dim = local.frame.dim();
         local.zone.load(dim, c.store.zone(&node, dim));
         local.via = None;
@@ -149,6 +170,10 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     ) -> Result<(), ExpansionError> {
         self.load(c, node);
         batch.visited += 1;
+        if let Err(error) = self.probe(c, node, &mut batch.findings) {
+            batch.fault = Some((error, GoalPath { node, via: None }));
+            return Err(ExpansionError);
+        }
         let visit = NodeExpansion { model: self.model, c, node, keep: c.options.keep_committed };
         // Committed states that are met are put behind this one, and expanded by the same loop. `via` counts through all of them, so that
         // a number means the same transition whenever the node is expanded again: `retrace` relies on it.
@@ -167,6 +192,30 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             at += 1;
         }
         Ok(())
+    }
+
+    /// Shows the loaded node to the probe.
+    fn probe(
+        &mut self,
+        c: &ExpansionContext<N>,
+        node: u32,
+        out: &mut Vec<ProbeFinding>,
+    ) -> Result<(), ModelError> {
+        let Some(probe) = c.probe else { return Ok(()) };
+        let ExpansionState { state, frame, zone, .. } = &self.locals[0];
+        let discrete = c.store.nodes[node as usize].discrete as usize;
+        if self.m.worth.len() <= discrete {
+            self.m.worth.resize(c.store.discrete_states(), None);
+        }
+        let worth = match self.m.worth[discrete] {
+            Some(known) => known,
+            None => *self.m.worth[discrete].insert(probe.matters(state)?),
+        };
+        if !worth {
+            return Ok(());
+        }
+        widened(zone, &mut self.m.wide);
+        probe.look(&ProbedState { node, state, frame, zone: &self.m.wide }, out)
     }
 
     /// The successors of one local state. With `until` it stops at that number of the expansion.
@@ -293,7 +342,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         discrete: u32,
         first: u32,
         (zone, dim): (&[N], usize),
-        ranks: &[u32],
+        (parent, ranks): (u32, &[u32]),
     ) -> Option<&[u32]> {
         let subsumption = options.subsumption;
         self.m.covers.clear();
@@ -315,6 +364,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
                 return None;
             }
             if may_drive_out(options.order, ranks, store.ranks(at))
+                && !store.is_longer_way(parent, at)
                 && covers(subsumption, &self.m.frame, zone, old)
             {
                 self.m.covers.push(at);
@@ -346,6 +396,11 @@ struct NodeExpansion<'a, 'm, 'p, N> {
 }
 
 impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
+    /// Without times of arrival: 0.
+    fn arrival(&self, zone: &Dbm<N>) -> i64 {
+        if self.c.latest.is_some() { arrival(zone) } else { 0 }
+    }
+
     /// Looks at the goals that a transition meets.
     fn taken(&self, before: &[i64], s: &SymbolicSuccessor<N>, via: u32, batch: &mut ExpansionBatch<N>) {
         if self.c.open.is_empty() {
@@ -357,7 +412,8 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
             let last = self.model.pairs.then(|| self.model.last_edge_at(m));
             self.c.goals.taken(number, before, last, &mut |goal| {
                 if self.c.open[goal] {
-                    batch.hits.push(GoalHit { goal, path: GoalPath { node: self.node, via: Some(via) } });
+                    let path = GoalPath { node: self.node, via: Some(via) };
+                    batch.hits.push(GoalHit { goal, path, arrival: self.arrival(s.zone) });
                 }
             });
         }
@@ -377,7 +433,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         m.met.clear();
         self.c.goals.states(s.state, None, &mut m.stack, self.model, false, self.c.open, &mut m.met)?;
         self.look_at_zone(m, s.state, s.frame, s.zone, false)?;
-        batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path }));
+        batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path, arrival: 0 }));
         self.split(m, s.frame, s.zone);
         let pieces = std::mem::take(&mut m.pieces);
         for piece in &pieces {
@@ -416,7 +472,13 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         match &self.model.extrapolation.diagonals {
             Some(d) => {
                 m.pieces.clear();
-                split(zone, &d.constraints, &d.greatest, &mut |piece| m.pieces.push(piece));
+                if self.c.latest.is_some() {
+                    // As extrapolation by lower and upper bounds does: who comes earlier can do no less.
+                    let time = zone.dim() - 1;
+                    zone.row_mut(time).fill(N::INFINITY);
+                    zone.set(time, time, N::LE_ZERO);
+                }
+                split(zone, &d.constraints, &m.greatest, &mut |piece| m.pieces.push(piece));
             }
             None => {
                 extra_lu(frame, zone, &mut m.beyond);
@@ -441,8 +503,18 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         if self.c.goals.symbolic.is_empty() {
             return Ok(());
         }
-        let mut look = SymbolicStateRef { model: self.model, state, stack: &mut m.stack, frame, zone };
-        self.c.goals.zones(&mut look, settled, self.c.open, &mut m.met)
+        let mut look = SymbolicStateRef {
+            model: self.model,
+            state,
+            stack: &mut m.stack,
+            frame,
+            zone,
+            timed: self.c.latest.is_some(),
+            earliest: None,
+        };
+        let met = self.c.goals.zones(&mut look, settled, self.c.open, &mut m.met);
+        m.earliest = look.earliest;
+        met
     }
 
     /// A state to store, unless a stored one covers it.
@@ -455,6 +527,9 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         (parent, via): (u32, u32),
         batch: &mut ExpansionBatch<N>,
     ) -> Result<(), ModelError> {
+        if self.c.latest.is_some_and(|latest| arrival(zone) > latest) {
+            return Ok(());
+        }
         let store = self.c.store;
         let subsumption = self.c.options.subsumption;
         store.layout.pack(state, &mut m.packed);
@@ -479,8 +554,8 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
             let settled = !self.model.any_committed(state);
             m.met.clear();
             // Goals without clocks are the discrete state's: where that is stored, they were looked at when it came. Its counters are not
-            // stored with it.
-            if known.is_none() || !self.c.counters.is_empty() {
+            // stored with it, nor when they hold.
+            if known.is_none() || !self.c.counters.is_empty() || self.c.latest.is_some() {
                 self.c.goals.states(
                     state,
                     asked,
@@ -492,7 +567,8 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
                 )?;
             }
             self.look_at_zone(m, state, frame, zone, settled)?;
-            batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path }));
+            let arrival = m.earliest.take().map_or_else(|| self.arrival(zone), |e| -e.into());
+            batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path, arrival }));
         }
         self.split(m, frame, zone);
         let pieces = std::mem::take(&mut m.pieces);
@@ -557,6 +633,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
                     return;
                 }
                 if may_drive_out(self.c.options.order, &m.ranks, ranks)
+                    && !self.c.store.is_longer_way(parent, at)
                     && covers(subsumption, frame, flat, old)
                 {
                     batch.covered.push(at);

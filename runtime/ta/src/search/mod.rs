@@ -7,6 +7,7 @@ pub(crate) mod expand;
 pub(crate) mod goals;
 pub(crate) mod monotone;
 pub(crate) mod options;
+pub(crate) mod probe;
 mod reach_of_counter;
 pub(crate) mod report;
 pub(crate) mod rounds;
