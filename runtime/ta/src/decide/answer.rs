@@ -32,6 +32,7 @@ use crate::{
         schedule::ScheduleOptions,
         trace::seconds,
     },
+    zone::extrapolation::ExtrapolationAbstraction,
 };
 
 /// How questions are answered.
@@ -304,15 +305,22 @@ impl QueryEvaluator<'_> {
     fn hunt(
         &self,
         formulas: &[&StateFormula],
-        search: impl FnOnce(&mut LivenessSearch<'_, '_, '_>) -> Result<MaximalRunSearchResult, SearchError>,
+        search: impl Fn(&mut LivenessSearch<'_, '_, '_>) -> Result<MaximalRunSearchResult, SearchError>,
     ) -> Result<LivenessSearchResult, SearchError> {
         if formulas.iter().any(|f| f.asks_deadlock()) {
             let what = "`deadlock` can be asked for in `E<>`, `A[]`, `sup` and `inf`, not in questions about all of a run";
             return Err(ModelError::Question(what.into()).into());
         }
         let graph = ZoneGraph::new(self.model, formulas)?;
-        let mut hunt = LivenessSearch::new(&graph, formulas, self.options.budget);
-        Ok(match search(&mut hunt)? {
+        let begin = |abstraction| LivenessSearch::new(&graph, formulas, self.options.budget, abstraction);
+        let mut found = search(&mut begin(ExtrapolationAbstraction::LowerUpper))?;
+        if matches!(found, MaximalRunSearchResult::Doubtful) {
+            found = search(&mut begin(ExtrapolationAbstraction::Greatest))?;
+        }
+        Ok(match found {
+            MaximalRunSearchResult::Doubtful => {
+                return Err(SearchError::Internal("an exact search is in doubt".into()));
+            }
             MaximalRunSearchResult::Nothing => LivenessSearchResult::Nothing,
             MaximalRunSearchResult::Inconclusive(what) => LivenessSearchResult::Inconclusive(what),
             MaximalRunSearchResult::Found(trap) => {

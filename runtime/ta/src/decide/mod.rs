@@ -8,5 +8,6 @@ pub(crate) mod extremum;
 pub(crate) mod fastest;
 #[cfg(test)]
 mod interpreter_tests;
+mod known_states;
 mod liveness;
 mod places;

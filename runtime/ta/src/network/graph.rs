@@ -1,8 +1,8 @@
 //! The plain zone graph of a network: what the search for liveness walks on, and what formulas are evaluated in.
 //!
 //! A node is a discrete state and a zone, after time has passed if it may. Unlike the search for goals, which may keep of a
-//! zone what can do most, a walk for infinite runs must keep apart what can be told apart: zones are extrapolated by ExtraM+, which is
-//! a bisimulation.
+//! zone what can do most, a walk for infinite runs must keep apart what can be told apart: see
+//! [`ExtrapolationAbstraction`].
 
 use std::ops::ControlFlow;
 
@@ -27,13 +27,10 @@ use crate::{
         constraint::{DifferenceConstraint, keep},
         dbm::{Dbm, DbmBound},
         diagonals::split,
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction, MaximalConstants, NONE, extra},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, LuBounds, NONE, extra_lu},
         federation::{Federation, past},
     },
 };
-
-/// A state, what staying there means, and the clocks on entering it.
-pub(crate) type SuccessorState<'a> = (&'a [i64], DelayCondition, Dbm);
 
 /// The zone graph of a network, with what formulas tell apart.
 pub(crate) struct ZoneGraph<'m, 'p> {
@@ -161,16 +158,20 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         self.model.target(state, taken)
     }
 
-    /// Where a transition leads to from some clocks: the state, what staying there means, and the clocks right after it,
-    /// before time passes. `None`: it is not possible.
+    /// The clocks with which a transition is possible, as far as its guard tells, and the state it leads to.
     ///
     /// # Errors
     /// The fault of the model that the transition is.
-    pub(crate) fn follow<'a>(
+    pub(crate) fn guarded<'a>(
         &self,
         action: &'a EnabledTransition,
         zone: &Dbm,
-    ) -> Result<Option<SuccessorState<'a>>, ModelError> {
+    ) -> Result<Option<(&'a [i64], Dbm)>, ModelError> {
+        let fails = |c: &DifferenceConstraint| !zone.meets(usize::from(c.i), usize::from(c.j), c.bound);
+        // Quick, where one alone rules it out.
+        if action.taken.guard.iter().any(fails) {
+            return Ok(None);
+        }
         let mut zone = zone.clone();
         if !action.taken.guard.iter().all(|c| keep(&mut zone, *c)) {
             return Ok(None);
@@ -180,8 +181,7 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         if let Some((_, fault)) = action.below.iter().find(|(c, _)| meets(c)) {
             return Err(fault.clone());
         }
-        let Some(stay) = self.stay(target)? else { return Ok(None) };
-        Ok(self.take(action, &stay, &mut zone).then_some((target.as_slice(), stay, zone)))
+        Ok(Some((target, zone)))
     }
 
     /// The clocks with which a transition of the state is this fault: one conjunction for each way to it.
@@ -207,24 +207,46 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         all
     }
 
-    /// `false`: the target's invariant forbids it.
-    fn take(&self, action: &EnabledTransition, target: &DelayCondition, zone: &mut Dbm) -> bool {
+    /// From the guarded clocks to those right after the transition, before time passes. `false`: the target's invariant forbids it.
+    pub(crate) fn take(&self, action: &EnabledTransition, target: &DelayCondition, zone: &mut Dbm) -> bool {
         if !action.taken.resets.is_empty() {
             *zone = set(zone, &self.sources(&action.taken.resets));
         }
         target.invariant.iter().all(|c| keep(zone, *c))
     }
 
+    /// Zones are split along comparisons of clocks.
+    pub(crate) fn splits(&self) -> bool {
+        !self.diagonals.is_empty()
+    }
+
+    /// All clocks, with what they are compared with from a state on.
+    pub(crate) fn frame(&self, state: &[i64], abstraction: ExtrapolationAbstraction) -> ActiveClocks {
+        let mut active = ActiveClocks::default();
+        self.model.extrapolation.frame(state, abstraction, &mut active);
+        let mut all = ActiveClocks {
+            clocks: (0..self.dim() as u16).collect(),
+            bounds: self.raised.iter().map(|&most| LuBounds { lower: most, upper: most }).collect(),
+        };
+        for (&clock, lu) in active.clocks.iter().zip(&active.bounds) {
+            let bounds = &mut all.bounds[usize::from(clock)];
+            *bounds = bounds.join(*lu);
+        }
+        if abstraction == ExtrapolationAbstraction::Greatest {
+            for lu in &mut all.bounds {
+                let most = lu.lower.max(lu.upper);
+                *lu = LuBounds { lower: most, upper: most };
+            }
+        }
+        all
+    }
+
     /// Widens a zone to one of finitely many, in one or several pieces.
-    pub(crate) fn widen(&self, state: &[i64], zone: Dbm, out: &mut dyn FnMut(Dbm)) {
-        if !self.diagonals.is_empty() {
+    pub(crate) fn widen(&self, frame: &ActiveClocks, mut zone: Dbm, out: &mut dyn FnMut(Dbm)) {
+        if self.splits() {
             return split(&zone, &self.diagonals, &self.greatest, out);
         }
-        let mut zone = zone;
-        let mut most = self.model.most_compared(state);
-        most.iter_mut().zip(&self.raised).for_each(|(most, raised)| *most = (*most).max(*raised));
-        // The same both ways: a bisimulation.
-        extra(&mut zone, &MaximalConstants { lower: most.clone(), upper: most });
+        extra_lu(frame, &mut zone, &mut Vec::new());
         out(zone);
     }
 
@@ -259,9 +281,9 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     }
 
     /// As [`deadlocked`](Self::deadlocked), with what is known of the state.
-    pub(crate) fn deadlocked_by(
+    pub(crate) fn deadlocked_by<'a>(
         &self,
-        actions: &[EnabledTransition],
+        actions: impl Iterator<Item = &'a EnabledTransition>,
         stay: &DelayCondition,
         zone: &Dbm,
     ) -> Federation {
@@ -377,16 +399,6 @@ impl SymbolicView for DiscreteStateView<'_, '_, '_> {
 // ── What the network tells ──
 
 impl CompiledNetwork<'_> {
-    /// The greatest constant that each clock is compared with from a state on, until it is set.
-    fn most_compared(&self, state: &[i64]) -> Vec<i64> {
-        let (mut frame, mut most) = (ActiveClocks::default(), vec![NONE; self.dim]);
-        self.extrapolation.frame(state, ExtrapolationAbstraction::Greatest, &mut frame);
-        for (&clock, lu) in frame.clocks.iter().zip(&frame.bounds) {
-            most[usize::from(clock)] = lu.lower;
-        }
-        most
-    }
-
     /// The least and greatest that a time of a formula can be, in units.
     fn span(&self, time: &hrdsl_ir::ta::TimeSum) -> (i64, i64) {
         let names = self.slot_scope();

@@ -77,17 +77,29 @@ pub fn asks(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
     Ok(None)
 }
 
-fn said(p: &Program, ask: QueryKind, witness: WitnessKind) -> Result<QueryAnswer, SearchError> {
-    let query = Query {
+fn question(ask: QueryKind) -> Query {
+    Query {
         name: "q".into(),
         title: String::new(),
         text: String::new(),
         network: NetworkId(0),
         ask,
         origin: Span::default(),
-    };
+    }
+}
+
+fn said(p: &Program, ask: QueryKind, witness: WitnessKind) -> Result<QueryAnswer, SearchError> {
     // A clock may grow without end in a loop in which time is bounded.
-    let budget = SearchBudget { states: 5_000, ..SearchBudget::default() };
+    let states = match ask {
+        QueryKind::Sup { .. } | QueryKind::Inf { .. } => 5_000,
+        QueryKind::Possibly(_)
+        | QueryKind::Invariantly(_)
+        | QueryKind::PotentiallyAlways(_)
+        | QueryKind::Eventually(_)
+        | QueryKind::LeadsTo(..) => usize::MAX,
+    };
+    let query = question(ask);
+    let budget = SearchBudget { states, ..SearchBudget::default() };
     answer(p, &p.networks[0], &query, &QueryOptions { witness, budget, ..QueryOptions::default() })
 }
 
