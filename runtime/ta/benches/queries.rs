@@ -44,6 +44,9 @@ const FAMILIES: [Family; 4] = [
 fn jobs(there: (u16, u16), clock: u16, left: (u16, u16)) -> Vec<Job> {
     let at = |(automaton, l): (u16, u16)| QueryFormula::At { automaton, location: LocationId(l) };
     let there = || at(there);
+    // The one there, and another where it always leaves, in its own time.
+    let other = (left.0 - 1, left.1);
+    let later = || QueryFormula::And(vec![there(), at(other)]);
     let never = || QueryFormula::And(vec![there(), QueryFormula::Not(Box::new(there()))]);
     let not = |f| QueryFormula::Not(Box::new(f));
     let of = || vec![QueryMeasure::Clock(ClockId(clock))];
@@ -60,6 +63,8 @@ fn jobs(there: (u16, u16), clock: u16, left: (u16, u16)) -> Vec<Job> {
         query("-->", QueryKind::LeadsTo(at(left), not(at(left)))),
         ("shortest", Measured::Query, Some(QueryKind::Possibly(there())), WitnessKind::Shortest),
         ("fastest", Measured::Query, Some(QueryKind::Possibly(there())), WitnessKind::Fastest),
+        ("shortest, later", Measured::Query, Some(QueryKind::Possibly(later())), WitnessKind::Shortest),
+        ("fastest, later", Measured::Query, Some(QueryKind::Possibly(later())), WitnessKind::Fastest),
     ]
 }
 

@@ -34,7 +34,8 @@ use crate::{
         options::{SearchOptions, SearchOrder},
         probe::{ProbeFinding, ProbeValue, ProbedState, StateProbe, spread},
         report::{GoalOutcome, SearchCutoff},
-        rounds::{self, SearchAside},
+        round_search::SearchAside,
+        rounds,
     },
     witness::{
         build::{reach_goal, takes, unreal},

@@ -26,7 +26,8 @@ use crate::{
         options::SearchOptions,
         probe::{ProbeFinding, ProbeValue, ProbedState, StateProbe, spread},
         report::SearchCutoff,
-        rounds::{self, RoundSearch, SearchAside},
+        round_search::{RoundSearch, SearchAside},
+        rounds,
     },
     witness::{
         build::{reach_formula, takes},

@@ -11,10 +11,7 @@ use crate::{
         model::CompiledNetwork,
         query::{GoalKind, ReachabilityGoal, SearchBudget},
     },
-    search::{
-        options::SearchOptions,
-        rounds::{self, SearchAside},
-    },
+    search::{options::SearchOptions, round_search::SearchAside, rounds},
     witness::{build, error::SearchError, run::WitnessRun, schedule::ScheduleOptions},
 };
 

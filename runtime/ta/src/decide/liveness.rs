@@ -69,7 +69,8 @@ pub(crate) enum MaximalRunSearchResult {
     Inconclusive(SearchCutoff),
 }
 
-/// A part of a symbolic state in one cell.
+/// A part of a symbolic state in one cell, after time has passed within it.
+#[derive(Clone)]
 struct CellNode {
     known: Rc<KnownState>,
     cell: ClockCell,
@@ -136,8 +137,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
     /// # Errors
     /// If the model is at fault.
     pub(crate) fn avoiding(&mut self, avoid: &StateFormula) -> Result<MaximalRunSearchResult, SearchError> {
-        for node in self.starts()? {
-            let at = self.enter(node, None, None);
+        for at in self.starts()? {
             match self.search(at, avoid)? {
                 MaximalRunSearchResult::Nothing => {}
                 found @ (MaximalRunSearchResult::Found(_)
@@ -158,19 +158,15 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         then: &StateFormula,
     ) -> Result<MaximalRunSearchResult, SearchError> {
         let mut seen: FxHashMap<ClockCellKey, Vec<usize>> = FxHashMap::default();
-        let mut waiting: std::collections::VecDeque<usize> = std::collections::VecDeque::new();
-        for node in self.starts()? {
-            waiting.push_back(self.enter(node, None, None));
+        let mut waiting = std::collections::VecDeque::new();
+        for at in self.starts()? {
+            seen.entry(self.entered[at].node.key()).or_default().push(at);
+            waiting.push_back(at);
         }
         while let Some(at) = waiting.pop_front() {
             if let Some(what) = self.used_up() {
                 return Ok(MaximalRunSearchResult::Inconclusive(what));
             }
-            let known = seen.entry(self.entered[at].node.key()).or_default();
-            if self.simulates(known, at) {
-                continue;
-            }
-            known.push(at);
             if self.holds(first, &self.entered[at].node)? {
                 match self.search(at, then)? {
                     MaximalRunSearchResult::Nothing => {}
@@ -180,7 +176,15 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
                 }
             }
             for (stop, next) in self.successors(at)? {
-                waiting.push_back(self.enter(next, Some(at), Some(stop)));
+                let known = seen.entry(next.key()).or_default();
+                if self.simulates(known, &next) {
+                    continue;
+                }
+                for piece in self.widened(next) {
+                    let new = self.enter(piece, Some(at), Some(stop.clone()));
+                    known.push(new);
+                    waiting.push_back(new);
+                }
             }
         }
         Ok(MaximalRunSearchResult::Nothing)
@@ -200,45 +204,48 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
     }
 
     /// Whether one of the nodes simulates this one; all are of one discrete state and cell.
-    fn simulates(&mut self, nodes: &[usize], at: usize) -> bool {
-        let (node, mut demands) = (&self.entered[at].node, std::mem::take(&mut self.demands));
-        let simulated = self.simulated(nodes, node, &mut demands);
-        self.demands = demands;
-        simulated
-    }
-
-    fn simulated(&self, nodes: &[usize], node: &CellNode, demands: &mut Vec<i64>) -> bool {
+    fn simulates(&mut self, nodes: &[usize], node: &CellNode) -> bool {
         let (zone, dim) = (&node.zone, node.zone.dim());
         if nodes.is_empty() || self.graph.splits() {
             return nodes.iter().any(|&n| self.entered[n].node.zone.includes(zone));
         }
-        thresholds(&node.known.frame, zone, demands);
+        thresholds(&node.known.frame, zone, &mut self.demands);
         nodes.iter().any(|&n| {
             let old = &self.entered[n].node.zone;
-            (0..dim).all(|i| dominates(old.row(i), &demands[i * dim..(i + 1) * dim]))
+            (0..dim).all(|i| dominates(old.row(i), &self.demands[i * dim..(i + 1) * dim]))
         })
     }
 
-    fn starts(&self) -> Result<Vec<CellNode>, SearchError> {
+    /// The nodes of the start, entered.
+    fn starts(&mut self) -> Result<Vec<usize>, SearchError> {
         let (state, _, zone) = self.graph.start()?;
         let known = self.states.find(&state)?.ok_or(ModelError::Initial)?;
         let mut out = Vec::new();
-        // The nodes of a zone are its parts in cells, after time has passed within them.
         for (cell, part) in known.cuts.parts(&zone) {
-            self.node(&known, &cell, part, &mut |node| out.push(node));
+            let Some(node) = self.node(&known, cell, part) else { continue };
+            out.extend(self.widened(node).into_iter().map(|piece| self.enter(piece, None, None)));
         }
         Ok(out)
     }
 
-    fn node(&self, known: &Rc<KnownState>, cell: &ClockCell, mut part: Dbm, out: &mut dyn FnMut(CellNode)) {
+    /// A part of a zone after time has passed in its cell.
+    fn node(&self, known: &Rc<KnownState>, cell: ClockCell, mut part: Dbm) -> Option<CellNode> {
         self.graph.wait(&known.stay, &mut part);
-        let Some(part) = within(&part, &known.cuts.bounds(cell)) else { return };
-        self.graph.widen(&known.frame, part, &mut |zone| {
-            out(CellNode { known: Rc::clone(known), cell: cell.clone(), zone });
-        });
+        let zone = within(&part, &known.cuts.bounds(&cell))?;
+        Some(CellNode { known: Rc::clone(known), cell, zone })
     }
 
-    /// Where time or a transition leads from a node.
+    /// The node as one of finitely many, in one or several pieces.
+    fn widened(&self, node: CellNode) -> Vec<CellNode> {
+        let mut pieces = Vec::new();
+        let CellNode { known, cell, zone } = node;
+        self.graph.widen(&known.frame, zone, &mut |zone| {
+            pieces.push(CellNode { known: Rc::clone(&known), cell: cell.clone(), zone });
+        });
+        pieces
+    }
+
+    /// Where time or a transition leads from a node, not extrapolated.
     fn successors(&self, at: usize) -> Result<Vec<(PathSegment, CellNode)>, SearchError> {
         let node = &self.entered[at].node;
         let known = &node.known;
@@ -249,9 +256,8 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
                 self.graph.wait(&known.stay, &mut later);
                 let bounds = known.cuts.bounds(&cell);
                 let Some(part) = within(&later, &bounds) else { continue };
-                self.node(known, &cell, part, &mut |next| {
-                    out.push((PathSegment::Wait(bounds.clone()), next));
-                });
+                let next = self.node(known, cell, part);
+                out.extend(next.map(|next| (PathSegment::Wait(bounds), next)));
             }
         }
         let before = known.cuts.bounds(&node.cell);
@@ -260,10 +266,9 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
             let Some((target, zone)) = followed else { continue };
             for (cell, part) in target.cuts.parts(&zone) {
                 let after = target.cuts.bounds(&cell);
-                self.node(&target, &cell, part, &mut |next| {
-                    let (taken, before, after) = (step.action.taken.clone(), before.clone(), after.clone());
-                    out.push((PathSegment::Take { taken, before, after }, next));
-                });
+                let Some(next) = self.node(&target, cell, part) else { continue };
+                let (taken, before) = (step.action.taken.clone(), before.clone());
+                out.push((PathSegment::Take { taken, before, after }, next));
             }
         }
         Ok(out)
@@ -292,7 +297,11 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
     fn search(&mut self, root: usize, avoid: &StateFormula) -> Result<MaximalRunSearchResult, SearchError> {
         let mut stack: Vec<LivenessFrame> = Vec::new();
         let mut on_stack: FxHashMap<ClockCellKey, Vec<usize>> = FxHashMap::default();
-        if let Some(end) = self.visit(root, avoid, &mut stack, &mut on_stack)? {
+        let node = self.entered[root].node.clone();
+        if self.is_safe(&node) || self.holds(avoid, &node)? {
+            return Ok(MaximalRunSearchResult::Nothing);
+        }
+        if let Some(end) = self.visit(root, &mut stack, &mut on_stack)? {
             return Ok(end);
         }
         while let Some(frame) = stack.last_mut() {
@@ -305,36 +314,49 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
             if let Some(what) = self.used_up() {
                 return Ok(MaximalRunSearchResult::Inconclusive(what));
             }
-            if self.holds(avoid, &node)? {
+            if self.is_safe(&node) || self.holds(avoid, &node)? {
                 continue;
             }
-            let ancestors = on_stack.get(&node.key()).map_or(&[] as &[usize], Vec::as_slice);
-            let back = ancestors.iter().rev().find(|&&a| node.zone.includes(&self.entered[a].node.zone));
-            if let Some(&back) = back {
-                let from = self.path(back).len();
-                let mut stops = self.path(parent);
-                stops.push(stop);
-                let again = stops[..from].iter().filter(|s| matches!(s, PathSegment::Take { .. })).count();
-                let state = node.known.state.clone();
-                let trap = MaximalRun { stops, ending: RunEnding::Again(again), from, state };
+            let mut pieces = self.widened(node);
+            let Some(piece) = pieces.pop() else { continue };
+            // The others come later, so that nothing is on the stack but the path: of a piece there is one piece only.
+            if let Some(frame) = stack.last_mut() {
+                frame.next.extend(pieces.into_iter().map(|other| (stop.clone(), other)));
+            }
+            if let Some(trap) = self.closes_loop(&piece, parent, &stop, &on_stack) {
                 return Ok(MaximalRunSearchResult::Found(Box::new(trap)));
             }
-            if self.is_safe(&node) {
-                continue;
-            }
-            let at = self.enter(node, Some(parent), Some(stop));
-            if let Some(end) = self.visit(at, avoid, &mut stack, &mut on_stack)? {
+            let at = self.enter(piece, Some(parent), Some(stop));
+            if let Some(end) = self.visit(at, &mut stack, &mut on_stack)? {
                 return Ok(end);
             }
         }
         Ok(MaximalRunSearchResult::Nothing)
     }
 
+    /// The loop that a node closes, which comes from the last of the path.
+    fn closes_loop(
+        &self,
+        node: &CellNode,
+        parent: usize,
+        stop: &PathSegment,
+        on_stack: &FxHashMap<ClockCellKey, Vec<usize>>,
+    ) -> Option<MaximalRun> {
+        let ancestors = on_stack.get(&node.key())?;
+        let back = ancestors.iter().rev().find(|&&a| node.zone.includes(&self.entered[a].node.zone))?;
+        let from = self.path(*back).len();
+        let mut stops = self.path(parent);
+        stops.push(stop.clone());
+        let again = stops[..from].iter().filter(|s| matches!(s, PathSegment::Take { .. })).count();
+        let state = node.known.state.clone();
+        Some(MaximalRun { stops, ending: RunEnding::Again(again), from, state })
+    }
+
     fn is_safe(&mut self, node: &CellNode) -> bool {
-        let mut demands = std::mem::take(&mut self.demands);
-        let nodes = self.safe.get(&node.key()).map_or(&[] as &[usize], Vec::as_slice);
-        let safe = self.simulated(nodes, node, &mut demands);
-        self.demands = demands;
+        let Some(nodes) = self.safe.get_mut(&node.key()) else { return false };
+        let nodes = std::mem::take(nodes);
+        let safe = self.simulates(&nodes, node);
+        self.safe.insert(node.key(), nodes);
         safe
     }
 
@@ -354,14 +376,9 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
     fn visit(
         &mut self,
         at: usize,
-        avoid: &StateFormula,
         stack: &mut Vec<LivenessFrame>,
         on_stack: &mut FxHashMap<ClockCellKey, Vec<usize>>,
     ) -> Result<Option<MaximalRunSearchResult>, SearchError> {
-        let safe = self.safe.get(&self.entered[at].node.key()).cloned().unwrap_or_default();
-        if self.simulates(&safe, at) || self.holds(avoid, &self.entered[at].node)? {
-            return Ok(None);
-        }
         let node = &self.entered[at].node;
         if node.known.stay.for_ever() && node.known.cuts.is_last(&node.cell) {
             let trap = self.trap(at, self.path(at), RunEnding::Waits);

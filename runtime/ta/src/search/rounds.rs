@@ -28,6 +28,7 @@ use crate::{
         options::{SearchOptions, SubsumptionRelation},
         probe::{ProbeFinding, StateProbe},
         report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
+        round_search::{RoundSearch, SearchAside},
         slice,
         stepper::ZoneClocks,
         store::{NIL, PassedList, StateLayout},
@@ -55,45 +56,6 @@ pub(crate) fn explore(
 fn width(model: &CompiledNetwork, beside: SearchAside) -> Result<BoundWidth, SearchError> {
     let width = model.reach.width(beside.within.unwrap_or(0));
     width.ok_or_else(|| SearchError::Internal("a time is too great for zones".into()))
-}
-
-/// What a search does beside looking for goals.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct SearchAside<'a> {
-    pub probe: Option<&'a dyn StateProbe>,
-    /// The time since the start is a clock, up to so many units, states are taken by its least value, and of each goal (or question of
-    /// the probe) the earliest is found.
-    pub within: Option<i64>,
-}
-
-/// A search that is gone through round by round.
-pub(crate) trait RoundSearch {
-    /// Goes on by a round, and adds what the probe found in it. It breaks off at the end, with the budget that was used up.
-    ///
-    /// # Errors
-    /// If the model is at fault, or the engine contradicts itself.
-    fn round(
-        &mut self,
-        found: &mut Vec<ProbeFinding>,
-    ) -> Result<ControlFlow<Option<SearchCutoff>>, SearchError>;
-
-    /// What arrives later than this is left out from now on.
-    fn only_until(&mut self, arrival: i64);
-
-    /// The path to a node.
-    ///
-    /// # Errors
-    /// If the engine contradicts itself.
-    fn path_to(&mut self, node: u32) -> Result<Vec<PathTransition>, SearchError>;
-
-    /// The path to a goal that was met.
-    ///
-    /// # Errors
-    /// If the engine contradicts itself.
-    fn path_to_goal(&mut self, goal: usize) -> Result<Option<Vec<PathTransition>>, SearchError>;
-
-    /// Symbolic states kept.
-    fn stored(&self) -> usize;
 }
 
 /// A search to be gone through.

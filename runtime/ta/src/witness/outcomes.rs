@@ -202,7 +202,7 @@ impl<'p> ConcreteInterpreter<'p> {
 
     /// Whether some transition is possible now or after some delay.
     ///
-    /// Between two neighbouring bounds of the clocks' constraints nothing changes, so it looks at each bound and a tick to
+    /// Between two neighbouring bounds of the clocks' constraints nothing changes, so it looks at each bound and half a tick to
     /// either side.
     ///
     /// # Errors
@@ -214,8 +214,9 @@ impl<'p> ConcreteInterpreter<'p> {
         if !self.may_wait() {
             return Ok(false);
         }
-        for later in self.turns() {
-            let mut then = self.clone();
+        let finer = self.in_half_ticks();
+        for later in finer.turns() {
+            let mut then = finer.clone();
             then.now = later;
             if then.broken_invariant()?.is_none() && then.can_move()? {
                 return Ok(true);
