@@ -66,13 +66,26 @@ impl<'p> ConcreteInterpreter<'p> {
                     let m = AutomatonMove { automaton, edge, binders };
                     match self.is_open(&m) {
                         Ok(true) => self.partners(&m, &mut groups, f)?,
-                        Ok(false) => {}
-                        Err(fault) => f(Err(fault))?,
+                        Err(fault) if self.could_join(&e.sync) => f(Err(fault))?,
+                        Ok(false) | Err(_) => {}
                     }
                 }
             }
         }
         groups.iter().try_for_each(|group| self.each_combination(group, f))
+    }
+
+    /// Whether all that must take part in what an edge joins could: what else is wrong with it does not matter.
+    fn could_join(&self, sync: &SyncLabel) -> bool {
+        let SyncLabel::Join { channel } = sync else { return true };
+        let Some(ChannelKind::MultiWay(participants)) = self.channel(*channel).map(|c| &c.kind) else {
+            return true;
+        };
+        let needed = participants.iter().filter(|p| !p.optional).filter_map(|p| self.member(p.automaton));
+        needed.into_iter().all(|member| {
+            let moves = self.receptions(member, SyncMedium::Channel(*channel), &[], true);
+            moves.map_or(true, |moves| !moves.is_empty())
+        })
     }
 
     /// A committed location of another automaton forbids what this one does alone.
@@ -154,15 +167,19 @@ impl<'p> ConcreteInterpreter<'p> {
         let Some(ChannelKind::MultiWay(participants)) = self.channel(id).map(|c| &c.kind) else {
             return ControlFlow::Continue(None);
         };
-        let mut all = Vec::new();
+        let (mut all, mut faults) = (Vec::new(), Vec::new());
         for p in participants {
             let Some(member) = self.member(p.automaton) else { continue };
-            let moves = self.hearing(member, SyncMedium::Channel(id), &[], f)?;
-            match (moves.is_empty(), p.optional) {
-                (true, true) => {}
-                (true, false) => return ControlFlow::Continue(None),
-                (false, _) => all.push(moves),
+            match self.receptions(member, SyncMedium::Channel(id), &[], true) {
+                Ok(moves) if moves.is_empty() && !p.optional => return ControlFlow::Continue(None),
+                Ok(moves) if moves.is_empty() => {}
+                Ok(moves) => all.push(moves),
+                Err(fault) => faults.push(fault),
             }
+        }
+        if !faults.is_empty() {
+            faults.into_iter().try_for_each(|fault| f(Err(fault)))?;
+            return ControlFlow::Continue(None);
         }
         // Every open edge of a participant is asked whether it starts this; only the first participant's do, or each combination would come
         // once for each of its parts.
