@@ -193,7 +193,7 @@ impl WaitingList {
     pub(crate) fn take(&mut self, nodes: &[SymbolicNode], most: usize, out: &mut Vec<u32>) {
         out.clear();
         if self.by_time.is_some() {
-            return self.take_earliest(nodes, most, out);
+            return self.take_earliest(nodes, most.min(FEW), out);
         }
         let most = match self.order {
             SearchOrder::Breadth => most,
@@ -222,6 +222,9 @@ impl WaitingList {
         }
     }
 }
+
+/// States of a round by time: of all that arrive at once the first may do, or lead to what covers the others.
+const FEW: usize = 64;
 
 impl WaitingList {
     /// Up to `most` states that arrive at the same time.
