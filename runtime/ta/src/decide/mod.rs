@@ -1,4 +1,4 @@
-//! What is asked of a network, decided: by the searches for goals, or by walks of the zone graph where these do not suffice.
+//! What is asked of a network, decided: by the search for goals, with probes that look at its states, or by a walk of the zone graph.
 
 pub(crate) mod answer;
 mod cells;
