@@ -75,17 +75,24 @@ impl<'p> ConcreteInterpreter<'p> {
         groups.iter().try_for_each(|group| self.each_combination(group, f))
     }
 
-    /// Whether all that must take part in what an edge joins could: what else is wrong with it does not matter.
+    /// Whether all that must take part in what an edge joins could, and committed locations let them: what else is wrong with it does not
+    /// matter.
     fn could_join(&self, sync: &SyncLabel) -> bool {
         let SyncLabel::Join { channel } = sync else { return true };
         let Some(ChannelKind::MultiWay(participants)) = self.channel(*channel).map(|c| &c.kind) else {
             return true;
         };
-        let needed = participants.iter().filter(|p| !p.optional).filter_map(|p| self.member(p.automaton));
-        needed.into_iter().all(|member| {
+        let mut committed = !self.any_committed();
+        for p in participants {
+            let Some(member) = self.member(p.automaton) else { continue };
             let moves = self.receptions(member, SyncMedium::Channel(*channel), &[], true);
-            moves.map_or(true, |moves| !moves.is_empty())
-        })
+            let could = moves.map_or(true, |moves| !moves.is_empty());
+            if !could && !p.optional {
+                return false;
+            }
+            committed |= could && self.kind(member) == LocationKind::Committed;
+        }
+        committed
     }
 
     /// A committed location of another automaton forbids what this one does alone.
@@ -178,7 +185,9 @@ impl<'p> ConcreteInterpreter<'p> {
             }
         }
         if !faults.is_empty() {
-            faults.into_iter().try_for_each(|fault| f(Err(fault)))?;
+            if self.could_join(&SyncLabel::Join { channel: id }) {
+                faults.into_iter().try_for_each(|fault| f(Err(fault)))?;
+            }
             return ControlFlow::Continue(None);
         }
         // Every open edge of a participant is asked whether it starts this; only the first participant's do, or each combination would come

@@ -166,6 +166,8 @@ fn the_invariant_of_a_target_is_looked_at_after_the_guard() {
 #[test]
 fn a_join_that_cannot_be_is_no_fault() {
     agrees(&crate::dice::network(2_006_480, crate::dice::Flavour::Whole));
+    // A committed location that has no part in it forbids it.
+    agrees(&crate::dice::network(2_014_692, crate::dice::Flavour::Whole));
 }
 
 /// Something can happen within less than a nanosecond after a witness's strict bound, and only then.
