@@ -50,7 +50,10 @@ pub struct SearchWatch {
 impl ProofOptions {
     pub(super) fn options(&self) -> SearchOptions {
         let usual = match self.witness {
-            WitnessKind::Shortest => SearchOptions::shortest(),
+            // For tests short ones will do, of which a search finds many at once.
+            WitnessKind::Shortest => {
+                SearchOptions { keep_shorter: !self.keep_first, ..SearchOptions::shortest() }
+            }
             WitnessKind::Any | WitnessKind::Fastest => SearchOptions::default(),
         };
         SearchOptions {
@@ -116,7 +119,7 @@ fn chosen(
     let by_time = !matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. });
     if settings.witness == WitnessKind::Fastest
         && by_time
-        && let Some(run) = hrdsl_ta::fastest(model, goal, settings.budget, settings.timing())?
+        && let Some(run) = hrdsl_ta::fastest(model, goal, found, settings.budget, settings.timing())?
     {
         return Ok(Some(run));
     }

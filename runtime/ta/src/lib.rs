@@ -22,7 +22,7 @@
 //!   that matter (`stepper`), as narrow as the constants allow; `store` keeps what is new, `slice` says which variables
 //!   matter, `monotone` which are read one way, `goals` looks at what is asked.
 //! - [`local`]: the same search with a time for each automaton.
-//! - `decide`: the answers, by these searches and by walks of the plain zone graph.
+//! - `decide`: the answers, by these searches, with probes that look at their states; for runs without end by a walk of the plain zone graph.
 //!
 //! # Semantics
 //! UPPAAL's, and multi-way channels after TChecker's synchronisation vectors. Guards are evaluated before any update. Who sends
@@ -44,10 +44,11 @@ mod search;
 mod witness;
 mod zone;
 
-pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, SHORTEST, answer, answers};
+pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, answer, answers};
+pub use decide::deadlock::SHORTEST;
 pub use decide::explore::{check, explore};
 pub use decide::extremum::{ExtremumLimit, ExtremumValue, MeasureExtremum, RAISES};
-pub use decide::fastest::{fastest, shortest};
+pub use decide::fastest::fastest;
 pub use network::code::SyncMedium;
 pub use network::error::{EdgeName, ModelError};
 pub use network::model::{CompiledNetwork, ObservationOptions, slot_names};

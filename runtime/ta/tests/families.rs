@@ -4,10 +4,16 @@
 mod common;
 
 use common::families;
-use hrdsl_ir::{Program, ta::LocationId};
+use hrdsl_ir::{
+    Program, Span,
+    suite::WitnessKind,
+    ta::{ClockId, LocationId, NetworkId, Query, QueryFormula, QueryKind, QueryMeasure},
+    value::SECOND,
+};
 use hrdsl_ta::{
-    CompiledNetwork, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal, SearchOptions, SearchOrder,
-    SearchReport, StateFormula, SubsumptionRelation, explore,
+    CompiledNetwork, ExtremumLimit, ExtremumValue, GoalKind, GoalOutcome, ObservationOptions, QueryAnswer,
+    QueryOptions, QueryVerdict, ReachabilityGoal, SearchOptions, SearchOrder, SearchReport, StateFormula,
+    SubsumptionRelation, answer, explore,
 };
 
 fn search(p: &Program, goals: &[ReachabilityGoal], options: &SearchOptions) -> SearchReport {
@@ -82,6 +88,64 @@ fn fischer_excludes() {
     let GoalOutcome::Reached(witness) = &report.goals[1] else { panic!("not reached") };
     // K = 10 is a strict bound: one nanosecond more.
     assert_eq!(witness.nanos(witness.steps.last().unwrap()), 10_000_000_001);
+}
+
+fn asked(p: &Program, ask: QueryKind, witness: WitnessKind) -> QueryAnswer {
+    let query = Query {
+        name: "q".into(),
+        title: String::new(),
+        text: String::new(),
+        network: NetworkId(0),
+        ask,
+        origin: Span::default(),
+    };
+    answer(p, &p.networks[0], &query, &QueryOptions { witness, ..QueryOptions::default() }).unwrap()
+}
+
+/// As many states as reachability takes, or less: not those of a second, finer search.
+#[test]
+fn deadlocks_take_no_more_states_than_reachability() {
+    let never = QueryKind::Possibly(QueryFormula::Deadlock);
+    for p in [families::fischer(6), families::train_gate(4), families::critical_region(3)] {
+        let options = SearchOptions { order: SearchOrder::Breadth, ..SearchOptions::default() };
+        let reached = search(&p, &[], &options).states_stored;
+        let found = asked(&p, never.clone(), WitnessKind::Any);
+        let seen = format!("no run reaches it: all that can be reached was seen ({reached} symbolic states)");
+        assert_eq!((found.verdict, found.why), (QueryVerdict::Fails, seen));
+    }
+    // A station that has begun cannot be told of a collision that is noticed late.
+    let found = asked(&families::csma_cd(5), never, WitnessKind::Shortest);
+    assert_eq!(found.run.unwrap().steps.len(), 3);
+}
+
+#[test]
+fn bounds_and_fastest_runs_of_families() {
+    let at = |automaton, l| QueryFormula::At { automaton, location: LocationId(l) };
+    let of = |clock| vec![QueryMeasure::Clock(ClockId(clock))];
+    let seconds = |n, attained| ExtremumLimit::At { value: ExtremumValue::Nanos(n * SECOND), attained };
+    let limit = |p: &Program, ask| asked(p, ask, WitnessKind::Any).extrema[0].limit;
+    let trains = families::train_gate(3);
+    assert_eq!(limit(&trains, QueryKind::Sup { of: of(0), when: at(1, 4) }), seconds(5, true));
+    let csma = families::csma_cd(4);
+    assert_eq!(limit(&csma, QueryKind::Sup { of: of(4), when: at(4, 2) }), seconds(52, false));
+    let fischer = families::fischer(4);
+    assert_eq!(limit(&fischer, QueryKind::Inf { of: of(3), when: at(3, 3) }), seconds(10, false));
+    assert_eq!(limit(&fischer, QueryKind::Sup { of: of(3), when: at(3, 3) }), ExtremumLimit::Unbounded);
+    let fast = asked(&families::critical_region(2), QueryKind::Possibly(at(4, 5)), WitnessKind::Fastest);
+    assert_eq!(fast.run.unwrap().end, 10 * SECOND);
+}
+
+#[test]
+fn liveness_of_families() {
+    let at = |automaton, l| QueryFormula::At { automaton, location: LocationId(l) };
+    let leaves = |p: &Program, automaton, l| {
+        let left = QueryFormula::Not(Box::new(at(automaton, l)));
+        asked(p, QueryKind::LeadsTo(at(automaton, l), left), WitnessKind::Any).verdict
+    };
+    // Who has asked goes on within K; who is in the critical section may stay for ever.
+    assert_eq!(leaves(&families::fischer(5), 4, 1), QueryVerdict::Holds);
+    assert_eq!(leaves(&families::fischer(5), 4, 3), QueryVerdict::Fails);
+    assert_eq!(leaves(&families::train_gate(3), 3, 1), QueryVerdict::Holds);
 }
 
 /// All locations, and whether two automata can be in their last ones at once.

@@ -348,6 +348,72 @@ fn the_fastest_way_may_have_more_transitions() {
     assert!(run.steps[1].time <= run.end);
 }
 
+/// The way round comes to `b` by one transition more, with more values of the clock: breadth first it is stored while the first
+/// state at `b` still waits, and covers it.
+#[test]
+fn what_came_by_fewer_transitions_is_not_driven_out() {
+    let mut p = program();
+    let mut m = automaton("M", &["x"]);
+    let l: Vec<LocationId> = ["start", "round", "b", "c", "goal"].map(|s| normal(&mut m, s)).into();
+    edge(l[0], l[1]).to(&mut m);
+    edge(l[0], l[2]).clock(0, ClockOp::Ge, 5).to(&mut m);
+    edge(l[1], l[2]).to(&mut m);
+    edge(l[2], l[3]).to(&mut m);
+    edge(l[3], l[4]).clock(0, ClockOp::Le, 7).to(&mut m);
+    add(&mut p, m);
+    let goal = hrdsl_ta::ReachabilityGoal {
+        what: hrdsl_ta::GoalKind::Location { automaton: 0, location: l[4] },
+        settled: false,
+    };
+    let length = |options| {
+        let report = hrdsl_ta::explore(&model(&p), std::slice::from_ref(&goal), &options, &|_| true);
+        let hrdsl_ta::GoalOutcome::Reached(run) = &report.unwrap().goals[0] else { panic!("not reached") };
+        run.steps.len()
+    };
+    let shortest = hrdsl_ta::SearchOptions::shortest();
+    assert_eq!(length(shortest), 3);
+    assert_eq!(length(hrdsl_ta::SearchOptions { keep_shorter: false, ..shortest }), 4);
+    let options = QueryOptions { witness: WitnessKind::Shortest, ..QueryOptions::default() };
+    assert_eq!(ask_with(&p, QueryKind::Possibly(at(0, l[4])), &options).run.unwrap().steps.len(), 3);
+}
+
+/// A deadlock that simulation cannot rule out: the search by greatest constants decides.
+#[test]
+fn a_deadlock_that_only_what_is_simulated_could_have() {
+    let mut p = program();
+    let mut m = automaton("M", &["x", "y"]);
+    let a = location(&mut m, "a", LocationKind::Normal, &[clock(0, ClockOp::Le, 1)]);
+    // Entered with y = 0 and left while it is small; nothing later asks whether y is great.
+    let b = location(&mut m, "b", LocationKind::Urgent, &[]);
+    edge(a, b).reset(1).to(&mut m);
+    edge(b, a).clock(1, ClockOp::Lt, 3).reset(0).to(&mut m);
+    add(&mut p, m);
+    let deadlock = || QueryKind::Possibly(QueryFormula::Deadlock);
+    assert_eq!(ask(&p, deadlock()).verdict, QueryVerdict::Fails);
+    assert_eq!(ask(&p, QueryKind::Eventually(at(0, b))).verdict, QueryVerdict::Holds);
+    // With the invariant alone it is one.
+    p.automata[0].edges[0].clock_guard.push(clock(0, ClockOp::Gt, 1));
+    assert_eq!(ask(&p, deadlock()).verdict, QueryVerdict::Holds);
+}
+
+/// Alive for less than a nanosecond: the witness meets a strict bound by one, and what is left before another is no whole number of them.
+#[test]
+fn a_state_may_be_alive_for_less_than_a_tick() {
+    let mut p = program();
+    let mut m = automaton("M", &["x"]);
+    let (wait, gone) = (normal(&mut m, "wait"), normal(&mut m, "gone"));
+    edge(wait, gone).clock(0, ClockOp::Gt, 3).to(&mut m);
+    add(&mut p, m);
+    let mut o = automaton("O", &["x"]);
+    let first = normal(&mut o, "first");
+    let short = location(&mut o, "short", LocationKind::Normal, &[clock(0, ClockOp::Lt, 2)]);
+    edge(first, short).reset(0).to(&mut o);
+    add(&mut p, o);
+    let alive = QueryFormula::And(vec![not(QueryFormula::Deadlock), at(1, short)]);
+    let yes = ask(&p, QueryKind::Possibly(alive));
+    assert_eq!((yes.verdict, yes.run.unwrap().end), (QueryVerdict::Holds, SECOND + 1));
+}
+
 #[test]
 fn fastest_is_finite_where_a_goal_cannot_be_reached() {
     let mut p = program();
@@ -363,9 +429,18 @@ fn fastest_is_finite_where_a_goal_cannot_be_reached() {
         settled: false,
     };
     let model = model(&p);
+    // As if a run were known that takes long.
+    let known = hrdsl_ta::WitnessRun {
+        network: String::new(),
+        ticks: 1,
+        steps: Vec::new(),
+        end: 1000 * SECOND,
+        ending: RunEnding::Reached,
+    };
     let run = hrdsl_ta::fastest(
         &model,
         &goal,
+        &known,
         hrdsl_ta::SearchBudget::default(),
         hrdsl_ta::ScheduleOptions::default(),
     );

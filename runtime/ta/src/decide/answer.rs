@@ -1,7 +1,5 @@
 //! Answers to queries: what holds, a run that shows it, and a sentence that says why.
 
-use std::ops::ControlFlow;
-
 use hrdsl_ir::{
     Program,
     suite::{DelayChoice, WitnessKind},
@@ -11,15 +9,15 @@ use serde::Serialize;
 
 use crate::{
     decide::{
+        deadlock::{DeadlockOptions, DecidedGoal, deadlocks},
         explore::explore,
-        extremum::{ExtremumSide, MeasureExtremum, extrema},
-        fastest::{fastest, shortest},
+        extremum::{ExtremumOptions, ExtremumQuestion, ExtremumSide, MeasureExtremum, extrema},
+        fastest::fastest,
         liveness::{LivenessSearch, MaximalRun, MaximalRunSearchResult},
-        plain::ReachabilityGraph,
     },
     network::{
         error::ModelError,
-        graph::{ZoneDetail, ZoneGraph},
+        graph::ZoneGraph,
         model::{CompiledNetwork, ObservationOptions},
         query::{GoalKind, ReachabilityGoal, SearchBudget, StateFormula},
     },
@@ -34,11 +32,8 @@ use crate::{
         schedule::ScheduleOptions,
         trace::seconds,
     },
+    zone::extrapolation::ExtrapolationAbstraction,
 };
-
-/// Up to so many symbolic states a shortest run is looked for again in a search that forgets none: a search that drives out
-/// states that others cover finds one that is nearly so.
-pub const SHORTEST: usize = 50_000;
 
 /// How questions are answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -158,12 +153,8 @@ struct QueryEvaluator<'a> {
     options: &'a QueryOptions,
 }
 
-/// How a goal ended, and how many symbolic states were kept.
-type DecidedGoal = (GoalOutcome, usize);
-
 impl QueryEvaluator<'_> {
-    /// Decides the goals: those without `deadlock` in one exploration by simulation, those with it in one of a zone graph
-    /// that tells valuations apart.
+    /// Decides the goals: those without `deadlock` in one exploration, those with it in another.
     fn decide(&self, goals: &[Option<ReachabilityGoal>]) -> Result<Vec<Option<DecidedGoal>>, SearchError> {
         let mut all: Vec<Option<DecidedGoal>> = goals.iter().map(|_| None).collect();
         let asks = |g: &ReachabilityGoal| g.formula().is_some_and(|f| f.asks_deadlock());
@@ -190,44 +181,17 @@ impl QueryEvaluator<'_> {
         }
         let hard = of(true);
         if !hard.is_empty() {
-            self.deadlocks(&hard, &mut all)?;
+            let asked: Vec<&ReachabilityGoal> = hard.iter().map(|(_, goal)| *goal).collect();
+            let options = DeadlockOptions {
+                budget: self.options.budget,
+                threads: self.options.threads,
+                shortest: self.options.witness == WitnessKind::Shortest,
+            };
+            for ((i, _), decided) in hard.iter().zip(deadlocks(self.model, &asked, &options)?) {
+                all[*i] = Some(decided);
+            }
         }
         Ok(all)
-    }
-
-    fn deadlocks(
-        &self,
-        goals: &[(usize, &ReachabilityGoal)],
-        all: &mut [Option<DecidedGoal>],
-    ) -> Result<(), SearchError> {
-        let formulas: Vec<StateFormula> = goals.iter().filter_map(|(_, g)| g.formula()).collect();
-        let refs: Vec<&StateFormula> = formulas.iter().collect();
-        let graph = ZoneGraph::new(self.model, ZoneDetail::Tell, &refs, 0)?;
-        let mut met: Vec<Option<u32>> = vec![None; goals.len()];
-        let mut plain = ReachabilityGraph::new(&graph);
-        let exhausted = plain.explore(self.options.budget, &mut |at, seen, _| {
-            let here = graph.here(&seen.state);
-            for (f, met) in formulas.iter().zip(&mut met) {
-                if met.is_none() && !f.part(&here, &seen.zone)?.is_empty() {
-                    *met = Some(at);
-                }
-            }
-            let done = met.iter().all(Option::is_some);
-            Ok(if done { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-        })?;
-        for (((i, goal), f), met) in goals.iter().zip(&formulas).zip(&met) {
-            let outcome = match (met, exhausted) {
-                (Some(at), _) => {
-                    let run =
-                        build::reach_goal(&graph, plain.path(*at), f, goal, ScheduleOptions::default())?;
-                    GoalOutcome::Reached(Box::new(run))
-                }
-                (None, Some(what)) => GoalOutcome::Inconclusive(what),
-                (None, None) => GoalOutcome::Unreachable,
-            };
-            all[*i] = Some((outcome, plain.nodes.len()));
-        }
-        Ok(())
     }
 
     fn reached(
@@ -270,16 +234,9 @@ impl QueryEvaluator<'_> {
     ) -> Result<Box<WitnessRun>, SearchError> {
         let timing = self.options.timing();
         if self.options.witness == WitnessKind::Fastest
-            && let Some(run) = fastest(self.model, goal, self.options.budget, timing)?
+            && let Some(run) = fastest(self.model, goal, &found, self.options.budget, timing)?
         {
             return Ok(run);
-        }
-        if self.options.witness == WitnessKind::Shortest && found.steps.len() > 1 {
-            let few =
-                SearchBudget { states: self.options.budget.states.min(SHORTEST), ..self.options.budget };
-            if let Some(run) = shortest(self.model, goal, few, timing)? {
-                return Ok(run);
-            }
         }
         if timing.delays == DelayChoice::Earliest {
             return Ok(found);
@@ -348,15 +305,22 @@ impl QueryEvaluator<'_> {
     fn hunt(
         &self,
         formulas: &[&StateFormula],
-        search: impl FnOnce(&mut LivenessSearch<'_, '_, '_>) -> Result<MaximalRunSearchResult, SearchError>,
+        search: impl Fn(&mut LivenessSearch<'_, '_, '_>) -> Result<MaximalRunSearchResult, SearchError>,
     ) -> Result<LivenessSearchResult, SearchError> {
         if formulas.iter().any(|f| f.asks_deadlock()) {
             let what = "`deadlock` can be asked for in `E<>`, `A[]`, `sup` and `inf`, not in questions about all of a run";
             return Err(ModelError::Question(what.into()).into());
         }
-        let graph = ZoneGraph::new(self.model, ZoneDetail::Tell, formulas, 0)?;
-        let mut hunt = LivenessSearch::new(&graph, formulas, self.options.budget);
-        Ok(match search(&mut hunt)? {
+        let graph = ZoneGraph::new(self.model, formulas)?;
+        let begin = |abstraction| LivenessSearch::new(&graph, formulas, self.options.budget, abstraction);
+        let mut found = search(&mut begin(ExtrapolationAbstraction::LowerUpper))?;
+        if matches!(found, MaximalRunSearchResult::Doubtful) {
+            found = search(&mut begin(ExtrapolationAbstraction::Greatest))?;
+        }
+        Ok(match found {
+            MaximalRunSearchResult::Doubtful => {
+                return Err(SearchError::Internal("an exact search is in doubt".into()));
+            }
             MaximalRunSearchResult::Nothing => LivenessSearchResult::Nothing,
             MaximalRunSearchResult::Inconclusive(what) => LivenessSearchResult::Inconclusive(what),
             MaximalRunSearchResult::Found(trap) => {
@@ -416,8 +380,12 @@ impl QueryEvaluator<'_> {
         when: &QueryFormula,
     ) -> Result<QueryAnswer, SearchError> {
         use crate::decide::extremum::ExtremumLimit;
-        let timing = self.options.timing();
-        let all = extrema(self.model, side, of, &when.into(), self.options.budget, timing)?;
+        let options = ExtremumOptions {
+            budget: self.options.budget,
+            threads: self.options.threads,
+            timing: self.options.timing(),
+        };
+        let all = extrema(self.program, self.network, &ExtremumQuestion { side, of, when }, options)?;
         let inconclusive = all.iter().any(|e| matches!(e.limit, ExtremumLimit::Inconclusive { .. }));
         let verdict = if inconclusive { QueryVerdict::Inconclusive } else { QueryVerdict::Holds };
         let texts: Vec<String> = all.iter().map(|e| limit_text(e, side)).collect();

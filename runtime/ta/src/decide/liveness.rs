@@ -1,17 +1,20 @@
 //! Liveness: whether there is a maximal run on which a formula never holds.
 //!
-//! A depth-first search of the zone graph, of the part where the formula does not hold, with an abstraction that is a
-//! bisimulation (ExtraM+). A run that never meets the formula goes round for ever, ends where nothing more can happen, or
-//! waits for ever:
+//! A depth-first search of the zone graph, of the part where the formula does not hold. A run that never meets the formula goes
+//! round for ever, ends where nothing more can happen, or waits for ever:
 //!
 //! - a *loop* is a node whose zone includes that of an earlier node on the search's path with the same discrete state: each
-//!   valuation of the later zone comes from one of the earlier, so going back round and round never ends, and as there are
-//!   finitely many classes of valuations there is a run that goes forward for ever. Inclusion the other way round proves
+//!   valuation of the later zone is simulated by one that comes from the earlier, so there are runs that have gone round any number of
+//!   times, and as there are finitely many regions there is one that goes round for ever. Inclusion the other way round proves
 //!   nothing (Laarman, Olesen, Dalsgaard, Larsen, van de Pol, "Multi-Core Emptiness Checking of Timed Büchi Automata using
-//!   Inclusion Abstraction", CAV 2013), but a node that a finished one includes needs no second look;
+//!   Inclusion Abstraction", CAV 2013), but a node that a finished one simulates needs no second look;
 //! - a run *ends* at a valuation from which no transition is possible, now or after any delay, and time cannot pass into a
 //!   cell where the formula holds;
 //! - a run *waits* for ever where no invariant bounds time.
+//!
+//! Loops and waits are kept by simulation (ExtraLU+, aLU), ends are not: they are states that can do less. So the search goes by simulation
+//! first, and looks for ends in all that a zone simulates. If there may be one to which no run along the path comes, it gives up,
+//! and [begins again](MaximalRunSearchResult::Doubtful) with greatest constants (ExtraM+, aM), a bisimulation.
 //!
 //! A loop in which time does not pass beyond some bound (a Zeno run) counts as an infinite run, as it does in UPPAAL.
 //!
@@ -22,23 +25,25 @@ use std::rc::Rc;
 use rustc_hash::FxHashMap;
 
 use crate::{
-    decide::cells::{CellCuts, ClockCell, within},
+    decide::{
+        cells::{ClockCell, within},
+        known_states::{KnownState, KnownStates},
+    },
     network::{
-        actions::{DelayCondition, EnabledTransition},
         error::ModelError,
         graph::ZoneGraph,
         query::{SearchBudget, StateFormula},
     },
     search::report::SearchCutoff,
     witness::{
-        build::{PathSegment, bounds_of, fault},
+        build::{PathSegment, bounds_of, fault, times},
         error::SearchError,
         run::RunEnding,
+        schedule::ScheduleOptions,
     },
     zone::{
-        constraint::{DifferenceConstraint, keep},
-        dbm::Dbm,
-        federation::{Federation, past},
+        dbm::{Dbm, dominates},
+        extrapolation::{ExtrapolationAbstraction, simulated_hull, thresholds},
     },
 };
 
@@ -59,18 +64,27 @@ pub(crate) enum MaximalRunSearchResult {
     Found(Box<MaximalRun>),
     /// There is none.
     Nothing,
+    /// There may be one that ends: the abstraction cannot tell.
+    Doubtful,
     Inconclusive(SearchCutoff),
 }
 
-/// A part of a symbolic state in one cell.
+/// A part of a symbolic state in one cell, after time has passed within it.
 #[derive(Clone)]
 struct CellNode {
-    state: Rc<[i64]>,
+    known: Rc<KnownState>,
     cell: ClockCell,
     zone: Dbm,
 }
 
-type ClockCellKey = (Rc<[i64]>, ClockCell);
+/// The number of a discrete state, and a cell.
+type ClockCellKey = (u32, ClockCell);
+
+impl CellNode {
+    fn key(&self) -> ClockCellKey {
+        (self.known.number, self.cell.clone())
+    }
+}
 
 /// A node with how it was come to.
 struct EnteredNode {
@@ -88,20 +102,15 @@ struct LivenessFrame {
 /// A search for maximal runs.
 pub(crate) struct LivenessSearch<'g, 'm, 'p> {
     graph: &'g ZoneGraph<'m, 'p>,
-    /// What cuts zones into cells.
-    formulas: Vec<&'g StateFormula>,
+    states: KnownStates<'g, 'm, 'p>,
+    /// Zones are exact as far as can be told: they do not stand for what they simulate.
+    exact: bool,
     budget: SearchBudget,
     entered: Vec<EnteredNode>,
     /// Nodes from which there is no run that avoids the formula.
-    safe: FxHashMap<ClockCellKey, Vec<Dbm>>,
+    safe: FxHashMap<ClockCellKey, Vec<usize>>,
     bytes: usize,
-}
-
-/// What is known of the discrete state of a node.
-struct DiscreteStateInfo {
-    stay: DelayCondition,
-    cuts: CellCuts,
-    actions: Vec<EnabledTransition>,
+    demands: Vec<i64>,
 }
 
 impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
@@ -109,9 +118,18 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         graph: &'g ZoneGraph<'m, 'p>,
         formulas: &[&'g StateFormula],
         budget: SearchBudget,
+        abstraction: ExtrapolationAbstraction,
     ) -> Self {
-        let formulas = formulas.to_vec();
-        Self { graph, formulas, budget, entered: Vec::new(), safe: FxHashMap::default(), bytes: 0 }
+        Self {
+            graph,
+            states: KnownStates::new(graph, formulas, abstraction),
+            exact: abstraction == ExtrapolationAbstraction::Greatest || graph.splits(),
+            budget,
+            entered: Vec::new(),
+            safe: FxHashMap::default(),
+            bytes: 0,
+            demands: Vec::new(),
+        }
     }
 
     /// A maximal run on which `avoid` never holds.
@@ -119,13 +137,12 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
     /// # Errors
     /// If the model is at fault.
     pub(crate) fn avoiding(&mut self, avoid: &StateFormula) -> Result<MaximalRunSearchResult, SearchError> {
-        for node in self.starts()? {
-            let at = self.enter(node, None, None);
+        for at in self.starts()? {
             match self.search(at, avoid)? {
                 MaximalRunSearchResult::Nothing => {}
-                found @ (MaximalRunSearchResult::Found(_) | MaximalRunSearchResult::Inconclusive(_)) => {
-                    return Ok(found);
-                }
+                found @ (MaximalRunSearchResult::Found(_)
+                | MaximalRunSearchResult::Doubtful
+                | MaximalRunSearchResult::Inconclusive(_)) => return Ok(found),
             }
         }
         Ok(MaximalRunSearchResult::Nothing)
@@ -140,32 +157,34 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         first: &StateFormula,
         then: &StateFormula,
     ) -> Result<MaximalRunSearchResult, SearchError> {
-        let mut seen: FxHashMap<ClockCellKey, Vec<Dbm>> = FxHashMap::default();
-        let mut waiting: std::collections::VecDeque<usize> = std::collections::VecDeque::new();
-        for node in self.starts()? {
-            waiting.push_back(self.enter(node, None, None));
+        let mut seen: FxHashMap<ClockCellKey, Vec<usize>> = FxHashMap::default();
+        let mut waiting = std::collections::VecDeque::new();
+        for at in self.starts()? {
+            seen.entry(self.entered[at].node.key()).or_default().push(at);
+            waiting.push_back(at);
         }
         while let Some(at) = waiting.pop_front() {
             if let Some(what) = self.used_up() {
                 return Ok(MaximalRunSearchResult::Inconclusive(what));
             }
-            let node = self.entered[at].node.clone();
-            let zones = seen.entry((node.state.clone(), node.cell.clone())).or_default();
-            if zones.iter().any(|z| z.includes(&node.zone)) {
-                continue;
-            }
-            zones.push(node.zone.clone());
-            if self.holds(first, &node)? {
+            if self.holds(first, &self.entered[at].node)? {
                 match self.search(at, then)? {
                     MaximalRunSearchResult::Nothing => {}
-                    found @ (MaximalRunSearchResult::Found(_) | MaximalRunSearchResult::Inconclusive(_)) => {
-                        return Ok(found);
-                    }
+                    found @ (MaximalRunSearchResult::Found(_)
+                    | MaximalRunSearchResult::Doubtful
+                    | MaximalRunSearchResult::Inconclusive(_)) => return Ok(found),
                 }
             }
-            let spot = self.spot(&node.state)?;
-            for (stop, next) in self.successors(&node, &spot, at)? {
-                waiting.push_back(self.enter(next, Some(at), Some(stop)));
+            for (stop, next) in self.successors(at)? {
+                let known = seen.entry(next.key()).or_default();
+                if self.simulates(known, &next) {
+                    continue;
+                }
+                for piece in self.widened(next) {
+                    let new = self.enter(piece, Some(at), Some(stop.clone()));
+                    known.push(new);
+                    waiting.push_back(new);
+                }
             }
         }
         Ok(MaximalRunSearchResult::Nothing)
@@ -175,92 +194,81 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         if self.entered.len() >= self.budget.states {
             return Some(SearchCutoff::States);
         }
-        (self.bytes >= self.budget.bytes).then_some(SearchCutoff::Memory)
+        (self.bytes + self.states.bytes() >= self.budget.bytes).then_some(SearchCutoff::Memory)
     }
 
     fn enter(&mut self, node: CellNode, parent: Option<usize>, stop: Option<PathSegment>) -> usize {
-        // The zone is kept twice, once among the finished ones.
-        self.bytes += 2 * node.zone.heap_bytes() + size_of_val(&*node.state) + size_of::<EnteredNode>();
+        self.bytes += node.zone.heap_bytes() + size_of::<EnteredNode>() + size_of::<usize>();
         self.entered.push(EnteredNode { node, parent, stop });
         self.entered.len() - 1
     }
 
-    fn spot(&self, state: &[i64]) -> Result<DiscreteStateInfo, ModelError> {
-        let stay = self.graph.stay(state)?.ok_or(ModelError::Initial)?;
-        let cuts = CellCuts::of(&self.formulas, &self.graph.here(state))?;
-        Ok(DiscreteStateInfo { stay, cuts, actions: self.graph.actions(state) })
+    /// Whether one of the nodes simulates this one; all are of one discrete state and cell.
+    fn simulates(&mut self, nodes: &[usize], node: &CellNode) -> bool {
+        let (zone, dim) = (&node.zone, node.zone.dim());
+        if nodes.is_empty() || self.graph.splits() {
+            return nodes.iter().any(|&n| self.entered[n].node.zone.includes(zone));
+        }
+        thresholds(&node.known.frame, zone, &mut self.demands);
+        nodes.iter().any(|&n| {
+            let old = &self.entered[n].node.zone;
+            (0..dim).all(|i| dominates(old.row(i), &self.demands[i * dim..(i + 1) * dim]))
+        })
     }
 
-    fn starts(&self) -> Result<Vec<CellNode>, SearchError> {
-        let (state, stay, zone) = self.graph.start()?;
-        let state: Rc<[i64]> = state.into();
-        let cuts = CellCuts::of(&self.formulas, &self.graph.here(&state))?;
+    /// The nodes of the start, entered.
+    fn starts(&mut self) -> Result<Vec<usize>, SearchError> {
+        let (state, _, zone) = self.graph.start()?;
+        let known = self.states.find(&state)?.ok_or(ModelError::Initial)?;
         let mut out = Vec::new();
-        self.nodes(&state, &stay, &cuts, &zone, &mut |node| out.push(node));
+        for (cell, part) in known.cuts.parts(&zone) {
+            let Some(node) = self.node(&known, cell, part) else { continue };
+            out.extend(self.widened(node).into_iter().map(|piece| self.enter(piece, None, None)));
+        }
         Ok(out)
     }
 
-    /// The nodes of a zone right after a transition: its parts in cells, after time has passed within them.
-    fn nodes(
-        &self,
-        state: &Rc<[i64]>,
-        stay: &DelayCondition,
-        cuts: &CellCuts,
-        zone: &Dbm,
-        out: &mut dyn FnMut(CellNode),
-    ) {
-        for (cell, part) in cuts.parts(zone) {
-            self.node(state, stay, cuts, &cell, part, out);
-        }
+    /// A part of a zone after time has passed in its cell.
+    fn node(&self, known: &Rc<KnownState>, cell: ClockCell, mut part: Dbm) -> Option<CellNode> {
+        self.graph.wait(&known.stay, &mut part);
+        let zone = within(&part, &known.cuts.bounds(&cell))?;
+        Some(CellNode { known: Rc::clone(known), cell, zone })
     }
 
-    fn node(
-        &self,
-        state: &Rc<[i64]>,
-        stay: &DelayCondition,
-        cuts: &CellCuts,
-        cell: &ClockCell,
-        mut part: Dbm,
-        out: &mut dyn FnMut(CellNode),
-    ) {
-        self.graph.wait(stay, &mut part);
-        let Some(part) = within(&part, &cuts.bounds(cell)) else { return };
-        self.graph.widen(state, part, &mut |zone| {
-            out(CellNode { state: state.clone(), cell: cell.clone(), zone });
+    /// The node as one of finitely many, in one or several pieces.
+    fn widened(&self, node: CellNode) -> Vec<CellNode> {
+        let mut pieces = Vec::new();
+        let CellNode { known, cell, zone } = node;
+        self.graph.widen(&known.frame, zone, &mut |zone| {
+            pieces.push(CellNode { known: Rc::clone(&known), cell: cell.clone(), zone });
         });
+        pieces
     }
 
-    /// Where time or a transition leads from a node.
-    fn successors(
-        &self,
-        node: &CellNode,
-        spot: &DiscreteStateInfo,
-        at: usize,
-    ) -> Result<Vec<(PathSegment, CellNode)>, SearchError> {
+    /// Where time or a transition leads from a node, not extrapolated.
+    fn successors(&self, at: usize) -> Result<Vec<(PathSegment, CellNode)>, SearchError> {
+        let node = &self.entered[at].node;
+        let known = &node.known;
         let mut out = Vec::new();
-        if spot.stay.waits {
-            for cell in spot.cuts.next(&node.cell) {
+        if known.stay.waits {
+            for cell in known.cuts.next(&node.cell) {
                 let mut later = node.zone.clone();
-                self.graph.wait(&spot.stay, &mut later);
-                let bounds = spot.cuts.bounds(&cell);
+                self.graph.wait(&known.stay, &mut later);
+                let bounds = known.cuts.bounds(&cell);
                 let Some(part) = within(&later, &bounds) else { continue };
-                self.node(&node.state, &spot.stay, &spot.cuts, &cell, part, &mut |next| {
-                    out.push((PathSegment::Wait(bounds.clone()), next));
-                });
+                let next = self.node(known, cell, part);
+                out.extend(next.map(|next| (PathSegment::Wait(bounds), next)));
             }
         }
-        let before = spot.cuts.bounds(&node.cell);
-        for action in &spot.actions {
-            let followed = self.graph.follow(action, &node.zone).map_err(|e| self.fault(at, &e))?;
-            let Some((target, there, zone)) = followed else { continue };
-            let target: Rc<[i64]> = target.into();
-            let cuts = CellCuts::of(&self.formulas, &self.graph.here(&target))?;
-            for (cell, part) in cuts.parts(&zone) {
-                let after = cuts.bounds(&cell);
-                self.node(&target, &there, &cuts, &cell, part, &mut |next| {
-                    let (taken, before, after) = (action.taken.clone(), before.clone(), after.clone());
-                    out.push((PathSegment::Take { taken, before, after }, next));
-                });
+        let before = known.cuts.bounds(&node.cell);
+        for step in &known.moves {
+            let followed = self.states.follow(step, &node.zone).map_err(|e| self.fault(at, &e))?;
+            let Some((target, zone)) = followed else { continue };
+            for (cell, part) in target.cuts.parts(&zone) {
+                let after = target.cuts.bounds(&cell);
+                let Some(next) = self.node(&target, cell, part) else { continue };
+                let (taken, before) = (step.action.taken.clone(), before.clone());
+                out.push((PathSegment::Take { taken, before, after }, next));
             }
         }
         Ok(out)
@@ -283,14 +291,18 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
 
     /// INVARIANT: the comparisons of the formula have one value in a cell, so it holds in all of a node or in nothing of it.
     fn holds(&self, formula: &StateFormula, node: &CellNode) -> Result<bool, ModelError> {
-        Ok(!formula.part(&self.graph.here(&node.state), &node.zone)?.is_empty())
+        Ok(!formula.part(&self.graph.here(&node.known.state), &node.zone)?.is_empty())
     }
 
     fn search(&mut self, root: usize, avoid: &StateFormula) -> Result<MaximalRunSearchResult, SearchError> {
         let mut stack: Vec<LivenessFrame> = Vec::new();
         let mut on_stack: FxHashMap<ClockCellKey, Vec<usize>> = FxHashMap::default();
-        if let Some(trap) = self.visit(root, avoid, &mut stack, &mut on_stack)? {
-            return Ok(MaximalRunSearchResult::Found(Box::new(trap)));
+        let node = self.entered[root].node.clone();
+        if self.is_safe(&node) || self.holds(avoid, &node)? {
+            return Ok(MaximalRunSearchResult::Nothing);
+        }
+        if let Some(end) = self.visit(root, &mut stack, &mut on_stack)? {
+            return Ok(end);
         }
         while let Some(frame) = stack.last_mut() {
             let parent = frame.entered;
@@ -305,105 +317,117 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
             if self.is_safe(&node) || self.holds(avoid, &node)? {
                 continue;
             }
-            let key = (node.state.clone(), node.cell.clone());
-            let ancestors = on_stack.get(&key).map_or(&[] as &[usize], Vec::as_slice);
-            let back = ancestors.iter().rev().find(|&&a| node.zone.includes(&self.entered[a].node.zone));
-            if let Some(&back) = back {
-                let from = self.path(back).len();
-                let mut stops = self.path(parent);
-                stops.push(stop);
-                let again = stops[..from].iter().filter(|s| matches!(s, PathSegment::Take { .. })).count();
-                let state = node.state.to_vec();
-                let trap = MaximalRun { stops, ending: RunEnding::Again(again), from, state };
+            let mut pieces = self.widened(node);
+            let Some(piece) = pieces.pop() else { continue };
+            // The others come later, so that nothing is on the stack but the path: of a piece there is one piece only.
+            if let Some(frame) = stack.last_mut() {
+                frame.next.extend(pieces.into_iter().map(|other| (stop.clone(), other)));
+            }
+            if let Some(trap) = self.closes_loop(&piece, parent, &stop, &on_stack) {
                 return Ok(MaximalRunSearchResult::Found(Box::new(trap)));
             }
-            let at = self.enter(node, Some(parent), Some(stop));
-            if let Some(trap) = self.visit(at, avoid, &mut stack, &mut on_stack)? {
-                return Ok(MaximalRunSearchResult::Found(Box::new(trap)));
+            let at = self.enter(piece, Some(parent), Some(stop));
+            if let Some(end) = self.visit(at, &mut stack, &mut on_stack)? {
+                return Ok(end);
             }
         }
         Ok(MaximalRunSearchResult::Nothing)
     }
 
-    fn is_safe(&self, node: &CellNode) -> bool {
-        let key = (node.state.clone(), node.cell.clone());
-        self.safe.get(&key).is_some_and(|zones| zones.iter().any(|z| z.includes(&node.zone)))
+    /// The loop that a node closes, which comes from the last of the path.
+    fn closes_loop(
+        &self,
+        node: &CellNode,
+        parent: usize,
+        stop: &PathSegment,
+        on_stack: &FxHashMap<ClockCellKey, Vec<usize>>,
+    ) -> Option<MaximalRun> {
+        let ancestors = on_stack.get(&node.key())?;
+        let back = ancestors.iter().rev().find(|&&a| node.zone.includes(&self.entered[a].node.zone))?;
+        let from = self.path(*back).len();
+        let mut stops = self.path(parent);
+        stops.push(stop.clone());
+        let again = stops[..from].iter().filter(|s| matches!(s, PathSegment::Take { .. })).count();
+        let state = node.known.state.clone();
+        Some(MaximalRun { stops, ending: RunEnding::Again(again), from, state })
+    }
+
+    fn is_safe(&mut self, node: &CellNode) -> bool {
+        let Some(nodes) = self.safe.get_mut(&node.key()) else { return false };
+        let nodes = std::mem::take(nodes);
+        let safe = self.simulates(&nodes, node);
+        self.safe.insert(node.key(), nodes);
+        safe
     }
 
     fn finish(&mut self, at: usize, on_stack: &mut FxHashMap<ClockCellKey, Vec<usize>>) {
         let node = &self.entered[at].node;
-        let key = (node.state.clone(), node.cell.clone());
+        let key = node.key();
         if let Some(list) = on_stack.get_mut(&key) {
             list.retain(|&n| n != at);
         }
-        let zone = node.zone.clone();
-        let zones = self.safe.entry(key).or_default();
-        zones.retain(|z| !zone.includes(z));
-        zones.push(zone);
+        let entered = &self.entered;
+        let nodes = self.safe.entry(key).or_default();
+        nodes.retain(|&n| !node.zone.includes(&entered[n].node.zone));
+        nodes.push(at);
     }
 
     /// Looks whether a run can end in a node, and puts it on the stack.
     fn visit(
         &mut self,
         at: usize,
-        avoid: &StateFormula,
         stack: &mut Vec<LivenessFrame>,
         on_stack: &mut FxHashMap<ClockCellKey, Vec<usize>>,
-    ) -> Result<Option<MaximalRun>, SearchError> {
-        let node = self.entered[at].node.clone();
-        if self.is_safe(&node) || self.holds(avoid, &node)? {
-            return Ok(None);
+    ) -> Result<Option<MaximalRunSearchResult>, SearchError> {
+        let node = &self.entered[at].node;
+        if node.known.stay.for_ever() && node.known.cuts.is_last(&node.cell) {
+            let trap = self.trap(at, self.path(at), RunEnding::Waits);
+            return Ok(Some(MaximalRunSearchResult::Found(Box::new(trap))));
         }
-        let spot = self.spot(&node.state)?;
-        let trap = |stops: Vec<PathSegment>, ending| {
-            let from = stops.len();
-            Some(MaximalRun { stops, ending, from, state: node.state.to_vec() })
-        };
-        if spot.stay.for_ever() && spot.cuts.is_last(&node.cell) {
-            return Ok(trap(self.path(at), RunEnding::Waits));
+        let end = self.stuck(at)?;
+        if end.is_some() {
+            return Ok(end);
         }
-        if let Some(stuck) = self.stuck(&node, &spot)? {
-            let mut stops = self.path(at);
-            stops.push(PathSegment::Wait(stuck));
-            return Ok(trap(stops, RunEnding::Stuck));
-        }
-        let next = self.successors(&node, &spot, at)?;
-        on_stack.entry((node.state.clone(), node.cell.clone())).or_default().push(at);
+        let next = self.successors(at)?;
+        on_stack.entry(self.entered[at].node.key()).or_default().push(at);
         // The last is taken first.
         stack.push(LivenessFrame { entered: at, next: next.into_iter().rev().collect() });
         Ok(None)
     }
 
-    /// Bounds of valuations of the node at which a run ends: no transition is possible now or later, and time cannot
-    /// pass into another cell.
-    fn stuck(
-        &self,
-        node: &CellNode,
-        spot: &DiscreteStateInfo,
-    ) -> Result<Option<Vec<DifferenceConstraint>>, ModelError> {
-        // The whole cell, so that the bounds are those of the model and not of the abstraction.
-        let mut all = Dbm::universe(self.graph.dim());
-        let bounds = spot.cuts.bounds(&node.cell);
-        if !bounds.iter().chain(&spot.stay.invariant).all(|c| keep(&mut all, *c)) {
+    fn trap(&self, at: usize, stops: Vec<PathSegment>, ending: RunEnding) -> MaximalRun {
+        let from = stops.len();
+        MaximalRun { stops, ending, from, state: self.entered[at].node.known.state.clone() }
+    }
+
+    /// A run that ends in a node: no transition is possible now or later, and time cannot pass into another cell.
+    fn stuck(&self, at: usize) -> Result<Option<MaximalRunSearchResult>, SearchError> {
+        let node = &self.entered[at].node;
+        let ends = self.states.ends(&node.known, &node.cell);
+        if ends.is_empty() {
             return Ok(None);
         }
-        let mut left: Federation = self.graph.deadlocked_by(&spot.actions, &spot.stay, &all);
-        if left.is_empty() {
-            return Ok(None);
-        }
-        if spot.stay.waits {
-            for cell in spot.cuts.next(&node.cell) {
-                let mut there = Dbm::universe(self.graph.dim());
-                let bounds = spot.cuts.bounds(&cell);
-                if bounds.iter().chain(&spot.stay.invariant).all(|c| keep(&mut there, *c)) {
-                    left = left.minus(&past(&there));
-                }
+        let hull;
+        let zone = if self.exact {
+            &node.zone
+        } else {
+            hull = simulated_hull(&node.known.frame, &node.zone);
+            &hull
+        };
+        let mut doubtful = false;
+        for end in ends.zones() {
+            let mut both = end.clone();
+            if !both.intersect(zone) {
+                continue;
             }
+            let mut stops = self.path(at);
+            stops.push(PathSegment::Wait(bounds_of(end)));
+            if self.exact || times(self.graph, &stops, ScheduleOptions::default())?.is_some() {
+                let trap = self.trap(at, stops, RunEnding::Stuck);
+                return Ok(Some(MaximalRunSearchResult::Found(Box::new(trap))));
+            }
+            doubtful = true;
         }
-        let here = left.into_zones().into_iter().find(|z| {
-            let mut both = z.clone();
-            both.intersect(&node.zone)
-        });
-        Ok(here.map(|z| bounds_of(&z)))
+        Ok(doubtful.then_some(MaximalRunSearchResult::Doubtful))
     }
 }

@@ -1,11 +1,13 @@
-//! What is asked of a network, decided: by the searches for goals, or by walks of the zone graph where these do not suffice.
+//! What is asked of a network, decided: by the search for goals, with probes that look at its states, or by a walk of the zone graph.
 
 pub(crate) mod answer;
 mod cells;
+pub(crate) mod deadlock;
 pub(crate) mod explore;
 pub(crate) mod extremum;
 pub(crate) mod fastest;
 #[cfg(test)]
 mod interpreter_tests;
+mod known_states;
 mod liveness;
-mod plain;
+mod places;

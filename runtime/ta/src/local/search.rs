@@ -104,7 +104,7 @@ pub fn explore(
         discrete_states: search.store.discrete_states(),
         transitions: search.transitions,
         peak_bytes: search.peak,
-        complete: exhausted.is_none() && search.waiting.is_empty(&search.store.nodes),
+        complete: exhausted.is_none() && search.waiting.is_empty(&search.store.nodes, None),
         global_because: None,
         widest: exhausted.and_then(|_| WidestVariable::of(search.space.model, &search.store.extremes())),
     })
@@ -121,7 +121,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         if !compiled.symbolic.is_empty() {
             return Err(NotApplicableError::ClockGoal.into());
         }
-        let layout = StateLayout::new(model.ranges(), &slice::relevant(model, &compiled));
+        let layout = StateLayout::new(model.ranges(), &slice::relevant(model, &compiled, None));
         Ok(Self {
             space,
             goals,
@@ -129,9 +129,9 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            store: PassedList::new(layout, 0),
+            store: PassedList::new(layout, 0, false),
             zones: Vec::new(),
-            waiting: WaitingList::new(model, options.order, options.seed),
+            waiting: WaitingList::new(options.order, options.seed),
             levels: levels(model),
             packed: Vec::new(),
             met: Vec::new(),
@@ -155,7 +155,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         let (mut state, mut round, mut ask) = (Vec::new(), Vec::new(), 0);
         loop {
             self.waiting.settle(&self.store.nodes);
-            if (!self.goals.is_empty() && self.left == 0) || self.waiting.is_empty(&self.store.nodes) {
+            if (!self.goals.is_empty() && self.left == 0) || self.waiting.is_empty(&self.store.nodes, None) {
                 return Ok(None);
             }
             let bytes = self.store.bytes() + self.waiting.bytes() + self.bytes;
@@ -273,7 +273,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         let zone = std::mem::replace(&mut w.zone, self.pool.pop().unwrap_or_default());
         self.bytes += zone.heap_bytes();
         self.zones.push(Some(zone));
-        self.waiting.push(id, lost, level(&self.levels, &w.effect.target, &[]));
+        self.waiting.push(id, lost, level(&self.levels, &w.effect.target, &[]), 0);
         Ok(())
     }
 

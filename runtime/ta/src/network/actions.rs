@@ -59,30 +59,46 @@ type FoundFiring<'f> = dyn FnMut(FiringOrError) -> ControlFlow<()> + 'f;
 impl CompiledNetwork<'_> {
     /// All that may happen in a discrete state, in the network's order.
     pub(crate) fn actions(&self, state: &[i64]) -> Vec<EnabledTransition> {
+        let mut out = Vec::new();
+        self.each_action(state, &mut |action| {
+            out.push(action);
+            ControlFlow::Continue(())
+        });
+        out
+    }
+
+    /// Calls `f` with all that may happen in a discrete state, in the network's order, until it breaks off.
+    pub(crate) fn each_action(&self, state: &[i64], f: &mut dyn FnMut(EnabledTransition) -> ControlFlow<()>) {
         let mut own = state.to_vec();
-        self.collected(state, &mut |scratch, found| {
+        let mut enumerate = |scratch: &mut EnumerationScratch, found: &mut FoundFiring| {
             let _ = self.enumerate(&mut own, &NoConstraintFilter, scratch, found);
-        })
+        };
+        self.collected(state, &mut enumerate, f);
     }
 
     /// All that the network may do about an event from outside.
     pub(crate) fn receptions(&self, state: &[i64], event: EventId, args: &[i64]) -> Vec<EnabledTransition> {
-        let mut own = state.to_vec();
-        self.collected(state, &mut |scratch, found| {
+        let (mut own, mut out) = (state.to_vec(), Vec::new());
+        let mut enumerate = |scratch: &mut EnumerationScratch, found: &mut FoundFiring| {
             let _ = self.received(&mut own, (event, args), scratch, found);
-        })
+        };
+        self.collected(state, &mut enumerate, &mut |action| {
+            out.push(action);
+            ControlFlow::Continue(())
+        });
+        out
     }
 
     fn collected(
         &self,
         state: &[i64],
         enumerate: &mut dyn FnMut(&mut EnumerationScratch, &mut FoundFiring),
-    ) -> Vec<EnabledTransition> {
+        f: &mut dyn FnMut(EnabledTransition) -> ControlFlow<()>,
+    ) {
         let (mut scratch, mut stack, mut effect) =
             (EnumerationScratch::default(), Vec::new(), TransitionEffect::default());
-        let mut out = Vec::new();
         let mut found = |found: FiringOrError| -> ControlFlow<()> {
-            out.extend(match found {
+            let action = match found {
                 FiringOrError::Firing(firing) => self.action(state, &firing, &mut stack, &mut effect),
                 FiringOrError::Fault { member, edge, fault, guard } => {
                     let error = self.fault(usize::from(member), usize::from(edge), fault);
@@ -94,11 +110,10 @@ impl CompiledNetwork<'_> {
                         target: Err(Box::new(error)),
                     })
                 }
-            });
-            ControlFlow::Continue(())
+            };
+            action.map_or(ControlFlow::Continue(()), &mut *f)
         };
         enumerate(&mut scratch, &mut found);
-        out
     }
 
     /// `None`: a limit forbids it.

@@ -92,7 +92,7 @@ fn compiled<'p>(
         observe.all_clocks,
         &compiler.library,
     )?;
-    let width = width(&members, &formulas, dim, &compiler.library);
+    let reach = width(&members, &formulas, dim, &compiler.library);
     let watch = compiler.watch(observe);
     Ok(CompiledNetwork {
         program,
@@ -106,7 +106,7 @@ fn compiled<'p>(
         multiway: multiway_channels(program, network),
         watch,
         extrapolation,
-        width: width?,
+        reach: reach?,
         pairs: observe.pairs,
         uses: observe.uses,
         members,

@@ -1,7 +1,10 @@
-//! The plain zone graph of a network: what the searches for liveness, deadlocks, bounds and fastest witnesses walk on.
+//! The plain zone graph of a network: what the search for liveness walks on, and what formulas are evaluated in.
 //!
 //! A node is a discrete state and a zone, after time has passed if it may. Unlike the search for goals, which may keep of a
-//! zone what can do most, a walk for infinite runs must keep apart what can be told apart: see [`ZoneDetail`].
+//! zone what can do most, a walk for infinite runs must keep apart what can be told apart: see
+//! [`ExtrapolationAbstraction`].
+
+use std::ops::ControlFlow;
 
 use hrdsl_ir::{
     Nanos, Value,
@@ -24,34 +27,19 @@ use crate::{
         constraint::{DifferenceConstraint, keep},
         dbm::{Dbm, DbmBound},
         diagonals::split,
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction, KEEP, MaximalConstants, NONE, extra},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, LuBounds, NONE, extra_lu},
         federation::{Federation, past},
     },
 };
 
-/// A state, what staying there means, and the clocks on entering it.
-pub(crate) type SuccessorState<'a> = (&'a [i64], DelayCondition, Dbm);
-
-/// What a walk keeps of zones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ZoneDetail {
-    /// What is needed to say what can be reached: ExtraLU+.
-    Reach,
-    /// What tells valuations apart: ExtraM+, which is a bisimulation.
-    Tell,
-}
-
 /// The zone graph of a network, with what formulas tell apart.
 pub(crate) struct ZoneGraph<'m, 'p> {
     pub(crate) model: &'m CompiledNetwork<'p>,
-    detail: ZoneDetail,
-    /// Bounds that formulas add everywhere.
-    raised: MaximalConstants,
+    /// The greatest constants that formulas add everywhere.
+    raised: Vec<i64>,
     diagonals: Vec<DifferenceConstraint>,
     /// With comparisons of clocks: the greatest constant of each clock.
     greatest: Vec<i64>,
-    /// Clocks after the network's that only run.
-    spare: usize,
 }
 
 impl<'m, 'p> ZoneGraph<'m, 'p> {
@@ -59,21 +47,14 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     /// If a comparison in a formula has no bound that is known beforehand.
     pub(crate) fn new(
         model: &'m CompiledNetwork<'p>,
-        detail: ZoneDetail,
         formulas: &[&StateFormula],
-        spare: usize,
     ) -> Result<Self, ModelError> {
         let mut graph = Self {
             model,
-            detail,
-            raised: MaximalConstants::none(model.dim + spare),
+            raised: vec![NONE; model.dim],
             diagonals: model.extrapolation.differences(),
             greatest: Vec::new(),
-            spare,
         };
-        for clock in model.dim..model.dim + spare {
-            (graph.raised.lower[clock], graph.raised.upper[clock]) = (NONE, KEEP);
-        }
         let mut fault = None;
         for formula in formulas {
             formula.each_clock(&mut |c| {
@@ -88,9 +69,6 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
                     graph.note(c, lo, hi);
                 }
             });
-            if formula.asks_deadlock() {
-                graph.detail = ZoneDetail::Tell;
-            }
         }
         if let Some(e) = fault {
             return Err(e);
@@ -102,9 +80,10 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     fn note(&mut self, c: &hrdsl_ir::ta::ClockConstraint, lo: i64, hi: i64) {
         let most = lo.abs().max(hi.abs());
         let clock = |x: hrdsl_ir::ta::ClockId| usize::from(x.0) + 1;
-        self.raised.note(clock(c.clock), most);
+        let mut note = |x: usize| self.raised[x] = self.raised[x].max(most);
+        note(clock(c.clock));
         let Some(minus) = c.minus else { return };
-        self.raised.note(clock(minus), most);
+        note(clock(minus));
         for bound in lo..=hi {
             for d in as_bounds(c, bound) {
                 if !self.diagonals.contains(&d) && !self.diagonals.contains(&d.negated()) {
@@ -116,26 +95,12 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
 
     fn greatest(&self) -> Vec<i64> {
         let mut all = self.model.extrapolation.greatest(self.model.dim);
-        all.resize(self.dim(), KEEP);
-        for (g, l) in all.iter_mut().zip(&self.raised.lower).take(self.model.dim) {
-            *g = (*g).max(*l).max(0);
-        }
+        all.iter_mut().zip(&self.raised).for_each(|(most, raised)| *most = (*most).max(*raised).max(0));
         all
     }
 
-    /// A clock's bounds up to this many units are kept.
-    pub(crate) fn keep_up_to(&mut self, clock: usize, most: i64) {
-        self.raised.note(clock, most);
-        self.greatest = self.greatest();
-    }
-
-    /// The greatest constant that a clock is compared with anywhere.
-    pub(crate) fn most(&self, clock: usize) -> i64 {
-        self.greatest[clock]
-    }
-
     pub(crate) fn dim(&self) -> usize {
-        self.model.dim + self.spare
+        self.model.dim
     }
 
     pub(crate) fn initial(&self) -> Vec<i64> {
@@ -152,6 +117,12 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     /// If an invariant has no value.
     pub(crate) fn stay(&self, state: &[i64]) -> Result<Option<DelayCondition>, ModelError> {
         self.model.stay(state)
+    }
+
+    fn invariant(&self, state: &[i64]) -> Result<Option<Vec<DifferenceConstraint>>, ModelError> {
+        let mut all = Vec::new();
+        let holds = self.model.invariant(&mut state.to_vec(), &mut Vec::new(), &mut all)?;
+        Ok(holds.then_some(all))
     }
 
     /// The clocks at the start, before time passes.
@@ -187,16 +158,20 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         self.model.target(state, taken)
     }
 
-    /// Where a transition leads to from some clocks: the state, what staying there means, and the clocks right after it,
-    /// before time passes. `None`: it is not possible.
+    /// The clocks with which a transition is possible, as far as its guard tells, and the state it leads to.
     ///
     /// # Errors
     /// The fault of the model that the transition is.
-    pub(crate) fn follow<'a>(
+    pub(crate) fn guarded<'a>(
         &self,
         action: &'a EnabledTransition,
         zone: &Dbm,
-    ) -> Result<Option<SuccessorState<'a>>, ModelError> {
+    ) -> Result<Option<(&'a [i64], Dbm)>, ModelError> {
+        let fails = |c: &DifferenceConstraint| !zone.meets(usize::from(c.i), usize::from(c.j), c.bound);
+        // Quick, where one alone rules it out.
+        if action.taken.guard.iter().any(fails) {
+            return Ok(None);
+        }
         let mut zone = zone.clone();
         if !action.taken.guard.iter().all(|c| keep(&mut zone, *c)) {
             return Ok(None);
@@ -206,8 +181,7 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         if let Some((_, fault)) = action.below.iter().find(|(c, _)| meets(c)) {
             return Err(fault.clone());
         }
-        let Some(stay) = self.stay(target)? else { return Ok(None) };
-        Ok(self.take(action, &stay, &mut zone).then_some((target.as_slice(), stay, zone)))
+        Ok(Some((target, zone)))
     }
 
     /// The clocks with which a transition of the state is this fault: one conjunction for each way to it.
@@ -233,38 +207,46 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         all
     }
 
-    /// `false`: the target's invariant forbids it.
-    fn take(&self, action: &EnabledTransition, target: &DelayCondition, zone: &mut Dbm) -> bool {
+    /// From the guarded clocks to those right after the transition, before time passes. `false`: the target's invariant forbids it.
+    pub(crate) fn take(&self, action: &EnabledTransition, target: &DelayCondition, zone: &mut Dbm) -> bool {
         if !action.taken.resets.is_empty() {
             *zone = set(zone, &self.sources(&action.taken.resets));
         }
         target.invariant.iter().all(|c| keep(zone, *c))
     }
 
-    /// Widens a zone to one of finitely many, in one or several pieces.
-    pub(crate) fn widen(&self, state: &[i64], zone: Dbm, out: &mut dyn FnMut(Dbm)) {
-        let mut zone = zone;
-        // A clock that only runs is kept from below: who comes later can do no more.
-        for clock in self.model.dim..self.dim() {
-            for j in (0..self.dim()).filter(|&j| j != clock) {
-                zone.put(clock, j, DbmBound::INFINITY);
+    /// Zones are split along comparisons of clocks.
+    pub(crate) fn splits(&self) -> bool {
+        !self.diagonals.is_empty()
+    }
+
+    /// All clocks, with what they are compared with from a state on.
+    pub(crate) fn frame(&self, state: &[i64], abstraction: ExtrapolationAbstraction) -> ActiveClocks {
+        let mut active = ActiveClocks::default();
+        self.model.extrapolation.frame(state, abstraction, &mut active);
+        let mut all = ActiveClocks {
+            clocks: (0..self.dim() as u16).collect(),
+            bounds: self.raised.iter().map(|&most| LuBounds { lower: most, upper: most }).collect(),
+        };
+        for (&clock, lu) in active.clocks.iter().zip(&active.bounds) {
+            let bounds = &mut all.bounds[usize::from(clock)];
+            *bounds = bounds.join(*lu);
+        }
+        if abstraction == ExtrapolationAbstraction::Greatest {
+            for lu in &mut all.bounds {
+                let most = lu.lower.max(lu.upper);
+                *lu = LuBounds { lower: most, upper: most };
             }
         }
-        if !self.diagonals.is_empty() {
+        all
+    }
+
+    /// Widens a zone to one of finitely many, in one or several pieces.
+    pub(crate) fn widen(&self, frame: &ActiveClocks, mut zone: Dbm, out: &mut dyn FnMut(Dbm)) {
+        if self.splits() {
             return split(&zone, &self.diagonals, &self.greatest, out);
         }
-        let mut bounds = MaximalConstants::none(self.dim());
-        self.model.bounds(state, &mut bounds);
-        bounds.raise(&self.raised);
-        if self.detail == ZoneDetail::Tell {
-            let spare: Vec<(i64, i64)> =
-                (self.model.dim..self.dim()).map(|x| (bounds.lower[x], bounds.upper[x])).collect();
-            bounds.level();
-            for (x, (l, u)) in (self.model.dim..).zip(spare) {
-                (bounds.lower[x], bounds.upper[x]) = (l, u);
-            }
-        }
-        extra(&mut zone, &bounds);
+        extra_lu(frame, &mut zone, &mut Vec::new());
         out(zone);
     }
 
@@ -287,13 +269,21 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     /// If an invariant has no value.
     pub(crate) fn deadlocked(&self, state: &[i64], zone: &Dbm) -> Result<Federation, ModelError> {
         let Some(stay) = self.stay(state)? else { return Ok(Federation::empty()) };
-        Ok(self.deadlocked_by(&self.actions(state), &stay, zone))
+        let mut left = Federation::from_zone(zone.clone());
+        // Of most states the first few transitions leave nothing.
+        self.model.each_action(state, &mut |action| {
+            if let Some(from) = self.leaves(&action, &stay) {
+                left = left.minus(&from);
+            }
+            if left.is_empty() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        Ok(left)
     }
 
     /// As [`deadlocked`](Self::deadlocked), with what is known of the state.
-    pub(crate) fn deadlocked_by(
+    pub(crate) fn deadlocked_by<'a>(
         &self,
-        actions: &[EnabledTransition],
+        actions: impl Iterator<Item = &'a EnabledTransition>,
         stay: &DelayCondition,
         zone: &Dbm,
     ) -> Federation {
@@ -316,9 +306,9 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     fn leaves(&self, action: &EnabledTransition, stay: &DelayCondition) -> Option<Dbm> {
         let mut zone = Dbm::universe(self.dim());
         if let Ok(target) = &action.target
-            && let Ok(there) = self.stay(target)
+            && let Ok(there) = self.invariant(target)
         {
-            if !there?.invariant.iter().all(|c| keep(&mut zone, *c)) {
+            if !there?.iter().all(|c| keep(&mut zone, *c)) {
                 return None;
             }
             if !action.taken.resets.is_empty() {
@@ -409,15 +399,6 @@ impl SymbolicView for DiscreteStateView<'_, '_, '_> {
 // ── What the network tells ──
 
 impl CompiledNetwork<'_> {
-    fn bounds(&self, state: &[i64], out: &mut MaximalConstants) {
-        let mut frame = ActiveClocks::default();
-        self.extrapolation.frame(state, ExtrapolationAbstraction::LowerUpper, &mut frame);
-        for (&clock, lu) in frame.clocks.iter().zip(&frame.bounds) {
-            let x = usize::from(clock);
-            (out.lower[x], out.upper[x]) = (lu.lower, lu.upper);
-        }
-    }
-
     /// The least and greatest that a time of a formula can be, in units.
     fn span(&self, time: &hrdsl_ir::ta::TimeSum) -> (i64, i64) {
         let names = self.slot_scope();

@@ -17,6 +17,7 @@ use crate::network::{
     number::NumberType,
     parts::{CompiledAutomaton, CompiledLocation, EventWatch, MultiwayChannel},
     query::{EventCounter, EventLimit, GoalKind, ReachabilityGoal, StateFormula},
+    width::BoundReach,
 };
 
 /// What a model keeps beside the state of its automata, and what it will be asked.
@@ -63,7 +64,7 @@ pub struct CompiledNetwork<'p> {
     /// By event.
     pub(crate) watch: Vec<EventWatch>,
     pub(crate) extrapolation: ExtrapolationBounds,
-    pub(crate) width: BoundWidth,
+    pub(crate) reach: BoundReach,
     pub(crate) pairs: bool,
     pub(crate) uses: bool,
 }

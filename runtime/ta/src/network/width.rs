@@ -17,7 +17,7 @@ pub(super) fn width(
     formulas: &ClockConstraints,
     dim: usize,
     library: &CodeLibrary,
-) -> Result<BoundWidth, ModelError> {
+) -> Result<BoundReach, ModelError> {
     let (mut most, mut differences, mut updates) = (1, false, 0);
     let mut note = |c: &ClockConstraints| {
         for f in &c.fixed {
@@ -52,16 +52,33 @@ pub(super) fn width(
     }
     let most = most.max(set);
     let far = 3 * (4 + updates + if differences { 2 * dim as i64 } else { 0 });
-    let reach = i128::from(most) * i128::from(far);
-    if reach < 1 << 14 {
-        Ok(BoundWidth::Bits16)
-    } else if reach < 1 << 30 {
-        Ok(BoundWidth::Bits32)
-    } else if reach < 1 << 61 {
-        Ok(BoundWidth::Bits64)
+    let reach = BoundReach(i128::from(most) * i128::from(far));
+    if reach.width(0).is_some() {
+        Ok(reach)
     } else {
         Err(ModelError::Constants {
             automaton: members.first().map_or(String::new(), |m| m.automaton.name.clone()),
         })
+    }
+}
+
+/// No sum of bounds of a network goes beyond this.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct BoundReach(i128);
+
+impl BoundReach {
+    /// The least width, with a clock beside those of the network that is never set and comes to so many units at most.
+    pub(crate) fn width(self, time: i64) -> Option<BoundWidth> {
+        // Three bounds in a sum, each of which may have the time in it.
+        let reach = self.0 + 4 * i128::from(time);
+        if reach < 1 << 14 {
+            Some(BoundWidth::Bits16)
+        } else if reach < 1 << 30 {
+            Some(BoundWidth::Bits32)
+        } else if reach < 1 << 61 {
+            Some(BoundWidth::Bits64)
+        } else {
+            None
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What expansions lead to, before it is stored.
 
-use crate::network::error::ModelError;
+use crate::{network::error::ModelError, search::probe::ProbeFinding};
 
 /// A path to a goal: a node, then perhaps one transition more of its expansion. No node: the initial state.
 #[derive(Clone, Copy, Debug)]
@@ -29,12 +29,15 @@ pub(crate) struct PendingState {
 pub(crate) struct GoalHit {
     pub goal: usize,
     pub path: GoalPath,
+    /// When the time since the start is a clock: its least value, as an [`arrival`](super::expand::arrival).
+    pub arrival: i64,
 }
 
 /// What expansions lead to.
 pub(crate) struct ExpansionBatch<N> {
     pub items: Vec<PendingState>,
     pub hits: Vec<GoalHit>,
+    pub findings: Vec<ProbeFinding>,
     pub fault: Option<(ModelError, GoalPath)>,
     pub visited: usize,
     pub transitions: usize,
@@ -49,6 +52,7 @@ impl<N> Default for ExpansionBatch<N> {
         Self {
             items: Vec::new(),
             hits: Vec::new(),
+            findings: Vec::new(),
             fault: None,
             visited: 0,
             transitions: 0,
@@ -64,6 +68,7 @@ impl<N> ExpansionBatch<N> {
     pub(crate) fn clear(&mut self) {
         self.items.clear();
         self.hits.clear();
+        self.findings.clear();
         self.fault = None;
         self.visited = 0;
         self.transitions = 0;

@@ -7,21 +7,22 @@ use std::ops::ControlFlow;
 use crate::{
     network::{actions::PathTransition, error::ModelError, model::CompiledNetwork},
     search::{
-        batch::{ExpansionBatch, GoalHit, GoalPath, PendingState},
+        arrive::NodeExpansion,
+        batch::{ExpansionBatch, GoalPath},
         covering::{covers, demands, subsumes},
-        goals::{CompiledGoals, SymbolicStateRef},
+        goals::CompiledGoals,
         monotone::{OneWayCounter, may_drive_out, no_worse},
-        options::{SearchOptions, SubsumptionRelation},
-        stepper::{SymbolicStepper, SymbolicSuccessor},
-        store::{NIL, PassedList, hash_words},
+        options::SearchOptions,
+        probe::{ProbeFinding, ProbedState, StateProbe, widened},
+        stepper::{SymbolicStepper, ZoneClocks},
+        store::{NIL, PassedList},
         waiting,
     },
     witness::error::SearchError,
     zone::{
         constraint::DifferenceConstraint,
         dbm::{Dbm, DbmNumber},
-        diagonals::split,
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction, extra_lu, thresholds},
+        extrapolation::ActiveClocks,
     },
 };
 
@@ -37,17 +38,26 @@ pub(crate) struct ExpansionContext<'a, N> {
     pub options: &'a SearchOptions,
     /// Their ranks stand with the nodes.
     pub counters: &'a [OneWayCounter],
+    pub probe: Option<&'a dyn StateProbe>,
+    /// If the time since the start is a clock: what [arrives](arrival) later is left out.
+    pub latest: Option<i64>,
+}
+
+/// The least value of the last clock of a zone, the time since the start, so that the earlier is the less: a bound `≤ n` is before `< n`.
+pub(crate) fn arrival<N: DbmNumber>(zone: &Dbm<N>) -> i64 {
+    let least: i64 = zone.entry(0, zone.dim() - 1).into();
+    -least
 }
 
 /// A state of an expansion: the one that is expanded, or a committed one on the path.
-struct ExpansionState<N> {
-    state: Vec<i64>,
-    frame: ActiveClocks,
-    zone: Dbm<N>,
+pub(super) struct ExpansionState<N> {
+    pub(super) state: Vec<i64>,
+    pub(super) frame: ActiveClocks,
+    pub(super) zone: Dbm<N>,
     /// The local state before it, and the number of its successor.
-    from: (usize, u32),
+    pub(super) from: (usize, u32),
     /// The number of the transition in the whole expansion.
-    via: Option<u32>,
+    pub(super) via: Option<u32>,
 }
 
 /// Expands states, with memory that it uses again and again.
@@ -59,28 +69,36 @@ pub(crate) struct ExpansionWorker<'m, 'p, N> {
     m: WorkerMemory<N>,
 }
 
-struct WorkerMemory<N> {
-    stack: Vec<i64>,
-    packed: Vec<u64>,
-    ranks: Vec<u32>,
-    bounds: Vec<N>,
-    flat: Vec<N>,
-    met: Vec<usize>,
-    frame: ActiveClocks,
-    state: Vec<i64>,
-    zone: Dbm<N>,
-    pieces: Vec<Dbm<N>>,
-    covers: Vec<u32>,
-    beyond: Vec<bool>,
+pub(super) struct WorkerMemory<N> {
+    pub(super) stack: Vec<i64>,
+    pub(super) packed: Vec<u64>,
+    pub(super) ranks: Vec<u32>,
+    pub(super) bounds: Vec<N>,
+    pub(super) flat: Vec<N>,
+    pub(super) met: Vec<usize>,
+    pub(super) frame: ActiveClocks,
+    pub(super) state: Vec<i64>,
+    pub(super) zone: Dbm<N>,
+    pub(super) pieces: Vec<Dbm<N>>,
+    pub(super) covers: Vec<u32>,
+    pub(super) beyond: Vec<bool>,
     /// What a search by the topological order knows of locations.
-    levels: Vec<Vec<u32>>,
+    pub(super) levels: Vec<Vec<u32>>,
+    /// The lower bound of the time at which a goal over clocks is met.
+    pub(super) earliest: Option<N>,
+    /// With comparisons of clocks: the greatest constants, also of the time if that is a clock.
+    pub(super) greatest: Vec<i64>,
+    pub(super) wide: Dbm,
+    /// By discrete state: whether the probe can find anything there, if it was asked.
+    pub(super) worth: Vec<Option<bool>>,
 }
 
 /// An expansion that met a fault.
 pub(crate) struct ExpansionError;
 
 impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
-    pub(crate) fn new(model: &'m CompiledNetwork<'p>, abstraction: ExtrapolationAbstraction) -> Self {
+    pub(crate) fn new(model: &'m CompiledNetwork<'p>, clocks: ZoneClocks) -> Self {
+        let greatest = model.extrapolation.diagonals.as_ref().map_or(Vec::new(), |d| d.greatest.clone());
         let m = WorkerMemory {
             stack: Vec::new(),
             packed: Vec::new(),
@@ -95,8 +113,12 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             covers: Vec::new(),
             beyond: Vec::new(),
             levels: waiting::levels(model),
+            earliest: None,
+            greatest: greatest.into_iter().chain(clocks.time).collect(),
+            wide: Dbm::zero(1),
+            worth: Vec::new(),
         };
-        Self { model, stepper: SymbolicStepper::new(model, abstraction), locals: Vec::new(), count: 0, m }
+        Self { model, stepper: SymbolicStepper::new(model, clocks), locals: Vec::new(), count: 0, m }
     }
 
     /// The initial state, which is stored even if it is committed.
@@ -110,7 +132,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         visit.arrive(&mut self.m, (&mut state, None), &frame, &mut zone, (NIL, 0), batch)
     }
 
-    fn local(&mut self) -> &mut ExpansionState<N> {
+    fn local(&mut self) {
         if self.count == self.locals.len() {
             self.locals.push(ExpansionState {
                 state: Vec::new(),
@@ -121,20 +143,19 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             });
         }
         self.count += 1;
-        &mut self.locals[self.count - 1]
     }
 
     /// Makes the node the first local state.
     fn load(&mut self, c: &ExpansionContext<N>, id: u32) {
         let node = c.store.nodes[id as usize];
-        let (model, abstraction) = (self.model, c.options.abstraction);
         self.count = 0;
-        let local = self.local();
+        self.local();
+        let local = &mut self.locals[0];
         c.store.layout.unpack(c.store.packed(node.discrete), &mut local.state);
         for (counter, &rank) in c.counters.iter().zip(c.store.ranks(id)) {
             local.state[counter.place] = counter.value(rank);
         }
-        model.extrapolation.frame(&local.state, abstraction, &mut local.frame);
+        self.stepper.frame(&local.state, &mut local.frame);
         let dim = local.frame.dim();
         local.zone.load(dim, c.store.zone(&node, dim));
         local.via = None;
@@ -149,6 +170,10 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
     ) -> Result<(), ExpansionError> {
         self.load(c, node);
         batch.visited += 1;
+        if let Err(error) = self.probe(c, node, &mut batch.findings) {
+            batch.fault = Some((error, GoalPath { node, via: None }));
+            return Err(ExpansionError);
+        }
         let visit = NodeExpansion { model: self.model, c, node, keep: c.options.keep_committed };
         // Committed states that are met are put behind this one, and expanded by the same loop. `via` counts through all of them, so that
         // a number means the same transition whenever the node is expanded again: `retrace` relies on it.
@@ -167,6 +192,30 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             at += 1;
         }
         Ok(())
+    }
+
+    /// Shows the loaded node to the probe.
+    fn probe(
+        &mut self,
+        c: &ExpansionContext<N>,
+        node: u32,
+        out: &mut Vec<ProbeFinding>,
+    ) -> Result<(), ModelError> {
+        let Some(probe) = c.probe else { return Ok(()) };
+        let ExpansionState { state, frame, zone, .. } = &self.locals[0];
+        let discrete = c.store.nodes[node as usize].discrete as usize;
+        if self.m.worth.len() <= discrete {
+            self.m.worth.resize(c.store.discrete_states(), None);
+        }
+        let worth = match self.m.worth[discrete] {
+            Some(known) => known,
+            None => *self.m.worth[discrete].insert(probe.matters(state)?),
+        };
+        if !worth {
+            return Ok(());
+        }
+        widened(zone, &mut self.m.wide);
+        probe.look(&ProbedState { node, state, frame, zone: &self.m.wide }, out)
     }
 
     /// The successors of one local state. With `until` it stops at that number of the expansion.
@@ -293,7 +342,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
         discrete: u32,
         first: u32,
         (zone, dim): (&[N], usize),
-        ranks: &[u32],
+        (parent, ranks): (u32, &[u32]),
     ) -> Option<&[u32]> {
         let subsumption = options.subsumption;
         self.m.covers.clear();
@@ -315,6 +364,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
                 return None;
             }
             if may_drive_out(options.order, ranks, store.ranks(at))
+                && !store.is_longer_way(parent, at)
                 && covers(subsumption, &self.m.frame, zone, old)
             {
                 self.m.covers.push(at);
@@ -326,7 +376,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
 }
 
 impl<N: DbmNumber> ExpansionState<N> {
-    fn empty() -> Self {
+    pub(super) fn empty() -> Self {
         Self {
             state: Vec::new(),
             frame: ActiveClocks::default(),
@@ -334,250 +384,5 @@ impl<N: DbmNumber> ExpansionState<N> {
             from: (0, 0),
             via: None,
         }
-    }
-}
-
-/// The expansion of one node.
-struct NodeExpansion<'a, 'm, 'p, N> {
-    model: &'m CompiledNetwork<'p>,
-    c: &'a ExpansionContext<'a, N>,
-    node: u32,
-    keep: bool,
-}
-
-impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
-    /// Looks at the goals that a transition meets.
-    fn taken(&self, before: &[i64], s: &SymbolicSuccessor<N>, via: u32, batch: &mut ExpansionBatch<N>) {
-        if self.c.open.is_empty() {
-            return;
-        }
-        for part in s.firing.parts {
-            let m = usize::from(part.member);
-            let number = self.model.members[m].edges[usize::from(part.edge)].number;
-            let last = self.model.pairs.then(|| self.model.last_edge_at(m));
-            self.c.goals.taken(number, before, last, &mut |goal| {
-                if self.c.open[goal] {
-                    batch.hits.push(GoalHit { goal, path: GoalPath { node: self.node, via: Some(via) } });
-                }
-            });
-        }
-    }
-
-    /// A committed state that is not stored: it is expanded at once, unless that was done.
-    fn pass(
-        &self,
-        m: &mut WorkerMemory<N>,
-        locals: &mut Vec<ExpansionState<N>>,
-        count: &mut usize,
-        s: SymbolicSuccessor<N>,
-        (at, via): (usize, u32),
-        batch: &mut ExpansionBatch<N>,
-    ) -> Result<(), ModelError> {
-        let path = GoalPath { node: self.node, via: Some(via) };
-        m.met.clear();
-        self.c.goals.states(s.state, None, &mut m.stack, self.model, false, self.c.open, &mut m.met)?;
-        self.look_at_zone(m, s.state, s.frame, s.zone, false)?;
-        batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path }));
-        self.split(m, s.frame, s.zone);
-        let pieces = std::mem::take(&mut m.pieces);
-        for piece in &pieces {
-            m.flat.clear();
-            piece.store(&mut m.flat);
-            demands(self.c.options.subsumption, s.frame, piece, &mut m.bounds, &m.flat);
-            // Against the local states alone, so that the numbers of an expansion depend on nothing but its node.
-            let known = locals[..*count].iter().any(|l| {
-                if l.state != *s.state {
-                    return false;
-                }
-                m.flat.clear();
-                l.zone.store(&mut m.flat);
-                subsumes(self.c.options.subsumption, &m.flat, &m.bounds)
-            });
-            if known {
-                continue;
-            }
-            if *count == locals.len() {
-                locals.push(ExpansionState::empty());
-            }
-            let local = &mut locals[*count];
-            *count += 1;
-            local.state.clone_from(s.state);
-            local.frame.clone_from(s.frame);
-            local.zone.copy_from(piece);
-            local.from = (at, s.number);
-            local.via = Some(via);
-        }
-        m.pieces = pieces;
-        Ok(())
-    }
-
-    /// The extrapolated pieces of a zone, into `m.pieces`.
-    fn split(&self, m: &mut WorkerMemory<N>, frame: &ActiveClocks, zone: &mut Dbm<N>) {
-        match &self.model.extrapolation.diagonals {
-            Some(d) => {
-                m.pieces.clear();
-                split(zone, &d.constraints, &d.greatest, &mut |piece| m.pieces.push(piece));
-            }
-            None => {
-                extra_lu(frame, zone, &mut m.beyond);
-                m.pieces.truncate(1);
-                match m.pieces.first_mut() {
-                    Some(piece) => piece.copy_from(zone),
-                    None => m.pieces.push(zone.clone()),
-                }
-            }
-        }
-    }
-
-    /// Adds the goals over clocks that a state meets to `m.met`.
-    fn look_at_zone(
-        &self,
-        m: &mut WorkerMemory<N>,
-        state: &mut [i64],
-        frame: &ActiveClocks,
-        zone: &Dbm<N>,
-        settled: bool,
-    ) -> Result<(), ModelError> {
-        if self.c.goals.symbolic.is_empty() {
-            return Ok(());
-        }
-        let mut look = SymbolicStateRef { model: self.model, state, stack: &mut m.stack, frame, zone };
-        self.c.goals.zones(&mut look, settled, self.c.open, &mut m.met)
-    }
-
-    /// A state to store, unless a stored one covers it.
-    fn arrive(
-        &self,
-        m: &mut WorkerMemory<N>,
-        (state, asked): (&mut [i64], Option<&[i64]>),
-        frame: &ActiveClocks,
-        zone: &mut Dbm<N>,
-        (parent, via): (u32, u32),
-        batch: &mut ExpansionBatch<N>,
-    ) -> Result<(), ModelError> {
-        let store = self.c.store;
-        let subsumption = self.c.options.subsumption;
-        store.layout.pack(state, &mut m.packed);
-        m.ranks.clear();
-        m.ranks.extend(self.c.counters.iter().map(|counter| counter.rank(state[counter.place])));
-        let hash = hash_words(&m.packed);
-        let known = store.find(hash, &m.packed);
-        let simple = self.model.extrapolation.diagonals.is_none();
-        if subsumption == SubsumptionRelation::Simulation
-            && simple
-            && let Some(discrete) = known
-        {
-            // What is covered before extrapolation is so after it: most of the work is saved.
-            thresholds(frame, zone, &mut m.bounds);
-            if self.is_covered(discrete, frame.dim(), &m.bounds, &m.ranks) {
-                return Ok(());
-            }
-        }
-        let path =
-            GoalPath { node: if parent == NIL { NIL } else { parent }, via: (parent != NIL).then_some(via) };
-        if self.c.open.iter().any(|o| *o) {
-            let settled = !self.model.any_committed(state);
-            m.met.clear();
-            // Goals without clocks are the discrete state's: where that is stored, they were looked at when it came. Its counters are not
-            // stored with it.
-            if known.is_none() || !self.c.counters.is_empty() {
-                self.c.goals.states(
-                    state,
-                    asked,
-                    &mut m.stack,
-                    self.model,
-                    settled,
-                    self.c.open,
-                    &mut m.met,
-                )?;
-            }
-            self.look_at_zone(m, state, frame, zone, settled)?;
-            batch.hits.extend(m.met.iter().map(|&goal| GoalHit { goal, path }));
-        }
-        self.split(m, frame, zone);
-        let pieces = std::mem::take(&mut m.pieces);
-        for piece in &pieces {
-            self.offer(m, frame, state, piece, known, hash, (parent, via), batch);
-        }
-        m.pieces = pieces;
-        Ok(())
-    }
-
-    fn is_covered(&self, discrete: u32, dim: usize, demands: &[N], ranks: &[u32]) -> bool {
-        let mut at = self.c.store.head(discrete);
-        while at != NIL {
-            let node = &self.c.store.nodes[at as usize];
-            if no_worse(self.c.store.ranks(at), ranks)
-                && subsumes(self.c.options.subsumption, self.c.store.zone(node, dim), demands)
-            {
-                return true;
-            }
-            at = node.next;
-        }
-        false
-    }
-
-    /// An extrapolated state, for the batch unless a stored one covers it.
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "what a worker has at hand, taken apart for the borrow checker"
-    )]
-    fn offer(
-        &self,
-        m: &mut WorkerMemory<N>,
-        frame: &ActiveClocks,
-        state: &[i64],
-        zone: &Dbm<N>,
-        known: Option<u32>,
-        hash: u64,
-        (parent, via): (u32, u32),
-        batch: &mut ExpansionBatch<N>,
-    ) {
-        let subsumption = self.c.options.subsumption;
-        let dim = frame.dim();
-        let (words, place, first) = (batch.words.len(), batch.zones.len(), batch.covered.len());
-        zone.store(&mut batch.zones);
-        if let Some(discrete) = known {
-            let flat = &batch.zones[place..];
-            // Simulation was looked at before.
-            let looked = subsumption == SubsumptionRelation::Simulation
-                && self.model.extrapolation.diagonals.is_none();
-            if !looked {
-                demands(subsumption, frame, zone, &mut m.bounds, flat);
-            }
-            // One walk for both questions: a zone that covers this one ends it, those that it covers are noted for the store to drop.
-            let mut at = self.c.store.head(discrete);
-            while at != NIL {
-                let node = &self.c.store.nodes[at as usize];
-                let old = self.c.store.zone(node, dim);
-                let ranks = self.c.store.ranks(at);
-                if !looked && no_worse(ranks, &m.ranks) && subsumes(subsumption, old, &m.bounds) {
-                    batch.zones.truncate(place);
-                    batch.covered.truncate(first);
-                    return;
-                }
-                if may_drive_out(self.c.options.order, &m.ranks, ranks)
-                    && covers(subsumption, frame, flat, old)
-                {
-                    batch.covered.push(at);
-                }
-                at = node.next;
-            }
-        }
-        batch.words.extend_from_slice(&m.packed);
-        let ranks = batch.ranks.len();
-        batch.ranks.extend_from_slice(&m.ranks);
-        batch.items.push(PendingState {
-            parent,
-            via,
-            discrete: known.unwrap_or(NIL),
-            hash,
-            level: waiting::level(&m.levels, state, &m.ranks),
-            dim,
-            words,
-            zone: place,
-            ranks,
-            covered: (first, batch.covered.len()),
-        });
     }
 }

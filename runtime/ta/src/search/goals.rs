@@ -401,18 +401,22 @@ pub(crate) struct SymbolicStateRef<'a, 'p, N> {
     pub stack: &'a mut Vec<i64>,
     pub frame: &'a ActiveClocks,
     pub zone: &'a Dbm<N>,
+    /// The last clock is the time since the start: how early the formula holds is asked, too.
+    pub timed: bool,
+    /// The lower bound of that time, of what has met a formula.
+    pub earliest: Option<N>,
 }
 
 impl<N: DbmNumber> SymbolicStateRef<'_, '_, N> {
     /// Whether the formula holds for some valuation of the zone.
     pub(crate) fn meets(&mut self, formula: &SymbolicFormula) -> Result<bool, CodeEvalError> {
         let zone = self.zone.clone();
-        self.some(&mut vec![(formula, true)], zone)
+        Ok(self.some(&mut vec![(formula, true)], zone)? || self.earliest.is_some())
     }
 
-    /// Whether all of these hold (or do not, as the flag says) for some valuation.
+    /// Whether all of these hold (or do not, as the flag says) for some valuation. With times it goes through all ways, and never says so.
     fn some(&mut self, all: &mut Vec<(&SymbolicFormula, bool)>, zone: Dbm<N>) -> Result<bool, CodeEvalError> {
-        let Some((formula, yes)) = all.pop() else { return Ok(!zone.is_empty()) };
+        let Some((formula, yes)) = all.pop() else { return Ok(self.found(&zone)) };
         let found = match (formula, yes) {
             (SymbolicFormula::Data(code), _) => {
                 let n = code.eval(&mut CodeEvalContext::new(&self.model.library, self.state, self.stack))?;
@@ -444,6 +448,15 @@ impl<N: DbmNumber> SymbolicStateRef<'_, '_, N> {
             }
         };
         Ok(found)
+    }
+
+    fn found(&mut self, zone: &Dbm<N>) -> bool {
+        if zone.is_empty() || !self.timed {
+            return !zone.is_empty();
+        }
+        let least = zone.entry(0, zone.dim() - 1);
+        self.earliest = Some(self.earliest.map_or(least, |e| e.max(least)));
+        false
     }
 
     fn clock(

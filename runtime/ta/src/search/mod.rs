@@ -1,5 +1,6 @@
 //! The search for goals: zones with one time for all automata, many goals at once, no state twice.
 
+mod arrive;
 mod batch;
 mod counter_steps;
 mod covering;
@@ -7,8 +8,10 @@ pub(crate) mod expand;
 pub(crate) mod goals;
 pub(crate) mod monotone;
 pub(crate) mod options;
+pub(crate) mod probe;
 mod reach_of_counter;
 pub(crate) mod report;
+pub(crate) mod round_search;
 pub(crate) mod rounds;
 pub(crate) mod slice;
 mod stepper;

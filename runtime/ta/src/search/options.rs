@@ -5,7 +5,7 @@ use crate::{network::query::SearchBudget, zone::extrapolation::ExtrapolationAbst
 /// In which order waiting states are expanded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SearchOrder {
-    /// The oldest first: if committed states are kept, witnesses are the shortest.
+    /// The oldest first.
     Breadth,
     /// The newest first.
     Depth,
@@ -45,8 +45,11 @@ pub struct SearchOptions {
     /// A state covers others that differ in worse values of one-way counters alone, too: see `search/monotone.rs`. Not with
     /// `Equality`.
     pub counters: bool,
+    /// No state is driven out by one that came by more transitions: breadth first, with committed states kept, witnesses are the
+    /// shortest then.
+    pub keep_shorter: bool,
     /// Each automaton has a time of its own, where that serves the network and the goals: see [`local`](crate::local). Then
-    /// `subsumption`, `abstraction`, `threads`, `keep_committed`, `reduce` and `counters` have no meaning.
+    /// `subsumption`, `abstraction`, `threads`, `keep_committed`, `reduce`, `counters` and `keep_shorter` have no meaning.
     pub local_time: bool,
     pub budget: SearchBudget,
     pub seed: u64,
@@ -62,6 +65,7 @@ impl Default for SearchOptions {
             keep_committed: true,
             reduce: true,
             counters: true,
+            keep_shorter: false,
             local_time: false,
             budget: SearchBudget::default(),
             seed: 0,
@@ -85,6 +89,6 @@ impl SearchOptions {
     /// Witnesses have as few transitions as any.
     #[must_use]
     pub fn shortest() -> Self {
-        Self { order: SearchOrder::Breadth, ..Self::default() }
+        Self { order: SearchOrder::Breadth, keep_shorter: true, ..Self::default() }
     }
 }

@@ -6,6 +6,7 @@
 //! the path to them is kept, for witnesses. When nothing waits any more, a goal that was not met is proved unreachable.
 
 use std::{
+    ops::ControlFlow,
     rc::Rc,
     sync::{Mutex, PoisonError},
 };
@@ -20,13 +21,16 @@ use crate::{
         query::ReachabilityGoal,
     },
     search::{
-        batch::{ExpansionBatch, GoalPath},
+        batch::{ExpansionBatch, GoalHit, GoalPath},
         expand::{ExpansionContext, ExpansionWorker},
         goals::CompiledGoals,
         monotone::{self, OneWayCounter},
         options::{SearchOptions, SubsumptionRelation},
+        probe::{ProbeFinding, StateProbe},
         report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
+        round_search::{RoundSearch, SearchAside},
         slice,
+        stepper::ZoneClocks,
         store::{NIL, PassedList, StateLayout},
         waiting::WaitingList,
     },
@@ -41,11 +45,34 @@ pub(crate) fn explore(
     options: &SearchOptions,
     go_on: &dyn Fn(&SearchProgress) -> bool,
 ) -> Result<SearchReport, SearchError> {
-    match model.width {
-        BoundWidth::Bits16 => ZoneGraphSearch::<i16>::new(model, goals, options)?.explore(go_on),
-        BoundWidth::Bits32 => ZoneGraphSearch::<i32>::new(model, goals, options)?.explore(go_on),
-        BoundWidth::Bits64 => ZoneGraphSearch::<i64>::new(model, goals, options)?.explore(go_on),
+    let beside = SearchAside::default();
+    match width(model, beside)? {
+        BoundWidth::Bits16 => ZoneGraphSearch::<i16>::new(model, goals, options, beside)?.explore(go_on),
+        BoundWidth::Bits32 => ZoneGraphSearch::<i32>::new(model, goals, options, beside)?.explore(go_on),
+        BoundWidth::Bits64 => ZoneGraphSearch::<i64>::new(model, goals, options, beside)?.explore(go_on),
     }
+}
+
+fn width(model: &CompiledNetwork, beside: SearchAside) -> Result<BoundWidth, SearchError> {
+    let width = model.reach.width(beside.within.unwrap_or(0));
+    width.ok_or_else(|| SearchError::Internal("a time is too great for zones".into()))
+}
+
+/// A search to be gone through.
+///
+/// # Errors
+/// If the goals have no meaning.
+pub(crate) fn begin<'m>(
+    model: &'m CompiledNetwork,
+    goals: &'m [ReachabilityGoal],
+    options: &SearchOptions,
+    beside: SearchAside<'m>,
+) -> Result<Box<dyn RoundSearch + 'm>, SearchError> {
+    Ok(match width(model, beside)? {
+        BoundWidth::Bits16 => Box::new(ZoneGraphSearch::<i16>::new(model, goals, options, beside)?),
+        BoundWidth::Bits32 => Box::new(ZoneGraphSearch::<i32>::new(model, goals, options, beside)?),
+        BoundWidth::Bits64 => Box::new(ZoneGraphSearch::<i64>::new(model, goals, options, beside)?),
+    })
 }
 
 struct ZoneGraphSearch<'m, 'p, N> {
@@ -54,6 +81,10 @@ struct ZoneGraphSearch<'m, 'p, N> {
     options: SearchOptions,
     compiled: CompiledGoals,
     counters: Vec<OneWayCounter>,
+    probe: Option<&'m dyn StateProbe>,
+    /// What arrives later is left out, if the time is a clock.
+    latest: Option<i64>,
+    started: bool,
     hits: Vec<Option<GoalPath>>,
     open: Vec<bool>,
     left: usize,
@@ -61,6 +92,8 @@ struct ZoneGraphSearch<'m, 'p, N> {
     waiting: WaitingList,
     workers: Vec<ExpansionWorker<'m, 'p, N>>,
     batches: Vec<ExpansionBatch<N>>,
+    /// The states of the round.
+    round: Vec<u32>,
     pool: Option<rayon::ThreadPool>,
     visited: usize,
     transitions: usize,
@@ -77,11 +110,17 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         model: &'m CompiledNetwork<'p>,
         goals: &'m [ReachabilityGoal],
         options: &SearchOptions,
+        beside: SearchAside<'m>,
     ) -> Result<Self, SearchError> {
         let compiled = CompiledGoals::new(model, goals)?;
-        let mut matters =
-            if options.reduce { slice::relevant(model, &compiled) } else { vec![true; model.size()] };
-        let counters = if options.counters && options.subsumption != SubsumptionRelation::Equality {
+        let mut matters = if options.reduce {
+            slice::relevant(model, &compiled, beside.probe)
+        } else {
+            vec![true; model.size()]
+        };
+        // A probe tells states apart by what they are, not by what they can do.
+        let mergeable = beside.probe.is_none() && options.subsumption != SubsumptionRelation::Equality;
+        let counters = if options.counters && mergeable {
             monotone::counters(model, &compiled, &matters)
         } else {
             Vec::new()
@@ -92,6 +131,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         if model.extrapolation.diagonals.is_some() && options.subsumption == SubsumptionRelation::Simulation {
             options.subsumption = SubsumptionRelation::Inclusion;
         }
+        let clocks = ZoneClocks { abstraction: options.abstraction, time: beside.within };
         let pool = if options.threads > 1 {
             let built = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
             Some(built.map_err(|e| SearchError::Internal(format!("no threads: {e}")))?)
@@ -105,13 +145,22 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             hits: vec![None; goals.len()],
             open: vec![true; goals.len()],
             left: goals.len(),
-            store: PassedList::new(StateLayout::new(model.ranges(), &matters), counters.len()),
+            store: PassedList::new(
+                StateLayout::new(model.ranges(), &matters),
+                counters.len(),
+                options.keep_shorter,
+            ),
             counters,
-            waiting: WaitingList::new(model, options.order, options.seed),
-            workers: (0..options.threads.max(1))
-                .map(|_| ExpansionWorker::new(model, options.abstraction))
-                .collect(),
+            probe: beside.probe,
+            latest: beside.within.map(|most| 2 * most - 1),
+            started: false,
+            waiting: match beside.within {
+                Some(_) => WaitingList::by_time(),
+                None => WaitingList::new(options.order, options.seed),
+            },
+            workers: (0..options.threads.max(1)).map(|_| ExpansionWorker::new(model, clocks)).collect(),
             batches: Vec::new(),
+            round: Vec::new(),
             pool,
             options,
             visited: 0,
@@ -137,7 +186,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             discrete_states: self.store.discrete_states(),
             transitions: self.transitions,
             peak_bytes: self.peak,
-            complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes),
+            complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes, self.latest),
             global_because: None,
             widest: exhausted.and_then(|_| WidestVariable::of(self.model, &self.extremes())),
         })
@@ -158,37 +207,51 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
     }
 
     fn run(&mut self, go_on: &dyn Fn(&SearchProgress) -> bool) -> Result<Option<SearchCutoff>, SearchError> {
-        self.begin()?;
-        let mut round = Vec::new();
         loop {
-            self.measure();
-            if self.decided() || self.waiting.is_empty(&self.store.nodes) {
-                return Ok(None);
-            }
-            let bytes = self.store.bytes() + self.waiting.bytes();
-            let budget = self.options.budget;
-            if self.store.nodes.len() >= budget.states || !self.store.has_room(0) {
-                return Ok(Some(SearchCutoff::States));
-            }
-            if bytes >= budget.bytes {
-                return Ok(Some(SearchCutoff::Memory));
-            }
-            let progress = SearchProgress {
-                stored: self.store.stored,
-                visited: self.visited,
-                waiting: self.waiting.len(),
-                bytes,
-                open: self.left,
-            };
-            if !go_on(&progress) {
-                return Ok(Some(SearchCutoff::Stopped));
-            }
-            self.waiting.take(&self.store.nodes, ROUND, &mut round);
-            self.expand(&round);
-            if let Some(what) = self.merge()? {
-                return Ok(Some(what));
+            if let ControlFlow::Break(end) = self.next_round(go_on)? {
+                return Ok(end);
             }
         }
+    }
+
+    /// The first time the initial state is stored, then some of those that wait are expanded.
+    fn next_round(
+        &mut self,
+        go_on: &dyn Fn(&SearchProgress) -> bool,
+    ) -> Result<ControlFlow<Option<SearchCutoff>>, SearchError> {
+        if !std::mem::replace(&mut self.started, true) {
+            self.begin()?;
+        }
+        self.measure();
+        if self.decided() || self.waiting.is_empty(&self.store.nodes, self.latest) {
+            return Ok(ControlFlow::Break(None));
+        }
+        let bytes = self.store.bytes() + self.waiting.bytes();
+        let budget = self.options.budget;
+        if self.store.nodes.len() >= budget.states || !self.store.has_room(0) {
+            return Ok(ControlFlow::Break(Some(SearchCutoff::States)));
+        }
+        if bytes >= budget.bytes {
+            return Ok(ControlFlow::Break(Some(SearchCutoff::Memory)));
+        }
+        let progress = SearchProgress {
+            stored: self.store.stored,
+            visited: self.visited,
+            waiting: self.waiting.len(),
+            bytes,
+            open: self.left,
+        };
+        if !go_on(&progress) {
+            return Ok(ControlFlow::Break(Some(SearchCutoff::Stopped)));
+        }
+        let mut round = std::mem::take(&mut self.round);
+        self.waiting.take(&self.store.nodes, ROUND, &mut round);
+        self.expand(&round);
+        self.round = round;
+        Ok(match self.merge()? {
+            Some(what) => ControlFlow::Break(Some(what)),
+            None => ControlFlow::Continue(()),
+        })
     }
 
     fn measure(&mut self) {
@@ -205,6 +268,8 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             open: &self.open,
             options: &self.options,
             counters: &self.counters,
+            probe: self.probe,
+            latest: self.latest,
         };
         self.workers[0].begin(&context, &mut batch).map_err(SearchError::from)?;
         self.batches = vec![batch];
@@ -222,6 +287,8 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             open: &self.open,
             options: &self.options,
             counters: &self.counters,
+            probe: self.probe,
+            latest: self.latest,
         };
         let work = |worker: &mut ExpansionWorker<'m, 'p, N>, nodes: &[u32], batch: &mut ExpansionBatch<N>| {
             batch.clear();
@@ -266,11 +333,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             self.visited += batch.visited;
             self.transitions += batch.transitions;
             for hit in &batch.hits {
-                if self.open[hit.goal] {
-                    self.open[hit.goal] = false;
-                    self.left -= 1;
-                    self.hits[hit.goal] = Some(hit.path);
-                }
+                self.hit(hit);
             }
             if end.is_none() {
                 end = self.absorb(batch, first);
@@ -289,11 +352,34 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         Ok(end)
     }
 
+    fn hit(&mut self, hit: &GoalHit) {
+        match self.latest {
+            // Others may come to it earlier.
+            Some(latest) if hit.arrival <= latest => {
+                self.latest = Some(hit.arrival - 1);
+                self.hits[hit.goal] = Some(hit.path);
+            }
+            None if self.open[hit.goal] => {
+                self.open[hit.goal] = false;
+                self.left -= 1;
+                self.hits[hit.goal] = Some(hit.path);
+            }
+            Some(_) | None => {}
+        }
+    }
+
     fn absorb(&mut self, batch: &ExpansionBatch<N>, first: u32) -> Option<SearchCutoff> {
         let simulates = self.options.subsumption == SubsumptionRelation::Simulation;
         let worker = &mut self.workers[0];
         for item in &batch.items {
             if simulates && item.parent != NIL && self.store.nodes[item.parent as usize].covered {
+                continue;
+            }
+            let arrival = self.latest.map_or(0, |_| {
+                let least: i64 = batch.zone(item)[item.dim - 1].into();
+                -least
+            });
+            if self.latest.is_some_and(|latest| arrival > latest) {
                 continue;
             }
             let packed = batch.packed(item, self.store.layout.words);
@@ -306,9 +392,14 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
                 None => self.store.add_discrete(item.hash, packed),
                 Some(d) => {
                     // What was there before the round was looked at already.
-                    let Some(covers) =
-                        worker.compare(&self.store, &self.options, d, first, (zone, item.dim), ranks)
-                    else {
+                    let Some(covers) = worker.compare(
+                        &self.store,
+                        &self.options,
+                        d,
+                        first,
+                        (zone, item.dim),
+                        (item.parent, ranks),
+                    ) else {
                         continue;
                     };
                     for n in covers.iter().chain(batch.covered(item)) {
@@ -328,7 +419,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
                 return Some(SearchCutoff::States);
             }
             let id = self.store.add(item.parent, item.via, discrete, zone, ranks);
-            self.waiting.push(id, lost, item.level);
+            self.waiting.push(id, lost, item.level, arrival);
         }
         None
     }
@@ -362,6 +453,8 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             open: &self.open,
             options: &self.options,
             counters: &self.counters,
+            probe: self.probe,
+            latest: self.latest,
         };
         let mut taken: Vec<PathTransition> = Vec::new();
         // A path through committed states that are not stored begins at the initial state itself.
@@ -369,5 +462,34 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             self.workers[0].retrace(&context, node, via, &mut taken)?;
         }
         Ok(taken)
+    }
+}
+
+impl<N: DbmNumber> RoundSearch for ZoneGraphSearch<'_, '_, N> {
+    fn round(
+        &mut self,
+        found: &mut Vec<ProbeFinding>,
+    ) -> Result<ControlFlow<Option<SearchCutoff>>, SearchError> {
+        let end = self.next_round(&|_| true)?;
+        for batch in &mut self.batches {
+            found.append(&mut batch.findings);
+        }
+        Ok(end)
+    }
+
+    fn only_until(&mut self, arrival: i64) {
+        self.latest = self.latest.map(|latest| latest.min(arrival));
+    }
+
+    fn path_to(&mut self, node: u32) -> Result<Vec<PathTransition>, SearchError> {
+        self.path(GoalPath { node, via: None })
+    }
+
+    fn path_to_goal(&mut self, goal: usize) -> Result<Option<Vec<PathTransition>>, SearchError> {
+        self.hits[goal].map(|path| self.path(path)).transpose()
+    }
+
+    fn stored(&self) -> usize {
+        self.store.stored
     }
 }

@@ -9,17 +9,24 @@ use crate::{
         model::CompiledNetwork,
         parts::{ClockConstraints, CompiledEdge, EdgeSync, EdgeUpdate, TimeExpr},
     },
-    search::goals::CompiledGoals,
+    search::{goals::CompiledGoals, probe::StateProbe},
 };
 
 /// By place of the state whether it matters.
-pub(crate) fn relevant(model: &CompiledNetwork, goals: &CompiledGoals) -> Vec<bool> {
+pub(crate) fn relevant(
+    model: &CompiledNetwork,
+    goals: &CompiledGoals,
+    probe: Option<&dyn StateProbe>,
+) -> Vec<bool> {
     let mut matters = vec![true; model.size()];
     let first = model.slot_at(0);
     matters[first..first + model.slots.len()].fill(false);
     let lib = &model.library;
     let mut note = |i: u32| matters[i as usize] = true;
     goals.each_place(model, &mut note);
+    if let Some(probe) = probe {
+        probe.each_place(model, &mut note);
+    }
     for member in &model.members {
         for spot in &member.locations {
             clocks(lib, &spot.invariant, &mut note);

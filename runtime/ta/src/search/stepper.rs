@@ -18,7 +18,7 @@ use crate::{
     zone::{
         constraint::DifferenceConstraint,
         dbm::{Dbm, DbmBound, DbmNumber},
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, LuBounds, NONE},
     },
 };
 
@@ -34,10 +34,29 @@ pub(crate) struct SymbolicSuccessor<'a, N> {
     pub resets: &'a [ClockReset],
 }
 
+/// Which clocks zones have, and what is told apart of them.
+#[derive(Clone, Copy)]
+pub(crate) struct ZoneClocks {
+    pub abstraction: ExtrapolationAbstraction,
+    /// The time since the start is a clock, too, behind those of the network, up to so many units. Only its least values matter: who
+    /// comes later can do no more.
+    pub time: Option<i64>,
+}
+
+impl ZoneClocks {
+    fn frame(self, model: &CompiledNetwork, state: &[i64], out: &mut ActiveClocks) {
+        model.extrapolation.frame(state, self.abstraction, out);
+        if let Some(most) = self.time {
+            out.clocks.push(model.dim as u16);
+            out.bounds.push(LuBounds { lower: NONE, upper: most });
+        }
+    }
+}
+
 /// Computes symbolic successors, with memory that it uses again and again.
 pub(crate) struct SymbolicStepper<'m, 'p, N> {
     pub model: &'m CompiledNetwork<'p>,
-    pub abstraction: ExtrapolationAbstraction,
+    clocks: ZoneClocks,
     scratch: EnumerationScratch,
     before: Vec<i64>,
     w: StepperWorkspace<N>,
@@ -79,6 +98,7 @@ fn constrain<N: DbmNumber>(zone: &mut Dbm<N>, index: &[u16], c: DifferenceConstr
     i == GONE || j == GONE || zone.constrain(usize::from(i), usize::from(j), c.bound)
 }
 
+/// `dim`: how many clocks there can be in zones, time included.
 fn set_index(index: &mut Vec<u16>, frame: &ActiveClocks, dim: usize) {
     index.clear();
     index.resize(dim, GONE);
@@ -88,7 +108,7 @@ fn set_index(index: &mut Vec<u16>, frame: &ActiveClocks, dim: usize) {
 }
 
 impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
-    pub(crate) fn new(model: &'m CompiledNetwork<'p>, abstraction: ExtrapolationAbstraction) -> Self {
+    pub(crate) fn new(model: &'m CompiledNetwork<'p>, clocks: ZoneClocks) -> Self {
         let w = StepperWorkspace {
             effect: TransitionEffect::default(),
             stack: Vec::new(),
@@ -101,7 +121,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
             from: Vec::new(),
             index: Vec::new(),
         };
-        Self { model, abstraction, scratch: EnumerationScratch::default(), before: Vec::new(), w }
+        Self { model, clocks, scratch: EnumerationScratch::default(), before: Vec::new(), w }
     }
 
     /// The symbolic state at the start, not extrapolated.
@@ -111,10 +131,10 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
     pub(crate) fn initial(&mut self) -> Result<(Vec<i64>, ActiveClocks, Dbm<N>), ModelError> {
         let mut state = self.model.initial();
         let mut frame = ActiveClocks::default();
-        self.model.extrapolation.frame(&state, self.abstraction, &mut frame);
+        self.frame(&state, &mut frame);
         self.w.effect.target.clone_from(&state);
         self.w.zone = Dbm::zero(frame.dim());
-        set_index(&mut self.w.index, &frame, self.model.dim);
+        set_index(&mut self.w.index, &frame, self.model.dim + 1);
         self.w.frame.clocks.clone_from(&frame.clocks);
         self.w.frame.bounds.clone_from(&frame.bounds);
         // Clocks that do not matter are zero, too.
@@ -130,7 +150,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
 
     /// The clocks that matter in a state, with their bounds.
     pub(crate) fn frame(&self, state: &[i64], out: &mut ActiveClocks) {
-        self.model.extrapolation.frame(state, self.abstraction, out);
+        self.clocks.frame(self.model, state, out);
     }
 
     /// Calls `f` with each symbolic successor, in order, until it breaks off.
@@ -147,9 +167,9 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
     where
         F: FnMut(SymbolicSuccessor<N>) -> ControlFlow<()>,
     {
-        let (model, abstraction) = (self.model, self.abstraction);
+        let (model, clocks) = (self.model, self.clocks);
         let mut index = std::mem::take(&mut self.w.index);
-        set_index(&mut index, frame, model.dim);
+        set_index(&mut index, frame, model.dim + 1);
         // The enumeration holds the state itself.
         let mut before = std::mem::take(&mut self.before);
         before.clear();
@@ -158,7 +178,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
         let mut number = 0;
         let mut fault = None;
         let mut found = |found: FiringOrError| -> ControlFlow<()> {
-            match w.found(model, abstraction, &before, zone, &index, &found) {
+            match w.found(model, clocks, &before, zone, &index, &found) {
                 Ok(false) => ControlFlow::Continue(()),
                 Err(error) => {
                     fault = Some(error);
@@ -190,7 +210,7 @@ impl<N: DbmNumber> StepperWorkspace<N> {
     fn found(
         &mut self,
         model: &CompiledNetwork,
-        abstraction: ExtrapolationAbstraction,
+        clocks: ZoneClocks,
         state: &[i64],
         zone: &Dbm<N>,
         index: &[u16],
@@ -225,7 +245,7 @@ impl<N: DbmNumber> StepperWorkspace<N> {
                 return Err(named((*member, *edge, fault)));
             }
         }
-        model.extrapolation.frame(&self.effect.target, abstraction, &mut self.frame);
+        clocks.frame(model, &self.effect.target, &mut self.frame);
         self.transfer(index, if guarded { None } else { Some(zone) });
         if !model.invariant(&mut self.effect.target, &mut self.stack, &mut self.invariant)? {
             return Ok(false);

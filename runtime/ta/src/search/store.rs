@@ -102,12 +102,14 @@ pub(crate) struct PassedList<N> {
     /// The ranks of the one-way counters of each node, so many of each.
     ranks: Vec<u32>,
     counters: usize,
+    /// By how many transitions each node was come to, if that is kept.
+    lengths: Option<Vec<u32>>,
     pub stored: usize,
 }
 
 impl<N: DbmNumber> PassedList<N> {
     /// The layout leaves out so many one-way counters, whose ranks stand with the nodes.
-    pub(crate) fn new(layout: StateLayout, counters: usize) -> Self {
+    pub(crate) fn new(layout: StateLayout, counters: usize, keep_lengths: bool) -> Self {
         Self {
             layout,
             words: Vec::new(),
@@ -118,6 +120,7 @@ impl<N: DbmNumber> PassedList<N> {
             places: HashTable::new(),
             ranks: Vec::new(),
             counters,
+            lengths: keep_lengths.then(Vec::new),
             stored: 0,
         }
     }
@@ -135,6 +138,12 @@ impl<N: DbmNumber> PassedList<N> {
             + self.zones.len() * size_of::<N>()
             + self.places.capacity() * 9
             + self.ranks.len() * 4
+            + self.lengths.as_ref().map_or(0, Vec::len) * 4
+    }
+
+    /// Whether a state that comes from `parent` has taken more transitions than this one, as far as that is kept.
+    pub(crate) fn is_longer_way(&self, parent: u32, than: u32) -> bool {
+        self.lengths.as_ref().is_some_and(|l| parent != NIL && l[parent as usize] + 1 > l[than as usize])
     }
 
     /// The ranks of a node's one-way counters.
@@ -206,6 +215,10 @@ impl<N: DbmNumber> PassedList<N> {
 
     pub(crate) fn add(&mut self, parent: u32, via: u32, discrete: u32, zone: &[N], ranks: &[u32]) -> u32 {
         self.ranks.extend_from_slice(ranks);
+        if let Some(lengths) = &mut self.lengths {
+            let before = (parent != NIL).then(|| lengths[parent as usize]);
+            lengths.push(before.map_or(0, |n| n + 1));
+        }
         let zone = self.intern(zone);
         let id = self.nodes.len() as u32;
         let next = std::mem::replace(&mut self.heads[discrete as usize], id);
@@ -285,7 +298,7 @@ mod tests {
 
     #[test]
     fn a_chain_loses_what_is_covered() {
-        let mut store = PassedList::<i16>::new(StateLayout::new(&[(0, 3)], &[true]), 0);
+        let mut store = PassedList::<i16>::new(StateLayout::new(&[(0, 3)], &[true]), 0, false);
         let d = store.add_discrete(hash_words(&[2]), &[2]);
         let ids: Vec<u32> = (0..4).map(|k| store.add(NIL, 0, d, &[k], &[])).collect();
         store.cover(ids[3]);

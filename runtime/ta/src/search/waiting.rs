@@ -16,6 +16,8 @@ use crate::{
 /// Waiting states.
 pub(crate) struct WaitingList {
     order: SearchOrder,
+    /// Instead of that order: by arrival, then by place in the topological order, then the older.
+    by_time: Option<BinaryHeap<Reverse<(i64, u32, u32)>>>,
     queue: VecDeque<u32>,
     /// Of a rank: that, then the earlier in the topological order, then the newer: the greatest goes first.
     heap: BinaryHeap<(u32, Reverse<u32>, u32)>,
@@ -37,9 +39,10 @@ pub(crate) struct WaitingList {
 }
 
 impl WaitingList {
-    pub(crate) fn new(_: &CompiledNetwork, order: SearchOrder, seed: u64) -> Self {
+    pub(crate) fn new(order: SearchOrder, seed: u64) -> Self {
         Self {
             order,
+            by_time: None,
             queue: VecDeque::new(),
             heap: BinaryHeap::new(),
             levels: Vec::new(),
@@ -53,17 +56,36 @@ impl WaitingList {
         }
     }
 
+    /// What arrives first is next.
+    pub(crate) fn by_time() -> Self {
+        Self { by_time: Some(BinaryHeap::new()), ..Self::new(SearchOrder::Breadth, 0) }
+    }
+
     pub(crate) fn len(&self) -> usize {
-        self.queue.len() + self.heap.len() + self.level_count + self.fresh.len()
+        self.by_time.as_ref().map_or(0, BinaryHeap::len)
+            + self.queue.len()
+            + self.heap.len()
+            + self.level_count
+            + self.fresh.len()
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        (self.queue.capacity() + self.level_count) * 4 + self.heap.capacity() * 12 + self.taken.len() * 8
+        self.by_time.as_ref().map_or(0, |heap| heap.capacity() * 16)
+            + (self.queue.capacity() + self.level_count) * 4
+            + self.heap.capacity() * 12
+            + self.taken.len() * 8
     }
 
-    /// Whether nothing waits; states that were driven out are forgotten.
-    pub(crate) fn is_empty(&mut self, nodes: &[SymbolicNode]) -> bool {
+    /// Whether nothing waits; states that were driven out are forgotten, and so are those that arrive later than `latest`.
+    pub(crate) fn is_empty(&mut self, nodes: &[SymbolicNode], latest: Option<i64>) -> bool {
         let gone = |n: u32| nodes[n as usize].covered;
+        if let Some(heap) = &mut self.by_time {
+            let late = |arrival: i64| latest.is_some_and(|l| arrival > l);
+            while heap.peek().is_some_and(|Reverse((arrival, _, n))| late(*arrival) || gone(*n)) {
+                heap.pop();
+            }
+            return heap.is_empty();
+        }
         match self.order {
             SearchOrder::Breadth => {
                 while self.queue.front().is_some_and(|n| gone(*n)) {
@@ -122,7 +144,11 @@ impl WaitingList {
     }
 
     /// A state waits. `covers`: it drove out others.
-    pub(crate) fn push(&mut self, node: u32, covers: bool, level: u32) {
+    pub(crate) fn push(&mut self, node: u32, covers: bool, level: u32, arrival: i64) {
+        if let Some(heap) = &mut self.by_time {
+            heap.push(Reverse((arrival, level, node)));
+            return;
+        }
         match self.order {
             SearchOrder::Breadth => self.queue.push_back(node),
             SearchOrder::Depth | SearchOrder::RandomDepth => self.fresh.push(node),
@@ -166,6 +192,9 @@ impl WaitingList {
     /// come first where few wait.
     pub(crate) fn take(&mut self, nodes: &[SymbolicNode], most: usize, out: &mut Vec<u32>) {
         out.clear();
+        if self.by_time.is_some() {
+            return self.take_earliest(nodes, most.min(FEW), out);
+        }
         let most = match self.order {
             SearchOrder::Breadth => most,
             SearchOrder::Depth | SearchOrder::RandomDepth | SearchOrder::Topological => {
@@ -190,6 +219,28 @@ impl WaitingList {
                 self.taken[word] |= 1 << (node % 64);
             }
             out.push(node);
+        }
+    }
+}
+
+/// States of a round by time: of all that arrive at once the first may do, or lead to what covers the others.
+const FEW: usize = 64;
+
+impl WaitingList {
+    /// Up to `most` states that arrive at the same time.
+    fn take_earliest(&mut self, nodes: &[SymbolicNode], most: usize, out: &mut Vec<u32>) {
+        let Some(heap) = &mut self.by_time else { return };
+        let mut first = None;
+        while out.len() < most
+            && let Some(&Reverse((arrival, _, node))) = heap.peek()
+            && *first.get_or_insert(arrival) == arrival
+        {
+            heap.pop();
+            if !nodes[node as usize].covered {
+                out.push(node);
+            } else if out.is_empty() {
+                first = None;
+            }
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::{
         actions::{DelayCondition, PathTransition},
         code::SyncMedium,
         error::ModelError,
-        graph::{ZoneDetail, ZoneGraph},
+        graph::ZoneGraph,
         model::{CompiledNetwork, values},
         query::{GoalKind, ReachabilityGoal, StateFormula},
     },
@@ -58,10 +58,10 @@ pub(crate) fn witness(
     goal: Option<&ReachabilityGoal>,
     timing: ScheduleOptions,
 ) -> Result<WitnessRun, SearchError> {
-    let graph = ZoneGraph::new(model, ZoneDetail::Tell, &[], 0)?;
+    let graph = ZoneGraph::new(model, &[])?;
     let stops = takes(path.into_iter().map(Rc::new));
     match goal.and_then(ReachabilityGoal::formula) {
-        Some(f) if f.is_timed() => reach_in_time(&graph, stops, &f, &[], goal, timing),
+        Some(f) if f.is_timed() => reach_in_time(&graph, stops, &f, &[], goal, timing)?.ok_or_else(unreal),
         Some(_) | None => concrete(&graph, &stops, RunEnding::Reached, goal, timing),
     }
 }
@@ -74,17 +74,17 @@ pub(crate) fn reach_formula(
     besides: &[DifferenceConstraint],
     timing: ScheduleOptions,
 ) -> Result<WitnessRun, SearchError> {
-    reach_in_time(graph, stops, f, besides, None, timing)
+    reach_in_time(graph, stops, f, besides, None, timing)?.ok_or_else(unreal)
 }
 
-/// The path, and then the time that a goal's formula needs.
+/// The path, and then the time that a goal's formula needs. `None`: no run along the path meets it.
 pub(crate) fn reach_goal(
     graph: &ZoneGraph,
     stops: Vec<PathSegment>,
     f: &StateFormula,
     goal: &ReachabilityGoal,
     timing: ScheduleOptions,
-) -> Result<WitnessRun, SearchError> {
+) -> Result<Option<WitnessRun>, SearchError> {
     reach_in_time(graph, stops, f, &[], Some(goal), timing)
 }
 
@@ -96,7 +96,7 @@ fn reach_in_time(
     besides: &[DifferenceConstraint],
     goal: Option<&ReachabilityGoal>,
     timing: ScheduleOptions,
-) -> Result<WitnessRun, SearchError> {
+) -> Result<Option<WitnessRun>, SearchError> {
     let state = walk(graph, &stops)?.state;
     let mut all = Dbm::universe(graph.dim());
     let stay = graph.stay(&state)?.ok_or_else(|| internal("a path ends in a forbidden state"))?;
@@ -115,7 +115,12 @@ fn reach_in_time(
             best = Some(witness);
         }
     }
-    best.ok_or_else(|| internal("the zones reach a goal that no run reaches"))
+    Ok(best)
+}
+
+/// The error of [`reach_in_time`] where its path is known to meet the formula.
+pub(crate) fn unreal() -> SearchError {
+    internal("the zones reach a goal that no run reaches")
 }
 
 fn internal(what: &str) -> SearchError {
@@ -185,7 +190,7 @@ pub(crate) fn fault_after(
     path: impl IntoIterator<Item = Rc<PathTransition>>,
     error: ModelError,
 ) -> SearchError {
-    match ZoneGraph::new(model, ZoneDetail::Tell, &[], 0) {
+    match ZoneGraph::new(model, &[]) {
         Ok(graph) => fault(&graph, takes(path), error),
         Err(e) => e.into(),
     }
@@ -343,7 +348,7 @@ pub fn retimed(
     goal: &ReachabilityGoal,
     timing: ScheduleOptions,
 ) -> Result<WitnessRun, SearchError> {
-    let graph = ZoneGraph::new(model, ZoneDetail::Tell, &[], 0)?;
+    let graph = ZoneGraph::new(model, &[])?;
     let mut path: Vec<PathTransition> = Vec::new();
     let mut state = graph.initial();
     // Each clock is zero at a time, in ticks.

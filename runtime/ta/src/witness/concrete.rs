@@ -91,6 +91,16 @@ impl<'p> ConcreteInterpreter<'p> {
         all.for_each(|zero| *zero = (*zero).max(least));
     }
 
+    /// The same instant with ticks of half the length: between any two of the former is one of these.
+    pub(crate) fn in_half_ticks(&self) -> Self {
+        let mut finer = self.clone();
+        finer.ticks *= 2;
+        finer.now *= 2;
+        let zeros = finer.shared_zero.iter_mut().chain(finer.own_zero.iter_mut().flatten());
+        zeros.for_each(|zero| *zero *= 2);
+        finer
+    }
+
     /// The values of the network's clocks now, in ticks: the shared ones, then each automaton's.
     pub(crate) fn clocks(&self) -> Vec<i128> {
         self.shared_zero.iter().chain(self.own_zero.iter().flatten()).map(|zero| self.now - zero).collect()

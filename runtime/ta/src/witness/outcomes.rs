@@ -66,13 +66,33 @@ impl<'p> ConcreteInterpreter<'p> {
                     let m = AutomatonMove { automaton, edge, binders };
                     match self.is_open(&m) {
                         Ok(true) => self.partners(&m, &mut groups, f)?,
-                        Ok(false) => {}
-                        Err(fault) => f(Err(fault))?,
+                        Err(fault) if self.could_join(&e.sync) => f(Err(fault))?,
+                        Ok(false) | Err(_) => {}
                     }
                 }
             }
         }
         groups.iter().try_for_each(|group| self.each_combination(group, f))
+    }
+
+    /// Whether all that must take part in what an edge joins could, and committed locations let them: what else is wrong with it does not
+    /// matter.
+    fn could_join(&self, sync: &SyncLabel) -> bool {
+        let SyncLabel::Join { channel } = sync else { return true };
+        let Some(ChannelKind::MultiWay(participants)) = self.channel(*channel).map(|c| &c.kind) else {
+            return true;
+        };
+        let mut committed = !self.any_committed();
+        for p in participants {
+            let Some(member) = self.member(p.automaton) else { continue };
+            let moves = self.receptions(member, SyncMedium::Channel(*channel), &[], true);
+            let could = moves.map_or(true, |moves| !moves.is_empty());
+            if !could && !p.optional {
+                return false;
+            }
+            committed |= could && self.kind(member) == LocationKind::Committed;
+        }
+        committed
     }
 
     /// A committed location of another automaton forbids what this one does alone.
@@ -154,15 +174,21 @@ impl<'p> ConcreteInterpreter<'p> {
         let Some(ChannelKind::MultiWay(participants)) = self.channel(id).map(|c| &c.kind) else {
             return ControlFlow::Continue(None);
         };
-        let mut all = Vec::new();
+        let (mut all, mut faults) = (Vec::new(), Vec::new());
         for p in participants {
             let Some(member) = self.member(p.automaton) else { continue };
-            let moves = self.hearing(member, SyncMedium::Channel(id), &[], f)?;
-            match (moves.is_empty(), p.optional) {
-                (true, true) => {}
-                (true, false) => return ControlFlow::Continue(None),
-                (false, _) => all.push(moves),
+            match self.receptions(member, SyncMedium::Channel(id), &[], true) {
+                Ok(moves) if moves.is_empty() && !p.optional => return ControlFlow::Continue(None),
+                Ok(moves) if moves.is_empty() => {}
+                Ok(moves) => all.push(moves),
+                Err(fault) => faults.push(fault),
             }
+        }
+        if !faults.is_empty() {
+            if self.could_join(&SyncLabel::Join { channel: id }) {
+                faults.into_iter().try_for_each(|fault| f(Err(fault)))?;
+            }
+            return ControlFlow::Continue(None);
         }
         // Every open edge of a participant is asked whether it starts this; only the first participant's do, or each combination would come
         // once for each of its parts.
@@ -202,7 +228,7 @@ impl<'p> ConcreteInterpreter<'p> {
 
     /// Whether some transition is possible now or after some delay.
     ///
-    /// Between two neighbouring bounds of the clocks' constraints nothing changes, so it looks at each bound and a tick to
+    /// Between two neighbouring bounds of the clocks' constraints nothing changes, so it looks at each bound and half a tick to
     /// either side.
     ///
     /// # Errors
@@ -214,8 +240,9 @@ impl<'p> ConcreteInterpreter<'p> {
         if !self.may_wait() {
             return Ok(false);
         }
-        for later in self.turns() {
-            let mut then = self.clone();
+        let finer = self.in_half_ticks();
+        for later in finer.turns() {
+            let mut then = finer.clone();
             then.now = later;
             if then.broken_invariant()?.is_none() && then.can_move()? {
                 return Ok(true);

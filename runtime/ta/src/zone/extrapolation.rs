@@ -150,6 +150,30 @@ fn threshold<N: DbmNumber>(frame: &ActiveClocks, zone: &Dbm<N>, y: usize, x: usi
     zone.entry(y, x).min(N::of(strict))
 }
 
+/// A zone that has all that the zone simulates: a convex hull of aLU(Z), not always the least.
+///
+/// INVARIANT: if v is simulated by v' in Z, then v(x) ≤ v'(x) where v'(x) ≤ Lₓ, which holds in all of Z or is not relied upon, and
+/// v(y) ≥ v'(y) or v(y) > U_y.
+pub(crate) fn simulated_hull(frame: &ActiveClocks, zone: &Dbm) -> Dbm {
+    let mut hull = zone.clone();
+    for x in 0..zone.dim() {
+        let (lower, most) = (frame.bounds[x].lower, zone.at(x, 0));
+        let held = x == 0 || (lower != NONE && most <= DbmBound::le(lower));
+        for y in (0..zone.dim()).filter(|&y| y != x) {
+            let upper = frame.bounds[y].upper;
+            let beyond = if upper == NONE { DbmBound::LE_ZERO } else { DbmBound::lt(-upper) };
+            let bound = match (held, y) {
+                (false, _) => DbmBound::INFINITY,
+                (true, 0) => most,
+                (true, _) => zone.at(x, y).max(if x == 0 { beyond } else { most.plus(beyond) }),
+            };
+            hull.put(x, y, bound);
+        }
+    }
+    hull.close();
+    hull
+}
+
 /// The clock's bounds are never lost.
 pub(crate) const KEEP: i64 = 1 << 58;
 
@@ -165,27 +189,6 @@ impl MaximalConstants {
         let mut bounds = Self { lower: vec![NONE; dim], upper: vec![NONE; dim] };
         (bounds.lower[0], bounds.upper[0]) = (0, 0);
         bounds
-    }
-
-    /// At least these.
-    pub(crate) fn raise(&mut self, other: &MaximalConstants) {
-        for (mine, theirs) in [(&mut self.lower, &other.lower), (&mut self.upper, &other.upper)] {
-            mine.iter_mut().zip(theirs).for_each(|(a, b)| *a = (*a).max(*b));
-        }
-    }
-
-    /// Compared with `most` both ways.
-    pub(crate) fn note(&mut self, clock: usize, most: i64) {
-        self.lower[clock] = self.lower[clock].max(most);
-        self.upper[clock] = self.upper[clock].max(most);
-    }
-
-    /// The greater of both for both: what keeps apart what can be told apart (a bisimulation), not only what can do more.
-    pub(crate) fn level(&mut self) {
-        for (l, u) in self.lower.iter_mut().zip(&mut self.upper) {
-            *l = (*l).max(*u);
-            *u = *l;
-        }
     }
 }
 
@@ -287,6 +290,23 @@ mod tests {
                 targets.iter().any(|by| simulated(&frame, &v, by))
             });
             prop_assert_eq!(dominates(&flat, &demands), defined);
+        }
+
+        #[test]
+        fn the_hull_has_all_that_is_simulated(z in zone(), frame in frame()) {
+            prop_assume!(!z.is_empty());
+            let mut wide = Dbm::zero(1);
+            wide.resize(DIM);
+            for (i, j) in (0..DIM).flat_map(|i| (0..DIM).map(move |j| (i, j))) {
+                wide.put(i, j, z.at(i, j));
+            }
+            let hull = simulated_hull(&frame, &wide);
+            prop_assert!(hull.includes(&wide));
+            for by in grid(2, 8).filter(|p| z.contains(p, 6)) {
+                for v in grid(3, 8).filter(|v| simulated(&frame, v, &by)) {
+                    prop_assert!(hull.contains(&v, 6), "{v:?} by {by:?}");
+                }
+            }
         }
 
         #[test]

@@ -107,7 +107,7 @@ impl Federation {
 /// INVARIANT: at each bound of `gone` that cuts what is left, the part beyond it is put aside; what is left at the end is
 /// the intersection.
 fn difference(zone: &Dbm, gone: &Dbm, out: &mut Vec<Dbm>) {
-    if zone.is_empty() {
+    if zone.is_empty() || gone.includes(zone) {
         return;
     }
     let mut common = zone.clone();

@@ -2,22 +2,23 @@
 
 use hrdsl_ir::{
     Program, Span,
-    ta::NetworkId,
+    suite::WitnessKind,
     ta::{
-        ClockConstraint, ClockId, ClockOp, LocationId, Query, QueryFormula, QueryKind, TimeSum,
-        location_variable,
+        AutomatonId, ClockConstraint, ClockId, ClockOp, LocationId, NetworkId, Query, QueryFormula,
+        QueryKind, QueryMeasure, TimeSum, location_variable,
     },
     value::SECOND,
 };
 use hrdsl_ta::{
-    ExtrapolationAbstraction, GoalKind, GoalOutcome, ModelError, QueryOptions, QueryVerdict,
-    ReachabilityGoal, SearchError, SearchOptions, SearchOrder, SubsumptionRelation, answer,
+    ExtrapolationAbstraction, ExtremumLimit, ExtremumValue, GoalKind, GoalOutcome, ModelError, QueryAnswer,
+    QueryOptions, QueryVerdict, ReachabilityGoal, SearchBudget, SearchError, SearchOptions, SearchOrder,
+    SubsumptionRelation, answer,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::{
-    common::{asked::asked, eq, n, v},
+    common::{asked::asked, automaton, eq, n, normal, v},
     oracle::{Graph, Limits, explore},
 };
 
@@ -33,7 +34,16 @@ pub fn disagreement(p: &Program) -> Result<Option<String>, String> {
             return Ok(Some(format!("{name}: {what}")));
         }
     }
-    if graph.starts && graph.faults.is_empty() { asks(p, &graph) } else { Ok(None) }
+    if !graph.starts || !graph.faults.is_empty() {
+        return Ok(None);
+    }
+    for asked in [asks, lengths, bounds, times] {
+        let differs = asked(p, &graph)?;
+        if differs.is_some() {
+            return Ok(differs);
+        }
+    }
+    Ok(None)
 }
 
 /// Deadlocks and runs without end: every kind of query about the first formulas.
@@ -42,8 +52,15 @@ pub fn asks(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
     let [f, g, h, ..] = formulas.as_slice() else { return Ok(None) };
     let at = |automaton, l| QueryFormula::At { automaton, location: LocationId(l) };
     let left = QueryFormula::Not(Box::new(at(0, 0)));
+    let dead = || QueryFormula::Deadlock;
+    let dead_and = QueryFormula::And(vec![f.clone(), dead()]);
+    let dead_or = QueryFormula::Or(vec![dead(), h.clone()]);
+    let alive = QueryFormula::And(vec![QueryFormula::Not(Box::new(dead())), g.clone()]);
     let asked = [
-        (QueryKind::Possibly(QueryFormula::Deadlock), graph.possibly(&QueryFormula::Deadlock)?),
+        (QueryKind::Possibly(dead()), graph.possibly(&dead())?),
+        (QueryKind::Possibly(dead_and.clone()), graph.possibly(&dead_and)?),
+        (QueryKind::Possibly(dead_or.clone()), graph.possibly(&dead_or)?),
+        (QueryKind::Possibly(alive.clone()), graph.possibly(&alive)?),
         (QueryKind::PotentiallyAlways(at(0, 0)), graph.always(&at(0, 0))?),
         (QueryKind::PotentiallyAlways(f.clone()), graph.always(f)?),
         (QueryKind::Eventually(left.clone()), graph.eventually(&left)?),
@@ -52,17 +69,143 @@ pub fn asks(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
         (QueryKind::LeadsTo(g.clone(), h.clone()), graph.leads_to(g, h)?),
     ];
     for (ask, expected) in asked {
-        let query = Query {
-            name: "q".into(),
-            title: String::new(),
-            text: String::new(),
-            network: NetworkId(0),
-            ask,
-            origin: Span::default(),
-        };
-        match answer(p, &p.networks[0], &query, &QueryOptions::default()) {
+        match said(p, ask.clone(), WitnessKind::Any) {
             Ok(a) if a.verdict == if expected { QueryVerdict::Holds } else { QueryVerdict::Fails } => {}
-            other => return Ok(Some(format!("{:?} should be {expected}: {other:?}", query.ask))),
+            other => return Ok(Some(format!("{ask:?} should be {expected}: {other:?}"))),
+        }
+    }
+    Ok(None)
+}
+
+fn question(ask: QueryKind) -> Query {
+    Query {
+        name: "q".into(),
+        title: String::new(),
+        text: String::new(),
+        network: NetworkId(0),
+        ask,
+        origin: Span::default(),
+    }
+}
+
+fn said(p: &Program, ask: QueryKind, witness: WitnessKind) -> Result<QueryAnswer, SearchError> {
+    // A clock may grow without end in a loop in which time is bounded.
+    let states = match ask {
+        QueryKind::Sup { .. } | QueryKind::Inf { .. } => 5_000,
+        QueryKind::Possibly(_)
+        | QueryKind::Invariantly(_)
+        | QueryKind::PotentiallyAlways(_)
+        | QueryKind::Eventually(_)
+        | QueryKind::LeadsTo(..) => usize::MAX,
+    };
+    let query = question(ask);
+    let budget = SearchBudget { states, ..SearchBudget::default() };
+    answer(p, &p.networks[0], &query, &QueryOptions { witness, budget, ..QueryOptions::default() })
+}
+
+/// Shortest runs have as few transitions as any.
+fn lengths(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
+    let least = graph.lengths();
+    let dead = QueryFormula::Deadlock;
+    for f in formulas(p).into_iter().chain([dead]) {
+        let mut expected = None;
+        for (at, &length) in least.iter().enumerate() {
+            if graph.holds(at, &f).map_err(|e| format!("{e:?}"))? {
+                expected = Some(expected.map_or(length, |old: usize| old.min(length)));
+            }
+        }
+        let found = said(p, QueryKind::Possibly(f.clone()), WitnessKind::Shortest);
+        let length = found.as_ref().map(|a| a.run.as_ref().map(|run| run.steps.len()));
+        if length != Ok(expected) {
+            return Ok(Some(format!("a shortest run to {f:?} has {expected:?} transitions: {found:?}")));
+        }
+    }
+    Ok(None)
+}
+
+/// `sup` and `inf` of clocks and variables.
+fn bounds(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
+    let formulas = formulas(p);
+    let clocks = graph.states[0].clocks.len();
+    for (i, f) in formulas.iter().take(3).enumerate() {
+        let clock = i % clocks;
+        let of = vec![QueryMeasure::Clock(ClockId(clock as u16)), QueryMeasure::Data(v(0))];
+        let clock = graph.extremes(clock, f)?;
+        let numbers = graph.values(0, f)?;
+        for side in [0, 1] {
+            let ask = if side == 0 {
+                QueryKind::Inf { of: of.clone(), when: f.clone() }
+            } else {
+                QueryKind::Sup { of: of.clone(), when: f.clone() }
+            };
+            let found = said(p, ask.clone(), WitnessKind::Any);
+            let number = if side == 0 { numbers.first() } else { numbers.last() };
+            let number = number.map_or(ExtremumLimit::Nowhere, |&n| ExtremumLimit::At {
+                value: ExtremumValue::Number(n),
+                attained: true,
+            });
+            let agrees = found.as_ref().is_ok_and(|a| {
+                a.extrema.len() == 2
+                    && (a.extrema[1].limit == number || inconclusive(&a.extrema[1].limit))
+                    && is_limit(&a.extrema[0].limit, clock.map(|c| c[side]), graph)
+            });
+            if !agrees {
+                return Ok(Some(format!("{ask:?} is {clock:?} and {number:?}: {found:?}")));
+            }
+        }
+    }
+    Ok(None)
+}
+
+fn inconclusive(limit: &ExtremumLimit) -> bool {
+    matches!(limit, ExtremumLimit::Inconclusive { .. })
+}
+
+/// Whether the engine's limit is this one. `Some(None)`: beyond what the regions tell apart.
+fn is_limit(limit: &ExtremumLimit, expected: Option<Option<(i64, bool)>>, graph: &Graph) -> bool {
+    let unit = graph.net.unit;
+    match (limit, expected) {
+        (ExtremumLimit::Nowhere, expected) => expected.is_none(),
+        (ExtremumLimit::At { value: ExtremumValue::Nanos(n), attained }, Some(Some((units, exact)))) => {
+            (*n, *attained) == (units * unit, exact)
+        }
+        (ExtremumLimit::At { value: ExtremumValue::Nanos(n), .. }, Some(None)) => {
+            *n >= graph.net.grain.most * unit
+        }
+        (ExtremumLimit::Unbounded | ExtremumLimit::Inconclusive { .. }, expected) => expected == Some(None),
+        (ExtremumLimit::At { .. }, _) => false,
+    }
+}
+
+/// Fastest runs end as early as any: an automaton more has a clock that tells the time.
+fn times(p: &Program, _: &Graph) -> Result<Option<String>, String> {
+    let mut timed = p.clone();
+    let mut watch = automaton("Watch", &["t"]);
+    normal(&mut watch, "on");
+    timed.automata.push(watch);
+    let id = AutomatonId(timed.automata.len() as u16 - 1);
+    timed.networks[0].automata.push(id);
+    // One clock more makes many regions more.
+    let Ok(graph) = explore(&timed, &timed.networks[0], Limits { states: 3_000, ..LIMITS }) else {
+        return Ok(None);
+    };
+    let clock = graph.states[0].clocks.len() - 1;
+    for f in formulas(p).into_iter().take(4).chain([QueryFormula::Deadlock]) {
+        let expected = graph.extremes(clock, &f)?.map(|[least, _]| least);
+        let found = said(p, QueryKind::Possibly(f.clone()), WitnessKind::Fastest);
+        let end = found.as_ref().map(|a| a.run.as_ref().map(|run| (run.end, run.ticks)));
+        let agrees = match (end, expected) {
+            (Ok(None), None) => true,
+            (Ok(Some((end, ticks))), Some(Some((units, attained)))) => {
+                let least = units * graph.net.unit * ticks;
+                // A strict bound is met a tick later, or some.
+                if attained { end == least } else { end > least && end < least + graph.net.unit * ticks }
+            }
+            (Ok(Some((end, ticks))), Some(None)) => end >= graph.net.grain.most * graph.net.unit * ticks,
+            (Ok(None), Some(_)) | (Ok(Some(_)), None) | (Err(_), _) => false,
+        };
+        if !agrees {
+            return Ok(Some(format!("the earliest {f:?} is at {expected:?}: {found:?}")));
         }
     }
     Ok(None)

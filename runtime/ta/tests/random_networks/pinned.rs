@@ -161,3 +161,17 @@ fn an_edge_that_cannot_be_taken_is_no_fault_of_a_deadlock() {
 fn the_invariant_of_a_target_is_looked_at_after_the_guard() {
     agrees(&crate::dice::network(100_819, crate::dice::Flavour::Whole));
 }
+
+/// An edge joins what another participant never does: what its guard divides by is asked by nobody.
+#[test]
+fn a_join_that_cannot_be_is_no_fault() {
+    agrees(&crate::dice::network(2_006_480, crate::dice::Flavour::Whole));
+    // A committed location that has no part in it forbids it.
+    agrees(&crate::dice::network(2_014_692, crate::dice::Flavour::Whole));
+}
+
+/// Something can happen within less than a nanosecond after a witness's strict bound, and only then.
+#[test]
+fn a_state_may_be_alive_for_less_than_a_nanosecond() {
+    agrees(&crate::dice::network(1_005_204, crate::dice::Flavour::Channels));
+}

@@ -2,7 +2,7 @@
 
 use std::{
     cell::{Cell, RefCell},
-    collections::{BTreeMap, BTreeSet},
+    collections::{BTreeMap, BTreeSet, VecDeque},
 };
 
 use hrdsl_ir::{
@@ -288,6 +288,52 @@ impl Graph<'_> {
     pub fn leads_to(&self, f: &QueryFormula, g: &QueryFormula) -> Result<bool, String> {
         let (from, stays) = (self.marked(f)?, self.staying(g, false)?);
         Ok(!from.into_iter().zip(stays).any(|(f, s)| f && s))
+    }
+
+    /// The least number of transitions to each state.
+    pub fn lengths(&self) -> Vec<usize> {
+        let mut lengths = vec![usize::MAX; self.states.len()];
+        let mut waiting = VecDeque::from([(0, 0)]);
+        while let Some((at, length)) = waiting.pop_front() {
+            if lengths[at] <= length {
+                continue;
+            }
+            lengths[at] = length;
+            // Time takes no transition.
+            waiting.extend(self.acts[at].iter().map(|&next| (next, length + 1)));
+            if let Some(next) = self.delay[at] {
+                waiting.push_front((next, length));
+            }
+        }
+        lengths
+    }
+
+    /// The least and the greatest value of a clock where a formula holds, in units, each with whether it is attained (otherwise the
+    /// clock comes as near as one likes). The inner `None`: it is beyond what is told apart.
+    #[allow(clippy::type_complexity, reason = "two bounds, each of which may not be known")]
+    pub fn extremes(
+        &self,
+        clock: usize,
+        f: &QueryFormula,
+    ) -> Result<Option<[Option<(i64, bool)>; 2]>, String> {
+        let most = self.net.grain.most;
+        let marked = self.marked(f)?;
+        let held = self.states.iter().zip(marked).filter(|(_, marked)| *marked);
+        let values: Vec<(i64, bool)> =
+            held.map(|(s, _)| (s.clocks[clock].0, s.clocks[clock].1 > 0)).collect();
+        let known = |(whole, above): (i64, bool)| whole < most || (whole == most && !above);
+        let Some(&least) = values.iter().min() else { return Ok(None) };
+        let greatest = values.iter().copied().max().unwrap_or(least);
+        let least = known(least).then_some((least.0, !least.1));
+        let greatest = known(greatest).then_some((greatest.0 + i64::from(greatest.1), !greatest.1));
+        Ok(Some([least, greatest]))
+    }
+
+    /// The values of a variable where a formula holds.
+    pub fn values(&self, slot: usize, f: &QueryFormula) -> Result<BTreeSet<i64>, String> {
+        let marked = self.marked(f)?;
+        let held = self.states.iter().zip(marked).filter(|(_, marked)| *marked);
+        Ok(held.map(|(s, _)| s.data[slot]).collect())
     }
 
     /// How a state is come upon.
