@@ -24,7 +24,6 @@ const LONG: &[(&str, usize)] = &[
     ("runtime/ta/src/network/code.rs", 958),
     ("runtime/ta/src/network/compile.rs", 771),
     ("runtime/ta/src/network/semantics.rs", 731),
-    ("runtime/ta/tests/queries.rs", 560),
 ];
 
 /// Files whose lines may end in blanks: a log that prints one, a text that breaks off after one.

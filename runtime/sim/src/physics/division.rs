@@ -22,8 +22,8 @@ const WAY: f64 = 5e-3;
 /// The most parts that rigid bodies ask for.
 const MOST_PARTS: f64 = 32.0;
 
-/// How often the solver goes over all joints and contacts while a robot falls, or lies, or a finger is struck: a robot of 66 kg that falls on
-/// a finger of 50 g would tear it off, unless that hands on what it takes.
+/// How often the solver goes over all joints and contacts while a robot falls, or lies: one of 66 kg that falls on a finger of 50 g would tear
+/// it off, unless that hands on what it takes.
 const SWEEPS_OF_FALLS: usize = 64;
 /// More often, in proportion, where one of its joints is farther apart than this, m; and the most.
 const STRAINED: f64 = 7e-4;

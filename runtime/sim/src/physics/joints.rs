@@ -24,8 +24,8 @@ const MENDS: f32 = 2000.0;
 const STIFF: f32 = 1000.0;
 /// A joint that is so far apart is torn, m and rad. What is led whatever is in its way can do that, which no joint would let happen: two
 /// forces without limit are against each other. So a torn joint gives way, as a spring with a damper, and comes together no faster
-/// than so, m/s and rad/s. Not so fingers on loose things, which would stand askew under what they hold, nor the joints of a robot that falls: against
-/// what it falls on they are not without limit, and the solver does more instead.
+/// than so, m/s and rad/s. Not so the joints of a robot that falls: what it falls on is not without limit, and the solver does more for
+/// them instead.
 const TORN: f64 = 4e-3;
 const TORN_TURN: f64 = 0.04;
 const MENDS_AT_MOST: f64 = 2.0;
@@ -34,8 +34,6 @@ const MENDS_AT_MOST_TURN: f64 = 10.0;
 const BROKEN: f64 = 0.1;
 /// A robot that leans so far from where it stood falls, or has fallen: the cosine of 10°.
 const LEANS: f64 = 0.985;
-/// A finger that is so far apart, or beyond its limits, is struck, m.
-const STRUCK: f64 = 3e-4;
 /// How fast it stops what tears it, s.
 const TORN_STOPS: f64 = 3e-3;
 /// What is so near to a robot that sleeps wakes it, m: contacts begin before surfaces meet.
@@ -116,10 +114,6 @@ impl PhysicsAdapter {
             stop: JointStop::about(0.0, least, most),
             softness,
             loose: self.loose_root(child, world),
-            is_finger: world
-                .grippers
-                .iter()
-                .any(|gripper| gripper.fingers.iter().any(|f| usize::from(f.0) == self.joints.len())),
             is_torn: false,
             is_run: false,
         }
@@ -257,8 +251,8 @@ impl PhysicsAdapter {
         }
     }
 
-    /// Lets torn joints give way, and those that have come together again not; gives how far the worst one is apart, m, of the
-    /// robots that fall, and of fingers that are struck.
+    /// Lets torn joints give way, and those that have come together again not; gives how far the worst one of the robots that fall is
+    /// apart, m, if one does.
     pub(super) fn ease_joints(&mut self) -> Option<f64> {
         let mut worst: Option<f64> = None;
         let h = self.part.0 / self.part.1 as f64;
@@ -267,11 +261,8 @@ impl PhysicsAdapter {
             let (apart, tilted) = self.apart(driven);
             self.accuracy.look_at_gap(at, apart);
             let falls = driven.loose.is_some_and(|loose| self.leans(loose));
-            let is_struck = driven.is_finger && self.meets_loose(driven.child);
-            // So light as a finger is, what strikes it shows in that it is where it cannot be.
-            let off = if is_struck { apart.max(self.beyond_limits(at)) } else { apart };
-            if falls || is_struck && off > STRUCK {
-                worst = Some(worst.map_or(off, |worst| worst.max(off)));
+            if falls {
+                worst = Some(worst.map_or(apart, |worst| worst.max(apart)));
             }
             if self.energy.fault.is_none() && apart > BROKEN {
                 let (name, by) = (&driven.name, 1e3 * apart);
@@ -279,8 +270,7 @@ impl PhysicsAdapter {
                     "the physics failed: joint `{name}` is torn, its bodies are {by:.0} mm apart"
                 ));
             }
-            let may_tear = !falls && !is_struck;
-            let is_torn = may_tear && (apart > TORN || tilted > TORN_TURN);
+            let is_torn = !falls && (apart > TORN || tilted > TORN_TURN);
             if !is_torn && !driven.is_torn {
                 continue;
             }
@@ -313,21 +303,6 @@ impl PhysicsAdapter {
                 2.0 * (parent.turn.inverse() * child.turn).imag().norm(),
             ),
         }
-    }
-
-    /// Whether something pressed on a body in the last step that is free to go.
-    fn meets_loose(&self, body: RigidBodyHandle) -> bool {
-        let own = (0..self.parts.len()).filter(|part| self.parts[*part].handle == body);
-        own.flat_map(|part| self.loads.on(part)).any(|(other, _)| {
-            let other = &self.parts[other];
-            other.motion == BodyMotion::Dynamic && self.guides[index(other.root)].is_none()
-        })
-    }
-
-    /// How far a joint is beyond one of its limits, rad or m.
-    fn beyond_limits(&self, joint: usize) -> f64 {
-        let (at, (lo, hi)) = (self.joint_position(joint), self.joint_limits(joint));
-        (lo - at).max(at - hi).max(0.0)
     }
 
     /// Where a joint ends, rad or m.

@@ -39,7 +39,6 @@ pub(crate) struct DrivenJoint {
     pub is_torn: bool,
     /// What its robot stands on, if that can fall.
     pub loose: Option<BodyId>,
-    pub is_finger: bool,
     /// The engine's motor runs it.
     pub is_run: bool,
 }
