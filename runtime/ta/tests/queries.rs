@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::asked::{ask, at, model, x};
+use common::asked::{ask, at, x};
 use common::{E, add, automaton, bin, clock, edge, eq, event, location, n, normal, program, shared, v};
 use hrdsl_ir::{
     Program, Span,

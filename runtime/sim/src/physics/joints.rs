@@ -69,10 +69,7 @@ impl PhysicsAdapter {
             .build();
         // The light links of a described robot would shake.
         if world.bodies[index(child)].solid.is_none() {
-            data.softness = SpringCoefficients {
-                natural_frequency: STIFF * MENDS / std::f32::consts::TAU,
-                damping_ratio: STIFF,
-            };
+            data.softness = stiff();
         }
         let softness = data.softness;
         let start = joint.drive.start;
@@ -416,6 +413,11 @@ impl PhysicsAdapter {
         roots.dedup();
         roots
     }
+}
+
+/// The softness of a joint that holds.
+fn stiff() -> SpringCoefficients<f32> {
+    SpringCoefficients { natural_frequency: STIFF * MENDS / std::f32::consts::TAU, damping_ratio: STIFF }
 }
 
 /// The softness of a torn joint, of whose gap so much is mended in a second, in parts of a step of the time `h`.
