@@ -181,6 +181,10 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
                     continue;
                 }
                 for piece in self.widened(next) {
+                    // What spans several pieces is in none of those that are known, but its pieces may be.
+                    if self.graph.splits() && self.simulates(known, &piece) {
+                        continue;
+                    }
                     let new = self.enter(piece, Some(at), Some(stop.clone()));
                     known.push(new);
                     waiting.push_back(new);
@@ -322,6 +326,9 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
             // The others come later, so that nothing is on the stack but the path: of a piece there is one piece only.
             if let Some(frame) = stack.last_mut() {
                 frame.next.extend(pieces.into_iter().map(|other| (stop.clone(), other)));
+            }
+            if self.graph.splits() && self.is_safe(&piece) {
+                continue;
             }
             if let Some(trap) = self.closes_loop(&piece, parent, &stop, &on_stack) {
                 return Ok(MaximalRunSearchResult::Found(Box::new(trap)));
