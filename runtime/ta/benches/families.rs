@@ -6,7 +6,7 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::families;
+use common::{families, processor::seconds};
 use hrdsl_ir::{Program, ta::LocationId};
 use hrdsl_ta::{
     CompiledNetwork, GoalKind, ObservationOptions, ReachabilityGoal, SearchOptions, SearchOrder,
@@ -51,15 +51,6 @@ fn line_goals(p: &Program) -> Vec<ReachabilityGoal> {
     // No run ends with more parts than there is room for: these are proofs.
     goals.extend((0..4).map(|k| data(common::and(is(1, 8), is(0, k)))));
     goals
-}
-
-/// User seconds of this process, of all its threads.
-fn seconds() -> f64 {
-    #[allow(clippy::disallowed_methods, reason = "a bench reads the clock of its process")]
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let after = stat.rsplit(')').next().unwrap_or("");
-    let field = |n: usize| after.split_whitespace().nth(n).and_then(|s| s.parse::<f64>().ok()).unwrap_or(0.0);
-    field(11) / 100.0
 }
 
 fn main() {

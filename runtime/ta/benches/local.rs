@@ -6,7 +6,7 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::families;
+use common::{families, processor::seconds};
 use hrdsl_ir::Program;
 use hrdsl_ta::{CompiledNetwork, ObservationOptions, SearchOptions, SearchReport, explore, local};
 
@@ -27,15 +27,6 @@ const ROWS: [Row; 12] = [
     ("critical_region", 4, families::critical_region, 0, 0.0, true),
     ("fischer", 8, families::fischer, 0, 0.0, true),
 ];
-
-/// User seconds of this process.
-fn seconds() -> f64 {
-    #[allow(clippy::disallowed_methods, reason = "a bench reads the clock of its process")]
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let after = stat.rsplit(')').next().unwrap_or("");
-    let field = |n: usize| after.split_whitespace().nth(n).and_then(|s| s.parse::<f64>().ok()).unwrap_or(0.0);
-    field(11) / 100.0
-}
 
 fn timed<E: std::fmt::Display>(run: impl FnOnce() -> Result<SearchReport, E>) -> String {
     let start = seconds();

@@ -5,11 +5,11 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::families;
+use common::{asked, families, processor::seconds};
 use hrdsl_ir::{
-    Program, Span,
+    Program,
     suite::WitnessKind,
-    ta::{ClockId, LocationId, NetworkId, Query, QueryFormula, QueryKind, QueryMeasure},
+    ta::{ClockId, LocationId, QueryFormula, QueryKind, QueryMeasure},
 };
 use hrdsl_ta::{
     CompiledNetwork, ObservationOptions, QueryOptions, SearchOptions, SearchOrder, SubsumptionRelation,
@@ -68,15 +68,6 @@ fn jobs(there: (u16, u16), clock: u16, left: (u16, u16)) -> Vec<Job> {
     ]
 }
 
-/// User seconds of this process.
-fn seconds() -> f64 {
-    #[allow(clippy::disallowed_methods, reason = "a bench reads the clock of its process")]
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let after = stat.rsplit(')').next().unwrap_or("");
-    let field = |n: usize| after.split_whitespace().nth(n).and_then(|s| s.parse::<f64>().ok()).unwrap_or(0.0);
-    field(11) / 100.0
-}
-
 fn run(p: &Program, (_, measured, ask, witness): &Job) -> String {
     let explored = |options: &SearchOptions| {
         let model = CompiledNetwork::new(p, &p.networks[0], &ObservationOptions::default());
@@ -91,14 +82,7 @@ fn run(p: &Program, (_, measured, ask, witness): &Job) -> String {
             ..SearchOptions::default()
         }),
         (Measured::Query, Some(ask)) => {
-            let query = Query {
-                name: "q".into(),
-                title: String::new(),
-                text: String::new(),
-                network: NetworkId(0),
-                ask: ask.clone(),
-                origin: Span::default(),
-            };
+            let query = asked::query(ask.clone());
             let options = QueryOptions { witness: *witness, ..QueryOptions::default() };
             let answer = answer(p, &p.networks[0], &query, &options);
             answer.map_or_else(|e| e.to_string(), |a| format!("{:?}: {}", a.verdict, a.why))

@@ -3,17 +3,17 @@
 
 mod common;
 
-use common::families;
+use common::{asked::ask_with, families};
 use hrdsl_ir::{
-    Program, Span,
+    Program,
     suite::WitnessKind,
-    ta::{ClockId, LocationId, NetworkId, Query, QueryFormula, QueryKind, QueryMeasure},
+    ta::{ClockId, LocationId, QueryFormula, QueryKind, QueryMeasure},
     value::SECOND,
 };
 use hrdsl_ta::{
     CompiledNetwork, ExtremumLimit, ExtremumValue, GoalKind, GoalOutcome, ObservationOptions, QueryAnswer,
     QueryOptions, QueryVerdict, ReachabilityGoal, SearchOptions, SearchOrder, SearchReport, StateFormula,
-    SubsumptionRelation, answer, explore,
+    SubsumptionRelation, explore,
 };
 
 fn search(p: &Program, goals: &[ReachabilityGoal], options: &SearchOptions) -> SearchReport {
@@ -91,15 +91,7 @@ fn fischer_excludes() {
 }
 
 fn asked(p: &Program, ask: QueryKind, witness: WitnessKind) -> QueryAnswer {
-    let query = Query {
-        name: "q".into(),
-        title: String::new(),
-        text: String::new(),
-        network: NetworkId(0),
-        ask,
-        origin: Span::default(),
-    };
-    answer(p, &p.networks[0], &query, &QueryOptions { witness, ..QueryOptions::default() }).unwrap()
+    ask_with(p, ask, &QueryOptions { witness, ..QueryOptions::default() })
 }
 
 /// As many states as reachability takes, or less: not those of a second, finer search.

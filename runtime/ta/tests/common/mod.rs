@@ -4,6 +4,7 @@
 pub mod asked;
 pub mod deadlines;
 pub mod families;
+pub mod processor;
 
 use hrdsl_ir::{
     Actor, ActorId, ArgPattern, Event, EventId, Expr, Parameter, Program, Role, Span, Type, Value,

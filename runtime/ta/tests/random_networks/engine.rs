@@ -1,11 +1,11 @@
 //! The one place that knows the engine: asks it in all its modes, and compares its answers with the regions.
 
 use hrdsl_ir::{
-    Program, Span,
+    Program,
     suite::WitnessKind,
     ta::{
-        AutomatonId, ClockConstraint, ClockId, ClockOp, LocationId, NetworkId, Query, QueryFormula,
-        QueryKind, QueryMeasure, TimeSum, location_variable,
+        AutomatonId, ClockConstraint, ClockId, ClockOp, LocationId, QueryFormula, QueryKind, QueryMeasure,
+        TimeSum, location_variable,
     },
     value::SECOND,
 };
@@ -18,7 +18,10 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::{
-    common::{asked::asked, automaton, eq, n, normal, v},
+    common::{
+        asked::{asked, query},
+        automaton, eq, n, normal, v,
+    },
     oracle::{Graph, Limits, explore},
 };
 
@@ -77,17 +80,6 @@ pub fn asks(p: &Program, graph: &Graph) -> Result<Option<String>, String> {
     Ok(None)
 }
 
-fn question(ask: QueryKind) -> Query {
-    Query {
-        name: "q".into(),
-        title: String::new(),
-        text: String::new(),
-        network: NetworkId(0),
-        ask,
-        origin: Span::default(),
-    }
-}
-
 fn said(p: &Program, ask: QueryKind, witness: WitnessKind) -> Result<QueryAnswer, SearchError> {
     // A clock may grow without end in a loop in which time is bounded.
     let states = match ask {
@@ -98,7 +90,7 @@ fn said(p: &Program, ask: QueryKind, witness: WitnessKind) -> Result<QueryAnswer
         | QueryKind::Eventually(_)
         | QueryKind::LeadsTo(..) => usize::MAX,
     };
-    let query = question(ask);
+    let query = query(ask);
     let budget = SearchBudget { states, ..SearchBudget::default() };
     answer(p, &p.networks[0], &query, &QueryOptions { witness, budget, ..QueryOptions::default() })
 }
