@@ -4,11 +4,12 @@ use hrdsl_ir::{ArgPattern, EventPattern};
 use hrdsl_model::{Scenario, TypedExpr, TypedOccurrence, TypedRequirement};
 use hrdsl_source::SourceFiles;
 use hrdsl_syntax::{CountBound, LastingBound, RequirementPattern, RequirementScope};
+use serde::Serialize;
 
 use crate::lower::monitor::one_line;
 
 /// A requirement, read out. A verdict that it cannot have is none.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RequirementReading {
     pub requirement: String,
     pub title: String,

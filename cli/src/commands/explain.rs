@@ -83,34 +83,6 @@ pub fn run(args: &ExplainArgs) -> Result<CommandExit, CommandFault> {
     Ok(CommandExit::Ok)
 }
 
-/// A requirement's reading, as JSON.
-#[derive(Serialize)]
-struct ExplainedRequirement<'a> {
-    requirement: &'a str,
-    title: &'a str,
-    text: &'a str,
-    says: &'a str,
-    pass: Option<&'a str>,
-    fail: Option<&'a str>,
-    vacuous: Option<&'a str>,
-    inconclusive: Option<&'a str>,
-}
-
-impl<'a> From<&&'a RequirementReading> for ExplainedRequirement<'a> {
-    fn from(reading: &&'a RequirementReading) -> Self {
-        Self {
-            requirement: &reading.requirement,
-            title: &reading.title,
-            text: &reading.text,
-            says: &reading.says,
-            pass: reading.pass.as_deref(),
-            fail: reading.fail.as_deref(),
-            vacuous: reading.vacuous.as_deref(),
-            inconclusive: reading.inconclusive.as_deref(),
-        }
-    }
-}
-
 fn is_scenario(what: &str) -> bool {
     Path::new(what).extension().is_some_and(|e| e == "hri")
 }
@@ -134,7 +106,7 @@ fn of_scenario(file: &Path, args: &ExplainArgs) -> Result<CommandExit, CommandFa
     };
     let colour = color::stdout_has();
     let text = if args.json {
-        files::json(&chosen.iter().map(ExplainedRequirement::from).collect::<Vec<_>>())?
+        files::json(&chosen)?
     } else {
         chosen.iter().map(|r| read_out(r, colour)).collect::<Vec<_>>().join("\n")
     };
