@@ -16,7 +16,7 @@ use crate::{
     kinematics::{KinematicChain, KinematicLink},
     math::{BodyFrame, SpaceVector, v3},
     motion::{ArmGoal, ArmMotion, ArmPath},
-    physics::{PhysicsAdapter, bad, dynamics::ArmDynamics, index},
+    physics::{CONTROL_PERIOD, PhysicsAdapter, bad, dynamics::ArmDynamics, index},
     profile::{RISE, brake_time, braking},
     rigidity,
     route::{JointRoute, JointTrack},
@@ -84,6 +84,9 @@ pub(crate) struct ArmControl {
     /// The accelerations that make good lasting errors, rad/s² or m/s²; and as they were when the arm was last free.
     lasting: Vec<f64>,
     lasting_free: Vec<f64>,
+    /// What the motors were last told, N·m or N, and until when that holds.
+    told: Vec<f64>,
+    told_until: Nanos,
 }
 
 /// What an arm and its planner are told of the moment.
@@ -151,6 +154,8 @@ impl ArmControl {
             pace: vec![0.0; numbers.len()],
             lasting: vec![0.0; numbers.len()],
             lasting_free: vec![0.0; numbers.len()],
+            told: vec![0.0; numbers.len()],
+            told_until: 0,
         })
     }
 
@@ -264,9 +269,17 @@ impl ArmControl {
         measured.zip(aim).zip(&self.lags).map(|((q, aim), lag)| (aim - q).abs() / lag).collect()
     }
 
-    /// Sets the motors for the step from `now` to `next`.
+    /// Sets the motors for the step from `now` to `next`: as they were last told, or, if that is over, anew.
     pub fn drive(&mut self, now: Nanos, next: Nanos, physics: &mut PhysicsAdapter) {
-        let h = seconds(next - now);
+        let joints = self.joints.iter().map(|id| usize::from(id.0));
+        if now < self.told_until {
+            joints.zip(&self.told).for_each(|(joint, effort)| {
+                physics.drive(joint, *effort);
+            });
+            return;
+        }
+        self.told_until = next.max(now + CONTROL_PERIOD);
+        let h = seconds(self.told_until - now);
         let (a, _) = self.aim();
         let behind = self.behind(&a, physics);
         let most = largest(&behind);
@@ -285,6 +298,11 @@ impl ArmControl {
         let (b, _) = self.aim();
         self.steer(&a, &b, (h, rate), physics);
         self.give_way(physics);
+    }
+
+    /// It sleeps: as soon as it wakes its motors are told anew.
+    pub fn rest(&mut self) {
+        self.told_until = 0;
     }
 
     /// Brings the motors' aims nearer to the set-points, each by itself, as fast as its joint may.
@@ -337,6 +355,7 @@ impl ArmControl {
         }
         for (i, id) in self.joints.iter().enumerate() {
             let done = physics.drive(usize::from(id.0), efforts[i]);
+            self.told[i] = efforts[i];
             // An arm that is held up, or a motor that can do no more, has nothing to learn from it.
             if done == efforts[i] && rate > HELD_UP {
                 self.lasting[i] += LEARNING * rigid.powi(3) * (a[i] - positions[i]) * h;

@@ -11,7 +11,10 @@ use hrdsl_harness::CommandId;
 use crate::{
     error::{CommandError, SimulationError},
     math::{BodyFrame, SpaceVector, about, wrap},
-    physics::{PhysicsAdapter, bad, index, wheels::RollingBase},
+    physics::{
+        CONTROL_PERIOD, PhysicsAdapter, bad, index,
+        wheels::{RollingBase, TyrePush},
+    },
 };
 
 /// How deep a base may come to be in what is fixed, m: more than the engine's single precision makes of bodies that touch, such as
@@ -76,6 +79,9 @@ pub(crate) struct BaseControl {
     stopping: Option<CommandId>,
     /// Of a base that can be pushed and toppled.
     wheels: Option<RollingBase>,
+    /// How its tyres were last told to push, and until when that holds.
+    push: TyrePush,
+    pushed_until: Nanos,
     /// Its wheels are braked: it stands.
     is_braked: bool,
     /// It has tipped over, for good.
@@ -190,6 +196,8 @@ impl BaseControl {
             obstacles: Vec::new(),
             stopping: None,
             wheels: rolls.then(|| physics.on_wheels(base.body, world)),
+            push: TyrePush::default(),
+            pushed_until: 0,
             is_braked: false,
             has_fallen: false,
         };
@@ -269,7 +277,7 @@ impl BaseControl {
         physics.lead(self.body, &self.frame(self.pose));
     }
 
-    /// Lets the wheels of a dynamic base bring it to the velocity that it is to have at the end of the step.
+    /// Lets the wheels of a dynamic base bring it to the velocity that it is to have when they are told next.
     fn roll_on(&mut self, from: Nanos, to: Nanos, physics: &mut PhysicsAdapter) {
         let Some(wheels) = self.wheels.clone() else { return };
         if !self.has_fallen && physics.tilt(self.body) > FALLEN {
@@ -280,8 +288,23 @@ impl BaseControl {
             self.velocity = PlanarVelocity::default();
             return;
         }
+        if from >= self.pushed_until {
+            self.pushed_until = to.max(from + CONTROL_PERIOD);
+            self.push = self.tell_wheels(from, self.pushed_until, &wheels, physics);
+        }
+        physics.push_by_tyres(&wheels, self.push);
+    }
+
+    /// How the tyres are to push between two times.
+    fn tell_wheels(
+        &mut self,
+        from: Nanos,
+        to: Nanos,
+        wheels: &RollingBase,
+        physics: &mut PhysicsAdapter,
+    ) -> TyrePush {
         // From where it really is: wheels that slipped take up their speed again.
-        let measured = self.measured(&wheels, physics);
+        let measured = self.measured(wheels, physics);
         let (mut velocity, mut at) = (self.velocity.near(measured), from);
         for until in self.changes(from, to).into_iter().chain([to]) {
             let t = seconds(until - at);
@@ -294,16 +317,16 @@ impl BaseControl {
         let stands = velocity == PlanarVelocity::default();
         if stands != self.is_braked {
             self.is_braked = stands;
-            if stands { physics.off_wheels(&wheels) } else { physics.on_wheels_again(&wheels) }
+            if stands { physics.off_wheels(wheels) } else { physics.on_wheels_again(wheels) }
         }
         if stands {
-            return;
+            return TyrePush::default();
         }
         let h = seconds(to - from);
         let yaw = self.heading(physics) + velocity.turn * h / 2.0;
         let ahead = SpaceVector::new(libm::cos(yaw), libm::sin(yaw), 0.0);
         let left = SpaceVector::new(-ahead.y, ahead.x, 0.0);
-        physics.roll(&wheels, ahead * velocity.forward + left * velocity.sideways, velocity.turn, h);
+        physics.roll(wheels, ahead * velocity.forward + left * velocity.sideways, velocity.turn, h)
     }
 
     fn measured(&self, wheels: &RollingBase, physics: &PhysicsAdapter) -> PlanarVelocity {

@@ -254,8 +254,12 @@ impl WorldSimulation {
         }
         let sleeps = |joint: usize| self.arms.iter().zip(&asleep).any(|(arm, a)| *a && arm.has_joint(joint));
         self.physics.release_motors(sleeps);
-        for (arm, _) in self.arms.iter_mut().zip(&asleep).filter(|(_, asleep)| !**asleep) {
-            arm.drive(self.last, next, &mut self.physics);
+        for (arm, is_asleep) in self.arms.iter_mut().zip(&asleep) {
+            if *is_asleep {
+                arm.rest();
+            } else {
+                arm.drive(self.last, next, &mut self.physics);
+            }
         }
         for base in &mut self.bases {
             // An action moves the body in its stead.

@@ -23,6 +23,7 @@ pub(crate) use state::{
 };
 
 use hrdsl_harness::SpentTime;
+use hrdsl_ir::Nanos;
 use hrdsl_ir::value::seconds;
 use hrdsl_ir::world::{Body, BodyId, BodyMotion, Joint, JointId, JointMotion, World};
 use rapier3d::prelude::*;
@@ -42,6 +43,10 @@ use state::{
     roots::{figure_of, rigid_roots},
     solid::{described_mass, surface_of},
 };
+
+/// How often the motors of arms and wheels are told what to do, ns; in a world with longer steps, once in each. Between that their
+/// efforts stay, as those of a real controller do: how hard a robot strikes must not depend on the step.
+pub(crate) const CONTROL_PERIOD: Nanos = 10_000_000;
 
 /// How often the solver divides a step in which anything is awake that is not drawn. With the rotors of the library's arms enough for the tool to be within 1 mm; the cost
 /// is in proportion.
@@ -88,6 +93,7 @@ impl PhysicsAdapter {
             parts: Vec::new(),
             guides: Vec::new(),
             yielding: Vec::new(),
+            fallen: Vec::new(),
             joints: Vec::new(),
             losses: JointLosses::default(),
             loads: ContactLoads::default(),

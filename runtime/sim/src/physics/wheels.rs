@@ -30,6 +30,15 @@ pub(crate) struct RollingBase {
     radius: f64,
 }
 
+/// What the tyres of a base do to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct TyrePush {
+    /// N
+    force: SpaceVector,
+    /// About the vertical, N·m.
+    torque: f64,
+}
+
 impl PhysicsAdapter {
     /// Puts a base on wheels.
     pub fn on_wheels(&mut self, body: BodyId, world: &World) -> RollingBase {
@@ -99,8 +108,8 @@ impl PhysicsAdapter {
         (from_vector(body.velocity_at_point(centre)), f64::from(body.angvel().z))
     }
 
-    /// Lets the tyres bring the base to a level velocity, m/s, and a turn, rad/s, in the time `h`, s, as far as they grip.
-    pub fn roll(&mut self, base: &RollingBase, velocity: SpaceVector, turn: f64, h: f64) {
+    /// How the tyres must push to bring the base to a level velocity, m/s, and a turn, rad/s, in the time `h`, s, as far as they grip.
+    pub fn roll(&mut self, base: &RollingBase, velocity: SpaceVector, turn: f64, h: f64) -> TyrePush {
         let (now, turning) = self.rolling_velocity(base);
         let change = SpaceVector::new(velocity.x - now.x, velocity.y - now.y, 0.0);
         let more = turn - turning;
@@ -109,7 +118,7 @@ impl PhysicsAdapter {
         let handle = self.parts[index(base.body)].handle;
         let twist = f64::from(self.world.bodies[handle].user_torque().z) * h;
         if change.norm() < STANDS && more.abs() < STANDS && twist.abs() < STANDS * base.inertia {
-            return;
+            return TyrePush::default();
         }
         let load: f64 = base.wheels.iter().map(|wheel| self.load_from_below(*wheel)).sum();
         let grip = FRICTION * load * h;
@@ -118,14 +127,23 @@ impl PhysicsAdapter {
         // Wheels that must both push and turn share their grip.
         let asked = impulse.norm() + spin.abs() / base.radius.max(1e-3);
         let part = if asked > grip { grip / asked } else { 1.0 };
-        let mut at = self.pose(base.body).at;
-        at.z = base.wheels.iter().map(|wheel| self.lowest(*wheel)).fold(f64::INFINITY, f64::min);
         let work = (impulse.norm() * velocity.norm().max(now.norm())
             + spin.abs() * turn.abs().max(turning.abs()))
             * part;
         self.energy.add_wheels(work);
-        let body = &mut self.world.bodies[handle];
-        body.apply_impulse_at_point(to_vector(impulse * part), to_vector(at), true);
-        body.apply_torque_impulse(to_vector(SpaceVector::z() * (spin * part)), true);
+        TyrePush { force: impulse * (part / h), torque: spin * part / h }
+    }
+
+    /// Lets the tyres push for a step, on the ground below the middle of the base.
+    pub fn push_by_tyres(&mut self, base: &RollingBase, push: TyrePush) {
+        if push == TyrePush::default() {
+            return;
+        }
+        let mut at = self.pose(base.body).at;
+        at.z = base.wheels.iter().map(|wheel| self.lowest(*wheel)).fold(f64::INFINITY, f64::min);
+        let h = self.step;
+        let body = &mut self.world.bodies[self.parts[index(base.body)].handle];
+        body.apply_impulse_at_point(to_vector(push.force * h), to_vector(at), true);
+        body.apply_torque_impulse(to_vector(SpaceVector::z() * (push.torque * h)), true);
     }
 }
