@@ -93,7 +93,6 @@ impl PhysicsAdapter {
             parts: Vec::new(),
             guides: Vec::new(),
             yielding: Vec::new(),
-            fallen: Vec::new(),
             joints: Vec::new(),
             losses: JointLosses::default(),
             loads: ContactLoads::default(),

@@ -180,7 +180,7 @@ fn command(scene: &mut Scene, world: &World, deeds: &[Deed]) {
     }
     for gripper in 0..world.grippers.len() {
         let gripper = GripperId(id(gripper));
-        let close = deeds[usize::from(gripper.0) % deeds.len()].kind % 2 == 0;
+        let close = deeds[usize::from(gripper.0) % deeds.len()].kind.is_multiple_of(2);
         let _ = scene.sim.command(if close {
             MotorCommand::CloseFingers { gripper }
         } else {

@@ -117,7 +117,8 @@ fn a_person_it_runs_into_feels_its_weight() {
         scene.go_on(4.0, |s| most = most.max(s.read("shin")));
         found.push(most);
     }
-    // Two legs of 75 kg each on 60 N/mm, and 22 kg at 0.5 m/s; the tyres go on pushing as hard as they grip.
+    // Two legs of 75 kg each on 60 N/mm, and 22 kg at 0.5 m/s; the tyres go on pushing as hard as they grip,
+    // but are told so up to 10 ms late, which is a quarter of such a blow.
     let reduced = 1.0 / (1.0 / 150.0 + 1.0 / 22.0);
     let (formula, tyres) = (0.5 * f64::sqrt(120e3 * reduced), 0.8 * 9.81 * reduced);
     let expected = tyres + formula.hypot(tyres);
@@ -125,7 +126,7 @@ fn a_person_it_runs_into_feels_its_weight() {
     let finest = found.last().expect("steps");
     for most in &found {
         assert!(
-            (most / expected - 1.0).abs() < 0.1 && (most / finest - 1.0).abs() < 0.1,
+            (most / expected - 1.0).abs() < 0.15 && (most / finest - 1.0).abs() < 0.1,
             "{found:?} {expected}"
         );
     }

@@ -70,7 +70,6 @@ impl PhysicsAdapter {
             let body = &mut self.world.bodies[part.handle];
             body.set_gravity_scale(1.0, true);
         }
-        self.fallen.extend(bodies.first().map(|(body, _)| *body));
     }
 
     /// How much room a body takes, m³.

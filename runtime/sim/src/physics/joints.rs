@@ -249,10 +249,9 @@ impl PhysicsAdapter {
     }
 
     /// Lets torn joints give way, and those that have come together again not; gives how far the worst one of the robots that fall is
-    /// apart, m, if one does, or a person.
+    /// apart, m, if one does.
     pub(super) fn ease_joints(&mut self) -> Option<f64> {
-        let is_down = |body: &BodyId| !self.world.bodies[self.parts[index(*body)].handle].is_sleeping();
-        let mut worst: Option<f64> = self.fallen.iter().any(is_down).then_some(0.0);
+        let mut worst: Option<f64> = None;
         let h = self.part.0 / self.part.1 as f64;
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };

@@ -45,8 +45,6 @@ pub(crate) struct PhysicsAdapter {
     /// By body: what draws those that are guided.
     pub guides: Vec<Option<BodyGuide>>,
     pub yielding: Vec<YieldingPair>,
-    /// What leads the bodies of each person that has fallen.
-    pub fallen: Vec<BodyId>,
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     pub joints: Vec<Option<DrivenJoint>>,
     pub losses: JointLosses,
