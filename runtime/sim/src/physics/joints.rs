@@ -71,7 +71,6 @@ impl PhysicsAdapter {
         if world.bodies[index(child)].solid.is_none() {
             data.softness = stiff();
         }
-        let softness = data.softness;
         let start = joint.drive.start;
         let (least, most) = (joint.lo - start, joint.hi - start);
         let is_wide = joint.motion == JointMotion::Hinge && !JointStop::is_plain(least, most);
@@ -82,24 +81,22 @@ impl PhysicsAdapter {
         } else {
             data.set_limits(moving, [least as f32, most as f32]);
         }
-        let (parent_start, child_start) = (p.start, c.start);
-        let (parent_handle, child_handle) = (p.handle, c.handle);
         let bearer = self.parts[index(self.bearer_of(parent, world))].handle;
-        let handle = self.world.insert_impulse_joint(parent_handle, child_handle, data);
+        let handle = self.world.insert_impulse_joint(p.handle, c.handle, data);
         let beyond = graph.beyond(joint, parent, child);
         let dynamic = beyond.into_iter().filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
         let carried: Vec<RigidBodyHandle> = dynamic.map(|b| self.parts[index(b)].handle).collect();
         DrivenJoint {
             name: joint.name.clone(),
             handle,
-            parent: parent_handle,
-            child: child_handle,
+            parent: p.handle,
+            child: c.handle,
             bearer,
             motion: joint.motion,
             axis,
             anchor,
-            parent_start,
-            child_start,
+            parent_start: p.start,
+            child_start: c.start,
             carried,
             limit: joint.drive.effort.unwrap_or(UNLIMITED),
             effort: 0.0,
@@ -109,7 +106,7 @@ impl PhysicsAdapter {
             wound: is_wide.then_some(0.0),
             first_frame,
             stop: JointStop::about(0.0, least, most),
-            softness,
+            softness: data.softness,
             loose: self.loose_root(child, world),
             is_torn: false,
             is_run: false,
