@@ -93,6 +93,7 @@ impl PhysicsAdapter {
             parts: Vec::new(),
             guides: Vec::new(),
             yielding: Vec::new(),
+            fallen: Vec::new(),
             joints: Vec::new(),
             losses: JointLosses::default(),
             loads: ContactLoads::default(),

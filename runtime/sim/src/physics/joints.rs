@@ -246,9 +246,10 @@ impl PhysicsAdapter {
     }
 
     /// Lets torn joints give way, and those that have come together again not; gives how far the worst one of the robots that fall is
-    /// apart, m, if one does.
+    /// apart, m, if one does; and 0 if it is a person.
     pub(super) fn ease_joints(&mut self) -> Option<f64> {
-        let mut worst: Option<f64> = None;
+        let falls = |body: &RigidBodyHandle| !self.world.bodies[*body].is_sleeping();
+        let mut worst = self.fallen.iter().any(falls).then_some(0.0);
         let h = self.part.0 / self.part.1 as f64;
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };
@@ -256,7 +257,7 @@ impl PhysicsAdapter {
             self.accuracy.look_at_gap(at, apart);
             let falls = driven.loose.is_some_and(|loose| self.leans(loose));
             if falls {
-                worst = Some(worst.map_or(apart, |worst| worst.max(apart)));
+                worst = Some(worst.map_or(apart, |worst: f64| worst.max(apart)));
             }
             if self.energy.fault.is_none() && apart > BROKEN {
                 let (name, by) = (&driven.name, 1e3 * apart);

@@ -45,6 +45,8 @@ pub(crate) struct PhysicsAdapter {
     /// By body: what draws those that are guided.
     pub guides: Vec<Option<BodyGuide>>,
     pub yielding: Vec<YieldingPair>,
+    /// One body of each of those who have fallen and hang together.
+    pub fallen: Vec<RigidBodyHandle>,
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     pub joints: Vec<Option<DrivenJoint>>,
     pub losses: JointLosses,
