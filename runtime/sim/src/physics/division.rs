@@ -22,16 +22,33 @@ const WAY: f64 = 5e-3;
 /// The most parts that rigid bodies ask for.
 const MOST_PARTS: f64 = 32.0;
 
-/// How often the solver goes over all joints and contacts while a robot falls, or lies: one of 66 kg that falls on a finger of 50 g would tear
-/// it off, unless that hands on what it takes.
-const SWEEPS_OF_FALLS: usize = 64;
-/// More often, in proportion, where one of its joints is farther apart than this, m; and the most.
+/// How often the solver goes over all joints and contacts while a robot or a person falls, or lies, or a light tip takes a blow: a robot of
+/// 66 kg that falls on a finger of 50 g would tear it off, and so would a leg of 500 g that is drawn along it, unless that hands on what it takes.
+const MANY_SWEEPS: usize = 64;
+/// More often, in proportion, where a joint of what falls is farther apart than this, m; and the most.
 const STRAINED: f64 = 7e-4;
 const MOST_SWEEPS: usize = 256;
 
-/// How often the solver must go over all joints and contacts if the worst of such joints is so far apart, m.
-fn sweeps_of_fall(apart: f64) -> usize {
-    ((SWEEPS_OF_FALLS as f64 * (apart / STRAINED).max(1.0)) as usize).min(MOST_SWEEPS)
+/// What joints ask of the solver.
+#[derive(Default)]
+pub(super) struct JointStrain {
+    /// Whether a robot, or a person, falls or lies.
+    pub falls: bool,
+    /// How far the two sides of the worst joint of those are apart, m.
+    pub apart: f64,
+    /// Whether a light tip takes a blow.
+    pub blow: bool,
+}
+
+impl JointStrain {
+    /// How often the solver must go over all joints and contacts, where it usually does so often.
+    fn sweeps(&self, usual: usize) -> usize {
+        if !self.falls && !self.blow {
+            return usual;
+        }
+        let many = (MANY_SWEEPS as f64 * (self.apart / STRAINED).max(1.0)) as usize;
+        usual.max(many.min(MOST_SWEEPS))
+    }
 }
 
 /// Where bodies can be within a step: of each its greatest speed, m/s, and the box that it stays in; and which of them are fast. Without
@@ -67,9 +84,8 @@ impl PhysicsAdapter {
                 self.press(pair.at, h);
             }
             self.lead_on((done + 1.0) / parts);
-            let falls = self.ease_joints();
             self.world.integration_parameters.num_internal_pgs_iterations =
-                falls.map_or(self.sweeps, |apart| self.sweeps.max(sweeps_of_fall(apart)));
+                self.ease_joints().sweeps(self.sweeps);
             self.step_engine();
             self.accuracy.look_at_contacts(&self.world, &self.robots);
             let part = self.loads_of_part();

@@ -4,10 +4,11 @@ use hrdsl_ir::world::{BodyId, BodyMotion, Joint, JointMotion, World};
 use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;
 
+use super::division::JointStrain;
 use super::state::{
     adapter::{PhysicsAdapter, PhysicsBody},
     bodies::index,
-    joint::{DrivenJoint, JointStop},
+    joint::{DrivenJoint, JointHold, JointStop},
     pairs::JointGraph,
 };
 use crate::math::{
@@ -30,6 +31,11 @@ const TORN: f64 = 4e-3;
 const TORN_TURN: f64 = 0.04;
 const MENDS_AT_MOST: f64 = 2.0;
 const MENDS_AT_MOST_TURN: f64 = 10.0;
+/// The joint of a light tip is strained that is so far apart, m and rad.
+const STRAINED: f64 = 7e-4;
+const STRAINED_TURN: f64 = 4e-3;
+/// Light is a tip that has less than so much of the mass of what it is on.
+const LIGHT: f64 = 0.25;
 /// So far apart a joint is no joint any more, m: the run is at fault.
 const BROKEN: f64 = 0.1;
 /// A robot that leans so far from where it stood falls, or has fallen: the cosine of 10°.
@@ -69,7 +75,7 @@ impl PhysicsAdapter {
             .build();
         // The light links of a described robot would shake.
         if world.bodies[index(child)].solid.is_none() {
-            data.softness = stiff();
+            data.softness = stiff(MENDS);
         }
         let start = joint.drive.start;
         let (least, most) = (joint.lo - start, joint.hi - start);
@@ -97,6 +103,8 @@ impl PhysicsAdapter {
             anchor,
             parent_start: p.start,
             child_start: c.start,
+            is_tip: carried.len() == 1
+                && world.bodies[index(child)].mass < LIGHT * world.bodies[index(parent)].mass,
             carried,
             limit: joint.drive.effort.unwrap_or(UNLIMITED),
             effort: 0.0,
@@ -108,7 +116,7 @@ impl PhysicsAdapter {
             stop: JointStop::about(0.0, least, most),
             softness: data.softness,
             loose: self.loose_root(child, world),
-            is_torn: false,
+            hold: JointHold::Firm,
             is_run: false,
         }
     }
@@ -245,11 +253,10 @@ impl PhysicsAdapter {
         }
     }
 
-    /// Lets torn joints give way, and those that have come together again not; gives how far the worst one of the robots that fall is
-    /// apart, m, if one does; and 0 if it is a person.
-    pub(super) fn ease_joints(&mut self) -> Option<f64> {
+    /// Lets torn joints give way, and those that have come together again not; gives how much the joints ask of the solver.
+    pub(super) fn ease_joints(&mut self) -> JointStrain {
         let falls = |body: &RigidBodyHandle| !self.world.bodies[*body].is_sleeping();
-        let mut worst = self.fallen.iter().any(falls).then_some(0.0);
+        let mut strain = JointStrain { falls: self.fallen.iter().any(falls), ..JointStrain::default() };
         let h = self.part.0 / self.part.1 as f64;
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };
@@ -257,7 +264,8 @@ impl PhysicsAdapter {
             self.accuracy.look_at_gap(at, apart);
             let falls = driven.loose.is_some_and(|loose| self.leans(loose));
             if falls {
-                worst = Some(worst.map_or(apart, |worst: f64| worst.max(apart)));
+                strain.falls = true;
+                strain.apart = strain.apart.max(apart);
             }
             if self.energy.fault.is_none() && apart > BROKEN {
                 let (name, by) = (&driven.name, 1e3 * apart);
@@ -265,21 +273,29 @@ impl PhysicsAdapter {
                     "the physics failed: joint `{name}` is torn, its bodies are {by:.0} mm apart"
                 ));
             }
-            let is_torn = !falls && (apart > TORN || tilted > TORN_TURN);
-            if !is_torn && !driven.is_torn {
+            let is_apart = !falls && (apart > TORN || tilted > TORN_TURN);
+            let is_strained = driven.is_tip && !falls && (apart > STRAINED || tilted > STRAINED_TURN);
+            let hold = driven.hold.next(is_apart, is_strained);
+            strain.blow |= hold.takes_blow();
+            if hold == JointHold::Firm && driven.hold == hold {
                 continue;
             }
             let usual = f64::from(driven.softness.erp_inv_dt(h as f32));
             let rate = usual.min(MENDS_AT_MOST / apart).min(MENDS_AT_MOST_TURN / tilted);
-            let (handle, softness) = (driven.handle, if is_torn { giving(rate, h) } else { driven.softness });
+            let softness = match hold {
+                JointHold::Strained { .. } if is_apart => stiff(rate as f32),
+                JointHold::Firm | JointHold::Strained { .. } => driven.softness,
+                JointHold::Torn => giving(rate, h),
+            };
+            let handle = driven.handle;
             if let Some(joint) = self.world.impulse_joints.get_mut(handle, false) {
                 joint.data.softness = softness;
             }
             if let Some(driven) = &mut self.joints[at] {
-                driven.is_torn = is_torn;
+                driven.hold = hold;
             }
         }
-        worst
+        strain
     }
 
     /// How far the two sides of a joint have come apart: m, and rad.
@@ -413,9 +429,9 @@ impl PhysicsAdapter {
     }
 }
 
-/// The softness of a joint that holds.
-fn stiff() -> SpringCoefficients<f32> {
-    SpringCoefficients { natural_frequency: STIFF * MENDS / std::f32::consts::TAU, damping_ratio: STIFF }
+/// The softness of a joint that holds, and of whose gap so much is mended in a second.
+fn stiff(rate: f32) -> SpringCoefficients<f32> {
+    SpringCoefficients { natural_frequency: STIFF * rate / std::f32::consts::TAU, damping_ratio: STIFF }
 }
 
 /// The softness of a torn joint, of whose gap so much is mended in a second, in parts of a step of the time `h`.

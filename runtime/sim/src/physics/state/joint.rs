@@ -5,6 +5,42 @@ use rapier3d::prelude::*;
 
 use crate::math::{BodyFrame, SpaceVector};
 
+/// How a joint holds its two sides together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointHold {
+    Firm,
+    /// A blow, which a light tip takes from what is heavy: the solver does more for it, since so many parts of a step.
+    Strained {
+        parts: u8,
+    },
+    /// Its sides are far apart, and nothing helps.
+    Torn,
+}
+
+/// What strains a joint for longer than so many parts of a step is no blow, but led whatever is in its way.
+const BLOW: u8 = 20;
+
+impl JointHold {
+    /// How it holds next: its sides may be far apart, or it be strained.
+    pub fn next(self, is_apart: bool, is_strained: bool) -> JointHold {
+        match self {
+            _ if !is_apart && !is_strained => JointHold::Firm,
+            JointHold::Firm if is_strained => JointHold::Strained { parts: 1 },
+            JointHold::Strained { parts } if parts < BLOW => JointHold::Strained { parts: parts + 1 },
+            _ if is_apart => JointHold::Torn,
+            // Not before it has recovered is there another blow.
+            JointHold::Firm | JointHold::Strained { .. } | JointHold::Torn => {
+                JointHold::Strained { parts: BLOW }
+            }
+        }
+    }
+
+    /// Whether the solver is to do more.
+    pub fn takes_blow(self) -> bool {
+        matches!(self, JointHold::Strained { parts } if parts < BLOW)
+    }
+}
+
 /// A joint of the engine.
 pub(crate) struct DrivenJoint {
     pub name: String,
@@ -22,6 +58,8 @@ pub(crate) struct DrivenJoint {
     pub child_start: BodyFrame,
     /// What it carries: bodies on the child's side.
     pub carried: Vec<RigidBodyHandle>,
+    /// Its child is the last of a chain, such as a finger, and light.
+    pub is_tip: bool,
     /// The most that its motor can do, and what it does.
     pub limit: f64,
     pub effort: f64,
@@ -36,7 +74,7 @@ pub(crate) struct DrivenJoint {
     pub stop: JointStop,
     /// How the solver mends what has come apart at it; and whether it has come so far apart that it gives way.
     pub softness: SpringCoefficients<f32>,
-    pub is_torn: bool,
+    pub hold: JointHold,
     /// What its robot stands on, if that can fall.
     pub loose: Option<BodyId>,
     /// The engine's motor runs it.
