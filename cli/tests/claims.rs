@@ -132,11 +132,11 @@ fn documents() -> Vec<String> {
     };
     let mut all = vec!["README.md".to_owned(), "ARCHITECTURE.md".to_owned()];
     all.extend(files("spec", &["md"]));
-    for example in ["corridor", "delivery", "handover", "homecare"] {
+    for example in ["corridor", "delivery", "handover", "homecare", "workbench"] {
         all.extend(files(&format!("examples/{example}"), &["md", "hri"]));
     }
     let examples = fs::read_dir(root().join("examples")).unwrap().count();
-    assert_eq!(examples, 4, "an example is not looked at");
+    assert_eq!(examples, 5, "an example is not looked at");
     all
 }
 

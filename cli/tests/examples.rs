@@ -226,3 +226,34 @@ fn faults_in_the_corridor_are_found() {
         assert!(outcomes[requirement].iter().any(|o| o == "fail"), "{outcomes:?}");
     }
 }
+
+/// What holds, what slips, what falls and what cannot be seen comes out of the physics.
+#[test]
+fn the_workbench_shows_what_the_world_decides() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in tree(&root().join("examples/workbench")) {
+        fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    expect_code(&hrdsl_in(folder.path(), "check . --deny warnings"), 0);
+    expect_code(&hrdsl_in(folder.path(), "sim scenario.hri tests.hri -o out --exit-zero"), 0);
+    let results: Value =
+        serde_json::from_slice(&fs::read(folder.path().join("out/results.json")).unwrap()).unwrap();
+    let failing: Vec<(&str, Vec<&str>)> = results["tests"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|test| {
+            let failed = test["verdicts"].as_array().unwrap().iter().filter(|v| v["outcome"] == "fail");
+            (test["name"].as_str().unwrap(), failed.map(|v| v["requirement"].as_str().unwrap()).collect())
+        })
+        .collect();
+    assert_eq!(
+        failing,
+        [
+            ("workbench.grips", vec![]),
+            ("workbench.slips", vec!["R1"]),
+            ("workbench.drops", vec!["R2"]),
+            ("workbench.unseen", vec!["R3"]),
+        ]
+    );
+}
