@@ -7,15 +7,11 @@ use std::{
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
-    recording::{self, RecordingFile},
     results::TestName,
-    viewer::{
-        PageOpening, RunGroup, SharedAssets, ViewDocument, ViewedRun, page,
-        replay::{mesh_assets, replay},
-        requirement::ViewVerdict,
-    },
+    viewer::{PageOpening, RunGroup, SharedAssets, ViewedRun, page, replay::mesh_assets},
 };
 
+use super::recorded::{keep_used, viewed};
 use crate::{exit::CommandExit, fault::CommandFault, files, input, results_folder, terminal};
 
 /// So large a page may be with all tests on it, in bytes; a test that is named is shown whatever its size.
@@ -108,7 +104,7 @@ fn chosen(
     }
     runs.insert(0, first);
     say_notes(&runs);
-    keep_used(assets, &runs);
+    keep_used(assets, runs.iter().map(|run| &run.document));
     let title = format!("{} {}", program.name, runs.first().map_or("", |run| run.label.as_str()));
     Ok(page(&title, &runs, assets, &opening))
 }
@@ -137,7 +133,7 @@ fn all(program: &Program, results: &Path, assets: &mut SharedAssets) -> Result<S
         seen.extend(run.requirement.clone().filter(|_| is_new));
         !is_new
     });
-    keep_used(assets, &runs);
+    keep_used(assets, runs.iter().map(|run| &run.document));
     let opening = PageOpening::default();
     let mut html = page(&program.name, &runs, assets, &opening);
     while html.len() > LARGEST && runs.len() > 1 {
@@ -158,23 +154,6 @@ fn say_notes(runs: &[ViewedRun]) {
             terminal::say_line(format_args!("note: {}: {note}", run.id));
         }
     }
-}
-
-/// Only those meshes that some run shows.
-fn keep_used(assets: &mut SharedAssets, runs: &[ViewedRun]) {
-    use hrdsl_runtime::viewer::document::ViewShape;
-
-    let shapes = runs.iter().flat_map(|run| &run.document.scene.bodies).flat_map(|body| &body.shapes);
-    let used: Vec<&String> = shapes
-        .filter_map(|shape| match shape {
-            ViewShape::Mesh { mesh, .. } => Some(mesh),
-            ViewShape::Box { .. }
-            | ViewShape::Sphere { .. }
-            | ViewShape::Cylinder { .. }
-            | ViewShape::Capsule { .. } => None,
-        })
-        .collect();
-    assets.meshes.retain(|digest, _| used.contains(&digest));
 }
 
 /// The recording that is meant: a file, or that of a test.
@@ -214,29 +193,4 @@ fn recordings(folder: &Path, ending: &str) -> Vec<PathBuf> {
         .collect();
     paths.sort();
     paths
-}
-
-/// A recording with its place on a page.
-fn viewed(program: &Program, path: &Path) -> Result<ViewedRun, CommandFault> {
-    let shown = terminal::shown(path);
-    let bytes = fs::read(path).map_err(|e| format!("cannot read {shown}: {e}"))?;
-    let file = if recording::is_mcap(&bytes) {
-        recording::read(&bytes).map_err(|e| format!("{shown}: {e}"))?
-    } else {
-        let text = String::from_utf8(bytes).map_err(|_| format!("{shown} is neither MCAP nor UTF-8 text"))?;
-        RecordingFile { text, ..RecordingFile::default() }
-    };
-    let document = replay(program, &file).map_err(|e| format!("{shown}: {e}"))?;
-    let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let id = document.test.clone().unwrap_or_else(stem);
-    let requirement = first_violated(&document);
-    let group = if requirement.is_some() { RunGroup::Failure } else { RunGroup::Other };
-    Ok(ViewedRun { label: id.clone(), id, group, requirement, beside: None, document })
-}
-
-/// The requirement that was violated first.
-fn first_violated(document: &ViewDocument) -> Option<String> {
-    let failed = document.requirements.iter().filter(|r| r.verdict == ViewVerdict::Fail);
-    let first = failed.min_by_key(|r| r.violations.first().map_or(u64::MAX, |violation| violation.t));
-    first.map(|requirement| requirement.id.clone())
 }

@@ -82,7 +82,7 @@ impl CampaignSetup<'_> {
             (Some(_) | None, Some(_) | None) => Box::new(world),
         };
         let stage = WorldStage::new(self.program, world);
-        Ok(Some(if self.replays.looks() { stage.picturing() } else { stage }))
+        Ok(Some(if self.replays { stage.picturing() } else { stage }))
     }
 }
 

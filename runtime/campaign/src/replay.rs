@@ -9,35 +9,6 @@ use hrdsl_recording::{
 };
 use hrdsl_results::TraceJudgement;
 
-/// Of which tests a file is made by which they can be looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ReplayChoice {
-    /// Of none: nobody looks at the world, and nothing is spent on it.
-    #[default]
-    None,
-    /// Of those that violate a requirement or break off.
-    Failing,
-    All,
-}
-
-impl ReplayChoice {
-    /// Whether a picture of the world is taken.
-    pub(crate) fn looks(self) -> bool {
-        match self {
-            ReplayChoice::None => false,
-            ReplayChoice::Failing | ReplayChoice::All => true,
-        }
-    }
-
-    pub(crate) fn takes(self, has_failed: bool) -> bool {
-        match self {
-            ReplayChoice::None => false,
-            ReplayChoice::Failing => has_failed,
-            ReplayChoice::All => true,
-        }
-    }
-}
-
 /// The file of a run, of which `text` is the recording.
 ///
 /// # Errors
