@@ -9,12 +9,12 @@ mod support;
 use std::{
     fs,
     path::Path,
-    process::{Command, Stdio},
+    process::Stdio,
     time::{Duration, Instant},
 };
 
 use serde_json::Value;
-use support::{command, expect_code, handover, hrdsl, hrdsl_in, stderr, stdout, tree};
+use support::{command, expect_code, handover, hrdsl, hrdsl_in, shown_by_chromium, stderr, stdout, tree};
 
 fn json(path: &Path) -> Value {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
@@ -125,31 +125,18 @@ fn commands_of_the_page_work(out: &Path, results: &Value) {
 
 /// A replay inside the report opens in Chromium, if there is one: both runs side by side.
 fn opened_in_a_browser(report: &Path, shown: &Value) {
-    let places = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-    let Some(browser) = places.into_iter().find(|place| Path::new(place).exists()) else {
-        eprintln!("no replay of the report is looked at: there is no Chromium");
-        return;
-    };
     let pairs = shown["pairs"].as_array().unwrap();
     let place = pairs.iter().position(|pair| pair["beside"].is_string()).unwrap();
-    let mut command = Command::new(browser);
-    command.args([
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--enable-unsafe-swiftshader",
-        "--dump-dom",
-    ]);
-    // Time that is not the clock's passes in all frames only if they are of one process.
-    command.args(["--disable-features=IsolateSandboxedIframes", "--virtual-time-budget=60000"]);
-    command.arg("--disable-dev-shm-usage").arg(format!("file://{}#replay-{}", report.display(), place + 1));
-    let dom = command.output().unwrap();
-    let dom = String::from_utf8_lossy(&dom.stdout).into_owned();
     let short =
         |field: &str| pairs[place][field].as_str().unwrap().trim_start_matches("handover.").to_owned();
     let opened = format!("data-opened=\"{} beside {} at ", short("test"), short("beside"));
+    let address = format!("file://{}#replay-{}", report.display(), place + 1);
+    let Some(dom) = shown_by_chromium(&address, &opened) else {
+        eprintln!("no replay of the report is looked at: there is no Chromium");
+        return;
+    };
     let (_, dialog) = dom.split_once("<dialog id=\"replay\"").expect("the page has a dialog");
-    assert!(dialog.contains(&opened), "no {opened} in {}", &dialog[..dialog.len().min(500)]);
+    assert!(dialog.contains(&opened), "no {opened} in {}", dialog.chars().take(500).collect::<String>());
 }
 
 /// A recording with a picture that cannot be written costs the replay, and nothing else.

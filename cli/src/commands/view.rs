@@ -45,11 +45,14 @@ pub struct ViewArgs {
 /// A scenario or recording that cannot be read, a test that nobody has recorded, or a page that cannot be written.
 pub fn run(args: &ViewArgs) -> Result<CommandExit, CommandFault> {
     refuse_foreign(&args.out)?;
-    let compilation = input::load(&args.file, &[])?;
+    let (compilation, gone) = input::load_to_look(&args.file)?;
     let Some(program) = input::report_errors(&args.file, &compilation) else {
         return Ok(CommandExit::Errors);
     };
     let results = args.results.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
+    for mesh in gone {
+        terminal::say_line(format_args!("note: the mesh {mesh} is not there; a box stands for it"));
+    }
     let (mut assets, left_out) = mesh_assets(program);
     if left_out > 0 {
         terminal::say_line(format_args!(
