@@ -33,13 +33,26 @@ pub fn viewed(program: &Program, path: &Path) -> Result<ViewedRun, CommandFault>
 /// # Errors
 /// Bytes that are no recording of the scenario.
 pub fn document(program: &Program, bytes: Vec<u8>) -> Result<ViewDocument, CommandFault> {
-    let file = if recording::is_mcap(&bytes) {
-        recording::read(&bytes).map_err(|e| e.to_string())?
-    } else {
-        let text = String::from_utf8(bytes).map_err(|_| "it is neither MCAP nor UTF-8 text")?;
-        RecordingFile { text, ..RecordingFile::default() }
-    };
-    replay(program, &file)
+    replay(program, &opened(bytes)?)
+}
+
+/// A recording, of either form.
+fn opened(bytes: Vec<u8>) -> Result<RecordingFile, CommandFault> {
+    if recording::is_mcap(&bytes) {
+        return recording::read(&bytes).map_err(|e| e.to_string());
+    }
+    let text = String::from_utf8(bytes).map_err(|_| "it is neither MCAP nor UTF-8 text")?;
+    Ok(RecordingFile { text, ..RecordingFile::default() })
+}
+
+/// A recording in the form that other tools play.
+///
+/// # Errors
+/// A file that cannot be read, or is no whole recording of the scenario with a picture.
+pub fn exported(program: &Program, path: &Path) -> Result<Vec<u8>, CommandFault> {
+    let shown = terminal::shown(path);
+    let bytes = fs::read(path).map_err(|e| format!("cannot read {shown}: {e}"))?;
+    opened(bytes).and_then(|file| recording::export(program, &file)).map_err(|why| format!("{shown}: {why}"))
 }
 
 /// The requirement that was violated first.

@@ -7,11 +7,12 @@ use std::{
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
+    recording,
     results::TestName,
     viewer::{PageOpening, RunGroup, SharedAssets, ViewedRun, page, replay::mesh_assets},
 };
 
-use super::recorded::{keep_used, viewed};
+use super::recorded::{exported, keep_used, viewed};
 use crate::{exit::CommandExit, fault::CommandFault, files, input, results_folder, terminal};
 
 /// So large a page may be with all tests on it, in bytes; a test that is named is shown whatever its size.
@@ -23,7 +24,7 @@ const LARGEST: usize = 8 << 20;
 /// folder of the results; or a recording is named by its file. Without either, the page has all tests that can be replayed.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl view scenario.hri bdi_tests.t017\n  hrdsl view scenario.hri\n  hrdsl view scenario.hri bdi_tests.t017 --beside bdi_tests.t003 -o both.html\n  hrdsl view scenario.hri out/replays/handover.bdi_tests.t017.mcap"
+    after_help = "Examples:\n  hrdsl view scenario.hri bdi_tests.t017\n  hrdsl view scenario.hri\n  hrdsl view scenario.hri bdi_tests.t017 --beside bdi_tests.t003 -o both.html\n  hrdsl view scenario.hri out/replays/handover.bdi_tests.t017.mcap\n  hrdsl view scenario.hri bdi_tests.t017 -o foxglove.mcap"
 )]
 pub struct ViewArgs {
     /// The scenario.
@@ -36,7 +37,7 @@ pub struct ViewArgs {
     /// The folder of the results [default: hrdsl-out/SCENARIO].
     #[arg(long, value_name = "DIR")]
     results: Option<PathBuf>,
-    /// The page to write.
+    /// The page to write; or, if its name ends in .mcap, a recording that Foxglove plays.
     #[arg(short, long, value_name = "FILE", default_value = "view.html")]
     out: PathBuf,
 }
@@ -53,6 +54,9 @@ pub fn run(args: &ViewArgs) -> Result<CommandExit, CommandFault> {
     for mesh in gone {
         terminal::say_line(format_args!("note: the mesh {mesh} is not there; a box stands for it"));
     }
+    if is_recording(&args.out) {
+        return export(args, program, &results);
+    }
     let (mut assets, left_out) = mesh_assets(program);
     if left_out > 0 {
         terminal::say_line(format_args!(
@@ -68,17 +72,37 @@ pub fn run(args: &ViewArgs) -> Result<CommandExit, CommandFault> {
     Ok(CommandExit::Ok)
 }
 
-/// Nobody's file is lost: only a page of this command is replaced.
+/// Whether a recording is to be written, and no page.
+fn is_recording(out: &Path) -> bool {
+    out.extension().is_some_and(|ending| ending == "mcap")
+}
+
+/// Nobody's file is lost: only a page or an export of this command is replaced.
 fn refuse_foreign(out: &Path) -> Result<(), CommandFault> {
-    if !out.exists()
-        || fs::read(out).is_ok_and(|bytes| String::from_utf8_lossy(&bytes).contains("id=\"hrdsl-index\""))
-    {
+    let is_page = |bytes: &[u8]| String::from_utf8_lossy(bytes).contains("id=\"hrdsl-index\"");
+    let is_ours =
+        |bytes: Vec<u8>| if is_recording(out) { recording::is_export(&bytes) } else { is_page(&bytes) };
+    if !out.exists() || fs::read(out).is_ok_and(is_ours) {
         return Ok(());
     }
+    let what = if is_recording(out) { "export" } else { "page" };
     Err(format!(
-        "{} is no page of `hrdsl view` and would be lost; name another file with -o",
+        "{} is no {what} of `hrdsl view` and would be lost; name another file with -o",
         terminal::shown(out)
     ))
+}
+
+/// Writes a recording in the form that other tools play.
+fn export(args: &ViewArgs, program: &Program, results: &Path) -> Result<CommandExit, CommandFault> {
+    let (Some(what), None) = (&args.what, &args.beside) else {
+        return Err(
+            "a file that ends in .mcap takes one recording: name a test, and nothing beside it".to_owned()
+        );
+    };
+    let path = found(program, results, what)?;
+    files::write_bytes(&args.out, &exported(program, &path)?)?;
+    terminal::print(&format!("view: {}\n", terminal::shown(&args.out)))?;
+    Ok(CommandExit::Ok)
 }
 
 /// The page of one test, or of two.

@@ -6,10 +6,12 @@ pub(crate) enum RecordingChannel {
     Header,
     Events,
     Signals,
+    Samples,
     Machines,
     End,
     Verdicts,
     Scene,
+    Tracks,
     Contacts,
     Entities,
     Transforms,
@@ -18,14 +20,16 @@ pub(crate) enum RecordingChannel {
 }
 
 impl RecordingChannel {
-    pub const ALL: [RecordingChannel; 12] = [
+    pub const ALL: [RecordingChannel; 14] = [
         RecordingChannel::Header,
         RecordingChannel::Events,
         RecordingChannel::Signals,
+        RecordingChannel::Samples,
         RecordingChannel::Machines,
         RecordingChannel::End,
         RecordingChannel::Verdicts,
         RecordingChannel::Scene,
+        RecordingChannel::Tracks,
         RecordingChannel::Contacts,
         RecordingChannel::Entities,
         RecordingChannel::Transforms,
@@ -38,10 +42,12 @@ impl RecordingChannel {
             RecordingChannel::Header => "/hrdsl/header",
             RecordingChannel::Events => "/hrdsl/events",
             RecordingChannel::Signals => "/hrdsl/signals",
+            RecordingChannel::Samples => "/hrdsl/samples",
             RecordingChannel::Machines => "/hrdsl/machines",
             RecordingChannel::End => "/hrdsl/end",
             RecordingChannel::Verdicts => "/hrdsl/verdicts",
             RecordingChannel::Scene => "/hrdsl/scene",
+            RecordingChannel::Tracks => "/hrdsl/tracks",
             RecordingChannel::Contacts => "/hrdsl/contacts",
             RecordingChannel::Entities => "/scene",
             RecordingChannel::Transforms => "/tf",
@@ -62,8 +68,10 @@ impl RecordingChannel {
             | RecordingChannel::Signals
             | RecordingChannel::Machines
             | RecordingChannel::End => true,
-            RecordingChannel::Verdicts
+            RecordingChannel::Samples
+            | RecordingChannel::Verdicts
             | RecordingChannel::Scene
+            | RecordingChannel::Tracks
             | RecordingChannel::Contacts
             | RecordingChannel::Entities
             | RecordingChannel::Transforms
