@@ -9,6 +9,7 @@ use std::{
     process::Command,
 };
 
+use hrdsl_runtime::recording::{self, RecordingFile};
 use support::{expect_code, handover, hrdsl, hrdsl_in, root, shown_by_chromium, stderr, stdout, tree};
 
 /// A few tests of the hand-over, each recorded.
@@ -143,6 +144,38 @@ fn looked_at(page: &Path) {
     };
     assert!(shown.contains("data-opened"), "the page did not open: {}", &shown[..shown.len().min(2_000)]);
     assert!(shown.contains("✗"), "no violation is shown");
+}
+
+/// What programs of a middleware log and send is in their recordings, the same with one worker as with two.
+#[test]
+fn recordings_have_the_log_and_the_messages_of_a_middleware() {
+    let folder = tempfile::tempdir().unwrap();
+    let system = root().join("examples/handover/with_rospy/system.hri");
+    let record = |jobs: &str| {
+        let out = folder.path().join(jobs);
+        campaign(
+            &out,
+            &["--replays", "all", "-j", jobs, "--suite", "bdi_tests", "--system", system.to_str().unwrap()],
+        );
+        replays(&out)
+    };
+    let (one, two) = (record("1"), record("2"));
+    assert!(!one.is_empty() && one.len() == two.len());
+    for (a, b) in one.iter().zip(&two) {
+        assert!(fs::read(a).unwrap() == fs::read(b).unwrap(), "{} differs with two workers", a.display());
+        assert!(fs::metadata(a).unwrap().len() <= 150 * 1024, "{}", a.display());
+    }
+    let found: Vec<RecordingFile> =
+        one.iter().map(|file| recording::read(&fs::read(file).unwrap()).unwrap()).collect();
+    assert!(found.iter().all(|file| file.faults.is_empty() && file.log.len() > 1), "all of the log");
+    let topics = || found.iter().flat_map(|file| &file.topics);
+    let voice = topics().find(|topic| topic.name == "/human/voice").expect("what the person says");
+    assert!(!voice.outward && voice.texts[0].as_ref().unwrap().contains("\"leg_request\":"));
+    let commands = topics().filter(|topic| topic.name.ends_with("/command"));
+    let command = commands.max_by_key(|topic| topic.times.len()).expect("what the code commands");
+    assert!(command.outward && command.times.len() > 200 && command.texts.len() == 200);
+    assert!(command.times.is_sorted() && command.interface.contains('/'));
+    assert!(topics().any(|topic| topic.name == "/gripper_controller/gripper_cmd"), "goals of actions, too");
 }
 
 /// A small world with a robot whose links have meshes, recorded once.

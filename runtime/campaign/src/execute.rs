@@ -50,6 +50,7 @@ impl CampaignSetup<'_> {
         });
         let player = SystemPlayer::of_programs(self.program, declared.actor, programs)
             .with_binding(declared.binding.as_ref());
+        let player = if self.replays { player.writing_down() } else { player };
         let mut players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(player)];
         players
             .extend(ScriptPlayer::all(self.program, test).map(|p| Box::new(p) as Box<dyn ActorPlayer + '_>));

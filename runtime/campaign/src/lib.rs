@@ -25,7 +25,8 @@ use std::{
 
 use hrdsl_conformance::ConformanceOptions;
 use hrdsl_harness::{
-    AwaitInVain, HarnessError, HarnessRun, PortHistory, RunTermination, SpentTime, SystemFaultKind, SystemLog,
+    AwaitInVain, HarnessError, HarnessRun, PortHistory, RunTermination, SaidHistory, SpentTime,
+    SystemFaultKind, SystemLog,
 };
 use hrdsl_ir::{
     Program,
@@ -393,7 +394,8 @@ fn hash_seed(seed: u64) -> u32 {
 fn failed(fault: HarnessError) -> HarnessRun {
     let (trace, ports, log) = (Trace::default(), PortHistory::default(), SystemLog::default());
     let (unmet, picture) = (Vec::new(), WorldPicture::default());
-    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, log, unmet, accuracy: None, picture }
+    let (ended, said) = (RunTermination::Fault(fault), SaidHistory::default());
+    HarnessRun { trace, ended, ports, log, unmet, accuracy: None, said, picture }
 }
 
 /// What is known about a test when its run is over.

@@ -16,11 +16,12 @@ pub(crate) enum RecordingChannel {
     Entities,
     Transforms,
     Joints,
+    Topics,
     Log,
 }
 
 impl RecordingChannel {
-    pub const ALL: [RecordingChannel; 14] = [
+    pub const ALL: [RecordingChannel; 15] = [
         RecordingChannel::Header,
         RecordingChannel::Events,
         RecordingChannel::Signals,
@@ -34,6 +35,7 @@ impl RecordingChannel {
         RecordingChannel::Entities,
         RecordingChannel::Transforms,
         RecordingChannel::Joints,
+        RecordingChannel::Topics,
         RecordingChannel::Log,
     ];
 
@@ -52,6 +54,7 @@ impl RecordingChannel {
             RecordingChannel::Entities => "/scene",
             RecordingChannel::Transforms => "/tf",
             RecordingChannel::Joints => "/joint_states",
+            RecordingChannel::Topics => "/hrdsl/topics",
             RecordingChannel::Log => "/log",
         }
     }
@@ -76,6 +79,7 @@ impl RecordingChannel {
             | RecordingChannel::Entities
             | RecordingChannel::Transforms
             | RecordingChannel::Joints
+            | RecordingChannel::Topics
             | RecordingChannel::Log => false,
         }
     }

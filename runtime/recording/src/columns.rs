@@ -86,12 +86,12 @@ pub struct SampleColumns {
     pub v: Vec<i64>,
 }
 
-fn differences(values: impl IntoIterator<Item = i64>) -> Vec<i64> {
+pub(crate) fn differences(values: impl IntoIterator<Item = i64>) -> Vec<i64> {
     let mut before = 0;
     values.into_iter().map(|value| value.wrapping_sub(std::mem::replace(&mut before, value))).collect()
 }
 
-fn sums(differences: &[i64]) -> Vec<i64> {
+pub(crate) fn sums(differences: &[i64]) -> Vec<i64> {
     let mut sum = 0_i64;
     differences
         .iter()

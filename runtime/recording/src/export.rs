@@ -26,6 +26,7 @@ pub fn export(program: &Program, file: &RecordingFile) -> Result<Vec<u8>, String
         scene,
         picture: &file.picture,
         log: &file.log,
+        topics: &file.topics,
         verdicts: &file.verdicts,
     };
     write_as(&run, RecordingForm::Messages)

@@ -17,7 +17,9 @@ use crate::{
     channel::RecordingChannel,
     columns::{self, TracksMessage},
     container::{self, ContainedMessage, ContainerError, MAGIC},
-    message::{ContactsMessage, RecordedLogLevel, RecordedLogLine, VerdictMessage},
+    message::{
+        ContactsMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic, TopicsMessage, VerdictMessage,
+    },
     scene::RecordedScene,
 };
 
@@ -29,6 +31,8 @@ pub struct RecordingFile {
     pub scene: Option<RecordedScene>,
     pub picture: WorldPicture,
     pub log: Vec<RecordedLogLine>,
+    /// What was sent through names of the middleware.
+    pub topics: Vec<RecordedTopic>,
     /// What the run came to when it was made.
     pub verdicts: Vec<VerdictMessage>,
     /// What could not be read, a sentence each.
@@ -94,6 +98,7 @@ struct TakenApart {
     contacts: BTreeMap<[String; 2], Vec<ContactKeyframe>>,
     tracks: Vec<TracksMessage>,
     verdicts: Vec<VerdictMessage>,
+    topics: Vec<RecordedTopic>,
     log: Vec<RecordedLogLine>,
     faults: Vec<String>,
 }
@@ -189,6 +194,16 @@ impl TakenApart {
                     self.contacts.entry(contact.bodies).or_default().push(frame);
                 }
             }
+            RecordingChannel::Topics => {
+                let message: TopicsMessage = serde_json::from_slice(data)?;
+                self.topics.extend(message.topics.into_iter().map(|topic| RecordedTopic {
+                    name: topic.name,
+                    interface: topic.interface,
+                    outward: topic.outward,
+                    times: columns::sums(&topic.t),
+                    texts: topic.text,
+                }));
+            }
             RecordingChannel::Log => {
                 let LogMessage { level, message: text, name: program } = serde_json::from_slice(data)?;
                 let level = RecordedLogLevel::ALL.into_iter().find(|known| known.number() == level);
@@ -217,8 +232,8 @@ impl TakenApart {
         }
         let text = self.lines.iter().flat_map(|(_, line)| [line.as_str(), "\n"]).collect();
         let picture = self.picture();
-        let Self { scene, log, verdicts, faults, .. } = self;
-        RecordingFile { text, scene, picture, log, verdicts, faults }
+        let Self { scene, log, topics, verdicts, faults, .. } = self;
+        RecordingFile { text, scene, picture, log, topics, verdicts, faults }
     }
 
     /// The picture, by the numbers that the scene gives to names.

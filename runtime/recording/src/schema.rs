@@ -9,7 +9,7 @@ use crate::{
     foxglove,
     message::{
         ContactsMessage, EndMessage, EventMessage, HeaderMessage, MachineMessage, SignalMessage,
-        VerdictMessage,
+        TopicsMessage, VerdictMessage,
     },
     scene::RecordedScene,
 };
@@ -30,6 +30,7 @@ pub(crate) fn of_channel(channel: RecordingChannel) -> (&'static str, Value) {
         RecordingChannel::Entities => ("foxglove.SceneUpdate", foxglove::scene_update()),
         RecordingChannel::Transforms => ("foxglove.FrameTransforms", foxglove::frame_transforms()),
         RecordingChannel::Joints => ("foxglove.JointStates", foxglove::joint_states()),
+        RecordingChannel::Topics => ("hrdsl.Topics", own::<TopicsMessage>()),
         RecordingChannel::Log => ("foxglove.Log", foxglove::log()),
     }
 }

@@ -14,7 +14,7 @@ use crate::{
     columns::{self, BLOCK, SampleTable, TracksMessage},
     container::ContainerWriter,
     foxglove::{self, WORLD},
-    message::{RecordedLogLine, VerdictMessage},
+    message::{RecordedLogLine, RecordedTopic, TopicColumns, TopicsMessage, VerdictMessage},
     number::decimal,
     scene::RecordedScene,
     schema,
@@ -29,6 +29,7 @@ pub struct RunOnFile<'a> {
     pub scene: &'a RecordedScene,
     pub picture: &'a WorldPicture,
     pub log: &'a [RecordedLogLine],
+    pub topics: &'a [RecordedTopic],
     pub verdicts: &'a [VerdictMessage],
 }
 
@@ -162,6 +163,17 @@ fn seen(run: &RunOnFile<'_>, form: RecordingForm) -> Vec<PlannedMessage> {
         RecordingForm::Columns => in_tracks(run),
         RecordingForm::Messages => as_messages(run),
     });
+    if !run.topics.is_empty() {
+        let topics = run.topics.iter().map(|topic| TopicColumns {
+            name: topic.name.clone(),
+            interface: topic.interface.clone(),
+            outward: topic.outward,
+            t: columns::differences(topic.times.iter().copied()),
+            text: topic.texts.clone(),
+        });
+        let data = serde_json::to_string(&TopicsMessage { topics: topics.collect() }).unwrap_or_default();
+        planned.push(message(run.trace.end, RecordingChannel::Topics, data));
+    }
     planned.extend(run.log.iter().map(|entry| {
         let data = json!({
             "timestamp": { "sec": entry.time / SECOND, "nsec": entry.time % SECOND },

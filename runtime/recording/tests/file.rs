@@ -10,7 +10,7 @@ use hrdsl_ir::{
 };
 use hrdsl_recording::{
     RecordingError, RecordingFile, RecordingForm, RunOnFile, export, is_export,
-    message::{RecordedLogLevel, RecordedLogLine, VerdictMessage},
+    message::{RecordedLogLevel, RecordedLogLine, RecordedTopic, VerdictMessage},
     read,
     scene::{RecordedBody, RecordedBodyKind, RecordedJoint, RecordedScene, RecordedShape},
     schema, write, write_as,
@@ -89,6 +89,20 @@ fn picture() -> WorldPicture {
     }
 }
 
+fn topics() -> Vec<RecordedTopic> {
+    let topic = |name: &str, outward, times: &[i64], texts: &[Option<&str>]| RecordedTopic {
+        name: name.to_owned(),
+        interface: "std_msgs/String".to_owned(),
+        outward,
+        times: times.to_vec(),
+        texts: texts.iter().map(|text| text.map(str::to_owned)).collect(),
+    };
+    vec![
+        topic("/heard", false, &[5, 70, 1_000_000_000], &[Some("{\"data\":\"a\"}"), None]),
+        topic("/said", true, &[], &[]),
+    ]
+}
+
 fn file() -> (String, Vec<u8>) {
     let program = Program { name: "cup".to_owned(), ..Program::default() };
     let trace = Trace { end: 400_000_000_000, ..Trace::default() };
@@ -114,6 +128,7 @@ fn file() -> (String, Vec<u8>) {
         scene: &scene(),
         picture: &picture(),
         log: &log,
+        topics: &topics(),
         verdicts: &verdicts,
     };
     let bytes = write(&run).unwrap();
@@ -135,6 +150,7 @@ fn what_is_written_reads_back() {
     assert_eq!(found.text, text, "the judged lines, byte for byte");
     assert_eq!(found.scene, Some(scene()));
     assert_eq!(found.picture, picture());
+    assert_eq!(found.topics, topics());
     let log: Vec<(i64, RecordedLogLevel, &str)> =
         found.log.iter().map(|entry| (entry.time, entry.level, entry.text.as_str())).collect();
     assert_eq!(log, [(1_500_000_000, RecordedLogLevel::Warning, "low \"battery\"")]);
