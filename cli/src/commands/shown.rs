@@ -10,7 +10,12 @@ use hrdsl_ir::Program;
 use hrdsl_runtime::{
     report::{self, PageReplays},
     results::{CampaignResults, ReplayPair, ShownReplays, ShownRun, TestName, UnreplayedTest},
-    viewer::{ViewDocument, packed_assets, packed_page, packed_run, replay::mesh_assets},
+    viewer::{
+        ViewDocument,
+        columns::{PoseTolerance, coarser},
+        packed_assets, packed_page, packed_run,
+        replay::mesh_assets,
+    },
 };
 
 use super::recorded::{document, keep_used};
@@ -22,6 +27,8 @@ const FILE: &str = "shown.json";
 const LARGEST_PAGE: usize = 8 << 20;
 /// So much of it a test may take, in bytes.
 const LARGEST_RUN: usize = 200 << 10;
+/// How far a body may be drawn from where it was in a test that is too large otherwise.
+const COARSE: PoseTolerance = PoseTolerance { place: 0.005, turn: 0.01 };
 /// What each pair takes besides its runs, at most: its buttons, and its line in the index.
 const FOR_EACH_PAIR: usize = 2 << 10;
 
@@ -127,7 +134,7 @@ impl ReplayTable<'_> {
     }
 }
 
-/// The document of a test, packed; without forces of contacts, if it is too large with them.
+/// The document of a test, packed; without forces of contacts and with coarser poses, if it is too large with them.
 fn packed(program: &Program, folder: &Path, test: &TestName) -> Result<(ViewDocument, String), String> {
     let bytes =
         fs::read(recording_of(folder, test)).map_err(|e| format!("its recording cannot be read: {e}"))?;
@@ -137,6 +144,16 @@ fn packed(program: &Program, folder: &Path, test: &TestName) -> Result<(ViewDocu
         document.contacts.clear();
         document.notes.push(
             "The report leaves the forces of contacts out, for which there is no room; `hrdsl view` shows them."
+                .to_owned(),
+        );
+        data = packed_run(&document);
+    }
+    if data.len() > LARGEST_RUN {
+        for track in &mut document.poses {
+            *track = coarser(track, COARSE);
+        }
+        document.notes.push(
+            "The report shows bodies within a centimetre of where they were, for there is no room for more; `hrdsl view` shows them closer."
                 .to_owned(),
         );
         data = packed_run(&document);
@@ -176,6 +193,7 @@ pub fn read(results: &Path) -> Option<ShownReplays> {
 /// The report as a page, with its replays.
 #[must_use]
 pub fn page(results: &CampaignResults, shown: Option<&ShownReplays>) -> String {
-    let viewer = shown.map(|_| packed_page()).unwrap_or_default();
+    // Where nothing is shown, the viewer would be of no use.
+    let viewer = shown.filter(|shown| !shown.pairs.is_empty()).map(|_| packed_page()).unwrap_or_default();
     report::html_with(results, shown.map(|shown| PageReplays { shown, viewer: &viewer }).as_ref())
 }
