@@ -55,6 +55,19 @@ pub fn load_beside(
     Ok(compile_beside(input, &tests, beside, &modules))
 }
 
+/// Compiles a scenario of which recordings are looked at; and the meshes that are not there, for which something stands, as poses and verdicts do
+/// not depend on them.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn load_to_look(scenario: &Path) -> Result<(CompilationResult, Vec<String>), CommandFault> {
+    let text = read(scenario)?;
+    let name = scenario.display().to_string();
+    let (input, modules) = (InputFile { name: &name, text: &text }, DiskModules::to_look(Some(scenario)));
+    let compilation = compile_beside(input, &[], &[], &modules);
+    Ok((compilation, modules.gone()))
+}
+
 fn expand(path: &Path) -> Result<Vec<PathBuf>, CommandFault> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);

@@ -2,6 +2,8 @@
 //! elsewhere, checked where others read what is said about it, shows nobody's other files.
 
 use std::{
+    cell::RefCell,
+    collections::BTreeSet,
     fs,
     io::Read as _,
     path::{Component, Path, PathBuf},
@@ -91,6 +93,8 @@ pub struct DiskModules {
     reach: FileReach,
     /// That of the file; `None`: standard input has none.
     folder: Option<PathBuf>,
+    /// Where meshes that are not there have something in their place: their paths.
+    gone: Option<RefCell<BTreeSet<String>>>,
 }
 
 impl DiskModules {
@@ -98,7 +102,19 @@ impl DiskModules {
     #[must_use]
     pub fn of(file: Option<&Path>) -> Self {
         let folder = file.and_then(Path::parent).map(Path::to_path_buf);
-        Self { reach: FileReach::of(file, &["hri"]), folder }
+        Self { reach: FileReach::of(file, &["hri"]), folder, gone: None }
+    }
+
+    /// The same, for commands that only look at what was recorded: a mesh that is not there has a small one in its place.
+    #[must_use]
+    pub fn to_look(file: Option<&Path>) -> Self {
+        Self { gone: Some(RefCell::default()), ..Self::of(file) }
+    }
+
+    /// The meshes that were not there when they were read.
+    #[must_use]
+    pub fn gone(&self) -> Vec<String> {
+        self.gone.iter().flat_map(|gone| gone.borrow().iter().cloned().collect::<Vec<_>>()).collect()
     }
 }
 
@@ -113,7 +129,7 @@ impl ModuleLoader for DiskModules {
     }
 
     fn robots(&self) -> Option<Box<dyn RobotReader + '_>> {
-        Some(Box::new(DiskRobots { reach: &self.reach }))
+        Some(Box::new(DiskRobots { reach: &self.reach, gone: self.gone.as_ref() }))
     }
 
     fn means_a_file(&self, path: &str) -> Option<bool> {
@@ -124,6 +140,7 @@ impl ModuleLoader for DiskModules {
 /// Descriptions of robots with their meshes, and maps.
 struct DiskRobots<'r> {
     reach: &'r FileReach,
+    gone: Option<&'r RefCell<BTreeSet<String>>>,
 }
 
 /// More than any mesh or picture has that is read.
@@ -133,7 +150,10 @@ impl RobotReader for DiskRobots<'_> {
     fn bytes(&self, file: &str) -> Result<Vec<u8>, String> {
         let file = tidy(Path::new(file));
         if !file.exists() {
-            return Err("there is no such file".to_owned());
+            let stand_in = self.gone.and_then(|gone| Some((gone, stand_in(&file)?)));
+            let Some((gone, stand_in)) = stand_in else { return Err("there is no such file".to_owned()) };
+            gone.borrow_mut().insert(shown(&file));
+            return Ok(stand_in.as_bytes().to_vec());
         }
         let whole = self.reach.whole(&file)?;
         // What is no file may have no end, or wait for somebody to write.
@@ -162,6 +182,16 @@ impl RobotReader for DiskRobots<'_> {
 
     fn is_file(&self, file: &str) -> bool {
         self.reach.whole(&tidy(Path::new(file))).is_ok_and(|whole| whole.is_file())
+    }
+}
+
+/// What stands for a mesh of this name: a tetrahedron in the same format. `None`: it is no mesh.
+fn stand_in(file: &Path) -> Option<&'static str> {
+    match file.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+        "stl" => Some(include_str!("stand_in/mesh.stl")),
+        "obj" => Some(include_str!("stand_in/mesh.obj")),
+        "dae" => Some(include_str!("stand_in/mesh.dae")),
+        _ => None,
     }
 }
 

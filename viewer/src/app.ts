@@ -122,6 +122,12 @@ export class App implements Part {
     await this.open(id, beside ?? null, address.run === undefined || known(address.run) ? address : {});
   }
 
+  /** What is open, in short: the runs and the time. */
+  shown(): string {
+    const { runs, time } = this.store.state;
+    return `${runs.map((run) => run.id).join(" beside ")} at ${time.toFixed(3)}`;
+  }
+
   private async load(id: string): Promise<Run> {
     const [document, shared] = await Promise.all([this.data.run(id), this.data.assets()]);
     return runOf(id, this.data.index.runs.find((run) => run.id === id)?.label ?? id, document, shared);

@@ -11,7 +11,13 @@ async function begin(): Promise<void> {
   const app = new App(pageData(document), root);
   await app.begin();
   // How long it took from the navigation to the first picture: for measurements, and for tests.
-  requestAnimationFrame(() => requestAnimationFrame(() => (document.documentElement.dataset["opened"] = performance.now().toFixed(0))));
+  requestAnimationFrame(() =>
+    requestAnimationFrame(() => {
+      document.documentElement.dataset["opened"] = performance.now().toFixed(0);
+      // In a frame, such as that of a report, the page around it is told what is shown.
+      if (window.parent !== window) window.parent.postMessage({ opened: app.shown() }, "*");
+    }),
+  );
 }
 
 begin().catch((error: unknown) => {

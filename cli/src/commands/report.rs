@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use hrdsl_runtime::{report, results::CampaignResults};
 
+use super::shown;
 use crate::{color, exit::CommandExit, fault::CommandFault, files, results_folder::ResultsFolder, terminal};
 
 /// Make the reports of a campaign again from its results, and print the summary.
@@ -52,16 +53,18 @@ pub fn run(args: &ReportArgs) -> Result<CommandExit, CommandFault> {
     let text = files::read(&path)?;
     let results =
         CampaignResults::from_json(&text).map_err(|e| format!("{}: {e}", terminal::shown(&path)))?;
+    let beside = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match args.print {
         Some(ReportFormat::Summary) => {
             terminal::print(&report::summary(&results, WIDTH, color::stdout_has()))?
         }
-        Some(ReportFormat::Html) => terminal::print_data(&report::html(&results))?,
+        Some(ReportFormat::Html) => {
+            terminal::print_data(&shown::page(&results, shown::read(beside).as_ref()))?;
+        }
         Some(ReportFormat::Junit) => terminal::print_data(&report::junit(&results))?,
         None => {
-            let beside = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
             let out = args.out.as_deref().unwrap_or(beside);
-            let page = write(&results, out)?;
+            let page = write(&results, beside, out)?;
             let summary = report::summary(&results, WIDTH, color::stdout_has());
             terminal::print(&format!("{summary}report: {}\n", terminal::shown(&page)))?;
         }
@@ -69,9 +72,9 @@ pub fn run(args: &ReportArgs) -> Result<CommandExit, CommandFault> {
     Ok(CommandExit::Ok)
 }
 
-/// Writes the reports; gives the path of the page.
-fn write(results: &CampaignResults, to: &Path) -> Result<PathBuf, CommandFault> {
+/// Writes the reports of results that lie in a folder; gives the path of the page.
+fn write(results: &CampaignResults, beside: &Path, to: &Path) -> Result<PathBuf, CommandFault> {
     let mut folder = ResultsFolder::beside(to)?;
     folder.write(Path::new("junit.xml"), &report::junit(results))?;
-    folder.write(Path::new("report.html"), &report::html(results))
+    folder.write(Path::new("report.html"), &shown::page(results, shown::read(beside).as_ref()))
 }

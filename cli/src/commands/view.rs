@@ -7,15 +7,12 @@ use std::{
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
-    recording::{self, RecordingFile},
+    recording,
     results::TestName,
-    viewer::{
-        PageOpening, RunGroup, SharedAssets, ViewDocument, ViewedRun, page,
-        replay::{mesh_assets, replay},
-        requirement::ViewVerdict,
-    },
+    viewer::{PageOpening, RunGroup, SharedAssets, ViewedRun, page, replay::mesh_assets},
 };
 
+use super::recorded::{exported, keep_used, viewed};
 use crate::{exit::CommandExit, fault::CommandFault, files, input, results_folder, terminal};
 
 /// So large a page may be with all tests on it, in bytes; a test that is named is shown whatever its size.
@@ -27,7 +24,7 @@ const LARGEST: usize = 8 << 20;
 /// folder of the results; or a recording is named by its file. Without either, the page has all tests that can be replayed.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl view scenario.hri bdi_tests.t017\n  hrdsl view scenario.hri\n  hrdsl view scenario.hri bdi_tests.t017 --beside bdi_tests.t003 -o both.html\n  hrdsl view scenario.hri out/replays/handover.bdi_tests.t017.mcap"
+    after_help = "Examples:\n  hrdsl view scenario.hri bdi_tests.t017\n  hrdsl view scenario.hri\n  hrdsl view scenario.hri bdi_tests.t017 --beside bdi_tests.t003 -o both.html\n  hrdsl view scenario.hri out/replays/handover.bdi_tests.t017.mcap\n  hrdsl view scenario.hri bdi_tests.t017 -o foxglove.mcap"
 )]
 pub struct ViewArgs {
     /// The scenario.
@@ -40,7 +37,7 @@ pub struct ViewArgs {
     /// The folder of the results [default: hrdsl-out/SCENARIO].
     #[arg(long, value_name = "DIR")]
     results: Option<PathBuf>,
-    /// The page to write.
+    /// The page to write; or, if its name ends in .mcap, a recording that Foxglove plays.
     #[arg(short, long, value_name = "FILE", default_value = "view.html")]
     out: PathBuf,
 }
@@ -49,11 +46,17 @@ pub struct ViewArgs {
 /// A scenario or recording that cannot be read, a test that nobody has recorded, or a page that cannot be written.
 pub fn run(args: &ViewArgs) -> Result<CommandExit, CommandFault> {
     refuse_foreign(&args.out)?;
-    let compilation = input::load(&args.file, &[])?;
+    let (compilation, gone) = input::load_to_look(&args.file)?;
     let Some(program) = input::report_errors(&args.file, &compilation) else {
         return Ok(CommandExit::Errors);
     };
     let results = args.results.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
+    for mesh in gone {
+        terminal::say_line(format_args!("note: the mesh {mesh} is not there; a box stands for it"));
+    }
+    if is_recording(&args.out) {
+        return export(args, program, &results);
+    }
     let (mut assets, left_out) = mesh_assets(program);
     if left_out > 0 {
         terminal::say_line(format_args!(
@@ -69,17 +72,37 @@ pub fn run(args: &ViewArgs) -> Result<CommandExit, CommandFault> {
     Ok(CommandExit::Ok)
 }
 
-/// Nobody's file is lost: only a page of this command is replaced.
+/// Whether a recording is to be written, and no page.
+fn is_recording(out: &Path) -> bool {
+    out.extension().is_some_and(|ending| ending == "mcap")
+}
+
+/// Nobody's file is lost: only a page or an export of this command is replaced.
 fn refuse_foreign(out: &Path) -> Result<(), CommandFault> {
-    if !out.exists()
-        || fs::read(out).is_ok_and(|bytes| String::from_utf8_lossy(&bytes).contains("id=\"hrdsl-index\""))
-    {
+    let is_page = |bytes: &[u8]| String::from_utf8_lossy(bytes).contains("id=\"hrdsl-index\"");
+    let is_ours =
+        |bytes: Vec<u8>| if is_recording(out) { recording::is_export(&bytes) } else { is_page(&bytes) };
+    if !out.exists() || fs::read(out).is_ok_and(is_ours) {
         return Ok(());
     }
+    let what = if is_recording(out) { "export" } else { "page" };
     Err(format!(
-        "{} is no page of `hrdsl view` and would be lost; name another file with -o",
+        "{} is no {what} of `hrdsl view` and would be lost; name another file with -o",
         terminal::shown(out)
     ))
+}
+
+/// Writes a recording in the form that other tools play.
+fn export(args: &ViewArgs, program: &Program, results: &Path) -> Result<CommandExit, CommandFault> {
+    let (Some(what), None) = (&args.what, &args.beside) else {
+        return Err(
+            "a file that ends in .mcap takes one recording: name a test, and nothing beside it".to_owned()
+        );
+    };
+    let path = found(program, results, what)?;
+    files::write_bytes(&args.out, &exported(program, &path)?)?;
+    terminal::print(&format!("view: {}\n", terminal::shown(&args.out)))?;
+    Ok(CommandExit::Ok)
 }
 
 /// The page of one test, or of two.
@@ -108,7 +131,7 @@ fn chosen(
     }
     runs.insert(0, first);
     say_notes(&runs);
-    keep_used(assets, &runs);
+    keep_used(assets, runs.iter().map(|run| &run.document));
     let title = format!("{} {}", program.name, runs.first().map_or("", |run| run.label.as_str()));
     Ok(page(&title, &runs, assets, &opening))
 }
@@ -137,7 +160,7 @@ fn all(program: &Program, results: &Path, assets: &mut SharedAssets) -> Result<S
         seen.extend(run.requirement.clone().filter(|_| is_new));
         !is_new
     });
-    keep_used(assets, &runs);
+    keep_used(assets, runs.iter().map(|run| &run.document));
     let opening = PageOpening::default();
     let mut html = page(&program.name, &runs, assets, &opening);
     while html.len() > LARGEST && runs.len() > 1 {
@@ -158,23 +181,6 @@ fn say_notes(runs: &[ViewedRun]) {
             terminal::say_line(format_args!("note: {}: {note}", run.id));
         }
     }
-}
-
-/// Only those meshes that some run shows.
-fn keep_used(assets: &mut SharedAssets, runs: &[ViewedRun]) {
-    use hrdsl_runtime::viewer::document::ViewShape;
-
-    let shapes = runs.iter().flat_map(|run| &run.document.scene.bodies).flat_map(|body| &body.shapes);
-    let used: Vec<&String> = shapes
-        .filter_map(|shape| match shape {
-            ViewShape::Mesh { mesh, .. } => Some(mesh),
-            ViewShape::Box { .. }
-            | ViewShape::Sphere { .. }
-            | ViewShape::Cylinder { .. }
-            | ViewShape::Capsule { .. } => None,
-        })
-        .collect();
-    assets.meshes.retain(|digest, _| used.contains(&digest));
 }
 
 /// The recording that is meant: a file, or that of a test.
@@ -214,29 +220,4 @@ fn recordings(folder: &Path, ending: &str) -> Vec<PathBuf> {
         .collect();
     paths.sort();
     paths
-}
-
-/// A recording with its place on a page.
-fn viewed(program: &Program, path: &Path) -> Result<ViewedRun, CommandFault> {
-    let shown = terminal::shown(path);
-    let bytes = fs::read(path).map_err(|e| format!("cannot read {shown}: {e}"))?;
-    let file = if recording::is_mcap(&bytes) {
-        recording::read(&bytes).map_err(|e| format!("{shown}: {e}"))?
-    } else {
-        let text = String::from_utf8(bytes).map_err(|_| format!("{shown} is neither MCAP nor UTF-8 text"))?;
-        RecordingFile { text, ..RecordingFile::default() }
-    };
-    let document = replay(program, &file).map_err(|e| format!("{shown}: {e}"))?;
-    let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let id = document.test.clone().unwrap_or_else(stem);
-    let requirement = first_violated(&document);
-    let group = if requirement.is_some() { RunGroup::Failure } else { RunGroup::Other };
-    Ok(ViewedRun { label: id.clone(), id, group, requirement, beside: None, document })
-}
-
-/// The requirement that was violated first.
-fn first_violated(document: &ViewDocument) -> Option<String> {
-    let failed = document.requirements.iter().filter(|r| r.verdict == ViewVerdict::Fail);
-    let first = failed.min_by_key(|r| r.violations.first().map_or(u64::MAX, |violation| violation.t));
-    first.map(|requirement| requirement.id.clone())
 }

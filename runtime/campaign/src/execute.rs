@@ -50,6 +50,7 @@ impl CampaignSetup<'_> {
         });
         let player = SystemPlayer::of_programs(self.program, declared.actor, programs)
             .with_binding(declared.binding.as_ref());
+        let player = if self.replays { player.writing_down() } else { player };
         let mut players: Vec<Box<dyn ActorPlayer + '_>> = vec![Box::new(player)];
         players
             .extend(ScriptPlayer::all(self.program, test).map(|p| Box::new(p) as Box<dyn ActorPlayer + '_>));
@@ -82,7 +83,7 @@ impl CampaignSetup<'_> {
             (Some(_) | None, Some(_) | None) => Box::new(world),
         };
         let stage = WorldStage::new(self.program, world);
-        Ok(Some(if self.replays.looks() { stage.picturing() } else { stage }))
+        Ok(Some(if self.replays { stage.picturing() } else { stage }))
     }
 }
 

@@ -25,7 +25,8 @@ use std::{
 
 use hrdsl_conformance::ConformanceOptions;
 use hrdsl_harness::{
-    AwaitInVain, HarnessError, HarnessRun, PortHistory, RunTermination, SpentTime, SystemFaultKind, SystemLog,
+    AwaitInVain, HarnessError, HarnessRun, PortHistory, RunTermination, SaidHistory, SpentTime,
+    SystemFaultKind, SystemLog,
 };
 use hrdsl_ir::{
     Program,
@@ -58,7 +59,6 @@ pub use forks::ForkPlan;
 use forks::WorkerServers;
 pub use hulls::{FoundHulls, find_hulls};
 pub use internal::{InternalError, guarded, record_panics};
-pub use replay::ReplayChoice;
 pub use times::CampaignTimes;
 use times::{CampaignStopwatch, TestTimes};
 
@@ -95,8 +95,9 @@ pub struct CampaignSetup<'a> {
     pub stop: StopFlag,
     /// How traces show what the code did, to the models that it is held against.
     pub conformance: ConformanceOptions,
-    /// Of which tests there are files by which they can be looked at again.
-    pub replays: ReplayChoice,
+    /// Whether a picture of the world is taken in each test, for a file by which it can be looked at again. Which of them are worth keeping is known
+    /// when all tests are judged.
+    pub replays: bool,
     /// What measures where processor time goes; `None`: nobody asks, and no clock is looked at.
     pub clocks: Option<ProcessorClocks>,
 }
@@ -107,8 +108,8 @@ pub struct FinishedRun<'a> {
     pub result: &'a TestResult,
     /// JSON Lines.
     pub recording: &'a str,
-    /// The file by which it can be looked at again, if there is to be one.
-    pub replay: Option<&'a [u8]>,
+    /// The file by which it can be looked at again, or why it could not be made; `None` if there is to be none.
+    pub replay: Option<Result<&'a [u8], &'a str>>,
     pub output: &'a [ProgramOutput],
 }
 
@@ -138,7 +139,7 @@ pub struct CampaignRun {
 struct TestAttempt {
     finished: PortedTest,
     recording: String,
-    replay: Option<Vec<u8>>,
+    replay: Option<Result<Vec<u8>, String>>,
     output: Vec<ProgramOutput>,
     fault: Option<SystemFaultKind>,
     times: TestTimes,
@@ -187,7 +188,7 @@ impl CampaignSetup<'_> {
             let TestAttempt { finished, recording, replay, output, .. } = &attempt;
             let result = &finished.finished.result;
             let mut writing = SpentTime::default();
-            let replay = replay.as_deref();
+            let replay = replay.as_ref().map(|file| file.as_deref().map_err(String::as_str));
             let done = || on_done(FinishedRun { index, result, recording, replay, output });
             if let Err(why) = self.measured(&mut writing, done) {
                 attempt.finished.finished.result.break_off(why);
@@ -314,13 +315,10 @@ impl CampaignSetup<'_> {
             .measured(&mut times.recordings, || record::write(self.program, &header, &run.trace, &ending));
         let judgement = || judge(self.program, &self.conformance, &run.trace, ending.kind);
         let (judgement, machines) = self.measured(&mut times.judgement, judgement);
-        let fails = ending.kind == RunEnd::Error || judgement.has_failed();
-        let replay = self.replays.takes(fails).then(|| {
+        let replay = self.replays.then(|| {
             let file = || replay::file(self.program, &run, &recording, &judgement);
             self.measured(&mut times.recordings, file)
         });
-        // One that cannot be written is not there; the test counts all the same.
-        let replay = replay.and_then(Result::ok);
         let fault = match &run.ended {
             RunTermination::Fault(HarnessError::System(fault)) => Some(fault.kind),
             RunTermination::Fault(
@@ -396,7 +394,8 @@ fn hash_seed(seed: u64) -> u32 {
 fn failed(fault: HarnessError) -> HarnessRun {
     let (trace, ports, log) = (Trace::default(), PortHistory::default(), SystemLog::default());
     let (unmet, picture) = (Vec::new(), WorldPicture::default());
-    HarnessRun { trace, ended: RunTermination::Fault(fault), ports, log, unmet, accuracy: None, picture }
+    let (ended, said) = (RunTermination::Fault(fault), SaidHistory::default());
+    HarnessRun { trace, ended, ports, log, unmet, accuracy: None, said, picture }
 }
 
 /// What is known about a test when its run is over.

@@ -1,42 +1,13 @@
 //! The file by which a run can be looked at again.
 
-use hrdsl_harness::{HarnessRun, ProgramLogLevel};
+use hrdsl_harness::{HarnessRun, ProgramLogLevel, TopicHistory};
 use hrdsl_ir::{Program, value::seconds};
 use hrdsl_recording::{
     RunOnFile,
-    message::{RecordedLogLevel, RecordedLogLine, VerdictMessage},
+    message::{RecordedLogLevel, RecordedLogLine, RecordedTopic, VerdictMessage},
     scene,
 };
 use hrdsl_results::TraceJudgement;
-
-/// Of which tests a file is made by which they can be looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ReplayChoice {
-    /// Of none: nobody looks at the world, and nothing is spent on it.
-    #[default]
-    None,
-    /// Of those that violate a requirement or break off.
-    Failing,
-    All,
-}
-
-impl ReplayChoice {
-    /// Whether a picture of the world is taken.
-    pub(crate) fn looks(self) -> bool {
-        match self {
-            ReplayChoice::None => false,
-            ReplayChoice::Failing | ReplayChoice::All => true,
-        }
-    }
-
-    pub(crate) fn takes(self, has_failed: bool) -> bool {
-        match self {
-            ReplayChoice::None => false,
-            ReplayChoice::Failing => has_failed,
-            ReplayChoice::All => true,
-        }
-    }
-}
 
 /// The file of a run, of which `text` is the recording.
 ///
@@ -55,9 +26,9 @@ pub(crate) fn file(
         ProgramLogLevel::Error => RecordedLogLevel::Error,
         ProgramLogLevel::Fatal => RecordedLogLevel::Fatal,
     };
-    let log: Vec<RecordedLogLine> = run
+    let mut log: Vec<RecordedLogLine> = run
+        .said
         .log
-        .first
         .iter()
         .map(|kept| RecordedLogLine {
             time: kept.time,
@@ -70,6 +41,20 @@ pub(crate) fn file(
             text: kept.record.text.clone(),
         })
         .collect();
+    log.extend((run.said.log_left_out > 0).then(|| RecordedLogLine {
+        time: log.last().map_or(0, |last| last.time),
+        level: RecordedLogLevel::Info,
+        program: "hrdsl".to_owned(),
+        text: format!("{} later lines are not in the recording", run.said.log_left_out),
+    }));
+    let topic = |topic: &TopicHistory| RecordedTopic {
+        name: topic.name.clone(),
+        interface: topic.interface.clone(),
+        outward: topic.outward,
+        times: topic.times.clone(),
+        texts: topic.texts.iter().map(|text| text.as_ref().map(ToString::to_string)).collect(),
+    };
+    let topics: Vec<RecordedTopic> = run.said.topics.iter().map(topic).collect();
     let verdicts: Vec<VerdictMessage> = judgement
         .verdicts
         .iter()
@@ -89,6 +74,7 @@ pub(crate) fn file(
         scene: &scene,
         picture: &run.picture,
         log: &log,
+        topics: &topics,
         verdicts: &verdicts,
     });
     file.map_err(|why| format!("{why} (it lasted {} s)", seconds(run.trace.end)))

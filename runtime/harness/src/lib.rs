@@ -25,6 +25,7 @@ mod player;
 mod port;
 mod recorder;
 mod run;
+mod said;
 mod script;
 mod spent;
 mod stage;
@@ -46,6 +47,7 @@ pub use port::{
     QosDurability, QosPolicy, QosReliability, VainWait,
 };
 pub use run::{HarnessLoop, HarnessRun, RunTermination};
+pub use said::{SaidHistory, TopicHistory};
 pub use script::{ScriptPlayer, script_rng};
 pub use spent::{SpentTime, ThreadClock};
 pub use stage::WorldStage;

@@ -3,7 +3,8 @@
 use hrdsl_ir::{ActorId, EventId, Nanos, Program, Role, Value};
 
 use crate::{
-    fault::SystemFault, log::SystemLog, message::PlayerMessage, port::PortHistory, stage::WorldStage,
+    fault::SystemFault, log::SystemLog, message::PlayerMessage, port::PortHistory, said::SaidHistory,
+    stage::WorldStage,
 };
 
 /// What a player is given when it is asked.
@@ -54,6 +55,10 @@ pub trait ActorPlayer {
     /// What its programs have logged.
     fn log(&self) -> SystemLog {
         SystemLog::default()
+    }
+    /// What its programs said, if it was to be written down.
+    fn said(&self) -> SaidHistory {
+        SaidHistory::default()
     }
 }
 

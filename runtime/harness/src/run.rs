@@ -11,6 +11,7 @@ use crate::{
     message::PlayerMessage,
     player::{ActorPlayer, AwaitInVain, HarnessError, PlayerContext, is_perceived},
     port::PortHistory,
+    said::SaidHistory,
     stage::WorldStage,
     world::WorldAccuracy,
 };
@@ -40,6 +41,8 @@ pub struct HarnessRun {
     pub unmet: Vec<AwaitInVain>,
     /// How far the world strayed from what cannot be; `None`: there is none, or it cannot tell.
     pub accuracy: Option<WorldAccuracy>,
+    /// What the programs of the system said; empty if nobody asked for it.
+    pub said: SaidHistory,
     /// What could be seen of the world; empty if nobody asked for it.
     pub picture: WorldPicture,
 }
@@ -103,11 +106,12 @@ impl<'p> HarnessLoop<'p> {
         let system = self.players.iter().find(|p| plays_the_system(self.program, p.actors()));
         let ports = system.map(|p| p.ports(self.now)).unwrap_or_default();
         let log = system.map(|p| p.log()).unwrap_or_default();
+        let said = system.map(|p| p.said()).unwrap_or_default();
         let mut unmet: Vec<_> = self.players.iter().flat_map(|p| p.unmet_awaits(self.now)).collect();
         unmet.sort_by_key(|vain| (vain.until, vain.step));
         let accuracy = self.stage.as_ref().and_then(WorldStage::accuracy);
         let picture = self.stage.as_mut().map(WorldStage::take_picture).unwrap_or_default();
-        HarnessRun { trace: self.trace, ended, ports, log, unmet, accuracy, picture }
+        HarnessRun { trace: self.trace, ended, ports, log, unmet, accuracy, said, picture }
     }
 
     fn run_loop(&mut self) -> Result<RunTermination, HarnessError> {

@@ -56,6 +56,8 @@ pub fn tally(
         interrupted,
         planned,
         rerun,
+        view: String::new(),
+        unreplayed: Vec::new(),
         requirements: requirements(program, &tests, &place),
         bins: bins(program, generated, &tests, &place),
         code: code(&tests, sources, &place),

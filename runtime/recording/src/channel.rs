@@ -6,30 +6,36 @@ pub(crate) enum RecordingChannel {
     Header,
     Events,
     Signals,
+    Samples,
     Machines,
     End,
     Verdicts,
     Scene,
+    Tracks,
     Contacts,
     Entities,
     Transforms,
     Joints,
+    Topics,
     Log,
 }
 
 impl RecordingChannel {
-    pub const ALL: [RecordingChannel; 12] = [
+    pub const ALL: [RecordingChannel; 15] = [
         RecordingChannel::Header,
         RecordingChannel::Events,
         RecordingChannel::Signals,
+        RecordingChannel::Samples,
         RecordingChannel::Machines,
         RecordingChannel::End,
         RecordingChannel::Verdicts,
         RecordingChannel::Scene,
+        RecordingChannel::Tracks,
         RecordingChannel::Contacts,
         RecordingChannel::Entities,
         RecordingChannel::Transforms,
         RecordingChannel::Joints,
+        RecordingChannel::Topics,
         RecordingChannel::Log,
     ];
 
@@ -38,14 +44,17 @@ impl RecordingChannel {
             RecordingChannel::Header => "/hrdsl/header",
             RecordingChannel::Events => "/hrdsl/events",
             RecordingChannel::Signals => "/hrdsl/signals",
+            RecordingChannel::Samples => "/hrdsl/samples",
             RecordingChannel::Machines => "/hrdsl/machines",
             RecordingChannel::End => "/hrdsl/end",
             RecordingChannel::Verdicts => "/hrdsl/verdicts",
             RecordingChannel::Scene => "/hrdsl/scene",
+            RecordingChannel::Tracks => "/hrdsl/tracks",
             RecordingChannel::Contacts => "/hrdsl/contacts",
             RecordingChannel::Entities => "/scene",
             RecordingChannel::Transforms => "/tf",
             RecordingChannel::Joints => "/joint_states",
+            RecordingChannel::Topics => "/hrdsl/topics",
             RecordingChannel::Log => "/log",
         }
     }
@@ -62,12 +71,15 @@ impl RecordingChannel {
             | RecordingChannel::Signals
             | RecordingChannel::Machines
             | RecordingChannel::End => true,
-            RecordingChannel::Verdicts
+            RecordingChannel::Samples
+            | RecordingChannel::Verdicts
             | RecordingChannel::Scene
+            | RecordingChannel::Tracks
             | RecordingChannel::Contacts
             | RecordingChannel::Entities
             | RecordingChannel::Transforms
             | RecordingChannel::Joints
+            | RecordingChannel::Topics
             | RecordingChannel::Log => false,
         }
     }

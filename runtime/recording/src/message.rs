@@ -105,6 +105,37 @@ pub struct ContactEntry {
     pub force: [f64; 3],
 }
 
+/// The messages that programs of the system, and the scenario, sent through names of the middleware.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TopicsMessage {
+    pub topics: Vec<TopicColumns>,
+}
+
+/// The messages of a topic, service or action in one direction.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TopicColumns {
+    /// `/scan`
+    pub name: String,
+    /// `sensor_msgs/LaserScan`
+    pub interface: String,
+    /// Whether a program of the system sent them; otherwise the scenario did.
+    pub outward: bool,
+    /// Nanoseconds: the first, and then what each differs from the one before.
+    pub t: Vec<i64>,
+    /// What the first of them said; `null` where it was too long.
+    pub text: Vec<Option<String>>,
+}
+
+/// The messages of a name in one direction.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RecordedTopic {
+    pub name: String,
+    pub interface: String,
+    pub outward: bool,
+    pub times: Vec<hrdsl_ir::Nanos>,
+    pub texts: Vec<Option<String>>,
+}
+
 /// What a program logged.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordedLogLine {

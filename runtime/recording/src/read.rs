@@ -15,8 +15,11 @@ use thiserror::Error;
 
 use crate::{
     channel::RecordingChannel,
+    columns::{self, TracksMessage},
     container::{self, ContainedMessage, ContainerError, MAGIC},
-    message::{ContactsMessage, RecordedLogLevel, RecordedLogLine},
+    message::{
+        ContactsMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic, TopicsMessage, VerdictMessage,
+    },
     scene::RecordedScene,
 };
 
@@ -28,6 +31,10 @@ pub struct RecordingFile {
     pub scene: Option<RecordedScene>,
     pub picture: WorldPicture,
     pub log: Vec<RecordedLogLine>,
+    /// What was sent through names of the middleware.
+    pub topics: Vec<RecordedTopic>,
+    /// What the run came to when it was made.
+    pub verdicts: Vec<VerdictMessage>,
     /// What could not be read, a sentence each.
     pub faults: Vec<String>,
 }
@@ -49,6 +56,18 @@ fn because(faults: &[String]) -> String {
 #[must_use]
 pub fn is_mcap(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
+}
+
+/// Whether a file is a recording of hrdsl in the form that other tools play.
+#[must_use]
+pub fn is_export(bytes: &[u8]) -> bool {
+    let (mut is_ours, mut has_columns) = (false, false);
+    let looked = container::read(bytes, &mut |message| {
+        let channel = RecordingChannel::of_topic(&message.topic);
+        is_ours |= channel == Some(RecordingChannel::Header);
+        has_columns |= matches!(channel, Some(RecordingChannel::Tracks | RecordingChannel::Samples));
+    });
+    looked.is_ok() && is_ours && !has_columns
 }
 
 /// Reads a file. What is wrong in it ends up among its [faults](RecordingFile::faults).
@@ -77,6 +96,9 @@ struct TakenApart {
     bodies: BTreeMap<String, Vec<BodyKeyframe>>,
     joints: BTreeMap<String, Vec<JointKeyframe>>,
     contacts: BTreeMap<[String; 2], Vec<ContactKeyframe>>,
+    tracks: Vec<TracksMessage>,
+    verdicts: Vec<VerdictMessage>,
+    topics: Vec<RecordedTopic>,
     log: Vec<RecordedLogLine>,
     faults: Vec<String>,
 }
@@ -137,6 +159,13 @@ impl TakenApart {
 
     fn take_seen(&mut self, channel: RecordingChannel, time: Nanos, data: &[u8]) -> serde_json::Result<()> {
         match channel {
+            RecordingChannel::Samples => match columns::lines(&serde_json::from_slice(data)?) {
+                Some(lines) => self.lines.extend(lines),
+                None => self
+                    .fault("the columns of a message on `/hrdsl/samples` are not of one length".to_owned()),
+            },
+            RecordingChannel::Tracks => self.tracks.push(serde_json::from_slice(data)?),
+            RecordingChannel::Verdicts => self.verdicts.push(serde_json::from_slice(data)?),
             RecordingChannel::Scene => self.scene = Some(serde_json::from_slice(data)?),
             RecordingChannel::Transforms => {
                 let message: TransformsMessage = serde_json::from_slice(data)?;
@@ -165,6 +194,16 @@ impl TakenApart {
                     self.contacts.entry(contact.bodies).or_default().push(frame);
                 }
             }
+            RecordingChannel::Topics => {
+                let message: TopicsMessage = serde_json::from_slice(data)?;
+                self.topics.extend(message.topics.into_iter().map(|topic| RecordedTopic {
+                    name: topic.name,
+                    interface: topic.interface,
+                    outward: topic.outward,
+                    times: columns::sums(&topic.t),
+                    texts: topic.text,
+                }));
+            }
             RecordingChannel::Log => {
                 let LogMessage { level, message: text, name: program } = serde_json::from_slice(data)?;
                 let level = RecordedLogLevel::ALL.into_iter().find(|known| known.number() == level);
@@ -176,7 +215,6 @@ impl TakenApart {
             | RecordingChannel::Signals
             | RecordingChannel::Machines
             | RecordingChannel::End
-            | RecordingChannel::Verdicts
             | RecordingChannel::Entities => {}
         }
         Ok(())
@@ -185,10 +223,17 @@ impl TakenApart {
     fn finish(mut self) -> RecordingFile {
         // Tools that sort messages by time may have put those of one instant in another order.
         self.lines.sort_by_key(|(place, _)| *place);
+        let whole =
+            self.lines.iter().enumerate().take_while(|(at, (place, _))| *at as u64 == u64::from(*place));
+        let whole = whole.count();
+        if whole < self.lines.len() {
+            self.fault(format!("the judged line {whole} is missing, and what comes after it is left out"));
+            self.lines.truncate(whole);
+        }
         let text = self.lines.iter().flat_map(|(_, line)| [line.as_str(), "\n"]).collect();
         let picture = self.picture();
-        let Self { scene, log, faults, .. } = self;
-        RecordingFile { text, scene, picture, log, faults }
+        let Self { scene, log, topics, verdicts, faults, .. } = self;
+        RecordingFile { text, scene, picture, log, topics, verdicts, faults }
     }
 
     /// The picture, by the numbers that the scene gives to names.
@@ -199,7 +244,7 @@ impl TakenApart {
             |name: &String| scene.bodies.iter().position(|b| b.name == *name).map(|at| BodyId(number(at)));
         let joint =
             |name: &String| scene.joints.iter().position(|j| j.name == *name).map(|at| JointId(number(at)));
-        let mut picture = WorldPicture::default();
+        let (mut picture, is_whole) = columns::picture(scene, &self.tracks);
         for (name, frames) in std::mem::take(&mut self.bodies) {
             // One transform alone is where it starts; and what another carries is told in the frame of that one.
             let Some(id) = body(&name).filter(|_| frames.len() > 1) else { continue };
@@ -216,6 +261,9 @@ impl TakenApart {
         picture.bodies.sort_by_key(|track| track.body);
         picture.joints.sort_by_key(|track| track.joint);
         picture.contacts.sort_by_key(|track| track.bodies);
+        if !is_whole {
+            self.fault("the columns of a message on `/hrdsl/tracks` are not of one length".to_owned());
+        }
         picture
     }
 }

@@ -5,10 +5,11 @@ use serde_json::{Value, json};
 
 use crate::{
     channel::RecordingChannel,
+    columns::{SamplesMessage, TracksMessage},
     foxglove,
     message::{
         ContactsMessage, EndMessage, EventMessage, HeaderMessage, MachineMessage, SignalMessage,
-        VerdictMessage,
+        TopicsMessage, VerdictMessage,
     },
     scene::RecordedScene,
 };
@@ -19,14 +20,17 @@ pub(crate) fn of_channel(channel: RecordingChannel) -> (&'static str, Value) {
         RecordingChannel::Header => ("hrdsl.Header", own::<HeaderMessage>()),
         RecordingChannel::Events => ("hrdsl.Event", own::<EventMessage>()),
         RecordingChannel::Signals => ("hrdsl.Signal", own::<SignalMessage>()),
+        RecordingChannel::Samples => ("hrdsl.Samples", own::<SamplesMessage>()),
         RecordingChannel::Machines => ("hrdsl.Machine", own::<MachineMessage>()),
         RecordingChannel::End => ("hrdsl.End", own::<EndMessage>()),
         RecordingChannel::Verdicts => ("hrdsl.Verdict", own::<VerdictMessage>()),
         RecordingChannel::Scene => ("hrdsl.Scene", own::<RecordedScene>()),
+        RecordingChannel::Tracks => ("hrdsl.Tracks", own::<TracksMessage>()),
         RecordingChannel::Contacts => ("hrdsl.Contacts", own::<ContactsMessage>()),
         RecordingChannel::Entities => ("foxglove.SceneUpdate", foxglove::scene_update()),
         RecordingChannel::Transforms => ("foxglove.FrameTransforms", foxglove::frame_transforms()),
         RecordingChannel::Joints => ("foxglove.JointStates", foxglove::joint_states()),
+        RecordingChannel::Topics => ("hrdsl.Topics", own::<TopicsMessage>()),
         RecordingChannel::Log => ("foxglove.Log", foxglove::log()),
     }
 }

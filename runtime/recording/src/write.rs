@@ -11,9 +11,10 @@ use serde_json::json;
 
 use crate::{
     channel::RecordingChannel,
+    columns::{self, BLOCK, SampleTable, TracksMessage},
     container::ContainerWriter,
     foxglove::{self, WORLD},
-    message::{RecordedLogLine, VerdictMessage},
+    message::{RecordedLogLine, RecordedTopic, TopicColumns, TopicsMessage, VerdictMessage},
     number::decimal,
     scene::RecordedScene,
     schema,
@@ -28,6 +29,7 @@ pub struct RunOnFile<'a> {
     pub scene: &'a RecordedScene,
     pub picture: &'a WorldPicture,
     pub log: &'a [RecordedLogLine],
+    pub topics: &'a [RecordedTopic],
     pub verdicts: &'a [VerdictMessage],
 }
 
@@ -40,14 +42,60 @@ struct PlannedMessage {
     data: Vec<u8>,
 }
 
-/// The file, as bytes.
+/// For whom a file is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RecordingForm {
+    /// What changes over time lies in [`columns`](crate::columns), which take a third of the room. Other tools show the scene at its start.
+    #[default]
+    Columns,
+    /// Each change is a message that other tools know.
+    Messages,
+}
+
+/// The file, as bytes, in columns.
 ///
 /// # Errors
 /// That the run is too large for the format.
 pub fn write(run: &RunOnFile<'_>) -> Result<Vec<u8>, String> {
-    let mut seen = seen(run);
+    write_as(run, RecordingForm::Columns)
+}
+
+/// The file, as bytes, in one of its forms. Both read back to the same.
+///
+/// # Errors
+/// That the run is too large for the format.
+pub fn write_as(run: &RunOnFile<'_>, form: RecordingForm) -> Result<Vec<u8>, String> {
+    let (mut seen, judged) = (seen(run, form), judged(run));
     seen.sort_by_key(|message| message.time);
-    file(&[judged(run), seen]).map_err(|e| format!("the recording cannot be written: {e}"))
+    let judged = match form {
+        RecordingForm::Columns => in_columns(judged),
+        RecordingForm::Messages => judged,
+    };
+    file(&[judged, seen]).map_err(|e| format!("the recording cannot be written: {e}"))
+}
+
+/// Lines of samples in columns, block by block; the others as they are.
+fn in_columns(lines: Vec<PlannedMessage>) -> Vec<PlannedMessage> {
+    let mut planned = Vec::with_capacity(lines.len());
+    let (mut table, mut begun) = (SampleTable::default(), 0);
+    let close = |table: SampleTable, time, planned: &mut Vec<PlannedMessage>| {
+        let Some(message) = table.message() else { return };
+        let data = serde_json::to_vec(&message).unwrap_or_default();
+        planned.push(PlannedMessage { time, channel: RecordingChannel::Samples, sequence: 0, data });
+    };
+    for line in lines {
+        if line.time.div_euclid(BLOCK) != begun / BLOCK {
+            close(std::mem::take(&mut table), begun, &mut planned);
+            begun = line.time.div_euclid(BLOCK) * BLOCK;
+        }
+        let is_sample = line.channel == RecordingChannel::Signals;
+        let text = std::str::from_utf8(&line.data).unwrap_or_default();
+        if !(is_sample && table.takes(line.sequence, text)) {
+            planned.push(line);
+        }
+    }
+    close(table, begun, &mut planned);
+    planned
 }
 
 /// Each part in chunks of its own: what is alike is packed together, and if a file is cut, what is judged is still there.
@@ -66,6 +114,10 @@ fn file(parts: &[Vec<PlannedMessage>; 2]) -> std::io::Result<Vec<u8>> {
             let time = message.time.max(0).unsigned_abs();
             let sequence = u32::try_from(message.sequence).unwrap_or(u32::MAX);
             writer.message(channel, sequence, time, &message.data)?;
+            if message.channel == RecordingChannel::Tracks {
+                // Of a file that is cut, the minutes before can be shown.
+                writer.close_chunk()?;
+            }
         }
         writer.close_chunk()?;
     }
@@ -96,7 +148,7 @@ fn channel_of(what: &TraceStepKind) -> RecordingChannel {
 }
 
 /// All that is not judged.
-fn seen(run: &RunOnFile<'_>) -> Vec<PlannedMessage> {
+fn seen(run: &RunOnFile<'_>, form: RecordingForm) -> Vec<PlannedMessage> {
     let message =
         |time, channel, data: String| PlannedMessage { time, channel, sequence: 0, data: data.into() };
     let mut planned = Vec::new();
@@ -107,19 +159,21 @@ fn seen(run: &RunOnFile<'_>) -> Vec<PlannedMessage> {
         let start = foxglove::start_transforms(run.scene).to_string();
         planned.push(message(0, RecordingChannel::Transforms, start));
     }
-    let by_time = |all: BTreeMap<Nanos, Vec<String>>, channel, put: &dyn Fn(Nanos, String) -> String| {
-        let put = |(time, parts): (Nanos, Vec<String>)| message(time, channel, put(time, parts.join(",")));
-        all.into_iter().map(put).collect::<Vec<_>>()
-    };
-    planned.extend(by_time(transforms(run), RecordingChannel::Transforms, &|_, parts| {
-        format!("{{\"transforms\":[{parts}]}}")
-    }));
-    planned.extend(by_time(joints(run), RecordingChannel::Joints, &|time, parts| {
-        format!("{{\"timestamp\":{},\"joints\":[{parts}]}}", timestamp(time))
-    }));
-    planned.extend(by_time(contacts(run), RecordingChannel::Contacts, &|_, parts| {
-        format!("{{\"contacts\":[{parts}]}}")
-    }));
+    planned.extend(match form {
+        RecordingForm::Columns => in_tracks(run),
+        RecordingForm::Messages => as_messages(run),
+    });
+    if !run.topics.is_empty() {
+        let topics = run.topics.iter().map(|topic| TopicColumns {
+            name: topic.name.clone(),
+            interface: topic.interface.clone(),
+            outward: topic.outward,
+            t: columns::differences(topic.times.iter().copied()),
+            text: topic.texts.clone(),
+        });
+        let data = serde_json::to_string(&TopicsMessage { topics: topics.collect() }).unwrap_or_default();
+        planned.push(message(run.trace.end, RecordingChannel::Topics, data));
+    }
     planned.extend(run.log.iter().map(|entry| {
         let data = json!({
             "timestamp": { "sec": entry.time / SECOND, "nsec": entry.time % SECOND },
@@ -134,6 +188,39 @@ fn seen(run: &RunOnFile<'_>) -> Vec<PlannedMessage> {
     planned.extend(run.verdicts.iter().map(|verdict| {
         let data = serde_json::to_string(verdict).unwrap_or_default();
         message(run.trace.end, RecordingChannel::Verdicts, data)
+    }));
+    planned
+}
+
+/// What changes, in columns.
+fn in_tracks(run: &RunOnFile<'_>) -> Vec<PlannedMessage> {
+    let planned = |(time, message): (Nanos, TracksMessage)| {
+        let data = serde_json::to_vec(&message).unwrap_or_default();
+        PlannedMessage { time, channel: RecordingChannel::Tracks, sequence: 0, data }
+    };
+    columns::tracks(run.scene, run.picture).into_iter().map(planned).collect()
+}
+
+/// What changes, in messages that other tools know.
+fn as_messages(run: &RunOnFile<'_>) -> Vec<PlannedMessage> {
+    let mut planned = Vec::new();
+    let by_time = |all: BTreeMap<Nanos, Vec<String>>, channel, put: &dyn Fn(Nanos, String) -> String| {
+        let put = |(time, parts): (Nanos, Vec<String>)| PlannedMessage {
+            time,
+            channel,
+            sequence: 0,
+            data: put(time, parts.join(",")).into(),
+        };
+        all.into_iter().map(put).collect::<Vec<_>>()
+    };
+    planned.extend(by_time(transforms(run), RecordingChannel::Transforms, &|_, parts| {
+        format!("{{\"transforms\":[{parts}]}}")
+    }));
+    planned.extend(by_time(joints(run), RecordingChannel::Joints, &|time, parts| {
+        format!("{{\"timestamp\":{},\"joints\":[{parts}]}}", timestamp(time))
+    }));
+    planned.extend(by_time(contacts(run), RecordingChannel::Contacts, &|_, parts| {
+        format!("{{\"contacts\":[{parts}]}}")
     }));
     planned
 }

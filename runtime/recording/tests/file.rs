@@ -9,11 +9,11 @@ use hrdsl_ir::{
     world::{Body, BodyId, BodyMotion, JointId},
 };
 use hrdsl_recording::{
-    RecordingError, RunOnFile,
-    message::{RecordedLogLevel, RecordedLogLine, VerdictMessage},
+    RecordingError, RecordingFile, RecordingForm, RunOnFile, export, is_export,
+    message::{RecordedLogLevel, RecordedLogLine, RecordedTopic, VerdictMessage},
     read,
     scene::{RecordedBody, RecordedBodyKind, RecordedJoint, RecordedScene, RecordedShape},
-    schema, write,
+    schema, write, write_as,
 };
 use hrdsl_trace::{
     Trace,
@@ -65,7 +65,8 @@ fn scene() -> RecordedScene {
 fn picture() -> WorldPicture {
     let frame = |time: i64| BodyKeyframe {
         time: time * 20_000_000,
-        place: [time * 37 % 1000, -time, 5],
+        // Not so even that packing leaves nothing of it.
+        place: [time * time % 1009 * 31 % 997, -time, time * 7919 % 10_007 * time % 89],
         turn: [0, 0, time % 100, 10_000],
     };
     let force = |time, force| ContactKeyframe { time, point: [1, -2, 3], force };
@@ -86,6 +87,20 @@ fn picture() -> WorldPicture {
             frames: vec![force(7, [1_250, 0, -1]), force(900, [0; 3])],
         }],
     }
+}
+
+fn topics() -> Vec<RecordedTopic> {
+    let topic = |name: &str, outward, times: &[i64], texts: &[Option<&str>]| RecordedTopic {
+        name: name.to_owned(),
+        interface: "std_msgs/String".to_owned(),
+        outward,
+        times: times.to_vec(),
+        texts: texts.iter().map(|text| text.map(str::to_owned)).collect(),
+    };
+    vec![
+        topic("/heard", false, &[5, 70, 1_000_000_000], &[Some("{\"data\":\"a\"}"), None]),
+        topic("/said", true, &[], &[]),
+    ]
 }
 
 fn file() -> (String, Vec<u8>) {
@@ -113,10 +128,17 @@ fn file() -> (String, Vec<u8>) {
         scene: &scene(),
         picture: &picture(),
         log: &log,
+        topics: &topics(),
         verdicts: &verdicts,
     };
     let bytes = write(&run).unwrap();
     assert_eq!(bytes, write(&run).unwrap(), "the same run gives the same bytes");
+    let messages = write_as(&run, RecordingForm::Messages).unwrap();
+    assert!(bytes.len() * 3 < messages.len() * 2, "columns take less: {} of {}", bytes.len(), messages.len());
+    let (ours, theirs) = (read(&bytes).unwrap(), read(&messages).unwrap());
+    assert_eq!(ours, theirs, "both forms read back to the same");
+    assert_eq!(export(&program, &ours).unwrap(), messages, "byte for byte");
+    assert!(is_export(&messages) && !is_export(&bytes) && !is_export(b"{}"));
     (text, bytes)
 }
 
@@ -128,9 +150,20 @@ fn what_is_written_reads_back() {
     assert_eq!(found.text, text, "the judged lines, byte for byte");
     assert_eq!(found.scene, Some(scene()));
     assert_eq!(found.picture, picture());
+    assert_eq!(found.topics, topics());
     let log: Vec<(i64, RecordedLogLevel, &str)> =
         found.log.iter().map(|entry| (entry.time, entry.level, entry.text.as_str())).collect();
     assert_eq!(log, [(1_500_000_000, RecordedLogLevel::Warning, "low \"battery\"")]);
+}
+
+#[test]
+fn what_is_not_whole_is_not_exported() {
+    let (_, bytes) = file();
+    let program = Program { name: "cup".to_owned(), ..Program::default() };
+    let cut = read(&bytes[..bytes.len() * 2 / 3]).unwrap();
+    assert!(export(&program, &cut).unwrap_err().contains("only whole recordings"));
+    let bare = RecordingFile { scene: None, ..read(&bytes).unwrap() };
+    assert!(export(&program, &bare).unwrap_err().contains("no picture"));
 }
 
 #[test]
@@ -138,7 +171,8 @@ fn of_a_cut_file_the_rest_is_read_and_what_is_none_of_ours_is_refused() {
     let (_, bytes) = file();
     let found = read(&bytes[..bytes.len() * 2 / 3]).unwrap();
     let frames = |picture: &WorldPicture| picture.bodies[0].frames.len();
-    assert!(frames(&found.picture) > 1_000 && frames(&found.picture) < 20_000, "{}", frames(&found.picture));
+    let shown = frames(&found.picture);
+    assert!(shown > 1_000 && shown < 20_000 && shown % 3_000 == 0, "whole minutes: {shown}");
     assert!(found.faults.iter().any(|fault| fault.contains("cut off")), "{:?}", found.faults);
     assert!(matches!(read(b"{\"hrdsl\":\"trace\"}"), Err(RecordingError::NotMcap)));
     assert!(matches!(read(&bytes[..20]), Err(RecordingError::NotOurs(_))));

@@ -313,6 +313,13 @@ pub fn gaps(results: &CampaignResults) -> Vec<String> {
             machine.machine
         ));
     }
+    if let Some(first) = results.unreplayed.first() {
+        gaps.push(format!(
+            "{} cannot be replayed: {}.",
+            text::count(results.unreplayed.len(), "test"),
+            text::line(&first.why)
+        ));
+    }
     let alone = warnings(results).len();
     if alone > 0 {
         let verb = if alone == 1 { "was" } else { "were" };

@@ -1,5 +1,6 @@
 //! A campaign like a real one, for the tests of the reports: three suites, six requirements, fourteen bins.
 
+mod mixture;
 mod model;
 mod prediction;
 mod system;
@@ -11,6 +12,7 @@ use hrdsl_results::{
     VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
+use mixture::mix;
 pub(crate) use model::model;
 pub(crate) use system::{machines, wait, warnings};
 
@@ -171,17 +173,10 @@ pub fn campaign(per_suite: usize) -> CampaignResults {
         interrupted: false,
         planned: tests.len(),
         rerun: "hrdsl sim ../scenario.hri tests --test".into(),
+        view: "hrdsl view ../scenario.hri --results .".into(),
+        unreplayed: Vec::new(),
         tests: tests.into_iter().map(|t| t.result).collect(),
     }
-}
-
-/// An even mixture of bits, so that the figures look drawn.
-fn mix(suite: usize, test: usize, salt: u64) -> u64 {
-    let mut x = (suite as u64 * 7919 + test as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-        ^ salt.wrapping_mul(0xd1b5);
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
 }
 
 fn test(s: usize, i: usize) -> TestFixture {

@@ -9,6 +9,7 @@ mod interfaces;
 mod machines;
 mod model;
 mod pieces;
+mod replays;
 mod tests_list;
 mod violations;
 
@@ -18,6 +19,8 @@ use hrdsl_results::{
 };
 use minijinja::{AutoEscape, Environment, Output, State, Value, escape_formatter};
 use serde::Serialize;
+
+pub use replays::PageReplays;
 
 use pieces::{ShownRatio, TestLink, branches_of, lines_of};
 
@@ -29,7 +32,13 @@ use crate::{
 /// The results as one page.
 #[must_use]
 pub fn html(results: &CampaignResults) -> String {
-    let page = ReportPage::of(results);
+    html_with(results, None)
+}
+
+/// The results as one page, on which failures can be replayed.
+#[must_use]
+pub fn html_with(results: &CampaignResults, replays: Option<&PageReplays<'_>>) -> String {
+    let page = ReportPage::of(results, replays);
     let environment = match environment() {
         Ok(environment) => environment,
         Err(e) => return broken(&e),
@@ -95,6 +104,7 @@ struct ReportPage {
     code: Option<code::CodeSection>,
     interfaces: Option<interfaces::InterfaceSection>,
     list: tests_list::TestList,
+    replays: Option<replays::ReplaySection>,
 }
 
 /// A piece of a sentence with a style class.
@@ -204,7 +214,7 @@ struct GoalRow {
 }
 
 impl ReportPage {
-    fn of(results: &CampaignResults) -> Self {
+    fn of(results: &CampaignResults, replays: Option<&PageReplays<'_>>) -> Self {
         let places = facts::places(results);
         let link = |name: &TestName| TestLink {
             name: facts::short(results, name).to_owned(),
@@ -223,7 +233,7 @@ impl ReportPage {
             has_code: facts::code(results).lines_total > 0,
             columns: Outcome::ALL.into_iter().map(column).collect(),
             requirements: rows(results, &link),
-            violations: violations::all(results, &link),
+            violations: violations::all(results, replays, &link),
             bins: bin_groups(results, &link),
             bins_hit: suites.map(|i| facts::bins_hit(results, i)).collect(),
             bins_total: results.bins.len(),
@@ -232,7 +242,8 @@ impl ReportPage {
             machines: machines::all(results, &link),
             code: code::code(results),
             interfaces: interfaces::section(results, &link),
-            list: tests_list::list(results),
+            list: tests_list::list(results, replays),
+            replays: replays::section(results, replays),
         }
     }
 }

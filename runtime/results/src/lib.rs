@@ -8,6 +8,7 @@
 //! - [`CampaignResults`] is the file `results.json`; [`CampaignResults::to_json`] writes it, [`CampaignResults::from_json`] reads it back.
 //! - [`TestResult`] is one test: how its run ended, and the [`TraceJudgement`] on it.
 //! - [`GeneratedSuite`] is what its tests were made as, before they were run.
+//! - [`ReplayPair`] is a test worth looking at, with one beside it; [`ShownReplays`] are those that a report has on its page.
 //! - [`RequirementResult`], [`BinResult`], [`SuiteInfo`], [`CodeFile`], [`MachineResult`] and [`InterfaceWarning`] add up the
 //!   tests.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
@@ -23,7 +24,9 @@ mod log;
 mod machine;
 mod names;
 mod prediction;
+mod replays;
 mod schema;
+mod shown;
 mod suite;
 mod tally;
 mod test;
@@ -49,6 +52,8 @@ pub use log::{LogCounts, LogSummary, LoggedLevel, LoggedText};
 pub use machine::{MachineCoverage, MachineResult, MachineStateResult, MachineTransitionResult};
 pub use names::{RequirementName, SuiteName, TestName};
 pub use prediction::{PredictedRun, PredictionOutcome, PredictionVerdict, UnmetAwait};
+pub use replays::{ReplayPair, UnreplayedTest};
+pub use shown::{ShownReplays, ShownRun};
 pub use suite::{
     AgentCoverage, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteExplanation, SuiteInfo,
     TestExplanation, UncoveredGoal, UnreachedItem,
@@ -81,6 +86,13 @@ pub struct CampaignResults {
     /// The command that runs one test again, up to its name, as it is typed in the folder of the results; empty if there is
     /// none.
     pub rerun: String,
+    /// The command that makes a page that replays one test, up to its name, as it is typed in the folder of the results; left out if no test was
+    /// recorded for it.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub view: String,
+    /// Tests that were to be recorded with a picture and are not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unreplayed: Vec<UnreplayedTest>,
     pub requirements: Vec<RequirementResult>,
     /// In the order of their first tests.
     pub suites: Vec<SuiteInfo>,
@@ -105,6 +117,10 @@ pub enum ResultsError {
     Format,
     #[error("these results have version {0} of the format; this hrdsl reads version {VERSION}")]
     Version(u32),
+    #[error("these are not the replays of a report: {0}")]
+    Replays(serde_json::Error),
+    #[error("these replays are `{0}` of version {1}; this hrdsl reads `hrdsl-replays` of version 1")]
+    ReplaysFormat(String, u32),
 }
 
 /// What every version of the format begins with.
@@ -169,10 +185,14 @@ impl CampaignResults {
     /// The command that runs a test again, as it is typed in the folder of the results; `None` if there is none.
     #[must_use]
     pub fn rerun_of(&self, test: &TestResult) -> Option<String> {
+        (!self.rerun.is_empty()).then(|| format!("{} {}", self.rerun, self.quoted_name(test)))
+    }
+
+    /// The name of a test without that of the scenario, as a word for a shell.
+    fn quoted_name(&self, test: &TestResult) -> String {
         let name = test.name.within(&self.scenario);
         let plain = name.chars().all(|c| c.is_alphanumeric() || matches!(c, '.' | '_' | '-'));
-        let name = if plain { name.to_owned() } else { format!("'{}'", name.replace('\'', "'\\''")) };
-        (!self.rerun.is_empty()).then(|| format!("{} {name}", self.rerun))
+        if plain { name.to_owned() } else { format!("'{}'", name.replace('\'', "'\\''")) }
     }
 }
 
@@ -190,6 +210,8 @@ mod tests {
             interrupted: false,
             planned: 1,
             rerun: "hrdsl sim s.hri --test".into(),
+            view: String::new(),
+            unreplayed: Vec::new(),
             requirements: Vec::new(),
             suites: Vec::new(),
             bins: Vec::new(),

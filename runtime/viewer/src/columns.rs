@@ -71,6 +71,42 @@ pub fn pose_track(body: usize, poses: &[(u64, PoseNumbers)], tolerance: PoseTole
     })
 }
 
+/// A track with as few of its times as it takes to stay within a wider tolerance of it.
+#[must_use]
+pub fn coarser(track: &PoseTrack, tolerance: PoseTolerance) -> PoseTrack {
+    let (times, places, turns) = (summed(&track.t, 1), summed(&track.p, 3), summed(&track.q, 4));
+    let part = |whole: &i64| *whole as f64 / FINE;
+    let upright = [0, 0, 0, FINE as i64];
+    let turns = turns.chunks_exact(4).chain(std::iter::repeat(upright.as_slice()));
+    let poses: Vec<(u64, PoseNumbers)> = times
+        .iter()
+        .zip(places.chunks_exact(3))
+        .zip(turns)
+        .map(|((t, place), turn)| {
+            let mut pose = [0.0; 7];
+            for (number, whole) in pose.iter_mut().zip(place.iter().chain(turn)) {
+                *number = part(whole);
+            }
+            (t.unsigned_abs(), pose)
+        })
+        .collect();
+    // What hardly moves is left as it was: without a track it would be where it was at the start.
+    pose_track(track.body, &poses, tolerance).unwrap_or_else(|| track.clone())
+}
+
+/// The rows that differences were made of.
+fn summed(column: &[i64], width: usize) -> Vec<i64> {
+    let mut row = vec![0_i64; width];
+    let mut values = Vec::with_capacity(column.len());
+    for differences in column.chunks(width) {
+        for (sum, difference) in row.iter_mut().zip(differences) {
+            *sum += difference;
+            values.push(*sum);
+        }
+    }
+    values
+}
+
 /// The same orientations, with signs by which each is on the near side of the one before.
 fn continuous(poses: &[(u64, PoseNumbers)]) -> Vec<(u64, PoseNumbers)> {
     let mut before: Option<PoseNumbers> = None;
@@ -130,14 +166,6 @@ fn keyframes(poses: &[(u64, PoseNumbers)], tolerance: PoseTolerance) -> Vec<(u64
 mod tests {
     use super::*;
 
-    fn summed(column: &[i64], width: usize) -> Vec<i64> {
-        let mut values: Vec<i64> = Vec::new();
-        for (i, difference) in column.iter().enumerate() {
-            values.push(difference + if i < width { 0 } else { values[i - width] });
-        }
-        values
-    }
-
     #[test]
     fn differences_add_up_to_what_was_given() {
         assert_eq!(differences([5, 7, 7, 4]), [5, 2, 0, -3]);
@@ -170,7 +198,12 @@ mod tests {
         let track = pose_track(3, &poses, PoseTolerance::default()).unwrap();
         assert!(track.t.len() < 60, "{}", track.t.len());
         assert!(track.q.is_empty());
+        let coarse = coarser(&track, PoseTolerance { place: 0.01, turn: 0.01 });
+        assert!(coarse.t.len() * 2 < track.t.len(), "{} of {}", coarse.t.len(), track.t.len());
         for (t, pose) in &poses {
+            for (is, was) in place(&coarse, *t as i64).iter().zip(pose) {
+                assert!((is - was).abs() < 0.0221, "{t}: {is} {was}");
+            }
             for (is, was) in place(&track, *t as i64).iter().zip(pose) {
                 assert!((is - was).abs() < 0.0021, "{t}: {is} {was}");
             }

@@ -7,7 +7,7 @@
 //! - [`requirement`] is what it says of requirements;
 //! - [`columns`] makes the columns of whole numbers that documents have, tracks of bodies among them;
 //! - [`replay`] makes a document of a program and a recording;
-//! - [`page()`] puts runs into the page.
+//! - [`page()`] puts runs into the page; [`packed_run`], [`packed_assets`] and [`packed_page`] are its parts, for pages that open it on demand.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 pub mod columns;
@@ -17,7 +17,7 @@ pub mod replay;
 pub mod requirement;
 
 pub use document::{SharedAssets, ViewDocument};
-pub use page::{PageOpening, RunGroup, ViewedRun, page};
+pub use page::{PageOpening, RunGroup, ViewedRun, packed_assets, packed_page, packed_run, page};
 
 impl ViewDocument {
     /// A document without anything in it, with ticks of a millisecond.

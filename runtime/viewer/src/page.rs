@@ -110,13 +110,40 @@ pub fn page(title: &str, runs: &[ViewedRun], shared: &SharedAssets, opening: &Pa
         runs: runs.iter().map(indexed).collect(),
     };
     let mut data = element("index", "application/json", &json(&index));
-    if *shared != SharedAssets::default() {
-        data += &element("assets", "text/plain", &packed(shared));
+    let assets = packed_assets(shared);
+    if !assets.is_empty() {
+        data += &element("assets", "text/plain", &assets);
     }
     for (place, run) in runs.iter().enumerate() {
         data += &element(&format!("run-{place}"), "text/plain", &packed(&run.document));
     }
     filled(&escaped(title), &data)
+}
+
+/// A run as pages have it: JSON, compressed (raw deflate) and in base64.
+#[must_use]
+pub fn packed_run(document: &ViewDocument) -> String {
+    packed(document)
+}
+
+/// What runs share as pages have it, in the same form; empty if they share nothing.
+#[must_use]
+pub fn packed_assets(shared: &SharedAssets) -> String {
+    if *shared == SharedAssets::default() { String::new() } else { packed(shared) }
+}
+
+/// The page without its runs, for other pages that carry runs and open the viewer on demand: a list of three texts, between which the title and
+/// the data belong, in the same form.
+#[must_use]
+pub fn packed_page() -> String {
+    packed(&pieces())
+}
+
+/// The template before its title, between title and data, and after them.
+fn pieces() -> [&'static str; 3] {
+    let (before, rest) = TEMPLATE.split_once(TITLE).unwrap_or((TEMPLATE, ""));
+    let (between, after) = rest.split_once(DATA).unwrap_or((rest, ""));
+    [before, between, after]
 }
 
 fn indexed(run: &ViewedRun) -> IndexedRun<'_> {
@@ -133,8 +160,7 @@ fn indexed(run: &ViewedRun) -> IndexedRun<'_> {
 
 /// The template with its two marks replaced. What is put in is not looked through for marks.
 fn filled(title: &str, data: &str) -> String {
-    let (before, rest) = TEMPLATE.split_once(TITLE).unwrap_or((TEMPLATE, ""));
-    let (between, after) = rest.split_once(DATA).unwrap_or((rest, ""));
+    let [before, between, after] = pieces();
     [before, title, between, data, after].concat()
 }
 
@@ -228,6 +254,21 @@ mod tests {
             .unwrap();
         let read: ViewDocument = serde_json::from_str(&unpacked).unwrap();
         assert_eq!(read, run("a").document);
+    }
+
+    #[test]
+    fn the_parts_put_together_are_the_page() {
+        let document = run("a").document;
+        let html = page("t", &[run("a")], &SharedAssets::default(), &PageOpening::default());
+        assert!(html.contains(&format!("id=\"hrdsl-run-0\">{}</script>", packed_run(&document))));
+        assert_eq!(packed_assets(&SharedAssets::default()), "");
+        let mut unpacked = String::new();
+        let bytes = decoded(&packed_page());
+        std::io::Read::read_to_string(&mut flate2::read::DeflateDecoder::new(&bytes[..]), &mut unpacked)
+            .unwrap();
+        let pieces: Vec<String> = serde_json::from_str(&unpacked).unwrap();
+        assert_eq!(pieces.len(), 3);
+        assert!(html.starts_with(&format!("{}t{}", pieces[0], pieces[1])) && html.ends_with(&pieces[2]));
     }
 
     fn decoded(text: &str) -> Vec<u8> {

@@ -9,8 +9,8 @@ use hrdsl_compiler::{CompilationResult, InputFile, compile};
 use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_runtime::{
     campaign::{
-        CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, ReplayChoice,
-        StopFlag, SupervisorCommand, prepare,
+        CampaignSetup, CellSettings, ForkPlan, ProgramLimits, ProgramOutput, PythonEnv, StopFlag,
+        SupervisorCommand, prepare,
     },
     conformance::ConformanceOptions,
 };
@@ -169,7 +169,7 @@ impl<'a> ConformanceRun<'a> {
             jobs: 1,
             stop: self.stop.clone(),
             conformance: ConformanceOptions::default(),
-            replays: ReplayChoice::None,
+            replays: false,
             clocks: None,
         };
         let found = std::sync::Mutex::new(CaseVerdict::Failed("  it did not run\n".to_owned()));

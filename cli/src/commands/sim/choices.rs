@@ -1,26 +1,14 @@
 //! What can be chosen among of a campaign, by words.
 
-use hrdsl_runtime::campaign::ReplayChoice;
-
 /// Which tests can be looked at again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum ReplaysArg {
-    /// Those that violate a requirement or break off.
+    /// Those that violate a requirement or break off, and the passing ones beside which the report shows them.
     Failing,
     /// All.
     All,
     /// None: nothing is spent on it.
     None,
-}
-
-impl ReplaysArg {
-    pub fn choice(self) -> ReplayChoice {
-        match self {
-            ReplaysArg::Failing => ReplayChoice::Failing,
-            ReplaysArg::All => ReplayChoice::All,
-            ReplaysArg::None => ReplayChoice::None,
-        }
-    }
 }
 
 /// How tests are kept apart.

@@ -9,7 +9,7 @@ use std::{
 
 use hrdsl_ir::test::Test;
 use hrdsl_runtime::{
-    campaign::{CampaignRun, CampaignSetup, ReplayChoice},
+    campaign::{CampaignRun, CampaignSetup},
     judge::CampaignOutcome,
     results::TestResult,
 };
@@ -47,7 +47,7 @@ pub fn compare(
     bar.set_message("again, to compare");
     let found: Mutex<FoundDifferences> = Mutex::default();
     // Further runs keep no files: those of the first are the results.
-    let again = CampaignSetup { keep: None, clocks: None, replays: ReplayChoice::None, ..campaign.clone() };
+    let again = CampaignSetup { keep: None, clocks: None, replays: false, ..campaign.clone() };
     let mut ran = 1;
     let mut interrupted = None;
     for run in 2..=runs {

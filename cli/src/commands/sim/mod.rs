@@ -31,7 +31,10 @@ use serde::Serialize;
 use choices::{IsolationArg, ReplaysArg};
 use chosen_system::{chosen_system, system_file};
 
-use super::generate::{chosen, describe, save};
+use super::{
+    generate::{chosen, describe, save},
+    shown,
+};
 use crate::{
     color, covered_files,
     exit::CommandExit,
@@ -160,7 +163,9 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let interfaces = input::interface_table(&compilation, system)?;
     let campaign = prepared(args, program, system, interfaces, &out, &folder)?;
     let begun = Instant::now();
-    let CampaignRun { outcome, times } = run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
+    let run::ExecutedTests { run, unreplayed } =
+        run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
+    let CampaignRun { outcome, times } = run;
     let differences = match args.repeat.or(args.check_determinism.then_some(2)) {
         Some(runs) if !outcome.interrupted => {
             Some(determinism::compare(&campaign, &tests, &outcome, &folder.staging(), runs)?)
@@ -178,7 +183,8 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let sources = sources.collect::<BTreeMap<_, _>>();
     let mut results = tally(program, args.seed, &generated, outcome, &sources, rerun::words(args, &out));
     locate(&mut results, &compilation);
-    publish(&results, &campaign, times.as_ref(), folder)?;
+    (results.view, results.unreplayed) = (rerun::view_of_results(args, &out), unreplayed);
+    publish(&results, &campaign, (args, times.as_ref()), folder)?;
     summarise(&results, &campaign, (args, &out), begun.elapsed())?;
     if let Some(times) = &times {
         terminal::print(&timings::table(times))?;
@@ -244,7 +250,7 @@ fn prepared<'p>(
         forks: ForkPlan::default(),
         stop: stop_flag(args.debug)?,
         conformance: args.observation.options(program)?,
-        replays: args.replays.choice(),
+        replays: args.replays != ReplaysArg::None,
         clocks: args.timings.then_some(ProcessorClocks::SYSTEM),
     };
     for complaint in campaign.plan_forks(args.no_fork)? {
@@ -429,7 +435,7 @@ struct RunInfo<'a> {
 fn publish(
     results: &CampaignResults,
     campaign: &CampaignSetup<'_>,
-    timings: Option<&CampaignTimes>,
+    (args, timings): (&SimArgs, Option<&CampaignTimes>),
     folder: ResultsFolder,
 ) -> Result<(), CommandFault> {
     let to = folder.staging();
@@ -446,7 +452,11 @@ fn publish(
     files::write(&to.join("run.json"), &files::json(&info)?)?;
     files::write(&to.join("results.json"), &results.to_json().map_err(|e| e.to_string())?)?;
     files::write(&to.join("junit.xml"), &report::junit(results))?;
-    files::write(&to.join("report.html"), &report::html(results))?;
+    if args.replays == ReplaysArg::Failing {
+        shown::keep_failing(results, &to)?;
+    }
+    let replays = shown::make(campaign.program, results, &to);
+    files::write(&to.join("report.html"), &shown::page(results, replays.as_ref()))?;
     folder.publish(&REPORTS)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{SimArgs, chosen_system::is_file_name};
+use super::{SimArgs, choices::ReplaysArg, chosen_system::is_file_name};
 use crate::files::relative;
 
 /// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
@@ -28,6 +28,14 @@ pub fn words(args: &SimArgs, out: &Path) -> String {
     words.extend(args.observation.words());
     words.push("--test".to_owned());
     words.join(" ")
+}
+
+/// The command that makes a page of one test, up to its name, as it is typed in the folder of the results; empty if no test is recorded for it.
+pub fn view_of_results(args: &SimArgs, out: &Path) -> String {
+    if args.replays == ReplaysArg::None {
+        return String::new();
+    }
+    format!("hrdsl view {} --results .", quoted(&relative(&args.file, out)))
 }
 
 /// The line that says how a test is looked at.

@@ -8,7 +8,7 @@ use std::{
 
 use hrdsl_ir::test::Test;
 use hrdsl_runtime::{
-    campaign::{CampaignRun, CampaignSetup, ReplayChoice},
+    campaign::{CampaignRun, CampaignSetup},
     judge::CampaignOutcome,
     results::{TestResult, VerdictOutcome},
 };
@@ -75,13 +75,7 @@ pub fn compare(
         variables.retain(|(name, _)| name != VARIABLE);
         variables.push((VARIABLE.into(), schedule.to_string().into()));
         // The files of the first run are the results.
-        let other = CampaignSetup {
-            keep: None,
-            clocks: None,
-            replays: ReplayChoice::None,
-            variables,
-            ..campaign.clone()
-        };
+        let other = CampaignSetup { keep: None, clocks: None, replays: false, variables, ..campaign.clone() };
         let CampaignRun { outcome, .. } = other.run(tests, |done| {
             let name = done.result.name.to_string();
             let difference = known.get(&name).and_then(|k| k.difference(&TestVerdicts::of(done.result)));

@@ -11,9 +11,13 @@ use super::{
     history::GraphHistory,
     seam::{CanceledGoals, SystemArrival},
 };
-use crate::port::{
-    AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing, QosDurability,
-    QosPolicy,
+use crate::{
+    log::LogRecord,
+    port::{
+        AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing,
+        QosDurability, QosPolicy,
+    },
+    said::{SaidHistory, SaidRecorder},
 };
 
 /// A program may have so many ports open, and so many calls under way.
@@ -67,6 +71,9 @@ pub(super) struct MessageGraph {
     /// Programs that are to be told of the next change.
     watchers: Vec<ProgramIndex>,
     history: GraphHistory,
+    recorder: Option<SaidRecorder>,
+    /// The place behind the programs: what is sent from there, the scenario says.
+    outside: ProgramIndex,
 }
 
 /// What a request does to others; or why it makes no sense.
@@ -152,6 +159,29 @@ impl MessageGraph {
     }
 
     /// What was open in the whole run that ends now.
+    /// From now on, what is said is written down. The programs are those before this place.
+    pub fn write_down(&mut self, programs: ProgramIndex) {
+        (self.recorder, self.outside) = (Some(SaidRecorder::default()), programs);
+    }
+
+    /// It is this time now.
+    pub fn goes_on(&mut self, now: Nanos) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.now = now;
+        }
+    }
+
+    pub fn logged(&mut self, program: &str, record: &LogRecord) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.logged(program, record);
+        }
+    }
+
+    /// What was written down.
+    pub fn said(&self) -> SaidHistory {
+        self.recorder.as_ref().map(SaidRecorder::history).unwrap_or_default()
+    }
+
     pub fn history(&self, names: &[String], end: Nanos) -> PortHistory {
         self.history.told(names, end)
     }
@@ -159,6 +189,9 @@ impl MessageGraph {
     pub fn publish(&mut self, program: ProgramIndex, port: u64, message: &MessageText) -> GraphOutcome {
         let at = self.port(program, port)?;
         let publisher = self.of_kind(at, PortKind::Publisher)?.clone();
+        if let Some(recorder) = &mut self.recorder {
+            recorder.sent(&publisher, program < self.outside, message);
+        }
         if let Some(own) = self.ports.get_mut(at).filter(|p| p.declared.kept > 0) {
             own.kept.push_back(message.clone());
             if own.kept.len() > own.declared.kept {
@@ -211,6 +244,9 @@ impl MessageGraph {
             let why = format!("the {} `{}` has no server", client.kind.sort(), client.name);
             return Ok(vec![told(program, SystemArrival::Answered { call, answer: Err(why) })]);
         };
+        if let Some(recorder) = &mut self.recorder {
+            recorder.sent(&client, program < self.outside, &message);
+        }
         self.made += 1;
         let id = self.made;
         let goal = (wanted == PortKind::ActionServer).then(OpenGoal::default);

@@ -22,6 +22,7 @@ use crate::{
     message::PlayerMessage,
     player::{ActorPlayer, HarnessError, PlayerContext},
     port::{PortDeclaration, PortHistory},
+    said::SaidHistory,
     stage::WorldStage,
     world::{CommandId, PlannedTrajectory},
 };
@@ -87,6 +88,13 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             self.wrong = self.wrong.or(self.parameters.set(name, value).err());
         }
         self.binding = binding.map(|b| BindingNode::new(self.vocabulary.program, b, node));
+        self
+    }
+
+    /// The same, with what the programs say written down, to be looked at.
+    #[must_use]
+    pub fn writing_down(mut self) -> Self {
+        self.graph.write_down(self.programs.len());
         self
     }
 
@@ -185,6 +193,7 @@ impl<'p, S: SystemActor> SystemPlayer<'p, S> {
             SystemRequest::List => Answer(self.listed(index)),
             SystemRequest::Parameter(request) => Answer(self.parameters.answer(request)),
             SystemRequest::Log(record) => {
+                self.graph.logged(&self.programs[index].name, &record);
                 self.log.add(cx.now, &self.programs[index].name, record);
                 Answer(SystemAnswer::Ok)
             }
@@ -418,6 +427,7 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
 
     fn wake(&mut self, cx: &mut PlayerContext<'_, '_>) -> Result<(), HarnessError> {
         self.now = cx.now;
+        self.graph.goes_on(cx.now);
         if let Some(why) = self.wrong.take() {
             return Err(scenario_fault(&why));
         }
@@ -440,6 +450,7 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
         cx: &mut PlayerContext<'_, '_>,
     ) -> Result<(), HarnessError> {
         self.now = cx.now;
+        self.graph.goes_on(cx.now);
         self.bound(cx, |binding, graph, cx| binding.hear(event, args, graph, cx))?;
         for index in 0..self.programs.len() {
             let heard = HeardEvent { event, args: args.to_vec(), time: cx.now };
@@ -461,6 +472,10 @@ impl<S: SystemActor> ActorPlayer for SystemPlayer<'_, S> {
 
     fn log(&self) -> SystemLog {
         self.log.clone()
+    }
+
+    fn said(&self) -> SaidHistory {
+        self.graph.said()
     }
 
     fn ports(&self, end: Nanos) -> PortHistory {

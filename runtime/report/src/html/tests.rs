@@ -1,7 +1,9 @@
 //! The page holds what is in the results, and nothing that anybody wrote in them is taken for HTML.
 
 use super::*;
-use hrdsl_results::{BinName, LogCounts, LogSummary, LoggedLevel, LoggedText};
+use hrdsl_results::{
+    BinName, LogCounts, LogSummary, LoggedLevel, LoggedText, ShownReplays, ShownRun, UnreplayedTest,
+};
 
 use crate::fixture;
 
@@ -238,4 +240,59 @@ fn machines_and_interfaces_are_sections() {
         let target = link.split('"').next().unwrap();
         assert_eq!(page.matches(&format!(" id=\"{target}\"")).count(), 1, "{target}");
     }
+}
+
+/// A first failure beside a passing test, and one alone.
+fn shown(results: &CampaignResults) -> ShownReplays {
+    let mut pairs = results.replay_pairs();
+    pairs.truncate(2);
+    pairs[1].beside = None;
+    let names = [Some(&pairs[0].test), pairs[0].beside.as_ref(), Some(&pairs[1].test)];
+    let runs = names.into_iter().flatten().map(|t| ShownRun { test: t.clone(), data: "AAAA".into() });
+    ShownReplays { runs: runs.collect(), assets: "BBBB".into(), pairs, ..ShownReplays::default() }
+}
+
+#[test]
+fn replays_are_opened_by_buttons_and_other_failures_have_their_command() {
+    let results = fixture::campaign(12);
+    let mut shown = shown(&results);
+    let why = "<b>no room".to_owned();
+    shown.left_out.push(UnreplayedTest { test: results.tests[3].name.clone(), why });
+    let page = html_with(&results, Some(&PageReplays { shown: &shown, viewer: "CCCC" }));
+    assert_eq!(unbalanced(&page), None);
+    for place in 1..=2 {
+        assert_eq!(page.matches(&format!(" id=\"replay-{place}\"")).count(), 1);
+        assert!(page.matches(&format!("data-replay=\"{place}\"")).count() >= 2, "with the test, too");
+    }
+    let beside = facts::short(&results, shown.pairs[0].beside.as_ref().unwrap());
+    for text in [
+        format!("▶ Replay {} beside {beside}</button>", shown.pairs[0].requirement),
+        format!("no test of the suite passes {}", shown.pairs[1].requirement),
+        "id=\"replays-viewer\">CCCC<".to_owned(),
+        "id=\"replays-assets\">BBBB<".to_owned(),
+        "id=\"replays-run-2\">AAAA<".to_owned(),
+        "&lt;b&gt;no room".to_owned(),
+        "img-src data: blob:".to_owned(),
+    ] {
+        assert!(page.contains(&text), "{text}");
+    }
+    let commands = page.matches("Look: <code>hrdsl view ..&#x2f;scenario.hri --results . ").count();
+    assert_eq!(commands + 2, page.matches("Again: <code>").count(), "a button, or the command");
+    let plain = html(&results);
+    assert!(!plain.contains("data-replay") && !plain.contains("blob:"));
+}
+
+#[test]
+fn what_is_wrong_in_the_file_of_replays_does_not_get_into_the_page() {
+    let mut results = fixture::campaign(3);
+    let bad = "</script><script>alert(1)</script>\u{202e}";
+    results.scenario = bad.to_owned();
+    let mut shown = shown(&results);
+    shown.runs[0].data = bad.to_owned();
+    shown.runs[0].test = bad.into();
+    shown.pairs[0].test = bad.into();
+    shown.assets = bad.to_owned();
+    let page = html_with(&results, Some(&PageReplays { shown: &shown, viewer: "CCCC" }));
+    assert_eq!(unbalanced(&page), None);
+    assert!(!page.contains("<script>alert") && !page.contains('\u{202e}'));
 }

@@ -3,7 +3,10 @@
 use hrdsl_results::{BinName, CampaignResults, RunEnd, TestResult, VerdictOutcome as Outcome, VerdictResult};
 use serde::Serialize;
 
-use super::violations::{CounterexampleTimeline, counterexample};
+use super::{
+    replays::{PageReplays, ReplayButton, buttons},
+    violations::{CounterexampleTimeline, counterexample},
+};
 use crate::{
     facts::{self, ShownOutcome},
     text,
@@ -48,6 +51,10 @@ struct TestEntry {
     steps: Vec<String>,
     /// The command that runs it again; empty unless something is wrong.
     again: String,
+    /// The command that makes a page that replays it; empty unless something is wrong.
+    view: String,
+    /// What opens its replays on this page.
+    replays: Vec<ReplayButton>,
     /// What must be known to trust it.
     notes: Vec<String>,
     /// What its programs have logged, as counts of levels; empty if they have not.
@@ -92,12 +99,12 @@ struct TestBin {
 }
 
 /// All tests.
-pub fn list(results: &CampaignResults) -> TestList {
+pub fn list(results: &CampaignResults, replays: Option<&PageReplays<'_>>) -> TestList {
     TestList {
         suites: results.suites.iter().map(|s| s.name.to_string()).collect(),
         requirements: results.requirements.iter().map(|r| r.name.to_string()).collect(),
         has_columns: results.requirements.len() <= COLUMNS,
-        tests: results.tests.iter().enumerate().map(|(i, t)| test(results, i, t)).collect(),
+        tests: results.tests.iter().enumerate().map(|(i, t)| test(results, replays, (i, t))).collect(),
     }
 }
 
@@ -110,7 +117,11 @@ fn outcome(test: &TestResult, requirement: &str) -> Outcome {
         .map_or(Outcome::Vacuous, |v| v.outcome)
 }
 
-fn test(results: &CampaignResults, index: usize, test: &TestResult) -> TestEntry {
+fn test(
+    results: &CampaignResults,
+    replays: Option<&PageReplays<'_>>,
+    (index, test): (usize, &TestResult),
+) -> TestEntry {
     let suite = results.suites.iter().position(|s| s.name == test.suite);
     let outcomes: Vec<Outcome> = results.requirements.iter().map(|r| outcome(test, &r.name)).collect();
     let overall = overall(test, &outcomes);
@@ -155,6 +166,8 @@ fn test(results: &CampaignResults, index: usize, test: &TestResult) -> TestEntry
             .rerun_of(test)
             .filter(|_| test.error.is_some() || test.has_failed())
             .unwrap_or_default(),
+        view: results.view_of(test).filter(|_| test.error.is_some() || test.has_failed()).unwrap_or_default(),
+        replays: buttons(results, replays, &test.name),
         notes: facts::notes(test),
         log: test.log.in_short(),
         logged: test.log.first.iter().map(|logged| text::line(&logged.line())).collect(),

@@ -5,10 +5,13 @@ use hrdsl_results::{
 };
 use serde::Serialize;
 
-use super::pieces::TestLink;
+use super::{
+    pieces::TestLink,
+    replays::{PageReplays, ReplayButton, button},
+};
 use crate::{facts, text};
 
-/// Tests that are shown with their counterexample for each requirement.
+/// Tests that are shown with their counterexample for each requirement, at least; of each suite there is one.
 const SHOWN: usize = 3;
 /// Steps of a counterexample at its start and at its end; the middle is left out.
 const START: usize = 3;
@@ -34,6 +37,10 @@ pub struct ViolatingTest {
     counterexample: Option<CounterexampleTimeline>,
     /// The command that runs the test again.
     again: String,
+    /// What opens its replay on this page.
+    replay: Option<ReplayButton>,
+    /// The command that makes a page that replays it.
+    view: String,
 }
 
 /// How a verdict came about.
@@ -59,18 +66,22 @@ pub struct TimelinePoint {
 }
 
 /// One for each violated requirement.
-pub fn all(results: &CampaignResults, link: &dyn Fn(&TestName) -> TestLink) -> Vec<ViolatedRequirement> {
+pub fn all(
+    results: &CampaignResults,
+    replays: Option<&PageReplays<'_>>,
+    link: &dyn Fn(&TestName) -> TestLink,
+) -> Vec<ViolatedRequirement> {
     let of = |requirement: &RequirementResult| {
         let failing = facts::failing(results, requirement);
-        (!failing.is_empty()).then(|| violated(results, requirement, &failing, link))
+        (!failing.is_empty()).then(|| violated(results, replays, (requirement, &failing), link))
     };
     results.requirements.iter().filter_map(of).collect()
 }
 
 fn violated(
     results: &CampaignResults,
-    requirement: &RequirementResult,
-    failing: &[(usize, &TestResult)],
+    replays: Option<&PageReplays<'_>>,
+    (requirement, failing): (&RequirementResult, &[(usize, &TestResult)]),
     link: &dyn Fn(&TestName) -> TestLink,
 ) -> ViolatedRequirement {
     let chosen = choose(failing);
@@ -79,6 +90,8 @@ fn violated(
         counterexample: facts::failure(test, &requirement.name)
             .map(|(verdict, failure)| counterexample(verdict, failure)),
         again: results.rerun_of(test).unwrap_or_default(),
+        replay: button(results, replays, (&test.name, &requirement.name)),
+        view: results.view_of(test).unwrap_or_default(),
     };
     let number = |suite: &SuiteName| failing.iter().filter(|(_, t)| t.suite == *suite).count();
     let others = failing.iter().filter(|(i, _)| chosen.iter().all(|(c, _)| c != i));
@@ -103,8 +116,9 @@ fn violated(
 fn choose<'a>(failing: &[(usize, &'a TestResult)]) -> Vec<(usize, &'a TestResult)> {
     let is_first = |at: usize| failing[..at].iter().all(|(_, t)| t.suite != failing[at].1.suite);
     let (mut chosen, rest): (Vec<usize>, Vec<usize>) = (0..failing.len()).partition(|at| is_first(*at));
+    let shown = SHOWN.max(chosen.len());
     chosen.extend(rest);
-    chosen.truncate(SHOWN);
+    chosen.truncate(shown);
     chosen.sort_unstable();
     chosen.into_iter().map(|at| failing[at]).collect()
 }

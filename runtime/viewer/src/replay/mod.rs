@@ -85,6 +85,7 @@ fn document(
         contacts: tracks::contacts(run),
         events: story::events(run),
         machines: story::machines(run),
+        topics: story::topics(run),
         log: log(run),
         requirements: violation::requirements(run),
         notes,

@@ -1,12 +1,13 @@
 //! Events and state machines of a recording.
 
 use hrdsl_ir::{Event, EventId, Program, Provenance, Role};
+use hrdsl_recording::message::RecordedTopic;
 use hrdsl_trace::{MachineStep, TraceStepKind, print};
 
 use super::run::{ReplayedRun, tick};
 use crate::{
     columns::differences,
-    document::{EventKind, MachineTrack, ViewEvent},
+    document::{EventKind, MachineTrack, TopicDirection, TopicTrack, ViewEvent},
 };
 
 pub(super) fn events(run: &ReplayedRun<'_>) -> Vec<ViewEvent> {
@@ -29,6 +30,18 @@ pub(super) fn events(run: &ReplayedRun<'_>) -> Vec<ViewEvent> {
         });
     }
     events
+}
+
+/// What was sent through names of the middleware.
+pub(super) fn topics(run: &ReplayedRun<'_>) -> Vec<TopicTrack> {
+    let track = |topic: &RecordedTopic| TopicTrack {
+        name: topic.name.clone(),
+        interface: (!topic.interface.is_empty()).then(|| topic.interface.clone()),
+        direction: if topic.outward { TopicDirection::Out } else { TopicDirection::In },
+        t: differences(topic.times.iter().map(|time| tick(*time).cast_signed())),
+        text: topic.texts.clone(),
+    };
+    run.file.topics.iter().map(track).collect()
 }
 
 fn kind(program: &Program, id: EventId, event: &Event) -> EventKind {
