@@ -61,14 +61,11 @@ fn a_blow_is_that_of_the_two_mass_formula_at_every_step() {
             for drop in [0.01, 0.05] {
                 for step in [10_000_000, 5_000_000, 2_000_000, 1_000_000] {
                     let (most, speed) = blow(stiffness, region, ball, drop, step);
-                    let reduced = 1.0 / (1.0 / region + 1.0 / ball);
-                    let formula = speed * (stiffness * reduced).sqrt();
                     // The weight of the ball goes on pressing while it is braked.
-                    let weight = 9.81 * reduced;
-                    let expected = weight + formula.hypot(weight);
+                    let expected = common::two_masses(ball, region, stiffness, speed, 9.81 * ball);
                     let off = most / expected - 1.0;
                     println!(
-                        "{name} {ball} kg {speed:.2} m/s {step}: {most:.1} N, formula {formula:.1} N, with its weight {expected:.1} N, {off:+.3}"
+                        "{name} {ball} kg {speed:.2} m/s {step}: {most:.1} N, by the formula {expected:.1} N, {off:+.3}"
                     );
                     assert!(off.abs() < 0.05, "{name} {ball} {drop} {step}: {most} for {expected}");
                 }

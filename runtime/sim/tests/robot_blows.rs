@@ -2,6 +2,7 @@
 //!
 //! `cargo test -p hrdsl-sim --test robot_blows -- --nocapture` prints the table.
 
+mod common;
 #[path = "common/scene.rs"]
 mod scene;
 
@@ -187,20 +188,12 @@ fn an_arm_strikes_as_hard_at_every_step() {
     }
 }
 
-/// Two masses and a spring between them, N: a robot of `robot` kg that meets at `speed` m/s somebody of whom the blow feels `region` kg, and whose
-/// surface has this `stiffness` (N/m), while its drive goes on pushing with `drive` N.
-fn two_masses(robot: f64, region: f64, stiffness: f64, speed: f64, drive: f64) -> f64 {
-    let reduced = 1.0 / (1.0 / robot + 1.0 / region);
-    let push = drive * reduced / robot;
-    push + (speed * (stiffness * reduced).sqrt()).hypot(push)
-}
-
 #[test]
 fn a_base_strikes_as_hard_at_every_step() {
     let free = TIAGO_BASE.converges(false, 0.1);
     // All of TIAGo; a lower leg by ISO/TS 15066:2016, table A.3; tyres that push as hard as they grip, since the blow brakes the base.
     let robot = weight_of_tiago();
-    let expected = two_masses(robot, 75.0, 60e3, 0.4, 0.8 * robot * 9.81);
+    let expected = common::two_masses(robot, 75.0, 60e3, 0.4, 0.8 * robot * 9.81);
     println!("two masses, {robot:.1} kg and 75 kg: {expected:.1} N");
     for blow in &free {
         assert!((blow.transient / expected - 1.0).abs() < 0.1, "{} for {expected}", blow.transient);

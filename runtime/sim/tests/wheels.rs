@@ -1,5 +1,6 @@
 //! Bases on wheels: they drive as they are told, are pushed, slip, and topple.
 
+mod common;
 #[path = "common/scene.rs"]
 mod scene;
 
@@ -119,10 +120,8 @@ fn a_person_it_runs_into_feels_its_weight() {
     }
     // Two legs of 75 kg each on 60 N/mm, and 22 kg at 0.5 m/s; the tyres go on pushing as hard as they grip,
     // but are told so up to 10 ms late, which is a quarter of such a blow.
-    let reduced = 1.0 / (1.0 / 150.0 + 1.0 / 22.0);
-    let (formula, tyres) = (0.5 * f64::sqrt(120e3 * reduced), 0.8 * 9.81 * reduced);
-    let expected = tyres + formula.hypot(tyres);
-    println!("{found:?} N, formula {formula:.0} N, with what the tyres push {expected:.0} N");
+    let expected = common::two_masses(22.0, 150.0, 120e3, 0.5, 0.8 * 22.0 * 9.81);
+    println!("{found:?} N, by the formula {expected:.0} N");
     let finest = found.last().expect("steps");
     for most in &found {
         assert!(

@@ -296,3 +296,11 @@ pub fn offer(sim: &mut WorldSimulation) {
     run(sim, move_to([x, y, z + 0.15]));
     run(sim, move_to(OFFER));
 }
+
+/// Two masses and a spring between them, N: a robot of `robot` kg that meets at `speed` m/s somebody of whom the blow feels `region` kg, and whose
+/// surface has this `stiffness` (N/m), while its drive goes on pushing with `drive` N.
+pub fn two_masses(robot: f64, region: f64, stiffness: f64, speed: f64, drive: f64) -> f64 {
+    let reduced = 1.0 / (1.0 / robot + 1.0 / region);
+    let push = drive * reduced / robot;
+    push + (speed * (stiffness * reduced).sqrt()).hypot(push)
+}
