@@ -66,6 +66,7 @@ repeated! {
         times: 20,
     },
     homecare: RepeatedSystem { example: "homecare", file: None, suite: "bdi_tests", test: 6, times: 4 },
+    workbench: RepeatedSystem { example: "workbench", file: None, suite: "random_tests", test: 2, times: 20 },
 }
 
 const PYTHONS: [&str; 4] = ["python3.10", "python3.11", "python3.12", "python3.13"];
