@@ -136,6 +136,12 @@ class Command(unittest.TestCase):
         with open(os.path.join(self.folder, "part.py"), encoding="utf-8") as file:
             self.assertEqual(file.read(), "def size():\n    return 2 + 1\n")
 
+    def test_the_sentinel_raises_at_once(self):
+        for file in ("part.py", "main.py"):
+            done = self.call("run", file, "0", "--", "main.py")
+            self.assertEqual((done.stdout, done.returncode), ("", 1))
+            self.assertIn("the sentinel mutant ends at once", done.stderr)
+
     def test_bad_input_is_named(self):
         self.write("broken.py", "x = (\n")
         for args, part in (

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from typing import Sequence
 
 
+#: The number of the mutant that raises at once: tests that do not notice it measure nothing.
+SENTINEL = 0
+
+
 class Switch(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     """Gives the mutated code for the module that is in the file."""
 
@@ -45,10 +49,13 @@ def run_switched(file: str, number: int, program: list[str]) -> None:
     Raises `LookupError` if there is no such mutant, and what the program raises."""
     with open(file, encoding="utf-8") as source:
         text = source.read()
-    found = {mutant.number: mutant for mutant in mutants(text, file)}
-    if number not in found:
-        raise LookupError("%s has mutants 1 to %d, not %d; `list` shows them" % (file, len(found), number))
-    compiled = code(text, file, found[number])
+    if number == SENTINEL:
+        compiled = compile("raise RuntimeError('the sentinel mutant ends at once')", file, "exec")
+    else:
+        found = {mutant.number: mutant for mutant in mutants(text, file)}
+        if number not in found:
+            raise LookupError("%s has mutants 1 to %d, not %d; `list` shows them" % (file, len(found), number))
+        compiled = code(text, file, found[number])
     sys.argv = list(program)
     sys.path[0] = os.path.dirname(os.path.abspath(program[0]))
     sys.meta_path.insert(0, Switch(file, compiled))
