@@ -136,6 +136,13 @@ class Command(unittest.TestCase):
         with open(os.path.join(self.folder, "part.py"), encoding="utf-8") as file:
             self.assertEqual(file.read(), "def size():\n    return 2 + 1\n")
 
+    def test_what_the_program_raises_is_its_own(self):
+        self.write("raises.py", "x = 1\nprint({}[7])\n")
+        (mutant,) = json.loads(self.call("list", "raises.py", "--operator", "removed", "--json").stdout)["mutants"]
+        done = self.call("run", "raises.py", str(mutant["number"]), "--", "raises.py")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("KeyError: 7", done.stderr)
+
     def test_the_sentinel_raises_at_once(self):
         for file in ("part.py", "main.py"):
             done = self.call("run", file, "0", "--", "main.py")

@@ -7,7 +7,7 @@ import json
 import sys
 
 from hrdsl.mutation.found import UnknownOperator, mutants, operators
-from hrdsl.mutation.switch import run_switched
+from hrdsl.mutation.switch import switched
 
 _EXAMPLES = """examples:
   python -m hrdsl.mutation list robot.py
@@ -37,14 +37,16 @@ def main(args: list[str]) -> int:
     running.add_argument("program", nargs="+", metavar="PROGRAM", help="the program, and its arguments")
     given = parser.parse_args(args)
     try:
-        if given.command == "run":
-            run_switched(given.file, given.number, given.program)
-            return 0
-        return _list(given.files, given.operator, given.json)
+        if given.command == "list":
+            return _list(given.files, given.operator, given.json)
+        run = switched(given.file, given.number, given.program)
     except SyntaxError as error:
         problem = "%s:%s: %s; correct it first" % (error.filename, error.lineno, error.msg)
     except (OSError, UnicodeDecodeError, UnknownOperator, LookupError) as error:
         problem = str(error.args[0] if isinstance(error, LookupError) else error)
+    else:
+        run()
+        return 0
     print("error: " + problem, file=sys.stderr)
     return 2
 

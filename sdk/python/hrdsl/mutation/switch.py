@@ -13,7 +13,7 @@ from hrdsl.mutation.found import code, mutants
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
-    from typing import Sequence
+    from typing import Callable, Sequence
 
 
 #: The number of the mutant that raises at once: tests that do not notice it measure nothing.
@@ -43,10 +43,11 @@ class Switch(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         exec(self.compiled, module.__dict__)  # the program's own code
 
 
-def run_switched(file: str, number: int, program: list[str]) -> None:
-    """Runs `program` (a file and its arguments) as `python` would, with mutant `number` of `file`.
+def switched(file: str, number: int, program: list[str]) -> Callable[[], None]:
+    """What runs `program` (a file and its arguments) as `python` would, with mutant `number` of `file`; it raises what the
+    program raises, so that nobody takes that for a fault of the file.
 
-    Raises `LookupError` if there is no such mutant, and what the program raises."""
+    Raises `OSError`, `SyntaxError`, and `LookupError` if there is no such mutant."""
     with open(file, encoding="utf-8") as source:
         text = source.read()
     if number == SENTINEL:
@@ -56,6 +57,10 @@ def run_switched(file: str, number: int, program: list[str]) -> None:
         if number not in found:
             raise LookupError("%s has mutants 1 to %d, not %d; `list` shows them" % (file, len(found), number))
         compiled = code(text, file, found[number])
+    return lambda: _run(file, compiled, program)
+
+
+def _run(file: str, compiled: types.CodeType, program: list[str]) -> None:
     sys.argv = list(program)
     sys.path[0] = os.path.dirname(os.path.abspath(program[0]))
     sys.meta_path.insert(0, Switch(file, compiled))
