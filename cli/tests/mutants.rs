@@ -45,3 +45,56 @@ fn a_robot_that_lets_go_of_what_nobody_is_ready_for_is_noticed() {
     assert_eq!(table["gaze_and_pressure_swapped"], serde_json::json!({}), "{table}");
     assert!(stdout(&out).contains("1 of 2 faults are noticed"), "{}", stdout(&out));
 }
+
+/// The workbench's robot with a mutant of its code: the sentinel ends every test, and a hand that does not open when it is told to drops nothing.
+#[test]
+fn a_generated_mutant_runs_in_place_of_the_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    for name in ["scenario.hri", "tests.hri", "robot.py"] {
+        fs::copy(root().join("examples/workbench").join(name), path(name)).unwrap();
+    }
+    let original = fs::read(path("robot.py")).unwrap();
+    let sdk = root().join("sdk/python");
+    let listed = Command::new("python3")
+        .args([
+            "-B",
+            "-m",
+            "hrdsl.mutation",
+            "list",
+            text(&path("robot.py")),
+            "--operator",
+            "dropped",
+            "--json",
+        ])
+        .env("PYTHONPATH", &sdk)
+        .output()
+        .unwrap();
+    expect_code(&listed, 0);
+    let listed: Value = serde_json::from_str(&stdout(&listed)).unwrap();
+    let is_open = |m: &&Value| m["what"].as_str().unwrap().starts_with("open ");
+    let mutants = listed["mutants"].as_array().unwrap();
+    let dropped = mutants.iter().find(is_open).expect("the hand opens")["number"].as_u64().unwrap();
+    let results = |number: u64| -> Value {
+        let run = format!("python3 -m hrdsl.mutation run robot.py {number} -- robot.py");
+        fs::write(
+            path("mutant.hri"),
+            format!("system mutated plays robot {{ run \"{run}\"; limit 30 s }}\n"),
+        )
+        .unwrap();
+        let line = "sim scenario.hri tests.hri --system mutant.hri --exit-zero -o out";
+        expect_code(&support::hrdsl_in(folder.path(), line), 0);
+        serde_json::from_slice(&fs::read(path("out/results.json")).unwrap()).unwrap()
+    };
+    let sentinel = results(0);
+    let tests = sentinel["tests"].as_array().unwrap();
+    assert!(tests.len() == 4 && tests.iter().all(|test| !test["error"].is_null()), "{sentinel}");
+    let kept = results(dropped);
+    let failing = |requirement: &str| {
+        let own = |row: &&Value| row["name"] == requirement;
+        kept["requirements"].as_array().unwrap().iter().find(own).unwrap()["failing"].clone()
+    };
+    assert_eq!(failing("R2"), serde_json::json!([]), "nothing is dropped");
+    assert_eq!(failing("R1"), serde_json::json!(["workbench.slips"]));
+    assert_eq!(fs::read(path("robot.py")).unwrap(), original, "no file is written");
+}

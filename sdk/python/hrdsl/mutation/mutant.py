@@ -1,0 +1,73 @@
+"""What a mutant is, and how it is put into a tree."""
+
+from __future__ import annotations
+
+import ast
+import copy
+
+TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
+if TYPE_CHECKING:
+    from typing import Any, Iterator, Union
+
+    #: The way from the root to a node: fields, with an index in those that are lists.
+    Path = tuple[tuple[str, Union[int, None]], ...]
+
+
+class Edit:
+    """At `path`, `count` nodes give way to `nodes`; count and length are 1 except in lists of statements."""
+
+    def __init__(self, path: Path, nodes: list[ast.AST], count: int = 1) -> None:
+        self.path = path
+        self.nodes = nodes
+        self.count = count
+
+
+class Mutant:
+    """One change of one source. `number` counts all mutants of the source, whichever operators were asked for."""
+
+    def __init__(self, number: int, operator: str, line: int, what: str, edits: list[Edit]) -> None:
+        self.number = number
+        self.operator = operator
+        self.line = line
+        self.what = what
+        self.edits = edits
+        #: "equivalent" to the original, "duplicate" of an earlier mutant, "invalid" if it does not compile, or "".
+        self.needless = ""
+
+    def __repr__(self) -> str:
+        return "<Mutant %d: line %d, %s: %s>" % (self.number, self.line, self.operator, self.what)
+
+
+def applied(tree: ast.Module, edits: list[Edit]) -> ast.Module:
+    """The tree with the edits; it shares what they leave alone. Edits must not lie within each other."""
+    for edit in edits:
+        tree = _replaced(tree, edit.path, edit)
+    return ast.fix_missing_locations(tree)
+
+
+def _replaced(node: Any, path: Path, edit: Edit) -> Any:
+    (field, index), rest = path[0], path[1:]
+    changed = copy.copy(node)
+    value = getattr(node, field)
+    if index is None:
+        setattr(changed, field, _replaced(value, rest, edit) if rest else edit.nodes[0])
+        return changed
+    items = list(value)
+    if rest:
+        items[index] = _replaced(items[index], rest, edit)
+    else:
+        items[index : index + edit.count] = edit.nodes
+    setattr(changed, field, items)
+    return changed
+
+
+def walk(node: ast.AST, path: Path = ()) -> Iterator[tuple[Path, ast.AST]]:
+    """Every node with its path, in the order of the source."""
+    yield path, node
+    for field, value in ast.iter_fields(node):
+        if isinstance(value, ast.AST):
+            yield from walk(value, path + ((field, None),))
+        elif isinstance(value, list):
+            for index, item in enumerate(value):
+                if isinstance(item, ast.AST):
+                    yield from walk(item, path + ((field, index),))
