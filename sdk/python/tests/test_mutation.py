@@ -151,6 +151,23 @@ class Command(unittest.TestCase):
             self.assertEqual((done.stdout, done.returncode), ("", 1))
             self.assertIn("the sentinel mutant ends at once", done.stderr)
 
+    def test_a_package_has_its_mutant(self):
+        os.mkdir(os.path.join(self.folder, "parts"))
+        self.write("parts/__init__.py", "from parts.more import size\n")
+        self.write("parts/more.py", "def size():\n    return 3\n")
+        self.write("whole.py", "import parts\nprint(parts.size())\n")
+        self.assertEqual(self.call("run", "main.py", "0", "--", "whole.py").stdout, "3\n")
+        for file in ("parts/__init__.py", "parts/more.py"):
+            done = self.call("run", file, "0", "--", "whole.py")
+            self.assertIn("the sentinel mutant ends at once", done.stderr, file)
+            self.assertNotIn("did not import", done.stderr)
+
+    def test_a_mutant_that_changed_nothing_is_told(self):
+        self.write("apart.py", "print(1)\n")
+        done = self.call("run", "part.py", "0", "--", "apart.py")
+        self.assertEqual(done.stdout, "1\n")
+        self.assertIn("the program did not import", done.stderr)
+
     def test_bad_input_is_named(self):
         self.write("broken.py", "x = (\n")
         for args, part in (

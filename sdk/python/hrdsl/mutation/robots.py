@@ -115,7 +115,7 @@ def _is_reading(node: ast.AST) -> bool:
 
 
 def percepts(found: list[tuple[Path, ast.AST]]) -> Iterator[tuple[str, list[Edit], str, int]]:
-    """Readings of one function: neighbours exchanged, and each one left at its first value. `found` are a function's nodes."""
+    """Readings of one function: neighbours exchanged, and each one left at the value of the call before. `found` are a function's nodes."""
     readings = [(path, node) for path, node in found if _is_reading(node)]
     for (path, node), (other_path, other) in zip(readings, readings[1:]):
         within = other_path[: len(path)] == path or path[: len(other_path)] == other_path
@@ -143,7 +143,7 @@ def _fields(found: list[tuple[Path, ast.AST]]) -> list[tuple[Path, ast.Attribute
 
 
 def _previous(node: ast.AST) -> ast.AST:
-    """`(lambda value, kept=[]: …)(reading)` would forget its list, so it is kept in the module's names, by place."""
+    """The value of the call before is kept among the module's names, by place: all instances and threads share it."""
     key = "_hrdsl_stale_%d_%d" % (node.lineno, node.col_offset)  # type: ignore[attr-defined]
     source = "(lambda now, names: (names.setdefault(%r, now), names.__setitem__(%r, now))[0])(0, globals())" % (key, key)
     call = ast.parse(source, mode="eval").body

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import importlib.abc
 import importlib.util
 import os
@@ -26,20 +27,26 @@ class Switch(importlib.abc.MetaPathFinder, importlib.abc.Loader):
     def __init__(self, file: str, compiled: types.CodeType) -> None:
         self.file = os.path.realpath(file)
         self.compiled = compiled
+        self.is_used = False
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: types.ModuleType | None = None) -> object:
         stem, _ = os.path.splitext(os.path.basename(self.file))
-        if name.rpartition(".")[2] != stem:
+        last = name.rpartition(".")[2]
+        is_package = stem == "__init__"
+        if last != (os.path.basename(os.path.dirname(self.file)) if is_package else stem):
             return None
+        inner = os.path.join(last, "__init__.py") if is_package else stem + ".py"
         for folder in sys.path if path is None else path:
-            if os.path.realpath(os.path.join(folder or ".", stem + ".py")) == self.file:
-                return importlib.util.spec_from_file_location(name, self.file, loader=self)
+            if os.path.realpath(os.path.join(folder or ".", inner)) == self.file:
+                inside = [os.path.dirname(self.file)] if is_package else None
+                return importlib.util.spec_from_file_location(name, self.file, loader=self, submodule_search_locations=inside)
         return None
 
     def create_module(self, spec: object) -> None:
         return None
 
     def exec_module(self, module: types.ModuleType) -> None:
+        self.is_used = True
         exec(self.compiled, module.__dict__)  # the program's own code
 
 
@@ -63,11 +70,19 @@ def switched(file: str, number: int, program: list[str]) -> Callable[[], None]:
 def _run(file: str, compiled: types.CodeType, program: list[str]) -> None:
     sys.argv = list(program)
     sys.path[0] = os.path.dirname(os.path.abspath(program[0]))
-    sys.meta_path.insert(0, Switch(file, compiled))
     if os.path.realpath(program[0]) != os.path.realpath(file):
+        switch = Switch(file, compiled)
+        sys.meta_path.insert(0, switch)
+        atexit.register(_say_if_unused, switch)
         runpy.run_path(program[0], run_name="__main__")
         return
     main = types.ModuleType("__main__")
     main.__file__ = program[0]
     sys.modules["__main__"] = main
     exec(compiled, main.__dict__)  # the program's own code
+
+
+def _say_if_unused(switch: Switch) -> None:
+    """Who sees the original run must not take it for a mutant that nobody notices."""
+    if not switch.is_used:
+        print("error: the program did not import %s, so that its mutant changed nothing" % switch.file, file=sys.stderr)
