@@ -158,7 +158,6 @@ impl MessageGraph {
         self.history.awaited(program, awaited, now);
     }
 
-    /// What was open in the whole run that ends now.
     /// From now on, what is said is written down. The programs are those before this place.
     pub fn write_down(&mut self, programs: ProgramIndex) {
         (self.recorder, self.outside) = (Some(SaidRecorder::default()), programs);
@@ -182,6 +181,7 @@ impl MessageGraph {
         self.recorder.as_ref().map(SaidRecorder::history).unwrap_or_default()
     }
 
+    /// What was open in the whole run that ends now.
     pub fn history(&self, names: &[String], end: Nanos) -> PortHistory {
         self.history.told(names, end)
     }

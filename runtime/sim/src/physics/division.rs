@@ -7,6 +7,7 @@
 use rapier3d::parry::{self, bounding_volume::Aabb, bounding_volume::BoundingVolume};
 use rapier3d::prelude::*;
 
+use super::joints::STRAINED;
 use super::state::{
     adapter::PhysicsAdapter,
     bodies::{body_id, index},
@@ -25,8 +26,7 @@ const MOST_PARTS: f64 = 32.0;
 /// How often the solver goes over all joints and contacts while a robot or a person falls, or lies, or a light tip takes a blow: a robot of
 /// 66 kg that falls on a finger of 50 g would tear it off, and so would a leg of 500 g that is drawn along it, unless that hands on what it takes.
 const MANY_SWEEPS: usize = 64;
-/// More often, in proportion, where a joint of what falls is farther apart than this, m; and the most.
-const STRAINED: f64 = 7e-4;
+/// The most: more often, in proportion, where a joint of what falls is farther apart than strained.
 const MOST_SWEEPS: usize = 256;
 
 /// What joints ask of the solver.

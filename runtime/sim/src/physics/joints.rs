@@ -31,8 +31,8 @@ const TORN: f64 = 4e-3;
 const TORN_TURN: f64 = 0.04;
 const MENDS_AT_MOST: f64 = 2.0;
 const MENDS_AT_MOST_TURN: f64 = 10.0;
-/// The joint of a light tip is strained that is so far apart, m and rad.
-const STRAINED: f64 = 7e-4;
+/// A joint is strained that is so far apart, m and rad.
+pub(super) const STRAINED: f64 = 7e-4;
 const STRAINED_TURN: f64 = 4e-3;
 /// Light is a tip that has less than so much of the mass of what it is on.
 const LIGHT: f64 = 0.25;
@@ -287,8 +287,7 @@ impl PhysicsAdapter {
                 JointHold::Firm | JointHold::Strained { .. } => driven.softness,
                 JointHold::Torn => giving(rate, h),
             };
-            let handle = driven.handle;
-            if let Some(joint) = self.world.impulse_joints.get_mut(handle, false) {
+            if let Some(joint) = self.world.impulse_joints.get_mut(driven.handle, false) {
                 joint.data.softness = softness;
             }
             if let Some(driven) = &mut self.joints[at] {

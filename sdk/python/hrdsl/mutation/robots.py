@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _TIME = re.compile(r"time|timeout|deadline|duration|delay|period|rate|pause|wait|settle|window|sleep|seconds", re.I)
 _PLACE = re.compile(r"place|pose|posture|position|target|goal|waypoint|home", re.I)
 _READ = re.compile(r"^(read|get|sense|measure|is|see|look|hear|state|ranges|poll)(_|$)", re.I)
+_FACTORS = ((0.5, "halved"), (2.0, "doubled"))
 _LATE = 1.0  # seconds by which a call is delayed
 
 
@@ -51,10 +52,10 @@ def time(node: ast.AST) -> Iterator[Change]:
     """Times halved and doubled: constants with such a name, and what `sleep`, `Rate` and the like are given."""
     if isinstance(node, ast.Assign) and is_number(node.value):
         if any(isinstance(target, ast.Name) and _TIME.search(target.id) for target in node.targets):
-            for factor, how in ((0.5, "halved"), (2.0, "doubled")):
+            for factor, how in _FACTORS:
                 yield like(ast.Assign(node.targets, scaled(node.value, factor)), node), "the time is " + how
     elif called(node).lower() in ("sleep", "rate", "duration") and len(node.args) == 1:
-        for factor, how in ((0.5, "halved"), (2.0, "doubled")):
+        for factor, how in _FACTORS:
             yield like(ast.Call(node.func, [scaled(node.args[0], factor)], node.keywords), node), "the time is " + how
 
 
