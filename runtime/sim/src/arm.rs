@@ -16,7 +16,11 @@ use crate::{
     kinematics::{KinematicChain, KinematicLink},
     math::{BodyFrame, SpaceVector, v3},
     motion::{ArmGoal, ArmMotion, ArmPath},
-    physics::{CONTROL_PERIOD, PhysicsAdapter, bad, dynamics::ArmDynamics, index},
+    physics::{
+        CONTROL_PERIOD, PhysicsAdapter, bad,
+        dynamics::{ArmDynamics, BorneLoad},
+        index,
+    },
     profile::{RISE, brake_time, braking},
     rigidity,
     route::{JointRoute, JointTrack},
@@ -86,6 +90,8 @@ pub(crate) struct ArmControl {
     lasting_free: Vec<f64>,
     /// What the motors were last told, N·m or N, and until when that holds.
     told: Vec<f64>,
+    /// What its joints bear by themselves.
+    borne: Vec<BorneLoad>,
     told_until: Nanos,
 }
 
@@ -155,6 +161,7 @@ impl ArmControl {
             lasting: vec![0.0; numbers.len()],
             lasting_free: vec![0.0; numbers.len()],
             told: vec![0.0; numbers.len()],
+            borne: Vec::new(),
             told_until: 0,
         })
     }
@@ -273,9 +280,10 @@ impl ArmControl {
     pub fn drive(&mut self, now: Nanos, next: Nanos, physics: &mut PhysicsAdapter) {
         let joints = self.joints.iter().map(|id| usize::from(id.0));
         if now < self.told_until {
-            joints.zip(&self.told).for_each(|(joint, effort)| {
+            for ((joint, effort), load) in joints.zip(&self.told).zip(&self.borne) {
                 physics.drive(joint, *effort);
-            });
+                physics.bear(joint, load);
+            }
             return;
         }
         self.told_until = next.max(now + CONTROL_PERIOD);
@@ -355,12 +363,14 @@ impl ArmControl {
         }
         for (i, id) in self.joints.iter().enumerate() {
             let done = physics.drive(usize::from(id.0), efforts[i]);
+            physics.bear(usize::from(id.0), &equation.borne[i]);
             self.told[i] = efforts[i];
             // An arm that is held up, or a motor that can do no more, has nothing to learn from it.
             if done == efforts[i] && rate > HELD_UP {
                 self.lasting[i] += LEARNING * rigid.powi(3) * (a[i] - positions[i]) * h;
             }
         }
+        self.borne = equation.borne;
     }
 
     /// Ends the motion if it has arrived, does not in time, is blocked, or presses harder than it may.

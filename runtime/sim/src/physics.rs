@@ -58,6 +58,9 @@ const SWEEPS: usize = 2;
 /// robots still do with four.
 const SWEEPS_OF_DESCRIBED: usize = 8;
 
+/// A joint is pressed that is so far beyond its limit, rad or m: the solver then does more.
+const PRESSED: f64 = 3e-4;
+
 /// How deep rigid bodies may be in each other before the solver puts them apart, m: the engine's own five millimetres would be seen.
 const ALLOWED_DEPTH: f32 = 5e-4;
 /// How fast it then does so: as so much of the depth in a second, 1/s. Faster, and bodies that are found inside of each other leap apart.
@@ -104,6 +107,9 @@ impl PhysicsAdapter {
             led: Vec::new(),
             step: seconds(world.step),
             sweeps: sweeps(world),
+            pressed: false,
+            mended: (0.0, 0),
+            deepest: 0.0,
             part: (seconds(world.step), SUBSTEPS),
             solved: vec![(seconds(world.step), SUBSTEPS); world.bodies.len()],
             scene: (Vector::ZERO, Vector::ZERO),
@@ -366,9 +372,11 @@ impl PhysicsAdapter {
     }
 
     fn watch_accuracy(&mut self) {
+        self.pressed = false;
         for joint in 0..self.joints.len() {
             if self.joints[joint].is_some() && !self.is_asleep(joint) {
                 let (at, limits) = (self.joint_position(joint), self.joint_limits(joint));
+                self.pressed |= (limits.0 - at).max(at - limits.1) > PRESSED;
                 self.accuracy.look_at_joint(joint, at, limits);
             }
         }

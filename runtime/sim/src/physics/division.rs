@@ -7,6 +7,7 @@
 use rapier3d::parry::{self, bounding_volume::Aabb, bounding_volume::BoundingVolume};
 use rapier3d::prelude::*;
 
+use super::SUBSTEPS;
 use super::joints::STRAINED;
 use super::state::{
     adapter::PhysicsAdapter,
@@ -18,13 +19,23 @@ use crate::math::from_vector;
 
 /// How far bodies may be apart to count as near, besides what they can do in a step, m.
 pub(super) const NEAR: f64 = 2e-3;
+/// Nearer than that they touch, m: what slides along something does not come to hit it.
+const TOUCHING: f64 = 1e-4;
 /// How much nearer to each other rigid surfaces come in a part of a step, m: a quarter of how far around it the engine looks.
 const WAY: f64 = 5e-3;
 /// The most parts that rigid bodies ask for.
 const MOST_PARTS: f64 = 32.0;
 
+/// How often the solver goes over all joints and contacts in parts shorter than those of an undivided step, at least: with two, an arm of
+/// seven joints would give way to what it strikes as if it were a tenth lighter.
+const SWEEPS_OF_SHORT: usize = 4;
+/// So deep in each other the solver has not made bodies part as they came, m: light ones that heavy ones press, say, to the floor. What it
+/// then does in a hurry, and does not take back, would fling the heavy one off.
+const TOO_DEEP: f64 = 1e-3;
 /// How often the solver goes over all joints and contacts while a robot or a person falls, or lies, or a light tip takes a blow: a robot of
-/// 66 kg that falls on a finger of 50 g would tear it off, and so would a leg of 500 g that is drawn along it, unless that hands on what it takes.
+/// 66 kg that falls on a finger of 50 g would tear it off, and so would a leg of 500 g that is drawn along it, unless that hands on what it
+/// takes. And while something fast strikes another, which hands the blow on, to the floor that it lies on, say; while a joint is pressed
+/// beyond its limit, or bodies are too deep in each other.
 const MANY_SWEEPS: usize = 64;
 /// The most: more often, in proportion, where a joint of what falls is farther apart than strained.
 const MOST_SWEEPS: usize = 256;
@@ -36,14 +47,14 @@ pub(super) struct JointStrain {
     pub falls: bool,
     /// How far the two sides of the worst joint of those are apart, m.
     pub apart: f64,
-    /// Whether a light tip takes a blow.
+    /// Whether something takes a blow, or a joint is pressed beyond its limit.
     pub blow: bool,
 }
 
 impl JointStrain {
-    /// How often the solver must go over all joints and contacts, where it usually does so often.
-    fn sweeps(&self, usual: usize) -> usize {
-        if !self.falls && !self.blow {
+    /// How often the solver must go over all joints and contacts, where it usually does so often, and bodies are so deep in each other, m.
+    fn sweeps(&self, usual: usize, deepest: f64) -> usize {
+        if !self.falls && !self.blow && deepest < TOO_DEEP {
             return usual;
         }
         let many = (MANY_SWEEPS as f64 * (self.apart / STRAINED).max(1.0)) as usize;
@@ -71,11 +82,14 @@ impl PhysicsAdapter {
         let dt = f64::from(self.world.integration_parameters.dt);
         let swept = self.swept(dt);
         let near = self.near_pairs(&swept, dt);
-        let parts = near.iter().map(|pair| pair.parts(dt)).fold(self.rigid_parts(&swept, dt), f64::max);
+        let (asked, strikes) = self.rigid_parts(&swept, dt);
+        let parts = near.iter().map(|pair| pair.parts(dt)).fold(asked, f64::max);
         let h = dt / parts;
         self.part = (h, (self.substeps() as f64 / parts).ceil() as usize);
         self.world.integration_parameters.dt = h as f32;
         self.world.integration_parameters.num_solver_iterations = self.part.1;
+        self.keep_mending();
+        let sweeps = if parts > SUBSTEPS as f64 { self.sweeps.max(SWEEPS_OF_SHORT) } else { self.sweeps };
         let mut loads = ContactLoads::default();
         let mut done = 0.0;
         while done < parts {
@@ -84,10 +98,12 @@ impl PhysicsAdapter {
                 self.press(pair.at, h);
             }
             self.lead_on((done + 1.0) / parts);
+            let mut strain = self.ease_joints();
+            strain.blow |= strikes;
             self.world.integration_parameters.num_internal_pgs_iterations =
-                self.ease_joints().sweeps(self.sweeps);
+                strain.sweeps(sweeps, self.deepest);
             self.step_engine();
-            self.accuracy.look_at_contacts(&self.world, &self.robots);
+            self.deepest = self.accuracy.look_at_contacts(&self.world, &self.robots);
             let part = self.loads_of_part();
             self.note_presses(&near, &part, h);
             loads.add_part(&part, 1.0 / parts);
@@ -122,17 +138,19 @@ impl PhysicsAdapter {
         SweptBodies { speeds, fast, boxes }
     }
 
-    /// How many parts the rigid bodies ask for that may meet within a step.
-    fn rigid_parts(&self, swept: &SweptBodies, dt: f64) -> f64 {
-        let mut parts: f64 = 1.0;
+    /// How many parts the rigid bodies ask for that may meet within a step, and whether something fast strikes another.
+    fn rigid_parts(&self, swept: &SweptBodies, dt: f64) -> (f64, bool) {
+        let (mut parts, mut strikes) = (1.0f64, false);
         for one in &swept.fast {
             for other in 0..self.parts.len() {
                 if swept.may_meet(*one, other) && self.meet_rigidly(*one, other) {
-                    parts = parts.max((self.approach(*one, other, swept, dt) * dt / WAY).ceil());
+                    let asked = (self.approach(*one, other, swept, dt) * dt / WAY).ceil();
+                    strikes |= asked > 1.0;
+                    parts = parts.max(asked);
                 }
             }
         }
-        parts.min(MOST_PARTS)
+        (parts.min(MOST_PARTS), strikes)
     }
 
     /// Whether forces alone move a body, or it is led whatever is in its way.
@@ -156,7 +174,35 @@ impl PhysicsAdapter {
         let straight = from_vector(at_a - at_b).dot(&from_vector(found.normal1)).max(0.0);
         // Another point than the nearest may swing round.
         let approach = straight + turning_a + turning_b;
-        if f64::from(found.dist) > approach * dt + NEAR { 0.0 } else { approach }
+        let apart = f64::from(found.dist);
+        let comes_near = apart <= approach * dt + NEAR;
+        // Or it comes past the nearest, and straight on: what falls beside something, say, with its end on the edge of that.
+        let together = f64::from((at_a - at_b).length());
+        let is_apart = apart > TOUCHING && together > approach && together * dt > WAY;
+        if is_apart && self.will_hit(a, b, at_b - at_a, dt) {
+            together
+        } else if comes_near {
+            approach
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether a body that goes straight on at a speed in the frame of another hits it within a step.
+    fn will_hit(&self, a: usize, b: usize, speed: Vector, dt: f64) -> bool {
+        let collider = |i: usize| self.world.colliders.get(self.parts[i].collider);
+        let (Some(one), Some(other)) = (collider(a), collider(b)) else { return false };
+        let within = parry::query::ShapeCastOptions::with_max_time_of_impact(dt as f32);
+        parry::query::cast_shapes(
+            one.position(),
+            Vector::ZERO,
+            one.shape(),
+            other.position(),
+            speed,
+            other.shape(),
+            within,
+        )
+        .is_ok_and(|hit| hit.is_some())
     }
 
     /// How fast the middle of a body's surface will go in the next step, m/s, and how much faster its points may go as it turns.

@@ -36,10 +36,19 @@ struct LinkMotion {
     rate: SpaceVector,
 }
 
+/// What a joint bears besides its motor, on its child: a force (N) at its anchor, and a torque (N·m).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BorneLoad {
+    pub force: SpaceVector,
+    pub torque: SpaceVector,
+}
+
 /// What the dynamics say of one moment.
 pub(crate) struct ArmEquation {
     pub inertia: DMatrix<f64>,
     pub bias: DVector<f64>,
+    /// By joint: the weight that it bears.
+    pub borne: Vec<BorneLoad>,
 }
 
 impl ArmDynamics {
@@ -67,12 +76,38 @@ impl ArmDynamics {
             .collect();
         let links = link_motions(&axes, -from_vector(physics.world.gravity));
         let n = axes.len();
-        let mut equation = ArmEquation { inertia: DMatrix::zeros(n, n), bias: DVector::zeros(n) };
+        let nothing = BorneLoad { force: SpaceVector::zeros(), torque: SpaceVector::zeros() };
+        let (inertia, bias) = (DMatrix::zeros(n, n), DVector::zeros(n));
+        let mut equation = ArmEquation { inertia, bias, borne: vec![nothing; n] };
         for (handle, above) in &self.bodies {
             let Some(link) = links.get(above - 1) else { continue };
-            equation.add(&axes[..*above], link, &physics.world.bodies[*handle]);
+            let body = &physics.world.bodies[*handle];
+            equation.add(&axes[..*above], link, body);
+            let weight = from_vector(physics.world.gravity) * -f64::from(body.mass());
+            for (load, axis) in equation.borne.iter_mut().zip(&axes[..*above]) {
+                load.force += weight;
+                load.torque += (from_vector(body.center_of_mass()) - axis.anchor).cross(&weight);
+            }
+        }
+        let driven = self.joints.iter().filter_map(|j| physics.joints[*j].as_ref());
+        for ((load, axis), driven) in equation.borne.iter_mut().zip(&axes).zip(driven) {
+            load.leave_to_motor(axis, from_vector(physics.world.bodies[driven.child].center_of_mass()));
         }
         equation
+    }
+}
+
+impl BorneLoad {
+    /// Takes off what the motor does: a torque about the axis, or a push through the middle of the child.
+    fn leave_to_motor(&mut self, axis: &MovingAxis, middle: SpaceVector) {
+        match axis.motion {
+            JointMotion::Hinge => self.torque -= axis.axis * axis.axis.dot(&self.torque),
+            JointMotion::Slider => {
+                let push = axis.axis * axis.axis.dot(&self.force);
+                self.force -= push;
+                self.torque -= (middle - axis.anchor).cross(&push);
+            }
+        }
     }
 }
 

@@ -4,7 +4,9 @@ use hrdsl_ir::world::{BodyId, BodyMotion, Joint, JointMotion, World};
 use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier3d::prelude::*;
 
+use super::SUBSTEPS;
 use super::division::JointStrain;
+use super::dynamics::BorneLoad;
 use super::state::{
     adapter::{PhysicsAdapter, PhysicsBody},
     bodies::index,
@@ -18,9 +20,10 @@ use crate::math::{
 
 /// How a motor that keeps a speed answers to an error of it, N·s/m or N·m·s/rad.
 const FIRM: f32 = 1e5;
-/// How fast the solver puts right what has come apart at a joint: at this rate in the shortest parts of a step, 1/s. As fast as it can
-/// would mean within a part of a step, however short: an arm would be jolted whenever somebody is touched anywhere, and the step divided.
-const MENDS: f32 = 2000.0;
+/// How fast the solver puts right what has come apart at a joint, 1/s: at half of this rate in the shortest parts of a step, and slower in
+/// longer ones. In a step that is divided it stays as slow as in one that is not: a loaded joint is a little apart, by as much as is put
+/// right in the time in which it comes about, and an arm would be jolted whenever somebody is touched anywhere.
+const MENDS: f64 = 2000.0;
 /// So much damped that nothing but that is soft.
 const STIFF: f32 = 1000.0;
 /// A joint that is so far apart is torn, m and rad. What is led whatever is in its way can do that, which no joint would let happen: two
@@ -75,7 +78,7 @@ impl PhysicsAdapter {
             .build();
         // The light links of a described robot would shake.
         if world.bodies[index(child)].solid.is_none() {
-            data.softness = stiff(MENDS);
+            data.softness = stiff(MENDS as f32);
         }
         let start = joint.drive.start;
         let (least, most) = (joint.lo - start, joint.hi - start);
@@ -115,6 +118,7 @@ impl PhysicsAdapter {
             first_frame,
             stop: JointStop::about(0.0, least, most),
             softness: data.softness,
+            keeps_rate: world.bodies[index(child)].solid.is_none(),
             loose: self.loose_root(child, world),
             hold: JointHold::Firm,
             is_run: false,
@@ -227,6 +231,20 @@ impl PhysicsAdapter {
         effort
     }
 
+    /// Lets a joint bear over the next step what its bodies weigh. The solver would find that by itself, as the force that keeps the two
+    /// sides together; but it begins with nothing in each part of a step, goes over a chain of seven joints twice, and leaves them as far
+    /// apart as what it did not find pulls them. So it is told what is known, and finds the rest.
+    pub fn bear(&mut self, joint: usize, load: &BorneLoad) {
+        let Some(driven) = &self.joints[joint] else { return };
+        let at = to_vector(self.axis_now(driven).1);
+        let (force, torque) = (to_vector(load.force), to_vector(load.torque));
+        for (handle, sign) in [(driven.child, 1.0), (driven.parent, -1.0)] {
+            let body = &mut self.world.bodies[handle];
+            body.add_force_at_point(force * sign, at, false);
+            body.add_torque(torque * sign, false);
+        }
+    }
+
     /// Lets a motor go at a speed (m/s or rad/s) from now on, with no more than this force or torque (N or N·m).
     pub fn run_at(&mut self, joint: usize, speed: f64, force: f64) {
         if let Some(driven) = &mut self.joints[joint] {
@@ -253,10 +271,28 @@ impl PhysicsAdapter {
         }
     }
 
+    /// Lets the solver mend joints as fast in the parts of a divided step as in those of one that is not.
+    pub(super) fn keep_mending(&mut self) {
+        if self.mended == self.part {
+            return;
+        }
+        self.mended = self.part;
+        let (h, longest) = (self.part.0 / self.part.1 as f64, self.step / SUBSTEPS as f64);
+        let rate = MENDS / (longest.max(h) * MENDS + 2.0);
+        let softness = stiff((2.0 * rate / (1.0 - h * rate)) as f32);
+        for driven in self.joints.iter_mut().flatten().filter(|driven| driven.keeps_rate) {
+            driven.softness = softness;
+            if let Some(joint) = self.world.impulse_joints.get_mut(driven.handle, false) {
+                joint.data.softness = softness;
+            }
+        }
+    }
+
     /// Lets torn joints give way, and those that have come together again not; gives how much the joints ask of the solver.
     pub(super) fn ease_joints(&mut self) -> JointStrain {
         let falls = |body: &RigidBodyHandle| !self.world.bodies[*body].is_sleeping();
-        let mut strain = JointStrain { falls: self.fallen.iter().any(falls), ..JointStrain::default() };
+        let (falls, blow) = (self.fallen.iter().any(falls), self.pressed);
+        let mut strain = JointStrain { falls, blow, ..JointStrain::default() };
         let h = self.part.0 / self.part.1 as f64;
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };
@@ -428,7 +464,7 @@ impl PhysicsAdapter {
     }
 }
 
-/// The softness of a joint that holds, and of whose gap so much is mended in a second.
+/// The softness of a joint that holds, and of whose gap `rate / (h · rate + 2)` is mended in a second, in parts of a step of the time h.
 fn stiff(rate: f32) -> SpringCoefficients<f32> {
     SpringCoefficients { natural_frequency: STIFF * rate / std::f32::consts::TAU, damping_ratio: STIFF }
 }

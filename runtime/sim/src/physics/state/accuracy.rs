@@ -24,8 +24,10 @@ pub(crate) struct AccuracyWatch {
 const EXACT: f64 = 1e-5;
 
 impl AccuracyWatch {
-    /// Looks at all contacts as the last step began; `robots` gives for each body a number of what it is joined to.
-    pub fn look_at_contacts(&mut self, world: &PhysicsWorld, robots: &[usize]) {
+    /// Looks at all contacts as the last step began; `robots` gives for each body a number of what it is joined to. Gives the depth of
+    /// the deepest, m.
+    pub fn look_at_contacts(&mut self, world: &PhysicsWorld, robots: &[usize]) -> f64 {
+        let mut depth_of_all: f64 = 0.0;
         for pair in world.contact_pairs() {
             let depth = |manifold: &ContactManifold| {
                 manifold.points.iter().map(|point| -f64::from(point.dist)).fold(0.0, f64::max)
@@ -34,6 +36,7 @@ impl AccuracyWatch {
             if deepest <= 0.0 {
                 continue;
             }
+            depth_of_all = depth_of_all.max(deepest);
             let number = |handle| {
                 world.colliders.get(handle).and_then(|collider| usize::try_from(collider.user_data).ok())
             };
@@ -43,6 +46,7 @@ impl AccuracyWatch {
                 *worst = Some((deepest, a.min(b), a.max(b)));
             }
         }
+        depth_of_all
     }
 
     /// Looks at one joint: where it is, and where it ends.

@@ -62,6 +62,12 @@ pub(crate) struct PhysicsAdapter {
     pub step: f64,
     /// How often the solver goes over all joints and contacts in each part of one.
     pub sweeps: usize,
+    /// The part of a step that the joints are told to mend in.
+    pub mended: (f64, usize),
+    /// Whether a joint is pressed beyond its limit, as the last step ended.
+    pub pressed: bool,
+    /// How deep two bodies were in each other as the last part of a step began, m.
+    pub deepest: f64,
     /// The time of the last part of a step, s, and how often the solver divided it.
     pub part: (f64, usize),
     /// By body: the same of when the solver last had to do with it. What sleeps keeps the impulses of then.

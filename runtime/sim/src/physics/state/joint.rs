@@ -74,6 +74,8 @@ pub(crate) struct DrivenJoint {
     pub stop: JointStop,
     /// How the solver mends what has come apart at it; and whether it has come so far apart that it gives way.
     pub softness: SpringCoefficients<f32>,
+    /// Whether that is as fast in short parts of a step as in long ones.
+    pub keeps_rate: bool,
     pub hold: JointHold,
     /// What its robot stands on, if that can fall.
     pub loose: Option<BodyId>,
