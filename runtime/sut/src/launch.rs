@@ -46,7 +46,29 @@ pub struct LaunchSpec {
     pub keep: Option<PathBuf>,
     /// Set when everything is to end.
     pub stop: StopFlag,
+    /// What is run in the place of one of its files of Python, if anything.
+    pub mutant: Option<LaunchMutant>,
 }
+
+/// A mutant of a file, which the runner puts in its place in memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LaunchMutant {
+    /// From the folder of the program.
+    pub file: String,
+    /// The mutant compiled, in a file that the program's cell shows
+    /// ([`PythonEnv::compile_mutants`](crate::PythonEnv::compile_mutants)).
+    pub code: PathBuf,
+}
+
+impl LaunchMutant {
+    /// As the runner reads it (`sdk/python/hrdsl/mutated.py`).
+    pub(crate) fn words(&self) -> String {
+        serde_json::json!({ "file": self.file, "code": self.code.to_string_lossy() }).to_string()
+    }
+}
+
+/// The variable that tells the runner of a mutant.
+const MUTANT: &str = "HRDSL_MUTANT";
 
 /// A middleware whose client libraries the program finds, with what the scenario says of it.
 #[derive(Clone, Debug)]
@@ -129,7 +151,7 @@ impl LaunchSpec {
     /// The order for a fork server's cell, which finds the modules to import beforehand unless they are given.
     pub(crate) fn server_order(&self, preload: Option<&[String]>) -> Result<CellOrder, SutError> {
         let mut order = self.order(vec!["HRDSL_FORK_SERVER".to_owned()])?;
-        order.env.retain(|(name, _)| name != "HRDSL_SEED");
+        order.env.retain(|(name, _)| name != "HRDSL_SEED" && name != MUTANT);
         let workspaces = self.middleware.iter().flat_map(|m| m.modules.iter().cloned());
         let own: Vec<String> =
             [order.dir.to_string_lossy().into_owned()].into_iter().chain(workspaces).collect();
@@ -174,7 +196,8 @@ impl LaunchSpec {
             [("HRDSL_MIDDLEWARE", m.name.into()), ("HRDSL_BINDING", m.binding.clone().into_os_string())]
         });
         let bound = bound.map(|(name, value)| (name.into(), value));
-        given.chain(fixed).chain(bound).chain(self.variables.iter().cloned()).collect()
+        let mutant = self.mutant.iter().map(|mutant| (MUTANT.into(), mutant.words().into()));
+        given.chain(fixed).chain(bound).chain(self.variables.iter().cloned()).chain(mutant).collect()
     }
 
     fn kind(&self, word: &str) -> CommandKind<'_> {

@@ -36,11 +36,13 @@ mod start;
 
 pub use affinity::{PinnedCore, pin_to_free_core};
 pub use cell::CellSettings;
-pub use environment::{EnvironmentNeeds, HookedPackage, PreparationStep, PythonEnv};
+pub use environment::{
+    CompiledMutants, EnvironmentNeeds, HookedPackage, ListedMutant, PreparationStep, PythonEnv,
+};
 pub use error::{ProgramFailure, SutError};
 pub use exit::ProgramExit;
 pub use fork_server::ForkServer;
-pub use launch::{DEFAULT_VARIABLES, LaunchMiddleware, LaunchSpec};
+pub use launch::{DEFAULT_VARIABLES, LaunchMiddleware, LaunchMutant, LaunchSpec};
 pub use limits::{LimitOverrun, ProgramLimits, StopFlag};
 pub use lock_step::LockStep;
 pub use output::{CapturedOutput, CapturedStream};

@@ -8,6 +8,7 @@ mod digest;
 mod install;
 mod key;
 mod local;
+mod mutants;
 mod named;
 mod options;
 mod preparation;
@@ -28,6 +29,7 @@ use key::PackagesKey;
 use probe::ProbedInterpreter;
 use requirements::PipRequirements;
 
+pub use mutants::{CompiledMutants, ListedMutant};
 pub use preparation::{HookedPackage, PreparationStep};
 
 use crate::error::SutError;
@@ -60,6 +62,8 @@ pub struct PythonEnv {
     pub(crate) analyses: PathBuf,
     /// The folder for texts that programs read: what is bound to their middleware.
     texts: PathBuf,
+    /// The folder for lists of mutants, and for those that are run.
+    mutants: PathBuf,
     /// Where modules are searched for, after the standard library.
     pub(crate) path: Vec<String>,
 }
@@ -99,6 +103,7 @@ impl PythonEnv {
         let coverage = coverage(&cache, &probe)?;
         let analyses = cache.folder("analyses")?;
         let texts = cache.folder("bindings")?;
+        let mutants = cache.folder("mutants")?;
         let list = needs.requirements.map(std::path::absolute).transpose();
         let list = list.map_err(SutError::io("cannot find the requirements"))?;
         let requirements = list.map(|list| PipRequirements::read(&list, &variable)).transpose()?;
@@ -118,6 +123,7 @@ impl PythonEnv {
             coverage,
             analyses,
             texts,
+            mutants,
             path,
         })
     }

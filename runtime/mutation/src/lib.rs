@@ -1,0 +1,30 @@
+//! Mutants of the code under test against its tests: which of them would be noticed, by which oracle, and what would notice the others.
+//!
+//! # Steps
+//! 1. [`run_originals`] runs the tests on the code as it is: what each comes to, and which lines it reaches;
+//! 2. [`MutationPlan::new`] says which mutants are worth a run, and which tests reach each;
+//! 3. [`run_sentinels`] lets each file raise at once: tests that do not notice that measure nothing;
+//! 4. [`run_plan`] runs each mutant against the tests that reach it, until the first that notices it, or against all;
+//! 5. [`propose`] looks for requirements that hold in all runs of the original and fail in the run of a mutant that survived, and
+//!    tries each before it is proposed;
+//! 6. [`MutationReport::new`] adds up.
+//!
+//! A mutant is run by one worker from its first test to its last, so that the number of workers changes nothing.
+#![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
+
+mod difference;
+mod facts;
+mod oracle;
+mod outcome;
+mod plan;
+mod propose;
+mod report;
+mod run;
+
+pub use difference::RunDifference;
+pub use oracle::{MutantOracle, noticed_by};
+pub use outcome::{MutantFate, MutantOutcome, NoticedTest};
+pub use plan::{MutantSample, MutationPlan, PlannedMutant};
+pub use propose::propose;
+pub use report::{MethodScore, MutantCounts, MutantReport, MutationAbout, MutationReport, OracleScore};
+pub use run::{MutationCampaign, run_originals, run_plan, run_sentinels};
