@@ -36,6 +36,9 @@ pub struct NoticedTest {
     pub test: TestName,
     /// In order; at least one.
     pub oracles: Vec<MutantOracle>,
+    /// The first line of what broke the test off, if that noticed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
     #[serde(skip)]
     pub method: TestMethod,
 }

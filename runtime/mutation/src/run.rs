@@ -15,7 +15,7 @@ use hrdsl_results::TestMethod;
 
 use crate::{
     difference::RunDifference,
-    oracle::noticed_by,
+    oracle::{MutantOracle, noticed_by},
     outcome::{MutantFate, MutantOutcome, NoticedTest},
     plan::{MutationPlan, PlannedMutant},
 };
@@ -142,7 +142,9 @@ fn run_one(
         let oracles = noticed_by(&original.result, &run.result);
         if !oracles.is_empty() {
             outcome.fate = MutantFate::Killed;
-            outcome.noticed.push(NoticedTest { test: run.result.name.clone(), oracles, method });
+            let error = run.result.error.as_ref().filter(|_| oracles.contains(&MutantOracle::Error));
+            let error = error.and_then(|error| error.lines().next()).map(str::to_owned);
+            outcome.noticed.push(NoticedTest { test: run.result.name.clone(), oracles, error, method });
             if !all {
                 break;
             }
