@@ -24,8 +24,10 @@ pub(crate) struct RunFacts {
 /// What an event and a later one are to each other in a run, or in all runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct EventPair {
-    /// The longest time from the first to the next second; `None` if that never came.
-    answered: Option<Nanos>,
+    /// The shortest and the longest time from the first to the next second; `None` if that never came.
+    answered: Option<(Nanos, Nanos)>,
+    /// Whether a first was between each two seconds.
+    separated: bool,
     /// Whether each second had a first before it.
     preceded: bool,
     /// How often the first happened, and the second.
@@ -62,17 +64,20 @@ impl RunFacts {
     }
 
     fn pair(&self, first: EventId, second: EventId) -> EventPair {
-        let mut pair = EventPair { answered: Some(0), preceded: true, firsts: 0, seconds: 0 };
-        let mut since = None;
+        let mut pair = EventPair::default();
+        let (mut since, mut is_between) = (None, true);
         for (event, time) in &self.events {
             if *event == first {
                 pair.firsts += 1;
+                is_between = true;
                 since.get_or_insert(*time);
             } else if *event == second {
                 pair.seconds += 1;
                 pair.preceded &= pair.firsts > 0;
+                pair.separated &= std::mem::take(&mut is_between);
                 if let Some(since) = since.take() {
-                    pair.answered = pair.answered.map(|longest| longest.max(time - since));
+                    let took = (time - since, time - since);
+                    pair.answered = pair.answered.map(|range| united(range, took));
                 }
             }
         }
@@ -115,22 +120,46 @@ impl CommonFacts {
         let mut patterns = self.broken_answers(program, run);
         patterns.extend(self.broken_counts(program, run));
         patterns.extend(self.broken_orders(program, run));
+        patterns.extend(self.broken_separations(program, run));
         patterns.extend(self.broken_ranges(program, run));
         patterns
     }
 
     fn broken_answers(&self, program: &Program, run: &RunFacts) -> Vec<String> {
-        let mut found: Vec<(f64, String)> = Vec::new();
+        let mut found: Vec<(bool, f64, String)> = Vec::new();
         for ((first, second), pair) in self.pairs_of_code(program) {
-            let Some(longest) = pair.answered.filter(|_| pair.firsts > 0) else { continue };
-            let bound = time_bound(longest);
+            let Some((shortest, longest)) = pair.answered.filter(|_| pair.firsts > 0) else { continue };
+            let (early, late) = (earliest(shortest), time_bound(longest));
             let other = run.pair(*first, *second);
-            if other.firsts > 0 && other.answered.is_none_or(|time| seconds(time) > bound) {
-                let (first, second) = (pattern(program, *first), pattern(program, *second));
-                found.push((bound, format!("{first} causes {second} within {bound} s")));
+            if other.firsts == 0 {
+                continue;
+            }
+            let is_late = other.answered.is_none_or(|(_, longest)| seconds(longest) > late);
+            let is_early = other.answered.is_some_and(|(shortest, _)| seconds(shortest) < early);
+            // What a test does is less of a cause than what is said or seen.
+            let is_stimulus = program.event(*first).is_stimulus();
+            let (first, second) = (pattern(program, *first), pattern(program, *second));
+            if is_late {
+                found.push((is_stimulus, late, format!("{first} causes {second} within {late} s")));
+            } else if is_early {
+                let text = format!("{first} causes {second} not before {early} s within {late} s");
+                found.push((is_stimulus, late, text));
             }
         }
-        found.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        found.sort_by(|(s, a, _), (t, b, _)| s.cmp(t).then(a.total_cmp(b)));
+        found.into_iter().map(|(.., text)| text).take(MOST_OF_A_KIND).collect()
+    }
+
+    fn broken_separations(&self, program: &Program, run: &RunFacts) -> Vec<String> {
+        let mut found: Vec<(bool, String)> = Vec::new();
+        for ((first, second), pair) in self.pairs_of_code(program) {
+            if pair.separated && pair.seconds > 0 && !run.pair(*first, *second).separated {
+                let is_stimulus = program.event(*first).is_stimulus();
+                let (first, second) = (pattern(program, *first), pattern(program, *second));
+                found.push((is_stimulus, format!("{second} forbids {second} until {first}")));
+            }
+        }
+        found.sort();
         found.into_iter().map(|(_, text)| text).take(MOST_OF_A_KIND).collect()
     }
 
@@ -190,10 +219,22 @@ impl CommonFacts {
     }
 }
 
+/// What no event contradicts: no answer took any time yet.
+impl Default for EventPair {
+    fn default() -> Self {
+        Self { answered: Some((Nanos::MAX, 0)), separated: true, preceded: true, firsts: 0, seconds: 0 }
+    }
+}
+
+fn united(a: (Nanos, Nanos), b: (Nanos, Nanos)) -> (Nanos, Nanos) {
+    (a.0.min(b.0), a.1.max(b.1))
+}
+
 impl EventPair {
     fn and(self, other: Self) -> Self {
         Self {
-            answered: self.answered.zip(other.answered).map(|(a, b)| a.max(b)),
+            answered: self.answered.zip(other.answered).map(|(a, b)| united(a, b)),
+            separated: self.separated && other.separated,
             preceded: self.preceded && other.preceded,
             firsts: self.firsts + other.firsts,
             seconds: self.seconds + other.seconds,
@@ -204,6 +245,12 @@ impl EventPair {
 /// A bound in seconds that the longest time keeps, with some leeway.
 fn time_bound(longest: Nanos) -> f64 {
     let steps = (seconds(longest) * LEEWAY / TIME_STEP).ceil().max(1.0);
+    (steps * TIME_STEP * 10.0).round() / 10.0
+}
+
+/// A bound in seconds that the shortest time keeps, with some leeway; 0 if there is no room for one.
+fn earliest(shortest: Nanos) -> f64 {
+    let steps = (seconds(shortest) / LEEWAY / TIME_STEP).floor();
     (steps * TIME_STEP * 10.0).round() / 10.0
 }
 
@@ -242,7 +289,8 @@ mod tests {
     #[test]
     fn an_answer_counts_from_the_first_question_that_waits() {
         let pair = run(&[(0, 1), (0, 2), (1, 4), (1, 5), (0, 9), (1, 10)]).pair(EventId(0), EventId(1));
-        let expected = EventPair { answered: Some(3 * SECOND), preceded: true, firsts: 3, seconds: 3 };
+        let answered = Some((SECOND, 3 * SECOND));
+        let expected = EventPair { answered, separated: false, preceded: true, firsts: 3, seconds: 3 };
         assert_eq!(pair, expected);
         let open = run(&[(1, 0), (0, 1)]).pair(EventId(0), EventId(1));
         assert_eq!((open.answered, open.preceded), (None, false));
@@ -252,7 +300,7 @@ mod tests {
     #[test]
     fn bounds_are_kept_by_what_was_seen_and_can_be_read() {
         assert_eq!(time_bound(0), 0.1);
-        assert_eq!(time_bound(3 * SECOND), 3.2);
+        assert_eq!((time_bound(3 * SECOND), earliest(3 * SECOND), earliest(SECOND / 20)), (3.2, 2.8, 0.0));
         assert_eq!((beyond(0.123_41, 1.0), beyond(0.123_41, -1.0)), (0.124, 0.123));
         assert_eq!((beyond(-7.001, 1.0), beyond(-7.001, -1.0)), (-7.0, -7.01));
         assert_eq!((beyond(1234.5, 1.0), beyond(0.0, 1.0)), (1240.0, 0.0));

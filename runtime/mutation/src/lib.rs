@@ -3,7 +3,8 @@
 //! # Steps
 //! 1. [`run_originals`] runs the tests on the code as it is: what each comes to, and which lines it reaches;
 //! 2. [`MutationPlan::new`] says which mutants are worth a run, and which tests reach each;
-//! 3. [`run_sentinels`] lets each file raise at once: tests that do not notice that measure nothing;
+//! 3. [`run_controls`] puts each file in its own place, which must change nothing, and [`run_sentinels`] lets each raise at once, which tests that
+//!    measure anything notice;
 //! 4. [`run_plan`] runs each mutant against the tests that reach it, until the first that notices it, or against all;
 //! 5. [`propose`] looks for requirements that hold in all runs of the original and fail in the run of a mutant that survived, and
 //!    tries each before it is proposed;
@@ -27,4 +28,4 @@ pub use outcome::{MutantFate, MutantOutcome, NoticedTest};
 pub use plan::{MutantSample, MutationPlan, PlannedMutant};
 pub use propose::propose;
 pub use report::{MethodScore, MutantCounts, MutantReport, MutationAbout, MutationReport, OracleScore};
-pub use run::{MutationCampaign, run_originals, run_plan, run_sentinels};
+pub use run::{MutationCampaign, run_controls, run_originals, run_plan, run_sentinels};

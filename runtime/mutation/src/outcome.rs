@@ -36,7 +36,7 @@ pub struct NoticedTest {
     pub test: TestName,
     /// In order; at least one.
     pub oracles: Vec<MutantOracle>,
-    /// The first line of what broke the test off, if that noticed.
+    /// What broke the test off, if that noticed: its first line and its last.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
     #[serde(skip)]

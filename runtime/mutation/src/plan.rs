@@ -64,7 +64,7 @@ impl MutationPlan {
     #[must_use]
     pub fn simulated(&self, originals: &[SingleRun]) -> f64 {
         let tests = self.mutants.iter().flat_map(|planned| &planned.tests);
-        tests.filter_map(|test| originals.get(*test)).map(|run| run.result.duration).sum()
+        tests.filter_map(|test| originals.get(*test)).fold(0.0, |sum, run| sum + run.result.duration)
     }
 }
 

@@ -55,6 +55,29 @@ pub fn run_originals(
     Ok(runs.into_iter().collect())
 }
 
+/// Runs the tests on the code as it is once more, each file put in its own place as a mutant is, without code coverage. Gives each file that
+/// does not do the same as before, with a test in which it does not: where that is so, another run of a mutant says nothing.
+///
+/// # Errors
+/// As [`run_originals`].
+pub fn run_controls<'c>(setup: &'c MutationCampaign<'_>) -> Result<BTreeMap<&'c str, &'c str>, String> {
+    let of_file = |(file, codes): (&'c String, &'c CompiledMutants)| {
+        let tests = setup.tests.iter().zip(setup.originals);
+        let is_there = |run: &SingleRun| {
+            let own = run.executed.iter().find(|own| own.file == *file);
+            own.is_none_or(|own| !own.executed.is_empty())
+        };
+        let tests = tests.filter(move |(_, original)| is_there(original));
+        tests.map(move |(test, original)| (file.as_str(), codes.launch_original(), test, original))
+    };
+    let all: Vec<_> = setup.codes.iter().flat_map(of_file).collect();
+    let unlike = in_parallel(&setup.campaign, &all, |runner, (file, launch, test, original)| {
+        let run = runner.run(test, Some(launch))?;
+        Some((run.recording != original.recording).then_some((*file, test.name.as_str())))
+    })?;
+    Ok(unlike.into_iter().flatten().flatten().rev().collect())
+}
+
 /// Lets each of these files raise at once, and runs the tests until one notices it; `on_done` is called as each file is done.
 ///
 /// # Errors
@@ -143,7 +166,7 @@ fn run_one(
         if !oracles.is_empty() {
             outcome.fate = MutantFate::Killed;
             let error = run.result.error.as_ref().filter(|_| oracles.contains(&MutantOracle::Error));
-            let error = error.and_then(|error| error.lines().next()).map(str::to_owned);
+            let error = error.map(|error| shortened(error));
             outcome.noticed.push(NoticedTest { test: run.result.name.clone(), oracles, error, method });
             if !all {
                 break;
@@ -164,6 +187,13 @@ fn run_one(
         _ => outcome.other_run = None,
     }
     Some(outcome)
+}
+
+/// The first line of an error, and the last, which says what was raised.
+fn shortened(error: &str) -> String {
+    let mut lines = error.lines().map(str::trim).filter(|line| !line.is_empty());
+    let first = lines.next().unwrap_or_default().trim_end_matches(':');
+    lines.last().map_or_else(|| first.to_owned(), |last| format!("{first}: {last}"))
 }
 
 /// Does something with each, in as many threads as the campaign has workers, each with a runner of its own. What gives `None` ends its

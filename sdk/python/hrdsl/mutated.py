@@ -11,6 +11,9 @@ import marshal
 import os
 import sys
 
+# As `importlib.util` has it; to import that while modules are searched for would search for it here.
+from _frozen_importlib_external import spec_from_file_location  # type: ignore[import-not-found]
+
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
     import types
@@ -37,8 +40,6 @@ class Switch:
         return self.compiled
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: types.ModuleType | None = None) -> Any:
-        from importlib.util import spec_from_file_location
-
         stem, _ = os.path.splitext(os.path.basename(self.file))
         last = name.rpartition(".")[2]
         is_package = stem == "__init__"

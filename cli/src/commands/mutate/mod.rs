@@ -11,7 +11,7 @@ use hrdsl_runtime::{
     campaign::{CampaignSetup, CompiledMutants, ListedMutant, SingleRun},
     mutation::{
         MutantFate, MutantOutcome, MutantSample, MutationAbout, MutationCampaign, MutationPlan,
-        MutationReport, propose, run_originals, run_plan, run_sentinels,
+        MutationReport, propose, run_controls, run_originals, run_plan, run_sentinels,
     },
 };
 
@@ -89,7 +89,7 @@ pub fn run(args: &MutateArgs) -> Result<CommandExit, CommandFault> {
     let mut campaign = given.setup(program, system, interfaces, hidden, stop_flag(false)?)?;
     given.plan_forks(&mut campaign)?;
     let listed = campaign.env.list_mutants(&dir, &system.coverage(), &args.operator);
-    let listed = listed.map_err(|e| e.to_string())?;
+    let listed = listed?;
     if listed.is_empty() {
         return Err(format!("there is no mutant of {}", system.coverage().join(", ")));
     }
@@ -100,7 +100,9 @@ pub fn run(args: &MutateArgs) -> Result<CommandExit, CommandFault> {
         return Ok(CommandExit::Interrupted);
     };
     let faster = simulated(&originals) / begun.elapsed().as_secs_f64().max(1e-6);
-    let mut runs = mutants(args, &campaign, (&tests, &originals), listed, faster)?;
+    let Some(mut runs) = mutants(args, &campaign, (&tests, &originals), listed, faster)? else {
+        return Ok(CommandExit::Findings);
+    };
     if !campaign.stop.is_set() {
         let compile = |more: &str| with_more(args, &beside, more);
         propose(program, &campaign.conformance, &originals, &mut runs.mutants, &compile);
@@ -132,20 +134,31 @@ fn simulated(originals: &[SingleRun]) -> f64 {
     originals.iter().map(|run| run.result.duration).sum()
 }
 
-/// Runs the mutants, the sentinels first. `faster`: how many seconds are simulated in one, with all workers.
+/// Runs the mutants, after the controls and the sentinels. `faster`: how many seconds are simulated in one, with all workers. `None`: the code
+/// as it is does not repeat, which was said.
 fn mutants(
     args: &MutateArgs,
     campaign: &CampaignSetup<'_>,
     (tests, originals): (&[Test], &[SingleRun]),
     listed: Vec<ListedMutant>,
     faster: f64,
-) -> Result<MutationRuns, CommandFault> {
+) -> Result<Option<MutationRuns>, CommandFault> {
     let plan = MutationPlan::new(listed, originals, sample(args));
     let codes = compiled(campaign, &plan)?;
     let system = &bare(campaign.system);
     let campaign = CampaignSetup { system, ..campaign.clone() };
     let setup = MutationCampaign { campaign, tests, originals, codes: &codes, matrix: args.matrix };
     say_cost(args, &plan, plan.simulated(originals) / faster.max(1e-6));
+    let unlike = run_controls(&setup)?;
+    for (file, test) in &unlike {
+        terminal::say_line(format_args!(
+            "error: {file} as it is does not do the same twice in {test}, so that a mutant of it cannot be told from it; \
+             `hrdsl sim --check-determinism` says where it differs"
+        ));
+    }
+    if !unlike.is_empty() {
+        return Ok(None);
+    }
     let sentinels = run_sentinels(&setup, &plan, |_| ())?;
     let is_dead = |sentinel: &MutantOutcome| sentinel.fate == MutantFate::Killed;
     if !sentinels.iter().any(is_dead) {
@@ -154,8 +167,9 @@ fn mutants(
             MutantOutcome::not_run(planned.mutant.clone(), not_run(planned.known), planned.tests.len())
         });
         let mutants = mutants.collect();
-        return Ok(MutationRuns { plan, sentinels, mutants });
+        return Ok(Some(MutationRuns { plan, sentinels, mutants }));
     }
+    let begun = Instant::now();
     let bar = progress_bar(plan.mutants.len(), "mutants");
     let killed = std::sync::atomic::AtomicUsize::new(0);
     let mutants = run_plan(&setup, &plan, |outcome| {
@@ -165,7 +179,13 @@ fn mutants(
         bar.inc(1);
     })?;
     bar.finish_and_clear();
-    Ok(MutationRuns { plan, sentinels, mutants })
+    let (ran, seconds) = (mutants.iter().filter(|m| m.ran > 0).count(), begun.elapsed().as_secs_f64());
+    terminal::say_line(format_args!(
+        "{ran} mutants ran in {seconds:.1} s of wall time, {} at once: {:.0} in a second",
+        setup.campaign.jobs,
+        ran as f64 / seconds.max(1e-6)
+    ));
+    Ok(Some(MutationRuns { plan, sentinels, mutants }))
 }
 
 fn sample(args: &MutateArgs) -> Option<MutantSample> {
@@ -184,7 +204,7 @@ fn compiled(
     }
     let compile = |(file, numbers): (&str, Vec<u32>)| {
         let codes = campaign.env.compile_mutants(&campaign.dir, file, &numbers);
-        codes.map(|codes| (file.to_owned(), codes)).map_err(|e| e.to_string())
+        codes.map(|codes| (file.to_owned(), codes))
     };
     numbers.into_iter().map(compile).collect()
 }

@@ -46,6 +46,11 @@ fn head(report: &MutationReport) -> String {
         "{}, system {}: {} tests; {} mutants are worth a run{drawn}; {ran} runs, {how}\n",
         report.about.scenario, report.about.system, report.about.tests, report.worth
     );
+    for sentinel in &report.sentinels {
+        let by = sentinel.noticed.first().map(|noticed| noticed.test.as_str());
+        let by = by.map_or_else(|| "nothing".to_owned(), |test| format!("{test}, as it must"));
+        let _ = writeln!(text, "the sentinel of {} is noticed by {by}", sentinel.file);
+    }
     if report.interrupted {
         text.push_str("interrupted: what was known is here\n");
     }

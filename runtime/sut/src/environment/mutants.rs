@@ -8,7 +8,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::{PythonEnv, install};
-use crate::{error::SutError, launch::LaunchMutant};
+use crate::launch::LaunchMutant;
 
 /// The number of the mutant that raises at once, of every file.
 const SENTINEL: u32 = 0;
@@ -59,7 +59,17 @@ impl CompiledMutants {
     /// What a launch is given to run this mutant, which must be one that was compiled.
     #[must_use]
     pub fn launch(&self, number: u32) -> LaunchMutant {
-        LaunchMutant { file: self.file.clone(), code: self.folder.path().join(format!("{number}.code")) }
+        self.named(&number.to_string())
+    }
+
+    /// What a launch is given to run the file as it is, in the way of a mutant.
+    #[must_use]
+    pub fn launch_original(&self) -> LaunchMutant {
+        self.named("original")
+    }
+
+    fn named(&self, name: &str) -> LaunchMutant {
+        LaunchMutant { file: self.file.clone(), code: self.folder.path().join(format!("{name}.code")) }
     }
 }
 
@@ -73,14 +83,13 @@ impl PythonEnv {
     /// compilation of each mutant.
     ///
     /// # Errors
-    /// [`SutError::Environment`] with what is wrong: a file that cannot be read or compiled, an operator that is none;
-    /// [`SutError::Io`] if the interpreter cannot be started.
+    /// What is wrong: a file that cannot be read or compiled, an operator that is none; an interpreter that cannot be started.
     pub fn list_mutants(
         &self,
         dir: &Path,
         files: &[String],
         operators: &[String],
-    ) -> Result<Vec<ListedMutant>, SutError> {
+    ) -> Result<Vec<ListedMutant>, String> {
         let mut words: Vec<PathBuf> = ["list", "--json", "--cache"].map(PathBuf::from).to_vec();
         words.push(self.mutants.clone());
         if !operators.is_empty() {
@@ -104,9 +113,9 @@ impl PythonEnv {
         dir: &Path,
         file: &str,
         numbers: &[u32],
-    ) -> Result<CompiledMutants, SutError> {
+    ) -> Result<CompiledMutants, String> {
         let folder = tempfile::Builder::new().prefix("run-").tempdir_in(&self.mutants);
-        let folder = folder.map_err(SutError::io(format!("cannot write to {}", self.mutants.display())))?;
+        let folder = folder.map_err(|e| format!("cannot write to {}: {e}", self.mutants.display()))?;
         let mut words: Vec<PathBuf> = vec!["codes".into(), "--to".into(), folder.path().to_owned()];
         words.extend(["--".into(), PathBuf::from(file)]);
         words.extend([SENTINEL].iter().chain(numbers).map(|number| number.to_string().into()));
@@ -114,11 +123,11 @@ impl PythonEnv {
         Ok(CompiledMutants { file: file.to_owned(), folder })
     }
 
-    fn mutation(&self, dir: &Path, words: &[PathBuf]) -> Result<Output, SutError> {
+    fn mutation(&self, dir: &Path, words: &[PathBuf]) -> Result<Output, String> {
         let mut command = install::command(&self.python);
         let script = self.sdk.join("hrdsl").join("mutation").join("__main__.py");
         command.args(["-S", "-E", "-B"]).arg(script).args(words).current_dir(dir);
-        let output = install::run(&mut command)?;
+        let output = install::run(&mut command).map_err(|e| e.to_string())?;
         if output.status.success() {
             return Ok(output);
         }
@@ -126,7 +135,6 @@ impl PythonEnv {
     }
 }
 
-fn fault(detail: &str) -> SutError {
-    let detail = detail.trim_start_matches("error: ").to_owned();
-    SutError::Environment { what: "cannot make mutants".to_owned(), detail }
+fn fault(detail: &str) -> String {
+    format!("cannot make mutants: {}", detail.trim_start_matches("error: "))
 }

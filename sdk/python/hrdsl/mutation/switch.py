@@ -22,16 +22,18 @@ SENTINEL = 0
 
 
 def codes(file: str, numbers: Iterable[int], to: str) -> None:
-    """Compiles mutants of a file, each to `NUMBER.code` in the folder `to`, as `hrdsl.mutated` reads them.
+    """Compiles mutants of a file, each to `NUMBER.code` in the folder `to`, as `hrdsl.mutated` reads them; and the file as it is, to
+    `original.code`.
 
     Raises `OSError`, `SyntaxError`, and `LookupError` if there is no such mutant."""
     with open(file, encoding="utf-8") as source:
         text = source.read()
     found = {mutant.number: mutant for mutant in mutants(text, file, marked=False)}
-    for number in numbers:
-        compiled = _compiled(text, file, number, found)
-        with open(os.path.join(to, "%d.code" % number), "wb") as out:
-            out.write(marshal.dumps(compiled))
+    compiled = {str(number): _compiled(text, file, number, found) for number in numbers}
+    compiled["original"] = compile(text, file, "exec", dont_inherit=True)
+    for name, each in compiled.items():
+        with open(os.path.join(to, name + ".code"), "wb") as out:
+            out.write(marshal.dumps(each))
 
 
 def switched(file: str, number: int, program: list[str]) -> Callable[[], None]:
