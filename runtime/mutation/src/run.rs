@@ -193,7 +193,7 @@ fn run_one(
 fn shortened(error: &str) -> String {
     let mut lines = error.lines().map(str::trim).filter(|line| !line.is_empty());
     let first = lines.next().unwrap_or_default().trim_end_matches(':');
-    lines.last().map_or_else(|| first.to_owned(), |last| format!("{first}: {last}"))
+    lines.next_back().map_or_else(|| first.to_owned(), |last| format!("{first}: {last}"))
 }
 
 /// Does something with each, in as many threads as the campaign has workers, each with a runner of its own. What gives `None` ends its

@@ -98,12 +98,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
     let folder = ResultsFolder::open(&out, &NAMES)?;
 
-    let tests_folder = folder.staging().join("tests");
-    let keep = |generated: &GeneratedSuite| {
-        save(&tests_folder, program, generated)?;
-        terminal::print(&describe(generated))
-    };
-    let generated = generate_suites(&args.campaign, program, &keep)?;
+    let generated = generate_suites(&args.campaign, program, &|made| keep_suite(program, &folder, made))?;
     let tests = selected(&args.campaign, program, &generated)?;
     if args.debug && tests.len() != 1 {
         return Err(format!("--debug runs one test, and {} are chosen; name one with --test", tests.len()));
@@ -153,6 +148,16 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     } else {
         CommandExit::Ok
     })
+}
+
+/// Writes the tests of a suite, and says what they are.
+fn keep_suite(
+    program: &Program,
+    folder: &ResultsFolder,
+    generated: &GeneratedSuite,
+) -> Result<(), CommandFault> {
+    save(&folder.staging().join("tests"), program, generated)?;
+    terminal::print(&describe(generated))
 }
 
 /// Makes the campaign ready.
