@@ -16,6 +16,7 @@ use crate::{
     environment::{PythonEnv, word::is_python},
     error::{SutError, silence},
     limits::{ProgramLimits, StopFlag},
+    mutants::LaunchMutant,
     start,
 };
 
@@ -48,23 +49,6 @@ pub struct LaunchSpec {
     pub stop: StopFlag,
     /// What is run in the place of one of its files of Python, if anything.
     pub mutant: Option<LaunchMutant>,
-}
-
-/// A mutant of a file, which the runner puts in its place in memory.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LaunchMutant {
-    /// From the folder of the program.
-    pub file: String,
-    /// The mutant compiled, in a file that the program's cell shows
-    /// ([`PythonEnv::compile_mutants`](crate::PythonEnv::compile_mutants)).
-    pub code: PathBuf,
-}
-
-impl LaunchMutant {
-    /// As the runner reads it (`sdk/python/hrdsl/mutated.py`).
-    pub(crate) fn words(&self) -> String {
-        serde_json::json!({ "file": self.file, "code": self.code.to_string_lossy() }).to_string()
-    }
 }
 
 /// The variable that tells the runner of a mutant.

@@ -26,6 +26,7 @@ mod fork_server;
 mod launch;
 mod limits;
 mod lock_step;
+mod mutants;
 mod output;
 mod patience;
 mod pipes;
@@ -36,15 +37,14 @@ mod start;
 
 pub use affinity::{PinnedCore, pin_to_free_core};
 pub use cell::CellSettings;
-pub use environment::{
-    CompiledMutants, EnvironmentNeeds, HookedPackage, ListedMutant, PreparationStep, PythonEnv,
-};
+pub use environment::{EnvironmentNeeds, HookedPackage, PreparationStep, PythonEnv};
 pub use error::{ProgramFailure, SutError};
 pub use exit::ProgramExit;
 pub use fork_server::ForkServer;
-pub use launch::{DEFAULT_VARIABLES, LaunchMiddleware, LaunchMutant, LaunchSpec};
+pub use launch::{DEFAULT_VARIABLES, LaunchMiddleware, LaunchSpec};
 pub use limits::{LimitOverrun, ProgramLimits, StopFlag};
 pub use lock_step::LockStep;
+pub use mutants::{CompiledMutants, LaunchMutant, ListedMutant};
 pub use output::{CapturedOutput, CapturedStream};
 pub use process::{FinishedProcess, SutProcess};
 pub use processor::ProcessorClocks;

@@ -8,7 +8,6 @@ mod digest;
 mod install;
 mod key;
 mod local;
-mod mutants;
 mod named;
 mod options;
 mod preparation;
@@ -20,6 +19,7 @@ pub(crate) mod word;
 use std::{
     fs,
     path::{Path, PathBuf},
+    process::Output,
 };
 
 use cache::{CachePart, EnvironmentCache, MakingPart, PreparationListener};
@@ -29,7 +29,6 @@ use key::PackagesKey;
 use probe::ProbedInterpreter;
 use requirements::PipRequirements;
 
-pub use mutants::{CompiledMutants, ListedMutant};
 pub use preparation::{HookedPackage, PreparationStep};
 
 use crate::error::SutError;
@@ -63,7 +62,7 @@ pub struct PythonEnv {
     /// The folder for texts that programs read: what is bound to their middleware.
     texts: PathBuf,
     /// The folder for lists of mutants, and for those that are run.
-    mutants: PathBuf,
+    pub(crate) mutants: PathBuf,
     /// Where modules are searched for, after the standard library.
     pub(crate) path: Vec<String>,
 }
@@ -148,6 +147,13 @@ impl PythonEnv {
         command.arg("--package").arg(&self.coverage).arg("--cache").arg(&self.analyses).args(files);
         let output = command.current_dir(dir).output().map_err(SutError::io("cannot start Python"))?;
         Ok(String::from_utf8_lossy(&output.stderr).lines().map(str::to_owned).collect())
+    }
+
+    /// What a script of the SDK says that is started with these words in a folder; the script is a path below the package `hrdsl`.
+    pub(crate) fn ask_script(&self, script: &str, words: &[PathBuf], dir: &Path) -> Result<Output, SutError> {
+        let mut command = install::command(&self.python);
+        command.args(["-S", "-E", "-B"]).arg(self.sdk.join("hrdsl").join(script)).args(words);
+        install::run(command.current_dir(dir))
     }
 
     /// Keeps a text for programs to read, in a file that is called by what is in it.

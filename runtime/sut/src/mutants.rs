@@ -7,11 +7,27 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{PythonEnv, install};
-use crate::launch::LaunchMutant;
+use crate::environment::PythonEnv;
 
 /// The number of the mutant that raises at once, of every file.
 const SENTINEL: u32 = 0;
+
+/// A mutant of a file, which the runner puts in its place in memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LaunchMutant {
+    /// From the folder of the program.
+    pub file: String,
+    /// The mutant compiled, in a file that the program's cell shows
+    /// ([`PythonEnv::compile_mutants`]).
+    pub code: PathBuf,
+}
+
+impl LaunchMutant {
+    /// As the runner reads it (`sdk/python/hrdsl/mutated.py`).
+    pub(crate) fn words(&self) -> String {
+        serde_json::json!({ "file": self.file, "code": self.code.to_string_lossy() }).to_string()
+    }
+}
 
 /// One small change of a file of Python.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,10 +140,7 @@ impl PythonEnv {
     }
 
     fn mutation(&self, dir: &Path, words: &[PathBuf]) -> Result<Output, String> {
-        let mut command = install::command(&self.python);
-        let script = self.sdk.join("hrdsl").join("mutation").join("__main__.py");
-        command.args(["-S", "-E", "-B"]).arg(script).args(words).current_dir(dir);
-        let output = install::run(&mut command).map_err(|e| e.to_string())?;
+        let output = self.ask_script("mutation/__main__.py", words, dir).map_err(|e| e.to_string())?;
         if output.status.success() {
             return Ok(output);
         }
