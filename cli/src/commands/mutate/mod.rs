@@ -181,7 +181,7 @@ fn mutants(
     bar.finish_and_clear();
     let (ran, seconds) = (mutants.iter().filter(|m| m.ran > 0).count(), begun.elapsed().as_secs_f64());
     terminal::say_line(format_args!(
-        "{ran} mutants ran in {seconds:.1} s of wall time, {} at once: {:.0} in a second",
+        "{ran} mutants ran in {seconds:.1} s of wall time, {} at once: {:.1} in a second",
         setup.campaign.jobs,
         ran as f64 / seconds.max(1e-6)
     ));
