@@ -4,7 +4,13 @@
 
 mod support;
 
-use std::{fs, path::Path, process::Output};
+use std::{
+    fs,
+    io::{BufRead as _, BufReader},
+    path::Path,
+    process::{Command, Output, Stdio},
+    time::Duration,
+};
 
 use serde_json::{Value, json};
 use support::{command, expect_code, root, stderr, stdout};
@@ -133,6 +139,29 @@ fn tests_that_measure_nothing_end_with_an_error() {
     expect_code(&out, 3);
     assert!(stderr(&out).contains("no test notices that robot.py raises at once"), "{}", stderr(&out));
     assert!(stdout(&out).contains("the sentinel of robot.py is noticed by nothing"), "{}", stdout(&out));
+}
+
+/// What was known when it was interrupted is reported.
+#[test]
+fn an_interrupt_ends_it_with_what_is_known() {
+    let folder = project();
+    let tests: String = (0..60).map(|n| format!("test t{n} {{ ask }}\n")).collect();
+    fs::write(folder.path().join("many.hri"), format!("scenario lamp\n{tests}")).unwrap();
+    let mut command = command();
+    command.args(["mutate", "scenario.hri", "many.hri", "--matrix", "--json", "-o", "out", "-j", "1"]);
+    command.current_dir(folder.path()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    said.find(|line| line.contains("mutants to run")).unwrap();
+    std::thread::sleep(Duration::from_secs(3));
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    let out = child.wait_with_output().unwrap();
+    expect_code(&out, 5);
+    let found = report(&out);
+    assert_eq!(found["interrupted"], true);
+    assert!(found["counts"]["not_run"].as_u64().unwrap() > 0, "{}", found["counts"]);
+    assert_eq!(fs::read_to_string(folder.path().join("out/mutation.json")).unwrap(), stdout(&out));
 }
 
 /// Code that is another one in each process cannot be told from its mutants.

@@ -56,11 +56,15 @@ pub fn run_originals(
 }
 
 /// Runs the tests on the code as it is once more, each file put in its own place as a mutant is, without code coverage. Gives each file that
-/// does not do the same as before, with a test in which it does not: where that is so, another run of a mutant says nothing.
+/// does not do the same as before, with a test in which it does not: where that is so, another run of a mutant says nothing. `on_done` is called
+/// as each test ends.
 ///
 /// # Errors
 /// As [`run_originals`].
-pub fn run_controls<'c>(setup: &'c MutationCampaign<'_>) -> Result<BTreeMap<&'c str, &'c str>, String> {
+pub fn run_controls<'c>(
+    setup: &'c MutationCampaign<'_>,
+    on_done: impl Fn() + Sync,
+) -> Result<BTreeMap<&'c str, &'c str>, String> {
     let of_file = |(file, codes): (&'c String, &'c CompiledMutants)| {
         let tests = setup.tests.iter().zip(setup.originals);
         let is_there = |run: &SingleRun| {
@@ -73,6 +77,7 @@ pub fn run_controls<'c>(setup: &'c MutationCampaign<'_>) -> Result<BTreeMap<&'c 
     let all: Vec<_> = setup.codes.iter().flat_map(of_file).collect();
     let unlike = in_parallel(&setup.campaign, &all, |runner, (file, launch, test, original)| {
         let run = runner.run(test, Some(launch))?;
+        on_done();
         Some((run.recording != original.recording).then_some((*file, test.name.as_str())))
     })?;
     Ok(unlike.into_iter().flatten().flatten().rev().collect())

@@ -149,7 +149,9 @@ fn mutants(
     let campaign = CampaignSetup { system, ..campaign.clone() };
     let setup = MutationCampaign { campaign, tests, originals, codes: &codes, matrix: args.matrix };
     say_cost(args, &plan, plan.simulated(originals) / faster.max(1e-6));
-    let unlike = run_controls(&setup)?;
+    let bar = progress_bar(tests.len() * codes.len(), "controls");
+    let unlike = run_controls(&setup, || bar.inc(1))?;
+    bar.finish_and_clear();
     for (file, test) in &unlike {
         terminal::say_line(format_args!(
             "error: {file} as it is does not do the same twice in {test}, so that a mutant of it cannot be told from it; \
