@@ -141,6 +141,51 @@ fn tests_that_measure_nothing_end_with_an_error() {
     assert!(stdout(&out).contains("the sentinel of robot.py is noticed by nothing"), "{}", stdout(&out));
 }
 
+/// The code's runs contradict a model that allows less than the code does, and none that allows more.
+#[test]
+fn mutants_of_the_model_are_contradicted_by_what_the_code_does() {
+    let folder = project();
+    let path = folder.path().join("scenario.hri");
+    let text = fs::read_to_string(&path).unwrap();
+    let model = "
+automaton Lamp plays robot {
+  clock t
+  init location dark
+  location warm { invariant t <= 1 s }
+  dark -> warm on asked do t = 0
+  warm -> dark when t >= 300 ms do lit
+}
+";
+    fs::write(&path, text + model).unwrap();
+    let out = mutate(folder.path(), "tests.hri --models --json");
+    expect_code(&out, 0);
+    assert!(stderr(&out).contains("2 of 2 runs conform to the models as they are"), "{}", stderr(&out));
+    let found = report(&out);
+    let fates: Vec<(&str, &str)> = found["mutants"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| (m["what"].as_str().unwrap(), m["fate"].as_str().unwrap()))
+        .collect();
+    let expected = [
+        ("Lamp.warm: the bound of 1 s is halved", "not_distinguished"),
+        ("Lamp.warm: the bound of 1 s is doubled", "not_distinguished"),
+        ("Lamp.warm: the bound of 1 s is left out", "not_distinguished"),
+        ("Lamp: dark -> warm: the edge is never taken", "killed"),
+        ("Lamp: warm -> dark: the bound of 0.3 s is halved", "not_distinguished"),
+        ("Lamp: warm -> dark: the bound of 0.3 s is doubled", "killed"),
+        ("Lamp: warm -> dark: the bound of 0.3 s is turned round", "killed"),
+        ("Lamp: warm -> dark: the bound of 0.3 s is left out", "not_distinguished"),
+        ("Lamp: warm -> dark: the edge is never taken", "killed"),
+    ];
+    assert_eq!(fates, expected);
+    assert_eq!(found["oracles"][0]["oracle"], "conformance");
+    assert_eq!(found["sentinels"][0]["fate"], "killed");
+    let out = mutate(folder.path(), "tests.hri --models --operator tme");
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("did you mean `time`?"), "{}", stderr(&out));
+}
+
 /// What was known when it was interrupted is reported.
 #[test]
 fn an_interrupt_ends_it_with_what_is_known() {

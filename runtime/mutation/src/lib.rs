@@ -10,11 +10,15 @@
 //!    tries each before it is proposed;
 //! 6. [`MutationReport::new`] adds up.
 //!
+//! [`ModelMutant`]s are of the models that play the system; [`RecordedRuns`] hold what the code did against them, and nothing is run.
+//!
 //! A mutant is run by one worker from its first test to its last, so that the number of workers changes nothing.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
+mod contradict;
 mod difference;
 mod facts;
+mod models;
 mod oracle;
 mod outcome;
 mod plan;
@@ -22,7 +26,9 @@ mod propose;
 mod report;
 mod run;
 
+pub use contradict::RecordedRuns;
 pub use difference::RunDifference;
+pub use models::{MODEL_OPERATORS, ModelMutant};
 pub use oracle::{MutantOracle, noticed_by};
 pub use outcome::{MutantFate, MutantOutcome, NoticedTest};
 pub use plan::{MutantSample, MutationPlan, PlannedMutant};

@@ -32,6 +32,8 @@ pub struct MutationAbout {
     pub seed: u64,
     /// Whether each mutant ran against all tests that reach it.
     pub matrix: bool,
+    /// Whether mutants are of the models that play the system, not of its code.
+    pub models: bool,
     /// The operators that were asked for; empty: all.
     pub operators: Vec<String>,
 }

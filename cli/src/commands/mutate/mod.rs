@@ -1,6 +1,7 @@
 //! `hrdsl mutate`: small faults of the code under test, and which of them its tests would notice.
 
 mod files_to_mutate;
+mod of_models;
 mod show;
 
 use std::{collections::BTreeMap, path::PathBuf, time::Instant};
@@ -31,7 +32,7 @@ const NAMES: [&str; 2] = ["mutation.txt", "mutation.json"];
 /// the same test does not. Mutants that survive are listed with where they first differ, and requirements that would notice.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl mutate scenario.hri\n  hrdsl mutate scenario.hri tests.hri --sample 40 --seed 1\n  hrdsl mutate scenario.hri --suite bdi_tests -n 8 --operator time --operator deadline\n  hrdsl mutate scenario.hri tests.hri --matrix -o out\n  hrdsl mutate scenario.hri tests.hri --min-score 80 --json"
+    after_help = "Examples:\n  hrdsl mutate scenario.hri\n  hrdsl mutate scenario.hri tests.hri --sample 40 --seed 1\n  hrdsl mutate scenario.hri --suite bdi_tests -n 8 --operator time --operator deadline\n  hrdsl mutate scenario.hri tests.hri --matrix -o out\n  hrdsl mutate scenario.hri --models --latency 200ms\n  hrdsl mutate scenario.hri tests.hri --min-score 80 --json"
 )]
 pub struct MutateArgs {
     #[command(flatten)]
@@ -42,6 +43,9 @@ pub struct MutateArgs {
     /// Only so many mutants, drawn by --seed.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     sample: Option<u32>,
+    /// Mutants of the automata that play the system, instead of its code: which of them the code's runs contradict.
+    #[arg(long)]
+    models: bool,
     /// Run all tests that reach a mutant, instead of until the first that notices it: for the whole score of each oracle and method.
     #[arg(long)]
     matrix: bool,
@@ -79,7 +83,8 @@ pub fn run(args: &MutateArgs) -> Result<CommandExit, CommandFault> {
         return Ok(CommandExit::Errors);
     };
     let dir = files::folder(&given.file);
-    let system = &measured(chosen_system(program, given.system.as_deref())?, &dir)?;
+    let chosen = chosen_system(program, given.system.as_deref())?;
+    let system = &if args.models { bare(chosen) } else { measured(chosen, &dir)? };
     let folder = args.out.as_ref().map(|out| ResultsFolder::open(out, &NAMES)).transpose()?;
     let generated = generate_suites(given, program, &|_| Ok(()))?;
     let tests = selected(given, program, &generated)?;
@@ -88,27 +93,34 @@ pub fn run(args: &MutateArgs) -> Result<CommandExit, CommandFault> {
     let hidden = hidden.filter_map(|folder| folder.canonicalize().ok()).collect();
     let mut campaign = given.setup(program, system, interfaces, hidden, stop_flag(false)?)?;
     given.plan_forks(&mut campaign)?;
-    let listed = campaign.env.list_mutants(&dir, &system.coverage(), &args.operator);
-    let listed = listed?;
-    if listed.is_empty() {
-        return Err(format!("there is no mutant of {}", system.coverage().join(", ")));
-    }
-
     let begun = Instant::now();
     let Some(originals) = originals(&campaign, &tests)? else {
         terminal::say_line("interrupted, before anything was known of a mutant");
         return Ok(CommandExit::Interrupted);
     };
     let faster = simulated(&originals) / begun.elapsed().as_secs_f64().max(1e-6);
-    let Some(mut runs) = mutants(args, &campaign, (&tests, &originals), listed, faster)? else {
-        return Ok(CommandExit::Findings);
+    let runs = if args.models {
+        Some(of_models::contradicted(args, &compilation, &campaign, &originals)?)
+    } else {
+        mutants(args, &campaign, (&tests, &originals), listed(args, &campaign)?, faster)?
     };
+    let Some(mut runs) = runs else { return Ok(CommandExit::Findings) };
     if !campaign.stop.is_set() {
         let compile = |more: &str| with_more(args, &beside, more);
         propose(program, &campaign.conformance, &originals, &mut runs.mutants, &compile);
     }
     let report = report(args, program, system, &originals, runs);
     finish(args, &report, folder)
+}
+
+/// All mutants of the code, in the order of its files.
+fn listed(args: &MutateArgs, campaign: &CampaignSetup<'_>) -> Result<Vec<ListedMutant>, CommandFault> {
+    let files = campaign.system.coverage();
+    let listed = campaign.env.list_mutants(&campaign.dir, &files, &args.operator)?;
+    if listed.is_empty() {
+        return Err(format!("there is no mutant of {}", files.join(", ")));
+    }
+    Ok(listed)
 }
 
 /// Runs the tests on the code as it is. `None`: it was interrupted.
@@ -242,6 +254,7 @@ fn report(
         failing: originals.iter().filter(|run| fails(run)).count(),
         seed: args.campaign.seed,
         matrix: args.matrix,
+        models: args.models,
         operators: args.operator.clone(),
     };
     MutationReport::new(about, &runs.plan, sample(args), runs.sentinels, runs.mutants)
@@ -267,10 +280,17 @@ fn finish(
     }
     let unmeasured: Vec<&str> = report.unmeasured().collect();
     for file in &unmeasured {
-        terminal::say_line(format_args!(
-            "error: no test notices that {file} raises at once: the tests measure nothing of it. Is it what `run` starts, and are there \
-             requirements?"
-        ));
+        terminal::say_line(if args.models {
+            format!(
+                "error: no run of the code contradicts a model in {file} that can do nothing: the tests measure nothing of it. Do runs conform to \
+                     the model as it is (`hrdsl sim`)?"
+            )
+        } else {
+            format!(
+                "error: no test notices that {file} raises at once: the tests measure nothing of it. Is it what `run` starts, and are there \
+                     requirements?"
+            )
+        });
     }
     let is_below = |least: f64| report.score.is_none_or(|score| score * 100.0 < least);
     Ok(if report.interrupted && unmeasured.is_empty() {

@@ -14,13 +14,14 @@ pub fn text(report: &MutationReport) -> String {
     oracles(report, &mut text);
     methods(report, &mut text);
     survivors(report, &mut text);
-    for (fate, title) in [
-        (
-            MutantFate::NotDistinguished,
-            "not distinguished: all tests that reach them record the same, which proves nothing",
-        ),
-        (MutantFate::NotReached, "not reached: no test executes them"),
-    ] {
+    let same = if report.about.models {
+        "not distinguished: all runs are judged as by the model as it is"
+    } else {
+        "not distinguished: all tests that reach them record the same, which proves nothing"
+    };
+    for (fate, title) in
+        [(MutantFate::NotDistinguished, same), (MutantFate::NotReached, "not reached: no test executes them")]
+    {
         let all: Vec<&MutantReport> = report.mutants.iter().filter(|m| m.fate == fate).collect();
         if !all.is_empty() {
             let _ = writeln!(text, "\n{title}");
@@ -42,8 +43,13 @@ fn head(report: &MutationReport) -> String {
     } else {
         "each mutant until its first kill"
     };
+    let (of, ran) = if report.about.models {
+        ("mutants of its models", format!("{ran} recordings judged"))
+    } else {
+        ("mutants", format!("{ran} runs"))
+    };
     let mut text = format!(
-        "{}, system {}: {} tests; {} mutants are worth a run{drawn}; {ran} runs, {how}\n",
+        "{}, system {}: {} tests; {} {of} are worth a run{drawn}; {ran}, {how}\n",
         report.about.scenario, report.about.system, report.about.tests, report.worth
     );
     for sentinel in &report.sentinels {
@@ -137,9 +143,18 @@ fn survivors(report: &MutationReport, text: &mut String) {
     if all.is_empty() {
         return;
     }
-    let _ = writeln!(text, "\nsurvived: recorded differently, and no oracle minds");
+    let is_of_model = report.about.models;
+    let how = if is_of_model {
+        "judged otherwise, and no worse"
+    } else {
+        "recorded differently, and no oracle minds"
+    };
+    let _ = writeln!(text, "\nsurvived: {how}");
     for mutant in all {
         let _ = writeln!(text, "  {}", line(mutant));
+        if is_of_model {
+            continue;
+        }
         match &mutant.difference {
             Some(difference) => {
                 let _ = writeln!(
