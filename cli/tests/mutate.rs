@@ -64,11 +64,11 @@ fn each_fate_is_told_and_what_would_notice_a_survivor() {
     assert_eq!((&difference["test"], &difference["time"]), (&json!("lamp.once"), &json!(0.5)));
     assert_eq!(difference["original"], "robot lit at 0.500 s");
     assert_eq!(difference["mutant"], "robot lit at 1.000 s");
-    assert_eq!(late["proposals"][0], "asked causes lit within 0.6 s");
+    assert_eq!(late["proposals"][0]["pattern"], "asked causes lit within 0.6 s");
     let early = mutant(&found, 5, "the time is halved");
-    assert_eq!(early["proposals"][0], "asked causes lit not before 0.4 s within 0.6 s");
+    assert_eq!(early["proposals"][0]["pattern"], "asked causes lit not before 0.4 s within 0.6 s");
     let twice = mutant(&found, 23, "emit is called twice");
-    assert_eq!(twice["proposals"][0], "lit forbids lit until asked");
+    assert_eq!(twice["proposals"][0]["pattern"], "lit forbids lit until asked");
 
     let unseen = mutant(&found, 10, "emit is not called");
     assert_eq!((&unseen["fate"], &unseen["reached"]), (&json!("not_reached"), &json!(0)));
@@ -84,7 +84,7 @@ fn each_fate_is_told_and_what_would_notice_a_survivor() {
     let written = fs::read_to_string(folder.path().join("out/mutation.json")).unwrap();
     assert_eq!(written, stdout(&out));
     let text = fs::read_to_string(folder.path().join("out/mutation.txt")).unwrap();
-    assert!(text.contains("would notice: asked causes lit within 0.6 s"), "{text}");
+    assert!(text.contains("would notice at 0.600 s: asked causes lit within 0.6 s"), "{text}");
     assert_eq!(fs::read(folder.path().join("robot.py")).unwrap(), before, "no file is written");
 }
 

@@ -30,7 +30,7 @@ pub use contradict::RecordedRuns;
 pub use difference::RunDifference;
 pub use models::{MODEL_OPERATORS, ModelMutant};
 pub use oracle::{MutantOracle, noticed_by};
-pub use outcome::{MutantFate, MutantOutcome, NoticedTest};
+pub use outcome::{MutantFate, MutantOutcome, NoticedTest, ProposedRequirement};
 pub use plan::{MutantSample, MutationPlan, PlannedMutant};
 pub use propose::propose;
 pub use report::{MethodScore, MutantCounts, MutantReport, MutationAbout, MutationReport, OracleScore};

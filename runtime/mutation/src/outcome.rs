@@ -43,6 +43,15 @@ pub struct NoticedTest {
     pub method: TestMethod,
 }
 
+/// A requirement that holds in all runs of the original, and fails in a mutant's.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProposedRequirement {
+    /// As it is written after `require NAME KIND`.
+    pub pattern: String,
+    /// When it first fails in the mutant's run, in seconds.
+    pub time: f64,
+}
+
 /// A mutant with all that its runs came to.
 #[derive(Clone, Debug)]
 pub struct MutantOutcome {
@@ -60,8 +69,8 @@ pub struct MutantOutcome {
     pub difference: Option<RunDifference>,
     /// Of one that survived: the place of that run's test among the tests, and its recording.
     pub other_run: Option<(usize, String)>,
-    /// Of one that survived: patterns of requirements that would notice it, each tried.
-    pub proposals: Vec<String>,
+    /// Of one that survived: requirements that would notice it, each tried.
+    pub proposals: Vec<ProposedRequirement>,
 }
 
 impl MutantOutcome {

@@ -6,11 +6,11 @@ use hrdsl_campaign::SingleRun;
 use hrdsl_conformance::ConformanceOptions;
 use hrdsl_ir::Program;
 use hrdsl_judge::{judge_recording, recorded_run};
-use hrdsl_results::VerdictOutcome;
+use hrdsl_results::{VerdictOutcome, VerdictResult};
 
 use crate::{
     facts::{CommonFacts, RunFacts},
-    outcome::MutantOutcome,
+    outcome::{MutantOutcome, ProposedRequirement},
 };
 
 /// What the names of requirements begin with that are tried.
@@ -46,9 +46,17 @@ pub fn propose(
     for (at, wanted) in candidates {
         let Some(outcome) = outcomes.get_mut(at) else { continue };
         let Some((_, recording)) = &outcome.other_run else { continue };
-        let broken: Vec<&str> = trials.iter().flat_map(|trial| trial.failing(recording, options)).collect();
-        let found = wanted.into_iter().filter(|pattern| broken.contains(&pattern.as_str()));
-        outcome.proposals = found.take(MOST).collect();
+        let broken: BTreeMap<&str, f64> =
+            trials.iter().flat_map(|trial| trial.failing(recording, options)).collect();
+        let found = wanted.into_iter().filter_map(|pattern| {
+            let time = *broken.get(pattern.as_str())?;
+            Some(ProposedRequirement { pattern, time })
+        });
+        let mut found: Vec<ProposedRequirement> = found.collect();
+        // What notices first is nearest to the fault; of those at once the narrowest.
+        found.sort_by(|a, b| a.time.total_cmp(&b.time));
+        found.truncate(MOST);
+        outcome.proposals = found;
     }
 }
 
@@ -109,9 +117,12 @@ impl RequirementTrial {
     fn keep_what_holds(&mut self, originals: &[&str], options: &ConformanceOptions) {
         let mut passed = vec![false; self.patterns.len()];
         for recording in originals {
-            let outcomes = self.judged(recording, options);
-            for ((pattern, passed), outcome) in self.patterns.iter_mut().zip(&mut passed).zip(outcomes) {
-                match outcome {
+            let verdicts = self.judged(recording, options);
+            if verdicts.is_empty() {
+                self.patterns.fill(None);
+            }
+            for ((pattern, passed), verdict) in self.patterns.iter_mut().zip(&mut passed).zip(verdicts) {
+                match verdict.outcome {
                     VerdictOutcome::Pass => *passed = true,
                     VerdictOutcome::Vacuous | VerdictOutcome::Inconclusive => {}
                     VerdictOutcome::Fail | VerdictOutcome::Error => *pattern = None,
@@ -125,18 +136,19 @@ impl RequirementTrial {
         }
     }
 
-    /// The patterns that hold on the original, and fail here.
-    fn failing(&self, recording: &str, options: &ConformanceOptions) -> Vec<&str> {
-        let outcomes = self.judged(recording, options).into_iter();
-        let failing = self.patterns.iter().zip(outcomes).filter(|(_, o)| *o == VerdictOutcome::Fail);
-        failing.filter_map(|(pattern, _)| pattern.as_deref()).collect()
+    /// The patterns that hold on the original and fail here, with the time of the first failure in seconds.
+    fn failing(&self, recording: &str, options: &ConformanceOptions) -> Vec<(&str, f64)> {
+        let verdicts = self.judged(recording, options);
+        let failing = self.patterns.iter().zip(&verdicts).filter_map(|(pattern, verdict)| {
+            let failure = verdict.failure.as_ref().filter(|_| verdict.outcome == VerdictOutcome::Fail)?;
+            Some((pattern.as_deref()?, failure.time))
+        });
+        failing.collect()
     }
 
-    /// The verdicts on a recording, in the order of the requirements; of one that cannot be read, errors.
-    fn judged(&self, recording: &str, options: &ConformanceOptions) -> Vec<VerdictOutcome> {
-        match judge_recording(&self.program, recording.as_bytes(), true, options) {
-            Ok(judged) => judged.judgement.verdicts.iter().map(|verdict| verdict.outcome).collect(),
-            Err(_) => vec![VerdictOutcome::Error; self.patterns.len()],
-        }
+    /// The verdicts on a recording, in the order of the requirements; none, if it cannot be read.
+    fn judged(&self, recording: &str, options: &ConformanceOptions) -> Vec<VerdictResult> {
+        let judged = judge_recording(&self.program, recording.as_bytes(), true, options);
+        judged.map_or_else(|_| Vec::new(), |judged| judged.judgement.verdicts)
     }
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::{
     difference::RunDifference,
     oracle::MutantOracle,
-    outcome::{MutantFate, MutantOutcome, NoticedTest},
+    outcome::{MutantFate, MutantOutcome, NoticedTest, ProposedRequirement},
     plan::{MutantSample, MutationPlan},
 };
 
@@ -90,9 +90,9 @@ pub struct MutantReport {
     pub noticed: Vec<NoticedTest>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<RunDifference>,
-    /// Patterns of requirements that hold in all runs of the original and fail in the mutant's.
+    /// The first that notice, in order of the times at which they do.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub proposals: Vec<String>,
+    pub proposals: Vec<ProposedRequirement>,
 }
 
 /// What `hrdsl mutate` found; the same for any number of workers.

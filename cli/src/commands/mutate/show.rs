@@ -172,7 +172,7 @@ fn survivors(report: &MutationReport, text: &mut String) {
             text.push_str("      no requirement that was tried would notice\n");
         }
         for proposal in &mutant.proposals {
-            let _ = writeln!(text, "      would notice: {proposal}");
+            let _ = writeln!(text, "      would notice at {:.3} s: {}", proposal.time, proposal.pattern);
         }
     }
 }
