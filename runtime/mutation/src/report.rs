@@ -251,3 +251,75 @@ fn methods(outcomes: &[MutantOutcome]) -> Vec<MethodScore> {
     };
     sums.into_iter().map(score).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use hrdsl_campaign::ListedMutant;
+
+    use super::*;
+
+    fn noticed(test: &str, method: TestMethod, oracles: &[MutantOracle]) -> NoticedTest {
+        NoticedTest { test: test.into(), oracles: oracles.to_vec(), error: None, method }
+    }
+
+    fn outcome(fate: MutantFate, noticed: Vec<NoticedTest>) -> MutantOutcome {
+        let simulated = [(TestMethod::Search, 1800.0), (TestMethod::Random, 3600.0)].into();
+        let mutant = ListedMutant::sentinel("robot.py");
+        MutantOutcome { noticed, simulated, ..MutantOutcome::not_run(mutant, fate, 2) }
+    }
+
+    #[test]
+    fn a_mutant_counts_once_for_each_oracle_and_method_that_notices_it() {
+        let requirement = MutantOracle::Requirement("R1".into());
+        let both = [requirement.clone(), MutantOracle::Prediction];
+        let outcomes = [
+            outcome(
+                MutantFate::Killed,
+                vec![noticed("a", TestMethod::Search, &both), noticed("b", TestMethod::Search, &both[..1])],
+            ),
+            outcome(MutantFate::Killed, vec![noticed("c", TestMethod::Random, &both[..1])]),
+            outcome(MutantFate::Survived, Vec::new()),
+        ];
+        let found: Vec<(String, usize, usize)> =
+            oracles(&outcomes).iter().map(|o| (o.oracle.to_string(), o.killed, o.alone)).collect();
+        assert_eq!(found, [("requirement R1".to_owned(), 2, 1), ("prediction".to_owned(), 1, 0)]);
+        let found: Vec<(TestMethod, usize, f64, Option<f64>)> = methods(&outcomes)
+            .iter()
+            .map(|m| (m.method, m.killed, m.simulated_hours, m.killed_per_hour))
+            .collect();
+        let expected =
+            [(TestMethod::Search, 1, 1.5, Some(1.0 / 1.5)), (TestMethod::Random, 1, 3.0, Some(1.0 / 3.0))];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn what_proves_nothing_is_not_part_of_the_score() {
+        let about = MutationAbout {
+            scenario: "s".into(),
+            system: "robot".into(),
+            tests: 2,
+            failing: 0,
+            seed: 0,
+            matrix: false,
+            models: false,
+            operators: Vec::new(),
+        };
+        let report = |fates: &[MutantFate]| {
+            let outcomes = fates.iter().map(|fate| outcome(*fate, Vec::new())).collect();
+            let sentinels = vec![outcome(MutantFate::NotDistinguished, Vec::new())];
+            MutationReport::new(about.clone(), &MutationPlan::default(), None, sentinels, outcomes)
+        };
+        let some = report(&[
+            MutantFate::Killed,
+            MutantFate::NotReached,
+            MutantFate::Survived,
+            MutantFate::Killed,
+            MutantFate::NotDistinguished,
+            MutantFate::Equivalent,
+        ]);
+        assert_eq!((some.score, some.interrupted), (Some(0.5), false));
+        assert_eq!(some.unmeasured().collect::<Vec<_>>(), ["robot.py"]);
+        let none = report(&[MutantFate::NotDistinguished, MutantFate::NotRun]);
+        assert_eq!((none.score, none.interrupted), (None, true));
+    }
+}
