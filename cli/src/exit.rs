@@ -7,11 +7,12 @@ pub enum CommandExit {
     /// All is well; there may be warnings that are not denied.
     Ok = 0,
     /// A scenario has errors, or warnings that are denied, a file is not formatted, one to import cannot be understood,
-    /// the agents of a run cannot go on, or a network that is searched is at fault.
+    /// the agents of a run cannot go on, a network that is searched is at fault, or too few mutants are noticed.
     Errors = 1,
     /// The command line is wrong, or a file cannot be read or written.
     Usage = 2,
-    /// A requirement was violated, a query is not satisfied, a test broke off, or a case of the conformance suite failed.
+    /// A requirement was violated, a query is not satisfied, a test broke off, a case of the conformance suite failed, or tests of mutants measure
+    /// nothing.
     Findings = 3,
     /// A requirement or query is inconclusive: the budget was used up first.
     Inconclusive = 4,
@@ -27,13 +28,14 @@ Exit codes:
   0  all is well
   1  a scenario has errors, or warnings that `check --deny` makes errors; `fmt --check`: a file would change;
      `import`: a file is no program, or `--strict` and something is left out; `inspect`, `run`: the agents cannot go
-     on (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault
+     on (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault; `mutate`: the score is below --min-score
   2  the command line is wrong, or a file cannot be read or written
   3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism, --repeat or
      --schedules found a difference;
-     `prove`: a requirement is violated, or a query is not satisfied; `conformance`: a case failed
+     `prove`: a requirement is violated, or a query is not satisfied; `conformance`: a case failed; `mutate`: the tests
+     measure nothing of a file, or do not repeat
   4  `prove`: something is inconclusive, since the budget was used up, and nothing else is wrong
-  5  `sim`: interrupted; the results are those of the tests that had ended
+  5  `sim`, `mutate`: interrupted; the results are those of the tests that had ended
   70 hrdsl itself is at fault: an internal error, which is worth a report";
 
 impl From<CommandExit> for ExitCode {

@@ -42,7 +42,20 @@ pub fn load_beside(
     tests: &[PathBuf],
     beside: &[&str],
 ) -> Result<CompilationResult, CommandFault> {
-    let text = read(scenario)?;
+    load_with(scenario, tests, beside, "")
+}
+
+/// The same, with more text at the end of the scenario.
+///
+/// # Errors
+/// The same.
+pub fn load_with(
+    scenario: &Path,
+    tests: &[PathBuf],
+    beside: &[&str],
+    more: &str,
+) -> Result<CompilationResult, CommandFault> {
+    let text = read(scenario)? + more;
     let name = scenario.display().to_string();
     let mut files = Vec::new();
     for path in tests {

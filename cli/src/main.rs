@@ -66,6 +66,7 @@ enum TopLevelCommand {
     Inspect(commands::inspect::InspectArgs),
     Judge(commands::judge::JudgeArgs),
     Man(commands::man::ManArgs),
+    Mutate(commands::mutate::MutateArgs),
     New(commands::new::NewArgs),
     Prove(commands::prove::ProveArgs),
     Report(commands::report::ReportArgs),
@@ -89,7 +90,7 @@ fn internal_error(fault: &InternalError) -> ExitCode {
 
 fn run() -> ExitCode {
     let mut args = std::env::args_os().skip(1);
-    if args.next().is_some_and(|word| word == commands::sim::SUPERVISE) {
+    if args.next().is_some_and(|word| word == commands::campaign::SUPERVISE) {
         return hrdsl_runtime::campaign::supervise(&args.collect::<Vec<_>>());
     }
     let choice = color::from_args(std::env::args_os());
@@ -111,6 +112,7 @@ fn run() -> ExitCode {
         TopLevelCommand::Inspect(args) => commands::inspect::run(&args),
         TopLevelCommand::Judge(args) => commands::judge::run(&args),
         TopLevelCommand::Man(args) => commands::man::run(&args, CommandLine::command()),
+        TopLevelCommand::Mutate(args) => commands::mutate::run(&args),
         TopLevelCommand::New(args) => commands::new::run(&args),
         TopLevelCommand::Prove(args) => commands::prove::run(&args),
         TopLevelCommand::Report(args) => commands::report::run(&args),

@@ -1,6 +1,7 @@
 //! One module for each command.
 
 pub mod calibrate;
+pub mod campaign;
 pub mod check;
 pub mod completions;
 pub mod conformance;
@@ -13,6 +14,7 @@ pub mod import;
 pub mod inspect;
 pub mod judge;
 pub mod man;
+pub mod mutate;
 pub mod new;
 pub mod prove;
 pub mod recorded;

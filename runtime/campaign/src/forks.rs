@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, btree_map::Entry};
 use hrdsl_ir::system::SystemProgram;
 use hrdsl_sut::{ForkServer, LaunchSpec, SutError, SutProcess};
 
-use super::{CampaignSetup, CampaignSystem};
+use super::CampaignSetup;
 
 /// How the interpreters of a campaign's programs are started: found out once, before its first test, so that it is the same for all
 /// tests, whichever worker runs them.
@@ -28,10 +28,7 @@ impl CampaignSetup<'_> {
     /// # Errors
     /// Only if what the programs need to know cannot be kept for them.
     pub fn plan_forks(&mut self, is_fresh: bool) -> Result<Vec<String>, String> {
-        let system = CampaignSystem {
-            declared: self.system,
-            middleware: self.middleware().map_err(|e| e.to_string())?,
-        };
+        let system = self.told_system()?;
         let mut complaints = Vec::new();
         let plan = |program: &SystemProgram| {
             let launch = self.launch(&system, program, 0, None);

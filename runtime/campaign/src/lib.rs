@@ -12,6 +12,7 @@ mod internal;
 mod log;
 mod output;
 mod replay;
+mod single;
 mod times;
 
 use std::{
@@ -41,8 +42,8 @@ use hrdsl_results::{
 };
 pub use hrdsl_sim::HullStore;
 pub use hrdsl_sut::{
-    CapturedOutput, CellSettings, HookedPackage, PreparationStep, ProcessorClocks, ProgramLimits, PythonEnv,
-    StopFlag,
+    CapturedOutput, CellSettings, CompiledMutants, HookedPackage, LaunchMutant, ListedMutant,
+    PreparationStep, ProcessorClocks, ProgramLimits, PythonEnv, StopFlag,
     cell::{CellIsolation, SupervisorCommand, supervise},
 };
 use hrdsl_sut::{EnvironmentNeeds, FinishedProcess, LaunchMiddleware, LaunchSpec, SutError};
@@ -59,6 +60,7 @@ pub use forks::ForkPlan;
 use forks::WorkerServers;
 pub use hulls::{FoundHulls, find_hulls};
 pub use internal::{InternalError, guarded, record_panics};
+pub use single::{SingleRun, SingleRunner};
 pub use times::CampaignTimes;
 use times::{CampaignStopwatch, TestTimes};
 
@@ -176,10 +178,7 @@ impl CampaignSetup<'_> {
         tests: &[Test],
         on_done: impl Fn(FinishedRun<'_>) -> Result<(), String> + Sync,
     ) -> Result<CampaignRun, String> {
-        let system = &CampaignSystem {
-            declared: self.system,
-            middleware: self.middleware().map_err(|e| e.to_string())?,
-        };
+        let system = &self.told_system()?;
         let next = AtomicUsize::new(0);
         let sum = CampaignStopwatch::start(self.clocks);
         let results: Mutex<Vec<Option<PortedTest>>> = Mutex::new(vec![None; tests.len()]);
@@ -337,6 +336,12 @@ impl CampaignSetup<'_> {
         TestAttempt { finished, recording, replay, output, fault, times: TestTimes::default() }
     }
 
+    /// The system with what its programs are told.
+    fn told_system(&self) -> Result<CampaignSystem<'_>, String> {
+        let middleware = self.middleware().map_err(|e| e.to_string())?;
+        Ok(CampaignSystem { declared: self.system, middleware, mutant: None })
+    }
+
     /// What programs find out about their middleware.
     fn middleware(&self) -> Result<Option<LaunchMiddleware>, SutError> {
         let Some(binding) = &self.system.binding else { return Ok(None) };
@@ -375,6 +380,7 @@ impl CampaignSetup<'_> {
             output_kept: OUTPUT_KEPT,
             keep: self.keep.as_ref().and_then(folder),
             stop: self.stop.clone(),
+            mutant: system.mutant.clone(),
         }
     }
 }
@@ -383,6 +389,8 @@ impl CampaignSetup<'_> {
 struct CampaignSystem<'a> {
     declared: &'a SystemUnderTest,
     middleware: Option<LaunchMiddleware>,
+    /// What is run in the place of one of their files.
+    mutant: Option<LaunchMutant>,
 }
 
 /// Python takes seeds of 32 bits.

@@ -79,6 +79,7 @@ fn launch(script: &str, coverage: bool) -> LaunchSpec {
         output_kept: 1 << 16,
         keep: None,
         stop: StopFlag::default(),
+        mutant: None,
     }
 }
 

@@ -37,7 +37,8 @@ const LONGEST: usize = 1 << 16;
 /// How much of a server's last words is told.
 const LAST_WORDS: usize = 2000;
 
-/// A fork server that runs, for the launches of one program, which differ in their seeds and in where they keep files.
+/// A fork server that runs, for the launches of one program, which differ in their seeds, in where they keep files and in what of the
+/// program is a mutant.
 #[derive(Debug)]
 pub struct ForkServer {
     /// In which the server runs.
@@ -120,7 +121,7 @@ impl ForkServer {
         let (stderr, its_stderr) = pipe_with(PipeFlags::CLOEXEC).map_err(io)?;
         let mut given = vec![its_control.as_fd(), its_stdout.as_fd(), its_stderr.as_fd()];
         given.extend(descriptors);
-        if let Err(e) = self.send(launch.seed, &given) {
+        if let Err(e) = self.send(launch, &given) {
             let (what, why) = ("a fork server".to_owned(), e.to_string());
             return Ok(Err(CellRefusal { absent: false, what, why }));
         }
@@ -129,8 +130,12 @@ impl ForkServer {
         Ok(CellHandle::of_fork(control, (stdout, stderr), &order, &kept))
     }
 
-    fn send(&self, seed: u64, descriptors: &[BorrowedFd<'_>]) -> Result<(), Errno> {
-        let text = serde_json::json!({ "seed": seed }).to_string();
+    fn send(&self, launch: &LaunchSpec, descriptors: &[BorrowedFd<'_>]) -> Result<(), Errno> {
+        let mut order = serde_json::json!({ "seed": launch.seed });
+        if let (Some(mutant), Some(order)) = (&launch.mutant, order.as_object_mut()) {
+            order.insert("mutant".to_owned(), mutant.words().into());
+        }
+        let text = order.to_string();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(8))];
         let mut rights = SendAncillaryBuffer::new(&mut space);
         rights.push(SendAncillaryMessage::ScmRights(descriptors));

@@ -16,6 +16,7 @@ use crate::{
     environment::{PythonEnv, word::is_python},
     error::{SutError, silence},
     limits::{ProgramLimits, StopFlag},
+    mutants::LaunchMutant,
     start,
 };
 
@@ -46,7 +47,12 @@ pub struct LaunchSpec {
     pub keep: Option<PathBuf>,
     /// Set when everything is to end.
     pub stop: StopFlag,
+    /// What is run in the place of one of its files of Python, if anything.
+    pub mutant: Option<LaunchMutant>,
 }
+
+/// The variable that tells the runner of a mutant.
+const MUTANT: &str = "HRDSL_MUTANT";
 
 /// A middleware whose client libraries the program finds, with what the scenario says of it.
 #[derive(Clone, Debug)]
@@ -129,7 +135,7 @@ impl LaunchSpec {
     /// The order for a fork server's cell, which finds the modules to import beforehand unless they are given.
     pub(crate) fn server_order(&self, preload: Option<&[String]>) -> Result<CellOrder, SutError> {
         let mut order = self.order(vec!["HRDSL_FORK_SERVER".to_owned()])?;
-        order.env.retain(|(name, _)| name != "HRDSL_SEED");
+        order.env.retain(|(name, _)| name != "HRDSL_SEED" && name != MUTANT);
         let workspaces = self.middleware.iter().flat_map(|m| m.modules.iter().cloned());
         let own: Vec<String> =
             [order.dir.to_string_lossy().into_owned()].into_iter().chain(workspaces).collect();
@@ -174,7 +180,8 @@ impl LaunchSpec {
             [("HRDSL_MIDDLEWARE", m.name.into()), ("HRDSL_BINDING", m.binding.clone().into_os_string())]
         });
         let bound = bound.map(|(name, value)| (name.into(), value));
-        given.chain(fixed).chain(bound).chain(self.variables.iter().cloned()).collect()
+        let mutant = self.mutant.iter().map(|mutant| (MUTANT.into(), mutant.words().into()));
+        given.chain(fixed).chain(bound).chain(self.variables.iter().cloned()).chain(mutant).collect()
     }
 
     fn kind(&self, word: &str) -> CommandKind<'_> {

@@ -8,7 +8,7 @@ It runs in a cell of its own, which can write nowhere. For each test
 4. the program waits until the cell is ready, gives up its rights, and begins.
 
 HRDSL_FORK_SERVER is the descriptor of a socket of packets. The server writes one when it is ready: `{"modules": [...]}`. An
-order is one packet, `{"seed": N}`, with the descriptors of the supervisor's connection, standard output, standard error,
+order is one packet, `{"seed": N}` and perhaps which mutant is run (`"mutant"`, see `hrdsl.mutated`), with the descriptors of the supervisor's connection, standard output, standard error,
 requests, replies, and coverage if it is measured. HRDSL_FORK_CELL is what the cell says of itself, and HRDSL_FORK_MODULES which
 modules are imported beforehand: both are JSON.
 """
@@ -105,8 +105,11 @@ def _attend(orders: Any, cell: dict[str, Any], rights: _Rights, link: Link) -> t
     os.close(go)
     _begin(ready, given, cell["folder"], rights)
     link.connect(_REQUESTS, _REPLIES)
-    seed = json.loads(text)["seed"]
+    order = json.loads(text)
+    seed = order["seed"]
     os.environ["HRDSL_SEED"] = str(seed)
+    if "mutant" in order:
+        os.environ["HRDSL_MUTANT"] = order["mutant"]
     if len(given) <= _COVERAGE - 1:
         return None, seed
     os.set_inheritable(_COVERAGE, False)

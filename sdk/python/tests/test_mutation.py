@@ -81,6 +81,14 @@ class Operators(unittest.TestCase):
             for mutant in mutants(source, only=[name]):
                 self.assertEqual(numbers[mutant.number], mutant.what)
 
+    def test_lines_are_those_of_the_statements_that_change(self):
+        source = "x = f(\n    1,\n    a < 2)\nrobot.open()\nrobot.go(\n    3)\ntry:\n    g()\nexcept E:\n    h()\n"
+        lines = {(m.operator, m.what): m.lines for m in mutants(source)}
+        self.assertEqual(lines["comparison", "< becomes <="], [1])
+        self.assertEqual(lines["reordered", "open is called after the next statement"], [4, 5])
+        self.assertEqual(lines["constant", "3 becomes 4"], [5])
+        self.assertEqual(lines["swallowed", "the exception is swallowed"], [9])
+
     def test_the_original_is_left_alone(self):
         source = "if a and b < 3:\n    robot.open()\n    robot.go(x)\n"
         tree = ast.parse(source)
@@ -167,6 +175,32 @@ class Command(unittest.TestCase):
         done = self.call("run", "part.py", "0", "--", "apart.py")
         self.assertEqual(done.stdout, "1\n")
         self.assertIn("the program did not import", done.stderr)
+
+    def test_compiled_mutants_take_the_place_of_their_file(self):
+        listed = json.loads(self.call("list", "part.py", "--operator", "arithmetic", "--json").stdout)["mutants"]
+        number = listed[0]["number"]
+        done = self.call("codes", "--to", self.folder, "--", "part.py", str(number), "0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        program = "import sys; from hrdsl.mutated import chosen; sys.meta_path.insert(0, chosen(sys.argv[1])); import part; print(part.size())"
+        for name, printed in ((str(number), "1\n"), ("original", "3\n"), ("0", "")):
+            words = json.dumps({"file": "part.py", "code": os.path.join(self.folder, name + ".code")})
+            env = {**os.environ, "PYTHONPATH": ROOT, "PYTHONDONTWRITEBYTECODE": "1"}
+            command = [sys.executable, "-c", program, words]
+            done = subprocess.run(command, cwd=self.folder, env=env, capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.stdout, printed, done.stderr)
+        self.assertIn("part.py", done.stderr, "tracebacks name the file")
+
+    def test_lists_are_kept_for_one_text(self):
+        first = self.call("list", "part.py", "--json", "--cache", self.folder).stdout
+        (kept,) = [name for name in os.listdir(self.folder) if name.endswith(".json")]
+        self.assertEqual(self.call("list", "part.py", "--json", "--cache", self.folder).stdout, first)
+        with open(os.path.join(self.folder, kept), encoding="utf-8") as file:
+            found = json.load(file)
+        self.write(kept, json.dumps(found[:1]))
+        self.assertIn("1 mutants", self.call("list", "part.py", "--cache", self.folder).stdout, "what is kept is used")
+        self.write("part.py", "def size():\n    return 2 - 1\n")
+        changed = self.call("list", "part.py", "--json", "--cache", self.folder).stdout
+        self.assertIn("- becomes +", changed)
 
     def test_bad_input_is_named(self):
         self.write("broken.py", "x = (\n")

@@ -20,7 +20,7 @@ use self::{
     case::ConformanceCase,
     compare::{CaseDifference, of_events, of_log, of_output, skipped},
 };
-use super::sim;
+use super::campaign;
 use crate::{exit::CommandExit, fault::CommandFault, files, input, installing::InstallProgress, terminal};
 
 /// So many of the last lines that a driver wrote on standard error are shown.
@@ -70,7 +70,7 @@ pub fn run(args: &ConformanceArgs) -> Result<CommandExit, CommandFault> {
         terminal::print(&lines.collect::<String>())?;
         return Ok(CommandExit::Ok);
     }
-    let stop = sim::stop_flag(false)?;
+    let stop = campaign::stop_flag(false)?;
     let mut suite = ConformanceRun::new(args, stop)?;
     let (mut passed, mut left_out, mut failed) = (0, 0, 0);
     for case in &cases {
@@ -134,7 +134,7 @@ impl<'a> ConformanceRun<'a> {
         if let Some(driver) = driver.filter(|driver| !dir.join(driver).is_file()) {
             return Err(format!("there is no driver {}", terminal::shown(driver.as_ref())));
         }
-        let supervisor = SupervisorCommand::this_program(sim::SUPERVISE);
+        let supervisor = SupervisorCommand::this_program(campaign::SUPERVISE);
         let cells = CellSettings::probe(supervisor, &dir, None).map_err(|e| e.to_string())?;
         Ok(Self { command: &args.command, dir, steps: ScriptFolder::new()?, cells, env: None, stop })
     }
@@ -188,7 +188,7 @@ impl<'a> ConformanceRun<'a> {
             return Ok(env.clone());
         }
         let console = InstallProgress::default();
-        let env = prepare(system, &self.dir, &sim::cache()?, &|step| console.show(step));
+        let env = prepare(system, &self.dir, &campaign::cache()?, &|step| console.show(step));
         let env = env.map_err(|e| e.to_string())?;
         self.env = Some(env.clone());
         Ok(env)

@@ -14,8 +14,8 @@ use hrdsl_runtime::{
     results::TestResult,
 };
 
-use super::run::{output_text, progress_bar, recording};
-use crate::{fault::CommandFault, files};
+use super::run::{output_text, recording};
+use crate::{commands::campaign::progress_bar, fault::CommandFault, files};
 
 /// Differences that are listed, at most.
 const LISTED: usize = 20;
@@ -43,7 +43,7 @@ pub fn compare(
     let known: BTreeMap<String, String> =
         outcome.tests.iter().map(|test| (test.result.name.to_string(), result_text(&test.result))).collect();
     let backwards: Vec<Test> = tests.iter().rev().cloned().collect();
-    let bar = progress_bar(tests.len() * (runs as usize).saturating_sub(1));
+    let bar = progress_bar(tests.len() * (runs as usize).saturating_sub(1), "tests");
     bar.set_message("again, to compare");
     let found: Mutex<FoundDifferences> = Mutex::default();
     // Further runs keep no files: those of the first are the results.

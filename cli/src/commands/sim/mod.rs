@@ -1,7 +1,6 @@
 //! `hrdsl sim`: the tests against the code under test, and the reports.
 
 mod choices;
-mod chosen_system;
 mod determinism;
 mod rerun;
 mod run;
@@ -15,47 +14,31 @@ use std::{
     time::{Duration, Instant},
 };
 
-use hrdsl_ir::{Nanos, Program, system::SystemUnderTest, test::Test};
+use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_runtime::{
-    campaign::{
-        CampaignRun, CampaignSetup, CampaignTimes, CellIsolation, CellSettings, ForkPlan, ProcessorClocks,
-        ProgramLimits, StopFlag, SupervisorCommand, find_hulls, prepare,
-    },
+    campaign::{CampaignRun, CampaignSetup, CampaignTimes, CellIsolation, ProcessorClocks, ProgramLimits},
     judge::tally,
     report,
     results::{CampaignResults, GeneratedSuite},
-    testgen::generate,
 };
 use serde::Serialize;
 
-use choices::{IsolationArg, ReplaysArg};
-use chosen_system::{chosen_system, system_file};
+use choices::ReplaysArg;
 
 use super::{
-    generate::{chosen, describe, save},
+    campaign::{CampaignArgs, chosen_system, generate_suites, selected, stop_flag, system_file},
+    generate::{describe, save},
     shown,
 };
 use crate::{
-    color, covered_files,
-    exit::CommandExit,
-    fault::CommandFault,
-    files,
-    hulls::HullFolder,
-    input,
-    installing::InstallProgress,
-    observation::{ObservationArgs, locate},
-    quantity,
-    results_folder::ResultsFolder,
-    terminal,
+    color, covered_files, exit::CommandExit, fault::CommandFault, files, input, observation::locate,
+    results_folder::ResultsFolder, terminal,
 };
 
 /// What `sim` writes into its folder, the reports last.
 const NAMES: [&str; 9] =
     ["tests", "traces", "replays", "output", "files", "run.json", "results.json", "junit.xml", "report.html"];
 const REPORTS: [&str; 4] = ["run.json", "results.json", "junit.xml", "report.html"];
-
-/// The argument that makes this program the supervisor of a cell.
-pub const SUPERVISE: &str = "supervise-cell";
 
 /// Run tests against the code under test in simulation, and report.
 ///
@@ -66,28 +49,8 @@ pub const SUPERVISE: &str = "supervise-cell";
     after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --replays all\n  hrdsl sim scenario.hri --system with_rospy/system.hri\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --suite ta_tests -n 4 --repeat 100\n  hrdsl sim scenario.hri --schedules 20"
 )]
 pub struct SimArgs {
-    /// The scenario.
-    file: PathBuf,
-    /// Files or folders of tests; without, the scenario's suites are generated.
-    tests: Vec<PathBuf>,
-    /// Only this suite; may be given several times.
-    #[arg(long, value_name = "NAME")]
-    suite: Vec<String>,
-    /// Only this test, as `SUITE.tNNN`; may be given several times.
-    #[arg(long, value_name = "NAME")]
-    test: Vec<String>,
-    /// Which of the scenario's systems is tested, or a file with another one; by default the first.
-    #[arg(long, value_name = "NAME|FILE")]
-    system: Option<String>,
-    /// How many concrete tests of each suite, instead of what the suite says.
-    #[arg(short = 'n', long, value_name = "N")]
-    count: Option<u32>,
-    /// Tests that run at once; by default as many as there are cores.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    jobs: Option<u16>,
-    /// Everything random comes from this.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
+    #[command(flatten)]
+    campaign: CampaignArgs,
     /// The folder for the results [default: hrdsl-out/SCENARIO].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -118,45 +81,25 @@ pub struct SimArgs {
     /// Let `breakpoint()` in the program under test have the terminal; of one test, named by --test.
     #[arg(long, requires = "test", conflicts_with_all = ["check_determinism", "jobs"])]
     debug: bool,
-    /// Start the program's interpreter anew for each test, instead of once for each worker; the results are the same.
-    #[arg(long)]
-    no_fork: bool,
-    /// How tests are kept apart [default: namespaces where the system allows them, otherwise copies].
-    #[arg(long, value_enum, value_name = "HOW")]
-    isolation: Option<IsolationArg>,
-    /// Processor time that the program may use in a test, as `90s` or `5min`, instead of what the scenario says.
-    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
-    cpu_limit: Option<Duration>,
-    /// Wall time after which a test is given up.
-    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
-    wall_limit: Option<Duration>,
-    /// Memory that each process of the program may use, as `500MB` or `2GB`.
-    #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
-    memory_limit: Option<u64>,
-    /// Output that the program may write in a test.
-    #[arg(long, value_name = "SIZE", value_parser = quantity::data)]
-    output_limit: Option<u64>,
-    #[command(flatten)]
-    observation: ObservationArgs,
 }
 
 /// # Errors
 /// A file, a suite or test that does not exist, a folder whose files would be lost, a model that cannot be run, or what the
 /// code needs cannot be installed.
 pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
-    let beside = system_file(args)?;
+    let beside = system_file(&args.campaign)?;
     let beside: Vec<&str> = beside.as_deref().into_iter().collect();
-    let compilation = input::load_beside(&args.file, &args.tests, &beside)?;
-    let Some(program) = input::report_errors(&args.file, &compilation) else {
+    let compilation = input::load_beside(&args.campaign.file, &args.campaign.tests, &beside)?;
+    let Some(program) = input::report_errors(&args.campaign.file, &compilation) else {
         return Ok(CommandExit::Errors);
     };
-    let system = chosen_system(program, args.system.as_deref())?;
-    let system = &covered_files::named(system, &files::folder(&args.file));
+    let system = chosen_system(program, args.campaign.system.as_deref())?;
+    let system = &covered_files::named(system, &files::folder(&args.campaign.file));
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
     let folder = ResultsFolder::open(&out, &NAMES)?;
 
-    let generated = generate_suites(args, program, &folder.staging())?;
-    let tests = selected(args, program, &generated)?;
+    let generated = generate_suites(&args.campaign, program, &|made| keep_suite(program, &folder, made))?;
+    let tests = selected(&args.campaign, program, &generated)?;
     if args.debug && tests.len() != 1 {
         return Err(format!("--debug runs one test, and {} are chosen; name one with --test", tests.len()));
     }
@@ -181,7 +124,8 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let sources =
         system.coverage().into_iter().filter_map(|f| files::read(&dir.join(&f)).ok().map(|text| (f, text)));
     let sources = sources.collect::<BTreeMap<_, _>>();
-    let mut results = tally(program, args.seed, &generated, outcome, &sources, rerun::words(args, &out));
+    let mut results =
+        tally(program, args.campaign.seed, &generated, outcome, &sources, rerun::words(args, &out));
     locate(&mut results, &compilation);
     (results.view, results.unreplayed) = (rerun::view_of_results(args, &out), unreplayed);
     publish(&results, &campaign, (args, times.as_ref()), folder)?;
@@ -206,7 +150,17 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     })
 }
 
-/// Installs what the code needs, and finds out how its tests can be kept apart.
+/// Writes the tests of a suite, and says what they are.
+fn keep_suite(
+    program: &Program,
+    folder: &ResultsFolder,
+    generated: &GeneratedSuite,
+) -> Result<(), CommandFault> {
+    save(&folder.staging().join("tests"), program, generated)?;
+    terminal::print(&describe(generated))
+}
+
+/// Makes the campaign ready.
 fn prepared<'p>(
     args: &SimArgs,
     program: &'p Program,
@@ -215,49 +169,24 @@ fn prepared<'p>(
     out: &Path,
     folder: &ResultsFolder,
 ) -> Result<CampaignSetup<'p>, CommandFault> {
-    let dir = files::folder(&args.file);
-    let console = InstallProgress::default();
-    let cache = cache()?;
-    let env = prepare(system, &dir, &cache, &|step| console.show(step)).map_err(|e| e.to_string())?;
-    find_hulls(program, &HullFolder { folder: cache.join("hulls") });
-    let wanted = args.isolation.map(|how| match how {
-        IsolationArg::Namespaces => CellIsolation::Namespaces,
-        IsolationArg::Copies => CellIsolation::Copies,
-    });
-    let mut cells = CellSettings::probe(SupervisorCommand::this_program(SUPERVISE), &dir, wanted)
-        .map_err(|e| e.to_string())?;
-    cells.hidden = hidden(&dir, out, folder);
-    cells.terminal = args.debug;
-    cells.network = system.online;
-    for gap in &cells.gaps {
-        terminal::say_line(format_args!("note: {gap}"));
-    }
-    for complaint in env.analyse(&dir, &system.coverage()).map_err(|e| e.to_string())? {
-        terminal::say_line(format_args!("warning: {}", complaint.trim_start_matches("hrdsl: ")));
-    }
+    let hidden = hidden(&files::folder(&args.campaign.file), out, folder);
+    let campaign = args.campaign.setup(program, system, interfaces, hidden, stop_flag(args.debug)?)?;
     let mut campaign = CampaignSetup {
-        program,
-        system,
-        interfaces,
-        dir,
-        env,
-        seed: args.seed,
-        cells,
-        limits: limits(args, system),
-        variables: variables(args, system),
+        variables: variables(args, campaign.variables.clone()),
         keep: args.keep_files.then(|| folder.staging().join("files")).map(absolute).transpose()?,
-        jobs: if args.debug { 1 } else { args.jobs.map_or_else(cores, usize::from) },
-        forks: ForkPlan::default(),
-        stop: stop_flag(args.debug)?,
-        conformance: args.observation.options(program)?,
         replays: args.replays != ReplaysArg::None,
         clocks: args.timings.then_some(ProcessorClocks::SYSTEM),
+        ..campaign
     };
-    for complaint in campaign.plan_forks(args.no_fork)? {
-        terminal::say_line(format_args!(
-            "note: the program is started anew for each test, which takes longer: {complaint}"
-        ));
+    if args.debug {
+        // Whoever debugs takes the time that it takes.
+        let for_ever = Duration::from_secs(u64::from(u32::MAX));
+        let limits = ProgramLimits::default();
+        campaign.limits = ProgramLimits { budget: for_ever, cpu: for_ever, wall: for_ever, ..limits };
+        campaign.cells.terminal = true;
+        campaign.jobs = 1;
     }
+    args.campaign.plan_forks(&mut campaign)?;
     Ok(campaign)
 }
 
@@ -276,9 +205,7 @@ fn hidden(project: &Path, out: &Path, folder: &ResultsFolder) -> Vec<PathBuf> {
 }
 
 /// What the program finds in its environment besides what every program does.
-fn variables(args: &SimArgs, system: &SystemUnderTest) -> Vec<(OsString, OsString)> {
-    let given = |name: &String| Some((name.into(), std::env::var_os(name)?));
-    let mut variables: Vec<_> = system.env.iter().filter_map(given).collect();
+fn variables(args: &SimArgs, mut variables: Vec<(OsString, OsString)>) -> Vec<(OsString, OsString)> {
     if let Some(schedule) = args.schedule {
         variables.retain(|(name, _)| name != schedules::VARIABLE);
         variables.push((schedules::VARIABLE.into(), schedule.to_string().into()));
@@ -290,128 +217,8 @@ fn variables(args: &SimArgs, system: &SystemUnderTest) -> Vec<(OsString, OsStrin
     variables
 }
 
-fn limits(args: &SimArgs, system: &SystemUnderTest) -> ProgramLimits {
-    let default = ProgramLimits::default();
-    if args.debug {
-        // Whoever debugs takes the time that it takes.
-        let for_ever = Duration::from_secs(u64::from(u32::MAX));
-        return ProgramLimits { budget: for_ever, cpu: for_ever, wall: for_ever, ..default };
-    }
-    let declared = |time: Option<Nanos>| time.map(|t| Duration::from_nanos(t.max(0).unsigned_abs()));
-    ProgramLimits {
-        budget: declared(Some(system.budget)).unwrap_or(default.budget),
-        cpu: args.cpu_limit.or(declared(system.cpu)).unwrap_or(default.cpu),
-        wall: args.wall_limit.or(declared(system.wall)).unwrap_or(default.wall),
-        memory: args.memory_limit.or(system.memory).unwrap_or(default.memory),
-        output: args.output_limit.or(system.output).unwrap_or(default.output),
-    }
-}
-
-/// Set by an interrupt or a request to terminate; at the second, the program ends at once. While somebody debugs,
-/// interrupts are for the debugger.
-pub(super) fn stop_flag(debug: bool) -> Result<StopFlag, CommandFault> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-
-    let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
-    if debug {
-        let unheard = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
-        signal_hook::flag::register(SIGINT, unheard)
-            .map_err(|e| format!("cannot listen for interrupts: {e}"))?;
-    }
-    for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|s| !debug || *s != SIGINT) {
-        let registered = signal_hook::flag::register_conditional_shutdown(
-            signal,
-            CommandExit::Interrupted as i32,
-            flag.clone(),
-        )
-        .and_then(|_| signal_hook::flag::register(signal, flag.clone()));
-        registered.map_err(|e| format!("cannot listen for interrupts: {e}"))?;
-    }
-    Ok(StopFlag::from_shared(flag))
-}
-
 fn absolute(path: PathBuf) -> Result<PathBuf, CommandFault> {
     std::path::absolute(&path).map_err(|e| format!("cannot find {}: {e}", terminal::shown(&path)))
-}
-
-/// Generates the suites, unless tests were given.
-fn generate_suites(
-    args: &SimArgs,
-    program: &Program,
-    to: &Path,
-) -> Result<Vec<GeneratedSuite>, CommandFault> {
-    if !args.tests.is_empty() {
-        return Ok(Vec::new());
-    }
-    let mut all = Vec::new();
-    for suite in chosen(program, &args.suite)? {
-        let is_of_suite = |name: &String| {
-            short(program, name).strip_prefix(&suite.name).is_some_and(|r| r.starts_with('.'))
-        };
-        if !args.test.is_empty() && !args.test.iter().any(is_of_suite) {
-            continue;
-        }
-        let generated = generate(program, suite, args.count, args.seed)?;
-        save(&to.join("tests"), program, &generated)?;
-        terminal::print(&describe(&generated))?;
-        all.push(generated);
-    }
-    Ok(all)
-}
-
-/// The tests to run, in order.
-fn selected(
-    args: &SimArgs,
-    program: &Program,
-    generated: &[GeneratedSuite],
-) -> Result<Vec<Test>, CommandFault> {
-    let mut tests: Vec<Test> = if args.tests.is_empty() {
-        generated.iter().flat_map(|g| g.tests.clone()).collect()
-    } else {
-        let wanted = |t: &&Test| args.suite.is_empty() || args.suite.contains(&t.provenance.suite);
-        program
-            .tests
-            .iter()
-            .filter(wanted)
-            .take(args.count.map_or(usize::MAX, |n| n as usize))
-            .cloned()
-            .collect()
-    };
-    let is_called = |test: &Test, name: &String| short(program, &test.name) == short(program, name);
-    for name in &args.test {
-        if !tests.iter().any(|t| is_called(t, name)) {
-            let known: Vec<&str> = tests.iter().take(3).map(|t| short(program, &t.name)).collect();
-            let known = if known.is_empty() {
-                String::new()
-            } else {
-                format!("; there are {}, …", known.join(", "))
-            };
-            return Err(format!("no test is called `{name}`{known}"));
-        }
-    }
-    tests.retain(|t| args.test.is_empty() || args.test.iter().any(|name| is_called(t, name)));
-    if tests.is_empty() {
-        return Err("there is no test to run".to_owned());
-    }
-    Ok(tests)
-}
-
-/// The name of a test without that of its scenario.
-fn short<'n>(program: &Program, name: &'n str) -> &'n str {
-    name.strip_prefix(&program.name).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name)
-}
-
-fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
-}
-
-/// Where Python packages are kept: `$HRDSL_CACHE`, else the user's cache folder.
-pub(super) fn cache() -> Result<PathBuf, CommandFault> {
-    let var = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
-    var("HRDSL_CACHE")
-        .or_else(|| var("XDG_CACHE_HOME").map(|c| c.join("hrdsl")))
-        .or_else(|| var("HOME").map(|h| h.join(".cache/hrdsl")))
-        .ok_or_else(|| "no folder for the cache: set HRDSL_CACHE".to_owned())
 }
 
 /// On what a campaign ran: the one file of the results that differs between machines and versions.

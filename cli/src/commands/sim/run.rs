@@ -13,25 +13,15 @@ use hrdsl_runtime::{
     campaign::{CampaignRun, CampaignSetup, FinishedRun, ProgramOutput},
     results::UnreplayedTest,
 };
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
-use crate::{fault::CommandFault, files, results_folder, terminal};
+use crate::{commands::campaign::progress_bar, fault::CommandFault, files, results_folder, terminal};
 
 /// What has come in so far.
 #[derive(Default)]
 struct CampaignProgress {
     violating: u32,
     errors: u32,
-}
-
-/// A bar for so many tests.
-pub fn progress_bar(tests: usize) -> ProgressBar {
-    let bar = ProgressBar::new(tests as u64);
-    let template = "{bar:32} {pos}/{len} tests  {elapsed} (about {eta} left)  {msg}";
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style);
-    }
-    bar
 }
 
 /// What came of the tests, and which of them cannot be looked at although they should be.
@@ -48,7 +38,7 @@ pub fn execute(
     to: &Path,
     quiet: bool,
 ) -> Result<ExecutedTests, CommandFault> {
-    let bar = if quiet { ProgressBar::hidden() } else { progress_bar(tests.len()) };
+    let bar = if quiet { ProgressBar::hidden() } else { progress_bar(tests.len(), "tests") };
     let progress = Mutex::new(CampaignProgress::default());
     let unreplayed: Mutex<BTreeMap<usize, UnreplayedTest>> = Mutex::default();
     let run = campaign.run(tests, |done| {

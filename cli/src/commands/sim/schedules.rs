@@ -13,8 +13,7 @@ use hrdsl_runtime::{
     results::{TestResult, VerdictOutcome},
 };
 
-use super::run::progress_bar;
-use crate::fault::CommandFault;
+use crate::{commands::campaign::progress_bar, fault::CommandFault};
 
 /// Findings that are listed, at most.
 const LISTED: usize = 20;
@@ -66,7 +65,7 @@ pub fn compare(
 ) -> Result<ScheduleDifferences, CommandFault> {
     let known: BTreeMap<String, TestVerdicts> =
         first.tests.iter().map(|t| (t.result.name.to_string(), TestVerdicts::of(&t.result))).collect();
-    let bar = progress_bar(tests.len() * schedules as usize);
+    let bar = progress_bar(tests.len() * schedules as usize, "tests");
     bar.set_message("in other orders of the threads");
     let found: Mutex<BTreeMap<String, (u32, String)>> = Mutex::default();
     let mut ran = 0;

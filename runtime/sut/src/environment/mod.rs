@@ -19,6 +19,7 @@ pub(crate) mod word;
 use std::{
     fs,
     path::{Path, PathBuf},
+    process::Output,
 };
 
 use cache::{CachePart, EnvironmentCache, MakingPart, PreparationListener};
@@ -60,6 +61,8 @@ pub struct PythonEnv {
     pub(crate) analyses: PathBuf,
     /// The folder for texts that programs read: what is bound to their middleware.
     texts: PathBuf,
+    /// The folder for lists of mutants, and for those that are run.
+    pub(crate) mutants: PathBuf,
     /// Where modules are searched for, after the standard library.
     pub(crate) path: Vec<String>,
 }
@@ -99,6 +102,7 @@ impl PythonEnv {
         let coverage = coverage(&cache, &probe)?;
         let analyses = cache.folder("analyses")?;
         let texts = cache.folder("bindings")?;
+        let mutants = cache.folder("mutants")?;
         let list = needs.requirements.map(std::path::absolute).transpose();
         let list = list.map_err(SutError::io("cannot find the requirements"))?;
         let requirements = list.map(|list| PipRequirements::read(&list, &variable)).transpose()?;
@@ -118,6 +122,7 @@ impl PythonEnv {
             coverage,
             analyses,
             texts,
+            mutants,
             path,
         })
     }
@@ -142,6 +147,13 @@ impl PythonEnv {
         command.arg("--package").arg(&self.coverage).arg("--cache").arg(&self.analyses).args(files);
         let output = command.current_dir(dir).output().map_err(SutError::io("cannot start Python"))?;
         Ok(String::from_utf8_lossy(&output.stderr).lines().map(str::to_owned).collect())
+    }
+
+    /// What a script of the SDK says that is started with these words in a folder; the script is a path below the package `hrdsl`.
+    pub(crate) fn ask_script(&self, script: &str, words: &[PathBuf], dir: &Path) -> Result<Output, SutError> {
+        let mut command = install::command(&self.python);
+        command.args(["-S", "-E", "-B"]).arg(self.sdk.join("hrdsl").join(script)).args(words);
+        install::run(command.current_dir(dir))
     }
 
     /// Keeps a text for programs to read, in a file that is called by what is in it.

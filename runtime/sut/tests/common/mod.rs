@@ -48,6 +48,7 @@ pub fn launch(words: &[&str]) -> LaunchSpec {
         output_kept: 1 << 16,
         keep: None,
         stop: StopFlag::default(),
+        mutant: None,
     }
 }
 

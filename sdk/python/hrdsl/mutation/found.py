@@ -7,7 +7,7 @@ import difflib
 import types
 
 from hrdsl.mutation import robots, usual
-from hrdsl.mutation.mutant import Edit, Mutant, applied, walk
+from hrdsl.mutation.mutant import Edit, Mutant, applied, changed_lines, walk
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
@@ -27,20 +27,29 @@ def operators() -> list[str]:
     return [*usual.OPERATORS, *robots.OPERATORS, *robots.WIDER]
 
 
-def mutants(source: str, file: str = "<source>", only: Iterable[str] = ()) -> list[Mutant]:
-    """All mutants of a source, or those of some operators, each marked if it is not worth a run.
-
-    Raises `SyntaxError` if the source has one, and `UnknownOperator`."""
-    wanted = list(only)
-    for name in wanted:
+def check_operators(names: Iterable[str]) -> None:
+    """Raises `UnknownOperator` with the nearest name if one of them is none."""
+    for name in names:
         if name not in operators():
             near = difflib.get_close_matches(name, operators(), 1)
             hint = "did you mean `%s`?" % near[0] if near else "there are: %s" % ", ".join(operators())
             raise UnknownOperator("no operator is named `%s`; %s" % (name, hint))
+
+
+def mutants(source: str, file: str = "<source>", only: Iterable[str] = (), marked: bool = True) -> list[Mutant]:
+    """All mutants of a source, or those of some operators; `marked`: each is marked if it is not worth a run, which takes a
+    compilation of each.
+
+    Raises `SyntaxError` if the source has one, and `UnknownOperator`."""
+    wanted = list(only)
+    check_operators(wanted)
     tree = ast.parse(source, file)
     changes = sorted(_changes(tree), key=lambda change: change[1])
     found = [Mutant(number, operator, line, what, edits) for number, (operator, line, what, edits) in enumerate(changes, 1)]
-    _mark(tree, file, found)
+    for mutant in found:
+        mutant.lines = sorted({line for edit in mutant.edits for line in changed_lines(tree, edit)}) or [mutant.line]
+    if marked:
+        _mark(tree, file, found)
     return [mutant for mutant in found if not wanted or mutant.operator in wanted]
 
 

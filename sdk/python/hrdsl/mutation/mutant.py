@@ -29,6 +29,8 @@ class Mutant:
         self.number = number
         self.operator = operator
         self.line = line
+        #: Where the statements begin that it changes: a run that executes none of these lines cannot differ.
+        self.lines = [line]
         self.what = what
         self.edits = edits
         #: "equivalent" to the original, "duplicate" of an earlier mutant, "invalid" if it does not compile, or "".
@@ -59,6 +61,21 @@ def _replaced(node: Any, path: Path, edit: Edit) -> Any:
         items[index : index + edit.count] = edit.nodes
     setattr(changed, field, items)
     return changed
+
+
+def changed_lines(tree: ast.Module, edit: Edit) -> list[int]:
+    """Where the statements (or handlers of exceptions) begin that an edit changes."""
+    node: Any = tree
+    line = 0
+    siblings: list[Any] = []
+    for field, index in edit.path:
+        value = getattr(node, field)
+        siblings = [] if index is None else value[index : index + edit.count]
+        node = value if index is None else value[index]
+        if isinstance(node, (ast.stmt, ast.excepthandler)):
+            line = node.lineno
+    wider = [item.lineno for item in siblings if isinstance(item, ast.stmt)]
+    return wider or ([line] if line else [])
 
 
 def walk(node: ast.AST, path: Path = ()) -> Iterator[tuple[Path, ast.AST]]:

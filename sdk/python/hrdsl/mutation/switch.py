@@ -3,51 +3,37 @@
 from __future__ import annotations
 
 import atexit
-import importlib.abc
-import importlib.util
+import marshal
 import os
 import runpy
 import sys
 import types
 
+from hrdsl.mutated import Switch
 from hrdsl.mutation.found import code, mutants
 
 TYPE_CHECKING = False  # as type checkers read it; importing `typing` takes long
 if TYPE_CHECKING:
-    from typing import Callable, Sequence
+    from typing import Callable, Iterable
 
 
 #: The number of the mutant that raises at once: tests that do not notice it measure nothing.
 SENTINEL = 0
 
 
-class Switch(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Gives the mutated code for the module that is in the file."""
+def codes(file: str, numbers: Iterable[int], to: str) -> None:
+    """Compiles mutants of a file, each to `NUMBER.code` in the folder `to`, as `hrdsl.mutated` reads them; and the file as it is, to
+    `original.code`.
 
-    def __init__(self, file: str, compiled: types.CodeType) -> None:
-        self.file = os.path.realpath(file)
-        self.compiled = compiled
-        self.is_used = False
-
-    def find_spec(self, name: str, path: Sequence[str] | None, target: types.ModuleType | None = None) -> object:
-        stem, _ = os.path.splitext(os.path.basename(self.file))
-        last = name.rpartition(".")[2]
-        is_package = stem == "__init__"
-        if last != (os.path.basename(os.path.dirname(self.file)) if is_package else stem):
-            return None
-        inner = os.path.join(last, "__init__.py") if is_package else stem + ".py"
-        for folder in sys.path if path is None else path:
-            if os.path.realpath(os.path.join(folder or ".", inner)) == self.file:
-                inside = [os.path.dirname(self.file)] if is_package else None
-                return importlib.util.spec_from_file_location(name, self.file, loader=self, submodule_search_locations=inside)
-        return None
-
-    def create_module(self, spec: object) -> None:
-        return None
-
-    def exec_module(self, module: types.ModuleType) -> None:
-        self.is_used = True
-        exec(self.compiled, module.__dict__)  # the program's own code
+    Raises `OSError`, `SyntaxError`, and `LookupError` if there is no such mutant."""
+    with open(file, encoding="utf-8") as source:
+        text = source.read()
+    found = {mutant.number: mutant for mutant in mutants(text, file, marked=False)}
+    compiled = {str(number): _compiled(text, file, number, found) for number in numbers}
+    compiled["original"] = compile(text, file, "exec", dont_inherit=True)
+    for name, each in compiled.items():
+        with open(os.path.join(to, name + ".code"), "wb") as out:
+            out.write(marshal.dumps(each))
 
 
 def switched(file: str, number: int, program: list[str]) -> Callable[[], None]:
@@ -57,14 +43,17 @@ def switched(file: str, number: int, program: list[str]) -> Callable[[], None]:
     Raises `OSError`, `SyntaxError`, and `LookupError` if there is no such mutant."""
     with open(file, encoding="utf-8") as source:
         text = source.read()
-    if number == SENTINEL:
-        compiled = compile("raise RuntimeError('the sentinel mutant ends at once')", file, "exec")
-    else:
-        found = {mutant.number: mutant for mutant in mutants(text, file)}
-        if number not in found:
-            raise LookupError("%s has mutants 1 to %d, not %d; `list` shows them" % (file, len(found), number))
-        compiled = code(text, file, found[number])
+    found = {} if number == SENTINEL else {mutant.number: mutant for mutant in mutants(text, file, marked=False)}
+    compiled = _compiled(text, file, number, found)
     return lambda: _run(file, compiled, program)
+
+
+def _compiled(text: str, file: str, number: int, found: dict[int, object]) -> types.CodeType:
+    if number == SENTINEL:
+        return compile("raise RuntimeError('the sentinel mutant ends at once')", file, "exec")
+    if number not in found:
+        raise LookupError("%s has mutants 1 to %d, not %d; `list` shows them" % (file, len(found), number))
+    return code(text, file, found[number])  # type: ignore[arg-type]
 
 
 def _run(file: str, compiled: types.CodeType, program: list[str]) -> None:
@@ -72,7 +61,7 @@ def _run(file: str, compiled: types.CodeType, program: list[str]) -> None:
     sys.path[0] = os.path.dirname(os.path.abspath(program[0]))
     if os.path.realpath(program[0]) != os.path.realpath(file):
         switch = Switch(file, compiled)
-        sys.meta_path.insert(0, switch)
+        sys.meta_path.insert(0, switch)  # type: ignore[arg-type]
         atexit.register(_say_if_unused, switch)
         runpy.run_path(program[0], run_name="__main__")
         return

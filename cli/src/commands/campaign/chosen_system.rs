@@ -4,11 +4,11 @@ use std::path::Path;
 
 use hrdsl_ir::{Program, system::SystemUnderTest};
 
-use super::SimArgs;
+use super::CampaignArgs;
 use crate::{fault::CommandFault, files, terminal};
 
 /// The file of `--system FILE`, seen from the scenario's folder.
-pub fn system_file(args: &SimArgs) -> Result<Option<String>, CommandFault> {
+pub fn system_file(args: &CampaignArgs) -> Result<Option<String>, CommandFault> {
     let Some(file) = args.system.as_deref().filter(|name| is_file_name(name)) else { return Ok(None) };
     let path = Path::new(file);
     if !path.is_file() {

@@ -1,0 +1,250 @@
+//! `hrdsl mutate`: small tests of a small program, and what they notice of its mutants.
+
+#![allow(clippy::disallowed_methods, reason = "tests read what the command wrote")]
+
+mod support;
+
+use std::{
+    fs,
+    io::{BufRead as _, BufReader},
+    path::Path,
+    process::{Command, Output, Stdio},
+    time::Duration,
+};
+
+use serde_json::{Value, json};
+use support::{command, expect_code, root, stderr, stdout};
+
+/// A copy of the scenario, so that nothing is left in the sources.
+fn project() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["scenario.hri", "tests.hri", "robot.py", "elsewhere.py"] {
+        fs::copy(root().join("cli/tests/mutate").join(name), folder.path().join(name)).unwrap();
+    }
+    folder
+}
+
+fn mutate(folder: &Path, line: &str) -> Output {
+    let mut command = command();
+    command.args(["mutate", "scenario.hri"]).args(line.split_whitespace());
+    command.current_dir(folder).output().unwrap()
+}
+
+fn report(out: &Output) -> Value {
+    serde_json::from_str(&stdout(out)).unwrap_or_else(|e| panic!("{e}: {}", stderr(out)))
+}
+
+/// The mutant of a line with this change.
+fn mutant<'r>(report: &'r Value, line: u64, what: &str) -> &'r Value {
+    let all = report["mutants"].as_array().unwrap();
+    let found = all.iter().find(|m| m["line"] == line && m["what"] == what);
+    found.unwrap_or_else(|| panic!("no mutant of line {line}: {what}"))
+}
+
+#[test]
+fn each_fate_is_told_and_what_would_notice_a_survivor() {
+    let folder = project();
+    let before = fs::read(folder.path().join("robot.py")).unwrap();
+    let out = mutate(folder.path(), "tests.hri -j 2 --json -o out");
+    expect_code(&out, 0);
+    assert!(stderr(&out).contains("30 mutants to run, at most 60 runs"), "{}", stderr(&out));
+    let found = report(&out);
+    let sentinel = &found["sentinels"][0];
+    assert_eq!((&sentinel["fate"], &sentinel["ran"]), (&json!("killed"), &json!(1)));
+    assert!(sentinel["noticed"][0]["error"].as_str().unwrap().ends_with("the sentinel mutant ends at once"));
+
+    let killed = mutant(&found, 23, "emit is not called");
+    assert_eq!(killed["fate"], "killed");
+    assert_eq!(killed["noticed"], json!([{ "test": "lamp.once", "oracles": ["requirement R1"] }]));
+    assert_eq!((&killed["reached"], &killed["ran"]), (&json!(2), &json!(1)), "until the first kill");
+
+    let late = mutant(&found, 5, "the time is doubled");
+    assert_eq!(late["fate"], "survived");
+    let difference = &late["difference"];
+    assert_eq!((&difference["test"], &difference["time"]), (&json!("lamp.once"), &json!(0.5)));
+    assert_eq!(difference["original"], "robot lit at 0.500 s");
+    assert_eq!(difference["mutant"], "robot lit at 1.000 s");
+    assert_eq!(late["proposals"][0]["pattern"], "asked causes lit within 0.6 s");
+    let early = mutant(&found, 5, "the time is halved");
+    assert_eq!(early["proposals"][0]["pattern"], "asked causes lit not before 0.4 s within 0.6 s");
+    let twice = mutant(&found, 23, "emit is called twice");
+    assert_eq!(twice["proposals"][0]["pattern"], "lit forbids lit until asked");
+
+    let unseen = mutant(&found, 10, "emit is not called");
+    assert_eq!((&unseen["fate"], &unseen["reached"]), (&json!("not_reached"), &json!(0)));
+    assert_eq!(mutant(&found, 19, "the check is always False")["fate"], "not_distinguished");
+    let counts = json!({
+        "killed": 14, "survived": 15, "not_distinguished": 1, "not_reached": 14,
+        "equivalent": 0, "duplicate": 3, "invalid": 0, "not_run": 0,
+    });
+    assert_eq!(found["counts"], counts);
+    assert_eq!(found["score"], json!(14.0 / 43.0));
+    assert_eq!(found["methods"][0]["killed"], 14);
+
+    let written = fs::read_to_string(folder.path().join("out/mutation.json")).unwrap();
+    assert_eq!(written, stdout(&out));
+    let text = fs::read_to_string(folder.path().join("out/mutation.txt")).unwrap();
+    assert!(text.contains("would notice at 0.600 s: asked causes lit within 0.6 s"), "{text}");
+    assert_eq!(fs::read(folder.path().join("robot.py")).unwrap(), before, "no file is written");
+}
+
+/// A requirement that was proposed notices the mutant that it was proposed for, and the score says so.
+#[test]
+fn what_is_proposed_notices() {
+    let folder = project();
+    let path = folder.path().join("scenario.hri");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text + "\nrequire R3 functional asked causes lit within 0.6 s\n").unwrap();
+    let found = report(&mutate(folder.path(), "tests.hri --json --operator time --operator delayed"));
+    let late = mutant(&found, 5, "the time is doubled");
+    assert_eq!(late["noticed"][0]["oracles"], json!(["requirement R3"]));
+    let score =
+        found["oracles"].as_array().unwrap().iter().find(|o| o["oracle"] == "requirement R3").unwrap();
+    assert_eq!((&score["alone"], &score["methods"]), (&score["killed"], &json!({ "hand": score["killed"] })));
+}
+
+#[test]
+fn the_number_of_workers_changes_nothing_and_a_seed_draws_the_same() {
+    let folder = project();
+    let run = |line: &str| {
+        let out = mutate(folder.path(), &format!("tests.hri --sample 8 --json {line}"));
+        expect_code(&out, 0);
+        stdout(&out)
+    };
+    let one = run("--seed 1 -j 1");
+    assert_eq!(one, run("--seed 1 --workers 2"));
+    assert_eq!(one, run("--seed 1 -j 2 --isolation copies --no-fork"), "nor how interpreters are started");
+    assert_ne!(one, run("--seed 2"));
+    let found: Value = serde_json::from_str(&one).unwrap();
+    assert_eq!((&found["worth"], &found["drawn"]), (&json!(44), &json!(8)));
+}
+
+#[test]
+fn a_matrix_runs_all_tests_that_reach_a_mutant() {
+    let folder = project();
+    let out = mutate(folder.path(), "tests.hri --matrix --json --operator dropped");
+    expect_code(&out, 0);
+    assert!(stderr(&out).contains(" mutants to run, 6 runs: about "), "{}", stderr(&out));
+    let found = report(&out);
+    let killed = mutant(&found, 23, "emit is not called");
+    let tests: Vec<&str> =
+        killed["noticed"].as_array().unwrap().iter().map(|n| n["test"].as_str().unwrap()).collect();
+    assert_eq!((tests, &killed["ran"]), (vec!["lamp.once", "lamp.twice"], &json!(2)));
+}
+
+#[test]
+fn tests_that_measure_nothing_end_with_an_error() {
+    let folder = project();
+    let out = mutate(folder.path(), "tests.hri --system elsewhere");
+    expect_code(&out, 3);
+    assert!(stderr(&out).contains("no test notices that robot.py raises at once"), "{}", stderr(&out));
+    assert!(stdout(&out).contains("the sentinel of robot.py is noticed by nothing"), "{}", stdout(&out));
+}
+
+/// The code's runs contradict a model that allows less than the code does, and none that allows more.
+#[test]
+fn mutants_of_the_model_are_contradicted_by_what_the_code_does() {
+    let folder = project();
+    let path = folder.path().join("scenario.hri");
+    let text = fs::read_to_string(&path).unwrap();
+    let model = "
+automaton Lamp plays robot {
+  clock t
+  init location dark
+  location warm { invariant t <= 1 s }
+  dark -> warm on asked do t = 0
+  warm -> dark when t >= 300 ms do lit
+}
+";
+    fs::write(&path, text + model).unwrap();
+    let out = mutate(folder.path(), "tests.hri --models --json");
+    expect_code(&out, 0);
+    assert!(stderr(&out).contains("2 of 2 runs conform to the models as they are"), "{}", stderr(&out));
+    let found = report(&out);
+    let fates: Vec<(&str, &str)> = found["mutants"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| (m["what"].as_str().unwrap(), m["fate"].as_str().unwrap()))
+        .collect();
+    let expected = [
+        ("Lamp.warm: the bound of 1 s is halved", "not_distinguished"),
+        ("Lamp.warm: the bound of 1 s is doubled", "not_distinguished"),
+        ("Lamp.warm: the bound of 1 s is left out", "not_distinguished"),
+        ("Lamp: dark -> warm: the edge is never taken", "killed"),
+        ("Lamp: warm -> dark: the bound of 0.3 s is halved", "not_distinguished"),
+        ("Lamp: warm -> dark: the bound of 0.3 s is doubled", "killed"),
+        ("Lamp: warm -> dark: the bound of 0.3 s is turned round", "killed"),
+        ("Lamp: warm -> dark: the bound of 0.3 s is left out", "not_distinguished"),
+        ("Lamp: warm -> dark: the edge is never taken", "killed"),
+    ];
+    assert_eq!(fates, expected);
+    assert_eq!(found["oracles"][0]["oracle"], "conformance");
+    assert_eq!(found["sentinels"][0]["fate"], "killed");
+    let out = mutate(folder.path(), "tests.hri --models --operator tme");
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("did you mean `time`?"), "{}", stderr(&out));
+}
+
+/// What was known when it was interrupted is reported.
+#[test]
+fn an_interrupt_ends_it_with_what_is_known() {
+    let folder = project();
+    let tests: String = (0..60).map(|n| format!("test t{n} {{ ask }}\n")).collect();
+    fs::write(folder.path().join("many.hri"), format!("scenario lamp\n{tests}")).unwrap();
+    let mut command = command();
+    command.args(["mutate", "scenario.hri", "many.hri", "--matrix", "--json", "-o", "out", "-j", "1"]);
+    command.current_dir(folder.path()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    said.find(|line| line.contains("mutants to run")).unwrap();
+    std::thread::sleep(Duration::from_secs(3));
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    let out = child.wait_with_output().unwrap();
+    expect_code(&out, 5);
+    let found = report(&out);
+    assert_eq!(found["interrupted"], true);
+    assert!(found["counts"]["not_run"].as_u64().unwrap() > 0, "{}", found["counts"]);
+    assert_eq!(fs::read_to_string(folder.path().join("out/mutation.json")).unwrap(), stdout(&out));
+}
+
+/// Code that is another one in each process cannot be told from its mutants.
+#[test]
+fn tests_that_do_not_repeat_end_with_an_error() {
+    let folder = project();
+    let path = folder.path().join("robot.py");
+    let text = fs::read_to_string(&path).unwrap();
+    // A tracer is there while coverage is measured, and only then.
+    let text = text.replace("node.sleep(WARM_UP_TIME)", "node.sleep(1.0 if sys.gettrace() else 0.5)");
+    fs::write(&path, text.replace("import hrdsl", "import hrdsl\nimport sys")).unwrap();
+    let out = mutate(folder.path(), "tests.hri --sample 2");
+    expect_code(&out, 3);
+    assert!(
+        stderr(&out).contains("robot.py as it is does not do the same twice in lamp."),
+        "{}",
+        stderr(&out)
+    );
+}
+
+#[test]
+fn a_score_can_be_demanded_and_bad_input_is_named() {
+    let folder = project();
+    let demanded = mutate(folder.path(), "tests.hri --operator dropped --min-score 90");
+    expect_code(&demanded, 1);
+    assert!(stderr(&demanded).contains("the score is below --min-score"));
+    for (line, part) in [
+        ("tests.hri --operator tiem", "did you mean `time`"),
+        ("tests.hri --min-score 120", "it is from 0 to 100"),
+        ("tests.hri --test thrice", "no test is called `thrice`"),
+        ("tests.hri --sample 0", "0 is not in 1.."),
+    ] {
+        let out = mutate(folder.path(), line);
+        expect_code(&out, 2);
+        assert!(stderr(&out).contains(part), "{line}: {}", stderr(&out));
+    }
+    fs::write(folder.path().join("robot.py"), "x = (\n").unwrap();
+    let out = mutate(folder.path(), "tests.hri");
+    expect_code(&out, 2);
+    assert!(stderr(&out).contains("robot.py:1: "), "{}", stderr(&out));
+}
