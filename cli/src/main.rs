@@ -10,6 +10,7 @@
 mod color;
 mod commands;
 mod covered_files;
+mod edge_sources;
 mod exit;
 mod fault;
 mod files;

@@ -22,8 +22,8 @@ mod window;
 
 use hrdsl_ir::{Program, monitor::Monitor, ta::Network};
 use hrdsl_monitor::MonitorRunner;
-pub use hrdsl_ta::WitnessTrace;
 use hrdsl_ta::{SearchError, WitnessRun};
+pub use hrdsl_ta::{EdgeSource, WitnessTrace};
 use hrdsl_trace::{Trace, TraceObserver as _};
 
 use held::TimedHolds;

@@ -23,7 +23,7 @@ use hrdsl_source::{printable, printable_line};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::search_options::{DelayArg, SearchOrderArg, WitnessArg};
-use crate::{exit::CommandExit, fault::CommandFault, files, input, terminal};
+use crate::{edge_sources::EdgeSources, exit::CommandExit, fault::CommandFault, files, input, terminal};
 use asked::QueriedScenario;
 use table::ProofRow;
 
@@ -153,6 +153,8 @@ pub fn run(args: &ProveArgs) -> Result<CommandExit, CommandFault> {
         rows.extend(job.rows(&shared, &settings, &clock)?);
     }
     clock.finish();
+    let sources = EdgeSources::of(&asked.compilation);
+    rows.iter_mut().for_each(|row| row.locate(&sources));
     write_run(args, &rows)?;
     if args.json {
         terminal::print_data(&show::json(program, &rows)?)?;

@@ -7,7 +7,7 @@ use hrdsl_runtime::prove::{
     ObservedRun, ProofStatus, QueryFinding, QueryResult, RequirementProof, WitnessTrace,
 };
 
-use crate::exit::CommandExit;
+use crate::{edge_sources::EdgeSources, exit::CommandExit};
 
 /// One requirement or query.
 pub struct ProofRow {
@@ -78,6 +78,13 @@ impl ProofRow {
             PropertyVerdict::Violated | PropertyVerdict::NotSatisfied => CommandExit::Findings,
             PropertyVerdict::Inconclusive => CommandExit::Inconclusive,
             PropertyVerdict::Fault => CommandExit::Errors,
+        }
+    }
+
+    /// Says of the edges of its run how they are written.
+    pub fn locate(&mut self, sources: &EdgeSources<'_>) {
+        if let Some(trace) = &mut self.trace {
+            trace.locate(&|origin| sources.at(origin));
         }
     }
 
