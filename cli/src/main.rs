@@ -22,6 +22,7 @@ mod observation;
 mod project;
 mod quantity;
 mod reach;
+mod recorded_run;
 mod render;
 mod results_folder;
 mod terminal;

@@ -22,6 +22,7 @@
 //!   that matter (`stepper`), as narrow as the constants allow; `store` keeps what is new, `slice` says which variables
 //!   matter, `monotone` which are read one way, `goals` looks at what is asked.
 //! - [`local`]: the same search with a time for each automaton.
+//! - `walk`: a network gone through transition by transition, by hand or along a recorded run.
 //! - `decide`: the answers, by these searches, with probes that look at their states; for runs without end by a walk of the plain zone graph.
 //!
 //! # Semantics
@@ -41,6 +42,7 @@ mod decide;
 pub mod local;
 mod network;
 mod search;
+mod walk;
 mod witness;
 mod zone;
 
@@ -59,6 +61,11 @@ pub use network::query::{
 pub use network::{selects::BinderValues, semantics::AutomatonMove};
 pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
 pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable};
+pub use walk::follow::{
+    FollowDeparture, FollowOutcome, RecordedPart, RecordedRun, RecordedStep, RecordedTime, follow,
+};
+pub use walk::session::WalkSession;
+pub use walk::state::{ClockView, MomentRange, NetworkWalk, WalkOption, WalkState};
 pub use witness::build::retimed;
 pub use witness::error::SearchError;
 pub use witness::player::VirtualTimePlayer;

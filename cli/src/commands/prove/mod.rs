@@ -1,6 +1,7 @@
 //! `hrdsl prove`: whether the networks of a scenario keep its requirements, and what its queries answer.
 
 mod asked;
+mod follow;
 mod show;
 mod table;
 
@@ -37,7 +38,8 @@ Examples:
   hrdsl prove scenario.hri --requirement R2 --trace
   hrdsl prove scenario.hri --ask 'E<> Robot.grasped and t > 5 s' --witness fastest --trace
   hrdsl prove scenario.hri --ask 'A[] not deadlock' --threads 2 --timeout 60s
-  hrdsl prove scenario.hri --query live --mermaid live.mmd")]
+  hrdsl prove scenario.hri --query live --mermaid live.mmd
+  hrdsl prove scenario.hri --json > found.json; hrdsl prove changed.hri --follow found.json")]
 pub struct ProveArgs {
     /// The scenario.
     file: PathBuf,
@@ -58,6 +60,10 @@ pub struct ProveArgs {
     /// Stop after this time, like `60s` or `500ms`: what is not decided then is inconclusive.
     #[arg(long, value_name = "T", value_parser = crate::quantity::time)]
     timeout: Option<Duration>,
+    /// Search nothing: say whether the runs of this file (JSON of `prove` or `step`, or UPPAAL's .xtr) are runs of the network, and
+    /// where they leave it.
+    #[arg(long, value_name = "TRACE", conflicts_with_all = ["requirement", "query", "ask", "trace", "mermaid", "dot"])]
+    follow: Option<PathBuf>,
     /// Tell each run that shows something, step by step.
     #[arg(long)]
     trace: bool,
@@ -138,6 +144,10 @@ pub fn run(args: &ProveArgs) -> Result<CommandExit, CommandFault> {
     let Some(program) = input::report_errors(&args.file, &asked.compilation) else {
         return Ok(CommandExit::Errors);
     };
+    let sources = EdgeSources::of(&asked.compilation);
+    if let Some(trace) = &args.follow {
+        return follow::run(args, trace, program, &sources);
+    }
     let jobs = asked.jobs(args, program)?;
     if jobs.is_empty() {
         return Err(
@@ -153,7 +163,6 @@ pub fn run(args: &ProveArgs) -> Result<CommandExit, CommandFault> {
         rows.extend(job.rows(&shared, &settings, &clock)?);
     }
     clock.finish();
-    let sources = EdgeSources::of(&asked.compilation);
     rows.iter_mut().for_each(|row| row.locate(&sources));
     write_run(args, &rows)?;
     if args.json {

@@ -103,7 +103,7 @@ impl WitnessTrace {
         WitnessTrace {
             network: witness.network.clone(),
             automata,
-            steps: witness.steps.iter().map(|s| builder.transition(witness, s)).collect(),
+            steps: witness.steps.iter().map(|s| builder.transition(s, witness.ticks)).collect(),
             end: seconds(witness.end, witness.ticks),
             end_nanos: witness.end.div_euclid(witness.ticks.max(1)),
             ending: witness.ending,
@@ -171,6 +171,12 @@ impl WitnessRun {
 }
 
 impl WitnessTransition {
+    /// A step of a network by names; its time is in nanoseconds.
+    pub(crate) fn from_step(program: &Program, network: &Network, step: &WitnessRunStep) -> Self {
+        let slots = slot_names(program, network);
+        WitnessTraceBuilder { program, network, slots }.transition(step, 1)
+    }
+
     /// Who starts it: nothing happens by itself.
     fn starter(&self) -> &TransitionParticipant {
         &self.parts[0]
@@ -181,10 +187,14 @@ impl WitnessTransition {
         self.parts.iter_mut().for_each(|part| part.source = source(part.origin));
     }
 
-    /// Who goes where: `Person: outside -> waiting, Door: shut -> moving`.
+    /// Without its time: `asked(false)  Person: outside -> waiting, Door: shut -> moving   [q: 0 -> 1]`.
     #[must_use]
-    pub fn movements(&self) -> String {
-        self.parts.iter().map(|p| p.movement(true)).collect::<Vec<_>>().join(", ")
+    pub fn summary(&self) -> String {
+        let over = self.over.as_ref().map(|over| format!("{over}  ")).unwrap_or_default();
+        let moves: Vec<String> = self.parts.iter().map(|p| p.movement(true)).collect();
+        let changes: Vec<&str> = self.variables.iter().chain(&self.clocks).map(String::as_str).collect();
+        let changes = if changes.is_empty() { String::new() } else { format!("   [{}]", changes.join("; ")) };
+        format!("{over}{}{changes}", moves.join(", "))
     }
 
     /// A line for each edge whose source is known or that selects values.
@@ -227,7 +237,7 @@ impl<'a> WitnessTraceBuilder<'a> {
         self.program.automaton(self.network.automata[m])
     }
 
-    fn transition(&self, witness: &WitnessRun, step: &WitnessRunStep) -> WitnessTransition {
+    fn transition(&self, step: &WitnessRunStep, ticks: i64) -> WitnessTransition {
         let (over, medium) = match (&step.event, &step.channel) {
             (Some((event, args)), _) => {
                 (Some(applied(&self.program.event(*event).name, args)), TransitionMedium::Event)
@@ -241,8 +251,8 @@ impl<'a> WitnessTraceBuilder<'a> {
         let changed = step.variables.iter();
         let variables = changed.map(|(slot, from, to)| format!("{}: {from} -> {to}", self.slots[*slot]));
         WitnessTransition {
-            time: seconds(step.time, witness.ticks),
-            nanos: witness.nanos(step),
+            time: seconds(step.time, ticks),
+            nanos: step.time.div_euclid(ticks.max(1)),
             over,
             medium,
             parts: step.moves.iter().map(|m| self.part(m)).collect(),
