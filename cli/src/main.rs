@@ -73,6 +73,7 @@ enum TopLevelCommand {
     Report(commands::report::ReportArgs),
     Run(commands::run::RunArgs),
     Sim(commands::sim::SimArgs),
+    Step(commands::step::StepArgs),
     View(commands::view::ViewArgs),
 }
 
@@ -118,6 +119,7 @@ fn run() -> ExitCode {
         TopLevelCommand::Report(args) => commands::report::run(&args),
         TopLevelCommand::Run(args) => commands::run::run(&args),
         TopLevelCommand::Sim(args) => commands::sim::run(&args),
+        TopLevelCommand::Step(args) => commands::step::run(&args),
         TopLevelCommand::View(args) => commands::view::run(&args),
     });
     result

@@ -21,4 +21,5 @@ pub mod run;
 pub mod search_options;
 pub mod shown;
 pub mod sim;
+pub mod step;
 pub mod view;

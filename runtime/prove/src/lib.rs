@@ -24,7 +24,7 @@ use hrdsl_ir::{Program, monitor::Monitor, ta::Network};
 use hrdsl_monitor::MonitorRunner;
 use hrdsl_ta::{SearchError, WitnessRun};
 pub use hrdsl_ta::{
-    EdgeSource, FollowDeparture, FollowOutcome, MomentRange, NetworkWalk, RecordedPart, RecordedRun,
+    EdgeSource, FollowDeparture, FollowOutcome, ModelError, MomentRange, NetworkWalk, RecordedPart, RecordedRun,
     RecordedStep, RecordedTime, RunEnding, WalkOption, WalkSession, WitnessTrace, WitnessTransition, follow,
 };
 use hrdsl_trace::{Trace, TraceObserver as _};

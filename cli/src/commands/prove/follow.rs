@@ -2,7 +2,7 @@
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::prove::{
-    FollowDeparture, FollowOutcome, NetworkWalk, WalkOption, WitnessTransition, follow,
+    FollowDeparture, FollowOutcome, ModelError, NetworkWalk, RecordedRun, WalkOption, WitnessTransition, follow,
 };
 use hrdsl_source::printable;
 use serde::Serialize;
@@ -69,16 +69,15 @@ pub fn run(
         let network = &program.networks[recorded.network];
         let fault = |e| format!("network `{}`: {e}", network.name);
         let walk = NetworkWalk::new(program, network).map_err(fault)?;
-        let leaves = match follow(&walk, &recorded.run).map_err(fault)? {
-            FollowOutcome::Run => None,
-            FollowOutcome::Leaves(departure) => Some(told(*departure, sources)),
-        };
+        let (departure, renumbered) = leaving(&walk, &recorded.run).map_err(fault)?;
+        let leaves = departure.map(|d| told(*d, sources));
+        let note = recorded.note.or_else(|| renumbered.then(|| RENUMBERED.to_owned()));
         followed.push(FollowedRun {
             name: recorded.name,
             network: network.name.clone(),
             steps: recorded.run.steps.len(),
             is_run: leaves.is_none(),
-            note: recorded.note,
+            note,
             leaves,
         });
     }
@@ -92,6 +91,24 @@ pub fn run(
     Ok(if followed.iter().all(|r| r.is_run) { CommandExit::Ok } else { CommandExit::Findings })
 }
 
+const RENUMBERED: &str = "its edges have other numbers here: only what they do is compared";
+
+/// Where a run leaves the network, if it does; and whether that is so only when the numbers of its edges are not looked at, which change
+/// where an edge is added.
+fn leaving(
+    walk: &NetworkWalk<'_>,
+    run: &RecordedRun,
+) -> Result<(Option<Box<FollowDeparture>>, bool), ModelError> {
+    let FollowOutcome::Leaves(first) = follow(walk, run)? else { return Ok((None, false)) };
+    let mut plain = run.clone();
+    plain.steps.iter_mut().flat_map(|s| &mut s.parts).for_each(|p| p.edge = None);
+    match follow(walk, &plain)? {
+        FollowOutcome::Run => Ok((None, true)),
+        FollowOutcome::Leaves(later) if later.step > first.step => Ok((Some(later), true)),
+        FollowOutcome::Leaves(_) => Ok((Some(first), false)),
+    }
+}
+
 fn told(departure: FollowDeparture, sources: &EdgeSources<'_>) -> Departure {
     let enabled = |option: WalkOption| {
         let mut transition = option.told;
@@ -102,7 +119,7 @@ fn told(departure: FollowDeparture, sources: &EdgeSources<'_>) -> Departure {
     Departure {
         step: departure.step,
         why: departure.why,
-        stays: departure.stays.map(|s| s.to_string()),
+        stays: departure.stays.map(|s| s.during()),
         enabled: departure.enabled.into_iter().map(enabled).collect(),
     }
 }

@@ -75,7 +75,7 @@ pub struct FollowDeparture {
 }
 
 impl RecordedTime {
-    fn range(self) -> MomentRange {
+    pub(crate) fn range(self) -> MomentRange {
         match self {
             RecordedTime::At(t) => MomentRange { from: t, after: false, until: Some(t), before: false },
             RecordedTime::After(t) => {
@@ -106,7 +106,7 @@ pub fn follow(walk: &NetworkWalk<'_>, run: &RecordedRun) -> Result<FollowOutcome
             fitting.filter_map(|o| o.next).for_each(|state| add(&mut next, state));
         }
         if next.is_empty() {
-            return Ok(leaves(walk, &states, step, index + 1));
+            return Ok(FollowOutcome::Leaves(Box::new(leaves(walk, &states, step, index + 1))));
         }
         if next.len() > MOST_STATES {
             let what = format!("step {}: the record says too little: more than {MOST_STATES} states fit", index + 1);
@@ -128,7 +128,7 @@ fn add(states: &mut Vec<WalkState>, state: WalkState) {
 
 impl RecordedStep {
     /// Whether an option is what was recorded, as far as that says.
-    fn fits(&self, option: &WalkOption) -> bool {
+    pub(crate) fn fits(&self, option: &WalkOption) -> bool {
         let told = &option.told;
         let same = |(said, part): (&RecordedPart, &crate::TransitionParticipant)| {
             let agrees = |said: &Option<String>, is: &String| said.as_ref().is_none_or(|s| s == is);
@@ -147,12 +147,12 @@ impl RecordedStep {
 }
 
 /// Why no state takes a step.
-fn leaves(
+pub(crate) fn leaves(
     walk: &NetworkWalk<'_>,
     states: &[WalkState],
     step: &RecordedStep,
     number: usize,
-) -> FollowOutcome {
+) -> FollowDeparture {
     let mut enabled: Vec<WalkOption> = Vec::new();
     for option in states.iter().flat_map(|s| walk.options(s)) {
         let known = |o: &WalkOption| o.told == option.told && o.time == option.time;
@@ -166,7 +166,7 @@ fn leaves(
         parts.fits(o)
     };
     let why = if let Some(option) = enabled.iter().find(|o| step.fits(o)) {
-        format!("it can be taken {} only", when(&option.time))
+        format!("it can be taken {} only", option.time.during())
     } else if let Some(place) = elsewhere(walk, states, step) {
         place
     } else if let Some(option) = enabled.iter().find(same_parts) {
@@ -174,14 +174,7 @@ fn leaves(
     } else {
         "no such transition is possible there".to_owned()
     };
-    FollowOutcome::Leaves(Box::new(FollowDeparture { step: number, why, enabled, stays }))
-}
-
-fn when(range: &MomentRange) -> String {
-    match range.until {
-        Some(until) if until == range.from => format!("at {range}"),
-        Some(_) | None => range.to_string(),
-    }
+    FollowDeparture { step: number, why, enabled, stays }
 }
 
 /// The first automaton that is not where it was recorded to leave.

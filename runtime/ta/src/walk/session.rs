@@ -8,7 +8,10 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::{
     network::{actions::PathTransition, error::ModelError, graph::ZoneGraph},
-    walk::state::{MomentRange, NetworkWalk, WalkOption, WalkState},
+    walk::{
+        follow::{FollowDeparture, RecordedRun, RecordedTime, leaves},
+        state::{MomentRange, NetworkWalk, WalkOption, WalkState},
+    },
     witness::{
         build::{PathSegment, concrete},
         error::SearchError,
@@ -110,6 +113,29 @@ impl<'p> WalkSession<'p> {
         let choice = sound[self.rng.random_range(0..sound.len())];
         self.take(choice, None).ok()?;
         options.into_iter().nth(choice)
+    }
+
+    /// From the start along a recorded run. Where several transitions are what was recorded, the first is taken. What leaves the network
+    /// keeps the walk where it left.
+    ///
+    /// # Errors
+    /// Where the run leaves the network, and why.
+    pub fn replay(&mut self, run: &RecordedRun) -> Result<(), Box<FollowDeparture>> {
+        self.restart();
+        for (index, step) in run.steps.iter().enumerate() {
+            let when = step.time.map(RecordedTime::range);
+            let there = match &when {
+                Some(moment) => self.walk.at(self.state(), moment),
+                None => Some(self.state().clone()),
+            };
+            let options = there.map(|state| self.walk.options(&state)).unwrap_or_default();
+            let found = options.into_iter().filter(|o| step.fits(o)).find_map(|o| Some((o.next?, o.transition)));
+            let Some((next, transition)) = found else {
+                return Err(Box::new(leaves(&self.walk, &[self.state().clone()], step, index + 1)));
+            };
+            self.taken.push(TakenTransition { taken: transition.action.taken, when, next });
+        }
+        Ok(())
     }
 
     /// One transition back; `false`: it is at the start.

@@ -104,11 +104,14 @@ impl MomentRange {
         }
     }
 
-    /// Whether a time is in it.
+    /// As part of a sentence: `at 2 s`, `from 2 s to 6 s`, `after 2 s`.
     #[must_use]
-    pub fn contains(&self, time: Nanos) -> bool {
-        let late = self.until.is_some_and(|until| time > until || (self.before && time == until));
-        !late && (time > self.from || (!self.after && time == self.from))
+    pub fn during(&self) -> String {
+        match self.until {
+            Some(until) if until == self.from => format!("at {self}"),
+            Some(_) if !self.after && !self.before => format!("from {self}"),
+            Some(_) | None => self.to_string(),
+        }
     }
 }
 
