@@ -27,11 +27,12 @@ Exit codes:
   0  all is well
   1  a scenario has errors, or warnings that `check --deny` makes errors; `fmt --check`: a file would change;
      `import`: a file is no program, or `--strict` and something is left out; `inspect`, `run`: the agents cannot go
-     on (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault
-  2  the command line is wrong, or a file cannot be read or written
+     on (a livelock, the cycle bound, a fault of the model); `prove`, `step`: a network is at fault
+  2  the command line is wrong, or a file cannot be read or written; `step`: what is piped in is no command, or not possible
   3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism, --repeat or
      --schedules found a difference;
-     `prove`: a requirement is violated, or a query is not satisfied; `conformance`: a case failed
+     `prove`: a requirement is violated, a query is not satisfied, or with --follow a run is none of the network;
+     `conformance`: a case failed
   4  `prove`: something is inconclusive, since the budget was used up, and nothing else is wrong
   5  `sim`: interrupted; the results are those of the tests that had ended
   70 hrdsl itself is at fault: an internal error, which is worth a report";

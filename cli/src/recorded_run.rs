@@ -78,7 +78,8 @@ fn of_json(text: &str, program: &Program, chosen: &[String]) -> Result<Vec<Named
         return Ok(vec![of_run(String::new(), document, program, chosen)?]);
     }
     let mut runs = Vec::new();
-    let list = |value: &Value, key: &str| value.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
+    let list =
+        |value: &Value, key: &str| value.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
     for network in list(&document, "networks") {
         for (rows, kind) in [("requirements", "requirement"), ("queries", "query")] {
             for mut row in list(&network, rows) {
@@ -90,7 +91,10 @@ fn of_json(text: &str, program: &Program, chosen: &[String]) -> Result<Vec<Named
         }
     }
     if runs.is_empty() {
-        return Err("there is no run in it; `hrdsl prove --json` and the command `json` of `hrdsl step` print some".into());
+        return Err(
+            "there is no run in it; `hrdsl prove --json` and the command `json` of `hrdsl step` print some"
+                .into(),
+        );
     }
     Ok(runs)
 }
@@ -125,11 +129,14 @@ fn of_run(name: String, value: Value, program: &Program, chosen: &[String]) -> R
             parts.push(RecordedPart { member, from, to, edge, selected });
         }
         let own = |change: &String| {
-            !observers.iter().any(|o| change.strip_prefix(o.as_str()).is_some_and(|rest| rest.starts_with('.')))
+            !observers
+                .iter()
+                .any(|o| change.strip_prefix(o.as_str()).is_some_and(|rest| rest.starts_with('.')))
         };
         let variables = step.variables.or(whole.then(Vec::new));
         steps.push(RecordedStep {
-            time: moment(step.time.as_deref(), step.nanos).map_err(|e| format!("{place}, step {}: {e}", number + 1))?,
+            time: moment(step.time.as_deref(), step.nanos)
+                .map_err(|e| format!("{place}, step {}: {e}", number + 1))?,
             over: step.over,
             parts,
             variables: variables.map(|all| all.into_iter().filter(own).collect()),
@@ -212,7 +219,8 @@ fn of_uppaal(trace: &UppaalTrace, program: &Program, chosen: &[String]) -> Resul
         return Err(format!("the trace starts with `{}` in its location {at}: is it of this model?", m.name));
     }
     let note = (!all_named).then(|| {
-        "some edges of the trace are numbered otherwise than here: there, only the locations are compared".to_owned()
+        "some edges of the trace are numbered otherwise than here: there, only the locations are compared"
+            .to_owned()
     });
     Ok(NamedRun { name: String::new(), network, run: RecordedRun { steps, ..RecordedRun::default() }, note })
 }

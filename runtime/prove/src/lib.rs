@@ -22,11 +22,12 @@ mod window;
 
 use hrdsl_ir::{Program, monitor::Monitor, ta::Network};
 use hrdsl_monitor::MonitorRunner;
-use hrdsl_ta::{SearchError, WitnessRun};
 pub use hrdsl_ta::{
-    EdgeSource, FollowDeparture, FollowOutcome, ModelError, MomentRange, NetworkWalk, RecordedPart, RecordedRun,
-    RecordedStep, RecordedTime, RunEnding, WalkOption, WalkSession, WitnessTrace, WitnessTransition, follow,
+    EdgeSource, FollowDeparture, FollowOutcome, ModelError, MomentRange, NetworkWalk, RecordedPart,
+    RecordedRun, RecordedStep, RecordedTime, RunEnding, WalkOption, WalkSession, WitnessTrace,
+    WitnessTransition, follow,
 };
+use hrdsl_ta::{SearchError, WitnessRun};
 use hrdsl_trace::{Trace, TraceObserver as _};
 
 use held::TimedHolds;

@@ -71,7 +71,9 @@ pub use witness::error::SearchError;
 pub use witness::player::VirtualTimePlayer;
 pub use witness::run::{RunEnding, WitnessRun, WitnessRunStep};
 pub use witness::schedule::{DAWDLE, ScheduleOptions};
-pub use witness::trace::{EdgeSource, TransitionMedium, TransitionParticipant, WitnessTrace, WitnessTransition};
+pub use witness::trace::{
+    EdgeSource, TransitionMedium, TransitionParticipant, WitnessTrace, WitnessTransition,
+};
 pub use zone::extrapolation::ExtrapolationAbstraction;
 pub use zone::federation::Federation;
 pub use zone::{dbm, federation};

@@ -2,7 +2,8 @@
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::prove::{
-    FollowDeparture, FollowOutcome, ModelError, NetworkWalk, RecordedRun, WalkOption, WitnessTransition, follow,
+    FollowDeparture, FollowOutcome, ModelError, NetworkWalk, RecordedRun, WalkOption, WitnessTransition,
+    follow,
 };
 use hrdsl_source::printable;
 use serde::Serialize;
@@ -82,7 +83,8 @@ pub fn run(
         });
     }
     if args.json {
-        let document = FollowDocument { format: "hrdsl-follow", version: 1, scenario: &program.name, runs: &followed };
+        let document =
+            FollowDocument { format: "hrdsl-follow", version: 1, scenario: &program.name, runs: &followed };
         terminal::print_data(&files::json(&document)?)?;
     } else {
         let text: String = followed.iter().map(human).collect();
@@ -133,7 +135,10 @@ fn human(run: &FollowedRun) -> String {
             format!("{of}leaves the network {} at its end, after {steps}: {}\n", run.network, left.why)
         }
         Some(left) => {
-            format!("{of}leaves the network {} at step {} of {}: {}\n", run.network, left.step, run.steps, left.why)
+            format!(
+                "{of}leaves the network {} at step {} of {}: {}\n",
+                run.network, left.step, run.steps, left.why
+            )
         }
     };
     if let Some(note) = &run.note {

@@ -202,11 +202,20 @@ impl InteractiveWalk<'_> {
             None => (runs.len() == 1).then_some(0),
         };
         let Some(at) = at else {
-            return Err(format!("say which run of {} to go along: {}", terminal::shown(file), names.join(", ")));
+            return Err(format!(
+                "say which run of {} to go along: {}",
+                terminal::shown(file),
+                names.join(", ")
+            ));
         };
         let recorded = runs.swap_remove(at);
         self.session.replay(&recorded.run).map_err(|left| {
-            format!("the run leaves the network at step {} of {}: {}", left.step, recorded.run.steps.len(), left.why)
+            format!(
+                "the run leaves the network at step {} of {}: {}",
+                left.step,
+                recorded.run.steps.len(),
+                left.why
+            )
         })
     }
 }

@@ -121,7 +121,9 @@ impl<'t> TraceReader<'t> {
         while !self.dot() {
             let bound: Vec<i64> = self.numbers("a bound of the zone (two clocks and a number)")?;
             if bound.len() != 3 {
-                return Err(self.wrong("a bound of the zone (two clocks and a number) was expected before this"));
+                return Err(
+                    self.wrong("a bound of the zone (two clocks and a number) was expected before this")
+                );
             }
         }
         self.numbers::<i64>("the value of an integer")?;
@@ -132,7 +134,8 @@ impl<'t> TraceReader<'t> {
         let mut moves = Vec::new();
         while !self.dot() {
             let process = self.number().ok_or_else(|| self.wrong("the number of a process was expected"))?;
-            let edge: usize = self.number().ok_or_else(|| self.wrong("the number of an edge was expected"))?;
+            let edge: usize =
+                self.number().ok_or_else(|| self.wrong("the number of an edge was expected"))?;
             let mut selects = Vec::new();
             while let Some(value) = self.number() {
                 selects.push(value);
@@ -163,7 +166,8 @@ mod tests {
     use super::*;
 
     /// Two processes; the first goes, with two selected values, and the second along with it.
-    const NEW: &str = "0 1 \n.\n0 1 0\n.\n1 0 2\n.\n.\n7 \n.\n1 0 \n.\n0 1 -2\n.\n.\n8 \n.\n0 2 4 -5 ; 1 0 ; .\n.\n";
+    const NEW: &str =
+        "0 1 \n.\n0 1 0\n.\n1 0 2\n.\n.\n7 \n.\n1 0 \n.\n0 1 -2\n.\n.\n8 \n.\n0 2 4 -5 ; 1 0 ; .\n.\n";
 
     fn moved(process: usize, edge: usize, selects: &[i64]) -> UppaalMove {
         UppaalMove { process, edge, selects: selects.to_vec() }

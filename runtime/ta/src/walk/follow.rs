@@ -109,7 +109,8 @@ pub fn follow(walk: &NetworkWalk<'_>, run: &RecordedRun) -> Result<FollowOutcome
             return Ok(FollowOutcome::Leaves(Box::new(leaves(walk, &states, step, index + 1))));
         }
         if next.len() > MOST_STATES {
-            let what = format!("step {}: the record says too little: more than {MOST_STATES} states fit", index + 1);
+            let what =
+                format!("step {}: the record says too little: more than {MOST_STATES} states fit", index + 1);
             return Err(ModelError::Question(what));
         }
         states = next;

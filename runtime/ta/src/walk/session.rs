@@ -93,7 +93,8 @@ impl<'p> WalkSession<'p> {
             None => option.clone(),
             Some(moment) => {
                 let there = self.walk.at(self.state(), moment).map(|state| self.walk.options(&state));
-                let same = |o: &WalkOption| o.told.parts == option.told.parts && o.told.over == option.told.over;
+                let same =
+                    |o: &WalkOption| o.told.parts == option.told.parts && o.told.over == option.told.over;
                 let found = there.into_iter().flatten().find(same);
                 found.ok_or_else(|| format!("it can be taken at {} only", option.time))?
             }
@@ -129,7 +130,8 @@ impl<'p> WalkSession<'p> {
                 None => Some(self.state().clone()),
             };
             let options = there.map(|state| self.walk.options(&state)).unwrap_or_default();
-            let found = options.into_iter().filter(|o| step.fits(o)).find_map(|o| Some((o.next?, o.transition)));
+            let found =
+                options.into_iter().filter(|o| step.fits(o)).find_map(|o| Some((o.next?, o.transition)));
             let Some((next, transition)) = found else {
                 return Err(Box::new(leaves(&self.walk, &[self.state().clone()], step, index + 1)));
             };
