@@ -7,7 +7,7 @@ use hrdsl_ir::{
     Nanos, Program,
     ta::{Automaton, AutomatonId, Network},
 };
-use hrdsl_runtime::prove::{RecordedPart, RecordedRun, RecordedStep, RecordedTime, RunEnding};
+use hrdsl_runtime::prove::{RecordedPart, RecordedWalk, RecordedStep, RecordedTime, RunEnding};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -19,7 +19,7 @@ pub struct NamedRun {
     pub name: String,
     /// Index into the program's networks.
     pub network: usize,
-    pub run: RecordedRun,
+    pub run: RecordedWalk,
     /// What else is to be said of how it was read.
     pub note: Option<String>,
 }
@@ -143,7 +143,7 @@ fn of_run(name: String, value: Value, program: &Program, chosen: &[String]) -> R
         });
     }
     let end = moment(run.end.as_deref(), run.end_nanos).map_err(|e| format!("{place}, its end: {e}"))?;
-    let run = RecordedRun { steps, end, ending: run.ending };
+    let run = RecordedWalk { steps, end, ending: run.ending };
     Ok(NamedRun { name, network, run, note: None })
 }
 
@@ -222,7 +222,7 @@ fn of_uppaal(trace: &UppaalTrace, program: &Program, chosen: &[String]) -> Resul
         "some edges of the trace are numbered otherwise than here: there, only the locations are compared"
             .to_owned()
     });
-    Ok(NamedRun { name: String::new(), network, run: RecordedRun { steps, ..RecordedRun::default() }, note })
+    Ok(NamedRun { name: String::new(), network, run: RecordedWalk { steps, ..RecordedWalk::default() }, note })
 }
 
 fn uppaal_part(

@@ -24,7 +24,7 @@ use hrdsl_ir::{Program, monitor::Monitor, ta::Network};
 use hrdsl_monitor::MonitorRunner;
 pub use hrdsl_ta::{
     EdgeSource, FollowDeparture, FollowOutcome, ModelError, MomentRange, NetworkWalk, RecordedPart,
-    RecordedRun, RecordedStep, RecordedTime, RunEnding, WalkOption, WalkSession, WitnessTrace,
+    RecordedWalk, RecordedStep, RecordedTime, RunEnding, WalkOption, WalkSession, WitnessTrace,
     WitnessTransition, follow,
 };
 use hrdsl_ta::{SearchError, WitnessRun};

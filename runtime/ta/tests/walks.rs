@@ -8,12 +8,12 @@ mod dice;
 use dice::{Flavour, network};
 use hrdsl_ir::Program;
 use hrdsl_ta::{
-    FollowOutcome, RecordedPart, RecordedRun, RecordedStep, RecordedTime, RunEnding, WalkSession,
+    FollowOutcome, RecordedPart, RecordedWalk, RecordedStep, RecordedTime, RunEnding, WalkSession,
     WitnessTrace, follow,
 };
 
 /// A told run as a record of it.
-fn recorded(trace: &WitnessTrace, with_times: bool) -> RecordedRun {
+fn recorded(trace: &WitnessTrace, with_times: bool) -> RecordedWalk {
     let at = |text: &str, nanos: i64| {
         let time = if text.contains('+') { RecordedTime::After(nanos) } else { RecordedTime::At(nanos) };
         with_times.then_some(time)
@@ -31,7 +31,7 @@ fn recorded(trace: &WitnessTrace, with_times: bool) -> RecordedRun {
         parts: s.parts.iter().map(part).collect(),
         variables: Some(s.variables.clone()),
     };
-    RecordedRun {
+    RecordedWalk {
         steps: trace.steps.iter().map(step).collect(),
         end: at(&trace.end, trace.end_nanos),
         ending: Some(RunEnding::Reached),
@@ -80,11 +80,11 @@ fn walked(p: &Program, seed: u64) -> Option<(usize, bool)> {
 fn walks_are_runs_and_late_steps_are_found_out() {
     let (mut steps, mut late) = (0, 0);
     for flavour in [Flavour::Events, Flavour::Channels, Flavour::Whole, Flavour::Differences] {
-        for seed in 0..150 {
+        for seed in 0..500 {
             if let Some((taken, tried)) = walked(&network(seed, flavour), seed) {
                 (steps, late) = (steps + taken, late + usize::from(tried));
             }
         }
     }
-    assert!(steps > 1500 && late > 100, "{steps} steps, {late} late ones");
+    assert!(steps > 5000 && late > 300, "{steps} steps, {late} late ones");
 }

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::prove::{
-    FollowDeparture, FollowOutcome, ModelError, NetworkWalk, RecordedRun, WalkOption, WitnessTransition,
+    FollowDeparture, FollowOutcome, ModelError, NetworkWalk, RecordedWalk, WalkOption, WitnessTransition,
     follow,
 };
 use hrdsl_source::printable;
@@ -99,7 +99,7 @@ const RENUMBERED: &str = "its edges have other numbers here: only what they do i
 /// where an edge is added.
 fn leaving(
     walk: &NetworkWalk<'_>,
-    run: &RecordedRun,
+    run: &RecordedWalk,
 ) -> Result<(Option<Box<FollowDeparture>>, bool), ModelError> {
     let FollowOutcome::Leaves(first) = follow(walk, run)? else { return Ok((None, false)) };
     let mut plain = run.clone();

@@ -16,7 +16,7 @@ const MOST_STATES: usize = 2_000;
 
 /// A run as somebody recorded it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct RecordedRun {
+pub struct RecordedWalk {
     pub steps: Vec<RecordedStep>,
     pub end: Option<RecordedTime>,
     pub ending: Option<RunEnding>,
@@ -89,7 +89,7 @@ impl RecordedTime {
 ///
 /// # Errors
 /// If the start of the network is a fault, or the record says so little that there is too much to follow.
-pub fn follow(walk: &NetworkWalk<'_>, run: &RecordedRun) -> Result<FollowOutcome, ModelError> {
+pub fn follow(walk: &NetworkWalk<'_>, run: &RecordedWalk) -> Result<FollowOutcome, ModelError> {
     let start = walk.start()?;
     let mut history = vec![start.discrete.clone()];
     let mut states = vec![start];
@@ -208,7 +208,7 @@ fn differs(step: &RecordedStep, option: &WalkOption) -> String {
 fn ended(
     walk: &NetworkWalk<'_>,
     states: &[WalkState],
-    run: &RecordedRun,
+    run: &RecordedWalk,
     history: &[Vec<i64>],
 ) -> FollowOutcome {
     let until = |state: &WalkState| match run.end {

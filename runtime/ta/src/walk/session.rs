@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::{
     network::{actions::PathTransition, error::ModelError, graph::ZoneGraph},
     walk::{
-        follow::{FollowDeparture, RecordedRun, RecordedTime, leaves},
+        follow::{FollowDeparture, RecordedWalk, RecordedTime, leaves},
         state::{MomentRange, NetworkWalk, WalkOption, WalkState},
     },
     witness::{
@@ -121,7 +121,7 @@ impl<'p> WalkSession<'p> {
     ///
     /// # Errors
     /// Where the run leaves the network, and why.
-    pub fn replay(&mut self, run: &RecordedRun) -> Result<(), Box<FollowDeparture>> {
+    pub fn replay(&mut self, run: &RecordedWalk) -> Result<(), Box<FollowDeparture>> {
         self.restart();
         for (index, step) in run.steps.iter().enumerate() {
             let when = step.time.map(RecordedTime::range);
