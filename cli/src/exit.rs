@@ -15,7 +15,7 @@ pub enum CommandExit {
     Findings = 3,
     /// A requirement or query is inconclusive: the budget was used up first.
     Inconclusive = 4,
-    /// A campaign was interrupted; what had ended is published.
+    /// A campaign or a search was interrupted; what had ended, or was known, is told.
     Interrupted = 5,
     /// Something is wrong with hrdsl itself (`EX_SOFTWARE` of sysexits.h).
     Internal = 70,
@@ -34,7 +34,7 @@ Exit codes:
      `prove`: a requirement is violated, a query is not satisfied, or with --follow a run is none of the network;
      `conformance`: a case failed
   4  `prove`: something is inconclusive, since the budget was used up, and nothing else is wrong
-  5  `sim`: interrupted; the results are those of the tests that had ended
+  5  `sim`, `prove`: interrupted; the results are those of the tests that had ended, or what was known
   70 hrdsl itself is at fault: an internal error, which is worth a report";
 
 impl From<CommandExit> for ExitCode {

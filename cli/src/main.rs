@@ -18,6 +18,7 @@ mod fix;
 mod hulls;
 mod input;
 mod installing;
+mod interrupt;
 mod observation;
 mod project;
 mod quantity;

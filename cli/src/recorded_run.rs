@@ -7,7 +7,7 @@ use hrdsl_ir::{
     Nanos, Program,
     ta::{Automaton, AutomatonId, Network},
 };
-use hrdsl_runtime::prove::{RecordedPart, RecordedWalk, RecordedStep, RecordedTime, RunEnding};
+use hrdsl_runtime::prove::{RecordedPart, RecordedStep, RecordedTime, RecordedWalk, RunEnding};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -222,7 +222,12 @@ fn of_uppaal(trace: &UppaalTrace, program: &Program, chosen: &[String]) -> Resul
         "some edges of the trace are numbered otherwise than here: there, only the locations are compared"
             .to_owned()
     });
-    Ok(NamedRun { name: String::new(), network, run: RecordedWalk { steps, ..RecordedWalk::default() }, note })
+    Ok(NamedRun {
+        name: String::new(),
+        network,
+        run: RecordedWalk { steps, ..RecordedWalk::default() },
+        note,
+    })
 }
 
 fn uppaal_part(

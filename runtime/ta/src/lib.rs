@@ -62,7 +62,7 @@ pub use network::{selects::BinderValues, semantics::AutomatonMove};
 pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
 pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable};
 pub use walk::follow::{
-    FollowDeparture, FollowOutcome, RecordedPart, RecordedWalk, RecordedStep, RecordedTime, follow,
+    FollowDeparture, FollowOutcome, RecordedPart, RecordedStep, RecordedTime, RecordedWalk, follow,
 };
 pub use walk::session::WalkSession;
 pub use walk::state::{ClockView, MomentRange, NetworkWalk, WalkOption, WalkState};

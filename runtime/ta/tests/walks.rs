@@ -8,7 +8,7 @@ mod dice;
 use dice::{Flavour, network};
 use hrdsl_ir::Program;
 use hrdsl_ta::{
-    FollowOutcome, RecordedPart, RecordedWalk, RecordedStep, RecordedTime, RunEnding, WalkSession,
+    FollowOutcome, RecordedPart, RecordedStep, RecordedTime, RecordedWalk, RunEnding, WalkSession,
     WitnessTrace, follow,
 };
 

@@ -72,11 +72,13 @@ pub struct SearchReport {
 
 /// How far a search is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SearchProgress {
+pub struct SearchProgress<'s> {
     pub stored: usize,
     pub visited: usize,
     pub waiting: usize,
     pub bytes: usize,
     /// Goals that are not met yet.
     pub open: usize,
+    /// For each goal whether it is not met yet.
+    pub unmet: &'s [bool],
 }

@@ -240,6 +240,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             waiting: self.waiting.len(),
             bytes,
             open: self.left,
+            unmet: &self.open,
         };
         if !go_on(&progress) {
             return Ok(ControlFlow::Break(Some(SearchCutoff::Stopped)));

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::{
     network::{actions::PathTransition, error::ModelError, graph::ZoneGraph},
     walk::{
-        follow::{FollowDeparture, RecordedWalk, RecordedTime, leaves},
+        follow::{FollowDeparture, RecordedTime, RecordedWalk, leaves},
         state::{MomentRange, NetworkWalk, WalkOption, WalkState},
     },
     witness::{
