@@ -1,5 +1,7 @@
 //! Answers of `hrdsl prove` as they come, interrupted, and what they took.
 
+#![allow(clippy::disallowed_methods, reason = "a test sends a signal")]
+
 mod support;
 
 use std::{

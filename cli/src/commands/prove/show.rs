@@ -180,7 +180,7 @@ fn search(row: &ProofRow, timings: bool) -> SearchJson<'_> {
         discrete_states: s.discrete_states,
         bytes: s.bytes,
     });
-    let seconds = timings.then(|| row.time.as_secs_f64());
+    let seconds = timings.then_some(row.time.as_secs_f64());
     SearchJson { names: vec![&row.name], joint: row.joint, statistics, seconds }
 }
 

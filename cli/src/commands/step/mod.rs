@@ -209,13 +209,14 @@ impl InteractiveWalk<'_> {
             ));
         };
         let recorded = runs.swap_remove(at);
-        self.session.replay(&recorded.run).map_err(|left| {
-            format!(
+        match self.session.replay(&recorded.run).map_err(|e| e.to_string())? {
+            None => Ok(()),
+            Some(left) => Err(format!(
                 "the run leaves the network at step {} of {}: {}",
                 left.step,
                 recorded.run.steps.len(),
                 left.why
-            )
-        })
+            )),
+        }
     }
 }

@@ -14,6 +14,7 @@ use crate::{
         extremum::{ExtremumOptions, ExtremumQuestion, ExtremumSide, MeasureExtremum, extrema},
         fastest::fastest,
         liveness::{LivenessSearch, MaximalRun, MaximalRunSearchResult},
+        zeno::{self, LoopPace},
     },
     network::{
         error::ModelError,
@@ -326,14 +327,8 @@ impl QueryEvaluator<'_> {
             MaximalRunSearchResult::Found(trap) => {
                 let timing = self.options.timing();
                 let run = build::concrete(&graph, &trap.stops, trap.ending, None, timing)?;
-                let still = match trap.ending {
-                    RunEnding::Again(_) => {
-                        let times = build::times(&graph, &trap.stops, ScheduleOptions::default())?;
-                        times.is_some_and(|t| !t.can_last(trap.from))
-                    }
-                    RunEnding::Reached | RunEnding::Stuck | RunEnding::Waits => false,
-                };
-                LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, still })
+                let pace = zeno::pace(&graph, &trap)?;
+                LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, pace })
             }
         })
     }
@@ -349,8 +344,7 @@ impl QueryEvaluator<'_> {
             RunEnding::Stuck => format!("nothing more can happen in {at}, {}", length(run)),
             RunEnding::Again(from) => {
                 let steps = count(run.steps.len() - from, "transition");
-                let zeno = if shown.still { ", in which no time passes" } else { "" };
-                format!("a run goes round for ever through {at}, by {steps}{zeno}")
+                format!("a run goes round for ever through {at}, by {steps}{}", shown.pace.told())
             }
             RunEnding::Reached => format!("a run shows it in {at}"),
         }
@@ -399,10 +393,10 @@ enum LivenessSearchResult {
     Inconclusive(SearchCutoff),
 }
 
-/// A trap, and whether no time can pass in its loop.
+/// A trap, and how time passes in its loop.
 struct LivenessCounterexample {
     trap: Box<MaximalRun>,
-    still: bool,
+    pace: LoopPace,
 }
 
 fn none(verdict: QueryVerdict, why: String) -> QueryAnswer {

@@ -11,3 +11,4 @@ mod interpreter_tests;
 mod known_states;
 mod liveness;
 mod places;
+mod zeno;

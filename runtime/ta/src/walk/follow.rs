@@ -3,10 +3,12 @@
 //! What a record does not say (a time, which of two edges between the same locations) may be anything: all states in which the network can be
 //! are carried along, each with all its clocks.
 
+use std::rc::Rc;
+
 use hrdsl_ir::Nanos;
 
 use crate::{
-    network::error::ModelError,
+    network::{actions::PathTransition, error::ModelError},
     walk::state::{MomentRange, NetworkWalk, WalkOption, WalkState},
     witness::{run::RunEnding, trace::seconds},
 };
@@ -85,51 +87,102 @@ impl RecordedTime {
     }
 }
 
+/// A state in which the network can be after some steps of a record, and how it comes there.
+pub(crate) struct FollowedState {
+    pub(crate) state: WalkState,
+    /// Its place among the states before the step.
+    before: usize,
+    /// `None`: it is the start.
+    taken: Option<Rc<PathTransition>>,
+}
+
+/// All states along a recorded run: at the start, and after each step as far as the network goes along.
+pub(crate) struct FollowTrail {
+    layers: Vec<Vec<FollowedState>>,
+    pub(crate) leaves: Option<Box<FollowDeparture>>,
+}
+
+impl FollowTrail {
+    /// # Errors
+    /// If the start of the network is a fault, or the record says so little that there is too much to follow.
+    pub(crate) fn new(walk: &NetworkWalk<'_>, run: &RecordedWalk) -> Result<Self, ModelError> {
+        let start = FollowedState { state: walk.start()?, before: 0, taken: None };
+        let mut trail = Self { layers: vec![vec![start]], leaves: None };
+        for (index, step) in run.steps.iter().enumerate() {
+            let Some(states) = trail.layers.last() else { break };
+            let mut next: Vec<FollowedState> = Vec::new();
+            for (before, followed) in states.iter().enumerate() {
+                // INVARIANT: a moment only narrows the clocks, so that what is possible then is among what is possible at all.
+                let there = match step.time {
+                    Some(time) => walk.at(&followed.state, &time.range()),
+                    None => Some(followed.state.clone()),
+                };
+                let options = there.map(|state| walk.options(&state)).unwrap_or_default();
+                for option in options.into_iter().filter(|o| step.fits(o)) {
+                    let Some(state) = option.next else { continue };
+                    let includes = |s: &FollowedState| {
+                        s.state.discrete == state.discrete && s.state.zone.includes(&state.zone)
+                    };
+                    if !next.iter().any(includes) {
+                        next.push(FollowedState {
+                            state,
+                            before,
+                            taken: Some(option.transition.action.taken),
+                        });
+                    }
+                }
+            }
+            if next.is_empty() {
+                let states: Vec<WalkState> = states.iter().map(|s| s.state.clone()).collect();
+                trail.leaves = Some(Box::new(leaves(walk, &states, step, index + 1)));
+                break;
+            }
+            if next.len() > MOST_STATES {
+                let step = index + 1;
+                let what =
+                    format!("step {step}: the record says too little: more than {MOST_STATES} states fit");
+                return Err(ModelError::Question(what));
+            }
+            trail.layers.push(next);
+        }
+        Ok(trail)
+    }
+
+    fn last(&self) -> impl Iterator<Item = &FollowedState> {
+        self.layers.last().into_iter().flatten()
+    }
+
+    /// One way along it: the transitions, and the states that they lead to.
+    pub(crate) fn path(&self) -> Vec<(Rc<PathTransition>, WalkState)> {
+        let (mut path, mut at) = (Vec::new(), 0);
+        for layer in self.layers.iter().rev() {
+            let Some(followed) = layer.get(at) else { break };
+            at = followed.before;
+            path.extend(followed.taken.as_ref().map(|taken| (Rc::clone(taken), followed.state.clone())));
+        }
+        path.reverse();
+        path
+    }
+}
+
 /// Follows a recorded run.
 ///
 /// # Errors
 /// If the start of the network is a fault, or the record says so little that there is too much to follow.
 pub fn follow(walk: &NetworkWalk<'_>, run: &RecordedWalk) -> Result<FollowOutcome, ModelError> {
-    let start = walk.start()?;
-    let mut history = vec![start.discrete.clone()];
-    let mut states = vec![start];
-    for (index, step) in run.steps.iter().enumerate() {
-        let mut next = Vec::new();
-        for state in &states {
-            // INVARIANT: a moment only narrows the clocks, so that what is possible then is among what is possible at all.
-            let there = match step.time {
-                Some(time) => walk.at(state, &time.range()),
-                None => Some(state.clone()),
-            };
-            let options = there.map(|state| walk.options(&state)).unwrap_or_default();
-            let fitting = options.into_iter().filter(|o| step.fits(o));
-            fitting.filter_map(|o| o.next).for_each(|state| add(&mut next, state));
-        }
-        if next.is_empty() {
-            return Ok(FollowOutcome::Leaves(Box::new(leaves(walk, &states, step, index + 1))));
-        }
-        if next.len() > MOST_STATES {
-            let what =
-                format!("step {}: the record says too little: more than {MOST_STATES} states fit", index + 1);
-            return Err(ModelError::Question(what));
-        }
-        states = next;
-        history.push(states[0].discrete.clone());
+    let trail = FollowTrail::new(walk, run)?;
+    if let Some(left) = trail.leaves {
+        return Ok(FollowOutcome::Leaves(left));
     }
+    let states: Vec<WalkState> = trail.last().map(|s| s.state.clone()).collect();
+    let history = trail.layers.iter().filter_map(|layer| layer.first());
+    let history: Vec<Vec<i64>> = history.map(|s| s.state.discrete.clone()).collect();
     Ok(ended(walk, &states, run, &history))
-}
-
-/// Keeps a state, unless one that is there already is all that it is.
-fn add(states: &mut Vec<WalkState>, state: WalkState) {
-    if !states.iter().any(|s| s.discrete == state.discrete && s.zone.includes(&state.zone)) {
-        states.retain(|s| s.discrete != state.discrete || !state.zone.includes(&s.zone));
-        states.push(state);
-    }
 }
 
 impl RecordedStep {
     /// Whether an option is what was recorded, as far as that says.
-    pub(crate) fn fits(&self, option: &WalkOption) -> bool {
+    fn fits(&self, option: &WalkOption) -> bool {
         let told = &option.told;
         let same = |(said, part): (&RecordedPart, &crate::TransitionParticipant)| {
             let agrees = |said: &Option<String>, is: &String| said.as_ref().is_none_or(|s| s == is);
@@ -148,7 +201,7 @@ impl RecordedStep {
 }
 
 /// Why no state takes a step.
-pub(crate) fn leaves(
+fn leaves(
     walk: &NetworkWalk<'_>,
     states: &[WalkState],
     step: &RecordedStep,

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::{
     network::{actions::PathTransition, error::ModelError, graph::ZoneGraph},
     walk::{
-        follow::{FollowDeparture, RecordedTime, RecordedWalk, leaves},
+        follow::{FollowDeparture, FollowTrail, RecordedTime, RecordedWalk},
         state::{MomentRange, NetworkWalk, WalkOption, WalkState},
     },
     witness::{
@@ -116,28 +116,19 @@ impl<'p> WalkSession<'p> {
         options.into_iter().nth(choice)
     }
 
-    /// From the start along a recorded run. Where several transitions are what was recorded, the first is taken. What leaves the network
-    /// keeps the walk where it left.
+    /// From the start along a recorded run, as far as the network goes along. Where several transitions are what was recorded, one of those
+    /// that lead on is taken.
+    ///
+    /// Gives where the run leaves the network, if it does.
     ///
     /// # Errors
-    /// Where the run leaves the network, and why.
-    pub fn replay(&mut self, run: &RecordedWalk) -> Result<(), Box<FollowDeparture>> {
-        self.restart();
-        for (index, step) in run.steps.iter().enumerate() {
-            let when = step.time.map(RecordedTime::range);
-            let there = match &when {
-                Some(moment) => self.walk.at(self.state(), moment),
-                None => Some(self.state().clone()),
-            };
-            let options = there.map(|state| self.walk.options(&state)).unwrap_or_default();
-            let found =
-                options.into_iter().filter(|o| step.fits(o)).find_map(|o| Some((o.next?, o.transition)));
-            let Some((next, transition)) = found else {
-                return Err(Box::new(leaves(&self.walk, &[self.state().clone()], step, index + 1)));
-            };
-            self.taken.push(TakenTransition { taken: transition.action.taken, when, next });
-        }
-        Ok(())
+    /// As [`follow`](crate::follow).
+    pub fn replay(&mut self, run: &RecordedWalk) -> Result<Option<Box<FollowDeparture>>, ModelError> {
+        let trail = FollowTrail::new(&self.walk, run)?;
+        let times = run.steps.iter().map(|step| step.time.map(RecordedTime::range));
+        let steps = trail.path().into_iter().zip(times);
+        self.taken = steps.map(|((taken, next), when)| TakenTransition { taken, when, next }).collect();
+        Ok(trail.leaves)
     }
 
     /// One transition back; `false`: it is at the start.
