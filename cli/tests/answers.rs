@@ -70,7 +70,8 @@ fn what_one_search_took_is_told_once() {
     let folder = folder(&[("wide.hri", &wide(3))]);
     let out = hrdsl_in(folder.path(), "prove wide.hri");
     let text = stdout(&out);
-    assert_eq!(text.matches("transitions, ").count(), 1, "{text}");
+    // One of three, and that about the deadlock.
+    assert_eq!(text.matches("transitions, ").count(), 2, "{text}");
     assert!(text.contains("\n  3 queries in one search  ("), "{text}");
     let document = |args: &str| -> Value {
         let out = hrdsl_in(folder.path(), &format!("prove wide.hri --json {args}"));
@@ -85,11 +86,36 @@ fn what_one_search_took_is_told_once() {
     }
     // Three automata with two locations each.
     assert_eq!(joint["discrete_states"], 8);
-    assert_eq!(searches.len(), 2);
+    assert_eq!((searches.len(), &searches[1]["discrete_states"]), (2, &8.into()));
     assert!(searches.iter().all(|s| s.get("seconds").is_none()));
     let timed = document("--timings");
     let searches = timed["networks"][0]["searches"].as_array().unwrap();
     assert!(searches.iter().all(|s| s["seconds"].as_f64().unwrap() > 0.0), "{searches:?}");
+}
+
+#[test]
+fn all_kinds_of_questions_say_what_they_took_and_stop_when_their_time_is_over() {
+    let asked = ["E<> deadlock", "A<> A0.b", "E[] not A0.b", "A0.a --> A1.b", "sup: A0.x", "inf{A0.b}: A0.x"];
+    let prove = |count: usize, query: &str, args: &[&str]| -> Value {
+        let folder = folder(&[("wide.hri", &wide(count))]);
+        let mut command = support::command();
+        command.args(["prove", "wide.hri", "--json", "--ask", query]).args(args).current_dir(folder.path());
+        serde_json::from_slice(&command.output().unwrap().stdout).unwrap()
+    };
+    for query in asked {
+        let document = prove(2, query, &[]);
+        let search = &document["networks"][0]["searches"][0];
+        assert_eq!(search["for"], serde_json::json!(["ask1"]));
+        assert!(search["visited"].as_u64().unwrap() > 0, "{query}: {search:#}");
+        assert!(search["discrete_states"].as_u64().unwrap() <= 4, "{query}: {search:#}");
+    }
+    // The searches end by themselves: what they took is known.
+    for query in ["E<> deadlock", "A0.a --> A1.a or A1.b", "sup: A0.x"] {
+        let document = prove(9, query, &["--timeout", "300ms", "--budget-memory", "20GB"]);
+        let network = &document["networks"][0];
+        assert_eq!(network["queries"][0]["verdict"], "inconclusive", "{query}: {document:#}");
+        assert!(network["searches"][0]["visited"].as_u64().is_some_and(|n| n > 0), "{query}: {document:#}");
+    }
 }
 
 #[test]

@@ -99,7 +99,7 @@ pub fn decide(
         decided.states += report.states_stored;
         decided.visited += report.states_visited;
         decided.searches += 1;
-        decided.statistics = decided.statistics.and(SearchStatistics::of(&report));
+        decided.statistics = decided.statistics.and(report.statistics());
         for (goal, fate) in
             open.iter().zip(settled(program, &restricted, &report, *treatment, (watch, &mut why)))
         {

@@ -63,7 +63,8 @@ pub fn answer(
     let plain = ObservedNetwork::new(program, network);
     let result = match reachability(&asked.ask) {
         Some(goal) => by_search(&plain, &[(query, goal)], settings, watch).map(|mut all| all.remove(0)),
-        None => in_general(program, network, asked, settings).map(|a| told(&plain, query, &asked.ask, a)),
+        None => in_general(program, network, asked, settings, watch)
+            .map(|answer| told(&plain, query, &asked.ask, answer)),
     };
     match result {
         Ok(answered) => Ok(answered),
@@ -168,7 +169,7 @@ fn by_search(
     let report = search(plain, &goals, &[], &[], settings, watch);
     watch.listen(false);
     let report = report?;
-    let (statistics, joint) = (Some(SearchStatistics::of(&report)), asked.len() > 1);
+    let (statistics, joint) = (Some(report.statistics()), asked.len() > 1);
     let mut notes = Vec::new();
     if let Some(reason) = &report.global_because {
         notes.push(format!("searched without local time: {reason}"));
@@ -226,6 +227,7 @@ fn in_general(
     network: &Network,
     query: &Query,
     settings: &ProofOptions,
+    watch: &SearchWatch,
 ) -> Result<QueryAnswer, SearchError> {
     let options = QueryOptions {
         budget: settings.budget,
@@ -234,7 +236,12 @@ fn in_general(
         seed: settings.seed,
         threads: settings.threads,
     };
-    hrdsl_ta::answer(program, network, query, &options)
+    let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
+    let mut answer = hrdsl_ta::answer_watched(program, network, query, &options, &go_on)?;
+    if answer.verdict == QueryVerdict::Inconclusive && watch.is_stopped() {
+        watch.stopped().clone_into(&mut answer.why);
+    }
+    Ok(answer)
 }
 
 fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAnswer) -> QueryResult {
@@ -254,7 +261,7 @@ fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAns
         found,
         run: run.map(|witness| Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),
         notes: if said { Vec::new() } else { vec![answer.why] },
-        statistics: None,
+        statistics: answer.statistics,
         joint: false,
     }
 }

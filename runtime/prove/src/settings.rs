@@ -9,11 +9,11 @@ use hrdsl_ir::{
     suite::{DelayChoice, WitnessKind},
     ta::QueryFormula,
 };
-pub use hrdsl_ta::SearchOrder;
 use hrdsl_ta::{
     CompiledNetwork, EventCounter, EventLimit, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal,
     ScheduleOptions, SearchBudget, SearchError, SearchOptions, SearchReport, WitnessRun,
 };
+pub use hrdsl_ta::{SearchOrder, SearchStatistics};
 
 use super::observer::ObservedNetwork;
 
@@ -71,43 +71,6 @@ struct GoalsMet {
     new: Vec<usize>,
 }
 
-/// What a search took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SearchStatistics {
-    /// Symbolic states kept at the end.
-    pub stored: usize,
-    /// Symbolic states whose successors were computed.
-    pub visited: usize,
-    /// Symbolic transitions computed.
-    pub transitions: usize,
-    pub discrete_states: usize,
-    /// The most bytes that states took at any time.
-    pub bytes: usize,
-}
-
-impl SearchStatistics {
-    pub(crate) fn of(report: &SearchReport) -> Self {
-        Self {
-            stored: report.states_stored,
-            visited: report.states_visited,
-            transitions: report.transitions,
-            discrete_states: report.discrete_states,
-            bytes: report.peak_bytes,
-        }
-    }
-
-    /// Of this search and of another one after it.
-    pub(crate) fn and(self, other: Self) -> Self {
-        Self {
-            stored: self.stored + other.stored,
-            visited: self.visited + other.visited,
-            transitions: self.transitions + other.transitions,
-            discrete_states: self.discrete_states + other.discrete_states,
-            bytes: self.bytes.max(other.bytes),
-        }
-    }
-}
-
 impl SearchWatch {
     /// The goals that were met since this was asked last, in the order in which they were. A search for several queries tells this of each, by
     /// its place among them.
@@ -140,6 +103,16 @@ impl SearchWatch {
                 met.new.push(goal);
             }
         }
+    }
+
+    /// Notes how far a search is; whether it goes on.
+    pub(crate) fn goes_on(&self, progress: &hrdsl_ta::SearchProgress<'_>) -> bool {
+        self.note(progress);
+        !self.is_stopped()
+    }
+
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// Why a search that was stopped has not decided.
@@ -195,10 +168,7 @@ pub(crate) fn search(
         ..ObservationOptions::default()
     };
     let model = CompiledNetwork::new(&observed.program, &observed.network, &observe)?;
-    let go_on = |p: &hrdsl_ta::SearchProgress<'_>| {
-        watch.note(p);
-        !watch.stop.load(Ordering::Relaxed)
-    };
+    let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
     let mut report = hrdsl_ta::explore(&model, goals, &settings.options(), &go_on)?;
     for (goal, outcome) in goals.iter().zip(&mut report.goals) {
         if let GoalOutcome::Reached(found) = outcome

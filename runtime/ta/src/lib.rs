@@ -46,7 +46,7 @@ mod walk;
 mod witness;
 mod zone;
 
-pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, answer, answers};
+pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, answer, answer_watched, answers};
 pub use decide::deadlock::SHORTEST;
 pub use decide::explore::{check, explore};
 pub use decide::extremum::{ExtremumLimit, ExtremumValue, MeasureExtremum, RAISES};
@@ -60,7 +60,9 @@ pub use network::query::{
 };
 pub use network::{selects::BinderValues, semantics::AutomatonMove};
 pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
-pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable};
+pub use search::report::{
+    GoalOutcome, SearchCutoff, SearchProgress, SearchReport, SearchStatistics, WidestVariable,
+};
 pub use walk::follow::{
     FollowDeparture, FollowOutcome, RecordedPart, RecordedStep, RecordedTime, RecordedWalk, follow,
 };

@@ -1,7 +1,7 @@
 //! What was decided, for people and for programs.
 
 use hrdsl_ir::Program;
-use hrdsl_runtime::prove::WitnessTrace;
+use hrdsl_runtime::prove::{SearchStatistics, WitnessTrace};
 use serde::Serialize;
 
 use super::{
@@ -103,18 +103,9 @@ struct SearchJson<'r> {
     #[serde(skip)]
     joint: bool,
     #[serde(flatten)]
-    statistics: Option<StatisticsJson>,
+    statistics: Option<SearchStatistics>,
     #[serde(skip_serializing_if = "Option::is_none")]
     seconds: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct StatisticsJson {
-    stored: usize,
-    visited: usize,
-    transitions: usize,
-    discrete_states: usize,
-    bytes: usize,
 }
 
 #[derive(Serialize)]
@@ -173,15 +164,8 @@ fn document<'r>(program: &'r Program, rows: &'r [ProofRow], timings: bool) -> Pr
 }
 
 fn search(row: &ProofRow, timings: bool) -> SearchJson<'_> {
-    let statistics = row.statistics.map(|s| StatisticsJson {
-        stored: s.stored,
-        visited: s.visited,
-        transitions: s.transitions,
-        discrete_states: s.discrete_states,
-        bytes: s.bytes,
-    });
     let seconds = timings.then_some(row.time.as_secs_f64());
-    SearchJson { names: vec![&row.name], joint: row.joint, statistics, seconds }
+    SearchJson { names: vec![&row.name], joint: row.joint, statistics: row.statistics, seconds }
 }
 
 fn of(row: &ProofRow) -> RowJson<'_> {
