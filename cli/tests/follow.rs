@@ -253,4 +253,15 @@ fn what_is_no_run_is_said() {
         assert!(stderr(&out).contains("bad.json: ") && stderr(&out).contains(said), "{}", stderr(&out));
     }
     expect_code(&hrdsl_in(folder.path(), "prove queue.hri --follow none.json"), 2);
+    // A network that cannot start has no runs.
+    let never = QUEUE.replace("init location free", "init location free { invariant last > 0 }");
+    std::fs::write(folder.path().join("never.hri"), never).unwrap();
+    let out = hrdsl_in(folder.path(), "prove never.hri --follow found.json");
+    expect_code(&out, 1);
+    assert!(
+        stderr(&out).contains("network `hall`: the invariants of the initial locations"),
+        "{}",
+        stderr(&out)
+    );
+    expect_code(&hrdsl_in(folder.path(), "step never.hri"), 1);
 }

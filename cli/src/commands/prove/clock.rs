@@ -36,7 +36,7 @@ pub struct ProofClock {
 /// How long a search is waited for that was told to stop. Not all of them listen.
 const GRACE: Duration = Duration::from_millis(500);
 /// The same after an interrupt: a second one ends at once.
-const INTERRUPTED_GRACE: Duration = Duration::from_secs(5);
+const INTERRUPTED_GRACE: Duration = Duration::from_secs(2);
 /// Whoever waits no longer than this sees the answers all at once.
 const PATIENCE: Duration = Duration::from_secs(1);
 const STACK: usize = 64 << 20;
@@ -179,7 +179,8 @@ impl SearchPace {
         // Another search of the same question begins anew.
         if visited < self.visited {
             *self = Self { visited, waiting, ..Self::new() };
-        } else if passed >= 1.0 {
+        } else if passed >= 1.0 && visited > self.visited {
+            // A round of many states may last for seconds, in which nothing is told.
             let each = |n: usize, before: usize| (n as f64 - before as f64) / passed;
             let rates = (each(visited, self.visited), each(waiting, self.waiting));
             *self = Self { since: now(), visited, waiting, rates: Some(rates) };

@@ -68,9 +68,15 @@ pub fn run(
     let mut followed = Vec::new();
     for recorded in recorded_run::read(trace, program, &args.network)? {
         let network = &program.networks[recorded.network];
-        let fault = |e| format!("network `{}`: {e}", network.name);
-        let walk = NetworkWalk::new(program, network).map_err(fault)?;
-        let (departure, renumbered) = leaving(&walk, &recorded.run).map_err(fault)?;
+        let followed_run = NetworkWalk::new(program, network).and_then(|walk| leaving(&walk, &recorded.run));
+        let (departure, renumbered) = match followed_run {
+            Ok(found) => found,
+            Err(ModelError::Question(what)) => return Err(format!("{}: {what}", terminal::shown(trace))),
+            Err(fault) => {
+                terminal::say_line(format_args!("network `{}`: {fault}", network.name));
+                return Ok(CommandExit::Errors);
+            }
+        };
         let leaves = departure.map(|d| told(*d, sources));
         let note = recorded.note.or_else(|| renumbered.then(|| RENUMBERED.to_owned()));
         followed.push(FollowedRun {
