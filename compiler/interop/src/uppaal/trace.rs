@@ -193,6 +193,20 @@ mod tests {
     }
 
     #[test]
+    fn a_part_of_a_trace_is_none() {
+        for end in 0..NEW.trim_end().len() {
+            let error = read_trace(&NEW[..end]).unwrap_err();
+            assert!(error.starts_with("line "), "{end}: {error}");
+        }
+        for (at, _) in NEW.char_indices() {
+            // Whatever is written there instead, it is read or refused.
+            for other in ["x", ".", ";", "-", "\n", "99999999999999999999"] {
+                let _ = read_trace(&format!("{}{other}{}", &NEW[..at], &NEW[at + 1..]));
+            }
+        }
+    }
+
+    #[test]
     fn what_is_no_trace_is_said_with_its_line() {
         for (text, said) in [
             ("", "line 1: the number of a location, or `.`, was expected, at the end of the file"),
