@@ -16,7 +16,7 @@ pub enum CommandExit {
     Findings = 3,
     /// A requirement or query is inconclusive: the budget was used up first.
     Inconclusive = 4,
-    /// A campaign was interrupted; what had ended is published.
+    /// A campaign or a search was interrupted; what had ended, or was known, is told.
     Interrupted = 5,
     /// Something is wrong with hrdsl itself (`EX_SOFTWARE` of sysexits.h).
     Internal = 70,
@@ -28,14 +28,15 @@ Exit codes:
   0  all is well
   1  a scenario has errors, or warnings that `check --deny` makes errors; `fmt --check`: a file would change;
      `import`: a file is no program, or `--strict` and something is left out; `inspect`, `run`: the agents cannot go
-     on (a livelock, the cycle bound, a fault of the model); `prove`: a network is at fault; `mutate`: the score is below --min-score
-  2  the command line is wrong, or a file cannot be read or written
+     on (a livelock, the cycle bound, a fault of the model); `prove`, `step`: a network is at fault; `mutate`: the score is
+     below --min-score
+  2  the command line is wrong, or a file cannot be read or written; `step`: what is piped in is no command, or not possible
   3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism, --repeat or
      --schedules found a difference;
-     `prove`: a requirement is violated, or a query is not satisfied; `conformance`: a case failed; `mutate`: the tests
-     measure nothing of a file, or do not repeat
+     `prove`: a requirement is violated, a query is not satisfied, or with --follow a run is none of the network;
+     `conformance`: a case failed; `mutate`: the tests measure nothing of a file, or do not repeat
   4  `prove`: something is inconclusive, since the budget was used up, and nothing else is wrong
-  5  `sim`, `mutate`: interrupted; the results are those of the tests that had ended
+  5  `sim`, `mutate`, `prove`: interrupted; the results are those of the tests that had ended, or what was known
   70 hrdsl itself is at fault: an internal error, which is worth a report";
 
 impl From<CommandExit> for ExitCode {

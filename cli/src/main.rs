@@ -10,6 +10,7 @@
 mod color;
 mod commands;
 mod covered_files;
+mod edge_sources;
 mod exit;
 mod fault;
 mod files;
@@ -17,10 +18,12 @@ mod fix;
 mod hulls;
 mod input;
 mod installing;
+mod interrupt;
 mod observation;
 mod project;
 mod quantity;
 mod reach;
+mod recorded_run;
 mod render;
 mod results_folder;
 mod terminal;
@@ -72,6 +75,7 @@ enum TopLevelCommand {
     Report(commands::report::ReportArgs),
     Run(commands::run::RunArgs),
     Sim(commands::sim::SimArgs),
+    Step(commands::step::StepArgs),
     View(commands::view::ViewArgs),
 }
 
@@ -118,6 +122,7 @@ fn run() -> ExitCode {
         TopLevelCommand::Report(args) => commands::report::run(&args),
         TopLevelCommand::Run(args) => commands::run::run(&args),
         TopLevelCommand::Sim(args) => commands::sim::run(&args),
+        TopLevelCommand::Step(args) => commands::step::run(&args),
         TopLevelCommand::View(args) => commands::view::run(&args),
     });
     result

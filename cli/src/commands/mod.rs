@@ -23,4 +23,5 @@ pub mod run;
 pub mod search_options;
 pub mod shown;
 pub mod sim;
+pub mod step;
 pub mod view;

@@ -1,7 +1,7 @@
 //! Models that go to and fro between hrdsl and other tools, one folder for each tool. It is pure: files come from a [`ForeignLoader`].
 //!
 //! - [`agentspeak`]: Jason's `.asl` and `.mas2j` to scenarios
-//! - [`uppaal`]: UPPAAL's models in XML and their queries, to scenarios and from networks
+//! - [`uppaal`]: UPPAAL's models in XML and their queries, to scenarios and from networks; its traces
 //! - [`tchecker`]: the text format of TChecker, to scenarios and from networks
 //! - [`picture`]: networks in Graphviz's DOT and as Mermaid's state diagrams
 //! - `exchange`: what they share: sources, notes and obstacles, names, times

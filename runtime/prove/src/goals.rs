@@ -9,7 +9,7 @@ use hrdsl_ta::{
 use super::{
     observer::ObservedNetwork,
     run::{ObservedRun, keeps_assumptions},
-    settings::{ProofOptions, SearchWatch, search},
+    settings::{ProofOptions, SearchStatistics, SearchWatch, search},
 };
 
 /// How a goal ended.
@@ -23,7 +23,7 @@ pub enum GoalFate {
 }
 
 /// What became of several goals.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct GoalDecision {
     /// One for each goal.
     pub fates: Vec<GoalFate>,
@@ -32,6 +32,7 @@ pub struct GoalDecision {
     /// Symbolic states whose successors were computed, of all searches.
     pub visited: usize,
     pub searches: usize,
+    pub statistics: SearchStatistics,
 }
 
 /// How assumptions with a window restrict a search.
@@ -69,7 +70,7 @@ pub fn decide(
         (true, false) => &[WindowTreatment::Ignored, WindowTreatment::Whole, WindowTreatment::Exact],
         (true, true) => &[WindowTreatment::Whole, WindowTreatment::Ignored, WindowTreatment::Exact],
     };
-    let mut decided = GoalDecision { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
+    let mut decided = GoalDecision::default();
     let mut fates: Vec<Option<GoalFate>> = vec![None; goals.len()];
     let mut why = String::new();
     for treatment in treatments {
@@ -98,7 +99,10 @@ pub fn decide(
         decided.states += report.states_stored;
         decided.visited += report.states_visited;
         decided.searches += 1;
-        for (goal, fate) in open.iter().zip(settled(program, &restricted, &report, *treatment, &mut why)) {
+        decided.statistics = decided.statistics.and(report.statistics());
+        for (goal, fate) in
+            open.iter().zip(settled(program, &restricted, &report, *treatment, (watch, &mut why)))
+        {
             fates[*goal] = fate;
         }
     }
@@ -113,7 +117,7 @@ fn settled(
     observed: &ObservedNetwork,
     report: &SearchReport,
     treatment: WindowTreatment,
-    why: &mut String,
+    (watch, why): (&SearchWatch, &mut String),
 ) -> Vec<Option<GoalFate>> {
     let mut fates = Vec::new();
     for outcome in &report.goals {
@@ -128,7 +132,7 @@ fn settled(
                 (treatment != WindowTreatment::Whole).then_some(GoalFate::Unreachable)
             }
             GoalOutcome::Inconclusive(what) => {
-                *why = exhausted(*what, report);
+                *why = exhausted(*what, report, watch);
                 None
             }
         });
@@ -136,11 +140,11 @@ fn settled(
     fates
 }
 
-pub(super) fn exhausted(what: SearchCutoff, report: &SearchReport) -> String {
+pub(super) fn exhausted(what: SearchCutoff, report: &SearchReport, watch: &SearchWatch) -> String {
     let why = match what {
         SearchCutoff::States => "the budget of states was used up",
         SearchCutoff::Memory => "the budget of memory was used up",
-        SearchCutoff::Stopped => "the time was over",
+        SearchCutoff::Stopped => watch.stopped(),
     };
     report.widest.as_ref().map_or_else(|| why.to_owned(), |widest| format!("{why}; {widest}"))
 }

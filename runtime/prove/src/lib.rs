@@ -22,7 +22,11 @@ mod window;
 
 use hrdsl_ir::{Program, monitor::Monitor, ta::Network};
 use hrdsl_monitor::MonitorRunner;
-pub use hrdsl_ta::WitnessTrace;
+pub use hrdsl_ta::{
+    EdgeSource, FollowDeparture, FollowOutcome, ModelError, MomentRange, NetworkWalk, RecordedPart,
+    RecordedStep, RecordedTime, RecordedWalk, RunEnding, WalkOption, WalkSession, WitnessTrace,
+    WitnessTransition, follow,
+};
 use hrdsl_ta::{SearchError, WitnessRun};
 use hrdsl_trace::{Trace, TraceObserver as _};
 
@@ -30,9 +34,9 @@ use held::TimedHolds;
 
 pub use goals::{GoalDecision, GoalFate, decide, of_formula};
 pub use observer::{ObservedNetwork, ObserverFormulas};
-pub use query::{QueryFinding, QueryResult, answer, answers};
+pub use query::{QueryFinding, QueryResult, answer, answers, is_decided_with_others};
 pub use run::ObservedRun;
-pub use settings::{ProofOptions, SearchOrder, SearchWatch};
+pub use settings::{ProofOptions, SearchOrder, SearchStatistics, SearchWatch};
 
 /// What became of a requirement.
 #[derive(Clone, Debug)]
@@ -40,8 +44,8 @@ pub struct RequirementProof {
     /// Index into [`Program::monitors`].
     pub monitor: usize,
     pub status: ProofStatus,
-    /// Symbolic states stored, of all searches that it took.
-    pub states: usize,
+    /// Of all searches that it took; `None`: it was not searched.
+    pub statistics: Option<SearchStatistics>,
     /// Why nothing triggers it, if that is known.
     pub note: Option<String>,
 }
@@ -77,7 +81,7 @@ pub fn prove(
     let Some(requirement) = program.monitors.get(monitor) else {
         return Err(format!("there is no requirement {monitor}"));
     };
-    let unsearched = |status| RequirementProof { monitor, status, states: 0, note: None };
+    let unsearched = |status| RequirementProof { monitor, status, statistics: None, note: None };
     let mut observed = ObservedNetwork::new(program, network);
     let verdicts = match observed.add(requirement) {
         Ok(verdicts) => verdicts,
@@ -96,7 +100,7 @@ pub fn prove(
             return Err(format!("requirement `{}`: {what}", requirement.name));
         }
     };
-    let states = decided.states;
+    let (states, statistics) = (decided.states, Some(decided.statistics));
     let mut fates = decided.fates.into_iter();
     let violated = if verdicts.violated.is_some() { fates.next() } else { Some(GoalFate::Unreachable) };
     let triggered = match fates.next() {
@@ -123,7 +127,7 @@ pub fn prove(
         | ProofStatus::NotOnTheModel(_)
         | ProofStatus::Fault { .. } => None,
     };
-    Ok(RequirementProof { monitor, status, states, note })
+    Ok(RequirementProof { monitor, status, statistics, note })
 }
 
 /// Why nothing triggers a requirement, if it is that holds take no time.

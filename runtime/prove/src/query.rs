@@ -14,7 +14,7 @@ use super::{
     held::TimedHolds,
     observer::ObservedNetwork,
     run::ObservedRun,
-    settings::{ProofOptions, SearchWatch, search},
+    settings::{ProofOptions, SearchStatistics, SearchWatch, search},
 };
 
 /// What became of a query.
@@ -27,8 +27,10 @@ pub struct QueryResult {
     pub run: Option<Box<ObservedRun>>,
     /// What a user should know.
     pub notes: Vec<String>,
-    /// Symbolic states stored, if that is known.
-    pub states: Option<usize>,
+    /// Of the search, if it is known.
+    pub statistics: Option<SearchStatistics>,
+    /// That search was one for several queries.
+    pub joint: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,7 +63,8 @@ pub fn answer(
     let plain = ObservedNetwork::new(program, network);
     let result = match reachability(&asked.ask) {
         Some(goal) => by_search(&plain, &[(query, goal)], settings, watch).map(|mut all| all.remove(0)),
-        None => in_general(program, network, asked, settings).map(|a| told(&plain, query, &asked.ask, a)),
+        None => in_general(program, network, asked, settings, watch)
+            .map(|answer| told(&plain, query, &asked.ask, answer)),
     };
     match result {
         Ok(answered) => Ok(answered),
@@ -70,7 +73,8 @@ pub fn answer(
             found: QueryFinding::Fault(error.to_string()),
             run: witness.map(|witness| Box::new(ObservedRun { observed: plain, witness: *witness })),
             notes: Vec::new(),
-            states: None,
+            statistics: None,
+            joint: false,
         }),
         Err(SearchError::Internal(what)) => Err(format!("query `{}`: {what}", asked.name)),
     }
@@ -106,6 +110,12 @@ pub fn answers(
         None => answer(program, *query, settings, watch),
     };
     queries.iter().map(one).collect()
+}
+
+/// Whether one search answers such queries together.
+#[must_use]
+pub fn is_decided_with_others(query: &Query) -> bool {
+    reachability(&query.ask).is_some()
 }
 
 /// What a search looks for, and what it means to find it.
@@ -155,8 +165,11 @@ fn by_search(
     watch: &SearchWatch,
 ) -> Result<Vec<QueryResult>, SearchError> {
     let goals: Vec<ReachabilityGoal> = asked.iter().map(|(_, sought)| of_formula(&sought.formula)).collect();
-    let report = search(plain, &goals, &[], &[], settings, watch)?;
-    let states = Some(report.states_stored);
+    watch.listen(true);
+    let report = search(plain, &goals, &[], &[], settings, watch);
+    watch.listen(false);
+    let report = report?;
+    let (statistics, joint) = (Some(report.statistics()), asked.len() > 1);
     let mut notes = Vec::new();
     if let Some(reason) = &report.global_because {
         notes.push(format!("searched without local time: {reason}"));
@@ -167,10 +180,12 @@ fn by_search(
                 sought.reached.clone(),
                 Some(Box::new(ObservedRun { observed: plain.clone(), witness: (**witness).clone() })),
             ),
-            GoalOutcome::Inconclusive(what) => (QueryFinding::Inconclusive(exhausted(*what, &report)), None),
+            GoalOutcome::Inconclusive(what) => {
+                (QueryFinding::Inconclusive(exhausted(*what, &report, watch)), None)
+            }
             GoalOutcome::Unreachable => (sought.not.clone(), None),
         };
-        QueryResult { query: *query, found, run, notes: notes.clone(), states }
+        QueryResult { query: *query, found, run, notes: notes.clone(), statistics, joint }
     });
     let mut answered: Vec<QueryResult> = answered.collect();
     note_holds(plain, &goals, &mut answered, settings, watch);
@@ -196,7 +211,7 @@ fn note_holds(
     }
     let Some(held) = TimedHolds::of(&plain.program, &plain.network) else { return };
     let goals: Vec<ReachabilityGoal> = open.iter().map(|i| goals[*i].clone()).collect();
-    let states = open.iter().filter_map(|i| answered[*i].states).max().unwrap_or(0);
+    let states = open.iter().filter_map(|i| answered[*i].statistics).map(|s| s.stored).max().unwrap_or(0);
     let settings = TimedHolds::settings(settings, states);
     let observed = ObservedNetwork::new(&held.program, &plain.network);
     let Ok(report) = search(&observed, &goals, &[], &[], &settings, watch) else { return };
@@ -212,6 +227,7 @@ fn in_general(
     network: &Network,
     query: &Query,
     settings: &ProofOptions,
+    watch: &SearchWatch,
 ) -> Result<QueryAnswer, SearchError> {
     let options = QueryOptions {
         budget: settings.budget,
@@ -220,7 +236,12 @@ fn in_general(
         seed: settings.seed,
         threads: settings.threads,
     };
-    hrdsl_ta::answer(program, network, query, &options)
+    let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
+    let mut answer = hrdsl_ta::answer_watched(program, network, query, &options, &go_on)?;
+    if answer.verdict == QueryVerdict::Inconclusive && watch.is_stopped() {
+        watch.stopped().clone_into(&mut answer.why);
+    }
+    Ok(answer)
 }
 
 fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAnswer) -> QueryResult {
@@ -240,7 +261,8 @@ fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAns
         found,
         run: run.map(|witness| Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),
         notes: if said { Vec::new() } else { vec![answer.why] },
-        states: None,
+        statistics: answer.statistics,
+        joint: false,
     }
 }
 

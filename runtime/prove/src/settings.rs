@@ -1,16 +1,19 @@
 //! How networks are searched, and the one place that calls the search.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{
+    Mutex, PoisonError,
+    atomic::{AtomicBool, AtomicUsize, Ordering},
+};
 
 use hrdsl_ir::{
     suite::{DelayChoice, WitnessKind},
     ta::QueryFormula,
 };
-pub use hrdsl_ta::SearchOrder;
 use hrdsl_ta::{
     CompiledNetwork, EventCounter, EventLimit, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal,
     ScheduleOptions, SearchBudget, SearchError, SearchOptions, SearchReport, WitnessRun,
 };
+pub use hrdsl_ta::{SearchOrder, SearchStatistics};
 
 use super::observer::ObservedNetwork;
 
@@ -43,8 +46,79 @@ pub struct ProofOptions {
 pub struct SearchWatch {
     /// Set: the search ends soon, and what is not decided is inconclusive.
     pub stop: AtomicBool,
+    /// Set before `stop`, if that is somebody's wish: nothing was used up.
+    pub interrupted: AtomicBool,
     /// How many states are stored so far.
     pub stored: AtomicUsize,
+    /// How many of them have been expanded, in this search.
+    pub visited: AtomicUsize,
+    /// How many wait for it.
+    pub waiting: AtomicUsize,
+    /// The memory that they take.
+    pub bytes: AtomicUsize,
+    /// Goals that are not met yet.
+    pub open: AtomicUsize,
+    /// The goals of a question that are met, in that order.
+    met: Mutex<GoalsMet>,
+}
+
+/// Which goals of a question were met so far.
+#[derive(Debug, Default)]
+struct GoalsMet {
+    /// Only the search that answers says what is met, not those that explain it.
+    listening: bool,
+    known: Vec<bool>,
+    new: Vec<usize>,
+}
+
+impl SearchWatch {
+    /// The goals that were met since this was asked last, in the order in which they were. A search for several queries tells this of each, by
+    /// its place among them.
+    pub fn newly_met(&self) -> Vec<usize> {
+        std::mem::take(&mut self.goals_met().new)
+    }
+
+    fn goals_met(&self) -> std::sync::MutexGuard<'_, GoalsMet> {
+        self.met.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// From here on what is met is told, or not any more.
+    pub(crate) fn listen(&self, listening: bool) {
+        self.goals_met().listening = listening;
+    }
+
+    fn note(&self, progress: &hrdsl_ta::SearchProgress<'_>) {
+        self.stored.store(progress.stored, Ordering::Relaxed);
+        self.visited.store(progress.visited, Ordering::Relaxed);
+        self.waiting.store(progress.waiting, Ordering::Relaxed);
+        self.bytes.store(progress.bytes, Ordering::Relaxed);
+        self.open.store(progress.open, Ordering::Relaxed);
+        let mut met = self.goals_met();
+        if !met.listening {
+            return;
+        }
+        met.known.resize(progress.unmet.len(), false);
+        for (goal, _) in progress.unmet.iter().enumerate().filter(|(_, unmet)| !**unmet) {
+            if !std::mem::replace(&mut met.known[goal], true) {
+                met.new.push(goal);
+            }
+        }
+    }
+
+    /// Notes how far a search is; whether it goes on.
+    pub(crate) fn goes_on(&self, progress: &hrdsl_ta::SearchProgress<'_>) -> bool {
+        self.note(progress);
+        !self.is_stopped()
+    }
+
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Why a search that was stopped has not decided.
+    pub(crate) fn stopped(&self) -> &'static str {
+        if self.interrupted.load(Ordering::Relaxed) { "it was interrupted" } else { "the time was over" }
+    }
 }
 
 impl ProofOptions {
@@ -94,10 +168,7 @@ pub(crate) fn search(
         ..ObservationOptions::default()
     };
     let model = CompiledNetwork::new(&observed.program, &observed.network, &observe)?;
-    let go_on = |p: &hrdsl_ta::SearchProgress| {
-        watch.stored.store(p.stored, Ordering::Relaxed);
-        !watch.stop.load(Ordering::Relaxed)
-    };
+    let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
     let mut report = hrdsl_ta::explore(&model, goals, &settings.options(), &go_on)?;
     for (goal, outcome) in goals.iter().zip(&mut report.goals) {
         if let GoalOutcome::Reached(found) = outcome

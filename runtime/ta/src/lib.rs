@@ -22,6 +22,7 @@
 //!   that matter (`stepper`), as narrow as the constants allow; `store` keeps what is new, `slice` says which variables
 //!   matter, `monotone` which are read one way, `goals` looks at what is asked.
 //! - [`local`]: the same search with a time for each automaton.
+//! - `walk`: a network gone through transition by transition, by hand or along a recorded run.
 //! - `decide`: the answers, by these searches, with probes that look at their states; for runs without end by a walk of the plain zone graph.
 //!
 //! # Semantics
@@ -41,10 +42,11 @@ mod decide;
 pub mod local;
 mod network;
 mod search;
+mod walk;
 mod witness;
 mod zone;
 
-pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, answer, answers};
+pub use decide::answer::{QueryAnswer, QueryOptions, QueryVerdict, answer, answer_watched, answers};
 pub use decide::deadlock::SHORTEST;
 pub use decide::explore::{check, explore};
 pub use decide::extremum::{ExtremumLimit, ExtremumValue, MeasureExtremum, RAISES};
@@ -58,13 +60,22 @@ pub use network::query::{
 };
 pub use network::{selects::BinderValues, semantics::AutomatonMove};
 pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
-pub use search::report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable};
+pub use search::report::{
+    GoalOutcome, SearchCutoff, SearchProgress, SearchReport, SearchStatistics, WidestVariable,
+};
+pub use walk::follow::{
+    FollowDeparture, FollowOutcome, RecordedPart, RecordedStep, RecordedTime, RecordedWalk, follow,
+};
+pub use walk::session::WalkSession;
+pub use walk::state::{ClockView, MomentRange, NetworkWalk, WalkOption, WalkState};
 pub use witness::build::retimed;
 pub use witness::error::SearchError;
 pub use witness::player::VirtualTimePlayer;
 pub use witness::run::{RunEnding, WitnessRun, WitnessRunStep};
 pub use witness::schedule::{DAWDLE, ScheduleOptions};
-pub use witness::trace::{TransitionMedium, TransitionParticipant, WitnessTrace, WitnessTransition};
+pub use witness::trace::{
+    EdgeSource, TransitionMedium, TransitionParticipant, WitnessTrace, WitnessTransition,
+};
 pub use zone::extrapolation::ExtrapolationAbstraction;
 pub use zone::federation::Federation;
 pub use zone::{dbm, federation};

@@ -144,6 +144,7 @@ fn a_witness_reads_well() {
     assert_eq!(
         reached(&report.goals[0]).text(&p, &p.networks[0]),
         "2 s  Decider  decided(true)  stays in think, Tally: listen -> brief   [Tally.yes: 0 -> 1; Decider.x = 0]\n\
+         \x20      Decider: think -> think with ready = true\n\
          2 s  Tally                   brief -> listen\n"
     );
 }

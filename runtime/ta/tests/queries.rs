@@ -154,7 +154,15 @@ fn a_loop_is_a_counterexample_and_a_zeno_one_says_so() {
     let zeno = ask(&p, QueryKind::PotentiallyAlways(at(0, a)));
     assert_eq!(
         zeno.why,
-        "a run stays in it: a run goes round for ever through `M.a`, by 1 transition, in which no time passes"
+        "a run stays in it: a run goes round for ever through `M.a`, by 1 transition, in which no time passes (a Zeno run)"
+    );
+    // Time passes in it, but no more than the invariant lets, however often it goes round.
+    p.automata[0].locations[0].kind = LocationKind::Normal;
+    p.automata[0].edges[0].updates.clear();
+    let zeno = ask(&p, QueryKind::Eventually(at(0, b)));
+    assert_eq!(
+        zeno.why,
+        "a run goes round for ever through `M.a`, by 1 transition, in which time does not pass beyond a bound, since `M.x` is bounded and never set (a Zeno run)"
     );
 }
 

@@ -168,7 +168,7 @@ fn fates(
     let plain = ObservedNetwork::new(program, network);
     let questions: Vec<ReachabilityGoal> =
         named.iter().flat_map(|n| n.alternatives.iter().cloned()).collect();
-    let mut decided = GoalDecision { fates: Vec::new(), states: 0, visited: 0, searches: 0 };
+    let mut decided = GoalDecision::default();
     let mut outcomes: Vec<GoalFate> = vec![GoalFate::Unreachable; questions.len()];
     for need in [SearchHistory::Nothing, SearchHistory::LastEdges, SearchHistory::LastDefinitions] {
         let of: Vec<usize> = (0..questions.len()).filter(|q| needs(&questions[*q]) == need).collect();

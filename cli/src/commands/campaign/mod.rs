@@ -18,7 +18,7 @@ use hrdsl_runtime::{
 
 use super::generate::chosen;
 use crate::{
-    exit::CommandExit, fault::CommandFault, files, hulls::HullFolder, installing::InstallProgress,
+    fault::CommandFault, files, hulls::HullFolder, installing::InstallProgress, interrupt,
     observation::ObservationArgs, quantity, terminal,
 };
 pub use bar::progress_bar;
@@ -162,24 +162,7 @@ fn variables(system: &SystemUnderTest) -> Vec<(OsString, OsString)> {
 /// Set by an interrupt or a request to terminate; at the second, the program ends at once. While somebody debugs,
 /// interrupts are for the debugger.
 pub fn stop_flag(debug: bool) -> Result<StopFlag, CommandFault> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-
-    let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
-    if debug {
-        let unheard = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
-        signal_hook::flag::register(SIGINT, unheard)
-            .map_err(|e| format!("cannot listen for interrupts: {e}"))?;
-    }
-    for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|s| !debug || *s != SIGINT) {
-        let registered = signal_hook::flag::register_conditional_shutdown(
-            signal,
-            CommandExit::Interrupted as i32,
-            flag.clone(),
-        )
-        .and_then(|_| signal_hook::flag::register(signal, flag.clone()));
-        registered.map_err(|e| format!("cannot listen for interrupts: {e}"))?;
-    }
-    Ok(StopFlag::from_shared(flag))
+    interrupt::flag(debug).map(StopFlag::from_shared)
 }
 
 /// Generates the suites, unless tests were given; `keep` is shown each.

@@ -2,8 +2,12 @@
 
 use hrdsl_compiler::{CompilationResult, InputFile, ast, compile_with};
 use hrdsl_ir::{Program, ta::Network};
+use hrdsl_runtime::prove::is_decided_with_others;
 
-use super::{ProofJob, ProofTarget, ProveArgs};
+use super::{
+    ProveArgs,
+    job::{ProofJob, ProofTarget},
+};
 use crate::{fault::CommandFault, files, reach::DiskModules};
 
 /// A scenario with the queries of the command line.
@@ -65,11 +69,12 @@ impl QueriedScenario {
                 let named = args.query.contains(&q.name) || self.added.contains(&q.name) || !some;
                 named && usize::from(q.network.0) == network
             };
-            let queries: Vec<usize> =
-                program.queries.iter().enumerate().filter(wanted).map(|(query, _)| query).collect();
-            if !queries.is_empty() {
-                jobs.push(ProofJob { network, what: ProofTarget::Queries(queries) });
-            }
+            let queries = program.queries.iter().enumerate().filter(wanted);
+            let (joint, alone): (Vec<_>, Vec<_>) = queries.partition(|(_, q)| is_decided_with_others(q));
+            let joint: Vec<usize> = joint.into_iter().map(|(query, _)| query).collect();
+            let alone = alone.into_iter().map(|(query, _)| vec![query]);
+            let groups = std::iter::once(joint).chain(alone).filter(|group| !group.is_empty());
+            jobs.extend(groups.map(|group| ProofJob { network, what: ProofTarget::Queries(group) }));
         }
         Ok(jobs)
     }

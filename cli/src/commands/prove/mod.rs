@@ -1,35 +1,27 @@
 //! `hrdsl prove`: whether the networks of a scenario keep its requirements, and what its queries answer.
 
 mod asked;
+mod clock;
+mod follow;
+mod job;
 mod show;
 mod table;
 
-use std::{
-    path::PathBuf,
-    sync::{
-        Arc,
-        atomic::Ordering,
-        mpsc::{self, RecvTimeoutError},
-    },
-    thread,
-    time::{Duration, Instant},
-};
+use std::{path::PathBuf, sync::Arc, time::Duration};
 
-use hrdsl_ir::Program;
-use hrdsl_runtime::prove::{
-    self, ProofOptions, ProofStatus, QueryFinding, QueryResult, RequirementProof, SearchWatch,
-};
-use hrdsl_source::{printable, printable_line};
-use indicatif::{ProgressBar, ProgressStyle};
+use hrdsl_runtime::prove::ProofOptions;
+use hrdsl_source::printable;
 
 use super::search_options::{DelayArg, SearchOrderArg, WitnessArg};
-use crate::{exit::CommandExit, fault::CommandFault, files, input, terminal};
+use crate::{edge_sources::EdgeSources, exit::CommandExit, fault::CommandFault, files, input, terminal};
 use asked::QueriedScenario;
+use clock::ProofClock;
 use table::ProofRow;
 
 /// Search the networks of a scenario: can they violate a requirement, and what do the queries answer?
 ///
-/// All requirements and queries, unless some are named. A violation is shown by a run.
+/// All requirements and queries, unless some are named. A violation is shown by a run. An interrupt (Ctrl-C) ends the search with what is
+/// known; a second one ends at once.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -37,7 +29,9 @@ Examples:
   hrdsl prove scenario.hri --requirement R2 --trace
   hrdsl prove scenario.hri --ask 'E<> Robot.grasped and t > 5 s' --witness fastest --trace
   hrdsl prove scenario.hri --ask 'A[] not deadlock' --threads 2 --timeout 60s
-  hrdsl prove scenario.hri --query live --mermaid live.mmd")]
+  hrdsl prove scenario.hri --query live --mermaid live.mmd
+  hrdsl prove scenario.hri --stream | jq -r 'select(.verdict) | .name + \" \" + .verdict'
+  hrdsl prove scenario.hri --json > found.json; hrdsl prove changed.hri --follow found.json")]
 pub struct ProveArgs {
     /// The scenario.
     file: PathBuf,
@@ -58,6 +52,16 @@ pub struct ProveArgs {
     /// Stop after this time, like `60s` or `500ms`: what is not decided then is inconclusive.
     #[arg(long, value_name = "T", value_parser = crate::quantity::time)]
     timeout: Option<Duration>,
+    /// Search nothing: say whether the runs of this file (JSON of `prove` or `step`, or UPPAAL's .xtr) are runs of the network, and
+    /// where they leave it.
+    #[arg(long, value_name = "TRACE", conflicts_with_all = ["requirement", "query", "ask", "trace", "mermaid", "dot"])]
+    follow: Option<PathBuf>,
+    /// Print a line of JSON for each answer as soon as it is decided, and the document of --json as the last one.
+    #[arg(long, conflicts_with = "follow")]
+    stream: bool,
+    /// In JSON, say how many seconds each search took: then it is not the same each time.
+    #[arg(long)]
+    timings: bool,
     /// Tell each run that shows something, step by step.
     #[arg(long)]
     trace: bool,
@@ -138,6 +142,10 @@ pub fn run(args: &ProveArgs) -> Result<CommandExit, CommandFault> {
     let Some(program) = input::report_errors(&args.file, &asked.compilation) else {
         return Ok(CommandExit::Errors);
     };
+    let sources = EdgeSources::of(&asked.compilation);
+    if let Some(trace) = &args.follow {
+        return follow::run(args, trace, program, &sources);
+    }
     let jobs = asked.jobs(args, program)?;
     if jobs.is_empty() {
         return Err(
@@ -146,164 +154,25 @@ pub fn run(args: &ProveArgs) -> Result<CommandExit, CommandFault> {
         );
     }
     let settings = args.options.settings();
-    let clock = ProofClock::start(args.timeout);
+    let clock = ProofClock::start(args.timeout, args.stream)?;
     let shared = Arc::new(program.clone());
     let mut rows = Vec::new();
     for job in &jobs {
         rows.extend(job.rows(&shared, &settings, &clock)?);
     }
     clock.finish();
+    rows.sort_by_key(|row| row.place);
+    rows.iter_mut().for_each(|row| row.locate(&sources));
     write_run(args, &rows)?;
-    if args.json {
-        terminal::print_data(&show::json(program, &rows)?)?;
+    if args.stream {
+        terminal::print_data(&show::line(program, &rows, args.timings)?)?;
+    } else if args.json {
+        terminal::print_data(&show::json(program, &rows, args.timings)?)?;
     } else {
         terminal::print(&printable(&show::human(&rows, args.trace)))?;
     }
-    Ok(verdict(&rows))
+    Ok(if clock.is_interrupted() { CommandExit::Interrupted } else { verdict(&rows) })
 }
-
-/// Something to decide.
-pub struct ProofJob {
-    /// Index into the program's networks.
-    pub network: usize,
-    pub what: ProofTarget,
-}
-
-/// By their places in the program.
-pub enum ProofTarget {
-    Requirement(usize),
-    /// All of one network: what one exploration can decide is decided by one.
-    Queries(Vec<usize>),
-}
-
-impl ProofJob {
-    fn rows(
-        &self,
-        program: &Arc<Program>,
-        settings: &ProofOptions,
-        clock: &ProofClock,
-    ) -> Result<Vec<ProofRow>, CommandFault> {
-        let started = now();
-        let (of, settings, network) = (Arc::clone(program), *settings, self.network);
-        let mut rows = match &self.what {
-            ProofTarget::Requirement(monitor) => {
-                let monitor = *monitor;
-                let work = move |watch: &SearchWatch| {
-                    prove::prove(&of, &of.networks[network], monitor, &settings, watch)
-                };
-                let late = || RequirementProof {
-                    monitor,
-                    status: ProofStatus::Inconclusive(LATE.to_owned()),
-                    states: 0,
-                    note: None,
-                };
-                let proof = clock.watched(&program.monitors[monitor].name, work)?;
-                vec![ProofRow::of_proof(program, &proof.unwrap_or_else(late))]
-            }
-            ProofTarget::Queries(queries) => {
-                let asked = queries.clone();
-                let work = move |watch: &SearchWatch| prove::answers(&of, &asked, &settings, watch);
-                let late = |query: &usize| QueryResult {
-                    query: *query,
-                    found: QueryFinding::Inconclusive(LATE.to_owned()),
-                    run: None,
-                    notes: Vec::new(),
-                    states: None,
-                };
-                let label = match queries.as_slice() {
-                    [query] => program.queries[*query].name.clone(),
-                    several => format!("{} queries", several.len()),
-                };
-                let answers = clock.watched(&label, work)?;
-                let answers = answers.unwrap_or_else(|| queries.iter().map(late).collect());
-                answers.iter().map(|a| ProofRow::of_answer(program, a)).collect()
-            }
-        };
-        for row in &mut rows {
-            row.network.clone_from(&program.networks[network].name);
-            row.time = started.elapsed();
-        }
-        Ok(rows)
-    }
-}
-
-const LATE: &str = "the time was over";
-
-#[allow(clippy::disallowed_methods, reason = "how long it took is shown, and decides nothing but a time-out")]
-fn now() -> Instant {
-    Instant::now()
-}
-
-/// Time, and a line on the terminal for long work.
-struct ProofClock {
-    until: Option<Instant>,
-    bar: ProgressBar,
-}
-
-/// How long a search is waited for that was told to stop. Not all of them listen.
-const GRACE: Duration = Duration::from_millis(500);
-
-impl ProofClock {
-    fn start(timeout: Option<Duration>) -> Self {
-        let bar = ProgressBar::new_spinner();
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
-            bar.set_style(style);
-        }
-        Self { until: timeout.and_then(|t| now().checked_add(t)), bar }
-    }
-
-    /// Runs something while its progress is shown, and tells it when its time is over. `None`: it did not end in time, and is
-    /// left behind, until the process ends.
-    fn watched<T: Send + 'static>(
-        &self,
-        name: &str,
-        work: impl FnOnce(&SearchWatch) -> Result<T, CommandFault> + Send + 'static,
-    ) -> Result<Option<T>, CommandFault> {
-        if self.until.is_some_and(|until| now() >= until) {
-            return Ok(None);
-        }
-        let watch = Arc::new(SearchWatch::default());
-        let (done, result) = mpsc::channel();
-        let watching = Arc::clone(&watch);
-        // Searches recurse little, but expressions are as deep as they are written.
-        let search = thread::Builder::new().stack_size(STACK);
-        let search = search.spawn(move || {
-            // Nobody may wait any more.
-            let _ = done.send(work(&watching));
-        });
-        search.map_err(|e| format!("cannot start a thread: {e}"))?;
-        let mut waited = Duration::from_millis(1);
-        loop {
-            match result.recv_timeout(waited) {
-                Ok(found) => return found.map(Some),
-                Err(RecvTimeoutError::Disconnected) => {
-                    return Err(format!("internal error: the search for `{name}` broke off"));
-                }
-                Err(RecvTimeoutError::Timeout) => {}
-            }
-            // Short work ends soon; long work is looked at now and then.
-            waited = (waited * 2).min(Duration::from_millis(50));
-            if let Some(until) = self.until.filter(|until| now() >= *until) {
-                watch.stop.store(true, Ordering::Relaxed);
-                if now() >= until + GRACE {
-                    return Ok(None);
-                }
-            }
-            self.bar.set_message(format!(
-                "{}: {} states",
-                printable_line(name),
-                watch.stored.load(Ordering::Relaxed)
-            ));
-            self.bar.tick();
-        }
-    }
-
-    fn finish(&self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-const STACK: usize = 64 << 20;
 
 /// The first run that shows something, as a diagram.
 fn write_run(args: &ProveArgs, rows: &[ProofRow]) -> Result<(), CommandFault> {

@@ -4,10 +4,11 @@ use std::time::Duration;
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::prove::{
-    ObservedRun, ProofStatus, QueryFinding, QueryResult, RequirementProof, WitnessTrace,
+    ObservedRun, ProofStatus, QueryFinding, QueryResult, RequirementProof, SearchStatistics, WitnessTrace,
 };
+use serde::Serialize;
 
-use crate::exit::CommandExit;
+use crate::{edge_sources::EdgeSources, exit::CommandExit};
 
 /// One requirement or query.
 pub struct ProofRow {
@@ -23,12 +24,17 @@ pub struct ProofRow {
     /// For a `sup` or `inf`: of each measure.
     pub bounds: Vec<String>,
     pub trace: Option<WitnessTrace>,
-    /// Symbolic states stored, if that is known.
-    pub states: Option<usize>,
+    /// Of its search, if that is known.
+    pub statistics: Option<SearchStatistics>,
+    /// That search was for several queries, and so was the time.
+    pub joint: bool,
     pub time: Duration,
+    /// The network, what it is, and its number: the order in which rows are shown.
+    pub place: (usize, PropertyKind, usize),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum PropertyKind {
     Requirement,
     Query,
@@ -81,6 +87,13 @@ impl ProofRow {
         }
     }
 
+    /// Says of the edges of its run how they are written.
+    pub fn locate(&mut self, sources: &EdgeSources<'_>) {
+        if let Some(trace) = &mut self.trace {
+            trace.locate(&|origin| sources.at(origin));
+        }
+    }
+
     pub fn of_proof(program: &Program, proof: &RequirementProof) -> Self {
         let monitor = &program.monitors[proof.monitor];
         let (verdict, remark, run) = match &proof.status {
@@ -103,8 +116,10 @@ impl ProofRow {
             remark: remark.or_else(|| trace.as_ref().map(shape)),
             bounds: Vec::new(),
             trace,
-            states: Some(proof.states),
+            statistics: proof.statistics,
+            joint: false,
             time: Duration::ZERO,
+            place: (0, PropertyKind::Requirement, proof.monitor),
         }
     }
 
@@ -137,8 +152,10 @@ impl ProofRow {
             remark: (!remarks.is_empty()).then(|| remarks.join("; ")),
             bounds,
             trace,
-            states: answer.states,
+            statistics: answer.statistics,
+            joint: answer.joint,
             time: Duration::ZERO,
+            place: (0, PropertyKind::Query, answer.query),
         }
     }
 }

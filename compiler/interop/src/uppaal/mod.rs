@@ -1,7 +1,9 @@
-//! UPPAAL: models and queries to scenarios, networks to models.
+//! UPPAAL: models and queries to scenarios, networks to models, and the traces that it writes.
 
 mod export;
 mod import;
+mod trace;
 
 pub use export::{UppaalDocument, export};
 pub use import::{UppaalOptions, import};
+pub use trace::{UppaalMove, UppaalTrace, read_trace};

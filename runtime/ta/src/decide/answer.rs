@@ -1,5 +1,7 @@
 //! Answers to queries: what holds, a run that shows it, and a sentence that says why.
 
+use std::cell::Cell;
+
 use hrdsl_ir::{
     Program,
     suite::{DelayChoice, WitnessKind},
@@ -14,6 +16,8 @@ use crate::{
         extremum::{ExtremumOptions, ExtremumQuestion, ExtremumSide, MeasureExtremum, extrema},
         fastest::fastest,
         liveness::{LivenessSearch, MaximalRun, MaximalRunSearchResult},
+        words::{count, length, limit_text, used_up},
+        zeno::{self, LoopPace},
     },
     network::{
         error::ModelError,
@@ -23,14 +27,14 @@ use crate::{
     },
     search::{
         options::SearchOptions,
-        report::{GoalOutcome, SearchCutoff},
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchStatistics},
+        round_search::{GoOn, SearchCompany},
     },
     witness::{
         build,
         error::SearchError,
         run::{RunEnding, WitnessRun},
         schedule::ScheduleOptions,
-        trace::seconds,
     },
     zone::extrapolation::ExtrapolationAbstraction,
 };
@@ -76,6 +80,8 @@ pub struct QueryAnswer {
     pub run: Option<Box<WitnessRun>>,
     /// Of `sup` and `inf`: for each measure.
     pub extrema: Vec<MeasureExtremum>,
+    /// Of the searches that it took, if they are known.
+    pub statistics: Option<SearchStatistics>,
 }
 
 /// Answers one query.
@@ -88,7 +94,21 @@ pub fn answer(
     query: &Query,
     options: &QueryOptions,
 ) -> Result<QueryAnswer, SearchError> {
-    let mut all = answers(program, network, &[query], options)?;
+    answer_watched(program, network, query, options, &|_| true)
+}
+
+/// As [`answer`]; `go_on` is told how far each search is, and ends it by `false`.
+///
+/// # Errors
+/// As [`answer`].
+pub fn answer_watched(
+    program: &Program,
+    network: &Network,
+    query: &Query,
+    options: &QueryOptions,
+    go_on: &dyn Fn(&SearchProgress<'_>) -> bool,
+) -> Result<QueryAnswer, SearchError> {
+    let mut all = answers_watched(program, network, &[query], options, go_on)?;
     all.pop().ok_or_else(|| SearchError::Internal("a query has no answer".into()))
 }
 
@@ -103,17 +123,35 @@ pub fn answers(
     queries: &[&Query],
     options: &QueryOptions,
 ) -> Result<Vec<QueryAnswer>, SearchError> {
+    answers_watched(program, network, queries, options, &|_| true)
+}
+
+fn answers_watched(
+    program: &Program,
+    network: &Network,
+    queries: &[&Query],
+    options: &QueryOptions,
+    go_on: GoOn<'_>,
+) -> Result<Vec<QueryAnswer>, SearchError> {
     let goals: Vec<Option<ReachabilityGoal>> = queries.iter().map(|q| reachability(&q.ask)).collect();
     let formulas = queries.iter().flat_map(|q| formulas(&q.ask)).collect();
     let observe = ObservationOptions { formulas, ..ObservationOptions::default() };
     let model = CompiledNetwork::new(program, network, &observe)?;
-    let asker = QueryEvaluator { program, network, model: &model, options };
+    let took = Cell::new(None);
+    let company = SearchCompany { go_on, took: &took };
+    let asker = QueryEvaluator { program, network, model: &model, options, company };
     let mut outcomes = asker.decide(&goals)?;
+    let together = took.take();
     let mut all = Vec::new();
     for (i, query) in queries.iter().enumerate() {
         all.push(match (&goals[i], outcomes[i].take()) {
-            (Some(goal), Some((outcome, states))) => asker.reached(&query.ask, goal, outcome, states)?,
-            (_, None) | (None, _) => asker.ask(&query.ask)?,
+            (Some(goal), Some((outcome, states))) => {
+                QueryAnswer { statistics: together, ..asker.reached(&query.ask, goal, outcome, states)? }
+            }
+            (_, None) | (None, _) => {
+                let answer = asker.ask(&query.ask)?;
+                QueryAnswer { statistics: took.take(), ..answer }
+            }
         });
     }
     Ok(all)
@@ -151,6 +189,7 @@ struct QueryEvaluator<'a> {
     network: &'a Network,
     model: &'a CompiledNetwork<'a>,
     options: &'a QueryOptions,
+    company: SearchCompany<'a>,
 }
 
 impl QueryEvaluator<'_> {
@@ -174,7 +213,8 @@ impl QueryEvaluator<'_> {
                 threads: self.options.threads.max(1),
                 ..options
             };
-            let report = explore(self.model, &asked, &options, &|_| true)?;
+            let report = explore(self.model, &asked, &options, self.company.go_on)?;
+            self.company.add(report.statistics());
             for ((i, _), outcome) in easy.iter().zip(report.goals) {
                 all[*i] = Some((outcome, report.states_stored));
             }
@@ -187,7 +227,8 @@ impl QueryEvaluator<'_> {
                 threads: self.options.threads,
                 shortest: self.options.witness == WitnessKind::Shortest,
             };
-            for ((i, _), decided) in hard.iter().zip(deadlocks(self.model, &asked, &options)?) {
+            let decided = deadlocks(self.model, &asked, &options, self.company)?;
+            for ((i, _), decided) in hard.iter().zip(decided) {
                 all[*i] = Some(decided);
             }
         }
@@ -202,7 +243,8 @@ impl QueryEvaluator<'_> {
         states: usize,
     ) -> Result<QueryAnswer, SearchError> {
         let universal = matches!(ask, QueryKind::Invariantly(_));
-        let plain = |verdict, why| QueryAnswer { verdict, why, run: None, extrema: Vec::new() };
+        let plain =
+            |verdict, why| QueryAnswer { verdict, why, run: None, extrema: Vec::new(), statistics: None };
         Ok(match outcome {
             GoalOutcome::Reached(found) => {
                 let run = self.chosen(goal, found)?;
@@ -212,7 +254,7 @@ impl QueryEvaluator<'_> {
                 } else {
                     (QueryVerdict::Holds, format!("a run reaches it {how}"))
                 };
-                QueryAnswer { verdict, why, run: Some(run), extrema: Vec::new() }
+                QueryAnswer { verdict, why, run: Some(run), extrema: Vec::new(), statistics: None }
             }
             GoalOutcome::Unreachable => {
                 let seen = format!("all that can be reached was seen ({})", count(states, "symbolic state"));
@@ -264,7 +306,13 @@ impl QueryEvaluator<'_> {
         Ok(match found {
             LivenessSearchResult::Run(run, trap) => {
                 let why = format!("a run stays in it: {}", self.explain_run(&trap, &run, false));
-                QueryAnswer { verdict: QueryVerdict::Holds, why, run: Some(run), extrema: Vec::new() }
+                QueryAnswer {
+                    verdict: QueryVerdict::Holds,
+                    why,
+                    run: Some(run),
+                    extrema: Vec::new(),
+                    statistics: None,
+                }
             }
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Fails, "every run leaves it: no maximal run stays in it".to_owned())
@@ -278,7 +326,13 @@ impl QueryEvaluator<'_> {
         Ok(match found {
             LivenessSearchResult::Run(run, trap) => {
                 let why = self.explain_run(&trap, &run, true);
-                QueryAnswer { verdict: QueryVerdict::Fails, why, run: Some(run), extrema: Vec::new() }
+                QueryAnswer {
+                    verdict: QueryVerdict::Fails,
+                    why,
+                    run: Some(run),
+                    extrema: Vec::new(),
+                    statistics: None,
+                }
             }
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Holds, "every maximal run reaches it".to_owned())
@@ -292,7 +346,13 @@ impl QueryEvaluator<'_> {
         Ok(match found {
             LivenessSearchResult::Run(run, trap) => {
                 let why = format!("after the first, {}", self.explain_run(&trap, &run, true));
-                QueryAnswer { verdict: QueryVerdict::Fails, why, run: Some(run), extrema: Vec::new() }
+                QueryAnswer {
+                    verdict: QueryVerdict::Fails,
+                    why,
+                    run: Some(run),
+                    extrema: Vec::new(),
+                    statistics: None,
+                }
             }
             LivenessSearchResult::Nothing => none(
                 QueryVerdict::Holds,
@@ -312,10 +372,16 @@ impl QueryEvaluator<'_> {
             return Err(ModelError::Question(what.into()).into());
         }
         let graph = ZoneGraph::new(self.model, formulas)?;
-        let begin = |abstraction| LivenessSearch::new(&graph, formulas, self.options.budget, abstraction);
-        let mut found = search(&mut begin(ExtrapolationAbstraction::LowerUpper))?;
+        let go = |abstraction| {
+            let limits = (self.options.budget, self.company.go_on);
+            let mut hunt = LivenessSearch::new(&graph, formulas, limits, abstraction);
+            let found = search(&mut hunt)?;
+            self.company.add(hunt.statistics());
+            Ok::<_, SearchError>(found)
+        };
+        let mut found = go(ExtrapolationAbstraction::LowerUpper)?;
         if matches!(found, MaximalRunSearchResult::Doubtful) {
-            found = search(&mut begin(ExtrapolationAbstraction::Greatest))?;
+            found = go(ExtrapolationAbstraction::Greatest)?;
         }
         Ok(match found {
             MaximalRunSearchResult::Doubtful => {
@@ -326,14 +392,8 @@ impl QueryEvaluator<'_> {
             MaximalRunSearchResult::Found(trap) => {
                 let timing = self.options.timing();
                 let run = build::concrete(&graph, &trap.stops, trap.ending, None, timing)?;
-                let still = match trap.ending {
-                    RunEnding::Again(_) => {
-                        let times = build::times(&graph, &trap.stops, ScheduleOptions::default())?;
-                        times.is_some_and(|t| !t.can_last(trap.from))
-                    }
-                    RunEnding::Reached | RunEnding::Stuck | RunEnding::Waits => false,
-                };
-                LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, still })
+                let pace = zeno::pace(&graph, &trap)?;
+                LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, pace })
             }
         })
     }
@@ -349,8 +409,7 @@ impl QueryEvaluator<'_> {
             RunEnding::Stuck => format!("nothing more can happen in {at}, {}", length(run)),
             RunEnding::Again(from) => {
                 let steps = count(run.steps.len() - from, "transition");
-                let zeno = if shown.still { ", in which no time passes" } else { "" };
-                format!("a run goes round for ever through {at}, by {steps}{zeno}")
+                format!("a run goes round for ever through {at}, by {steps}{}", shown.pace.told())
             }
             RunEnding::Reached => format!("a run shows it in {at}"),
         }
@@ -385,11 +444,12 @@ impl QueryEvaluator<'_> {
             threads: self.options.threads,
             timing: self.options.timing(),
         };
-        let all = extrema(self.program, self.network, &ExtremumQuestion { side, of, when }, options)?;
+        let all =
+            extrema(self.program, self.network, &ExtremumQuestion { side, of, when }, options, self.company)?;
         let inconclusive = all.iter().any(|e| matches!(e.limit, ExtremumLimit::Inconclusive { .. }));
         let verdict = if inconclusive { QueryVerdict::Inconclusive } else { QueryVerdict::Holds };
         let texts: Vec<String> = all.iter().map(|e| limit_text(e, side)).collect();
-        Ok(QueryAnswer { verdict, why: texts.join("; "), run: None, extrema: all })
+        Ok(QueryAnswer { verdict, why: texts.join("; "), run: None, extrema: all, statistics: None })
     }
 }
 
@@ -399,50 +459,12 @@ enum LivenessSearchResult {
     Inconclusive(SearchCutoff),
 }
 
-/// A trap, and whether no time can pass in its loop.
+/// A trap, and how time passes in its loop.
 struct LivenessCounterexample {
     trap: Box<MaximalRun>,
-    still: bool,
+    pace: LoopPace,
 }
 
 fn none(verdict: QueryVerdict, why: String) -> QueryAnswer {
-    QueryAnswer { verdict, why, run: None, extrema: Vec::new() }
-}
-
-fn limit_text(e: &MeasureExtremum, side: ExtremumSide) -> String {
-    use crate::decide::extremum::{ExtremumLimit, ExtremumValue};
-    let text = |q: &ExtremumValue| match q {
-        ExtremumValue::Nanos(n) => format!("{} s", seconds(*n, 1)),
-        ExtremumValue::Number(n) => n.to_string(),
-    };
-    let (closed, open) = if side == ExtremumSide::Sup { ("<=", "<") } else { (">=", ">") };
-    match &e.limit {
-        ExtremumLimit::At { value, attained } => {
-            format!("{} {}", if *attained { closed } else { open }, text(value))
-        }
-        ExtremumLimit::Unbounded => "unbounded".to_owned(),
-        ExtremumLimit::Nowhere => "the formula holds nowhere".to_owned(),
-        ExtremumLimit::Inconclusive { seen: Some(q) } => format!("inconclusive; {} was seen", text(q)),
-        ExtremumLimit::Inconclusive { seen: None } => "inconclusive".to_owned(),
-    }
-}
-
-fn used_up(what: SearchCutoff) -> String {
-    let what = match what {
-        SearchCutoff::States => "states",
-        SearchCutoff::Memory => "memory",
-        SearchCutoff::Stopped => return "the search was stopped".to_owned(),
-    };
-    format!("the budget of {what} was used up")
-}
-
-fn length(run: &WitnessRun) -> String {
-    if run.steps.is_empty() && run.end == 0 {
-        return "at the start".to_owned();
-    }
-    format!("after {} and {} s", count(run.steps.len(), "transition"), seconds(run.end, run.ticks))
-}
-
-fn count(n: usize, of: &str) -> String {
-    if n == 1 { format!("1 {of}") } else { format!("{n} {of}s") }
+    QueryAnswer { verdict, why, run: None, extrema: Vec::new(), statistics: None }
 }

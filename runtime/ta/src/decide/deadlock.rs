@@ -34,8 +34,8 @@ use crate::{
         options::{SearchOptions, SearchOrder},
         probe::{ProbeFinding, ProbeValue, ProbedState, StateProbe, spread},
         report::{GoalOutcome, SearchCutoff},
-        round_search::SearchAside,
-        rounds,
+        round_search::{SearchAside, SearchCompany},
+        start,
     },
     witness::{
         build::{reach_goal, takes, unreal},
@@ -173,10 +173,11 @@ pub(crate) fn deadlocks(
     model: &CompiledNetwork,
     goals: &[&ReachabilityGoal],
     options: &DeadlockOptions,
+    company: SearchCompany<'_>,
 ) -> Result<Vec<DecidedGoal>, SearchError> {
     let formulas: Vec<StateFormula> = goals.iter().filter_map(|g| g.formula()).collect();
     let graph = ZoneGraph::new(model, &[])?;
-    let search = DeadlockSearch { graph, goals, formulas: &formulas, options };
+    let search = DeadlockSearch { graph, goals, formulas: &formulas, options, company };
     let mut all: Vec<Option<DecidedGoal>> = goals.iter().map(|_| None).collect();
     search.go(ExtrapolationAbstraction::LowerUpper, options.budget, &mut all)?;
     // A run that simulation finds may be longer than the one to another deadlock.
@@ -204,6 +205,7 @@ struct DeadlockSearch<'a, 'm, 'p> {
     goals: &'a [&'a ReachabilityGoal],
     formulas: &'a [StateFormula],
     options: &'a DeadlockOptions,
+    company: SearchCompany<'a>,
 }
 
 impl DeadlockSearch<'_, '_, '_> {
@@ -226,8 +228,8 @@ impl DeadlockSearch<'_, '_, '_> {
             budget,
             ..SearchOptions::default()
         };
-        let mut search =
-            rounds::begin(model, &[], &options, SearchAside { probe: Some(&probe), within: None })?;
+        let beside = SearchAside { probe: Some(&probe), within: None, go_on: Some(self.company.go_on) };
+        let mut search = start::begin(model, &[], &options, beside)?;
         let mut found = Vec::new();
         loop {
             let flow = search.round(&mut found)?;
@@ -250,6 +252,7 @@ impl DeadlockSearch<'_, '_, '_> {
             let end = if probe.any_open() { flow } else { ControlFlow::Break(None) };
             if let ControlFlow::Break(end) = end {
                 self.close(&probe, end, search.stored(), all);
+                self.company.add(search.statistics());
                 return Ok(());
             }
         }
@@ -314,8 +317,8 @@ pub(crate) fn earliest(
     };
     let options =
         SearchOptions { abstraction: ExtrapolationAbstraction::Greatest, budget, ..SearchOptions::default() };
-    let beside = SearchAside { probe: Some(&probe), within: Some(within) };
-    let mut search = rounds::begin(model, &[], &options, beside)?;
+    let beside = SearchAside { probe: Some(&probe), within: Some(within), go_on: None };
+    let mut search = start::begin(model, &[], &options, beside)?;
     let (mut found, mut best) = (Vec::new(), None);
     loop {
         let flow = search.round(&mut found)?;

@@ -11,7 +11,7 @@ use crate::{
     search::{
         options::SearchOptions,
         report::{SearchProgress, SearchReport},
-        rounds,
+        start,
     },
     witness::error::SearchError,
 };
@@ -51,7 +51,7 @@ pub fn explore(
     go_on: &dyn Fn(&SearchProgress) -> bool,
 ) -> Result<SearchReport, SearchError> {
     if !options.local_time {
-        return rounds::explore(model, goals, options, go_on);
+        return start::explore(model, goals, options, go_on);
     }
     let SearchOptions { order, seed, budget, .. } = *options;
     let alone = local::LocalSearchOptions { order, seed, budget, ..local::LocalSearchOptions::default() };
@@ -59,7 +59,7 @@ pub fn explore(
         Ok(report) => Ok(report),
         Err(local::LocalSearchError::Search(error)) => Err(error),
         Err(local::LocalSearchError::NotApplicable(reason)) => {
-            let report = rounds::explore(model, goals, options, go_on)?;
+            let report = start::explore(model, goals, options, go_on)?;
             Ok(SearchReport { global_because: Some(reason.to_string()), ..report })
         }
     }

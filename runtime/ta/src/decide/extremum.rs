@@ -26,8 +26,8 @@ use crate::{
         options::SearchOptions,
         probe::{ProbeFinding, ProbeValue, ProbedState, StateProbe, spread},
         report::SearchCutoff,
-        round_search::{RoundSearch, SearchAside},
-        rounds,
+        round_search::{RoundSearch, SearchAside, SearchCompany},
+        start,
     },
     witness::{
         build::{reach_formula, takes},
@@ -127,6 +127,7 @@ pub(crate) fn extrema(
     network: &Network,
     question: &ExtremumQuestion,
     options: ExtremumOptions,
+    company: SearchCompany<'_>,
 ) -> Result<Vec<MeasureExtremum>, SearchError> {
     let ExtremumQuestion { side, of, when } = *question;
     let formula = StateFormula::from(when);
@@ -154,9 +155,10 @@ pub(crate) fn extrema(
             threads: options.threads.max(1),
             ..SearchOptions::default()
         };
-        let mut search =
-            rounds::begin(&model, &[], &search, SearchAside { probe: Some(&probe), within: None })?;
+        let beside = SearchAside { probe: Some(&probe), within: None, go_on: Some(company.go_on) };
+        let mut search = start::begin(&model, &[], &search, beside)?;
         let cutoff = look_everywhere(&mut *search, &mut tracks, side)?;
+        company.add(search.statistics());
         let again = cutoff.is_none() && raised < RAISES && tracks.iter().any(|t| t.is_beyond(side));
         if !again {
             let mut end =

@@ -11,7 +11,7 @@ use crate::{
         model::CompiledNetwork,
         query::{GoalKind, ReachabilityGoal, SearchBudget},
     },
-    search::{options::SearchOptions, round_search::SearchAside, rounds},
+    search::{options::SearchOptions, round_search::SearchAside, start},
     witness::{build, error::SearchError, run::WitnessRun, schedule::ScheduleOptions},
 };
 
@@ -53,8 +53,8 @@ fn earliest(
 ) -> Result<Option<GoalTransitions>, SearchError> {
     let options = SearchOptions { budget, ..SearchOptions::default() };
     let goals = std::slice::from_ref(goal);
-    let beside = SearchAside { probe: None, within: Some(within) };
-    let mut search = rounds::begin(model, goals, &options, beside)?;
+    let beside = SearchAside { within: Some(within), ..SearchAside::default() };
+    let mut search = start::begin(model, goals, &options, beside)?;
     loop {
         match search.round(&mut Vec::new())? {
             std::ops::ControlFlow::Continue(()) => {}

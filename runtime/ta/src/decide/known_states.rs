@@ -69,6 +69,10 @@ impl<'g, 'm, 'p> KnownStates<'g, 'm, 'p> {
     }
 
     /// The bytes in use, about.
+    pub(super) fn count(&self) -> usize {
+        self.all.borrow().len()
+    }
+
     pub(super) fn bytes(&self) -> usize {
         let of = |s: &KnownState| {
             size_of::<KnownState>()

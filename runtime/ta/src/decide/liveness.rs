@@ -20,7 +20,7 @@
 //!
 //! Formulas with clocks: zones are split into [cells](crate::decide::cells), and time passes from cell to cell.
 
-use std::rc::Rc;
+use std::{cell::Cell, rc::Rc};
 
 use rustc_hash::FxHashMap;
 
@@ -34,7 +34,10 @@ use crate::{
         graph::ZoneGraph,
         query::{SearchBudget, StateFormula},
     },
-    search::report::SearchCutoff,
+    search::{
+        report::{SearchCutoff, SearchProgress, SearchStatistics},
+        round_search::GoOn,
+    },
     witness::{
         build::{PathSegment, bounds_of, fault, times},
         error::SearchError,
@@ -46,6 +49,9 @@ use crate::{
         extrapolation::{ExtrapolationAbstraction, simulated_hull, thresholds},
     },
 };
+
+/// Whoever watches is told each time that so many nodes have been looked from.
+const LOOKS: usize = 256;
 
 /// A maximal run, or the beginning of one.
 #[derive(Debug)]
@@ -106,6 +112,10 @@ pub(crate) struct LivenessSearch<'g, 'm, 'p> {
     /// Zones are exact as far as can be told: they do not stand for what they simulate.
     exact: bool,
     budget: SearchBudget,
+    go_on: GoOn<'g>,
+    /// How many nodes were looked from.
+    visited: Cell<usize>,
+    transitions: Cell<usize>,
     entered: Vec<EnteredNode>,
     /// Nodes from which there is no run that avoids the formula.
     safe: FxHashMap<ClockCellKey, Vec<usize>>,
@@ -117,7 +127,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
     pub(crate) fn new(
         graph: &'g ZoneGraph<'m, 'p>,
         formulas: &[&'g StateFormula],
-        budget: SearchBudget,
+        (budget, go_on): (SearchBudget, GoOn<'g>),
         abstraction: ExtrapolationAbstraction,
     ) -> Self {
         Self {
@@ -125,6 +135,9 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
             states: KnownStates::new(graph, formulas, abstraction),
             exact: abstraction == ExtrapolationAbstraction::Greatest || graph.splits(),
             budget,
+            go_on,
+            visited: Cell::new(0),
+            transitions: Cell::new(0),
             entered: Vec::new(),
             safe: FxHashMap::default(),
             bytes: 0,
@@ -198,7 +211,29 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         if self.entered.len() >= self.budget.states {
             return Some(SearchCutoff::States);
         }
-        (self.bytes + self.states.bytes() >= self.budget.bytes).then_some(SearchCutoff::Memory)
+        let bytes = self.bytes + self.states.bytes();
+        if bytes >= self.budget.bytes {
+            return Some(SearchCutoff::Memory);
+        }
+        let stored = self.entered.len();
+        let visited = self.visited.get();
+        if !visited.is_multiple_of(LOOKS) {
+            return None;
+        }
+        let waiting = stored.saturating_sub(visited);
+        let progress = SearchProgress { stored, visited, waiting, bytes, open: 1, unmet: &[] };
+        (!(self.go_on)(&progress)).then_some(SearchCutoff::Stopped)
+    }
+
+    /// What it took so far.
+    pub(crate) fn statistics(&self) -> SearchStatistics {
+        SearchStatistics {
+            stored: self.entered.len(),
+            visited: self.visited.get(),
+            transitions: self.transitions.get(),
+            discrete_states: self.states.count(),
+            bytes: self.bytes + self.states.bytes(),
+        }
     }
 
     fn enter(&mut self, node: CellNode, parent: Option<usize>, stop: Option<PathSegment>) -> usize {
@@ -275,6 +310,8 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
                 out.push((PathSegment::Take { taken, before, after }, next));
             }
         }
+        self.visited.set(self.visited.get() + 1);
+        self.transitions.set(self.transitions.get() + out.len());
         Ok(out)
     }
 

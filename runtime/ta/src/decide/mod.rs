@@ -11,3 +11,5 @@ mod interpreter_tests;
 mod known_states;
 mod liveness;
 mod places;
+mod words;
+mod zeno;

@@ -186,13 +186,14 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         }
     }
 
-    fn progress(&self, bytes: usize) -> SearchProgress {
+    fn progress(&self, bytes: usize) -> SearchProgress<'_> {
         SearchProgress {
             stored: self.store.stored,
             visited: self.visited,
             waiting: self.waiting.len(),
             bytes,
             open: self.left,
+            unmet: &self.open,
         }
     }
 

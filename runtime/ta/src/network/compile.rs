@@ -20,7 +20,7 @@ use crate::{
         },
         error::ModelError,
         model::{CompiledNetwork, ObservationOptions},
-        number::NumberType,
+        number::{NumberType, gcd},
         parts::{
             ClockConstraints, CompiledAutomaton, CompiledEdge, CompiledLocation, EdgeOutput, EdgeSync,
             EdgeUpdate, EventWatch, InputPartner, InputPattern, MultiwayChannel, OutputArgument,
@@ -133,12 +133,6 @@ fn ranges(automata: &[&Automaton], slots: &[&AutomatonVar], observe: &Observatio
 
 /// The greatest common divisor of all constants; a second if there are none.
 fn unit(automata: &[&Automaton], formulas: &[QueryFormula]) -> Nanos {
-    fn gcd(mut a: u64, mut b: u64) -> u64 {
-        while b != 0 {
-            (a, b) = (b, a % b);
-        }
-        a
-    }
     let mut times: Vec<&TimeSum> = Vec::new();
     for a in automata {
         times.extend(a.locations.iter().flat_map(|l| &l.invariant).map(|c| &c.bound));

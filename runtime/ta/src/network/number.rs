@@ -1,4 +1,4 @@
-//! Values as whole numbers, and how two of them compare.
+//! Values as whole numbers, how two of them compare, and what divides all of several.
 
 use hrdsl_ir::{Enumeration, Value, ta::AutomatonVar};
 
@@ -81,4 +81,12 @@ impl NumberComparison {
             NumberComparison::Ge => a >= b,
         }
     }
+}
+
+/// The greatest common divisor, which of 0 and a number is the number.
+pub(crate) fn gcd(mut a: u64, mut b: u64) -> u64 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }

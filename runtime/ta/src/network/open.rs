@@ -38,7 +38,7 @@ pub struct OpenTransition {
     pub sent: Option<(EventId, Vec<Value>)>,
     /// Who takes part, in the order of the updates; nobody, if an event from outside is ignored, or the transition is a fault.
     pub parts: Vec<AutomatonMove>,
-    action: EnabledTransition,
+    pub(crate) action: EnabledTransition,
 }
 
 /// What staying in a discrete state means for clocks.

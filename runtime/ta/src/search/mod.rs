@@ -14,6 +14,7 @@ pub(crate) mod report;
 pub(crate) mod round_search;
 pub(crate) mod rounds;
 pub(crate) mod slice;
+pub(crate) mod start;
 mod stepper;
 pub(crate) mod store;
 pub(crate) mod waiting;

@@ -1,5 +1,7 @@
 //! What a search found, and how far it is.
 
+use serde::Serialize;
+
 use crate::{network::model::CompiledNetwork, witness::run::WitnessRun};
 
 /// How a goal ended.
@@ -70,13 +72,56 @@ pub struct SearchReport {
     pub widest: Option<WidestVariable>,
 }
 
+/// What a search took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SearchStatistics {
+    /// Symbolic states kept at the end.
+    pub stored: usize,
+    /// Symbolic states whose successors were computed.
+    pub visited: usize,
+    /// Symbolic transitions computed.
+    pub transitions: usize,
+    pub discrete_states: usize,
+    /// The most bytes that states took at any time.
+    pub bytes: usize,
+}
+
+impl SearchStatistics {
+    /// Of this search and of another one after it.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            stored: self.stored + other.stored,
+            visited: self.visited + other.visited,
+            transitions: self.transitions + other.transitions,
+            discrete_states: self.discrete_states.max(other.discrete_states),
+            bytes: self.bytes.max(other.bytes),
+        }
+    }
+}
+
+impl SearchReport {
+    #[must_use]
+    pub fn statistics(&self) -> SearchStatistics {
+        SearchStatistics {
+            stored: self.states_stored,
+            visited: self.states_visited,
+            transitions: self.transitions,
+            discrete_states: self.discrete_states,
+            bytes: self.peak_bytes,
+        }
+    }
+}
+
 /// How far a search is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SearchProgress {
+pub struct SearchProgress<'s> {
     pub stored: usize,
     pub visited: usize,
     pub waiting: usize,
     pub bytes: usize,
     /// Goals that are not met yet.
     pub open: usize,
+    /// For each goal whether it is not met yet.
+    pub unmet: &'s [bool],
 }

@@ -1,12 +1,12 @@
 //! A search that is gone through round by round, by those who look at what it comes to.
 
-use std::ops::ControlFlow;
+use std::{cell::Cell, ops::ControlFlow};
 
 use crate::{
     network::actions::PathTransition,
     search::{
         probe::{ProbeFinding, StateProbe},
-        report::SearchCutoff,
+        report::{SearchCutoff, SearchProgress, SearchStatistics},
     },
     witness::error::SearchError,
 };
@@ -18,6 +18,25 @@ pub(crate) struct SearchAside<'a> {
     /// The time since the start is a clock, up to so many units, states are taken by its least value, and of each goal (or question of
     /// the probe) the earliest is found.
     pub within: Option<i64>,
+    /// Asked before each round whether to go on.
+    pub go_on: Option<GoOn<'a>>,
+}
+
+/// Told how far a search is; `false` ends it.
+pub(crate) type GoOn<'a> = &'a dyn Fn(&SearchProgress<'_>) -> bool;
+
+/// Who watches the searches that a question takes, and what they took.
+#[derive(Clone, Copy)]
+pub(crate) struct SearchCompany<'a> {
+    pub go_on: GoOn<'a>,
+    pub took: &'a Cell<Option<SearchStatistics>>,
+}
+
+impl SearchCompany<'_> {
+    /// Another search has ended.
+    pub(crate) fn add(&self, took: SearchStatistics) {
+        self.took.set(Some(self.took.get().map_or(took, |before| before.and(took))));
+    }
 }
 
 /// A search that is gone through round by round.
@@ -48,4 +67,7 @@ pub(crate) trait RoundSearch {
 
     /// Symbolic states kept.
     fn stored(&self) -> usize;
+
+    /// What it took so far.
+    fn statistics(&self) -> SearchStatistics;
 }

@@ -14,12 +14,7 @@ use std::{
 use rayon::prelude::*;
 
 use crate::{
-    network::{
-        actions::PathTransition,
-        error::ModelError,
-        model::{BoundWidth, CompiledNetwork},
-        query::ReachabilityGoal,
-    },
+    network::{actions::PathTransition, error::ModelError, model::CompiledNetwork, query::ReachabilityGoal},
     search::{
         batch::{ExpansionBatch, GoalHit, GoalPath},
         expand::{ExpansionContext, ExpansionWorker},
@@ -27,8 +22,8 @@ use crate::{
         monotone::{self, OneWayCounter},
         options::{SearchOptions, SubsumptionRelation},
         probe::{ProbeFinding, StateProbe},
-        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
-        round_search::{RoundSearch, SearchAside},
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, SearchStatistics, WidestVariable},
+        round_search::{GoOn, RoundSearch, SearchAside},
         slice,
         stepper::ZoneClocks,
         store::{NIL, PassedList, StateLayout},
@@ -38,50 +33,15 @@ use crate::{
     zone::dbm::DbmNumber,
 };
 
-/// With one time for all.
-pub(crate) fn explore(
-    model: &CompiledNetwork,
-    goals: &[ReachabilityGoal],
-    options: &SearchOptions,
-    go_on: &dyn Fn(&SearchProgress) -> bool,
-) -> Result<SearchReport, SearchError> {
-    let beside = SearchAside::default();
-    match width(model, beside)? {
-        BoundWidth::Bits16 => ZoneGraphSearch::<i16>::new(model, goals, options, beside)?.explore(go_on),
-        BoundWidth::Bits32 => ZoneGraphSearch::<i32>::new(model, goals, options, beside)?.explore(go_on),
-        BoundWidth::Bits64 => ZoneGraphSearch::<i64>::new(model, goals, options, beside)?.explore(go_on),
-    }
-}
-
-fn width(model: &CompiledNetwork, beside: SearchAside) -> Result<BoundWidth, SearchError> {
-    let width = model.reach.width(beside.within.unwrap_or(0));
-    width.ok_or_else(|| SearchError::Internal("a time is too great for zones".into()))
-}
-
-/// A search to be gone through.
-///
-/// # Errors
-/// If the goals have no meaning.
-pub(crate) fn begin<'m>(
-    model: &'m CompiledNetwork,
-    goals: &'m [ReachabilityGoal],
-    options: &SearchOptions,
-    beside: SearchAside<'m>,
-) -> Result<Box<dyn RoundSearch + 'm>, SearchError> {
-    Ok(match width(model, beside)? {
-        BoundWidth::Bits16 => Box::new(ZoneGraphSearch::<i16>::new(model, goals, options, beside)?),
-        BoundWidth::Bits32 => Box::new(ZoneGraphSearch::<i32>::new(model, goals, options, beside)?),
-        BoundWidth::Bits64 => Box::new(ZoneGraphSearch::<i64>::new(model, goals, options, beside)?),
-    })
-}
-
-struct ZoneGraphSearch<'m, 'p, N> {
+/// A search with one time for all.
+pub(super) struct ZoneGraphSearch<'m, 'p, N> {
     model: &'m CompiledNetwork<'p>,
     goals: &'m [ReachabilityGoal],
     options: SearchOptions,
     compiled: CompiledGoals,
     counters: Vec<OneWayCounter>,
     probe: Option<&'m dyn StateProbe>,
+    go_on: Option<GoOn<'m>>,
     /// What arrives later is left out, if the time is a clock.
     latest: Option<i64>,
     started: bool,
@@ -106,7 +66,7 @@ const ROUND: usize = 4096;
 const CHUNK: usize = 16;
 
 impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
-    fn new(
+    pub(super) fn new(
         model: &'m CompiledNetwork<'p>,
         goals: &'m [ReachabilityGoal],
         options: &SearchOptions,
@@ -152,6 +112,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             ),
             counters,
             probe: beside.probe,
+            go_on: beside.go_on,
             latest: beside.within.map(|most| 2 * most - 1),
             started: false,
             waiting: match beside.within {
@@ -169,7 +130,10 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         })
     }
 
-    fn explore(mut self, go_on: &dyn Fn(&SearchProgress) -> bool) -> Result<SearchReport, SearchError> {
+    pub(super) fn explore(
+        mut self,
+        go_on: &dyn Fn(&SearchProgress) -> bool,
+    ) -> Result<SearchReport, SearchError> {
         let exhausted = self.run(go_on)?;
         let mut outcomes = Vec::new();
         for i in 0..self.goals.len() {
@@ -240,6 +204,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             waiting: self.waiting.len(),
             bytes,
             open: self.left,
+            unmet: &self.open,
         };
         if !go_on(&progress) {
             return Ok(ControlFlow::Break(Some(SearchCutoff::Stopped)));
@@ -470,7 +435,7 @@ impl<N: DbmNumber> RoundSearch for ZoneGraphSearch<'_, '_, N> {
         &mut self,
         found: &mut Vec<ProbeFinding>,
     ) -> Result<ControlFlow<Option<SearchCutoff>>, SearchError> {
-        let end = self.next_round(&|_| true)?;
+        let end = self.next_round(self.go_on.unwrap_or(&|_| true))?;
         for batch in &mut self.batches {
             found.append(&mut batch.findings);
         }
@@ -491,5 +456,15 @@ impl<N: DbmNumber> RoundSearch for ZoneGraphSearch<'_, '_, N> {
 
     fn stored(&self) -> usize {
         self.store.stored
+    }
+
+    fn statistics(&self) -> SearchStatistics {
+        SearchStatistics {
+            stored: self.store.stored,
+            visited: self.visited,
+            transitions: self.transitions,
+            discrete_states: self.store.discrete_states(),
+            bytes: self.peak,
+        }
     }
 }

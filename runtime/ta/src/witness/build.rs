@@ -278,7 +278,8 @@ struct UntimedPath {
 
 fn walk(graph: &ZoneGraph, stops: &[PathSegment]) -> Result<UntimedPath, SearchError> {
     let state = graph.initial();
-    let schedule = PathSchedule::new(graph.dim());
+    // One more clock, which is never set, is the time since the start: stops may speak of it.
+    let schedule = PathSchedule::new(graph.dim() + 1);
     let mut w = UntimedPath { steps: Vec::new(), at: Vec::new(), schedule, state };
     let mut stay = allowed(graph, &w.state)?;
     stay.invariant.iter().for_each(|c| w.schedule.require(*c));
@@ -302,7 +303,7 @@ fn walk(graph: &ZoneGraph, stops: &[PathSegment]) -> Result<UntimedPath, SearchE
         w.schedule.set(&taken.resets);
         stay = allowed(graph, &target)?;
         stay.invariant.iter().chain(after).for_each(|c| w.schedule.require(*c));
-        w.steps.push(step(graph.model, &w.state, &target, taken));
+        w.steps.push(told_step(graph.model, &w.state, &target, taken));
         w.at.push(now);
         w.state = target;
     }
@@ -313,7 +314,13 @@ fn allowed(graph: &ZoneGraph, state: &[i64]) -> Result<DelayCondition, SearchErr
     graph.stay(state)?.ok_or_else(|| internal("a path leads through a forbidden state"))
 }
 
-fn step(model: &CompiledNetwork, before: &[i64], after: &[i64], taken: &PathTransition) -> WitnessRunStep {
+/// A transition between two states, at time 0.
+pub(crate) fn told_step(
+    model: &CompiledNetwork,
+    before: &[i64],
+    after: &[i64],
+    taken: &PathTransition,
+) -> WitnessRunStep {
     let location = |n: i64| LocationId(u16::try_from(n).unwrap_or(u16::MAX));
     let changed = |i: &usize| before[*i] != after[*i];
     let locations = (0..model.members.len()).filter(changed);

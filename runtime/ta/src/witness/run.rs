@@ -5,7 +5,7 @@ use hrdsl_ir::{
     ta::{ChannelId, LocationId},
 };
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::network::semantics::AutomatonMove;
 
@@ -23,7 +23,7 @@ pub struct WitnessRun {
 }
 
 /// How a run goes on after its last transition.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunEnding {
     /// What was asked for is reached.

@@ -10,7 +10,10 @@ use hrdsl_ir::{Nanos, suite::DelayChoice, value::SECOND};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::{network::semantics::ClockReset, zone::constraint::DifferenceConstraint};
+use crate::{
+    network::{number::gcd, semantics::ClockReset},
+    zone::constraint::DifferenceConstraint,
+};
 
 /// How long a transition waits beyond its earliest time if nothing bounds it, with delays that are not the earliest.
 pub const DAWDLE: Nanos = SECOND;
@@ -110,7 +113,14 @@ impl PathSchedule {
         let count = self.now + 1;
         let least = least(count, &self.constraints)?;
         let most = least.iter().map(|t| t.1).max().unwrap_or(0);
-        let ticks = most / unit + 1;
+        // What all times of the path are whole multiples of, but for their small steps.
+        let grain = self.constraints.iter().fold(0, |g, c| gcd(g, c.by.0.unsigned_abs()));
+        let ticks = match i64::try_from(grain) {
+            // Small steps alone: any tick will do.
+            Ok(0) => 1,
+            Ok(grain) => most / unit.saturating_mul(grain) + 1,
+            Err(_) => most / unit + 1,
+        };
         let scale = i128::from(unit) * i128::from(ticks);
         let mut net = DifferenceSystem::new(count, scale, &self.constraints);
         if !net.settle_all() {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use hrdsl_ir::{
-    Nanos, Program, Value,
+    Nanos, Program, Span, Value,
     ta::{Automaton, ChannelId, ChannelKind, ClockId, EdgeAssignment, Network},
 };
 use serde::Serialize;
@@ -68,8 +68,30 @@ pub struct TransitionParticipant {
     /// Index in the network.
     pub member: usize,
     pub automaton: String,
+    /// The number of the edge taken among those of the automaton, from 1.
+    pub edge: usize,
     pub from: String,
     pub to: String,
+    /// The values of the edge's selects, as `n = 2`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub selected: Vec<String>,
+    /// What the edge is written as; known to those who have the text, see [`WitnessTrace::locate`].
+    #[serde(flatten)]
+    pub source: Option<EdgeSource>,
+    /// The place of the edge in the text.
+    #[serde(skip)]
+    pub origin: Span,
+}
+
+/// An edge as its author wrote it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct EdgeSource {
+    pub file: String,
+    /// From 1.
+    pub line: u32,
+    /// On one line; `None`: it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub guard: Option<String>,
 }
 
 impl WitnessTrace {
@@ -81,14 +103,20 @@ impl WitnessTrace {
         WitnessTrace {
             network: witness.network.clone(),
             automata,
-            steps: witness.steps.iter().map(|s| builder.transition(witness, s)).collect(),
+            steps: witness.steps.iter().map(|s| builder.transition(s, witness.ticks)).collect(),
             end: seconds(witness.end, witness.ticks),
             end_nanos: witness.end.div_euclid(witness.ticks.max(1)),
             ending: witness.ending,
         }
     }
 
-    /// A table: a line for each transition with its time, what it goes over and who goes where, then what it changes.
+    /// Says of each edge taken how it is written.
+    pub fn locate(&mut self, source: &dyn Fn(Span) -> Option<EdgeSource>) {
+        self.steps.iter_mut().for_each(|step| step.locate(source));
+    }
+
+    /// A table: a line for each transition with its time, what it goes over and who goes where, then what it changes; below it a
+    /// line for each edge whose source is known or that selects values.
     #[must_use]
     pub fn text(&self) -> String {
         let wide = |f: &dyn Fn(&WitnessTransition) -> usize| self.steps.iter().map(f).max().unwrap_or(0);
@@ -110,6 +138,9 @@ impl WitnessTrace {
                 let _ = write!(out, "   [{}]", changes.join("; "));
             }
             out.push('\n');
+            for line in step.edges() {
+                let _ = writeln!(out, "{:time$}      {line}", "");
+            }
         }
         let last = self.steps.last().map_or("0", |s| s.time.as_str());
         let wait = (self.end != last).then_some(self.end.as_str());
@@ -140,9 +171,37 @@ impl WitnessRun {
 }
 
 impl WitnessTransition {
+    /// A step of a network by names; its time is in nanoseconds.
+    pub(crate) fn from_step(program: &Program, network: &Network, step: &WitnessRunStep) -> Self {
+        let slots = slot_names(program, network);
+        WitnessTraceBuilder { program, network, slots }.transition(step, 1)
+    }
+
     /// Who starts it: nothing happens by itself.
     fn starter(&self) -> &TransitionParticipant {
         &self.parts[0]
+    }
+
+    /// Says of each edge taken how it is written.
+    pub fn locate(&mut self, source: &dyn Fn(Span) -> Option<EdgeSource>) {
+        self.parts.iter_mut().for_each(|part| part.source = source(part.origin));
+    }
+
+    /// Without its time: `asked(false)  Person: outside -> waiting, Door: shut -> moving   [q: 0 -> 1]`.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let over = self.over.as_ref().map(|over| format!("{over}  ")).unwrap_or_default();
+        let moves: Vec<String> = self.parts.iter().map(|p| p.movement(true)).collect();
+        let changes: Vec<&str> = self.variables.iter().chain(&self.clocks).map(String::as_str).collect();
+        let changes = if changes.is_empty() { String::new() } else { format!("   [{}]", changes.join("; ")) };
+        format!("{over}{}{changes}", moves.join(", "))
+    }
+
+    /// A line for each edge whose source is known or that selects values.
+    #[must_use]
+    pub fn edges(&self) -> Vec<String> {
+        let told = |p: &&TransitionParticipant| p.source.is_some() || !p.selected.is_empty();
+        self.parts.iter().filter(told).map(TransitionParticipant::edge_line).collect()
     }
 }
 
@@ -154,6 +213,16 @@ impl TransitionParticipant {
             format!("{} -> {}", self.from, self.to)
         };
         if named { format!("{}: {text}", self.automaton) } else { text }
+    }
+
+    /// `door.hri:24: Person: outside -> waiting when x >= 10 s with n = 2`
+    fn edge_line(&self) -> String {
+        let Self { automaton, from, to, .. } = self;
+        let place = self.source.as_ref().map(|s| format!("{}:{}: ", s.file, s.line)).unwrap_or_default();
+        let guard = self.source.as_ref().and_then(|s| s.guard.as_ref());
+        let guard = guard.map(|g| format!(" when {g}")).unwrap_or_default();
+        let with = if self.selected.is_empty() { String::new() } else { " with ".to_owned() };
+        format!("{place}{automaton}: {from} -> {to}{guard}{with}{}", self.selected.join(", "))
     }
 }
 
@@ -168,7 +237,7 @@ impl<'a> WitnessTraceBuilder<'a> {
         self.program.automaton(self.network.automata[m])
     }
 
-    fn transition(&self, witness: &WitnessRun, step: &WitnessRunStep) -> WitnessTransition {
+    fn transition(&self, step: &WitnessRunStep, ticks: i64) -> WitnessTransition {
         let (over, medium) = match (&step.event, &step.channel) {
             (Some((event, args)), _) => {
                 (Some(applied(&self.program.event(*event).name, args)), TransitionMedium::Event)
@@ -182,8 +251,8 @@ impl<'a> WitnessTraceBuilder<'a> {
         let changed = step.variables.iter();
         let variables = changed.map(|(slot, from, to)| format!("{}: {from} -> {to}", self.slots[*slot]));
         WitnessTransition {
-            time: seconds(step.time, witness.ticks),
-            nanos: witness.nanos(step),
+            time: seconds(step.time, ticks),
+            nanos: step.time.div_euclid(ticks.max(1)),
             over,
             medium,
             parts: step.moves.iter().map(|m| self.part(m)).collect(),
@@ -204,8 +273,20 @@ impl<'a> WitnessTraceBuilder<'a> {
 
     fn part(&self, m: &AutomatonMove) -> TransitionParticipant {
         let a = self.member(m.automaton);
-        let [from, to] = [a.edges[m.edge].from, a.edges[m.edge].to].map(|l| a.location(l).name.clone());
-        TransitionParticipant { member: m.automaton, automaton: a.name.clone(), from, to }
+        let edge = &a.edges[m.edge];
+        let [from, to] = [edge.from, edge.to].map(|l| a.location(l).name.clone());
+        // The selects are the first of the binders; the others are what was received.
+        let selected = edge.selects.iter().zip(&m.binders).map(|(s, value)| format!("{} = {value}", s.name));
+        TransitionParticipant {
+            member: m.automaton,
+            automaton: a.name.clone(),
+            edge: m.edge + 1,
+            from,
+            to,
+            selected: selected.collect(),
+            source: None,
+            origin: edge.origin,
+        }
     }
 
     /// The clocks that an edge sets; a value is shown if it is a constant.
