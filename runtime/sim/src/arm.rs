@@ -88,10 +88,8 @@ pub(crate) struct ArmControl {
     /// The accelerations that make good lasting errors, rad/s² or m/s²; and as they were when the arm was last free.
     lasting: Vec<f64>,
     lasting_free: Vec<f64>,
-    /// What the motors were last told, N·m or N, and until when that holds.
-    told: Vec<f64>,
-    /// What its joints bear by themselves.
-    borne: Vec<BorneLoad>,
+    /// What the motors were last told, N·m or N, with what their joints bear besides, and until when that holds.
+    told: Vec<(f64, BorneLoad)>,
     told_until: Nanos,
 }
 
@@ -160,8 +158,7 @@ impl ArmControl {
             pace: vec![0.0; numbers.len()],
             lasting: vec![0.0; numbers.len()],
             lasting_free: vec![0.0; numbers.len()],
-            told: vec![0.0; numbers.len()],
-            borne: Vec::new(),
+            told: Vec::new(),
             told_until: 0,
         })
     }
@@ -278,19 +275,16 @@ impl ArmControl {
 
     /// Sets the motors for the step from `now` to `next`: as they were last told, or, if that is over, anew.
     pub fn drive(&mut self, now: Nanos, next: Nanos, physics: &mut PhysicsAdapter) {
-        let joints = self.joints.iter().map(|id| usize::from(id.0));
         if now < self.told_until {
-            for ((joint, effort), load) in joints.zip(&self.told).zip(&self.borne) {
-                physics.drive(joint, *effort);
-                physics.bear(joint, load);
+            for (id, (effort, load)) in self.joints.iter().zip(&self.told) {
+                physics.drive_bearing(usize::from(id.0), *effort, load);
             }
             return;
         }
         self.told_until = next.max(now + CONTROL_PERIOD);
         let h = seconds(self.told_until - now);
         let (a, _) = self.aim();
-        let behind = self.behind(&a, physics);
-        let most = largest(&behind);
+        let most = largest(&self.behind(&a, physics));
         let rate = pace_kept(most);
         // An aim that comes back to where the arm is need not wait for it: so an arm that presses on something can be freed.
         let comes_back = rate < 1.0
@@ -361,16 +355,14 @@ impl ArmControl {
                 efforts[i] += damping * self.pace[i] + friction * way.clamp(-1.0, 1.0);
             }
         }
+        self.told = efforts.iter().copied().zip(equation.borne).collect();
         for (i, id) in self.joints.iter().enumerate() {
-            let done = physics.drive(usize::from(id.0), efforts[i]);
-            physics.bear(usize::from(id.0), &equation.borne[i]);
-            self.told[i] = efforts[i];
+            let done = physics.drive_bearing(usize::from(id.0), efforts[i], &self.told[i].1);
             // An arm that is held up, or a motor that can do no more, has nothing to learn from it.
             if done == efforts[i] && rate > HELD_UP {
                 self.lasting[i] += LEARNING * rigid.powi(3) * (a[i] - positions[i]) * h;
             }
         }
-        self.borne = equation.borne;
     }
 
     /// Ends the motion if it has arrived, does not in time, is blocked, or presses harder than it may.

@@ -231,11 +231,12 @@ impl PhysicsAdapter {
         effort
     }
 
-    /// Lets a joint bear over the next step what its bodies weigh. The solver would find that by itself, as the force that keeps the two
-    /// sides together; but it begins with nothing in each part of a step, goes over a chain of seven joints twice, and leaves them as far
-    /// apart as what it did not find pulls them. So it is told what is known, and finds the rest.
-    pub fn bear(&mut self, joint: usize, load: &BorneLoad) {
-        let Some(driven) = &self.joints[joint] else { return };
+    /// As [`Self::drive`], and lets the joint bear what its bodies weigh. The solver would find that by itself, as the force that keeps the
+    /// two sides together; but it begins with nothing in each part of a step, goes over a chain of seven joints twice, and leaves them as
+    /// far apart as what it did not find pulls them. So it is told what is known, and finds the rest.
+    pub fn drive_bearing(&mut self, joint: usize, effort: f64, load: &BorneLoad) -> f64 {
+        let done = self.drive(joint, effort);
+        let Some(driven) = &self.joints[joint] else { return done };
         let at = to_vector(self.axis_now(driven).1);
         let (force, torque) = (to_vector(load.force), to_vector(load.torque));
         for (handle, sign) in [(driven.child, 1.0), (driven.parent, -1.0)] {
@@ -243,6 +244,7 @@ impl PhysicsAdapter {
             body.add_force_at_point(force * sign, at, false);
             body.add_torque(torque * sign, false);
         }
+        done
     }
 
     /// Lets a motor go at a speed (m/s or rad/s) from now on, with no more than this force or torque (N or N·m).
