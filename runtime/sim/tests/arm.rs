@@ -275,6 +275,18 @@ fn a_plan_may_begin_elsewhere_and_refuses_numbers_that_make_no_sense() {
     assert_eq!(asks(&|w| w.accelerations = Some(vec![1.0])), few);
 }
 
+/// The links are told what hangs on them, and the solver finds the rest: it left the shoulder 0.4 mm apart.
+#[test]
+fn the_links_of_an_arm_hang_together() {
+    let mut sim = WorldSimulation::new(&table(), &[]).unwrap();
+    settle(&mut sim);
+    assert_eq!(sim.accuracy().joint_gap, None);
+    run(&mut sim, move_to(OFFER));
+    let (apart, joint) = sim.accuracy().joint_gap.unwrap_or_default();
+    println!("{joint}: {:.3} mm", 1e3 * apart);
+    assert!(apart < 5e-5, "{joint} is {apart} m apart");
+}
+
 /// What the planner does not know of, since nobody is where they will be: the arm pushes no harder than its motors can, gives up,
 /// and does not leap when the way is free again.
 #[test]

@@ -231,3 +231,32 @@ fn what_slides_is_measured_along_its_axis() {
     assert!((of(&sim, SignalTerm::JointPosition(joint)) - 0.3).abs() < 0.01, "it is up");
     assert!((0.29..0.5).contains(&fastest), "0.3 m in a second: {fastest}");
 }
+
+/// A rod that stands falls from half a metre on the edge of one that lies: the nearest points of the two are beside each other until it
+/// strikes. Neither ends up in the floor.
+#[test]
+fn what_falls_past_an_edge_strikes_it() {
+    let rod = BodyShape::Cylinder { radius: 0.02, length: 0.25 };
+    for beside in 0..8 {
+        for higher in 0..4 {
+            let mut world = empty();
+            let offset = 0.024 + 0.002 * f64::from(beside);
+            let height = 0.6 + 0.007 * f64::from(higher);
+            world.bodies = vec![
+                body("floor", BodyMotion::Fixed, cuboid(2.0, 2.0, 0.1), [0.0, 0.0, -0.05], 1.0),
+                body("lying", BodyMotion::Dynamic, rod, [0.0, 0.0, 0.0201], 0.5),
+                body("falling", BodyMotion::Dynamic, rod, [offset, 0.05, height], 0.5),
+            ];
+            world.bodies[1].rotation = [std::f64::consts::FRAC_PI_2, 0.0, 0.0];
+            let mut sim = WorldSimulation::new(&world, &[]).expect("a world");
+            sim.advance(SECOND);
+            assert_eq!(sim.fault(), None);
+            let (deep, bodies) = sim.accuracy().penetration.unwrap_or_default();
+            assert!(
+                deep < 3e-3,
+                "{:.2} mm: {bodies:?}, {offset:.3} m beside, from {height:.3} m",
+                1e3 * deep
+            );
+        }
+    }
+}

@@ -210,6 +210,37 @@ fn what_tears_a_robot_apart_does_not_fling_it_off() {
     assert!(farthest > 0.2 && fastest < 40.0 && back < 0.1, "{fastest} {farthest} {back}");
 }
 
+/// A thing of 59 kg rolls over a thin one, which it presses a centimetre into the floor. The solver gave it a quarter of a metre a second.
+#[test]
+fn a_heavy_thing_is_not_flung_off_a_thin_one() {
+    let loose = |shape, at, turn, mass| Thing { shape, at, turn, mass, kind: 3 };
+    let heavy = BodyShape::Capsule { radius: 0.199_633_978_354_406_74, length: 0.120_263_007_555_452_41 };
+    let light = BodyShape::Sphere { radius: 0.103_638_130_801_312_26 };
+    let thin = BodyShape::Cylinder { radius: 0.027_324_722_990_548_59, length: 0.223_082_719_555_731_83 };
+    let recipe = Recipe {
+        things: vec![
+            loose(
+                heavy,
+                [-0.473_335_202_009_513_2, -1.585_586_302_026_359_4, 2.480_938_886_691_850_7],
+                [1.427_838_051_403_080_2, -2.864_980_732_737_966_4, 0.914_141_382_371_560_6],
+                59.421_693_325_629_185,
+            ),
+            loose(light, [0.0, -1.083_059_468_885_252_6, 1.795_149_414_986_319_9], [0.0; 3], 0.05),
+            loose(
+                thin,
+                [-1.637_883_567_986_113_7, -0.782_127_733_399_054_2, 0.4],
+                [1.845_888_991_678_018_3, 1.011_390_657_751_403_1, 2.635_523_882_017_503],
+                6.938_826_410_317_842,
+            ),
+        ],
+        chains: Vec::new(),
+        base: None,
+        goals: vec![([0.0, 0.0, 0.4], 0.1); 3],
+        moves: Vec::new(),
+    };
+    assert!(!run(&recipe).expect("nothing starts inside of something").1);
+}
+
 #[test]
 #[expect(clippy::disallowed_methods, reason = "how many worlds are tried is up to whoever runs the test")]
 fn nothing_explodes_and_nothing_differs() {
