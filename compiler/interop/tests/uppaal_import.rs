@@ -280,10 +280,11 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
             "urgent",
         ),
         (model("", "", "", &[], "system P;").replace("<init ref=\"a\"/>", ""), "no initial location"),
+        (branching("", ""), "no branch leads out of this branchpoint"),
+        (branching("c", "<target ref=\"c\"/>"), "not to another branchpoint"),
         (
-            model("", "", "", &[], "system P;")
-                .replace("<transition>", "<branchpoint id=\"c\"/><transition>"),
-            "`branchpoint`",
+            branching("c", "<target ref=\"b\"/><label kind=\"guard\">n &lt; 3</label>"),
+            "before the branchpoint",
         ),
         (model("", "", "", &[], "system P;").replace("<init", "<blob/><init"), "an element `blob`"),
     ];
@@ -291,6 +292,58 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
         let errors = from_text(&text, "").unwrap_err();
         assert!(errors.iter().any(|e| e.message.contains(why)), "{why}: {errors:?}");
     }
+}
+
+/// A model whose transition leads to a branchpoint `c`, with a second one from there or elsewhere.
+fn branching(from: &str, rest: &str) -> String {
+    let second = format!("<transition><source ref=\"{from}\"/>{rest}</transition>");
+    let second = if from.is_empty() { "" } else { &second };
+    model("int n; clock x;", "", "", &[("guard", "x > 1"), ("assignment", "n = 1")], "system P;")
+        .replace("<init", "<branchpoint id=\"c\"/><init")
+        .replace("<target ref=\"b\"/>\n", "<target ref=\"c\"/>\n")
+        .replace("</template>", &format!("{second}</template>"))
+}
+
+#[test]
+fn each_branch_of_a_branchpoint_may_be_taken() {
+    let branch = |to: &str, weight: &str, labels: &str| {
+        format!(
+            "<transition><source ref=\"c\"/><target ref=\"{to}\"/>{labels}<label kind=\"probability\">{weight}</label></transition>"
+        )
+    };
+    let branches =
+        branch("a", "1", "<label kind=\"assignment\">n = n + 1, x = 0</label>") + &branch("b", "9", "");
+    let text = branching("", "").replace("</template>", &format!("{branches}</template>"));
+    let imported = from_text(&text, "E<> n == 2").unwrap_or_else(|e| panic!("{e:?}"));
+    compiles(&imported.text);
+    let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+    let edges: Vec<String> =
+        imported.text.lines().map(words).filter(|line| line.starts_with("a -> ")).collect();
+    assert_eq!(edges, ["a -> a when x > 1 s do n = 1; n = n + 1; x = 0", "a -> l1 when x > 1 s do n = 1"]);
+    let left_out = imported.notes.iter().filter(|note| note.severity == NoteSeverity::LeftOut);
+    assert!(
+        left_out.clone().count() == 2 && left_out.clone().all(|note| note.message.contains("`probability`"))
+    );
+}
+
+/// What only other tools of UPPAAL ask is left out, and said.
+#[test]
+fn what_is_asked_by_games_and_statistics_alone_is_left_out() {
+    let text = model("", "", "clock x;", &[("guard", "x > 1")], "system P;")
+        .replace("<transition>", "<transition controllable=\"false\">")
+        .replace(
+            "<location id=\"b\"/>",
+            "<location id=\"b\"><label kind=\"exponentialrate\">1:5</label></location>",
+        );
+    let imported = from_text(&text, "").unwrap_or_else(|e| panic!("{e:?}"));
+    compiles(&imported.text);
+    let left_out: Vec<&str> = imported.notes.iter().map(|note| note.message.as_str()).collect();
+    assert!(
+        left_out.len() == 2
+            && left_out[0].starts_with("`exponentialrate`")
+            && left_out[1].starts_with("`controllable`"),
+        "{left_out:?}"
+    );
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! UPPAAL's models (`.xml`, flat DTD and newer) and queries (`.q`, or in the model) to a scenario.
 //!
 //! # Steps
-//! 1. `xml`: the file to templates and pieces of text, each character with its place
+//! 1. `xml`, `branches`: the file to templates and pieces of text, each character with its place
 //! 2. `lex`, `parse`, `queries`: pieces to declarations, expressions, formulas
 //! 3. `template`: the labels of each template
 //! 4. `declare`, `statement`: what is declared for all; functions
@@ -15,6 +15,7 @@
 //! way; a query that cannot be asked is left out.
 
 mod ast;
+mod branches;
 mod clocks;
 mod declare;
 mod expr;

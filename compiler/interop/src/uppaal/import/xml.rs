@@ -6,6 +6,7 @@ use hrdsl_source::{FileId, Span};
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::{
+    branches::{BranchingTransitions, TransitionEnd},
     fault::{UppaalFault, unsupported},
     lex::UppaalFragment,
 };
@@ -76,8 +77,14 @@ pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
         let message = format!("this is not XML as UPPAAL writes it: {}", without_place(&e.to_string()));
         vec![UppaalFault { span: Span::new(file, at, at), message }]
     })?;
-    let mut reader =
-        UppaalReader { file, text, faults: Vec::new(), model: UppaalModel::default(), ids: BTreeMap::new() };
+    let mut reader = UppaalReader {
+        file,
+        text,
+        faults: Vec::new(),
+        model: UppaalModel::default(),
+        ids: BTreeMap::new(),
+        branching: BranchingTransitions::default(),
+    };
     let root = document.root_element();
     if root.tag_name().name() == "nta" {
         reader.nta(root);
@@ -164,6 +171,8 @@ struct UppaalReader<'t> {
     model: UppaalModel,
     /// The locations of the present template, by id.
     ids: BTreeMap<String, usize>,
+    /// Its branchpoints.
+    branching: BranchingTransitions,
 }
 
 impl UppaalReader<'_> {
@@ -221,7 +230,10 @@ impl UppaalReader<'_> {
         for part in node.children().filter(Node::is_element) {
             match part.tag_name().name() {
                 "location" => self.location(part, &mut template),
-                "branchpoint" => self.unsupported(part, "probabilistic branches (`branchpoint`)"),
+                "branchpoint" => match part.attribute("id") {
+                    Some(id) => drop(self.branching.points.insert(id.to_owned())),
+                    None => self.fault(part, "this branchpoint has no id"),
+                },
                 "name" | "parameter" | "declaration" | "init" | "transition" => {}
                 name if IDLE.contains(&name) => {}
                 name => self.unknown(part, name),
@@ -230,6 +242,10 @@ impl UppaalReader<'_> {
         self.initial(node, &mut template);
         for part in node.children().filter(|n| n.has_tag_name("transition")) {
             self.transition(part, &mut template);
+        }
+        match std::mem::take(&mut self.branching).joined() {
+            Ok(joined) => template.transitions.extend(joined),
+            Err(faults) => self.faults.extend(faults),
         }
         self.model.templates.push(template);
     }
@@ -278,7 +294,10 @@ impl UppaalReader<'_> {
         match part.attribute("kind").unwrap_or_default() {
             "invariant" => location.invariant = self.piece(part),
             "exponentialrate" if self.piece(part).is_blank() => {}
-            "exponentialrate" => self.unsupported(part, "exponential rates (`exponentialrate`)"),
+            "exponentialrate" => self.leave_out(
+                part,
+                "`exponentialrate`: how fast a location is left is asked by statistical model checking only",
+            ),
             "comments" => location.comment = comment(part),
             kind @ ("testcodeEnter" | "testcodeExit") => self.skip(part, kind),
             kind => self.fault(part, format!("a label `{kind}` of a location is not known")),
@@ -286,32 +305,37 @@ impl UppaalReader<'_> {
     }
 
     fn skip(&mut self, part: Node<'_, '_>, kind: &str) {
+        self.leave_out(part, &format!("`{kind}` is code for tests: a scenario has no place for it"));
+    }
+
+    fn leave_out(&mut self, part: Node<'_, '_>, why: &str) {
         let span = self.span(part);
-        self.model
-            .skipped
-            .push((span, format!("`{kind}` is code for tests: a scenario has no place for it")));
+        self.model.skipped.push((span, why.to_owned()));
     }
 
     fn transition(&mut self, node: Node<'_, '_>, template: &mut UppaalTemplate) {
         let end = |reader: &mut Self, name: &str| {
             let Some(part) = node.children().find(|n| n.has_tag_name(name)) else {
                 reader.fault(node, format!("this transition has no `{name}`"));
-                return 0;
+                return TransitionEnd::Location(0);
             };
             let id = part.attribute("ref").unwrap_or_default();
-            reader.ids.get(id).copied().unwrap_or_else(|| {
+            if reader.branching.points.contains(id) {
+                return TransitionEnd::Branchpoint(id.to_owned());
+            }
+            TransitionEnd::Location(reader.ids.get(id).copied().unwrap_or_else(|| {
                 reader.fault(part, format!("there is no location with the id `{id}`"));
                 0
-            })
+            }))
         };
-        let (from, to) = (end(self, "source"), end(self, "target"));
+        let ends = (end(self, "source"), end(self, "target"));
         if node.attribute("controllable") == Some("false") {
-            self.unsupported(node, "transitions that are not controllable (games)");
+            self.leave_out(node, "`controllable`: whose move a transition is, only strategies for games ask");
         }
         let blank = UppaalFragment::default;
         let (select, guard, sync, assign) = (blank(), blank(), blank(), blank());
         let mut transition =
-            UppaalTransition { from, to, select, guard, sync, assign, comment: String::new() };
+            UppaalTransition { from: 0, to: 0, select, guard, sync, assign, comment: String::new() };
         for part in node.children().filter(Node::is_element) {
             match part.tag_name().name() {
                 "label" => self.transition_label(part, &mut transition),
@@ -320,7 +344,10 @@ impl UppaalReader<'_> {
                 name => self.unknown(part, name),
             }
         }
-        template.transitions.push(transition);
+        match self.branching.keep(ends, self.span(node), transition) {
+            Ok(transition) => template.transitions.extend(transition),
+            Err(fault) => self.faults.push(fault),
+        }
     }
 
     fn transition_label(&mut self, part: Node<'_, '_>, transition: &mut UppaalTransition) {
@@ -330,7 +357,10 @@ impl UppaalReader<'_> {
             "synchronisation" => transition.sync = self.piece(part),
             "assignment" => transition.assign = self.piece(part),
             "comments" => transition.comment = comment(part),
-            "probability" => self.unsupported(part, "probabilistic branches (`probability`)"),
+            "probability" => self.leave_out(
+                part,
+                "`probability`: a scenario may take any branch, as UPPAAL's model checker may",
+            ),
             kind @ "testcode" => self.skip(part, kind),
             kind => self.fault(part, format!("a label `{kind}` of a transition is not known")),
         }
