@@ -3,31 +3,8 @@
 mod common;
 use common::*;
 use hrdsl_ir::world::*;
-use hrdsl_ir::{Expr, Nanos, Span, Value};
+use hrdsl_ir::{Expr, Value};
 use hrdsl_sim::{MotorCommand, WorldSimulation};
-
-const SECOND: Nanos = 1_000_000_000;
-
-fn empty() -> World {
-    World {
-        step: STEP,
-        sample: 50_000_000,
-        gravity: [0.0, 0.0, -9.81],
-        bodies: Vec::new(),
-        joints: Vec::new(),
-        arms: Vec::new(),
-        grippers: Vec::new(),
-        bases: Vec::new(),
-        lasers: Vec::new(),
-        figures: Vec::new(),
-        devices: Vec::new(),
-        device_kinds: Vec::new(),
-        currents: Vec::new(),
-        sensors: Vec::new(),
-        rules: Vec::new(),
-        origin: Span::default(),
-    }
-}
 
 /// A table of 44 cm, on it a box of 2 kg, on that one of 1 kg; a ball that somebody moves about.
 fn stack() -> World {
