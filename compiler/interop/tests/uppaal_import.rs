@@ -341,7 +341,7 @@ fn what_is_asked_by_games_and_statistics_alone_is_left_out() {
     assert!(
         left_out.len() == 2
             && left_out[0].starts_with("`exponentialrate`")
-            && left_out[1].starts_with("`controllable`"),
+            && left_out[1].starts_with("`controllable=\"false\"` of a transition"),
         "{left_out:?}"
     );
 }

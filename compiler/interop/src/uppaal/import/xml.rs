@@ -84,6 +84,7 @@ pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
         model: UppaalModel::default(),
         ids: BTreeMap::new(),
         branching: BranchingTransitions::default(),
+        uncontrollable: None,
     };
     let root = document.root_element();
     if root.tag_name().name() == "nta" {
@@ -91,6 +92,11 @@ pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
     } else {
         let message = format!("expected the element `nta` of a model, found `{}`", root.tag_name().name());
         reader.fault(root, message);
+    }
+    if let Some((span, count)) = reader.uncontrollable {
+        let many = if count == 1 { "a transition".to_owned() } else { format!("{count} transitions") };
+        let why = "whose move a transition is, only strategies for games ask";
+        reader.model.skipped.push((span, format!("`controllable=\"false\"` of {many}: {why}")));
     }
     if reader.faults.is_empty() { Ok(reader.model) } else { Err(reader.faults) }
 }
@@ -173,6 +179,8 @@ struct UppaalReader<'t> {
     ids: BTreeMap<String, usize>,
     /// Its branchpoints.
     branching: BranchingTransitions,
+    /// The first transition of the model that is not controllable, and how many there are.
+    uncontrollable: Option<(Span, usize)>,
 }
 
 impl UppaalReader<'_> {
@@ -330,7 +338,8 @@ impl UppaalReader<'_> {
         };
         let ends = (end(self, "source"), end(self, "target"));
         if node.attribute("controllable") == Some("false") {
-            self.leave_out(node, "`controllable`: whose move a transition is, only strategies for games ask");
+            let (span, count) = self.uncontrollable.unwrap_or((self.span(node), 0));
+            self.uncontrollable = Some((span, count + 1));
         }
         let blank = UppaalFragment::default;
         let (select, guard, sync, assign) = (blank(), blank(), blank(), blank());
