@@ -243,8 +243,6 @@ impl QueryEvaluator<'_> {
         states: usize,
     ) -> Result<QueryAnswer, SearchError> {
         let universal = matches!(ask, QueryKind::Invariantly(_));
-        let plain =
-            |verdict, why| QueryAnswer { verdict, why, run: None, extrema: Vec::new(), statistics: None };
         Ok(match outcome {
             GoalOutcome::Reached(found) => {
                 let run = self.chosen(goal, found)?;
@@ -254,17 +252,17 @@ impl QueryEvaluator<'_> {
                 } else {
                     (QueryVerdict::Holds, format!("a run reaches it {how}"))
                 };
-                QueryAnswer { verdict, why, run: Some(run), extrema: Vec::new(), statistics: None }
+                shown(verdict, why, run)
             }
             GoalOutcome::Unreachable => {
                 let seen = format!("all that can be reached was seen ({})", count(states, "symbolic state"));
                 if universal {
-                    plain(QueryVerdict::Holds, format!("no run leaves it: {seen}"))
+                    none(QueryVerdict::Holds, format!("no run leaves it: {seen}"))
                 } else {
-                    plain(QueryVerdict::Fails, format!("no run reaches it: {seen}"))
+                    none(QueryVerdict::Fails, format!("no run reaches it: {seen}"))
                 }
             }
-            GoalOutcome::Inconclusive(what) => plain(QueryVerdict::Inconclusive, used_up(what)),
+            GoalOutcome::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
         })
     }
 
@@ -306,13 +304,7 @@ impl QueryEvaluator<'_> {
         Ok(match found {
             LivenessSearchResult::Run(run, trap) => {
                 let why = format!("a run stays in it: {}", self.explain_run(&trap, &run, false));
-                QueryAnswer {
-                    verdict: QueryVerdict::Holds,
-                    why,
-                    run: Some(run),
-                    extrema: Vec::new(),
-                    statistics: None,
-                }
+                shown(QueryVerdict::Holds, why, run)
             }
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Fails, "every run leaves it: no maximal run stays in it".to_owned())
@@ -326,13 +318,7 @@ impl QueryEvaluator<'_> {
         Ok(match found {
             LivenessSearchResult::Run(run, trap) => {
                 let why = self.explain_run(&trap, &run, true);
-                QueryAnswer {
-                    verdict: QueryVerdict::Fails,
-                    why,
-                    run: Some(run),
-                    extrema: Vec::new(),
-                    statistics: None,
-                }
+                shown(QueryVerdict::Fails, why, run)
             }
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Holds, "every maximal run reaches it".to_owned())
@@ -346,13 +332,7 @@ impl QueryEvaluator<'_> {
         Ok(match found {
             LivenessSearchResult::Run(run, trap) => {
                 let why = format!("after the first, {}", self.explain_run(&trap, &run, true));
-                QueryAnswer {
-                    verdict: QueryVerdict::Fails,
-                    why,
-                    run: Some(run),
-                    extrema: Vec::new(),
-                    statistics: None,
-                }
+                shown(QueryVerdict::Fails, why, run)
             }
             LivenessSearchResult::Nothing => none(
                 QueryVerdict::Holds,
@@ -467,4 +447,9 @@ struct LivenessCounterexample {
 
 fn none(verdict: QueryVerdict, why: String) -> QueryAnswer {
     QueryAnswer { verdict, why, run: None, extrema: Vec::new(), statistics: None }
+}
+
+/// With a run that shows it.
+fn shown(verdict: QueryVerdict, why: String, run: Box<WitnessRun>) -> QueryAnswer {
+    QueryAnswer { run: Some(run), ..none(verdict, why) }
 }
