@@ -12,6 +12,7 @@ mod losses;
 mod pairs;
 mod seen;
 mod state;
+mod stops;
 mod surface;
 pub(crate) mod wheels;
 mod yielding;
@@ -43,6 +44,7 @@ use state::{
     roots::{figure_of, rigid_roots},
     solid::{described_mass, surface_of},
 };
+use stops::{NEAR_END, PRESSED_FOR, UNNOTICED};
 
 /// How often the motors of arms and wheels are told what to do, ns; in a world with longer steps, once in each. Between that their
 /// efforts stay, as those of a real controller do: how hard a robot strikes must not depend on the step.
@@ -57,9 +59,6 @@ const SWEEPS: usize = 2;
 /// does must come to the end of a chain of seven joints within the step, or the arm shakes with all the strength that it has. A few
 /// robots still do with four.
 const SWEEPS_OF_DESCRIBED: usize = 8;
-
-/// A joint is pressed that is so far beyond its limit, rad or m: the solver then does more.
-const PRESSED: f64 = 3e-4;
 
 /// How deep rigid bodies may be in each other before the solver puts them apart, m: the engine's own five millimetres would be seen.
 const ALLOWED_DEPTH: f32 = 5e-4;
@@ -107,7 +106,7 @@ impl PhysicsAdapter {
             led: Vec::new(),
             step: seconds(world.step),
             sweeps: sweeps(world),
-            pressed: false,
+            pressed: 0,
             mended: (0.0, 0),
             deepest: 0.0,
             part: (seconds(world.step), SUBSTEPS),
@@ -372,11 +371,17 @@ impl PhysicsAdapter {
     }
 
     fn watch_accuracy(&mut self) {
-        self.pressed = false;
+        self.pressed = self.pressed.saturating_sub(1);
         for joint in 0..self.joints.len() {
             if self.joints[joint].is_some() && !self.is_asleep(joint) {
                 let (at, limits) = (self.joint_position(joint), self.joint_limits(joint));
-                self.pressed |= (limits.0 - at).max(at - limits.1) > PRESSED;
+                let beyond = (limits.0 - at).max(at - limits.1);
+                if beyond > UNNOTICED {
+                    self.pressed = (PRESSED_FOR / self.step).ceil() as usize;
+                }
+                if let Some(driven) = &mut self.joints[joint] {
+                    driven.ends.is_near = beyond > -NEAR_END;
+                }
                 self.accuracy.look_at_joint(joint, at, limits);
             }
         }

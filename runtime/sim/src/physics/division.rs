@@ -15,16 +15,18 @@ use super::state::{
     guide::StepPart,
     loads::ContactLoads,
 };
+use super::stops::BlowOutlook;
 use crate::math::from_vector;
 
 /// How far bodies may be apart to count as near, besides what they can do in a step, m.
 pub(super) const NEAR: f64 = 2e-3;
 /// Nearer than that they touch, m: what slides along something does not come to hit it.
 const TOUCHING: f64 = 1e-4;
-/// How much nearer to each other rigid surfaces come in a part of a step, m: a quarter of how far around it the engine looks.
-const WAY: f64 = 5e-3;
+/// How much nearer to each other rigid surfaces come in a part of a step, m: the engine looks much farther around a surface, but what
+/// is light takes a blow, and turns, within it.
+pub(super) const WAY: f64 = 1.25e-3;
 /// The most parts that rigid bodies ask for.
-const MOST_PARTS: f64 = 32.0;
+const MOST_PARTS: f64 = 128.0;
 
 /// How often the solver goes over all joints and contacts in parts shorter than those of an undivided step, at least: with two, an arm of
 /// seven joints would give way to what it strikes as if it were a tenth lighter.
@@ -37,7 +39,10 @@ const TOO_DEEP: f64 = 1e-3;
 /// takes. And while something fast strikes another, which hands the blow on, to the floor that it lies on, say; while a joint is pressed
 /// beyond its limit, or bodies are too deep in each other.
 const MANY_SWEEPS: usize = 64;
-/// The most: more often, in proportion, where a joint of what falls is farther apart than strained.
+/// Where one is heavier than the other by more than so many times, more often in proportion: what comes to a light lever on its stop goes
+/// on by as much as one is lighter than the other, in each of them.
+const RATIO: f64 = 16.0;
+/// The most: more often, in proportion, too, where a joint of what falls is farther apart than strained.
 const MOST_SWEEPS: usize = 256;
 
 /// What joints ask of the solver.
@@ -49,6 +54,8 @@ pub(super) struct JointStrain {
     pub apart: f64,
     /// Whether something takes a blow, or a joint is pressed beyond its limit.
     pub blow: bool,
+    /// How many times as heavy what strikes is as what it strikes, or the other way round; 0 where nothing does.
+    pub ratio: f64,
 }
 
 impl JointStrain {
@@ -57,9 +64,19 @@ impl JointStrain {
         if !self.falls && !self.blow && deepest < TOO_DEEP {
             return usual;
         }
-        let many = (MANY_SWEEPS as f64 * (self.apart / STRAINED).max(1.0)) as usize;
+        // A robot that falls on its own hand hands a blow on through all of its joints.
+        let fall = if self.falls && self.blow { 2.0 } else { 1.0 };
+        let times = (self.apart / STRAINED).max(self.ratio / RATIO).max(fall);
+        let many = (MANY_SWEEPS as f64 * times) as usize;
         usual.max(many.min(MOST_SWEEPS))
     }
+}
+
+/// What comes together fast within a step.
+struct RigidApproach {
+    parts: f64,
+    /// As [`JointStrain::ratio`].
+    ratio: f64,
 }
 
 /// Where bodies can be within a step: of each its greatest speed, m/s, and the box that it stays in; and which of them are fast. Without
@@ -82,7 +99,9 @@ impl PhysicsAdapter {
         let dt = f64::from(self.world.integration_parameters.dt);
         let swept = self.swept(dt);
         let near = self.near_pairs(&swept, dt);
-        let (asked, strikes) = self.rigid_parts(&swept, dt);
+        let coming = self.rigid_parts(&swept, dt);
+        let strikes = coming.ratio > 0.0;
+        let asked = coming.parts.max(self.parts_for_stops(dt).min(MOST_PARTS));
         let parts = near.iter().map(|pair| pair.parts(dt)).fold(asked, f64::max);
         let h = dt / parts;
         self.part = (h, (self.substeps() as f64 / parts).ceil() as usize);
@@ -99,7 +118,9 @@ impl PhysicsAdapter {
             }
             self.lead_on((done + 1.0) / parts);
             let mut strain = self.ease_joints();
+            self.tell_stops(BlowOutlook { strikes, falls: strain.falls });
             strain.blow |= strikes;
+            strain.ratio = coming.ratio;
             self.world.integration_parameters.num_internal_pgs_iterations =
                 strain.sweeps(sweeps, self.deepest);
             self.step_engine();
@@ -138,19 +159,32 @@ impl PhysicsAdapter {
         SweptBodies { speeds, fast, boxes }
     }
 
-    /// How many parts the rigid bodies ask for that may meet within a step, and whether something fast strikes another.
-    fn rigid_parts(&self, swept: &SweptBodies, dt: f64) -> (f64, bool) {
-        let (mut parts, mut strikes) = (1.0f64, false);
+    /// How many parts the rigid bodies ask for that may meet within a step, and what strikes what.
+    fn rigid_parts(&self, swept: &SweptBodies, dt: f64) -> RigidApproach {
+        let mut found = RigidApproach { parts: 1.0, ratio: 0.0 };
         for one in &swept.fast {
             for other in 0..self.parts.len() {
                 if swept.may_meet(*one, other) && self.meet_rigidly(*one, other) {
                     let asked = (self.approach(*one, other, swept, dt) * dt / WAY).ceil();
-                    strikes |= asked > 1.0;
-                    parts = parts.max(asked);
+                    if asked > 1.0 {
+                        found.ratio = found.ratio.max(self.mass_ratio(*one, other));
+                    }
+                    found.parts = found.parts.max(asked);
                 }
             }
         }
-        (parts.min(MOST_PARTS), strikes)
+        found.parts = found.parts.min(MOST_PARTS);
+        found
+    }
+
+    /// How many times as heavy one of two bodies is as the other; 1 if one is not moved by forces.
+    fn mass_ratio(&self, a: usize, b: usize) -> f64 {
+        let mass = |part: usize| {
+            let body = &self.world.bodies[self.parts[part].handle];
+            body.is_dynamic().then(|| f64::from(body.mass()))
+        };
+        let (Some(a), Some(b)) = (mass(a), mass(b)) else { return 1.0 };
+        (a / b).max(b / a)
     }
 
     /// Whether forces alone move a body, or it is led whatever is in its way.

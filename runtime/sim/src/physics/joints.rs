@@ -10,7 +10,7 @@ use super::dynamics::BorneLoad;
 use super::state::{
     adapter::{PhysicsAdapter, PhysicsBody},
     bodies::index,
-    joint::{DrivenJoint, JointHold, JointStop},
+    joint::{DrivenJoint, JointHold, JointStop, ToldEnds},
     pairs::JointGraph,
 };
 use crate::math::{
@@ -86,7 +86,7 @@ impl PhysicsAdapter {
         // The engine knows an angle within half a turn of its zero, which is where the joint is at the start, if that will do.
         let first_frame = data.local_frame1;
         if is_wide {
-            JointStop::about(0.0, least, most).set(&mut data, &first_frame);
+            JointStop::about(0.0, least, most).set(&mut data, &first_frame, (least, most));
         } else {
             data.set_limits(moving, [least as f32, most as f32]);
         }
@@ -117,6 +117,7 @@ impl PhysicsAdapter {
             wound: is_wide.then_some(0.0),
             first_frame,
             stop: JointStop::about(0.0, least, most),
+            ends: ToldEnds::at_start((least, most), self.step),
             softness: data.softness,
             keeps_rate: world.bodies[index(child)].solid.is_none(),
             loose: self.loose_root(child, world),
@@ -171,7 +172,7 @@ impl PhysicsAdapter {
     }
 
     /// How far a joint is from its start.
-    fn way(&self, driven: &DrivenJoint) -> f64 {
+    pub(super) fn way(&self, driven: &DrivenJoint) -> f64 {
         let pose = |h: RigidBodyHandle| from_pose(self.world.bodies[h].position());
         let moved = |pose: BodyFrame, start: &BodyFrame| pose.then(&start.inverse());
         let parent = moved(pose(driven.parent), &driven.parent_start);
@@ -293,7 +294,7 @@ impl PhysicsAdapter {
     /// Lets torn joints give way, and those that have come together again not; gives how much the joints ask of the solver.
     pub(super) fn ease_joints(&mut self) -> JointStrain {
         let falls = |body: &RigidBodyHandle| !self.world.bodies[*body].is_sleeping();
-        let (falls, blow) = (self.fallen.iter().any(falls), self.pressed);
+        let (falls, blow) = (self.fallen.iter().any(falls), self.pressed > 0);
         let mut strain = JointStrain { falls, blow, ..JointStrain::default() };
         let h = self.part.0 / self.part.1 as f64;
         for at in 0..self.joints.len() {
@@ -350,30 +351,6 @@ impl PhysicsAdapter {
                 (way - axis * way.dot(&axis)).norm(),
                 2.0 * (parent.turn.inverse() * child.turn).imag().norm(),
             ),
-        }
-    }
-
-    /// Where a joint ends, rad or m.
-    pub fn joint_limits(&self, joint: usize) -> (f64, f64) {
-        self.joints[joint].as_ref().map_or((0.0, 0.0), |driven| (driven.lo, driven.hi))
-    }
-
-    /// Follows the joints that may turn farther than half round, and puts the stops where they are.
-    pub(super) fn wind_joints(&mut self) {
-        for at in 0..self.joints.len() {
-            let Some(driven) = self.joints[at].as_ref().filter(|driven| driven.wound.is_some()) else {
-                continue;
-            };
-            let way = self.way(driven);
-            let stop = JointStop::about(way, driven.lo - driven.start, driven.hi - driven.start);
-            if stop != driven.stop
-                && let Some(joint) = self.world.impulse_joints.get_mut(driven.handle, false)
-            {
-                stop.set(&mut joint.data, &driven.first_frame);
-            }
-            if let Some(driven) = &mut self.joints[at] {
-                (driven.wound, driven.stop) = (Some(way), stop);
-            }
         }
     }
 

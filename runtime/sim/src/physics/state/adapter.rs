@@ -64,8 +64,8 @@ pub(crate) struct PhysicsAdapter {
     pub sweeps: usize,
     /// The part of a step that the joints are told to mend in.
     pub mended: (f64, usize),
-    /// Whether a joint is pressed beyond its limit, as the last step ended.
-    pub pressed: bool,
+    /// For how many steps more a joint counts as pressed beyond its limit.
+    pub pressed: usize,
     /// How deep two bodies were in each other as the last part of a step began, m.
     pub deepest: f64,
     /// The time of the last part of a step, s, and how often the solver divided it.

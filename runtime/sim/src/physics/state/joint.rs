@@ -72,6 +72,7 @@ pub(crate) struct DrivenJoint {
     /// The engine's frame on the parent, with its zero at the start; and where such a hinge is stopped.
     pub first_frame: Pose,
     pub stop: JointStop,
+    pub ends: ToldEnds,
     /// How the solver mends what has come apart at it; and whether it has come so far apart that it gives way.
     pub softness: SpringCoefficients<f32>,
     /// Whether that is as fast in short parts of a step as in long ones.
@@ -81,6 +82,23 @@ pub(crate) struct DrivenJoint {
     pub loose: Option<BodyId>,
     /// The engine's motor runs it.
     pub is_run: bool,
+}
+
+/// Between which ends the engine keeps a joint, and what that rests on.
+pub(crate) struct ToldEnds {
+    /// From its start, rad or m.
+    pub between: (f64, f64),
+    /// How fast it was as the last part of a step began, rad/s or m/s, and how long that part took, s.
+    pub last: (f64, f64),
+    /// Whether it was near one of its ends, or beyond it, as the last step ended.
+    pub is_near: bool,
+}
+
+impl ToldEnds {
+    /// Of a joint that stands still before the first step, which takes so long, s.
+    pub fn at_start(between: (f64, f64), step: f64) -> ToldEnds {
+        ToldEnds { between, last: (0.0, step), is_near: true }
+    }
 }
 
 /// How far from its zero the engine can limit a hinge, rad.
@@ -123,12 +141,12 @@ impl JointStop {
         lo > -MOST_LIMIT && hi < MOST_LIMIT
     }
 
-    /// Tells a joint of the engine, whose frame on the parent has its zero at the start.
-    pub fn set(self, joint: &mut GenericJoint, first_frame: &Pose) {
-        let (zero, limits) = match self {
-            JointStop::Both { middle, half } => (middle, [-half, half]),
-            JointStop::Low(lo) => (lo, [0.0, MOST_LIMIT]),
-            JointStop::High(hi) => (hi, [-MOST_LIMIT, 0.0]),
+    /// Tells a joint of the engine, whose frame on the parent has its zero at the start, that it ends at `lo` and `hi`.
+    pub fn set(self, joint: &mut GenericJoint, first_frame: &Pose, ends: (f64, f64)) {
+        let zero = match self {
+            JointStop::Both { middle, .. } => middle,
+            JointStop::Low(lo) => lo,
+            JointStop::High(hi) => hi,
             JointStop::Nowhere => {
                 joint.limit_axes.remove(JointAxesMask::ANG_X);
                 return;
@@ -138,6 +156,17 @@ impl JointStop {
         let (sin, cos) = libm::sincos(zero / 2.0);
         let turn = Rotation::from_xyzw(sin as f32, 0.0, 0.0, cos as f32);
         joint.local_frame1 = Pose::from_parts(first_frame.translation, first_frame.rotation * turn);
+        self.limit(joint, ends);
+    }
+
+    /// Tells a joint of the engine, which knows the stop's zero, that it ends at `lo` and `hi`.
+    pub fn limit(self, joint: &mut GenericJoint, (lo, hi): (f64, f64)) {
+        let limits = match self {
+            JointStop::Both { middle, .. } => [lo - middle, hi - middle],
+            JointStop::Low(zero) => [lo - zero, MOST_LIMIT],
+            JointStop::High(zero) => [-MOST_LIMIT, hi - zero],
+            JointStop::Nowhere => return,
+        };
         joint.set_limits(JointAxis::AngX, limits.map(|end| end as f32));
     }
 }
