@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use hrdsl_compiler::{CompilationResult, InputFile, ast, compile_beside, parse};
+use hrdsl_compiler::{CompilationResult, InputFile, ParsedFile, ast, compile_parsed};
 use hrdsl_ir::Program;
 use hrdsl_source::FileId;
 
@@ -57,6 +57,7 @@ pub struct ProjectSource {
     /// As it is shown.
     pub name: String,
     pub text: String,
+    parsed: ParsedFile,
     pub kind: SourceKind,
     /// Given on the command line by itself, not found in a folder.
     named: bool,
@@ -146,7 +147,8 @@ impl CheckedProject {
         };
         let systems: Vec<String> = unit.systems.iter().filter_map(system).collect();
         let systems: Vec<&str> = systems.iter().map(String::as_str).collect();
-        compile_beside(input(unit.head), &tests, &systems, &DiskModules::of(head))
+        let parsed = self.sources[unit.head].parsed.clone();
+        compile_parsed(input(unit.head), parsed, &tests, &systems, &DiskModules::of(head))
     }
 
     /// The source that is this file of a compilation; `None` for the modules that come with hrdsl.
@@ -160,14 +162,15 @@ impl CheckedProject {
 impl ProjectSource {
     fn new(path: Option<PathBuf>, text: String, named: bool) -> Self {
         let name = path.as_ref().map_or("<stdin>".to_owned(), |p| p.display().to_string());
-        let syntax = parse(FileId(0), &text).0;
-        let said = kind_of(&syntax);
+        let parsed = ParsedFile::of(&text);
+        let syntax = &*parsed.syntax;
+        let said = kind_of(syntax);
         // Without a place a system cannot be seen from a scenario's folder.
         let is_lost = path.is_none() && matches!(said, SourceKind::System);
         let kind = if is_lost { SourceKind::Module } else { said };
-        let uses = used_files(&syntax, &path.as_ref().map_or(PathBuf::from("."), |p| files::folder(p)));
+        let uses = used_files(syntax, &path.as_ref().map_or(PathBuf::from("."), |p| files::folder(p)));
         let place = path.as_ref().and_then(|p| p.canonicalize().ok());
-        Self { path, name, text, kind, named, place, uses }
+        Self { path, name, text, parsed, kind, named, place, uses }
     }
 
     fn is_at(&self, place: &Path) -> bool {

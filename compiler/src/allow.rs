@@ -1,6 +1,6 @@
 //! `allow`: warnings that somebody has looked at, and why they do not matter.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use hrdsl_source::{Diagnostic, DiagnosticCode, REGISTRY, Span};
 use hrdsl_syntax::ast::{
@@ -18,8 +18,8 @@ struct LintAllowance<'a> {
 }
 
 /// Takes the allowed warnings away, and says which allowances are for nothing.
-pub(crate) fn apply(ast: &[FileSyntax], diagnostics: &mut Vec<Diagnostic>) {
-    let allowances: Vec<LintAllowance<'_>> = ast.iter().flat_map(allowances).collect();
+pub(crate) fn apply(ast: &[Arc<FileSyntax>], diagnostics: &mut Vec<Diagnostic>) {
+    let allowances: Vec<LintAllowance<'_>> = ast.iter().flat_map(|file| allowances(file)).collect();
     if allowances.is_empty() {
         return;
     }

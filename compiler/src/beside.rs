@@ -1,12 +1,14 @@
 //! HR0803: files that a scenario names, and that are not there.
 
+use std::sync::Arc;
+
 use hrdsl_source::{Diagnostic, DiagnosticCode};
 use hrdsl_syntax::ast::{FileSyntax, ItemSyntaxKind, SystemMemberKind as Member, TextSyntax};
 
 use crate::{ModuleLoader, is_file_pattern};
 
 /// The files whose coverage is to be measured, and that are no files beside the scenario.
-pub(crate) fn missing(files: &[FileSyntax], loader: &dyn ModuleLoader) -> Vec<Diagnostic> {
+pub(crate) fn missing(files: &[Arc<FileSyntax>], loader: &dyn ModuleLoader) -> Vec<Diagnostic> {
     let systems = files
         .iter()
         .flat_map(|file| &file.items)

@@ -1,5 +1,7 @@
 //! The descriptions of robots, and the maps, that parts and worlds are made from: read once each, with what is wrong in them.
 
+use std::sync::Arc;
+
 use hrdsl_model::{DescriptionLibrary, DescriptionRequest};
 use hrdsl_robots::{
     MeshChoice, PackageTable, RobotEntry, RobotFault, RobotReader, RobotRequest, read_map, read_robot,
@@ -25,7 +27,7 @@ impl RobotReader for NoRobots {
 /// Reads all that is named. Files are found from the folder of the file that names them.
 pub(crate) fn load(
     files: &mut SourceFiles,
-    ast: &[ast::FileSyntax],
+    ast: &[Arc<ast::FileSyntax>],
     diagnostics: &mut Vec<Diagnostic>,
     loader: &dyn ModuleLoader,
 ) -> DescriptionLibrary {

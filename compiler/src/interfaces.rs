@@ -1,5 +1,7 @@
 //! The definitions of ROS interfaces that a scenario's systems use: the standard packages, and the workspaces that are named.
 
+use std::sync::Arc;
+
 use hrdsl_messages::{
     InterfaceName, InterfaceTable, MessageLibrary, MessageLibraryBuilder, RosVersion, WorkspaceEntry,
     WorkspaceReader,
@@ -33,7 +35,7 @@ struct NamedWorkspace {
 /// One library for each version that is used; none, if there is no binding.
 pub(crate) fn load(
     files: &mut SourceFiles,
-    ast: &[ast::FileSyntax],
+    ast: &[Arc<ast::FileSyntax>],
     loader: &dyn ModuleLoader,
 ) -> Vec<MessageLibrary> {
     let (versions, workspaces) = named(ast);
@@ -59,7 +61,7 @@ pub(crate) fn load(
 }
 
 /// The versions that systems use, each once, and the workspaces.
-fn named(ast: &[ast::FileSyntax]) -> (Vec<RosVersion>, Vec<NamedWorkspace>) {
+fn named(ast: &[Arc<ast::FileSyntax>]) -> (Vec<RosVersion>, Vec<NamedWorkspace>) {
     let (mut versions, mut workspaces) = (Vec::new(), Vec::new());
     for (file, syntax) in ast.iter().enumerate() {
         for item in &syntax.items {

@@ -21,6 +21,8 @@ pub mod reading;
 mod recheck;
 mod spoken;
 
+use std::sync::Arc;
+
 use hrdsl_ir::{Program, binding::MiddlewareKind};
 use hrdsl_messages::{InterfaceTable, MessageLibrary, RosVersion};
 pub use hrdsl_messages::{WorkspaceEntry, WorkspaceReader};
@@ -39,6 +41,23 @@ pub struct InputFile<'a> {
     pub text: &'a str,
 }
 
+/// The text of a scenario, or of a module that stands alone, read: whoever has to look into it before can have it compiled without
+/// reading it again.
+#[derive(Clone, Debug)]
+pub struct ParsedFile {
+    pub syntax: Arc<ast::FileSyntax>,
+    /// What is wrong with the text.
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl ParsedFile {
+    #[must_use]
+    pub fn of(text: &str) -> ParsedFile {
+        let (syntax, diagnostics) = parse(FileId(0), text);
+        ParsedFile { syntax: Arc::new(syntax), diagnostics }
+    }
+}
+
 /// What became of a scenario and its tests.
 #[derive(Clone, Debug)]
 pub struct CompilationResult {
@@ -46,7 +65,7 @@ pub struct CompilationResult {
     /// devices.
     pub files: SourceFiles,
     /// By [`FileId`].
-    pub ast: Vec<ast::FileSyntax>,
+    pub ast: Vec<Arc<ast::FileSyntax>>,
     /// Which of them are modules, in the order in which their declarations come.
     pub modules: Vec<usize>,
     /// The definitions of the versions of ROS that its systems use.
@@ -120,26 +139,41 @@ pub fn compile_beside(
     beside: &[&str],
     loader: &dyn ModuleLoader,
 ) -> CompilationResult {
+    compile_parsed(scenario, ParsedFile::of(scenario.text), tests, beside, loader)
+}
+
+/// The same, of a scenario whose text has been read.
+#[must_use]
+pub fn compile_parsed(
+    scenario: InputFile<'_>,
+    parsed: ParsedFile,
+    tests: &[InputFile<'_>],
+    beside: &[&str],
+    loader: &dyn ModuleLoader,
+) -> CompilationResult {
     let mut files = SourceFiles::default();
-    let mut diagnostics = Vec::new();
-    let mut ast = Vec::new();
-    for input in std::iter::once(&scenario).chain(tests) {
+    files.add(scenario.name, scenario.text);
+    let mut ast = vec![parsed.syntax];
+    let mut diagnostics = parsed.diagnostics;
+    for input in tests {
         let id = files.add(input.name, input.text);
         let (file, issues) = hrdsl_syntax::parse(id, input.text);
-        ast.push(file);
+        ast.push(Arc::new(file));
         diagnostics.extend(issues);
     }
     let first_module = ast.len();
-    modules::also_use(&mut ast[0], beside);
+    if !beside.is_empty() {
+        modules::also_use(Arc::make_mut(&mut ast[0]), beside);
+    }
     modules::load(&mut files, &mut ast, &mut diagnostics, loader);
     let devices = modules::load_devices(&mut files, &mut ast);
 
-    let tests: Vec<&ast::FileSyntax> = ast[1..first_module].iter().collect();
+    let tests: Vec<&ast::FileSyntax> = ast[1..first_module].iter().map(AsRef::as_ref).collect();
     // The library's devices come first: what a scenario adds to them is what is there twice.
     let devices = devices.filter(|at| *at >= first_module);
     let others = (first_module..ast.len()).filter(|at| Some(*at) != devices);
     let modules: Vec<usize> = devices.into_iter().chain(others).collect();
-    let used: Vec<&ast::FileSyntax> = modules.iter().map(|at| &ast[*at]).collect();
+    let used: Vec<&ast::FileSyntax> = modules.iter().map(|at| &*ast[*at]).collect();
     let alone = modules::is_module(&ast[0]);
     if !alone {
         diagnostics.extend(unnamed(&ast[0], &diagnostics));

@@ -1,5 +1,7 @@
 //! `use`: the modules that a scenario needs, from the library and from files, each once, in the order of their first use.
 
+use std::sync::Arc;
+
 use hrdsl_messages::WorkspaceReader;
 use hrdsl_robots::RobotReader;
 use hrdsl_source::{Diagnostic, DiagnosticCode, SourceFiles, Span};
@@ -58,7 +60,7 @@ impl ModuleLoader for LibraryOnlyLoader {
 /// Adds the modules used by the files so far, and by modules.
 pub fn load(
     files: &mut SourceFiles,
-    ast: &mut Vec<ast::FileSyntax>,
+    ast: &mut Vec<Arc<ast::FileSyntax>>,
     diagnostics: &mut Vec<Diagnostic>,
     loader: &dyn ModuleLoader,
 ) {
@@ -90,7 +92,7 @@ pub fn load(
             let (file, issues) = hrdsl_syntax::parse(id, &source.text);
             diagnostics.extend(issues);
             diagnostics.extend(misplaced(&file));
-            ast.push(file);
+            ast.push(Arc::new(file));
         }
         next += 1;
     }
@@ -107,12 +109,12 @@ pub fn also_use(file: &mut ast::FileSyntax, paths: &[&str]) {
 }
 
 /// Adds the library's devices, which every scenario has, unless they are there; gives the module's place.
-pub fn load_devices(files: &mut SourceFiles, ast: &mut Vec<ast::FileSyntax>) -> Option<usize> {
+pub fn load_devices(files: &mut SourceFiles, ast: &mut Vec<Arc<ast::FileSyntax>>) -> Option<usize> {
     let text = hrdsl_stdlib::module(hrdsl_stdlib::DEVICES)?;
     let known = files.iter().position(|(_, file)| file.name == hrdsl_stdlib::DEVICES || file.text == text);
     known.or_else(|| {
         let id = files.add(hrdsl_stdlib::DEVICES, text);
-        ast.push(hrdsl_syntax::parse(id, text).0);
+        ast.push(Arc::new(hrdsl_syntax::parse(id, text).0));
         Some(ast.len() - 1)
     })
 }

@@ -32,7 +32,7 @@ pub fn recheck(compilation: &CompilationResult, at: usize, text: &str) -> Option
         return None;
     }
     let modules: Vec<&ast::FileSyntax> =
-        compilation.modules.iter().filter_map(|m| compilation.ast.get(*m)).collect();
+        compilation.modules.iter().filter_map(|m| Some(&**compilation.ast.get(*m)?)).collect();
     let missing = compilation.diagnostics.iter().any(|d| d.code == DiagnosticCode::UNKNOWN_MODULE);
     let known = KnownSources {
         missing_modules: missing,

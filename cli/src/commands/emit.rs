@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use hrdsl_compiler::CompilationResult;
+use hrdsl_compiler::{CompilationResult, ast};
 use hrdsl_interop::picture;
 use serde::Serialize;
 
@@ -81,7 +81,9 @@ fn emit(stage: EmitStage, compilation: &CompilationResult) -> Option<Result<Stri
     }
     let program = compilation.program.as_ref();
     match stage {
-        EmitStage::Ast => Some(json(&compilation.ast)),
+        EmitStage::Ast => {
+            Some(json(&compilation.ast.iter().map(AsRef::as_ref).collect::<Vec<&ast::FileSyntax>>()))
+        }
         EmitStage::Scenario => Some(json(compilation.scenario.as_ref()?)),
         EmitStage::Bdi => Some(json(&program?.agents)),
         EmitStage::Ta => {

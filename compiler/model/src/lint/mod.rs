@@ -35,7 +35,7 @@ mod unreachable_location;
 mod unused;
 mod world_range;
 
-use std::collections::BTreeSet;
+use indexmap::IndexSet;
 
 use hrdsl_source::Diagnostic;
 
@@ -81,7 +81,10 @@ pub fn lint(scenario: &Scenario) -> Vec<Diagnostic> {
         rule(scenario, &facts, &mut issues);
     }
     // What is wrong in a template is found in each of its instances.
-    let mut seen = BTreeSet::new();
-    issues.retain(|i| seen.insert((i.span(), i.code, i.message.clone())));
+    let mut seen = IndexSet::new();
+    let is_new: Vec<bool> =
+        issues.iter().map(|i| seen.insert((i.span(), i.code, i.message.as_str()))).collect();
+    let mut is_new = is_new.into_iter();
+    issues.retain(|_| is_new.next().unwrap_or(true));
     issues
 }
