@@ -2,7 +2,7 @@
 
 from agent_queries import Query, all_known, form_of, match, match_all, match_annotations, well_bound
 from agent_state import Block, Event, Failed, Frame, Group, Message, failed_of
-from agent_values import Fault, alike, evaluate, plain, typed, written
+from agent_values import OPEN, Fault, alike, evaluate, plain, typed, written
 
 SELF = ["source", {"expr": {"const": "self"}}]
 
@@ -42,17 +42,22 @@ class Steps:
         self.i.doing = (of["event"], len(self.agent.given))
         self.agent.given.append((self.i, self.i.doing, of["event"], values))
 
-    def goal(self, of):
+    def wanted(self, e):
+        """The value of an argument of a goal that is waited for: a variable may be open."""
+        return self.frame.theta.get(e["var"], OPEN) if isinstance(e, dict) and "var" in e else self.value(e)
+
+    def goal(self, of, value):
         params = self.agent.it["goals"][of["goal"]]["params"]
-        return {"goal_added": of["goal"]}, self.typed(params, self.values(of["args"])), [("source", "self")]
+        values = self.typed(params, [value(e) for e in of["args"]])
+        return {"goal_added": of["goal"]}, values, [("source", "self")]
 
     def achieve(self, of):
-        goal = self.goal(of)
+        goal = self.goal(of, self.wanted)
         timer = self.timer(of, "deadline")
         self.agent.post(Event(*goal, self.i, None, timer))
 
     def spawn(self, of):
-        self.agent.post(Event(*self.goal(of)))
+        self.agent.post(Event(*self.goal(of, self.value)))
         return True
 
     def query(self, of):

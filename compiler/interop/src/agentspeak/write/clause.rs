@@ -15,6 +15,7 @@ use super::super::{
     term::{OmissionReason, valued},
     types::{AgentSpeakType, TyId, UnificationTable},
 };
+use super::wanted::WantedArguments;
 
 /// What all clauses of a program need to know.
 pub struct ClauseContext<'a> {
@@ -24,6 +25,8 @@ pub struct ClauseContext<'a> {
     pub names: &'a AgentSpeakNames,
     /// Of beliefs with rules, the arguments that must have a value.
     pub inputs: &'a IndexMap<PredicateIndicator, BTreeSet<usize>>,
+    /// Of goals, the arguments that are open where the goal is adopted.
+    pub wanted: &'a WantedArguments,
 }
 
 /// Why something cannot be written.
@@ -72,6 +75,8 @@ pub struct PredicateUsage {
     pub sent: IndexSet<(Option<String>, bool, PredicateIndicator)>,
     /// Whether the rule of whole numbers from one to another is needed.
     pub between: bool,
+    /// Arguments of goals that are open; `true`: the value is taken.
+    pub wanted: IndexSet<(PredicateIndicator, usize, bool)>,
 }
 
 /// Whether terms may bind variables.
@@ -131,12 +136,24 @@ pub struct ClauseTranslator<'a> {
     pub remarks: Vec<(Span, String)>,
     /// Variables that hold an agent's answer, with the agent: its name in the program, or how it is written as an error.
     pub answers: IndexMap<String, Result<String, String>>,
+    /// In a plan for a goal: the variables that it is to give a value, each with whether that is taken.
+    pub owed: IndexMap<String, bool>,
 }
 
 impl<'a> ClauseTranslator<'a> {
     pub fn new(cx: &'a ClauseContext<'a>, agent: &'a str, used: PredicateUsage) -> Self {
         let (bound, vars) = (BTreeSet::new(), IndexMap::new());
-        Self { cx, agent, bound, vars, fresh: 0, used, remarks: Vec::new(), answers: IndexMap::new() }
+        Self {
+            cx,
+            agent,
+            bound,
+            vars,
+            fresh: 0,
+            used,
+            remarks: Vec::new(),
+            answers: IndexMap::new(),
+            owed: IndexMap::new(),
+        }
     }
 
     /// A variable that the program does not have.
@@ -409,8 +426,17 @@ impl<'a> ClauseTranslator<'a> {
 
     /// `g(…)`, without its sign. Annotations but the source are dropped.
     pub fn goal(&mut self, of: &AgentSpeakLiteral, want: BindingMode) -> ClauseResult<String> {
-        let key = of.key();
-        let args = of.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?.concat();
+        let args = of.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?;
+        self.goal_with(of, &args.concat(), want)
+    }
+
+    /// The same, with its arguments as they are written.
+    pub fn goal_with(
+        &mut self,
+        of: &AgentSpeakLiteral,
+        args: &[String],
+        want: BindingMode,
+    ) -> ClauseResult<String> {
         let mut source = String::new();
         for annotation in &of.annotations {
             match valued(annotation) {
@@ -425,8 +451,8 @@ impl<'a> ClauseTranslator<'a> {
                 )),
             }
         }
-        let name = self.cx.names.goal(&key);
-        Ok(call(&name, &args) + &source)
+        let name = self.cx.names.goal(&of.key());
+        Ok(call(&name, args) + &source)
     }
 }
 

@@ -13,6 +13,7 @@ mod internal;
 mod modes;
 mod print;
 mod steps;
+mod wanted;
 mod writer;
 
 use indexmap::IndexMap;
@@ -25,6 +26,7 @@ use super::{
 };
 use agent::TranslatedAgent;
 use clause::{ClauseContext, call};
+use wanted::WantedArguments;
 pub use writer::AgentSpeakTranslator;
 use writer::between;
 
@@ -42,14 +44,22 @@ impl AgentSpeakTranslator<'_> {
         for entry in &self.system.agents {
             let program = &self.system.programs[entry.program];
             let (inputs, rules) = modes::rules(self, entry, program);
-            let cx = ClauseContext {
-                system: self.system,
-                types: &self.inferred.types,
-                left_out: &self.inferred.left_out,
-                names: self.names,
-                inputs: &inputs,
+            let mut wanted = WantedArguments::new();
+            // What one plan wants of a goal changes what its plans are, and what they want of others.
+            let agent = loop {
+                let cx = ClauseContext {
+                    system: self.system,
+                    types: &self.inferred.types,
+                    left_out: &self.inferred.left_out,
+                    names: self.names,
+                    inputs: &inputs,
+                    wanted: &wanted,
+                };
+                let agent = agent::agent(&cx, entry, program, &rules);
+                if !wanted::enlarge(&mut wanted, &agent.used, &agent.needing) {
+                    break agent;
+                }
             };
-            let agent = agent::agent(&cx, entry, program, rules);
             left_out.extend(agent.left_out.iter().cloned());
             remarks.extend(agent.remarks.iter().cloned());
             agents.push(agent);

@@ -81,6 +81,7 @@ fn fixed_point(
     done: &TranslatedRules,
     inputs: &mut InputArguments,
 ) -> RuleAttempts {
+    let wanted = super::wanted::WantedArguments::new();
     loop {
         let before = inputs.clone();
         let mut written = Vec::new();
@@ -92,6 +93,7 @@ fn fixed_point(
                 left_out: &writer.inferred.left_out,
                 names: writer.names,
                 inputs: &known,
+                wanted: &wanted,
             };
             let mut clause = ClauseTranslator::new(&cx, &entry.name, PredicateUsage::default());
             let needed = inputs.entry(head.key()).or_default();

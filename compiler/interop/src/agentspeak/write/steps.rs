@@ -81,15 +81,18 @@ impl ClauseTranslator<'_> {
         match &step.kind {
             AgentSpeakStepKind::Achieve(of) | AgentSpeakStepKind::Spawn(of) => {
                 let goal = literal(of)?;
-                let text = self.goal(goal, BindingMode::Value).map_err(|stop| match stop {
-                    ClauseFailure::Unbound(name) if name != "_" => ClauseFailure::Other(format!(
-                        "`{name}` has no value here, and a goal gives none back: use a test goal, `?{}(…)`",
-                        goal.functor
-                    )),
-                    other => other,
-                })?;
-                self.used.adopted.insert(goal.key());
                 let sign = if matches!(step.kind, AgentSpeakStepKind::Achieve(_)) { "!" } else { "!!" };
+                let text = if sign == "!" {
+                    self.achieved(goal)?
+                } else {
+                    self.goal(goal, BindingMode::Value).map_err(|stop| match stop {
+                        ClauseFailure::Unbound(name) if name != "_" => ClauseFailure::Other(format!(
+                            "`{name}` has no value here, and nobody waits for the goal to give it one"
+                        )),
+                        other => other,
+                    })?
+                };
+                self.used.adopted.insert(goal.key());
                 let deadline = goal.annotations.iter().find_map(|a| match valued(a) {
                     Some(("hard_deadline", time)) if sign == "!" => Some(time),
                     Some(_) | None => None,
