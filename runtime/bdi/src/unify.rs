@@ -145,10 +145,10 @@ pub(crate) fn known(term: &AgentTerm, slots: &[VariableSlot]) -> VariableSlot {
 /// The value of an argument of a goal that is waited for; `None` for a variable that is open, to which the goal gives one.
 #[inline]
 pub(crate) fn wanted(expr: &Expr, slots: &[VariableSlot]) -> Result<VariableSlot, EvalError> {
-    match expr {
-        Expr::Var(var) => Ok(slots.get(usize::from(*var)).copied().flatten()),
-        _ => eval(expr, slots).map(Some),
+    if let Expr::Var(var) = expr {
+        return Ok(slots.get(usize::from(*var)).copied().flatten());
     }
+    eval(expr, slots).map(Some)
 }
 
 /// Refuses a literal that computes with a variable which is neither bound nor bound by an earlier term of the literal:

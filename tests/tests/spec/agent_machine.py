@@ -233,7 +233,8 @@ class Agent:
         if m.what == "tell":
             self.add(number, m.values, [("source", source)])
         elif m.what == "untell":
-            self.remove(number, lambda fact: fits(m.values, fact.values), lambda fact: [source], source)
+            told = lambda fact: [(source, None)] if source in fact.sources() else []
+            self.remove(number, lambda fact: fits(m.values, fact.values), told, source)
         elif m.what == "achieve":
             self.post(Event({"goal_added": number}, m.values, [("source", source)]))
         elif m.what == "unachieve":
@@ -479,10 +480,9 @@ class Agent:
         for fact in list(self.beliefs[belief]):
             if not admits(fact):
                 continue
-            own = next((s for s in fact.sources() if contained(s, sources(fact))), None)
-            if own is not None:
+            for own, theta in sources(fact):
                 self.take_source(belief, fact, own)
-                return
+                return theta
             others = others or fact
         if others:
             held, text = ", ".join(map(written, others.sources())), self.writer.fact(belief, others.values)

@@ -111,18 +111,19 @@ class Steps:
         well_bound(of["args"] + [term for _, term in [source] + others], self.frame.theta, self.called)
 
         def sources(fact):
-            """Those of the fact's that the term means."""
+            """Those of the fact's that the term means, each with what is known then."""
             for theta in self.matching(of, fact, []):
                 for one in fact.sources():
                     found = match(source[1], one, theta, self.called)
                     rest = found is not None and match_annotations(others, fact.annotations, found, self.called)
-                    if rest and next(rest, None) is not None:
-                        yield one
+                    found = next(rest, None) if rest else None
+                    if found is not None:
+                        yield one, found
 
         admits = lambda fact: next(iter(self.matching(of, fact, plain_ones)), None) is not None
         meant = written(all_known([source[1]], self.frame.theta)[0])
-        self.agent.remove(of["belief"], admits, lambda fact: list(sources(fact)), meant)
-        return True
+        theta = self.agent.remove(of["belief"], admits, sources, meant)
+        return True if theta is None else self.bind(theta)
 
     def abolish(self, of):
         well_bound(of["args"] + [term for _, term in of["annotations"]], self.frame.theta, self.called)

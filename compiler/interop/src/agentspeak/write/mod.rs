@@ -85,6 +85,11 @@ impl AgentSpeakTranslator<'_> {
             let values: Vec<&str> = of.values.values().map(String::as_str).collect();
             text += &format!("enum {} {{ {} }}\n", of.name, values.join(", "));
         }
+        for of in self.names.texts.values() {
+            let values: Vec<&str> =
+                of.values.values().chain(of.computed.then_some(&of.other)).map(String::as_str).collect();
+            text += &format!("enum {} {{ {} }}\n", of.name, values.join(", "));
+        }
         text.push('\n');
         for agent in agents {
             for key in &agent.used.actions {
@@ -113,7 +118,8 @@ impl AgentSpeakTranslator<'_> {
             let leaves = types.leaves(*place);
             let single = leaves.len() == 1;
             for (k, leaf) in leaves.into_iter().enumerate() {
-                if sort == PredicateKind::Action && types.is_for_agents(leaf) {
+                let texts = self.names.texts_of(types, leaf).filter(|_| sort == PredicateKind::Action);
+                if sort == PredicateKind::Action && texts.is_none() && types.is_for_agents(leaf) {
                     continue;
                 }
                 let mut name = if single { base.clone() } else { format!("{base}_{}", k + 1) };
@@ -121,7 +127,8 @@ impl AgentSpeakTranslator<'_> {
                     name.push('_');
                 }
                 used.insert(name.clone());
-                params.push(format!("{name}: {}", self.names.type_of(types, leaf)));
+                let ty = texts.map_or_else(|| self.names.type_of(types, leaf), |t| t.name.clone());
+                params.push(format!("{name}: {ty}"));
             }
         }
         params

@@ -121,9 +121,8 @@ fn rule(
     let body = body.filter(|b| !matches!(b.kind, TermKind::Bool(true)));
     let written = body.map(|b| clause.formula(b)).transpose();
     if let Err(ClauseFailure::Unbound(name)) = &written {
-        inputs.extend(
-            head.args.iter().enumerate().filter(|(_, a)| variables(a).contains(name)).map(|(i, _)| i),
-        );
+        // Where it is again it is compared with the first.
+        inputs.extend(head.args.iter().position(|a| variables(a).contains(name)));
     }
     let mut parts: Vec<ClauseFragment> = written?.into_iter().collect();
     for (i, arg) in head.args.iter().enumerate() {

@@ -119,10 +119,8 @@ impl ClauseTranslator<'_> {
                 one(format!("-+{text}"))
             }
             AgentSpeakStepKind::Remove(of) => {
-                let before = self.bound.clone();
-                let text = self.held(of, BindingMode::Pattern);
-                self.bound = before;
-                one(format!("-{}", text?))
+                let text = self.held(of, BindingMode::Pattern)?;
+                one(format!("-{text}"))
             }
             AgentSpeakStepKind::Action(action) if action.is_internal() => {
                 self.internal_step(action, step.span, out)
@@ -157,15 +155,22 @@ impl ClauseTranslator<'_> {
         }
     }
 
-    /// The arguments of an action of the environment: a stimulus has no strings and lists.
+    /// The arguments of an action of the environment: a stimulus has no lists, and of strings those that the programs have.
     fn action_args(&mut self, terms: &[AgentSpeakTerm]) -> ClauseResult<Vec<String>> {
         let mut args = Vec::new();
         for term in terms {
             let leaves = self.cx.types.leaves(self.type_of(term)?);
             for (value, leaf) in self.values(term, BindingMode::Value)?.into_iter().zip(leaves) {
-                if self.cx.types.is_for_agents(leaf) {
-                    let message =
-                        "only agents know strings and lists: this argument of the action is dropped";
+                if let Some(texts) = self.cx.names.texts_of(self.cx.types, leaf) {
+                    args.push(texts.expr(&value));
+                    if !value.starts_with('"') {
+                        let other = &texts.other;
+                        let message =
+                            format!("a string that stands nowhere in the programs becomes `{other}` here");
+                        self.remarks.push((term.span, message));
+                    }
+                } else if self.cx.types.is_for_agents(leaf) {
+                    let message = "only agents know lists, and strings that are computed: this argument of the action is dropped";
                     self.remarks.push((term.span, message.to_owned()));
                 } else {
                     args.push(value);

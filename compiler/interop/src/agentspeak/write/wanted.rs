@@ -88,7 +88,9 @@ impl ClauseTranslator<'_> {
                 self.bound.remove(&name);
                 *self.owed.entry(name).or_default() |= wanted.taken;
             }
-            if matches!(arg.kind, TermKind::Any) && wanted.taken {
+            let mut nameless = false;
+            each_term(arg, &mut |t| nameless |= matches!(t.kind, TermKind::Any));
+            if nameless && wanted.taken {
                 self.owed.insert("_".to_owned(), true);
             }
         }

@@ -52,7 +52,7 @@ impl AgentsPhase<'_, '_> {
             Syntax::Unify { left, right } => TypedStepKind::Test(self.unify(left, right, env)),
             Syntax::Add(literal) => TypedStepKind::Add(self.assertion(scope, literal, env)?),
             Syntax::Remove(literal) => {
-                TypedStepKind::Remove(self.literal(scope, literal, env, (false, false))?)
+                TypedStepKind::Remove(self.literal(scope, literal, env, (true, false))?)
             }
             Syntax::Replace(literal) => TypedStepKind::Replace(self.assertion(scope, literal, env)?),
             Syntax::Await { events, within } => {
