@@ -52,6 +52,18 @@ fn what_cannot_be_run_is_said() {
     }
 }
 
+/// What is a value in Jason is asked before.
+#[test]
+fn internal_actions_are_values() {
+    let program = "b(1). b(2).\nmany :- .count(b(_)) > 1.\n!s.\n\
+        +!s <- .print(.length([1,2,3])); X = .count(b(_)) + 1; (?many; .print(X)); .findall(.length(L), .member(L,[[],[1]]), N);\n\
+        .print(N); if (not .count(b(_)) > 2) { .print(few) }; while (.count(b(_)) < 4) { +b(.count(b(_)) + 1) }; !t(.length([1])).\n\
+        +!t(N) : .length([a,b]) > N <- .print(.count(b(_)), N).\n";
+    let folder = folder(&[("a.asl", program)]);
+    let out = hrdsl_in(folder.path(), "run a.asl");
+    assert_eq!(stdout(&out), "[a] 3\n[a] 3\n[a] [0,1]\n[a] few\n[a] 41\n", "{}", stderr(&out));
+}
+
 /// Goals, removed beliefs and rules give values; strings of actions are kept.
 #[test]
 fn values_come_back() {

@@ -137,7 +137,8 @@ impl TranslatedAgent {
         }
         let name = self.name.clone();
         let mut clause = ClauseTranslator::new(cx, &name, self.used.clone());
-        match write(&mut clause) {
+        let written = write(&mut clause);
+        match written.and_then(|text| clause.asks_nothing_first().map(|()| text)) {
             Ok(text) => {
                 self.used = clause.used;
                 self.remarks.extend(clause.remarks);

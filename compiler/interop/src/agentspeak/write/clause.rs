@@ -136,6 +136,8 @@ pub struct ClauseTranslator<'a> {
     pub remarks: Vec<(Span, String)>,
     /// Variables that hold an agent's answer, with the agent: its name in the program, or how it is written as an error.
     pub answers: IndexMap<String, Result<String, String>>,
+    /// Internal actions that are values of what is written, to be asked before it.
+    pub first: Vec<String>,
     /// In a plan for a goal: the variables that it is to give a value, each with whether that is taken.
     pub owed: IndexMap<String, bool>,
 }
@@ -153,6 +155,7 @@ impl<'a> ClauseTranslator<'a> {
             remarks: Vec::new(),
             answers: IndexMap::new(),
             owed: IndexMap::new(),
+            first: Vec::new(),
         }
     }
 
@@ -254,6 +257,9 @@ impl<'a> ClauseTranslator<'a> {
             TermKind::Text(text) => ClauseFragment::new(quoted(text), ATOM),
             TermKind::Bool(b) => ClauseFragment::new(b.to_string(), ATOM),
             TermKind::Neg(inner) => ClauseFragment::new(format!("-{}", self.expr(inner)?.at(ATOM)), SUM),
+            TermKind::Literal(l) if matches!(l.functor.as_str(), ".length" | "math.length" | ".count") => {
+                ClauseFragment::new(self.asked_first(l)?, ATOM)
+            }
             TermKind::Literal(l) if l.is_internal() => {
                 let args = l.args.iter().map(|a| Ok(self.expr(a)?.text)).collect::<ClauseResult<Vec<_>>>()?;
                 let name = l.functor.trim_start_matches("math.");
@@ -337,7 +343,7 @@ impl<'a> ClauseTranslator<'a> {
 
     // ── Formulas ──
 
-    pub fn formula(&mut self, of: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
+    pub(super) fn formula_alone(&mut self, of: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
         let Some(formula) = of.as_formula() else { return Err("this is no formula".into()) };
         match formula {
             AgentSpeakFormula::Truth(b) => Ok(ClauseFragment::new(b.to_string(), ATOM)),

@@ -9,6 +9,7 @@
 mod agent;
 mod clause;
 mod compare;
+mod first;
 mod internal;
 mod modes;
 mod print;

@@ -132,6 +132,7 @@ fn rule(
         }
     }
     let text = clause.head(head, &mut parts)?;
+    clause.asks_nothing_first()?;
     let body =
         if parts.is_empty() { String::new() } else { format!(" when {}", ClauseFragment::all(parts).text) };
     Ok(format!("rule {text}{body}"))

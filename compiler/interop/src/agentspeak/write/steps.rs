@@ -57,8 +57,12 @@ impl ClauseTranslator<'_> {
                 Some(reason) => Err(ClauseFailure::Other(reason.clone())),
                 None => self.step(step, out),
             };
+            let first = std::mem::take(&mut self.first);
             match written {
-                Ok(texts) => lines.extend(texts.into_iter().map(PlanBodyLine::Step)),
+                Ok(texts) => {
+                    lines.extend(first.into_iter().map(PlanBodyLine::Step));
+                    lines.extend(texts.into_iter().map(PlanBodyLine::Step));
+                }
                 Err(stop) => {
                     self.remarks.truncate(before.2);
                     out.truncate(before.3);
