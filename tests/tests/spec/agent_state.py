@@ -1,6 +1,5 @@
 """What the state of an agent consists of, as `spec/agents-semantics.md` defines it."""
 
-
 from agent_values import OPEN
 
 
