@@ -112,7 +112,9 @@ fn the_bound_of_cycles_is_an_error_too() {
     expect_code(&out, 1);
     let text = stdout(&out);
     assert!(text.contains("the end, at 0 s: cycle bound (agent `Guest`: more than 1000000 cycles"), "{text}");
-    assert!(text.contains(" entries of the log are left out"), "{text}");
+    assert!(!text.contains(" entries of the log are left out"), "none are shown: {text}");
+    let steps = stdout(&hrdsl_in(here.path(), "inspect scenario.hri meals --set 2 --steps"));
+    assert!(steps.contains(" entries of the log are left out"), "{steps}");
 }
 
 #[test]
@@ -125,6 +127,22 @@ fn the_end_says_what_is_waited_for_and_believed() {
         text.contains("\nthe end, at ") && text.contains("\n  Sensors\n    intends nothing\n    believes\n")
     );
     assert!(!text.contains("round "), "{text}");
+}
+
+/// A hundred thousand plans on one stack are told by their ends.
+#[test]
+fn high_stacks_are_shortened() {
+    let scenario = "scenario deep\nactor clerk : environment\nagent Clerk plays clerk {\n  goal !go(0)\n  \
+        plan +!go(N) when N < 100000 { !go(N + 1); .print(N) }\n  plan +!go(_) { wait 100 s }\n}\n\
+        suite s by agents Clerk { tests 1; horizon 50 s }\n";
+    let here = folder(&[("deep.hri", scenario)]);
+    let out = hrdsl_in(here.path(), "inspect deep.hri --end --json");
+    expect_code(&out, 0);
+    let end: Value = serde_json::from_str(&stdout(&out)).unwrap();
+    let plans = end["agents"][0]["intentions"][0]["plans"].as_array().unwrap();
+    let at = |i: usize| plans[i].as_str().unwrap();
+    assert_eq!((plans.len(), at(0), at(7), at(8)), (17, "go#1(0)", "go#1(7)", "(99985 more)"));
+    assert_eq!((at(9), at(16), end["left_out"].as_u64()), ("go#1(99993)", "go#2(100000)", Some(0)));
 }
 
 #[test]

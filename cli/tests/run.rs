@@ -52,6 +52,32 @@ fn what_cannot_be_run_is_said() {
     }
 }
 
+/// What is a value in Jason is asked before.
+#[test]
+fn internal_actions_are_values() {
+    let program = "b(1). b(2).\nmany :- .count(b(_)) > 1.\n!s.\n\
+        +!s <- .print(.length([1,2,3])); X = .count(b(_)) + 1; (?many; .print(X)); .findall(.length(L), .member(L,[[],[1]]), N);\n\
+        .print(N); if (not .count(b(_)) > 2) { .print(few) }; while (.count(b(_)) < 4) { +b(.count(b(_)) + 1) }; !t(.length([1])).\n\
+        +!t(N) : .length([a,b]) > N <- .print(.count(b(_)), N).\n";
+    let folder = folder(&[("a.asl", program)]);
+    let out = hrdsl_in(folder.path(), "run a.asl");
+    assert_eq!(stdout(&out), "[a] 3\n[a] 3\n[a] [0,1]\n[a] few\n[a] 41\n", "{}", stderr(&out));
+}
+
+/// Goals, removed beliefs and rules give values; strings of actions are kept.
+#[test]
+fn values_come_back() {
+    let program = "bag(1,5). bag(2,7).\nmost(X,Y,X) :- X >= Y.\nmost(X,Y,Y) :- X < Y.\n!s.\n\
+        +!s <- !sum([3,4],N); -bag(T,7); ?most(N,T,M); .print(N,T,M); say(\"a b\"); !sum([],_); !none(K); .print(K).\n\
+        -!s <- .print(failed).\n\
+        +!sum([],0).\n+!sum([H|R],N) <- !sum(R,M); N = H + M.\n+!none(X) <- .print(none).\n";
+    let folder = folder(&[("a.asl", program)]);
+    let out = hrdsl_in(folder.path(), "run a.asl");
+    expect_code(&out, 0);
+    assert_eq!(stdout(&out), "[a] 727\n[a] does say(a_b)\n[a] none\n[a] failed\n");
+    assert!(stderr(&out).contains("a.asl:9:3: warning: this plan gives `X` no value"), "{}", stderr(&out));
+}
+
 #[test]
 fn agents_that_cannot_go_on_are_named() {
     let folder = folder(&[

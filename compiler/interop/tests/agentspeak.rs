@@ -77,6 +77,8 @@ const PROGRAMS: &[&[&str]] = &[
     &["include.asl"],
     &["ask.asl"],
     &["lists.asl"],
+    &["values.asl"],
+    &["terms.asl"],
     &["control.asl"],
     &["domestic/src/owner.asl"],
     &["contract_net/p.asl", "contract_net/c.asl", "contract_net/pr.asl"],

@@ -85,7 +85,7 @@ impl<'p> AgentMachine<'p> {
 
     // ── Steps ──
 
-    /// Takes one source away from the first fact that has it.
+    /// Takes one source away from the first fact that has it; what is open in the literal gets its values.
     pub fn forget(&mut self, place: u32, literal: &'p BeliefLiteral) -> Result<StepFlow, FailureCause> {
         let own = AgentTerm::Expr(Expr::Const(Value::Symbol(source_self())));
         let wanted = literal.annotations.iter().position(|(what, _)| *what == BeliefAnnotation::Source);
@@ -100,6 +100,8 @@ impl<'p> AgentMachine<'p> {
         let mut kept = None;
         for row in self.mind.beliefs.of(belief).asked() {
             if let Some(gone) = self.source_of(literal, row, source, &others)? {
+                let vars = self.mind.pool.at(place).vars_mut();
+                vars.copy_from_slice(&self.solver.slots[..vars.len()]);
                 let of = self.handled_by(place);
                 return Ok(waits(self.take_for(of, belief, row, gone)));
             }
@@ -117,7 +119,7 @@ impl<'p> AgentMachine<'p> {
         Ok(StepFlow::Next)
     }
 
-    /// The fact's first source that the term means, if the fact matches with it.
+    /// The fact's first source that the term means, if the fact matches with it; what that binds is in the solver.
     fn source_of(
         &mut self,
         literal: &BeliefLiteral,
@@ -142,7 +144,9 @@ impl<'p> AgentMachine<'p> {
                 undo(slots, trail, here);
             }
         }
-        undo(&mut self.solver.slots, &mut self.solver.trail, mark);
+        if found.is_none() {
+            undo(&mut self.solver.slots, &mut self.solver.trail, mark);
+        }
         Ok(found)
     }
 

@@ -371,7 +371,8 @@ impl<'p> AgentMachine<'p> {
         if let Some(top) = intention.frames.last().filter(|_| is_goal) {
             let finished = usize::from(top.next) == self.mind.library.code(top.plan).len();
             let timed = intention.deadlines.last().is_some_and(|d| d.height as usize == height);
-            if finished && !timed && !top.branch && self.mind.library.leaves_early(top.plan) {
+            let gives = event.args.iter().chain(intention.args(*top)).any(Option::is_none);
+            if finished && !timed && !gives && !top.branch && self.mind.library.leaves_early(top.plan) {
                 early = Some(*top);
             }
         }

@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 
 use crate::belief::{FactAnnotations, GroundArguments};
 
-/// The arguments of an event; `None` is an argument that a test goal leaves open.
+/// The arguments of an event; `None` is an argument that is open: a query or a goal is to give it a value.
 pub type EventArguments = SmallVec<[Option<Value>; 2]>;
 
 /// Names one action of one agent until it is done.

@@ -1,6 +1,10 @@
 //! The end of plans, good or bad: finished plans leave their intention, failures look for a failure plan.
 
-use hrdsl_ir::bdi::{BeliefLiteral, PlanStepKind, TriggerOn};
+use hrdsl_ir::{
+    Expr,
+    bdi::{PlanStepKind, TriggerOn},
+    list::same,
+};
 
 use crate::{
     code::{PlanOp, settle},
@@ -9,7 +13,7 @@ use crate::{
     intention::{IntentionState, PlanFrame},
     log::{FailureCause, IntentionFailure, LogItem},
     step::answers,
-    unify::{BindingTrail, known, unify_all},
+    unify::{BindingTrail, VariableSlot, known, unify_all},
 };
 
 impl<'p> AgentMachine<'p> {
@@ -46,9 +50,9 @@ impl<'p> AgentMachine<'p> {
                 None => {}
             }
             let plan = self.mind.library.plan(top.plan);
-            let is_test = matches!(plan.trigger.on, TriggerOn::TestAdded(_) | TriggerOn::TestFailed(_));
-            let answers = (is_test && !top.branch)
-                .then(|| answers(&plan.trigger.args, intention.args(top), intention.vars()));
+            let asked = intention.args(top);
+            let answers = (gives(plan.trigger.on, asked) && !top.branch)
+                .then(|| answers(&plan.trigger.args, asked, intention.vars()));
             let own = answers.is_some().then(|| self.failure(place, FailureCause::NoAnswer));
             self.leave(place);
             if !top.branch {
@@ -137,8 +141,8 @@ impl<'p> AgentMachine<'p> {
         Some((left, all))
     }
 
-    /// Gives a test goal's answers to the query that asked, or to the agent. What the plan left open, the belief base is
-    /// asked again.
+    /// Gives a test goal's answers to the query that asked, or to the agent, and a goal's values to the step that wants them.
+    /// What the plan for a query left open, the belief base is asked again.
     fn give(&mut self, place: u32, answers: &EventArguments) -> Result<(), FailureCause> {
         let intention = self.mind.pool.see(place);
         let Some(asker) = intention.frames.last().copied() else {
@@ -148,7 +152,16 @@ impl<'p> AgentMachine<'p> {
             }
             return Ok(());
         };
-        let Some(literal) = self.asked_by(asker) else { return Ok(()) };
+        let literal = match self.asking_step(asker) {
+            Some(PlanStepKind::Query(literal)) => literal,
+            Some(PlanStepKind::Achieve { goal, args, .. }) => {
+                let answers = self.of_goal(*goal, answers.clone())?;
+                let vars = self.mind.pool.at(place).vars_mut();
+                return if take_values(args, &answers, vars) { Ok(()) } else { Err(FailureCause::NoAnswer) };
+            }
+            // INVARIANT: only these wait for values.
+            _ => return Ok(()),
+        };
         let vars = self.mind.pool.at(place).vars_mut();
         if !unify_all(&literal.args, answers.iter().copied(), 0, vars, &mut BindingTrail::new())? {
             return Err(FailureCause::NoAnswer);
@@ -166,12 +179,11 @@ impl<'p> AgentMachine<'p> {
         Ok(())
     }
 
-    /// The literal of the query that a frame is at.
-    fn asked_by(&self, frame: PlanFrame) -> Option<&'p BeliefLiteral> {
+    /// The step that a frame is at.
+    fn asking_step(&self, frame: PlanFrame) -> Option<&'p PlanStepKind> {
         match self.mind.library.code(frame.plan).get(usize::from(frame.at)).map(|l| &l.op) {
-            Some(PlanOp::Plain(PlanStepKind::Query(literal))) => Some(literal),
-            // INVARIANT: only a query asks.
-            _ => None,
+            Some(PlanOp::Plain(step)) => Some(step),
+            Some(_) | None => None,
         }
     }
 
@@ -294,6 +306,28 @@ impl<'p> AgentMachine<'p> {
             );
         }
     }
+}
+
+/// Whether the end of a plan for this gives values to whoever waits: of a query, and of a goal that was open somewhere.
+fn gives(on: TriggerOn, asked: &[VariableSlot]) -> bool {
+    match on {
+        TriggerOn::TestAdded(_) | TriggerOn::TestFailed(_) => true,
+        TriggerOn::GoalAdded(_) | TriggerOn::GoalFailed(_) => asked.iter().any(Option::is_none),
+        TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => false,
+    }
+}
+
+/// Gives the open variables among a goal's arguments their values; `false` if one that is there twice would get two.
+fn take_values(args: &[Expr], values: &[VariableSlot], vars: &mut [VariableSlot]) -> bool {
+    for (arg, value) in args.iter().zip(values) {
+        let (Expr::Var(var), Some(value)) = (arg, value) else { continue };
+        match vars.get_mut(usize::from(*var)) {
+            Some(Some(known)) if !same(*known, *value) => return false,
+            Some(open @ None) => *open = Some(*value),
+            Some(Some(_)) | None => {}
+        }
+    }
+    true
 }
 
 /// What the failure of an event is, if there are plans for that.

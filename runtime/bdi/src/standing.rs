@@ -17,12 +17,16 @@ use crate::{
 pub struct IntentionSummary {
     /// As in the log; 0: it has no plan yet.
     pub intention: u32,
-    /// Its plans with the arguments of what they were selected for, the lowest first: `leg#2(1)`.
+    /// Its plans with the arguments of what they were selected for, the lowest first: `leg#2(1)`. Of many the lowest and the
+    /// highest, and between them how many more there are: `(90 more)`.
     pub plans: Vec<String>,
     /// `await released within 90 s, until 95 s`
     pub waits: String,
     pub suspended: bool,
 }
+
+/// So many plans are told at each end of a stack.
+const TOLD: usize = 8;
 
 impl AgentMachine<'_> {
     /// The event that an entry is about, if it is about the choice of a plan.
@@ -56,12 +60,15 @@ impl AgentMachine<'_> {
         if let Some(due) = intention.deadlines.iter().map(|d| d.timer.due).min() {
             waits += &format!(", deadline {}", show::time(due));
         }
-        IntentionSummary {
-            intention: intention.number,
-            plans: intention.frames.iter().map(plan).collect(),
-            waits,
-            suspended: intention.suspended,
-        }
+        let (count, frames) = (intention.frames.len(), &intention.frames);
+        let plans = if count > 2 * TOLD + 1 {
+            let more = format!("({} more)", count - 2 * TOLD);
+            let (lowest, highest) = (&frames[..TOLD], &frames[count - TOLD..]);
+            lowest.iter().map(plan).chain([more]).chain(highest.iter().map(plan)).collect()
+        } else {
+            frames.iter().map(plan).collect()
+        };
+        IntentionSummary { intention: intention.number, plans, waits, suspended: intention.suspended }
     }
 
     fn waits(&self, intention: &Intention, posted: Option<&QueuedEvent>) -> String {

@@ -65,6 +65,8 @@ impl FingerprintedState for AgentMachine<'_> {
         out.push(self.timers.len() as u64);
         self.timers.iter().for_each(|t| self.timer(&mut out, t, &rank));
         out.push(self.dice.draws);
+        // What was given out is never taken back, so that its number says all.
+        out.extend([self.outbox.len() as u64, self.actions.len() as u64]);
         out
     }
 }

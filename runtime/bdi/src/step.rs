@@ -10,7 +10,7 @@ use crate::{
     log::{FailureCause, LogItem, StepOutcome},
     mind::MentalState,
     print::{as_jason, plain},
-    unify::{BindingTrail, VariableSlot, eval, known, undo, unify},
+    unify::{BindingTrail, VariableSlot, eval, known, undo, unify, wanted},
 };
 use hrdsl_ir::{
     EventId, EventPattern, Expr, Nanos, Value,
@@ -237,9 +237,9 @@ impl<'p> AgentMachine<'p> {
         events.push_back(event);
         let slots = pool.see(here.place).vars();
         for expr in args {
-            let value = eval(expr, slots);
+            let value = if of.is_some() { wanted(expr, slots) } else { eval(expr, slots).map(Some) };
             match (events.back_mut(), value) {
-                (Some(event), Ok(value)) => event.args.push(Some(value)),
+                (Some(event), Ok(value)) => event.args.push(value),
                 (_, Err(error)) => {
                     events.pop_back();
                     return Err(error.into());
@@ -265,14 +265,21 @@ impl<'p> AgentMachine<'p> {
         let mut event = QueuedEvent::new(TriggerOn::GoalAdded(goal), EventArguments::new());
         (event.of, event.by) = (of, Some((here.plan, here.site)));
         for expr in args {
-            event.args.push(Some(eval(expr, slots)?));
+            event.args.push(if of.is_some() { wanted(expr, slots)? } else { Some(eval(expr, slots)?) });
         }
-        if let Some(params) = &self.mind.agent.goal(goal).params {
-            let ground = event.args.iter().copied().flatten().collect();
-            let typed = typed(params, ground).ok_or(FailureCause::OutOfRange)?;
-            event.args = typed.into_iter().map(Some).collect();
-        }
+        event.args = self.of_goal(goal, event.args)?;
         Ok(event)
+    }
+
+    /// The arguments of a goal, as its declaration has them, if it is declared; open ones stay open.
+    pub fn of_goal(&self, goal: GoalId, mut args: EventArguments) -> Result<EventArguments, FailureCause> {
+        let Some(params) = &self.mind.agent.goal(goal).params else { return Ok(args) };
+        for (param, arg) in params.iter().zip(&mut args) {
+            let Some(value) = *arg else { continue };
+            let one = typed(std::slice::from_ref(param), GroundArguments::from_slice(&[value]));
+            *arg = Some(one.ok_or(FailureCause::OutOfRange)?[0]);
+        }
+        Ok(args)
     }
 
     fn act(&mut self, place: u32, event: EventId, args: GroundArguments) -> Result<(), FailureCause> {

@@ -142,6 +142,15 @@ pub(crate) fn known(term: &AgentTerm, slots: &[VariableSlot]) -> VariableSlot {
     }
 }
 
+/// The value of an argument of a goal that is waited for; `None` for a variable that is open, to which the goal gives one.
+#[inline]
+pub(crate) fn wanted(expr: &Expr, slots: &[VariableSlot]) -> Result<VariableSlot, EvalError> {
+    if let Expr::Var(var) = expr {
+        return Ok(slots.get(usize::from(*var)).copied().flatten());
+    }
+    eval(expr, slots).map(Some)
+}
+
 /// Refuses a literal that computes with a variable which is neither bound nor bound by an earlier term of the literal:
 /// such a fault must not depend on whether the belief base happens to reach it.
 pub(crate) fn well_bound(terms: &[AgentTerm], slots: &[VariableSlot]) -> Result<(), EvalError> {

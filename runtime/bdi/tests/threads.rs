@@ -74,7 +74,7 @@ proptest! {
 /// The programs do something: else the property would say little.
 #[test]
 fn the_programs_are_lively() {
-    let logs: Vec<String> = (0..60).map(|seed| played(&random::society(seed, 4), false)).collect();
+    let logs: Vec<String> = (0..150).map(|seed| played(&random::society(seed, 4), false)).collect();
     let all = logs.concat();
     let least = [
         ("→", 3000),

@@ -71,7 +71,8 @@ class Agent:
         i, new = self.adopt(event)
         text = f"{self.writer.event(event.on, event.values)} → {self.writer.selected(frame.plan, frame.theta)}{new}"
         self.log(text, None if new else i)
-        if i.frames and frame.kind().startswith("goal") and self.leaves_early(i.frames[-1]):
+        early = i.frames and frame.kind().startswith("goal") and not frame.wants()
+        if early and self.leaves_early(i.frames[-1]):
             i.frames.pop()
         i.frames.append(frame)
         if len(i.frames) > FRAMES:
@@ -84,7 +85,7 @@ class Agent:
         sort, number = next(iter(frame.on.items()))
         if frame.is_branch or frame.timer or frame.plan["atomic"] or not frame.is_finished() or sort.startswith("test"):
             return False
-        if sort.startswith("goal") and number in self.named:
+        if sort.startswith("goal") and number in self.named or frame.wants():
             return False
         return sort != "goal_added" or not self.relevant({"goal_failed": number})
 
@@ -232,7 +233,8 @@ class Agent:
         if m.what == "tell":
             self.add(number, m.values, [("source", source)])
         elif m.what == "untell":
-            self.remove(number, lambda fact: fits(m.values, fact.values), lambda fact: [source], source)
+            told = lambda fact: [(source, None)] if source in fact.sources() else []
+            self.remove(number, lambda fact: fits(m.values, fact.values), told, source)
         elif m.what == "achieve":
             self.post(Event({"goal_added": number}, m.values, [("source", source)]))
         elif m.what == "unachieve":
@@ -307,9 +309,10 @@ class Agent:
                 return
             i.frames.pop()
             self.stop_timer(top.timer)
-            if top.kind() in ("test_added", "test_failed"):
+            if top.kind().startswith("test") or top.wants():
                 try:
-                    self.give_answer(i, top)
+                    give = self.give_answer if top.kind().startswith("test") else self.give_values
+                    give(i, top)
                 except (Fault, Failed) as why:
                     self.fail_without(i, top, str(why))
                     return
@@ -346,6 +349,18 @@ class Agent:
             theta = next(Query(self, called).answers({"belief": literal}, theta), None)
         if theta is None:
             raise Failed("no answer")
+        below.theta = theta
+
+    def give_values(self, i, top):
+        """The terms of the trigger of a finished plan for a goal are the values of what was open."""
+        below = i.frames[-1]
+        of = below.at["kind"]["achieve"]
+        own = all_known(top.plan["trigger"]["args"], top.theta)
+        values = typed_goal(self.it["goals"][of["goal"]]["params"], own, top.values)
+        theta = dict(below.theta)
+        for asked, value, e in zip(top.values, values, of["args"]):
+            if asked is OPEN and value is not OPEN and not alike(theta.setdefault(e["var"], value), value):
+                raise Failed("no answer")
         below.theta = theta
 
     def gone(self, i):
@@ -465,10 +480,9 @@ class Agent:
         for fact in list(self.beliefs[belief]):
             if not admits(fact):
                 continue
-            own = next((s for s in fact.sources() if contained(s, sources(fact))), None)
-            if own is not None:
+            for own, theta in sources(fact):
                 self.take_source(belief, fact, own)
-                return
+                return theta
             others = others or fact
         if others:
             held, text = ", ".join(map(written, others.sources())), self.writer.fact(belief, others.values)
@@ -615,6 +629,15 @@ def said(m, name):
     if m.values is None:
         return "answer nothing"
     return f"answer [{', '.join(map(one, m.values))}]" if m.what == "answers" else "answer " + one(m.values)
+
+
+def typed_goal(params, values, asked):
+    """What a goal gives, as its declaration has it."""
+    values = [value if want is OPEN else OPEN for value, want in zip(values, asked)]
+    fitting = values if params is None else typed(params, values)
+    if fitting is None:
+        raise Failed("a value is not of its type")
+    return fitting
 
 
 def named_goals(program, number):

@@ -1,5 +1,7 @@
 """What the state of an agent consists of, as `spec/agents-semantics.md` defines it."""
 
+from agent_values import OPEN
+
 
 class Failed(Exception):
     """A step that fails, with the cause."""
@@ -44,6 +46,10 @@ class Frame:
 
     def is_of(self, goal):
         return self.kind() in ("goal_added", "goal_failed") and next(iter(self.on.values())) == goal
+
+    def wants(self):
+        """Whether it is of a goal that was open somewhere."""
+        return self.kind().startswith("goal") and any(v is OPEN for v in self.values)
 
     def is_finished(self):
         return all(block.is_over() for block in self.blocks)

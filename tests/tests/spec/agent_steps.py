@@ -2,7 +2,7 @@
 
 from agent_queries import Query, all_known, form_of, match, match_all, match_annotations, well_bound
 from agent_state import Block, Event, Failed, Frame, Group, Message, failed_of
-from agent_values import Fault, alike, evaluate, plain, typed, written
+from agent_values import OPEN, Fault, alike, evaluate, plain, typed, written
 
 SELF = ["source", {"expr": {"const": "self"}}]
 
@@ -42,17 +42,22 @@ class Steps:
         self.i.doing = (of["event"], len(self.agent.given))
         self.agent.given.append((self.i, self.i.doing, of["event"], values))
 
-    def goal(self, of):
+    def wanted(self, e):
+        """The value of an argument of a goal that is waited for: a variable may be open."""
+        return self.frame.theta.get(e["var"], OPEN) if isinstance(e, dict) and "var" in e else self.value(e)
+
+    def goal(self, of, value):
         params = self.agent.it["goals"][of["goal"]]["params"]
-        return {"goal_added": of["goal"]}, self.typed(params, self.values(of["args"])), [("source", "self")]
+        values = self.typed(params, [value(e) for e in of["args"]])
+        return {"goal_added": of["goal"]}, values, [("source", "self")]
 
     def achieve(self, of):
-        goal = self.goal(of)
+        goal = self.goal(of, self.wanted)
         timer = self.timer(of, "deadline")
         self.agent.post(Event(*goal, self.i, None, timer))
 
     def spawn(self, of):
-        self.agent.post(Event(*self.goal(of)))
+        self.agent.post(Event(*self.goal(of, self.value)))
         return True
 
     def query(self, of):
@@ -106,18 +111,19 @@ class Steps:
         well_bound(of["args"] + [term for _, term in [source] + others], self.frame.theta, self.called)
 
         def sources(fact):
-            """Those of the fact's that the term means."""
+            """Those of the fact's that the term means, each with what is known then."""
             for theta in self.matching(of, fact, []):
                 for one in fact.sources():
                     found = match(source[1], one, theta, self.called)
                     rest = found is not None and match_annotations(others, fact.annotations, found, self.called)
-                    if rest and next(rest, None) is not None:
-                        yield one
+                    found = next(rest, None) if rest else None
+                    if found is not None:
+                        yield one, found
 
         admits = lambda fact: next(iter(self.matching(of, fact, plain_ones)), None) is not None
         meant = written(all_known([source[1]], self.frame.theta)[0])
-        self.agent.remove(of["belief"], admits, lambda fact: list(sources(fact)), meant)
-        return True
+        theta = self.agent.remove(of["belief"], admits, sources, meant)
+        return True if theta is None else self.bind(theta)
 
     def abolish(self, of):
         well_bound(of["args"] + [term for _, term in of["annotations"]], self.frame.theta, self.called)

@@ -126,7 +126,11 @@ pub fn run(args: &InspectArgs) -> Result<CommandExit, CommandFault> {
             return Err(format!("no agent `{agent}` in the suite; it has: {}", names.join(", ")));
         }
     }
-    let detail = if args.steps { LogDetail::Steps } else { LogDetail::Reasons };
+    let detail = match (args.end, args.steps) {
+        (true, _) => LogDetail::Failures,
+        (false, true) => LogDetail::Steps,
+        (false, false) => LogDetail::Reasons,
+    };
     let inspection = chosen.inspect(program, detail);
     let end = ModelRunEnd::of(&inspection, &picked);
     let place = |span: Span| compilation.files.place(span);

@@ -111,6 +111,14 @@ pub fn infer_function(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result
             of.args.iter().try_for_each(|a| same(walk, a, number))?;
             Ok(number)
         }
+        (".length" | "math.length", [list]) => {
+            walk.term(list)?;
+            Ok(walk.types.number(false))
+        }
+        (".count", [formula]) => {
+            walk.formula(formula)?;
+            Ok(walk.types.number(false))
+        }
         (name, _) => Err(format!("hrdsl has no function like `{name}`")),
     }
 }

@@ -22,6 +22,7 @@ mod read;
 mod survey;
 mod system;
 mod term;
+mod texts;
 mod types;
 mod write;
 

@@ -9,6 +9,7 @@ use super::{
     ast::PredicateIndicator,
     survey::{OccurrenceKind, PredicateKind, PredicateOccurrence, PredicateSurvey},
     system::AgentSpeakSystem,
+    texts::{TextEnumeration, is_text, texts},
     types::{AgentSpeakType, ListLeafType, TyId, UnificationTable},
 };
 
@@ -35,6 +36,8 @@ pub struct AgentSpeakNames {
     pub actions: IndexMap<(String, PredicateIndicator), String>,
     pub agents: IndexMap<String, String>,
     pub enums: Vec<AtomEnumeration>,
+    /// By class: the strings that are arguments of actions.
+    pub texts: IndexMap<TyId, TextEnumeration>,
     /// Which enumeration the values of a class are of, by its root.
     of: IndexMap<TyId, usize>,
     /// Values that are written with their enumeration.
@@ -135,6 +138,7 @@ impl AgentSpeakNames {
         }
         names.name_actions(system, types, surveys);
         names.name_enums(types, surveys);
+        names.texts = texts(system, types, surveys, &names);
         names
     }
 
@@ -240,10 +244,16 @@ impl AgentSpeakNames {
         format!("{}{of}{}", "[".repeat(leaf.lists), "]".repeat(leaf.lists))
     }
 
+    /// The enumeration that stands for strings where they are arguments of actions.
+    pub fn texts_of(&self, types: &UnificationTable, leaf: ListLeafType) -> Option<&TextEnumeration> {
+        self.texts.get(&leaf.of).filter(|_| is_text(types, leaf))
+    }
+
     /// All values of enumerations and names of agents, which no parameter may be called.
     pub fn is_value(&self, name: &str) -> bool {
         self.agents.values().any(|a| a == name)
             || self.enums.iter().any(|e| e.values.values().any(|v| v == name))
+            || self.texts.values().any(|e| e.other == name || e.values.values().any(|v| v == name))
     }
 }
 

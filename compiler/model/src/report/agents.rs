@@ -1,6 +1,6 @@
 //! HR04xx: agents.
 
-use hrdsl_source::{Diagnostic, DiagnosticCode, Span, nearest};
+use hrdsl_source::{Diagnostic, DiagnosticCode, Span, SpanLabel, nearest};
 
 use crate::{InferredType, noun::Noun, report::names::with_nearest};
 
@@ -67,6 +67,20 @@ pub(crate) fn rule_needs(name: &str, index: usize, span: Span) -> Diagnostic {
     Diagnostic::error(DiagnosticCode::UNBOUND_VARIABLE, span, message)
         .here("this has none here")
         .help("bind it first, by a belief or with `X = …`")
+}
+
+/// HR0401 of a goal's argument: why the goal does not give it a value.
+pub(crate) fn not_given(issue: &mut Diagnostic, goal: &str, argument: usize, plan: Span, reads: bool) {
+    let at = argument + 1;
+    let text = if reads {
+        format!("this plan reads argument {at} of `{goal}` before it has a value")
+    } else {
+        format!("this plan gives argument {at} of `{goal}` no value")
+    };
+    issue.labels.push(SpanLabel { span: plan, text });
+    if issue.fixes.is_empty() {
+        issue.help = Some("bind it first, or let each plan of the goal give it a value".to_owned());
+    }
 }
 
 /// HR0201: a variable that is of one kind on one way, and of another on the other.

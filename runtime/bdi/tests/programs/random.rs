@@ -135,6 +135,18 @@ impl Maker {
         }
     }
 
+    /// An argument of a goal: one that is open gets its value from the goal, or none.
+    fn wanted(&mut self) -> Expr {
+        if !self.rng.random_bool(0.05) {
+            return self.expr();
+        }
+        let var = self.rng.random_range(0..VARS);
+        if !self.bound.contains(&var) {
+            self.bound.push(var);
+        }
+        Expr::Var(var)
+    }
+
     /// A term that may bind a variable, which is bound from then on if that is wanted.
     fn term(&mut self, binds: bool) -> AgentTerm {
         match self.rng.random_range(0..3) {
@@ -203,7 +215,7 @@ impl Maker {
             },
             1 | 2 => {
                 let within = self.rng.random_bool(0.3).then(|| seconds.clone());
-                PlanStepKind::Achieve { goal, args: vec![self.expr()], within }
+                PlanStepKind::Achieve { goal, args: vec![self.wanted()], within }
             }
             3 => PlanStepKind::Spawn { goal, args: vec![self.expr()] },
             4 => PlanStepKind::Query(self.literal(true)),

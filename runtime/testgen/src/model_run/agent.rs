@@ -38,6 +38,12 @@ pub struct SnapshotLog {
 }
 
 impl SnapshotLog {
+    /// Only how they stand in the end.
+    #[must_use]
+    pub fn at_the_end() -> Self {
+        Self { noted: NOTED, ..Self::default() }
+    }
+
     /// How they stand at the end of this instant.
     fn note(&mut self, time: Nanos, society: &AgentSociety<'_>) {
         if self.noted >= NOTED {

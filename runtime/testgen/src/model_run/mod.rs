@@ -169,7 +169,9 @@ impl<'p> ModelCast<'p, '_> {
             society.keep_log(KEPT);
         }
         let company = AgentCompany::new(program, society);
-        company.borrow_mut().snapshots = watch.then(SnapshotLog::default);
+        let told = self.options.detail >= LogDetail::Steps;
+        let snapshots = || if told { SnapshotLog::default() } else { SnapshotLog::at_the_end() };
+        company.borrow_mut().snapshots = watch.then(snapshots);
         let mut members = AgentPlayer::all(&company).into_iter();
         let play = |player: &PlayerRef| -> Option<Box<dyn ActorPlayer + 'p>> {
             match player {

@@ -1,6 +1,6 @@
 //! Bodies of plans.
 
-use super::{AgentSpeakParseResult, AgentSpeakParser};
+use super::{AgentSpeakFault, AgentSpeakParseResult, AgentSpeakParser};
 use crate::agentspeak::{
     ast::{AgentSpeakStep, AgentSpeakStepKind, BeliefAddition, TermKind},
     lex::AgentSpeakTokenKind,
@@ -63,9 +63,34 @@ impl AgentSpeakParser {
                 }
             }
             AgentSpeakTokenKind::Mark("{") => AgentSpeakStepKind::Block(self.block()?),
+            AgentSpeakTokenKind::Mark("(") => self.parenthesis()?,
             _ => self.plain()?,
         };
         Ok(AgentSpeakStep { kind, span: self.since(start) })
+    }
+
+    /// `(a; b)`, or a formula that begins with a parenthesis.
+    fn parenthesis(&mut self) -> AgentSpeakParseResult<AgentSpeakStepKind> {
+        let start = self.at;
+        let fault = match self.bare() {
+            Ok(kind) => return Ok(kind),
+            Err(fault) => fault,
+        };
+        self.at = start;
+        // What was understood farther is more likely meant.
+        let farther =
+            |other: AgentSpeakFault| if other.span.start > fault.span.start { other } else { fault };
+        self.group().map(AgentSpeakStepKind::Block).map_err(farther)
+    }
+
+    fn group(&mut self) -> AgentSpeakParseResult<Vec<AgentSpeakStep>> {
+        self.advance();
+        let mut steps = vec![self.deeper(Self::branches)?];
+        while self.take(";") {
+            steps.push(self.deeper(Self::branches)?);
+        }
+        self.expect(")", "after the steps")?;
+        Ok(steps)
     }
 
     /// From `if` or `elif` on.

@@ -7,6 +7,7 @@ use super::{
     clause::{BindingMode, ClauseContext, ClauseFailure, ClauseResult, ClauseTranslator, PredicateUsage},
     modes::TranslatedRules,
     steps::block,
+    wanted::WantedArguments,
 };
 use crate::agentspeak::{
     ast::{
@@ -33,6 +34,8 @@ pub struct TranslatedAgent {
     pub used: PredicateUsage,
     pub left_out: Vec<(Span, String)>,
     pub remarks: Vec<(Span, String)>,
+    /// Plans for goals that need an argument which is open somewhere, with their goals.
+    pub needing: Vec<(Span, PredicateIndicator)>,
     labels: IndexSet<String>,
 }
 
@@ -41,7 +44,7 @@ pub fn agent(
     cx: &ClauseContext<'_>,
     entry: &AgentSpeakAgent,
     program: &AgentSpeakProgram,
-    rules: TranslatedRules,
+    rules: &TranslatedRules,
 ) -> TranslatedAgent {
     let mut agent = TranslatedAgent {
         name: entry.name.clone(),
@@ -54,13 +57,14 @@ pub fn agent(
         used: PredicateUsage::default(),
         left_out: Vec::new(),
         remarks: Vec::new(),
+        needing: Vec::new(),
         labels: IndexSet::new(),
     };
     for belief in &entry.beliefs {
         agent.fact(cx, belief, belief.span);
     }
     for item in &program.items {
-        agent.item(cx, item, &rules);
+        agent.item(cx, item, rules);
     }
     for goal in &entry.goals {
         agent.goal(cx, goal, goal.span);
@@ -133,7 +137,8 @@ impl TranslatedAgent {
         }
         let name = self.name.clone();
         let mut clause = ClauseTranslator::new(cx, &name, self.used.clone());
-        match write(&mut clause) {
+        let written = write(&mut clause);
+        match written.and_then(|text| clause.asks_nothing_first().map(|()| text)) {
             Ok(text) => {
                 self.used = clause.used;
                 self.remarks.extend(clause.remarks);
@@ -165,9 +170,11 @@ impl TranslatedAgent {
         let label = self.label(plan);
         let written = self.alone(cx, span, |c| {
             let head = head(c, plan)?;
-            let lines = c.steps(&plan.body, &mut left_out);
+            let mut lines = c.steps(&plan.body, &mut left_out);
+            c.close(plan, &mut lines);
             Ok(format!("plan {label}{head} {}\n", block(&lines)))
         });
+        self.look_for_needs(cx, plan, span, written.as_ref().map_or(usize::MAX, |_| left_out.len()));
         match written {
             Ok(text) => {
                 self.plans += &text;
@@ -187,6 +194,26 @@ impl TranslatedAgent {
                 self.label_remarks(plan);
             }
             Err(comment) => self.plans += &comment,
+        }
+    }
+
+    /// Whether more of the plan could be written, if its arguments had values from the start.
+    fn look_for_needs(&mut self, cx: &ClauseContext<'_>, plan: &AgentSpeakPlan, span: Span, without: usize) {
+        let Ok(of) = literal(&plan.trigger.of) else { return };
+        let is_wanted = cx.wanted.get(&of.key()).is_some_and(|all| all.values().any(|a| a.needed.is_none()));
+        if without == 0 || !plan.trigger.kind.is_goal() || !is_wanted || cx.left_out.contains_key(&span) {
+            return;
+        }
+        let wanted = WantedArguments::new();
+        let given = ClauseContext { wanted: &wanted, ..*cx };
+        let name = self.name.clone();
+        let mut clause = ClauseTranslator::new(&given, &name, self.used.clone());
+        let mut left_out = Vec::new();
+        if head(&mut clause, plan).is_ok() {
+            clause.steps(&plan.body, &mut left_out);
+            if left_out.len() < without {
+                self.needing.push((span, of.key()));
+            }
         }
     }
 
@@ -226,7 +253,9 @@ fn head(clause: &mut ClauseTranslator<'_>, plan: &AgentSpeakPlan) -> ClauseResul
     let of = literal(&plan.trigger.of)?;
     let trigger = if plan.trigger.kind.is_goal() {
         let plain = failure(clause, plan.trigger.kind, of);
-        clause.goal(&plain, BindingMode::Pattern)?
+        let text = clause.goal(&plain, BindingMode::Pattern)?;
+        clause.open(of);
+        text
     } else {
         // A trigger is matched with what happened; that a rule needs a value there does not matter.
         let inputs = IndexMap::new();

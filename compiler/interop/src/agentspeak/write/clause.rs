@@ -15,6 +15,7 @@ use super::super::{
     term::{OmissionReason, valued},
     types::{AgentSpeakType, TyId, UnificationTable},
 };
+use super::wanted::WantedArguments;
 
 /// What all clauses of a program need to know.
 pub struct ClauseContext<'a> {
@@ -24,6 +25,8 @@ pub struct ClauseContext<'a> {
     pub names: &'a AgentSpeakNames,
     /// Of beliefs with rules, the arguments that must have a value.
     pub inputs: &'a IndexMap<PredicateIndicator, BTreeSet<usize>>,
+    /// Of goals, the arguments that are open where the goal is adopted.
+    pub wanted: &'a WantedArguments,
 }
 
 /// Why something cannot be written.
@@ -72,6 +75,8 @@ pub struct PredicateUsage {
     pub sent: IndexSet<(Option<String>, bool, PredicateIndicator)>,
     /// Whether the rule of whole numbers from one to another is needed.
     pub between: bool,
+    /// Arguments of goals that are open; `true`: the value is taken.
+    pub wanted: IndexSet<(PredicateIndicator, usize, bool)>,
 }
 
 /// Whether terms may bind variables.
@@ -131,12 +136,27 @@ pub struct ClauseTranslator<'a> {
     pub remarks: Vec<(Span, String)>,
     /// Variables that hold an agent's answer, with the agent: its name in the program, or how it is written as an error.
     pub answers: IndexMap<String, Result<String, String>>,
+    /// Internal actions that are values of what is written, to be asked before it.
+    pub first: Vec<String>,
+    /// In a plan for a goal: the variables that it is to give a value, each with whether that is taken.
+    pub owed: IndexMap<String, bool>,
 }
 
 impl<'a> ClauseTranslator<'a> {
     pub fn new(cx: &'a ClauseContext<'a>, agent: &'a str, used: PredicateUsage) -> Self {
         let (bound, vars) = (BTreeSet::new(), IndexMap::new());
-        Self { cx, agent, bound, vars, fresh: 0, used, remarks: Vec::new(), answers: IndexMap::new() }
+        Self {
+            cx,
+            agent,
+            bound,
+            vars,
+            fresh: 0,
+            used,
+            remarks: Vec::new(),
+            answers: IndexMap::new(),
+            owed: IndexMap::new(),
+            first: Vec::new(),
+        }
     }
 
     /// A variable that the program does not have.
@@ -237,6 +257,9 @@ impl<'a> ClauseTranslator<'a> {
             TermKind::Text(text) => ClauseFragment::new(quoted(text), ATOM),
             TermKind::Bool(b) => ClauseFragment::new(b.to_string(), ATOM),
             TermKind::Neg(inner) => ClauseFragment::new(format!("-{}", self.expr(inner)?.at(ATOM)), SUM),
+            TermKind::Literal(l) if matches!(l.functor.as_str(), ".length" | "math.length" | ".count") => {
+                ClauseFragment::new(self.asked_first(l)?, ATOM)
+            }
             TermKind::Literal(l) if l.is_internal() => {
                 let args = l.args.iter().map(|a| Ok(self.expr(a)?.text)).collect::<ClauseResult<Vec<_>>>()?;
                 let name = l.functor.trim_start_matches("math.");
@@ -320,7 +343,7 @@ impl<'a> ClauseTranslator<'a> {
 
     // ── Formulas ──
 
-    pub fn formula(&mut self, of: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
+    pub(super) fn formula_alone(&mut self, of: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
         let Some(formula) = of.as_formula() else { return Err("this is no formula".into()) };
         match formula {
             AgentSpeakFormula::Truth(b) => Ok(ClauseFragment::new(b.to_string(), ATOM)),
@@ -409,8 +432,17 @@ impl<'a> ClauseTranslator<'a> {
 
     /// `g(…)`, without its sign. Annotations but the source are dropped.
     pub fn goal(&mut self, of: &AgentSpeakLiteral, want: BindingMode) -> ClauseResult<String> {
-        let key = of.key();
-        let args = of.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?.concat();
+        let args = of.args.iter().map(|a| self.values(a, want)).collect::<ClauseResult<Vec<_>>>()?;
+        self.goal_with(of, &args.concat(), want)
+    }
+
+    /// The same, with its arguments as they are written.
+    pub fn goal_with(
+        &mut self,
+        of: &AgentSpeakLiteral,
+        args: &[String],
+        want: BindingMode,
+    ) -> ClauseResult<String> {
         let mut source = String::new();
         for annotation in &of.annotations {
             match valued(annotation) {
@@ -425,8 +457,8 @@ impl<'a> ClauseTranslator<'a> {
                 )),
             }
         }
-        let name = self.cx.names.goal(&key);
-        Ok(call(&name, &args) + &source)
+        let name = self.cx.names.goal(&of.key());
+        Ok(call(&name, args) + &source)
     }
 }
 

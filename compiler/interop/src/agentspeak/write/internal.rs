@@ -112,11 +112,14 @@ impl ClauseTranslator<'_> {
         formula: &AgentSpeakTerm,
         list: &AgentSpeakTerm,
     ) -> ClauseResult<ClauseFragment> {
-        let before = self.bound.clone();
-        let found =
-            self.formula(formula).and_then(|f| Ok((f.text, self.values(template, BindingMode::Value)?)));
+        let (before, outer) = (self.bound.clone(), std::mem::take(&mut self.first));
+        let found = self.formula(formula).and_then(|f| Ok((f, self.values(template, BindingMode::Value)?)));
         self.bound = before;
+        let first = std::mem::replace(&mut self.first, outer);
         let (formula, values) = found?;
+        // What the template asks is asked of each answer.
+        let asked = first.into_iter().map(|text| ClauseFragment::new(text, ATOM));
+        let formula = ClauseFragment::all([formula].into_iter().chain(asked).collect()).text;
         if name == ".setof" && values.len() > 1 {
             return Err("a list of structures cannot be sorted".into());
         }

@@ -9,10 +9,12 @@
 mod agent;
 mod clause;
 mod compare;
+mod first;
 mod internal;
 mod modes;
 mod print;
 mod steps;
+mod wanted;
 mod writer;
 
 use indexmap::IndexMap;
@@ -25,6 +27,7 @@ use super::{
 };
 use agent::TranslatedAgent;
 use clause::{ClauseContext, call};
+use wanted::WantedArguments;
 pub use writer::AgentSpeakTranslator;
 use writer::between;
 
@@ -42,14 +45,22 @@ impl AgentSpeakTranslator<'_> {
         for entry in &self.system.agents {
             let program = &self.system.programs[entry.program];
             let (inputs, rules) = modes::rules(self, entry, program);
-            let cx = ClauseContext {
-                system: self.system,
-                types: &self.inferred.types,
-                left_out: &self.inferred.left_out,
-                names: self.names,
-                inputs: &inputs,
+            let mut wanted = WantedArguments::new();
+            // What one plan wants of a goal changes what its plans are, and what they want of others.
+            let agent = loop {
+                let cx = ClauseContext {
+                    system: self.system,
+                    types: &self.inferred.types,
+                    left_out: &self.inferred.left_out,
+                    names: self.names,
+                    inputs: &inputs,
+                    wanted: &wanted,
+                };
+                let agent = agent::agent(&cx, entry, program, &rules);
+                if !wanted::enlarge(&mut wanted, &agent.used, &agent.needing) {
+                    break agent;
+                }
             };
-            let agent = agent::agent(&cx, entry, program, rules);
             left_out.extend(agent.left_out.iter().cloned());
             remarks.extend(agent.remarks.iter().cloned());
             agents.push(agent);
@@ -73,6 +84,11 @@ impl AgentSpeakTranslator<'_> {
         text.push('\n');
         for of in &self.names.enums {
             let values: Vec<&str> = of.values.values().map(String::as_str).collect();
+            text += &format!("enum {} {{ {} }}\n", of.name, values.join(", "));
+        }
+        for of in self.names.texts.values() {
+            let values: Vec<&str> =
+                of.values.values().chain(of.computed.then_some(&of.other)).map(String::as_str).collect();
             text += &format!("enum {} {{ {} }}\n", of.name, values.join(", "));
         }
         text.push('\n');
@@ -103,7 +119,8 @@ impl AgentSpeakTranslator<'_> {
             let leaves = types.leaves(*place);
             let single = leaves.len() == 1;
             for (k, leaf) in leaves.into_iter().enumerate() {
-                if sort == PredicateKind::Action && types.is_for_agents(leaf) {
+                let texts = self.names.texts_of(types, leaf).filter(|_| sort == PredicateKind::Action);
+                if sort == PredicateKind::Action && texts.is_none() && types.is_for_agents(leaf) {
                     continue;
                 }
                 let mut name = if single { base.clone() } else { format!("{base}_{}", k + 1) };
@@ -111,7 +128,8 @@ impl AgentSpeakTranslator<'_> {
                     name.push('_');
                 }
                 used.insert(name.clone());
-                params.push(format!("{name}: {}", self.names.type_of(types, leaf)));
+                let ty = texts.map_or_else(|| self.names.type_of(types, leaf), |t| t.name.clone());
+                params.push(format!("{name}: {ty}"));
             }
         }
         params

@@ -81,6 +81,7 @@ fn fixed_point(
     done: &TranslatedRules,
     inputs: &mut InputArguments,
 ) -> RuleAttempts {
+    let wanted = super::wanted::WantedArguments::new();
     loop {
         let before = inputs.clone();
         let mut written = Vec::new();
@@ -92,6 +93,7 @@ fn fixed_point(
                 left_out: &writer.inferred.left_out,
                 names: writer.names,
                 inputs: &known,
+                wanted: &wanted,
             };
             let mut clause = ClauseTranslator::new(&cx, &entry.name, PredicateUsage::default());
             let needed = inputs.entry(head.key()).or_default();
@@ -119,9 +121,8 @@ fn rule(
     let body = body.filter(|b| !matches!(b.kind, TermKind::Bool(true)));
     let written = body.map(|b| clause.formula(b)).transpose();
     if let Err(ClauseFailure::Unbound(name)) = &written {
-        inputs.extend(
-            head.args.iter().enumerate().filter(|(_, a)| variables(a).contains(name)).map(|(i, _)| i),
-        );
+        // Where it is again it is compared with the first.
+        inputs.extend(head.args.iter().position(|a| variables(a).contains(name)));
     }
     let mut parts: Vec<ClauseFragment> = written?.into_iter().collect();
     for (i, arg) in head.args.iter().enumerate() {
@@ -131,6 +132,7 @@ fn rule(
         }
     }
     let text = clause.head(head, &mut parts)?;
+    clause.asks_nothing_first()?;
     let body =
         if parts.is_empty() { String::new() } else { format!(" when {}", ClauseFragment::all(parts).text) };
     Ok(format!("rule {text}{body}"))

@@ -57,8 +57,12 @@ impl ClauseTranslator<'_> {
                 Some(reason) => Err(ClauseFailure::Other(reason.clone())),
                 None => self.step(step, out),
             };
+            let first = std::mem::take(&mut self.first);
             match written {
-                Ok(texts) => lines.extend(texts.into_iter().map(PlanBodyLine::Step)),
+                Ok(texts) => {
+                    lines.extend(first.into_iter().map(PlanBodyLine::Step));
+                    lines.extend(texts.into_iter().map(PlanBodyLine::Step));
+                }
                 Err(stop) => {
                     self.remarks.truncate(before.2);
                     out.truncate(before.3);
@@ -81,15 +85,18 @@ impl ClauseTranslator<'_> {
         match &step.kind {
             AgentSpeakStepKind::Achieve(of) | AgentSpeakStepKind::Spawn(of) => {
                 let goal = literal(of)?;
-                let text = self.goal(goal, BindingMode::Value).map_err(|stop| match stop {
-                    ClauseFailure::Unbound(name) if name != "_" => ClauseFailure::Other(format!(
-                        "`{name}` has no value here, and a goal gives none back: use a test goal, `?{}(…)`",
-                        goal.functor
-                    )),
-                    other => other,
-                })?;
-                self.used.adopted.insert(goal.key());
                 let sign = if matches!(step.kind, AgentSpeakStepKind::Achieve(_)) { "!" } else { "!!" };
+                let text = if sign == "!" {
+                    self.achieved(goal)?
+                } else {
+                    self.goal(goal, BindingMode::Value).map_err(|stop| match stop {
+                        ClauseFailure::Unbound(name) if name != "_" => ClauseFailure::Other(format!(
+                            "`{name}` has no value here, and nobody waits for the goal to give it one"
+                        )),
+                        other => other,
+                    })?
+                };
+                self.used.adopted.insert(goal.key());
                 let deadline = goal.annotations.iter().find_map(|a| match valued(a) {
                     Some(("hard_deadline", time)) if sign == "!" => Some(time),
                     Some(_) | None => None,
@@ -116,10 +123,8 @@ impl ClauseTranslator<'_> {
                 one(format!("-+{text}"))
             }
             AgentSpeakStepKind::Remove(of) => {
-                let before = self.bound.clone();
-                let text = self.held(of, BindingMode::Pattern);
-                self.bound = before;
-                one(format!("-{}", text?))
+                let text = self.held(of, BindingMode::Pattern)?;
+                one(format!("-{text}"))
             }
             AgentSpeakStepKind::Action(action) if action.is_internal() => {
                 self.internal_step(action, step.span, out)
@@ -154,15 +159,22 @@ impl ClauseTranslator<'_> {
         }
     }
 
-    /// The arguments of an action of the environment: a stimulus has no strings and lists.
+    /// The arguments of an action of the environment: a stimulus has no lists, and of strings those that the programs have.
     fn action_args(&mut self, terms: &[AgentSpeakTerm]) -> ClauseResult<Vec<String>> {
         let mut args = Vec::new();
         for term in terms {
             let leaves = self.cx.types.leaves(self.type_of(term)?);
             for (value, leaf) in self.values(term, BindingMode::Value)?.into_iter().zip(leaves) {
-                if self.cx.types.is_for_agents(leaf) {
-                    let message =
-                        "only agents know strings and lists: this argument of the action is dropped";
+                if let Some(texts) = self.cx.names.texts_of(self.cx.types, leaf) {
+                    args.push(texts.expr(&value));
+                    if !value.starts_with('"') {
+                        let other = &texts.other;
+                        let message =
+                            format!("a string that stands nowhere in the programs becomes `{other}` here");
+                        self.remarks.push((term.span, message));
+                    }
+                } else if self.cx.types.is_for_agents(leaf) {
+                    let message = "only agents know lists, and strings that are computed: this argument of the action is dropped";
                     self.remarks.push((term.span, message.to_owned()));
                 } else {
                     args.push(value);

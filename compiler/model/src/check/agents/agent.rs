@@ -221,8 +221,27 @@ impl<'a> AgentsPhase<'_, 'a> {
     }
 
     fn agent(&mut self, index: usize, agent: &ast::AgentSyntax) {
-        let mut scope = AgentScope::new(index);
         self.source.unread_members = unread::in_agent(agent);
+        loop {
+            let (issues, before) = (self.issues.list.len(), self.names.wanted.clone());
+            self.members(index, agent);
+            if self.names.wanted == before {
+                break;
+            }
+            // Plans for goals that give values are looked at with what was found out about these.
+            self.issues.list.truncate(issues);
+            let it = &mut self.s.agents[index];
+            it.initial_beliefs.clear();
+            it.initial_goals.clear();
+            it.plans.clear();
+        }
+        self.unadopted(&AgentScope::new(index), agent);
+        self.source.unread_members = false;
+    }
+
+    /// What holds at the start, and the plans.
+    fn members(&mut self, index: usize, agent: &ast::AgentSyntax) {
+        let mut scope = AgentScope::new(index);
         for member in &agent.members {
             match &member.kind {
                 Member::Belief { name, initial, .. } => {
@@ -238,8 +257,6 @@ impl<'a> AgentsPhase<'_, 'a> {
                 Member::Rule { .. } | Member::GoalType { .. } | Member::Allow(_) | Member::Error => {}
             }
         }
-        self.unadopted(&scope, agent);
-        self.source.unread_members = false;
     }
 
     /// `= had(0)`: the fact must be of the belief that is being declared.

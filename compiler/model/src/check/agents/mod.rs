@@ -11,3 +11,4 @@ pub(super) mod plan;
 pub(super) mod rule;
 pub(super) mod steps;
 pub(super) mod terms;
+pub(super) mod wanted;

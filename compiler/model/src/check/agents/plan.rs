@@ -27,11 +27,17 @@ impl AgentsPhase<'_, '_> {
         let (label, atomic) = self.label(scope, plan);
         let mut env = ExprEnv { plan: true, noun: Some(Noun::Variable), ..ExprEnv::default() };
         let trigger = self.trigger(scope, &plan.trigger, &mut env);
+        let wanted = trigger
+            .as_ref()
+            .and_then(|(on, args, _)| self.open_trigger(scope, (*on, args), &plan.trigger, &mut env));
         let context = match &plan.context {
             Some(e) => self.context(scope, e, &mut env),
             None => TypedContext::True,
         };
         let body = self.plan_body(scope, &plan.body, &mut env);
+        if let Some(wanted) = &wanted {
+            self.close_trigger(scope, wanted, &body, &plan.trigger, &env);
+        }
         if env.locals.len() > MAX_NAMES {
             let message = format!("the plan has more than {MAX_NAMES} variables");
             self.report(too_many(message, plan.trigger.span));

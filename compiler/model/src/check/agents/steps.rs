@@ -37,12 +37,12 @@ impl AgentsPhase<'_, '_> {
         Some(match &step.kind {
             Syntax::Do(call) => self.act_of(scope, call, env)?,
             Syntax::Achieve { call, within } => {
-                let (goal, args) = self.adopt(scope, call, env);
+                let (goal, args) = self.adopt(scope, call, true, env);
                 let within = within.as_ref().map(|e| self.duration(e, "the time for the goal", env));
                 TypedStepKind::Achieve { goal: goal?, args, within }
             }
             Syntax::Spawn(call) => {
-                let (goal, args) = self.adopt(scope, call, env);
+                let (goal, args) = self.adopt(scope, call, false, env);
                 TypedStepKind::Spawn { goal: goal?, args }
             }
             Syntax::Query(literal) => {
@@ -52,7 +52,7 @@ impl AgentsPhase<'_, '_> {
             Syntax::Unify { left, right } => TypedStepKind::Test(self.unify(left, right, env)),
             Syntax::Add(literal) => TypedStepKind::Add(self.assertion(scope, literal, env)?),
             Syntax::Remove(literal) => {
-                TypedStepKind::Remove(self.literal(scope, literal, env, (false, false))?)
+                TypedStepKind::Remove(self.literal(scope, literal, env, (true, false))?)
             }
             Syntax::Replace(literal) => TypedStepKind::Replace(self.assertion(scope, literal, env)?),
             Syntax::Await { events, within } => {
@@ -164,13 +164,20 @@ impl AgentsPhase<'_, '_> {
         &mut self,
         scope: &AgentScope,
         call: &CallSyntax,
+        waits: bool,
         env: &mut ExprEnv,
     ) -> (Option<GoalId>, Vec<TypedExpr>) {
         let goal = self.goal(scope, call);
-        let args = match goal.and_then(|g| self.goal_fields(scope.id, g)) {
-            Some(fields) => self.args(Noun::Goal, call, &fields, env),
-            None => call.args.as_deref().unwrap_or_default().iter().map(|a| self.expr(a, env)).collect(),
+        let fields = goal.and_then(|g| self.goal_fields(scope.id, g));
+        let (opened, ungiven) = match goal.filter(|_| waits) {
+            Some(goal) => self.open_args(scope, goal, call, fields.as_ref(), env),
+            None => (call.clone(), Vec::new()),
         };
+        let args = match fields {
+            Some(fields) => self.args(Noun::Goal, &opened, &fields, env),
+            None => opened.args.as_deref().unwrap_or_default().iter().map(|a| self.expr(a, env)).collect(),
+        };
+        self.say_ungiven(&call.name.text, ungiven);
         (goal, args)
     }
 }

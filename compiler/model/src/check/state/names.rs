@@ -169,6 +169,27 @@ pub(crate) enum ArgumentMode {
     Input,
 }
 
+/// An argument of a goal that a plan leaves open for the goal to give it a value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct GoalArgument {
+    /// The value is taken: not only `_` stands there.
+    pub wanted: bool,
+    /// It is not given after all, and must have a value.
+    pub ungiving: Option<Ungiving>,
+}
+
+/// Why a goal does not give a value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Ungiving {
+    /// The trigger of the plan that does not.
+    pub plan: Span,
+    /// Where it is wanted.
+    pub call: Span,
+    pub argument: usize,
+    /// The plan reads it before it has a value.
+    pub reads: bool,
+}
+
 /// A goal that some plan achieves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GoalEntry {
@@ -189,6 +210,8 @@ pub(crate) struct AgentNames {
     pub goals: Vec<OrderedMap<String, GoalEntry>>,
     /// By agent and belief: what its rules need of its arguments.
     pub modes: BTreeMap<(u16, u16), Vec<ArgumentMode>>,
+    /// By agent and goal: the arguments that its plans are to give.
+    pub wanted: BTreeMap<(u16, u16), BTreeMap<usize, GoalArgument>>,
 }
 
 impl AgentNames {
@@ -205,6 +228,7 @@ impl AgentNames {
         self.belief_fields.truncate(agents);
         self.goals.truncate(agents);
         self.modes.retain(|(agent, _), _| usize::from(*agent) < agents);
+        self.wanted.retain(|(agent, _), _| usize::from(*agent) < agents);
     }
 }
 
