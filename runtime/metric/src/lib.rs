@@ -20,6 +20,7 @@ mod formula;
 mod robustness;
 mod run;
 mod text;
+mod witness;
 
 pub use engine::piece::SignalPiece;
 pub use evaluator::{MetricEvaluator, MetricOutcome, RobustnessOverTime, robustness_over_time};
@@ -30,3 +31,4 @@ pub use text::{
     CheckedFormula, FormulaError, TextRange, read_formula,
     units::{LITERAL_UNITS, LiteralUnit},
 };
+pub use witness::FormulaWitness;

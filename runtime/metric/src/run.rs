@@ -66,6 +66,12 @@ impl MetricRunner {
         }
     }
 
+    /// The signals of the formula that have had no sample.
+    pub fn unseen(&self) -> impl Iterator<Item = SignalId> + '_ {
+        let places = self.signals.iter().zip(&self.values);
+        places.filter(|(_, value)| value.is_none()).map(|(signal, _)| *signal)
+    }
+
     /// What the run comes to, once it has ended; up to then, what it would come to if it ended with its latest step.
     #[must_use]
     pub fn outcome(mut self) -> MetricOutcome {

@@ -1,8 +1,9 @@
 //! What is wrong with a formula's text.
 
-use std::fmt;
+use std::{fmt, ops::Range};
 
-use super::TextRange;
+/// A part of the text, in bytes.
+pub type TextRange = Range<usize>;
 
 /// What is wrong with a formula, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]

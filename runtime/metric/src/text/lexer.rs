@@ -1,8 +1,7 @@
 //! A formula's text to tokens.
 
 use super::{
-    TextRange,
-    error::FormulaError,
+    error::{FormulaError, TextRange},
     units::{LITERAL_UNITS, LiteralUnit},
 };
 

@@ -4,7 +4,7 @@ use hrdsl_ir::{ArgPattern, Event, EventId, EventPattern, Program, Type, Value, w
 use hrdsl_source::nearest;
 
 use super::{
-    error::FormulaError,
+    error::{FormulaError, TextRange},
     tree::{FormulaTree, TreeKind},
 };
 
@@ -16,11 +16,11 @@ pub(crate) enum Named {
 /// What `released`, `decided(true)` or `distance(a, b)` is.
 pub(crate) fn resolve(program: &Program, text: &str, tree: &FormulaTree) -> Result<Named, FormulaError> {
     let shown = text.get(tree.range.clone()).unwrap_or_default();
-    let (name, inside) = match &tree.kind {
-        TreeKind::Applied { name, inside } => {
-            (text.get(name.clone()).unwrap_or_default(), Some(text.get(inside.clone()).unwrap_or_default()))
-        }
-        _ => (shown, None),
+    let part = |range: &TextRange| text.get(range.clone()).unwrap_or_default();
+    let (name, inside) = if let TreeKind::Applied { name, inside } = &tree.kind {
+        (part(name), Some(part(inside)))
+    } else {
+        (shown, None)
     };
     let event = (0_u16..).zip(&program.events).find(|(_, event)| event.name == name);
     if let Some((index, event)) = event {

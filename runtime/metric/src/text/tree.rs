@@ -1,8 +1,7 @@
 //! Tokens to a tree, by precedence.
 
 use super::{
-    TextRange,
-    error::FormulaError,
+    error::{FormulaError, TextRange},
     lexer::{FormulaToken, FormulaTokenKind, tokens},
     units::LiteralUnit,
 };
@@ -32,9 +31,9 @@ pub(crate) enum TreeKind {
     Not(Box<FormulaTree>),
     Junction(JunctionWord, Box<FormulaTree>, Box<FormulaTree>),
     /// An operator before its operand.
-    Prefix(TemporalWord, Option<WindowTree>, Box<FormulaTree>),
+    Prefix(PrefixWord, Option<WindowTree>, Box<FormulaTree>),
     /// `until`, `since`.
-    Infix(TemporalWord, Option<WindowTree>, Box<FormulaTree>, Box<FormulaTree>),
+    Infix(InfixWord, Option<WindowTree>, Box<FormulaTree>, Box<FormulaTree>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,27 +68,20 @@ pub(crate) enum JunctionWord {
     Implies,
 }
 
+/// Operators that stand before their operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum TemporalWord {
+pub(crate) enum PrefixWord {
     Once,
     Historically,
-    Since,
     Eventually,
     Always,
-    Until,
 }
 
-impl TemporalWord {
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Once => "once",
-            Self::Historically => "historically",
-            Self::Since => "since",
-            Self::Eventually => "eventually",
-            Self::Always => "always",
-            Self::Until => "until",
-        }
-    }
+/// Operators that stand between two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum InfixWord {
+    Since,
+    Until,
 }
 
 /// `[0 s, 10 s]`
@@ -102,19 +94,20 @@ pub(crate) struct WindowTree {
 
 /// What a word means that is no name.
 enum ReservedWord {
-    Temporal(TemporalWord),
+    Prefix(PrefixWord),
+    Infix(InfixWord),
     Junction(JunctionWord),
     Not,
 }
 
 fn reserved(word: &str) -> Option<ReservedWord> {
     Some(match word {
-        "once" | "O" => ReservedWord::Temporal(TemporalWord::Once),
-        "historically" | "H" => ReservedWord::Temporal(TemporalWord::Historically),
-        "since" | "S" => ReservedWord::Temporal(TemporalWord::Since),
-        "eventually" | "F" => ReservedWord::Temporal(TemporalWord::Eventually),
-        "always" | "G" => ReservedWord::Temporal(TemporalWord::Always),
-        "until" | "U" => ReservedWord::Temporal(TemporalWord::Until),
+        "once" | "O" => ReservedWord::Prefix(PrefixWord::Once),
+        "historically" | "H" => ReservedWord::Prefix(PrefixWord::Historically),
+        "since" | "S" => ReservedWord::Infix(InfixWord::Since),
+        "eventually" | "F" => ReservedWord::Prefix(PrefixWord::Eventually),
+        "always" | "G" => ReservedWord::Prefix(PrefixWord::Always),
+        "until" | "U" => ReservedWord::Infix(InfixWord::Until),
         "and" | "&&" => ReservedWord::Junction(JunctionWord::And),
         "or" | "||" => ReservedWord::Junction(JunctionWord::Or),
         "implies" | "->" => ReservedWord::Junction(JunctionWord::Implies),
@@ -223,9 +216,7 @@ impl FormulaParser<'_> {
 
     fn infix(&mut self) -> Parsed {
         let left = self.prefixed()?;
-        let Some(ReservedWord::Temporal(word @ (TemporalWord::Until | TemporalWord::Since))) =
-            reserved(self.next_text())
-        else {
+        let Some(ReservedWord::Infix(word)) = reserved(self.next_text()) else {
             return Ok(left);
         };
         self.at += 1;
@@ -239,12 +230,8 @@ impl FormulaParser<'_> {
         let start = self.next_range().start;
         let word = match reserved(self.next_text()) {
             Some(ReservedWord::Not) => None,
-            Some(ReservedWord::Temporal(word))
-                if !matches!(word, TemporalWord::Until | TemporalWord::Since) =>
-            {
-                Some(word)
-            }
-            Some(ReservedWord::Temporal(_) | ReservedWord::Junction(_)) | None => return self.comparison(),
+            Some(ReservedWord::Prefix(word)) => Some(word),
+            Some(ReservedWord::Infix(_) | ReservedWord::Junction(_)) | None => return self.comparison(),
         };
         self.at += 1;
         self.depth += 1;
