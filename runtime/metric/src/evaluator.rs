@@ -77,6 +77,7 @@ impl MetricEvaluator {
     }
 
     /// From `time` on the atom has this value; for each atom, times are in order and later than the start.
+    #[inline]
     pub fn change(&mut self, atom: usize, time: Nanos, value: Robustness) {
         if let (Some(now), Some(news)) = (self.atoms.get_mut(atom), self.news.get_mut(atom))
             && *now != value
@@ -88,6 +89,7 @@ impl MetricEvaluator {
     }
 
     /// There are no more changes before `known`. They are taken together with later ones, if there are few.
+    #[inline]
     pub fn advance(&mut self, known: Nanos) {
         if self.waiting >= BLOCK {
             self.advance_now(known);

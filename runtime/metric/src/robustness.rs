@@ -24,6 +24,7 @@ impl Robustness {
     }
 
     /// The robustness of `0 < value` if `strict`, otherwise that of `0 <= value`. `None`: the value is no number.
+    #[inline]
     #[must_use]
     pub fn of(value: f64, strict: bool) -> Option<Self> {
         if value.is_nan() {
@@ -34,11 +35,13 @@ impl Robustness {
         Some(if strict && value == 0.0 { !known } else { known })
     }
 
+    #[inline]
     #[must_use]
     pub fn of_truth(truth: bool) -> Self {
         if truth { Self::TRUE } else { Self::FALSE }
     }
 
+    #[inline]
     #[must_use]
     pub fn holds(self) -> bool {
         self.0 >= 0
@@ -51,6 +54,7 @@ impl Robustness {
     }
 
     /// The complement if `mask` is −1, the same if it is 0.
+    #[inline]
     pub(crate) fn masked(self, mask: i64) -> Self {
         Self(self.0 ^ mask)
     }
@@ -59,6 +63,7 @@ impl Robustness {
 impl Not for Robustness {
     type Output = Self;
 
+    #[inline]
     fn not(self) -> Self {
         Self(!self.0)
     }

@@ -23,6 +23,7 @@ impl ShiftedOutput {
     }
 
     /// The value from `time` on, before it is moved.
+    #[inline]
     pub fn put(&mut self, time: Nanos, value: Robustness, out: &mut PieceFeed) {
         if self.last == Some(value) {
             return;

@@ -31,6 +31,7 @@ impl PieceFeed {
     }
 
     /// Pieces come in order. One that has the value of the one before it is none.
+    #[inline]
     pub fn write(&mut self, start: Nanos, value: Robustness) {
         if self.written != Some(value) {
             self.written = Some(value);
@@ -56,10 +57,12 @@ impl PieceFeed {
         self.read = 0;
     }
 
+    #[inline]
     fn next_start(&self) -> Nanos {
         self.pieces.get(self.read).map_or(Nanos::MAX, |p| p.start)
     }
 
+    #[inline]
     fn take(&mut self) {
         if let Some(piece) = self.pieces.get(self.read) {
             self.current = piece.value;
