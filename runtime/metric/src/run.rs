@@ -75,8 +75,15 @@ impl MetricRunner {
     /// What the run comes to, once it has ended; up to then, what it would come to if it ended with its latest step.
     #[must_use]
     pub fn outcome(mut self) -> MetricOutcome {
-        self.close_instant();
         let end = self.end.unwrap_or(self.now);
+        if self.end.is_none() {
+            self.close_instant();
+        }
+        // An event at the very end is over after it, where nothing is known.
+        if self.passing.0 > end {
+            self.passing.1.clear();
+        }
+        self.close_instant();
         self.evaluator.map_or(MetricOutcome::UNSEEN, |evaluator| evaluator.finish(end))
     }
 

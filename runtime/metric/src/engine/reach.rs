@@ -2,7 +2,7 @@
 //!
 //! What a moment makes of the value of what comes after it (of `since`: before it) is r ↦ max(ψ, min(φ, r)). Such maps are closed under composition,
 //! so a window is one of them: the composition of those of its pieces. Two stacks keep it while pieces enter at one end and leave at the
-//! other (Tangwongsan, Hirzel and Schneider 2017). A piece is the same map however long it is, since the map is its own square.
+//! other (Tangwongsan, Hirzel, Schneider 2017). A piece is the same map however long it is, since the map is its own square.
 
 use hrdsl_ir::Nanos;
 
