@@ -3,14 +3,16 @@
 use std::{
     collections::BTreeMap,
     fs::File,
-    io::{BufRead, BufReader, Cursor, Read},
+    io::{self, BufRead, BufReader, Cursor, Read},
     path::{Path, PathBuf},
 };
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
     conformance::ConformanceOptions,
-    judge::{CampaignOutcome, FinishedTest, JudgedRecording, judge_recording, tally},
+    judge::{
+        CampaignOutcome, FinishedTest, JudgedRecording, NamedFormula, UnseenSignal, judge_by_formulas, tally,
+    },
     recording, report,
     results::{
         BinName, BinResult, CampaignResults, ConformanceVerdict, MachineCoverage, MachineResult,
@@ -26,7 +28,7 @@ use crate::{
     fault::CommandFault,
     files, input,
     observation::{ObservationArgs, locate},
-    results_folder, terminal,
+    render, results_folder, terminal,
 };
 
 /// Judge recordings: verdicts, bins and conformance to the model as a campaign gives them, without running anything.
@@ -34,7 +36,7 @@ use crate::{
 /// A recording is a file that `sim` wrote into traces/ or replays/, or that another program wrote in the same form (spec/traces.md).
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json\n  hrdsl judge scenario.hri robot.mcap --latency 50ms"
+    after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json\n  hrdsl judge scenario.hri robot.mcap --latency 50ms\n  hrdsl judge scenario.hri log.jsonl --formula 'always (asked implies eventually[0 s, 10 s] released)'"
 )]
 pub struct JudgeArgs {
     /// The scenario.
@@ -48,6 +50,11 @@ pub struct JudgeArgs {
     /// Judge recordings of another scenario, or of other events and signals, too, as long as every name in them is known.
     #[arg(long)]
     changed: bool,
+    /// Judge by a formula of metric temporal logic, too; may be given several times.
+    ///
+    /// It speaks of the signals and events of the recordings, with windows into the past and the future (spec/metric.md).
+    #[arg(long, value_name = "FORMULA")]
+    formula: Vec<String>,
     #[command(flatten)]
     observation: ObservationArgs,
     /// Exit with 0 even if requirements were violated or runs broke off.
@@ -91,11 +98,16 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
         return Ok(CommandExit::Errors);
     };
     let options = args.observation.options(program)?;
+    let Some(formulas) = formulas(program, &args.formula) else { return Ok(CommandExit::Usage) };
+    let mut unseen: BTreeMap<UnseenSignal, usize> = BTreeMap::new();
     let mut tests = Vec::new();
     let mut refused = 0_usize;
     for path in paths(&args.recordings)? {
-        match judged(program, &path, (args.changed, &options)) {
-            Ok(test) => tests.push(test),
+        match judged((program, &formulas), &path, (args.changed, &options)) {
+            Ok((test, signals)) => {
+                tests.push(test);
+                signals.into_iter().for_each(|signal| *unseen.entry(signal).or_default() += 1);
+            }
             Err(why) => {
                 terminal::say_line(format_args!("error: {}: {why}", terminal::shown(&path)));
                 refused += 1;
@@ -103,7 +115,13 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
         }
     }
     let planned = tests.len() + refused;
-    let outcome = CampaignOutcome { tests, planned, ..CampaignOutcome::default() };
+    for (UnseenSignal { formula, signal }, count) in &unseen {
+        terminal::say_line(format_args!(
+            "warning: {formula}: `{signal}` has no sample in {count} of {} recordings, which say nothing about it",
+            tests.len()
+        ));
+    }
+    let outcome = CampaignOutcome { tests, planned, formulas, ..CampaignOutcome::default() };
     let mut results = tally(program, 0, &[], outcome, &BTreeMap::new(), String::new());
     locate(&mut results, &compilation);
     if args.json {
@@ -162,13 +180,28 @@ pub(super) fn opened(path: &Path) -> Result<Box<dyn BufRead>, CommandFault> {
     }
 }
 
-/// What a recording shows, as the result of its test.
+/// The formulas of the command line. What is wrong with them is said; then there are none.
+fn formulas(program: &Program, texts: &[String]) -> Option<Vec<NamedFormula>> {
+    let mut formulas = Vec::new();
+    for (number, text) in texts.iter().enumerate() {
+        let name = format!("formula {}", number + 1);
+        match NamedFormula::read(program, name.clone(), text) {
+            Ok(formula) => formulas.push(formula),
+            Err(error) => terminal::say(render::formula(&name, text, &error)),
+        }
+    }
+    (formulas.len() == texts.len()).then_some(formulas)
+}
+
+/// What a recording shows, as the result of its test; and which signals of formulas it does not have.
 fn judged(
-    program: &Program,
+    (program, formulas): (&Program, &[NamedFormula]),
     path: &Path,
     (changed, options): (bool, &ConformanceOptions),
-) -> Result<FinishedTest, CommandFault> {
-    let judged = judge_recording(program, opened(path)?, changed, options).map_err(|e| e.to_string())?;
+) -> Result<(FinishedTest, Vec<UnseenSignal>), CommandFault> {
+    let again = || opened(path).map_err(io::Error::other);
+    let (judged, unseen) =
+        judge_by_formulas((program, formulas), &again, changed, options).map_err(|e| e.to_string())?;
     let duration = judged.duration();
     let JudgedRecording { recorded, judgement, machines } = judged;
     // What is no test is called as its file is.
@@ -191,7 +224,7 @@ fn judged(
         judgement,
         ..TestResult::default()
     };
-    Ok(FinishedTest { result, machines, ..FinishedTest::default() })
+    Ok((FinishedTest { result, machines, ..FinishedTest::default() }, unseen))
 }
 
 fn json(results: &CampaignResults) -> Result<String, CommandFault> {

@@ -2,12 +2,14 @@
 
 mod diff;
 mod excerpt;
+mod formula;
 mod human;
 mod json;
 mod page;
 mod sarif;
 
 pub use diff::unified;
+pub use formula::formula;
 pub use human::{SHOWN, diagnostic, totals};
 pub use json::document as json;
 pub use page::terminal as page;

@@ -240,7 +240,7 @@ impl CampaignSetup<'_> {
         let tests: Vec<PortedTest> = results.into_iter().flatten().collect();
         let warnings = interfaces::warnings(self.system.binding.as_ref(), &tests);
         let tests = tests.into_iter().map(|test| test.finished).collect();
-        CampaignOutcome { tests, planned, interrupted, warnings }
+        CampaignOutcome { tests, planned, interrupted, warnings, ..CampaignOutcome::default() }
     }
 
     fn next_test(&self, tests: &[Test], next: &AtomicUsize) -> Option<usize> {

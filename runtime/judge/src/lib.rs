@@ -8,9 +8,10 @@
 //! 2. the trace is shown to it, step by step ([`TraceObserver`]), in memory that does not grow with the trace;
 //! 3. [`TraceJudge::finish`] gives the [`TraceJudgement`], and what the state machines of the system consist of.
 //!
-//! [`judge_recording`] does all three with a recording, which it reads in one pass. [`tally`] adds up the tests that were judged.
+//! [`judge_recording`] does all three with a recording, which it reads in one pass; [`judge_by_formulas`] judges one by [`NamedFormula`]s, too. [`tally`] adds up the tests that were judged.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
+mod formula;
 mod machines;
 mod recording;
 mod tally;
@@ -24,7 +25,11 @@ use hrdsl_results::{
 };
 use hrdsl_trace::{MachineDeclaration, RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
 
-pub use recording::{JudgeError, JudgedRecording, judge_recording, recorded_run};
+pub use formula::NamedFormula;
+pub use hrdsl_metric::FormulaError;
+pub use recording::{
+    JudgeError, JudgedRecording, UnseenSignal, judge_by_formulas, judge_recording, recorded_run,
+};
 pub use tally::{CampaignOutcome, FinishedTest, tally};
 
 /// Judges one trace.
@@ -103,12 +108,7 @@ fn verdict_result(program: &Program, verdict: &MonitorVerdict) -> VerdictResult 
     let unit = monitor.margin.as_ref().map_or("", |m| m.unit.symbol());
     VerdictResult {
         requirement: monitor.name.as_str().into(),
-        outcome: match verdict.outcome {
-            MonitorOutcome::Pass => VerdictOutcome::Pass,
-            MonitorOutcome::Fail => VerdictOutcome::Fail,
-            MonitorOutcome::Vacuous => VerdictOutcome::Vacuous,
-            MonitorOutcome::Inconclusive => VerdictOutcome::Inconclusive,
-        },
+        outcome: outcome_of(verdict.outcome),
         triggered: verdict.triggered,
         failures: verdict.failures,
         failure: failure(program, verdict),
@@ -118,16 +118,30 @@ fn verdict_result(program: &Program, verdict: &MonitorVerdict) -> VerdictResult 
 
 fn failure(program: &Program, verdict: &MonitorVerdict) -> Option<FirstFailure> {
     let violation = verdict.first_failure.as_ref()?;
-    let step = |seen: &SeenStep| {
-        let (who, what) = print::who_did_what(program, &seen.step.what);
-        CounterexampleStep { step: seen.index, time: seconds(seen.step.time), text: format!("{who} {what}") }
-    };
-    let mut counterexample: Vec<CounterexampleStep> = violation.counterexample.iter().map(step).collect();
-    counterexample.sort_by_key(|w| w.step);
     Some(FirstFailure {
         time: seconds(violation.time),
         triggered_at: seconds(violation.trigger_time),
         deadline: violation.step.is_none(),
-        counterexample,
+        counterexample: counterexample(program, &violation.counterexample),
     })
+}
+
+fn outcome_of(outcome: MonitorOutcome) -> VerdictOutcome {
+    match outcome {
+        MonitorOutcome::Pass => VerdictOutcome::Pass,
+        MonitorOutcome::Fail => VerdictOutcome::Fail,
+        MonitorOutcome::Vacuous => VerdictOutcome::Vacuous,
+        MonitorOutcome::Inconclusive => VerdictOutcome::Inconclusive,
+    }
+}
+
+/// Steps as they are told, in order.
+fn counterexample(program: &Program, steps: &[SeenStep]) -> Vec<CounterexampleStep> {
+    let step = |seen: &SeenStep| {
+        let (who, what) = print::who_did_what(program, &seen.step.what);
+        CounterexampleStep { step: seen.index, time: seconds(seen.step.time), text: format!("{who} {what}") }
+    };
+    let mut counterexample: Vec<CounterexampleStep> = steps.iter().map(step).collect();
+    counterexample.sort_by_key(|w| w.step);
+    counterexample
 }

@@ -3,17 +3,20 @@
 use std::io::BufRead;
 
 use hrdsl_conformance::ConformanceOptions;
-use hrdsl_ir::{Program, value::seconds};
+use hrdsl_ir::{Nanos, Program, value::seconds};
 use hrdsl_results::TraceJudgement;
 use hrdsl_trace::{
-    MachineDeclaration, RunEnd, Trace, TraceObserver,
+    MachineDeclaration, RunEnd, Trace, TraceObserver, TraceStep,
     parse::{OpenRecording, ReadError, RecordingSummary},
     record::RecordingHeader,
     vocabulary,
 };
 use thiserror::Error;
 
-use crate::TraceJudge;
+use crate::{
+    TraceJudge,
+    formula::{FormulaJudge, JudgedFormula, NamedFormula, bear_out},
+};
 
 /// A recording with the judgement on it.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +69,72 @@ pub fn judge_recording(
     let recorded = observe(program, source, changed, &mut judge)?;
     let (judgement, machines) = judge.finish(recorded.ending.kind);
     Ok(JudgedRecording { recorded, judgement, machines })
+}
+
+/// A signal of a formula that has no sample in a recording, by their names.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct UnseenSignal {
+    pub formula: String,
+    pub signal: String,
+}
+
+/// The same, by formulas, too, whose verdicts come behind those of the requirements. `source` gives the recording again each time that it is asked:
+/// only when a violation is known, the steps that bear it out can be looked for.
+///
+/// # Errors
+/// A recording of another scenario, and the first line that is wrong.
+pub fn judge_by_formulas<R: BufRead>(
+    (program, formulas): (&Program, &[NamedFormula]),
+    source: &dyn Fn() -> std::io::Result<R>,
+    changed: bool,
+    options: &ConformanceOptions,
+) -> Result<(JudgedRecording, Vec<UnseenSignal>), JudgeError> {
+    let reopened = || source().map_err(ReadError::Io);
+    let mut judges = JudgesBesides {
+        judge: TraceJudge::new(program, options),
+        formulas: formulas.iter().map(FormulaJudge::new).collect(),
+    };
+    let recorded = observe(program, reopened()?, changed, &mut judges)?;
+    let ended = recorded.ending.kind;
+    let (mut judgement, machines) = judges.judge.finish(ended);
+    let (mut verdicts, mut unseen) = (Vec::new(), Vec::new());
+    for (named, judge) in formulas.iter().zip(judges.formulas) {
+        let JudgedFormula { mut verdict, first_failure, unseen: signals } = judge.finish();
+        if let Some(time) = first_failure {
+            let mut witness = named.witness(time);
+            observe(program, reopened()?, changed, &mut witness)?;
+            bear_out(program, &mut verdict, &witness.steps());
+        }
+        verdicts.push(verdict);
+        let named_signals = signals.iter().filter_map(|s| program.signals.get(usize::from(s.0)));
+        unseen.extend(
+            named_signals
+                .map(|signal| UnseenSignal { formula: named.name.clone(), signal: signal.name.clone() }),
+        );
+    }
+    judgement.verdicts.extend(verdicts);
+    if ended == RunEnd::Error {
+        judgement.break_off();
+    }
+    Ok((JudgedRecording { recorded, judgement, machines }, unseen))
+}
+
+/// The judge of a trace, and formulas besides.
+struct JudgesBesides<'p> {
+    judge: TraceJudge<'p>,
+    formulas: Vec<FormulaJudge<'p>>,
+}
+
+impl TraceObserver for JudgesBesides<'_> {
+    fn step(&mut self, index: usize, step: &TraceStep) {
+        self.judge.step(index, step);
+        self.formulas.iter_mut().for_each(|formula| formula.step(index, step));
+    }
+
+    fn end(&mut self, time: Nanos) {
+        self.judge.end(time);
+        self.formulas.iter_mut().for_each(|formula| formula.end(time));
+    }
 }
 
 /// What a recording has, and how its run ended, without a judgement; `changed` as in [`judge_recording`].

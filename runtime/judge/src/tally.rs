@@ -2,7 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use hrdsl_ir::{Program, coverage::BinName, monitor::Monitor};
+use hrdsl_ir::{
+    Program,
+    coverage::BinName,
+    monitor::{Monitor, RequirementKind},
+};
 use hrdsl_results::{
     BinResult, CampaignResults, CodeFile, CoverageRatios, FORMAT, FileCoverage, GeneratedSuite, GoalStatus,
     InterfaceWarning, RequirementResult, SmallestMargin, SuiteGoalId, SuiteInfo, SuiteName, TestMethod,
@@ -11,7 +15,7 @@ use hrdsl_results::{
 
 use hrdsl_trace::MachineDeclaration;
 
-use crate::machines::machines;
+use crate::{formula::NamedFormula, machines::machines};
 
 /// A finished test, with the code of the system under test that it executed.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +35,8 @@ pub struct CampaignOutcome {
     pub interrupted: bool,
     /// Names of the middleware at which somebody was alone in every test.
     pub warnings: Vec<InterfaceWarning>,
+    /// What judged the tests beside the requirements, in the order of the verdicts behind theirs.
+    pub formulas: Vec<NamedFormula>,
 }
 
 /// Puts the results of a campaign together. `sources` are the texts of the measured files, by name; `rerun` is the command that
@@ -44,7 +50,7 @@ pub fn tally(
     sources: &BTreeMap<String, String>,
     rerun: String,
 ) -> CampaignResults {
-    let CampaignOutcome { tests, planned, interrupted, warnings } = outcome;
+    let CampaignOutcome { tests, planned, interrupted, warnings, formulas } = outcome;
     let suites = suites(generated, &tests);
     let place: SuiteOrder<'_> = suites.iter().enumerate().map(|(i, s)| (&s.name, i)).collect();
     CampaignResults {
@@ -58,7 +64,7 @@ pub fn tally(
         rerun,
         view: String::new(),
         unreplayed: Vec::new(),
-        requirements: requirements(program, &tests, &place),
+        requirements: requirements((program, &formulas), &tests, &place),
         bins: bins(program, generated, &tests, &place),
         code: code(&tests, sources, &place),
         machines: machines(&tests, suites.len(), |t| place.get(&t.result.suite).copied().unwrap_or(0)),
@@ -71,7 +77,11 @@ pub fn tally(
 /// Where each suite stands.
 type SuiteOrder<'a> = BTreeMap<&'a SuiteName, usize>;
 
-fn requirements(program: &Program, tests: &[FinishedTest], place: &SuiteOrder<'_>) -> Vec<RequirementResult> {
+fn requirements(
+    (program, formulas): (&Program, &[NamedFormula]),
+    tests: &[FinishedTest],
+    place: &SuiteOrder<'_>,
+) -> Vec<RequirementResult> {
     let empty = |m: &Monitor| RequirementResult {
         name: m.name.as_str().into(),
         kind: m.kind,
@@ -81,7 +91,18 @@ fn requirements(program: &Program, tests: &[FinishedTest], place: &SuiteOrder<'_
         failing: Vec::new(),
         worst_margin: None,
     };
-    let mut requirements: Vec<RequirementResult> = program.monitors.iter().map(empty).collect();
+    let besides = |formula: &NamedFormula| RequirementResult {
+        name: formula.name.as_str().into(),
+        kind: RequirementKind::Functional,
+        // It has no other words.
+        title: formula.text.clone(),
+        text: formula.text.clone(),
+        tally: vec![VerdictTally::default(); place.len()],
+        failing: Vec::new(),
+        worst_margin: None,
+    };
+    let mut requirements: Vec<RequirementResult> =
+        program.monitors.iter().map(empty).chain(formulas.iter().map(besides)).collect();
     for test in tests.iter().map(|t| &t.result) {
         let suite = place.get(&test.suite).copied().unwrap_or(0);
         for (requirement, verdict) in requirements.iter_mut().zip(&test.judgement.verdicts) {

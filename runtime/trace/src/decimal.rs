@@ -22,6 +22,29 @@ pub fn seconds(time: Nanos) -> String {
 /// `None`: it is no such number, or too large.
 #[must_use]
 pub fn nanos(text: &str) -> Option<Nanos> {
+    short_nanos(text).or_else(|| long_nanos(text))
+}
+
+/// Numbers of a few digits without sign and exponent, which nearly all are.
+fn short_nanos(text: &str) -> Option<Nanos> {
+    let (mut value, mut places, mut is_fraction) = (0_i64, 0_u32, false);
+    if text.len() > 17 || !text.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    for byte in text.bytes() {
+        match byte {
+            b'0'..=b'9' => {
+                value = value * 10 + i64::from(byte - b'0');
+                places += u32::from(is_fraction);
+            }
+            b'.' if !is_fraction => is_fraction = true,
+            _ => return None,
+        }
+    }
+    value.checked_mul(10_i64.checked_pow(9_u32.checked_sub(places)?)?)
+}
+
+fn long_nanos(text: &str) -> Option<Nanos> {
     let (negative, text) = text.strip_prefix('-').map_or((false, text), |rest| (true, rest));
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),

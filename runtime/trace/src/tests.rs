@@ -48,7 +48,7 @@ fn symbol(name: &str) -> Value {
     Value::Symbol(Symbol::intern(name))
 }
 
-fn program() -> Program {
+pub(crate) fn program() -> Program {
     let actor = |name: &str, role| Actor { name: name.to_owned(), role, origin: Span::default() };
     let sensed =
         [("gaze", Type::Bool), ("legs", Type::Int { lo: 0, hi: 4 }), ("far", Type::Float(Unit::Metre))];

@@ -174,3 +174,11 @@ fn the_contents_of_the_book() {
     }
     same("spec/SUMMARY.md", &old, &new);
 }
+
+/// Literals of metric formulas have the units of the language.
+#[test]
+fn formulas_have_all_units() {
+    let of_language = UNITS.iter().map(|u| (u.symbol, u.dim.unit(), u.to_si(55.55)));
+    let of_formulas = hrdsl_metric::LITERAL_UNITS.iter().map(|u| (u.symbol, u.si, u.to_si(55.55)));
+    assert_eq!(of_formulas.collect::<Vec<_>>(), of_language.collect::<Vec<_>>());
+}

@@ -1,0 +1,123 @@
+//! Atoms: what a formula reads of signals and events, as robustness.
+
+use hrdsl_ir::{EventPattern, Value};
+
+use crate::robustness::Robustness;
+
+/// A number made of signals, in SI units. A signal is a place among those that the formula reads.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum NumberTerm {
+    Constant(f64),
+    Signal(usize),
+    Negative(Box<NumberTerm>),
+    Absolute(Box<NumberTerm>),
+    Binary(NumberOperator, Box<NumberTerm>, Box<NumberTerm>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NumberOperator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Min,
+    Max,
+}
+
+impl NumberTerm {
+    /// `None`: a signal has no value yet. What cannot be computed is NaN.
+    fn value(&self, signals: &[Option<Value>]) -> Option<f64> {
+        Some(match self {
+            Self::Constant(number) => *number,
+            Self::Signal(signal) => signals.get(*signal).copied().flatten()?.as_f64()?,
+            Self::Negative(a) => -a.value(signals)?,
+            Self::Absolute(a) => a.value(signals)?.abs(),
+            Self::Binary(operator, a, b) => {
+                let (a, b) = (a.value(signals)?, b.value(signals)?);
+                match operator {
+                    NumberOperator::Add => a + b,
+                    NumberOperator::Subtract => a - b,
+                    NumberOperator::Multiply => a * b,
+                    NumberOperator::Divide if b == 0.0 => f64::NAN,
+                    NumberOperator::Divide => a / b,
+                    NumberOperator::Min | NumberOperator::Max if a.is_nan() || b.is_nan() => f64::NAN,
+                    NumberOperator::Min => a.min(b),
+                    NumberOperator::Max => a.max(b),
+                }
+            }
+        })
+    }
+
+    fn each_signal(&self, f: &mut dyn FnMut(usize)) {
+        match self {
+            Self::Constant(_) => {}
+            Self::Signal(signal) => f(*signal),
+            Self::Negative(a) | Self::Absolute(a) => a.each_signal(f),
+            Self::Binary(_, a, b) => {
+                a.each_signal(f);
+                b.each_signal(f);
+            }
+        }
+    }
+}
+
+/// What an atom is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum AtomSource {
+    /// The first is less than the second, or, unless `strict`, as great.
+    Less {
+        least: NumberTerm,
+        most: NumberTerm,
+        strict: bool,
+    },
+    Equal {
+        left: NumberTerm,
+        right: NumberTerm,
+        negated: bool,
+    },
+    /// A signal is true.
+    Truth(usize),
+    /// A signal has this value.
+    Is {
+        signal: usize,
+        value: Value,
+        negated: bool,
+    },
+    /// One of these events happens.
+    Happens(EventPattern),
+}
+
+impl AtomSource {
+    /// `None`: it has no value, or none yet. An event does not happen.
+    pub fn robustness(&self, signals: &[Option<Value>]) -> Option<Robustness> {
+        match self {
+            Self::Less { least, most, strict } => {
+                Robustness::of(most.value(signals)? - least.value(signals)?, *strict)
+            }
+            Self::Equal { left, right, negated } => {
+                let apart = Robustness::of((left.value(signals)? - right.value(signals)?).abs(), true)?;
+                Some(if *negated { apart } else { !apart })
+            }
+            Self::Truth(signal) => {
+                signals.get(*signal).copied().flatten()?.as_bool().map(Robustness::of_truth)
+            }
+            Self::Is { signal, value, negated } => {
+                let is = signals.get(*signal).copied().flatten()?.key() == value.key();
+                Some(Robustness::of_truth(is != *negated))
+            }
+            Self::Happens(_) => Some(Robustness::FALSE),
+        }
+    }
+
+    /// Each signal that it reads.
+    pub fn each_signal(&self, f: &mut dyn FnMut(usize)) {
+        match self {
+            Self::Less { least: a, most: b, .. } | Self::Equal { left: a, right: b, .. } => {
+                a.each_signal(f);
+                b.each_signal(f);
+            }
+            Self::Truth(signal) | Self::Is { signal, .. } => f(*signal),
+            Self::Happens(_) => {}
+        }
+    }
+}

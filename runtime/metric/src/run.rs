@@ -1,0 +1,174 @@
+//! A formula over a trace: samples and events to atoms, moment by moment.
+
+use hrdsl_ir::{EventId, Nanos, Value, world::SignalId};
+use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
+
+use crate::{
+    atom::AtomSource,
+    evaluator::{MetricEvaluator, MetricOutcome},
+    formula::MetricGoal,
+    robustness::Robustness,
+    text::CheckedFormula,
+};
+
+/// A formula at work on one trace, in memory for what its windows hold.
+#[derive(Clone, Debug)]
+pub struct MetricRunner {
+    goal: MetricGoal,
+    atoms: Vec<AtomSource>,
+    signals: Vec<SignalId>,
+    /// The latest sample of each of them.
+    values: Vec<Option<Value>>,
+    /// For each signal, the atoms that read it.
+    readers: Vec<Vec<usize>>,
+    /// Those that are events.
+    events: Vec<usize>,
+    /// Atoms of which a signal has a new sample at this instant, and events that happen at it.
+    touched: Vec<usize>,
+    happening: Vec<usize>,
+    /// The instant that is being shown.
+    now: Nanos,
+    /// Events that happened at the instant before, and when they are over.
+    passing: (Nanos, Vec<usize>),
+    evaluator: Option<MetricEvaluator>,
+    end: Option<Nanos>,
+}
+
+impl MetricRunner {
+    #[must_use]
+    pub fn new(formula: &CheckedFormula) -> Self {
+        let CheckedFormula { goal, atoms, signals, .. } = formula;
+        let mut readers = vec![Vec::new(); signals.len()];
+        for (index, atom) in atoms.iter().enumerate() {
+            atom.each_signal(&mut |signal| {
+                if let Some(of) = readers.get_mut(signal)
+                    && of.last() != Some(&index)
+                {
+                    of.push(index);
+                }
+            });
+        }
+        let is_event =
+            |(index, atom): (usize, &AtomSource)| matches!(atom, AtomSource::Happens(_)).then_some(index);
+        Self {
+            goal: goal.clone(),
+            atoms: atoms.clone(),
+            signals: signals.clone(),
+            values: vec![None; signals.len()],
+            readers,
+            events: atoms.iter().enumerate().filter_map(is_event).collect(),
+            touched: Vec::new(),
+            happening: Vec::new(),
+            now: 0,
+            passing: (0, Vec::new()),
+            evaluator: None,
+            end: None,
+        }
+    }
+
+    /// The signals of the formula that have had no sample.
+    pub fn unseen(&self) -> impl Iterator<Item = SignalId> + '_ {
+        let places = self.signals.iter().zip(&self.values);
+        places.filter(|(_, value)| value.is_none()).map(|(signal, _)| *signal)
+    }
+
+    /// What the run comes to, once it has ended; up to then, what it would come to if it ended with its latest step.
+    #[must_use]
+    pub fn outcome(mut self) -> MetricOutcome {
+        let end = self.end.unwrap_or(self.now);
+        if self.end.is_none() {
+            self.close_instant();
+        }
+        // An event at the very end is over after it, where nothing is known.
+        if self.passing.0 > end {
+            self.passing.1.clear();
+        }
+        self.close_instant();
+        self.evaluator.map_or(MetricOutcome::UNSEEN, |evaluator| evaluator.finish(end))
+    }
+
+    fn event(&mut self, event: EventId, args: &[Value]) {
+        for &index in &self.events {
+            let matches = |atom: &AtomSource| match atom {
+                AtomSource::Happens(pattern) => pattern.matches(event, args),
+                AtomSource::Less { .. }
+                | AtomSource::Equal { .. }
+                | AtomSource::Truth(_)
+                | AtomSource::Is { .. } => false,
+            };
+            if self.atoms.get(index).is_some_and(matches) && !self.happening.contains(&index) {
+                self.happening.push(index);
+            }
+        }
+    }
+
+    fn sample(&mut self, signal: SignalId, value: Value) {
+        for (place, of) in self.signals.iter().enumerate() {
+            if *of == signal {
+                if let Some(known) = self.values.get_mut(place) {
+                    *known = Some(value);
+                }
+                self.touched.extend(self.readers.get(place).into_iter().flatten());
+            }
+        }
+    }
+
+    /// All that happened at this instant is known.
+    fn close_instant(&mut self) {
+        if self.evaluator.is_none() {
+            self.begin();
+        }
+        let Self { evaluator, touched, happening, passing, now, .. } = self;
+        if let Some(evaluator) = evaluator {
+            for index in passing.1.drain(..) {
+                // An event that happens in the next nanosecond, too, goes on.
+                if passing.0 < *now || !happening.contains(&index) {
+                    evaluator.change(index, passing.0, Robustness::FALSE);
+                }
+            }
+            for index in touched.drain(..) {
+                // What has no value stays as it was.
+                if let Some(value) = self.atoms.get(index).and_then(|a| a.robustness(&self.values)) {
+                    evaluator.change(index, *now, value);
+                }
+            }
+            happening.iter().for_each(|index| evaluator.change(*index, *now, Robustness::TRUE));
+            evaluator.advance(now.saturating_add(1));
+            *passing = (now.saturating_add(1), std::mem::take(happening));
+        }
+        touched.clear();
+        happening.clear();
+    }
+
+    /// The first moment, if all signals have values. Without signals it is 0.
+    fn begin(&mut self) {
+        let start = if self.signals.is_empty() { 0 } else { self.now };
+        let happens = |index: usize| start == self.now && self.happening.contains(&index);
+        let values = self.atoms.iter().enumerate().map(|(index, atom)| {
+            if happens(index) { Some(Robustness::TRUE) } else { atom.robustness(&self.values) }
+        });
+        if let Some(values) = values.collect::<Option<Vec<_>>>() {
+            self.evaluator = Some(MetricEvaluator::new(&self.goal, start, &values));
+        }
+    }
+}
+
+impl TraceObserver for MetricRunner {
+    fn step(&mut self, _: usize, step: &TraceStep) {
+        if step.time > self.now {
+            self.close_instant();
+            self.now = step.time;
+        }
+        match &step.what {
+            TraceStepKind::Event { event, args } => self.event(*event, args),
+            TraceStepKind::Sample { signal, value } => self.sample(*signal, *value),
+            TraceStepKind::Machine(_) => {}
+        }
+    }
+
+    fn end(&mut self, time: Nanos) {
+        self.close_instant();
+        self.now = self.now.max(time);
+        self.end = Some(self.now);
+    }
+}
