@@ -60,7 +60,7 @@ fn changes(
     let change = |edit: &hrdsl_source::TextEdit| {
         let source = project.source(compilation, edit.span.file)?;
         let range = edit.span.range();
-        project.sources[source].text.get(range.clone())?;
+        project.sources[source].text().get(range.clone())?;
         Some(SourceEdit { source, start: range.start, end: range.end, text: edit.text.clone() })
     };
     let changes: Option<Vec<SourceEdit>> = fix.edits.iter().map(change).collect();
@@ -95,9 +95,14 @@ impl ChosenEdits {
     }
 
     fn apply(self, project: &mut CheckedProject) {
+        let mut texts: BTreeMap<usize, String> = BTreeMap::new();
         // From the back, so that the places of the others stay.
         for ((source, _), change) in self.changes.into_iter().rev() {
-            project.sources[source].text.replace_range(change.start..change.end, &change.text);
+            let text = texts.entry(source).or_insert_with(|| project.sources[source].text().to_owned());
+            text.replace_range(change.start..change.end, &change.text);
+        }
+        for (source, text) in texts {
+            project.sources[source].rewrite(text);
         }
     }
 }

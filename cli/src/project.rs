@@ -56,7 +56,6 @@ pub struct ProjectSource {
     pub path: Option<PathBuf>,
     /// As it is shown.
     pub name: String,
-    pub text: String,
     parsed: ParsedFile,
     pub kind: SourceKind,
     /// Given on the command line by itself, not found in a folder.
@@ -137,7 +136,7 @@ impl CheckedProject {
     /// Compiles one unit.
     #[must_use]
     pub fn compile(&self, unit: &CompilationUnit) -> CompilationResult {
-        let input = |i: usize| InputFile { name: &self.sources[i].name, text: &self.sources[i].text };
+        let input = |i: usize| InputFile { name: &self.sources[i].name, text: self.sources[i].text() };
         let tests: Vec<InputFile<'_>> = unit.tests.iter().map(|i| input(*i)).collect();
         let head = self.sources[unit.head].path.as_deref();
         let folder = head.map_or(PathBuf::from("."), files::folder);
@@ -147,8 +146,8 @@ impl CheckedProject {
         };
         let systems: Vec<String> = unit.systems.iter().filter_map(system).collect();
         let systems: Vec<&str> = systems.iter().map(String::as_str).collect();
-        let parsed = self.sources[unit.head].parsed.clone();
-        compile_parsed(input(unit.head), parsed, &tests, &systems, &DiskModules::of(head))
+        let ProjectSource { name, parsed, .. } = &self.sources[unit.head];
+        compile_parsed(name, parsed.clone(), &tests, &systems, &DiskModules::of(head))
     }
 
     /// The source that is this file of a compilation; `None` for the modules that come with hrdsl.
@@ -162,15 +161,25 @@ impl CheckedProject {
 impl ProjectSource {
     fn new(path: Option<PathBuf>, text: String, named: bool) -> Self {
         let name = path.as_ref().map_or("<stdin>".to_owned(), |p| p.display().to_string());
-        let parsed = ParsedFile::of(&text);
-        let syntax = &*parsed.syntax;
+        let parsed = ParsedFile::of(text);
+        let syntax = parsed.syntax();
         let said = kind_of(syntax);
         // Without a place a system cannot be seen from a scenario's folder.
         let is_lost = path.is_none() && matches!(said, SourceKind::System);
         let kind = if is_lost { SourceKind::Module } else { said };
         let uses = used_files(syntax, &path.as_ref().map_or(PathBuf::from("."), |p| files::folder(p)));
         let place = path.as_ref().and_then(|p| p.canonicalize().ok());
-        Self { path, name, text, parsed, kind, named, place, uses }
+        Self { path, name, parsed, kind, named, place, uses }
+    }
+
+    #[must_use]
+    pub fn text(&self) -> &str {
+        self.parsed.text()
+    }
+
+    /// Puts another text in place of this one.
+    pub fn rewrite(&mut self, text: String) {
+        self.parsed = ParsedFile::of(text);
     }
 
     fn is_at(&self, place: &Path) -> bool {

@@ -45,16 +45,27 @@ pub struct InputFile<'a> {
 /// reading it again.
 #[derive(Clone, Debug)]
 pub struct ParsedFile {
-    pub syntax: Arc<ast::FileSyntax>,
+    text: String,
+    syntax: Arc<ast::FileSyntax>,
     /// What is wrong with the text.
     diagnostics: Vec<Diagnostic>,
 }
 
 impl ParsedFile {
     #[must_use]
-    pub fn of(text: &str) -> ParsedFile {
-        let (syntax, diagnostics) = parse(FileId(0), text);
-        ParsedFile { syntax: Arc::new(syntax), diagnostics }
+    pub fn of(text: String) -> ParsedFile {
+        let (syntax, diagnostics) = parse(FileId(0), &text);
+        ParsedFile { text, syntax: Arc::new(syntax), diagnostics }
+    }
+
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    #[must_use]
+    pub fn syntax(&self) -> &ast::FileSyntax {
+        &self.syntax
     }
 }
 
@@ -139,22 +150,22 @@ pub fn compile_beside(
     beside: &[&str],
     loader: &dyn ModuleLoader,
 ) -> CompilationResult {
-    compile_parsed(scenario, ParsedFile::of(scenario.text), tests, beside, loader)
+    compile_parsed(scenario.name, ParsedFile::of(scenario.text.to_owned()), tests, beside, loader)
 }
 
 /// The same, of a scenario whose text has been read.
 #[must_use]
 pub fn compile_parsed(
-    scenario: InputFile<'_>,
-    parsed: ParsedFile,
+    name: &str,
+    scenario: ParsedFile,
     tests: &[InputFile<'_>],
     beside: &[&str],
     loader: &dyn ModuleLoader,
 ) -> CompilationResult {
     let mut files = SourceFiles::default();
-    files.add(scenario.name, scenario.text);
-    let mut ast = vec![parsed.syntax];
-    let mut diagnostics = parsed.diagnostics;
+    files.add(name, scenario.text);
+    let mut ast = vec![scenario.syntax];
+    let mut diagnostics = scenario.diagnostics;
     for input in tests {
         let id = files.add(input.name, input.text);
         let (file, issues) = hrdsl_syntax::parse(id, input.text);

@@ -212,7 +212,11 @@ fn fault(o: &Occurrence, wrong: &str) -> Option<String> {
         Place::Use if SCENARIO[..o.at].ends_with("plan +!") => {
             c.diagnostics.iter().any(|d| covers(d) && offers(d, &o.text) || !covers(d) && offers(d, wrong))
         }
-        Place::Use => c.diagnostics.iter().any(|d| d.is_error() && covers(d) && offers(d, &o.text)),
+        // In a goal it may be what that is to give.
+        Place::Use => {
+            let unread = |d: &Diagnostic| d.code == hrdsl_source::DiagnosticCode::UNUSED;
+            c.diagnostics.iter().any(|d| (d.is_error() || unread(d)) && covers(d) && offers(d, &o.text))
+        }
         Place::Declaration => {
             let at_use =
                 |d: &Diagnostic| !covers(d) && (offers(d, wrong) || c.files.text(d.span()) == o.text);

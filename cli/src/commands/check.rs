@@ -136,9 +136,9 @@ fn apply_fixes(project: &mut CheckedProject) -> Result<(), CommandFault> {
     let before = project.clone();
     let applied = fix::apply(project);
     let mut files = 0;
-    for (old, new) in before.sources.iter().zip(&project.sources).filter(|(a, b)| a.text != b.text) {
+    for (old, new) in before.sources.iter().zip(&project.sources).filter(|(a, b)| a.text() != b.text()) {
         if let Some(path) = &old.path {
-            files::replace(path, &new.text)?;
+            files::replace(path, new.text())?;
             files += 1;
         }
     }
@@ -162,7 +162,7 @@ fn difference(project: &CheckedProject) -> String {
     let mut fixed = project.clone();
     fix::apply(&mut fixed);
     let pairs = project.sources.iter().zip(&fixed.sources);
-    pairs.map(|(old, new)| render::unified(&old.name, &old.text, &new.text, color::stdout_has())).collect()
+    pairs.map(|(old, new)| render::unified(&old.name, old.text(), new.text(), color::stdout_has())).collect()
 }
 
 /// What was found, on stderr: of each file so much.

@@ -69,6 +69,22 @@ pub(crate) fn rule_needs(name: &str, index: usize, span: Span) -> Diagnostic {
         .help("bind it first, by a belief or with `X = …`")
 }
 
+/// HR0107: a variable that a goal gives a value to, which nothing reads.
+pub(crate) fn given_unread<'a>(
+    name: &str,
+    span: Span,
+    others: impl IntoIterator<Item = &'a str>,
+) -> Diagnostic {
+    let message = format!("nothing reads `{name}`, to which the goal gives a value");
+    let warning = Diagnostic::warning(DiagnosticCode::UNUSED, span, message);
+    let others: Vec<&str> = others.into_iter().collect();
+    if nearest(name, others.iter().copied()).is_some() {
+        with_nearest(warning, Noun::Variable, name, others)
+    } else {
+        warning.help("write `_` if the value does not matter")
+    }
+}
+
 /// HR0401 of a goal's argument: why the goal does not give it a value.
 pub(crate) fn not_given(issue: &mut Diagnostic, goal: &str, argument: usize, plan: Span, reads: bool) {
     let at = argument + 1;

@@ -26,7 +26,7 @@ const TOUCHING: f64 = 1e-4;
 /// is light takes a blow, and turns, within it.
 pub(super) const WAY: f64 = 1.25e-3;
 /// The most parts that rigid bodies ask for.
-const MOST_PARTS: f64 = 128.0;
+const MOST_PARTS: f64 = 32.0;
 
 /// How often the solver goes over all joints and contacts in parts shorter than those of an undivided step, at least: with two, an arm of
 /// seven joints would give way to what it strikes as if it were a tenth lighter.

@@ -77,13 +77,14 @@ impl DrivenJoint {
         (self.lo - self.start, self.hi - self.start)
     }
 
-    /// What a joint goes through as a surface is moved so far, rad or m. At the very end a motor that pushes on does not get it farther.
+    /// What a joint goes through as a surface is moved so far, rad or m. At the very end a motor that pushes on does not get it farther:
+    /// no earlier, since a motor that is to bring it to its end would push ever harder.
     fn thrown(&self, way: f64) -> f64 {
         let thrown = match self.motion {
             JointMotion::Hinge => way / SHORT_ARM,
             JointMotion::Slider => way,
         };
-        thrown.max(UNNOTICED)
+        thrown.max(ROUNDING)
     }
 
     fn early_at_most(&self) -> f64 {

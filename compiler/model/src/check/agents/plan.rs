@@ -38,6 +38,7 @@ impl AgentsPhase<'_, '_> {
         if let Some(wanted) = &wanted {
             self.close_trigger(scope, wanted, &body, &plan.trigger, &env);
         }
+        self.say_unread(&env);
         if env.locals.len() > MAX_NAMES {
             let message = format!("the plan has more than {MAX_NAMES} variables");
             self.report(too_many(message, plan.trigger.span));

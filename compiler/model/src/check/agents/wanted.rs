@@ -80,10 +80,23 @@ impl AgentsPhase<'_, '_> {
                         None => env.push_local(&name.text, name.span, Noun::Variable, InferredType::Unknown),
                     };
                     self.define_here(&name, ty.map_or(InferredType::Unknown, InferredType::of));
+                    if !ignored {
+                        env.opened.push(name);
+                    }
                 }
             }
         }
         (call, kept)
+    }
+
+    /// Warns of variables that a goal gives a value to, and nothing reads: they may have been meant as others.
+    pub(super) fn say_unread(&mut self, env: &ExprEnv) {
+        for name in &env.opened {
+            if !self.s.names.is_used(name.span) {
+                let others = env.locals.iter().map(|l| l.name.as_str()).filter(|other| *other != name.text);
+                self.report(agents::given_unread(&name.text, name.span, others));
+            }
+        }
     }
 
     /// The variable that an argument is, if it is open and no other argument is computed with it; for `_` a new one.

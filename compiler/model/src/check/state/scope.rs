@@ -87,6 +87,8 @@ impl NameScope {
 /// The scope of an expression.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ExprEnv {
+    /// Variables that stand in a goal for what that gives.
+    pub opened: Vec<hrdsl_syntax::ast::NameSyntax>,
     /// The place's own.
     pub locals: Vec<LocalName>,
     /// The automaton's.

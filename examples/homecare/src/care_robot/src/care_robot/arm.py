@@ -8,7 +8,7 @@ from control_msgs.msg import GripperCommandAction, GripperCommandGoal
 from play_motion_msgs.msg import PlayMotionAction, PlayMotionGoal
 
 ABOVE = 0.19  # m above their middle, from which things are approached
-GRASP = 0.03  # m above their middle, where they are held
+GRASP = 0.01  # m above their middle, where they are held
 OPEN, CLOSED = 0.044, 0.0  # m, of each finger
 RELEASE = 0.01  # m, above the ground
 
