@@ -15,7 +15,6 @@ use super::state::{
     guide::StepPart,
     loads::ContactLoads,
 };
-use super::stops::BlowOutlook;
 use crate::math::from_vector;
 
 /// How far bodies may be apart to count as near, besides what they can do in a step, m.
@@ -24,7 +23,9 @@ pub(super) const NEAR: f64 = 2e-3;
 const TOUCHING: f64 = 1e-4;
 /// How much nearer to each other rigid surfaces come in a part of a step, m: the engine looks much farther around a surface, but what
 /// is light takes a blow, and turns, within it.
-pub(super) const WAY: f64 = 1.25e-3;
+const WAY: f64 = 1.25e-3;
+/// How far the weight of a robot that falls, or lies, may move its surfaces in one, m.
+const PUSHED: f64 = 3e-4;
 /// The most parts that rigid bodies ask for.
 const MOST_PARTS: f64 = 32.0;
 
@@ -79,6 +80,15 @@ struct RigidApproach {
     ratio: f64,
 }
 
+/// How far a blow, or a push, may move surfaces in a part of a step, m.
+fn way_of_blows(strikes: bool, falls: bool) -> f64 {
+    match (strikes, falls) {
+        (true, _) => WAY,
+        (false, true) => PUSHED,
+        (false, false) => 0.0,
+    }
+}
+
 /// Where bodies can be within a step: of each its greatest speed, m/s, and the box that it stays in; and which of them are fast. Without
 /// what yields, and what is fast, nobody asks for the boxes.
 pub(super) struct SweptBodies {
@@ -118,7 +128,7 @@ impl PhysicsAdapter {
             }
             self.lead_on((done + 1.0) / parts);
             let mut strain = self.ease_joints();
-            self.tell_stops(BlowOutlook { strikes, falls: strain.falls });
+            self.tell_stops(way_of_blows(strikes, strain.falls));
             strain.blow |= strikes;
             strain.ratio = coming.ratio;
             self.world.integration_parameters.num_internal_pgs_iterations =

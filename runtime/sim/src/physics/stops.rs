@@ -7,7 +7,6 @@
 use hrdsl_ir::world::JointMotion;
 use rapier3d::prelude::*;
 
-use super::division::WAY;
 use super::state::{
     adapter::PhysicsAdapter,
     joint::{DrivenJoint, JointStop},
@@ -26,32 +25,8 @@ const EARLY_TURN: f64 = 5e-3;
 const EARLY_WAY: f64 = 1e-3;
 /// A blow may turn, within a part of a step, what is at the end of an arm so long, by the way that surfaces go in it, m.
 const SHORT_ARM: f64 = 0.1;
-/// How far the weight of a robot that falls may move them, m.
-const PUSHED: f64 = 3e-4;
 /// How much faster a joint may have become before the engine looks again.
 const FASTER: f64 = 1.2;
-
-/// What may throw joints within a part of a step.
-#[derive(Clone, Copy)]
-pub(super) struct BlowOutlook {
-    /// Something fast comes to something.
-    pub strikes: bool,
-    /// A robot falls, or lies: its own weight pushes its joints about.
-    pub falls: bool,
-}
-
-impl BlowOutlook {
-    /// How far a blow, or a push, may move surfaces before the engine looks again, m.
-    fn way(self) -> f64 {
-        if self.strikes {
-            WAY
-        } else if self.falls {
-            PUSHED
-        } else {
-            0.0
-        }
-    }
-}
 
 /// How a joint comes to one of its ends: rad or m.
 struct StopApproach {
@@ -130,9 +105,9 @@ impl PhysicsAdapter {
         self.joints.iter().enumerate().filter_map(asked).fold(1.0, f64::max)
     }
 
-    /// Tells the engine where the joints end in the next part of a step.
-    pub(super) fn tell_stops(&mut self, blow: BlowOutlook) {
-        let ((time, times), moved) = (self.part, blow.way());
+    /// Tells the engine where the joints end in the next part of a step, in which a blow or a push may move surfaces so far, m.
+    pub(super) fn tell_stops(&mut self, moved: f64) {
+        let (time, times) = self.part;
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };
             if self.is_asleep(at) {
