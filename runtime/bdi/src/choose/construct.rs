@@ -59,10 +59,13 @@ fn binary(sizes: &[u32], strength: usize, limit: usize) -> Option<Vec<Alternativ
         sets.is_none_or(|sets| sets >= sizes.len())
     };
     let count = (4..limit).find(fits)?;
-    let mut rows = vec![vec![0; sizes.len()]; count];
+    let mut rows = vec![AlternativeRow::new(); count];
     let mut ones: Vec<usize> = (0..count.div_ceil(2)).collect();
-    for factor in 0..sizes.len() {
-        ones.iter().for_each(|at| rows[at + 1][factor] = 1);
+    for _ in sizes {
+        // The first row, at 0, has zeros alone.
+        rows.iter_mut()
+            .zip(0..)
+            .for_each(|(row, at)| row.push(u32::from(at > 0 && ones.contains(&(at - 1)))));
         next_group(&mut ones, count - 1);
     }
     Some(rows)
@@ -90,7 +93,7 @@ impl FiniteField {
             8 => (2, vec![1, 1, 0]),
             9 => (3, vec![2, 0]),
             16 => (2, vec![1, 1, 0, 0]),
-            _ if (2..order).all(|d| order % d != 0) => (order, vec![0]),
+            _ if !(2..order).any(|d| order.is_multiple_of(d)) => (order, vec![0]),
             _ => return None,
         };
         Some(Self { characteristic, reduction, order })
