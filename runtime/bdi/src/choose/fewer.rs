@@ -270,8 +270,11 @@ mod tests {
         (greedy.len(), fewer(sizes, strength, greedy, 0, &mut rng))
     }
 
-    /// Shapes, with the tuples' size, the greedy rows, and the rows that are left of them: each for the seed 0.
-    const SHAPES: &[(&[(u32, usize)], usize, usize, usize)] = &[
+    /// Sizes, each with how many factors have it; the tuples' size; the greedy rows; and the rows that are left of them.
+    type KnownShape = (&'static [(u32, usize)], usize, usize, usize);
+
+    /// For the seed 0.
+    const SHAPES: &[KnownShape] = &[
         (&[(2, 4)], 2, 6, 5),
         (&[(2, 10)], 2, 10, 6),
         (&[(2, 20)], 2, 10, 8),
