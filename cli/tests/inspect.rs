@@ -330,3 +330,32 @@ fn suites_are_minimised_on_request() {
     let beyond = format!("bdi_tests.t{:03}", few + 1);
     expect_code(&inspect(&[&beyond, "--minimise", "--end"]), 2);
 }
+
+#[test]
+fn too_few_tests_for_all_pairs_are_warned_of() {
+    let (here, scenario) = (tempfile::tempdir().unwrap(), handover());
+    let out = here.path().join("out");
+    let args = [scenario.to_str().unwrap(), "--suite", "bdi_tests", "-n", "2", "-o", out.to_str().unwrap()];
+    let with = |first: &str, last: &str| {
+        let out = hrdsl([first].into_iter().chain(args).chain([last]));
+        expect_code(&out, 0);
+        out.stdout
+    };
+    let document: Value = serde_json::from_slice(&with("gen", "--json")).unwrap();
+    let suite = &document["suites"][0];
+    let lost = &suite["lost_tuples"];
+    let number = |name: &str| lost[name].as_u64().unwrap();
+    assert_eq!(number("strength"), 2);
+    assert!(0 < number("lost") && number("lost") < number("all") && number("needed") > 2, "{lost}");
+    let warning = format!(
+        "warning: {} of {} pairs of alternatives are in none of the 2 tests; `tests {}` is enough for all",
+        lost["lost"], lost["all"], lost["needed"]
+    );
+    assert!(suite["notes"].as_array().unwrap().iter().any(|note| *note == warning), "{suite}");
+    let said = with("sim", "--exit-zero");
+    assert!(String::from_utf8(said).unwrap().contains(&warning));
+    let enough = lost["needed"].to_string();
+    let args = ["gen", args[0], args[1], args[2], "-n", &enough, "-o", args[6], "--json"];
+    let document: Value = serde_json::from_slice(&hrdsl(args).stdout).unwrap();
+    assert!(document["suites"][0].get("lost_tuples").is_none(), "{document}");
+}

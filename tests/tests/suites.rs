@@ -61,6 +61,67 @@ fn home_care_has_its_six_bins() {
     assert!(pairs < 62 && least <= 6, "{pairs} {least}");
 }
 
+/// Thirteen beliefs of three values, and one test for each set of them; so long as they are not cut, tests have all pairs.
+fn thirteen(explore: &str) -> Program {
+    let each = |f: &dyn Fn(usize) -> String, between: &str| (0..13).map(f).collect::<Vec<_>>().join(between);
+    let text = format!(
+        "scenario s
+        actor person : environment
+        actor robot  : system
+        event shown(n: 0..2) from person to robot
+        stimulus show(n: 0..2) by person {{ emit shown(n) }}
+        agent A plays person {{
+          {}
+          goal !go
+          plan +!go when {} {{ {} }}
+        }}
+        suite all by agents A {{ {}; explore {explore} }}",
+        each(&|i| format!("belief b{i}(n: 0..2)"), "\n"),
+        each(&|i| format!("b{i}(X{i})"), " && "),
+        each(&|i| format!("show(X{i})"), "; "),
+        each(&|i| format!("choose one b{i} of A"), "; "),
+    );
+    let compiled = compile(InputFile { name: "s.hri", text: &text }, &[]);
+    compiled.program.unwrap_or_else(|| panic!("{:#?}", compiled.diagnostics))
+}
+
+#[test]
+fn tests_that_are_too_few_for_all_pairs_are_warned_of() {
+    let program = thirteen("pairwise");
+    let made = |count, minimise| {
+        let options = GenerateOptions { count: Some(count), minimise, ..GenerateOptions::default() };
+        generate_with(&program, &program.suites[0], options).unwrap()
+    };
+    let few = made(14, None);
+    let lost = few.lost_tuples.unwrap();
+    assert_eq!((lost.strength, lost.all, lost.needed), (2, 13 * 12 / 2 * 9, 15));
+    // What is lost is counted from the tests' own origins.
+    let sets: Vec<Vec<i64>> = few
+        .origins
+        .iter()
+        .map(|o| o.beliefs.facts.iter().filter_map(|(_, fact)| fact.args[0].as_int()).collect())
+        .collect();
+    let mut pairs = std::collections::BTreeSet::new();
+    for set in &sets {
+        pairs.extend((0..13).flat_map(|f| (0..f).map(move |g| (f, g, set[f], set[g]))));
+    }
+    assert_eq!(lost.lost, lost.all - pairs.len());
+    let warning = format!(
+        "warning: {} of 702 pairs of alternatives are in none of the 14 tests; `tests 15` is enough for all",
+        lost.lost
+    );
+    assert!(few.notes.contains(&warning), "{:?}", few.notes);
+    for (count, minimise) in [(lost.needed as u32, None), (40, None), (3, Some(true))] {
+        let enough = made(count, minimise);
+        assert_eq!(enough.lost_tuples, None, "{count}");
+        assert!(enough.notes.iter().all(|note| !note.contains("warning")), "{:?}", enough.notes);
+    }
+    assert_eq!(made(lost.needed as u32, None).abstract_tests, 15);
+    let program = thirteen("random");
+    let options = GenerateOptions { count: Some(3), ..GenerateOptions::default() };
+    assert_eq!(generate_with(&program, &program.suites[0], options).unwrap().lost_tuples, None);
+}
+
 /// A counter up to 1000 is no variable of few values; the robot never says `never`.
 #[test]
 fn a_search_reaches_each_value_after_the_warm_up() {

@@ -10,7 +10,7 @@ use hrdsl_ir::{Program, Span, suite::Suite};
 use hrdsl_runtime::{
     prove::ProofOptions,
     report::explain_text,
-    results::{GeneratedSuite, GoalReport, GoalStatus, ModelCoverage, SuiteExplanation},
+    results::{GeneratedSuite, GoalReport, GoalStatus, LostTuples, ModelCoverage, SuiteExplanation},
     testgen::{
         GenerateOptions, generate_with,
         model_run::{LogDetail, ModelInspection},
@@ -140,6 +140,8 @@ struct MadeSuite {
     abstract_tests: usize,
     tests: Vec<MadeTest>,
     notes: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lost_tuples: Option<LostTuples>,
     goals: Vec<GoalReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     coverage: Option<ModelCoverage>,
@@ -173,6 +175,7 @@ impl MadeSuite {
             abstract_tests: generated.abstract_tests,
             tests: generated.tests.iter().enumerate().map(test).collect(),
             notes: generated.notes.clone(),
+            lost_tuples: generated.lost_tuples,
             goals: generated.goals.clone(),
             coverage: generated.coverage.clone(),
             explanation: generated.explanation.clone(),

@@ -4,6 +4,7 @@ use hrdsl_ir::{
     abstract_test::{AbstractTest, TestOrigin},
     test::{Test, TestMethod},
 };
+use serde::Serialize;
 
 use crate::{
     goal::SuiteGoalId,
@@ -26,8 +27,23 @@ pub struct GeneratedSuite {
     pub coverage: Option<ModelCoverage>,
     /// Of a suite by agents: what each test is for, and why goals stayed uncovered.
     pub explanation: Option<SuiteExplanation>,
+    /// Of a suite by agents that is to have all tuples: those that its tests are too few for.
+    pub lost_tuples: Option<LostTuples>,
     /// What a user should know: runs left out, budgets that ran out.
     pub notes: Vec<String>,
+}
+
+/// Combinations of alternatives that are in no test, since there are fewer tests than all of them take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct LostTuples {
+    /// Of how many alternatives each is.
+    pub strength: usize,
+    /// How many the chosen belief sets have.
+    pub all: usize,
+    /// How many of them are in no test.
+    pub lost: usize,
+    /// With so many tests none would be lost.
+    pub needed: usize,
 }
 
 /// Abstract tests with what there is to say about them.

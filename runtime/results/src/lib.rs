@@ -42,7 +42,7 @@ pub use conformance::{
     ModelPlace,
 };
 pub use executed::FileCoverage;
-pub use generated::{AbstractTests, AgentFindings, GeneratedSuite};
+pub use generated::{AbstractTests, AgentFindings, GeneratedSuite, LostTuples};
 pub use goal::SuiteGoalId;
 pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::CoverItemKind, test::TestMethod};
 pub use hrdsl_trace::RunEnd;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_bdi::{
-    choose::{BeliefExplorer, factors},
+    choose::{BeliefExplorer, SetTuples, factors},
     coverage::AgentTeam,
     measure::AgentCounts,
 };
@@ -27,11 +27,16 @@ use crate::{
 /// Different warnings of runs that are told, at most.
 const WARNINGS: usize = 20;
 
-/// Runs the agents for each set of beliefs and takes the environment's part of each run.
+/// Runs the agents for each set of beliefs and takes the environment's part of each run; also gives the tuples of the sets.
 ///
 /// # Errors
 /// A choice that has no alternatives, or a model that cannot be run.
-pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<AbstractTests, String> {
+pub fn harvest(
+    program: &Program,
+    suite: &Suite,
+    count: u32,
+    seed: u64,
+) -> Result<(AbstractTests, Option<SetTuples>), String> {
     let SuiteMethod::Agents { players, stop_after, goals, .. } = &suite.method else {
         return Err(not_by_agents(suite));
     };
@@ -48,7 +53,7 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
         let rewards = run_batch(&model, &mut sum, batch)?;
         explorer.learn(&rewards);
     }
-    Ok(sum.harvest(&model, &explorer))
+    Ok((sum.harvest(&model, &explorer), explorer.tuples))
 }
 
 fn not_by_agents(suite: &Suite) -> String {

@@ -40,6 +40,16 @@ pub fn distinct(tests: Vec<AbstractTest>) -> Vec<AbstractTest> {
     tests
 }
 
+/// The numbers of the belief sets that lead to each of the different tests.
+pub fn sets(tests: &[AbstractTest]) -> Vec<Vec<u64>> {
+    let mut seen: IndexMap<TestIdentity, Vec<u64>> = IndexMap::new();
+    for test in tests {
+        let sets = seen.entry(identity(&test.scripts)).or_default();
+        sets.extend(test.origin.iter().map(|origin| origin.number));
+    }
+    seen.into_values().collect()
+}
+
 /// A number for each thing that makes a test what it is.
 type TestIdentity = Vec<(u8, u64)>;
 
@@ -87,7 +97,10 @@ fn add_steps(parts: &mut TestIdentity, steps: &[TestStep]) {
 
 #[cfg(test)]
 mod tests {
-    use hrdsl_ir::{ActorId, EventId, EventPattern};
+    use hrdsl_ir::{
+        ActorId, EventId, EventPattern,
+        abstract_test::{BeliefSet, TestOrigin},
+    };
 
     use super::*;
     use crate::tests::test;
@@ -98,6 +111,15 @@ mod tests {
         assert_eq!(different.len(), 2);
         assert_eq!(different[0].reaches, [0, 2].into());
         assert_eq!(different[0].because, ["a", "c"]);
+    }
+
+    #[test]
+    fn equal_tests_stand_for_the_sets_of_all_of_them() {
+        let of = |wait, number| AbstractTest {
+            origin: Some(TestOrigin { number, beliefs: BeliefSet::default() }),
+            ..test(wait, "", &[])
+        };
+        assert_eq!(sets(&[of(1, 1), of(2, 3), of(1, 4)]), [vec![1, 4], vec![3]]);
     }
 
     #[test]

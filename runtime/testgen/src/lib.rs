@@ -14,6 +14,7 @@ mod agents;
 mod bins;
 mod concrete;
 mod covers;
+mod cut;
 mod distinct;
 mod expand;
 mod extract;
@@ -89,9 +90,14 @@ pub fn generate_with(
     if most > MAX_TESTS {
         return Err(format!("{most} tests are more than are generated for one suite: at most {MAX_TESTS}"));
     }
+    let mut tuples = None;
     let (method, harvest, minimise) = match &suite.method {
         SuiteMethod::Agents { minimise: said, .. } => {
-            (TestMethod::Agents, agents::harvest(program, suite, most, seed)?, minimise.unwrap_or(*said))
+            let (harvest, of) = agents::harvest(program, suite, most, seed)?;
+            let minimise = minimise.unwrap_or(*said);
+            // Who asks for the tests that the goals need does not ask for all tuples.
+            tuples = of.filter(|_| !minimise).map(|of| (of, distinct::sets(&harvest.tests)));
+            (TestMethod::Agents, harvest, minimise)
         }
         SuiteMethod::Search { network, goals, witness, delays } => {
             let settings = ProofOptions {
@@ -123,6 +129,8 @@ pub fn generate_with(
     let made = &different[..different.len().min(number as usize)];
     let origins = different.iter().cycle().take(tests.len()).filter_map(|t| t.origin.clone()).collect();
     name_tests(suite, made, &mut goals);
+    let lost_tuples = tuples.and_then(|(of, sets)| cut::lost(&of, &sets, made.len()));
+    notes.extend(lost_tuples.map(|lost| cut::warning(lost, made.len())));
     let explanation = found.as_ref().map(|found| explain(found, made, suite));
     Ok(GeneratedSuite {
         suite: suite.name.clone(),
@@ -133,6 +141,7 @@ pub fn generate_with(
         goals,
         coverage: found.map(|found| found.coverage),
         explanation,
+        lost_tuples,
         notes,
     })
 }

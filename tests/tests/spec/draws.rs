@@ -195,24 +195,39 @@ fn the_page_chooses_what_suites_choose() {
 import sys
 sizes, tests, seed = eval(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
 chance = Generator(seed)
-for row in fill(pairwise(sizes, chance), sizes, tests, chance): print(*row)
+rows = fitting(2, sizes, pairwise(sizes, chance), tests, Generator(seed, 1))
+for row in fill(rows, sizes, tests, chance): print(*row)
 chance = Generator(seed)
 for row in fill([], sizes, tests, chance): print(*row)
 ";
     let spaces: [&[u32]; 6] = [&[], &[4], &[2, 2], &[3, 1, 2, 5], &[5, 8, 8, 8, 8, 2, 2], &[4; 9]];
-    for sizes in spaces {
-        for (tests, seed) in [(3, 0), (40, 5), (1000, 1)] {
-            let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
-            let mut expected = String::new();
-            for how in [ExploreMode::Wise(2), ExploreMode::Random] {
-                for set in explore(&factors, how, tests, seed).sets {
-                    let row: Vec<String> = set.facts.iter().map(|(_, f)| f.args[0].to_string()).collect();
-                    let _ = writeln!(expected, "{}", row.join(" "));
-                }
+    let whole = spaces.iter().flat_map(|sizes| [(*sizes, 40, 5), (*sizes, 1000, 1)]);
+    // Fewer tests than greedy rows: by construction (a field of 3, of 4 and of 8, the sum of the others, halves), and by
+    // search.
+    let fewer: [(&[u32], u32, u64); 11] = [
+        (&[], 0, 0),
+        (&[4], 3, 0),
+        (&[3, 1, 2, 5], 3, 0),
+        (&[3; 13], 15, 0),
+        (&[4; 5], 16, 2),
+        (&[8, 3, 8, 7], 64, 1),
+        (&[6, 2, 5], 30, 3),
+        (&[2; 12], 7, 0),
+        (&[5, 3, 3, 3, 3, 2, 2, 2, 2, 2, 2], 16, 0),
+        (&[4; 9], 26, 4),
+        (&[3; 5], 11, 9),
+    ];
+    for (sizes, tests, seed) in whole.chain(fewer) {
+        let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
+        let mut expected = String::new();
+        for how in [ExploreMode::Wise(2), ExploreMode::Random] {
+            for set in explore(&factors, how, tests, seed).sets {
+                let row: Vec<String> = set.facts.iter().map(|(_, f)| f.args[0].to_string()).collect();
+                let _ = writeln!(expected, "{}", row.join(" "));
             }
-            let args = [format!("{sizes:?}"), tests.to_string(), seed.to_string()];
-            compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
         }
+        let args = [format!("{sizes:?}"), tests.to_string(), seed.to_string()];
+        compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
     }
 }
 
@@ -221,17 +236,23 @@ fn the_page_covers_tuples_as_suites_do() {
     let choose = "
 import sys
 sizes, strength, seed = eval(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
-for row in wise(strength, sizes, Generator(seed)): print(*row)
+tests = int(sys.argv[4])
+rows = wise(strength, sizes, Generator(seed))
+if tests > 0: rows = fitting(strength, sizes, rows, tests, Generator(seed, 1))
+for row in rows: print(*row)
 ";
     let spaces: [&[u32]; 5] = [&[3], &[2, 2], &[3, 2, 4], &[3, 1, 2, 3], &[2, 3, 2, 2, 3]];
-    for sizes in spaces {
-        for (strength, seed) in [(2u8, 4), (3, 0), (3, 9), (4, 1), (6, 2)] {
-            let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
-            let sets = explore(&factors, ExploreMode::Wise(strength), 0, seed).sets;
-            let expected: String = sets.iter().map(|s| row(s) + "\n").collect();
-            let args = [format!("{sizes:?}"), strength.to_string(), seed.to_string()];
-            compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
-        }
+    let whole = spaces.iter().flat_map(|sizes| {
+        [(2u8, 4), (3, 0), (3, 9), (4, 1), (6, 2)].map(|(strength, seed)| (*sizes, strength, seed, 0))
+    });
+    let fewer: [(&[u32], u8, u64, u32); 4] =
+        [(&[3; 4], 3, 0, 27), (&[4; 6], 3, 0, 64), (&[3, 2, 3, 2, 2], 3, 5, 20), (&[2; 6], 4, 1, 22)];
+    for (sizes, strength, seed, tests) in whole.chain(fewer) {
+        let factors: Vec<BeliefFactor> = sizes.iter().map(|n| factor(*n)).collect();
+        let sets = explore(&factors, ExploreMode::Wise(strength), tests, seed).sets;
+        let expected: String = sets.iter().map(|s| row(s) + "\n").collect();
+        let args = [format!("{sizes:?}"), strength.to_string(), seed.to_string(), tests.to_string()];
+        compare(&format!("{args:?}"), &expected, &by_the_page(choose, &args));
     }
 }
 

@@ -254,7 +254,7 @@ impl<'s> UncoveredTuples<'s> {
 }
 
 /// The next set of numbers below `n` in lexicographic order; false after the last.
-fn next_group(numbers: &mut [usize], n: usize) -> bool {
+pub(super) fn next_group(numbers: &mut [usize], n: usize) -> bool {
     let many = numbers.len();
     let Some(at) = (0..many).rev().find(|i| numbers[*i] < n - (many - i)) else { return false };
     numbers[at] += 1;

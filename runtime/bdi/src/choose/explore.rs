@@ -14,10 +14,12 @@ use rand_chacha::ChaCha8Rng;
 use super::{
     cover::covering,
     factors::{BeliefFactor, ChooseError},
+    fewer::fewer,
     judge::ConditionEvaluator,
     learn::FactorLearner,
     sets::{AlternativeRow, BATCH, MAX_SETS, belief_set, row_at, shuffle, sizes, space},
     space::AllowedSpace,
+    tuples::SetTuples,
     within::within,
 };
 
@@ -30,13 +32,16 @@ pub struct ExploredBeliefs {
     pub space: u128,
     /// Whether a limit cut short what was asked for: not all sets for `Exhaustive`, not all tuples for `Wise`.
     pub cut: bool,
+    /// For `Wise`: the tuples that the sets have.
+    pub tuples: Option<SetTuples>,
 }
 
 /// Explores the belief space without running anything.
 ///
 /// - `Exhaustive`: all sets in lexicographic order (the last factor changes fastest), at most `tests`.
 /// - `Wise(t)`: sets in which every t alternatives of t different factors occur together, even if that takes more than
-///   `tests`; then different random ones up to `tests`.
+///   `tests`; then different random ones up to `tests`. If the first way to choose them takes more than `tests`, others are
+///   tried that may take no more.
 /// - `Random`: `tests` different ones. `Learn` needs to be told what sets brought ([`BeliefExplorer`]); here it is the same.
 ///
 /// A space of fewer than `tests` sets gives them all. The same arguments always give the same sets.
@@ -46,6 +51,7 @@ pub fn explore(factors: &[BeliefFactor], explore: ExploreMode, tests: u32, seed:
     let space = space(&sizes);
     let wanted = wanted(space, tests);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut tuples = None;
     let (rows, cut) = match explore {
         // INVARIANT: `wanted` is at most the space.
         ExploreMode::Exhaustive => {
@@ -57,13 +63,38 @@ pub fn explore(factors: &[BeliefFactor], explore: ExploreMode, tests: u32, seed:
             let found = covering(&sizes, strength.into(), MAX_SETS, &mut rng);
             let asked = usize::from(strength).max(2);
             let cut = found.rows.len() == MAX_SETS || found.strength < asked.min(sizes.len());
-            (fill(found.rows, &sizes, space, wanted, &mut rng), cut)
+            let (rows, needed) = fitting(&sizes, found.strength, found.rows, wanted, seed);
+            let rows = fill(rows, &sizes, space, wanted, &mut rng);
+            tuples = SetTuples::new(&sizes, found.strength, &rows, needed);
+            (rows, cut)
         }
         ExploreMode::Random | ExploreMode::Learn => {
             (fill(Vec::new(), &sizes, space, wanted, &mut rng), false)
         }
     };
-    ExploredBeliefs { sets: rows.iter().map(|row| belief_set(factors, row)).collect(), space, cut }
+    ExploredBeliefs { sets: rows.iter().map(|row| belief_set(factors, row)).collect(), space, cut, tuples }
+}
+
+/// Rows with the same tuples, no more than `wanted`, if there are more and as few are found, otherwise these; and how many
+/// rows would do, as far as was found.
+fn fitting(
+    sizes: &[u32],
+    strength: usize,
+    rows: Vec<AlternativeRow>,
+    wanted: usize,
+    seed: u64,
+) -> (Vec<AlternativeRow>, usize) {
+    if rows.len() <= wanted || rows.len() >= MAX_SETS {
+        let needed = rows.len();
+        return (rows, needed);
+    }
+    // A stream of its own: what else is drawn does not depend on whether fewer rows were looked for.
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(1);
+    let least = fewer(sizes, strength, rows.clone(), wanted, &mut rng);
+    let needed = least.len();
+    // If some tests will be left out in any case, the first greedy rows have more tuples than any others.
+    (if needed <= wanted { least } else { rows }, needed)
 }
 
 /// Explores the belief space in batches, each after what the one before it brought is known.
@@ -74,6 +105,8 @@ pub struct BeliefExplorer<'a> {
     pub cut: bool,
     /// What conditions left out, and how that was found.
     pub notes: Vec<String>,
+    /// For `Wise`: the tuples that the sets have.
+    pub tuples: Option<SetTuples>,
     source: BeliefSetSource<'a>,
 }
 
@@ -89,15 +122,15 @@ impl<'a> BeliefExplorer<'a> {
     pub fn new(factors: &[BeliefFactor], method: ExploreMode, tests: u32, seed: u64) -> Self {
         match method {
             ExploreMode::Exhaustive | ExploreMode::Wise(_) | ExploreMode::Random => {
-                let ExploredBeliefs { mut sets, space, cut } = explore(factors, method, tests, seed);
+                let ExploredBeliefs { mut sets, space, cut, tuples } = explore(factors, method, tests, seed);
                 sets.reverse();
-                Self { space, cut, notes: Vec::new(), source: BeliefSetSource::Fixed(sets) }
+                Self { space, cut, notes: Vec::new(), tuples, source: BeliefSetSource::Fixed(sets) }
             }
             ExploreMode::Learn => {
                 let space = space(&sizes(factors));
                 let learner = FactorLearner::new(factors, wanted(space, tests), seed);
                 let source = BeliefSetSource::Learner(Box::new(learner));
-                Self { space, cut: false, notes: Vec::new(), source }
+                Self { space, cut: false, notes: Vec::new(), tuples: None, source }
             }
         }
     }
@@ -179,6 +212,7 @@ impl<'a> BeliefExplorer<'a> {
                 space: whole,
                 cut: false,
                 notes,
+                tuples: None,
                 source: BeliefSetSource::Learner(Box::new(learner)),
             });
         }
@@ -186,7 +220,10 @@ impl<'a> BeliefExplorer<'a> {
         let mut sets: Vec<BeliefSet> = found.rows.iter().map(|row| belief_set(factors, row)).collect();
         sets.reverse();
         notes.extend(found.notes);
-        Ok(Self { space: whole, cut: found.cut, notes, source: BeliefSetSource::Fixed(sets) })
+        let tuples = found
+            .strength
+            .and_then(|(strength, needed)| SetTuples::new(&space.sizes, strength, &found.rows, needed));
+        Ok(Self { space: whole, cut: found.cut, notes, tuples, source: BeliefSetSource::Fixed(sets) })
     }
 
     /// How many sets are left, at most.

@@ -4,13 +4,16 @@
 //! the space that they span, [`BeliefExplorer`] in batches, so that [`FactorLearner`] can learn from what they bring. Where choices have
 //! conditions, [`BeliefExplorer::of`] keeps to what these allow, and [`allows`] says whether they allow a set.
 
+mod construct;
 mod cover;
 mod explore;
 mod factors;
+mod fewer;
 mod judge;
 mod learn;
 mod sets;
 mod space;
+mod tuples;
 mod within;
 
 pub use explore::{BeliefExplorer, ExploredBeliefs, explore};
@@ -18,3 +21,4 @@ pub use factors::{BeliefFactor, ChooseError, FactorAlternative, MAX_ALTERNATIVES
 pub use judge::allows;
 pub use learn::FactorLearner;
 pub use sets::{BATCH, MAX_SETS};
+pub use tuples::SetTuples;

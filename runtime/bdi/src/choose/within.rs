@@ -25,6 +25,8 @@ pub(super) struct AllowedRows {
     /// A limit cut short what was asked for.
     pub cut: bool,
     pub notes: Vec<String>,
+    /// For `Wise`: of how many alternatives the tuples are that all occur, and how many rows have them.
+    pub strength: Option<(usize, usize)>,
 }
 
 /// As [`explore`](super::explore), but `Learn` is as `Random`.
@@ -37,7 +39,7 @@ pub(super) fn within(
     match method {
         ExploreMode::Exhaustive => {
             let (rows, end) = first(space, tests);
-            AllowedRows { rows, cut: end != NextRow::End, notes: Vec::new() }
+            AllowedRows { rows, cut: end != NextRow::End, ..AllowedRows::default() }
         }
         ExploreMode::Wise(strength) => {
             let mut found = covering(space, usize::from(strength).max(2), rng);
@@ -110,7 +112,8 @@ fn covering(space: &mut AllowedSpace<'_>, mut strength: usize, rng: &mut ChaCha8
     let sizes = space.sizes.clone();
     if sizes.len() < 2 || (strength > 2 && strength >= sizes.len()) {
         let (rows, end) = first(space, MAX_SETS);
-        return AllowedRows { rows, cut: end != NextRow::End, notes: Vec::new() };
+        let strength = Some((strength, rows.len()));
+        return AllowedRows { rows, cut: end != NextRow::End, strength, ..AllowedRows::default() };
     }
     let asked = strength;
     while strength > 2 && tuples(&sizes, strength) > MAX_TUPLES {
@@ -137,6 +140,7 @@ fn covering(space: &mut AllowedSpace<'_>, mut strength: usize, rng: &mut ChaCha8
         uncovered.cover(&row);
         found.rows.push(row);
     }
+    found.strength = Some((strength, found.rows.len()));
     found
 }
 
