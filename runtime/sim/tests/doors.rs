@@ -77,7 +77,8 @@ fn crank(lo: f64, hi: f64) -> Scene {
 /// Farther than half round, and farther than a turn from end to end.
 #[test]
 fn a_hinge_ends_where_it_ends_however_far_it_turns() {
-    for (lo, hi) in [(-20.0, 250.0), (-250.0, 20.0), (-200.0, 300.0), (-300.0, 300.0)] {
+    // The last is met at full speed, 9 rad/s.
+    for (lo, hi) in [(-20.0, 250.0), (-250.0, 20.0), (-200.0, 300.0), (-300.0, 300.0), (-20.0, 170.0)] {
         let mut scene = crank(lo, hi);
         let mut farthest: f64 = 0.0;
         scene.go_on(4.0, |scene| farthest = farthest.max(scene.read("turned").to_degrees()));
@@ -85,30 +86,6 @@ fn a_hinge_ends_where_it_ends_however_far_it_turns() {
         assert!(farthest < hi + 0.03, "{lo} .. {hi}: {farthest}°");
         assert!(farthest > hi - 0.5, "{lo} .. {hi}: {farthest}°");
     }
-}
-
-/// A light lever that lies on its lower end, and a drawer that stands at its inner one, when a ball of 3 kg comes at 6 m/s.
-#[test]
-fn a_blow_gets_no_joint_beyond_its_end() {
-    let lever = "body post: fixed box(10 cm, 10 cm, 1 m) at (0 m, 0 m, 50 cm)
-        body lever: dynamic box(40 cm, 4 cm, 2 cm) at (25 cm, 0 m, 90 cm) mass 200 g
-        body ball: dynamic sphere(5 cm) at (40 cm, 0 m, 280 cm) mass 3 kg
-        joint pin: post -> lever at (5 cm, 0 m, 90 cm) axis (0, 1, 0) limits -60 deg .. 0 deg
-        signal turned: angle to robot = joint_position(pin)";
-    let mut scene = Scene::new(lever, &[]);
-    let mut most: f64 = -1.0;
-    scene.go_on(1.5, |scene| most = most.max(scene.read("turned")));
-    assert!(most < 1e-3, "{most} rad");
-    assert!(most > -5e-3, "{most} rad");
-    let plunger = "body post: fixed box(10 cm, 10 cm, 1 m) at (0 m, 0 m, 50 cm)
-        body plunger: dynamic box(6 cm, 6 cm, 10 cm) at (0 m, 20 cm, 95 cm) mass 100 g
-        body ball: dynamic sphere(5 cm) at (0 m, 20 cm, 290 cm) mass 3 kg
-        joint rail: post -> plunger at (0 m, 20 cm, 95 cm) axis (0, 0, 1) limits 0 cm .. 20 cm
-        signal up: length to robot = joint_position(rail)";
-    let mut scene = Scene::new(plunger, &[]);
-    let mut least: f64 = 1.0;
-    scene.go_on(1.5, |scene| least = least.min(scene.read("up")));
-    assert!(least > -1e-3, "{least} m");
 }
 
 #[test]
