@@ -362,3 +362,21 @@ pub fn each_term<'a>(term: &'a AgentSpeakTerm, f: &mut dyn FnMut(&'a AgentSpeakT
 pub fn each_in_literal<'a>(literal: &'a AgentSpeakLiteral, f: &mut dyn FnMut(&'a AgentSpeakTerm)) {
     literal.args.iter().chain(&literal.annotations).for_each(|t| each_term(t, f));
 }
+
+/// The variables in a term, each as often as it stands there.
+pub fn variables(of: &AgentSpeakTerm) -> Vec<String> {
+    let mut all = Vec::new();
+    each_term(of, &mut |t| {
+        if let TermKind::Var { name, .. } = &t.kind {
+            all.push(name.clone());
+        }
+    });
+    all
+}
+
+/// Whether `_` stands in a term.
+pub fn has_any(of: &AgentSpeakTerm) -> bool {
+    let mut any = false;
+    each_term(of, &mut |t| any |= matches!(t.kind, TermKind::Any));
+    any
+}

@@ -16,7 +16,7 @@ use super::{
 use crate::agentspeak::{
     ast::{
         AgentSpeakItem, AgentSpeakItemKind, AgentSpeakLiteral, AgentSpeakProgram, AgentSpeakTerm,
-        PredicateIndicator, TermKind, each_term,
+        PredicateIndicator, TermKind, has_any, variables,
     },
     system::AgentSpeakAgent,
 };
@@ -166,20 +166,4 @@ impl ClauseTranslator<'_> {
         self.used.beliefs.insert(key);
         Ok(format!("{}{}", if head.negated { "~" } else { "" }, super::clause::call(&name, &args)))
     }
-}
-
-fn variables(of: &AgentSpeakTerm) -> Vec<String> {
-    let mut all = Vec::new();
-    each_term(of, &mut |t| {
-        if let TermKind::Var { name, .. } = &t.kind {
-            all.push(name.clone());
-        }
-    });
-    all
-}
-
-fn has_any(of: &AgentSpeakTerm) -> bool {
-    let mut any = false;
-    each_term(of, &mut |t| any |= matches!(t.kind, TermKind::Any));
-    any
 }

@@ -8,7 +8,7 @@ use super::{
     steps::PlanBodyLine,
 };
 use crate::agentspeak::ast::{
-    AgentSpeakLiteral, AgentSpeakPlan, AgentSpeakTerm, PredicateIndicator, TermKind, each_term,
+    AgentSpeakLiteral, AgentSpeakPlan, AgentSpeakTerm, PredicateIndicator, TermKind, has_any, variables,
 };
 
 /// By goal and argument: how it is open.
@@ -88,9 +88,7 @@ impl ClauseTranslator<'_> {
                 self.bound.remove(&name);
                 *self.owed.entry(name).or_default() |= wanted.taken;
             }
-            let mut nameless = false;
-            each_term(arg, &mut |t| nameless |= matches!(t.kind, TermKind::Any));
-            if nameless && wanted.taken {
+            if has_any(arg) && wanted.taken {
                 self.owed.insert("_".to_owned(), true);
             }
         }
@@ -113,14 +111,4 @@ impl ClauseTranslator<'_> {
         self.remarks.push((plan.trigger.of.span, message));
         lines.push(PlanBodyLine::Step(".fail".to_owned()));
     }
-}
-
-fn variables(of: &AgentSpeakTerm) -> Vec<String> {
-    let mut all = Vec::new();
-    each_term(of, &mut |t| {
-        if let TermKind::Var { name, .. } = &t.kind {
-            all.push(name.clone());
-        }
-    });
-    all
 }
