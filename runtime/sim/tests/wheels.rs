@@ -118,15 +118,17 @@ fn a_person_it_runs_into_feels_its_weight() {
         scene.go_on(4.0, |s| most = most.max(s.read("shin")));
         found.push(most);
     }
-    // Two legs of 75 kg each on 60 N/mm, and 22 kg at 0.5 m/s; the tyres go on pushing as hard as they grip,
-    // but are told so up to 10 ms late, which is a quarter of such a blow.
-    let expected = common::two_masses(22.0, 150.0, 120e3, 0.5, 0.8 * 22.0 * 9.81);
-    println!("{found:?} N, by the formula {expected:.0} N");
+    // Two legs of 75 kg each on 60 N/mm, and 22 kg at 0.5 m/s; the tyres go on pushing as hard as they grip, but are told so at their
+    // next control period: up to 10 ms late, which is a quarter of such a blow.
+    let expected =
+        |late: f64| common::two_masses_pushed_late(22.0, 150.0, 120e3, 0.5, 0.8 * 22.0 * 9.81, late);
+    let (least, largest) = (expected(10e-3), expected(0.0));
+    println!("{found:?} N, by the formula {least:.0} to {largest:.0} N");
     let finest = found.last().expect("steps");
     for most in &found {
         assert!(
-            (most / expected - 1.0).abs() < 0.15 && (most / finest - 1.0).abs() < 0.1,
-            "{found:?} {expected}"
+            *most > 0.95 * least && *most < 1.05 * largest && (most / finest - 1.0).abs() < 0.1,
+            "{found:?} for {least} to {largest}"
         );
     }
 }

@@ -300,7 +300,20 @@ pub fn offer(sim: &mut WorldSimulation) {
 /// Two masses and a spring between them, N: a robot of `robot` kg that meets at `speed` m/s somebody of whom the blow feels `region` kg, and whose
 /// surface has this `stiffness` (N/m), while its drive goes on pushing with `drive` N.
 pub fn two_masses(robot: f64, region: f64, stiffness: f64, speed: f64, drive: f64) -> f64 {
+    two_masses_pushed_late(robot, region, stiffness, speed, drive, 0.0)
+}
+
+/// As [`two_masses`], N, where the drive pushes only from `late` s after they meet, and before the blow is at its peak.
+pub fn two_masses_pushed_late(
+    robot: f64,
+    region: f64,
+    stiffness: f64,
+    speed: f64,
+    drive: f64,
+    late: f64,
+) -> f64 {
     let reduced = 1.0 / (1.0 / robot + 1.0 / region);
     let push = drive * reduced / robot;
-    push + (speed * (stiffness * reduced).sqrt()).hypot(push)
+    let phase = late * (stiffness / reduced).sqrt();
+    push + (speed * (stiffness * reduced).sqrt() - push * phase.sin()).hypot(push * phase.cos())
 }
