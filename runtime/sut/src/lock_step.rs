@@ -42,10 +42,17 @@ impl SystemActor for LockStep<'_> {
         !self.waits
     }
 
-    fn next(&mut self, _: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault> {
-        let request = match self.process.next() {
-            Ok(request) => request,
-            Err(error) => return Err(self.fault(error)),
+    fn next(&mut self, now: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault> {
+        let request = loop {
+            match self.process.next() {
+                // It hears of that first, and not when something else happens, if ever.
+                Ok(ProgramRequest::Wait { .. }) if self.process.has_refused() => {
+                    let answer = ReplyAnswer::Arrived { arrivals: Vec::new(), gave_up: false };
+                    self.process.reply(&HarnessReply { time: now, answer })?;
+                }
+                Ok(request) => break request,
+                Err(error) => return Err(self.fault(error)),
+            }
         };
         let line = RequestTicket(self.process.line());
         if let ProgramRequest::Failed { text, node } = &request {

@@ -269,6 +269,12 @@ impl SutProcess {
         }
     }
 
+    /// Whether the next reply says that something was refused.
+    #[must_use]
+    pub fn has_refused(&self) -> bool {
+        !self.refused.is_empty()
+    }
+
     /// The version of the protocol that it speaks.
     #[must_use]
     pub fn version(&self) -> u32 {

@@ -24,6 +24,7 @@ class ProtocolError(RuntimeError):
         super().__init__(message if not help else "%s (%s)" % (message, help))
         self.message = message
         self.help = help
+        self.about: object = None  # what the request was about that had no reply of its own
 
 
 class Deadlock(SystemExit):

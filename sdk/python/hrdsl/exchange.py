@@ -94,6 +94,12 @@ class Port:
             exchange.ports.pop(self.number, None)
             self._tell(b'{"request":"close","port":%d}\n' % self.number, self)
 
+    def forget(self) -> None:
+        """Nothing can be sent: it was refused."""
+        exchange, self._exchange = self._exchange, None
+        if exchange is not None:
+            exchange.ports.pop(self.number, None)
+
     def _closed(self) -> ProtocolError:
         return ProtocolError("the %s is closed" % self)
 
@@ -163,10 +169,12 @@ class Exchange:
         reliability: str | None = None,
         durability: str | None = None,
         handler: Handler | None = None,
+        is_told: bool = False,
     ) -> Port:
         """Becomes a `publisher`, `subscriber`, `server`, `client`, `action_server` or `action_client`. What arrives at the
         port goes to the handler. The reliability is `reliable` or `best_effort`, the durability `volatile` or
-        `transient_local`; None fits all. Raises `ProtocolError` if it is refused."""
+        `transient_local`; None fits all. Raises `ProtocolError` if it is refused; if it `is_told`, the next request that has a
+        reply does, of which the error is `about` the port."""
         port = Port(self, self.number(), kind, name, type_name, handler)
         message: dict[str, Any] = {"request": "open", "port": port.number, "kind": kind, "name": name, "type": type_name}
         if latched:
@@ -176,7 +184,11 @@ class Exchange:
                 message[key] = value
         self.ports[port.number] = port
         try:
-            self.link.request(message)
+            if is_told:
+                message["reply"] = False
+                self.link.tell(_encode(message).encode("ascii") + b"\n", port)
+            else:
+                self.link.request(message)
         except BaseException:
             self.ports.pop(port.number, None)
             raise

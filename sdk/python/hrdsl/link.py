@@ -235,7 +235,9 @@ class Link:
                 about, ident = self._told[at]
             else:  # the program has written to the pipe itself
                 about, ident = "line %d" % each["line"], _get_ident()
-            self.faults.append((ident, ProtocolError("%s: %s" % (about, each["error"]), each.get("help"))))
+            fault = ProtocolError("%s: %s" % (about, each["error"]), each.get("help"))
+            fault.about = about
+            self.faults.append((ident, fault))
 
     def _hand_out_faults(self) -> None:
         """Of requests without a reply, to the threads that have made them; those that are not parked find out later."""

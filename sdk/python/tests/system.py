@@ -57,6 +57,8 @@ class System:
         self.lines += 1
         request = json.loads(line)
         one_way = getattr(self, "tell_" + request["request"], None)
+        if request.get("reply") is False:
+            one_way = getattr(self, "do_" + request["request"])
         try:
             if one_way is not None:
                 one_way(request)
@@ -148,6 +150,8 @@ class System:
 
     def do_wait(self, request):
         until, give_up = request.get("until"), request.get("give_up")
+        if self.refused:
+            return {"arrivals": []}
         while not self.mailbox:
             next = self._queue[0][0] if self._queue else None
             limits = [time for time in (until, give_up) if time is not None]

@@ -320,6 +320,59 @@ class Topics(Case):
         a = {"request": "await", "kind": "subscriber", "name": "/a", "type": "std_msgs/Int8"}
         self.assertEqual(system.awaited, [a, {**a, "give_up": 4 * SECOND}, {**a, "give_up": 7 * SECOND // 2}])
 
+    def test_waiting_for_a_message_costs_one_round_trip_and_no_thread(self):
+        text = """
+            import rospy, threading
+            from hrdsl.link import the_link
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            started = []
+            start = threading.Thread.start
+            threading.Thread.start = lambda thread: (started.append(thread.name), start(thread))
+            asked = the_link().asked
+            for _ in range(3):
+                print(rospy.wait_for_message("a", Int8).data)
+            print(the_link().asked - asked, started)
+            """
+        system = System([(second * SECOND, topic("/a", data=second)) for second in (1, 2, 3)])
+        self.assertEqual(self.said(text, system=system), ["1", "2", "3", "3 []"])
+        self.assertEqual(system.ports, {})
+
+    def test_a_subscriber_beside_one_who_waits_for_a_message(self):
+        text = """
+            import rospy, threading
+            from std_msgs.msg import Int8
+            rospy.init_node("node")
+            def subscribe():
+                rospy.sleep(1.5)
+                rospy.Subscriber("a", Int8, lambda message: print("heard", message.data, threading.current_thread().name))
+            threading.Thread(target=subscribe).start()
+            print("got", rospy.wait_for_message("a", Int8).data)
+            print("got", rospy.wait_for_message("a", Int8).data)
+            rospy.sleep(2)
+            """
+        system = System([(second * SECOND, topic("/a", data=second)) for second in (1, 2, 3)])
+        self.assertEqual(self.said(text, system=system), ["got 1", "heard 2 /a", "got 2", "heard 3 /a"])
+
+    def test_waiting_for_what_is_no_such_message(self):
+        text = """
+            import rospy
+            from std_msgs.msg import Int8, String
+            rospy.init_node("node")
+            rospy.Publisher("words", String, queue_size=1)
+            for _ in range(2):
+                try:
+                    rospy.wait_for_message("words", Int8)
+                except RuntimeError as error:
+                    print(type(error).__name__, error)
+            print(rospy.wait_for_message("a", Int8, timeout=5).data, rospy.get_time() % 60)
+            """
+        system = System([(SECOND, topic("/a", number=1)), (3 * SECOND, topic("/a", data=2))])
+        told = "ProtocolError subscriber of /words (std_msgs/Int8): the topic `/words` is of type `std_msgs/String`, not `std_msgs/Int8`"
+        finished = run_ros(text, system=system)
+        self.assertEqual((finished.code, finished.out.splitlines()), (0, [told, told, "2 3.0"]), finished.err)
+        self.assertEqual(finished.err.count("unable to receive a message on topic /a"), 1, finished.err)
+
     def test_connections_and_those_who_listen_to_them(self):
         text = """
             import rospy

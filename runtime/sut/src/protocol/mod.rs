@@ -284,7 +284,9 @@ impl ProgramRequest {
             | ProgramRequest::Read { .. }
             | ProgramRequest::Act { wait: true, .. }
             | ProgramRequest::Done => RequestRules::replied(1),
-            ProgramRequest::Open(open) => RequestRules::replied(2).with(open.fault()),
+            ProgramRequest::Open(open) => {
+                RequestRules { is_one_way: !open.reply, ..RequestRules::replied(2) }.with(open.fault())
+            }
             ProgramRequest::Plan(plan) => RequestRules::replied(2).with(plan.fault()),
             ProgramRequest::Wait { .. }
             | ProgramRequest::List
@@ -361,13 +363,16 @@ pub(crate) fn parse(line: &[u8], version: u32) -> ProtocolLine {
     let why = match head.and_then(|head| of_kind(&head.request, line)) {
         Ok(request) => match request.fault(version) {
             None => return ProtocolLine::Request(request),
-            Some(why) => return ProtocolLine::Refused { why, waits },
+            Some(why) => {
+                return ProtocolLine::Refused { why, waits: waits && (version < 2 || !request.is_one_way()) };
+            }
         },
         Err(why) => why.to_string(),
     };
     match serde_json::from_slice::<serde_json::Value>(line) {
         Ok(value) if value.get("request").is_some_and(serde_json::Value::is_string) => {
-            ProtocolLine::Refused { why, waits }
+            let wants_none = version > 1 && value.get("reply") == Some(&serde_json::Value::Bool(false));
+            ProtocolLine::Refused { why, waits: waits && !wants_none }
         }
         Ok(_) => ProtocolLine::Rubbish("no request".to_owned()),
         Err(error) => ProtocolLine::Rubbish(error.to_string()),

@@ -24,6 +24,9 @@ pub struct OpenRequest {
     pub reliability: Option<WrittenReliability>,
     #[serde(default)]
     pub durability: Option<WrittenDurability>,
+    /// Whether the program waits for a reply.
+    #[serde(default = "super::yes")]
+    pub reply: bool,
 }
 
 /// A [`PortKind`] as the protocol writes it.

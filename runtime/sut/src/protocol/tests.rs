@@ -91,6 +91,27 @@ fn what_is_told_without_a_reply_is_understood() {
 }
 
 #[test]
+fn a_port_is_opened_with_a_reply_or_without() {
+    let line = |more: &str| {
+        format!(r#"{{"request":"open","port":1,"kind":"subscriber","name":"/a","type":"std_msgs/Int8"{more}}}"#)
+    };
+    assert!(!request(&line("")).is_one_way());
+    assert!(!request(&line(r#","reply":true"#)).is_one_way());
+    assert!(request(&line(r#","reply":false"#)).is_one_way());
+    let waits = |line: &str, version| match parse(line.as_bytes(), version) {
+        ProtocolLine::Refused { waits, .. } => waits,
+        other => panic!("{line}: {other:?}"),
+    };
+    let nameless = r#"{"request":"open","port":1,"kind":"subscriber","name":"","type":"a/B","reply":false}"#;
+    let without_kind = r#"{"request":"open","port":1,"name":"/a","type":"a/B","reply":false}"#;
+    for wrong in [nameless, without_kind] {
+        assert!(!waits(wrong, 2), "{wrong}");
+        assert!(waits(&wrong.replace("false", "true"), 2), "{wrong}");
+        assert!(waits(wrong, 1), "in version 1 all requests have replies: {wrong}");
+    }
+}
+
+#[test]
 fn parameters_are_asked_for_and_their_values_stay_text() {
     let get = request(r#"{"request":"get_parameter","name":"/a"}"#);
     let set = request(r#"{"request":"set_parameter","name":"/a","value": {"b": 1.50} }"#);

@@ -7,13 +7,14 @@ import sys
 
 import genpy
 import rosgraph.names
+from hrdsl.errors import ProtocolError
 from hrdsl.exchange import the_exchange
 from hrdsl.mailbox import Mailbox
 from rospy import core, log, names, rostime
 from rospy.core import signal_shutdown
 from rospy.exceptions import ROSException, ROSInitException, ROSInterruptException
 from rospy.graph import graph
-from rospy.log import logdebug
+from rospy.log import logdebug, logerr
 from rospy.params import (
     delete_param,
     get_param,
@@ -23,7 +24,7 @@ from rospy.params import (
     search_param,
     set_param,
 )
-from rospy.topics import Subscriber
+from rospy.subscribers import Listener, Unreadable
 
 __all__ = [
     "DEBUG", "ERROR", "FATAL", "INFO", "WARN", "delete_param", "get_master", "get_param", "get_param_cached", "get_param_names",
@@ -159,13 +160,21 @@ def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
     core._spinning.append(box)
     subscriber = None
     try:
-        subscriber = Subscriber(topic, topic_type, box.put)
+        subscriber = Listener(topic, topic_type, box.put)
         if isinstance(timeout, genpy.Duration):
             timeout = timeout.to_sec()
         patience = None if timeout is None else max(1, round(timeout * 1e9))
         give_up = None if patience is None else the_exchange().time + patience
         the_exchange().awaits("subscriber", subscriber.resolved_name, subscriber.type, give_up)
         message = None if core.is_shutdown() else box.get(patience)
+        while message.__class__ is Unreadable:
+            logerr("unable to receive a message on topic %s: %s" % (subscriber.resolved_name, message.error))
+            message = box.get(None if give_up is None else give_up - the_exchange().time)
+    except ProtocolError as error:
+        port = subscriber.impl.port if subscriber is not None and subscriber.impl is not None else None
+        if port is not None and error.about is port:
+            port.forget()
+        raise
     finally:
         core._spinning.remove(box)
         if subscriber is not None:

@@ -33,6 +33,7 @@ class Subscriber(topic.Topic):
     """Lets a function be called with each message of a topic."""
 
     impl: _SubscriberImpl | None
+    _has_no_thread = False
 
     def __init__(
         self,
@@ -45,7 +46,8 @@ class Subscriber(topic.Topic):
         tcp_nodelay: bool = False,
     ) -> None:
         super().__init__(name, data_class)
-        impl = topic.subscribers.get(self.resolved_name) or _SubscriberImpl(self.resolved_name, data_class, topic.subscribers)
+        table = topic.subscribers
+        impl = table.get(self.resolved_name) or _SubscriberImpl(self.resolved_name, data_class, table, self._has_no_thread)
         impl.ref_count += 1
         self.impl = impl
         if queue_size is not None:
@@ -64,6 +66,20 @@ class Subscriber(topic.Topic):
             super().unregister()
 
 
+class Unreadable:
+    """A message that is none of its type."""
+
+    def __init__(self, error: genpy.DeserializationError) -> None:
+        self.error = error
+
+
+class Listener(Subscriber):
+    """Lets a function be called that puts the message by, and neither waits nor fails: no thread is made for it, and the topic is opened
+    without waiting for a reply. It may get something `Unreadable`, too."""
+
+    _has_no_thread = True
+
+
 class _Callback:
     """A function, and the subscriber that has brought it, for as long as the program has that."""
 
@@ -80,8 +96,9 @@ class _Callback:
 class _SubscriberImpl(topic.TopicImpl):
     kind, others = "subscriber", "publisher"
 
-    def __init__(self, name: str, data_class: Any, table: dict[str, Any]) -> None:
+    def __init__(self, name: str, data_class: Any, table: dict[str, Any], has_no_thread: bool) -> None:
         self.callbacks: list[_Callback] = []
+        self._has_no_thread = has_no_thread and data_class._type != "*"
         self._box = Mailbox()
         self._latched: Any = None  # the last message of a publisher that is known to be latched
         self._header = ConnectionHeader(self.others, name)
@@ -112,9 +129,30 @@ class _SubscriberImpl(topic.TopicImpl):
             message_definition=cls._full_text,
         )
         self._latched_header = self._header.with_latching()
-        port = the_exchange().open("subscriber", self.resolved_name, type_name, handler=self._box.put)
-        threading.Thread(target=self._run, name=self.resolved_name, daemon=True).start()
+        handler, is_told = (self._hear, True) if self._has_no_thread else (self._box.put, False)
+        port = the_exchange().open("subscriber", self.resolved_name, type_name, handler=handler, is_told=is_told)
+        if not is_told:
+            self._start()
         return port
+
+    def _start(self) -> None:
+        threading.Thread(target=self._run, name=self.resolved_name, daemon=True).start()
+
+    def _hear(self, arrival: Arrival) -> None:
+        self._box.put(arrival)
+        if self._has_no_thread:  # when a thread of it would have its turn
+            the_exchange().scheduler.errand(self._take)
+
+    def _take(self) -> None:
+        if self.closed or not len(self._box):
+            return
+        arrival = self._box.get()
+        try:
+            message = self._read(arrival)
+        except genpy.DeserializationError as error:
+            message = Unreadable(error)
+        for callback in self.callbacks:
+            callback.call(message)
 
     def set_queue_size(self, queue_size: Any) -> None:
         """Keeps so many messages at most while the callbacks are busy; the oldest are lost."""
@@ -133,6 +171,10 @@ class _SubscriberImpl(topic.TopicImpl):
     def add_callback(self, cb: Callable[..., Any], cb_args: Any, subscriber: Any) -> None:
         """Calls it from now on. Where a program makes the same subscriber again and again, and keeps none of them, it is called
         once."""
+        if self._has_no_thread and not subscriber._has_no_thread:
+            self._has_no_thread = False
+            if self.port is not None:
+                self._start()
         for known in self.callbacks:
             if known.subscriber() is None and known.is_same(cb, cb_args):
                 known.call, known.subscriber = cb, weakref.ref(subscriber)
@@ -173,17 +215,22 @@ class _SubscriberImpl(topic.TopicImpl):
             if arrival is None or self.closed:
                 return
             try:
-                message = self._reads(arrival["message"])
+                message = self._read(arrival)
             except genpy.DeserializationError as error:
                 logerr("unable to receive a message on topic %s: %s" % (self.resolved_name, error))
                 continue
-            publisher = topic.publishers.get(self.name)
-            is_latched = arrival.get("latched") or publisher is not None and publisher.is_latch
-            message._connection_header = self._latched_header if is_latched else self._header
-            if is_latched:
-                self._latched = message
             for callback in self.callbacks:
                 self._invoke(message, callback.call, callback.args)
+
+    def _read(self, arrival: Arrival) -> Any:
+        """The message; of a latched one it keeps the last."""
+        message = self._reads(arrival["message"])
+        publisher = topic.publishers.get(self.name)
+        is_latched = arrival.get("latched") or publisher is not None and publisher.is_latch
+        message._connection_header = self._latched_header if is_latched else self._header
+        if is_latched:
+            self._latched = message
+        return message
 
     def _invoke(self, message: Any, cb: Callable[..., Any], cb_args: Any) -> None:
         try:
