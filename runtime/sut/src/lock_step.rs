@@ -43,16 +43,13 @@ impl SystemActor for LockStep<'_> {
     }
 
     fn next(&mut self, now: Nanos) -> Result<Option<(RequestTicket, SystemRequest)>, SystemFault> {
-        let request = loop {
-            match self.process.next() {
-                // It hears of that first, and not when something else happens, if ever.
-                Ok(ProgramRequest::Wait { .. }) if self.process.has_refused() => {
-                    let answer = ReplyAnswer::Arrived { arrivals: Vec::new(), gave_up: false };
-                    self.process.reply(&HarnessReply { time: now, answer })?;
-                }
-                Ok(request) => break request,
-                Err(error) => return Err(self.fault(error)),
+        let request = match self.process.next() {
+            // It hears of that now, and not when something else happens, if ever.
+            Ok(ProgramRequest::Wait { .. }) if self.process.has_refused() => {
+                ProgramRequest::Wait { until: Some(now), give_up: None }
             }
+            Ok(request) => request,
+            Err(error) => return Err(self.fault(error)),
         };
         let line = RequestTicket(self.process.line());
         if let ProgramRequest::Failed { text, node } = &request {

@@ -151,7 +151,7 @@ class System:
     def do_wait(self, request):
         until, give_up = request.get("until"), request.get("give_up")
         if self.refused:
-            return {"arrivals": []}
+            until, give_up = self.time, None
         while not self.mailbox:
             next = self._queue[0][0] if self._queue else None
             limits = [time for time in (until, give_up) if time is not None]

@@ -239,7 +239,7 @@ class Ports(Case):
         self.assertEqual(
             self.said(text),
             [
-                "thread: publisher of /a (T): no port 77 is open 1000000000",
+                "thread: publisher of /a (T): no port 77 is open 0",
                 "main: publisher of /a (T): no port 77 is open",
                 "publisher of /a (T): a message of 1048619 bytes as JSON; a request has at most 1048576"
                 " (send less at once, such as smaller images)",

@@ -73,7 +73,7 @@ print([timer.is_alive() for timer in timers])
         told, finished = self.failures(text, [(0, refuse)])
         self.assertEqual(told, [
             (0.5, "/brain", "timer of 0.5 s: tick raised RuntimeError"),
-            (2.0, "/brain", "timer of 1 s: say raised ProtocolError: publisher of /bad: it is refused"),
+            (1.0, "/brain", "timer of 1 s: say raised ProtocolError: publisher of /bad: it is refused"),
         ])  # fmt: skip
         self.assertEqual(finished.out, "[False, False]\n")
         self.assertEqual(finished.err.count("Traceback"), 2)
