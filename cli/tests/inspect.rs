@@ -16,7 +16,9 @@ fn kitchen() -> TempDir {
 /// Of the example, with these arguments besides.
 fn inspect(more: &[&str]) -> Output {
     let scenario = handover();
-    hrdsl(["inspect", scenario.to_str().unwrap()].iter().chain(more))
+    let mut command = command();
+    command.args(["inspect", "scenario.hri"]).args(more).current_dir(scenario.parent().unwrap());
+    command.output().unwrap()
 }
 
 fn lines(out: &Output) -> Vec<Value> {
@@ -49,6 +51,32 @@ fn the_example_with_beliefs_by_hand() {
             && steps.contains("→ show#4 (L = 1, G = true, P = false, X = true)")
     );
     assert_eq!(stdout(&inspect(&[&given[..], &["--reasons"]].concat())), stdout(&out));
+}
+
+#[test]
+fn how_things_stand_at_a_time() {
+    let given = ["--beliefs", "wants(1), shows(1, true, false, true), Sensors.away", "--agent", "Human"];
+    let at = |time: &str, more: &[&str]| {
+        let out = inspect(&[&given[..], &["--at", time], more].concat());
+        expect_code(&out, 0);
+        stdout(&out)
+    };
+    let text = at("5 s", &[]);
+    insta::assert_snapshot!("at_a_time", text);
+    // What stands in the log up to then is what is believed and intended then.
+    let log = stdout(&inspect(&[&given[..], &["--until", "5 s"]].concat()));
+    let last = log.rsplit("still to do").next().unwrap().lines().nth(1).unwrap();
+    let stands = last.trim().strip_prefix("Human ").unwrap();
+    assert!(text.contains(stands), "{stands}\n{text}");
+    let json: Value = serde_json::from_str(&at("5 s", &["--json"])).unwrap();
+    assert_eq!((&json["how"], &json["time"]), (&"under way".into(), &5_000_000_000_u64.into()));
+    let place = json["agents"][0]["intentions"][0]["place"].as_str().unwrap();
+    assert!(stands.contains(place), "{place}: {stands}");
+    // A time after the end is the end.
+    let end = stdout(&inspect(&[&given[..], &["--end"]].concat()));
+    assert_eq!(at("1000 s", &[]), end);
+    let out = inspect(&["--at", "5 s", "--end"]);
+    expect_code(&out, 2);
 }
 
 #[test]
@@ -229,19 +257,9 @@ fn what_does_not_exist_is_named_with_what_does() {
 fn traces_are_the_runs_that_tests_came_from() {
     let here = tempfile::tempdir().unwrap();
     let (scenario, out) = (handover(), here.path().join("tests"));
-    let args = [
-        "gen",
-        scenario.to_str().unwrap(),
-        "--suite",
-        "bdi_tests",
-        "-n",
-        "30",
-        "--seed",
-        "5",
-        "--trace",
-        "-o",
-    ];
-    let run = hrdsl(args.iter().copied().chain([out.to_str().unwrap()]));
+    let line = "gen scenario.hri --suite bdi_tests -n 30 --seed 5 --trace -o";
+    let args = line.split(' ').chain([out.to_str().unwrap()]);
+    let run = command().args(args).current_dir(scenario.parent().unwrap()).output().unwrap();
     expect_code(&run, 0);
     let files = tree(&out);
     assert_eq!(files.len(), 32, "those, the tests and the mark of results");

@@ -230,7 +230,7 @@ fn traced(
     if json {
         return json_lines(inspection, &picked, place);
     }
-    let end = ending(&ModelRunEnd::of(inspection, &picked), false);
+    let end = ending(&ModelRunEnd::of(inspection, &picked, place), false);
     Ok(reasoning(inspection, &picked, false, place) + &end)
 }
 

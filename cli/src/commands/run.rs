@@ -169,7 +169,7 @@ fn print(inspection: &ModelInspection, json: bool) -> Result<(), CommandFault> {
 /// How the run ended, if it is not as it should.
 fn concluded(inspection: &ModelInspection) -> CommandExit {
     inspection.run.warnings.iter().for_each(|w| terminal::say_line(format_args!("warning: {w}")));
-    let end = ModelRunEnd::of(inspection, &ReasoningFilter::default());
+    let end = ModelRunEnd::of(inspection, &ReasoningFilter::default(), &|_| String::new());
     if end.left_out > 0 {
         terminal::say_line(format_args!("{} entries of the agents' logs were not kept", end.left_out));
     }

@@ -1,7 +1,7 @@
 //! The plan library: which plans are relevant to a trigger, which may leave early, and the rules.
 
 use hrdsl_ir::{
-    EventId, Program,
+    EventId, Program, Span,
     bdi::{
         Agent, AgentId, AgentTerm, BeliefDecl, BeliefId, BeliefRule, GoalId, MessageSubject, Performative,
         Plan, PlanContext, PlanStepKind, TriggerOn, each_step,
@@ -121,6 +121,11 @@ impl<'p> PlanLibrary<'p> {
     pub fn event_at(&self, index: u16, line: u16) -> Option<EventId> {
         let op = &self.code.get(usize::from(index))?.get(usize::from(line))?.op;
         if let PlanOp::Plain(PlanStepKind::Do { event, .. }) = op { Some(*event) } else { None }
+    }
+
+    /// Where the step at this line stands.
+    pub fn origin_at(&self, index: u16, line: u16) -> Option<Span> {
+        Some(self.code.get(usize::from(index))?.get(usize::from(line))?.origin)
     }
 
     pub fn leaves_early(&self, index: u16) -> bool {

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use hrdsl_ir::{
-    ActorId, EventId, Nanos, Program, Value,
+    ActorId, EventId, Nanos, Program, Span, Value,
     bdi::{AgentId, InitialFact},
 };
 use rayon::prelude::*;
@@ -377,6 +377,12 @@ impl<'p> AgentSociety<'p> {
     #[must_use]
     pub fn event_of(&self, agent: usize, entry: &LogEntry) -> Option<String> {
         self.machines.get(agent).and_then(|m| m.event_of(entry))
+    }
+
+    /// Where the plan or step stands that an entry of an agent's log is about, if it is about one.
+    #[must_use]
+    pub fn origin_in(&self, agent: usize, entry: &LogEntry) -> Option<Span> {
+        self.machines.get(agent).and_then(|m| m.origin_in(entry))
     }
 
     /// The event that a step of an agent's log makes, or the stimulus that it does: the entry's text has its arguments.

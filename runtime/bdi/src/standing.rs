@@ -1,5 +1,6 @@
 //! How an agent stands: what it intends, what each intention waits for, what it believes.
 
+use hrdsl_ir::Span;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
@@ -23,6 +24,9 @@ pub struct IntentionSummary {
     /// `await released within 90 s, until 95 s`
     pub waits: String,
     pub suspended: bool,
+    /// Where the step stands that it does or waits for; until its event has a plan, the step that made the event; `None`: it has no plan yet.
+    #[serde(skip)]
+    pub origin: Option<Span>,
 }
 
 /// So many plans are told at each end of a stack.
@@ -38,6 +42,34 @@ impl AgentMachine<'_> {
             return None;
         };
         Some(self.names().on(*on, args))
+    }
+
+    /// Where the plan or step stands that an entry is about, if it is about one.
+    pub fn origin_in(&self, entry: &LogEntry) -> Option<Span> {
+        match &entry.what {
+            LogItem::Failed(failure) => Some(failure.origin),
+            LogItem::Fault { origin, .. } | LogItem::Unhandled { origin, .. } => Some(*origin),
+            LogItem::Selected { plan, .. } | LogItem::Tried { plan, .. } => {
+                Some(self.mind.library.plan(*plan).origin)
+            }
+            LogItem::Step { plan, line, .. } => self.mind.library.origin_at(*plan, *line),
+            LogItem::FaultyAnswer { .. }
+            | LogItem::Finished
+            | LogItem::Dropped
+            | LogItem::Added { .. }
+            | LogItem::Left { .. }
+            | LogItem::Taken { .. }
+            | LogItem::StillHeld { .. }
+            | LogItem::Refused { .. }
+            | LogItem::Perceived { .. }
+            | LogItem::Heard { .. }
+            | LogItem::Asked { .. }
+            | LogItem::Answered { .. }
+            | LogItem::Printed(_)
+            | LogItem::Livelock
+            | LogItem::Endless
+            | LogItem::Overfull(_) => None,
+        }
     }
 
     /// What it intends, in the order of adoption.
@@ -68,7 +100,8 @@ impl AgentMachine<'_> {
         } else {
             frames.iter().map(plan).collect()
         };
-        IntentionSummary { intention: intention.number, plans, waits, suspended: intention.suspended }
+        let origin = frames.last().and_then(|top| self.mind.library.origin_at(top.plan, top.at));
+        IntentionSummary { intention: intention.number, plans, waits, suspended: intention.suspended, origin }
     }
 
     fn waits(&self, intention: &Intention, posted: Option<&QueuedEvent>) -> String {

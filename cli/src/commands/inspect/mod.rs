@@ -35,6 +35,7 @@ Examples:
   hrdsl inspect scenario.hri bdi_tests --set 3
   hrdsl inspect scenario.hri bdi_tests.t017 --agent Human --until '20 s'
   hrdsl inspect scenario.hri --beliefs 'wants(2), shows(1, true, false, true)' --end
+  hrdsl inspect scenario.hri bdi_tests.t017 --at '42.5 s'
   hrdsl inspect scenario.hri bdi_tests --json | jq -r 'select(.kind == \"failed\") | .text'")]
 pub struct InspectArgs {
     /// The scenario.
@@ -72,6 +73,9 @@ pub struct InspectArgs {
     /// Only how the run ended: what is waited for, and what is believed.
     #[arg(long)]
     end: bool,
+    /// Only how things stand at this time, after all that happens at it: what is waited for, and what is believed.
+    #[arg(long, value_name = "T", value_parser = time, conflicts_with_all = ["end", "steps", "reasons", "all", "from", "until"])]
+    at: Option<Nanos>,
     /// As with `hrdsl gen`: everything random comes from this.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -81,7 +85,7 @@ pub struct InspectArgs {
     /// As with `hrdsl gen`: of the tests only those that are needed.
     #[arg(long)]
     minimise: bool,
-    /// Print the log as lines of JSON; with --end, the end as JSON.
+    /// Print the log as lines of JSON; with --end and --at, how things stand as JSON.
     #[arg(long)]
     json: bool,
 }
@@ -126,15 +130,18 @@ pub fn run(args: &InspectArgs) -> Result<CommandExit, CommandFault> {
             return Err(format!("no agent `{agent}` in the suite; it has: {}", names.join(", ")));
         }
     }
-    let detail = match (args.end, args.steps) {
+    let detail = match (args.end || args.at.is_some(), args.steps) {
         (true, _) => LogDetail::Failures,
         (false, true) => LogDetail::Steps,
         (false, false) => LogDetail::Reasons,
     };
-    let inspection = chosen.inspect(program, detail);
-    let end = ModelRunEnd::of(&inspection, &picked);
+    let horizon = chosen.suite.settings.horizon;
+    let stop = args.at.map_or(horizon, |at| at.min(horizon));
+    let inspection = chosen.inspect_until(program, detail, stop);
     let place = |span: Span| compilation.files.place(span);
-    match (args.json, args.end) {
+    let end = ModelRunEnd::of(&inspection, &picked, &place);
+    let end = if stop < horizon { end.under_way() } else { end };
+    match (args.json, args.end || args.at.is_some()) {
         (true, true) => terminal::print_data(&(json(&end)? + "\n"))?,
         (true, false) => terminal::print_data(&json_lines(&inspection, &picked, &place)?)?,
         (false, only_end) => {
@@ -176,12 +183,12 @@ impl<'p> InspectedRun<'p> {
 
     #[must_use]
     pub fn inspect(&self, program: &Program, detail: LogDetail) -> ModelInspection {
-        inspect(
-            program,
-            self.players,
-            &self.facts,
-            &ModelRunOptions::new(self.seed, self.suite.settings.horizon, detail),
-        )
+        self.inspect_until(program, detail, self.suite.settings.horizon)
+    }
+
+    /// The run up to this time, with all that happens at it.
+    fn inspect_until(&self, program: &Program, detail: LogDetail, until: Nanos) -> ModelInspection {
+        inspect(program, self.players, &self.facts, &ModelRunOptions::new(self.seed, until, detail))
     }
 
     /// What is shown, in a few lines.

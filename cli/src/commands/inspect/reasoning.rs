@@ -52,7 +52,7 @@ impl ReasoningFilter<'_> {
 pub struct ModelRunEnd {
     /// In nanoseconds.
     pub time: Nanos,
-    /// `quiescent`, `horizon`, `livelock`, `cycle bound`, `holding bound` or `fault`.
+    /// `quiescent`, `horizon`, `livelock`, `cycle bound`, `holding bound` or `fault`; `under way` if it was looked at before its end.
     pub how: &'static str,
     /// What that means; of a fault, which.
     pub why: String,
@@ -65,14 +65,27 @@ pub struct ModelRunEnd {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct AgentEnd {
     pub agent: String,
-    pub intentions: Vec<IntentionSummary>,
+    pub intentions: Vec<LocatedIntention>,
     pub beliefs: Vec<String>,
 }
 
+/// An intention, with the place of its step as people count.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct LocatedIntention {
+    #[serde(flatten)]
+    pub summary: IntentionSummary,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<String>,
+}
+
 impl ModelRunEnd {
-    /// How a run ended for the agents that are shown.
+    /// How a run ended for the agents that are shown. `place` says where a span is, as people count.
     #[must_use]
-    pub fn of(inspection: &ModelInspection, picked: &ReasoningFilter<'_>) -> Self {
+    pub fn of(
+        inspection: &ModelInspection,
+        picked: &ReasoningFilter<'_>,
+        place: &dyn Fn(Span) -> String,
+    ) -> Self {
         let (how, why) = match (&inspection.run.ended, inspection.status) {
             (RunTermination::Quiescent, _) => {
                 ("quiescent", "nobody waits for anything that can still come".to_owned())
@@ -89,10 +102,14 @@ impl ModelRunEnd {
             ) => ("fault", fault.to_string()),
         };
         let last = inspection.snapshots.last();
-        let agent = |(place, name): (usize, &String)| AgentEnd {
+        let located = |summary: &IntentionSummary| LocatedIntention {
+            summary: summary.clone(),
+            place: summary.origin.map(place),
+        };
+        let agent = |(at, name): (usize, &String)| AgentEnd {
             agent: name.clone(),
-            intentions: last.and_then(|s| s.agents.get(place)).cloned().unwrap_or_default(),
-            beliefs: inspection.beliefs.get(place).cloned().unwrap_or_default(),
+            intentions: last.and_then(|s| s.agents.get(at)).into_iter().flatten().map(located).collect(),
+            beliefs: inspection.beliefs.get(at).cloned().unwrap_or_default(),
         };
         let agents = inspection.agents.iter().enumerate().filter(|(_, name)| picked.has_agent(name));
         Self {
@@ -104,10 +121,19 @@ impl ModelRunEnd {
         }
     }
 
+    /// The same where the time at which the run was stopped is not its end.
+    #[must_use]
+    pub fn under_way(self) -> Self {
+        if self.how != "horizon" {
+            return self;
+        }
+        Self { how: "under way", why: "the run goes on".to_owned(), ..self }
+    }
+
     /// Whether it came to its end without a fault of the model.
     #[must_use]
     pub fn is_regular(&self) -> bool {
-        matches!(self.how, "quiescent" | "horizon")
+        matches!(self.how, "quiescent" | "horizon" | "under way")
     }
 }
 
@@ -157,14 +183,18 @@ impl ReasoningPage<'_> {
         self.out.push('\n');
     }
 
-    fn standing(&mut self, start: &str, who: &str, standing: &IntentionSummary) {
+    fn standing(&mut self, start: &str, who: &str, standing: &IntentionSummary, place: Option<&str>) {
         let number = format!("#{}", standing.intention);
         let plans = standing.plans.join(" > ");
         let held = if standing.suspended { ", suspended" } else { "" };
         let rest = format!("{plans}: {}{held}", standing.waits);
         let who = if who.is_empty() { vec![] } else { vec![(ReasoningStyle::Dim, who)] };
-        let pieces =
-            [(ReasoningStyle::Dim, number.as_str()), (ReasoningStyle::Dim, rest.trim_start_matches(": "))];
+        let place = place.map_or_else(String::new, |place| format!("({place})"));
+        let pieces = [
+            (ReasoningStyle::Dim, number.as_str()),
+            (ReasoningStyle::Dim, rest.trim_start_matches(": ")),
+            (ReasoningStyle::Dim, place.as_str()),
+        ];
         self.line(start, &[&who[..], &pieces].concat());
     }
 }
@@ -241,7 +271,8 @@ fn considered(page: &mut ReasoningPage<'_>, line: &LogLine, event: &str) {
         "unhandled" => ReasoningStyle::Bad,
         _ => ReasoningStyle::Dim,
     };
-    let place = line.origin.filter(|_| line.kind == "unhandled").map(|o| (page.place)(o));
+    let is_placed = matches!(line.kind, "unhandled" | "selected");
+    let place = line.origin.filter(|_| is_placed).map(|o| (page.place)(o));
     let at = place.map_or_else(String::new, |p| format!("({p})"));
     page.line("         ", &[(style, said), (ReasoningStyle::Dim, &at)]);
 }
@@ -258,7 +289,9 @@ fn plain(page: &mut ReasoningPage<'_>, gutter: &str, line: &LogLine) {
         "perceived" | "heard" => ReasoningStyle::Event,
         _ => ReasoningStyle::Plain,
     };
-    let place = line.origin.map_or_else(String::new, |o| format!("({})", (page.place)(o)));
+    // What is done is found by its plan.
+    let origin = line.origin.filter(|_| line.kind != "step");
+    let place = origin.map_or_else(String::new, |o| format!("({})", (page.place)(o)));
     page.line(gutter, &[(style, &line.text), (ReasoningStyle::Dim, &place)]);
 }
 
@@ -275,7 +308,10 @@ fn still_to_do(
         page.line("  ", &[(ReasoningStyle::Dim, "still to do")]);
     }
     for (name, all) in each {
-        all.iter().for_each(|standing| page.standing("       ", name, standing));
+        for standing in all {
+            let place = standing.origin.map(|origin| (page.place)(origin));
+            page.standing("       ", name, standing, place.as_deref());
+        }
     }
 }
 
@@ -284,7 +320,8 @@ fn still_to_do(
 pub fn ending(end: &ModelRunEnd, color: bool) -> String {
     let mut page = ReasoningPage { out: String::new(), color, place: &|_| String::new() };
     let style = if end.is_regular() { ReasoningStyle::Chosen } else { ReasoningStyle::Bad };
-    let time = format!("the end, at {}:", show::time(end.time));
+    let when = if end.how == "under way" { "at" } else { "the end, at" };
+    let time = format!("{when} {}:", show::time(end.time));
     page.line(
         "",
         &[(ReasoningStyle::Bold, &time), (style, end.how), (ReasoningStyle::Dim, &format!("({})", end.why))],
@@ -298,7 +335,9 @@ pub fn ending(end: &ModelRunEnd, color: bool) -> String {
         if agent.intentions.is_empty() {
             page.line("    ", &[(ReasoningStyle::Dim, "intends nothing")]);
         }
-        agent.intentions.iter().for_each(|standing| page.standing("    ", "", standing));
+        for LocatedIntention { summary, place } in &agent.intentions {
+            page.standing("    ", "", summary, place.as_deref());
+        }
         let what = if agent.beliefs.is_empty() { "believes nothing" } else { "believes" };
         page.line("    ", &[(ReasoningStyle::Dim, what)]);
         agent.beliefs.iter().for_each(|belief| page.line("      ", &[(ReasoningStyle::Plain, belief)]));

@@ -93,7 +93,9 @@ fn what_is_told_without_a_reply_is_understood() {
 #[test]
 fn a_port_is_opened_with_a_reply_or_without() {
     let line = |more: &str| {
-        format!(r#"{{"request":"open","port":1,"kind":"subscriber","name":"/a","type":"std_msgs/Int8"{more}}}"#)
+        format!(
+            r#"{{"request":"open","port":1,"kind":"subscriber","name":"/a","type":"std_msgs/Int8"{more}}}"#
+        )
     };
     assert!(!request(&line("")).is_one_way());
     assert!(!request(&line(r#","reply":true"#)).is_one_way());

@@ -50,7 +50,7 @@ pub struct LogLine {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub event: Option<String>,
     pub text: String,
-    /// Where the step or plan stands that the line is about, if it is a failure or a fault.
+    /// Where the step or plan stands that the line is about.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<hrdsl_ir::Span>,
     /// Of a step: the event that it makes, or the stimulus that it does.
@@ -192,13 +192,6 @@ fn told(company: &AgentCompany<'_>, run: HarnessRun, detail: LogDetail) -> Model
     let mut warnings: Vec<String> = Vec::new();
     let mut log = Vec::new();
     for (agent, entry) in society.log() {
-        let origin = if let LogItem::Failed(failure) = &entry.what {
-            Some(failure.origin)
-        } else if let LogItem::Fault { origin, .. } | LogItem::Unhandled { origin, .. } = &entry.what {
-            Some(*origin)
-        } else {
-            None
-        };
         let is_warning = matches!(
             entry.what,
             LogItem::Fault { .. }
@@ -219,7 +212,7 @@ fn told(company: &AgentCompany<'_>, run: HarnessRun, detail: LogDetail) -> Model
         if detail >= LogDetail::Steps {
             let (time, round, cycle, intention) = (entry.time, entry.round, entry.cycle, entry.intention);
             let (kind, event) = (entry.what.kind(), society.event_of(agent, entry));
-            let does = society.done_in(agent, entry);
+            let (does, origin) = (society.done_in(agent, entry), society.origin_in(agent, entry));
             let agent = names[agent].to_owned();
             log.push(LogLine { time, round, cycle, agent, intention, kind, event, text, origin, does });
         }
