@@ -109,7 +109,7 @@ class Grab(smach.State):
 
     def execute(self, userdata):
         try:
-            self.robot.arm.pick(self.next_thing())
+            self.robot.arm.pick(self.next_thing(), self.robot.base.pose())
         except (IndexError, MotionError) as error:
             rospy.logerr("no %s: %s", self.kind, error)
             self.robot.arm.retreat()

@@ -1,5 +1,7 @@
 """The arm and its gripper: take things from above, and put them down."""
 
+import math
+
 import actionlib
 import moveit_commander
 import rospy
@@ -11,6 +13,7 @@ ABOVE = 0.19  # m above their middle, from which things are approached
 GRASP = 0.01  # m above their middle, where they are held
 OPEN, CLOSED = 0.044, 0.0  # m, of each finger
 RELEASE = 0.01  # m, above the ground
+CARRIED_AHEAD, CARRIED_HEIGHT = 0.45, 0.90  # m, of the hand: so that what it holds passes above what stands on tables
 
 
 class MotionError(Exception):
@@ -49,8 +52,8 @@ class Arm(object):
         if self.motions.send_goal_and_wait(goal) != GoalStatus.SUCCEEDED:
             rospy.logwarn("the arm is not where it should be")
 
-    def pick(self, place):
-        """Takes what stands at a place."""
+    def pick(self, place, base):
+        """Takes what stands at a place, and holds it before the base, which is at (x, y, heading)."""
         x, y, z = place
         self.grip(OPEN)
         self.move(x, y, z + ABOVE)
@@ -59,7 +62,8 @@ class Arm(object):
             self.grip(OPEN)
             raise MotionError("there is nothing at (%.2f, %.2f)" % (x, y))
         self.move(x, y, z + ABOVE)
-        self.retreat()
+        x, y, heading = base
+        self.move(x + CARRIED_AHEAD * math.cos(heading), y + CARRIED_AHEAD * math.sin(heading), CARRIED_HEIGHT)
 
     def place(self, place):
         """Puts down at a place what the hand holds."""
