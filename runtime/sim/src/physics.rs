@@ -41,6 +41,7 @@ use state::{
     loads::ContactLoads,
     losses::JointLosses,
     pairs::{ExemptPairs, JointGraph},
+    place::JointedBodies,
     roots::{figure_of, rigid_roots},
     solid::{described_mass, surface_of},
 };
@@ -97,6 +98,7 @@ impl PhysicsAdapter {
             yielding: Vec::new(),
             fallen: Vec::new(),
             joints: Vec::new(),
+            jointed: JointedBodies::default(),
             losses: JointLosses::default(),
             loads: ContactLoads::default(),
             exempt: ExemptPairs::of(world.bodies.len()),
@@ -404,9 +406,16 @@ impl PhysicsAdapter {
     /// world never rest.
     fn stop_lost(&mut self) {
         let (low, high) = self.scene;
-        for (_, body) in self.world.bodies.iter_mut() {
+        let is_lost = |body: &RigidBody| {
             let at = body.translation();
-            if body.is_dynamic() && (at.min(low) != low || at.max(high) != high) {
+            body.is_dynamic() && (at.min(low) != low || at.max(high) != high)
+        };
+        // What is taken to be changed the engine looks at again.
+        if !self.world.bodies.iter().any(|(_, body)| is_lost(body)) {
+            return;
+        }
+        for (_, body) in self.world.bodies.iter_mut() {
+            if is_lost(body) {
                 body.set_body_type(RigidBodyType::Fixed, false);
             }
         }

@@ -154,6 +154,7 @@ impl PhysicsAdapter {
             }
             None => self.world.step_with_events(&self.exempt, &()),
         }
+        self.place_joints();
     }
 
     /// Where everything can be within the next step, found once: of each body it is asked for many times.

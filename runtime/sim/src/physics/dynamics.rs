@@ -142,7 +142,7 @@ impl ArmEquation {
 
 impl PhysicsAdapter {
     fn moving_axis(&self, joint: usize, driven: &DrivenJoint) -> MovingAxis {
-        let (axis, anchor) = self.axis_now(driven);
+        let (axis, anchor) = (driven.place.axis, driven.place.anchor);
         MovingAxis { motion: driven.motion, axis, anchor, speed: self.joint_speed(joint) }
     }
 }

@@ -12,10 +12,10 @@ use super::state::{
     bodies::index,
     joint::{DrivenJoint, JointHold, JointStop, ToldEnds},
     pairs::JointGraph,
+    place::JointPlace,
 };
 use crate::math::{
-    BodyFrame, RotationQuat, SpaceVector, about, angle_between, from_pose, from_vector, to_pose, to_vector,
-    twist, v3, wrap,
+    BodyFrame, RotationQuat, SpaceVector, about, angle_between, from_vector, to_pose, to_vector, v3, wrap,
 };
 
 /// How a motor that keeps a speed answers to an error of it, N·s/m or N·m·s/rad.
@@ -95,6 +95,12 @@ impl PhysicsAdapter {
         let beyond = graph.beyond(joint, parent, child);
         let dynamic = beyond.into_iter().filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
         let carried: Vec<RigidBodyHandle> = dynamic.map(|b| self.parts[index(b)].handle).collect();
+        let bodies = [p, c].map(|part| {
+            let body = &self.world.bodies[part.handle];
+            self.jointed.add(part.handle, body, &part.start)
+        });
+        let [above, below] = bodies.map(|body| self.jointed.moved(body));
+        let place = JointPlace::of((&axis, &anchor), above, below);
         DrivenJoint {
             name: joint.name.clone(),
             handle,
@@ -104,8 +110,8 @@ impl PhysicsAdapter {
             motion: joint.motion,
             axis,
             anchor,
-            parent_start: p.start,
-            child_start: c.start,
+            bodies,
+            place,
             is_tip: carried.len() == 1
                 && world.bodies[index(child)].mass < LIGHT * world.bodies[index(parent)].mass,
             carried,
@@ -173,18 +179,23 @@ impl PhysicsAdapter {
 
     /// How far a joint is from its start.
     pub(super) fn way(&self, driven: &DrivenJoint) -> f64 {
-        let pose = |h: RigidBodyHandle| from_pose(self.world.bodies[h].position());
-        let moved = |pose: BodyFrame, start: &BodyFrame| pose.then(&start.inverse());
-        let parent = moved(pose(driven.parent), &driven.parent_start);
-        let child = moved(pose(driven.child), &driven.child_start);
         match driven.motion {
             JointMotion::Hinge => {
-                let angle = twist(&(parent.turn.inverse() * child.turn), &driven.axis);
+                let angle = driven.place.angle(&driven.axis);
                 driven.wound.map_or(angle, |last| last + wrap(angle - wrap_far(last)))
             }
-            JointMotion::Slider => {
-                let way = child.point(driven.anchor) - parent.point(driven.anchor);
-                way.dot(&(parent.turn * driven.axis))
+            JointMotion::Slider => driven.place.way(),
+        }
+    }
+
+    /// The engine has moved bodies: finds where the joints on them are now.
+    pub(super) fn place_joints(&mut self) {
+        self.jointed.look(&self.world.bodies);
+        for driven in self.joints.iter_mut().flatten() {
+            let [parent, child] = driven.bodies;
+            if self.jointed.is_news(parent) || self.jointed.is_news(child) {
+                let (parent, child) = (self.jointed.moved(parent), self.jointed.moved(child));
+                driven.place = JointPlace::of((&driven.axis, &driven.anchor), parent, child);
             }
         }
     }
@@ -193,12 +204,11 @@ impl PhysicsAdapter {
     pub fn joint_speed(&self, joint: usize) -> f64 {
         let Some(driven) = &self.joints[joint] else { return 0.0 };
         let (p, c) = (&self.world.bodies[driven.parent], &self.world.bodies[driven.child]);
-        let parent = from_pose(p.position()).then(&driven.parent_start.inverse());
-        let axis = parent.turn * driven.axis;
+        let axis = driven.place.axis;
         match driven.motion {
             JointMotion::Hinge => (from_vector(c.angvel()) - from_vector(p.angvel())).dot(&axis),
             JointMotion::Slider => {
-                let at = to_vector(parent.point(driven.anchor));
+                let at = to_vector(driven.place.anchor);
                 (from_vector(c.velocity_at_point(at)) - from_vector(p.velocity_at_point(at))).dot(&axis)
             }
         }
@@ -216,7 +226,7 @@ impl PhysicsAdapter {
         let Some(driven) = &mut self.joints[joint] else { return 0.0 };
         driven.effort = effort.clamp(-driven.limit, driven.limit);
         let Some(driven) = &self.joints[joint] else { return 0.0 };
-        let (axis, _) = self.axis_now(driven);
+        let axis = driven.place.axis;
         // A slider is pushed through its middle, so that the solver need not keep it from tilting.
         let at = self.world.bodies[driven.child].center_of_mass();
         let pull = to_vector(axis * driven.effort);
@@ -238,7 +248,7 @@ impl PhysicsAdapter {
     pub fn drive_bearing(&mut self, joint: usize, effort: f64, load: &BorneLoad) -> f64 {
         let done = self.drive(joint, effort);
         let Some(driven) = &self.joints[joint] else { return done };
-        let at = to_vector(self.axis_now(driven).1);
+        let at = to_vector(driven.place.anchor);
         let (force, torque) = (to_vector(load.force), to_vector(load.torque));
         for (handle, sign) in [(driven.child, 1.0), (driven.parent, -1.0)] {
             let body = &mut self.world.bodies[handle];
@@ -299,7 +309,7 @@ impl PhysicsAdapter {
         let h = self.part.0 / self.part.1 as f64;
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };
-            let (apart, tilted) = self.apart(driven);
+            let apart = driven.place.apart(driven.motion);
             self.accuracy.look_at_gap(at, apart);
             let falls = driven.loose.is_some_and(|loose| self.leans(loose));
             if falls {
@@ -312,13 +322,15 @@ impl PhysicsAdapter {
                     "the physics failed: joint `{name}` is torn, its bodies are {by:.0} mm apart"
                 ));
             }
-            let is_apart = !falls && (apart > TORN || tilted > TORN_TURN);
-            let is_strained = driven.is_tip && !falls && (apart > STRAINED || tilted > STRAINED_TURN);
+            let tilts = |by: f64| driven.place.is_tilted(driven.motion, by);
+            let is_apart = !falls && (apart > TORN || tilts(TORN_TURN));
+            let is_strained = driven.is_tip && !falls && (apart > STRAINED || tilts(STRAINED_TURN));
             let hold = driven.hold.next(is_apart, is_strained);
             strain.blow |= hold.takes_blow();
             if hold == JointHold::Firm && driven.hold == hold {
                 continue;
             }
+            let tilted = driven.place.tilt(driven.motion);
             let usual = f64::from(driven.softness.erp_inv_dt(h as f32));
             let rate = usual.min(MENDS_AT_MOST / apart).min(MENDS_AT_MOST_TURN / tilted);
             let softness = match hold {
@@ -334,24 +346,6 @@ impl PhysicsAdapter {
             }
         }
         strain
-    }
-
-    /// How far the two sides of a joint have come apart: m, and rad.
-    fn apart(&self, driven: &DrivenJoint) -> (f64, f64) {
-        let moved = |handle: RigidBodyHandle, start: &BodyFrame| {
-            from_pose(self.world.bodies[handle].position()).then(&start.inverse())
-        };
-        let parent = moved(driven.parent, &driven.parent_start);
-        let child = moved(driven.child, &driven.child_start);
-        let way = child.point(driven.anchor) - parent.point(driven.anchor);
-        let axis = parent.turn * driven.axis;
-        match driven.motion {
-            JointMotion::Hinge => (way.norm(), angle_between(&axis, &(child.turn * driven.axis))),
-            JointMotion::Slider => (
-                (way - axis * way.dot(&axis)).norm(),
-                2.0 * (parent.turn.inverse() * child.turn).imag().norm(),
-            ),
-        }
     }
 
     /// Whether the bodies that a joint moves may be left out of the steps while they stand still; if not, they wake. What their motors
@@ -416,13 +410,6 @@ impl PhysicsAdapter {
                 body.reset_forces(false);
             }
         }
-    }
-
-    /// The axis and the anchor of a joint, where they are now.
-    pub(super) fn axis_now(&self, driven: &DrivenJoint) -> (SpaceVector, SpaceVector) {
-        let parent =
-            from_pose(self.world.bodies[driven.parent].position()).then(&driven.parent_start.inverse());
-        (parent.turn * driven.axis, parent.point(driven.anchor))
     }
 
     /// The body that leads those that a joint carries first.

@@ -6,7 +6,8 @@ use rapier3d::prelude::*;
 
 use super::{
     accuracy::AccuracyWatch, energy::EnergyWatch, guide::BodyGuide, joint::DrivenJoint, loads::ContactLoads,
-    losses::JointLosses, pairs::ExemptPairs, solid::SolidExtent, yielding::YieldingPair,
+    losses::JointLosses, pairs::ExemptPairs, place::JointedBodies, solid::SolidExtent,
+    yielding::YieldingPair,
 };
 use crate::math::BodyFrame;
 
@@ -49,6 +50,8 @@ pub(crate) struct PhysicsAdapter {
     pub fallen: Vec<RigidBodyHandle>,
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     pub joints: Vec<Option<DrivenJoint>>,
+    /// What these are on.
+    pub jointed: JointedBodies,
     pub losses: JointLosses,
     pub loads: ContactLoads,
     pub exempt: ExemptPairs,
