@@ -44,6 +44,7 @@ use state::{
     place::JointedBodies,
     roots::{figure_of, rigid_roots},
     solid::{described_mass, surface_of},
+    yielding::YieldingPairs,
 };
 use stops::{NEAR_END, PRESSED_FOR, UNNOTICED};
 
@@ -94,8 +95,9 @@ impl PhysicsAdapter {
         let mut physics = PhysicsAdapter {
             world: engine,
             parts: Vec::new(),
+            boxes: Vec::new(),
             guides: Vec::new(),
-            yielding: Vec::new(),
+            yielding: YieldingPairs::default(),
             fallen: Vec::new(),
             joints: Vec::new(),
             jointed: JointedBodies::default(),
@@ -176,6 +178,7 @@ impl PhysicsAdapter {
                 motion,
                 ghost,
                 shape,
+                radius: surface.compute_local_bounding_sphere().radius(),
                 surface,
                 extent,
             });

@@ -101,6 +101,12 @@ impl SweptBodies {
     pub(super) fn may_meet(&self, a: usize, b: usize) -> bool {
         self.boxes[a].intersects(&self.boxes[b])
     }
+
+    /// Whether some of the bodies may meet some of the others.
+    pub(super) fn may_any_meet(&self, some: &[usize], others: &[usize]) -> bool {
+        let around = some.iter().map(|body| self.boxes[*body]).reduce(|a, b| a.merged(&b));
+        around.is_some_and(|around| others.iter().any(|other| self.boxes[*other].intersects(&around)))
+    }
 }
 
 impl PhysicsAdapter {
@@ -142,6 +148,7 @@ impl PhysicsAdapter {
         }
         self.keep_loads(loads);
         self.end_guided(dt);
+        self.look_at_boxes();
         self.led.clear();
         self.world.integration_parameters.dt = dt as f32;
     }
@@ -162,7 +169,7 @@ impl PhysicsAdapter {
         let speeds: Vec<f64> = (0..self.parts.len()).map(|part| self.speed_of(part)).collect();
         let is_fast = |part: &usize| self.is_loose_or_led(*part) && speeds[*part] * dt > WAY;
         let fast: Vec<usize> = (0..self.parts.len()).filter(is_fast).collect();
-        let boxes = if fast.is_empty() && self.yielding.is_empty() {
+        let boxes = if fast.is_empty() && self.yielding.pairs.is_empty() {
             Vec::new()
         } else {
             speeds.iter().enumerate().map(|(part, speed)| self.box_at_speed(part, *speed, dt)).collect()
@@ -258,8 +265,7 @@ impl PhysicsAdapter {
             return (Vector::ZERO, 0.0);
         }
         let Some(collider) = self.world.colliders.get(own.collider) else { return (Vector::ZERO, 0.0) };
-        let radius = collider.shape().compute_local_bounding_sphere().radius();
-        let turning = f64::from(body.angvel().length() * radius);
+        let turning = f64::from(body.angvel().length() * own.radius);
         let led = self.led.iter().find(|(handle, _)| *handle == own.handle);
         let middle = led.map_or_else(
             || body.velocity_at_point(collider.position().translation),
@@ -281,11 +287,26 @@ impl PhysicsAdapter {
 
     fn box_at_speed(&self, part: usize, speed: f64, dt: f64) -> Aabb {
         // A mere frame has no surface.
-        let Some(collider) = self.world.colliders.get(self.parts[part].collider) else {
-            return Aabb::new_invalid();
-        };
-        let around = collider.compute_aabb();
-        around.loosened((NEAR / 2.0 + speed * dt) as f32)
+        self.box_now(part)
+            .map_or_else(Aabb::new_invalid, |around| around.loosened((NEAR / 2.0 + speed * dt) as f32))
+    }
+
+    /// The box around a body where it is now; of a mere frame none.
+    pub(super) fn box_now(&self, part: usize) -> Option<Aabb> {
+        let collider = self.world.colliders.get(self.parts[part].collider)?;
+        let known = self.boxes.get(part).copied().flatten().filter(|(pose, _)| pose == collider.position());
+        Some(known.map_or_else(|| collider.compute_aabb(), |(_, around)| around))
+    }
+
+    /// Looks where the engine has the bodies now.
+    fn look_at_boxes(&mut self) {
+        self.boxes.resize(self.parts.len(), None);
+        for (known, part) in self.boxes.iter_mut().zip(&self.parts) {
+            let Some(collider) = self.world.colliders.get(part.collider) else { continue };
+            if known.is_none_or(|(pose, _)| pose != *collider.position()) {
+                *known = Some((*collider.position(), collider.compute_aabb()));
+            }
+        }
     }
 
     pub(super) fn closest(&self, a: usize, b: usize, far: f64) -> Option<parry::query::Contact> {

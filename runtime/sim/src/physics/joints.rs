@@ -373,8 +373,7 @@ impl PhysicsAdapter {
         let own: Vec<Aabb> = (0..self.parts.len())
             .filter(|at| is_own(*at))
             .filter(of_those)
-            .filter_map(|at| self.world.colliders.get(self.parts[at].collider))
-            .map(|collider| collider.compute_aabb())
+            .filter_map(|at| self.box_now(at))
             .collect();
         (0..self.parts.len()).filter(|at| !is_own(*at) && self.moves(*at)).filter(of_those).any(|at| {
             let swept = self.box_in_step(at, self.step).loosened(APPROACHED);
