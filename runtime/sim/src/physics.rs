@@ -131,6 +131,7 @@ impl PhysicsAdapter {
         physics.exempt_overlaps(world, &graph, &figure_of)?;
         physics.find_yielding(world, &figure_of);
         physics.scene = physics.surroundings();
+        physics.look_at_boxes();
         Ok(physics)
     }
 
@@ -368,7 +369,7 @@ impl PhysicsAdapter {
 
     /// Notes for whom the solver was at work in the last part of the step.
     fn note_solved(&mut self) {
-        for (solved, part) in self.solved.iter_mut().zip(&self.parts) {
+        for (solved, part) in self.solved.iter_mut().zip(&self.parts).filter(|(_, part)| part.gives_way()) {
             if !self.world.bodies[part.handle].is_sleeping() {
                 *solved = self.part;
             }

@@ -16,6 +16,7 @@ use super::state::{
     loads::ContactLoads,
 };
 use crate::math::from_vector;
+use hrdsl_ir::world::BodyMotion;
 
 /// How far bodies may be apart to count as near, besides what they can do in a step, m.
 pub(super) const NEAR: f64 = 2e-3;
@@ -140,8 +141,8 @@ impl PhysicsAdapter {
             self.world.integration_parameters.num_internal_pgs_iterations =
                 strain.sweeps(sweeps, self.deepest);
             self.step_engine();
-            self.deepest = self.accuracy.look_at_contacts(&self.world, &self.robots);
-            let part = self.loads_of_part();
+            self.place_joints();
+            let part = self.look_at_contacts();
             self.note_presses(&near, &part, h);
             loads.add_part(&part, 1.0 / parts);
             done += 1.0;
@@ -154,14 +155,20 @@ impl PhysicsAdapter {
     }
 
     /// What no world of these bodies can do without: a step of the engine.
-    pub(crate) fn step_engine(&mut self) {
+    fn step_engine(&mut self) {
         match self.clock {
             Some(clock) => {
                 self.engine_time.measure(clock, || self.world.step_with_events(&self.exempt, &()));
             }
             None => self.world.step_with_events(&self.exempt, &()),
         }
+    }
+
+    /// A step of the engine and nothing else.
+    pub(crate) fn step_bare(&mut self) {
+        self.step_engine();
         self.place_joints();
+        self.look_at_boxes();
     }
 
     /// Where everything can be within the next step, found once: of each body it is asked for many times.
@@ -260,13 +267,17 @@ impl PhysicsAdapter {
     /// How fast the middle of a body's surface will go in the next step, m/s, and how much faster its points may go as it turns.
     fn coming(&self, part: usize) -> (Vector, f64) {
         let own = &self.parts[part];
+        if own.motion == BodyMotion::Fixed {
+            return (Vector::ZERO, 0.0);
+        }
         let body = &self.world.bodies[own.handle];
-        if body.is_fixed() {
+        let led = self.led.iter().find(|(handle, _)| *handle == own.handle);
+        let stands = body.linvel() == Vector::ZERO && body.angvel() == AngVector::ZERO && led.is_none();
+        if stands || body.is_fixed() {
             return (Vector::ZERO, 0.0);
         }
         let Some(collider) = self.world.colliders.get(own.collider) else { return (Vector::ZERO, 0.0) };
         let turning = f64::from(body.angvel().length() * own.radius);
-        let led = self.led.iter().find(|(handle, _)| *handle == own.handle);
         let middle = led.map_or_else(
             || body.velocity_at_point(collider.position().translation),
             |(_, to)| (to.translation - body.translation()) / self.step as f32,
@@ -293,15 +304,16 @@ impl PhysicsAdapter {
 
     /// The box around a body where it is now; of a mere frame none.
     pub(super) fn box_now(&self, part: usize) -> Option<Aabb> {
-        let collider = self.world.colliders.get(self.parts[part].collider)?;
-        let known = self.boxes.get(part).copied().flatten().filter(|(pose, _)| pose == collider.position());
-        Some(known.map_or_else(|| collider.compute_aabb(), |(_, around)| around))
+        self.boxes[part].map(|(_, around)| around)
     }
 
-    /// Looks where the engine has the bodies now.
-    fn look_at_boxes(&mut self) {
+    /// The engine has moved bodies: finds the boxes around them.
+    pub(super) fn look_at_boxes(&mut self) {
         self.boxes.resize(self.parts.len(), None);
         for (known, part) in self.boxes.iter_mut().zip(&self.parts) {
+            if part.motion == BodyMotion::Fixed && known.is_some() {
+                continue;
+            }
             let Some(collider) = self.world.colliders.get(part.collider) else { continue };
             if known.is_none_or(|(pose, _)| pose != *collider.position()) {
                 *known = Some((*collider.position(), collider.compute_aabb()));

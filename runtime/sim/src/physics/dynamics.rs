@@ -77,23 +77,24 @@ impl ArmDynamics {
         let links = link_motions(&axes, -from_vector(physics.world.gravity));
         let n = axes.len();
         let nothing = BorneLoad { force: SpaceVector::zeros(), torque: SpaceVector::zeros() };
-        let (inertia, bias) = (DMatrix::zeros(n, n), DVector::zeros(n));
-        let mut equation = ArmEquation { inertia, bias, borne: vec![nothing; n] };
+        let mut sums = InertiaSums { lower: vec![0.0; n * n], bias: DVector::zeros(n), columns: Vec::new() };
+        let mut borne = vec![nothing; n];
         for (handle, above) in &self.bodies {
             let Some(link) = links.get(above - 1) else { continue };
             let body = &physics.world.bodies[*handle];
-            equation.add(&axes[..*above], link, body);
+            sums.add(&axes[..*above], link, body);
             let weight = from_vector(physics.world.gravity) * -f64::from(body.mass());
-            for (load, axis) in equation.borne.iter_mut().zip(&axes[..*above]) {
+            for (load, axis) in borne.iter_mut().zip(&axes[..*above]) {
                 load.force += weight;
                 load.torque += (from_vector(body.center_of_mass()) - axis.anchor).cross(&weight);
             }
         }
         let driven = self.joints.iter().filter_map(|j| physics.joints[*j].as_ref());
-        for ((load, axis), driven) in equation.borne.iter_mut().zip(&axes).zip(driven) {
+        for ((load, axis), driven) in borne.iter_mut().zip(&axes).zip(driven) {
             load.leave_to_motor(axis, from_vector(physics.world.bodies[driven.child].center_of_mass()));
         }
-        equation
+        let inertia = DMatrix::from_fn(n, n, |i, j| sums.lower[i.max(j) * n + i.min(j)]);
+        ArmEquation { inertia, bias: sums.bias, borne }
     }
 }
 
@@ -111,7 +112,14 @@ impl BorneLoad {
     }
 }
 
-impl ArmEquation {
+/// What is added up over the bodies: of the inertia, which is symmetric, the part on and below the diagonal, in rows.
+struct InertiaSums {
+    lower: Vec<f64>,
+    bias: DVector<f64>,
+    columns: Vec<(SpaceVector, SpaceVector)>,
+}
+
+impl InertiaSums {
     fn add(&mut self, axes: &[MovingAxis], link: &LinkMotion, body: &RigidBody) {
         let (mass, centre) = (f64::from(body.mass()), from_vector(body.center_of_mass()));
         let inertia = world_inertia(body);
@@ -119,22 +127,17 @@ impl ArmEquation {
         let rate = link.rate + link.turn_rate.cross(&arm) + link.turn.cross(&link.turn.cross(&arm));
         let force = rate * mass;
         let torque = inertia * link.turn_rate + link.turn.cross(&(inertia * link.turn));
-        let columns: Vec<(SpaceVector, SpaceVector)> = axes
-            .iter()
-            .map(|a| match a.motion {
-                JointMotion::Hinge => (a.axis.cross(&(centre - a.anchor)), a.axis),
-                JointMotion::Slider => (a.axis, SpaceVector::zeros()),
-            })
-            .collect();
-        for (i, (v, w)) in columns.iter().enumerate() {
+        self.columns.clear();
+        self.columns.extend(axes.iter().map(|a| match a.motion {
+            JointMotion::Hinge => (a.axis.cross(&(centre - a.anchor)), a.axis),
+            JointMotion::Slider => (a.axis, SpaceVector::zeros()),
+        }));
+        let rows = self.lower.chunks_exact_mut(self.bias.len().max(1));
+        for (i, ((v, w), row)) in self.columns.iter().zip(rows).enumerate() {
             self.bias[i] += v.dot(&force) + w.dot(&torque);
             let (mv, iw) = (v * mass, inertia * w);
-            for (j, (u, x)) in columns.iter().enumerate().take(i + 1) {
-                let m = mv.dot(u) + iw.dot(x);
-                self.inertia[(i, j)] += m;
-                if i != j {
-                    self.inertia[(j, i)] += m;
-                }
+            for (sum, (u, x)) in row.iter_mut().zip(&self.columns[..=i]) {
+                *sum += mv.dot(u) + iw.dot(x);
             }
         }
     }

@@ -55,8 +55,8 @@ impl PhysicsAdapter {
             let at = from_pose(body.position());
             let impulse = guide.impulse(at.at, from_vector(body.linvel()), weight, part);
             let turn = guide.turn(&at.turn, part);
-            let turns = turn.norm() > 0.0 || body.angvel() != AngVector::ZERO;
-            let is_pushed = impulse.norm() > 0.0;
+            let turns = turn.norm_squared() > 0.0 || body.angvel() != AngVector::ZERO;
+            let is_pushed = impulse.norm_squared() > 0.0;
             guide.note_rest(body, turns || is_pushed);
             // The engine looks again at what is taken to be changed.
             if !turns && !is_pushed {

@@ -1,7 +1,7 @@
 //! Joints of the engine: their motors, whose torque is limited, and what they measure.
 
 use hrdsl_ir::world::{BodyId, BodyMotion, Joint, JointMotion, World};
-use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
+use rapier3d::parry::bounding_volume::BoundingVolume;
 use rapier3d::prelude::*;
 
 use super::SUBSTEPS;
@@ -369,19 +369,19 @@ impl PhysicsAdapter {
     pub fn is_approached(&self, of: BodyId, held: &[BodyId]) -> bool {
         let robot = self.robots[index(of)];
         let is_own = |at: usize| self.robots[at] == robot || held.iter().any(|body| index(*body) == at);
-        let of_those = |at: &usize| !self.parts[*at].ghost;
-        let own: Vec<Aabb> = (0..self.parts.len())
-            .filter(|at| is_own(*at))
-            .filter(of_those)
-            .filter_map(|at| self.box_now(at))
-            .collect();
-        (0..self.parts.len()).filter(|at| !is_own(*at) && self.moves(*at)).filter(of_those).any(|at| {
+        let solid = || (0..self.parts.len()).filter(|at| !self.parts[*at].ghost);
+        let own = || solid().filter(|at| is_own(*at)).filter_map(|at| self.box_now(at));
+        let Some(all) = own().reduce(|a, b| a.merged(&b)) else { return false };
+        solid().filter(|at| self.moves(*at) && !is_own(*at)).any(|at| {
             let swept = self.box_in_step(at, self.step).loosened(APPROACHED);
-            own.iter().any(|own| own.intersects(&swept))
+            all.intersects(&swept) && own().any(|own| own.intersects(&swept))
         })
     }
 
     fn moves(&self, part: usize) -> bool {
+        if self.parts[part].motion == BodyMotion::Fixed {
+            return false;
+        }
         let body = &self.world.bodies[self.parts[part].handle];
         body.is_dynamic_or_kinematic() && !body.is_sleeping()
     }
