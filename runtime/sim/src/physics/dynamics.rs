@@ -77,7 +77,8 @@ impl ArmDynamics {
         let links = link_motions(&axes, -from_vector(physics.world.gravity));
         let n = axes.len();
         let nothing = BorneLoad { force: SpaceVector::zeros(), torque: SpaceVector::zeros() };
-        let mut sums = InertiaSums { lower: vec![0.0; n * n], bias: DVector::zeros(n), columns: Vec::new() };
+        let mut sums =
+            InertiaSums { lower: vec![0.0; n * n], bias: DVector::zeros(n), columns: Default::default() };
         let mut borne = vec![nothing; n];
         for (handle, above) in &self.bodies {
             let Some(link) = links.get(above - 1) else { continue };
@@ -116,7 +117,8 @@ impl BorneLoad {
 struct InertiaSums {
     lower: Vec<f64>,
     bias: DVector<f64>,
-    columns: Vec<(SpaceVector, SpaceVector)>,
+    /// The columns of Jᵥ and Jω of the body that is looked at, each in its three coordinates.
+    columns: [Vec<f64>; 6],
 }
 
 impl InertiaSums {
@@ -127,17 +129,21 @@ impl InertiaSums {
         let rate = link.rate + link.turn_rate.cross(&arm) + link.turn.cross(&link.turn.cross(&arm));
         let force = rate * mass;
         let torque = inertia * link.turn_rate + link.turn.cross(&(inertia * link.turn));
-        self.columns.clear();
-        self.columns.extend(axes.iter().map(|a| match a.motion {
-            JointMotion::Hinge => (a.axis.cross(&(centre - a.anchor)), a.axis),
-            JointMotion::Slider => (a.axis, SpaceVector::zeros()),
-        }));
+        self.columns.iter_mut().for_each(Vec::clear);
         let rows = self.lower.chunks_exact_mut(self.bias.len().max(1));
-        for (i, ((v, w), row)) in self.columns.iter().zip(rows).enumerate() {
+        for (i, (axis, row)) in axes.iter().zip(rows).enumerate() {
+            let (v, w) = match axis.motion {
+                JointMotion::Hinge => (axis.axis.cross(&(centre - axis.anchor)), axis.axis),
+                JointMotion::Slider => (axis.axis, SpaceVector::zeros()),
+            };
+            self.columns.iter_mut().zip(v.iter().chain(&w)).for_each(|(column, x)| column.push(*x));
             self.bias[i] += v.dot(&force) + w.dot(&torque);
             let (mv, iw) = (v * mass, inertia * w);
-            for (sum, (u, x)) in row.iter_mut().zip(&self.columns[..=i]) {
-                *sum += mv.dot(u) + iw.dot(x);
+            let [vx, vy, vz, wx, wy, wz] = self.columns.each_ref().map(|column| &column[..=i]);
+            for (j, sum) in row[..=i].iter_mut().enumerate() {
+                // As products of vectors, but several at a time.
+                *sum += (mv.x * vx[j] + mv.y * vy[j] + mv.z * vz[j])
+                    + (iw.x * wx[j] + iw.y * wy[j] + iw.z * wz[j]);
             }
         }
     }

@@ -181,7 +181,8 @@ impl PhysicsAdapter {
     pub(super) fn way(&self, driven: &DrivenJoint) -> f64 {
         match driven.motion {
             JointMotion::Hinge => {
-                let angle = driven.place.angle(&driven.axis);
+                let [parent, child] = driven.bodies.map(|body| self.jointed.moved(body));
+                let angle = driven.place.angle(&driven.axis, parent, child);
                 driven.wound.map_or(angle, |last| last + wrap(angle - wrap_far(last)))
             }
             JointMotion::Slider => driven.place.way(),
@@ -322,7 +323,8 @@ impl PhysicsAdapter {
                     "the physics failed: joint `{name}` is torn, its bodies are {by:.0} mm apart"
                 ));
             }
-            let tilts = |by: f64| driven.place.is_tilted(driven.motion, by);
+            let [parent, child] = driven.bodies.map(|body| self.jointed.moved(body));
+            let tilts = |by: f64| driven.place.is_tilted(driven.motion, by, parent, child);
             let is_apart = !falls && (apart > TORN || tilts(TORN_TURN));
             let is_strained = driven.is_tip && !falls && (apart > STRAINED || tilts(STRAINED_TURN));
             let hold = driven.hold.next(is_apart, is_strained);
@@ -330,7 +332,7 @@ impl PhysicsAdapter {
             if hold == JointHold::Firm && driven.hold == hold {
                 continue;
             }
-            let tilted = driven.place.tilt(driven.motion);
+            let tilted = driven.place.tilt(driven.motion, parent, child);
             let usual = f64::from(driven.softness.erp_inv_dt(h as f32));
             let rate = usual.min(MENDS_AT_MOST / apart).min(MENDS_AT_MOST_TURN / tilted);
             let softness = match hold {
@@ -352,10 +354,11 @@ impl PhysicsAdapter {
     /// do then goes on.
     pub fn let_sleep(&mut self, joint: usize, may: bool) {
         let Some(driven) = &self.joints[joint] else { return };
-        let Some(body) = self.world.bodies.get_mut(driven.child) else { return };
-        if may == (body.activation().normalized_linear_threshold >= 0.0) {
+        let lets = |body: &RigidBody| body.activation().normalized_linear_threshold >= 0.0;
+        if self.world.bodies.get(driven.child).is_none_or(|body| lets(body) == may) {
             return;
         }
+        let Some(body) = self.world.bodies.get_mut(driven.child) else { return };
         let activation = body.activation_mut();
         (activation.normalized_linear_threshold, activation.angular_threshold) =
             if may { (SLEEPS_BELOW, SLEEPS_BELOW_ANGULAR) } else { (-1.0, -1.0) };
@@ -389,8 +392,8 @@ impl PhysicsAdapter {
     /// Wakes the body that a joint moves, if it sleeps.
     pub fn wake(&mut self, joint: usize) {
         let Some(driven) = &self.joints[joint] else { return };
-        if let Some(body) = self.world.bodies.get_mut(driven.child).filter(|body| body.is_sleeping()) {
-            body.wake_up(true);
+        if self.world.bodies[driven.child].is_sleeping() {
+            self.world.bodies[driven.child].wake_up(true);
         }
     }
 
@@ -404,9 +407,12 @@ impl PhysicsAdapter {
         for (_, driven) in self.joints.iter().enumerate().filter(|(at, _)| !sleeps(*at)) {
             let Some(driven) = driven else { continue };
             for handle in [driven.parent, driven.child, driven.bearer] {
-                let body = &mut self.world.bodies[handle];
-                body.reset_torques(false);
-                body.reset_forces(false);
+                let body = &self.world.bodies[handle];
+                if body.user_torque() != AngVector::ZERO || body.user_force() != Vector::ZERO {
+                    let body = &mut self.world.bodies[handle];
+                    body.reset_torques(false);
+                    body.reset_forces(false);
+                }
             }
         }
     }

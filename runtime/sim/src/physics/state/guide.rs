@@ -109,7 +109,13 @@ impl BodyGuide {
         let aim = self.from.at + (self.to.at - self.from.at) * part.done;
         let (behind, slow) = (aim - at, before - speed);
         // What is there and stands is left alone, so that it can rest.
-        if behind.norm() < THERE && slow.norm() < STILL && ahead.norm() == 0.0 && self.load == 0.0 {
+        let may_be_there = behind.norm_squared() < 4.0 * THERE * THERE;
+        if may_be_there
+            && behind.norm() < THERE
+            && slow.norm() < STILL
+            && ahead.norm() == 0.0
+            && self.load == 0.0
+        {
             return SpaceVector::zeros();
         }
         // The spring alone is limited, too: who comes free from far behind is damped, and does not shoot back.
@@ -130,6 +136,10 @@ impl BodyGuide {
 
 /// The vector, no longer than so much.
 fn limited(v: SpaceVector, most: f64) -> SpaceVector {
+    // Mostly it is far from that: a root would be drawn for nothing.
+    if v.norm_squared() < 0.9 * most * most {
+        return v;
+    }
     let size = v.norm();
     if size > most { v * (most / size) } else { v }
 }

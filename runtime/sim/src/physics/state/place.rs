@@ -67,8 +67,6 @@ pub(crate) struct JointPlace {
     gap: SpaceVector,
     /// Of a hinge, the axis on the child.
     child_axis: SpaceVector,
-    parent: BodyFrame,
-    child: BodyFrame,
     /// What is not always asked for: the angle of a hinge, rad, -π..π; and how far the two sides are tilted against each other, rad.
     angle: Cell<Option<f64>>,
     tilt: Cell<Option<f64>>,
@@ -87,16 +85,14 @@ impl JointPlace {
             anchor: at,
             gap: child.point(*anchor) - at,
             child_axis: child.turn * axis,
-            parent: *parent,
-            child: *child,
             angle: Cell::new(None),
             tilt: Cell::new(None),
         }
     }
 
-    /// How far a hinge is turned about this axis, which it has at the start, rad, -π..π.
-    pub fn angle(&self, axis: &SpaceVector) -> f64 {
-        found_once(&self.angle, || twist(&(self.parent.turn.inverse() * self.child.turn), axis))
+    /// How far a hinge is turned about this axis, which it has at the start, rad, -π..π; with how its bodies are moved.
+    pub fn angle(&self, axis: &SpaceVector, parent: &BodyFrame, child: &BodyFrame) -> f64 {
+        found_once(&self.angle, || twist(&(parent.turn.inverse() * child.turn), axis))
     }
 
     /// How far a slider is from its start, m.
@@ -113,7 +109,7 @@ impl JointPlace {
     }
 
     /// Whether the two sides are tilted against each other by more than so much, rad.
-    pub fn is_tilted(&self, motion: JointMotion, by: f64) -> bool {
+    pub fn is_tilted(&self, motion: JointMotion, by: f64, parent: &BodyFrame, child: &BodyFrame) -> bool {
         let is_straight = match motion {
             // An angle is less than its tangent: mostly it need not be known.
             JointMotion::Hinge => {
@@ -122,14 +118,14 @@ impl JointPlace {
             }
             JointMotion::Slider => false,
         };
-        !is_straight && self.tilt(motion) > by
+        !is_straight && self.tilt(motion, parent, child) > by
     }
 
     /// How far the two sides are tilted against each other, rad.
-    pub fn tilt(&self, motion: JointMotion) -> f64 {
+    pub fn tilt(&self, motion: JointMotion, parent: &BodyFrame, child: &BodyFrame) -> f64 {
         found_once(&self.tilt, || match motion {
             JointMotion::Hinge => angle_between(&self.axis, &self.child_axis),
-            JointMotion::Slider => 2.0 * (self.parent.turn.inverse() * self.child.turn).imag().norm(),
+            JointMotion::Slider => 2.0 * (parent.turn.inverse() * child.turn).imag().norm(),
         })
     }
 }
