@@ -17,6 +17,7 @@ use crate::math::{SpaceVector, from_vector};
 pub(crate) struct ArmDynamics {
     joints: Vec<usize>,
     bodies: Vec<(RigidBodyHandle, usize)>,
+    sums: InertiaSums,
 }
 
 /// A joint, now.
@@ -63,22 +64,19 @@ impl ArmDynamics {
                 }
             }
         }
-        ArmDynamics { joints: joints.to_vec(), bodies }
+        ArmDynamics { joints: joints.to_vec(), bodies, sums: InertiaSums::default() }
     }
 
     /// Torques (N·m) and forces (N) that give accelerations, and those that only keep up what is.
-    pub fn equation(&self, physics: &PhysicsAdapter) -> ArmEquation {
-        let axes: Vec<MovingAxis> = self
-            .joints
-            .iter()
-            .filter_map(|j| physics.joints[*j].as_ref().map(|d| (j, d)))
-            .map(|(j, d)| physics.moving_axis(*j, d))
-            .collect();
+    pub fn equation(&mut self, physics: &PhysicsAdapter) -> ArmEquation {
+        let mut axes: Vec<MovingAxis> = Vec::with_capacity(self.joints.len());
+        let driven = self.joints.iter().filter_map(|j| physics.joints[*j].as_ref().map(|d| (j, d)));
+        axes.extend(driven.map(|(j, d)| physics.moving_axis(*j, d)));
         let links = link_motions(&axes, -from_vector(physics.world.gravity));
         let n = axes.len();
         let nothing = BorneLoad { force: SpaceVector::zeros(), torque: SpaceVector::zeros() };
-        let mut sums =
-            InertiaSums { lower: vec![0.0; n * n], bias: DVector::zeros(n), columns: Default::default() };
+        let sums = &mut self.sums;
+        sums.begin(n);
         let mut borne = vec![nothing; n];
         for (handle, above) in &self.bodies {
             let Some(link) = links.get(above - 1) else { continue };
@@ -95,7 +93,7 @@ impl ArmDynamics {
             load.leave_to_motor(axis, from_vector(physics.world.bodies[driven.child].center_of_mass()));
         }
         let inertia = DMatrix::from_fn(n, n, |i, j| sums.lower[i.max(j) * n + i.min(j)]);
-        ArmEquation { inertia, bias: sums.bias, borne }
+        ArmEquation { inertia, bias: DVector::from_column_slice(&sums.bias), borne }
     }
 }
 
@@ -114,14 +112,23 @@ impl BorneLoad {
 }
 
 /// What is added up over the bodies: of the inertia, which is symmetric, the part on and below the diagonal, in rows.
+#[derive(Clone, Debug, Default)]
 struct InertiaSums {
     lower: Vec<f64>,
-    bias: DVector<f64>,
+    bias: Vec<f64>,
     /// The columns of Jᵥ and Jω of the body that is looked at, each in its three coordinates.
     columns: [Vec<f64>; 6],
 }
 
 impl InertiaSums {
+    /// Begins anew, for so many joints.
+    fn begin(&mut self, joints: usize) {
+        for (sums, size) in [(&mut self.lower, joints * joints), (&mut self.bias, joints)] {
+            sums.clear();
+            sums.resize(size, 0.0);
+        }
+    }
+
     fn add(&mut self, axes: &[MovingAxis], link: &LinkMotion, body: &RigidBody) {
         let (mass, centre) = (f64::from(body.mass()), from_vector(body.center_of_mass()));
         let inertia = world_inertia(body);
