@@ -62,20 +62,11 @@ pub(super) fn rotor_inertia(joint: &Joint) -> Mat3 {
 
 impl PhysicsAdapter {
     pub(super) fn add_joint(&mut self, joint: &Joint, world: &World, graph: &JointGraph) -> DrivenJoint {
-        let axis = v3(joint.axis).normalize();
-        let anchor = v3(joint.anchor);
+        let (axis, anchor) = (v3(joint.axis).normalize(), v3(joint.anchor));
         let frame = BodyFrame::new(anchor, x_to(&axis));
         let (parent, child) = (self.root(joint.parent), self.root(joint.child));
         let (p, c) = (&self.parts[index(parent)], &self.parts[index(child)]);
-        let (locked, moving) = match joint.motion {
-            JointMotion::Hinge => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
-            JointMotion::Slider => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
-        };
-        let mut data = GenericJointBuilder::new(locked)
-            .local_frame1(to_pose(&p.start.inverse().then(&frame)))
-            .local_frame2(to_pose(&c.start.inverse().then(&frame)))
-            .contacts_enabled(false)
-            .build();
+        let (mut data, moving) = free_joint(joint.motion, &frame, [&p.start, &c.start]);
         // The light links of a described robot would shake.
         if world.bodies[index(child)].solid.is_none() {
             data.softness = stiff(MENDS as f32);
@@ -92,15 +83,13 @@ impl PhysicsAdapter {
         }
         let bearer = self.parts[index(self.bearer_of(parent, world))].handle;
         let handle = self.world.insert_impulse_joint(p.handle, c.handle, data);
-        let beyond = graph.beyond(joint, parent, child);
-        let dynamic = beyond.into_iter().filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
+        let dynamic = graph
+            .beyond(joint, parent, child)
+            .into_iter()
+            .filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
         let carried: Vec<RigidBodyHandle> = dynamic.map(|b| self.parts[index(b)].handle).collect();
-        let bodies = [p, c].map(|part| {
-            let body = &self.world.bodies[part.handle];
-            self.jointed.add(part.handle, body, &part.start)
-        });
-        let [above, below] = bodies.map(|body| self.jointed.moved(body));
-        let place = JointPlace::of((&axis, &anchor), above, below);
+        let sides = [p, c].map(|part| (part.handle, part.start));
+        let (bodies, place) = self.jointed.place(sides, &self.world.bodies, (&axis, &anchor));
         DrivenJoint {
             name: joint.name.clone(),
             handle,
@@ -433,6 +422,17 @@ impl PhysicsAdapter {
         roots.dedup();
         roots
     }
+}
+
+/// A joint of the engine between two bodies that start so, whose axis is the x axis of a frame; and which of its axes moves.
+fn free_joint(motion: JointMotion, frame: &BodyFrame, starts: [&BodyFrame; 2]) -> (GenericJoint, JointAxis) {
+    let (locked, moving) = match motion {
+        JointMotion::Hinge => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
+        JointMotion::Slider => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
+    };
+    let [parent, child] = starts.map(|start| to_pose(&start.inverse().then(frame)));
+    let joint = GenericJointBuilder::new(locked).local_frame1(parent).local_frame2(child);
+    (joint.contacts_enabled(false).build(), moving)
 }
 
 /// The softness of a joint that holds, and of whose gap `rate / (h · rate + 2)` is mended in a second, in parts of a step of the time h.

@@ -25,8 +25,20 @@ pub(crate) struct JointedBodies {
 }
 
 impl JointedBodies {
+    /// Adds the two sides of a joint, whose axis and anchor at the start are these: their numbers, and where it is.
+    pub fn place(
+        &mut self,
+        sides: [(RigidBodyHandle, BodyFrame); 2],
+        bodies: &RigidBodySet,
+        line: (&SpaceVector, &SpaceVector),
+    ) -> ([usize; 2], JointPlace) {
+        let numbers = sides.map(|(handle, start)| self.add(handle, &bodies[handle], &start));
+        let [parent, child] = numbers.map(|number| self.moved(number));
+        (numbers, JointPlace::of(line, parent, child))
+    }
+
     /// The number of a body in here, which starts so.
-    pub fn add(&mut self, handle: RigidBodyHandle, body: &RigidBody, start: &BodyFrame) -> usize {
+    fn add(&mut self, handle: RigidBodyHandle, body: &RigidBody, start: &BodyFrame) -> usize {
         if let Some(known) = self.all.iter().position(|body| body.handle == handle) {
             return known;
         }
