@@ -6,6 +6,7 @@
 
 mod balance;
 mod build;
+mod moment;
 mod walk;
 
 use hrdsl_ir::Nanos;
@@ -20,6 +21,7 @@ use crate::{
 };
 use balance::{Balance, BalanceOutcome};
 use build::{FigureBuild, FigurePosture};
+use moment::FigureMoment;
 use walk::WalkPlan;
 
 /// From here on a figure that cannot follow waits, and here it waits for good, m.
@@ -71,6 +73,8 @@ pub(crate) struct FigureControl {
     pushed: SpaceVector,
     /// Its own time, which waits when it is held up.
     clock: Nanos,
+    /// As it was in the last step, if its bodies had come to where they were to be then.
+    settled: Option<FigureMoment>,
     has_fallen: bool,
 }
 
@@ -124,6 +128,7 @@ impl FigureControl {
             balance: Balance::new(figure.mass, build.hip, gravity),
             pushed: SpaceVector::zeros(),
             clock: 0,
+            settled: None,
             has_fallen: false,
             build,
         })
@@ -346,27 +351,29 @@ impl FigureControl {
 
     /// Tells each body where it is to be at the end of the step, of `h` seconds.
     fn lead(&mut self, h: f64, physics: &mut PhysicsAdapter) {
-        let own = self.stance_frame();
-        let head = self.head.place(&own, self.clock);
+        let now = self.moment(physics);
+        if self.settled.as_ref().is_some_and(|settled| settled.is_same(&now)) {
+            return;
+        }
+        let (own, (_, head), moved) = (now.own, now.head, now.strayed);
         let (hip, lean, ..) = self.build.bow(self.head_height(&head));
         let stance = BodyFrame::new(own.at + self.pushed, own.turn);
-        let posture = FigurePosture { stance, sway: self.balance.sway(), hip, lean };
-        let moved = physics.strayed(self.build.trunk);
-        let mut aims: Vec<(BodyId, BodyFrame)> = Vec::new();
-        for (body, frame) in self.build.torso(&posture) {
+        let posture = FigurePosture { stance, sway: now.sway, hip, lean };
+        let frames = self.build.frames(&posture);
+        let mut aims: Vec<(BodyId, BodyFrame)> = Vec::with_capacity(3 + 3 * self.build.limbs.len());
+        for (body, frame) in self.build.torso(&stance, &frames) {
             let is_head = body == self.build.head;
             aims.push((body, if is_head { BodyFrame::new(frame.at + moved, head.turn) } else { frame }));
         }
-        for (limb, aim) in self.build.limbs.iter().zip(&self.hands) {
+        for (limb, (aim, held_back)) in self.build.limbs.iter().zip(&now.limbs) {
             // A foot stays on the ground.
             let end = match aim {
-                Some(aim) if aim.in_world => aim.place(&own, self.clock).at + self.pushed,
-                Some(aim) => aim.place(&own, self.clock).at + self.pushed + posture.sway,
+                Some((true, place)) => place.at + self.pushed,
+                Some((false, place)) => place.at + self.pushed + posture.sway,
                 None => stance.point(limb.rest),
             };
-            let led = |end: SpaceVector| self.build.limb(limb, &posture, end, moved);
+            let led = |end: SpaceVector| self.build.limb(limb, &stance, &frames, end, moved);
             // A hand is drawn to where it should be; if something holds it back, its arm goes along with it, wherever it is.
-            let held_back = limb.end.map_or_else(SpaceVector::zeros, |hand| physics.strayed(hand));
             let [upper, lower, _] = led(end + held_back);
             aims.extend([upper, lower]);
             aims.extend(limb.end.map(|hand| (hand, led(end)[2].1)));
@@ -384,6 +391,26 @@ impl FigureControl {
             if body == self.build.head {
                 carried = physics.aimed(self.build.trunk).at - trunk;
             }
+        }
+        let is_there = |body: BodyId| physics.aim(body).is_same(&physics.aimed(body));
+        let is_settled = self.bodies().all(is_there);
+        self.settled = is_settled.then_some(now);
+    }
+
+    fn moment(&self, physics: &PhysicsAdapter) -> FigureMoment {
+        let own = self.stance_frame();
+        let place = |aim: &PartAim| (aim.in_world, aim.place(&own, self.clock));
+        let limb = |(limb, aim): (&build::LimbBuild, &Option<PartAim>)| {
+            let held_back = limb.end.map_or_else(SpaceVector::zeros, |hand| physics.strayed(hand));
+            (aim.as_ref().map(place), held_back)
+        };
+        FigureMoment {
+            own,
+            pushed: self.pushed,
+            sway: self.balance.sway(),
+            strayed: physics.strayed(self.build.trunk),
+            head: place(&self.head),
+            limbs: self.build.limbs.iter().zip(&self.hands).map(limb).collect(),
         }
     }
 

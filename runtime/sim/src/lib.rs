@@ -220,7 +220,7 @@ impl WorldSimulation {
     /// A step of the engine and nothing else, with each motor as it was last driven: what a step costs at the very least. The time
     /// stays where it is.
     pub fn step_bare(&mut self) {
-        self.physics.step_engine();
+        self.physics.step_bare();
     }
 
     /// How many physics steps there were. Signals and measurements change in these alone.

@@ -21,6 +21,11 @@ impl BodyFrame {
         BodyFrame { at, turn }
     }
 
+    /// Whether it is the very same to the last bit; a quaternion equals its negative otherwise.
+    pub fn is_same(&self, other: &BodyFrame) -> bool {
+        self.at == other.at && self.turn.coords == other.turn.coords
+    }
+
     pub fn point(&self, p: SpaceVector) -> SpaceVector {
         self.at + self.turn * p
     }

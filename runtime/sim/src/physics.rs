@@ -41,8 +41,10 @@ use state::{
     loads::ContactLoads,
     losses::JointLosses,
     pairs::{ExemptPairs, JointGraph},
+    place::JointedBodies,
     roots::{figure_of, rigid_roots},
     solid::{described_mass, surface_of},
+    yielding::YieldingPairs,
 };
 use stops::{NEAR_END, PRESSED_FOR, UNNOTICED};
 
@@ -93,10 +95,12 @@ impl PhysicsAdapter {
         let mut physics = PhysicsAdapter {
             world: engine,
             parts: Vec::new(),
+            boxes: Vec::new(),
             guides: Vec::new(),
-            yielding: Vec::new(),
+            yielding: YieldingPairs::default(),
             fallen: Vec::new(),
             joints: Vec::new(),
+            jointed: JointedBodies::default(),
             losses: JointLosses::default(),
             loads: ContactLoads::default(),
             exempt: ExemptPairs::of(world.bodies.len()),
@@ -127,6 +131,7 @@ impl PhysicsAdapter {
         physics.exempt_overlaps(world, &graph, &figure_of)?;
         physics.find_yielding(world, &figure_of);
         physics.scene = physics.surroundings();
+        physics.look_at_boxes();
         Ok(physics)
     }
 
@@ -174,6 +179,7 @@ impl PhysicsAdapter {
                 motion,
                 ghost,
                 shape,
+                radius: surface.compute_local_bounding_sphere().radius(),
                 surface,
                 extent,
             });
@@ -363,7 +369,7 @@ impl PhysicsAdapter {
 
     /// Notes for whom the solver was at work in the last part of the step.
     fn note_solved(&mut self) {
-        for (solved, part) in self.solved.iter_mut().zip(&self.parts) {
+        for (solved, part) in self.solved.iter_mut().zip(&self.parts).filter(|(_, part)| part.gives_way()) {
             if !self.world.bodies[part.handle].is_sleeping() {
                 *solved = self.part;
             }
@@ -404,9 +410,16 @@ impl PhysicsAdapter {
     /// world never rest.
     fn stop_lost(&mut self) {
         let (low, high) = self.scene;
-        for (_, body) in self.world.bodies.iter_mut() {
+        let is_lost = |body: &RigidBody| {
             let at = body.translation();
-            if body.is_dynamic() && (at.min(low) != low || at.max(high) != high) {
+            body.is_dynamic() && (at.min(low) != low || at.max(high) != high)
+        };
+        // What is taken to be changed the engine looks at again.
+        if !self.world.bodies.iter().any(|(_, body)| is_lost(body)) {
+            return;
+        }
+        for (_, body) in self.world.bodies.iter_mut() {
+            if is_lost(body) {
                 body.set_body_type(RigidBodyType::Fixed, false);
             }
         }

@@ -117,7 +117,8 @@ impl RoutePlanner<'_> {
     fn around(&mut self, from: &[f64], to: &[f64]) -> Result<JointRoute, NoRoute> {
         let before = self.clearance.allow_goal(to);
         let found = self.connect(from, to).map(|points| self.smooth(self.shortened(points)));
-        let obstruction = self.blocked(from, to);
+        // What is in the way is told only if there is no other.
+        let obstruction = if found.is_none() { self.blocked(from, to) } else { None };
         self.clearance.forget(before);
         let (a, b) = obstruction.unwrap_or((BodyId(0), BodyId(0)));
         found.ok_or(NoRoute::Obstructed(a, b))

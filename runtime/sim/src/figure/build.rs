@@ -162,16 +162,19 @@ impl FigureBuild {
     }
 
     /// The frames of the hip and of the lean about it.
-    fn frames(&self, posture: &FigurePosture) -> (BodyFrame, BodyFrame) {
+    pub fn frames(&self, posture: &FigurePosture) -> (BodyFrame, BodyFrame) {
         let stance = &posture.stance;
         let hip = BodyFrame::new(stance.at + posture.sway + SpaceVector::z() * posture.hip, stance.turn);
         (hip, BodyFrame::new(hip.at, hip.turn * about(SpaceVector::y(), posture.lean)))
     }
 
-    /// Where pelvis, trunk and, if it is not turned in a way of its own, head are.
-    pub fn torso(&self, posture: &FigurePosture) -> [(BodyId, BodyFrame); 3] {
-        let (hip, lean) = self.frames(posture);
-        let head = BodyFrame::new(lean.point(self.head_local.at), posture.stance.turn * self.head_local.turn);
+    /// Where pelvis, trunk and, if it is not turned in a way of its own, head are, of the frames of hip and lean.
+    pub fn torso(
+        &self,
+        stance: &BodyFrame,
+        (hip, lean): &(BodyFrame, BodyFrame),
+    ) -> [(BodyId, BodyFrame); 3] {
+        let head = BodyFrame::new(lean.point(self.head_local.at), stance.turn * self.head_local.turn);
         let (pelvis, trunk) = (hip.then(&self.pelvis_local), lean.then(&self.trunk_local));
         [(self.pelvis, pelvis), (self.trunk, trunk), (self.head, head)]
     }
@@ -197,13 +200,13 @@ impl FigureBuild {
     pub fn limb(
         &self,
         limb: &LimbBuild,
-        posture: &FigurePosture,
+        stance: &BodyFrame,
+        (hip, lean): &(BodyFrame, BodyFrame),
         end: SpaceVector,
         moved: SpaceVector,
     ) -> [(BodyId, BodyFrame); 3] {
-        let (hip, lean) = self.frames(posture);
         let root = if limb.is_arm { lean.point(limb.root) + moved } else { hip.point(limb.root) };
-        let [upper, lower] = limb.bones(root, end, posture.stance.turn * limb.bend);
+        let [upper, lower] = limb.bones(root, end, stance.turn * limb.bend);
         let at_end =
             lower.then(&BodyFrame::new(-SpaceVector::z() * limb.lengths[1], RotationQuat::identity()));
         [

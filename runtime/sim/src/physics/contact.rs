@@ -77,16 +77,31 @@ impl PhysicsAdapter {
 
     // ── How they are found ──
 
-    /// What the solver found for the last part of a step.
-    pub(super) fn loads_of_part(&self) -> ContactLoads {
+    /// Looks at all contacts after a part of a step: how deep bodies were in each other as it began, and what the solver found for it.
+    pub(super) fn look_at_contacts(&mut self) -> ContactLoads {
         let mut loads = ContactLoads::default();
+        let (mut accuracy, mut deepest) = (std::mem::take(&mut self.accuracy), 0.0_f64);
         let number = |handle| self.world.colliders.get(handle).map(|c| c.user_data as usize);
-        for pair in self.world.contact_pairs().filter(|pair| pair.has_any_active_contact()) {
+        for pair in self.world.contact_pairs() {
+            let manifolds = pair.solver_manifolds();
+            let depths =
+                manifolds.iter().flat_map(|manifold| &manifold.points).map(|point| -f64::from(point.dist));
+            let depth = depths.fold(0.0, f64::max);
+            let is_active = manifolds.iter().any(|manifold| !manifold.data.solver_contacts.is_empty());
+            deepest = deepest.max(depth);
+            if depth <= 0.0 && !is_active {
+                continue;
+            }
             let (Some(a), Some(b)) = (number(pair.collider1), number(pair.collider2)) else { continue };
-            if self.is_solved(a) || self.is_solved(b) {
-                loads.add(a, b, self.push(pair));
+            if depth > 0.0 {
+                let is_own = self.robots.get(a) == self.robots.get(b);
+                accuracy.look_at_depth(depth, (a, b), is_own);
+            }
+            if is_active && (self.is_solved(a) || self.is_solved(b)) {
+                loads.add(a, b, self.push(manifolds));
             }
         }
+        (self.accuracy, self.deepest) = (accuracy, deepest);
         loads
     }
 
@@ -99,14 +114,17 @@ impl PhysicsAdapter {
 
     /// Whether the solver has to do with a body.
     fn is_solved(&self, part: usize) -> bool {
+        if !self.parts[part].gives_way() {
+            return false;
+        }
         let body = &self.world.bodies[self.parts[part].handle];
         body.is_dynamic() && !body.is_sleeping()
     }
 
     /// The force on the second of a pair in the last part of the step; its opposite is on the first.
-    fn push(&self, pair: &ContactPair) -> SpaceVector {
+    fn push(&self, manifolds: &[ContactManifold]) -> SpaceVector {
         let mut sum = SpaceVector::zeros();
-        for manifold in pair.solver_manifolds().iter().filter(|m| m.data.num_active_contacts() > 0) {
+        for manifold in manifolds.iter().filter(|m| m.data.num_active_contacts() > 0) {
             let impulse: f64 = manifold.points.iter().map(|point| f64::from(point.data.impulse)).sum();
             sum += from_vector(manifold.data.normal) * impulse;
         }

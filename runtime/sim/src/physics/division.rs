@@ -16,6 +16,7 @@ use super::state::{
     loads::ContactLoads,
 };
 use crate::math::from_vector;
+use hrdsl_ir::world::BodyMotion;
 
 /// How far bodies may be apart to count as near, besides what they can do in a step, m.
 pub(super) const NEAR: f64 = 2e-3;
@@ -101,6 +102,12 @@ impl SweptBodies {
     pub(super) fn may_meet(&self, a: usize, b: usize) -> bool {
         self.boxes[a].intersects(&self.boxes[b])
     }
+
+    /// Whether some of the bodies may meet some of the others.
+    pub(super) fn may_any_meet(&self, some: &[usize], others: &[usize]) -> bool {
+        let around = some.iter().map(|body| self.boxes[*body]).reduce(|a, b| a.merged(&b));
+        around.is_some_and(|around| others.iter().any(|other| self.boxes[*other].intersects(&around)))
+    }
 }
 
 impl PhysicsAdapter {
@@ -134,20 +141,21 @@ impl PhysicsAdapter {
             self.world.integration_parameters.num_internal_pgs_iterations =
                 strain.sweeps(sweeps, self.deepest);
             self.step_engine();
-            self.deepest = self.accuracy.look_at_contacts(&self.world, &self.robots);
-            let part = self.loads_of_part();
+            self.place_joints();
+            let part = self.look_at_contacts();
             self.note_presses(&near, &part, h);
             loads.add_part(&part, 1.0 / parts);
             done += 1.0;
         }
         self.keep_loads(loads);
         self.end_guided(dt);
+        self.look_at_boxes();
         self.led.clear();
         self.world.integration_parameters.dt = dt as f32;
     }
 
     /// What no world of these bodies can do without: a step of the engine.
-    pub(crate) fn step_engine(&mut self) {
+    fn step_engine(&mut self) {
         match self.clock {
             Some(clock) => {
                 self.engine_time.measure(clock, || self.world.step_with_events(&self.exempt, &()));
@@ -156,12 +164,19 @@ impl PhysicsAdapter {
         }
     }
 
+    /// A step of the engine and nothing else.
+    pub(crate) fn step_bare(&mut self) {
+        self.step_engine();
+        self.place_joints();
+        self.look_at_boxes();
+    }
+
     /// Where everything can be within the next step, found once: of each body it is asked for many times.
     fn swept(&self, dt: f64) -> SweptBodies {
         let speeds: Vec<f64> = (0..self.parts.len()).map(|part| self.speed_of(part)).collect();
         let is_fast = |part: &usize| self.is_loose_or_led(*part) && speeds[*part] * dt > WAY;
         let fast: Vec<usize> = (0..self.parts.len()).filter(is_fast).collect();
-        let boxes = if fast.is_empty() && self.yielding.is_empty() {
+        let boxes = if fast.is_empty() && self.yielding.pairs.is_empty() {
             Vec::new()
         } else {
             speeds.iter().enumerate().map(|(part, speed)| self.box_at_speed(part, *speed, dt)).collect()
@@ -252,14 +267,17 @@ impl PhysicsAdapter {
     /// How fast the middle of a body's surface will go in the next step, m/s, and how much faster its points may go as it turns.
     fn coming(&self, part: usize) -> (Vector, f64) {
         let own = &self.parts[part];
+        if own.motion == BodyMotion::Fixed {
+            return (Vector::ZERO, 0.0);
+        }
         let body = &self.world.bodies[own.handle];
-        if body.is_fixed() {
+        let led = self.led.iter().find(|(handle, _)| *handle == own.handle);
+        let stands = body.linvel() == Vector::ZERO && body.angvel() == AngVector::ZERO && led.is_none();
+        if stands || body.is_fixed() {
             return (Vector::ZERO, 0.0);
         }
         let Some(collider) = self.world.colliders.get(own.collider) else { return (Vector::ZERO, 0.0) };
-        let radius = collider.shape().compute_local_bounding_sphere().radius();
-        let turning = f64::from(body.angvel().length() * radius);
-        let led = self.led.iter().find(|(handle, _)| *handle == own.handle);
+        let turning = f64::from(body.angvel().length() * own.radius);
         let middle = led.map_or_else(
             || body.velocity_at_point(collider.position().translation),
             |(_, to)| (to.translation - body.translation()) / self.step as f32,
@@ -280,11 +298,27 @@ impl PhysicsAdapter {
 
     fn box_at_speed(&self, part: usize, speed: f64, dt: f64) -> Aabb {
         // A mere frame has no surface.
-        let Some(collider) = self.world.colliders.get(self.parts[part].collider) else {
-            return Aabb::new_invalid();
-        };
-        let around = collider.compute_aabb();
-        around.loosened((NEAR / 2.0 + speed * dt) as f32)
+        self.box_now(part)
+            .map_or_else(Aabb::new_invalid, |around| around.loosened((NEAR / 2.0 + speed * dt) as f32))
+    }
+
+    /// The box around a body where it is now; of a mere frame none.
+    pub(super) fn box_now(&self, part: usize) -> Option<Aabb> {
+        self.boxes[part].map(|(_, around)| around)
+    }
+
+    /// The engine has moved bodies: finds the boxes around them.
+    pub(super) fn look_at_boxes(&mut self) {
+        self.boxes.resize(self.parts.len(), None);
+        for (known, part) in self.boxes.iter_mut().zip(&self.parts) {
+            if part.motion == BodyMotion::Fixed && known.is_some() {
+                continue;
+            }
+            let Some(collider) = self.world.colliders.get(part.collider) else { continue };
+            if known.is_none_or(|(pose, _)| pose != *collider.position()) {
+                *known = Some((*collider.position(), collider.compute_aabb()));
+            }
+        }
     }
 
     pub(super) fn closest(&self, a: usize, b: usize, far: f64) -> Option<parry::query::Contact> {

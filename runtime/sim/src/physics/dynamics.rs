@@ -17,6 +17,7 @@ use crate::math::{SpaceVector, from_vector};
 pub(crate) struct ArmDynamics {
     joints: Vec<usize>,
     bodies: Vec<(RigidBodyHandle, usize)>,
+    sums: InertiaSums,
 }
 
 /// A joint, now.
@@ -63,37 +64,36 @@ impl ArmDynamics {
                 }
             }
         }
-        ArmDynamics { joints: joints.to_vec(), bodies }
+        ArmDynamics { joints: joints.to_vec(), bodies, sums: InertiaSums::default() }
     }
 
     /// Torques (N·m) and forces (N) that give accelerations, and those that only keep up what is.
-    pub fn equation(&self, physics: &PhysicsAdapter) -> ArmEquation {
-        let axes: Vec<MovingAxis> = self
-            .joints
-            .iter()
-            .filter_map(|j| physics.joints[*j].as_ref().map(|d| (j, d)))
-            .map(|(j, d)| physics.moving_axis(*j, d))
-            .collect();
+    pub fn equation(&mut self, physics: &PhysicsAdapter) -> ArmEquation {
+        let mut axes: Vec<MovingAxis> = Vec::with_capacity(self.joints.len());
+        let driven = self.joints.iter().filter_map(|j| physics.joints[*j].as_ref().map(|d| (j, d)));
+        axes.extend(driven.map(|(j, d)| physics.moving_axis(*j, d)));
         let links = link_motions(&axes, -from_vector(physics.world.gravity));
         let n = axes.len();
         let nothing = BorneLoad { force: SpaceVector::zeros(), torque: SpaceVector::zeros() };
-        let (inertia, bias) = (DMatrix::zeros(n, n), DVector::zeros(n));
-        let mut equation = ArmEquation { inertia, bias, borne: vec![nothing; n] };
+        let sums = &mut self.sums;
+        sums.begin(n);
+        let mut borne = vec![nothing; n];
         for (handle, above) in &self.bodies {
             let Some(link) = links.get(above - 1) else { continue };
             let body = &physics.world.bodies[*handle];
-            equation.add(&axes[..*above], link, body);
+            sums.add(&axes[..*above], link, body);
             let weight = from_vector(physics.world.gravity) * -f64::from(body.mass());
-            for (load, axis) in equation.borne.iter_mut().zip(&axes[..*above]) {
+            for (load, axis) in borne.iter_mut().zip(&axes[..*above]) {
                 load.force += weight;
                 load.torque += (from_vector(body.center_of_mass()) - axis.anchor).cross(&weight);
             }
         }
         let driven = self.joints.iter().filter_map(|j| physics.joints[*j].as_ref());
-        for ((load, axis), driven) in equation.borne.iter_mut().zip(&axes).zip(driven) {
+        for ((load, axis), driven) in borne.iter_mut().zip(&axes).zip(driven) {
             load.leave_to_motor(axis, from_vector(physics.world.bodies[driven.child].center_of_mass()));
         }
-        equation
+        let inertia = DMatrix::from_fn(n, n, |i, j| sums.lower[i.max(j) * n + i.min(j)]);
+        ArmEquation { inertia, bias: DVector::from_column_slice(&sums.bias), borne }
     }
 }
 
@@ -111,7 +111,24 @@ impl BorneLoad {
     }
 }
 
-impl ArmEquation {
+/// What is added up over the bodies: of the inertia, which is symmetric, the part on and below the diagonal, in rows.
+#[derive(Clone, Debug, Default)]
+struct InertiaSums {
+    lower: Vec<f64>,
+    bias: Vec<f64>,
+    /// The columns of Jᵥ and Jω of the body that is looked at, each in its three coordinates.
+    columns: [Vec<f64>; 6],
+}
+
+impl InertiaSums {
+    /// Begins anew, for so many joints.
+    fn begin(&mut self, joints: usize) {
+        for (sums, size) in [(&mut self.lower, joints * joints), (&mut self.bias, joints)] {
+            sums.clear();
+            sums.resize(size, 0.0);
+        }
+    }
+
     fn add(&mut self, axes: &[MovingAxis], link: &LinkMotion, body: &RigidBody) {
         let (mass, centre) = (f64::from(body.mass()), from_vector(body.center_of_mass()));
         let inertia = world_inertia(body);
@@ -119,22 +136,21 @@ impl ArmEquation {
         let rate = link.rate + link.turn_rate.cross(&arm) + link.turn.cross(&link.turn.cross(&arm));
         let force = rate * mass;
         let torque = inertia * link.turn_rate + link.turn.cross(&(inertia * link.turn));
-        let columns: Vec<(SpaceVector, SpaceVector)> = axes
-            .iter()
-            .map(|a| match a.motion {
-                JointMotion::Hinge => (a.axis.cross(&(centre - a.anchor)), a.axis),
-                JointMotion::Slider => (a.axis, SpaceVector::zeros()),
-            })
-            .collect();
-        for (i, (v, w)) in columns.iter().enumerate() {
+        self.columns.iter_mut().for_each(Vec::clear);
+        let rows = self.lower.chunks_exact_mut(self.bias.len().max(1));
+        for (i, (axis, row)) in axes.iter().zip(rows).enumerate() {
+            let (v, w) = match axis.motion {
+                JointMotion::Hinge => (axis.axis.cross(&(centre - axis.anchor)), axis.axis),
+                JointMotion::Slider => (axis.axis, SpaceVector::zeros()),
+            };
+            self.columns.iter_mut().zip(v.iter().chain(&w)).for_each(|(column, x)| column.push(*x));
             self.bias[i] += v.dot(&force) + w.dot(&torque);
             let (mv, iw) = (v * mass, inertia * w);
-            for (j, (u, x)) in columns.iter().enumerate().take(i + 1) {
-                let m = mv.dot(u) + iw.dot(x);
-                self.inertia[(i, j)] += m;
-                if i != j {
-                    self.inertia[(j, i)] += m;
-                }
+            let [vx, vy, vz, wx, wy, wz] = self.columns.each_ref().map(|column| &column[..=i]);
+            for (j, sum) in row[..=i].iter_mut().enumerate() {
+                // As products of vectors, but several at a time.
+                *sum += (mv.x * vx[j] + mv.y * vy[j] + mv.z * vz[j])
+                    + (iw.x * wx[j] + iw.y * wy[j] + iw.z * wz[j]);
             }
         }
     }
@@ -142,7 +158,7 @@ impl ArmEquation {
 
 impl PhysicsAdapter {
     fn moving_axis(&self, joint: usize, driven: &DrivenJoint) -> MovingAxis {
-        let (axis, anchor) = self.axis_now(driven);
+        let (axis, anchor) = (driven.place.axis, driven.place.anchor);
         MovingAxis { motion: driven.motion, axis, anchor, speed: self.joint_speed(joint) }
     }
 }

@@ -5,8 +5,9 @@
 //! joule too many. Such a run says nothing any more, and ends as an error.
 
 use super::state::{
-    adapter::{PhysicsAdapter, PhysicsBody},
+    adapter::PhysicsAdapter,
     bodies::index,
+    energy::{BodyEnergy, EnergyAfterStep},
 };
 use crate::math::from_vector;
 
@@ -28,10 +29,41 @@ impl PhysicsAdapter {
         if self.energy.fault.is_some() {
             return;
         }
+        let Some(EnergyAfterStep { loose, fastest }) = self.look_at_energies() else { return };
         let gravity = from_vector(self.world.gravity);
-        let meet_loose = self.meet_loose();
-        let mut known = Vec::with_capacity(self.parts.len());
-        let (mut fastest, mut loose) = (self.energy.fastest_moved * OF_LATE, 0.0);
+        // What is struck by something that is moved leaves at twice its speed, and at more at the end of a lever.
+        let struck = LEVERS * loose * fastest * fastest;
+        self.energy.fastest_moved = fastest;
+        let (before, now) = (&self.energy.before, &self.energy.known);
+        let gains = || {
+            (0..)
+                .zip(before.iter().zip(now))
+                .filter_map(|(i, (old, new))| Some((i, old.as_ref()?, new.as_ref()?)))
+                .map(|(i, old, new): (usize, _, _)| (i, new.motion + new.height - old.motion - old.height))
+        };
+        let motion: f64 = before.iter().flatten().map(|known| known.motion).sum();
+        let allowed = SLACK
+            + SLACK_PART * motion
+            + loose * gravity.norm() * LIFTED
+            + struck
+            + self.motor_work()
+            + self.energy.wheels;
+        let gained: f64 = gains().map(|(_, gain)| gain).sum();
+        let most = (gained > allowed).then(|| gains().max_by(|a, b| a.1.total_cmp(&b.1))).flatten();
+        self.energy.wheels = 0.0;
+        if let Some((most, _)) = most {
+            let name = &self.parts[most].name;
+            self.energy.fault =
+                Some(format!("the physics failed: `{name}` gains {gained:.0} J in a step without cause"));
+        }
+    }
+
+    /// Finds the energies after a step; `None`: something is too fast, or nowhere, and that is the fault.
+    fn look_at_energies(&mut self) -> Option<EnergyAfterStep> {
+        let gravity = from_vector(self.world.gravity);
+        let mut known = std::mem::take(&mut self.energy.before);
+        known.clear();
+        let mut after = EnergyAfterStep { loose: 0.0, fastest: self.energy.fastest_moved * OF_LATE };
         for (i, part) in self.parts.iter().enumerate() {
             let body = &self.world.bodies[part.handle];
             let speed = f64::from(body.linvel().length());
@@ -39,61 +71,40 @@ impl PhysicsAdapter {
                 let found =
                     if speed > FASTEST { format!("goes at {speed:.0} m/s") } else { "is nowhere".to_owned() };
                 self.energy.fault = Some(format!("the physics failed: `{}` {found}", part.name));
-                return;
+                return None;
             }
             let is_loose = body.is_dynamic() && self.guides[i].is_none() && index(part.root) == i;
             if !is_loose {
                 let is_moved = !body.is_dynamic() || self.guides[i].is_some();
-                fastest = fastest.max(if is_moved && meet_loose[i] { speed } else { 0.0 });
+                if is_moved && speed > after.fastest && self.meets_loose(i) {
+                    after.fastest = speed;
+                }
                 known.push(None);
                 continue;
             }
             let mass = f64::from(body.mass());
-            loose += mass;
-            let height = -mass * gravity.dot(&from_vector(body.center_of_mass()));
-            known.push(Some((f64::from(body.kinetic_energy()), height)));
+            after.loose += mass;
+            // What sleeps is as it was.
+            let (was, sleeps) = (self.energy.known.get(i).copied().flatten(), body.is_sleeping());
+            known.push(was.filter(|was| was.sleeps && sleeps).or_else(|| {
+                let height = -mass * gravity.dot(&from_vector(body.center_of_mass()));
+                Some(BodyEnergy { motion: f64::from(body.kinetic_energy()), height, sleeps })
+            }));
         }
-        let before = std::mem::replace(&mut self.energy.known, known);
-        // What is struck by something that is moved leaves at twice its speed, and at more at the end of a lever.
-        let struck = LEVERS * loose * fastest * fastest;
-        self.energy.fastest_moved = fastest;
-        let gains: Vec<(usize, f64)> = (0..)
-            .zip(before.iter().zip(&self.energy.known))
-            .filter_map(|(i, (old, new))| Some((i, old.as_ref()?, new.as_ref()?)))
-            .map(|(i, old, new)| (i, new.0 + new.1 - old.0 - old.1))
-            .collect();
-        let motion: f64 = before.iter().flatten().map(|(motion, _)| motion).sum();
-        let allowed = SLACK
-            + SLACK_PART * motion
-            + loose * gravity.norm() * LIFTED
-            + struck
-            + self.motor_work()
-            + std::mem::take(&mut self.energy.wheels);
-        let gained: f64 = gains.iter().map(|(_, gain)| gain).sum();
-        if gained > allowed
-            && let Some((most, _)) = gains.iter().max_by(|a, b| a.1.total_cmp(&b.1))
-        {
-            let name = &self.parts[*most].name;
-            self.energy.fault =
-                Some(format!("the physics failed: `{name}` gains {gained:.0} J in a step without cause"));
-        }
+        self.energy.before = std::mem::replace(&mut self.energy.known, known);
+        Some(after)
     }
 
-    /// By body: whether it touches, or is joined to, what forces alone move. Of what is led or drawn only that can give energy.
-    fn meet_loose(&self) -> Vec<bool> {
+    /// Whether a body touches, or is joined to, what forces alone move. Of what is led or drawn only that can give energy.
+    fn meets_loose(&self, part: usize) -> bool {
         let is_loose =
             |at: usize| self.world.bodies[self.parts[at].handle].is_dynamic() && self.guides[at].is_none();
-        let joined =
-            |part: &PhysicsBody| self.world.impulse_joints.attached_joints(part.handle).next().is_some();
-        let mut meet: Vec<bool> = self.parts.iter().map(joined).collect();
-        let yielding = self.yielding.iter().filter(|pair| pair.contact.is_some());
-        for (a, b) in
-            self.loads.pairs().map(|(a, b, _)| (a, b)).chain(yielding.map(|pair| (pair.soft, pair.other)))
-        {
-            meet[a] |= is_loose(b);
-            meet[b] |= is_loose(a);
-        }
-        meet
+        let rigid = self.loads.on(part).map(|(other, _)| other);
+        let yielding = self.yielding.touching().filter_map(|(_, pair, _)| {
+            if pair.soft == part { Some(pair.other) } else { (pair.other == part).then_some(pair.soft) }
+        });
+        self.world.impulse_joints.attached_joints(self.parts[part].handle).next().is_some()
+            || rigid.chain(yielding).any(is_loose)
     }
 
     /// The most that motors can have done in a step, J.

@@ -4,7 +4,7 @@ use hrdsl_ir::world::BodyId;
 use rapier3d::prelude::*;
 
 use super::state::{adapter::PhysicsAdapter, bodies::index, guide::StepPart};
-use crate::math::{BodyFrame, SpaceVector, from_vector, to_vector};
+use crate::math::{BodyFrame, SpaceVector, from_pose, from_vector, to_vector};
 
 /// How much the swing of a relaxed limb is damped, of the critical: the peaks of a healthy leg that was let fall from the knee are 0.94,
 /// 0.60, 0.38 and 0.26 rad (Wartenberg's pendulum test; J. Nov. Physiother. S6-001, figure 1), each 0.64 of the one before.
@@ -46,14 +46,27 @@ impl PhysicsAdapter {
     /// Draws all guided bodies for a part of a step.
     pub(super) fn draw_guided(&mut self, part: StepPart) {
         let weight = from_vector(self.world.gravity);
-        for (guide, own) in self.guides.iter().zip(&self.parts) {
+        for (guide, own) in self.guides.iter_mut().zip(&self.parts) {
             let Some(guide) = guide else { continue };
+            let body = &self.world.bodies[own.handle];
+            if guide.rests(body) {
+                continue;
+            }
+            let at = from_pose(body.position());
+            let impulse = guide.impulse(at.at, from_vector(body.linvel()), weight, part);
+            let turn = guide.turn(&at.turn, part);
+            let turns = turn.norm_squared() > 0.0 || body.angvel() != AngVector::ZERO;
+            let is_pushed = impulse.norm_squared() > 0.0;
+            guide.note_rest(body, turns || is_pushed);
+            // The engine looks again at what is taken to be changed.
+            if !turns && !is_pushed {
+                continue;
+            }
             let body = &mut self.world.bodies[own.handle];
-            let (impulse, turn) = (guide.impulse(body, weight, part), guide.turn(body, part));
-            if turn.norm() > 0.0 || body.angvel() != AngVector::ZERO {
+            if turns {
                 body.set_angvel(to_vector(turn), true);
             }
-            if impulse.norm() > 0.0 {
+            if is_pushed {
                 body.apply_impulse(to_vector(impulse), true);
             }
         }

@@ -1,7 +1,7 @@
 //! Joints of the engine: their motors, whose torque is limited, and what they measure.
 
 use hrdsl_ir::world::{BodyId, BodyMotion, Joint, JointMotion, World};
-use rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
+use rapier3d::parry::bounding_volume::BoundingVolume;
 use rapier3d::prelude::*;
 
 use super::SUBSTEPS;
@@ -12,10 +12,10 @@ use super::state::{
     bodies::index,
     joint::{DrivenJoint, JointHold, JointStop, ToldEnds},
     pairs::JointGraph,
+    place::JointPlace,
 };
 use crate::math::{
-    BodyFrame, RotationQuat, SpaceVector, about, angle_between, from_pose, from_vector, to_pose, to_vector,
-    twist, v3, wrap,
+    BodyFrame, RotationQuat, SpaceVector, about, angle_between, from_vector, to_pose, to_vector, v3, wrap,
 };
 
 /// How a motor that keeps a speed answers to an error of it, N·s/m or N·m·s/rad.
@@ -62,20 +62,11 @@ pub(super) fn rotor_inertia(joint: &Joint) -> Mat3 {
 
 impl PhysicsAdapter {
     pub(super) fn add_joint(&mut self, joint: &Joint, world: &World, graph: &JointGraph) -> DrivenJoint {
-        let axis = v3(joint.axis).normalize();
-        let anchor = v3(joint.anchor);
+        let (axis, anchor) = (v3(joint.axis).normalize(), v3(joint.anchor));
         let frame = BodyFrame::new(anchor, x_to(&axis));
         let (parent, child) = (self.root(joint.parent), self.root(joint.child));
         let (p, c) = (&self.parts[index(parent)], &self.parts[index(child)]);
-        let (locked, moving) = match joint.motion {
-            JointMotion::Hinge => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
-            JointMotion::Slider => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
-        };
-        let mut data = GenericJointBuilder::new(locked)
-            .local_frame1(to_pose(&p.start.inverse().then(&frame)))
-            .local_frame2(to_pose(&c.start.inverse().then(&frame)))
-            .contacts_enabled(false)
-            .build();
+        let (mut data, moving) = free_joint(joint.motion, &frame, [&p.start, &c.start]);
         // The light links of a described robot would shake.
         if world.bodies[index(child)].solid.is_none() {
             data.softness = stiff(MENDS as f32);
@@ -92,9 +83,13 @@ impl PhysicsAdapter {
         }
         let bearer = self.parts[index(self.bearer_of(parent, world))].handle;
         let handle = self.world.insert_impulse_joint(p.handle, c.handle, data);
-        let beyond = graph.beyond(joint, parent, child);
-        let dynamic = beyond.into_iter().filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
+        let dynamic = graph
+            .beyond(joint, parent, child)
+            .into_iter()
+            .filter(|b| world.bodies[index(*b)].motion == BodyMotion::Dynamic);
         let carried: Vec<RigidBodyHandle> = dynamic.map(|b| self.parts[index(b)].handle).collect();
+        let sides = [p, c].map(|part| (part.handle, part.start));
+        let (bodies, place) = self.jointed.place(sides, &self.world.bodies, (&axis, &anchor));
         DrivenJoint {
             name: joint.name.clone(),
             handle,
@@ -104,8 +99,8 @@ impl PhysicsAdapter {
             motion: joint.motion,
             axis,
             anchor,
-            parent_start: p.start,
-            child_start: c.start,
+            bodies,
+            place,
             is_tip: carried.len() == 1
                 && world.bodies[index(child)].mass < LIGHT * world.bodies[index(parent)].mass,
             carried,
@@ -173,18 +168,24 @@ impl PhysicsAdapter {
 
     /// How far a joint is from its start.
     pub(super) fn way(&self, driven: &DrivenJoint) -> f64 {
-        let pose = |h: RigidBodyHandle| from_pose(self.world.bodies[h].position());
-        let moved = |pose: BodyFrame, start: &BodyFrame| pose.then(&start.inverse());
-        let parent = moved(pose(driven.parent), &driven.parent_start);
-        let child = moved(pose(driven.child), &driven.child_start);
         match driven.motion {
             JointMotion::Hinge => {
-                let angle = twist(&(parent.turn.inverse() * child.turn), &driven.axis);
+                let [parent, child] = driven.bodies.map(|body| self.jointed.moved(body));
+                let angle = driven.place.angle(&driven.axis, parent, child);
                 driven.wound.map_or(angle, |last| last + wrap(angle - wrap_far(last)))
             }
-            JointMotion::Slider => {
-                let way = child.point(driven.anchor) - parent.point(driven.anchor);
-                way.dot(&(parent.turn * driven.axis))
+            JointMotion::Slider => driven.place.way(),
+        }
+    }
+
+    /// The engine has moved bodies: finds where the joints on them are now.
+    pub(super) fn place_joints(&mut self) {
+        self.jointed.look(&self.world.bodies);
+        for driven in self.joints.iter_mut().flatten() {
+            let [parent, child] = driven.bodies;
+            if self.jointed.is_news(parent) || self.jointed.is_news(child) {
+                let (parent, child) = (self.jointed.moved(parent), self.jointed.moved(child));
+                driven.place = JointPlace::of((&driven.axis, &driven.anchor), parent, child);
             }
         }
     }
@@ -193,12 +194,11 @@ impl PhysicsAdapter {
     pub fn joint_speed(&self, joint: usize) -> f64 {
         let Some(driven) = &self.joints[joint] else { return 0.0 };
         let (p, c) = (&self.world.bodies[driven.parent], &self.world.bodies[driven.child]);
-        let parent = from_pose(p.position()).then(&driven.parent_start.inverse());
-        let axis = parent.turn * driven.axis;
+        let axis = driven.place.axis;
         match driven.motion {
             JointMotion::Hinge => (from_vector(c.angvel()) - from_vector(p.angvel())).dot(&axis),
             JointMotion::Slider => {
-                let at = to_vector(parent.point(driven.anchor));
+                let at = to_vector(driven.place.anchor);
                 (from_vector(c.velocity_at_point(at)) - from_vector(p.velocity_at_point(at))).dot(&axis)
             }
         }
@@ -216,7 +216,7 @@ impl PhysicsAdapter {
         let Some(driven) = &mut self.joints[joint] else { return 0.0 };
         driven.effort = effort.clamp(-driven.limit, driven.limit);
         let Some(driven) = &self.joints[joint] else { return 0.0 };
-        let (axis, _) = self.axis_now(driven);
+        let axis = driven.place.axis;
         // A slider is pushed through its middle, so that the solver need not keep it from tilting.
         let at = self.world.bodies[driven.child].center_of_mass();
         let pull = to_vector(axis * driven.effort);
@@ -238,7 +238,7 @@ impl PhysicsAdapter {
     pub fn drive_bearing(&mut self, joint: usize, effort: f64, load: &BorneLoad) -> f64 {
         let done = self.drive(joint, effort);
         let Some(driven) = &self.joints[joint] else { return done };
-        let at = to_vector(self.axis_now(driven).1);
+        let at = to_vector(driven.place.anchor);
         let (force, torque) = (to_vector(load.force), to_vector(load.torque));
         for (handle, sign) in [(driven.child, 1.0), (driven.parent, -1.0)] {
             let body = &mut self.world.bodies[handle];
@@ -299,7 +299,7 @@ impl PhysicsAdapter {
         let h = self.part.0 / self.part.1 as f64;
         for at in 0..self.joints.len() {
             let Some(driven) = &self.joints[at] else { continue };
-            let (apart, tilted) = self.apart(driven);
+            let apart = driven.place.apart(driven.motion);
             self.accuracy.look_at_gap(at, apart);
             let falls = driven.loose.is_some_and(|loose| self.leans(loose));
             if falls {
@@ -312,13 +312,16 @@ impl PhysicsAdapter {
                     "the physics failed: joint `{name}` is torn, its bodies are {by:.0} mm apart"
                 ));
             }
-            let is_apart = !falls && (apart > TORN || tilted > TORN_TURN);
-            let is_strained = driven.is_tip && !falls && (apart > STRAINED || tilted > STRAINED_TURN);
+            let [parent, child] = driven.bodies.map(|body| self.jointed.moved(body));
+            let tilts = |by: f64| driven.place.is_tilted(driven.motion, by, parent, child);
+            let is_apart = !falls && (apart > TORN || tilts(TORN_TURN));
+            let is_strained = driven.is_tip && !falls && (apart > STRAINED || tilts(STRAINED_TURN));
             let hold = driven.hold.next(is_apart, is_strained);
             strain.blow |= hold.takes_blow();
             if hold == JointHold::Firm && driven.hold == hold {
                 continue;
             }
+            let tilted = driven.place.tilt(driven.motion, parent, child);
             let usual = f64::from(driven.softness.erp_inv_dt(h as f32));
             let rate = usual.min(MENDS_AT_MOST / apart).min(MENDS_AT_MOST_TURN / tilted);
             let softness = match hold {
@@ -336,32 +339,15 @@ impl PhysicsAdapter {
         strain
     }
 
-    /// How far the two sides of a joint have come apart: m, and rad.
-    fn apart(&self, driven: &DrivenJoint) -> (f64, f64) {
-        let moved = |handle: RigidBodyHandle, start: &BodyFrame| {
-            from_pose(self.world.bodies[handle].position()).then(&start.inverse())
-        };
-        let parent = moved(driven.parent, &driven.parent_start);
-        let child = moved(driven.child, &driven.child_start);
-        let way = child.point(driven.anchor) - parent.point(driven.anchor);
-        let axis = parent.turn * driven.axis;
-        match driven.motion {
-            JointMotion::Hinge => (way.norm(), angle_between(&axis, &(child.turn * driven.axis))),
-            JointMotion::Slider => (
-                (way - axis * way.dot(&axis)).norm(),
-                2.0 * (parent.turn.inverse() * child.turn).imag().norm(),
-            ),
-        }
-    }
-
     /// Whether the bodies that a joint moves may be left out of the steps while they stand still; if not, they wake. What their motors
     /// do then goes on.
     pub fn let_sleep(&mut self, joint: usize, may: bool) {
         let Some(driven) = &self.joints[joint] else { return };
-        let Some(body) = self.world.bodies.get_mut(driven.child) else { return };
-        if may == (body.activation().normalized_linear_threshold >= 0.0) {
+        let lets = |body: &RigidBody| body.activation().normalized_linear_threshold >= 0.0;
+        if self.world.bodies.get(driven.child).is_none_or(|body| lets(body) == may) {
             return;
         }
+        let Some(body) = self.world.bodies.get_mut(driven.child) else { return };
         let activation = body.activation_mut();
         (activation.normalized_linear_threshold, activation.angular_threshold) =
             if may { (SLEEPS_BELOW, SLEEPS_BELOW_ANGULAR) } else { (-1.0, -1.0) };
@@ -375,20 +361,19 @@ impl PhysicsAdapter {
     pub fn is_approached(&self, of: BodyId, held: &[BodyId]) -> bool {
         let robot = self.robots[index(of)];
         let is_own = |at: usize| self.robots[at] == robot || held.iter().any(|body| index(*body) == at);
-        let of_those = |at: &usize| !self.parts[*at].ghost;
-        let own: Vec<Aabb> = (0..self.parts.len())
-            .filter(|at| is_own(*at))
-            .filter(of_those)
-            .filter_map(|at| self.world.colliders.get(self.parts[at].collider))
-            .map(|collider| collider.compute_aabb())
-            .collect();
-        (0..self.parts.len()).filter(|at| !is_own(*at) && self.moves(*at)).filter(of_those).any(|at| {
+        let solid = || (0..self.parts.len()).filter(|at| !self.parts[*at].ghost);
+        let own = || solid().filter(|at| is_own(*at)).filter_map(|at| self.box_now(at));
+        let Some(all) = own().reduce(|a, b| a.merged(&b)) else { return false };
+        solid().filter(|at| self.moves(*at) && !is_own(*at)).any(|at| {
             let swept = self.box_in_step(at, self.step).loosened(APPROACHED);
-            own.iter().any(|own| own.intersects(&swept))
+            all.intersects(&swept) && own().any(|own| own.intersects(&swept))
         })
     }
 
     fn moves(&self, part: usize) -> bool {
+        if self.parts[part].motion == BodyMotion::Fixed {
+            return false;
+        }
         let body = &self.world.bodies[self.parts[part].handle];
         body.is_dynamic_or_kinematic() && !body.is_sleeping()
     }
@@ -396,8 +381,8 @@ impl PhysicsAdapter {
     /// Wakes the body that a joint moves, if it sleeps.
     pub fn wake(&mut self, joint: usize) {
         let Some(driven) = &self.joints[joint] else { return };
-        if let Some(body) = self.world.bodies.get_mut(driven.child).filter(|body| body.is_sleeping()) {
-            body.wake_up(true);
+        if self.world.bodies[driven.child].is_sleeping() {
+            self.world.bodies[driven.child].wake_up(true);
         }
     }
 
@@ -411,18 +396,14 @@ impl PhysicsAdapter {
         for (_, driven) in self.joints.iter().enumerate().filter(|(at, _)| !sleeps(*at)) {
             let Some(driven) = driven else { continue };
             for handle in [driven.parent, driven.child, driven.bearer] {
-                let body = &mut self.world.bodies[handle];
-                body.reset_torques(false);
-                body.reset_forces(false);
+                let body = &self.world.bodies[handle];
+                if body.user_torque() != AngVector::ZERO || body.user_force() != Vector::ZERO {
+                    let body = &mut self.world.bodies[handle];
+                    body.reset_torques(false);
+                    body.reset_forces(false);
+                }
             }
         }
-    }
-
-    /// The axis and the anchor of a joint, where they are now.
-    pub(super) fn axis_now(&self, driven: &DrivenJoint) -> (SpaceVector, SpaceVector) {
-        let parent =
-            from_pose(self.world.bodies[driven.parent].position()).then(&driven.parent_start.inverse());
-        (parent.turn * driven.axis, parent.point(driven.anchor))
     }
 
     /// The body that leads those that a joint carries first.
@@ -441,6 +422,17 @@ impl PhysicsAdapter {
         roots.dedup();
         roots
     }
+}
+
+/// A joint of the engine between two bodies that start so, whose axis is the x axis of a frame; and which of its axes moves.
+fn free_joint(motion: JointMotion, frame: &BodyFrame, starts: [&BodyFrame; 2]) -> (GenericJoint, JointAxis) {
+    let (locked, moving) = match motion {
+        JointMotion::Hinge => (JointAxesMask::LOCKED_REVOLUTE_AXES, JointAxis::AngX),
+        JointMotion::Slider => (JointAxesMask::LOCKED_PRISMATIC_AXES, JointAxis::LinX),
+    };
+    let [parent, child] = starts.map(|start| to_pose(&start.inverse().then(frame)));
+    let joint = GenericJointBuilder::new(locked).local_frame1(parent).local_frame2(child);
+    (joint.contacts_enabled(false).build(), moving)
 }
 
 /// The softness of a joint that holds, and of whose gap `rate / (h · rate + 2)` is mended in a second, in parts of a step of the time h.

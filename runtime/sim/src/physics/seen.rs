@@ -31,11 +31,9 @@ impl PhysicsAdapter {
         {
             tell([body_id(a), body_id(b)], force);
         }
-        for pair in &self.yielding {
-            if let Some(contact) = pair.contact.filter(|contact| contact.peak() >= least) {
-                // The normal is that of the force on what yields.
-                tell([body_id(pair.other), body_id(pair.soft)], contact.normal * contact.peak());
-            }
+        for (_, pair, contact) in self.yielding.touching().filter(|(.., contact)| contact.peak() >= least) {
+            // The normal is that of the force on what yields.
+            tell([body_id(pair.other), body_id(pair.soft)], contact.normal * contact.peak());
         }
     }
 

@@ -9,6 +9,7 @@ pub mod joint;
 pub mod loads;
 pub mod losses;
 pub mod pairs;
+pub(crate) mod place;
 pub mod roots;
 pub mod solid;
 pub mod yielding;

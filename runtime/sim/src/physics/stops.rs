@@ -95,7 +95,7 @@ impl PhysicsAdapter {
             let driven = driven.as_ref()?;
             let way = self.joint_speed(at) * dt;
             let parts = (way.abs() / driven.early_at_most()).ceil();
-            if parts <= self.substeps() as f64 || self.is_asleep(at) {
+            if parts <= 1.0 || parts <= self.substeps() as f64 || self.is_asleep(at) {
                 return None;
             }
             let (now, (lo, hi)) = (self.way(driven), driven.true_ends());

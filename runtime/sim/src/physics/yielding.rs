@@ -63,8 +63,8 @@ impl PhysicsAdapter {
                 }
                 let stiffness =
                     world.bodies[j].stiffness.map_or(stiffness, |k| 1.0 / (1.0 / k + 1.0 / stiffness));
-                let (soft, other, contact) = (i, j, None);
-                self.yielding.push(YieldingPair { soft, other, stiffness, is_suspended: false, contact });
+                let pair = YieldingPair { soft: i, other: j, stiffness, is_suspended: false };
+                self.yielding.add(pair, figure_of[i]);
                 self.exempt.yields(i, j);
                 self.filter(i);
                 self.filter(j);
@@ -75,34 +75,33 @@ impl PhysicsAdapter {
     /// A hand holds a body, or no longer: meanwhile it does not press it.
     pub(super) fn suspend(&mut self, a: BodyId, b: BodyId, is_suspended: bool) {
         let (a, b) = (index(a), index(b));
-        for pair in &mut self.yielding {
+        for (at, pair) in self.yielding.pairs.iter_mut().enumerate() {
             if (pair.soft, pair.other) == (a, b) || (pair.soft, pair.other) == (b, a) {
                 pair.is_suspended = is_suspended;
-                pair.contact = None;
+                self.yielding.contacts.remove(&at);
             }
         }
     }
 
     /// The pairs that may touch within a step.
     pub(super) fn near_pairs(&mut self, swept: &SweptBodies, dt: f64) -> Vec<NearPair> {
-        if self.yielding.is_empty() {
-            return Vec::new();
-        }
+        self.yielding.contacts.retain(|_, contact| {
+            (contact.peaks, contact.impulse, contact.force) = ([0.0; 2], 0.0, 0.0);
+            contact.parted += dt;
+            contact.parted < SAME
+        });
         let mut near = Vec::new();
-        for at in 0..self.yielding.len() {
-            let pair = &mut self.yielding[at];
+        let groups =
+            self.yielding.groups.iter().filter(|group| swept.may_any_meet(&group.softs, &group.others));
+        for (at, pair) in
+            groups.flat_map(|group| group.pairs.clone()).map(|at| (at, &self.yielding.pairs[at]))
+        {
             let (soft, other) = (pair.soft, pair.other);
-            if let Some(contact) = &mut pair.contact {
-                (contact.peaks, contact.impulse, contact.force) = ([0.0; 2], 0.0, 0.0);
-                contact.parted += dt;
-            }
-            pair.contact = pair.contact.filter(|contact| contact.parted < SAME);
             if pair.is_suspended || !swept.may_meet(soft, other) {
                 continue;
             }
             let reach = NEAR + (swept.speeds[soft] + swept.speeds[other]) * dt;
             let Some(found) = self.closest(soft, other, reach) else { continue };
-            let pair = &self.yielding[at];
             let (a, b) =
                 (&self.world.bodies[self.parts[soft].handle], &self.world.bodies[self.parts[other].handle]);
             let inverse =
@@ -121,20 +120,19 @@ impl PhysicsAdapter {
 
     /// Lets the surfaces of a pair press on each other for a part of a step.
     pub(super) fn press(&mut self, at: usize, h: f64) {
-        let (soft, other) = (self.yielding[at].soft, self.yielding[at].other);
+        let YieldingPair { soft, other, stiffness, .. } = self.yielding.pairs[at];
         let Some(found) = self.closest(soft, other, 0.0).filter(|c| c.dist < 0.0) else {
             // A dent is gone when the surfaces have parted.
-            if let Some(contact) = &mut self.yielding[at].contact {
+            if let Some(contact) = self.yielding.contacts.get_mut(&at) {
                 (contact.deepest, contact.force) = (0.0, 0.0);
             }
             return;
         };
         let normal = -from_vector(found.normal1);
         let depth = -f64::from(found.dist);
-        let pair = &mut self.yielding[at];
-        let new = YieldingContact::new(normal);
-        let contact = pair.contact.get_or_insert(new);
-        let force = contact.force_at(depth, pair.stiffness);
+        let new = || YieldingContact::new(normal);
+        let contact = self.yielding.contacts.entry(at).or_insert_with(new);
+        let force = contact.force_at(depth, stiffness);
         // What was pressed in more deeply comes back.
         contact.deepest = depth.max(contact.deepest - (contact.deepest - depth) * (h / RECOVERY).min(1.0));
         contact.force = force;
@@ -147,15 +145,16 @@ impl PhysicsAdapter {
 
     /// After a part of a step: tells contacts in which something else holds the body against it.
     pub(super) fn note_presses(&mut self, near: &[NearPair], loads: &ContactLoads, h: f64) {
-        let pressing = |at: usize| self.yielding[at].contact.filter(|contact| contact.force > 0.0);
+        let contacts = &self.yielding.contacts;
+        let pressing = |at: usize| contacts.get(&at).copied().filter(|contact| contact.force > 0.0);
         let against: Vec<(usize, f64)> = near
             .iter()
             .filter_map(|pair| pressing(pair.at).map(|contact| (pair.at, contact)))
             .map(|(at, contact)| {
-                let soft = self.yielding[at].soft;
-                let others = (0..self.yielding.len()).filter(|other| *other != at).filter_map(|other| {
-                    let pair = &self.yielding[other];
-                    let push = pair.contact.map(|contact| contact.normal * contact.force)?;
+                let soft = self.yielding.pairs[at].soft;
+                let others = self.yielding.touching().filter(|(other, ..)| *other != at);
+                let others = others.filter_map(|(_, pair, contact)| {
+                    let push = contact.normal * contact.force;
                     if pair.soft == soft { Some(push) } else { (pair.other == soft).then_some(-push) }
                 });
                 let pushes = loads.on(soft).map(|(_, push)| push).chain(others);
@@ -163,7 +162,7 @@ impl PhysicsAdapter {
             })
             .collect();
         for (at, against) in against {
-            if let Some(contact) = &mut self.yielding[at].contact {
+            if let Some(contact) = self.yielding.contacts.get_mut(&at) {
                 contact.note(against, h);
             }
         }
@@ -202,37 +201,35 @@ impl PhysicsAdapter {
     /// The force on a body of each that it meets in such a contact: the greatest of the last step, N.
     pub(super) fn yielding_pushes(&self, body: BodyId) -> impl Iterator<Item = (BodyId, SpaceVector)> + '_ {
         let own = index(body);
-        self.yielding.iter().filter_map(move |pair| {
-            let contact = pair.contact.filter(|c| c.peak() > 0.0)?;
-            let push = contact.normal * contact.peak();
-            if pair.soft == own {
-                Some((body_id(pair.other), push))
-            } else if pair.other == own {
-                Some((body_id(pair.soft), -push))
-            } else {
-                None
-            }
-        })
+        self.yielding.touching().filter(|(.., contact)| contact.peak() > 0.0).filter_map(
+            move |(_, pair, contact)| {
+                let push = contact.normal * contact.peak();
+                if pair.soft == own {
+                    Some((body_id(pair.other), push))
+                } else if pair.other == own {
+                    Some((body_id(pair.soft), -push))
+                } else {
+                    None
+                }
+            },
+        )
     }
 
     /// How hard others, or one of them, press on what yields in contacts of a kind, N.
     pub fn pressed(&self, body: BodyId, by: Option<BodyId>, phase: ContactPhase) -> f64 {
         let own = index(body);
-        let of = self.yielding.iter().filter(|pair| {
+        let of = self.yielding.touching().filter(|(_, pair, _)| {
             let other = if pair.soft == own { pair.other } else { pair.soft };
             (pair.soft == own || pair.other == own) && by.is_none_or(|by| index(by) == other)
         });
-        let of_phase =
-            |contact: YieldingContact| contact.peaks[usize::from(phase == ContactPhase::QuasiStatic)];
-        of.filter_map(|pair| pair.contact.map(of_phase)).sum()
+        of.map(|(.., contact)| contact.peaks[usize::from(phase == ContactPhase::QuasiStatic)]).sum()
     }
 
     /// The level part of what pressed on a body in such contacts over the last step, N·s.
     pub fn level_impulse(&self, body: BodyId) -> SpaceVector {
         let own = index(body);
         let mut sum = SpaceVector::zeros();
-        for pair in &self.yielding {
-            let Some(contact) = &pair.contact else { continue };
+        for (_, pair, contact) in self.yielding.touching() {
             if pair.soft == own {
                 sum += contact.normal * contact.impulse;
             } else if pair.other == own {

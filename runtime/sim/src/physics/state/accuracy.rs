@@ -3,8 +3,6 @@
 //! The solver keeps all of it only nearly. The worst of a run is kept, so that whoever reads its results can see what they rest on. Surfaces
 //! that yield are meant to be pressed in, and pairs that overlap by design never meet: neither counts.
 
-use rapier3d::prelude::*;
-
 /// Two bodies by number, and how deep they were in each other, m.
 pub(crate) type PenetratingPair = (f64, usize, usize);
 
@@ -24,29 +22,12 @@ pub(crate) struct AccuracyWatch {
 const EXACT: f64 = 1e-5;
 
 impl AccuracyWatch {
-    /// Looks at all contacts as the last step began; `robots` gives for each body a number of what it is joined to. Gives the depth of
-    /// the deepest, m.
-    pub fn look_at_contacts(&mut self, world: &PhysicsWorld, robots: &[usize]) -> f64 {
-        let mut depth_of_all: f64 = 0.0;
-        for pair in world.contact_pairs() {
-            let depth = |manifold: &ContactManifold| {
-                manifold.points.iter().map(|point| -f64::from(point.dist)).fold(0.0, f64::max)
-            };
-            let deepest = pair.solver_manifolds().iter().map(depth).fold(0.0, f64::max);
-            if deepest <= 0.0 {
-                continue;
-            }
-            depth_of_all = depth_of_all.max(deepest);
-            let number = |handle| {
-                world.colliders.get(handle).and_then(|collider| usize::try_from(collider.user_data).ok())
-            };
-            let (Some(a), Some(b)) = (number(pair.collider1), number(pair.collider2)) else { continue };
-            let worst = if robots.get(a) == robots.get(b) { &mut self.own } else { &mut self.others };
-            if worst.is_none_or(|(depth, ..)| deepest > depth) {
-                *worst = Some((deepest, a.min(b), a.max(b)));
-            }
+    /// Looks at two bodies that are so deep in each other, m, and are of one robot or not.
+    pub fn look_at_depth(&mut self, depth: f64, (a, b): (usize, usize), is_own: bool) {
+        let worst = if is_own { &mut self.own } else { &mut self.others };
+        if worst.is_none_or(|(deepest, ..)| depth > deepest) {
+            *worst = Some((depth, a.min(b), a.max(b)));
         }
-        depth_of_all
     }
 
     /// Looks at one joint: where it is, and where it ends.

@@ -2,11 +2,12 @@
 
 use hrdsl_harness::{SpentTime, ThreadClock};
 use hrdsl_ir::world::{BodyId, BodyMotion, BodyShape};
-use rapier3d::prelude::*;
+use rapier3d::{parry::bounding_volume::Aabb, prelude::*};
 
 use super::{
     accuracy::AccuracyWatch, energy::EnergyWatch, guide::BodyGuide, joint::DrivenJoint, loads::ContactLoads,
-    losses::JointLosses, pairs::ExemptPairs, solid::SolidExtent, yielding::YieldingPair,
+    losses::JointLosses, pairs::ExemptPairs, place::JointedBodies, solid::SolidExtent,
+    yielding::YieldingPairs,
 };
 use crate::math::BodyFrame;
 
@@ -25,6 +26,8 @@ pub struct PhysicsBody {
     pub shape: BodyShape,
     /// That of the engine.
     pub surface: SharedShape,
+    /// Of a sphere around it, m.
+    pub radius: f32,
     /// Of a body that has not just one shape.
     pub extent: Option<SolidExtent>,
 }
@@ -42,13 +45,17 @@ impl PhysicsBody {
 pub(crate) struct PhysicsAdapter {
     pub world: PhysicsWorld,
     pub parts: Vec<PhysicsBody>,
+    /// By body: where the engine last had its collider, and the box around it then; of a mere frame none.
+    pub boxes: Vec<Option<(Pose, Aabb)>>,
     /// By body: what draws those that are guided.
     pub guides: Vec<Option<BodyGuide>>,
-    pub yielding: Vec<YieldingPair>,
+    pub yielding: YieldingPairs,
     /// One body of each of those who have fallen and hang together.
     pub fallen: Vec<RigidBodyHandle>,
     /// By [`hrdsl_ir::world::JointId`]; none where the joint is rigid.
     pub joints: Vec<Option<DrivenJoint>>,
+    /// What these are on.
+    pub jointed: JointedBodies,
     pub losses: JointLosses,
     pub loads: ContactLoads,
     pub exempt: ExemptPairs,

@@ -7,7 +7,7 @@
 use hrdsl_ir::world::Body;
 use rapier3d::prelude::*;
 
-use crate::math::{BodyFrame, RotationQuat, SpaceVector, from_pose, from_vector};
+use crate::math::{BodyFrame, RotationQuat, SpaceVector};
 
 /// How fast a body is drawn back, 1/s: four times a second, if its surface is not soft.
 const FREQUENCY: f64 = 25.0;
@@ -41,6 +41,8 @@ pub struct BodyGuide {
     pub pace: SpaceVector,
     /// What it carries, kg.
     pub load: f64,
+    /// Where the body was, and was to be, as nothing had to be done, and nothing would change.
+    at_rest: Option<(Pose, BodyFrame)>,
 }
 
 /// A part of a step: how much of the step is over when it begins, its time, and that of the step, s.
@@ -67,19 +69,53 @@ impl BodyGuide {
             to: start,
             pace: SpaceVector::zeros(),
             load: 0.0,
+            at_rest: None,
         }
     }
 
-    /// The impulse over a part of a step, N·s.
-    pub fn impulse(&self, body: &RigidBody, weight: SpaceVector, part: StepPart) -> SpaceVector {
+    /// Whether body and aim are where nothing has to be done, as was found before.
+    pub fn rests(&self, body: &RigidBody) -> bool {
+        self.at_rest
+            .as_ref()
+            .is_some_and(|(pose, aim)| pose == body.position() && self.to.is_same(aim) && self.is_still(body))
+    }
+
+    /// Takes down whether anything had to be done to the body.
+    pub fn note_rest(&mut self, body: &RigidBody, is_drawn: bool) {
+        let rests = !is_drawn && self.is_still(body);
+        self.at_rest = rests.then(|| (*body.position(), self.to));
+    }
+
+    /// Whether neither the body nor its aim moves: what is done to it then is the same in each part of a step.
+    fn is_still(&self, body: &RigidBody) -> bool {
+        self.from.is_same(&self.to)
+            && self.pace == SpaceVector::zeros()
+            && self.load == 0.0
+            && body.linvel() == Vector::ZERO
+            && body.angvel() == AngVector::ZERO
+    }
+
+    /// The impulse over a part of a step on the body, which is there (m) and goes so (m/s): N·s.
+    pub fn impulse(
+        &self,
+        at: SpaceVector,
+        speed: SpaceVector,
+        weight: SpaceVector,
+        part: StepPart,
+    ) -> SpaceVector {
         let pace = (self.to.at - self.from.at) / part.dt;
         let (before, ahead) =
             if part.done == 0.0 { (self.pace, pace - self.pace) } else { (pace, SpaceVector::zeros()) };
         let aim = self.from.at + (self.to.at - self.from.at) * part.done;
-        let (at, speed) = (from_pose(body.position()).at, from_vector(body.linvel()));
         let (behind, slow) = (aim - at, before - speed);
         // What is there and stands is left alone, so that it can rest.
-        if behind.norm() < THERE && slow.norm() < STILL && ahead.norm() == 0.0 && self.load == 0.0 {
+        let may_be_there = behind.norm_squared() < 4.0 * THERE * THERE;
+        if may_be_there
+            && behind.norm() < THERE
+            && slow.norm() < STILL
+            && ahead.norm() == 0.0
+            && self.load == 0.0
+        {
             return SpaceVector::zeros();
         }
         // The spring alone is limited, too: who comes free from far behind is damped, and does not shoot back.
@@ -89,10 +125,10 @@ impl BodyGuide {
         ahead * (self.mass + self.load) + (pull - weight * self.load) * part.h
     }
 
-    /// The turn that brings it to its aim at the end of the step, rad/s.
-    pub fn turn(&self, body: &RigidBody, part: StepPart) -> SpaceVector {
+    /// The turn that brings the body, which is turned so, to its aim at the end of the step, rad/s.
+    pub fn turn(&self, now: &RotationQuat, part: StepPart) -> SpaceVector {
         let left = (1.0 - part.done) * part.dt;
-        let turn = turn_between(&from_pose(body.position()).turn, &self.to.turn) / left;
+        let turn = turn_between(now, &self.to.turn) / left;
         let size = turn.norm();
         if size > FASTEST_TURN { turn * (FASTEST_TURN / size) } else { turn }
     }
@@ -100,6 +136,10 @@ impl BodyGuide {
 
 /// The vector, no longer than so much.
 fn limited(v: SpaceVector, most: f64) -> SpaceVector {
+    // Mostly it is far from that: a root would be drawn for nothing.
+    if v.norm_squared() < 0.9 * most * most {
+        return v;
+    }
     let size = v.norm();
     if size > most { v * (most / size) } else { v }
 }

@@ -3,7 +3,8 @@
 use hrdsl_ir::world::{BodyId, JointMotion};
 use rapier3d::prelude::*;
 
-use crate::math::{BodyFrame, SpaceVector};
+use super::place::JointPlace;
+use crate::math::SpaceVector;
 
 /// How a joint holds its two sides together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +55,9 @@ pub(crate) struct DrivenJoint {
     /// At the start, in the world.
     pub axis: SpaceVector,
     pub anchor: SpaceVector,
-    pub parent_start: BodyFrame,
-    pub child_start: BodyFrame,
+    /// The numbers of parent and child among the bodies that joints are on, and where it is now.
+    pub bodies: [usize; 2],
+    pub place: JointPlace,
     /// What it carries: bodies on the child's side.
     pub carried: Vec<RigidBodyHandle>,
     /// Its child is the last of a chain, such as a finger, and light.

@@ -1,7 +1,5 @@
 //! What rigid contacts did in the last step.
 
-use std::collections::BTreeMap;
-
 use crate::math::SpaceVector;
 
 /// The mean force over the step on the second of each pair of bodies, N; its opposite is on the first, whose number is the lower one.
@@ -9,14 +7,23 @@ use crate::math::SpaceVector;
 /// What floats add up to must not depend on the engine's own order: so pairs are in the order of their bodies.
 #[derive(Clone, Debug, Default)]
 pub struct ContactLoads {
-    of: BTreeMap<(usize, usize), SpaceVector>,
+    of: Vec<((usize, usize), SpaceVector)>,
 }
 
 impl ContactLoads {
     /// A force on `b` of `a`.
     pub fn add(&mut self, a: usize, b: usize, force: SpaceVector) {
         let (pair, force) = if a < b { ((a, b), force) } else { ((b, a), -force) };
-        *self.of.entry(pair).or_insert_with(SpaceVector::zeros) += force;
+        let at = self.place(pair).unwrap_or_else(|at| {
+            self.of.insert(at, (pair, SpaceVector::zeros()));
+            at
+        });
+        self.of[at].1 += force;
+    }
+
+    /// Where a pair is, or would be.
+    fn place(&self, pair: (usize, usize)) -> Result<usize, usize> {
+        self.of.binary_search_by_key(&pair, |(known, _)| *known)
     }
 
     /// Adds those of a part of a step, which is so much of the step.
@@ -29,8 +36,10 @@ impl ContactLoads {
     /// What another step told of pairs that this one says nothing of, if it still holds.
     pub fn take_over(&mut self, before: ContactLoads, holds: impl Fn(usize, usize) -> bool) {
         for ((a, b), force) in before.of {
-            if holds(a, b) {
-                self.of.entry((a, b)).or_insert(force);
+            if let Err(at) = self.place((a, b))
+                && holds(a, b)
+            {
+                self.of.insert(at, ((a, b), force));
             }
         }
     }

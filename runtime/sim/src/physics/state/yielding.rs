@@ -1,5 +1,7 @@
 //! Surfaces that yield, and what is known of two that press on each other.
 
+use std::{collections::BTreeMap, ops::Range};
+
 use crate::math::SpaceVector;
 
 /// The speed after a blow, of that before: an assumption; peaks do not depend on it.
@@ -19,7 +21,50 @@ pub struct YieldingPair {
     pub stiffness: f64,
     /// A hand does not press what it holds.
     pub is_suspended: bool,
-    pub contact: Option<YieldingContact>,
+}
+
+/// Pairs that follow one another, and whose yielding bodies are of one figure, or one and the same: mostly nothing is near any of them.
+pub struct YieldingGroup {
+    figure: Option<usize>,
+    pub pairs: Range<usize>,
+    pub softs: Vec<usize>,
+    pub others: Vec<usize>,
+}
+
+/// All such pairs, and those of them whose surfaces press on each other, or did of late.
+#[derive(Default)]
+pub struct YieldingPairs {
+    pub pairs: Vec<YieldingPair>,
+    pub groups: Vec<YieldingGroup>,
+    /// By number of the pair.
+    pub contacts: BTreeMap<usize, YieldingContact>,
+}
+
+impl YieldingPairs {
+    /// Adds a pair whose yielding body is of a figure, or of none.
+    pub fn add(&mut self, pair: YieldingPair, figure: Option<usize>) {
+        let at = self.pairs.len();
+        let is_same = |group: &&mut YieldingGroup| {
+            group.softs.contains(&pair.soft) || (figure.is_some() && group.figure == figure)
+        };
+        if let Some(group) = self.groups.last_mut().filter(is_same) {
+            group.pairs.end = at + 1;
+            for (known, body) in [(&mut group.softs, pair.soft), (&mut group.others, pair.other)] {
+                if !known.contains(&body) {
+                    known.push(body);
+                }
+            }
+        } else {
+            let (softs, others) = (vec![pair.soft], vec![pair.other]);
+            self.groups.push(YieldingGroup { figure, pairs: at..at + 1, softs, others });
+        }
+        self.pairs.push(pair);
+    }
+
+    /// The pairs that are, or were of late, in contact, in order, each with its number.
+    pub fn touching(&self) -> impl Iterator<Item = (usize, &YieldingPair, &YieldingContact)> + '_ {
+        self.contacts.iter().map(|(at, contact)| (*at, &self.pairs[*at], contact))
+    }
 }
 
 /// Two surfaces that press on each other.
