@@ -4,10 +4,14 @@ use hrdsl_harness::{HarnessRun, ProgramLogLevel, TopicHistory};
 use hrdsl_ir::{Program, value::seconds};
 use hrdsl_recording::{
     RunOnFile,
-    message::{RecordedLogLevel, RecordedLogLine, RecordedTopic, VerdictMessage},
+    message::{
+        LineColumns, LinesFile, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic,
+        VerdictMessage,
+    },
     scene,
 };
 use hrdsl_results::TraceJudgement;
+use hrdsl_sut::{FinishedProcess, ProgramLines};
 
 /// The file of a run, of which `text` is the recording.
 ///
@@ -18,6 +22,7 @@ pub(crate) fn file(
     run: &HarnessRun,
     text: &str,
     judgement: &TraceJudgement,
+    finished: &[(String, FinishedProcess)],
 ) -> Result<Vec<u8>, String> {
     let level = |level| match level {
         ProgramLogLevel::Debug => RecordedLogLevel::Debug,
@@ -55,6 +60,10 @@ pub(crate) fn file(
         texts: topic.texts.iter().map(|text| text.as_ref().map(ToString::to_string)).collect(),
     };
     let topics: Vec<RecordedTopic> = run.said.topics.iter().map(topic).collect();
+    let lines: Vec<LinesMessage> = finished
+        .iter()
+        .filter_map(|(name, process)| Some(code_lines(name, process.lines.as_ref()?)))
+        .collect();
     let verdicts: Vec<VerdictMessage> = judgement
         .verdicts
         .iter()
@@ -75,7 +84,25 @@ pub(crate) fn file(
         picture: &run.picture,
         log: &log,
         topics: &topics,
+        lines: &lines,
         verdicts: &verdicts,
     });
     file.map_err(|why| format!("{why} (it lasted {} s)", seconds(run.trace.end)))
+}
+
+/// At which lines a program was.
+fn code_lines(program: &str, lines: &ProgramLines) -> LinesMessage {
+    let columns = |thread: &hrdsl_sut::ThreadLines| LineColumns {
+        thread: thread.name.clone(),
+        t: thread.t.clone(),
+        file: thread.file.clone(),
+        line: thread.line.clone(),
+    };
+    LinesMessage {
+        program: program.to_owned(),
+        files: lines.files.iter().map(|f| LinesFile { name: f.name.clone(), crc: f.crc }).collect(),
+        threads: lines.threads.iter().map(columns).collect(),
+        until: lines.until,
+        unseen: lines.unseen,
+    }
 }

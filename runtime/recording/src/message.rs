@@ -126,6 +126,43 @@ pub struct TopicColumns {
     pub text: Vec<Option<String>>,
 }
 
+/// At which lines of its own code a program of the system was, for those of its files whose coverage is measured: where it asked for something, told
+/// something, or began to wait.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LinesMessage {
+    pub program: String,
+    pub files: Vec<LinesFile>,
+    pub threads: Vec<LineColumns>,
+    /// Since when nobody looked any more, in nanoseconds, if there were too many lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<i64>,
+    /// How many threads are missing, as there were too many.
+    #[serde(default)]
+    pub unseen: u64,
+}
+
+/// A file of code.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LinesFile {
+    pub name: String,
+    /// The CRC-32 of its bytes, by which one sees whether it has changed since.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crc: Option<u32>,
+}
+
+/// At which lines a thread was, each until the next: the first value of each column, and then what each differs from the one before.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LineColumns {
+    /// The name of the thread: `MainThread`
+    pub thread: String,
+    /// Nanoseconds.
+    pub t: Vec<i64>,
+    /// Places among the files.
+    pub file: Vec<i64>,
+    /// From 1; 0 while it is in none of the files.
+    pub line: Vec<i64>,
+}
+
 /// The messages of a name in one direction.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordedTopic {

@@ -10,7 +10,10 @@ use hrdsl_ir::{
 };
 use hrdsl_recording::{
     RecordingError, RecordingFile, RecordingForm, RunOnFile, export, is_export,
-    message::{RecordedLogLevel, RecordedLogLine, RecordedTopic, VerdictMessage},
+    message::{
+        LineColumns, LinesFile, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic,
+        VerdictMessage,
+    },
     read,
     scene::{RecordedBody, RecordedBodyKind, RecordedJoint, RecordedScene, RecordedShape},
     schema, write, write_as,
@@ -103,6 +106,20 @@ fn topics() -> Vec<RecordedTopic> {
     ]
 }
 
+fn lines() -> Vec<LinesMessage> {
+    let files = vec![
+        LinesFile { name: "robot.py".to_owned(), crc: Some(u32::MAX) },
+        LinesFile { name: "fsm.py".to_owned(), crc: None },
+    ];
+    let main = LineColumns {
+        thread: "MainThread".to_owned(),
+        t: vec![0, 1_500_000_000, 0],
+        file: vec![0, 1, -1],
+        line: vec![12, -12, 40],
+    };
+    vec![LinesMessage { program: "robot".to_owned(), files, threads: vec![main], until: Some(7), unseen: 2 }]
+}
+
 fn file() -> (String, Vec<u8>) {
     let program = Program { name: "cup".to_owned(), ..Program::default() };
     let trace = Trace { end: 400_000_000_000, ..Trace::default() };
@@ -129,6 +146,7 @@ fn file() -> (String, Vec<u8>) {
         picture: &picture(),
         log: &log,
         topics: &topics(),
+        lines: &lines(),
         verdicts: &verdicts,
     };
     let bytes = write(&run).unwrap();
@@ -151,6 +169,7 @@ fn what_is_written_reads_back() {
     assert_eq!(found.scene, Some(scene()));
     assert_eq!(found.picture, picture());
     assert_eq!(found.topics, topics());
+    assert_eq!(found.lines, lines());
     let log: Vec<(i64, RecordedLogLevel, &str)> =
         found.log.iter().map(|entry| (entry.time, entry.level, entry.text.as_str())).collect();
     assert_eq!(log, [(1_500_000_000, RecordedLogLevel::Warning, "low \"battery\"")]);

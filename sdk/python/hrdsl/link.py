@@ -57,6 +57,7 @@ class Link:
         self.scheduler: Any = None  # of this process
         self.on_end: list[Callable[[], object]] = []  # called when the program has come to its end, before it says so
         self.before_request: Callable[[], object] | None = None  # called before each
+        self.look: Callable[[], object] | None = None  # called where the program asks or tells
 
     def connect(self, request_fd: int, reply_fd: int) -> None:
         """Makes the connection, of this process."""
@@ -93,6 +94,8 @@ class Link:
 
     def ask(self, line: bytes) -> dict[str, Any]:
         """The same, of a request that is written already."""
+        if self.look is not None:
+            self.look()
         answer = self._ask(line)
         if self.faults:
             self._raise_fault()
@@ -132,6 +135,8 @@ class Link:
 
     def tell(self, line: bytes, about: object) -> None:
         """Sends a request that has no reply, together with the next one that has; `about` is what an error calls it."""
+        if self.look is not None:
+            self.look()
         size = len(line)
         if size > KEPT or self._stopped is not None or not self.greeted:
             self._check_told(size, about)

@@ -1,6 +1,6 @@
 // What lies on the time line: sections and lanes, each with a track for each of the runs.
 
-import type { LogEntry, Machine, Measure, Requirement, Run, RunEvent, Topic } from "../data/run.js";
+import { threadName, type CodeThread, type LogEntry, type Machine, type Measure, type Requirement, type Run, type RunEvent, type Topic } from "../data/run.js";
 import { spansOf, type Series } from "../data/series.js";
 
 export interface Bar {
@@ -110,6 +110,31 @@ function topicLanes(runs: readonly Run[]): Lane[] {
   });
 }
 
+/** In which lines of its code each thread of the robot is. */
+function codeLanes(runs: readonly Run[]): Lane[] {
+  const own = runs.map((run) => run.code.map((thread) => ({ name: threadName(run, thread), thread })));
+  return names(own).map((name) => {
+    const tracks = own.map((all, i) => {
+      const found = all.find((x) => x.name === name);
+      return found ? linesOf(found.thread, runs[i] as Run) : [];
+    });
+    return { id: `code ${name}`, section: "Code", label: name, note: "", kind: "bars", tracks, bool: false };
+  });
+}
+
+function linesOf(thread: CodeThread, run: Run): Bar[] {
+  const bars: Bar[] = [];
+  const end = Math.min(run.end, thread.until);
+  thread.times.forEach((from, i) => {
+    const to = Math.min(thread.times[i + 1] ?? end, end);
+    const line = thread.line[i] ?? 0;
+    if (line <= 0 || to <= from) return;
+    const file = run.sources[thread.file[i] ?? 0]?.name ?? "";
+    bars.push({ from, to, text: `${file.slice(file.lastIndexOf("/") + 1)}:${line}` });
+  });
+  return bars;
+}
+
 export function lanesOf(runs: readonly Run[], plots: readonly string[], focus: string | null): Lane[] {
   const requirements = requirementLanes(runs);
   const focused = requirements.filter((lane) => lane.label === focus).map((lane) => ({ ...lane, id: `focus ${lane.label}`, section: FOCUS }));
@@ -130,6 +155,7 @@ export function lanesOf(runs: readonly Run[], plots: readonly string[], focus: s
     ...requirements,
     ...barLanes(runs, (s) => !s.sensor, "Signals"),
     ...topicLanes(runs),
+    ...codeLanes(runs),
     ...log,
   ];
 }
