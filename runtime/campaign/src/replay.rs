@@ -1,11 +1,11 @@
 //! The file by which a run can be looked at again.
 
-use hrdsl_harness::{HarnessRun, ProgramLogLevel, TopicHistory};
+use hrdsl_harness::{HarnessRun, MessagePart, ProgramLogLevel, TopicHistory};
 use hrdsl_ir::{Program, value::seconds};
 use hrdsl_recording::{
     RunOnFile,
     message::{
-        LineColumns, LinesFile, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic,
+        LineColumns, LinesFile, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic, TopicPart,
         VerdictMessage,
     },
     scene,
@@ -56,6 +56,12 @@ pub(crate) fn file(
         name: topic.name.clone(),
         interface: topic.interface.clone(),
         outward: topic.outward,
+        part: match topic.part {
+            MessagePart::Message => TopicPart::Message,
+            MessagePart::Request => TopicPart::Request,
+            MessagePart::Answer => TopicPart::Answer,
+            MessagePart::Feedback => TopicPart::Feedback,
+        },
         times: topic.times.clone(),
         texts: topic.texts.iter().map(|text| text.as_ref().map(ToString::to_string)).collect(),
     };

@@ -111,7 +111,21 @@ pub struct TopicsMessage {
     pub topics: Vec<TopicColumns>,
 }
 
-/// The messages of a topic, service or action in one direction.
+/// What messages are to a name: of a topic, or which step of the calls of a service or an action.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum TopicPart {
+    #[default]
+    Message,
+    /// Requests of a service, or goals.
+    Request,
+    /// Answers of a service, or results of goals; or why there are none.
+    Answer,
+    /// How far goals are.
+    Feedback,
+}
+
+/// The messages of a topic, or of a part of a service or an action, in one direction.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TopicColumns {
     /// `/scan`
@@ -120,6 +134,8 @@ pub struct TopicColumns {
     pub interface: String,
     /// Whether a program of the system sent them; otherwise the scenario did.
     pub outward: bool,
+    #[serde(default)]
+    pub part: TopicPart,
     /// Nanoseconds: the first, and then what each differs from the one before.
     pub t: Vec<i64>,
     /// What the first of them said; `null` where it was too long.
@@ -169,6 +185,7 @@ pub struct RecordedTopic {
     pub name: String,
     pub interface: String,
     pub outward: bool,
+    pub part: TopicPart,
     pub times: Vec<hrdsl_ir::Nanos>,
     pub texts: Vec<Option<String>>,
 }

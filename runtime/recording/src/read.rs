@@ -204,6 +204,7 @@ impl TakenApart {
                     name: topic.name,
                     interface: topic.interface,
                     outward: topic.outward,
+                    part: topic.part,
                     times: columns::sums(&topic.t),
                     texts: topic.text,
                 }));

@@ -169,6 +169,7 @@ fn seen(run: &RunOnFile<'_>, form: RecordingForm) -> Vec<PlannedMessage> {
             name: topic.name.clone(),
             interface: topic.interface.clone(),
             outward: topic.outward,
+            part: topic.part,
             t: columns::differences(topic.times.iter().copied()),
             text: topic.texts.clone(),
         });

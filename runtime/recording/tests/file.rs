@@ -11,7 +11,7 @@ use hrdsl_ir::{
 use hrdsl_recording::{
     RecordingError, RecordingFile, RecordingForm, RunOnFile, export, is_export,
     message::{
-        LineColumns, LinesFile, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic,
+        LineColumns, LinesFile, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic, TopicPart,
         VerdictMessage,
     },
     read,
@@ -97,6 +97,7 @@ fn topics() -> Vec<RecordedTopic> {
         name: name.to_owned(),
         interface: "std_msgs/String".to_owned(),
         outward,
+        part: if outward { TopicPart::Answer } else { TopicPart::Message },
         times: times.to_vec(),
         texts: texts.iter().map(|text| text.map(str::to_owned)).collect(),
     };

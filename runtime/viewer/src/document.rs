@@ -353,7 +353,22 @@ pub enum TopicDirection {
     Out,
 }
 
-/// A topic, service or action of the middleware, with its messages.
+/// What messages are to a name of the middleware.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MessageRole {
+    /// Of a topic.
+    #[default]
+    Message,
+    /// Requests of a service, or goals of an action.
+    Request,
+    /// Answers of a service, or results of goals; or why there are none.
+    Answer,
+    /// How far goals are.
+    Feedback,
+}
+
+/// A topic, service or action of the middleware, with the messages of one role that go one way.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TopicTrack {
     pub name: String,
@@ -361,6 +376,9 @@ pub struct TopicTrack {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<String>,
     pub direction: TopicDirection,
+    /// A topic's, if it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub role: Option<MessageRole>,
     /// When the messages were: differences.
     pub t: Vec<i64>,
     /// What they say, shortened; `null` where nobody kept it. May be shorter than `t`.

@@ -89,10 +89,10 @@ class Recorder:
                 pass  # the next run makes it again
             result[name] = combine(static, arcs.get(path, ()))
         with open(out, "w", encoding="utf-8") as file:
-            json.dump(result, file, separators=(",", ":"))
+            # At once: `dump` would do it piece by piece, in Python.
+            file.write(json.dumps(result, separators=(",", ":")))
             if more is not None:
-                file.write("\n")
-                json.dump(more, file, separators=(",", ":"))
+                file.write("\n" + json.dumps(more, separators=(",", ":")))
 
     def _arcs(self) -> dict[str, Any]:
         if self._fallback is not None:

@@ -1,5 +1,5 @@
 """Where the program's own code is, by simulated time: for each thread, the line of the covered files that it was at when it asked the
-harness for something, told it something, or began to wait. It is for looking at a run only."""
+harness for something, told it the first thing of an instant, or began to wait. It is for looking at a run only."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hrdsl.schedule import Scheduler, Task
 
 #: So many lines are kept of a program, and so many of its threads are followed.
-MOST_LINES = 20_000
+MOST_LINES = 100_000
 MOST_THREADS = 50
 
 _get_ident, _getframe = _thread.get_ident, sys._getframe
@@ -49,10 +49,10 @@ class LineRecorder:
         self._threads: dict[Task, ThreadLines] = {}
         self._kept = 0
         self._until: int | None = None
-        self._unseen = 0
+        self._unseen: set[Task] = set()
 
     def start(self) -> None:
-        """Looks from now on, each time before the program asks, tells or waits."""
+        """Looks from now on: each time before a thread asks or waits, and at the first thing that it tells at an instant."""
         self._link.look = self._scheduler.look_at_lines = self.look
 
     def look(self) -> None:
@@ -64,8 +64,10 @@ class LineRecorder:
         places = self._places
         while frame is not None:
             code = frame.f_code
-            name = code.co_filename
-            place = places[name] if name in places else self._place(name)
+            try:
+                place = places[code.co_filename]
+            except KeyError:
+                place = self._place(code.co_filename)
             if place >= 0:
                 break
             frame = frame.f_back
@@ -73,27 +75,37 @@ class LineRecorder:
         if frame is None:
             if thread is not None and thread.code is not None:
                 thread.code, thread.at = None, -1
-                self._keep(thread, thread.files[-1], 0)
+                self._kept += 1
+                thread.times.append(self._link.time)
+                thread.files.append(thread.files[-1])
+                thread.lines.append(0)
             return
         if thread is None:
             thread = self._begin(task)
             if thread is None:
                 return
         at = frame.f_lasti
-        if at != thread.at or code is not thread.code:
-            thread.code, thread.at = code, at
-            self._keep(thread, place, frame.f_lineno)
+        if at == thread.at and code is thread.code:
+            return
+        thread.code, thread.at = code, at
+        if self._kept >= MOST_LINES:
+            self._stop()
+            return
+        self._kept += 1
+        thread.times.append(self._link.time)
+        thread.files.append(place)
+        thread.lines.append(frame.f_lineno)
 
     def told(self) -> dict[str, Any]:
-        """All of it: of the `files` the `name` and the `crc` (CRC-32) of their bytes; for each of the `threads` its `name` and its columns `t`, `file` and `line`, each as the
-        first value and then the differences; when the last look was (`until`, nanoseconds), if there were too many lines; and how
-        many threads were too many (`unseen`)."""
+        """All of it: of the `files` the `name` and the `crc` (CRC-32) of their bytes; for each of the `threads` its `name` and its
+        columns `t`, `file` and `line`, each as the first value and then the differences; when the last look was (`until`,
+        nanoseconds), if there were too many lines; and how many threads were too many (`unseen`)."""
         threads = [
             {"name": each.name, "t": _differences(each.times), "file": _differences(each.files), "line": _differences(each.lines)}
             for each in self._threads.values()
         ]
         files = [{"name": name, "crc": _crc(name)} for name in self._names]
-        return {"files": files, "threads": threads, "until": self._until, "unseen": self._unseen}
+        return {"files": files, "threads": threads, "until": self._until, "unseen": len(self._unseen)}
 
     def _place(self, name: str) -> int:
         place = self._places[name] = self._real.get(os.path.realpath(name), -1)
@@ -101,7 +113,7 @@ class LineRecorder:
 
     def _begin(self, task: Task) -> ThreadLines | None:
         if len(self._threads) >= MOST_THREADS:
-            self._unseen += 1
+            self._unseen.add(task)
             return None
         threading: Any = sys.modules.get("threading")
         known = threading._active.get(task.ident) if threading is not None else None
@@ -109,15 +121,9 @@ class LineRecorder:
         self._threads[task] = thread
         return thread
 
-    def _keep(self, thread: ThreadLines, file: int, line: int) -> None:
-        if self._kept >= MOST_LINES:
-            self._until = self._link.time
-            self._link.look = self._scheduler.look_at_lines = None
-            return
-        self._kept += 1
-        thread.times.append(self._link.time)
-        thread.files.append(file)
-        thread.lines.append(line)
+    def _stop(self) -> None:
+        self._until = self._link.time
+        self._link.look = self._scheduler.look_at_lines = None
 
 
 def _differences(values: list[int]) -> list[int]:

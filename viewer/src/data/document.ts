@@ -101,6 +101,9 @@ export interface MachineTrack {
 /** What a measure is. */
 export type MeasureKind = "distance" | "angle" | "speed" | "force" | "signal";
 
+/** What messages are to a name of the middleware. */
+export type MessageRole = "message" | "request" | "answer" | "feedback";
+
 /** How an obligation ended. */
 export type ObligationOutcome = "met" | "violated" | "pending" | "dropped";
 
@@ -170,12 +173,14 @@ export interface SignalTrack {
 /** Which way messages go, as the robot's code sees it. */
 export type TopicDirection = "in" | "out";
 
-/** A topic, service or action of the middleware, with its messages. */
+/** A topic, service or action of the middleware, with the messages of one role that go one way. */
 export interface TopicTrack {
   direction: TopicDirection;
   /** Such as `sensor_msgs/LaserScan`. */
   interface?: string | null;
   name: string;
+  /** A topic's, if it is left out. */
+  role?: MessageRole | null;
   /** When the messages were: differences. */
   t: number[];
   /** What they say, shortened; `null` where nobody kept it. May be shorter than `t`. */

@@ -1,7 +1,7 @@
 // A run as the page works with it: columns added up, times in seconds, and a sentence for each thing that is not there.
 
 import { lastAt, summed } from "./columns.js";
-import type { CodeTrack, SharedAssets, ViewBody, ViewDocument, ViewEvent, ViewLaser, ViewMeasure, ViewMesh, ViewRequirement } from "./document.js";
+import type { CodeTrack, MessageRole, SharedAssets, ViewBody, ViewDocument, ViewEvent, ViewLaser, ViewMeasure, ViewMesh, ViewRequirement } from "./document.js";
 import { numberAt, seriesOf, type Series } from "./series.js";
 import { contactOf, pairsOf, poseAt, trackOf, type Contact, type Pairs, type Pose, type Track } from "./tracks.js";
 
@@ -23,6 +23,7 @@ export interface Topic {
   name: string;
   interface: string | null;
   direction: "in" | "out";
+  role: MessageRole;
   times: Float64Array;
   text: (string | null)[];
 }
@@ -164,6 +165,7 @@ export function runOf(id: string, label: string, document: ViewDocument, shared:
       name: topic.name,
       interface: topic.interface ?? null,
       direction: topic.direction,
+      role: topic.role ?? "message",
       times: summed(topic.t, 1, second),
       text: topic.text ?? [],
     })),

@@ -101,13 +101,24 @@ function barsOf(series: Series, end: number): Bar[] {
   return spans.map((s) => ({ ...s, text: series.type === "enum" ? (series.values[s.value] ?? String(s.value)) : String(s.value) }));
 }
 
+const ROLES: Topic["role"][] = ["message", "request", "feedback", "answer"];
+const WAYS: Topic["direction"][] = ["out", "in"];
+const PLURALS: Record<Topic["role"], string> = { message: "messages", request: "requests", feedback: "feedback", answer: "answers" };
+
+/** A lane for each way and each role of a name, those of a name below each other. */
 function topicLanes(runs: readonly Run[]): Lane[] {
-  const own = runs.map((run) => run.topics);
-  return names(own).map((name) => {
-    const tracks = own.map((all) => all.find((t) => t.name === name) ?? null);
-    const out = tracks.some((t) => t?.direction === "out");
-    return { id: `topic ${name}`, section: "Topics", label: `${out ? "→" : "←"} ${name}`, note: tracks.find((t) => t)?.interface ?? "", kind: "topic", tracks };
-  });
+  const all = runs.flatMap((run) => run.topics);
+  return [...new Set(all.map((topic) => topic.name))].flatMap((name) =>
+    ROLES.flatMap((role) =>
+      WAYS.flatMap((direction): Lane[] => {
+        const is = (t: Topic) => t.name === name && t.role === role && t.direction === direction;
+        const found = all.find(is);
+        if (!found) return [];
+        const what = [...(role === "message" ? [] : [PLURALS[role]]), ...(found.interface ? [found.interface] : [])];
+        return [{ id: `topic ${direction} ${role} ${name}`, section: "Topics", label: `${direction === "out" ? "→" : "←"} ${name}`, note: what.join(", "), kind: "topic", tracks: runs.map((run) => run.topics.find(is) ?? null) }];
+      }),
+    ),
+  );
 }
 
 /** In which lines of its code each thread of the robot is. */
