@@ -249,6 +249,7 @@ fn a_mesh_that_is_gone_has_a_box_and_is_named() {
         expect_code(&gone, 0);
         let said = stderr(&gone);
         assert!(said.contains(&format!("{mesh} is not there; a box stands for it")), "{said}");
+        assert!(said.contains("and boxes stand for them: robot.") && !said.contains("world"), "{said}");
         // Whoever runs tests needs the mesh.
         expect_code(&hrdsl_in(folder.path(), "check pick.hri"), 1);
         fs::write(&file, bytes).unwrap();
@@ -273,7 +274,7 @@ fn what_has_changed_since_is_named_and_the_rest_is_shown() {
     assert!(said.contains("unknown event `placed`; the scenario has changed since"), "{said}");
     assert!(page.contains("\"ended\":\"error\""));
     let (said, page) = view("box(40 cm, 1 m, 60 cm)", "box(40 cm, 1 m, 55 cm)");
-    assert!(said.contains("The world of the scenario has changed since: the one of the recording"), "{said}");
+    assert!(said.contains("has changed since (table): the one of the recording is shown"), "{said}");
     assert!(!page.contains("\"ended\":\"error\""), "all of the run is there");
     // Requirements are those of the scenario as it is now.
     let (said, page) = view("tilt(box) < 20 deg", "tilt(box) < 0.0001 deg");

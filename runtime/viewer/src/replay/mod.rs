@@ -1,5 +1,6 @@
 //! A recording as a document: what can be shown of it is, and the rest is named in the document's notes.
 
+mod changed;
 mod code;
 mod measure;
 mod run;
@@ -121,11 +122,7 @@ fn shown_scene(program: &Program, file: &RecordingFile, notes: &mut Vec<String>)
         }
         return now;
     };
-    if *then != now {
-        notes.push(
-            "The world of the scenario has changed since: the one of the recording is shown.".to_owned(),
-        );
-    }
+    notes.extend(changed::said(then, &now));
     then.clone()
 }
 
