@@ -52,20 +52,7 @@ pub(crate) fn file(
         program: "hrdsl".to_owned(),
         text: format!("{} later lines are not in the recording", run.said.log_left_out),
     }));
-    let topic = |topic: &TopicHistory| RecordedTopic {
-        name: topic.name.clone(),
-        interface: topic.interface.clone(),
-        outward: topic.outward,
-        part: match topic.part {
-            MessagePart::Message => TopicPart::Message,
-            MessagePart::Request => TopicPart::Request,
-            MessagePart::Answer => TopicPart::Answer,
-            MessagePart::Feedback => TopicPart::Feedback,
-        },
-        times: topic.times.clone(),
-        texts: topic.texts.iter().map(|text| text.as_ref().map(ToString::to_string)).collect(),
-    };
-    let topics: Vec<RecordedTopic> = run.said.topics.iter().map(topic).collect();
+    let topics: Vec<RecordedTopic> = run.said.topics.iter().map(recorded_topic).collect();
     let lines: Vec<LinesMessage> = finished
         .iter()
         .filter_map(|(name, process)| Some(code_lines(name, process.lines.as_ref()?)))
@@ -94,6 +81,22 @@ pub(crate) fn file(
         verdicts: &verdicts,
     });
     file.map_err(|why| format!("{why} (it lasted {} s)", seconds(run.trace.end)))
+}
+
+fn recorded_topic(topic: &TopicHistory) -> RecordedTopic {
+    RecordedTopic {
+        name: topic.name.clone(),
+        interface: topic.interface.clone(),
+        outward: topic.outward,
+        part: match topic.part {
+            MessagePart::Message => TopicPart::Message,
+            MessagePart::Request => TopicPart::Request,
+            MessagePart::Answer => TopicPart::Answer,
+            MessagePart::Feedback => TopicPart::Feedback,
+        },
+        times: topic.times.clone(),
+        texts: topic.texts.iter().map(|text| text.as_ref().map(ToString::to_string)).collect(),
+    }
 }
 
 /// At which lines a program was.

@@ -137,6 +137,11 @@ struct LogMessage {
     name: String,
 }
 
+fn log_line(time: Nanos, LogMessage { level, message: text, name: program }: LogMessage) -> RecordedLogLine {
+    let level = RecordedLogLevel::ALL.into_iter().find(|known| known.number() == level);
+    RecordedLogLine { time, level: level.unwrap_or(RecordedLogLevel::Info), program, text }
+}
+
 impl TakenApart {
     /// Each fault once, and not too many.
     fn fault(&mut self, fault: String) {
@@ -210,12 +215,7 @@ impl TakenApart {
                 }));
             }
             RecordingChannel::Lines => self.code.push(serde_json::from_slice(data)?),
-            RecordingChannel::Log => {
-                let LogMessage { level, message: text, name: program } = serde_json::from_slice(data)?;
-                let level = RecordedLogLevel::ALL.into_iter().find(|known| known.number() == level);
-                let level = level.unwrap_or(RecordedLogLevel::Info);
-                self.log.push(RecordedLogLine { time, level, program, text });
-            }
+            RecordingChannel::Log => self.log.push(log_line(time, serde_json::from_slice(data)?)),
             RecordingChannel::Header
             | RecordingChannel::Events
             | RecordingChannel::Signals
