@@ -8,11 +8,31 @@ use std::{
 
 use crate::{fault::CommandFault, terminal};
 
-/// Reads a text file.
+/// What is longer is none of hrdsl's own files, in bytes.
+const LONGEST: u64 = 4 << 30;
+
+/// Reads a text file that may be a scenario.
 ///
 /// # Errors
 /// The file's name and what is wrong with it.
 pub fn read(path: &Path) -> Result<String, CommandFault> {
+    // One byte more than the compiler takes, so that it says that the file is too large; what never ends is not read on.
+    read_up_to(path, hrdsl_compiler::MAX_BYTES as u64 + 1)
+}
+
+/// Reads a text file that no compiler reads, such as results and recordings, however long it is.
+///
+/// # Errors
+/// The same, and that it has more than [`LONGEST`] bytes.
+pub fn read_whole(path: &Path) -> Result<String, CommandFault> {
+    let text = read_up_to(path, LONGEST + 1)?;
+    if text.len() as u64 > LONGEST {
+        return Err(format!("{} has more than {} GB", terminal::shown(path), LONGEST >> 30));
+    }
+    Ok(text)
+}
+
+fn read_up_to(path: &Path, most: u64) -> Result<String, CommandFault> {
     let fault = |e: std::io::Error| {
         if e.kind() == std::io::ErrorKind::NotFound {
             format!("no such file: {}", terminal::shown(path))
@@ -21,10 +41,7 @@ pub fn read(path: &Path) -> Result<String, CommandFault> {
         }
     };
     let mut bytes = Vec::new();
-    // One byte more than the compiler takes, so that it says that the file is too large; what never ends is not read on.
-    fs::File::open(path)
-        .and_then(|file| file.take(hrdsl_compiler::MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
-        .map_err(fault)?;
+    fs::File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)).map_err(fault)?;
     text(bytes, &terminal::shown(path))
 }
 

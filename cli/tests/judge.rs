@@ -111,6 +111,18 @@ fn reports_are_made_again_byte_for_byte() {
         let printed = hrdsl(["report", file.to_str().unwrap(), "--print", which]);
         assert!(printed.stdout == fs::read(out.join(name)).unwrap(), "{name}");
     }
+    // Results are read to their end, even where a scenario may not be so long.
+    let mut long = fs::read(out.join("results.json")).unwrap();
+    long.resize(long.len() + (65 << 20), b' ');
+    let last = long.len() - 1;
+    long[last] = b'\n';
+    fs::write(folder.path().join("long.json"), &long).unwrap();
+    let printed = hrdsl(["report", folder.path().join("long.json").to_str().unwrap(), "--print", "junit"]);
+    assert!(printed.stdout == fs::read(out.join("junit.xml")).unwrap());
+    // One byte more behind the end, and it is said: nothing is left unread.
+    long[last] = b'}';
+    fs::write(folder.path().join("long.json"), &long).unwrap();
+    expect_code(&hrdsl(["report", folder.path().join("long.json").to_str().unwrap()]), 2);
     let elsewhere = folder.path().join("public");
     expect_code(&hrdsl(["report", out.to_str().unwrap(), "-o", elsewhere.to_str().unwrap()]), 0);
     assert!(before == reports.map(|name| fs::read(elsewhere.join(name)).unwrap()));

@@ -4,12 +4,13 @@
 mod support;
 
 use std::{
+    collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
     process::Command,
 };
 
-use hrdsl_runtime::recording::{self, RecordingFile};
+use hrdsl_runtime::recording::{self, RecordingFile, message::TopicPart};
 use support::{expect_code, handover, hrdsl, hrdsl_in, root, shown_by_chromium, stderr, stdout, tree};
 
 /// A few tests of the hand-over, each recorded.
@@ -175,7 +176,51 @@ fn recordings_have_the_log_and_the_messages_of_a_middleware() {
     let command = commands.max_by_key(|topic| topic.times.len()).expect("what the code commands");
     assert!(command.outward && command.times.len() > 200 && command.texts.len() == 200);
     assert!(command.times.is_sorted() && command.interface.contains('/'));
-    assert!(topics().any(|topic| topic.name == "/gripper_controller/gripper_cmd"), "goals of actions, too");
+    let parts = |outward| {
+        let of_grip =
+            topics().filter(move |t| t.name == "/gripper_controller/gripper_cmd" && t.outward == outward);
+        of_grip.map(|topic| (topic.part, topic)).collect::<BTreeMap<_, _>>()
+    };
+    let (goals, results) = (parts(true), parts(false));
+    assert!(goals.contains_key(&TopicPart::Request), "goals of actions, too");
+    let result = results.get(&TopicPart::Answer).expect("and what became of them");
+    assert!(result.texts[0].as_ref().unwrap().starts_with("succeeded: {"), "{:?}", result.texts);
+    lines_of_code_are_there(&found, &one[0], folder.path());
+}
+
+/// Which line of which file each thread was at, and the text of these files in the page.
+fn lines_of_code_are_there(found: &[RecordingFile], recording: &Path, folder: &Path) {
+    for file in found {
+        let [program] = &file.lines[..] else { panic!("{:?}", file.lines) };
+        assert!(program.files.iter().all(|file| file.name.ends_with(".py") && file.crc.is_some()));
+        let main = program.threads.iter().find(|thread| thread.thread == "MainThread").unwrap();
+        assert!(main.t.len() > 10 && main.line.len() == main.t.len() && main.file.len() == main.t.len());
+        assert_eq!((program.until, program.unseen), (None, 0));
+    }
+    let view = |scenario: &Path| {
+        let made =
+            hrdsl_in(folder, &format!("view {} {} -o code.html", scenario.display(), recording.display()));
+        expect_code(&made, 0);
+        (stderr(&made), fs::metadata(folder.join("code.html")).unwrap().len())
+    };
+    let (said, with) = view(&handover());
+    assert_eq!(said, "", "the code is there, and as it was");
+    // The scenario somewhere else, with other code, and without.
+    let other = folder.join("elsewhere");
+    for (name, bytes) in tree(handover().parent().unwrap()) {
+        let to = other.join(name);
+        fs::create_dir_all(to.parent().unwrap()).unwrap();
+        fs::write(to, bytes).unwrap();
+    }
+    let name = &found[0].lines[0].files[0].name;
+    let text = fs::read_to_string(other.join(name)).unwrap();
+    fs::write(other.join(name), format!("# new\n{text}")).unwrap();
+    let (said, _) = view(&other.join("scenario.hri"));
+    assert!(said.contains(&format!("The code in {name} has changed since")), "{said}");
+    fs::remove_file(other.join(name)).unwrap();
+    let (said, without) = view(&other.join("scenario.hri"));
+    assert!(said.contains(&format!("The code in {name} cannot be shown: no such file")), "{said}");
+    assert!(without < with, "{without} of {with}");
 }
 
 /// A small world with a robot whose links have meshes, recorded once.
@@ -204,6 +249,7 @@ fn a_mesh_that_is_gone_has_a_box_and_is_named() {
         expect_code(&gone, 0);
         let said = stderr(&gone);
         assert!(said.contains(&format!("{mesh} is not there; a box stands for it")), "{said}");
+        assert!(said.contains("and boxes stand for them: robot.") && !said.contains("world"), "{said}");
         // Whoever runs tests needs the mesh.
         expect_code(&hrdsl_in(folder.path(), "check pick.hri"), 1);
         fs::write(&file, bytes).unwrap();
@@ -228,7 +274,7 @@ fn what_has_changed_since_is_named_and_the_rest_is_shown() {
     assert!(said.contains("unknown event `placed`; the scenario has changed since"), "{said}");
     assert!(page.contains("\"ended\":\"error\""));
     let (said, page) = view("box(40 cm, 1 m, 60 cm)", "box(40 cm, 1 m, 55 cm)");
-    assert!(said.contains("The world of the scenario has changed since: the one of the recording"), "{said}");
+    assert!(said.contains("has changed since (table): the one of the recording is shown"), "{said}");
     assert!(!page.contains("\"ended\":\"error\""), "all of the run is there");
     // Requirements are those of the scenario as it is now.
     let (said, page) = view("tilt(box) < 20 deg", "tilt(box) < 0.0001 deg");

@@ -23,5 +23,6 @@ pub mod run;
 pub mod search_options;
 pub mod shown;
 pub mod sim;
+pub mod sources;
 pub mod step;
 pub mod view;

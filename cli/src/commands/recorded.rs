@@ -11,16 +11,17 @@ use hrdsl_runtime::{
     },
 };
 
+use super::sources::CodeSources;
 use crate::{fault::CommandFault, terminal};
 
 /// A recording with its place on a page.
 ///
 /// # Errors
 /// A file that cannot be read, or is no recording of the scenario.
-pub fn viewed(program: &Program, path: &Path) -> Result<ViewedRun, CommandFault> {
+pub fn viewed(program: &Program, path: &Path, sources: &mut CodeSources) -> Result<ViewedRun, CommandFault> {
     let shown = terminal::shown(path);
     let bytes = fs::read(path).map_err(|e| format!("cannot read {shown}: {e}"))?;
-    let document = document(program, bytes).map_err(|why| format!("{shown}: {why}"))?;
+    let document = document(program, bytes, sources).map_err(|why| format!("{shown}: {why}"))?;
     let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let id = document.test.clone().unwrap_or_else(stem);
     let requirement = first_violated(&document);
@@ -32,8 +33,14 @@ pub fn viewed(program: &Program, path: &Path) -> Result<ViewedRun, CommandFault>
 ///
 /// # Errors
 /// Bytes that are no recording of the scenario.
-pub fn document(program: &Program, bytes: Vec<u8>) -> Result<ViewDocument, CommandFault> {
-    replay(program, &opened(bytes)?)
+pub fn document(
+    program: &Program,
+    bytes: Vec<u8>,
+    sources: &mut CodeSources,
+) -> Result<ViewDocument, CommandFault> {
+    let mut document = replay(program, &opened(bytes)?)?;
+    sources.take(&mut document);
+    Ok(document)
 }
 
 /// A recording, of either form.

@@ -50,7 +50,7 @@ pub fn run(args: &ReportArgs) -> Result<CommandExit, CommandFault> {
         return Ok(CommandExit::Ok);
     };
     let path = if given.is_dir() { given.join("results.json") } else { given.clone() };
-    let text = files::read(&path)?;
+    let text = files::read_whole(&path)?;
     let results =
         CampaignResults::from_json(&text).map_err(|e| format!("{}: {e}", terminal::shown(&path)))?;
     let beside = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));

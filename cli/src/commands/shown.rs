@@ -18,7 +18,10 @@ use hrdsl_runtime::{
     },
 };
 
-use super::recorded::{document, keep_used};
+use super::{
+    recorded::{document, keep_used},
+    sources::CodeSources,
+};
 use crate::{fault::CommandFault, files, results_folder::REPLAYS, terminal};
 
 /// The file of the replays that a report shows, in the folder of the recordings.
@@ -52,15 +55,21 @@ pub fn keep_failing(results: &CampaignResults, folder: &Path) -> Result<(), Comm
     Ok(())
 }
 
-/// Makes the replays of a campaign's report from the recordings below its folder, and writes them there; `None` if there is nothing to replay, or
+/// Makes the replays of a campaign's report from the recordings below its folder, with the code in the folder of the scenario, and writes them there; `None` if there is nothing to replay, or
 /// if they cannot be written, which is said: a report must be the same when it is made again.
 #[must_use]
-pub fn make(program: &Program, results: &CampaignResults, folder: &Path) -> Option<ShownReplays> {
+pub fn make(
+    program: &Program,
+    scenario: &Path,
+    results: &CampaignResults,
+    folder: &Path,
+) -> Option<ShownReplays> {
     let pairs = results.replay_pairs();
     if results.view.is_empty() || pairs.is_empty() {
         return None;
     }
-    let mut table = ReplayTable { program, folder, runs: BTreeMap::new() };
+    let sources = CodeSources::within(scenario);
+    let mut table = ReplayTable { program, folder, sources, runs: BTreeMap::new() };
     let mut shown = ShownReplays::default();
     let mut room = LARGEST_PAGE.saturating_sub(report::html(results).len() + packed_page().len());
     for pair in pairs {
@@ -79,6 +88,7 @@ pub fn make(program: &Program, results: &CampaignResults, folder: &Path) -> Opti
 struct ReplayTable<'a> {
     program: &'a Program,
     folder: &'a Path,
+    sources: CodeSources,
     /// The document and its packed form, or why there is none.
     runs: BTreeMap<TestName, Result<(ViewDocument, String), String>>,
 }
@@ -100,7 +110,8 @@ impl ReplayTable<'_> {
         if shown.runs.iter().any(|run| run.test == *test) {
             return true;
         }
-        let read = self.runs.entry(test.clone()).or_insert_with(|| packed(self.program, self.folder, test));
+        let (program, folder, sources) = (self.program, self.folder, &mut self.sources);
+        let read = self.runs.entry(test.clone()).or_insert_with(|| packed(program, folder, sources, test));
         let why = match read {
             Ok((_, data)) if data.len() <= *room => {
                 *room -= data.len();
@@ -120,7 +131,9 @@ impl ReplayTable<'_> {
     fn finish(&self, shown: &mut ShownReplays, results: &CampaignResults, room: usize) {
         let (mut assets, _) = mesh_assets(self.program);
         let documents = shown.runs.iter().filter_map(|run| self.runs.get(&run.test)?.as_ref().ok());
-        keep_used(&mut assets, documents.map(|(document, _)| document));
+        let documents = documents.map(|(document, _)| document);
+        keep_used(&mut assets, documents.clone());
+        self.sources.put(&mut assets, documents);
         let packed = packed_assets(&assets);
         if packed.len() <= room {
             shown.assets = packed;
@@ -135,10 +148,15 @@ impl ReplayTable<'_> {
 }
 
 /// The document of a test, packed; without forces of contacts and with coarser poses, if it is too large with them.
-fn packed(program: &Program, folder: &Path, test: &TestName) -> Result<(ViewDocument, String), String> {
+fn packed(
+    program: &Program,
+    folder: &Path,
+    sources: &mut CodeSources,
+    test: &TestName,
+) -> Result<(ViewDocument, String), String> {
     let bytes =
         fs::read(recording_of(folder, test)).map_err(|e| format!("its recording cannot be read: {e}"))?;
-    let mut document = document(program, bytes)?;
+    let mut document = document(program, bytes, sources)?;
     let mut data = packed_run(&document);
     if data.len() > LARGEST_RUN {
         document.contacts.clear();

@@ -12,7 +12,10 @@ use hrdsl_runtime::{
     viewer::{PageOpening, RunGroup, SharedAssets, ViewedRun, page, replay::mesh_assets},
 };
 
-use super::recorded::{exported, keep_used, viewed};
+use super::{
+    recorded::{exported, keep_used, viewed},
+    sources::CodeSources,
+};
 use crate::{exit::CommandExit, fault::CommandFault, files, input, results_folder, terminal};
 
 /// So large a page may be with all tests on it, in bytes; a test that is named is shown whatever its size.
@@ -63,9 +66,10 @@ pub fn run(args: &ViewArgs) -> Result<CommandExit, CommandFault> {
             "note: {left_out} meshes are too large for the page; boxes stand for them"
         ));
     }
+    let mut sources = CodeSources::beside(&args.file);
     let html = match &args.what {
-        Some(what) => chosen(args, program, &results, what, &mut assets)?,
-        None => all(program, &results, &mut assets)?,
+        Some(what) => chosen(args, program, &results, what, &mut sources, &mut assets)?,
+        None => all(program, &results, &mut sources, &mut assets)?,
     };
     files::write(&args.out, &html)?;
     terminal::print(&format!("view: {}\n", terminal::shown(&args.out)))?;
@@ -111,14 +115,15 @@ fn chosen(
     program: &Program,
     results: &Path,
     what: &str,
+    sources: &mut CodeSources,
     assets: &mut SharedAssets,
 ) -> Result<String, CommandFault> {
     let path = found(program, results, what)?;
-    let mut first = viewed(program, &path)?;
+    let mut first = viewed(program, &path, sources)?;
     let mut opening = PageOpening { run: Some(first.id.clone()), beside: None };
     let mut runs = Vec::new();
     if let Some(beside) = &args.beside {
-        let mut second = viewed(program, &found(program, results, beside)?)?;
+        let mut second = viewed(program, &found(program, results, beside)?, sources)?;
         if second.id == first.id {
             // The same test twice, such as before a change and after it.
             second.id = format!("{}-beside", second.id);
@@ -132,16 +137,22 @@ fn chosen(
     runs.insert(0, first);
     say_notes(&runs);
     keep_used(assets, runs.iter().map(|run| &run.document));
+    sources.put(assets, runs.iter().map(|run| &run.document));
     let title = format!("{} {}", program.name, runs.first().map_or("", |run| run.label.as_str()));
     Ok(page(&title, &runs, assets, &opening))
 }
 
 /// The page of all tests that can be replayed, as far as they fit.
-fn all(program: &Program, results: &Path, assets: &mut SharedAssets) -> Result<String, CommandFault> {
+fn all(
+    program: &Program,
+    results: &Path,
+    sources: &mut CodeSources,
+    assets: &mut SharedAssets,
+) -> Result<String, CommandFault> {
     let folder = results.join(results_folder::REPLAYS);
     let mut runs = Vec::new();
     for path in recordings(&folder, "mcap") {
-        match viewed(program, &path) {
+        match viewed(program, &path, sources) {
             Ok(run) => runs.push(run),
             Err(why) => terminal::say_line(format_args!("error: {why}")),
         }
@@ -161,6 +172,7 @@ fn all(program: &Program, results: &Path, assets: &mut SharedAssets) -> Result<S
         !is_new
     });
     keep_used(assets, runs.iter().map(|run| &run.document));
+    sources.put(assets, runs.iter().map(|run| &run.document));
     let opening = PageOpening::default();
     let mut html = page(&program.name, &runs, assets, &opening);
     while html.len() > LARGEST && runs.len() > 1 {

@@ -315,7 +315,7 @@ impl CampaignSetup<'_> {
         let judgement = || judge(self.program, &self.conformance, &run.trace, ending.kind);
         let (judgement, machines) = self.measured(&mut times.judgement, judgement);
         let replay = self.replays.then(|| {
-            let file = || replay::file(self.program, &run, &recording, &judgement);
+            let file = || replay::file(self.program, &run, &recording, &judgement, &finished);
             self.measured(&mut times.recordings, file)
         });
         let fault = match &run.ended {
@@ -372,6 +372,7 @@ impl CampaignSetup<'_> {
             seed,
             hash_seed: hash_seed(self.seed),
             coverage: program.coverage.clone(),
+            lines: self.replays && !program.coverage.is_empty(),
             env: self.env.clone(),
             middleware: system.middleware.clone(),
             variables: self.variables.clone(),

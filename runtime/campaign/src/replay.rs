@@ -1,13 +1,17 @@
 //! The file by which a run can be looked at again.
 
-use hrdsl_harness::{HarnessRun, ProgramLogLevel, TopicHistory};
+use hrdsl_harness::{HarnessRun, MessagePart, ProgramLogLevel, TopicHistory};
 use hrdsl_ir::{Program, value::seconds};
 use hrdsl_recording::{
     RunOnFile,
-    message::{RecordedLogLevel, RecordedLogLine, RecordedTopic, VerdictMessage},
+    message::{
+        LineColumns, LinesFile, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic, TopicPart,
+        VerdictMessage,
+    },
     scene,
 };
 use hrdsl_results::TraceJudgement;
+use hrdsl_sut::{FinishedProcess, ProgramLines};
 
 /// The file of a run, of which `text` is the recording.
 ///
@@ -18,6 +22,7 @@ pub(crate) fn file(
     run: &HarnessRun,
     text: &str,
     judgement: &TraceJudgement,
+    finished: &[(String, FinishedProcess)],
 ) -> Result<Vec<u8>, String> {
     let level = |level| match level {
         ProgramLogLevel::Debug => RecordedLogLevel::Debug,
@@ -47,14 +52,11 @@ pub(crate) fn file(
         program: "hrdsl".to_owned(),
         text: format!("{} later lines are not in the recording", run.said.log_left_out),
     }));
-    let topic = |topic: &TopicHistory| RecordedTopic {
-        name: topic.name.clone(),
-        interface: topic.interface.clone(),
-        outward: topic.outward,
-        times: topic.times.clone(),
-        texts: topic.texts.iter().map(|text| text.as_ref().map(ToString::to_string)).collect(),
-    };
-    let topics: Vec<RecordedTopic> = run.said.topics.iter().map(topic).collect();
+    let topics: Vec<RecordedTopic> = run.said.topics.iter().map(recorded_topic).collect();
+    let lines: Vec<LinesMessage> = finished
+        .iter()
+        .filter_map(|(name, process)| Some(code_lines(name, process.lines.as_ref()?)))
+        .collect();
     let verdicts: Vec<VerdictMessage> = judgement
         .verdicts
         .iter()
@@ -75,7 +77,41 @@ pub(crate) fn file(
         picture: &run.picture,
         log: &log,
         topics: &topics,
+        lines: &lines,
         verdicts: &verdicts,
     });
     file.map_err(|why| format!("{why} (it lasted {} s)", seconds(run.trace.end)))
+}
+
+fn recorded_topic(topic: &TopicHistory) -> RecordedTopic {
+    RecordedTopic {
+        name: topic.name.clone(),
+        interface: topic.interface.clone(),
+        outward: topic.outward,
+        part: match topic.part {
+            MessagePart::Message => TopicPart::Message,
+            MessagePart::Request => TopicPart::Request,
+            MessagePart::Answer => TopicPart::Answer,
+            MessagePart::Feedback => TopicPart::Feedback,
+        },
+        times: topic.times.clone(),
+        texts: topic.texts.iter().map(|text| text.as_ref().map(ToString::to_string)).collect(),
+    }
+}
+
+/// At which lines a program was.
+fn code_lines(program: &str, lines: &ProgramLines) -> LinesMessage {
+    let columns = |thread: &hrdsl_sut::ThreadLines| LineColumns {
+        thread: thread.name.clone(),
+        t: thread.t.clone(),
+        file: thread.file.clone(),
+        line: thread.line.clone(),
+    };
+    LinesMessage {
+        program: program.to_owned(),
+        files: lines.files.iter().map(|f| LinesFile { name: f.name.clone(), crc: f.crc }).collect(),
+        threads: lines.threads.iter().map(columns).collect(),
+        until: lines.until,
+        unseen: lines.unseen,
+    }
 }

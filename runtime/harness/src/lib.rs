@@ -47,7 +47,7 @@ pub use port::{
     QosDurability, QosPolicy, QosReliability, VainWait,
 };
 pub use run::{HarnessLoop, HarnessRun, RunTermination};
-pub use said::{SaidHistory, TopicHistory};
+pub use said::{MessagePart, SaidHistory, TopicHistory};
 pub use script::{ScriptPlayer, script_rng};
 pub use spent::{SpentTime, ThreadClock};
 pub use stage::WorldStage;

@@ -141,6 +141,18 @@ pub enum GoalEnd {
     Rejected,
 }
 
+impl GoalEnd {
+    /// It in a word.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            GoalEnd::Succeeded => "succeeded",
+            GoalEnd::Aborted => "aborted",
+            GoalEnd::Canceled => "canceled",
+            GoalEnd::Rejected => "rejected",
+        }
+    }
+}
+
 /// Something at a name, for those who ask what there is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortListing {

@@ -30,7 +30,20 @@ pub struct SaidHistory {
     pub topics: Vec<TopicHistory>,
 }
 
-/// The messages of a name in one direction.
+/// What messages are to a name: of a topic, or which step of the calls of a service or an action.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum MessagePart {
+    #[default]
+    Message,
+    /// A request of a service, or a goal.
+    Request,
+    /// The answer of a service, or the result of a goal; or why there is none.
+    Answer,
+    /// How far a goal is.
+    Feedback,
+}
+
+/// The messages of a name that are one part of it, in one direction.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TopicHistory {
     /// `/scan`
@@ -39,6 +52,7 @@ pub struct TopicHistory {
     pub interface: String,
     /// Whether a program of the system said it; otherwise the scenario did.
     pub outward: bool,
+    pub part: MessagePart,
     pub times: Vec<Nanos>,
     /// The texts of the first messages, as far as they are short.
     pub texts: Vec<Option<MessageText>>,
@@ -50,7 +64,7 @@ pub(crate) struct SaidRecorder {
     pub now: Nanos,
     log: Vec<KeptRecord>,
     log_left_out: u64,
-    topics: BTreeMap<(bool, String), TopicHistory>,
+    topics: BTreeMap<(bool, String, MessagePart), TopicHistory>,
 }
 
 impl SaidRecorder {
@@ -66,8 +80,8 @@ impl SaidRecorder {
     }
 
     /// A message was sent through a port.
-    pub fn sent(&mut self, port: &PortDeclaration, outward: bool, message: &MessageText) {
-        let key = (outward, port.name.clone());
+    pub fn sent(&mut self, port: &PortDeclaration, outward: bool, part: MessagePart, message: &MessageText) {
+        let key = (outward, port.name.clone(), part);
         if self.topics.len() >= MOST_NAMES && !self.topics.contains_key(&key) {
             return;
         }
@@ -75,6 +89,7 @@ impl SaidRecorder {
             name: port.name.clone(),
             interface: port.type_name.clone(),
             outward,
+            part,
             ..TopicHistory::default()
         });
         if topic.times.len() < MOST_MESSAGES {
@@ -120,10 +135,10 @@ mod tests {
         let mut recorder = SaidRecorder::default();
         for now in 0..300 {
             recorder.now = now;
-            recorder.sent(&port("/b"), true, &"short".into());
+            recorder.sent(&port("/b"), true, MessagePart::Message, &"short".into());
         }
-        recorder.sent(&port("/a"), true, &"x".repeat(LONGEST_TEXT + 1).into());
-        recorder.sent(&port("/b"), false, &"in".into());
+        recorder.sent(&port("/a"), true, MessagePart::Message, &"x".repeat(LONGEST_TEXT + 1).into());
+        recorder.sent(&port("/b"), false, MessagePart::Message, &"in".into());
         let topics = recorder.history().topics;
         let shown: Vec<(&str, bool, usize, usize)> =
             topics.iter().map(|t| (t.name.as_str(), t.outward, t.times.len(), t.texts.len())).collect();

@@ -17,11 +17,12 @@ pub(crate) enum RecordingChannel {
     Transforms,
     Joints,
     Topics,
+    Lines,
     Log,
 }
 
 impl RecordingChannel {
-    pub const ALL: [RecordingChannel; 15] = [
+    pub const ALL: [RecordingChannel; 16] = [
         RecordingChannel::Header,
         RecordingChannel::Events,
         RecordingChannel::Signals,
@@ -36,6 +37,7 @@ impl RecordingChannel {
         RecordingChannel::Transforms,
         RecordingChannel::Joints,
         RecordingChannel::Topics,
+        RecordingChannel::Lines,
         RecordingChannel::Log,
     ];
 
@@ -55,6 +57,7 @@ impl RecordingChannel {
             RecordingChannel::Transforms => "/tf",
             RecordingChannel::Joints => "/joint_states",
             RecordingChannel::Topics => "/hrdsl/topics",
+            RecordingChannel::Lines => "/hrdsl/lines",
             RecordingChannel::Log => "/log",
         }
     }
@@ -80,6 +83,7 @@ impl RecordingChannel {
             | RecordingChannel::Transforms
             | RecordingChannel::Joints
             | RecordingChannel::Topics
+            | RecordingChannel::Lines
             | RecordingChannel::Log => false,
         }
     }

@@ -27,6 +27,7 @@ pub fn export(program: &Program, file: &RecordingFile) -> Result<Vec<u8>, String
         picture: &file.picture,
         log: &file.log,
         topics: &file.topics,
+        lines: &file.lines,
         verdicts: &file.verdicts,
     };
     write_as(&run, RecordingForm::Messages)

@@ -25,3 +25,9 @@ mod write;
 pub use export::export;
 pub use read::{RecordingError, RecordingFile, is_export, is_mcap, read};
 pub use write::{RecordingForm, RunOnFile, write, write_as};
+
+/// The CRC-32 of bytes, as recordings have it of files of code.
+#[must_use]
+pub fn checksum(bytes: &[u8]) -> u32 {
+    crc32fast::hash(bytes)
+}

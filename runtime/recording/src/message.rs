@@ -111,7 +111,21 @@ pub struct TopicsMessage {
     pub topics: Vec<TopicColumns>,
 }
 
-/// The messages of a topic, service or action in one direction.
+/// What messages are to a name: of a topic, or which step of the calls of a service or an action.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum TopicPart {
+    #[default]
+    Message,
+    /// Requests of a service, or goals.
+    Request,
+    /// Answers of a service, or results of goals; or why there are none.
+    Answer,
+    /// How far goals are.
+    Feedback,
+}
+
+/// The messages of a topic, or of a part of a service or an action, in one direction.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TopicColumns {
     /// `/scan`
@@ -120,10 +134,49 @@ pub struct TopicColumns {
     pub interface: String,
     /// Whether a program of the system sent them; otherwise the scenario did.
     pub outward: bool,
+    #[serde(default)]
+    pub part: TopicPart,
     /// Nanoseconds: the first, and then what each differs from the one before.
     pub t: Vec<i64>,
     /// What the first of them said; `null` where it was too long.
     pub text: Vec<Option<String>>,
+}
+
+/// At which lines of its own code a program of the system was, for those of its files whose coverage is measured: where it asked for something, told
+/// something, or began to wait.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LinesMessage {
+    pub program: String,
+    pub files: Vec<LinesFile>,
+    pub threads: Vec<LineColumns>,
+    /// Since when nobody looked any more, in nanoseconds, if there were too many lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<i64>,
+    /// How many threads are missing, as there were too many.
+    #[serde(default)]
+    pub unseen: u64,
+}
+
+/// A file of code.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LinesFile {
+    pub name: String,
+    /// The CRC-32 of its bytes, by which one sees whether it has changed since.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crc: Option<u32>,
+}
+
+/// At which lines a thread was, each until the next: the first value of each column, and then what each differs from the one before.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct LineColumns {
+    /// The name of the thread: `MainThread`
+    pub thread: String,
+    /// Nanoseconds.
+    pub t: Vec<i64>,
+    /// Places among the files.
+    pub file: Vec<i64>,
+    /// From 1; 0 while it is in none of the files.
+    pub line: Vec<i64>,
 }
 
 /// The messages of a name in one direction.
@@ -132,6 +185,7 @@ pub struct RecordedTopic {
     pub name: String,
     pub interface: String,
     pub outward: bool,
+    pub part: TopicPart,
     pub times: Vec<hrdsl_ir::Nanos>,
     pub texts: Vec<Option<String>>,
 }

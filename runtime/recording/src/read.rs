@@ -18,7 +18,8 @@ use crate::{
     columns::{self, TracksMessage},
     container::{self, ContainedMessage, ContainerError, MAGIC},
     message::{
-        ContactsMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic, TopicsMessage, VerdictMessage,
+        ContactsMessage, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic, TopicsMessage,
+        VerdictMessage,
     },
     scene::RecordedScene,
 };
@@ -33,6 +34,8 @@ pub struct RecordingFile {
     pub log: Vec<RecordedLogLine>,
     /// What was sent through names of the middleware.
     pub topics: Vec<RecordedTopic>,
+    /// At which lines of its code each program was.
+    pub lines: Vec<LinesMessage>,
     /// What the run came to when it was made.
     pub verdicts: Vec<VerdictMessage>,
     /// What could not be read, a sentence each.
@@ -99,6 +102,7 @@ struct TakenApart {
     tracks: Vec<TracksMessage>,
     verdicts: Vec<VerdictMessage>,
     topics: Vec<RecordedTopic>,
+    code: Vec<LinesMessage>,
     log: Vec<RecordedLogLine>,
     faults: Vec<String>,
 }
@@ -131,6 +135,11 @@ struct LogMessage {
     level: u8,
     message: String,
     name: String,
+}
+
+fn log_line(time: Nanos, LogMessage { level, message: text, name: program }: LogMessage) -> RecordedLogLine {
+    let level = RecordedLogLevel::ALL.into_iter().find(|known| known.number() == level);
+    RecordedLogLine { time, level: level.unwrap_or(RecordedLogLevel::Info), program, text }
 }
 
 impl TakenApart {
@@ -200,16 +209,13 @@ impl TakenApart {
                     name: topic.name,
                     interface: topic.interface,
                     outward: topic.outward,
+                    part: topic.part,
                     times: columns::sums(&topic.t),
                     texts: topic.text,
                 }));
             }
-            RecordingChannel::Log => {
-                let LogMessage { level, message: text, name: program } = serde_json::from_slice(data)?;
-                let level = RecordedLogLevel::ALL.into_iter().find(|known| known.number() == level);
-                let level = level.unwrap_or(RecordedLogLevel::Info);
-                self.log.push(RecordedLogLine { time, level, program, text });
-            }
+            RecordingChannel::Lines => self.code.push(serde_json::from_slice(data)?),
+            RecordingChannel::Log => self.log.push(log_line(time, serde_json::from_slice(data)?)),
             RecordingChannel::Header
             | RecordingChannel::Events
             | RecordingChannel::Signals
@@ -232,8 +238,8 @@ impl TakenApart {
         }
         let text = self.lines.iter().flat_map(|(_, line)| [line.as_str(), "\n"]).collect();
         let picture = self.picture();
-        let Self { scene, log, topics, verdicts, faults, .. } = self;
-        RecordingFile { text, scene, picture, log, topics, verdicts, faults }
+        let Self { scene, log, topics, code: lines, verdicts, faults, .. } = self;
+        RecordingFile { text, scene, picture, log, topics, lines, verdicts, faults }
     }
 
     /// The picture, by the numbers that the scene gives to names.

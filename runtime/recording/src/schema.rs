@@ -8,8 +8,8 @@ use crate::{
     columns::{SamplesMessage, TracksMessage},
     foxglove,
     message::{
-        ContactsMessage, EndMessage, EventMessage, HeaderMessage, MachineMessage, SignalMessage,
-        TopicsMessage, VerdictMessage,
+        ContactsMessage, EndMessage, EventMessage, HeaderMessage, LinesMessage, MachineMessage,
+        SignalMessage, TopicsMessage, VerdictMessage,
     },
     scene::RecordedScene,
 };
@@ -31,6 +31,7 @@ pub(crate) fn of_channel(channel: RecordingChannel) -> (&'static str, Value) {
         RecordingChannel::Transforms => ("foxglove.FrameTransforms", foxglove::frame_transforms()),
         RecordingChannel::Joints => ("foxglove.JointStates", foxglove::joint_states()),
         RecordingChannel::Topics => ("hrdsl.Topics", own::<TopicsMessage>()),
+        RecordingChannel::Lines => ("hrdsl.Lines", own::<LinesMessage>()),
         RecordingChannel::Log => ("foxglove.Log", foxglove::log()),
     }
 }

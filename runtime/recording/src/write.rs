@@ -14,7 +14,7 @@ use crate::{
     columns::{self, BLOCK, SampleTable, TracksMessage},
     container::ContainerWriter,
     foxglove::{self, WORLD},
-    message::{RecordedLogLine, RecordedTopic, TopicColumns, TopicsMessage, VerdictMessage},
+    message::{LinesMessage, RecordedLogLine, RecordedTopic, TopicColumns, TopicsMessage, VerdictMessage},
     number::decimal,
     scene::RecordedScene,
     schema,
@@ -30,6 +30,7 @@ pub struct RunOnFile<'a> {
     pub picture: &'a WorldPicture,
     pub log: &'a [RecordedLogLine],
     pub topics: &'a [RecordedTopic],
+    pub lines: &'a [LinesMessage],
     pub verdicts: &'a [VerdictMessage],
 }
 
@@ -168,12 +169,17 @@ fn seen(run: &RunOnFile<'_>, form: RecordingForm) -> Vec<PlannedMessage> {
             name: topic.name.clone(),
             interface: topic.interface.clone(),
             outward: topic.outward,
+            part: topic.part,
             t: columns::differences(topic.times.iter().copied()),
             text: topic.texts.clone(),
         });
         let data = serde_json::to_string(&TopicsMessage { topics: topics.collect() }).unwrap_or_default();
         planned.push(message(run.trace.end, RecordingChannel::Topics, data));
     }
+    planned.extend(run.lines.iter().map(|lines| {
+        let data = serde_json::to_string(lines).unwrap_or_default();
+        message(run.trace.end, RecordingChannel::Lines, data)
+    }));
     planned.extend(run.log.iter().map(|entry| {
         let data = json!({
             "timestamp": { "sec": entry.time / SECOND, "nsec": entry.time % SECOND },

@@ -10,7 +10,10 @@ use hrdsl_ir::{
 };
 use hrdsl_recording::{
     RecordingError, RecordingFile, RecordingForm, RunOnFile, export, is_export,
-    message::{RecordedLogLevel, RecordedLogLine, RecordedTopic, VerdictMessage},
+    message::{
+        LineColumns, LinesFile, LinesMessage, RecordedLogLevel, RecordedLogLine, RecordedTopic, TopicPart,
+        VerdictMessage,
+    },
     read,
     scene::{RecordedBody, RecordedBodyKind, RecordedJoint, RecordedScene, RecordedShape},
     schema, write, write_as,
@@ -94,6 +97,7 @@ fn topics() -> Vec<RecordedTopic> {
         name: name.to_owned(),
         interface: "std_msgs/String".to_owned(),
         outward,
+        part: if outward { TopicPart::Answer } else { TopicPart::Message },
         times: times.to_vec(),
         texts: texts.iter().map(|text| text.map(str::to_owned)).collect(),
     };
@@ -101,6 +105,20 @@ fn topics() -> Vec<RecordedTopic> {
         topic("/heard", false, &[5, 70, 1_000_000_000], &[Some("{\"data\":\"a\"}"), None]),
         topic("/said", true, &[], &[]),
     ]
+}
+
+fn lines() -> Vec<LinesMessage> {
+    let files = vec![
+        LinesFile { name: "robot.py".to_owned(), crc: Some(u32::MAX) },
+        LinesFile { name: "fsm.py".to_owned(), crc: None },
+    ];
+    let main = LineColumns {
+        thread: "MainThread".to_owned(),
+        t: vec![0, 1_500_000_000, 0],
+        file: vec![0, 1, -1],
+        line: vec![12, -12, 40],
+    };
+    vec![LinesMessage { program: "robot".to_owned(), files, threads: vec![main], until: Some(7), unseen: 2 }]
 }
 
 fn file() -> (String, Vec<u8>) {
@@ -129,6 +147,7 @@ fn file() -> (String, Vec<u8>) {
         picture: &picture(),
         log: &log,
         topics: &topics(),
+        lines: &lines(),
         verdicts: &verdicts,
     };
     let bytes = write(&run).unwrap();
@@ -151,6 +170,7 @@ fn what_is_written_reads_back() {
     assert_eq!(found.scene, Some(scene()));
     assert_eq!(found.picture, picture());
     assert_eq!(found.topics, topics());
+    assert_eq!(found.lines, lines());
     let log: Vec<(i64, RecordedLogLevel, &str)> =
         found.log.iter().map(|entry| (entry.time, entry.level, entry.text.as_str())).collect();
     assert_eq!(log, [(1_500_000_000, RecordedLogLevel::Warning, "low \"battery\"")]);

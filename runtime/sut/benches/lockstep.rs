@@ -70,6 +70,7 @@ fn launch(script: &str, coverage: bool) -> LaunchSpec {
         seed: 1,
         hash_seed: 1,
         coverage: if coverage { vec![script.into()] } else { Vec::new() },
+        lines: false,
         env,
         middleware: None,
         variables: Vec::new(),

@@ -34,6 +34,8 @@ pub struct LaunchSpec {
     pub hash_seed: u32,
     /// The Python files whose coverage is measured; empty: none.
     pub coverage: Vec<String>,
+    /// Whether to measure, too, at which of their lines it is when.
+    pub lines: bool,
     pub env: PythonEnv,
     /// What the program is told of its middleware, if the scenario binds one.
     pub middleware: Option<LaunchMiddleware>,
@@ -222,7 +224,9 @@ impl LaunchSpec {
             ("HRDSL_COVERAGE_PACKAGE", env.coverage.clone().into_os_string()),
             ("HRDSL_COVERAGE_CACHE", env.analyses.clone().into_os_string()),
         ];
-        Ok(StartCommand { command, env: variables.map(|(name, value)| (name.into(), value)).into() })
+        let lines = self.lines.then(|| ("HRDSL_LINES", "1".into()));
+        let variables = variables.into_iter().chain(lines);
+        Ok(StartCommand { command, env: variables.map(|(name, value)| (name.into(), value)).collect() })
     }
 
     /// A command that is started as it is; any Python below it finds the SDK.

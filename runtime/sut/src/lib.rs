@@ -37,6 +37,7 @@ mod start;
 
 pub use affinity::{PinnedCore, pin_to_free_core};
 pub use cell::CellSettings;
+pub use coverage::{ExecutedFile, ProgramLines, ThreadLines};
 pub use environment::{EnvironmentNeeds, HookedPackage, PreparationStep, PythonEnv};
 pub use error::{ProgramFailure, SutError};
 pub use exit::ProgramExit;

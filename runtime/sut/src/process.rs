@@ -22,7 +22,7 @@ use crate::{
         handle::CellHandle,
         message::{CellRequest, KeptFiles},
     },
-    coverage,
+    coverage::{self, ProgramLines},
     error::{ProgramFailure, SutError},
     exit::ProgramExit,
     fork_server::ForkServer,
@@ -85,6 +85,8 @@ pub struct FinishedProcess {
     pub output: CapturedOutput,
     /// `None` if it was not asked for, or the program was killed before it could be written.
     pub coverage: Option<Vec<FileCoverage>>,
+    /// At which lines it was when; `None` if that was not asked for, or there is no coverage.
+    pub lines: Option<ProgramLines>,
     /// Whether it ever started another process.
     pub others: bool,
     /// The files that it wrote, if they were to be kept.
@@ -306,9 +308,10 @@ impl SutProcess {
         self.drain();
         let ending = self.cell.ending().cloned();
         let exit = ending.as_ref().filter(|_| !killed).map_or(ProgramExit::Killed, |e| e.exit);
-        let coverage = self.coverage.take().and_then(|(file, names)| coverage::read(file, &names));
+        let measured = self.coverage.take().and_then(|(file, names)| coverage::read(file, &names));
+        let (coverage, lines) = measured.map(|code| (code.coverage, code.lines)).unzip();
         let (others, kept, cpu) = ending.map_or_else(Default::default, |e| (e.others, e.kept, e.cpu));
-        FinishedProcess { exit, output: self.output(), coverage, others, kept, cpu }
+        FinishedProcess { exit, output: self.output(), coverage, lines: lines.flatten(), others, kept, cpu }
     }
 
     /// What the program has written to its output so far, with the paths of the project.

@@ -171,6 +171,7 @@ fn robot(seed: u64) -> LaunchSpec {
         dir,
         seed,
         coverage: vec!["robot.py".into(), "fsm.py".into()],
+        lines: false,
         ..launch(&["python3", "robot.py"])
     }
 }

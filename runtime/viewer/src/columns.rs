@@ -13,6 +13,16 @@ pub fn differences(values: impl IntoIterator<Item = i64>) -> Vec<i64> {
     rows(&values.into_iter().collect::<Vec<_>>(), 1)
 }
 
+/// The values of differences.
+#[must_use]
+pub fn sums(differences: &[i64]) -> Vec<i64> {
+    let add = |sum: &mut i64, difference: &i64| {
+        *sum = sum.wrapping_add(*difference);
+        Some(*sum)
+    };
+    differences.iter().scan(0, add).collect()
+}
+
 /// The same for rows of numbers that lie one after the other: each differs from the one in the same place of the row before.
 #[must_use]
 pub fn rows(values: &[i64], width: usize) -> Vec<i64> {

@@ -68,9 +68,9 @@ pub struct ViewDocument {
     /// The files of the robot's code. Those without text may be among the shared assets of the page.
     #[serde(default)]
     pub files: Vec<ViewSourceFile>,
-    /// Which lines of the robot's code ran when; left out if nobody measured it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lines: Option<LineTrack>,
+    /// At which lines of the robot's code each thread of its programs was; none if nobody measured it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub code: Vec<CodeTrack>,
     #[serde(default)]
     pub requirements: Vec<ViewRequirement>,
     /// What could not be shown, a sentence each.
@@ -353,7 +353,22 @@ pub enum TopicDirection {
     Out,
 }
 
-/// A topic, service or action of the middleware, with its messages.
+/// What messages are to a name of the middleware.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MessageRole {
+    /// Of a topic.
+    #[default]
+    Message,
+    /// Requests of a service, or goals of an action.
+    Request,
+    /// Answers of a service, or results of goals; or why there are none.
+    Answer,
+    /// How far goals are.
+    Feedback,
+}
+
+/// A topic, service or action of the middleware, with the messages of one role that go one way.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TopicTrack {
     pub name: String,
@@ -361,6 +376,9 @@ pub struct TopicTrack {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interface: Option<String>,
     pub direction: TopicDirection,
+    /// A topic's, if it is left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub role: Option<MessageRole>,
     /// When the messages were: differences.
     pub t: Vec<i64>,
     /// What they say, shortened; `null` where nobody kept it. May be shorter than `t`.
@@ -395,16 +413,26 @@ pub struct ViewSourceFile {
     pub name: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
+    /// The CRC-32 of its bytes when it ran.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crc: Option<u32>,
 }
 
-/// Which line of the robot's code ran when.
+/// At which line of the robot's code a thread was when: where it asked for something, told something, or began to wait. It is there until the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct LineTrack {
+pub struct CodeTrack {
+    /// The program, as the scenario names it.
+    pub program: String,
+    /// The name of the thread: `MainThread`
+    pub thread: String,
+    /// Since when nobody looked any more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<u64>,
     /// Differences.
     pub t: Vec<i64>,
     /// The places of the files: differences.
     pub file: Vec<i64>,
-    /// The lines, from 1: differences.
+    /// The lines, from 1: differences; 0 while the thread is in none of the files.
     pub line: Vec<i64>,
 }
 

@@ -2,10 +2,12 @@
 
     python3 sdk/python/benches/streaming.py
     python3 sdk/python/benches/streaming.py --coverage [FOLDER]
+    python3 sdk/python/benches/streaming.py --coverage [FOLDER] --lines
 
 The harness answers each wait at once and reads past all else; it is a process of its own, whose time does not count. Told are the
 processor seconds of the program, and what of them is its start and end: the least of several runs each. With coverage, the program's
-lines and branches are recorded as in a test, by the coverage.py in the folder, or by that of the interpreter.
+lines and branches are recorded as in a test, by the coverage.py in the folder, or by that of the interpreter; with lines, also at which of
+them it was when.
 """
 
 import argparse
@@ -72,7 +74,7 @@ def cost(program: str, steps: int, env: "dict[str, str]", package: "str | None")
 def check(out: IO[bytes], steps: int) -> None:
     """What is measured is a run that was recorded."""
     out.seek(0)
-    (found,) = json.load(out).values()
+    (found,) = json.loads(out.readline()).values()
     missed = set(found["statements"]) - set(found["executed"])
     if len(missed) != (0 if steps else 3):
         sys.exit("lines without a record: %s" % sorted(missed))
@@ -89,7 +91,9 @@ def package_of(given: "str | None") -> str:
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--coverage", nargs="?", const="", metavar="FOLDER")
-    given = parser.parse_args().coverage
+    parser.add_argument("--lines", action="store_true")
+    arguments = parser.parse_args()
+    given = arguments.coverage
     package = None if given is None else package_of(given or None)
     sys.path.insert(0, TESTS)
     from tables import bound
@@ -98,7 +102,7 @@ def main() -> None:
         program = os.path.join(folder, "arm.py")
         with open(program, "w") as file:
             file.write(PROGRAM)
-        env = {**bound(folder, ["std_msgs"]), "HRDSL_COVERAGE_CACHE": folder}
+        env = {**bound(folder, ["std_msgs"]), "HRDSL_COVERAGE_CACHE": folder, "HRDSL_LINES": "1" if arguments.lines else "0"}
         cost(program, 0, env, package)  # what follows from the program's text alone is found once
         whole, start = (min(cost(program, steps, env, package) for _ in range(5)) for steps in (30000, 0))
     print("%.2f s of processor time, of which %.3f s are the start and the end" % (whole, start))

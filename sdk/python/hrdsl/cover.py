@@ -72,8 +72,9 @@ class Recorder:
         for tracer in self._tracers:
             tracer.stop()
 
-    def write(self, out: str | int) -> None:
-        """Writes {file: statements, executed, branches, executed_branches} as JSON, to a file or a descriptor."""
+    def write(self, out: str | int, more: object = None) -> None:
+        """Writes {file: statements, executed, branches, executed_branches} as JSON, to a file or a descriptor; and `more`, if there is
+        any, on a line of its own."""
         result = {}
         arcs = self._arcs()
         for path, name in self._files.items():
@@ -88,7 +89,10 @@ class Recorder:
                 pass  # the next run makes it again
             result[name] = combine(static, arcs.get(path, ()))
         with open(out, "w", encoding="utf-8") as file:
-            json.dump(result, file, separators=(",", ":"))
+            # At once: `dump` would do it piece by piece, in Python.
+            file.write(json.dumps(result, separators=(",", ":")))
+            if more is not None:
+                file.write("\n" + json.dumps(more, separators=(",", ":")))
 
     def _arcs(self) -> dict[str, Any]:
         if self._fallback is not None:

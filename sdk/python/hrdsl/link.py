@@ -57,6 +57,8 @@ class Link:
         self.scheduler: Any = None  # of this process
         self.on_end: list[Callable[[], object]] = []  # called when the program has come to its end, before it says so
         self.before_request: Callable[[], object] | None = None  # called before each
+        self.look: Callable[[], object] | None = None  # called where the program asks, and at the first it tells at an instant
+        self._looked = (-1, 0)  # the instant at which somebody told something last, and the thread
 
     def connect(self, request_fd: int, reply_fd: int) -> None:
         """Makes the connection, of this process."""
@@ -93,6 +95,8 @@ class Link:
 
     def ask(self, line: bytes) -> dict[str, Any]:
         """The same, of a request that is written already."""
+        if self.look is not None:
+            self.look()
         answer = self._ask(line)
         if self.faults:
             self._raise_fault()
@@ -132,10 +136,14 @@ class Link:
 
     def tell(self, line: bytes, about: object) -> None:
         """Sends a request that has no reply, together with the next one that has; `about` is what an error calls it."""
+        me = _get_ident()
+        if self.look is not None and (self.time, me) != self._looked:
+            self._looked = (self.time, me)  # the rest of what it tells now comes from the same loop, or from lines beside it
+            self.look()
         size = len(line)
         if size > KEPT or self._stopped is not None or not self.greeted:
             self._check_told(size, about)
-        self._told.append((about, _get_ident()))
+        self._told.append((about, me))
         self._buffer.append(line)
         self._buffered += size
         if self._buffered > KEPT:

@@ -4,7 +4,8 @@
 
 The environment has HRDSL_SEED, the two descriptors of the protocol, and optionally HRDSL_SYS_PATH (folders to search
 for modules), HRDSL_MIDDLEWARE (`ros1` or `ros2`), HRDSL_BINDING (see `hrdsl.binding`), HRDSL_COVERAGE_FD (the descriptor
-that coverage is written to), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py) and HRDSL_COVERAGE_CACHE. With
+that coverage is written to), HRDSL_COVERAGE_PACKAGE (the folder that has coverage.py), HRDSL_COVERAGE_CACHE and HRDSL_LINES (1: which
+lines ran when is written beside the coverage, see `hrdsl.lines`). With
 HRDSL_DEBUG=1 the debugger gets the terminal, and there is no coverage. With HRDSL_FORK_SERVER it is not a run, but a server that
 forks runs (see `hrdsl.forkserver`).
 """
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from typing import Any, Callable, NoReturn
 
     from hrdsl.cover import Recorder
+    from hrdsl.lines import LineRecorder
     from hrdsl.link import Link
     from hrdsl.mutated import Switch
 
@@ -70,6 +72,11 @@ class PreparedRun:
             environment = os.environ.get
             self.recorder = Recorder(self.files, environment("HRDSL_COVERAGE_PACKAGE"), environment("HRDSL_COVERAGE_CACHE"))
         self.simulation = virtual.Simulation(link, int(os.environ.get("HRDSL_SEED", "0")))
+        self.lines: LineRecorder | None = None
+        if os.environ.pop("HRDSL_LINES", "") == "1" and self.recorder is not None:
+            from hrdsl.lines import LineRecorder
+
+            self.lines = LineRecorder(self.files, link, self.simulation.scheduler)
         debug.install()
         sys.argv = list(self.words)
         if self.option == "-c":
@@ -85,6 +92,8 @@ class PreparedRun:
         link, scheduler = self.link, self.simulation.scheduler
         self.simulation.watch()
         switch = _switch()
+        if self.lines is not None and out is not None:
+            self.lines.start()
         status = 1
         try:
             status, is_stopped = _status(lambda: _run(self.words, self.option, self.recorder, switch))
@@ -105,7 +114,7 @@ class PreparedRun:
             if link.is_ours():  # not in a process that the program has forked
                 _signal.signal(_signal.SIGTERM, _signal.SIG_IGN)
                 if self.recorder is not None and out is not None:
-                    _save(self.recorder, out)
+                    _save(self.recorder, out, self.lines)
         if switch is not None and link.is_ours():
             _leave(status)
         sys.exit(status)
@@ -125,10 +134,10 @@ def _leave(status: int) -> NoReturn:
     os._exit(status)
 
 
-def _save(recorder: Recorder, out: int) -> None:
+def _save(recorder: Recorder, out: int, lines: LineRecorder | None) -> None:
     try:
         recorder.stop()
-        recorder.write(out)
+        recorder.write(out, lines and lines.told())
     except Exception as error:  # no coverage is no reason to call the program's run a failure
         sys.stderr.write("hrdsl: coverage was not written: %r\n" % error)
 

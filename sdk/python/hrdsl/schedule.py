@@ -116,6 +116,7 @@ class Scheduler:
         self.ending: Callable[[], BaseException] | None = None  # what waits raise, once none can end
         self.failed = False  # whether the program ends by a fault that it cannot catch
         self.before_wait: Callable[[], object] | None = None  # called before each wait
+        self.look_at_lines: Callable[[], object] | None = None  # called where a thread begins to wait
         self.children: dict[int, str] = {}  # processes that nobody has waited for: their commands by their numbers
         self._main_first = False
         self._deadlines = Deadlines()
@@ -140,6 +141,8 @@ class Scheduler:
             self.refuse_wait()
         if self.before_wait is not None:
             self.before_wait()
+        if self.look_at_lines is not None:
+            self.look_at_lines()
         me = self.running
         me.what, me.result = what, None
         try:

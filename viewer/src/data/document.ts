@@ -4,6 +4,8 @@
 export interface ViewDocument {
   /** Where a generated test comes from, in the words of the test. */
   because?: string | null;
+  /** At which lines of the robot's code each thread of its programs was; none if nobody measured it. */
+  code?: CodeTrack[];
   contacts?: ContactTrack[];
   /** When the run ended. */
   end: number;
@@ -20,8 +22,6 @@ export interface ViewDocument {
   hrdsl?: string;
   /** Positions of joints, each with its limits: rad or m. */
   joints?: SignalTrack[];
-  /** Which lines of the robot's code ran when; left out if nobody measured it. */
-  lines?: LineTrack | null;
   /** What programs wrote, in order. */
   log?: ViewLogLine[];
   machines?: MachineTrack[];
@@ -47,6 +47,22 @@ export interface ViewDocument {
 /** What a body belongs to. It decides its colour, and whether it may be cut away. */
 export type BodyKind = "robot" | "person" | "thing" | "room";
 
+/** At which line of the robot's code a thread was when: where it asked for something, told something, or began to wait. It is there until the next. */
+export interface CodeTrack {
+  /** The places of the files: differences. */
+  file: number[];
+  /** The lines, from 1: differences; 0 while the thread is in none of the files. */
+  line: number[];
+  /** The program, as the scenario names it. */
+  program: string;
+  /** Differences. */
+  t: number[];
+  /** The name of the thread: `MainThread` */
+  thread: string;
+  /** Since when nobody looked any more. */
+  until?: number | null;
+}
+
 /** Two bodies that touch each other, and how hard. */
 export interface ContactTrack {
   /** The places of the two bodies among the bodies. */
@@ -64,16 +80,6 @@ export type EventKind = "stimulus" | "said" | "seen" | "commanded";
 
 /** How values lie to the limit where the requirement is content. */
 export type LimitRelation = "<" | "<=" | ">" | ">=";
-
-/** Which line of the robot's code ran when. */
-export interface LineTrack {
-  /** The places of the files: differences. */
-  file: number[];
-  /** The lines, from 1: differences. */
-  line: number[];
-  /** Differences. */
-  t: number[];
-}
 
 /** How grave a line of the log is. */
 export type LogLevel = "debug" | "info" | "warning" | "error";
@@ -94,6 +100,9 @@ export interface MachineTrack {
 
 /** What a measure is. */
 export type MeasureKind = "distance" | "angle" | "speed" | "force" | "signal";
+
+/** What messages are to a name of the middleware. */
+export type MessageRole = "message" | "request" | "answer" | "feedback";
 
 /** How an obligation ended. */
 export type ObligationOutcome = "met" | "violated" | "pending" | "dropped";
@@ -164,12 +173,14 @@ export interface SignalTrack {
 /** Which way messages go, as the robot's code sees it. */
 export type TopicDirection = "in" | "out";
 
-/** A topic, service or action of the middleware, with its messages. */
+/** A topic, service or action of the middleware, with the messages of one role that go one way. */
 export interface TopicTrack {
   direction: TopicDirection;
   /** Such as `sensor_msgs/LaserScan`. */
   interface?: string | null;
   name: string;
+  /** A topic's, if it is left out. */
+  role?: MessageRole | null;
   /** When the messages were: differences. */
   t: number[];
   /** What they say, shortened; `null` where nobody kept it. May be shorter than `t`. */
@@ -332,6 +343,8 @@ export type ViewShape = {
 
 /** A file of the robot's code. */
 export interface ViewSourceFile {
+  /** The CRC-32 of its bytes when it ran. */
+  crc?: number | null;
   name: string;
   text?: string | null;
 }

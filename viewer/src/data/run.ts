@@ -1,7 +1,7 @@
 // A run as the page works with it: columns added up, times in seconds, and a sentence for each thing that is not there.
 
 import { lastAt, summed } from "./columns.js";
-import type { SharedAssets, ViewBody, ViewDocument, ViewEvent, ViewLaser, ViewMeasure, ViewMesh, ViewRequirement } from "./document.js";
+import type { CodeTrack, MessageRole, SharedAssets, ViewBody, ViewDocument, ViewEvent, ViewLaser, ViewMeasure, ViewMesh, ViewRequirement } from "./document.js";
 import { numberAt, seriesOf, type Series } from "./series.js";
 import { contactOf, pairsOf, poseAt, trackOf, type Contact, type Pairs, type Pose, type Track } from "./tracks.js";
 
@@ -23,6 +23,7 @@ export interface Topic {
   name: string;
   interface: string | null;
   direction: "in" | "out";
+  role: MessageRole;
   times: Float64Array;
   text: (string | null)[];
 }
@@ -68,6 +69,18 @@ export interface SourceText {
   lines: string[] | null;
 }
 
+/** Where in the robot's code a thread was. */
+export interface CodeThread {
+  program: string;
+  thread: string;
+  /** Since when nobody knows. */
+  until: number;
+  times: Float64Array;
+  file: Float64Array;
+  /** From 1; 0 while it is in none of the files. */
+  line: Float64Array;
+}
+
 export interface LogEntry {
   t: number;
   level: "debug" | "info" | "warning" | "error";
@@ -92,27 +105,17 @@ export interface Run {
   topics: Topic[];
   log: LogEntry[];
   sources: SourceText[];
-  lines: { times: Float64Array; file: Float64Array; line: Float64Array } | null;
+  code: CodeThread[];
   requirements: Requirement[];
   /** What could not be shown, a sentence each. */
   notes: string[];
   missing: Set<Part>;
 }
 
-/** Decodes one part; what goes wrong leaves the part empty and a sentence about it. */
+/** Decodes the parts; what goes wrong is left out, with a sentence about it. */
 class Decoder {
   readonly notes: string[] = [];
   readonly missing = new Set<Part>();
-
-  part<T>(part: Part, name: string, empty: T, decode: () => T): T {
-    try {
-      return decode();
-    } catch {
-      this.missing.add(part);
-      this.notes.push(`The ${name} of this run cannot be read, and are left out.`);
-      return empty;
-    }
-  }
 
   /** Items one by one: one that cannot be read leaves the others as they are. */
   each<A, B>(part: Part, name: string, items: readonly A[] | null | undefined, decode: (item: A, place: number) => B): B[] {
@@ -162,14 +165,13 @@ export function runOf(id: string, label: string, document: ViewDocument, shared:
       name: topic.name,
       interface: topic.interface ?? null,
       direction: topic.direction,
+      role: topic.role ?? "message",
       times: summed(topic.t, 1, second),
       text: topic.text ?? [],
     })),
     log: decoder.each("log", "lines of the log", document.log, (line) => ({ ...line, program: line.program ?? null, t: line.t * second })),
     sources: (document.files ?? []).map((file) => ({ name: file.name, lines: (file.text ?? shared.files?.[file.name])?.split("\n") ?? null })),
-    lines: decoder.part("code", "lines of code that ran", null, () =>
-      document.lines ? { times: summed(document.lines.t, 1, second), file: summed(document.lines.file), line: summed(document.lines.line) } : null,
-    ),
+    code: decoder.each("code", "threads of the robot’s code", document.code, (track) => threadOf(track, second)),
     requirements: decoder.each("requirements", "requirements", document.requirements, (requirement) => requirementOf(requirement, second, end, series)),
     notes: [],
     missing: decoder.missing,
@@ -179,6 +181,18 @@ export function runOf(id: string, label: string, document: ViewDocument, shared:
   return run;
 }
 
+function threadOf(track: CodeTrack, second: number): CodeThread {
+  if (track.t.length !== track.file.length || track.t.length !== track.line.length) throw new RangeError("columns of other lengths");
+  return {
+    program: track.program,
+    thread: track.thread,
+    until: (track.until ?? Number.POSITIVE_INFINITY) * second,
+    times: summed(track.t, 1, second),
+    file: summed(track.file),
+    line: summed(track.line),
+  };
+}
+
 /** A body whose numbers can be drawn. */
 function sound(body: ViewBody): ViewBody {
   const numbers = Array.isArray(body.pose) && body.pose.length === 7 && body.pose.every(Number.isFinite);
@@ -186,7 +200,6 @@ function sound(body: ViewBody): ViewBody {
 }
 
 function nameWhatIsMissing(run: Run, missing: Set<Part>): void {
-  const { document } = run;
   if (run.bodies.length === 0) missing.add("scene");
   if (run.tracks.every((track) => track === null)) missing.add("poses");
   if (run.series.length === 0) missing.add("signals");
@@ -194,7 +207,7 @@ function nameWhatIsMissing(run: Run, missing: Set<Part>): void {
   if (run.machines.length === 0) missing.add("machines");
   if (run.topics.length === 0) missing.add("topics");
   if (run.log.length === 0) missing.add("log");
-  if (!document.lines) missing.add("code");
+  if (run.code.length === 0) missing.add("code");
   if (run.requirements.length === 0) missing.add("requirements");
 }
 
@@ -287,12 +300,17 @@ export function measureAt(measure: Measure, t: number): number {
   return measure.series ? numberAt(measure.series, t) : Number.NaN;
 }
 
-/** Which line of which file ran last at a time. */
-export function lineAt(run: Run, t: number): { file: number; line: number; since: number; place: number } | null {
-  if (!run.lines) return null;
-  const place = lastAt(run.lines.times, t);
-  if (place < 0) return null;
-  return { file: run.lines.file[place] ?? 0, line: run.lines.line[place] ?? 0, since: run.lines.times[place] ?? 0, place };
+/** Where in the code a thread is at a time; null before its first line, and when nobody knows any more. */
+export function lineAt(thread: CodeThread, t: number): { file: number; line: number; since: number; place: number } | null {
+  const place = lastAt(thread.times, t);
+  if (place < 0 || t >= thread.until) return null;
+  return { file: thread.file[place] ?? 0, line: thread.line[place] ?? 0, since: thread.times[place] ?? 0, place };
+}
+
+/** How a thread is called: by its program, if that has no other. */
+export function threadName(run: Run, thread: CodeThread): string {
+  const isOnly = run.code.every((other) => other === thread || other.program !== thread.program);
+  return isOnly ? thread.program : `${thread.program}, ${thread.thread}`;
 }
 
 /** The state of a machine at a time. */

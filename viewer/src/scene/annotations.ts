@@ -18,6 +18,9 @@ type Place = [number, number, number];
 /** An arrow of this length stands for 100 N; it grows with the root of the force, so that weak ones are seen, too. */
 const HUNDRED_NEWTONS = 0.22;
 
+/** Who touches a floor within so many seconds of the start stands on it. */
+const STANDING = 1;
+
 export class Annotations {
   readonly group = new Group();
   labels: Label[] = [];
@@ -61,8 +64,13 @@ export class Annotations {
     const length = HUNDRED_NEWTONS * Math.sqrt(force / 100);
     const tip = contact.point.map((x, k) => x + ((contact.force[k] ?? 0) / force) * length) as Place;
     stroke.set(contact.point, tip);
-    const names = this.run.contacts[i]?.bodies.map((b) => this.run.bodies[b]?.name ?? "?").join(" · ");
-    this.labels.push({ at: tip, text: `${quantity(force, "N")}  ${names ?? ""}`, kind: "force" });
+    const bodies = this.run.contacts[i]?.bodies.map((b) => this.run.bodies[b]) ?? [];
+    // What merely lies or stands on something has an arrow, and no words: they would hide what happens.
+    const isAlive = bodies.some((body) => body?.kind === "robot" || body?.kind === "person");
+    const stands = bodies.some((body) => body?.kind === "room") && (this.run.contacts[i]?.times[0] ?? 0) < STANDING;
+    if (!isAlive || stands) return;
+    const names = bodies.map((body) => body?.name ?? "?").join(" · ");
+    this.labels.push({ at: tip, text: `${quantity(force, "N")}  ${names}`, kind: "force" });
   }
 
   private drawMeasure(measure: Measure, t: number, poses: readonly Float64Array[]): void {
@@ -96,7 +104,8 @@ export class Annotations {
 
   private tell(measure: Measure, value: number, at: Place, prefix: string): void {
     const kept = Number.isNaN(value) || isKept(measure.of, value);
-    this.labels.push({ at, text: `${prefix}${quantity(value, measure.of.unit)}  (${RELATIONS[measure.of.relation]} ${limitText(measure.of.limit, measure.of.unit)}) ${Number.isNaN(value) ? "" : kept ? "✓" : "✗"}`, kind: kept ? "kept" : "broken" });
+    // First, as those behind give way.
+    this.labels.unshift({ at, text: `${prefix}${quantity(value, measure.of.unit)}  (${RELATIONS[measure.of.relation]} ${limitText(measure.of.limit, measure.of.unit)}) ${Number.isNaN(value) ? "" : kept ? "✓" : "✗"}`, kind: kept ? "kept" : "broken" });
   }
 
   /** The line between the two nearest points, and around one of them a circle as wide as the limit. */

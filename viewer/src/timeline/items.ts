@@ -60,7 +60,7 @@ export function itemAt(lane: Lane, track: number, t: number, slack: number): Ite
       const at = topic ? lastAt(topic.times, t + slack) : -1;
       const when = topic?.times[at];
       if (!topic || when === undefined || when < t - slack) return null;
-      return { t: when, lines: [topic.name, `message ${at + 1} of ${topic.times.length}, ${seconds(when)}`, ...(topic.text[at] ? [topic.text[at] ?? ""] : [])] };
+      return { t: when, lines: [topic.name, `${topic.role} ${at + 1} of ${topic.times.length}, ${seconds(when)}`, ...(topic.text[at] ? [topic.text[at] ?? ""] : [])] };
     }
     case "log": {
       const line = under(lane.tracks[track] ?? [], t, slack, (l) => l.t, (l) => l.t);

@@ -1,6 +1,6 @@
 // What lies on the time line: sections and lanes, each with a track for each of the runs.
 
-import type { LogEntry, Machine, Measure, Requirement, Run, RunEvent, Topic } from "../data/run.js";
+import { threadName, type CodeThread, type LogEntry, type Machine, type Measure, type Requirement, type Run, type RunEvent, type Topic } from "../data/run.js";
 import { spansOf, type Series } from "../data/series.js";
 
 export interface Bar {
@@ -101,13 +101,49 @@ function barsOf(series: Series, end: number): Bar[] {
   return spans.map((s) => ({ ...s, text: series.type === "enum" ? (series.values[s.value] ?? String(s.value)) : String(s.value) }));
 }
 
+const ROLES: Topic["role"][] = ["message", "request", "feedback", "answer"];
+const WAYS: Topic["direction"][] = ["out", "in"];
+const PLURALS: Record<Topic["role"], string> = { message: "messages", request: "requests", feedback: "feedback", answer: "answers" };
+
+/** A lane for each way and each role of a name, those of a name below each other. */
 function topicLanes(runs: readonly Run[]): Lane[] {
-  const own = runs.map((run) => run.topics);
+  const all = runs.flatMap((run) => run.topics);
+  return [...new Set(all.map((topic) => topic.name))].flatMap((name) =>
+    ROLES.flatMap((role) =>
+      WAYS.flatMap((direction): Lane[] => {
+        const is = (t: Topic) => t.name === name && t.role === role && t.direction === direction;
+        const found = all.find(is);
+        if (!found) return [];
+        const what = [...(role === "message" ? [] : [PLURALS[role]]), ...(found.interface ? [found.interface] : [])];
+        return [{ id: `topic ${direction} ${role} ${name}`, section: "Topics", label: `${direction === "out" ? "→" : "←"} ${name}`, note: what.join(", "), kind: "topic", tracks: runs.map((run) => run.topics.find(is) ?? null) }];
+      }),
+    ),
+  );
+}
+
+/** In which lines of its code each thread of the robot is. */
+function codeLanes(runs: readonly Run[]): Lane[] {
+  const own = runs.map((run) => run.code.map((thread) => ({ name: threadName(run, thread), thread })));
   return names(own).map((name) => {
-    const tracks = own.map((all) => all.find((t) => t.name === name) ?? null);
-    const out = tracks.some((t) => t?.direction === "out");
-    return { id: `topic ${name}`, section: "Topics", label: `${out ? "→" : "←"} ${name}`, note: tracks.find((t) => t)?.interface ?? "", kind: "topic", tracks };
+    const tracks = own.map((all, i) => {
+      const found = all.find((x) => x.name === name);
+      return found ? linesOf(found.thread, runs[i] as Run) : [];
+    });
+    return { id: `code ${name}`, section: "Code", label: name, note: "", kind: "bars", tracks, bool: false };
   });
+}
+
+function linesOf(thread: CodeThread, run: Run): Bar[] {
+  const bars: Bar[] = [];
+  const end = Math.min(run.end, thread.until);
+  thread.times.forEach((from, i) => {
+    const to = Math.min(thread.times[i + 1] ?? end, end);
+    const line = thread.line[i] ?? 0;
+    if (line <= 0 || to <= from) return;
+    const file = run.sources[thread.file[i] ?? 0]?.name ?? "";
+    bars.push({ from, to, text: `${file.slice(file.lastIndexOf("/") + 1)}:${line}` });
+  });
+  return bars;
 }
 
 export function lanesOf(runs: readonly Run[], plots: readonly string[], focus: string | null): Lane[] {
@@ -130,6 +166,7 @@ export function lanesOf(runs: readonly Run[], plots: readonly string[], focus: s
     ...requirements,
     ...barLanes(runs, (s) => !s.sensor, "Signals"),
     ...topicLanes(runs),
+    ...codeLanes(runs),
     ...log,
   ];
 }

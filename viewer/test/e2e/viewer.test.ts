@@ -231,6 +231,27 @@ describe("the viewer in Chromium", { skip }, () => {
     await page.close();
   });
 
+  test("marks the line of the code at which a thread is, as time goes on", async () => {
+    const { page, faults } = await open(browser, "handover", "#run=bdi_tests.t002&t=13.17");
+    await page.click("#tab-code");
+    await settle(page);
+    const at = async () => [await text(page, ".thread .where"), await text(page, ".source .now .number")] as const;
+    const [where, number] = await at();
+    assert.equal(where, `robot.py:${number}`);
+    assert.match(await text(page, ".file"), new RegExp(`^robot.pyline ${number}, since 1[0-3]`));
+    await page.goto(page.url().replace(/t=[0-9.]+/, "t=60"));
+    await settle(page, 300);
+    const later = await at();
+    assert.notEqual(later[1], number);
+    assert.equal(later[0], `robot.py:${later[1]}`);
+    // Who clicks on a line goes to when the thread was there.
+    await page.click(`.source [data-line="${number}"]`);
+    await settle(page);
+    assert.equal((await at())[1], number);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
   test("says that a template without data has none", async () => {
     const { page, faults } = await open(browser, "empty");
     assert.match(await text(page, ".message"), /carries no run/);

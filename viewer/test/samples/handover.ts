@@ -1,7 +1,7 @@
 // A robot hands a person the four legs of a table, for 300 s: once a hand is where the gripper closes, once it is not.
 
 import { readFileSync } from "node:fs";
-import type { ViewLogLine, ViewBody, ViewDocument, ViewEvent, ViewRequirement } from "../../src/data/document.js";
+import type { CodeTrack, ViewLogLine, ViewBody, ViewDocument, ViewEvent, ViewRequirement } from "../../src/data/document.js";
 import { armBodies, armFrames, between, fastest, joints, reach, toolAt } from "./arm.js";
 import { figureBodies, figureFrames, type Stance } from "./figure.js";
 import { add, lerp, length, none, rotate, smooth, sub, turn, type Frame, type V } from "./maths.js";
@@ -340,7 +340,7 @@ export function handoverSample(variant: "fail" | "pass"): ViewDocument {
     ],
     log: story.sorted(story.log),
     files: [{ name: "robot.py", text }, { name: "fsm.py" }],
-    lines: linesOf(story, text),
+    code: [{ program: "robot", thread: "MainThread", ...linesOf(story, text) }],
     requirements: requirementsOf(rounds, violated, eager, { pairs, place, speeds: Math.max(...speeds) }),
   };
 }
@@ -355,8 +355,8 @@ function messages(story: Story, names: string[]): { t: number[]; text: (string |
   return { t: differences(all.map((e) => e.t)), text: all.map((e) => e.args ?? e.name) };
 }
 
-/** As coverage would see it: the lines of the state that the robot is in, a few of them, again and again while it waits. */
-function linesOf(story: Story, text: string): NonNullable<ViewDocument["lines"]> {
+/** As a program tells it: the lines of the state that the robot is in, a few of them, again and again while it waits. */
+function linesOf(story: Story, text: string): Pick<CodeTrack, "t" | "file" | "line"> {
   const source = text.split("\n");
   const bodyOf = (state: string): number[] => {
     const name = state.charAt(0) + state.slice(1).toLowerCase();

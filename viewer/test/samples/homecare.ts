@@ -387,7 +387,7 @@ export function homecareSample(): ViewDocument {
     ],
     log,
     files: [{ name: "server.py", text: source }],
-    lines: null,
+    code: [],
     requirements: [
       { id: "R1", kind: "functional", title: "every order is served in time", text: "ordered(_) causes completed within 180 s", verdict: "pass", margin: 22.4, unit: "s", triggers: differences(asked.map((a) => a.from)), obligations: asked },
       {

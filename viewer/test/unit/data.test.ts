@@ -9,7 +9,7 @@ import { firstAfter, lastAt, summed, summedWithGaps } from "../../src/data/colum
 import { firstDifference } from "../../src/data/difference.js";
 import type { ViewDocument } from "../../src/data/document.js";
 import { documentOf, unpack } from "../../src/data/page.js";
-import { isKept, lineAt, openingTime, requirementInFocus, runOf, stateAt } from "../../src/data/run.js";
+import { isKept, lineAt, threadName, openingTime, requirementInFocus, runOf, stateAt } from "../../src/data/run.js";
 import { typesOf, type Schema } from "../../src/data/schema-types.js";
 import { extentIn, numberAt, seriesOf, spansOf } from "../../src/data/series.js";
 import { nextStop, previousStop, stopsOf, violationsOf } from "../../src/data/stops.js";
@@ -123,7 +123,11 @@ test("a document with every field is decoded", () => {
   assert.deepEqual([...(scanners[0]?.scans?.ranges ?? [])].map((x) => Math.round(x * 100) / 100), [1, Number.NaN, 0.4, 0.97, Number.NaN, 0.42]);
   assert.deepEqual(requirements[0]?.obligations.map((o) => [o.from, o.until, o.outcome]), [[1, 4, "violated"], [5, 6, "met"], [7, 10, "pending"], [7.5, 8, "dropped"]]);
   assert.equal(events[0]?.until, 3);
-  assert.deepEqual(lineAt(run(), 0.5), { file: 0, line: 2, since: 0.1, place: 1 });
+  const [main, other] = rest.code;
+  assert.deepEqual(lineAt(main!, 0.5), { file: 0, line: 2, since: 0.1, place: 1 });
+  assert.equal(lineAt(main!, 9.5), null, "nobody knows any more");
+  assert.deepEqual([lineAt(other!, 0.05), lineAt(other!, 2)?.line], [null, 0], "not begun, and in none of the files");
+  assert.equal(threadName(run(), other!), "robot, Thread-1");
   assert.match(notes.join(), /gone.stl is not there; cup has/);
   assert.equal(missing.size, 0);
 });

@@ -22,10 +22,11 @@ const lanes = lanesOf([run], ["distance(guest.hand, robot.palm)"], "R1");
 
 test("what is in focus comes first, then who acts, the robot last of them", () => {
   const sections = [...new Set(lanes.map((l) => l.section))];
-  assert.deepEqual(sections, ["In focus", "guest", "world", "robot", "Sensor values", "Requirements", "Signals", "Topics", "Log"]);
+  assert.deepEqual(sections, ["In focus", "guest", "world", "robot", "Sensor values", "Requirements", "Signals", "Topics", "Code", "Log"]);
   assert.deepEqual(lanes.filter((l) => l.section === "In focus").map((l) => l.label), ["R1", "distance(guest.hand, robot.palm)"]);
   assert.deepEqual(lanes.filter((l) => l.section === "robot").map((l) => l.label), ["state", "commands"]);
-  assert.deepEqual(lanes.filter((l) => l.section === "Topics").map((l) => l.label), ["← /scan", "→ /cmd_vel"]);
+  assert.deepEqual(lanes.filter((l) => l.section === "Topics").map((l) => l.label), ["→ /scan", "← /scan", "→ /cmd_vel", "→ /grip", "← /grip", "← /grip"]);
+  assert.deepEqual(lanes.filter((l) => l.section === "Code").map((l) => l.label), ["robot, MainThread", "robot, Thread-1"]);
 });
 
 test("lanes lie below each other without gaps or overlaps, and closed sections have only their heads", () => {

@@ -56,9 +56,9 @@ pub fn compare(
             again.run(if is_backwards { &backwards } else { tests }, |done| {
                 let stem = done.result.name.file_stem();
                 let name = done.result.name.to_string();
-                let before = files::read(&recording(first, &stem))?;
+                let before = files::read_whole(&recording(first, &stem))?;
                 let output =
-                    files::read(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
+                    files::read_whole(&first.join("output").join(format!("{stem}.txt"))).unwrap_or_default();
                 let difference = difference(&before, done.recording)
                     .or_else(|| output_difference(&output, &output_text(done.output)))
                     .or_else(|| result_difference(known.get(&name)?, &result_text(done.result)));

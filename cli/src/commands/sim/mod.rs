@@ -262,7 +262,7 @@ fn publish(
     if args.replays == ReplaysArg::Failing {
         shown::keep_failing(results, &to)?;
     }
-    let replays = shown::make(campaign.program, results, &to);
+    let replays = shown::make(campaign.program, &campaign.dir, results, &to);
     files::write(&to.join("report.html"), &shown::page(results, replays.as_ref()))?;
     folder.publish(&REPORTS)
 }

@@ -17,7 +17,7 @@ use crate::{
         AwaitedPort, GoalEnd, MessageText, PortDeclaration, PortHistory, PortKind, PortListing,
         QosDurability, QosPolicy,
     },
-    said::{SaidHistory, SaidRecorder},
+    said::{MessagePart, SaidHistory, SaidRecorder},
 };
 
 /// A program may have so many ports open, and so many calls under way.
@@ -190,7 +190,7 @@ impl MessageGraph {
         let at = self.port(program, port)?;
         let publisher = self.of_kind(at, PortKind::Publisher)?.clone();
         if let Some(recorder) = &mut self.recorder {
-            recorder.sent(&publisher, program < self.outside, message);
+            recorder.sent(&publisher, program < self.outside, MessagePart::Message, message);
         }
         if let Some(own) = self.ports.get_mut(at).filter(|p| p.declared.kept > 0) {
             own.kept.push_back(message.clone());
@@ -245,7 +245,7 @@ impl MessageGraph {
             return Ok(vec![told(program, SystemArrival::Answered { call, answer: Err(why) })]);
         };
         if let Some(recorder) = &mut self.recorder {
-            recorder.sent(&client, program < self.outside, &message);
+            recorder.sent(&client, program < self.outside, MessagePart::Request, &message);
         }
         self.made += 1;
         let id = self.made;
@@ -261,6 +261,10 @@ impl MessageGraph {
         call: u64,
         answer: Result<MessageText, String>,
     ) -> GraphOutcome {
+        self.say(program, call, MessagePart::Answer, || match &answer {
+            Ok(message) => message.clone(),
+            Err(why) => format!("no answer: {why}").into(),
+        });
         let open = self.served(program, call)?;
         let out = told(open.client, SystemArrival::Answered { call: open.call, answer });
         self.calls.remove(&call);
@@ -279,6 +283,7 @@ impl MessageGraph {
     /// It says how far a goal has come.
     pub fn feedback(&mut self, program: ProgramIndex, call: u64, message: MessageText) -> GraphOutcome {
         let (client, number, _) = self.goal(program, call)?;
+        self.say(program, call, MessagePart::Feedback, || message.clone());
         Ok(vec![told(client, SystemArrival::Feedback { call: number, message })])
     }
 
@@ -305,6 +310,7 @@ impl MessageGraph {
         (message, text): (MessageText, String),
     ) -> GraphOutcome {
         let (client, number, _) = self.goal(program, call)?;
+        self.say(program, call, MessagePart::Answer, || format!("{}: {message}", end.word()).into());
         self.calls.remove(&call);
         Ok(vec![told(client, SystemArrival::Finished { call: number, end, message, text })])
     }
@@ -332,6 +338,22 @@ impl MessageGraph {
             out.push(told(open.server, SystemArrival::Canceled { port: open.server_port, call: *id }));
         }
         Ok(out)
+    }
+
+    /// Writes down what a server says about a call, if somebody asks for that.
+    fn say(
+        &mut self,
+        program: ProgramIndex,
+        call: u64,
+        part: MessagePart,
+        message: impl FnOnce() -> MessageText,
+    ) {
+        let Some(recorder) = &mut self.recorder else { return };
+        let Some(open) = self.calls.get(&call).filter(|open| open.server == program) else { return };
+        let is_server = |p: &&OpenPort| p.program == program && p.declared.port == open.server_port;
+        if let Some(server) = self.ports.iter().find(is_server) {
+            recorder.sent(&server.declared, program < self.outside, part, &message());
+        }
     }
 
     // ── what is there ──

@@ -40,6 +40,7 @@ pub fn launch(words: &[&str]) -> LaunchSpec {
         seed: 17,
         hash_seed: 17,
         coverage: Vec::new(),
+        lines: false,
         env: plain_environment(),
         middleware: None,
         variables: Vec::new(),

@@ -1,5 +1,7 @@
 //! A recording as a document: what can be shown of it is, and the rest is named in the document's notes.
 
+mod changed;
+mod code;
 mod measure;
 mod run;
 mod scene;
@@ -53,8 +55,9 @@ pub fn replay(program: &Program, file: &RecordingFile) -> Result<ViewDocument, S
         }
     };
     let scene = shown_scene(program, file, &mut notes);
+    let (files, code) = code::tracks(file, &mut notes);
     let run = ReplayedRun { program, scene, file, is_whole: ended != RunEnd::Error, trace, ended };
-    Ok(document(&run, header, error, notes))
+    Ok(ViewDocument { files, code, ..document(&run, header, error, notes) })
 }
 
 fn document(
@@ -119,11 +122,7 @@ fn shown_scene(program: &Program, file: &RecordingFile, notes: &mut Vec<String>)
         }
         return now;
     };
-    if *then != now {
-        notes.push(
-            "The world of the scenario has changed since: the one of the recording is shown.".to_owned(),
-        );
-    }
+    notes.extend(changed::said(then, &now));
     then.clone()
 }
 

@@ -1,13 +1,13 @@
 //! Events and state machines of a recording.
 
 use hrdsl_ir::{Event, EventId, Program, Provenance, Role};
-use hrdsl_recording::message::RecordedTopic;
+use hrdsl_recording::message::{RecordedTopic, TopicPart};
 use hrdsl_trace::{MachineStep, TraceStepKind, print};
 
 use super::run::{ReplayedRun, tick};
 use crate::{
     columns::differences,
-    document::{EventKind, MachineTrack, TopicDirection, TopicTrack, ViewEvent},
+    document::{EventKind, MachineTrack, MessageRole, TopicDirection, TopicTrack, ViewEvent},
 };
 
 pub(super) fn events(run: &ReplayedRun<'_>) -> Vec<ViewEvent> {
@@ -38,6 +38,12 @@ pub(super) fn topics(run: &ReplayedRun<'_>) -> Vec<TopicTrack> {
         name: topic.name.clone(),
         interface: (!topic.interface.is_empty()).then(|| topic.interface.clone()),
         direction: if topic.outward { TopicDirection::Out } else { TopicDirection::In },
+        role: match topic.part {
+            TopicPart::Message => None,
+            TopicPart::Request => Some(MessageRole::Request),
+            TopicPart::Answer => Some(MessageRole::Answer),
+            TopicPart::Feedback => Some(MessageRole::Feedback),
+        },
         t: differences(topic.times.iter().map(|time| tick(*time).cast_signed())),
         text: topic.texts.clone(),
     };
