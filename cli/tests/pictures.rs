@@ -94,7 +94,7 @@ struct DocumentPicture {
 
 const HANDOVER: &str = "-n 3 --suite bdi_tests --test bdi_tests.t002";
 const FALL: &str = "--suite bdi_tests --test bdi_tests.t006";
-const LATE: &str = "--suite bdi_tests --test bdi_tests.t003";
+const LATE: &str = "--suite bdi_tests --test bdi_tests.t016";
 
 const fn picture(
     file: &'static str,
