@@ -14,6 +14,10 @@ use super::state::{
 };
 use crate::math::{SpaceVector, from_vector};
 
+/// Deeper, m, the points of a contact are not taken at their word: those of round bodies are the corners of the polygons that the engine takes them
+/// for, and of two cylinders that cross may be centimetres in each other where the bodies are not. Then the shapes are asked.
+const DOUBTED: f64 = 2e-3;
+
 /// A contact of one body with another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pressing {
@@ -95,6 +99,9 @@ impl PhysicsAdapter {
             let (Some(a), Some(b)) = (number(pair.collider1), number(pair.collider2)) else { continue };
             if depth > 0.0 {
                 let is_own = self.robots.get(a) == self.robots.get(b);
+                let (one, other) = (body_id(a), body_id(b));
+                let depth =
+                    if depth > DOUBTED { self.depth(one, &self.pose(one), other).min(depth) } else { depth };
                 accuracy.look_at_depth(depth, (a, b), is_own);
             }
             if is_active && (self.is_solved(a) || self.is_solved(b)) {
