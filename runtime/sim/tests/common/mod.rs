@@ -315,5 +315,5 @@ pub fn two_masses_pushed_late(
     let reduced = 1.0 / (1.0 / robot + 1.0 / region);
     let push = drive * reduced / robot;
     let phase = late * (stiffness / reduced).sqrt();
-    push + (speed * (stiffness * reduced).sqrt() - push * phase.sin()).hypot(push * phase.cos())
+    push + (speed * (stiffness * reduced).sqrt() - push * libm::sin(phase)).hypot(push * libm::cos(phase))
 }
