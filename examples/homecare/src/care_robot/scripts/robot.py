@@ -29,7 +29,7 @@ from care_robot.msg import Status
 PLACES = {
     "recharge": (1.35, 0.015, None),
     "fridge": (-2.8, 0.405, 3.1416),
-    "sink": (-2.03, 3.055, 1.5708),
+    "sink": (-2.03, 2.95, 1.5708),
     "table": (-2.4, -3.95, 3.1416),
 }
 CENTRE = (-0.25, -0.5)  # of the room, on the way to and from the table
