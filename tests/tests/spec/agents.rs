@@ -66,7 +66,7 @@ pub fn printed(program: &Program, text: &str, (agents, set): &Cast, cycles: u64)
 
 /// ` (line 12)` after a failure.
 fn place(line: &LogLine, text: &str) -> String {
-    let failed = line.text.split(' ').any(|word| word == "failed");
+    let failed = line.kind == "failed";
     let number =
         |span: &Span| text.as_bytes()[..span.start as usize].iter().filter(|b| **b == b'\n').count() + 1;
     line.origin.as_ref().filter(|_| failed).map_or_else(String::new, |s| format!(" (line {})", number(s)))
