@@ -89,13 +89,12 @@ class Port:
 
     def close(self) -> None:
         """Nothing arrives any more, and nothing can be sent."""
-        exchange, self._exchange = self._exchange, None
-        if exchange is not None:
-            exchange.ports.pop(self.number, None)
+        if self._exchange is not None:
+            self.forget()
             self._tell(b'{"request":"close","port":%d}\n' % self.number, self)
 
     def forget(self) -> None:
-        """Nothing can be sent: it was refused."""
+        """Nothing arrives any more, and nothing can be sent; the harness does not hear of it, as of a port that it has refused."""
         exchange, self._exchange = self._exchange, None
         if exchange is not None:
             exchange.ports.pop(self.number, None)

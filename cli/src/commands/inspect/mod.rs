@@ -130,7 +130,8 @@ pub fn run(args: &InspectArgs) -> Result<CommandExit, CommandFault> {
             return Err(format!("no agent `{agent}` in the suite; it has: {}", names.join(", ")));
         }
     }
-    let detail = match (args.end || args.at.is_some(), args.steps) {
+    let only_standing = args.end || args.at.is_some();
+    let detail = match (only_standing, args.steps) {
         (true, _) => LogDetail::Failures,
         (false, true) => LogDetail::Steps,
         (false, false) => LogDetail::Reasons,
@@ -141,7 +142,7 @@ pub fn run(args: &InspectArgs) -> Result<CommandExit, CommandFault> {
     let place = |span: Span| compilation.files.place(span);
     let end = ModelRunEnd::of(&inspection, &picked, &place);
     let end = if stop < horizon { end.under_way() } else { end };
-    match (args.json, args.end || args.at.is_some()) {
+    match (args.json, only_standing) {
         (true, true) => terminal::print_data(&(json(&end)? + "\n"))?,
         (true, false) => terminal::print_data(&json_lines(&inspection, &picked, &place)?)?,
         (false, only_end) => {
