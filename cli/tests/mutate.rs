@@ -55,7 +55,10 @@ fn each_fate_is_told_and_what_would_notice_a_survivor() {
 
     let killed = mutant(&found, 23, "emit is not called");
     assert_eq!(killed["fate"], "killed");
-    assert_eq!(killed["noticed"], json!([{ "test": "lamp.once", "oracles": ["requirement R1"] }]));
+    assert_eq!(
+        killed["noticed"],
+        json!([{ "test": "lamp.once", "oracles": ["requirement R1"], "method": "hand" }])
+    );
     assert_eq!((&killed["reached"], &killed["ran"]), (&json!(2), &json!(1)), "until the first kill");
 
     let late = mutant(&found, 5, "the time is doubled");
@@ -89,6 +92,47 @@ fn each_fate_is_told_and_what_would_notice_a_survivor() {
 }
 
 /// A requirement that was proposed notices the mutant that it was proposed for, and the score says so.
+#[test]
+fn the_report_of_a_campaign_says_which_faults_each_requirement_noticed() {
+    let folder = project();
+    expect_code(&mutate(folder.path(), "tests.hri -j 2 -o mutated"), 0);
+    let hrdsl = |line: &str| {
+        let mut command = command();
+        command.args(line.split_whitespace()).current_dir(folder.path()).output().unwrap()
+    };
+    let page = || fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    expect_code(&hrdsl("sim scenario.hri tests.hri --exit-zero -o out"), 0);
+    assert!(page().contains("Whether a requirement would notice a fault"), "and how to find out");
+    expect_code(&hrdsl("report out --mutants mutated"), 0);
+    let with = page();
+    assert!(with.contains("<a href=\"#faults\">noticed 8 of 43 faults</a>"), "R1's");
+    for text in [
+        "14 of 43 faults noticed.",
+        "robot.py:23</span> dropped: <code>emit is not called</code> <small>lamp.once</small>",
+        "would notice it: <code>asked causes lit within 0.6 s</code>",
+        "no test executes it",
+        "the same as the original’s in 1 more fault",
+    ] {
+        assert!(with.contains(text), "{text}");
+    }
+    expect_code(&hrdsl("report out"), 0);
+    assert_eq!(page(), with, "they are kept with the results");
+    expect_code(&hrdsl("sim scenario.hri tests.hri --exit-zero -o out"), 0);
+    assert!(!page().contains("id=\"faults\""), "another campaign has its own");
+
+    let found = fs::read_to_string(folder.path().join("mutated/mutation.json")).unwrap();
+    let refused = |text: &str, why: &str| {
+        fs::write(folder.path().join("bad.json"), text).unwrap();
+        let out = hrdsl("report out --mutants bad.json");
+        expect_code(&out, 2);
+        assert!(stderr(&out).contains(why), "{}", stderr(&out));
+    };
+    refused(&found.replace("\"version\": 1", "\"version\": 9"), "`hrdsl-mutation` of version 9");
+    refused(&found.replacen("\"scenario\": \"", "\"scenario\": \"x", 1), "the results are of `lamp`");
+    refused(&found[..found.len() / 2], "bad.json: ");
+    refused("{}", "this is `` of version 0");
+}
+
 #[test]
 fn what_is_proposed_notices() {
     let folder = project();

@@ -8,8 +8,10 @@ use std::{
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::{
-    report::{self, PageReplays},
-    results::{CampaignResults, ReplayPair, ShownReplays, ShownRun, TestName, UnreplayedTest},
+    report::{self, PageReplays, PageSupplement},
+    results::{
+        CampaignResults, MutationReport, ReplayPair, ShownReplays, ShownRun, TestName, UnreplayedTest,
+    },
     viewer::{
         ViewDocument,
         columns::{PoseTolerance, coarser},
@@ -208,10 +210,15 @@ pub fn read(results: &Path) -> Option<ShownReplays> {
     shown.ok()
 }
 
-/// The report as a page, with its replays.
+/// The report as a page, with its replays and the faults that its tests would have noticed.
 #[must_use]
-pub fn page(results: &CampaignResults, shown: Option<&ShownReplays>) -> String {
+pub fn page(
+    results: &CampaignResults,
+    shown: Option<&ShownReplays>,
+    faults: Option<&MutationReport>,
+) -> String {
     // Where nothing is shown, the viewer would be of no use.
     let viewer = shown.filter(|shown| !shown.pairs.is_empty()).map(|_| packed_page()).unwrap_or_default();
-    report::html_with(results, shown.map(|shown| PageReplays { shown, viewer: &viewer }).as_ref())
+    let replays = shown.map(|shown| PageReplays { shown, viewer: &viewer });
+    report::html_with(results, PageSupplement { replays: replays.as_ref(), faults })
 }

@@ -4,13 +4,13 @@ use hrdsl_campaign::{ListedMutant, SingleRun, StopFlag};
 use hrdsl_conformance::{ConformanceChecker, ConformanceOptions};
 use hrdsl_ir::Program;
 use hrdsl_judge::recorded_run;
-use hrdsl_results::{ConformanceVerdict, RunEnd, TestResult, TraceJudgement};
+use hrdsl_results::{ConformanceVerdict, MutantFate, NoticedTest, RunEnd, TestResult, TraceJudgement};
 use hrdsl_trace::Trace;
 
 use crate::{
     models::ModelMutant,
     oracle::noticed_by,
-    outcome::{MutantFate, MutantOutcome, NoticedTest},
+    outcome::MutantOutcome,
     plan::{MutationPlan, PlannedMutant},
 };
 

@@ -2,42 +2,31 @@
 
 use hrdsl_ir::{Program, value::seconds};
 use hrdsl_judge::recorded_run;
-use hrdsl_results::TestName;
+use hrdsl_results::{RunDifference, TestName};
 use hrdsl_trace::{Trace, TraceStep, print};
-use serde::Serialize;
 
-/// The first step in which two runs of a test differ.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RunDifference {
-    pub test: TestName,
-    /// Of the earlier of the two steps, in seconds.
-    pub time: f64,
-    /// What the original does there, for people; its end if it does no more.
-    pub original: String,
-    /// What the mutant does.
-    pub mutant: String,
-}
-
-impl RunDifference {
-    /// The first difference of two recordings of a test, the original's and the mutant's; `None` if there is none in what happens, or one of
-    /// them cannot be read.
-    #[must_use]
-    pub fn find(program: &Program, test: &TestName, (original, mutant): (&str, &str)) -> Option<Self> {
-        let read = |text: &str| recorded_run(program, text.as_bytes(), false).ok();
-        let ((original, _), (mutant, _)) = (read(original)?, read(mutant)?);
-        let same = original.steps.iter().zip(&mutant.steps).take_while(|(a, b)| a == b).count();
-        let (before, now) = (original.steps.get(same), mutant.steps.get(same));
-        if before.is_none() && now.is_none() && original.end == mutant.end {
-            return None;
-        }
-        let time = |step: Option<&TraceStep>, trace: &Trace| step.map_or(trace.end, |step| step.time);
-        Some(Self {
-            test: test.clone(),
-            time: seconds(time(before, &original).min(time(now, &mutant))),
-            original: shown(program, before, &original),
-            mutant: shown(program, now, &mutant),
-        })
+/// The first difference of two recordings of a test, the original's and the mutant's; `None` if there is none in what happens, or one of
+/// them cannot be read.
+#[must_use]
+pub fn first_difference(
+    program: &Program,
+    test: &TestName,
+    (original, mutant): (&str, &str),
+) -> Option<RunDifference> {
+    let read = |text: &str| recorded_run(program, text.as_bytes(), false).ok();
+    let ((original, _), (mutant, _)) = (read(original)?, read(mutant)?);
+    let same = original.steps.iter().zip(&mutant.steps).take_while(|(a, b)| a == b).count();
+    let (before, now) = (original.steps.get(same), mutant.steps.get(same));
+    if before.is_none() && now.is_none() && original.end == mutant.end {
+        return None;
     }
+    let time = |step: Option<&TraceStep>, trace: &Trace| step.map_or(trace.end, |step| step.time);
+    Some(RunDifference {
+        test: test.clone(),
+        time: seconds(time(before, &original).min(time(now, &mutant))),
+        original: shown(program, before, &original),
+        mutant: shown(program, now, &mutant),
+    })
 }
 
 fn shown(program: &Program, step: Option<&TraceStep>, trace: &Trace) -> String {

@@ -8,7 +8,7 @@
 //! 4. [`run_plan`] runs each mutant against the tests that reach it, until the first that notices it, or against all;
 //! 5. [`propose`] looks for requirements that hold in all runs of the original and fail in the run of a mutant that survived, and
 //!    tries each before it is proposed;
-//! 6. [`MutationReport::new`] adds up.
+//! 6. [`add_up`] makes a [`MutationReport`](hrdsl_results::MutationReport) of it.
 //!
 //! [`ModelMutant`]s are of the models that play the system; [`RecordedRuns`] hold what the code did against them, and nothing is run.
 //!
@@ -27,11 +27,10 @@ mod report;
 mod run;
 
 pub use contradict::RecordedRuns;
-pub use difference::RunDifference;
 pub use models::{MODEL_OPERATORS, ModelMutant};
-pub use oracle::{MutantOracle, noticed_by};
-pub use outcome::{MutantFate, MutantOutcome, NoticedTest, ProposedRequirement};
+pub use oracle::noticed_by;
+pub use outcome::MutantOutcome;
 pub use plan::{MutantSample, MutationPlan, PlannedMutant};
 pub use propose::propose;
-pub use report::{MethodScore, MutantCounts, MutantReport, MutationAbout, MutationReport, OracleScore};
+pub use report::add_up;
 pub use run::{MutationCampaign, run_controls, run_originals, run_plan, run_sentinels};

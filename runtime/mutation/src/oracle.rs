@@ -1,40 +1,6 @@
 //! What can notice a mutant, and whether it does in a test.
 
-use std::fmt;
-
-use hrdsl_results::{ConformanceOutcome, PredictionOutcome, RequirementName, TestResult, VerdictOutcome};
-use serde::{Serialize, Serializer};
-
-/// What tells a run of a mutant from the original's run of the same test, for the worse.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum MutantOracle {
-    /// A requirement is violated.
-    Requirement(RequirementName),
-    /// The run leaves what its test's model predicted.
-    Prediction,
-    /// The code does what its model does not allow.
-    Conformance,
-    /// The test breaks off: the code crashed, or went over a limit.
-    Error,
-}
-
-impl fmt::Display for MutantOracle {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            MutantOracle::Requirement(name) => write!(f, "requirement {}", name.as_str()),
-            MutantOracle::Prediction => f.write_str("prediction"),
-            MutantOracle::Conformance => f.write_str("conformance"),
-            MutantOracle::Error => f.write_str("error"),
-        }
-    }
-}
-
-/// As people read it.
-impl Serialize for MutantOracle {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.collect_str(self)
-    }
-}
+use hrdsl_results::{ConformanceOutcome, MutantOracle, PredictionOutcome, TestResult, VerdictOutcome};
 
 /// The oracles by which a mutant comes off worse than the original in the same test, in order. What the original is blamed for already
 /// notices nothing.

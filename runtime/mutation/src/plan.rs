@@ -1,11 +1,9 @@
 //! Which mutants are run, and against which tests.
 
 use hrdsl_campaign::{ListedMutant, SingleRun};
-use hrdsl_results::FileCoverage;
+use hrdsl_results::{FileCoverage, MutantFate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-use crate::outcome::MutantFate;
 
 /// Some of the mutants, drawn by a seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,11 +6,11 @@ use hrdsl_campaign::SingleRun;
 use hrdsl_conformance::ConformanceOptions;
 use hrdsl_ir::Program;
 use hrdsl_judge::{judge_recording, recorded_run};
-use hrdsl_results::{VerdictOutcome, VerdictResult};
+use hrdsl_results::{ProposedRequirement, VerdictOutcome, VerdictResult};
 
 use crate::{
     facts::{CommonFacts, RunFacts},
-    outcome::{MutantOutcome, ProposedRequirement},
+    outcome::MutantOutcome,
 };
 
 /// What the names of requirements begin with that are tried.

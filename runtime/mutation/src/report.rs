@@ -2,192 +2,61 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_results::TestMethod;
-use serde::Serialize;
+use hrdsl_results::{
+    MUTATION_FORMAT, MUTATION_VERSION, MethodScore, MutantCounts, MutantFate, MutantOracle, MutantReport,
+    MutationAbout, MutationReport, OracleScore, TestMethod,
+};
 
 use crate::{
-    difference::RunDifference,
-    oracle::MutantOracle,
-    outcome::{MutantFate, MutantOutcome, NoticedTest, ProposedRequirement},
+    outcome::MutantOutcome,
     plan::{MutantSample, MutationPlan},
 };
 
-/// What kind of file `mutation.json` is: its `format`.
-const FORMAT: &str = "hrdsl-mutation";
-/// The version of the format.
-const VERSION: u32 = 1;
 const SECONDS_PER_HOUR: f64 = 3600.0;
 
-/// What was asked for.
-#[derive(Clone, Debug, Serialize)]
-pub struct MutationAbout {
-    pub scenario: String,
-    /// The system under test.
-    pub system: String,
-    /// How many tests ran on the original.
-    pub tests: usize,
-    /// Those of them that broke off or violated a requirement already.
-    pub failing: usize,
-    /// The seed of the campaign.
-    pub seed: u64,
-    /// Whether each mutant ran against all tests that reach it.
-    pub matrix: bool,
-    /// Whether mutants are of the models that play the system, not of its code.
-    pub models: bool,
-    /// The operators that were asked for; empty: all.
-    pub operators: Vec<String>,
-}
-
-/// How many mutants came to what.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct MutantCounts {
-    pub killed: usize,
-    pub survived: usize,
-    pub not_distinguished: usize,
-    pub not_reached: usize,
-    pub equivalent: usize,
-    pub duplicate: usize,
-    pub invalid: usize,
-    pub not_run: usize,
-}
-
-/// How many mutants an oracle noticed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct OracleScore {
-    pub oracle: MutantOracle,
-    pub killed: usize,
-    /// By which method's tests; a mutant counts once for each.
-    pub methods: BTreeMap<TestMethod, usize>,
-    /// Mutants that no other oracle noticed in the tests that ran.
-    pub alone: usize,
-}
-
-/// How many mutants the tests of a method noticed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct MethodScore {
-    pub method: TestMethod,
-    pub killed: usize,
-    /// Hours that its tests simulated on mutants.
-    pub simulated_hours: f64,
-    /// `None` if nothing was simulated.
-    pub killed_per_hour: Option<f64>,
-}
-
-/// A mutant, and what became of it.
-#[derive(Clone, Debug, Serialize)]
-pub struct MutantReport {
-    pub file: String,
-    pub line: u32,
-    pub number: u32,
-    pub operator: String,
-    pub what: String,
-    pub fate: MutantFate,
-    /// How many tests reach it.
-    pub reached: usize,
-    /// How many of them ran.
-    pub ran: usize,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub noticed: Vec<NoticedTest>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub difference: Option<RunDifference>,
-    /// The first that notice, in order of the times at which they do.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub proposals: Vec<ProposedRequirement>,
-}
-
-/// What `hrdsl mutate` found; the same for any number of workers.
-#[derive(Clone, Debug, Serialize)]
-pub struct MutationReport {
-    pub format: &'static str,
-    pub version: u32,
-    pub hrdsl: &'static str,
-    #[serde(flatten)]
-    pub about: MutationAbout,
-    pub interrupted: bool,
-    /// Mutants that are worth a run.
-    pub worth: usize,
-    /// How many of them were drawn, if not all were.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub drawn: Option<usize>,
-    pub counts: MutantCounts,
-    /// Killed, of those killed, survived or not reached; `None` if there are none.
-    pub score: Option<f64>,
-    pub oracles: Vec<OracleScore>,
-    pub methods: Vec<MethodScore>,
-    /// A mutant of each file that raises at once.
-    pub sentinels: Vec<MutantReport>,
-    pub mutants: Vec<MutantReport>,
-}
-
-impl MutationReport {
-    /// Adds up what became of the mutants.
-    #[must_use]
-    pub fn new(
-        about: MutationAbout,
-        plan: &MutationPlan,
-        sample: Option<MutantSample>,
-        sentinels: Vec<MutantOutcome>,
-        outcomes: Vec<MutantOutcome>,
-    ) -> Self {
-        let counts = counts(&outcomes);
-        let noticeable = counts.killed + counts.survived + counts.not_reached;
-        let unknown = sentinels.iter().any(|sentinel| sentinel.fate == MutantFate::NotRun);
-        Self {
-            format: FORMAT,
-            version: VERSION,
-            hrdsl: env!("CARGO_PKG_VERSION"),
-            about,
-            interrupted: unknown || counts.not_run > 0,
-            worth: plan.worth,
-            drawn: sample.map(|sample| sample.count.min(plan.worth)),
-            score: (noticeable > 0).then(|| counts.killed as f64 / noticeable as f64),
-            counts,
-            oracles: oracles(&outcomes),
-            methods: methods(&outcomes),
-            sentinels: sentinels.into_iter().map(MutantReport::of).collect(),
-            mutants: outcomes.into_iter().map(MutantReport::of).collect(),
-        }
-    }
-
-    /// The report as `mutation.json` has it.
-    ///
-    /// # Errors
-    /// A number that JSON cannot hold.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        Ok(serde_json::to_string_pretty(self)? + "\n")
-    }
-
-    /// The files whose sentinel no test noticed: of them the tests measure nothing.
-    pub fn unmeasured(&self) -> impl Iterator<Item = &str> {
-        let is_alive = |sentinel: &&MutantReport| match sentinel.fate {
-            MutantFate::Killed | MutantFate::NotRun => false,
-            MutantFate::Survived
-            | MutantFate::NotDistinguished
-            | MutantFate::NotReached
-            | MutantFate::Equivalent
-            | MutantFate::Duplicate
-            | MutantFate::Invalid => true,
-        };
-        self.sentinels.iter().filter(is_alive).map(|sentinel| sentinel.file.as_str())
+/// Adds up what became of the mutants.
+#[must_use]
+pub fn add_up(
+    about: MutationAbout,
+    plan: &MutationPlan,
+    sample: Option<MutantSample>,
+    sentinels: Vec<MutantOutcome>,
+    outcomes: Vec<MutantOutcome>,
+) -> MutationReport {
+    let counts = counts(&outcomes);
+    let noticeable = counts.killed + counts.survived + counts.not_reached;
+    let unknown = sentinels.iter().any(|sentinel| sentinel.fate == MutantFate::NotRun);
+    MutationReport {
+        format: MUTATION_FORMAT.to_owned(),
+        version: MUTATION_VERSION,
+        hrdsl: env!("CARGO_PKG_VERSION").to_owned(),
+        about,
+        interrupted: unknown || counts.not_run > 0,
+        worth: plan.worth,
+        drawn: sample.map(|sample| sample.count.min(plan.worth)),
+        score: (noticeable > 0).then(|| counts.killed as f64 / noticeable as f64),
+        counts,
+        oracles: oracles(&outcomes),
+        methods: methods(&outcomes),
+        sentinels: sentinels.into_iter().map(reported).collect(),
+        mutants: outcomes.into_iter().map(reported).collect(),
     }
 }
 
-impl MutantReport {
-    fn of(outcome: MutantOutcome) -> Self {
-        let MutantOutcome { mutant, fate, reached, ran, noticed, difference, proposals, .. } = outcome;
-        Self {
-            file: mutant.file,
-            line: mutant.line,
-            number: mutant.number,
-            operator: mutant.operator,
-            what: mutant.what,
-            fate,
-            reached,
-            ran,
-            noticed,
-            difference,
-            proposals,
-        }
+fn reported(outcome: MutantOutcome) -> MutantReport {
+    let MutantOutcome { mutant, fate, reached, ran, noticed, difference, proposals, .. } = outcome;
+    MutantReport {
+        file: mutant.file,
+        line: mutant.line,
+        number: mutant.number,
+        operator: mutant.operator,
+        what: mutant.what,
+        fate,
+        reached,
+        ran,
+        noticed,
+        difference,
+        proposals,
     }
 }
 
@@ -255,6 +124,7 @@ fn methods(outcomes: &[MutantOutcome]) -> Vec<MethodScore> {
 #[cfg(test)]
 mod tests {
     use hrdsl_campaign::ListedMutant;
+    use hrdsl_results::NoticedTest;
 
     use super::*;
 
@@ -307,7 +177,7 @@ mod tests {
         let report = |fates: &[MutantFate]| {
             let outcomes = fates.iter().map(|fate| outcome(*fate, Vec::new())).collect();
             let sentinels = vec![outcome(MutantFate::NotDistinguished, Vec::new())];
-            MutationReport::new(about.clone(), &MutationPlan::default(), None, sentinels, outcomes)
+            add_up(about.clone(), &MutationPlan::default(), None, sentinels, outcomes)
         };
         let some = report(&[
             MutantFate::Killed,

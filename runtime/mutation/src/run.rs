@@ -11,12 +11,12 @@ use std::{
 
 use hrdsl_campaign::{CampaignSetup, CompiledMutants, LaunchMutant, ListedMutant, SingleRun, SingleRunner};
 use hrdsl_ir::test::Test;
-use hrdsl_results::TestMethod;
+use hrdsl_results::{MutantFate, MutantOracle, NoticedTest, TestMethod};
 
 use crate::{
-    difference::RunDifference,
-    oracle::{MutantOracle, noticed_by},
-    outcome::{MutantFate, MutantOutcome, NoticedTest},
+    difference::first_difference,
+    oracle::noticed_by,
+    outcome::MutantOutcome,
     plan::{MutationPlan, PlannedMutant},
 };
 
@@ -186,7 +186,7 @@ fn run_one(
         (MutantFate::Survived, Some((at, recording))) => {
             let original = setup.originals.get(*at);
             outcome.difference = original
-                .and_then(|run| RunDifference::find(program, &run.result.name, (&run.recording, recording)));
+                .and_then(|run| first_difference(program, &run.result.name, (&run.recording, recording)));
         }
         // What another test saw matters no more, once one has noticed it.
         _ => outcome.other_run = None,

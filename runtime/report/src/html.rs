@@ -5,6 +5,7 @@
 
 mod code;
 mod drawing;
+mod faults;
 mod interfaces;
 mod machines;
 mod model;
@@ -14,8 +15,8 @@ mod tests_list;
 mod violations;
 
 use hrdsl_results::{
-    BinResult, CampaignResults, GoalReport, GoalStatus, RequirementResult, SuiteInfo, TestName,
-    VerdictOutcome as Outcome, VerdictTally,
+    BinResult, CampaignResults, GoalReport, GoalStatus, MutationReport, RequirementResult, SuiteInfo,
+    TestName, VerdictOutcome as Outcome, VerdictTally,
 };
 use minijinja::{AutoEscape, Environment, Output, State, Value, escape_formatter};
 use serde::Serialize;
@@ -29,16 +30,25 @@ use crate::{
     text,
 };
 
+/// What a page shows besides the results of a campaign.
+#[derive(Clone, Copy, Default)]
+pub struct PageSupplement<'a> {
+    /// Failures that can be replayed.
+    pub replays: Option<&'a PageReplays<'a>>,
+    /// Which faults in the code the tests would have noticed.
+    pub faults: Option<&'a MutationReport>,
+}
+
 /// The results as one page.
 #[must_use]
 pub fn html(results: &CampaignResults) -> String {
-    html_with(results, None)
+    html_with(results, PageSupplement::default())
 }
 
-/// The results as one page, on which failures can be replayed.
+/// The results as one page, with what is known besides.
 #[must_use]
-pub fn html_with(results: &CampaignResults, replays: Option<&PageReplays<'_>>) -> String {
-    let page = ReportPage::of(results, replays);
+pub fn html_with(results: &CampaignResults, besides: PageSupplement<'_>) -> String {
+    let page = ReportPage::of(results, besides);
     let environment = match environment() {
         Ok(environment) => environment,
         Err(e) => return broken(&e),
@@ -95,6 +105,7 @@ struct ReportPage {
     columns: Vec<RequirementColumn>,
     requirements: Vec<RequirementRow>,
     violations: Vec<violations::ViolatedRequirement>,
+    faults: Option<faults::FaultSection>,
     bins: Vec<BinGroup>,
     bins_hit: Vec<usize>,
     bins_total: usize,
@@ -156,10 +167,14 @@ struct RequirementRow {
     title: String,
     text: String,
     standing: String,
+    /// How many faults in the code it noticed; empty if that is not known.
+    noticed: String,
     /// Its section among the violations, from 1.
     section: usize,
     /// For each suite the number for each column.
     tally: Vec<Vec<u32>>,
+    /// How often it was triggered, in all tests.
+    triggered: u64,
     margin: Option<WorstMargin>,
 }
 
@@ -214,7 +229,7 @@ struct GoalRow {
 }
 
 impl ReportPage {
-    fn of(results: &CampaignResults, replays: Option<&PageReplays<'_>>) -> Self {
+    fn of(results: &CampaignResults, PageSupplement { replays, faults }: PageSupplement<'_>) -> Self {
         let places = facts::places(results);
         let link = |name: &TestName| TestLink {
             name: facts::short(results, name).to_owned(),
@@ -232,8 +247,9 @@ impl ReportPage {
             suites: suites.clone().map(|i| suite(results, i)).collect(),
             has_code: facts::code(results).lines_total > 0,
             columns: Outcome::ALL.into_iter().map(column).collect(),
-            requirements: rows(results, &link),
+            requirements: rows(results, faults, &link),
             violations: violations::all(results, replays, &link),
+            faults: faults.map(faults::section),
             bins: bin_groups(results, &link),
             bins_hit: suites.map(|i| facts::bins_hit(results, i)).collect(),
             bins_total: results.bins.len(),
@@ -342,7 +358,11 @@ fn suite(results: &CampaignResults, index: usize) -> SuiteSummary {
     }
 }
 
-fn rows(results: &CampaignResults, link: &dyn Fn(&TestName) -> TestLink) -> Vec<RequirementRow> {
+fn rows(
+    results: &CampaignResults,
+    faults: Option<&MutationReport>,
+    link: &dyn Fn(&TestName) -> TestLink,
+) -> Vec<RequirementRow> {
     let mut section = 0;
     let row = |requirement: &RequirementResult| {
         let standing = facts::standing(requirement);
@@ -361,8 +381,10 @@ fn rows(results: &CampaignResults, link: &dyn Fn(&TestName) -> TestLink) -> Vec<
             title: requirement.title.clone(),
             text: requirement.text.clone(),
             standing: in_words(standing, &total),
+            noticed: faults.map_or_else(String::new, |found| faults::noticed_by(&requirement.name, found)),
             section: if is_violated { section } else { 0 },
             tally: tally.collect(),
+            triggered: facts::triggered(results, requirement),
             margin: requirement.worst_margin.as_ref().map(|m| WorstMargin {
                 value: text::margin(m.value, &m.unit),
                 is_negative: m.value < 0.0,

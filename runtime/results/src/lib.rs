@@ -9,6 +9,7 @@
 //! - [`TestResult`] is one test: how its run ended, and the [`TraceJudgement`] on it.
 //! - [`GeneratedSuite`] is what its tests were made as, before they were run.
 //! - [`ReplayPair`] is a test worth looking at, with one beside it; [`ShownReplays`] are those that a report has on its page.
+//! - [`MutationReport`] is the file `mutation.json`: which faults in the code would have been noticed.
 //! - [`RequirementResult`], [`BinResult`], [`SuiteInfo`], [`CodeFile`], [`MachineResult`] and [`InterfaceWarning`] add up the
 //!   tests.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
@@ -22,6 +23,7 @@ mod interface;
 mod judgement;
 mod log;
 mod machine;
+mod mutation;
 mod names;
 mod prediction;
 mod replays;
@@ -50,6 +52,10 @@ pub use interface::{InterfaceFault, InterfaceRole, InterfaceWarning, UnservedWai
 pub use judgement::{CounterexampleStep, FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult};
 pub use log::{LogCounts, LogSummary, LoggedLevel, LoggedText};
 pub use machine::{MachineCoverage, MachineResult, MachineStateResult, MachineTransitionResult};
+pub use mutation::{
+    MUTATION_FORMAT, MUTATION_VERSION, MethodScore, MutantCounts, MutantFate, MutantOracle, MutantReport,
+    MutationAbout, MutationReport, NoticedTest, OracleScore, ProposedRequirement, RunDifference,
+};
 pub use names::{RequirementName, SuiteName, TestName};
 pub use prediction::{PredictedRun, PredictionOutcome, PredictionVerdict, UnmetAwait};
 pub use replays::{ReplayPair, UnreplayedTest};
@@ -117,6 +123,12 @@ pub enum ResultsError {
     Format,
     #[error("these results have version {0} of the format; this hrdsl reads version {VERSION}")]
     Version(u32),
+    #[error("this is not what `hrdsl mutate` found: {0}")]
+    Mutation(serde_json::Error),
+    #[error(
+        "this is `{0}` of version {1}; this hrdsl reads `{MUTATION_FORMAT}` of version {MUTATION_VERSION}"
+    )]
+    MutationFormat(String, u32),
     #[error("these are not the replays of a report: {0}")]
     Replays(serde_json::Error),
     #[error("these replays are `{0}` of version {1}; this hrdsl reads `hrdsl-replays` of version 1")]

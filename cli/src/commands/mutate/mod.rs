@@ -11,9 +11,10 @@ use hrdsl_ir::{Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{CampaignSetup, CompiledMutants, ListedMutant, SingleRun},
     mutation::{
-        MutantFate, MutantOutcome, MutantSample, MutationAbout, MutationCampaign, MutationPlan,
-        MutationReport, propose, run_controls, run_originals, run_plan, run_sentinels,
+        MutantOutcome, MutantSample, MutationCampaign, MutationPlan, add_up, propose, run_controls,
+        run_originals, run_plan, run_sentinels,
     },
+    results::{MutantFate, MutationAbout, MutationReport},
 };
 
 use super::campaign::{
@@ -257,7 +258,7 @@ fn report(
         models: args.models,
         operators: args.operator.clone(),
     };
-    MutationReport::new(about, &runs.plan, sample(args), runs.sentinels, runs.mutants)
+    add_up(about, &runs.plan, sample(args), runs.sentinels, runs.mutants)
 }
 
 /// Writes and prints the report, and says how it ends.

@@ -2,10 +2,7 @@
 
 use std::fmt::Write as _;
 
-use hrdsl_runtime::{
-    mutation::{MutantFate, MutantReport, MutationReport},
-    results::TestMethod,
-};
+use hrdsl_runtime::results::{MutantFate, MutantReport, MutationReport, TestMethod};
 
 /// The report as text: the same for the same campaign.
 pub fn text(report: &MutationReport) -> String {

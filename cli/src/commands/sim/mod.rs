@@ -263,7 +263,7 @@ fn publish(
         shown::keep_failing(results, &to)?;
     }
     let replays = shown::make(campaign.program, &campaign.dir, results, &to);
-    files::write(&to.join("report.html"), &shown::page(results, replays.as_ref()))?;
+    files::write(&to.join("report.html"), &shown::page(results, replays.as_ref(), None))?;
     folder.publish(&REPORTS)
 }
 

@@ -258,7 +258,10 @@ fn replays_are_opened_by_buttons_and_other_failures_have_their_command() {
     let mut shown = shown(&results);
     let why = "<b>no room".to_owned();
     shown.left_out.push(UnreplayedTest { test: results.tests[3].name.clone(), why });
-    let page = html_with(&results, Some(&PageReplays { shown: &shown, viewer: "CCCC" }));
+    let page = html_with(
+        &results,
+        PageSupplement { replays: Some(&PageReplays { shown: &shown, viewer: "CCCC" }), faults: None },
+    );
     assert_eq!(unbalanced(&page), None);
     for place in 1..=2 {
         assert_eq!(page.matches(&format!(" id=\"replay-{place}\"")).count(), 1);
@@ -292,7 +295,10 @@ fn what_is_wrong_in_the_file_of_replays_does_not_get_into_the_page() {
     shown.runs[0].test = bad.into();
     shown.pairs[0].test = bad.into();
     shown.assets = bad.to_owned();
-    let page = html_with(&results, Some(&PageReplays { shown: &shown, viewer: "CCCC" }));
+    let page = html_with(
+        &results,
+        PageSupplement { replays: Some(&PageReplays { shown: &shown, viewer: "CCCC" }), faults: None },
+    );
     assert_eq!(unbalanced(&page), None);
     assert!(!page.contains("<script>alert") && !page.contains('\u{202e}'));
 }
