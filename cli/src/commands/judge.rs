@@ -5,13 +5,15 @@ use std::{
     fs::File,
     io::{self, BufRead, BufReader, Cursor, Read},
     path::{Path, PathBuf},
+    time::Duration,
 };
 
-use hrdsl_ir::Program;
+use hrdsl_ir::{Nanos, Program};
 use hrdsl_runtime::{
     conformance::ConformanceOptions,
     judge::{
         CampaignOutcome, FinishedTest, JudgedRecording, NamedFormula, UnseenSignal, judge_by_formulas, tally,
+        tell_values_around,
     },
     recording, report,
     results::{
@@ -28,7 +30,7 @@ use crate::{
     fault::CommandFault,
     files, input,
     observation::{ObservationArgs, locate},
-    render, results_folder, terminal,
+    quantity, render, results_folder, terminal,
 };
 
 /// Judge recordings: verdicts, bins and conformance to the model as a campaign gives them, without running anything.
@@ -36,7 +38,7 @@ use crate::{
 /// A recording is a file that `sim` wrote into traces/ or replays/, or that another program wrote in the same form (spec/traces.md).
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json\n  hrdsl judge scenario.hri robot.mcap --latency 50ms\n  hrdsl judge scenario.hri log.jsonl --formula 'always (asked implies eventually[0 s, 10 s] released)'"
+    after_help = "Examples:\n  hrdsl judge scenario.hri hrdsl-out/handover\n  hrdsl judge scenario.hri hrdsl-out/handover/traces/handover.bdi_tests.t017.jsonl\n  hrdsl judge scenario.hri log.jsonl --json\n  hrdsl judge scenario.hri robot.mcap --latency 50ms\n  hrdsl judge scenario.hri log.jsonl --around 2s\n  hrdsl judge scenario.hri log.jsonl --formula 'always (asked implies eventually[0 s, 10 s] released)'"
 )]
 pub struct JudgeArgs {
     /// The scenario.
@@ -55,6 +57,10 @@ pub struct JudgeArgs {
     /// It speaks of the signals and events of the recordings, with windows into the past and the future (spec/metric.md).
     #[arg(long, value_name = "FORMULA")]
     formula: Vec<String>,
+    /// Tell the value of each part of a violated requirement (its events, signals and conditions), from so long before the first violation to so
+    /// long after it, as `2s`.
+    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
+    around: Option<Duration>,
     #[command(flatten)]
     observation: ObservationArgs,
     /// Exit with 0 even if requirements were violated or runs broke off.
@@ -98,12 +104,14 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
         return Ok(CommandExit::Errors);
     };
     let options = args.observation.options(program)?;
+    let around = args.around.map(|time| Nanos::try_from(time.as_nanos())).transpose();
+    let around = around.map_err(|e| format!("--around: {e}"))?;
     let Some(formulas) = formulas(program, &args.formula) else { return Ok(CommandExit::Usage) };
     let mut unseen: BTreeMap<UnseenSignal, usize> = BTreeMap::new();
     let mut tests = Vec::new();
     let mut refused = 0_usize;
     for path in paths(&args.recordings)? {
-        match judged((program, &formulas), &path, (args.changed, &options)) {
+        match judged((program, &formulas), &path, (args.changed, &options, around)) {
             Ok((test, signals)) => {
                 tests.push(test);
                 signals.into_iter().for_each(|signal| *unseen.entry(signal).or_default() += 1);
@@ -127,7 +135,8 @@ pub fn run(args: &JudgeArgs) -> Result<CommandExit, CommandFault> {
     if args.json {
         terminal::print_data(&json(&results)?)?;
     } else if !results.tests.is_empty() {
-        terminal::print(&report::summary_of_recordings(&results, WIDTH, color::stdout_has()))?;
+        let summary = report::summary_of_recordings(&results, WIDTH, color::stdout_has());
+        terminal::print(&(summary + &render::around(&results.tests)))?;
     }
     Ok(if refused > 0 {
         CommandExit::Usage
@@ -197,13 +206,18 @@ fn formulas(program: &Program, texts: &[String]) -> Option<Vec<NamedFormula>> {
 fn judged(
     (program, formulas): (&Program, &[NamedFormula]),
     path: &Path,
-    (changed, options): (bool, &ConformanceOptions),
+    (changed, options, around): (bool, &ConformanceOptions, Option<Nanos>),
 ) -> Result<(FinishedTest, Vec<UnseenSignal>), CommandFault> {
     let again = || opened(path).map_err(io::Error::other);
     let (judged, unseen) =
         judge_by_formulas((program, formulas), &again, changed, options).map_err(|e| e.to_string())?;
     let duration = judged.duration();
-    let JudgedRecording { recorded, judgement, machines } = judged;
+    let JudgedRecording { recorded, mut judgement, machines } = judged;
+    if let Some(around) = around {
+        let source = again().map_err(|e| e.to_string())?;
+        tell_values_around((program, formulas), source, changed, &mut judgement, around)
+            .map_err(|e| e.to_string())?;
+    }
     // What is no test is called as its file is.
     let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let name = TestName::from(recorded.header.test.unwrap_or_else(stem));

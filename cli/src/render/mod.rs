@@ -1,5 +1,6 @@
 //! Diagnostics and pages as output: for people, as JSON, as SARIF.
 
+mod around;
 mod diff;
 mod excerpt;
 mod formula;
@@ -8,6 +9,7 @@ mod json;
 mod page;
 mod sarif;
 
+pub use around::around;
 pub use diff::unified;
 pub use formula::formula;
 pub use human::{SHOWN, diagnostic, totals};

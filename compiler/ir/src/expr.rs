@@ -97,6 +97,38 @@ pub enum NumberFunction {
     Norm,
 }
 
+/// The sign of an operator, and how tightly it binds: from 1, more binds tighter.
+#[must_use]
+pub fn sign(op: BinaryOp) -> (&'static str, u8) {
+    match op {
+        BinaryOp::Or => ("||", 1),
+        BinaryOp::And => ("&&", 2),
+        BinaryOp::Eq => ("==", 4),
+        BinaryOp::Ne => ("!=", 4),
+        BinaryOp::Lt => ("<", 4),
+        BinaryOp::Le => ("<=", 4),
+        BinaryOp::Gt => (">", 4),
+        BinaryOp::Ge => (">=", 4),
+        BinaryOp::Add => ("+", 5),
+        BinaryOp::Sub => ("-", 5),
+        BinaryOp::Mul => ("*", 6),
+        BinaryOp::Div => ("/", 6),
+        BinaryOp::Rem => ("%", 6),
+    }
+}
+
+impl NumberFunction {
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            NumberFunction::Abs => "abs",
+            NumberFunction::Min => "min",
+            NumberFunction::Max => "max",
+            NumberFunction::Norm => "norm",
+        }
+    }
+}
+
 impl std::error::Error for EvalError {}
 
 impl Expr {

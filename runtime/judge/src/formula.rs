@@ -70,6 +70,7 @@ impl<'p> FormulaJudge<'p> {
                 triggered_at: seconds(time),
                 deadline: false,
                 counterexample: Vec::new(),
+                around: Vec::new(),
             }),
             worst_margin: outcome.margin().zip(unit),
         };

@@ -8,9 +8,10 @@
 //! 2. the trace is shown to it, step by step ([`TraceObserver`]), in memory that does not grow with the trace;
 //! 3. [`TraceJudge::finish`] gives the [`TraceJudgement`], and what the state machines of the system consist of.
 //!
-//! [`judge_recording`] does all three with a recording, which it reads in one pass; [`judge_by_formulas`] judges one by [`NamedFormula`]s, too. [`tally`] adds up the tests that were judged.
+//! [`judge_recording`] does all three with a recording, which it reads in one pass; [`judge_by_formulas`] judges one by [`NamedFormula`]s, too. [`tell_values_around`] adds the values of what a violated requirement consists of. [`tally`] adds up the tests that were judged.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
+mod around;
 mod formula;
 mod machines;
 mod recording;
@@ -25,6 +26,7 @@ use hrdsl_results::{
 };
 use hrdsl_trace::{MachineDeclaration, RunEnd, TraceObserver, TraceStep, TraceStepKind, print};
 
+pub use around::tell_values_around;
 pub use formula::NamedFormula;
 pub use hrdsl_metric::FormulaError;
 pub use recording::{
@@ -123,6 +125,7 @@ fn failure(program: &Program, verdict: &MonitorVerdict) -> Option<FirstFailure> 
         triggered_at: seconds(violation.trigger_time),
         deadline: violation.step.is_none(),
         counterexample: counterexample(program, &violation.counterexample),
+        around: Vec::new(),
     })
 }
 

@@ -151,7 +151,7 @@ pub fn recorded_run(
     Ok((trace, recorded.ending.kind))
 }
 
-fn observe(
+pub(crate) fn observe(
     program: &Program,
     source: impl BufRead,
     changed: bool,

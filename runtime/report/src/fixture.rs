@@ -315,6 +315,7 @@ fn failure(r: usize, time: f64) -> FirstFailure {
                 time,
                 "gripper_closing, distance(person.hand, robot.palm) = 0.018 m",
             )],
+            around: Vec::new(),
         },
         2 => FirstFailure {
             time,
@@ -324,6 +325,7 @@ fn failure(r: usize, time: f64) -> FirstFailure {
                 step(301, time - 3.5, "sensed(true, false, true)"),
                 step(316, time, "released"),
             ],
+            around: Vec::new(),
         },
         _ => FirstFailure {
             time,
@@ -334,6 +336,7 @@ fn failure(r: usize, time: f64) -> FirstFailure {
                 time - 10.0,
                 if r == 0 { "decided(true)" } else { "sensed(true, true, true)" },
             )],
+            around: Vec::new(),
         },
     }
 }

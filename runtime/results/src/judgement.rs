@@ -87,6 +87,39 @@ pub struct FirstFailure {
     pub deadline: bool,
     /// The steps that show it, in order.
     pub counterexample: Vec<CounterexampleStep>,
+    /// What the requirement consists of, around it; left out unless it was asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub around: Vec<SubformulaValues>,
+}
+
+/// A part of a requirement over time: a number, a condition or an event.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SubformulaValues {
+    /// As the language writes it.
+    pub text: String,
+    /// The symbol of its unit; empty if it has none.
+    pub unit: String,
+    /// Whether it is an event, which happens at the times that are told.
+    pub event: bool,
+    /// In order of time, each new value: the first is at the beginning of the time that was asked for, if it had one then.
+    pub values: Vec<SubformulaValue>,
+}
+
+/// The value of a part of a requirement from a time on, or that an event happens at it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SubformulaValue {
+    /// Seconds.
+    pub time: f64,
+    /// `true` at the time of an event. A number in the unit of the part, a truth, or what else a signal says.
+    pub value: SubformulaReading,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum SubformulaReading {
+    Truth(bool),
+    Number(f64),
+    Word(String),
 }
 
 /// A step of the trace that bears out a verdict.

@@ -49,7 +49,10 @@ pub use goal::SuiteGoalId;
 pub use hrdsl_ir::{coverage::BinName, monitor::RequirementKind, suite::CoverItemKind, test::TestMethod};
 pub use hrdsl_trace::RunEnd;
 pub use interface::{InterfaceFault, InterfaceRole, InterfaceWarning, UnservedWait};
-pub use judgement::{CounterexampleStep, FirstFailure, TraceJudgement, VerdictOutcome, VerdictResult};
+pub use judgement::{
+    CounterexampleStep, FirstFailure, SubformulaReading, SubformulaValue, SubformulaValues, TraceJudgement,
+    VerdictOutcome, VerdictResult,
+};
 pub use log::{LogCounts, LogSummary, LoggedLevel, LoggedText};
 pub use machine::{MachineCoverage, MachineResult, MachineStateResult, MachineTransitionResult};
 pub use mutation::{

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Expr, Program, Value,
-    expr::{BinaryOp, Lvalue, NumberFunction, UnaryOp},
+    expr::{Lvalue, UnaryOp, sign},
     known_name,
     ta::{
         Automaton, AutomatonVar, ClockConstraint, ClockId, ClockOp, Edge, EdgeAssignment, ReceiveArg,
@@ -80,14 +80,14 @@ impl<'p> AutomatonPrinter<'p> {
             Expr::Unary(UnaryOp::Not, a) => (format!("not {}", self.within(a, 3)), 3),
             Expr::Unary(UnaryOp::Neg, a) => (format!("-{}", self.within(a, 7)), 6),
             Expr::Binary(op, a, b) => {
-                let (sign, level) = operator(*op);
+                let (sign, level) = sign(*op);
                 let left = if level == 4 { 5 } else { level };
                 (format!("{} {sign} {}", self.within(a, left), self.within(b, level + 1)), level)
             }
             Expr::If(c, a, b) => {
                 (format!("if {} {{ {} }} else {{ {} }}", self.expr(c), self.expr(a), self.expr(b)), 9)
             }
-            Expr::Call(f, args) => (self.call(function(*f), args), 9),
+            Expr::Call(f, args) => (self.call(f.name(), args), 9),
             Expr::List(items, _) => {
                 let items: Vec<String> = items.iter().map(|i| self.expr(i)).collect();
                 (format!("[{}]", items.join(", ")), 9)
@@ -184,31 +184,4 @@ impl<'p> AutomatonPrinter<'p> {
 
 fn value(v: Value) -> String {
     v.to_string()
-}
-
-fn operator(op: BinaryOp) -> (&'static str, u8) {
-    match op {
-        BinaryOp::Or => ("||", 1),
-        BinaryOp::And => ("&&", 2),
-        BinaryOp::Eq => ("==", 4),
-        BinaryOp::Ne => ("!=", 4),
-        BinaryOp::Lt => ("<", 4),
-        BinaryOp::Le => ("<=", 4),
-        BinaryOp::Gt => (">", 4),
-        BinaryOp::Ge => (">=", 4),
-        BinaryOp::Add => ("+", 5),
-        BinaryOp::Sub => ("-", 5),
-        BinaryOp::Mul => ("*", 6),
-        BinaryOp::Div => ("/", 6),
-        BinaryOp::Rem => ("%", 6),
-    }
-}
-
-fn function(f: NumberFunction) -> &'static str {
-    match f {
-        NumberFunction::Abs => "abs",
-        NumberFunction::Min => "min",
-        NumberFunction::Max => "max",
-        NumberFunction::Norm => "norm",
-    }
 }

@@ -1,6 +1,6 @@
 //! What comes of a formula's text.
 
-use hrdsl_ir::{Unit, world::SignalId};
+use hrdsl_ir::{EventPattern, Unit, world::SignalId};
 
 use crate::{atom::AtomSource, formula::MetricGoal};
 
@@ -14,4 +14,23 @@ pub struct CheckedFormula {
     pub(crate) signals: Vec<SignalId>,
     /// The unit of all comparisons of numbers; `None`: there are none, or they are of different units, and no margin is told.
     pub unit: Option<Unit>,
+}
+
+impl CheckedFormula {
+    /// The signals that it reads.
+    #[must_use]
+    pub fn signals(&self) -> &[SignalId] {
+        &self.signals
+    }
+
+    /// The events that it names, each once.
+    pub fn events(&self) -> impl Iterator<Item = &EventPattern> {
+        self.atoms.iter().filter_map(|atom| match atom {
+            AtomSource::Happens(pattern) => Some(pattern),
+            AtomSource::Less { .. }
+            | AtomSource::Equal { .. }
+            | AtomSource::Truth(_)
+            | AtomSource::Is { .. } => None,
+        })
+    }
 }
