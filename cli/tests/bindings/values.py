@@ -72,3 +72,12 @@ group.set_max_acceleration_scaling_factor(1.0)
 by_itself = duration(lambda: client.send_goal_and_wait(PlayMotionGoal(motion_name="aside")))
 by_plan = duration(lambda: group.go([0.0, 0.0], wait=True))
 print("there by itself in %.2f s, and back by a plan in %.2f s" % (by_itself, by_plan))
+
+# A posture with points: at the first in its time, at the others so long after it; from farther away it takes longer.
+for before in ("home", "aside"):
+    client.send_goal_and_wait(PlayMotionGoal(motion_name=before))
+    began = rospy.get_time()
+    state = client.send_goal_and_wait(PlayMotionGoal(motion_name="nod"))
+    took, why = rospy.get_time() - began, repr(client.get_goal_status_text())
+    joints = rospy.wait_for_message("/joints", JointState)
+    print("nodded after %s in %.2f s:" % (before, took), state, why, rounded(*joints.position))

@@ -28,6 +28,12 @@ pub(crate) fn no_angles(span: Span) -> Diagnostic {
         .help("write the angle of each joint, from the base to the tip: `[0 deg, 90 deg]`")
 }
 
+/// HR0201: a point on the way of a posture that is not angles and a time.
+pub(crate) fn no_point(span: Span) -> Diagnostic {
+    Diagnostic::error(DiagnosticCode::TYPE_MISMATCH, span, "a point of a posture is angles and a time")
+        .help("write the points in order of time: `[([0 deg, 90 deg], 1 s), ([30 deg, 90 deg], 2.5 s)]`")
+}
+
 /// The parts of the library, and the modules that they are in. A test compares them with the library.
 pub const LIBRARY_PARTS: &[(&str, &str)] = &[
     ("adult", "std.person"),

@@ -1,6 +1,6 @@
-//! Postures of arms: angles of all joints under a name, by which programs ask for them.
+//! Postures of arms: angles of all joints under a name, by which programs ask for them, and what an arm goes through on its way there.
 
-use hrdsl_ir::world::{JointMotion, NamedPosture};
+use hrdsl_ir::world::{JointMotion, NamedPosture, PosturePoint};
 use hrdsl_syntax::ast::{ExprSyntax, ExprSyntaxKind as Syntax, WorldMemberKind as Member};
 
 use crate::check::world::parts::PlacedMember;
@@ -8,7 +8,10 @@ use crate::check::{template::CheckerPhase, world::phase::WorldPhase};
 use crate::{
     Dimension, JointId,
     noun::Noun,
-    report::{names, types, world::no_angles},
+    report::{
+        names, types,
+        world::{no_angles, no_point},
+    },
 };
 
 /// What limits may be exceeded by, from being written in decimal degrees.
@@ -18,33 +21,80 @@ impl<'a> WorldPhase<'_, 'a> {
     pub(super) fn posture(&mut self, p: &PlacedMember<'a>) {
         let Member::Posture(posture) = &p.member.kind else { return };
         let arm = self.world_name(Noun::Arm, &posture.arm.names, &p.prefix);
+        let joints = arm.and_then(|arm| self.world_mut().arms.get(usize::from(arm)));
+        let joints = joints.map(|arm| arm.joints.clone());
         let Syntax::List { items, rest: None } = &posture.angles.kind else {
             self.report(no_angles(posture.angles.span));
             return;
         };
-        let joints = arm.and_then(|arm| self.world_mut().arms.get(usize::from(arm)));
-        let joints = joints.map_or_else(Vec::new, |arm| arm.joints.clone());
-        // Of a slider it is a length; where there is no joint, an angle is as good as anything.
-        let sizes: Vec<Dimension> = (0..items.len()).map(|at| self.size_of(joints.get(at))).collect();
-        let angles = items.iter().zip(sizes).map(|(e, size)| self.quantity_of(e, size));
-        let angles: Vec<Option<f64>> = angles.collect();
-        let Some(arm) = arm else { return };
-        if joints.len() != items.len() {
-            let want = format!("a list of {} angles", joints.len());
-            self.report(types::other_shape(&want, &format!("one of {}", items.len()), posture.angles.span));
-            return;
-        }
-        for ((joint, angle), written) in joints.iter().zip(&angles).zip(items) {
-            self.within_limits(*joint, *angle, written);
-        }
-        let Some(angles) = angles.into_iter().collect::<Option<Vec<f64>>>() else { return };
+        let is_timed = items.iter().any(|item| matches!(item.kind, Syntax::Tuple(_)));
+        let points = if is_timed { self.points(items, joints.as_deref()) } else { Some(Vec::new()) };
+        let angles = match &points {
+            Some(points) if is_timed => points.last().map(|point| point.angles.clone()),
+            Some(_) => self.angles(&posture.angles, joints.as_deref()),
+            None => None,
+        };
+        let (Some(arm), Some(angles), Some(points)) = (arm, angles, points) else { return };
         let name = &posture.name;
         let Some(arm) = self.world_mut().arms.get_mut(usize::from(arm)) else { return };
         if arm.postures.iter().any(|known| known.name == name.text) {
             self.report(names::duplicate(Noun::Posture, &name.text, name.span, None));
             return;
         }
-        arm.postures.push(NamedPosture { name: name.text.clone(), angles });
+        arm.postures.push(NamedPosture { name: name.text.clone(), angles, points });
+    }
+
+    /// Points on the way of a posture: `(angles, time)`, in order of time.
+    fn points(&mut self, items: &[ExprSyntax], joints: Option<&[JointId]>) -> Option<Vec<PosturePoint>> {
+        let mut points = Some(Vec::new());
+        let mut before: Option<f64> = None;
+        for item in items {
+            let Syntax::Tuple(parts) = &item.kind else {
+                self.report(no_point(item.span));
+                return None;
+            };
+            let [angles, time] = parts.as_slice() else {
+                self.report(no_point(item.span));
+                return None;
+            };
+            let (read, at) = (self.angles(angles, joints), self.quantity_of(time, Dimension::TIME));
+            if let Some(at) = at {
+                if at < 0.0 || before.is_some_and(|before| at <= before) {
+                    let rule = "later than that of the point before it, and not before the beginning";
+                    self.report(types::must_be("the time of a point", rule, time.span));
+                }
+                before = Some(at);
+            }
+            let point = read.zip(at).map(|(angles, time)| PosturePoint { time, angles });
+            points = points.zip(point).map(|(mut points, point)| {
+                points.push(point);
+                points
+            });
+        }
+        points
+    }
+
+    /// The angles of all joints of an arm; without an arm they are only looked at.
+    fn angles(&mut self, written: &ExprSyntax, joints: Option<&[JointId]>) -> Option<Vec<f64>> {
+        let Syntax::List { items, rest: None } = &written.kind else {
+            self.report(no_angles(written.span));
+            return None;
+        };
+        // Of a slider it is a length; where there is no joint, an angle is as good as anything.
+        let joint = |at: usize| joints.and_then(|joints| joints.get(at));
+        let sizes: Vec<Dimension> = (0..items.len()).map(|at| self.size_of(joint(at))).collect();
+        let angles = items.iter().zip(sizes).map(|(e, size)| self.quantity_of(e, size));
+        let angles: Vec<Option<f64>> = angles.collect();
+        let joints = joints?;
+        if joints.len() != items.len() {
+            let want = format!("a list of {} angles", joints.len());
+            self.report(types::other_shape(&want, &format!("one of {}", items.len()), written.span));
+            return None;
+        }
+        for ((joint, angle), written) in joints.iter().zip(&angles).zip(items) {
+            self.within_limits(*joint, *angle, written);
+        }
+        angles.into_iter().collect()
     }
 
     /// Of what dimension the place of a joint is.

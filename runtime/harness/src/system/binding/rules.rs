@@ -7,8 +7,8 @@ use hrdsl_ir::{
     binding::{
         CommandArgument, MessageEffect, MessageRule, MessageRules, MessageStep, TextOperand, place_text,
     },
-    device::DeviceBody,
-    world::{DeviceCommandId, DeviceId, World},
+    device::{Device, DeviceBody, DevicePrimitive, POSITIONS, TIMES},
+    world::{DeviceCommandId, DeviceId, NamedPosture, World},
 };
 use serde_json::Value as Json;
 
@@ -19,7 +19,7 @@ use crate::{
     message::PlayerMessage,
     player::PlayerContext,
     stage::WorldStage,
-    world::CommandId,
+    world::{ArmTarget, CommandId, MotionPlanRequest},
 };
 
 /// Of each rule: whether its guard held at the message before.
@@ -115,9 +115,16 @@ impl HeardMessage<'_> {
                 cx.out.push(PlayerMessage::Event { event: *event, args });
             }
             MessageEffect::Command { device, command, args } => {
-                let Some(request) = self.request(*device, *command, args)? else { return Ok(()) };
-                let Some(stage) = cx.stage.as_deref_mut() else { return Ok(()) };
-                match stage.command(&request) {
+                let Some(world) = &self.program.world else { return Ok(()) };
+                let begun = if let Some(posture) = self.timed_posture(world, (*device, *command), args)? {
+                    let Some(stage) = cx.stage.as_deref_mut() else { return Ok(()) };
+                    follow_points(world, world.device(*device), posture, stage)
+                } else {
+                    let Some(request) = self.request(*device, *command, args)? else { return Ok(()) };
+                    let Some(stage) = cx.stage.as_deref_mut() else { return Ok(()) };
+                    stage.command(&request)
+                };
+                match begun {
                     Ok(id) => outcome.commands.push(id),
                     // Nobody tells a publisher: it sees what the robot does.
                     Err(NotBegun::Failed(why)) => outcome.failed = Some(why),
@@ -180,7 +187,7 @@ impl HeardMessage<'_> {
                 }
                 CommandArgument::TrackPositions { names } => self.track_positions(names)?,
                 CommandArgument::TrackTimes => self.track_times()?,
-                CommandArgument::Posture(name) => self.posture(world, device, name)?,
+                CommandArgument::Posture(name) => self.posture(world, device, name)?.angles.clone(),
             };
             let argument = match (param.ty.count, numbers.as_slice()) {
                 (hrdsl_ir::device::NumberCount::One, [one]) => SystemArgument::Scalar(Value::Float(*one)),
@@ -192,8 +199,44 @@ impl HeardMessage<'_> {
         Ok(Some(CommandRequest { device, command: declared.name.clone(), args: given }))
     }
 
-    /// The angles of the posture that the message names.
-    fn posture(&self, world: &World, device: DeviceId, name: &TextOperand) -> Result<Vec<f64>, String> {
+    /// The posture with points that a command is to bring an arm to, if it is such a command.
+    fn timed_posture<'w>(
+        &self,
+        world: &'w World,
+        (device, command): (DeviceId, DeviceCommandId),
+        args: &[Option<CommandArgument>],
+    ) -> Result<Option<&'w NamedPosture>, String> {
+        let name = args.iter().flatten().find_map(|arg| match arg {
+            CommandArgument::Posture(name) => Some(name),
+            CommandArgument::Numbers(_)
+            | CommandArgument::Sequence(_)
+            | CommandArgument::Wildcard { .. }
+            | CommandArgument::TrackPositions { .. }
+            | CommandArgument::TrackTimes => None,
+        });
+        let Some(name) = name else { return Ok(None) };
+        let posture = self.posture(world, device, name)?;
+        if posture.points.is_empty()
+            || world.command(device, command).primitive != DevicePrimitive::ReachJoints
+        {
+            return Ok(None);
+        }
+        if args.iter().flatten().count() > 1 {
+            let name = &posture.name;
+            return Err(format!(
+                "the posture `{name}` has times of its own: nothing else can be asked of the motion"
+            ));
+        }
+        Ok(Some(posture))
+    }
+
+    /// The posture that the message names.
+    fn posture<'w>(
+        &self,
+        world: &'w World,
+        device: DeviceId,
+        name: &TextOperand,
+    ) -> Result<&'w NamedPosture, String> {
         let device = world.device(device);
         let DeviceBody::Arm(arm) = device.body else {
             return Err(format!("`{}` has no postures", device.name));
@@ -201,7 +244,7 @@ impl HeardMessage<'_> {
         let name = read::text(self.json, name)?;
         let known = world.arms.get(usize::from(arm.0)).map(|arm| arm.postures.as_slice()).unwrap_or_default();
         let found = known.iter().find(|posture| posture.name == name);
-        found.map(|posture| posture.angles.clone()).ok_or_else(|| {
+        found.ok_or_else(|| {
             let all: Vec<String> = known.iter().map(|posture| format!("`{}`", posture.name)).collect();
             format!("`{}` has no posture `{}`: it has {}", device.name, name, all.join(", "))
         })
@@ -242,6 +285,55 @@ impl HeardMessage<'_> {
         };
         self.points()?.iter().map(time).collect()
     }
+}
+
+/// Lets an arm come to the first point of a posture as it would by itself, no earlier than at that point's time, and then go through the others,
+/// each so long after the first as its time says.
+fn follow_points(
+    world: &World,
+    device: &Device,
+    posture: &NamedPosture,
+    stage: &mut WorldStage<'_>,
+) -> Result<CommandId, NotBegun> {
+    let kind = world.kind_of(device);
+    let follow = kind.command_doing(DevicePrimitive::FollowJoints);
+    let Some(follow) = follow.and_then(|id| kind.commands.get(usize::from(id.0))) else {
+        let (kind, name) = (kind.with_article(), &posture.name);
+        return Err(NotBegun::Failed(format!("{kind} cannot go through the points of the posture `{name}`")));
+    };
+    let Some(first) = posture.points.first() else {
+        return Err(NotBegun::Failed(format!("the posture `{}` has no points", posture.name)));
+    };
+    let to_first = MotionPlanRequest {
+        to: ArmTarget::Posture(first.angles.clone()),
+        from: None,
+        speeds: None,
+        accelerations: None,
+    };
+    let planned = stage.plan(&device.name, &to_first)?.points;
+    let arrival = planned.last().map_or(0.0, |point| point.time);
+    let (mut times, mut positions) = (Vec::new(), Vec::new());
+    for point in planned.iter().filter(|point| point.time > 0.0) {
+        times.push(point.time);
+        positions.extend(&point.positions);
+    }
+    // Who is there early waits for the time of the first point.
+    let (rest, late) = if arrival < first.time {
+        (posture.points.as_slice(), 0.0)
+    } else {
+        (posture.points.get(1..).unwrap_or_default(), arrival - first.time)
+    };
+    for point in rest {
+        times.push(point.time + late);
+        positions.extend(&point.angles);
+    }
+    let args = [(POSITIONS, positions), (TIMES, times)]
+        .map(|(name, numbers)| (name.to_owned(), SystemArgument::Numbers(numbers)));
+    stage.command(&CommandRequest {
+        device: device.name.clone(),
+        command: follow.name.clone(),
+        args: args.into(),
+    })
 }
 
 /// What the `*` of a pattern stands for in a name; `None`: the name does not fit, or the pattern has none.

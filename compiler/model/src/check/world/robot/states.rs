@@ -20,7 +20,7 @@ impl<'a> WorldPhase<'_, 'a> {
                 let Some(angles) = angles(arm, state, placed) else { continue };
                 let known = |(of, posture): &(usize, NamedPosture)| *of == at && posture.name == state.name;
                 if !found.iter().any(known) {
-                    found.push((at, NamedPosture { name: state.name.clone(), angles }));
+                    found.push((at, NamedPosture { name: state.name.clone(), angles, points: Vec::new() }));
                 }
             }
         }
