@@ -3,7 +3,7 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalPlace, UppaalQuantifier},
+    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier},
     expr::{all, not},
     fault::{UppaalFault, fault},
     scope::{ScenarioExprText, ScenarioPrecedence, UppaalSymbol},
@@ -41,31 +41,10 @@ struct UppaalClockSum {
 }
 
 impl UppaalTranslation<'_> {
-    pub fn mentions_clock(&mut self, e: &UppaalExpr) -> bool {
-        let mut names = Vec::new();
-        e.each(&mut |part| {
-            if let Some(UppaalPlace::Name(_) | UppaalPlace::Field(..)) = part.as_place() {
-                names.push(part.clone());
-            }
-        });
-        names.iter().any(|n| self.names_clock(n))
-    }
-
-    fn names_clock(&mut self, e: &UppaalExpr) -> bool {
-        match &e.kind {
-            UppaalExprKind::Name(name) => matches!(self.find(name), Some(UppaalSymbol::Clock(_))),
-            // What `forall` binds may be an argument of the process: any of its processes has the same clocks.
-            UppaalExprKind::Field(of, field) => {
-                let name = match &of.kind {
-                    UppaalExprKind::Call(of, _) => of.root(),
-                    _ => of.root(),
-                };
-                let of_name = |p: &&super::translation::UppaalProcess| name == Some(&p.model_name);
-                let process = self.processes.iter().find(of_name);
-                process.is_some_and(|p| matches!(p.scope.get(field), Some(UppaalSymbol::Clock(_))))
-            }
-            _ => false,
-        }
+    pub fn mentions_clock(&self, e: &UppaalExpr) -> bool {
+        let mut found = false;
+        e.each(&mut |part| found |= self.kind_of(part).is_some_and(UppaalSymbol::is_clock));
+        found
     }
 
     /// The alternatives of a condition, each a conjunction.
@@ -233,7 +212,14 @@ impl UppaalTranslation<'_> {
                 Ok(super::expr::any(self.parts(name, ty, |cx| cx.formula(of))?.into_iter()))
             }
             _ => {
-                let parts = self.split(e, true)?;
+                // Which clock an index chooses is a part of what is asked.
+                let parts = self.every_case(e.span, false, |cx| {
+                    let mut parts = cx.split(e, true)?;
+                    let asked = cx.cases.as_mut().map(|cases| std::mem::take(&mut cases.conditions));
+                    parts.iter_mut().for_each(|part| part.data.extend(asked.iter().flatten().cloned()));
+                    Ok(parts)
+                })?;
+                let parts = parts.concat();
                 let text = |c: &GuardConjunction| {
                     let level = if c.clocks.len() + c.data.len() > 1 {
                         ScenarioPrecedence::And
@@ -335,7 +321,12 @@ impl UppaalClockComparison {
             | UppaalBinaryOperator::Max
             | UppaalBinaryOperator::And
             | UppaalBinaryOperator::Or
-            | UppaalBinaryOperator::Imply => return None,
+            | UppaalBinaryOperator::Imply
+            | UppaalBinaryOperator::BitAnd
+            | UppaalBinaryOperator::BitOr
+            | UppaalBinaryOperator::BitXor
+            | UppaalBinaryOperator::ShiftLeft
+            | UppaalBinaryOperator::ShiftRight => return None,
         })
     }
 

@@ -15,19 +15,26 @@
 //! way; a query that cannot be asked is left out.
 
 mod ast;
+mod bits;
 mod branches;
+mod cases;
 mod clocks;
 mod declare;
 mod expr;
 mod fault;
+mod inline;
 mod lex;
+mod order;
 mod parse;
+mod place;
 mod process;
 mod queries;
+mod record;
 mod scope;
 mod statement;
 mod template;
 mod translation;
+mod update;
 mod write;
 mod xml;
 
@@ -61,10 +68,16 @@ pub fn import(
     }
     let mut files = SourceFiles::default();
     let file = files.add(&model.name, &model.text);
+    let mut replaced = None;
     let mut read = xml::read(file, &model.text).map_err(|faults| errors(&files, faults))?;
     if let Some(source) = questions {
         let file: FileId = files.add(&source.name, &source.text);
-        read.queries.extend(queries::read(file, &source.text));
+        let before = std::mem::replace(&mut read.queries, queries::read(file, &source.text));
+        if let Some(first) = before.first() {
+            let many = if before.len() == 1 { "the query" } else { "the queries" };
+            let message = format!("{many} of the model give way to those of {}", source.name);
+            replaced = Some((first.formula.span(), NoteSeverity::Info, message));
+        }
     }
     let mut cx = UppaalTranslation::new(&read);
     let written =
@@ -75,6 +88,7 @@ pub fn import(
     for (span, old, new) in std::mem::take(&mut cx.names.renamed) {
         cx.notes.push((span, NoteSeverity::Info, format!("`{old}` is called `{new}`")));
     }
+    cx.notes.extend(replaced);
     let skipped = read.skipped.iter().map(|(span, what)| (*span, NoteSeverity::LeftOut, what.clone()));
     let mut notes: Vec<ImportNote> = cx.notes.into_iter().chain(skipped).map(|n| note(&files, n)).collect();
     notes.sort();

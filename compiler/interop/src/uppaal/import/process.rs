@@ -4,7 +4,7 @@ use hrdsl_source::Span;
 use indexmap::IndexMap;
 
 use super::{
-    ast::{UppaalExpr, UppaalInstance, UppaalParameter, UppaalSync},
+    ast::{UppaalExpr, UppaalExprKind, UppaalInstance, UppaalParameter, UppaalSync},
     clocks::GuardConjunction,
     declare::{in_range, var_line},
     fault::{UppaalFault, fault},
@@ -57,6 +57,7 @@ impl UppaalTranslation<'_> {
                 UppaalSymbolType::Data(..)
                 | UppaalSymbolType::Clock(_)
                 | UppaalSymbolType::Chan { .. }
+                | UppaalSymbolType::Record(..)
                 | UppaalSymbolType::Void => {
                     let message = format!(
                         "`{name}` needs an argument for `{}`: make a process of it first",
@@ -152,6 +153,16 @@ impl UppaalTranslation<'_> {
             UppaalSymbolType::Chan { dims, .. } => match self.place(arg)? {
                 UppaalSymbol::Chan(c) if c.dims.len() == dims.len() => Ok(UppaalSymbol::Chan(c)),
                 other => fault(arg.span, format!("`{}` is a channel, not {}", param.name, other.noun())),
+            },
+            UppaalSymbolType::Record(fields, dims) => match self.place(arg)? {
+                UppaalSymbol::Record(r) if r.dims.len() == dims.len() && r.fields.len() == fields.len() => {
+                    let mut sym = UppaalSymbol::Record(r);
+                    if param.ty.constant || !param.by_reference {
+                        sym.make_readonly();
+                    }
+                    Ok(sym)
+                }
+                other => fault(arg.span, format!("`{}` is a record, not {}", param.name, other.noun())),
             },
             UppaalSymbolType::Void => fault(param.span, "a parameter cannot be `void`"),
         }
@@ -289,10 +300,18 @@ impl UppaalTranslation<'_> {
         edge: &ParsedEdge,
         names: &[String],
     ) -> Result<Vec<String>, UppaalFault> {
-        self.locals.push(UppaalScope::new());
-        let made = self.edge_texts(t, edge, names);
-        self.locals.pop();
-        made
+        let receives = edge.sync.as_ref().is_some_and(|sync| !sync.offers);
+        let cases = self.every_case(edge.span(), receives, |cx| {
+            cx.locals.push(UppaalScope::new());
+            let made = cx.edge_texts(t, edge, names);
+            cx.locals.pop();
+            made
+        })?;
+        let mut texts: Vec<String> = cases.concat();
+        if let Some(first) = texts.first_mut() {
+            *first = doc(&t.comment) + first;
+        }
+        Ok(texts)
     }
 
     fn edge_texts(
@@ -306,6 +325,13 @@ impl UppaalTranslation<'_> {
         self.names.start_function();
         for select in &edge.select {
             let scalar = self.scalar(&select.ty)?;
+            if self.chooses_clock(edge, &select.name) {
+                let n = self.choice_of(scalar.lo, scalar.hi).unwrap_or(scalar.lo);
+                if let Some(scope) = self.locals.last_mut() {
+                    scope.insert(select.name.clone(), UppaalSymbol::Const(scalar.literal(n)));
+                }
+                continue;
+            }
             let name = self.names.fresh(&select.name, select.span, NameOwner::Function);
             selects.push(format!("{name}: {}", scalar.text));
             let (at, dims, values) = (Vec::new(), Vec::new(), None);
@@ -317,7 +343,7 @@ impl UppaalTranslation<'_> {
         if !selects.is_empty() {
             head += &format!(" select {}", selects.join(", "));
         }
-        let guards = match &edge.guard {
+        let mut guards = match &edge.guard {
             Some(guard) => self.alternatives(guard)?,
             None => vec![GuardConjunction::default()],
         };
@@ -332,7 +358,14 @@ impl UppaalTranslation<'_> {
             Some((false, text)) => on = format!(" on {text}"),
             None => {}
         }
+        if let Some(cases) = &mut self.cases {
+            cases.in_updates = true;
+        }
         edge.assign.iter().try_for_each(|e| self.effect(e, &mut actions))?;
+        let asked = self.cases.as_mut().map(|cases| std::mem::take(&mut cases.conditions));
+        for guard in &mut guards {
+            guard.data.extend(asked.iter().flatten().cloned());
+        }
         let actions = if actions.is_empty() { String::new() } else { format!(" do {}", actions.join("; ")) };
         let mut texts = Vec::new();
         for guard in &guards {
@@ -342,10 +375,32 @@ impl UppaalTranslation<'_> {
                 Some(when) => texts.push(format!("{head} when {when}{on}{actions}")),
             }
         }
-        if let Some(first) = texts.first_mut() {
-            *first = doc(&t.comment) + first;
-        }
         Ok(texts)
+    }
+
+    /// Whether what is selected chooses a clock: then there is an edge for each value.
+    fn chooses_clock(&self, edge: &ParsedEdge, name: &str) -> bool {
+        let is_named = |e: &UppaalExpr| {
+            let mut found = false;
+            e.each(&mut |part| found |= matches!(&part.kind, UppaalExprKind::Name(n) if n == name));
+            found
+        };
+        let mut found = false;
+        for label in edge.guard.iter().chain(&edge.assign) {
+            label.each(&mut |e| match &e.kind {
+                UppaalExprKind::Index(of, index) => {
+                    let clocks = self.kind_of(of).is_some_and(|sym| sym.has_clocks());
+                    found |= clocks && is_named(index);
+                }
+                UppaalExprKind::Call(of, args) => {
+                    let called = of.root().and_then(|f| self.find(f));
+                    let sets = matches!(called, Some(UppaalSymbol::Function(f)) if f.sets_clocks);
+                    found |= sets && args.iter().any(is_named);
+                }
+                _ => {}
+            });
+        }
+        found
     }
 
     /// Whether the edge offers, and the channel with its arguments.
@@ -378,10 +433,11 @@ impl UppaalTranslation<'_> {
 fn shown(sym: &UppaalSymbol) -> String {
     match sym {
         UppaalSymbol::Const(out) => out.text.clone(),
-        UppaalSymbol::Var(v) => super::expr::place_text(v),
+        UppaalSymbol::Var(v) => super::place::place_text(v),
         UppaalSymbol::Clock(c) => c.name.clone(),
         UppaalSymbol::Chan(c) => c.at.iter().fold(c.name.clone(), |text, at| format!("{text}[{}]", at.text)),
         UppaalSymbol::Location(l) => l.clone(),
+        UppaalSymbol::Record(r) => r.name.clone(),
         UppaalSymbol::Type(_) | UppaalSymbol::Function(_) => sym.noun().to_owned(),
     }
 }

@@ -6,15 +6,15 @@ use hrdsl_source::Span;
 
 use super::{
     ast::{
-        UppaalBinaryOperator, UppaalDeclaration, UppaalExpr, UppaalExprKind, UppaalStatement,
-        UppaalStatementKind,
+        UppaalDeclaration, UppaalDeclarator, UppaalExpr, UppaalExprKind, UppaalInitializer, UppaalParameter,
+        UppaalStatement, UppaalStatementKind, UppaalType,
     },
     declare::var_line,
-    expr::place_text,
     fault::{UppaalFault, fault},
+    place::place_text,
     scope::{
-        FunctionSym, NameOwner, ScenarioExprText, ScenarioPrecedence, UppaalScalarType, UppaalScope,
-        UppaalSymbol, UppaalSymbolType, VarSym, combinations,
+        FunctionSym, IndexRange, NameOwner, UppaalScalarType, UppaalScope, UppaalSymbol, UppaalSymbolType,
+        VarSym,
     },
     translation::UppaalTranslation,
 };
@@ -42,13 +42,31 @@ impl UppaalTranslation<'_> {
             let (want, got) = (function.params.len(), args.len());
             return fault(span, format!("`{name}` has {want} parameters, and is given {got} arguments"));
         }
+        if function.sets_clocks {
+            let message =
+                format!("`{name}` sets clocks: it is called as an update of its own, and has no value");
+            return fault(span, message);
+        }
+        self.mark_function(&function, args, 0);
         let (mut values, mut aliases) = (Vec::new(), Vec::new());
         for ((param, ty), arg) in function.decl.params.iter().zip(&function.params).zip(args) {
             match ty {
                 UppaalSymbolType::Data(scalar, dims) if dims.is_empty() && !param.by_reference => {
                     values.push(self.expr(arg)?.of_type(scalar.is_bool).text);
                 }
-                UppaalSymbolType::Data(..) => {
+                UppaalSymbolType::Record(..) if ty.is_single() && !param.by_reference => {
+                    let sym = self.place(arg)?;
+                    for leaf in sym.leaves() {
+                        match leaf {
+                            UppaalSymbol::Var(v) => values.push(self.value_of(v).text),
+                            UppaalSymbol::Const(out) => values.push(out.text.clone()),
+                            other => {
+                                return fault(arg.span, format!("expected a record, found {}", other.noun()));
+                            }
+                        }
+                    }
+                }
+                UppaalSymbolType::Data(..) | UppaalSymbolType::Record(..) => {
                     let readonly = !param.by_reference || param.ty.constant;
                     aliases.push((param.name.clone(), self.alias(arg, readonly)?));
                 }
@@ -68,31 +86,37 @@ impl UppaalTranslation<'_> {
     }
 
     /// What a parameter that is a reference stands for.
-    fn alias(&mut self, arg: &UppaalExpr, readonly: bool) -> Result<VarSym, UppaalFault> {
-        let UppaalSymbol::Var(mut var) = self.place(arg)? else {
-            return fault(arg.span, "expected a variable");
-        };
-        if var.local {
-            return fault(arg.span, "a variable of a function cannot be given as a reference");
+    fn alias(&mut self, arg: &UppaalExpr, readonly: bool) -> Result<UppaalSymbol, UppaalFault> {
+        let mut sym = self.place(arg)?;
+        for leaf in sym.leaves() {
+            let UppaalSymbol::Var(var) = leaf else { return fault(arg.span, "expected a variable") };
+            if var.local {
+                return fault(arg.span, "a variable of a function cannot be given as a reference");
+            }
+            if var.at.iter().any(|i| i.value.is_none()) {
+                return fault(arg.span, "the index of what is given as a reference must be constant");
+            }
+            if var.values.is_some() {
+                self.use_array(var);
+            }
         }
-        if var.at.iter().any(|i| i.value.is_none()) {
-            return fault(arg.span, "the index of what is given as a reference must be constant");
+        if readonly {
+            sym.make_readonly();
         }
-        if var.values.is_some() {
-            self.use_array(&var);
-        }
-        var.readonly |= readonly;
-        Ok(var)
+        Ok(sym)
     }
 
     /// One function for each combination of what its references stand for.
     fn specialised(
         &mut self,
         function: &Rc<FunctionSym>,
-        aliases: Vec<(String, VarSym)>,
+        aliases: Vec<(String, UppaalSymbol)>,
     ) -> Result<String, UppaalFault> {
-        let own = function.own || aliases.iter().any(|(_, v)| v.own);
-        let shown: Vec<String> = aliases.iter().map(|(_, v)| place_text(v)).collect();
+        let is_own = |sym: &UppaalSymbol| {
+            sym.leaves().into_iter().any(|leaf| matches!(leaf, UppaalSymbol::Var(v) if v.own))
+        };
+        let own = function.own || aliases.iter().any(|(_, sym)| is_own(sym));
+        let shown: Vec<String> = aliases.iter().map(|(_, sym)| alias_text(sym)).collect();
         let key = format!("{} {} {}", function.own, function.decl.name, shown.join(" "));
         let known = if own { &self.own_specialised } else { &self.specialised };
         if let Some(name) = known.get(&key) {
@@ -111,36 +135,32 @@ impl UppaalTranslation<'_> {
         &mut self,
         function: &Rc<FunctionSym>,
         name: &str,
-        aliases: Vec<(String, VarSym)>,
+        aliases: Vec<(String, UppaalSymbol)>,
         own: bool,
     ) -> Result<(), UppaalFault> {
         if self.writing > 20 {
             return fault(function.decl.span, "a function that calls itself is not supported");
         }
-        let mut scope: UppaalScope =
-            aliases.into_iter().map(|(name, v)| (name, UppaalSymbol::Var(v))).collect();
+        let mut scope: UppaalScope = aliases.into_iter().collect();
         if self.writing == 0 {
             self.names.start_function();
         }
         let mut params = Vec::new();
         for (param, ty) in function.decl.params.iter().zip(&function.params) {
-            let UppaalSymbolType::Data(scalar, _) = ty else { continue };
             if scope.contains_key(&param.name) {
                 continue;
             }
-            let written = self.names.fresh(&param.name, param.span, NameOwner::Function);
-            params.push(format!("{written}: {}", scalar.text));
-            scope.insert(
-                param.name.clone(),
-                UppaalSymbol::Var(local(written, scalar.clone(), Vec::new(), param.ty.constant)),
-            );
+            let sym = self.parameter(param, ty.clone(), &param.name, &mut params)?;
+            scope.insert(param.name.clone(), sym);
         }
         // What the function knows: nothing of where it is called.
         let locals = std::mem::replace(&mut self.locals, vec![scope]);
         let process = if function.own { None } else { self.process.take() };
+        let cases = self.cases.take();
         self.writing += 1;
         let body = self.statements(&function.decl.body, function.result.as_ref());
         self.writing -= 1;
+        self.cases = cases;
         self.locals = locals;
         if process.is_some() {
             self.process = process;
@@ -153,6 +173,32 @@ impl UppaalTranslation<'_> {
             self.functions.push(text)
         }
         Ok(())
+    }
+
+    /// A parameter that is a copy; of a record each field is one.
+    fn parameter(
+        &mut self,
+        param: &UppaalParameter,
+        ty: UppaalSymbolType,
+        name: &str,
+        params: &mut Vec<String>,
+    ) -> Result<UppaalSymbol, UppaalFault> {
+        match ty {
+            UppaalSymbolType::Data(scalar, _) => {
+                let written = self.names.fresh(name, param.span, NameOwner::Function);
+                params.push(format!("{written}: {}", scalar.text));
+                Ok(UppaalSymbol::Var(local(written, scalar, Vec::new(), param.ty.constant)))
+            }
+            UppaalSymbolType::Record(fields, dims) => {
+                let none = (None, param.span);
+                self.record_of(name, (fields, dims), none, |cx, field, ty| {
+                    cx.parameter(param, ty, &field.name, params)
+                })
+            }
+            UppaalSymbolType::Clock(_) | UppaalSymbolType::Chan { .. } | UppaalSymbolType::Void => {
+                fault(param.span, "only variables can be given to functions, no clocks and channels")
+            }
+        }
     }
 
     // ── Statements ──
@@ -200,24 +246,37 @@ impl UppaalTranslation<'_> {
                 lines.extend(inner);
             }
             UppaalStatementKind::If(c, then, otherwise) => {
-                let c = self.condition(c)?;
-                let mut text = format!("if {} {}", c.text, self.nested(then, result)?);
+                let c = self.tested(c, lines)?;
+                let mut text = format!("if {c} {}", self.nested(then, result)?);
                 if let Some(otherwise) = otherwise {
                     text += &format!(" else {}", self.nested(otherwise, result)?);
                 }
                 lines.push(text);
             }
             UppaalStatementKind::While(c, body) => {
-                let c = self.condition(c)?;
-                lines.push(format!("while {} {}", c.text, self.nested(body, result)?));
+                let mut before = Vec::new();
+                let (c, after) = self.value_in_order(c, &mut before)?;
+                let c = c.into_bool();
+                let body = self.nested(body, result)?;
+                if before.is_empty() && after.is_empty() {
+                    lines.push(format!("while {} {body}", c.text));
+                    return Ok(());
+                }
+                let again = self.names.unused("again", NameOwner::Function);
+                lines.extend(before.iter().map(|e| format!("{e};")));
+                lines.push(format!("var {again}: bool = {};", c.text));
+                lines.extend(after.iter().map(|e| format!("{e};")));
+                let once_more = ordered(&before, &format!("{again} = {}", c.text), &after);
+                lines.push(format!("while {again} {{{}{once_more}}}", inner(&body)));
             }
             UppaalStatementKind::DoWhile(body, c) => {
                 let again = self.names.unused("again", NameOwner::Function);
                 let body = self.nested(body, result)?;
-                let c = self.condition(c)?;
+                let mut before = Vec::new();
+                let (c, after) = self.value_in_order(c, &mut before)?;
                 lines.push(format!("var {again}: bool = true;"));
-                let inner = body.strip_prefix('{').and_then(|b| b.strip_suffix('}')).unwrap_or_default();
-                lines.push(format!("while {again} {{{inner}{again} = {}\n}}", c.text));
+                let once_more = ordered(&before, &format!("{again} = {}", c.into_bool().text), &after);
+                lines.push(format!("while {again} {{{}{once_more}}}", inner(&body)));
             }
             UppaalStatementKind::For(init, c, step, body) => {
                 self.for_loop(init, c.as_ref(), step, body, result, lines)?
@@ -239,11 +298,36 @@ impl UppaalTranslation<'_> {
                 let Some(result) = result else {
                     return fault(s.span, "this function has no value (`void`)");
                 };
-                let value = self.expr(e)?.of_type(result.is_bool);
-                lines.push(format!("return {};", value.text));
+                let mut effects = Vec::new();
+                let (value, after) = self.value_in_order(e, &mut effects)?;
+                let value = value.of_type(result.is_bool).text;
+                lines.extend(effects.into_iter().map(|e| e + ";"));
+                if after.is_empty() {
+                    lines.push(format!("return {value};"));
+                    return Ok(());
+                }
+                let given = self.names.unused("given", NameOwner::Function);
+                lines.push(format!("var {given}: {} = {value};", result.text));
+                lines.extend(after.into_iter().map(|e| e + ";"));
+                lines.push(format!("return {given};"));
             }
         }
         Ok(())
+    }
+
+    /// A condition, before which stands what it changes.
+    fn tested(&mut self, c: &UppaalExpr, lines: &mut Vec<String>) -> Result<String, UppaalFault> {
+        let mut effects = Vec::new();
+        let (c, after) = self.value_in_order(c, &mut effects)?;
+        let c = c.into_bool().text;
+        lines.extend(effects.into_iter().map(|e| e + ";"));
+        if after.is_empty() {
+            return Ok(c);
+        }
+        let holds = self.names.unused("is_so", NameOwner::Function);
+        lines.push(format!("var {holds}: bool = {c};"));
+        lines.extend(after.into_iter().map(|e| e + ";"));
+        Ok(holds)
     }
 
     fn for_loop(
@@ -262,11 +346,10 @@ impl UppaalTranslation<'_> {
             Some(c) => self.condition(c)?.text,
             None => "true".to_owned(),
         };
-        let inner = self.nested(body, result)?;
+        let body = self.nested(body, result)?;
         step.iter().try_for_each(|e| self.effect(e, &mut effects))?;
         let step = effects.iter().map(|e| format!("{e};\n")).collect::<String>();
-        let inner = inner.strip_prefix('{').and_then(|i| i.strip_suffix('}')).unwrap_or_default();
-        lines.push(format!("while {c} {{{inner}{step}}}"));
+        lines.push(format!("while {c} {{{}{step}}}", inner(&body)));
         Ok(())
     }
 
@@ -285,35 +368,60 @@ impl UppaalTranslation<'_> {
             }
             UppaalDeclaration::Function(_)
             | UppaalDeclaration::Instance(_)
-            | UppaalDeclaration::System(_) => {
+            | UppaalDeclaration::System(_)
+            | UppaalDeclaration::Idle(..) => {
                 return fault(span, "this cannot be declared in a function");
             }
         };
         for declarator in declarators {
-            let UppaalSymbolType::Data(scalar, dims) = self.declared(ty, &declarator.dims)? else {
-                return fault(declarator.span, "a function has variables only: no clocks and channels");
-            };
-            let constant = match &declarator.init {
-                Some(super::ast::UppaalInitializer::One(e)) if ty.constant && dims.is_empty() => {
-                    self.expr(e)?.value
-                }
-                Some(_) | None => None,
-            };
-            if let Some(n) = constant {
-                self.bind_local(&declarator.name, UppaalSymbol::Const(scalar.literal(n)));
-                continue;
-            }
-            let init = match &declarator.init {
-                Some(super::ast::UppaalInitializer::One(e)) if dims.is_empty() => {
-                    self.expr(e)?.of_type(scalar.is_bool).text
-                }
-                init => self.initial(&scalar, &dims, init.as_ref(), declarator.span)?,
-            };
-            let written = self.names.fresh(&declarator.name, declarator.span, NameOwner::Function);
-            lines.push(var_line(&written, &scalar, &dims, &init) + ";");
-            self.bind_local(&declarator.name, UppaalSymbol::Var(local(written, scalar, dims, ty.constant)));
+            let made = self.declared(ty, &declarator.dims)?;
+            let sym = self.local_symbol(ty, declarator, made, lines)?;
+            self.bind_local(&declarator.name, sym);
         }
         Ok(())
+    }
+
+    fn local_symbol(
+        &mut self,
+        ty: &UppaalType,
+        declarator: &UppaalDeclarator,
+        made: UppaalSymbolType,
+        lines: &mut Vec<String>,
+    ) -> Result<UppaalSymbol, UppaalFault> {
+        let UppaalDeclarator { name, span, init, .. } = declarator;
+        let (scalar, dims) = match made {
+            UppaalSymbolType::Data(scalar, dims) => (scalar, dims),
+            UppaalSymbolType::Record(fields, dims) => {
+                let init = (init.as_ref(), *span);
+                return self.record_of(name, (fields, dims), init, |cx, field, made| {
+                    cx.local_symbol(ty, field, made, lines)
+                });
+            }
+            UppaalSymbolType::Clock(_) | UppaalSymbolType::Chan { .. } | UppaalSymbolType::Void => {
+                return fault(*span, "a function has variables only: no clocks and channels");
+            }
+        };
+        let constant = match init {
+            Some(UppaalInitializer::One(e)) if ty.constant && dims.is_empty() => self.expr(e)?.value,
+            Some(_) | None => None,
+        };
+        if let Some(n) = constant {
+            return Ok(UppaalSymbol::Const(scalar.literal(n)));
+        }
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        let init = match init {
+            Some(UppaalInitializer::One(e)) if dims.is_empty() => {
+                let (value, effects) = self.value_in_order(e, &mut before)?;
+                after = effects;
+                value.of_type(scalar.is_bool).text
+            }
+            init => self.initial(&scalar, &dims, init.as_ref(), *span)?,
+        };
+        let written = self.names.fresh(name, *span, NameOwner::Function);
+        lines.extend(before.into_iter().map(|e| e + ";"));
+        lines.push(var_line(&written, &scalar, &dims, &init) + ";");
+        lines.extend(after.into_iter().map(|e| e + ";"));
+        Ok(UppaalSymbol::Var(local(written, scalar, dims, ty.constant)))
     }
 
     fn bind_local(&mut self, name: &str, sym: UppaalSymbol) {
@@ -321,135 +429,33 @@ impl UppaalTranslation<'_> {
             scope.insert(name.to_owned(), sym);
         }
     }
+}
 
-    // ── Updates ──
+/// What stands between the braces of a block.
+fn inner(block: &str) -> &str {
+    block.strip_prefix('{').and_then(|b| b.strip_suffix('}')).unwrap_or_default()
+}
 
-    /// What an expression changes, as actions or statements.
-    pub fn effect(&mut self, e: &UppaalExpr, out: &mut Vec<String>) -> Result<(), UppaalFault> {
-        match &e.kind {
-            UppaalExprKind::Assign(op, to, value) => self.assign(*op, to, value, e.span, out),
-            UppaalExprKind::Step { up, of } => {
-                let to = self.assigned(of)?;
-                if to.ty.is_bool || !to.dims.is_empty() {
-                    return fault(e.span, "`++` and `--` are for numbers");
-                }
-                out.push(format!("{} {} 1", place_text(&to), if *up { "+=" } else { "-=" }));
-                Ok(())
-            }
-            UppaalExprKind::Call(of, args) => {
-                let (text, _) = self.call(of, args, e.span)?;
-                out.push(text);
-                Ok(())
-            }
-            UppaalExprKind::Choice(c, a, b) if self.writing > 0 => {
-                let c = self.condition(c)?;
-                let (mut then, mut otherwise) = (Vec::new(), Vec::new());
-                self.effect(a, &mut then)?;
-                self.effect(b, &mut otherwise)?;
-                out.push(format!(
-                    "if {} {{ {} }} else {{ {} }}",
-                    c.text,
-                    then.join("; "),
-                    otherwise.join("; ")
-                ));
-                Ok(())
-            }
-            _ => match self.expr(e)?.value {
-                Some(_) => Ok(()),
-                None => fault(e.span, "expected an assignment or the call of a function"),
-            },
-        }
-    }
+/// Statements one after the other.
+fn ordered(before: &[String], between: &str, after: &[String]) -> String {
+    let all = before.iter().map(String::as_str).chain([between]).chain(after.iter().map(String::as_str));
+    all.map(|e| format!("{e};\n")).collect()
+}
 
-    /// A variable that may be assigned.
-    fn assigned(&mut self, e: &UppaalExpr) -> Result<VarSym, UppaalFault> {
-        match self.place(e)? {
-            UppaalSymbol::Var(v) if v.readonly => {
-                fault(e.span, format!("`{}` cannot be assigned here", v.name))
-            }
-            UppaalSymbol::Var(v) => Ok(v),
-            UppaalSymbol::Clock(_) => {
-                fault(e.span, "a function of a scenario cannot set clocks: set them on the transition")
-            }
-            other => fault(e.span, format!("{} cannot be assigned", other.noun())),
-        }
-    }
-
-    fn assign(
-        &mut self,
-        op: Option<UppaalBinaryOperator>,
-        to: &UppaalExpr,
-        value: &UppaalExpr,
-        span: Span,
-        out: &mut Vec<String>,
-    ) -> Result<(), UppaalFault> {
-        let mut value = value.clone();
-        if let UppaalExprKind::Assign(_, inner, _) = &value.kind {
-            let inner = (**inner).clone();
-            self.effect(&value, out)?;
-            value = inner;
-        }
-        if self.writing == 0 && matches!(self.place(to), Ok(UppaalSymbol::Clock(_))) {
-            if op.is_some() {
-                return fault(span, "a clock is set by `=`");
-            }
-            let clock = self.clock(to)?;
-            out.push(format!("{clock} = {}", self.setting(&value)?));
-            return Ok(());
-        }
-        let to = self.assigned(to)?;
-        if !to.dims.is_empty() {
-            return self.assign_array(&to, op, &value, span, out);
-        }
-        let text = place_text(&to);
-        let value = self.expr(&value)?.of_type(to.ty.is_bool);
-        if to.ty.is_bool && op.is_some() {
-            return fault(span, "a bool is assigned by `=`");
-        }
-        out.push(match op {
-            None => format!("{text} = {}", value.text),
-            Some(UppaalBinaryOperator::Add) => format!("{text} += {}", value.text),
-            Some(UppaalBinaryOperator::Sub) => format!("{text} -= {}", value.text),
-            Some(UppaalBinaryOperator::Mul) => {
-                format!("{text} = {text} * {}", value.at(ScenarioPrecedence::Factor))
-            }
-            Some(UppaalBinaryOperator::Div) => {
-                format!("{text} = {text} / {}", value.at(ScenarioPrecedence::Factor))
-            }
-            Some(_) => format!("{text} = {text} % {}", value.at(ScenarioPrecedence::Atom)),
-        });
-        Ok(())
-    }
-
-    /// `a = b` for whole arrays: each element.
-    fn assign_array(
-        &mut self,
-        to: &VarSym,
-        op: Option<UppaalBinaryOperator>,
-        value: &UppaalExpr,
-        span: Span,
-        out: &mut Vec<String>,
-    ) -> Result<(), UppaalFault> {
-        let UppaalSymbol::Var(from) = self.place(value)? else {
-            return fault(value.span, "expected an array");
-        };
-        let sizes = |v: &VarSym| v.dims.iter().map(|d| d.count()).collect::<Vec<_>>();
-        if op.is_some() || sizes(to) != sizes(&from) || to.ty.is_bool != from.ty.is_bool {
-            return fault(span, "arrays are assigned as a whole if they are of one size and type");
-        }
-        let from_zero = to.dims.iter().map(|d| super::scope::IndexRange { lo: 0, hi: d.count() - 1 });
-        for at in combinations(&from_zero.collect::<Vec<_>>()) {
-            let element = |v: &VarSym| {
-                let at = v.at.iter().cloned().chain(at.iter().map(|n| ScenarioExprText::int(*n))).collect();
-                VarSym { at, dims: Vec::new(), ..v.clone() }
-            };
-            let value = self.value_of(&element(&from));
-            out.push(format!("{} = {}", place_text(&element(to)), value.text));
-        }
-        Ok(())
+/// How a reference is told apart from others.
+fn alias_text(sym: &UppaalSymbol) -> String {
+    match sym {
+        UppaalSymbol::Var(v) => place_text(v),
+        UppaalSymbol::Record(r) => r.fields.values().map(alias_text).collect::<Vec<_>>().join("_"),
+        UppaalSymbol::Const(_)
+        | UppaalSymbol::Clock(_)
+        | UppaalSymbol::Chan(_)
+        | UppaalSymbol::Type(_)
+        | UppaalSymbol::Function(_)
+        | UppaalSymbol::Location(_) => sym.noun().to_owned(),
     }
 }
 
-fn local(name: String, ty: UppaalScalarType, dims: Vec<super::scope::IndexRange>, readonly: bool) -> VarSym {
+fn local(name: String, ty: UppaalScalarType, dims: Vec<IndexRange>, readonly: bool) -> VarSym {
     VarSym { name, ty, dims, at: Vec::new(), values: None, own: false, local: true, readonly }
 }

@@ -1,9 +1,11 @@
 //! All that is known while a model is translated: what every step reads and adds to.
 
 use hrdsl_source::Span;
-use indexmap::IndexMap;
+use indexmap::{IndexMap, IndexSet};
 
 use super::{
+    ast::UppaalBinaryOperator,
+    cases::EdgeCases,
     fault::UppaalFault,
     scope::{ChanSym, UppaalScenarioNames, UppaalScope},
     template::ParsedTemplate,
@@ -45,9 +47,17 @@ pub(crate) struct UppaalTranslation<'m> {
     pub in_query: bool,
     /// How many functions are being written, one called by the other.
     pub writing: usize,
+    /// The same of those that set clocks, and whose statements stand on the edge.
+    pub inlining: usize,
     pub channels: Vec<ChanSym>,
     pub lines: Vec<String>,
     pub functions: Vec<String>,
+    /// The functions for operations on bits that are in the text, by what they do; written last.
+    pub bit_functions: Vec<(UppaalBinaryOperator, String)>,
+    /// The `meta` variables.
+    pub metas: IndexSet<String>,
+    /// What is decided of the edge that is being written.
+    pub cases: Option<EdgeCases>,
     pub arrays: IndexMap<String, (String, bool)>,
     pub specialised: IndexMap<String, String>,
     pub own_clocks: Vec<String>,
@@ -65,15 +75,19 @@ impl<'m> UppaalTranslation<'m> {
             faults: Vec::new(),
             notes: Vec::new(),
             names: UppaalScenarioNames::default(),
-            global: UppaalScope::new(),
+            global: super::scope::built_in(),
             process: None,
             locals: Vec::new(),
             processes: Vec::new(),
             in_query: false,
             writing: 0,
+            inlining: 0,
             channels: Vec::new(),
             lines: Vec::new(),
             functions: Vec::new(),
+            bit_functions: Vec::new(),
+            metas: IndexSet::new(),
+            cases: None,
             arrays: IndexMap::new(),
             specialised: IndexMap::new(),
             own_clocks: Vec::new(),

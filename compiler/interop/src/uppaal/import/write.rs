@@ -37,6 +37,7 @@ impl UppaalTranslation<'_> {
             return String::new();
         }
         let asked = self.all_queries(&network);
+        self.write_bit_functions();
         self.text(&scenario, file, &network, &asked)
     }
 
@@ -49,7 +50,8 @@ impl UppaalTranslation<'_> {
                 UppaalDeclaration::System(names) => listed = Some(names.clone()),
                 UppaalDeclaration::Vars(..)
                 | UppaalDeclaration::Typedef(..)
-                | UppaalDeclaration::Function(_) => {}
+                | UppaalDeclaration::Function(_)
+                | UppaalDeclaration::Idle(..) => {}
             }
         }
         let Some(listed) = listed else {
