@@ -59,15 +59,36 @@ fn vikings_cross_in_sixty() {
     demo("bridge.xml", &[YES, YES, NO, YES, YES, NO, YES]);
 }
 
+/// Bengtsson and others' sorter of Lego: red boxes are kicked off the belt, black ones are not.
+#[test]
+fn red_boxes_are_kicked_off() {
+    demo("box_sorter.xml", &[YES; 8]);
+}
+
+/// The shortest schedule, 11, is that of a search through all orders of the nine steps.
+#[test]
+fn jobs_end_as_early_as_they_can() {
+    demo("job_shop.xml", &[YES, NO, YES, "11 s"]);
+}
+
+/// David and others' framework, without interruption. The longest responses, 9, 13 and 13, are those of a simulation in whole units of
+/// time that tries every execution time.
+#[test]
+fn tasks_meet_their_deadlines() {
+    demo("scheduling.xml", &[YES, YES, "9 s", "13 s", "13 s", YES, YES]);
+}
+
+type Label = (&'static str, &'static str);
+
 /// A model of one template `P` with the locations `a` and `b`, and what is asked of it.
 struct SmallModel {
     global: &'static str,
     parameters: &'static str,
     local: &'static str,
     /// Labels of the location `a`.
-    at_a: &'static [(&'static str, &'static str)],
+    at_a: &'static [Label],
     /// Transitions: from, to, labels.
-    edges: &'static [(&'static str, &'static str, &'static [(&'static str, &'static str)])],
+    edges: &'static [(&'static str, &'static str, &'static [Label])],
     system: &'static str,
 }
 
@@ -88,11 +109,8 @@ impl SmallModel {
         };
         let mut edges = String::new();
         for (from, to, of) in self.edges {
-            let _ = write!(
-                edges,
-                "<transition><source ref=\"{from}\"/><target ref=\"{to}\"/>{}</transition>\n",
-                labels(of)
-            );
+            let ends = format!("<source ref=\"{from}\"/><target ref=\"{to}\"/>");
+            let _ = writeln!(edges, "<transition>{ends}{}</transition>", labels(of));
         }
         let asked: String =
             queries.iter().map(|q| format!("<query><formula>{}</formula></query>\n", escaped(q))).collect();
@@ -338,4 +356,60 @@ fn functions_set_clocks() {
         ..SMALL
     };
     assert!(heard.refused().contains("the shared variable `n`, which whoever offers"), "{}", heard.refused());
+}
+
+#[test]
+fn clocks_stand_where_their_value_is_known() {
+    let model = SmallModel {
+        global: "clock t;",
+        local: "clock x, y;",
+        at_a: &[("invariant", "x' == 0 && t <= 9 && y' == 0 && x <= 3")],
+        edges: &[
+            ("a", "b", &[("guard", "x == 0 && t >= 5"), ("assignment", "y = 1")]),
+            ("b", "a", &[("guard", "x >= 2 && y >= 3 && t <= 8"), ("assignment", "x = 3")]),
+            ("a", "a", &[("guard", "x > 2 && t > 8"), ("assignment", "x = 0, t = 0")]),
+        ],
+        ..SMALL
+    };
+    // Two ways lead to `a` with different values.
+    assert!(
+        model.refused().contains("`x` is stopped at a value that depends on the run"),
+        "{}",
+        model.refused()
+    );
+    let model = SmallModel {
+        edges: &[
+            ("a", "b", &[("guard", "x == 0 && t >= 5"), ("assignment", "y = 1")]),
+            ("b", "a", &[("guard", "x >= 2 && y >= 3 && t <= 8"), ("assignment", "x = 0")]),
+        ],
+        ..model
+    };
+    model.answers(&[
+        ("E<> P.b && t == 5", YES),
+        ("E<> P.b && t < 5", NO),
+        // x has run since `b` alone: it is 2 at 7 at the earliest.
+        ("E<> P.a && t == 7", YES),
+        ("sup{P.a}: t", "9 s"),
+    ]);
+    assert!(model.notes().contains("info: `y` may run on here"), "{}", model.notes());
+    let preemptive = SmallModel {
+        at_a: &[("invariant", "x' == n && x <= 3")],
+        global: "int[0,1] n;",
+        edges: &[("a", "b", &[("guard", "x == 3")])],
+        ..model
+    };
+    assert!(preemptive.refused().contains("Count what is done in an `int`"), "{}", preemptive.refused());
+    let asked = SmallModel { at_a: &[("invariant", "x' == 0")], edges: &[("a", "b", &[])], ..SMALL };
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("small.xml"),
+        SmallModel { local: "clock x;", ..asked }.xml(&["E<> P.a && P.x > 0"]),
+    )
+    .unwrap();
+    let out = hrdsl_in(folder.path(), "import uppaal small.xml -o there.hri");
+    assert!(
+        stderr(&out).contains("left out: the query `E<> P.a && P.x > 0`: `P.x` is stopped"),
+        "{}",
+        stderr(&out)
+    );
 }

@@ -267,7 +267,8 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
         (model("", "", "", &[], "system Q;"), "there is no template or process `Q`"),
         (model("", "int n", "", &[], "system P;"), "stands for more than"),
         (model("", "chan &c", "", &[], "system P;"), "needs an argument for `c`"),
-        (model("", "", "clock x;", &[("invariant", "x' == 0")], "system P;"), "rates of clocks"),
+        (model("", "", "clock x;", &[("invariant", "x' == 2")], "system P;"), "the rate 2 is not supported"),
+        (model("", "", "clock x;", &[("guard", "x' == 0")], "system P;"), "a part of invariants only"),
         (
             model("", "", "clock x;", &[("invariant", "x < 1 || x > 2")], "system P;"),
             "an invariant over clocks",

@@ -35,6 +35,12 @@ pub enum UppaalBinaryOperator {
     ShiftRight,
 }
 
+impl UppaalBinaryOperator {
+    pub fn is_on_bits(self) -> bool {
+        matches!(self, Self::BitAnd | Self::BitOr | Self::BitXor | Self::ShiftLeft | Self::ShiftRight)
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UppaalQuantifier {
     Forall,

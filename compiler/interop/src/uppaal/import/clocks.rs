@@ -7,6 +7,7 @@ use super::{
     expr::{all, not},
     fault::{UppaalFault, fault},
     scope::{ScenarioExprText, ScenarioPrecedence, UppaalSymbol},
+    stopwatch::ClockEvent,
     translation::UppaalTranslation,
 };
 
@@ -97,10 +98,7 @@ impl UppaalTranslation<'_> {
                 } else {
                     vec![op]
                 };
-                let one = |cx: &mut Self, op| {
-                    let clocks = vec![cx.comparison(op, a, b, e.span)?];
-                    Ok(GuardConjunction { clocks, data: Vec::new() })
-                };
+                let one = |cx: &mut Self, op| cx.comparison(op, a, b, e.span);
                 sides.into_iter().map(|op| one(self, op)).collect()
             }
             _ => {
@@ -117,10 +115,13 @@ impl UppaalTranslation<'_> {
         a: &UppaalExpr,
         b: &UppaalExpr,
         span: Span,
-    ) -> Result<String, UppaalFault> {
+    ) -> Result<GuardConjunction, UppaalFault> {
         let mut sum = UppaalClockSum::default();
         self.add(a, 1, &mut sum)?;
         self.add(b, -1, &mut sum)?;
+        if sum.clocks.is_empty() {
+            return Ok(GuardConjunction { clocks: Vec::new(), data: vec![op.of_numbers(&sum.terms)] });
+        }
         sum.terms.iter_mut().for_each(|(sign, _)| *sign = -*sign);
         let plus: Vec<&String> = sum.clocks.iter().filter(|(s, _)| *s > 0).map(|(_, c)| c).collect();
         let minus: Vec<&String> = sum.clocks.iter().filter(|(s, _)| *s < 0).map(|(_, c)| c).collect();
@@ -133,7 +134,8 @@ impl UppaalTranslation<'_> {
             }
             _ => return fault(span, "a comparison has one clock, or the difference of two"),
         };
-        Ok(format!("{left} {} {}", op.text(), time(&sum.terms)))
+        let clocks = vec![format!("{left} {} {}", op.text(), time(&sum.terms))];
+        Ok(GuardConjunction { clocks, data: Vec::new() })
     }
 
     fn add(&mut self, e: &UppaalExpr, sign: i64, sum: &mut UppaalClockSum) -> Result<(), UppaalFault> {
@@ -154,7 +156,11 @@ impl UppaalTranslation<'_> {
             UppaalExprKind::Neg(of) => self.add(of, -sign, sum),
             UppaalExprKind::Name(_) | UppaalExprKind::Index(..) | UppaalExprKind::Field(..) => {
                 let clock = self.clock(e)?;
-                sum.clocks.push((sign, clock));
+                self.clock_log.push(ClockEvent { clock: clock.clone(), set: None });
+                match self.standing.get(&clock) {
+                    Some(n) => sum.terms.push((sign, ScenarioExprText::int(*n))),
+                    None => sum.clocks.push((sign, clock)),
+                }
                 Ok(())
             }
             _ => {
@@ -166,7 +172,18 @@ impl UppaalTranslation<'_> {
 
     pub fn clock(&mut self, e: &UppaalExpr) -> Result<String, UppaalFault> {
         match self.place(e)? {
-            UppaalSymbol::Clock(c) if c.dims.is_empty() => Ok(c.name),
+            UppaalSymbol::Clock(c) if c.dims.is_empty() => {
+                if self.in_query && self.stopwatches.iter().any(|(name, _)| *name == c.name) {
+                    return fault(
+                        e.span,
+                        format!("`{}` is stopped in some locations, and runs on here", c.name),
+                    );
+                }
+                if !c.own {
+                    self.clock_uses.entry(c.name.clone()).or_default().insert(self.processes.len());
+                }
+                Ok(c.name)
+            }
             UppaalSymbol::Clock(_) => fault(e.span, "this is an array of clocks: an index is missing"),
             other => fault(e.span, format!("expected a clock, found {}", other.noun())),
         }
@@ -351,6 +368,26 @@ impl UppaalClockComparison {
             Self::Eq => Self::Eq,
             Self::Ne => Self::Ne,
         }
+    }
+
+    /// Whether a sum of numbers compares so with 0.
+    fn of_numbers(self, terms: &[(i64, ScenarioExprText)]) -> ScenarioExprText {
+        if let Some(all) = terms.iter().map(|(s, t)| t.value.map(|n| s * n)).collect::<Option<Vec<_>>>() {
+            let sum: i64 = all.iter().sum();
+            return ScenarioExprText::bool(match self {
+                Self::Lt => sum < 0,
+                Self::Le => sum <= 0,
+                Self::Eq => sum == 0,
+                Self::Ge => sum >= 0,
+                Self::Gt => sum > 0,
+                Self::Ne => sum != 0,
+            });
+        }
+        let sum = terms.iter().fold("0".to_owned(), |text, (sign, term)| {
+            let sign = if *sign < 0 { "-" } else { "+" };
+            format!("{text} {sign} {}", term.at(ScenarioPrecedence::Product))
+        });
+        ScenarioExprText::new(format!("{sum} {} 0", self.text()), ScenarioPrecedence::Comparison, true)
     }
 
     fn text(self) -> &'static str {

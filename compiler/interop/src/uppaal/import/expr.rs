@@ -123,29 +123,10 @@ impl UppaalTranslation<'_> {
         }
         let (a, b) = (self.expr(a)?, self.expr(b)?);
         let both_bools = a.is_bool && b.is_bool;
-        let (sign, level, of_bools) = match op {
-            UppaalBinaryOperator::Or => ("||", ScenarioPrecedence::Or, true),
-            UppaalBinaryOperator::And => ("&&", ScenarioPrecedence::And, true),
-            UppaalBinaryOperator::Imply => ("imply", ScenarioPrecedence::Imply, true),
-            UppaalBinaryOperator::Eq => ("==", ScenarioPrecedence::Comparison, both_bools),
-            UppaalBinaryOperator::Ne => ("!=", ScenarioPrecedence::Comparison, both_bools),
-            UppaalBinaryOperator::Lt => ("<", ScenarioPrecedence::Comparison, false),
-            UppaalBinaryOperator::Le => ("<=", ScenarioPrecedence::Comparison, false),
-            UppaalBinaryOperator::Gt => (">", ScenarioPrecedence::Comparison, false),
-            UppaalBinaryOperator::Ge => (">=", ScenarioPrecedence::Comparison, false),
-            UppaalBinaryOperator::Add => ("+", ScenarioPrecedence::Sum, false),
-            UppaalBinaryOperator::Sub => ("-", ScenarioPrecedence::Sum, false),
-            UppaalBinaryOperator::Mul => ("*", ScenarioPrecedence::Product, false),
-            UppaalBinaryOperator::Div => ("/", ScenarioPrecedence::Product, false),
-            UppaalBinaryOperator::Rem => ("%", ScenarioPrecedence::Product, false),
-            UppaalBinaryOperator::Min => ("min", ScenarioPrecedence::Atom, false),
-            UppaalBinaryOperator::Max => ("max", ScenarioPrecedence::Atom, false),
-            UppaalBinaryOperator::BitAnd
-            | UppaalBinaryOperator::BitOr
-            | UppaalBinaryOperator::BitXor
-            | UppaalBinaryOperator::ShiftLeft
-            | UppaalBinaryOperator::ShiftRight => return self.on_bits(op, a.into_int(), b.into_int(), span),
-        };
+        if op.is_on_bits() {
+            return self.on_bits(op, a.into_int(), b.into_int(), span);
+        }
+        let (sign, level, of_bools) = signs(op, both_bools);
         let (a, b) = (a.of_type(of_bools), b.of_type(of_bools));
         let value = a.value.zip(b.value).map(|(a, b)| fold(op, a, b, span)).transpose()?;
         if value.is_none() && matches!(op, UppaalBinaryOperator::And | UppaalBinaryOperator::Or) {
@@ -319,6 +300,33 @@ pub fn any(parts: impl Iterator<Item = ScenarioExprText>) -> ScenarioExprText {
                 Some(a | b)
             })
         }
+    }
+}
+
+/// How an operator is written, how tightly it binds, and whether it is one of bools.
+fn signs(op: UppaalBinaryOperator, both_bools: bool) -> (&'static str, ScenarioPrecedence, bool) {
+    match op {
+        UppaalBinaryOperator::Or => ("||", ScenarioPrecedence::Or, true),
+        UppaalBinaryOperator::And => ("&&", ScenarioPrecedence::And, true),
+        UppaalBinaryOperator::Imply => ("imply", ScenarioPrecedence::Imply, true),
+        UppaalBinaryOperator::Eq => ("==", ScenarioPrecedence::Comparison, both_bools),
+        UppaalBinaryOperator::Ne => ("!=", ScenarioPrecedence::Comparison, both_bools),
+        UppaalBinaryOperator::Lt => ("<", ScenarioPrecedence::Comparison, false),
+        UppaalBinaryOperator::Le => ("<=", ScenarioPrecedence::Comparison, false),
+        UppaalBinaryOperator::Gt => (">", ScenarioPrecedence::Comparison, false),
+        UppaalBinaryOperator::Ge => (">=", ScenarioPrecedence::Comparison, false),
+        UppaalBinaryOperator::Add => ("+", ScenarioPrecedence::Sum, false),
+        UppaalBinaryOperator::Sub => ("-", ScenarioPrecedence::Sum, false),
+        UppaalBinaryOperator::Mul => ("*", ScenarioPrecedence::Product, false),
+        UppaalBinaryOperator::Div => ("/", ScenarioPrecedence::Product, false),
+        UppaalBinaryOperator::Rem => ("%", ScenarioPrecedence::Product, false),
+        UppaalBinaryOperator::Min => ("min", ScenarioPrecedence::Atom, false),
+        UppaalBinaryOperator::Max => ("max", ScenarioPrecedence::Atom, false),
+        UppaalBinaryOperator::BitAnd
+        | UppaalBinaryOperator::BitOr
+        | UppaalBinaryOperator::BitXor
+        | UppaalBinaryOperator::ShiftLeft
+        | UppaalBinaryOperator::ShiftRight => ("", ScenarioPrecedence::Atom, false),
     }
 }
 

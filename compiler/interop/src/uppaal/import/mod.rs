@@ -32,6 +32,7 @@ mod queries;
 mod record;
 mod scope;
 mod statement;
+mod stopwatch;
 mod template;
 mod translation;
 mod update;

@@ -181,21 +181,23 @@ impl UppaalTranslation<'_> {
         declarations.iter().for_each(|d| self.declare(d, true));
         self.templates[plan.template].declarations = declarations;
         let written: Vec<String> = self.location_names(template);
-        let invariants = std::mem::take(&mut self.templates[plan.template].invariants);
-        let mut locations = Vec::new();
-        for (i, location) in template.locations.iter().enumerate() {
-            let invariant = invariants.get(i).and_then(Option::as_ref);
-            let made = self.location(location, &written[i], i == template.initial, invariant);
+        let parsed = std::mem::take(&mut self.templates[plan.template]);
+        let stopped = self.stopped(template, &parsed, &written);
+        let stopped = self.kept(stopped).unwrap_or_default();
+        let (mut locations, mut texts) = (Vec::new(), Vec::new());
+        for (i, (location, stopped)) in template.locations.iter().zip(&stopped).enumerate() {
+            self.standing.clone_from(&stopped.values);
+            let made =
+                self.location(location, &written[i], i == template.initial, stopped.invariant.as_ref());
             locations.extend(self.kept(made));
         }
-        self.templates[plan.template].invariants = invariants;
-        let edges = std::mem::take(&mut self.templates[plan.template].edges);
-        let mut texts = Vec::new();
-        for (transition, edge) in template.transitions.iter().zip(&edges) {
+        for (transition, edge) in template.transitions.iter().zip(&parsed.edges) {
+            self.standing = stopped.get(transition.from).map(|s| s.values.clone()).unwrap_or_default();
             let made = self.edge(transition, edge, &written);
             texts.extend(self.kept(made).unwrap_or_default());
         }
-        self.templates[plan.template].edges = edges;
+        self.standing.clear();
+        self.templates[plan.template] = parsed;
         let mut scope = self.process.take().unwrap_or_default();
         for (location, written) in template.locations.iter().zip(&written) {
             if let Some(name) = &location.name {
@@ -300,13 +302,8 @@ impl UppaalTranslation<'_> {
         edge: &ParsedEdge,
         names: &[String],
     ) -> Result<Vec<String>, UppaalFault> {
-        let receives = edge.sync.as_ref().is_some_and(|sync| !sync.offers);
-        let cases = self.every_case(edge.span(), receives, |cx| {
-            cx.locals.push(UppaalScope::new());
-            let made = cx.edge_texts(t, edge, names);
-            cx.locals.pop();
-            made
-        })?;
+        self.clock_log.clear();
+        let cases = self.edge_cases(edge, |cx| cx.edge_texts(t, edge, names))?;
         let mut texts: Vec<String> = cases.concat();
         if let Some(first) = texts.first_mut() {
             *first = doc(&t.comment) + first;
@@ -314,7 +311,22 @@ impl UppaalTranslation<'_> {
         Ok(texts)
     }
 
-    fn edge_texts(
+    /// What `write` makes of each case of an edge.
+    pub fn edge_cases<T>(
+        &mut self,
+        edge: &ParsedEdge,
+        mut write: impl FnMut(&mut Self) -> Result<T, UppaalFault>,
+    ) -> Result<Vec<T>, UppaalFault> {
+        let receives = edge.sync.as_ref().is_some_and(|sync| !sync.offers);
+        self.every_case(edge.span(), receives, |cx| {
+            cx.locals.push(UppaalScope::new());
+            let made = write(cx);
+            cx.locals.pop();
+            made
+        })
+    }
+
+    pub fn edge_texts(
         &mut self,
         t: &UppaalTransition,
         edge: &ParsedEdge,
@@ -361,7 +373,11 @@ impl UppaalTranslation<'_> {
         if let Some(cases) = &mut self.cases {
             cases.in_updates = true;
         }
+        // What stood until now is set to where it stood, and runs from there.
+        let standing = std::mem::take(&mut self.standing);
+        actions.extend(standing.iter().map(|(clock, n)| format!("{clock} = {}", seconds(*n))));
         edge.assign.iter().try_for_each(|e| self.effect(e, &mut actions))?;
+        self.standing = standing;
         let asked = self.cases.as_mut().map(|cases| std::mem::take(&mut cases.conditions));
         for guard in &mut guards {
             guard.data.extend(asked.iter().flatten().cloned());
@@ -428,6 +444,11 @@ impl UppaalTranslation<'_> {
         };
         self.names.unused(&wanted, NameOwner::All)
     }
+}
+
+/// A number of units of time.
+fn seconds(n: i64) -> String {
+    if n == 0 { "0".to_owned() } else { format!("{n} s") }
 }
 
 fn shown(sym: &UppaalSymbol) -> String {

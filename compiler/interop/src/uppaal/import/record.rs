@@ -10,6 +10,7 @@ use super::{
     expr::{all, not},
     fault::{UppaalFault, fault},
     scope::{IndexRange, RecordSym, ScenarioExprText, ScenarioPrecedence, UppaalSymbol, UppaalSymbolType},
+    stopwatch::ClockEvent,
     translation::UppaalTranslation,
 };
 
@@ -124,6 +125,8 @@ impl UppaalTranslation<'_> {
                 }
                 (UppaalSymbol::Clock(to), UppaalSymbol::Clock(from)) if self.writing == 0 => {
                     out.push(format!("{} = {}", to.name, from.name));
+                    self.clock_log.push(ClockEvent { clock: from.name.clone(), set: None });
+                    self.clock_log.push(ClockEvent { clock: to.name.clone(), set: Some(None) });
                 }
                 (to, _) => return fault(span, format!("{} cannot be assigned here", to.noun())),
             }

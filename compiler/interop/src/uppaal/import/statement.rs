@@ -253,31 +253,8 @@ impl UppaalTranslation<'_> {
                 }
                 lines.push(text);
             }
-            UppaalStatementKind::While(c, body) => {
-                let mut before = Vec::new();
-                let (c, after) = self.value_in_order(c, &mut before)?;
-                let c = c.into_bool();
-                let body = self.nested(body, result)?;
-                if before.is_empty() && after.is_empty() {
-                    lines.push(format!("while {} {body}", c.text));
-                    return Ok(());
-                }
-                let again = self.names.unused("again", NameOwner::Function);
-                lines.extend(before.iter().map(|e| format!("{e};")));
-                lines.push(format!("var {again}: bool = {};", c.text));
-                lines.extend(after.iter().map(|e| format!("{e};")));
-                let once_more = ordered(&before, &format!("{again} = {}", c.text), &after);
-                lines.push(format!("while {again} {{{}{once_more}}}", inner(&body)));
-            }
-            UppaalStatementKind::DoWhile(body, c) => {
-                let again = self.names.unused("again", NameOwner::Function);
-                let body = self.nested(body, result)?;
-                let mut before = Vec::new();
-                let (c, after) = self.value_in_order(c, &mut before)?;
-                lines.push(format!("var {again}: bool = true;"));
-                let once_more = ordered(&before, &format!("{again} = {}", c.into_bool().text), &after);
-                lines.push(format!("while {again} {{{}{once_more}}}", inner(&body)));
-            }
+            UppaalStatementKind::While(c, body) => self.while_loop(c, body, false, result, lines)?,
+            UppaalStatementKind::DoWhile(body, c) => self.while_loop(c, body, true, result, lines)?,
             UppaalStatementKind::For(init, c, step, body) => {
                 self.for_loop(init, c.as_ref(), step, body, result, lines)?
             }
@@ -294,24 +271,62 @@ impl UppaalTranslation<'_> {
                 lines.push(format!("for {written} in {} {}", scalar.text, body?));
             }
             UppaalStatementKind::Return(None) => lines.push("return;".to_owned()),
-            UppaalStatementKind::Return(Some(e)) => {
-                let Some(result) = result else {
-                    return fault(s.span, "this function has no value (`void`)");
-                };
-                let mut effects = Vec::new();
-                let (value, after) = self.value_in_order(e, &mut effects)?;
-                let value = value.of_type(result.is_bool).text;
-                lines.extend(effects.into_iter().map(|e| e + ";"));
-                if after.is_empty() {
-                    lines.push(format!("return {value};"));
-                    return Ok(());
-                }
-                let given = self.names.unused("given", NameOwner::Function);
-                lines.push(format!("var {given}: {} = {value};", result.text));
-                lines.extend(after.into_iter().map(|e| e + ";"));
-                lines.push(format!("return {given};"));
-            }
+            UppaalStatementKind::Return(Some(e)) => self.return_statement(e, s.span, result, lines)?,
         }
+        Ok(())
+    }
+
+    fn return_statement(
+        &mut self,
+        e: &UppaalExpr,
+        span: Span,
+        result: Option<&UppaalScalarType>,
+        lines: &mut Vec<String>,
+    ) -> Result<(), UppaalFault> {
+        let Some(result) = result else { return fault(span, "this function has no value (`void`)") };
+        let mut effects = Vec::new();
+        let (value, after) = self.value_in_order(e, &mut effects)?;
+        let value = value.of_type(result.is_bool).text;
+        lines.extend(effects.into_iter().map(|e| e + ";"));
+        if after.is_empty() {
+            lines.push(format!("return {value};"));
+            return Ok(());
+        }
+        let given = self.names.unused("given", NameOwner::Function);
+        lines.push(format!("var {given}: {} = {value};", result.text));
+        lines.extend(after.into_iter().map(|e| e + ";"));
+        lines.push(format!("return {given};"));
+        Ok(())
+    }
+
+    /// `while`, and `do`, whose first round is not asked for.
+    fn while_loop(
+        &mut self,
+        c: &UppaalExpr,
+        body: &UppaalStatement,
+        first: bool,
+        result: Option<&UppaalScalarType>,
+        lines: &mut Vec<String>,
+    ) -> Result<(), UppaalFault> {
+        let again = first.then(|| self.names.unused("again", NameOwner::Function));
+        let (mut before, block) = (Vec::new(), self.nested(body, result)?);
+        let (c, after) = self.value_in_order(c, &mut before)?;
+        let c = c.into_bool().text;
+        if again.is_none() && before.is_empty() && after.is_empty() {
+            lines.push(format!("while {c} {block}"));
+            return Ok(());
+        }
+        let starts = if first { "true" } else { &c };
+        let again = again.unwrap_or_else(|| self.names.unused("again", NameOwner::Function));
+        if !first {
+            lines.extend(before.iter().map(|e| format!("{e};")));
+        }
+        lines.push(format!("var {again}: bool = {starts};"));
+        if !first {
+            lines.extend(after.iter().map(|e| format!("{e};")));
+        }
+        let once_more = ordered(&before, &format!("{again} = {c}"), &after);
+        lines.push(format!("while {again} {{{}{once_more}}}", inner(&block)));
         Ok(())
     }
 

@@ -15,6 +15,7 @@ use super::{
 };
 
 /// A template whose labels have been read.
+#[derive(Default)]
 pub struct ParsedTemplate {
     pub name: String,
     pub params: Vec<UppaalParameter>,

@@ -1,5 +1,7 @@
 //! All that is known while a model is translated: what every step reads and adds to.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use hrdsl_source::Span;
 use indexmap::{IndexMap, IndexSet};
 
@@ -8,6 +10,7 @@ use super::{
     cases::EdgeCases,
     fault::UppaalFault,
     scope::{ChanSym, UppaalScenarioNames, UppaalScope},
+    stopwatch::ClockEvent,
     template::ParsedTemplate,
     xml::UppaalModel,
 };
@@ -56,6 +59,14 @@ pub(crate) struct UppaalTranslation<'m> {
     pub bit_functions: Vec<(UppaalBinaryOperator, String)>,
     /// The `meta` variables.
     pub metas: IndexSet<String>,
+    /// Clocks that are stopped somewhere, as queries call them where they belong to a process, and where.
+    pub stopwatches: Vec<(String, Span)>,
+    /// Those that stand where what is being written begins.
+    pub standing: BTreeMap<String, i64>,
+    /// What happens to clocks in what is being written, in order.
+    pub clock_log: Vec<ClockEvent>,
+    /// Which processes have to do with a clock.
+    pub clock_uses: BTreeMap<String, BTreeSet<usize>>,
     /// What is decided of the edge that is being written.
     pub cases: Option<EdgeCases>,
     pub arrays: IndexMap<String, (String, bool)>,
@@ -87,6 +98,10 @@ impl<'m> UppaalTranslation<'m> {
             functions: Vec::new(),
             bit_functions: Vec::new(),
             metas: IndexSet::new(),
+            stopwatches: Vec::new(),
+            standing: BTreeMap::new(),
+            clock_log: Vec::new(),
+            clock_uses: BTreeMap::new(),
             cases: None,
             arrays: IndexMap::new(),
             specialised: IndexMap::new(),

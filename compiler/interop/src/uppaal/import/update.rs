@@ -7,6 +7,7 @@ use super::{
     fault::{UppaalFault, fault},
     place::place_text,
     scope::{IndexRange, ScenarioExprText, ScenarioPrecedence, UppaalSymbol, VarSym, combinations},
+    stopwatch::ClockEvent,
     translation::UppaalTranslation,
 };
 
@@ -102,7 +103,9 @@ impl UppaalTranslation<'_> {
                 return fault(span, "a clock is set by `=`");
             }
             let clock = self.clock(to)?;
+            let number = if self.mentions_clock(value) { None } else { self.expr(value)?.into_int().value };
             out.push(format!("{clock} = {}", self.setting(value)?));
+            self.clock_log.push(ClockEvent { clock, set: Some(number) });
             return Ok(());
         }
         if op.is_none() && matches!(self.kind_of(to), Some(UppaalSymbol::Record(_))) {

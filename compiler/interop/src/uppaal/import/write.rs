@@ -69,7 +69,20 @@ impl UppaalTranslation<'_> {
         // All names first: what a process declares gives way to them.
         let names: Vec<String> = plans.iter().map(|(p, span)| self.automaton_name(p, *span)).collect();
         for ((plan, _), name) in plans.into_iter().zip(names) {
-            self.automaton(plan, name);
+            let before = self.stopwatches.len();
+            self.automaton(plan, name.clone());
+            let own: Vec<&String> = self.processes.last().iter().flat_map(|p| &p.clocks).collect();
+            for (clock, _) in self.stopwatches.iter_mut().skip(before) {
+                if own.contains(&&*clock) {
+                    *clock = format!("{name}.{clock}");
+                }
+            }
+        }
+        for (clock, span) in &self.stopwatches {
+            if self.clock_uses.get(clock).is_some_and(|processes| processes.len() > 1) {
+                let message = format!("`{clock}` is stopped by one process and belongs to others, too");
+                self.faults.push(UppaalFault { span: *span, message });
+            }
         }
     }
 
