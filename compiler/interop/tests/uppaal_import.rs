@@ -324,15 +324,15 @@ fn each_branch_of_a_branchpoint_may_be_taken() {
     let edges: Vec<String> =
         imported.text.lines().map(words).filter(|line| line.starts_with("a -> ")).collect();
     assert_eq!(edges, ["a -> a when x > 1 s do n = 1; n = n + 1; x = 0", "a -> l1 when x > 1 s do n = 1"]);
-    let left_out = imported.notes.iter().filter(|note| note.severity == NoteSeverity::LeftOut);
-    assert!(
-        left_out.clone().count() == 2 && left_out.clone().all(|note| note.message.contains("`probability`"))
-    );
+    let kept: Vec<String> = imported.text.lines().map(words).filter(|l| l.starts_with("// prob")).collect();
+    assert_eq!(kept, ["// probability 1", "// probability 9"]);
+    assert_eq!(imported.notes.len(), 1, "{:?}", imported.notes);
+    assert_eq!(imported.notes[0].severity, NoteSeverity::Info);
 }
 
-/// What only other tools of UPPAAL ask is left out, and said.
+/// What only other tools of UPPAAL ask stands in comments.
 #[test]
-fn what_is_asked_by_games_and_statistics_alone_is_left_out() {
+fn what_is_asked_by_games_and_statistics_alone_is_kept_as_comments() {
     let text = model("", "", "clock x;", &[("guard", "x > 1")], "system P;")
         .replace("<transition>", "<transition controllable=\"false\">")
         .replace(
@@ -341,13 +341,15 @@ fn what_is_asked_by_games_and_statistics_alone_is_left_out() {
         );
     let imported = from_text(&text, "").unwrap_or_else(|e| panic!("{e:?}"));
     compiles(&imported.text);
-    let left_out: Vec<&str> = imported.notes.iter().map(|note| note.message.as_str()).collect();
+    let said: Vec<&str> = imported.notes.iter().map(|note| note.message.as_str()).collect();
     assert!(
-        left_out.len() == 2
-            && left_out[0].starts_with("`exponentialrate`")
-            && left_out[1].starts_with("`controllable=\"false\"` of a transition"),
-        "{left_out:?}"
+        said.len() == 2
+            && said[0].starts_with("`exponentialrate` is kept")
+            && said[1].starts_with("`controllable=\"false\"` of a transition is kept"),
+        "{said:?}"
     );
+    assert!(imported.text.contains("  // exponentialrate 1:5\n  location l1\n"), "{}", imported.text);
+    assert!(imported.text.contains("  // controllable=\"false\"\n  a -> l1"), "{}", imported.text);
 }
 
 #[test]
@@ -365,6 +367,32 @@ fn queries_that_cannot_be_asked_are_left_out() {
         imported.notes.iter().filter(|n| n.severity == NoteSeverity::LeftOut).map(|n| n.line).collect();
     assert_eq!(left_out, [2, 3, 9, 10]);
     compiles(&imported.text);
+}
+
+#[test]
+fn comments_of_declarations_stay_with_them() {
+    let global = "/* The system.\n * It counts. */\n\nconst int N = 2; // how far\ntypedef int[0,N] id; // who\n\
+        int n, // counted\n k; /* kept */ chan c; // told\n// nothing follows\n\
+        // ------\nconst int T[2] = { 1, 2 }; // table\n\
+        /** Adds one. */ void up() { n++; /* not this */ }\n// Sets all.\nvoid all() { x = 0; }";
+    let global = global.replace("void all", "clock x; // ran\nvoid all");
+    let local = "// since it began\nclock t; int own; // its own\nclock u;";
+    let text =
+        model(&global, "", local, &[("assignment", "up(), all(), k = T[n]")], "// The line.\nsystem P;");
+    let imported = from_text(&text, "").unwrap_or_else(|e| panic!("{e:?}"));
+    is_readable(&imported.text);
+    compiles(&imported.text);
+    for expected in [
+        "// The system.\n// It counts.\n// how far\nconst N = 2\n// who\n// counted\n// kept\nvar n: ",
+        "// told\nchannel c\n",
+        "// nothing follows\n// table\nvar T: ",
+        "// Adds one.\nfn up() {\n  n += 1\n}",
+        "// Sets all.\n// ran\nvar x: clock",
+        "  // t: since it began\n  clock t, u\n",
+        "  // its own\n  var own: ",
+    ] {
+        assert!(imported.text.contains(expected), "{expected}\n\n{}", imported.text);
+    }
 }
 
 #[test]

@@ -148,6 +148,8 @@ pub enum UppaalDeclaration {
     Instance(UppaalInstance),
     /// `system A, B;`
     System(Vec<(String, Span)>),
+    /// What is said of the declaration that follows.
+    Comment(Vec<String>),
     /// What changes nothing of what a model does.
     Idle(Span, &'static str),
 }

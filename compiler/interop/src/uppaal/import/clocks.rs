@@ -218,9 +218,7 @@ impl UppaalTranslation<'_> {
                 Ok(super::expr::any(parts.into_iter()))
             }
             UppaalExprKind::Binary(UppaalBinaryOperator::Imply, a, b) => {
-                let (a, b) = (self.formula(a)?, self.formula(b)?);
-                let text = format!("{} imply {}", a.at(ScenarioPrecedence::Or), b.at(ScenarioPrecedence::Or));
-                Ok(ScenarioExprText::new(text, ScenarioPrecedence::Imply, true))
+                Ok(super::expr::implied(&self.formula(a)?, &self.formula(b)?))
             }
             UppaalExprKind::Quantified(UppaalQuantifier::Forall, name, ty, of) => {
                 Ok(all(self.parts(name, ty, |cx| cx.formula(of))?.into_iter()))

@@ -118,6 +118,21 @@ impl UppaalTranslation<'_> {
 
     /// Declares for all (`own` is false) or in the process that is being written.
     pub fn declare(&mut self, decl: &UppaalDeclaration, own: bool) {
+        let said = match decl {
+            UppaalDeclaration::Comment(lines) => {
+                self.said.clone_from(lines);
+                return;
+            }
+            _ => std::mem::take(&mut self.said),
+        };
+        let before = self.written(own);
+        self.declare_one(decl, own);
+        if !said.is_empty() && self.faults.is_empty() {
+            self.comment(&said, before, own);
+        }
+    }
+
+    fn declare_one(&mut self, decl: &UppaalDeclaration, own: bool) {
         let declared = match decl {
             UppaalDeclaration::Vars(ty, declarators) => {
                 for declarator in declarators {
@@ -134,7 +149,9 @@ impl UppaalTranslation<'_> {
             UppaalDeclaration::Instance(i) if own => {
                 fault(i.span, "a process is made in the system's declarations")
             }
-            UppaalDeclaration::Instance(_) | UppaalDeclaration::System(_) => Ok(()),
+            UppaalDeclaration::Instance(_) | UppaalDeclaration::System(_) | UppaalDeclaration::Comment(_) => {
+                Ok(())
+            }
             UppaalDeclaration::Idle(span, what) => {
                 self.notes.push((*span, NoteSeverity::LeftOut, (*what).to_owned()));
                 Ok(())

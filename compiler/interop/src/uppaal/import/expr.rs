@@ -129,6 +129,9 @@ impl UppaalTranslation<'_> {
         let (sign, level, of_bools) = signs(op, both_bools);
         let (a, b) = (a.of_type(of_bools), b.of_type(of_bools));
         let value = a.value.zip(b.value).map(|(a, b)| fold(op, a, b, span)).transpose()?;
+        if op == UppaalBinaryOperator::Imply {
+            return Ok(implied(&a, &b));
+        }
         if value.is_none() && matches!(op, UppaalBinaryOperator::And | UppaalBinaryOperator::Or) {
             let both = [a, b].into_iter();
             return Ok(if op == UppaalBinaryOperator::And { all(both) } else { any(both) });
@@ -142,10 +145,8 @@ impl UppaalTranslation<'_> {
             | UppaalBinaryOperator::BitOr
             | UppaalBinaryOperator::BitXor
             | UppaalBinaryOperator::ShiftLeft
-            | UppaalBinaryOperator::ShiftRight => String::new(),
-            UppaalBinaryOperator::Imply => {
-                format!("{} imply {}", a.at(ScenarioPrecedence::Or), b.at(ScenarioPrecedence::Or))
-            }
+            | UppaalBinaryOperator::ShiftRight
+            | UppaalBinaryOperator::Imply => String::new(),
             UppaalBinaryOperator::Or
             | UppaalBinaryOperator::And
             | UppaalBinaryOperator::Add
@@ -258,6 +259,20 @@ pub fn not(of: &ScenarioExprText) -> ScenarioExprText {
             ScenarioPrecedence::Not,
             true,
         ),
+    }
+}
+
+/// `a imply b`, as far as it is not certain.
+pub fn implied(a: &ScenarioExprText, b: &ScenarioExprText) -> ScenarioExprText {
+    match (a.value, b.value) {
+        (Some(0), _) => ScenarioExprText::bool(true),
+        (Some(_), _) => b.clone(),
+        (None, Some(0)) => not(a),
+        (None, Some(_)) => ScenarioExprText::bool(true),
+        (None, None) => {
+            let text = format!("{} imply {}", a.at(ScenarioPrecedence::Or), b.at(ScenarioPrecedence::Or));
+            ScenarioExprText::new(text, ScenarioPrecedence::Imply, true)
+        }
     }
 }
 

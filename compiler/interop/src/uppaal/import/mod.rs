@@ -1,7 +1,7 @@
-//! UPPAAL's models (`.xml`, flat DTD and newer) and queries (`.q`, or in the model) to a scenario.
+//! UPPAAL's models (`.xml`, flat DTD and newer; `.xta`) and queries (`.q`, or in the model) to a scenario.
 //!
 //! # Steps
-//! 1. `xml`, `branches`: the file to templates and pieces of text, each character with its place
+//! 1. `xml` or `xta`, `branches`: the file to templates and pieces of text, each character with its place
 //! 2. `lex`, `parse`, `queries`: pieces to declarations, expressions, formulas
 //! 3. `template`: the labels of each template
 //! 4. `declare`, `statement`: what is declared for all; functions
@@ -19,6 +19,7 @@ mod bits;
 mod branches;
 mod cases;
 mod clocks;
+mod comment;
 mod declare;
 mod expr;
 mod fault;
@@ -38,6 +39,7 @@ mod translation;
 mod update;
 mod write;
 mod xml;
+mod xta;
 
 use hrdsl_source::{FileId, SourceFiles, Span, TextPosition};
 
@@ -70,7 +72,9 @@ pub fn import(
     let mut files = SourceFiles::default();
     let file = files.add(&model.name, &model.text);
     let mut replaced = None;
-    let mut read = xml::read(file, &model.text).map_err(|faults| errors(&files, faults))?;
+    let is_textual = [".xta", ".ta"].iter().any(|ending| model.name.ends_with(ending));
+    let reader = if is_textual { xta::read } else { xml::read };
+    let mut read = reader(file, &model.text).map_err(|faults| errors(&files, faults))?;
     if let Some(source) = questions {
         let file: FileId = files.add(&source.name, &source.text);
         let before = std::mem::replace(&mut read.queries, queries::read(file, &source.text));
@@ -90,8 +94,8 @@ pub fn import(
         cx.notes.push((span, NoteSeverity::Info, format!("`{old}` is called `{new}`")));
     }
     cx.notes.extend(replaced);
-    let skipped = read.skipped.iter().map(|(span, what)| (*span, NoteSeverity::LeftOut, what.clone()));
-    let mut notes: Vec<ImportNote> = cx.notes.into_iter().chain(skipped).map(|n| note(&files, n)).collect();
+    let mut notes: Vec<ImportNote> =
+        cx.notes.into_iter().chain(read.skipped.iter().cloned()).map(|n| note(&files, n)).collect();
     notes.sort();
     notes.dedup();
     let text = hrdsl_syntax::format(&written).unwrap_or(written);

@@ -14,8 +14,10 @@ use super::{
     },
     template::ParsedEdge,
     translation::{UppaalProcess, UppaalTranslation},
+    write::one_line,
     xml::{UppaalLocation, UppaalLocationKind, UppaalTemplate, UppaalTransition},
 };
+use crate::exchange::note::NoteSeverity;
 
 /// How many processes a system may have.
 const MAX_PROCESSES: usize = 512;
@@ -215,6 +217,7 @@ impl UppaalTranslation<'_> {
             scope,
             arrays: std::mem::take(&mut self.own_arrays),
             clocks: std::mem::take(&mut self.own_clocks),
+            clock_comments: std::mem::take(&mut self.own_clock_comments),
             lines: std::mem::take(&mut self.own_lines),
             functions: std::mem::take(&mut self.own_functions),
             locations,
@@ -274,6 +277,11 @@ impl UppaalTranslation<'_> {
         invariant: Option<&UppaalExpr>,
     ) -> Result<String, UppaalFault> {
         let mut text = doc(&location.comment);
+        if !location.rate.trim().is_empty() {
+            text += &format!("// exponentialrate {}\n", one_line(&location.rate));
+            let message = "`exponentialrate` is kept as a comment: only statistical model checking asks how fast a location is left";
+            self.notes.push((location.span, NoteSeverity::Info, message.to_owned()));
+        }
         if is_initial {
             text += "init ";
         }
@@ -305,6 +313,17 @@ impl UppaalTranslation<'_> {
         self.clock_log.clear();
         let cases = self.edge_cases(edge, |cx| cx.edge_texts(t, edge, names))?;
         let mut texts: Vec<String> = cases.concat();
+        let mut kept = String::new();
+        if t.uncontrollable {
+            kept += "// controllable=\"false\"\n";
+        }
+        if !t.probability.trim().is_empty() {
+            kept += &format!("// probability {}\n", one_line(&t.probability));
+            let message =
+                "`probability` is kept as a comment: any branch may be taken, as UPPAAL's model checker may";
+            self.notes.push((edge.span(), NoteSeverity::Info, message.to_owned()));
+        }
+        texts.iter_mut().for_each(|text| *text = kept.clone() + text);
         if let Some(first) = texts.first_mut() {
             *first = doc(&t.comment) + first;
         }

@@ -384,6 +384,7 @@ impl UppaalTranslation<'_> {
             UppaalDeclaration::Function(_)
             | UppaalDeclaration::Instance(_)
             | UppaalDeclaration::System(_)
+            | UppaalDeclaration::Comment(_)
             | UppaalDeclaration::Idle(..) => {
                 return fault(span, "this cannot be declared in a function");
             }

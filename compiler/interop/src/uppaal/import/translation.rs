@@ -29,6 +29,7 @@ pub(crate) struct UppaalProcess {
     /// Declarations of its constant arrays, and whether they are needed.
     pub arrays: IndexMap<String, (String, bool)>,
     pub clocks: Vec<String>,
+    pub clock_comments: Vec<(String, String)>,
     pub lines: Vec<String>,
     pub functions: Vec<String>,
     pub locations: Vec<String>,
@@ -55,6 +56,12 @@ pub(crate) struct UppaalTranslation<'m> {
     pub channels: Vec<ChanSym>,
     pub lines: Vec<String>,
     pub functions: Vec<String>,
+    /// What is said of the declaration that comes next.
+    pub said: Vec<String>,
+    /// Comments before channels, by their names.
+    pub channel_comments: BTreeMap<String, String>,
+    /// Comments of clocks of the process.
+    pub own_clock_comments: Vec<(String, String)>,
     /// The functions for operations on bits that are in the text, by what they do; written last.
     pub bit_functions: Vec<(UppaalBinaryOperator, String)>,
     /// The `meta` variables.
@@ -96,6 +103,9 @@ impl<'m> UppaalTranslation<'m> {
             channels: Vec::new(),
             lines: Vec::new(),
             functions: Vec::new(),
+            said: Vec::new(),
+            channel_comments: BTreeMap::new(),
+            own_clock_comments: Vec::new(),
             bit_functions: Vec::new(),
             metas: IndexSet::new(),
             stopwatches: Vec::new(),

@@ -6,7 +6,7 @@ use super::{
     ast::{UppaalDeclaration, UppaalExpr, UppaalInstance, UppaalQuery},
     fault::UppaalFault,
     queries,
-    scope::{IndexRange, NameOwner},
+    scope::{ChanSym, IndexRange, NameOwner},
     template,
     translation::UppaalTranslation,
 };
@@ -51,6 +51,7 @@ impl UppaalTranslation<'_> {
                 UppaalDeclaration::Vars(..)
                 | UppaalDeclaration::Typedef(..)
                 | UppaalDeclaration::Function(_)
+                | UppaalDeclaration::Comment(_)
                 | UppaalDeclaration::Idle(..) => {}
             }
         }
@@ -164,13 +165,18 @@ impl UppaalTranslation<'_> {
             self.names.renamed.iter().map(|(_, old, new)| format!("// `{old}` is called `{new}`\n"));
         text.extend(renamed.collect::<indexmap::IndexSet<_>>());
         let arrays = self.arrays.values().filter(|(_, used)| *used).map(|(line, _)| line.clone());
-        let channels = self.channels.iter().map(channel);
+        let said = |c: &ChanSym| self.channel_comments.get(&c.name).cloned().unwrap_or_default();
+        let channels = self.channels.iter().map(|c| said(c) + &channel(c));
         section(&mut text, self.lines.iter().cloned().chain(arrays));
         section(&mut text, channels);
         self.functions.iter().for_each(|f| text += &format!("\n{f}\n"));
         for process in &self.processes {
             text += &format!("\n/// {}.\nautomaton {} {{\n", process.doc, process.name);
             if !process.clocks.is_empty() {
+                for (clock, said) in &process.clock_comments {
+                    let of = if process.clocks.len() == 1 { String::new() } else { format!("{clock}: ") };
+                    text += &format!("// {of}{said}\n");
+                }
                 text += &format!("clock {}\n", process.clocks.join(", "));
             }
             let arrays = process.arrays.values().filter(|(_, used)| *used).map(|(line, _)| line.clone());
@@ -194,7 +200,7 @@ fn section(text: &mut String, lines: impl Iterator<Item = String>) {
     }
 }
 
-fn channel(channel: &super::scope::ChanSym) -> String {
+fn channel(channel: &ChanSym) -> String {
     let index = |(i, d): (usize, &IndexRange)| {
         format!("{}: {}..{}", ["i", "j", "k"].get(i).unwrap_or(&"n"), d.lo, d.hi)
     };
@@ -215,6 +221,6 @@ fn escaped(text: &str) -> String {
     one_line(text).replace('\\', "\\\\").replace('"', "\\\"")
 }
 
-fn one_line(text: &str) -> String {
+pub fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

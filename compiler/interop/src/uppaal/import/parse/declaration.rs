@@ -21,9 +21,20 @@ impl UppaalParser {
     pub fn declarations(&mut self) -> UppaalParseResult<Vec<UppaalDeclaration>> {
         let mut all = Vec::new();
         while !self.at_end() {
-            if !self.take(";") {
-                all.push(self.declaration()?);
+            if self.take(";") {
+                continue;
             }
+            let start = self.at;
+            let declaration = self.declaration()?;
+            let inside = match &declaration {
+                UppaalDeclaration::Function(_) => start + 1,
+                _ => self.at,
+            };
+            let said = self.comments(start, inside);
+            if !said.is_empty() {
+                all.push(UppaalDeclaration::Comment(said));
+            }
+            all.push(declaration);
         }
         Ok(all)
     }

@@ -9,7 +9,7 @@ use hrdsl_source::Span;
 use super::{
     ast::{UppaalExpr, UppaalSelect, UppaalSync},
     fault::{UppaalFault, unsupported},
-    lex::{UppaalFragment, UppaalToken, UppaalTokenKind, lex},
+    lex::{UppaalComment, UppaalFragment, UppaalToken, UppaalTokenKind, lex},
 };
 
 /// How deep expressions and statements may be nested.
@@ -92,6 +92,24 @@ impl UppaalParser {
             self.next();
         }
         found
+    }
+
+    /// What is said of a declaration: before it, within it (its first tokens), and after it in its last line.
+    fn comments(&self, start: usize, inside: usize) -> Vec<String> {
+        let mut lines = Vec::new();
+        for (at, token) in self.tokens.iter().enumerate().skip(start) {
+            let belongs = |c: &&UppaalComment| match at {
+                // What ends the line of the declaration before is its own.
+                _ if at == start => !c.trailing,
+                _ if at < inside => true,
+                _ => at == self.at && c.trailing,
+            };
+            lines.extend(token.comments.iter().filter(belongs).flat_map(|c| c.lines.clone()));
+            if at >= self.at {
+                break;
+            }
+        }
+        lines
     }
 
     fn fault(&self, expected: &str) -> UppaalFault {
