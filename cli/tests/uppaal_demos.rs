@@ -11,6 +11,10 @@ const DEMOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../compiler/interop/te
 fn demo(model: &str, published: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     fs::copy(Path::new(DEMOS).join(model), folder.path().join(model)).unwrap();
+    let queries = Path::new(model).with_extension("q");
+    if Path::new(DEMOS).join(&queries).is_file() {
+        fs::copy(Path::new(DEMOS).join(&queries), folder.path().join(&queries)).unwrap();
+    }
     assert_eq!(answers(folder.path(), model), published, "{model}");
 }
 
@@ -24,6 +28,14 @@ fn trains_cross_one_at_a_time() {
 #[test]
 fn fischer_excludes() {
     demo("fischer.xml", &[YES, YES, YES, YES, NO]);
+}
+
+/// The same in the textual format, with the queries in a file beside it.
+#[test]
+fn fischer_excludes_as_text_too() {
+    let bound = "2 s, which is not attained";
+    let late = [YES, YES, YES, YES, NO, YES, NO, YES, NO, bound, NO, NO, NO, YES, YES];
+    demo("fischer_text.xta", &late);
 }
 
 #[test]

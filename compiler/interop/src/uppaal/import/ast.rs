@@ -281,6 +281,24 @@ impl UppaalExpr {
 }
 
 impl UppaalStatement {
+    /// Nothing goes on after it.
+    pub fn returns(&self) -> bool {
+        match &self.kind {
+            UppaalStatementKind::Return(_) => true,
+            UppaalStatementKind::Block(all) => all.last().is_some_and(UppaalStatement::returns),
+            UppaalStatementKind::If(_, then, otherwise) => {
+                then.returns() && otherwise.as_ref().is_some_and(|otherwise| otherwise.returns())
+            }
+            UppaalStatementKind::Decl(_)
+            | UppaalStatementKind::Expr(_)
+            | UppaalStatementKind::While(..)
+            | UppaalStatementKind::DoWhile(..)
+            | UppaalStatementKind::For(..)
+            | UppaalStatementKind::ForRange(..)
+            | UppaalStatementKind::Empty => false,
+        }
+    }
+
     /// Calls `f` with every expression in it.
     pub fn each(&self, f: &mut dyn FnMut(&UppaalExpr)) {
         match &self.kind {

@@ -194,6 +194,10 @@ impl UppaalTranslation<'_> {
         let mut sum = UppaalClockSum::default();
         self.add(e, 1, &mut sum)?;
         let value = time(&sum.terms);
+        let numbers = sum.terms.iter().map(|(sign, term)| term.value.map(|n| sign * n));
+        if sum.clocks.is_empty() && numbers.sum::<Option<i64>>().is_some_and(|n| n < 0) {
+            return fault(e.span, "a clock is set to a number of at least 0");
+        }
         match sum.clocks.as_slice() {
             [] => Ok(if value == "0 s" { "0".to_owned() } else { value }),
             [(1, from)] if value == "0 s" => Ok(from.clone()),

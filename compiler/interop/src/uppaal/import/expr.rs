@@ -15,6 +15,9 @@ use super::{
 /// How many parts `forall`, `exists` and `sum` may become.
 const MAX_PARTS: i64 = 1024;
 
+/// How many parts stand one after the other without parentheses.
+const MAX_IN_A_ROW: usize = 200;
+
 impl UppaalTranslation<'_> {
     pub fn find(&self, name: &str) -> Option<&UppaalSymbol> {
         let scopes = self.locals.iter().rev().chain(&self.process).chain([&self.global]);
@@ -180,9 +183,13 @@ impl UppaalTranslation<'_> {
         let parts = self.parts(name, ty, |cx| cx.expr(of))?;
         if q == UppaalQuantifier::Sum {
             let parts = parts.into_iter().map(ScenarioExprText::into_int);
-            return Ok(joined(parts, "+", ScenarioPrecedence::Sum, ScenarioExprText::int(0), |a, b| {
-                a.checked_add(b)
-            }));
+            return Ok(joined(
+                parts.collect(),
+                "+",
+                ScenarioPrecedence::Sum,
+                ScenarioExprText::int(0),
+                &|a, b| a.checked_add(b),
+            ));
         }
         let parts = parts.into_iter().map(ScenarioExprText::into_bool);
         Ok(if q == UppaalQuantifier::Forall { all(parts) } else { any(parts) })
@@ -277,13 +284,23 @@ pub fn implied(a: &ScenarioExprText, b: &ScenarioExprText) -> ScenarioExprText {
 }
 
 fn joined(
-    parts: impl Iterator<Item = ScenarioExprText>,
+    parts: Vec<ScenarioExprText>,
     sign: &str,
     level: ScenarioPrecedence,
     none: ScenarioExprText,
-    fold: impl Fn(i64, i64) -> Option<i64>,
+    fold: &dyn Fn(i64, i64) -> Option<i64>,
 ) -> ScenarioExprText {
+    if parts.len() > MAX_IN_A_ROW {
+        // In groups, since an expression may not be higher than some hundred levels.
+        let groups = parts.chunks(MAX_IN_A_ROW).map(|group| {
+            let group = joined(group.to_vec(), sign, level, none.clone(), fold);
+            ScenarioExprText { level: ScenarioPrecedence::Imply, ..group }
+        });
+        let groups: Vec<ScenarioExprText> = groups.collect();
+        return joined(groups, sign, level, none, fold);
+    }
     parts
+        .into_iter()
         .reduce(|a, b| {
             let value = a.value.zip(b.value).and_then(|(a, b)| fold(a, b));
             let text = format!("{} {sign} {}", a.at(level), b.at(level));
@@ -298,9 +315,7 @@ pub fn all(parts: impl Iterator<Item = ScenarioExprText>) -> ScenarioExprText {
     match parts.iter().find(|p| p.value == Some(0)) {
         Some(_) => ScenarioExprText::bool(false),
         None => {
-            joined(parts.into_iter(), "&&", ScenarioPrecedence::And, ScenarioExprText::bool(true), |a, b| {
-                Some(a & b)
-            })
+            joined(parts, "&&", ScenarioPrecedence::And, ScenarioExprText::bool(true), &|a, b| Some(a & b))
         }
     }
 }
@@ -311,9 +326,7 @@ pub fn any(parts: impl Iterator<Item = ScenarioExprText>) -> ScenarioExprText {
     match parts.iter().find(|p| p.value == Some(1)) {
         Some(_) => ScenarioExprText::bool(true),
         None => {
-            joined(parts.into_iter(), "||", ScenarioPrecedence::Or, ScenarioExprText::bool(false), |a, b| {
-                Some(a | b)
-            })
+            joined(parts, "||", ScenarioPrecedence::Or, ScenarioExprText::bool(false), &|a, b| Some(a | b))
         }
     }
 }

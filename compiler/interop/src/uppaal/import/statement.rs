@@ -141,6 +141,10 @@ impl UppaalTranslation<'_> {
         if self.writing > 20 {
             return fault(function.decl.span, "a function that calls itself is not supported");
         }
+        if function.result.is_some() && !function.decl.body.last().is_some_and(UppaalStatement::returns) {
+            let message = format!("`{}` can end without `return`, and has no value then", function.decl.name);
+            return fault(function.decl.span, message);
+        }
         let mut scope: UppaalScope = aliases.into_iter().collect();
         if self.writing == 0 {
             self.names.start_function();

@@ -4,6 +4,7 @@ use hrdsl_source::Span;
 
 use super::{
     ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind},
+    declare::in_range,
     fault::{UppaalFault, fault},
     place::place_text,
     scope::{IndexRange, ScenarioExprText, ScenarioPrecedence, UppaalSymbol, VarSym, combinations},
@@ -117,7 +118,11 @@ impl UppaalTranslation<'_> {
             return self.assign_array(&to, op, value, span, out);
         }
         let text = place_text(&to);
+        let span_of_value = value.span;
         let value = self.expr(value)?.of_type(to.ty.is_bool);
+        if let (None, Some(n)) = (op, value.value) {
+            in_range(&to.ty, n, span_of_value)?;
+        }
         self.mark(&to.name);
         if to.ty.is_bool && op.is_some() {
             return fault(span, "a bool is assigned by `=`");
