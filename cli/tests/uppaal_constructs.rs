@@ -263,3 +263,31 @@ fn clocks_stand_where_their_value_is_known() {
         stderr(&out)
     );
 }
+
+#[test]
+fn references_are_given_with_their_indices() {
+    let model = SmallModel {
+        global: "typedef struct { int[0,9] n; int[0,9] of[2]; } part; part parts[3]; int[0,9] v[2][3]; int[0,2] k = 1;\n\
+            void up(int &n, int[0,9] by) { n += by; k = 0; n++; }\n\
+            void fill(part &p, const int[0,9] &from) { p.n = from; for (i : int[0,1]) p.of[i] = from + i; }\n\
+            void all() { for (i : int[0,2]) fill(parts[i], v[1][i]); }\n\
+            clock x; void late(int &n) { x = 0; n = 7; }",
+        edges: &[
+            // The index is that of the call, also where the function changes it.
+            ("a", "b", &[("guard", "k == 1"), ("assignment", "up(v[k][k + 1], k + 1), v[1][1] = 5")]),
+            (
+                "b",
+                "a",
+                &[("guard", "x > 3"), ("assignment", "all(), fill(parts[k], v[k][k]), late(v[0][k + 2])")],
+            ),
+        ],
+        ..SMALL
+    };
+    model.answers(&[
+        ("E<> P.b && v[1][2] == 3 && v[1][1] == 5 && k == 0", YES),
+        ("E<> P.b && v[0][1] > 0", NO),
+        ("E<> P.a && parts[2].n == 3 && parts[2].of[1] == 4 && parts[1].n == 5 && parts[0].of[1] == 1", YES),
+        ("E<> P.a && v[0][2] == 7 && x == 0", YES),
+        ("E<> v[0][0] > 0", NO),
+    ]);
+}

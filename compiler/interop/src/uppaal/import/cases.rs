@@ -5,12 +5,12 @@
 //! updates depend on in such a way must be the same then and there, or it is refused.
 
 use hrdsl_source::Span;
-use indexmap::IndexSet;
 
 use super::{
     ast::{UppaalExpr, UppaalExprKind},
     expr::not,
     fault::{UppaalFault, fault},
+    known::EdgeCases,
     scope::{FunctionSym, IndexRange, ScenarioExprText, ScenarioPrecedence, UppaalSymbol, VarSym},
     translation::UppaalTranslation,
 };
@@ -18,48 +18,6 @@ use crate::exchange::note::NoteSeverity;
 
 /// How many edges one transition may become by its cases.
 const MAX_CASES: usize = 256;
-
-/// The case that is being written.
-#[derive(Clone, Debug, Default)]
-pub struct EdgeCases {
-    /// Of each decision in turn, which of how many.
-    taken: Vec<(usize, usize)>,
-    next: usize,
-    /// What has been decided, by its text.
-    known: Vec<(String, i64)>,
-    /// What the guard asks for.
-    pub conditions: Vec<ScenarioExprText>,
-    pub in_updates: bool,
-    /// Another edge may have changed shared variables just before.
-    pub receives: bool,
-    /// Variables that the updates so far have assigned, as the scenario calls them.
-    pub assigned: IndexSet<String>,
-}
-
-impl EdgeCases {
-    fn choose(&mut self, of: usize) -> usize {
-        let at = self.next;
-        self.next += 1;
-        match self.taken.get(at) {
-            Some((chosen, _)) => *chosen,
-            None => {
-                self.taken.push((0, of));
-                0
-            }
-        }
-    }
-
-    /// The next case; none if this was the last.
-    pub fn following(mut self) -> Option<Self> {
-        while let Some((chosen, of)) = self.taken.pop() {
-            if chosen + 1 < of {
-                self.taken.push((chosen + 1, of));
-                return Some(Self { taken: self.taken, receives: self.receives, ..Self::default() });
-            }
-        }
-        None
-    }
-}
 
 impl UppaalTranslation<'_> {
     /// Every case of an edge, which `write` writes.
@@ -70,7 +28,7 @@ impl UppaalTranslation<'_> {
         mut write: impl FnMut(&mut Self) -> Result<T, UppaalFault>,
     ) -> Result<Vec<T>, UppaalFault> {
         let mut all = Vec::new();
-        let mut case = Some(EdgeCases { receives, ..EdgeCases::default() });
+        let mut case = Some(EdgeCases::first(receives));
         while let Some(this) = case {
             if all.len() == MAX_CASES {
                 return fault(span, format!("this transition has more than {MAX_CASES} cases"));

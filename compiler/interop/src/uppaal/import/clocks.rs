@@ -6,8 +6,8 @@ use super::{
     ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier},
     expr::{all, not},
     fault::{UppaalFault, fault},
+    known::ClockEvent,
     scope::{ScenarioExprText, ScenarioPrecedence, UppaalSymbol},
-    stopwatch::ClockEvent,
     translation::UppaalTranslation,
 };
 

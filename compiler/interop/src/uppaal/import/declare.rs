@@ -22,7 +22,7 @@ use crate::exchange::note::NoteSeverity;
 const MAX_VALUES: i64 = 256;
 
 /// UPPAAL's integers without a range.
-const INT: (i64, i64) = (-32768, 32767);
+pub const INT: (i64, i64) = (-32768, 32767);
 
 impl UppaalTranslation<'_> {
     // ── Types ──

@@ -108,17 +108,23 @@ impl UppaalTranslation<'_> {
     /// Arguments are written where they are read: nothing of them may have changed by then.
     fn changes_no_argument(&self, function: &FunctionSym, args: &[UppaalExpr]) -> Result<(), UppaalFault> {
         for ((param, ty), arg) in function.decl.params.iter().zip(&function.params).zip(args) {
-            if param.by_reference || !ty.is_single() {
-                continue;
-            }
             let mut names = Vec::new();
-            arg.each(&mut |e| {
+            let mut named = |e: &UppaalExpr| {
                 if let UppaalExprKind::Name(name) = &e.kind {
                     names.push(name.clone());
                 }
+            };
+            // Of a reference the indices are evaluated when it is given.
+            let is_copy = !param.by_reference && ty.is_single();
+            arg.each(&mut |e| match &e.kind {
+                _ if is_copy => named(e),
+                UppaalExprKind::Index(_, index) => index.each(&mut named),
+                _ => {}
             });
             let is_changed = |to: &UppaalExpr| {
-                to.root().is_some_and(|root| names.iter().any(|name| name == root) || root == param.name)
+                to.root().is_some_and(|root| {
+                    names.iter().any(|name| name == root) || is_copy && root == param.name
+                })
             };
             let mut changed = false;
             function.decl.body.iter().for_each(|s| {

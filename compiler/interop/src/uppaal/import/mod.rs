@@ -4,9 +4,10 @@
 //! 1. `xml` or `xta`, `branches`: the file to templates and pieces of text, each character with its place
 //! 2. `lex`, `parse`, `queries`: pieces to declarations, expressions, formulas
 //! 3. `template`: the labels of each template
-//! 4. `declare`, `statement`: what is declared for all; functions
-//! 5. `process`: the processes of the system, each template with its arguments an automaton of its own
-//! 6. `clocks`: conditions over clocks, split into alternatives where a scenario has conjunctions only
+//! 4. `declare`, `record`, `comment`: what is declared for all; `call`, `statement`, `order`, `update`, `bits`: functions
+//! 5. `process`: the processes of the system, each template with its arguments an automaton of its own; `cases`, `inline`:
+//!    transitions that become several edges
+//! 6. `clocks`, `stopwatch`: conditions over clocks, split into alternatives where a scenario has conjunctions only
 //! 7. `write`: the text
 //!
 //! From the third step on, all that is known is in one place (`translation`).
@@ -17,6 +18,7 @@
 mod ast;
 mod bits;
 mod branches;
+mod call;
 mod cases;
 mod clocks;
 mod comment;
@@ -24,6 +26,7 @@ mod declare;
 mod expr;
 mod fault;
 mod inline;
+mod known;
 mod lex;
 mod order;
 mod parse;

@@ -9,8 +9,8 @@ use super::{
     },
     expr::{all, not},
     fault::{UppaalFault, fault},
+    known::ClockEvent,
     scope::{IndexRange, RecordSym, ScenarioExprText, ScenarioPrecedence, UppaalSymbol, UppaalSymbolType},
-    stopwatch::ClockEvent,
     translation::UppaalTranslation,
 };
 

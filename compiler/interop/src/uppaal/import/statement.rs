@@ -1,213 +1,20 @@
-//! Functions and updates: statements of a scenario.
-
-use std::rc::Rc;
+//! Statements of functions.
 
 use hrdsl_source::Span;
 
 use super::{
     ast::{
-        UppaalDeclaration, UppaalDeclarator, UppaalExpr, UppaalExprKind, UppaalInitializer, UppaalParameter,
-        UppaalStatement, UppaalStatementKind, UppaalType,
+        UppaalDeclaration, UppaalDeclarator, UppaalExpr, UppaalInitializer, UppaalStatement,
+        UppaalStatementKind, UppaalType,
     },
     declare::var_line,
     fault::{UppaalFault, fault},
-    place::place_text,
-    scope::{
-        FunctionSym, IndexRange, NameOwner, UppaalScalarType, UppaalScope, UppaalSymbol, UppaalSymbolType,
-        VarSym,
-    },
+    scope::{IndexRange, NameOwner, UppaalScalarType, UppaalScope, UppaalSymbol, UppaalSymbolType, VarSym},
     translation::UppaalTranslation,
 };
 
 impl UppaalTranslation<'_> {
-    // ── Calls ──
-
-    /// The call's text and what it gives.
-    pub fn call(
-        &mut self,
-        of: &UppaalExpr,
-        args: &[UppaalExpr],
-        span: Span,
-    ) -> Result<(String, Option<UppaalScalarType>), UppaalFault> {
-        let UppaalExprKind::Name(name) = &of.kind else {
-            return fault(span, "expected the name of a function");
-        };
-        let Some(sym) = self.find(name).cloned() else {
-            return fault(of.span, format!("there is no function `{name}` here"));
-        };
-        let UppaalSymbol::Function(function) = sym else {
-            return fault(of.span, format!("`{name}` is {}, not a function", sym.noun()));
-        };
-        if function.params.len() != args.len() {
-            let (want, got) = (function.params.len(), args.len());
-            return fault(span, format!("`{name}` has {want} parameters, and is given {got} arguments"));
-        }
-        if function.sets_clocks {
-            let message =
-                format!("`{name}` sets clocks: it is called as an update of its own, and has no value");
-            return fault(span, message);
-        }
-        self.mark_function(&function, args, 0);
-        let (mut values, mut aliases) = (Vec::new(), Vec::new());
-        for ((param, ty), arg) in function.decl.params.iter().zip(&function.params).zip(args) {
-            match ty {
-                UppaalSymbolType::Data(scalar, dims) if dims.is_empty() && !param.by_reference => {
-                    values.push(self.expr(arg)?.of_type(scalar.is_bool).text);
-                }
-                UppaalSymbolType::Record(..) if ty.is_single() && !param.by_reference => {
-                    let sym = self.place(arg)?;
-                    for leaf in sym.leaves() {
-                        match leaf {
-                            UppaalSymbol::Var(v) => values.push(self.value_of(v).text),
-                            UppaalSymbol::Const(out) => values.push(out.text.clone()),
-                            other => {
-                                return fault(arg.span, format!("expected a record, found {}", other.noun()));
-                            }
-                        }
-                    }
-                }
-                UppaalSymbolType::Data(..) | UppaalSymbolType::Record(..) => {
-                    let readonly = !param.by_reference || param.ty.constant;
-                    aliases.push((param.name.clone(), self.alias(arg, readonly)?));
-                }
-                UppaalSymbolType::Clock(_) | UppaalSymbolType::Chan { .. } | UppaalSymbolType::Void => {
-                    return fault(
-                        arg.span,
-                        "only variables can be given to functions, no clocks and channels",
-                    );
-                }
-            }
-        }
-        let text = match &function.name {
-            Some(written) => written.clone(),
-            None => self.specialised(&function, aliases)?,
-        };
-        Ok((format!("{text}({})", values.join(", ")), function.result.clone()))
-    }
-
-    /// What a parameter that is a reference stands for.
-    fn alias(&mut self, arg: &UppaalExpr, readonly: bool) -> Result<UppaalSymbol, UppaalFault> {
-        let mut sym = self.place(arg)?;
-        for leaf in sym.leaves() {
-            let UppaalSymbol::Var(var) = leaf else { return fault(arg.span, "expected a variable") };
-            if var.local {
-                return fault(arg.span, "a variable of a function cannot be given as a reference");
-            }
-            if var.at.iter().any(|i| i.value.is_none()) {
-                return fault(arg.span, "the index of what is given as a reference must be constant");
-            }
-            if var.values.is_some() {
-                self.use_array(var);
-            }
-        }
-        if readonly {
-            sym.make_readonly();
-        }
-        Ok(sym)
-    }
-
-    /// One function for each combination of what its references stand for.
-    fn specialised(
-        &mut self,
-        function: &Rc<FunctionSym>,
-        aliases: Vec<(String, UppaalSymbol)>,
-    ) -> Result<String, UppaalFault> {
-        let is_own = |sym: &UppaalSymbol| {
-            sym.leaves().into_iter().any(|leaf| matches!(leaf, UppaalSymbol::Var(v) if v.own))
-        };
-        let own = function.own || aliases.iter().any(|(_, sym)| is_own(sym));
-        let shown: Vec<String> = aliases.iter().map(|(_, sym)| alias_text(sym)).collect();
-        let key = format!("{} {} {}", function.own, function.decl.name, shown.join(" "));
-        let known = if own { &self.own_specialised } else { &self.specialised };
-        if let Some(name) = known.get(&key) {
-            return Ok(name.clone());
-        }
-        let owner = if own { NameOwner::Process } else { NameOwner::All };
-        let name = self.names.unused(&format!("{}_{}", function.decl.name, shown.join("_")), owner);
-        let known = if own { &mut self.own_specialised } else { &mut self.specialised };
-        known.insert(key, name.clone());
-        self.write_function(function, &name, aliases, own)?;
-        Ok(name)
-    }
-
-    /// Writes a function; `own` says whether it goes to the process.
-    pub fn write_function(
-        &mut self,
-        function: &Rc<FunctionSym>,
-        name: &str,
-        aliases: Vec<(String, UppaalSymbol)>,
-        own: bool,
-    ) -> Result<(), UppaalFault> {
-        if self.writing > 20 {
-            return fault(function.decl.span, "a function that calls itself is not supported");
-        }
-        if function.result.is_some() && !function.decl.body.last().is_some_and(UppaalStatement::returns) {
-            let message = format!("`{}` can end without `return`, and has no value then", function.decl.name);
-            return fault(function.decl.span, message);
-        }
-        let mut scope: UppaalScope = aliases.into_iter().collect();
-        if self.writing == 0 {
-            self.names.start_function();
-        }
-        let mut params = Vec::new();
-        for (param, ty) in function.decl.params.iter().zip(&function.params) {
-            if scope.contains_key(&param.name) {
-                continue;
-            }
-            let sym = self.parameter(param, ty.clone(), &param.name, &mut params)?;
-            scope.insert(param.name.clone(), sym);
-        }
-        // What the function knows: nothing of where it is called.
-        let locals = std::mem::replace(&mut self.locals, vec![scope]);
-        let process = if function.own { None } else { self.process.take() };
-        let cases = self.cases.take();
-        self.writing += 1;
-        let body = self.statements(&function.decl.body, function.result.as_ref());
-        self.writing -= 1;
-        self.cases = cases;
-        self.locals = locals;
-        if process.is_some() {
-            self.process = process;
-        }
-        let result = function.result.as_ref().map(|r| format!(" -> {}", r.text)).unwrap_or_default();
-        let text = format!("fn {name}({}){result} {{\n{}\n}}", params.join(", "), body?.join("\n"));
-        if own {
-            self.own_functions.push(text)
-        } else {
-            self.functions.push(text)
-        }
-        Ok(())
-    }
-
-    /// A parameter that is a copy; of a record each field is one.
-    fn parameter(
-        &mut self,
-        param: &UppaalParameter,
-        ty: UppaalSymbolType,
-        name: &str,
-        params: &mut Vec<String>,
-    ) -> Result<UppaalSymbol, UppaalFault> {
-        match ty {
-            UppaalSymbolType::Data(scalar, _) => {
-                let written = self.names.fresh(name, param.span, NameOwner::Function);
-                params.push(format!("{written}: {}", scalar.text));
-                Ok(UppaalSymbol::Var(local(written, scalar, Vec::new(), param.ty.constant)))
-            }
-            UppaalSymbolType::Record(fields, dims) => {
-                let none = (None, param.span);
-                self.record_of(name, (fields, dims), none, |cx, field, ty| {
-                    cx.parameter(param, ty, &field.name, params)
-                })
-            }
-            UppaalSymbolType::Clock(_) | UppaalSymbolType::Chan { .. } | UppaalSymbolType::Void => {
-                fault(param.span, "only variables can be given to functions, no clocks and channels")
-            }
-        }
-    }
-
-    // ── Statements ──
-
-    fn statements(
+    pub fn statements(
         &mut self,
         all: &[UppaalStatement],
         result: Option<&UppaalScalarType>,
@@ -462,20 +269,6 @@ fn ordered(before: &[String], between: &str, after: &[String]) -> String {
     all.map(|e| format!("{e};\n")).collect()
 }
 
-/// How a reference is told apart from others.
-fn alias_text(sym: &UppaalSymbol) -> String {
-    match sym {
-        UppaalSymbol::Var(v) => place_text(v),
-        UppaalSymbol::Record(r) => r.fields.values().map(alias_text).collect::<Vec<_>>().join("_"),
-        UppaalSymbol::Const(_)
-        | UppaalSymbol::Clock(_)
-        | UppaalSymbol::Chan(_)
-        | UppaalSymbol::Type(_)
-        | UppaalSymbol::Function(_)
-        | UppaalSymbol::Location(_) => sym.noun().to_owned(),
-    }
-}
-
-fn local(name: String, ty: UppaalScalarType, dims: Vec<IndexRange>, readonly: bool) -> VarSym {
+pub fn local(name: String, ty: UppaalScalarType, dims: Vec<IndexRange>, readonly: bool) -> VarSym {
     VarSym { name, ty, dims, at: Vec::new(), values: None, own: false, local: true, readonly }
 }

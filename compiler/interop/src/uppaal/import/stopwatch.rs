@@ -11,6 +11,7 @@ use hrdsl_source::Span;
 use super::{
     ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier},
     fault::{UppaalFault, fault},
+    known::ClockEvent,
     scope::ScenarioExprText,
     template::ParsedTemplate,
     translation::UppaalTranslation,
@@ -226,14 +227,6 @@ impl UppaalTranslation<'_> {
         }
         std::mem::take(&mut self.clock_log)
     }
-}
-
-/// What happens to a clock, in the order in which an edge does it.
-#[derive(Clone, Debug)]
-pub struct ClockEvent {
-    pub clock: String,
-    /// It is set, to a number if that is constant; or else it is read.
-    pub set: Option<Option<i64>>,
 }
 
 /// What counts of all that an edge does with a clock.

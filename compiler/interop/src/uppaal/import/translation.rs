@@ -7,10 +7,9 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::{
     ast::UppaalBinaryOperator,
-    cases::EdgeCases,
     fault::UppaalFault,
+    known::{ClockEvent, EdgeCases},
     scope::{ChanSym, UppaalScenarioNames, UppaalScope},
-    stopwatch::ClockEvent,
     template::ParsedTemplate,
     xml::UppaalModel,
 };

@@ -6,9 +6,9 @@ use super::{
     ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind},
     declare::in_range,
     fault::{UppaalFault, fault},
+    known::ClockEvent,
     place::place_text,
     scope::{IndexRange, ScenarioExprText, ScenarioPrecedence, UppaalSymbol, VarSym, combinations},
-    stopwatch::ClockEvent,
     translation::UppaalTranslation,
 };
 
