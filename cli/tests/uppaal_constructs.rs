@@ -291,3 +291,45 @@ fn references_are_given_with_their_indices() {
         ("E<> v[0][0] > 0", NO),
     ]);
 }
+
+#[test]
+fn records_belong_to_processes_and_are_given_to_templates() {
+    let model = SmallModel {
+        global: "typedef struct { int[0,20] period; bool urgent_one; } task; const task tasks[2] = { { 5, true }, { 9, false } };\n\
+            task shared; progress { shared.period; } gantt { G: shared.urgent_one -> 1; }\n\
+            typedef scalar[3] who; who last;",
+        parameters: "const task t, task &out, const int[0,1] id",
+        local: "struct { task of; int[0,9] count; } mine = { { 1, false }, 2 }; clock x;",
+        at_a: &[("invariant", "x <= t.period")],
+        edges: &[
+            (
+                "a",
+                "b",
+                &[
+                    ("select", "w : who"),
+                    ("guard", "x == t.period"),
+                    ("assignment", "out = t, mine.of = t, mine.count++, last = w"),
+                ],
+            ),
+            (
+                "b",
+                "a",
+                &[
+                    ("guard", "mine.of == t && mine.count < 9 && x < 30 && x > t.period"),
+                    ("assignment", "x = 0"),
+                ],
+            ),
+        ],
+        system: "P1 = P(tasks[0], shared, 0); P2 = P(tasks[1], shared, 1); system P1, P2;",
+    };
+    model.answers(&[
+        ("E<> P1.mine.count == 3 && P1.mine.of.period == 5 && P2.mine.of.period == 1", YES),
+        ("A[] P2.b imply P2.mine.of.period == 9 && !P2.mine.of.urgent_one", YES),
+        ("E<> shared.period == 9 && shared.urgent_one", NO),
+        ("sup{P1.a}: P1.x", "5 s"),
+        ("sup: P2.mine.count", "9"),
+        ("E<> last == 2", YES),
+    ]);
+    let notes = model.notes();
+    assert!(notes.contains("left out: `progress`") && notes.contains("left out: `gantt`"), "{notes}");
+}

@@ -2,9 +2,12 @@
 
 mod support;
 
-use std::{fs, path::Path};
+use std::{collections::BTreeSet, fs, path::Path};
 
-use support::uppaal::{NO, YES, answers};
+use support::{
+    expect_code, hrdsl_in,
+    uppaal::{NO, YES, answers},
+};
 
 const DEMOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../compiler/interop/tests/uppaal/demos");
 
@@ -16,6 +19,12 @@ fn demo(model: &str, published: &[&str]) {
         fs::copy(Path::new(DEMOS).join(&queries), folder.path().join(&queries)).unwrap();
     }
     assert_eq!(answers(folder.path(), model), published, "{model}");
+    // As a model of UPPAAL again, whose locations have ids of their own, it answers the same.
+    expect_code(&hrdsl_in(folder.path(), "export uppaal there.hri -o back.xml"), 0);
+    let back = fs::read_to_string(folder.path().join("back.xml")).unwrap();
+    let ids: Vec<&str> = back.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert!(ids.len() > 2 && ids.len() == ids.iter().collect::<BTreeSet<_>>().len(), "{ids:?}");
+    assert_eq!(answers(folder.path(), "back.xml"), published, "{model}, back");
 }
 
 /// Yi, Pettersson and Daniels (1994), with the queue as functions (Behrmann, David and Larsen 2004).
