@@ -206,6 +206,22 @@ fn functions_set_clocks() {
         ..SMALL
     };
     assert!(heard.refused().contains("the shared variable `n`, which whoever offers"), "{}", heard.refused());
+    // A reference through which nothing is assigned is shared all the same.
+    let through = SmallModel {
+        global: "chan c; clock x[2]; int[0,1] k;",
+        parameters: "const int[0,1] &n",
+        edges: &[
+            ("a", "b", &[("synchronisation", "c!"), ("assignment", "k = 1")]),
+            ("a", "b", &[("synchronisation", "c?"), ("assignment", "x[n] = 0")]),
+        ],
+        system: "Q = P(k); system Q;",
+        ..SMALL
+    };
+    assert!(
+        through.refused().contains("the shared variable `n`, which whoever offers"),
+        "{}",
+        through.refused()
+    );
 }
 
 #[test]

@@ -104,6 +104,8 @@ fn handover_has_no_errors() {
 fn clocks_under_or_become_several_edges() {
     let made = edges("int n;", "clock x, y;", &[("guard", "x < 3 or (y >= n + 1 and n > 0)")]);
     assert_eq!(made, "a -> l1 when x < 3 s\na -> l1 when y >= (n + 1) * 1 s && n > 0");
+    let made = edges("int n;", "clock x, y;", &[("guard", "x - x < n && y - x > x - x")]);
+    assert_eq!(made, "a -> l1 when y - x > 0 s && 0 - n < 0");
     let made = edges("", "clock x;", &[("guard", "x != 4")]);
     assert_eq!(made, "a -> l1 when x < 4 s\na -> l1 when x > 4 s");
     let made = edges("", "clock x, y;", &[("guard", "!(x - y <= 2 || 7 > y)")]);

@@ -109,7 +109,7 @@ impl UppaalTranslation<'_> {
                 Some(UppaalSymbol::Var(v)) if cases.assigned.contains(&v.name) => {
                     wrong = Some(format!("{why} `{name}`, which the same transition has changed: set it first"));
                 }
-                Some(UppaalSymbol::Var(v)) if cases.receives && !v.own && !v.local && !v.readonly => {
+                Some(UppaalSymbol::Var(v)) if cases.receives && !v.own && !v.local && v.values.is_none() => {
                     wrong = Some(format!(
                         "{why} the shared variable `{name}`, which whoever offers the channel may change in the same moment: \
                          set the clock on a transition of its own, after a committed location"

@@ -41,6 +41,20 @@ struct UppaalClockSum {
     terms: Vec<(i64, ScenarioExprText)>,
 }
 
+impl UppaalClockSum {
+    /// `x - x` is 0.
+    fn cancel(&mut self) {
+        let is_pair = |(a, b): (&(i64, String), &(i64, String))| a.1 == b.1 && a.0 == -b.0;
+        while let Some((i, j)) = (0..self.clocks.len())
+            .flat_map(|i| (0..i).map(move |j| (i, j)))
+            .find(|(i, j)| is_pair((&self.clocks[*i], &self.clocks[*j])))
+        {
+            self.clocks.remove(i);
+            self.clocks.remove(j);
+        }
+    }
+}
+
 impl UppaalTranslation<'_> {
     pub fn mentions_clock(&self, e: &UppaalExpr) -> bool {
         let mut found = false;
@@ -119,6 +133,7 @@ impl UppaalTranslation<'_> {
         let mut sum = UppaalClockSum::default();
         self.add(a, 1, &mut sum)?;
         self.add(b, -1, &mut sum)?;
+        sum.cancel();
         if sum.clocks.is_empty() {
             return Ok(GuardConjunction { clocks: Vec::new(), data: vec![op.of_numbers(&sum.terms)] });
         }
