@@ -61,12 +61,13 @@ struct AgentSpeak {
 Examples:
   hrdsl import uppaal gate.xml -o gate.hri
   hrdsl import uppaal gate.xml gate.q -o gate.hri
+  hrdsl import uppaal fischer.xta -o fischer.hri
   hrdsl import uppaal gate.xml --strict --json | jq .notes")]
 struct UppaalImportArgs {
-    /// The model, in UPPAAL's XML (`.xml`).
-    #[arg(value_name = "MODEL.xml")]
+    /// The model, in UPPAAL's XML (`.xml`) or as text (`.xta`, `.ta`).
+    #[arg(value_name = "MODEL")]
     model: PathBuf,
-    /// Queries (`.q`), besides those in the model.
+    /// Queries (`.q`) in the place of those in the model; otherwise the file of this kind beside the model, if there is one.
     #[arg(value_name = "QUERIES.q")]
     queries: Option<PathBuf>,
     /// The scenario's name; otherwise that of the file.
@@ -159,9 +160,23 @@ fn from_uppaal(args: &UppaalImportArgs) -> Result<CommandExit, CommandFault> {
         ));
     }
     let model = source(&args.model)?;
-    let queries = args.queries.as_deref().map(source).transpose()?;
+    let beside = Some(args.model.with_extension("q")).filter(|path| args.queries.is_none() && path.is_file());
+    let queries = args.queries.as_deref().or(beside.as_deref()).map(source).transpose()?;
     let options = uppaal::UppaalOptions { name: args.name.clone() };
-    finished(&args.to, uppaal::import(&model, queries.as_ref(), &options))
+    let mut imported = uppaal::import(&model, queries.as_ref(), &options);
+    if let (Ok(imported), Some(path)) = (&mut imported, &beside) {
+        let message = "its queries are asked, since it stands beside the model".to_owned();
+        let file = path.display().to_string();
+        imported.notes.push(ImportNote {
+            file,
+            line: 1,
+            column: 1,
+            severity: NoteSeverity::Info,
+            message,
+            help: None,
+        });
+    }
+    finished(&args.to, imported)
 }
 
 /// A file as it is named on the command line.

@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 #![allow(clippy::disallowed_methods, reason = "tests start the binary")]
 
+pub mod uppaal;
+
 use std::{
     io::Write,
     path::{Path, PathBuf},

@@ -106,3 +106,22 @@ fn broken_files_are_survived() {
     );
     assert!(of(&deep).is_err());
 }
+
+/// The order of the declarations does not matter, but that the system is the first.
+#[test]
+fn names_may_be_declared_further_down() {
+    let ordered = "system:s\nclock:1:x\nint:1:0:5:0:n\nevent:go\nprocess:P\nprocess:Q\n\
+        location:P:a{initial: : invariant: x<=3}\nlocation:P:b{labels: done}\nlocation:Q:c{initial:}\n\
+        edge:P:a:b:go{provided: x>=2 && n<3 : do: x=0; n=n+1}\nedge:Q:c:c:go\nsync:P@go:Q@go\n";
+    let mut lines: Vec<&str> = ordered.lines().skip(1).collect();
+    lines.reverse();
+    let declared =
+        |word: &str| lines.iter().rev().filter(|l| l.starts_with(word)).copied().collect::<Vec<_>>();
+    // Edges and vectors first; of one kind the order counts, since names and numbers follow it.
+    let words = ["sync", "edge", "location", "process", "event", "int", "clock"];
+    let turned: Vec<&str> = words.iter().flat_map(|word| declared(word)).collect();
+    let turned = format!("system:s\n{}\n", turned.join("\n"));
+    assert_ne!(ordered, turned);
+    assert_eq!(of(&turned).unwrap().text, of(ordered).unwrap().text);
+    assert!(of(&turned.replace("system:s\n", "event:e\nsystem:s\n")).is_err());
+}

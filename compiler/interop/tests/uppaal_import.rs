@@ -104,6 +104,8 @@ fn handover_has_no_errors() {
 fn clocks_under_or_become_several_edges() {
     let made = edges("int n;", "clock x, y;", &[("guard", "x < 3 or (y >= n + 1 and n > 0)")]);
     assert_eq!(made, "a -> l1 when x < 3 s\na -> l1 when y >= (n + 1) * 1 s && n > 0");
+    let made = edges("int n;", "clock x, y;", &[("guard", "x - x < n && y - x > x - x")]);
+    assert_eq!(made, "a -> l1 when y - x > 0 s && 0 - n < 0");
     let made = edges("", "clock x;", &[("guard", "x != 4")]);
     assert_eq!(made, "a -> l1 when x < 4 s\na -> l1 when x > 4 s");
     let made = edges("", "clock x, y;", &[("guard", "!(x - y <= 2 || 7 > y)")]);
@@ -235,18 +237,21 @@ fn names_that_mean_something_else_are_changed() {
 fn what_a_scenario_cannot_say_is_refused_by_name() {
     let bad = [
         ("hybrid clock x;", "`hybrid`"),
-        ("scalar[3] s;", "`scalar[n]`"),
-        ("typedef struct { int a; } s;", "`struct`"),
+        ("scalar[0] s;", "at least one value"),
+        ("typedef struct { chan c; } s;", "a field of a record is a variable or a clock"),
+        ("struct { int a; bool b; } s = { 1 };", "this has 1 values, and the record 2 fields"),
+        ("struct { int a; } s; int n = s;", "`s` is a record: name one of its fields"),
+        ("struct { int a; } s; int n = s.b;", "the record `s` has no field `b`"),
         ("double d;", "`double`"),
-        ("meta int m;", "`meta`"),
         ("chan a, b; chan priority a < b;", "`chan priority`"),
-        ("int n = 1 << 2;", "`<<`"),
+        ("int n = 1 << 40;", "bits are shifted by 0 to 31 places"),
         ("int n = m;", "there is no `m`"),
         ("int[0,3] n = 4;", "4 is not in the range 0..3"),
         ("int f() { return f(); }", "there is no function `f`"),
-        ("clock x; void f() { x = 0; }", "cannot set clocks"),
+        ("clock x; int f() { x = 0; return 1; } int n = f();", "`f` sets clocks"),
         ("int a[1000];", "256"),
-        ("void f() { int n; n = n++ + 1; }", "`++` and `--` within an expression"),
+        ("void f() { int n; n = n++ + 1; }", "`n` is changed within this statement and read elsewhere in it"),
+        ("bool b; int n; void f() { b = b && n++ > 1; }", "in a part that is not always evaluated"),
         ("int x = ;", "expected an expression, found `;`"),
         ("/* open", "not closed"),
     ];
@@ -264,7 +269,8 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
         (model("", "", "", &[], "system Q;"), "there is no template or process `Q`"),
         (model("", "int n", "", &[], "system P;"), "stands for more than"),
         (model("", "chan &c", "", &[], "system P;"), "needs an argument for `c`"),
-        (model("", "", "clock x;", &[("invariant", "x' == 0")], "system P;"), "rates of clocks"),
+        (model("", "", "clock x;", &[("invariant", "x' == 2")], "system P;"), "the rate 2 is not supported"),
+        (model("", "", "clock x;", &[("guard", "x' == 0")], "system P;"), "a part of invariants only"),
         (
             model("", "", "clock x;", &[("invariant", "x < 1 || x > 2")], "system P;"),
             "an invariant over clocks",
@@ -320,15 +326,15 @@ fn each_branch_of_a_branchpoint_may_be_taken() {
     let edges: Vec<String> =
         imported.text.lines().map(words).filter(|line| line.starts_with("a -> ")).collect();
     assert_eq!(edges, ["a -> a when x > 1 s do n = 1; n = n + 1; x = 0", "a -> l1 when x > 1 s do n = 1"]);
-    let left_out = imported.notes.iter().filter(|note| note.severity == NoteSeverity::LeftOut);
-    assert!(
-        left_out.clone().count() == 2 && left_out.clone().all(|note| note.message.contains("`probability`"))
-    );
+    let kept: Vec<String> = imported.text.lines().map(words).filter(|l| l.starts_with("// prob")).collect();
+    assert_eq!(kept, ["// probability 1", "// probability 9"]);
+    assert_eq!(imported.notes.len(), 1, "{:?}", imported.notes);
+    assert_eq!(imported.notes[0].severity, NoteSeverity::Info);
 }
 
-/// What only other tools of UPPAAL ask is left out, and said.
+/// What only other tools of UPPAAL ask stands in comments.
 #[test]
-fn what_is_asked_by_games_and_statistics_alone_is_left_out() {
+fn what_is_asked_by_games_and_statistics_alone_is_kept_as_comments() {
     let text = model("", "", "clock x;", &[("guard", "x > 1")], "system P;")
         .replace("<transition>", "<transition controllable=\"false\">")
         .replace(
@@ -337,13 +343,15 @@ fn what_is_asked_by_games_and_statistics_alone_is_left_out() {
         );
     let imported = from_text(&text, "").unwrap_or_else(|e| panic!("{e:?}"));
     compiles(&imported.text);
-    let left_out: Vec<&str> = imported.notes.iter().map(|note| note.message.as_str()).collect();
+    let said: Vec<&str> = imported.notes.iter().map(|note| note.message.as_str()).collect();
     assert!(
-        left_out.len() == 2
-            && left_out[0].starts_with("`exponentialrate`")
-            && left_out[1].starts_with("`controllable=\"false\"` of a transition"),
-        "{left_out:?}"
+        said.len() == 2
+            && said[0].starts_with("`exponentialrate` is kept")
+            && said[1].starts_with("`controllable=\"false\"` of a transition is kept"),
+        "{said:?}"
     );
+    assert!(imported.text.contains("  // exponentialrate 1:5\n  location l1\n"), "{}", imported.text);
+    assert!(imported.text.contains("  // controllable=\"false\"\n  a -> l1"), "{}", imported.text);
 }
 
 #[test]
@@ -361,6 +369,32 @@ fn queries_that_cannot_be_asked_are_left_out() {
         imported.notes.iter().filter(|n| n.severity == NoteSeverity::LeftOut).map(|n| n.line).collect();
     assert_eq!(left_out, [2, 3, 9, 10]);
     compiles(&imported.text);
+}
+
+#[test]
+fn comments_of_declarations_stay_with_them() {
+    let global = "/* The system.\n * It counts. */\n\nconst int N = 2; // how far\ntypedef int[0,N] id; // who\n\
+        int n, // counted\n k; /* kept */ chan c; // told\n// nothing follows\n\
+        // ------\nconst int T[2] = { 1, 2 }; // table\n\
+        /** Adds one. */ void up() { n++; /* not this */ }\n// Sets all.\nvoid all() { x = 0; }";
+    let global = global.replace("void all", "clock x; // ran\nvoid all");
+    let local = "// since it began\nclock t; int own; // its own\nclock u;";
+    let text =
+        model(&global, "", local, &[("assignment", "up(), all(), k = T[n]")], "// The line.\nsystem P;");
+    let imported = from_text(&text, "").unwrap_or_else(|e| panic!("{e:?}"));
+    is_readable(&imported.text);
+    compiles(&imported.text);
+    for expected in [
+        "// The system.\n// It counts.\n// how far\nconst N = 2\n// who\n// counted\n// kept\nvar n: ",
+        "// told\nchannel c\n",
+        "// nothing follows\n// table\nvar T: ",
+        "// Adds one.\nfn up() {\n  n += 1\n}",
+        "// Sets all.\n// ran\nvar x: clock",
+        "  // t: since it began\n  clock t, u\n",
+        "  // its own\n  var own: ",
+    ] {
+        assert!(imported.text.contains(expected), "{expected}\n\n{}", imported.text);
+    }
 }
 
 #[test]

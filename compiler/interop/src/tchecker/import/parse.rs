@@ -27,6 +27,15 @@ struct TcheckerDeclaration<'t> {
     attributes: Vec<TcheckerAttribute<'t>>,
 }
 
+impl TcheckerDeclaration<'_> {
+    /// Those with a lower one are named by those with a higher.
+    fn rank(&self) -> usize {
+        const ORDER: [&str; 5] = ["event", "process", "location", "edge", "sync"];
+        let word = self.fields.first().map_or("", |(word, _)| word);
+        if matches!(word, "clock" | "int") { 0 } else { ORDER.iter().position(|w| *w == word).unwrap_or(0) }
+    }
+}
+
 struct TcheckerAttribute<'t> {
     key: &'t str,
     value: &'t str,
@@ -41,6 +50,7 @@ pub fn parse(text: &str) -> (TcheckerModel, Vec<TcheckerFault>) {
     let mut faults = Vec::new();
     let mut at = 0;
     let blank = without_comments(text);
+    let mut declarations = Vec::new();
     while let Some(start) = blank[at..].find(|c: char| !c.is_whitespace()).map(|i| at + i) {
         let (declaration, end) = match declaration(&blank, start) {
             Ok(found) => found,
@@ -50,11 +60,14 @@ pub fn parse(text: &str) -> (TcheckerModel, Vec<TcheckerFault>) {
                 continue;
             }
         };
-        if let Err(f) = reader.declare(&declaration) {
-            faults.push(f);
-        }
+        declarations.push(declaration);
         at = end;
     }
+    // What is named may be declared further down.
+    if let Some((_, rest)) = declarations.split_first_mut() {
+        rest.sort_by_key(TcheckerDeclaration::rank);
+    }
+    faults.extend(declarations.iter().filter_map(|d| reader.declare(d).err()));
     if !reader.seen_system && faults.is_empty() {
         faults.push(TcheckerFault {
             at: 0,

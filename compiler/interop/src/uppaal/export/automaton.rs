@@ -41,15 +41,22 @@ impl UppaalExporter<'_> {
         text += &format!("    <declaration>{}</declaration>\n", escaped(&declaration));
         let layout = layout(automaton);
         for (i, location) in automaton.locations.iter().enumerate() {
-            text += &self.location(automaton, location, i, (&locations[i], layout[i]), &context);
+            let id = self.first_id(at) + i;
+            text += &self.location(automaton, location, id, (&locations[i], layout[i]), &context);
         }
-        text += &format!("    <init ref=\"id{}\"/>\n", automaton.initial.0);
+        let initial = self.first_id(at) + usize::from(automaton.initial.0);
+        text += &format!("    <init ref=\"id{initial}\"/>\n");
         for edge in &automaton.edges {
             text += &self.edge(at, edge, &context, &names, &layout);
         }
         self.contexts.push(context);
         self.locations.push(locations);
         text + "  </template>\n"
+    }
+
+    /// The number of its first location: no two of the document have the same.
+    fn first_id(&self, at: usize) -> usize {
+        (0..at).map(|before| self.automaton(before).locations.len()).sum()
     }
 
     /// The functions that know the automaton's own variables.
@@ -124,8 +131,9 @@ impl UppaalExporter<'_> {
         let ((ax, ay), (bx, by)) = (layout[usize::from(edge.from.0)], layout[usize::from(edge.to.0)]);
         let (x, y) = (i32::midpoint(ax, bx), i32::midpoint(ay, by));
         let mut text = String::from("    <transition>\n");
-        text +=
-            &format!("      <source ref=\"id{}\"/>\n      <target ref=\"id{}\"/>\n", edge.from.0, edge.to.0);
+        let first = self.first_id(at);
+        let (from, to) = (first + usize::from(edge.from.0), first + usize::from(edge.to.0));
+        text += &format!("      <source ref=\"id{from}\"/>\n      <target ref=\"id{to}\"/>\n");
         text += &label("select", &binders.selects.join(", "), x - 60, y - 50);
         text += &label("guard", &guard, x - 60, y - 34);
         text += &label("synchronisation", &sync, x - 60, y - 18);

@@ -1,4 +1,4 @@
-//! UPPAAL's models: the XML of version 4 with the document type `flat-1_2`, and its queries.
+//! UPPAAL's models: the XML of versions 4.1 and 5, with the document type `flat-1_6`, and its queries.
 //!
 //! # Steps
 //! 1. `mod`: what the network uses, the unit of time, channels, shared declarations
@@ -120,8 +120,8 @@ pub fn export(program: &Program, network: usize) -> Result<UppaalDocument, Vec<E
 }
 
 const HEADER: &str = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n\
-    <!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.2//EN' \
-    'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>\n<nta>\n";
+    <!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.6//EN' \
+    'http://www.it.uu.se/research/group/darts/uppaal/flat-1_6.dtd'>\n<nta>\n";
 
 fn element(name: &str, text: &str) -> String {
     format!("  <{name}>{}</{name}>\n", escaped(text))

@@ -28,6 +28,17 @@ pub enum UppaalBinaryOperator {
     And,
     Or,
     Imply,
+    BitAnd,
+    BitOr,
+    BitXor,
+    ShiftLeft,
+    ShiftRight,
+}
+
+impl UppaalBinaryOperator {
+    pub fn is_on_bits(self) -> bool {
+        matches!(self, Self::BitAnd | Self::BitOr | Self::BitXor | Self::ShiftLeft | Self::ShiftRight)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,14 +62,15 @@ pub enum UppaalExprKind {
     Field(Box<UppaalExpr>, String),
     /// `a op= b`; no operator: `a = b`
     Assign(Option<UppaalBinaryOperator>, Box<UppaalExpr>, Box<UppaalExpr>),
-    /// `++` and `--`, before or after.
+    /// `++` and `--`; `first`: before its operand, whose new value it has.
     Step {
         up: bool,
+        first: bool,
         of: Box<UppaalExpr>,
     },
     Quantified(UppaalQuantifier, String, Box<UppaalType>, Box<UppaalExpr>),
     /// `x'`
-    Rate,
+    Rate(Box<UppaalExpr>),
     Deadlock,
 }
 
@@ -67,6 +79,8 @@ pub struct UppaalType {
     pub constant: bool,
     pub urgent: bool,
     pub broadcast: bool,
+    /// Not part of the state.
+    pub meta: bool,
     pub base: UppaalBaseType,
     pub span: Span,
 }
@@ -79,6 +93,9 @@ pub enum UppaalBaseType {
     Chan,
     Void,
     Named(String),
+    /// `scalar[n]`
+    Scalar(Box<UppaalExpr>),
+    Struct(Vec<(UppaalType, Vec<UppaalDeclarator>)>),
 }
 
 /// One dimension of an array: so many, or one for each value of a type.
@@ -92,6 +109,8 @@ pub enum UppaalDimension {
 pub enum UppaalInitializer {
     One(UppaalExpr),
     List(Vec<UppaalInitializer>, Span),
+    /// Of a field: `name: value`
+    Named(String, Box<UppaalInitializer>),
 }
 
 #[derive(Clone, Debug)]
@@ -129,6 +148,10 @@ pub enum UppaalDeclaration {
     Instance(UppaalInstance),
     /// `system A, B;`
     System(Vec<(String, Span)>),
+    /// What is said of the declaration that follows.
+    Comment(Vec<String>),
+    /// What changes nothing of what a model does.
+    Idle(Span, &'static str),
 }
 
 #[derive(Clone, Debug)]
@@ -217,7 +240,7 @@ impl UppaalExpr {
             | UppaalExprKind::Assign(..)
             | UppaalExprKind::Step { .. }
             | UppaalExprKind::Quantified(..)
-            | UppaalExprKind::Rate
+            | UppaalExprKind::Rate(_)
             | UppaalExprKind::Deadlock => None,
         }
     }
@@ -229,10 +252,10 @@ impl UppaalExpr {
             UppaalExprKind::Int(_)
             | UppaalExprKind::Bool(_)
             | UppaalExprKind::Name(_)
-            | UppaalExprKind::Rate
             | UppaalExprKind::Deadlock => {}
             UppaalExprKind::Neg(a)
             | UppaalExprKind::Not(a)
+            | UppaalExprKind::Rate(a)
             | UppaalExprKind::Field(a, _)
             | UppaalExprKind::Step { of: a, .. } => {
                 a.each(f);
@@ -258,6 +281,24 @@ impl UppaalExpr {
 }
 
 impl UppaalStatement {
+    /// Nothing goes on after it.
+    pub fn returns(&self) -> bool {
+        match &self.kind {
+            UppaalStatementKind::Return(_) => true,
+            UppaalStatementKind::Block(all) => all.last().is_some_and(UppaalStatement::returns),
+            UppaalStatementKind::If(_, then, otherwise) => {
+                then.returns() && otherwise.as_ref().is_some_and(|otherwise| otherwise.returns())
+            }
+            UppaalStatementKind::Decl(_)
+            | UppaalStatementKind::Expr(_)
+            | UppaalStatementKind::While(..)
+            | UppaalStatementKind::DoWhile(..)
+            | UppaalStatementKind::For(..)
+            | UppaalStatementKind::ForRange(..)
+            | UppaalStatementKind::Empty => false,
+        }
+    }
+
     /// Calls `f` with every expression in it.
     pub fn each(&self, f: &mut dyn FnMut(&UppaalExpr)) {
         match &self.kind {

@@ -86,6 +86,8 @@ impl UppaalTransition {
             guard: self.guard.clone(),
             sync: self.sync.clone(),
             assign: listed(&self.assign, &branch.assign),
+            probability: branch.probability.clone(),
+            uncontrollable: self.uncontrollable,
             comment: comments.cloned().collect::<Vec<_>>().join("\n"),
         }
     }

@@ -3,9 +3,10 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalPlace, UppaalQuantifier},
+    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier},
     expr::{all, not},
     fault::{UppaalFault, fault},
+    known::ClockEvent,
     scope::{ScenarioExprText, ScenarioPrecedence, UppaalSymbol},
     translation::UppaalTranslation,
 };
@@ -40,32 +41,25 @@ struct UppaalClockSum {
     terms: Vec<(i64, ScenarioExprText)>,
 }
 
-impl UppaalTranslation<'_> {
-    pub fn mentions_clock(&mut self, e: &UppaalExpr) -> bool {
-        let mut names = Vec::new();
-        e.each(&mut |part| {
-            if let Some(UppaalPlace::Name(_) | UppaalPlace::Field(..)) = part.as_place() {
-                names.push(part.clone());
-            }
-        });
-        names.iter().any(|n| self.names_clock(n))
-    }
-
-    fn names_clock(&mut self, e: &UppaalExpr) -> bool {
-        match &e.kind {
-            UppaalExprKind::Name(name) => matches!(self.find(name), Some(UppaalSymbol::Clock(_))),
-            // What `forall` binds may be an argument of the process: any of its processes has the same clocks.
-            UppaalExprKind::Field(of, field) => {
-                let name = match &of.kind {
-                    UppaalExprKind::Call(of, _) => of.root(),
-                    _ => of.root(),
-                };
-                let of_name = |p: &&super::translation::UppaalProcess| name == Some(&p.model_name);
-                let process = self.processes.iter().find(of_name);
-                process.is_some_and(|p| matches!(p.scope.get(field), Some(UppaalSymbol::Clock(_))))
-            }
-            _ => false,
+impl UppaalClockSum {
+    /// `x - x` is 0.
+    fn cancel(&mut self) {
+        let is_pair = |(a, b): (&(i64, String), &(i64, String))| a.1 == b.1 && a.0 == -b.0;
+        while let Some((i, j)) = (0..self.clocks.len())
+            .flat_map(|i| (0..i).map(move |j| (i, j)))
+            .find(|(i, j)| is_pair((&self.clocks[*i], &self.clocks[*j])))
+        {
+            self.clocks.remove(i);
+            self.clocks.remove(j);
         }
+    }
+}
+
+impl UppaalTranslation<'_> {
+    pub fn mentions_clock(&self, e: &UppaalExpr) -> bool {
+        let mut found = false;
+        e.each(&mut |part| found |= self.kind_of(part).is_some_and(UppaalSymbol::is_clock));
+        found
     }
 
     /// The alternatives of a condition, each a conjunction.
@@ -118,10 +112,7 @@ impl UppaalTranslation<'_> {
                 } else {
                     vec![op]
                 };
-                let one = |cx: &mut Self, op| {
-                    let clocks = vec![cx.comparison(op, a, b, e.span)?];
-                    Ok(GuardConjunction { clocks, data: Vec::new() })
-                };
+                let one = |cx: &mut Self, op| cx.comparison(op, a, b, e.span);
                 sides.into_iter().map(|op| one(self, op)).collect()
             }
             _ => {
@@ -138,10 +129,14 @@ impl UppaalTranslation<'_> {
         a: &UppaalExpr,
         b: &UppaalExpr,
         span: Span,
-    ) -> Result<String, UppaalFault> {
+    ) -> Result<GuardConjunction, UppaalFault> {
         let mut sum = UppaalClockSum::default();
         self.add(a, 1, &mut sum)?;
         self.add(b, -1, &mut sum)?;
+        sum.cancel();
+        if sum.clocks.is_empty() {
+            return Ok(GuardConjunction { clocks: Vec::new(), data: vec![op.of_numbers(&sum.terms)] });
+        }
         sum.terms.iter_mut().for_each(|(sign, _)| *sign = -*sign);
         let plus: Vec<&String> = sum.clocks.iter().filter(|(s, _)| *s > 0).map(|(_, c)| c).collect();
         let minus: Vec<&String> = sum.clocks.iter().filter(|(s, _)| *s < 0).map(|(_, c)| c).collect();
@@ -154,7 +149,8 @@ impl UppaalTranslation<'_> {
             }
             _ => return fault(span, "a comparison has one clock, or the difference of two"),
         };
-        Ok(format!("{left} {} {}", op.text(), time(&sum.terms)))
+        let clocks = vec![format!("{left} {} {}", op.text(), time(&sum.terms))];
+        Ok(GuardConjunction { clocks, data: Vec::new() })
     }
 
     fn add(&mut self, e: &UppaalExpr, sign: i64, sum: &mut UppaalClockSum) -> Result<(), UppaalFault> {
@@ -175,7 +171,11 @@ impl UppaalTranslation<'_> {
             UppaalExprKind::Neg(of) => self.add(of, -sign, sum),
             UppaalExprKind::Name(_) | UppaalExprKind::Index(..) | UppaalExprKind::Field(..) => {
                 let clock = self.clock(e)?;
-                sum.clocks.push((sign, clock));
+                self.clock_log.push(ClockEvent { clock: clock.clone(), set: None });
+                match self.standing.get(&clock) {
+                    Some(n) => sum.terms.push((sign, ScenarioExprText::int(*n))),
+                    None => sum.clocks.push((sign, clock)),
+                }
                 Ok(())
             }
             _ => {
@@ -187,7 +187,18 @@ impl UppaalTranslation<'_> {
 
     pub fn clock(&mut self, e: &UppaalExpr) -> Result<String, UppaalFault> {
         match self.place(e)? {
-            UppaalSymbol::Clock(c) if c.dims.is_empty() => Ok(c.name),
+            UppaalSymbol::Clock(c) if c.dims.is_empty() => {
+                if self.in_query && self.stopwatches.iter().any(|(name, _)| *name == c.name) {
+                    return fault(
+                        e.span,
+                        format!("`{}` is stopped in some locations, and runs on here", c.name),
+                    );
+                }
+                if !c.own {
+                    self.clock_uses.entry(c.name.clone()).or_default().insert(self.processes.len());
+                }
+                Ok(c.name)
+            }
             UppaalSymbol::Clock(_) => fault(e.span, "this is an array of clocks: an index is missing"),
             other => fault(e.span, format!("expected a clock, found {}", other.noun())),
         }
@@ -198,6 +209,10 @@ impl UppaalTranslation<'_> {
         let mut sum = UppaalClockSum::default();
         self.add(e, 1, &mut sum)?;
         let value = time(&sum.terms);
+        let numbers = sum.terms.iter().map(|(sign, term)| term.value.map(|n| sign * n));
+        if sum.clocks.is_empty() && numbers.sum::<Option<i64>>().is_some_and(|n| n < 0) {
+            return fault(e.span, "a clock is set to a number of at least 0");
+        }
         match sum.clocks.as_slice() {
             [] => Ok(if value == "0 s" { "0".to_owned() } else { value }),
             [(1, from)] if value == "0 s" => Ok(from.clone()),
@@ -222,9 +237,7 @@ impl UppaalTranslation<'_> {
                 Ok(super::expr::any(parts.into_iter()))
             }
             UppaalExprKind::Binary(UppaalBinaryOperator::Imply, a, b) => {
-                let (a, b) = (self.formula(a)?, self.formula(b)?);
-                let text = format!("{} imply {}", a.at(ScenarioPrecedence::Or), b.at(ScenarioPrecedence::Or));
-                Ok(ScenarioExprText::new(text, ScenarioPrecedence::Imply, true))
+                Ok(super::expr::implied(&self.formula(a)?, &self.formula(b)?))
             }
             UppaalExprKind::Quantified(UppaalQuantifier::Forall, name, ty, of) => {
                 Ok(all(self.parts(name, ty, |cx| cx.formula(of))?.into_iter()))
@@ -233,7 +246,14 @@ impl UppaalTranslation<'_> {
                 Ok(super::expr::any(self.parts(name, ty, |cx| cx.formula(of))?.into_iter()))
             }
             _ => {
-                let parts = self.split(e, true)?;
+                // Which clock an index chooses is a part of what is asked.
+                let parts = self.every_case(e.span, false, |cx| {
+                    let mut parts = cx.split(e, true)?;
+                    let asked = cx.cases.as_mut().map(|cases| std::mem::take(&mut cases.conditions));
+                    parts.iter_mut().for_each(|part| part.data.extend(asked.iter().flatten().cloned()));
+                    Ok(parts)
+                })?;
+                let parts = parts.concat();
                 let text = |c: &GuardConjunction| {
                     let level = if c.clocks.len() + c.data.len() > 1 {
                         ScenarioPrecedence::And
@@ -335,7 +355,12 @@ impl UppaalClockComparison {
             | UppaalBinaryOperator::Max
             | UppaalBinaryOperator::And
             | UppaalBinaryOperator::Or
-            | UppaalBinaryOperator::Imply => return None,
+            | UppaalBinaryOperator::Imply
+            | UppaalBinaryOperator::BitAnd
+            | UppaalBinaryOperator::BitOr
+            | UppaalBinaryOperator::BitXor
+            | UppaalBinaryOperator::ShiftLeft
+            | UppaalBinaryOperator::ShiftRight => return None,
         })
     }
 
@@ -360,6 +385,26 @@ impl UppaalClockComparison {
             Self::Eq => Self::Eq,
             Self::Ne => Self::Ne,
         }
+    }
+
+    /// Whether a sum of numbers compares so with 0.
+    fn of_numbers(self, terms: &[(i64, ScenarioExprText)]) -> ScenarioExprText {
+        if let Some(all) = terms.iter().map(|(s, t)| t.value.map(|n| s * n)).collect::<Option<Vec<_>>>() {
+            let sum: i64 = all.iter().sum();
+            return ScenarioExprText::bool(match self {
+                Self::Lt => sum < 0,
+                Self::Le => sum <= 0,
+                Self::Eq => sum == 0,
+                Self::Ge => sum >= 0,
+                Self::Gt => sum > 0,
+                Self::Ne => sum != 0,
+            });
+        }
+        let sum = terms.iter().fold("0".to_owned(), |text, (sign, term)| {
+            let sign = if *sign < 0 { "-" } else { "+" };
+            format!("{text} {sign} {}", term.at(ScenarioPrecedence::Product))
+        });
+        ScenarioExprText::new(format!("{sum} {} 0", self.text()), ScenarioPrecedence::Comparison, true)
     }
 
     fn text(self) -> &'static str {

@@ -16,12 +16,13 @@ use super::{
     },
     translation::UppaalTranslation,
 };
+use crate::exchange::note::NoteSeverity;
 
 /// Single values that one declaration may have.
 const MAX_VALUES: i64 = 256;
 
 /// UPPAAL's integers without a range.
-const INT: (i64, i64) = (-32768, 32767);
+pub const INT: (i64, i64) = (-32768, 32767);
 
 impl UppaalTranslation<'_> {
     // ── Types ──
@@ -52,6 +53,12 @@ impl UppaalTranslation<'_> {
                 Ok(UppaalSymbolType::Chan { urgent, broadcast, dims: Vec::new() })
             }
             UppaalBaseType::Void => Ok(UppaalSymbolType::Void),
+            // Its values may only be compared: numbers are as good, though no symmetry is made use of.
+            UppaalBaseType::Scalar(size) => match self.constant(size)? {
+                n @ 1.. => Ok(UppaalSymbolType::Data(UppaalScalarType::range(0, n - 1), Vec::new())),
+                n => fault(ty.span, format!("a scalar set has at least one value, not {n}")),
+            },
+            UppaalBaseType::Struct(fields) => self.record_type(fields, ty.span),
             UppaalBaseType::Named(name) => match self.find(name).cloned() {
                 Some(UppaalSymbol::Type(UppaalSymbolType::Chan { urgent, broadcast, dims })) => {
                     let (urgent, broadcast) = (urgent || ty.urgent, broadcast || ty.broadcast);
@@ -71,18 +78,10 @@ impl UppaalTranslation<'_> {
         dims: &[UppaalDimension],
     ) -> Result<UppaalSymbolType, UppaalFault> {
         let own = dims.iter().map(|d| self.dim(d)).collect::<Result<Vec<_>, _>>()?;
-        let with = |dims: Vec<IndexRange>| own.iter().copied().chain(dims).collect::<Vec<_>>();
-        let out = match self.ty(ty)? {
-            UppaalSymbolType::Data(scalar, dims) => UppaalSymbolType::Data(scalar, with(dims)),
-            UppaalSymbolType::Clock(dims) => UppaalSymbolType::Clock(with(dims)),
-            UppaalSymbolType::Chan { urgent, broadcast, dims } => {
-                UppaalSymbolType::Chan { urgent, broadcast, dims: with(dims) }
-            }
-            UppaalSymbolType::Void => UppaalSymbolType::Void,
-        };
+        let out = self.ty(ty)?.within(&own);
         match &out {
             UppaalSymbolType::Data(_, dims) | UppaalSymbolType::Clock(dims) => limited(dims, ty.span)?,
-            UppaalSymbolType::Chan { .. } | UppaalSymbolType::Void => {}
+            UppaalSymbolType::Chan { .. } | UppaalSymbolType::Record(..) | UppaalSymbolType::Void => {}
         }
         Ok(out)
     }
@@ -105,6 +104,7 @@ impl UppaalTranslation<'_> {
                 UppaalSymbolType::Data(..)
                 | UppaalSymbolType::Clock(_)
                 | UppaalSymbolType::Chan { .. }
+                | UppaalSymbolType::Record(..)
                 | UppaalSymbolType::Void => fault(size.span, format!("`{name}` is no type of indices")),
             };
         }
@@ -118,6 +118,21 @@ impl UppaalTranslation<'_> {
 
     /// Declares for all (`own` is false) or in the process that is being written.
     pub fn declare(&mut self, decl: &UppaalDeclaration, own: bool) {
+        let said = match decl {
+            UppaalDeclaration::Comment(lines) => {
+                self.said.clone_from(lines);
+                return;
+            }
+            _ => std::mem::take(&mut self.said),
+        };
+        let before = self.written(own);
+        self.declare_one(decl, own);
+        if !said.is_empty() && self.faults.is_empty() {
+            self.comment(&said, before, own);
+        }
+    }
+
+    fn declare_one(&mut self, decl: &UppaalDeclaration, own: bool) {
         let declared = match decl {
             UppaalDeclaration::Vars(ty, declarators) => {
                 for declarator in declarators {
@@ -134,7 +149,13 @@ impl UppaalTranslation<'_> {
             UppaalDeclaration::Instance(i) if own => {
                 fault(i.span, "a process is made in the system's declarations")
             }
-            UppaalDeclaration::Instance(_) | UppaalDeclaration::System(_) => Ok(()),
+            UppaalDeclaration::Instance(_) | UppaalDeclaration::System(_) | UppaalDeclaration::Comment(_) => {
+                Ok(())
+            }
+            UppaalDeclaration::Idle(span, what) => {
+                self.notes.push((*span, NoteSeverity::LeftOut, (*what).to_owned()));
+                Ok(())
+            }
         };
         if let Err(fault) = declared {
             self.faults.push(fault);
@@ -159,28 +180,58 @@ impl UppaalTranslation<'_> {
         declarator: &UppaalDeclarator,
         own: bool,
     ) -> Result<(), UppaalFault> {
-        let UppaalDeclarator { name, span, dims, init } = declarator;
-        let sym = match self.declared(ty, dims)? {
+        let made = self.declared(ty, &declarator.dims)?;
+        let sym = self.symbol(ty, declarator, made, own)?;
+        self.bind(&declarator.name, sym, own);
+        Ok(())
+    }
+
+    /// What a declared name stands for, whose type is `made`.
+    fn symbol(
+        &mut self,
+        ty: &UppaalType,
+        declarator: &UppaalDeclarator,
+        made: UppaalSymbolType,
+        own: bool,
+    ) -> Result<UppaalSymbol, UppaalFault> {
+        let UppaalDeclarator { name, span, init, .. } = declarator;
+        Ok(match made {
             UppaalSymbolType::Data(scalar, dims) if ty.constant => {
+                limited(&dims, *span)?;
                 self.constant_sym(declarator, scalar, dims, own)?
             }
             UppaalSymbolType::Data(scalar, dims) => {
+                limited(&dims, *span)?;
                 let written = self.names.fresh(name, *span, Self::owner(own));
                 let init = self.initial(&scalar, &dims, init.as_ref(), *span)?;
                 let line = var_line(&written, &scalar, &dims, &init);
                 self.add_line(line, own);
+                if ty.meta {
+                    self.metas.insert(written.clone());
+                }
+                let (at, values) = (Vec::new(), None);
+                let (local, readonly) = (false, false);
                 UppaalSymbol::Var(VarSym {
                     name: written,
                     ty: scalar,
                     dims,
-                    at: Vec::new(),
-                    values: None,
+                    at,
+                    values,
                     own,
-                    local: false,
-                    readonly: false,
+                    local,
+                    readonly,
                 })
             }
-            UppaalSymbolType::Clock(dims) => self.clock_sym(name, *span, dims, own),
+            UppaalSymbolType::Clock(dims) => {
+                limited(&dims, *span)?;
+                self.clock_sym(name, *span, dims, own)
+            }
+            UppaalSymbolType::Record(fields, dims) => {
+                let of = (fields, dims);
+                self.record_of(name, of, (init.as_ref(), *span), |cx, field, made| {
+                    cx.symbol(ty, field, made, own)
+                })?
+            }
             UppaalSymbolType::Chan { urgent, broadcast, dims } => {
                 let written = self.names.fresh(name, *span, NameOwner::All);
                 if own {
@@ -191,9 +242,7 @@ impl UppaalTranslation<'_> {
                 UppaalSymbol::Chan(chan)
             }
             UppaalSymbolType::Void => return fault(*span, "a variable cannot be `void`"),
-        };
-        self.bind(name, sym, own);
-        Ok(())
+        })
     }
 
     fn clock_sym(&mut self, name: &str, span: Span, dims: Vec<IndexRange>, own: bool) -> UppaalSymbol {
@@ -310,6 +359,7 @@ impl UppaalTranslation<'_> {
                     Ok(value.text)
                 }
                 Some(UppaalInitializer::List(_, span)) => fault(*span, "expected one value, not a list"),
+                Some(UppaalInitializer::Named(name, _)) => fault(span, format!("`{name}` is no field here")),
             };
         };
         let items = listed(init, *dim, span)?;
@@ -333,7 +383,7 @@ impl UppaalTranslation<'_> {
         let Some((dim, rest)) = dims.split_first() else {
             out.push(match init {
                 Some(UppaalInitializer::One(e)) => self.constant(e)?,
-                Some(UppaalInitializer::List(..)) | None => scalar.default(),
+                Some(UppaalInitializer::List(..) | UppaalInitializer::Named(..)) | None => scalar.default(),
             });
             return Ok(());
         };
@@ -353,20 +403,24 @@ impl UppaalTranslation<'_> {
         let result = match self.ty(&decl.ty)? {
             UppaalSymbolType::Void => None,
             UppaalSymbolType::Data(scalar, dims) if dims.is_empty() => Some(scalar),
-            UppaalSymbolType::Data(..) | UppaalSymbolType::Clock(_) | UppaalSymbolType::Chan { .. } => {
+            UppaalSymbolType::Data(..)
+            | UppaalSymbolType::Clock(_)
+            | UppaalSymbolType::Chan { .. }
+            | UppaalSymbolType::Record(..) => {
                 return fault(decl.ty.span, "a function gives a single value, or is `void`");
             }
         };
-        let is_plain = |(p, ty): (&UppaalParameter, &UppaalSymbolType)| {
-            !p.by_reference && matches!(ty, UppaalSymbolType::Data(_, d) if d.is_empty())
-        };
-        let plain = decl.params.iter().zip(&params).all(is_plain);
+        let is_plain = |(p, ty): (&UppaalParameter, &UppaalSymbolType)| !p.by_reference && ty.is_single();
+        let sets_clocks = self.sets_clocks(decl, &params);
+        let plain = !sets_clocks && decl.params.iter().zip(&params).all(is_plain);
         let name = plain.then(|| self.names.fresh(&decl.name, decl.span, Self::owner(own)));
-        let function = Rc::new(FunctionSym { decl: decl.clone(), params, result, own, name: name.clone() });
+        let decl = decl.clone();
+        let function = Rc::new(FunctionSym { decl, params, result, own, sets_clocks, name: name.clone() });
         if let Some(name) = name {
             self.write_function(&function, &name, Vec::new(), own)?;
         }
-        self.bind(&decl.name, UppaalSymbol::Function(function), own);
+        let name = function.decl.name.clone();
+        self.bind(&name, UppaalSymbol::Function(function), own);
         Ok(())
     }
 }
@@ -382,7 +436,9 @@ fn listed(
         Some(UppaalInitializer::List(all, span)) => {
             fault(*span, format!("this has {} values, and the array {}", all.len(), dim.count()))
         }
-        Some(UppaalInitializer::One(_)) => fault(span, "an array is given its values in braces"),
+        Some(UppaalInitializer::One(_) | UppaalInitializer::Named(..)) => {
+            fault(span, "an array is given its values in braces")
+        }
     }
 }
 

@@ -3,17 +3,20 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalPlace, UppaalQuantifier, UppaalType},
-    fault::{UppaalFault, fault, unsupported},
+    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier, UppaalType},
+    fault::{UppaalFault, fault},
     scope::{
-        ArrayOf, ChanSym, ClockSym, ScenarioExprText, ScenarioPrecedence, UppaalScalarType, UppaalScope,
-        UppaalSymbol, UppaalSymbolType, VarSym, numbered,
+        ChanSym, ScenarioExprText, ScenarioPrecedence, UppaalScalarType, UppaalScope, UppaalSymbol,
+        UppaalSymbolType,
     },
     translation::UppaalTranslation,
 };
 
 /// How many parts `forall`, `exists` and `sum` may become.
 const MAX_PARTS: i64 = 1024;
+
+/// How many parts stand one after the other without parentheses.
+const MAX_IN_A_ROW: usize = 200;
 
 impl UppaalTranslation<'_> {
     pub fn find(&self, name: &str) -> Option<&UppaalSymbol> {
@@ -45,6 +48,10 @@ impl UppaalTranslation<'_> {
             }
             UppaalExprKind::Binary(op, a, b) => self.binary(*op, a, b, e.span),
             UppaalExprKind::Choice(c, a, b) => self.choice(c, a, b),
+            UppaalExprKind::Call(of, args) if self.is_abs(of, args) => {
+                let of = args.iter().map(|a| self.expr(a)).collect::<Result<Vec<_>, _>>()?;
+                Ok(absolute(of.into_iter().next().unwrap_or_else(|| ScenarioExprText::int(0)).into_int()))
+            }
             UppaalExprKind::Call(of, args) => self.call(of, args, e.span).and_then(|(text, result)| {
                 let Some(result) = result else {
                     return fault(e.span, "this function has no value (`void`)");
@@ -61,12 +68,21 @@ impl UppaalTranslation<'_> {
                 e.span,
                 "`++` and `--` within an expression are not supported: write them as an assignment of their own",
             ),
-            UppaalExprKind::Rate => Err(unsupported(e.span, "rates of clocks (`x'`)")),
+            UppaalExprKind::Rate(_) => {
+                fault(e.span, "the rate of a clock (`x'`) is a part of invariants only")
+            }
             UppaalExprKind::Deadlock if self.in_query => {
                 Ok(ScenarioExprText::new("deadlock".to_owned(), ScenarioPrecedence::Atom, true))
             }
             UppaalExprKind::Deadlock => fault(e.span, "`deadlock` may be asked in queries only"),
         }
+    }
+
+    /// `abs(n)`, if the model does not declare another `abs`.
+    pub fn is_abs(&self, of: &UppaalExpr, args: &[UppaalExpr]) -> bool {
+        args.len() == 1
+            && matches!(&of.kind, UppaalExprKind::Name(name) if name == "abs")
+            && self.find("abs").is_none()
     }
 
     fn negative(&mut self, of: &UppaalExpr) -> Result<ScenarioExprText, UppaalFault> {
@@ -105,28 +121,20 @@ impl UppaalTranslation<'_> {
         b: &UppaalExpr,
         span: Span,
     ) -> Result<ScenarioExprText, UppaalFault> {
+        if let Some(same) = self.same_records(op, a, b, span)? {
+            return Ok(same);
+        }
         let (a, b) = (self.expr(a)?, self.expr(b)?);
         let both_bools = a.is_bool && b.is_bool;
-        let (sign, level, of_bools) = match op {
-            UppaalBinaryOperator::Or => ("||", ScenarioPrecedence::Or, true),
-            UppaalBinaryOperator::And => ("&&", ScenarioPrecedence::And, true),
-            UppaalBinaryOperator::Imply => ("imply", ScenarioPrecedence::Imply, true),
-            UppaalBinaryOperator::Eq => ("==", ScenarioPrecedence::Comparison, both_bools),
-            UppaalBinaryOperator::Ne => ("!=", ScenarioPrecedence::Comparison, both_bools),
-            UppaalBinaryOperator::Lt => ("<", ScenarioPrecedence::Comparison, false),
-            UppaalBinaryOperator::Le => ("<=", ScenarioPrecedence::Comparison, false),
-            UppaalBinaryOperator::Gt => (">", ScenarioPrecedence::Comparison, false),
-            UppaalBinaryOperator::Ge => (">=", ScenarioPrecedence::Comparison, false),
-            UppaalBinaryOperator::Add => ("+", ScenarioPrecedence::Sum, false),
-            UppaalBinaryOperator::Sub => ("-", ScenarioPrecedence::Sum, false),
-            UppaalBinaryOperator::Mul => ("*", ScenarioPrecedence::Product, false),
-            UppaalBinaryOperator::Div => ("/", ScenarioPrecedence::Product, false),
-            UppaalBinaryOperator::Rem => ("%", ScenarioPrecedence::Product, false),
-            UppaalBinaryOperator::Min => ("min", ScenarioPrecedence::Atom, false),
-            UppaalBinaryOperator::Max => ("max", ScenarioPrecedence::Atom, false),
-        };
+        if op.is_on_bits() {
+            return self.on_bits(op, a.into_int(), b.into_int(), span);
+        }
+        let (sign, level, of_bools) = signs(op, both_bools);
         let (a, b) = (a.of_type(of_bools), b.of_type(of_bools));
         let value = a.value.zip(b.value).map(|(a, b)| fold(op, a, b, span)).transpose()?;
+        if op == UppaalBinaryOperator::Imply {
+            return Ok(implied(&a, &b));
+        }
         if value.is_none() && matches!(op, UppaalBinaryOperator::And | UppaalBinaryOperator::Or) {
             let both = [a, b].into_iter();
             return Ok(if op == UppaalBinaryOperator::And { all(both) } else { any(both) });
@@ -136,9 +144,12 @@ impl UppaalTranslation<'_> {
             UppaalBinaryOperator::Min | UppaalBinaryOperator::Max => {
                 format!("{sign}({}, {})", a.text, b.text)
             }
-            UppaalBinaryOperator::Imply => {
-                format!("{} imply {}", a.at(ScenarioPrecedence::Or), b.at(ScenarioPrecedence::Or))
-            }
+            UppaalBinaryOperator::BitAnd
+            | UppaalBinaryOperator::BitOr
+            | UppaalBinaryOperator::BitXor
+            | UppaalBinaryOperator::ShiftLeft
+            | UppaalBinaryOperator::ShiftRight
+            | UppaalBinaryOperator::Imply => String::new(),
             UppaalBinaryOperator::Or
             | UppaalBinaryOperator::And
             | UppaalBinaryOperator::Add
@@ -172,9 +183,13 @@ impl UppaalTranslation<'_> {
         let parts = self.parts(name, ty, |cx| cx.expr(of))?;
         if q == UppaalQuantifier::Sum {
             let parts = parts.into_iter().map(ScenarioExprText::into_int);
-            return Ok(joined(parts, "+", ScenarioPrecedence::Sum, ScenarioExprText::int(0), |a, b| {
-                a.checked_add(b)
-            }));
+            return Ok(joined(
+                parts.collect(),
+                "+",
+                ScenarioPrecedence::Sum,
+                ScenarioExprText::int(0),
+                &|a, b| a.checked_add(b),
+            ));
         }
         let parts = parts.into_iter().map(ScenarioExprText::into_bool);
         Ok(if q == UppaalQuantifier::Forall { all(parts) } else { any(parts) })
@@ -202,152 +217,6 @@ impl UppaalTranslation<'_> {
         Ok(parts)
     }
 
-    // ── Places ──
-
-    fn read(&mut self, e: &UppaalExpr) -> Result<ScenarioExprText, UppaalFault> {
-        match self.place(e)? {
-            UppaalSymbol::Const(out) => Ok(out),
-            UppaalSymbol::Var(var) if var.dims.is_empty() => Ok(self.value_of(&var)),
-            UppaalSymbol::Location(text) => Ok(ScenarioExprText::new(text, ScenarioPrecedence::Atom, true)),
-            UppaalSymbol::Clock(clock) => fault(
-                e.span,
-                format!("the clock `{}` may be compared with numbers and clocks only", clock.name),
-            ),
-            other @ (UppaalSymbol::Var(_)
-            | UppaalSymbol::Chan(_)
-            | UppaalSymbol::Type(_)
-            | UppaalSymbol::Function(_)) => fault(e.span, format!("{} has no value", other.noun())),
-        }
-    }
-
-    /// The value of a single variable or element.
-    pub fn value_of(&mut self, var: &VarSym) -> ScenarioExprText {
-        if let Some(values) = &var.values {
-            if let Some(n) = element(var, values) {
-                return var.ty.literal(n);
-            }
-            self.use_array(var);
-        }
-        ScenarioExprText::new(place_text(var), ScenarioPrecedence::Atom, var.ty.is_bool)
-    }
-
-    /// What a name with indices stands for.
-    pub fn place(&mut self, e: &UppaalExpr) -> Result<UppaalSymbol, UppaalFault> {
-        match e.as_place() {
-            Some(UppaalPlace::Name(name)) => match self.find(name) {
-                Some(sym) => Ok(sym.clone()),
-                None if self.in_query && self.processes.iter().any(|p| p.model_name == name) => fault(
-                    e.span,
-                    format!("`{name}` is a process: `{name}.` and the name of a location or variable"),
-                ),
-                None => fault(e.span, format!("there is no `{name}` here")),
-            },
-            Some(UppaalPlace::Index(of, index)) => {
-                let sym = self.place(of)?;
-                let index_span = index.span;
-                let index = self.expr(index)?.into_int();
-                self.element(sym, index, index_span)
-            }
-            Some(UppaalPlace::Field(of, name)) => self.member(of, name, e.span),
-            None => fault(e.span, "expected the name of a variable, a clock or a channel"),
-        }
-    }
-
-    fn element(
-        &mut self,
-        sym: UppaalSymbol,
-        index: ScenarioExprText,
-        span: Span,
-    ) -> Result<UppaalSymbol, UppaalFault> {
-        let dims = match &sym {
-            UppaalSymbol::Var(v) => &v.dims,
-            UppaalSymbol::Clock(c) => &c.dims,
-            UppaalSymbol::Chan(c) => &c.dims,
-            UppaalSymbol::Const(_)
-            | UppaalSymbol::Type(_)
-            | UppaalSymbol::Function(_)
-            | UppaalSymbol::Location(_) => {
-                return fault(span, format!("{} has no elements", sym.noun()));
-            }
-        };
-        let Some((dim, rest)) = dims.split_first() else {
-            return fault(span, format!("{} has no more elements", sym.noun()));
-        };
-        if let Some(n) = index.value
-            && !(dim.lo..=dim.hi).contains(&n)
-        {
-            return fault(span, format!("{n} is none of the indices {}..{}", dim.lo, dim.hi));
-        }
-        let (dim, rest) = (*dim, rest.to_vec());
-        Ok(match sym {
-            UppaalSymbol::Var(mut v) => {
-                v.dims = rest;
-                v.at.push(from_zero(index, dim.lo));
-                UppaalSymbol::Var(v)
-            }
-            UppaalSymbol::Clock(c) => {
-                let Some(n) = index.value else {
-                    return fault(span, "the index of an array of clocks must be constant");
-                };
-                UppaalSymbol::Clock(ClockSym { name: numbered(&c.name, &[n]), dims: rest, own: c.own })
-            }
-            UppaalSymbol::Chan(mut c) => {
-                c.dims = rest;
-                c.at.push(index);
-                UppaalSymbol::Chan(c)
-            }
-            other @ (UppaalSymbol::Const(_)
-            | UppaalSymbol::Type(_)
-            | UppaalSymbol::Function(_)
-            | UppaalSymbol::Location(_)) => other,
-        })
-    }
-
-    /// `P.x`, `P(1).x`: what a process has of this name.
-    fn member(&mut self, of: &UppaalExpr, name: &str, span: Span) -> Result<UppaalSymbol, UppaalFault> {
-        let (process, args) = match &of.kind {
-            UppaalExprKind::Name(process) => (process, Vec::new()),
-            UppaalExprKind::Call(of, args) if self.in_query => {
-                let UppaalExprKind::Name(process) = &of.kind else {
-                    return fault(span, "expected a process");
-                };
-                let args = args.iter().map(|a| self.constant(a)).collect::<Result<Vec<_>, _>>()?;
-                (process, args)
-            }
-            _ => return Err(unsupported(span, "records (`struct`)")),
-        };
-        if !self.in_query {
-            return Err(unsupported(span, "records (`struct`)"));
-        }
-        let Some(found) = self.processes.iter().position(|p| p.model_name == *process && p.args == args)
-        else {
-            return fault(
-                span,
-                format!("there is no process `{process}` with these arguments in the system"),
-            );
-        };
-        let found = &self.processes[found];
-        let Some(sym) = found.scope.get(name) else {
-            return fault(span, format!("the process `{process}` has no location or variable `{name}`"));
-        };
-        let automaton = &found.name;
-        Ok(match sym.clone() {
-            UppaalSymbol::Var(v) if v.own => {
-                UppaalSymbol::Var(VarSym { name: format!("{automaton}.{}", v.name), ..v })
-            }
-            UppaalSymbol::Clock(c) if c.own => {
-                UppaalSymbol::Clock(ClockSym { name: format!("{automaton}.{}", c.name), ..c })
-            }
-            UppaalSymbol::Location(l) => UppaalSymbol::Location(format!("{automaton}.{l}")),
-            other @ (UppaalSymbol::Const(_)
-            | UppaalSymbol::Var(_)
-            | UppaalSymbol::Clock(_)
-            | UppaalSymbol::Chan(_)
-            | UppaalSymbol::Type(_)
-            | UppaalSymbol::Function(_)) => other,
-        })
-    }
-
     // ── Types ──
 
     /// The type of single values.
@@ -357,6 +226,7 @@ impl UppaalTranslation<'_> {
             UppaalSymbolType::Data(..)
             | UppaalSymbolType::Clock(_)
             | UppaalSymbolType::Chan { .. }
+            | UppaalSymbolType::Record(..)
             | UppaalSymbolType::Void => {
                 fault(ty.span, "expected a type of single values: `bool`, or integers of a range")
             }
@@ -371,37 +241,6 @@ impl UppaalTranslation<'_> {
             }
             other => fault(span, format!("expected a channel, found {}", other.noun())),
         }
-    }
-}
-
-/// Text of a variable with its indices.
-pub fn place_text(var: &VarSym) -> String {
-    var.at.iter().fold(var.name.clone(), |text, at| format!("{text}[{}]", at.text))
-}
-
-/// The element of a constant array, if all indices are constant.
-fn element(var: &VarSym, array: &ArrayOf) -> Option<i64> {
-    let mut at = 0;
-    for (index, size) in var.at.iter().zip(&array.sizes) {
-        at = at * size + usize::try_from(index.value?).ok()?;
-    }
-    array.values.get(at).copied()
-}
-
-fn from_zero(index: ScenarioExprText, lo: i64) -> ScenarioExprText {
-    match (lo, index.value) {
-        (0, _) => index,
-        (_, Some(n)) => ScenarioExprText::int(n - lo),
-        (lo, None) if lo > 0 => ScenarioExprText::new(
-            format!("{} - {lo}", index.at(ScenarioPrecedence::Sum)),
-            ScenarioPrecedence::Sum,
-            false,
-        ),
-        (lo, None) => ScenarioExprText::new(
-            format!("{} + {}", index.at(ScenarioPrecedence::Sum), lo.unsigned_abs()),
-            ScenarioPrecedence::Sum,
-            false,
-        ),
     }
 }
 
@@ -430,14 +269,38 @@ pub fn not(of: &ScenarioExprText) -> ScenarioExprText {
     }
 }
 
+/// `a imply b`, as far as it is not certain.
+pub fn implied(a: &ScenarioExprText, b: &ScenarioExprText) -> ScenarioExprText {
+    match (a.value, b.value) {
+        (Some(0), _) => ScenarioExprText::bool(true),
+        (Some(_), _) => b.clone(),
+        (None, Some(0)) => not(a),
+        (None, Some(_)) => ScenarioExprText::bool(true),
+        (None, None) => {
+            let text = format!("{} imply {}", a.at(ScenarioPrecedence::Or), b.at(ScenarioPrecedence::Or));
+            ScenarioExprText::new(text, ScenarioPrecedence::Imply, true)
+        }
+    }
+}
+
 fn joined(
-    parts: impl Iterator<Item = ScenarioExprText>,
+    parts: Vec<ScenarioExprText>,
     sign: &str,
     level: ScenarioPrecedence,
     none: ScenarioExprText,
-    fold: impl Fn(i64, i64) -> Option<i64>,
+    fold: &dyn Fn(i64, i64) -> Option<i64>,
 ) -> ScenarioExprText {
+    if parts.len() > MAX_IN_A_ROW {
+        // In groups, since an expression may not be higher than some hundred levels.
+        let groups = parts.chunks(MAX_IN_A_ROW).map(|group| {
+            let group = joined(group.to_vec(), sign, level, none.clone(), fold);
+            ScenarioExprText { level: ScenarioPrecedence::Imply, ..group }
+        });
+        let groups: Vec<ScenarioExprText> = groups.collect();
+        return joined(groups, sign, level, none, fold);
+    }
     parts
+        .into_iter()
         .reduce(|a, b| {
             let value = a.value.zip(b.value).and_then(|(a, b)| fold(a, b));
             let text = format!("{} {sign} {}", a.at(level), b.at(level));
@@ -452,9 +315,7 @@ pub fn all(parts: impl Iterator<Item = ScenarioExprText>) -> ScenarioExprText {
     match parts.iter().find(|p| p.value == Some(0)) {
         Some(_) => ScenarioExprText::bool(false),
         None => {
-            joined(parts.into_iter(), "&&", ScenarioPrecedence::And, ScenarioExprText::bool(true), |a, b| {
-                Some(a & b)
-            })
+            joined(parts, "&&", ScenarioPrecedence::And, ScenarioExprText::bool(true), &|a, b| Some(a & b))
         }
     }
 }
@@ -465,14 +326,44 @@ pub fn any(parts: impl Iterator<Item = ScenarioExprText>) -> ScenarioExprText {
     match parts.iter().find(|p| p.value == Some(1)) {
         Some(_) => ScenarioExprText::bool(true),
         None => {
-            joined(parts.into_iter(), "||", ScenarioPrecedence::Or, ScenarioExprText::bool(false), |a, b| {
-                Some(a | b)
-            })
+            joined(parts, "||", ScenarioPrecedence::Or, ScenarioExprText::bool(false), &|a, b| Some(a | b))
         }
     }
 }
 
-fn fold(op: UppaalBinaryOperator, a: i64, b: i64, span: Span) -> Result<i64, UppaalFault> {
+/// How an operator is written, how tightly it binds, and whether it is one of bools.
+fn signs(op: UppaalBinaryOperator, both_bools: bool) -> (&'static str, ScenarioPrecedence, bool) {
+    match op {
+        UppaalBinaryOperator::Or => ("||", ScenarioPrecedence::Or, true),
+        UppaalBinaryOperator::And => ("&&", ScenarioPrecedence::And, true),
+        UppaalBinaryOperator::Imply => ("imply", ScenarioPrecedence::Imply, true),
+        UppaalBinaryOperator::Eq => ("==", ScenarioPrecedence::Comparison, both_bools),
+        UppaalBinaryOperator::Ne => ("!=", ScenarioPrecedence::Comparison, both_bools),
+        UppaalBinaryOperator::Lt => ("<", ScenarioPrecedence::Comparison, false),
+        UppaalBinaryOperator::Le => ("<=", ScenarioPrecedence::Comparison, false),
+        UppaalBinaryOperator::Gt => (">", ScenarioPrecedence::Comparison, false),
+        UppaalBinaryOperator::Ge => (">=", ScenarioPrecedence::Comparison, false),
+        UppaalBinaryOperator::Add => ("+", ScenarioPrecedence::Sum, false),
+        UppaalBinaryOperator::Sub => ("-", ScenarioPrecedence::Sum, false),
+        UppaalBinaryOperator::Mul => ("*", ScenarioPrecedence::Product, false),
+        UppaalBinaryOperator::Div => ("/", ScenarioPrecedence::Product, false),
+        UppaalBinaryOperator::Rem => ("%", ScenarioPrecedence::Product, false),
+        UppaalBinaryOperator::Min => ("min", ScenarioPrecedence::Atom, false),
+        UppaalBinaryOperator::Max => ("max", ScenarioPrecedence::Atom, false),
+        UppaalBinaryOperator::BitAnd
+        | UppaalBinaryOperator::BitOr
+        | UppaalBinaryOperator::BitXor
+        | UppaalBinaryOperator::ShiftLeft
+        | UppaalBinaryOperator::ShiftRight => ("", ScenarioPrecedence::Atom, false),
+    }
+}
+
+fn absolute(of: ScenarioExprText) -> ScenarioExprText {
+    let out = ScenarioExprText::new(format!("abs({})", of.text), ScenarioPrecedence::Atom, false);
+    of.value.map_or(out, |n| ScenarioExprText::int(n.abs()))
+}
+
+pub fn fold(op: UppaalBinaryOperator, a: i64, b: i64, span: Span) -> Result<i64, UppaalFault> {
     let value = match op {
         UppaalBinaryOperator::Add => a.checked_add(b),
         UppaalBinaryOperator::Sub => a.checked_sub(b),
@@ -492,6 +383,14 @@ fn fold(op: UppaalBinaryOperator, a: i64, b: i64, span: Span) -> Result<i64, Upp
         UppaalBinaryOperator::And => Some(i64::from(a != 0 && b != 0)),
         UppaalBinaryOperator::Or => Some(i64::from(a != 0 || b != 0)),
         UppaalBinaryOperator::Imply => Some(i64::from(a == 0 || b != 0)),
+        UppaalBinaryOperator::BitAnd => Some(a & b),
+        UppaalBinaryOperator::BitOr => Some(a | b),
+        UppaalBinaryOperator::BitXor => Some(a ^ b),
+        UppaalBinaryOperator::ShiftLeft | UppaalBinaryOperator::ShiftRight if !(0..32).contains(&b) => {
+            return fault(span, "bits are shifted by 0 to 31 places");
+        }
+        UppaalBinaryOperator::ShiftLeft => Some(a << b),
+        UppaalBinaryOperator::ShiftRight => Some(a >> b),
     };
     value
         .filter(|n| i32::try_from(*n).is_ok())

@@ -64,6 +64,15 @@ impl UppaalTokenKind {
 pub struct UppaalToken {
     pub tok: UppaalTokenKind,
     pub span: Span,
+    /// The comments before it.
+    pub comments: Vec<UppaalComment>,
+}
+
+#[derive(Clone, Debug)]
+pub struct UppaalComment {
+    pub lines: Vec<String>,
+    /// It begins in the line in which the token before it ends.
+    pub trailing: bool,
 }
 
 /// The longest first.
@@ -75,14 +84,15 @@ const MARKS: &[&str] = &[
 
 /// All tokens, the last of which is the end.
 pub fn lex(piece: &UppaalFragment) -> Result<Vec<UppaalToken>, UppaalFault> {
-    let mut lexer = UppaalLexer { piece, at: 0 };
+    let mut lexer = UppaalLexer { piece, at: 0, comments: Vec::new() };
     let mut tokens = Vec::new();
     loop {
         lexer.blanks()?;
         let start = lexer.place();
         let tok = lexer.token()?;
         let is_end = tok == UppaalTokenKind::End;
-        tokens.push(UppaalToken { tok, span: Span { file: piece.file, start, end: lexer.last() } });
+        let comments = std::mem::take(&mut lexer.comments);
+        tokens.push(UppaalToken { tok, span: Span { file: piece.file, start, end: lexer.last() }, comments });
         if is_end {
             return Ok(tokens);
         }
@@ -92,6 +102,8 @@ pub fn lex(piece: &UppaalFragment) -> Result<Vec<UppaalToken>, UppaalFault> {
 struct UppaalLexer<'a> {
     piece: &'a UppaalFragment,
     at: usize,
+    /// Since the last token.
+    comments: Vec<UppaalComment>,
 }
 
 impl UppaalLexer<'_> {
@@ -115,18 +127,41 @@ impl UppaalLexer<'_> {
     }
 
     fn blanks(&mut self) -> Result<(), UppaalFault> {
+        // The first line of a piece belongs to nothing before it.
+        let mut trailing = self.at > 0;
         loop {
             match (self.char(0), self.char(1)) {
+                (Some('\n'), _) => {
+                    trailing = false;
+                    self.at += 1;
+                }
                 (Some(c), _) if c.is_whitespace() => self.at += 1,
                 (Some('\\'), Some('\n')) => self.at += 2,
                 (Some('/'), Some('/')) => {
+                    let start = self.at + 2;
                     while self.char(0).is_some_and(|c| c != '\n') {
                         self.at += 1;
                     }
+                    self.keep(start, self.at, trailing);
                 }
-                (Some('/'), Some('*')) => self.comment()?,
+                (Some('/'), Some('*')) => {
+                    let start = self.at + 2;
+                    self.comment()?;
+                    self.keep(start, self.at - 2, trailing);
+                }
                 _ => return Ok(()),
             }
+        }
+    }
+
+    /// Keeps a comment, without what only frames it.
+    fn keep(&mut self, start: usize, end: usize, trailing: bool) {
+        let text = self.piece.part(start, end.max(start)).text();
+        let is_frame = |c: char| c.is_whitespace() || matches!(c, '*' | '/' | '=' | '-');
+        let lines = text.lines().map(|line| line.trim().trim_start_matches('*').trim());
+        let lines: Vec<String> = lines.filter(|l| !l.chars().all(is_frame)).map(str::to_owned).collect();
+        if !lines.is_empty() {
+            self.comments.push(UppaalComment { lines, trailing });
         }
     }
 

@@ -1,12 +1,13 @@
-//! UPPAAL's models (`.xml`, flat DTD and newer) and queries (`.q`, or in the model) to a scenario.
+//! UPPAAL's models (`.xml`, flat DTD and newer; `.xta`) and queries (`.q`, or in the model) to a scenario.
 //!
 //! # Steps
-//! 1. `xml`, `branches`: the file to templates and pieces of text, each character with its place
+//! 1. `xml` or `xta`, `branches`: the file to templates and pieces of text, each character with its place
 //! 2. `lex`, `parse`, `queries`: pieces to declarations, expressions, formulas
 //! 3. `template`: the labels of each template
-//! 4. `declare`, `statement`: what is declared for all; functions
-//! 5. `process`: the processes of the system, each template with its arguments an automaton of its own
-//! 6. `clocks`: conditions over clocks, split into alternatives where a scenario has conjunctions only
+//! 4. `declare`, `record`, `comment`: what is declared for all; `call`, `statement`, `order`, `update`, `bits`: functions
+//! 5. `process`: the processes of the system, each template with its arguments an automaton of its own; `cases`, `inline`:
+//!    transitions that become several edges
+//! 6. `clocks`, `stopwatch`: conditions over clocks, split into alternatives where a scenario has conjunctions only
 //! 7. `write`: the text
 //!
 //! From the third step on, all that is known is in one place (`translation`).
@@ -15,21 +16,33 @@
 //! way; a query that cannot be asked is left out.
 
 mod ast;
+mod bits;
 mod branches;
+mod call;
+mod cases;
 mod clocks;
+mod comment;
 mod declare;
 mod expr;
 mod fault;
+mod inline;
+mod known;
 mod lex;
+mod order;
 mod parse;
+mod place;
 mod process;
 mod queries;
+mod record;
 mod scope;
 mod statement;
+mod stopwatch;
 mod template;
 mod translation;
+mod update;
 mod write;
 mod xml;
+mod xta;
 
 use hrdsl_source::{FileId, SourceFiles, Span, TextPosition};
 
@@ -61,10 +74,18 @@ pub fn import(
     }
     let mut files = SourceFiles::default();
     let file = files.add(&model.name, &model.text);
-    let mut read = xml::read(file, &model.text).map_err(|faults| errors(&files, faults))?;
+    let mut replaced = None;
+    let is_textual = [".xta", ".ta"].iter().any(|ending| model.name.ends_with(ending));
+    let reader = if is_textual { xta::read } else { xml::read };
+    let mut read = reader(file, &model.text).map_err(|faults| errors(&files, faults))?;
     if let Some(source) = questions {
         let file: FileId = files.add(&source.name, &source.text);
-        read.queries.extend(queries::read(file, &source.text));
+        let before = std::mem::replace(&mut read.queries, queries::read(file, &source.text));
+        if let Some(first) = before.first() {
+            let many = if before.len() == 1 { "the query" } else { "the queries" };
+            let message = format!("{many} of the model give way to those of {}", source.name);
+            replaced = Some((first.formula.span(), NoteSeverity::Info, message));
+        }
     }
     let mut cx = UppaalTranslation::new(&read);
     let written =
@@ -75,8 +96,9 @@ pub fn import(
     for (span, old, new) in std::mem::take(&mut cx.names.renamed) {
         cx.notes.push((span, NoteSeverity::Info, format!("`{old}` is called `{new}`")));
     }
-    let skipped = read.skipped.iter().map(|(span, what)| (*span, NoteSeverity::LeftOut, what.clone()));
-    let mut notes: Vec<ImportNote> = cx.notes.into_iter().chain(skipped).map(|n| note(&files, n)).collect();
+    cx.notes.extend(replaced);
+    let mut notes: Vec<ImportNote> =
+        cx.notes.into_iter().chain(read.skipped.iter().cloned()).map(|n| note(&files, n)).collect();
     notes.sort();
     notes.dedup();
     let text = hrdsl_syntax::format(&written).unwrap_or(written);

@@ -4,7 +4,7 @@ use hrdsl_source::Span;
 use indexmap::IndexMap;
 
 use super::{
-    ast::{UppaalExpr, UppaalInstance, UppaalParameter, UppaalSync},
+    ast::{UppaalExpr, UppaalExprKind, UppaalInstance, UppaalParameter, UppaalSync},
     clocks::GuardConjunction,
     declare::{in_range, var_line},
     fault::{UppaalFault, fault},
@@ -14,8 +14,10 @@ use super::{
     },
     template::ParsedEdge,
     translation::{UppaalProcess, UppaalTranslation},
+    write::one_line,
     xml::{UppaalLocation, UppaalLocationKind, UppaalTemplate, UppaalTransition},
 };
+use crate::exchange::note::NoteSeverity;
 
 /// How many processes a system may have.
 const MAX_PROCESSES: usize = 512;
@@ -57,6 +59,7 @@ impl UppaalTranslation<'_> {
                 UppaalSymbolType::Data(..)
                 | UppaalSymbolType::Clock(_)
                 | UppaalSymbolType::Chan { .. }
+                | UppaalSymbolType::Record(..)
                 | UppaalSymbolType::Void => {
                     let message = format!(
                         "`{name}` needs an argument for `{}`: make a process of it first",
@@ -153,6 +156,16 @@ impl UppaalTranslation<'_> {
                 UppaalSymbol::Chan(c) if c.dims.len() == dims.len() => Ok(UppaalSymbol::Chan(c)),
                 other => fault(arg.span, format!("`{}` is a channel, not {}", param.name, other.noun())),
             },
+            UppaalSymbolType::Record(fields, dims) => match self.place(arg)? {
+                UppaalSymbol::Record(r) if r.dims.len() == dims.len() && r.fields.len() == fields.len() => {
+                    let mut sym = UppaalSymbol::Record(r);
+                    if param.ty.constant || !param.by_reference {
+                        sym.make_readonly();
+                    }
+                    Ok(sym)
+                }
+                other => fault(arg.span, format!("`{}` is a record, not {}", param.name, other.noun())),
+            },
             UppaalSymbolType::Void => fault(param.span, "a parameter cannot be `void`"),
         }
     }
@@ -170,21 +183,23 @@ impl UppaalTranslation<'_> {
         declarations.iter().for_each(|d| self.declare(d, true));
         self.templates[plan.template].declarations = declarations;
         let written: Vec<String> = self.location_names(template);
-        let invariants = std::mem::take(&mut self.templates[plan.template].invariants);
-        let mut locations = Vec::new();
-        for (i, location) in template.locations.iter().enumerate() {
-            let invariant = invariants.get(i).and_then(Option::as_ref);
-            let made = self.location(location, &written[i], i == template.initial, invariant);
+        let parsed = std::mem::take(&mut self.templates[plan.template]);
+        let stopped = self.stopped(template, &parsed, &written);
+        let stopped = self.kept(stopped).unwrap_or_default();
+        let (mut locations, mut texts) = (Vec::new(), Vec::new());
+        for (i, (location, stopped)) in template.locations.iter().zip(&stopped).enumerate() {
+            self.standing.clone_from(&stopped.values);
+            let made =
+                self.location(location, &written[i], i == template.initial, stopped.invariant.as_ref());
             locations.extend(self.kept(made));
         }
-        self.templates[plan.template].invariants = invariants;
-        let edges = std::mem::take(&mut self.templates[plan.template].edges);
-        let mut texts = Vec::new();
-        for (transition, edge) in template.transitions.iter().zip(&edges) {
+        for (transition, edge) in template.transitions.iter().zip(&parsed.edges) {
+            self.standing = stopped.get(transition.from).map(|s| s.values.clone()).unwrap_or_default();
             let made = self.edge(transition, edge, &written);
             texts.extend(self.kept(made).unwrap_or_default());
         }
-        self.templates[plan.template].edges = edges;
+        self.standing.clear();
+        self.templates[plan.template] = parsed;
         let mut scope = self.process.take().unwrap_or_default();
         for (location, written) in template.locations.iter().zip(&written) {
             if let Some(name) = &location.name {
@@ -202,6 +217,7 @@ impl UppaalTranslation<'_> {
             scope,
             arrays: std::mem::take(&mut self.own_arrays),
             clocks: std::mem::take(&mut self.own_clocks),
+            clock_comments: std::mem::take(&mut self.own_clock_comments),
             lines: std::mem::take(&mut self.own_lines),
             functions: std::mem::take(&mut self.own_functions),
             locations,
@@ -261,6 +277,11 @@ impl UppaalTranslation<'_> {
         invariant: Option<&UppaalExpr>,
     ) -> Result<String, UppaalFault> {
         let mut text = doc(&location.comment);
+        if !location.rate.trim().is_empty() {
+            text += &format!("// exponentialrate {}\n", one_line(&location.rate));
+            let message = "`exponentialrate` is kept as a comment: only statistical model checking asks how fast a location is left";
+            self.notes.push((location.span, NoteSeverity::Info, message.to_owned()));
+        }
         if is_initial {
             text += "init ";
         }
@@ -289,13 +310,42 @@ impl UppaalTranslation<'_> {
         edge: &ParsedEdge,
         names: &[String],
     ) -> Result<Vec<String>, UppaalFault> {
-        self.locals.push(UppaalScope::new());
-        let made = self.edge_texts(t, edge, names);
-        self.locals.pop();
-        made
+        self.clock_log.clear();
+        let cases = self.edge_cases(edge, |cx| cx.edge_texts(t, edge, names))?;
+        let mut texts: Vec<String> = cases.concat();
+        let mut kept = String::new();
+        if t.uncontrollable {
+            kept += "// controllable=\"false\"\n";
+        }
+        if !t.probability.trim().is_empty() {
+            kept += &format!("// probability {}\n", one_line(&t.probability));
+            let message =
+                "`probability` is kept as a comment: any branch may be taken, as UPPAAL's model checker may";
+            self.notes.push((edge.span(), NoteSeverity::Info, message.to_owned()));
+        }
+        texts.iter_mut().for_each(|text| *text = kept.clone() + text);
+        if let Some(first) = texts.first_mut() {
+            *first = doc(&t.comment) + first;
+        }
+        Ok(texts)
     }
 
-    fn edge_texts(
+    /// What `write` makes of each case of an edge.
+    pub fn edge_cases<T>(
+        &mut self,
+        edge: &ParsedEdge,
+        mut write: impl FnMut(&mut Self) -> Result<T, UppaalFault>,
+    ) -> Result<Vec<T>, UppaalFault> {
+        let receives = edge.sync.as_ref().is_some_and(|sync| !sync.offers);
+        self.every_case(edge.span(), receives, |cx| {
+            cx.locals.push(UppaalScope::new());
+            let made = write(cx);
+            cx.locals.pop();
+            made
+        })
+    }
+
+    pub fn edge_texts(
         &mut self,
         t: &UppaalTransition,
         edge: &ParsedEdge,
@@ -306,6 +356,13 @@ impl UppaalTranslation<'_> {
         self.names.start_function();
         for select in &edge.select {
             let scalar = self.scalar(&select.ty)?;
+            if self.chooses_clock(edge, &select.name) {
+                let n = self.choice_of(scalar.lo, scalar.hi).unwrap_or(scalar.lo);
+                if let Some(scope) = self.locals.last_mut() {
+                    scope.insert(select.name.clone(), UppaalSymbol::Const(scalar.literal(n)));
+                }
+                continue;
+            }
             let name = self.names.fresh(&select.name, select.span, NameOwner::Function);
             selects.push(format!("{name}: {}", scalar.text));
             let (at, dims, values) = (Vec::new(), Vec::new(), None);
@@ -317,7 +374,7 @@ impl UppaalTranslation<'_> {
         if !selects.is_empty() {
             head += &format!(" select {}", selects.join(", "));
         }
-        let guards = match &edge.guard {
+        let mut guards = match &edge.guard {
             Some(guard) => self.alternatives(guard)?,
             None => vec![GuardConjunction::default()],
         };
@@ -332,7 +389,18 @@ impl UppaalTranslation<'_> {
             Some((false, text)) => on = format!(" on {text}"),
             None => {}
         }
+        if let Some(cases) = &mut self.cases {
+            cases.in_updates = true;
+        }
+        // What stood until now is set to where it stood, and runs from there.
+        let standing = std::mem::take(&mut self.standing);
+        actions.extend(standing.iter().map(|(clock, n)| format!("{clock} = {}", seconds(*n))));
         edge.assign.iter().try_for_each(|e| self.effect(e, &mut actions))?;
+        self.standing = standing;
+        let asked = self.cases.as_mut().map(|cases| std::mem::take(&mut cases.conditions));
+        for guard in &mut guards {
+            guard.data.extend(asked.iter().flatten().cloned());
+        }
         let actions = if actions.is_empty() { String::new() } else { format!(" do {}", actions.join("; ")) };
         let mut texts = Vec::new();
         for guard in &guards {
@@ -342,10 +410,32 @@ impl UppaalTranslation<'_> {
                 Some(when) => texts.push(format!("{head} when {when}{on}{actions}")),
             }
         }
-        if let Some(first) = texts.first_mut() {
-            *first = doc(&t.comment) + first;
-        }
         Ok(texts)
+    }
+
+    /// Whether what is selected chooses a clock: then there is an edge for each value.
+    fn chooses_clock(&self, edge: &ParsedEdge, name: &str) -> bool {
+        let is_named = |e: &UppaalExpr| {
+            let mut found = false;
+            e.each(&mut |part| found |= matches!(&part.kind, UppaalExprKind::Name(n) if n == name));
+            found
+        };
+        let mut found = false;
+        for label in edge.guard.iter().chain(&edge.assign) {
+            label.each(&mut |e| match &e.kind {
+                UppaalExprKind::Index(of, index) => {
+                    let clocks = self.kind_of(of).is_some_and(|sym| sym.has_clocks());
+                    found |= clocks && is_named(index);
+                }
+                UppaalExprKind::Call(of, args) => {
+                    let called = of.root().and_then(|f| self.find(f));
+                    let sets = matches!(called, Some(UppaalSymbol::Function(f)) if f.sets_clocks);
+                    found |= sets && args.iter().any(is_named);
+                }
+                _ => {}
+            });
+        }
+        found
     }
 
     /// Whether the edge offers, and the channel with its arguments.
@@ -375,13 +465,19 @@ impl UppaalTranslation<'_> {
     }
 }
 
+/// A number of units of time.
+fn seconds(n: i64) -> String {
+    if n == 0 { "0".to_owned() } else { format!("{n} s") }
+}
+
 fn shown(sym: &UppaalSymbol) -> String {
     match sym {
         UppaalSymbol::Const(out) => out.text.clone(),
-        UppaalSymbol::Var(v) => super::expr::place_text(v),
+        UppaalSymbol::Var(v) => super::place::place_text(v),
         UppaalSymbol::Clock(c) => c.name.clone(),
         UppaalSymbol::Chan(c) => c.at.iter().fold(c.name.clone(), |text, at| format!("{text}[{}]", at.text)),
         UppaalSymbol::Location(l) => l.clone(),
+        UppaalSymbol::Record(r) => r.name.clone(),
         UppaalSymbol::Type(_) | UppaalSymbol::Function(_) => sym.noun().to_owned(),
     }
 }

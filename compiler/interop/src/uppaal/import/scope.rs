@@ -131,7 +131,13 @@ impl IndexRange {
 pub enum UppaalSymbolType {
     Data(UppaalScalarType, Vec<IndexRange>),
     Clock(Vec<IndexRange>),
-    Chan { urgent: bool, broadcast: bool, dims: Vec<IndexRange> },
+    Chan {
+        urgent: bool,
+        broadcast: bool,
+        dims: Vec<IndexRange>,
+    },
+    /// `struct`: its fields in order.
+    Record(Vec<(String, UppaalSymbolType)>, Vec<IndexRange>),
     Void,
 }
 
@@ -175,12 +181,23 @@ pub struct ChanSym {
     pub broadcast: bool,
 }
 
+/// A record: each of its fields is a variable of its own, or an array if the record is in one.
+#[derive(Clone, Debug)]
+pub struct RecordSym {
+    pub name: String,
+    /// Those that no index has been given for.
+    pub dims: Vec<IndexRange>,
+    pub fields: IndexMap<String, UppaalSymbol>,
+}
+
 #[derive(Debug)]
 pub struct FunctionSym {
     pub decl: ast::UppaalFunction,
     pub params: Vec<UppaalSymbolType>,
     pub result: Option<UppaalScalarType>,
     pub own: bool,
+    /// It is not written as a function, but its statements where it is called.
+    pub sets_clocks: bool,
     /// Its name, if it has no parameters that are references: then there is one function for all calls.
     pub name: Option<String>,
 }
@@ -191,6 +208,7 @@ pub enum UppaalSymbol {
     Var(VarSym),
     Clock(ClockSym),
     Chan(ChanSym),
+    Record(RecordSym),
     Type(UppaalSymbolType),
     Function(Rc<FunctionSym>),
     /// In queries: that a process is there.
@@ -198,6 +216,86 @@ pub enum UppaalSymbol {
 }
 
 impl UppaalSymbol {
+    pub fn is_clock(&self) -> bool {
+        matches!(self, UppaalSymbol::Clock(_))
+    }
+
+    /// It is a clock, or a record with one.
+    pub fn has_clocks(&self) -> bool {
+        self.leaves().into_iter().any(UppaalSymbol::is_clock)
+    }
+
+    /// The indices that it still takes; none of what is no array and cannot be one.
+    pub fn dims(&self) -> Option<&Vec<IndexRange>> {
+        match self {
+            UppaalSymbol::Var(v) => Some(&v.dims),
+            UppaalSymbol::Clock(c) => Some(&c.dims),
+            UppaalSymbol::Chan(c) => Some(&c.dims),
+            UppaalSymbol::Record(r) => Some(&r.dims),
+            UppaalSymbol::Const(_)
+            | UppaalSymbol::Type(_)
+            | UppaalSymbol::Function(_)
+            | UppaalSymbol::Location(_) => None,
+        }
+    }
+
+    pub fn first_dim(&self) -> Option<IndexRange> {
+        self.dims()?.first().copied()
+    }
+
+    /// Nothing of it may be assigned.
+    pub fn make_readonly(&mut self) {
+        for leaf in self.leaves_mut() {
+            if let UppaalSymbol::Var(v) = leaf {
+                v.readonly = true;
+            }
+        }
+    }
+
+    /// How queries name what belongs to a process.
+    pub fn belong_to(&mut self, automaton: &str) {
+        match self {
+            UppaalSymbol::Var(v) if v.own => v.name = format!("{automaton}.{}", v.name),
+            UppaalSymbol::Clock(c) if c.own => c.name = format!("{automaton}.{}", c.name),
+            UppaalSymbol::Location(l) => *l = format!("{automaton}.{l}"),
+            UppaalSymbol::Const(_)
+            | UppaalSymbol::Var(_)
+            | UppaalSymbol::Clock(_)
+            | UppaalSymbol::Chan(_)
+            | UppaalSymbol::Record(_)
+            | UppaalSymbol::Type(_)
+            | UppaalSymbol::Function(_) => {}
+        }
+    }
+
+    /// Of a record all its fields, those of its records among them; of anything else itself.
+    pub fn leaves(&self) -> Vec<&UppaalSymbol> {
+        match self {
+            UppaalSymbol::Record(r) => r.fields.values().flat_map(UppaalSymbol::leaves).collect(),
+            UppaalSymbol::Const(_)
+            | UppaalSymbol::Var(_)
+            | UppaalSymbol::Clock(_)
+            | UppaalSymbol::Chan(_)
+            | UppaalSymbol::Type(_)
+            | UppaalSymbol::Function(_)
+            | UppaalSymbol::Location(_) => vec![self],
+        }
+    }
+
+    /// The same of a record.
+    pub fn leaves_mut(&mut self) -> Vec<&mut UppaalSymbol> {
+        match self {
+            UppaalSymbol::Record(r) => r.fields.values_mut().flat_map(UppaalSymbol::leaves_mut).collect(),
+            UppaalSymbol::Const(_)
+            | UppaalSymbol::Var(_)
+            | UppaalSymbol::Clock(_)
+            | UppaalSymbol::Chan(_)
+            | UppaalSymbol::Type(_)
+            | UppaalSymbol::Function(_)
+            | UppaalSymbol::Location(_) => vec![self],
+        }
+    }
+
     pub fn noun(&self) -> &'static str {
         match self {
             UppaalSymbol::Const(_) => "a constant",
@@ -205,6 +303,8 @@ impl UppaalSymbol {
             UppaalSymbol::Var(_) => "a variable",
             UppaalSymbol::Clock(_) => "a clock",
             UppaalSymbol::Chan(_) => "a channel",
+            UppaalSymbol::Record(r) if !r.dims.is_empty() => "an array",
+            UppaalSymbol::Record(_) => "a record",
             UppaalSymbol::Type(_) => "a type",
             UppaalSymbol::Function(_) => "a function",
             UppaalSymbol::Location(_) => "a location",
@@ -254,6 +354,8 @@ pub struct UppaalScenarioNames {
     own: IndexSet<String>,
     /// Of the function that is being written.
     local: IndexSet<String>,
+    /// Of all functions: what is declared for all after them has other names, too.
+    locals: IndexSet<String>,
     pub renamed: Vec<(Span, String, String)>,
 }
 
@@ -289,11 +391,15 @@ impl UppaalScenarioNames {
             NameOwner::Function => &mut self.local,
         };
         pool.insert(name.clone());
+        if owner == NameOwner::Function {
+            self.locals.insert(name.clone());
+        }
         name
     }
 
     fn has(&self, name: &str, owner: NameOwner) -> bool {
         self.global.contains(name)
+            || owner == NameOwner::All && self.locals.contains(name)
             || owner != NameOwner::All && self.own.contains(name)
             || owner == NameOwner::Function && self.local.contains(name)
     }
@@ -332,6 +438,24 @@ fn is_soft_word(name: &str) -> bool {
         "broadcast",
     ];
     WORDS.contains(&name)
+}
+
+/// What UPPAAL declares for every model: the limits of integers of so many bits, and their types.
+pub fn built_in() -> UppaalScope {
+    let mut scope = UppaalScope::new();
+    for bits in [8, 16, 32] {
+        let half = 1_i64 << (bits - 1);
+        scope.insert(format!("INT{bits}_MIN"), UppaalSymbol::Const(ScenarioExprText::int(-half)));
+        scope.insert(format!("INT{bits}_MAX"), UppaalSymbol::Const(ScenarioExprText::int(half - 1)));
+        let ty = UppaalScalarType::range(-half, half - 1);
+        scope.insert(format!("int{bits}_t"), UppaalSymbol::Type(UppaalSymbolType::Data(ty, Vec::new())));
+        if bits < 32 {
+            scope.insert(format!("UINT{bits}_MAX"), UppaalSymbol::Const(ScenarioExprText::int(2 * half - 1)));
+            let ty = UppaalScalarType::range(0, 2 * half - 1);
+            scope.insert(format!("uint{bits}_t"), UppaalSymbol::Type(UppaalSymbolType::Data(ty, Vec::new())));
+        }
+    }
+    scope
 }
 
 /// Every combination of indices, the last fastest.

@@ -1,5 +1,6 @@
 //! Templates whose labels have been read.
 
+use hrdsl_source::Span;
 use indexmap::IndexSet;
 
 use super::{
@@ -14,6 +15,7 @@ use super::{
 };
 
 /// A template whose labels have been read.
+#[derive(Default)]
 pub struct ParsedTemplate {
     pub name: String,
     pub params: Vec<UppaalParameter>,
@@ -30,6 +32,14 @@ pub struct ParsedEdge {
     pub guard: Option<UppaalExpr>,
     pub sync: Option<UppaalSync>,
     pub assign: Vec<UppaalExpr>,
+}
+
+impl ParsedEdge {
+    /// Where its labels begin.
+    pub fn span(&self) -> Span {
+        let label = self.guard.as_ref().or(self.sync.as_ref().map(|s| &s.channel)).or(self.assign.first());
+        label.map(|e| e.span).or(self.select.first().map(|s| s.span)).unwrap_or_default()
+    }
 }
 
 fn read<T>(

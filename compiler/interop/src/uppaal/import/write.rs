@@ -6,7 +6,7 @@ use super::{
     ast::{UppaalDeclaration, UppaalExpr, UppaalInstance, UppaalQuery},
     fault::UppaalFault,
     queries,
-    scope::{IndexRange, NameOwner},
+    scope::{ChanSym, IndexRange, NameOwner},
     template,
     translation::UppaalTranslation,
 };
@@ -37,6 +37,7 @@ impl UppaalTranslation<'_> {
             return String::new();
         }
         let asked = self.all_queries(&network);
+        self.write_bit_functions();
         self.text(&scenario, file, &network, &asked)
     }
 
@@ -49,7 +50,9 @@ impl UppaalTranslation<'_> {
                 UppaalDeclaration::System(names) => listed = Some(names.clone()),
                 UppaalDeclaration::Vars(..)
                 | UppaalDeclaration::Typedef(..)
-                | UppaalDeclaration::Function(_) => {}
+                | UppaalDeclaration::Function(_)
+                | UppaalDeclaration::Comment(_)
+                | UppaalDeclaration::Idle(..) => {}
             }
         }
         let Some(listed) = listed else {
@@ -67,7 +70,20 @@ impl UppaalTranslation<'_> {
         // All names first: what a process declares gives way to them.
         let names: Vec<String> = plans.iter().map(|(p, span)| self.automaton_name(p, *span)).collect();
         for ((plan, _), name) in plans.into_iter().zip(names) {
-            self.automaton(plan, name);
+            let before = self.stopwatches.len();
+            self.automaton(plan, name.clone());
+            let own: Vec<&String> = self.processes.last().iter().flat_map(|p| &p.clocks).collect();
+            for (clock, _) in self.stopwatches.iter_mut().skip(before) {
+                if own.contains(&&*clock) {
+                    *clock = format!("{name}.{clock}");
+                }
+            }
+        }
+        for (clock, span) in &self.stopwatches {
+            if self.clock_uses.get(clock).is_some_and(|processes| processes.len() > 1) {
+                let message = format!("`{clock}` is stopped by one process and belongs to others, too");
+                self.faults.push(UppaalFault { span: *span, message });
+            }
         }
     }
 
@@ -149,13 +165,18 @@ impl UppaalTranslation<'_> {
             self.names.renamed.iter().map(|(_, old, new)| format!("// `{old}` is called `{new}`\n"));
         text.extend(renamed.collect::<indexmap::IndexSet<_>>());
         let arrays = self.arrays.values().filter(|(_, used)| *used).map(|(line, _)| line.clone());
-        let channels = self.channels.iter().map(channel);
+        let said = |c: &ChanSym| self.channel_comments.get(&c.name).cloned().unwrap_or_default();
+        let channels = self.channels.iter().map(|c| said(c) + &channel(c));
         section(&mut text, self.lines.iter().cloned().chain(arrays));
         section(&mut text, channels);
         self.functions.iter().for_each(|f| text += &format!("\n{f}\n"));
         for process in &self.processes {
             text += &format!("\n/// {}.\nautomaton {} {{\n", process.doc, process.name);
             if !process.clocks.is_empty() {
+                for (clock, said) in &process.clock_comments {
+                    let of = if process.clocks.len() == 1 { String::new() } else { format!("{clock}: ") };
+                    text += &format!("// {of}{said}\n");
+                }
                 text += &format!("clock {}\n", process.clocks.join(", "));
             }
             let arrays = process.arrays.values().filter(|(_, used)| *used).map(|(line, _)| line.clone());
@@ -179,7 +200,7 @@ fn section(text: &mut String, lines: impl Iterator<Item = String>) {
     }
 }
 
-fn channel(channel: &super::scope::ChanSym) -> String {
+fn channel(channel: &ChanSym) -> String {
     let index = |(i, d): (usize, &IndexRange)| {
         format!("{}: {}..{}", ["i", "j", "k"].get(i).unwrap_or(&"n"), d.lo, d.hi)
     };
@@ -200,6 +221,6 @@ fn escaped(text: &str) -> String {
     one_line(text).replace('\\', "\\\\").replace('"', "\\\"")
 }
 
-fn one_line(text: &str) -> String {
+pub fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -10,6 +10,7 @@ use super::{
     fault::{UppaalFault, unsupported},
     lex::UppaalFragment,
 };
+use crate::exchange::note::NoteSeverity;
 
 #[derive(Debug, Default)]
 pub struct UppaalModel {
@@ -19,7 +20,7 @@ pub struct UppaalModel {
     pub system: Vec<UppaalFragment>,
     pub queries: Vec<QueryText>,
     /// What is of no account for the behaviour.
-    pub skipped: Vec<(Span, String)>,
+    pub skipped: Vec<(Span, NoteSeverity, String)>,
 }
 
 #[derive(Debug)]
@@ -46,10 +47,12 @@ pub struct UppaalLocation {
     pub span: Span,
     pub kind: UppaalLocationKind,
     pub invariant: UppaalFragment,
+    /// `exponentialrate`
+    pub rate: String,
     pub comment: String,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct UppaalTransition {
     pub from: usize,
     pub to: usize,
@@ -57,6 +60,10 @@ pub struct UppaalTransition {
     pub guard: UppaalFragment,
     pub sync: UppaalFragment,
     pub assign: UppaalFragment,
+    /// Of a branch: how likely it is.
+    pub probability: String,
+    /// What surrounds the system moves so, and not the system.
+    pub uncontrollable: bool,
     pub comment: String,
 }
 
@@ -94,11 +101,15 @@ pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
         reader.fault(root, message);
     }
     if let Some((span, count)) = reader.uncontrollable {
-        let many = if count == 1 { "a transition".to_owned() } else { format!("{count} transitions") };
-        let why = "whose move a transition is, only strategies for games ask";
-        reader.model.skipped.push((span, format!("`controllable=\"false\"` of {many}: {why}")));
+        reader.model.skipped.push((span, NoteSeverity::Info, uncontrollable(count)));
     }
     if reader.faults.is_empty() { Ok(reader.model) } else { Err(reader.faults) }
+}
+
+/// What is said of transitions that are not controllable.
+pub fn uncontrollable(count: usize) -> String {
+    let many = if count == 1 { "a transition".to_owned() } else { format!("{count} transitions") };
+    format!("`controllable=\"false\"` of {many} is kept as a comment: only strategies for games ask for it")
 }
 
 /// The most attributes of an element; UPPAAL writes a few.
@@ -277,6 +288,7 @@ impl UppaalReader<'_> {
             span: self.span(node),
             kind: UppaalLocationKind::Normal,
             invariant: UppaalFragment::default(),
+            rate: String::new(),
             comment: String::new(),
         };
         for part in node.children().filter(Node::is_element) {
@@ -301,11 +313,7 @@ impl UppaalReader<'_> {
     fn location_label(&mut self, part: Node<'_, '_>, location: &mut UppaalLocation) {
         match part.attribute("kind").unwrap_or_default() {
             "invariant" => location.invariant = self.piece(part),
-            "exponentialrate" if self.piece(part).is_blank() => {}
-            "exponentialrate" => self.leave_out(
-                part,
-                "`exponentialrate`: how fast a location is left is asked by statistical model checking only",
-            ),
+            "exponentialrate" => location.rate = comment(part),
             "comments" => location.comment = comment(part),
             kind @ ("testcodeEnter" | "testcodeExit") => self.skip(part, kind),
             kind => self.fault(part, format!("a label `{kind}` of a location is not known")),
@@ -318,7 +326,7 @@ impl UppaalReader<'_> {
 
     fn leave_out(&mut self, part: Node<'_, '_>, why: &str) {
         let span = self.span(part);
-        self.model.skipped.push((span, why.to_owned()));
+        self.model.skipped.push((span, NoteSeverity::LeftOut, why.to_owned()));
     }
 
     fn transition(&mut self, node: Node<'_, '_>, template: &mut UppaalTemplate) {
@@ -337,14 +345,12 @@ impl UppaalReader<'_> {
             }))
         };
         let ends = (end(self, "source"), end(self, "target"));
-        if node.attribute("controllable") == Some("false") {
+        let uncontrollable = node.attribute("controllable") == Some("false");
+        let mut transition = UppaalTransition { uncontrollable, ..UppaalTransition::default() };
+        if uncontrollable {
             let (span, count) = self.uncontrollable.unwrap_or((self.span(node), 0));
             self.uncontrollable = Some((span, count + 1));
         }
-        let blank = UppaalFragment::default;
-        let (select, guard, sync, assign) = (blank(), blank(), blank(), blank());
-        let mut transition =
-            UppaalTransition { from: 0, to: 0, select, guard, sync, assign, comment: String::new() };
         for part in node.children().filter(Node::is_element) {
             match part.tag_name().name() {
                 "label" => self.transition_label(part, &mut transition),
@@ -366,10 +372,7 @@ impl UppaalReader<'_> {
             "synchronisation" => transition.sync = self.piece(part),
             "assignment" => transition.assign = self.piece(part),
             "comments" => transition.comment = comment(part),
-            "probability" => self.leave_out(
-                part,
-                "`probability`: a scenario may take any branch, as UPPAAL's model checker may",
-            ),
+            "probability" => transition.probability = comment(part),
             kind @ "testcode" => self.skip(part, kind),
             kind => self.fault(part, format!("a label `{kind}` of a transition is not known")),
         }

@@ -10,14 +10,31 @@ use crate::uppaal::import::{
     lex::UppaalTokenKind,
 };
 
+/// Declarations that change nothing of what a model does.
+const IDLE: &[(&str, &str)] = &[
+    ("progress", "`progress`: measures of progress only steer the search of old versions"),
+    ("gantt", "`gantt`: charts are drawn by the simulator only"),
+];
+
 impl UppaalParser {
     /// Declarations up to the end of the piece; those of the system, too.
     pub fn declarations(&mut self) -> UppaalParseResult<Vec<UppaalDeclaration>> {
         let mut all = Vec::new();
         while !self.at_end() {
-            if !self.take(";") {
-                all.push(self.declaration()?);
+            if self.take(";") {
+                continue;
             }
+            let start = self.at;
+            let declaration = self.declaration()?;
+            let inside = match &declaration {
+                UppaalDeclaration::Function(_) => start + 1,
+                _ => self.at,
+            };
+            let said = self.comments(start, inside);
+            if !said.is_empty() {
+                all.push(UppaalDeclaration::Comment(said));
+            }
+            all.push(declaration);
         }
         Ok(all)
     }
@@ -38,6 +55,13 @@ impl UppaalParser {
             (UppaalTokenKind::Word(_), UppaalTokenKind::Mark("=" | ":=" | "("))
         ) {
             return self.instance();
+        }
+        if matches!(self.ahead(1), UppaalTokenKind::Mark("{")) {
+            for (word, what) in IDLE {
+                if self.is_word(word) {
+                    return self.idle(what);
+                }
+            }
         }
         let start = self.span();
         let ty = self.ty()?;
@@ -92,7 +116,7 @@ impl UppaalParser {
 
     pub(super) fn ty(&mut self) -> UppaalParseResult<UppaalType> {
         let span = self.span();
-        let (mut constant, mut urgent, mut broadcast) = (false, false, false);
+        let (mut constant, mut urgent, mut broadcast, mut meta) = (false, false, false, false);
         loop {
             if self.take_word("const") {
                 constant = true;
@@ -100,6 +124,8 @@ impl UppaalParser {
                 urgent = true;
             } else if self.take_word("broadcast") {
                 broadcast = true;
+            } else if self.take_word("meta") {
+                meta = true;
             } else {
                 break;
             }
@@ -112,7 +138,7 @@ impl UppaalParser {
                 (UppaalTokenKind::Word(_), UppaalTokenKind::Int(_) | UppaalTokenKind::Mark("=" | ":=" | "-"))
             );
         let base = if untyped { UppaalBaseType::Int(None) } else { self.base()? };
-        Ok(UppaalType { constant, urgent, broadcast, base, span: span.to(self.last()) })
+        Ok(UppaalType { constant, urgent, broadcast, meta, base, span: span.to(self.last()) })
     }
 
     pub(super) fn base(&mut self) -> UppaalParseResult<UppaalBaseType> {
@@ -130,11 +156,60 @@ impl UppaalParser {
             "clock" => UppaalBaseType::Clock,
             "chan" => UppaalBaseType::Chan,
             "void" => UppaalBaseType::Void,
+            "scalar" => {
+                self.next();
+                self.expect("[")?;
+                let size = self.expr()?;
+                self.expect("]")?;
+                return Ok(UppaalBaseType::Scalar(Box::new(size)));
+            }
+            "struct" => return self.fields(),
             w if is_keyword(w) => return Err(self.fault("a type")),
             _ => UppaalBaseType::Named(word),
         };
         self.next();
         Ok(base)
+    }
+
+    /// The fields of `struct { … }`.
+    fn fields(&mut self) -> UppaalParseResult<UppaalBaseType> {
+        self.next();
+        self.expect("{")?;
+        self.deeper(|p| {
+            let mut fields = Vec::new();
+            while !p.take("}") {
+                let ty = p.ty()?;
+                let mut names = vec![p.declarator()?];
+                while p.take(",") {
+                    names.push(p.declarator()?);
+                }
+                p.expect(";")?;
+                fields.push((ty, names));
+            }
+            Ok(UppaalBaseType::Struct(fields))
+        })
+    }
+
+    /// `progress { … }`, with what its braces hold.
+    fn idle(&mut self, what: &'static str) -> UppaalParseResult<UppaalDeclaration> {
+        let start = self.span();
+        let mut open = 0;
+        loop {
+            self.next();
+            if self.is("{") {
+                open += 1;
+            } else if self.is("}") {
+                open -= 1;
+            }
+            if self.at_end() {
+                return Err(self.fault("`}`"));
+            }
+            if open == 0 {
+                break;
+            }
+        }
+        self.next();
+        Ok(UppaalDeclaration::Idle(start, what))
     }
 
     pub(super) fn bounds(&mut self) -> UppaalParseResult<(UppaalExpr, UppaalExpr)> {
@@ -149,7 +224,7 @@ impl UppaalParser {
         let mut dims = Vec::new();
         while self.take("[") {
             self.supported()?;
-            let is_type = self.is_word("int") || self.is_word("bool");
+            let is_type = ["int", "bool", "scalar"].iter().any(|w| self.is_word(w));
             dims.push(if is_type {
                 UppaalDimension::Of(self.ty()?)
             } else {
@@ -177,9 +252,12 @@ impl UppaalParser {
             let mut all = Vec::new();
             while !p.is("}") {
                 if matches!((p.peek(), p.ahead(1)), (UppaalTokenKind::Word(_), UppaalTokenKind::Mark(":"))) {
-                    return Err(unsupported(p.span(), "records (`struct`)"));
+                    let (name, _) = p.name("the name of a field")?;
+                    p.expect(":")?;
+                    all.push(UppaalInitializer::Named(name, Box::new(p.init()?)));
+                } else {
+                    all.push(p.init()?);
                 }
-                all.push(p.init()?);
                 if !p.take(",") {
                     break;
                 }

@@ -3,7 +3,7 @@
 use super::{UppaalParseResult, UppaalParser, is_keyword};
 use crate::uppaal::import::{
     ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalQuantifier},
-    fault::{UppaalFault, unsupported},
+    fault::UppaalFault,
     lex::UppaalTokenKind,
 };
 
@@ -70,17 +70,17 @@ impl UppaalParser {
             "*=" => Some(UppaalBinaryOperator::Mul),
             "/=" => Some(UppaalBinaryOperator::Div),
             "%=" => Some(UppaalBinaryOperator::Rem),
-            "&=" | "|=" | "^=" | "<<=" | ">>=" => return Err(self.bits(mark)),
+            "&=" => Some(UppaalBinaryOperator::BitAnd),
+            "|=" => Some(UppaalBinaryOperator::BitOr),
+            "^=" => Some(UppaalBinaryOperator::BitXor),
+            "<<=" => Some(UppaalBinaryOperator::ShiftLeft),
+            ">>=" => Some(UppaalBinaryOperator::ShiftRight),
             _ => return Ok(left),
         };
         self.next();
         let right = self.deeper(Self::assignment)?;
         let span = left.span.to(right.span);
         Ok(UppaalExpr { kind: UppaalExprKind::Assign(op, Box::new(left), Box::new(right)), span })
-    }
-
-    pub(super) fn bits(&self, mark: &str) -> UppaalFault {
-        unsupported(self.span(), &format!("operations on bits (`{mark}`)"))
     }
 
     pub(super) fn choice(&mut self) -> UppaalParseResult<UppaalExpr> {
@@ -104,9 +104,6 @@ impl UppaalParser {
         let mut left = self.operators(level + 1)?;
         loop {
             let UppaalTokenKind::Mark(mark) = *self.peek() else { return Ok(left) };
-            if ["&", "|", "^", "<<", ">>"].contains(&mark) {
-                return Err(self.bits(mark));
-            }
             let Some((_, op)) = operators.iter().find(|(m, _)| *m == mark) else { return Ok(left) };
             self.next();
             self.operator()?;
@@ -125,9 +122,10 @@ impl UppaalParser {
         Ok(match mark {
             "!" => UppaalExpr { kind: UppaalExprKind::Not(Box::new(of)), span },
             "-" => UppaalExpr { kind: UppaalExprKind::Neg(Box::new(of)), span },
-            "++" | "--" => {
-                UppaalExpr { kind: UppaalExprKind::Step { up: mark == "++", of: Box::new(of) }, span }
-            }
+            "++" | "--" => UppaalExpr {
+                kind: UppaalExprKind::Step { up: mark == "++", first: true, of: Box::new(of) },
+                span,
+            },
             _ => of,
         })
     }
@@ -153,9 +151,9 @@ impl UppaalParser {
             } else if self.is("++") || self.is("--") {
                 let up = self.is("++");
                 self.next();
-                UppaalExprKind::Step { up, of: Box::new(e.clone()) }
+                UppaalExprKind::Step { up, first: false, of: Box::new(e.clone()) }
             } else if self.take("'") {
-                UppaalExprKind::Rate
+                UppaalExprKind::Rate(Box::new(e.clone()))
             } else {
                 return Ok(e);
             };
@@ -206,6 +204,9 @@ impl UppaalParser {
 const LEVELS: &[&[(&str, UppaalBinaryOperator)]] = &[
     &[("||", UppaalBinaryOperator::Or)],
     &[("&&", UppaalBinaryOperator::And)],
+    &[("|", UppaalBinaryOperator::BitOr)],
+    &[("^", UppaalBinaryOperator::BitXor)],
+    &[("&", UppaalBinaryOperator::BitAnd)],
     &[("==", UppaalBinaryOperator::Eq), ("!=", UppaalBinaryOperator::Ne)],
     &[
         ("<", UppaalBinaryOperator::Lt),
@@ -214,6 +215,7 @@ const LEVELS: &[&[(&str, UppaalBinaryOperator)]] = &[
         (">=", UppaalBinaryOperator::Ge),
     ],
     &[("<?", UppaalBinaryOperator::Min), (">?", UppaalBinaryOperator::Max)],
+    &[("<<", UppaalBinaryOperator::ShiftLeft), (">>", UppaalBinaryOperator::ShiftRight)],
     &[("+", UppaalBinaryOperator::Add), ("-", UppaalBinaryOperator::Sub)],
     &[("*", UppaalBinaryOperator::Mul), ("/", UppaalBinaryOperator::Div), ("%", UppaalBinaryOperator::Rem)],
 ];

@@ -9,7 +9,7 @@ use hrdsl_source::Span;
 use super::{
     ast::{UppaalExpr, UppaalSelect, UppaalSync},
     fault::{UppaalFault, unsupported},
-    lex::{UppaalFragment, UppaalToken, UppaalTokenKind, lex},
+    lex::{UppaalComment, UppaalFragment, UppaalToken, UppaalTokenKind, lex},
 };
 
 /// How deep expressions and statements may be nested.
@@ -27,16 +27,11 @@ pub struct UppaalParser {
 
 /// Words of declarations that mean things no scenario has.
 const UNSUPPORTED: &[(&str, &str)] = &[
-    ("scalar", "scalar sets (`scalar[n]`)"),
-    ("struct", "records (`struct`)"),
     ("double", "numbers with a fraction (`double`)"),
     ("string", "texts (`string`)"),
-    ("meta", "`meta` variables"),
     ("hybrid", "hybrid clocks (`hybrid`)"),
     ("dynamic", "dynamic templates (`dynamic`)"),
     ("spawn", "dynamic templates (`spawn`)"),
-    ("gantt", "Gantt charts (`gantt`)"),
-    ("progress", "progress measures (`progress`)"),
     ("before_update", "`before_update`"),
     ("after_update", "`after_update`"),
     ("import", "functions of libraries (`import`)"),
@@ -97,6 +92,24 @@ impl UppaalParser {
             self.next();
         }
         found
+    }
+
+    /// What is said of a declaration: before it, within it (its first tokens), and after it in its last line.
+    fn comments(&self, start: usize, inside: usize) -> Vec<String> {
+        let mut lines = Vec::new();
+        for (at, token) in self.tokens.iter().enumerate().skip(start) {
+            let belongs = |c: &&UppaalComment| match at {
+                // What ends the line of the declaration before is its own.
+                _ if at == start => !c.trailing,
+                _ if at < inside => true,
+                _ => at == self.at && c.trailing,
+            };
+            lines.extend(token.comments.iter().filter(belongs).flat_map(|c| c.lines.clone()));
+            if at >= self.at {
+                break;
+            }
+        }
+        lines
     }
 
     fn fault(&self, expected: &str) -> UppaalFault {
@@ -227,9 +240,12 @@ fn is_keyword(word: &str) -> bool {
         "if",
         "imply",
         "int",
+        "meta",
         "not",
         "or",
         "return",
+        "scalar",
+        "struct",
         "sum",
         "system",
         "true",

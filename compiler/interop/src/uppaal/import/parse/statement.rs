@@ -63,8 +63,9 @@ impl UppaalParser {
             self.expect(";")?;
             return Ok(UppaalStatementKind::Return(value));
         }
-        let starts_type =
-            ["const", "int", "bool", "clock", "chan", "typedef"].iter().any(|w| self.is_word(w));
+        let starts_type = ["const", "int", "bool", "clock", "chan", "typedef", "meta", "struct", "scalar"]
+            .iter()
+            .any(|w| self.is_word(w));
         if starts_type
             || matches!((self.peek(), self.ahead(1)), (UppaalTokenKind::Word(_), UppaalTokenKind::Word(w)) if !is_keyword(w))
         {
