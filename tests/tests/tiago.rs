@@ -208,6 +208,44 @@ fn a_dog_that_walks_does_not_topple_it_and_one_that_is_set_does() {
     assert!(tipped[0] < 0.1 && tipped[1] > 1.0, "{tipped:?}");
 }
 
+/// The points of the postures are the manufacturer's, and the bodies are ours: it must come through all of them.
+#[test]
+fn it_goes_through_the_points_of_its_postures() {
+    let world = tiago("").world().clone();
+    let mut played = 0;
+    for (at, arm) in world.arms.iter().enumerate() {
+        for posture in arm.postures.iter().filter(|posture| !posture.points.is_empty()) {
+            let arm = ArmId(u16::try_from(at).unwrap());
+            let (first, last) = (&posture.points[0], posture.points.last().unwrap());
+            let mut scene = tiago("");
+            let positions = first.angles.clone();
+            scene.sim.command(MotorCommand::ReachJoints { arm, positions, max_speed: None }).unwrap();
+            scene.go_on(12.0, |_| {});
+            let arrived: Vec<_> = scene.sim.finished();
+            assert!(matches!(arrived.as_slice(), [(_, Ok(()))]), "{}: {arrived:?}", posture.name);
+            let times = posture.points.iter().map(|point| point.time - first.time).collect();
+            let positions = posture.points.iter().flat_map(|point| point.angles.clone()).collect();
+            scene.sim.command(MotorCommand::FollowJoints { arm, positions, times }).unwrap();
+            // One of them asks for a joint that is faster than the arm may be.
+            scene.go_on(last.time - first.time + 3.0, |_| {});
+            let arrived: Vec<_> = scene.sim.finished();
+            assert!(matches!(arrived.as_slice(), [(_, Ok(()))]), "{}: {arrived:?}", posture.name);
+            let state = scene.sim.joint_positions(arm);
+            let off = state.iter().zip(&last.angles).map(|(is, to)| (is - to).abs()).fold(0.0, f64::max);
+            println!("{}: {:.1} mrad from its end, {:?}", posture.name, 1e3 * off, scene.sim.accuracy());
+            assert!(off < 0.01, "{}: {state:?}", posture.name);
+            assert!(
+                scene.sim.accuracy().self_penetration.is_none(),
+                "{}: {:?}",
+                posture.name,
+                scene.sim.accuracy()
+            );
+            played += 1;
+        }
+    }
+    assert_eq!(played, 3);
+}
+
 /// The angles of the starting posture, as the description counts them.
 const START: [(&str, f64); 8] = [
     ("torso_lift_joint", 0.33),

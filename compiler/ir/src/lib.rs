@@ -38,6 +38,7 @@ pub mod value;
 pub mod world;
 mod world_ids;
 mod world_point;
+mod world_posture;
 
 use serde::{Deserialize, Serialize};
 
