@@ -44,7 +44,8 @@ SUBJECTS = {
     "R18": r"only after a request",
     "R19": r"decision (agrees|is right)|each decision|says ready|sensors say",
     "R20": r"decision (agrees|is right)|each decision|says ready|sensors say",
-    "R21": r"grasp",
+    "R21": r"sensing only after",
+    "R22": r"repeated requests|sensing window",
 }
 
 
