@@ -28,7 +28,7 @@ SUBJECTS = {
     "R2": r"deadline (of|from).*release|decision to release|ready persons",
     "R3": r"[Rr]elease only|no leg falls|into a hand",
     "R4": r"put aside|request is answered",
-    "R5": r"contacts",
+    "R5": r"close on a hand",
     "R6": r"speed|energy",
     "R7": r"only with a leg",
     "R8": r"place of the (offer|hand-over)|distance",
