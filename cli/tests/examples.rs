@@ -118,11 +118,11 @@ fn the_dog_of_home_care_topples_the_robot_only_as_published() {
 }
 
 /// The published models alone, without world, requirements and suites, have 348 and 131 lines of agents, and 725 and 722
-/// lines of automata.
+/// lines of automata. The hand-over has 22 requirements and the times of its code.
 #[test]
 fn scenarios_are_short() {
     for (file, most) in
-        [("handover/scenario.hri", 348), ("homecare/care.hri", 250), ("corridor/scenario.hri", 165)]
+        [("handover/scenario.hri", 450), ("homecare/care.hri", 250), ("corridor/scenario.hri", 165)]
     {
         assert!(lines(file) < most, "{file}: {}", lines(file));
     }

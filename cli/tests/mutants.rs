@@ -35,15 +35,26 @@ fn every_fault_fits_the_code_and_is_one_of_its_own() {
 #[test]
 fn a_robot_that_lets_go_of_what_nobody_is_ready_for_is_noticed() {
     let folder = tempfile::tempdir().unwrap();
-    let args = [text(folder.path()), "-n", "4", "--hrdsl", env!("CARGO_BIN_EXE_hrdsl")];
-    let only = ["--only", "any_sensor", "gaze_and_pressure_swapped"];
+    let args = [text(folder.path()), "-n", "4", "--hrdsl", env!("CARGO_BIN_EXE_hrdsl"), "--json"];
+    let only = ["--only", "any_sensor", "gaze_and_pressure_swapped", "timeout_not_announced"];
     let out = python("measure.py", &[&args[..], &only[..]].concat());
     expect_code(&out, 0);
-    let table: Value = serde_json::from_slice(&fs::read(folder.path().join("table.json")).unwrap()).unwrap();
-    assert_eq!(table["any_sensor"]["R3"], serde_json::json!(["agents"]), "{table}");
+    let table: Value = serde_json::from_str(&stdout(&out)).unwrap();
+    assert_eq!(fs::read_to_string(folder.path().join("table.json")).unwrap(), stdout(&out));
+    let told = |fault: &str, what: &str| table[fault][what].clone();
+    assert_eq!(told("any_sensor", "noticed")["R3"], serde_json::json!(["agents"]), "{table}");
+    assert_eq!(told("any_sensor", "noticed")["R19"], serde_json::json!(["agents"]), "{table}");
+    // What its head expects are requirements alone: that the model notices it, too, is another reason.
+    let right = told("any_sensor", "right");
+    assert!(right.as_array().unwrap().contains(&"R19".into()), "{table}");
+    assert!(!right.as_array().unwrap().contains(&"conformance".into()), "{table}");
+    // No requirement asks what the code says.
+    let methods = &told("timeout_not_announced", "noticed")["conformance"];
+    assert!(methods.as_array().unwrap().len() >= 2, "{table}");
+    assert_eq!(told("timeout_not_announced", "right"), serde_json::json!(["conformance"]), "{table}");
     // Both must hold for the robot to be ready: which is which makes no difference.
-    assert_eq!(table["gaze_and_pressure_swapped"], serde_json::json!({}), "{table}");
-    assert!(stdout(&out).contains("1 of 2 faults are noticed"), "{}", stdout(&out));
+    assert_eq!(told("gaze_and_pressure_swapped", "noticed"), serde_json::json!({}), "{table}");
+    assert_eq!(told("gaze_and_pressure_swapped", "distinguished"), serde_json::json!(false), "{table}");
 }
 
 /// The workbench's robot with a mutant of its code: the sentinel ends every test, and a hand that does not open when it is told to drops nothing.
