@@ -74,7 +74,8 @@ fn recordings_have_the_verdicts_failures_and_bins_of_their_runs() {
 
 #[test]
 fn runs_that_broke_off_are_judged_as_such() {
-    let program = "import hrdsl\nn = hrdsl.Node('robot')\nn.emit('timed_out')\nn.sleep(3)\nraise SystemExit(3)\n";
+    let program =
+        "import hrdsl\nn = hrdsl.Node('robot')\nn.emit('timed_out')\nn.sleep(3)\nraise SystemExit(3)\n";
     let text = fs::read_to_string(handover()).unwrap();
     let folder = folder(&[("robot.py", program), ("scenario.hri", &text)]);
     let run = hrdsl_in(folder.path(), "sim scenario.hri --suite random_tests -n 2 -o out");

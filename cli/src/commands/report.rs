@@ -123,8 +123,7 @@ fn faults(
         return Err(format!(
             "{}: these are faults of the system of scenario `{of}`; the results are of `{here}`",
             terminal::shown(&path)
-        )
-        .into());
+        ));
     }
     Ok(Some(found))
 }

@@ -118,7 +118,9 @@ fn oracle_row(found: &MutationReport, score: &OracleScore, methods: &[TestMethod
     OracleRow {
         oracle: match &score.oracle {
             MutantOracle::Requirement(name) => name.to_string(),
-            other => other.to_string(),
+            MutantOracle::Prediction | MutantOracle::Conformance | MutantOracle::Error => {
+                score.oracle.to_string()
+            }
         },
         noticed: score.killed,
         per_method: methods.iter().map(|m| score.methods.get(m).copied().unwrap_or(0)).collect(),
