@@ -31,13 +31,15 @@ fn its_program_means_what_it_says() {
         signals.iter().filter(|s| s.recorded == recorded).map(|s| s.name.clone()).collect()
     };
     let for_the_world = [
-        "gaze",
-        "pressure",
-        "location",
         "range(person.head, robot.torso)",
-        "holds(robot.grip)",
-        "robot.palm.z",
-        "holds(person.grasp)",
+        "touches(leg1, stand)",
+        "tilt(leg1)",
+        "touches(leg2, stand)",
+        "tilt(leg2)",
+        "touches(leg3, stand)",
+        "tilt(leg3)",
+        "touches(leg4, stand)",
+        "tilt(leg4)",
     ];
     assert_eq!(names(&p.signals, false), for_the_world);
     let whose = |name: &str| p.provenance(p.event_named(name).unwrap());

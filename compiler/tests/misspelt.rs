@@ -84,7 +84,7 @@ fn is_name(tokens: &[Token], i: usize) -> bool {
     }
     let neighbour = |i: Option<usize>| i.and_then(|i| tokens.get(i)).map_or("", |t| t.text.as_str());
     let (before, after) = (neighbour(i.checked_sub(1)), neighbour(Some(i + 1)));
-    let called = after == "(" && !["at", "count", "tool"].contains(&word);
+    let called = after == "(" && !["at", "count", "tool", "never", "rising"].contains(&word);
     let soft = KEYWORDS.iter().any(|k| k.word == word && k.class == KeywordClass::Soft);
     soft && after != "each"
         && (called
@@ -182,7 +182,9 @@ fn misspellings(name: &str) -> Vec<String> {
         let mut swapped = letters.clone();
         swapped.swap(i, i + 1);
         let swapped: String = swapped.into_iter().collect();
-        if !is_keyword(&swapped) && !swapped.starts_with(|c: char| c.is_ascii_digit()) {
+        // `R12` would be `R21`, which is another one.
+        let is_there = SCENARIO.split(|c: char| !c.is_alphanumeric() && c != '_').any(|w| w == swapped);
+        if !is_keyword(&swapped) && !is_there && !swapped.starts_with(|c: char| c.is_ascii_digit()) {
             all.push(swapped);
         }
     }

@@ -39,7 +39,7 @@ fn meanings(c: &CompilationResult, at: usize) -> Vec<NameDefinition> {
 /// Names of the language that are in no table: roles, functions, fields, methods, kinds.
 const FIXED: &str = "\
     environment system safety functional abs min max norm distance range angle visible \
-    holds joint_speed speed rising falling x y z move_to look_at grasp let_go walk_to turn_to fixed dynamic kinematic guided box \
+    holds joint_speed joint_position touches tilt speed rising falling x y z move_to look_at grasp let_go walk_to turn_to fixed dynamic kinematic guided box \
     sphere capsule cylinder pairwise wise random learn exhaustive each plan context message \
     path location edge bin shortest fastest any earliest latest sampled violation trigger \
     query source atomic tell achieve self percept clock event cover";
