@@ -76,7 +76,7 @@ fn is_keyword(word: &str) -> bool {
 /// Words that name something though they are keywords elsewhere.
 fn is_name(tokens: &[Token], i: usize) -> bool {
     let word = tokens[i].text.as_str();
-    if !tokens[i].name || word == "_" {
+    if !tokens[i].name || word == "_" || word == "rising" {
         return false;
     }
     if !is_keyword(word) {
@@ -84,7 +84,7 @@ fn is_name(tokens: &[Token], i: usize) -> bool {
     }
     let neighbour = |i: Option<usize>| i.and_then(|i| tokens.get(i)).map_or("", |t| t.text.as_str());
     let (before, after) = (neighbour(i.checked_sub(1)), neighbour(Some(i + 1)));
-    let called = after == "(" && !["at", "count", "tool", "never", "rising"].contains(&word);
+    let called = after == "(" && !["at", "count", "tool", "never"].contains(&word);
     let soft = KEYWORDS.iter().any(|k| k.word == word && k.class == KeywordClass::Soft);
     soft && after != "each"
         && (called
