@@ -322,14 +322,10 @@ impl RequirementReader<'_> {
 
     fn event(&self, pattern: &EventPattern) -> String {
         let name = self.scenario.events.get(usize::from(pattern.event.0)).map_or("", |e| e.name.as_str());
-        let arg = |arg: &ArgPattern| match arg {
-            ArgPattern::Any => "_".to_owned(),
-            ArgPattern::Is(value) => value.to_string(),
-        };
         if pattern.args.iter().all(|a| *a == ArgPattern::Any) {
             return name.to_owned();
         }
-        format!("{name}({})", pattern.args.iter().map(arg).collect::<Vec<_>>().join(", "))
+        format!("{name}({})", pattern.args.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
     }
 
     fn condition(&self, e: &TypedExpr) -> String {

@@ -7,7 +7,7 @@ use crate::{
     Program,
     bdi::{Agent, AgentId, BeliefDecl, BeliefId, ContentId, GoalDecl, GoalId, MessageContent, Plan},
     coverage::{CoverBin, Coverage, Coverpoint, CoverpointId},
-    event::{Actor, ActorId, Event, EventId, Parameter, Provenance},
+    event::{Actor, ActorId, Event, EventId, EventPattern, Parameter, Provenance},
     expr::FunctionId,
     ta::{Automaton, AutomatonFunction, AutomatonId, Channel, ChannelId, Location, LocationId},
     world::{Signal, SignalId},
@@ -24,6 +24,18 @@ impl Program {
     #[track_caller]
     pub fn event(&self, id: EventId) -> &Event {
         numbered("event", &self.events, id.0)
+    }
+
+    /// A pattern of events as the language writes it: `sensed(true, _)`.
+    #[must_use]
+    #[track_caller]
+    pub fn pattern_text(&self, pattern: &EventPattern) -> String {
+        let name = &self.event(pattern.event).name;
+        if pattern.args.is_empty() {
+            return name.clone();
+        }
+        let args: Vec<String> = pattern.args.iter().map(ToString::to_string).collect();
+        format!("{name}({})", args.join(", "))
     }
 
     /// Whose word an event is.

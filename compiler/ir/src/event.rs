@@ -1,5 +1,7 @@
 //! The vocabulary: actors and the events between them.
 
+use std::fmt;
+
 use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
 
@@ -171,6 +173,16 @@ pub struct EventPattern {
 pub enum ArgPattern {
     Any,
     Is(Value),
+}
+
+/// As the language writes it.
+impl fmt::Display for ArgPattern {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ArgPattern::Any => f.write_str("_"),
+            ArgPattern::Is(value) => value.fmt(f),
+        }
+    }
 }
 
 impl EventPattern {

@@ -172,11 +172,7 @@ impl FormulaPrinter<'_> {
         if pattern.args.iter().all(|a| *a == ArgPattern::Any) {
             return self.event(pattern.event, []);
         }
-        let arg = |a: &ArgPattern| match a {
-            ArgPattern::Any => "_".to_owned(),
-            ArgPattern::Is(v) => v.to_string(),
-        };
-        self.event(pattern.event, pattern.args.iter().map(arg).collect::<Vec<_>>())
+        self.event(pattern.event, pattern.args.iter().map(ToString::to_string).collect::<Vec<_>>())
     }
 
     fn seconds(&self, e: &Expr) -> String {

@@ -3,7 +3,7 @@
 use std::io::BufRead;
 
 use hrdsl_ir::{
-    ArgPattern, EventPattern, Expr, Nanos, Program, Type, Unit, Value,
+    EventPattern, Expr, Nanos, Program, Unit, Value,
     expr::{UnaryOp, sign},
     monitor::{Monitor, MonitorTrigger},
     value::{nanos, seconds},
@@ -86,7 +86,7 @@ fn parts_of(program: &Program, monitor: &Monitor) -> Vec<RequirementPart> {
     }
     let texts = PartPrinter { program };
     let event = |pattern: &EventPattern| RequirementPart {
-        text: texts.event(pattern),
+        text: program.pattern_text(pattern),
         unit: Unit::None,
         what: WatchedPart::Event(pattern.clone()),
     };
@@ -100,15 +100,14 @@ fn parts_of(program: &Program, monitor: &Monitor) -> Vec<RequirementPart> {
 
 /// The events and signals that a formula names.
 fn named(program: &Program, formula: &NamedFormula) -> Vec<RequirementPart> {
-    let texts = PartPrinter { program };
     let events = formula.formula.events().map(|pattern| RequirementPart {
-        text: texts.event(pattern),
+        text: program.pattern_text(pattern),
         unit: Unit::None,
         what: WatchedPart::Event(pattern.clone()),
     });
     let signals = formula.formula.signals().iter().map(|signal| RequirementPart {
         text: program.signal(*signal).name.clone(),
-        unit: unit_of(program.signal(*signal).ty),
+        unit: print::unit_of(program.signal(*signal).ty),
         what: WatchedPart::Value(Expr::Var(signal.0)),
     });
     events.chain(signals).collect()
@@ -155,18 +154,6 @@ struct PartPrinter<'p> {
 }
 
 impl PartPrinter<'_> {
-    fn event(&self, pattern: &EventPattern) -> String {
-        let name = &self.program.event(pattern.event).name;
-        let arg = |arg: &ArgPattern| match arg {
-            ArgPattern::Any => "_".to_owned(),
-            ArgPattern::Is(value) => value.to_string(),
-        };
-        if pattern.args.is_empty() {
-            return name.clone();
-        }
-        format!("{name}({})", pattern.args.iter().map(arg).collect::<Vec<_>>().join(", "))
-    }
-
     fn expr(&self, expr: &Expr) -> String {
         self.within(expr, 0, Unit::None)
     }
@@ -209,23 +196,16 @@ impl PartPrinter<'_> {
     }
 
     fn signal(&self, expr: &Expr) -> Option<&hrdsl_ir::world::Signal> {
-        match expr {
-            Expr::Var(place) => self.program.signals.get(usize::from(*place)),
-            Expr::Const(_)
-            | Expr::Unary(..)
-            | Expr::Binary(..)
-            | Expr::If(..)
-            | Expr::Call(..)
-            | Expr::List(..)
-            | Expr::Element(_)
-            | Expr::Apply(..) => None,
-        }
+        let Expr::Var(place) = expr else { return None };
+        self.program.signals.get(usize::from(*place))
     }
 
     /// The unit of a number, as far as signals say it.
     fn unit(&self, expr: &Expr) -> Option<Unit> {
         match expr {
-            Expr::Var(_) => self.signal(expr).map(|signal| unit_of(signal.ty)).filter(|u| *u != Unit::None),
+            Expr::Var(_) => {
+                self.signal(expr).map(|signal| print::unit_of(signal.ty)).filter(|u| *u != Unit::None)
+            }
             Expr::Unary(UnaryOp::Neg, a) => self.unit(a),
             Expr::Binary(op, a, b) if sign(*op).1 > 4 => self.unit(a).or(self.unit(b)),
             Expr::If(_, a, b) => self.unit(a).or(self.unit(b)),
@@ -237,13 +217,6 @@ impl PartPrinter<'_> {
             | Expr::Element(_)
             | Expr::Apply(..) => None,
         }
-    }
-}
-
-fn unit_of(ty: Type) -> Unit {
-    match ty {
-        Type::Float(unit) => unit,
-        Type::Bool | Type::Int { .. } | Type::Enum(_) | Type::Text | Type::List(_) => Unit::None,
     }
 }
 

@@ -70,7 +70,9 @@ fn sample(program: &Program, signal: SignalId, sampled: Value) -> String {
     format!("{} = {}", signal.name, value(sampled, unit_of(signal.ty)))
 }
 
-fn unit_of(ty: Type) -> Unit {
+/// That of the numbers of a type.
+#[must_use]
+pub fn unit_of(ty: Type) -> Unit {
     match ty {
         Type::Float(unit) => unit,
         Type::Bool | Type::Int { .. } | Type::Enum(_) | Type::Text | Type::List(_) => Unit::None,

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use hrdsl_ir::{
-    ArgPattern, EventPattern, Program, Span,
+    Program, Span,
     monitor::{Monitor, MonitorClockGuard, MonitorEdge, MonitorEffect, MonitorTrigger},
     ta::{Automaton, AutomatonVar, LocationId},
 };
@@ -69,7 +69,7 @@ fn with_signals(program: &Program, monitor: &Monitor) -> Automaton {
 fn edge_lines(show: &AutomatonPrinter<'_>, monitor: &Monitor, edge: &MonitorEdge) -> Vec<String> {
     let mut lines = vec![match &edge.on {
         MonitorTrigger::Event(patterns) => {
-            patterns.iter().map(|p| event(show, p)).collect::<Vec<_>>().join(" or ")
+            patterns.iter().map(|p| show.program.pattern_text(p)).collect::<Vec<_>>().join(" or ")
         }
         MonitorTrigger::Becomes { condition, truth, first } => {
             let name = if *truth { "rising" } else { "falling" };
@@ -89,18 +89,6 @@ fn edge_lines(show: &AutomatonPrinter<'_>, monitor: &Monitor, edge: &MonitorEdge
         lines.push(edge.effects.iter().map(|e| effect(*e)).collect::<Vec<_>>().join(", "));
     }
     lines
-}
-
-fn event(show: &AutomatonPrinter<'_>, pattern: &EventPattern) -> String {
-    let name = &show.program.event(pattern.event).name;
-    let arg = |arg: &ArgPattern| match arg {
-        ArgPattern::Any => "_".to_owned(),
-        ArgPattern::Is(value) => value.to_string(),
-    };
-    if pattern.args.is_empty() {
-        return name.clone();
-    }
-    format!("{name}({})", pattern.args.iter().map(arg).collect::<Vec<_>>().join(", "))
 }
 
 fn effect(effect: MonitorEffect) -> &'static str {

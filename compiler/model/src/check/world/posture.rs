@@ -46,14 +46,11 @@ impl<'a> WorldPhase<'_, 'a> {
 
     /// Points on the way of a posture: `(angles, time)`, in order of time.
     fn points(&mut self, items: &[ExprSyntax], joints: Option<&[JointId]>) -> Option<Vec<PosturePoint>> {
-        let mut points = Some(Vec::new());
+        let mut points = Vec::new();
         let mut before: Option<f64> = None;
         for item in items {
-            let Syntax::Tuple(parts) = &item.kind else {
-                self.report(no_point(item.span));
-                return None;
-            };
-            let [angles, time] = parts.as_slice() else {
+            let parts = if let Syntax::Tuple(parts) = &item.kind { parts.as_slice() } else { &[] };
+            let [angles, time] = parts else {
                 self.report(no_point(item.span));
                 return None;
             };
@@ -65,13 +62,9 @@ impl<'a> WorldPhase<'_, 'a> {
                 }
                 before = Some(at);
             }
-            let point = read.zip(at).map(|(angles, time)| PosturePoint { time, angles });
-            points = points.zip(point).map(|(mut points, point)| {
-                points.push(point);
-                points
-            });
+            points.push(read.zip(at).map(|(angles, time)| PosturePoint { time, angles }));
         }
-        points
+        points.into_iter().collect()
     }
 
     /// The angles of all joints of an arm; without an arm they are only looked at.
