@@ -31,8 +31,8 @@ Exit codes:
      on (a livelock, the cycle bound, a fault of the model); `prove`, `step`: a network is at fault; `mutate`: the score is
      below --min-score
   2  the command line is wrong, or a file cannot be read or written; `step`: what is piped in is no command, or not possible
-  3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism, --repeat or
-     --schedules found a difference;
+  3  `sim`, `judge`: a requirement was violated, a test broke off (see --exit-zero), or --check-determinism, --repeat,
+     --schedules or --physics-steps found a difference;
      `prove`: a requirement is violated, a query is not satisfied, or with --follow a run is none of the network;
      `conformance`: a case failed; `mutate`: the tests measure nothing of a file, or do not repeat
   4  `prove`: something is inconclusive, since the budget was used up, and nothing else is wrong

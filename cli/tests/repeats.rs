@@ -277,3 +277,50 @@ fn every_system_of_the_examples_is_repeated() {
         }
     }
 }
+
+/// A ball falls for 0.4 s, g/2 · (0.4 s)²; and farther by half of g · 0.4 s · step/4, since the solver divides a step by four.
+const FALLING: &str = r#"scenario falling
+
+actor house : environment
+actor robot : system
+event begun from house to robot
+stimulus look by house { emit begun; hold 400 ms }
+
+world {
+  body ball: dynamic sphere(5 cm) at (0 m, 0 m, 105 cm) mass 1 kg
+}
+require R1 safety "the ball stays up" globally height(ball) > 20 cm
+
+system robot { run "python3 robot.py"; limit 400 ms }
+"#;
+
+#[test]
+fn a_verdict_that_hangs_on_the_physics_step_is_found() {
+    let tests = "test fall.t1 { seed 1; look }\n";
+    let robot = "import hrdsl\nnode = hrdsl.Node('robot')\nnode.wait_for('begun')\nnode.sleep(1)\n";
+    let at = support::folder(&[("scenario.hri", FALLING), ("a.tests.hri", tests), ("robot.py", robot)]);
+    let sim = |more: &str| hrdsl_in(at.path(), &format!("sim scenario.hri a.tests.hri -o out {more}"));
+
+    // 1 m - 0.785 m - 0.005 m is above 20 cm, with 40 ms 1 m - 0.785 m - 0.02 m below.
+    let same = sim("--physics-steps 5ms,1ms");
+    expect_code(&same, 0);
+    assert!(support::stdout(&same).contains("1 test comes to the same in 2 other steps of the physics"));
+    let other = sim("--physics-steps 5ms,40ms");
+    expect_code(&other, 3);
+    let text = support::stdout(&other);
+    assert!(
+        text.contains("falling.fall.t1: with --physics-step 40ms, R1 is violated, and passed with 10ms"),
+        "{text}"
+    );
+    assert!(text.contains("as many differ: 0 with --physics-step 5ms, 1 with --physics-step 40ms"), "{text}");
+
+    // In that step alone, and how to do it again; what makes no sense is refused.
+    let alone = sim("--physics-step 40ms");
+    expect_code(&alone, 3);
+    assert!(support::stdout(&alone).contains("--physics-step 40ms --test"), "{}", support::stdout(&alone));
+    for (step, why) in [("0s", "of more than 0 s"), ("2s", "of 1 s at most")] {
+        let refused = sim(&format!("--physics-step {step}"));
+        expect_code(&refused, 2);
+        assert!(support::stderr(&refused).contains(why), "{}", support::stderr(&refused));
+    }
+}

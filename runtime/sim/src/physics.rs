@@ -10,6 +10,7 @@ mod guide;
 mod joints;
 mod losses;
 mod pairs;
+mod retry;
 mod seen;
 mod state;
 mod stops;
@@ -35,6 +36,7 @@ use crate::{
 };
 use state::{
     adapter::PhysicsBody,
+    before::MotionBefore,
     bodies::start_of,
     energy::EnergyWatch,
     guide::BodyGuide,
@@ -46,7 +48,7 @@ use state::{
     solid::{described_mass, surface_of},
     yielding::YieldingPairs,
 };
-use stops::{NEAR_END, PRESSED_FOR, UNNOTICED};
+use stops::UNNOTICED;
 
 /// How often the motors of arms and wheels are told what to do, ns; in a world with longer steps, once in each. Between that their
 /// efforts stay, as those of a real controller do: how hard a robot strikes must not depend on the step.
@@ -108,6 +110,7 @@ impl PhysicsAdapter {
             accuracy: AccuracyWatch::default(),
             robots: Vec::new(),
             led: Vec::new(),
+            before: MotionBefore::default(),
             step: seconds(world.step),
             sweeps: sweeps(world),
             pressed: 0,
@@ -383,10 +386,10 @@ impl PhysicsAdapter {
                 let (at, limits) = (self.joint_position(joint), self.joint_limits(joint));
                 let beyond = (limits.0 - at).max(at - limits.1);
                 if beyond > UNNOTICED {
-                    self.pressed = (PRESSED_FOR / self.step).ceil() as usize;
+                    self.notice_press();
                 }
                 if let Some(driven) = &mut self.joints[joint] {
-                    driven.ends.is_near = beyond > -NEAR_END;
+                    driven.ends.beyond = beyond;
                 }
                 self.accuracy.look_at_joint(joint, at, limits);
             }

@@ -269,5 +269,6 @@ fn scenes_hold_together_and_repeat() {
         worst(|run| run.beyond) * 1e3,
         worst(|run| run.sunk) * 1e3
     );
+    assert!(worst(|run| run.beyond) < 1e-3);
     assert!(torn * 100 < runs.len() && worst(|run| run.gap) < 0.05 && worst(|run| run.sunk) < 0.01);
 }

@@ -1,7 +1,9 @@
 //! `hrdsl sim`: the tests against the code under test, and the reports.
 
 mod choices;
+mod comparison;
 mod determinism;
+mod physics_steps;
 mod rerun;
 mod run;
 mod schedules;
@@ -32,7 +34,7 @@ use super::{
 };
 use crate::{
     color, covered_files, exit::CommandExit, fault::CommandFault, files, input, observation::locate,
-    results_folder::ResultsFolder, terminal,
+    quantity, results_folder::ResultsFolder, terminal,
 };
 
 /// What `sim` writes into its folder, the reports last.
@@ -46,7 +48,7 @@ const REPORTS: [&str; 4] = ["run.json", "results.json", "junit.xml", "report.htm
 /// run.json, the tests, a recording of each, and what the program wrote in each.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --replays all\n  hrdsl sim scenario.hri --system with_rospy/system.hri\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --suite ta_tests -n 4 --repeat 100\n  hrdsl sim scenario.hri --schedules 20"
+    after_help = "Examples:\n  hrdsl sim scenario.hri\n  hrdsl sim scenario.hri tests/bdi_tests.hri -j 1\n  hrdsl sim scenario.hri --suite ta_tests -n 40 -o out\n  hrdsl sim scenario.hri --test bdi_tests.t017 --keep-files\n  hrdsl sim scenario.hri --replays all\n  hrdsl sim scenario.hri --system with_rospy/system.hri\n  hrdsl sim scenario.hri --check-determinism\n  hrdsl sim scenario.hri --suite ta_tests -n 4 --repeat 100\n  hrdsl sim scenario.hri --schedules 20\n  hrdsl sim scenario.hri --suite ta_tests --physics-steps 5ms,2ms,1ms"
 )]
 pub struct SimArgs {
     #[command(flatten)]
@@ -69,6 +71,12 @@ pub struct SimArgs {
     /// Let this number say in which order threads run that are ready; by default, first come first served.
     #[arg(long, value_name = "K")]
     schedule: Option<u32>,
+    /// Do the physics in steps of this time, as `2ms`, and not in those of the world.
+    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
+    physics_step: Option<Duration>,
+    /// Run the tests with these steps of the physics, too, as `5ms,1ms`, and name those that come to something else.
+    #[arg(long, value_name = "TIMES", value_delimiter = ',', value_parser = quantity::time, conflicts_with = "debug")]
+    physics_steps: Vec<Duration>,
     /// Say where processor time goes, on the console and in run.json.
     #[arg(long, conflicts_with = "debug")]
     timings: bool,
@@ -93,6 +101,10 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let Some(program) = input::report_errors(&args.campaign.file, &compilation) else {
         return Ok(CommandExit::Errors);
     };
+    let stepped = args.physics_step.map(|step| physics_steps::with_step(program, step)).transpose()?;
+    let program = stepped.as_ref().unwrap_or(program);
+    let finer = args.physics_steps.iter().map(|step| Ok((*step, physics_steps::with_step(program, *step)?)));
+    let finer = finer.collect::<Result<Vec<_>, CommandFault>>()?;
     let system = chosen_system(program, args.campaign.system.as_deref())?;
     let system = &covered_files::named(system, &files::folder(&args.campaign.file));
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));
@@ -115,10 +127,15 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
         }
         Some(_) | None => None,
     };
-    let races = match args.schedules {
-        Some(count) if !outcome.interrupted => Some(schedules::compare(&campaign, &tests, &outcome, count)?),
-        Some(_) | None => None,
-    };
+    let mut changes = Vec::new();
+    let orders = args.schedules.map(|count| (schedules::others(&campaign, count), schedules::words()));
+    let steps = (!finer.is_empty())
+        .then(|| (physics_steps::others(&campaign, &finer), physics_steps::words(program)));
+    for (ways, words) in orders.into_iter().chain(steps) {
+        if !outcome.interrupted {
+            changes.push(comparison::compare((&tests, &outcome), ways, &words)?);
+        }
+    }
     let interrupted = outcome.interrupted;
     let dir = campaign.dir.clone();
     let sources =
@@ -137,13 +154,13 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     if let Some(differences) = differences {
         terminal::print(&differences.text)?;
     }
-    let racy = races.as_ref().is_some_and(|races| races.tests > 0);
-    if let Some(races) = races {
-        terminal::print(&races.text)?;
+    let is_other = changes.iter().any(|change| change.tests > 0);
+    for change in changes {
+        terminal::print(&change.text)?;
     }
     Ok(if interrupted {
         CommandExit::Interrupted
-    } else if racy || !repeatable || !(results.is_clean() || args.exit_zero) {
+    } else if is_other || !repeatable || !(results.is_clean() || args.exit_zero) {
         CommandExit::Findings
     } else {
         CommandExit::Ok

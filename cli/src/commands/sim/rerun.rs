@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{SimArgs, choices::ReplaysArg};
+use super::{SimArgs, choices::ReplaysArg, physics_steps};
 use crate::{commands::campaign::is_file_name, files::relative};
 
 /// The command that runs one test again, up to its name, as it is typed in the folder of the results: so it stays the same
@@ -21,6 +21,7 @@ pub fn words(args: &SimArgs, out: &Path) -> String {
     // The hashes of texts follow from it.
     words.extend((args.campaign.seed != 0).then(|| format!("--seed {}", args.campaign.seed)));
     words.extend(args.schedule.map(|k| format!("--schedule {k}")));
+    words.extend(args.physics_step.map(physics_steps::option));
     let system = |name: &String| {
         if is_file_name(name) { quoted(&relative(Path::new(name), out)) } else { name.clone() }
     };

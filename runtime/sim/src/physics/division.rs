@@ -40,7 +40,7 @@ const TOO_DEEP: f64 = 1e-3;
 /// 66 kg that falls on a finger of 50 g would tear it off, and so would a leg of 500 g that is drawn along it, unless that hands on what it
 /// takes. And while something fast strikes another, which hands the blow on, to the floor that it lies on, say; while a joint is pressed
 /// beyond its limit, or bodies are too deep in each other.
-const MANY_SWEEPS: usize = 64;
+pub(super) const MANY_SWEEPS: usize = 64;
 /// Where one is heavier than the other by more than so many times, more often in proportion: what comes to a light lever on its stop goes
 /// on by as much as one is lighter than the other, in each of them.
 const RATIO: f64 = 16.0;
@@ -121,14 +121,13 @@ impl PhysicsAdapter {
         let asked = coming.parts.max(self.parts_for_stops(dt).min(MOST_PARTS));
         let parts = near.iter().map(|pair| pair.parts(dt)).fold(asked, f64::max);
         let h = dt / parts;
-        self.part = (h, (self.substeps() as f64 / parts).ceil() as usize);
+        let times = (self.substeps() as f64 / parts).ceil() as usize;
         self.world.integration_parameters.dt = h as f32;
-        self.world.integration_parameters.num_solver_iterations = self.part.1;
-        self.keep_mending();
         let sweeps = if parts > SUBSTEPS as f64 { self.sweeps.max(SWEEPS_OF_SHORT) } else { self.sweeps };
         let mut loads = ContactLoads::default();
         let mut done = 0.0;
         while done < parts {
+            self.divide(h, times);
             self.draw_guided(StepPart { done: done / parts, h, dt });
             for pair in &near {
                 self.press(pair.at, h);
@@ -140,8 +139,7 @@ impl PhysicsAdapter {
             strain.ratio = coming.ratio;
             self.world.integration_parameters.num_internal_pgs_iterations =
                 strain.sweeps(sweeps, self.deepest);
-            self.step_engine();
-            self.place_joints();
+            self.step_within_ends();
             let part = self.look_at_contacts();
             self.note_presses(&near, &part, h);
             loads.add_part(&part, 1.0 / parts);
@@ -154,8 +152,15 @@ impl PhysicsAdapter {
         self.world.integration_parameters.dt = dt as f32;
     }
 
+    /// Lets the solver divide a part of a step, which takes so long, s, so often.
+    pub(super) fn divide(&mut self, h: f64, times: usize) {
+        self.part = (h, times);
+        self.world.integration_parameters.num_solver_iterations = times;
+        self.keep_mending();
+    }
+
     /// What no world of these bodies can do without: a step of the engine.
-    fn step_engine(&mut self) {
+    pub(super) fn step_engine(&mut self) {
         match self.clock {
             Some(clock) => {
                 self.engine_time.measure(clock, || self.world.step_with_events(&self.exempt, &()));

@@ -2,6 +2,7 @@
 
 pub(crate) mod accuracy;
 pub mod adapter;
+pub mod before;
 pub mod bodies;
 pub mod energy;
 pub mod guide;

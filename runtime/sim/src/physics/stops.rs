@@ -15,11 +15,9 @@ use super::state::{
 /// What a joint may go beyond its end unnoticed, rad or m: one that goes farther is pressed, and the solver then does more.
 pub(super) const UNNOTICED: f64 = 3e-4;
 /// For so long after that, s: what pressed it has hardly gone.
-pub(super) const PRESSED_FOR: f64 = 0.5;
-/// A joint is near its end, rad or m.
-pub(super) const NEAR_END: f64 = 1e-3;
+const PRESSED_FOR: f64 = 0.5;
 /// So exactly the engine knows where a joint is, rad or m: it must not miss that one is where it ends.
-const ROUNDING: f64 = 1e-5;
+pub(super) const ROUNDING: f64 = 1e-5;
 /// How far before its end a joint is stopped at most because it is fast, rad and m.
 const EARLY_TURN: f64 = 5e-3;
 const EARLY_WAY: f64 = 1e-3;
@@ -48,7 +46,7 @@ impl StopApproach {
 
 impl DrivenJoint {
     /// Its ends, from its start.
-    fn true_ends(&self) -> (f64, f64) {
+    pub(super) fn true_ends(&self) -> (f64, f64) {
         (self.lo - self.start, self.hi - self.start)
     }
 
@@ -70,7 +68,7 @@ impl DrivenJoint {
     }
 
     /// Tells the engine's joint where it ends.
-    fn tell(&self, joint: &mut GenericJoint, ends: (f64, f64)) {
+    pub(super) fn tell(&self, joint: &mut GenericJoint, ends: (f64, f64)) {
         match self.motion {
             JointMotion::Hinge if self.wound.is_some() => self.stop.limit(joint, ends),
             JointMotion::Hinge => {
@@ -87,6 +85,11 @@ impl PhysicsAdapter {
     /// Where a joint ends, rad or m.
     pub fn joint_limits(&self, joint: usize) -> (f64, f64) {
         self.joints[joint].as_ref().map_or((0.0, 0.0), |driven| (driven.lo, driven.hi))
+    }
+
+    /// A joint is pressed against its end.
+    pub(super) fn notice_press(&mut self) {
+        self.pressed = (PRESSED_FOR / self.step).ceil() as usize;
     }
 
     /// How many parts of the step the joints ask for that come to their ends in it.
@@ -121,7 +124,7 @@ impl PhysicsAdapter {
                 StopApproach { next: whole / times as f64, whole, thrown }
             };
             let (down, up) = (comes(-speed, -gain), comes(speed, gain));
-            let is_far = down.next.max(up.next) < UNNOTICED && moved <= 0.0 && !driven.ends.is_near;
+            let is_far = down.next.max(up.next) < UNNOTICED && moved <= 0.0 && !driven.ends.is_near();
             let told = if is_far {
                 ends
             } else {

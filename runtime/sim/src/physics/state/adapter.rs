@@ -5,8 +5,8 @@ use hrdsl_ir::world::{BodyId, BodyMotion, BodyShape};
 use rapier3d::{parry::bounding_volume::Aabb, prelude::*};
 
 use super::{
-    accuracy::AccuracyWatch, energy::EnergyWatch, guide::BodyGuide, joint::DrivenJoint, loads::ContactLoads,
-    losses::JointLosses, pairs::ExemptPairs, place::JointedBodies, solid::SolidExtent,
+    accuracy::AccuracyWatch, before::MotionBefore, energy::EnergyWatch, guide::BodyGuide, joint::DrivenJoint,
+    loads::ContactLoads, losses::JointLosses, pairs::ExemptPairs, place::JointedBodies, solid::SolidExtent,
     yielding::YieldingPairs,
 };
 use crate::math::BodyFrame;
@@ -65,6 +65,8 @@ pub(crate) struct PhysicsAdapter {
     pub robots: Vec<usize>,
     /// Where kinematic bodies will be at the end of the next step.
     pub led: Vec<(RigidBodyHandle, Pose)>,
+    /// What moved, as it was before the last part of a step, if a joint might come to its end in it.
+    pub before: MotionBefore,
     /// The time of a step, s.
     pub step: f64,
     /// How often the solver goes over all joints and contacts in each part of one.

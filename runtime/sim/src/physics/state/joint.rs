@@ -92,17 +92,24 @@ pub(crate) struct ToldEnds {
     pub between: (f64, f64),
     /// How fast it was as the last part of a step began, rad/s or m/s, and how long that part took, s.
     pub last: (f64, f64),
-    /// Whether it was near one of its ends, or beyond it, as the last step ended.
-    pub is_near: bool,
+    /// How far it was beyond one of its ends as the last step ended, rad or m; less than 0 within them.
+    pub beyond: f64,
 }
 
 impl ToldEnds {
     /// Of a joint that stands still before the first step, which takes so long, s.
     pub fn at_start(between: (f64, f64), step: f64) -> ToldEnds {
-        ToldEnds { between, last: (0.0, step), is_near: true }
+        ToldEnds { between, last: (0.0, step), beyond: 0.0 }
+    }
+
+    /// Whether it was near one of its ends, or beyond it, as the last step ended.
+    pub fn is_near(&self) -> bool {
+        self.beyond > -NEAR_END
     }
 }
 
+/// A joint is near its end, rad or m.
+const NEAR_END: f64 = 1e-3;
 /// How far from its zero the engine can limit a hinge, rad.
 const MOST_LIMIT: f64 = 3.1;
 /// So near to an end a hinge of more than a turn is stopped there, rad: less than half a turn, and more than any goes in a step.
