@@ -16,16 +16,17 @@ use std::{
     time::{Duration, Instant},
 };
 
-use hrdsl_ir::{Program, system::SystemUnderTest};
+use hrdsl_ir::{Program, system::SystemUnderTest, test::Test};
 use hrdsl_runtime::{
     campaign::{CampaignRun, CampaignSetup, CampaignTimes, CellIsolation, ProcessorClocks, ProgramLimits},
-    judge::tally,
+    judge::{CampaignOutcome, tally},
     report,
     results::{CampaignResults, GeneratedSuite},
 };
 use serde::Serialize;
 
 use choices::ReplaysArg;
+use comparison::VerdictDifferences;
 
 use super::{
     campaign::{CampaignArgs, chosen_system, generate_suites, selected, stop_flag, system_file},
@@ -127,15 +128,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
         }
         Some(_) | None => None,
     };
-    let mut changes = Vec::new();
-    let orders = args.schedules.map(|count| (schedules::others(&campaign, count), schedules::words()));
-    let steps = (!finer.is_empty())
-        .then(|| (physics_steps::others(&campaign, &finer), physics_steps::words(program)));
-    for (ways, words) in orders.into_iter().chain(steps) {
-        if !outcome.interrupted {
-            changes.push(comparison::compare((&tests, &outcome), ways, &words)?);
-        }
-    }
+    let changes = compared(args, &campaign, (&tests, &outcome), &finer)?;
     let interrupted = outcome.interrupted;
     let dir = campaign.dir.clone();
     let sources =
@@ -165,6 +158,20 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     } else {
         CommandExit::Ok
     })
+}
+
+/// What becomes of the tests in other orders of threads, and in other steps of the physics: in these programs.
+fn compared(
+    args: &SimArgs,
+    campaign: &CampaignSetup<'_>,
+    (tests, outcome): (&[Test], &CampaignOutcome),
+    stepped: &[(Duration, Program)],
+) -> Result<Vec<VerdictDifferences>, CommandFault> {
+    let orders = args.schedules.map(|count| (schedules::others(campaign, count), schedules::words()));
+    let steps = (!stepped.is_empty())
+        .then(|| (physics_steps::others(campaign, stepped), physics_steps::words(campaign.program)));
+    let ways = orders.into_iter().chain(steps).filter(|_| !outcome.interrupted);
+    ways.map(|(ways, words)| comparison::compare((tests, outcome), ways, &words)).collect()
 }
 
 /// Writes the tests of a suite, and says what they are.
