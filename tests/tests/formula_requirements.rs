@@ -3,10 +3,21 @@
 //!
 //! `HRDSL_SOAK=1 cargo test --workspace --test formula_requirements` tries thirty times as many.
 
+#![allow(
+    clippy::disallowed_methods,
+    reason = "the test reads the page, and the environment says how many traces are tried"
+)]
+
 #[path = "../../runtime/metric/tests/definition/mod.rs"]
+#[allow(dead_code, reason = "another test asks it of single moments")]
 mod definition;
 #[path = "../../runtime/metric/tests/dice/mod.rs"]
 mod dice;
+#[path = "../../runtime/metric/tests/watched/mod.rs"]
+#[allow(dead_code, reason = "another test has its program without a compiler")]
+mod watched;
+
+use std::path::Path;
 
 use definition::goal_bounds;
 use dice::Dice;
@@ -343,6 +354,49 @@ fn the_counterexample_is_what_the_formula_read() {
             assert_eq!(found, wanted, "{text}");
         }
     }
+}
+
+/// The signals and events of the runs on the page, in their order.
+const WATCHED: &str = "scenario watched
+actor robot : system
+event a, b, c, d from robot
+world {
+  body one: fixed box(1 m, 1 m, 1 m) at (0 m, 0 m, 0 m)
+  signal p: bool to robot = one.z > 0 m
+  signal q: bool to robot = one.z > 1 m
+  signal x: float to robot = one.x / 1 m
+  signal y: float to robot = one.y / 1 m
+}
+";
+
+#[test]
+fn the_runs_on_the_page_have_their_verdicts_as_requirements() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spec/metric.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let table = page.split("| formula | run | verdict | margin |").nth(1).expect("the table of runs");
+    let (mut rows, mut formula) = (0, String::new());
+    for line in table.lines().skip(2).take_while(|line| line.starts_with('|')) {
+        let cells: Vec<&str> =
+            line.trim_matches('|').split('|').map(|c| c.trim().trim_matches('`')).collect();
+        let [text, run, verdict, margin] = cells.as_slice() else { panic!("{line}") };
+        if !text.is_empty() {
+            formula = (*text).to_owned();
+        }
+        let text = format!("{WATCHED}require R1 functional formula {formula}\n");
+        let compiled = compile(InputFile { name: "watched.hri", text: &text }, &[]);
+        let program = compiled.program.unwrap_or_else(|| panic!("{text}{:#?}", compiled.diagnostics));
+        let mut runner = MonitorRunner::new(&program);
+        watched::run(run).replay(&mut runner);
+        let found = runner.verdicts().remove(0);
+        let number = found.worst_margin.map(|(n, _)| n.to_string()).unwrap_or_default();
+        assert_eq!(
+            (found.outcome.to_string().as_str(), number.as_str()),
+            (*verdict, *margin),
+            "{formula}: {run}"
+        );
+        rows += 1;
+    }
+    assert!(rows >= 30, "{rows}");
 }
 
 /// An event of an edge is the instant at which a condition gets the other truth.

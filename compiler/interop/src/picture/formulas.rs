@@ -12,7 +12,8 @@ use crate::exchange::time::seconds;
 
 /// The inside of a formula's cluster: a node for each operator and atom, and arrows from what it reads.
 pub(super) fn formula_dot(program: &Program, cluster: usize, formula: &MonitorFormula) -> String {
-    let mut picture = FormulaPicture { program, cluster, formula, out: String::new(), nodes: 0 };
+    let mut picture =
+        FormulaPicture { program, cluster, formula, out: String::new(), nodes: 0, has_windows: false };
     picture.goal(&formula.goal);
     picture.note();
     picture.out
@@ -24,6 +25,7 @@ struct FormulaPicture<'a> {
     formula: &'a MonitorFormula,
     out: String,
     nodes: usize,
+    has_windows: bool,
 }
 
 impl FormulaPicture<'_> {
@@ -59,6 +61,15 @@ impl FormulaPicture<'_> {
             MetricFormula::Always(w, _) => format!("always{}", w.text()),
             MetricFormula::Until(w, ..) => format!("until{}", w.text()),
         };
+        self.has_windows |= matches!(
+            formula,
+            MetricFormula::Once(..)
+                | MetricFormula::Historically(..)
+                | MetricFormula::Since(..)
+                | MetricFormula::Eventually(..)
+                | MetricFormula::Always(..)
+                | MetricFormula::Until(..)
+        );
         let parts: Vec<usize> = formula.operands().into_iter().map(|f| self.formula(f)).collect();
         let later = formula.horizon();
         let known = (later > 0).then(|| format!("known {} later", seconds(later)));
@@ -82,7 +93,11 @@ impl FormulaPicture<'_> {
         } else {
             "What it says of a moment is known at that moment.".to_owned()
         };
-        let why = "No automaton with one clock: each window keeps the changes inside it.";
+        let why = if self.has_windows {
+            "No automaton with one clock: each window keeps the changes inside it."
+        } else {
+            "Its operators are what executes it, and not an automaton."
+        };
         let label = lines(vec![why.to_owned(), delay]);
         let _ = writeln!(self.out, "    n{}_note [shape = note, label = {label}]", self.cluster);
     }
