@@ -89,12 +89,30 @@ fn nothing_else_of_the_judgement_changes() {
 }
 
 #[test]
-fn formulas_tell_the_events_and_signals_that_they_name() {
+fn formulas_tell_what_they_name_and_the_formulas_in_them() {
     let formula = "always (placed(_) implies distance(hand, post) > 30 cm)";
     let found = document(&["--formula", formula, "--around", "1s"]);
     let expected = json!([
         ["placed(_)", "", true, [[4.5, true]]],
         ["distance(hand, post)", "m", false, [[3.5, 0.1], [5.0, 0.6]]],
+        ["distance(hand, post) > 30 cm", "", false, [[3.5, false], [5.0, true]]],
+        ["margin of distance(hand, post) > 30 cm", "m", false, [[3.5, 0.1 - 0.3], [5.0, 0.6 - 0.3]]],
+        [
+            "placed(_) implies distance(hand, post) > 30 cm",
+            "",
+            false,
+            [[3.5, true], [4.5, false], [4.500_000_001, true]]
+        ],
+        [
+            "margin of placed(_) implies distance(hand, post) > 30 cm",
+            "m",
+            false,
+            [
+                [3.5, "holds whatever is measured"],
+                [4.5, 0.1 - 0.3],
+                [4.500_000_001, "holds whatever is measured"]
+            ]
+        ],
     ]);
     assert_eq!(json!(parts(&found, 2)), expected);
 }

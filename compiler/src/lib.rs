@@ -13,6 +13,7 @@
 mod allow;
 mod beside;
 mod descriptions;
+mod formula_reading;
 mod interfaces;
 pub mod lower;
 pub mod modules;

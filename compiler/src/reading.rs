@@ -1,12 +1,15 @@
 //! Requirements in English: what each says, and what each verdict on it means.
 
 use hrdsl_ir::{ArgPattern, EventPattern};
-use hrdsl_model::{Scenario, TypedExpr, TypedOccurrence, TypedRequirement};
+use hrdsl_model::{Scenario, TypedExpr, TypedOccurrence, TypedRequirement, TypedTemporal};
 use hrdsl_source::SourceFiles;
 use hrdsl_syntax::{CountBound, LastingBound, RequirementPattern, RequirementScope};
 use serde::Serialize;
 
-use crate::lower::monitor::one_line;
+use crate::{
+    formula_reading::{FormulaReader, FormulaReading},
+    lower::monitor::one_line,
+};
 
 /// A requirement, read out. A verdict that it cannot have is none.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -51,6 +54,9 @@ struct RequirementReader<'a> {
 impl RequirementReader<'_> {
     fn read(&self) -> RequirementReading {
         let sentence = &self.requirement.pattern;
+        if let RequirementPattern::Formula(formula) = &sentence.pattern {
+            return self.formula(formula);
+        }
         let pattern = self.pattern();
         let (part, ends, counts_if_it_ends) = match &sentence.scope {
             RequirementScope::Whole => ("In the whole run".to_owned(), false, false),
@@ -101,6 +107,21 @@ impl RequirementReader<'_> {
         }
     }
 
+    fn formula(&self, formula: &TypedTemporal) -> RequirementReading {
+        let reader = FormulaReader { any: &|list| self.any(list), condition: &|e| self.condition(e) };
+        let FormulaReading { says, pass, fail, vacuous, inconclusive } = reader.read(formula);
+        RequirementReading {
+            requirement: self.requirement.name.clone(),
+            title: self.requirement.title.clone(),
+            text: one_line(self.files.text(self.requirement.text)),
+            says,
+            pass: Some(pass),
+            fail,
+            vacuous,
+            inconclusive,
+        }
+    }
+
     fn pattern(&self) -> PatternReading {
         match &self.requirement.pattern.pattern {
             RequirementPattern::Causes { trigger, response, not_before, within } => {
@@ -143,6 +164,10 @@ impl RequirementReader<'_> {
                     CountBound::AtLeast => self.at_least(events, n, false),
                     CountBound::Exactly => self.at_least(events, n, true),
                 }
+            }
+            // It is read by itself.
+            RequirementPattern::Formula(_) => {
+                PatternReading { says: String::new(), fail: None, vacuous: None, due: None, owes: None }
             }
             RequirementPattern::Lasts { condition, bound, time } => {
                 self.lasts(condition, *bound, time.unwrap_or(0.0))

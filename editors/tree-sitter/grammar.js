@@ -7,7 +7,7 @@
 const KEYWORDS = require("./keywords.json").map((row) => row.word);
 
 // From the loosest operator to the tightest.
-const PREC = { IMPLY: 1, OR: 2, AND: 3, NOT: 4, COMPARE: 5, RANGE: 6, ADD: 7, MULTIPLY: 8, NEGATE: 9 };
+const PREC = { IMPLY: 1, OR: 2, AND: 3, REACH: 4, NOT: 5, COMPARE: 6, RANGE: 7, ADD: 8, MULTIPLY: 9, NEGATE: 10 };
 
 /** The external token of a keyword, shown as the word itself. */
 function keyword($, word) {
@@ -607,6 +607,7 @@ module.exports = grammar({
         $.eventually_pattern,
         $.count_pattern,
         $.duration_pattern,
+        $.formula_pattern,
       ),
     after_pattern: ($) =>
       seq(
@@ -672,6 +673,101 @@ module.exports = grammar({
         choice(keyword($, "most"), keyword($, "least")),
         field("time", $.expression),
       ),
+
+    // In metric temporal logic. What is in parentheses may be a number or a formula, so that there is one rule for both.
+    formula_pattern: ($) => seq(keyword($, "formula"), field("formula", $._formula)),
+    _formula: ($) =>
+      choice(
+        $.formula_junction,
+        $.reach_formula,
+        $.look_formula,
+        $.negated_formula,
+        alias($._formula_binary, $.binary_expression),
+        alias($._formula_minus, $.unary_expression),
+        alias($._formula_group, $.parenthesized_expression),
+        $.integer,
+        $.float,
+        $.quantity,
+        $.boolean,
+        $.identifier,
+        $.path,
+        $.call_expression,
+        $.if_expression,
+      ),
+    formula_junction: ($) =>
+      choice(
+        prec.right(
+          PREC.IMPLY,
+          seq(
+            field("left", $._formula),
+            field("operator", keyword($, "implies")),
+            field("right", $._formula),
+          ),
+        ),
+        prec.left(
+          PREC.OR,
+          seq(
+            field("left", $._formula),
+            field("operator", choice("||", keyword($, "or"))),
+            field("right", $._formula),
+          ),
+        ),
+        prec.left(
+          PREC.AND,
+          seq(
+            field("left", $._formula),
+            field("operator", choice("&&", keyword($, "and"))),
+            field("right", $._formula),
+          ),
+        ),
+      ),
+    reach_formula: ($) =>
+      prec.left(
+        PREC.REACH,
+        seq(
+          field("left", $._formula),
+          choice(keyword($, "until"), keyword($, "since")),
+          optional(field("window", $.window)),
+          field("right", $._formula),
+        ),
+      ),
+    look_formula: ($) =>
+      prec(
+        PREC.NOT,
+        seq(
+          choice(
+            keyword($, "always"),
+            keyword($, "eventually"),
+            keyword($, "historically"),
+            keyword($, "once"),
+          ),
+          optional(field("window", $.window)),
+          field("formula", $._formula),
+        ),
+      ),
+    negated_formula: ($) =>
+      prec(PREC.NOT, seq(choice(keyword($, "not"), "!", "!!"), field("formula", $._formula))),
+    window: ($) => seq("[", field("from", $.expression), ",", field("to", $.expression), "]"),
+    _formula_binary: ($) =>
+      choice(
+        ...[
+          [PREC.COMPARE, ["==", "!=", "<", "<=", ">", ">="]],
+          [PREC.ADD, ["+", "-"]],
+          [PREC.MULTIPLY, ["*", "/", "%"]],
+        ].map(([level, operators]) =>
+          prec.left(
+            level,
+            seq(
+              field("left", $._formula),
+              field("operator", choice(...operators)),
+              field("right", $._formula),
+            ),
+          ),
+        ),
+      ),
+    _formula_minus: ($) => prec(PREC.NEGATE, seq(field("operator", "-"), field("operand", $._formula))),
+    _formula_group: ($) => seq("(", $._formula, ")"),
+
     _not_before: ($) =>
       seq(keyword($, "not"), keyword($, "before"), field("not_before", $.expression)),
 

@@ -187,3 +187,48 @@ fn what_lasts_less_than_the_grid_is_found_and_the_recording_says_the_same() {
     }
     assert!(text.lines().count() < 120, "{}", text.lines().count());
 }
+
+const FORMULAS: &str = r#"scenario formulas
+
+actor robot : system
+
+event tick from robot
+
+world {
+  body one: fixed box(1 m, 1 m, 1 m) at (0 m, 0 m, 0 m)
+  signal a: length to robot = one.x
+  signal b: length to robot = one.y
+  signal flag: bool to robot = one.z > 0 m
+}
+
+require A safety formula always (a < 90 cm or once[0 s, 300 ms] b > 50 cm)
+require B functional formula always (tick implies historically[50 ms, 150 ms] a > 5 cm)
+require C functional formula always (rising(flag) implies b > 10 cm until[0 s, 700 ms] tick)
+require D safety formula not flag since[0 s, 1 s] a - b < 20 cm
+require E functional formula eventually (flag and a / b > 5)
+require F safety formula always (flag implies eventually[0 s, 400 ms] a + b > 1 m)
+
+system robot { run "python3 robot.py" }
+"#;
+
+#[test]
+fn formulas_see_every_step_in_few_samples() {
+    let program = program(FORMULAS);
+    let mut met = BTreeMap::new();
+    let (mut kept, mut all) = (0, 0);
+    for seed in 0..200 {
+        let play = |everything: bool| {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let world = told(&mut rng);
+            run(&program, world, ticking(&mut rng), everything).trace
+        };
+        let (few, every) = (play(false), play(true));
+        for (a, b) in verdicts(&program, &few).iter().zip(&verdicts(&program, &every)) {
+            assert!(said(a) == said(b), "seed {seed}, {}: {a:#?} {b:#?}", program.monitors[a.monitor].name);
+            *met.entry(a.outcome).or_insert(0) += 1;
+        }
+        kept += samples(&few);
+        all += samples(&every);
+    }
+    assert!(met.len() == 4 && kept <= all, "{met:?}, {kept} of {all}");
+}

@@ -3,7 +3,7 @@
 use std::{
     collections::BTreeMap,
     fs::File,
-    io::{self, BufRead, BufReader, Cursor, Read},
+    io::{BufRead, BufReader, Cursor, Read},
     path::{Path, PathBuf},
     time::Duration,
 };
@@ -208,14 +208,12 @@ fn judged(
     path: &Path,
     (changed, options, around): (bool, &ConformanceOptions, Option<Nanos>),
 ) -> Result<(FinishedTest, Vec<UnseenSignal>), CommandFault> {
-    let again = || opened(path).map_err(io::Error::other);
     let (judged, unseen) =
-        judge_by_formulas((program, formulas), &again, changed, options).map_err(|e| e.to_string())?;
+        judge_by_formulas((program, formulas), opened(path)?, changed, options).map_err(|e| e.to_string())?;
     let duration = judged.duration();
     let JudgedRecording { recorded, mut judgement, machines } = judged;
     if let Some(around) = around {
-        let source = again().map_err(|e| e.to_string())?;
-        tell_values_around((program, formulas), source, changed, &mut judgement, around)
+        tell_values_around((program, formulas), opened(path)?, changed, &mut judgement, around)
             .map_err(|e| e.to_string())?;
     }
     // What is no test is called as its file is.

@@ -20,6 +20,7 @@ mod eval_error;
 pub mod event;
 pub mod exec;
 pub mod expr;
+pub mod formula;
 mod known;
 pub mod list;
 mod located;

@@ -1,4 +1,6 @@
-//! Requirements, each a deterministic timed automaton with one clock over the trace.
+//! Requirements, each a deterministic timed automaton with one clock over the trace, or a formula.
+
+use std::fmt;
 
 use hrdsl_source::Span;
 use serde::{Deserialize, Serialize};
@@ -6,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     event::EventPattern,
     expr::Expr,
+    formula::MonitorFormula,
     value::{Nanos, Unit},
     world::SignalId,
 };
@@ -14,7 +17,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct RequirementId(pub u16);
 
-/// A requirement, lowered to a monitor automaton.
+/// A requirement, lowered to a monitor automaton or a formula.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Monitor {
     /// `R5`
@@ -38,7 +41,43 @@ pub struct Monitor {
     pub edges: Vec<MonitorEdge>,
     /// The robustness of a numeric requirement: positive as long as it holds. The verdict keeps the least.
     pub margin: Option<MonitorMargin>,
+    /// It is a formula instead, without states and edges.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<Box<MonitorFormula>>,
     pub origin: Span,
+}
+
+impl Monitor {
+    /// The unit of its margin, if it has one.
+    #[must_use]
+    pub fn margin_unit(&self) -> Option<Unit> {
+        let of_formula = self.formula.as_ref().and_then(|formula| formula.unit);
+        self.margin.as_ref().map(|margin| margin.unit).or(of_formula)
+    }
+}
+
+/// The judgement on one requirement in one trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum MonitorOutcome {
+    /// It was triggered, and held.
+    Pass,
+    /// It was violated at least once.
+    Fail,
+    /// It was never triggered: the trace says nothing about it.
+    Vacuous,
+    /// It was not violated, but the trace ended while an obligation was pending.
+    Inconclusive,
+}
+
+impl fmt::Display for MonitorOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            MonitorOutcome::Pass => "pass",
+            MonitorOutcome::Fail => "fail",
+            MonitorOutcome::Vacuous => "vacuous",
+            MonitorOutcome::Inconclusive => "inconclusive",
+        })
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -227,6 +227,9 @@ impl TypedRequirement {
 /// Times in seconds.
 pub type TypedPattern = hrdsl_syntax::RequirementSentence<TypedOccurrence, TypedExpr, f64, u32>;
 
+/// Times in seconds.
+pub type TypedTemporal = hrdsl_syntax::TemporalFormula<TypedOccurrence, TypedExpr, f64>;
+
 /// What a requirement takes for an event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]

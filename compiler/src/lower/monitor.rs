@@ -1,5 +1,6 @@
 //! Requirements → monitor automata: a pattern becomes a part with ways in and out, and its scope says when those are gone.
 
+mod formula;
 mod parts;
 mod patterns;
 mod scopes;
@@ -7,11 +8,11 @@ mod scopes;
 use hrdsl_ir::{
     Expr, Unit,
     expr::{BinaryOp, NumberFunction, OperatorSort},
-    monitor::{Assumption, Monitor},
+    monitor::{Assumption, Monitor, StateId},
 };
 use hrdsl_model::{self as model, InferredType, TypedExprKind};
 use hrdsl_source::SourceFiles;
-use hrdsl_syntax::ast;
+use hrdsl_syntax::{RequirementPattern, ast};
 
 use super::world::{SignalReader, SignalTable};
 use parts::MonitorParts;
@@ -21,6 +22,9 @@ pub(crate) fn monitor(
     files: &SourceFiles,
     signals: &mut SignalTable<'_>,
 ) -> Monitor {
+    if let RequirementPattern::Formula(formula) = &r.pattern.pattern {
+        return of_formula(r, formula, files, signals);
+    }
     let mut parts = MonitorParts::new(signals);
     let scope = parts.scope(&r.pattern.scope);
     let part = parts.pattern(&r.pattern.pattern, scope.sort());
@@ -35,9 +39,36 @@ pub(crate) fn monitor(
         at_start: machine.at_start,
         edges: machine.edges,
         margin: machine.margin,
+        formula: None,
         origin: r.span,
         conditions: parts.conditions.clone(),
         signals: parts.signals(),
+    }
+}
+
+/// A formula has neither states nor edges: its operators are what executes it.
+fn of_formula(
+    r: &model::TypedRequirement,
+    formula: &model::TypedTemporal,
+    files: &SourceFiles,
+    signals: &mut SignalTable<'_>,
+) -> Monitor {
+    let mut reader = SignalReader::new(signals);
+    let formula = formula::formula(formula, &mut reader, files);
+    Monitor {
+        name: r.name.clone(),
+        kind: r.kind,
+        title: r.title.clone(),
+        text: one_line(files.text(r.text)),
+        states: Vec::new(),
+        initial: StateId(0),
+        at_start: Vec::new(),
+        edges: Vec::new(),
+        margin: None,
+        formula: Some(Box::new(formula)),
+        origin: r.span,
+        conditions: Vec::new(),
+        signals: reader.read(),
     }
 }
 

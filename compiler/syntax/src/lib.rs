@@ -16,6 +16,7 @@
 pub mod ast;
 mod binding;
 mod context;
+mod context_formula;
 mod expected;
 mod expr;
 mod heads;
@@ -30,6 +31,7 @@ mod report;
 mod run;
 mod scope;
 mod system;
+mod temporal;
 pub mod token;
 mod words;
 mod world;
@@ -46,6 +48,9 @@ pub use parse::{MAX_BYTES, parse};
 pub use pattern::{CountBound, LastingBound, RequirementPattern, SentenceMapping};
 pub use print::format;
 pub use scope::{BannedEvents, DemandedCount, DemandedEvents, RequirementScope, RequirementSentence};
+pub use temporal::{
+    TemporalFormula, TemporalJunction, TemporalKind, TemporalLook, TemporalReach, TemporalWindow,
+};
 
 /// The grammar as the parser is made of it: `src/grammar.lalrpop` with the registry of keywords put in.
 pub const GRAMMAR: &str = include_str!(concat!(env!("OUT_DIR"), "/grammar.lalrpop"));

@@ -6,7 +6,10 @@
 
 use serde::Serialize;
 
-use crate::ast::{CallSyntax, ExprSyntax};
+use crate::{
+    ast::{CallSyntax, ExprSyntax},
+    temporal::{TemporalFormula, TemporalKind},
+};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -40,6 +43,8 @@ pub enum RequirementPattern<E, C, T, N> {
     Counts { events: Vec<E>, bound: CountBound, count: Option<N> },
     /// `whenever P for at least D`. `None`: the time is not known.
     Lasts { condition: C, bound: LastingBound, time: Option<T> },
+    /// `formula F`. In the tree its events are conditions, whatever its names stand for.
+    Formula(TemporalFormula<E, C, T>),
 }
 
 /// As it is written, without its scope.
@@ -67,6 +72,8 @@ pub struct SentenceMapping<X, E, C, T, N, F, D, U, M> {
     pub events: fn(&mut X, &[E]) -> Vec<F>,
     pub condition: fn(&mut X, &C) -> D,
     pub time: fn(&mut X, &T) -> Option<U>,
+    /// That of a window, which may be zero.
+    pub bound: fn(&mut X, &T) -> Option<U>,
     pub count: fn(&mut X, &N, CountBound) -> Option<M>,
 }
 
@@ -81,6 +88,14 @@ impl<E, C, T, N> RequirementPattern<E, C, T, N> {
             | Self::Eventually { events, .. }
             | Self::Counts { events, .. } => vec![events],
             Self::Globally(_) | Self::Lasts { .. } => Vec::new(),
+            Self::Formula(formula) => {
+                let parts = formula.all().into_iter();
+                parts
+                    .filter_map(
+                        |f| if let TemporalKind::Events(e) = &f.kind { Some(e.as_slice()) } else { None },
+                    )
+                    .collect()
+            }
         }
     }
 
@@ -95,17 +110,35 @@ impl<E, C, T, N> RequirementPattern<E, C, T, N> {
             | Self::Eventually { .. }
             | Self::Counts { bound: CountBound::AtLeast | CountBound::Exactly, .. }
             | Self::Lasts { .. } => &[],
+            Self::Formula(formula) => formula.triggers(),
         }
     }
 
-    /// What it says about the world.
+    /// What it says about the world, in one condition.
     #[must_use]
     pub fn condition(&self) -> Option<&C> {
         match self {
             Self::NeverWhile { condition, .. } | Self::Eventually { condition, .. } => condition.as_ref(),
             Self::Globally(condition) | Self::Lasts { condition, .. } => Some(condition),
-            Self::Causes { .. } | Self::Forbids { .. } | Self::Precedes { .. } | Self::Counts { .. } => None,
+            Self::Causes { .. }
+            | Self::Forbids { .. }
+            | Self::Precedes { .. }
+            | Self::Counts { .. }
+            | Self::Formula(_) => None,
         }
+    }
+
+    /// Its formula, if it is one, and all that that is made of.
+    fn formulas(&self) -> Vec<&TemporalFormula<E, C, T>> {
+        if let Self::Formula(formula) = self { formula.all() } else { Vec::new() }
+    }
+
+    /// All that it says about the world.
+    pub(crate) fn conditions(&self) -> impl Iterator<Item = &C> {
+        let formulas = self.formulas().into_iter();
+        let atoms =
+            formulas.filter_map(|f| if let TemporalKind::Condition(c) = &f.kind { Some(c) } else { None });
+        self.condition().into_iter().chain(atoms)
     }
 
     pub(crate) fn times(&self) -> impl Iterator<Item = &T> {
@@ -114,11 +147,14 @@ impl<E, C, T, N> RequirementPattern<E, C, T, N> {
                 [not_before.as_ref(), within.as_ref()]
             }
             Self::Eventually { within: time, .. } | Self::Lasts { time, .. } => [time.as_ref(), None],
-            Self::Forbids { .. } | Self::NeverWhile { .. } | Self::Globally(_) | Self::Counts { .. } => {
-                [None, None]
-            }
+            Self::Forbids { .. }
+            | Self::NeverWhile { .. }
+            | Self::Globally(_)
+            | Self::Counts { .. }
+            | Self::Formula(_) => [None, None],
         };
-        times.into_iter().flatten()
+        let windows = self.formulas().into_iter().filter_map(TemporalFormula::window);
+        times.into_iter().flatten().chain(windows.flat_map(|w| [&w.from, &w.to]))
     }
 
     pub(crate) fn count(&self) -> Option<&N> {
@@ -168,6 +204,7 @@ impl<E, C, T, N> RequirementPattern<E, C, T, N> {
             Self::Lasts { condition, bound, time: lasts } => {
                 To::Lasts { condition: (to.condition)(cx, condition), bound: *bound, time: time(cx, lasts) }
             }
+            Self::Formula(formula) => To::Formula(formula.map(cx, to)),
         }
     }
 }

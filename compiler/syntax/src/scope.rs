@@ -121,7 +121,7 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
 
     /// What it says about the world.
     pub fn conditions(&self) -> impl Iterator<Item = &C> {
-        self.pattern.condition().into_iter().chain(self.scope.condition())
+        self.pattern.conditions().chain(self.scope.condition())
     }
 
     pub fn times(&self) -> impl Iterator<Item = &T> {
@@ -147,7 +147,8 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
             RequirementPattern::Causes { .. }
             | RequirementPattern::Forbids { .. }
             | RequirementPattern::Precedes { .. }
-            | RequirementPattern::Counts { .. } => false,
+            | RequirementPattern::Counts { .. }
+            | RequirementPattern::Formula(_) => false,
         }
     }
 
@@ -163,7 +164,8 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
             | RequirementPattern::NeverWhile { .. }
             | RequirementPattern::Eventually { .. }
             | RequirementPattern::Counts { .. }
-            | RequirementPattern::Lasts { .. } => None,
+            | RequirementPattern::Lasts { .. }
+            | RequirementPattern::Formula(_) => None,
         }
     }
 
@@ -204,7 +206,8 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
             | RequirementPattern::Globally(_)
             | RequirementPattern::Eventually { .. }
             | RequirementPattern::Counts { .. }
-            | RequirementPattern::Lasts { .. } => None,
+            | RequirementPattern::Lasts { .. }
+            | RequirementPattern::Formula(_) => None,
         }
     }
 
@@ -227,7 +230,8 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
             | RequirementPattern::Precedes { .. }
             | RequirementPattern::NeverWhile { .. }
             | RequirementPattern::Globally(_)
-            | RequirementPattern::Lasts { .. } => None,
+            | RequirementPattern::Lasts { .. }
+            | RequirementPattern::Formula(_) => None,
         }
     }
 
@@ -248,7 +252,8 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
             | RequirementPattern::Forbids { .. }
             | RequirementPattern::Precedes { .. }
             | RequirementPattern::Globally(_)
-            | RequirementPattern::Lasts { .. } => None,
+            | RequirementPattern::Lasts { .. }
+            | RequirementPattern::Formula(_) => None,
         }
     }
 

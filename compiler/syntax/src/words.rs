@@ -73,7 +73,8 @@ fn lacks_its_rest(tokens: &[Lexeme], at: usize, does: bool) -> bool {
         | TokenKind::Globally
         | TokenKind::Always
         | TokenKind::EventuallyWord
-        | TokenKind::Whenever => {
+        | TokenKind::Whenever
+        | TokenKind::Formula => {
             next.kind == TokenKind::Or || starts_a_response(tokens.get(at + 1..).unwrap_or_default())
         }
         _ => false,
@@ -116,9 +117,11 @@ fn called_before(kind: TokenKind, next: Option<Lexeme>) -> bool {
         TokenKind::After | TokenKind::Never => {
             after.is_some_and(|k| k == TokenKind::Or || k.is(TokenTrait::Response))
         }
-        TokenKind::Globally | TokenKind::Always | TokenKind::EventuallyWord | TokenKind::Whenever => {
-            after.is_some_and(|k| k.is(TokenTrait::Response))
-        }
+        TokenKind::Globally
+        | TokenKind::Always
+        | TokenKind::EventuallyWord
+        | TokenKind::Whenever
+        | TokenKind::Formula => after.is_some_and(|k| k.is(TokenTrait::Response)),
         _ => false,
     }
 }

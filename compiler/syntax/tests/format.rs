@@ -585,6 +585,7 @@ require R3 functional (a or b) forbids c until d
 require R5 safety "the gripper does not close on a hand" never gripper_closing while min(distance(person.hand, robot.finger_left), 3 m) < 5 cm
 require R6(e:event) safety globally speed<0.25rad/s
 require R7=R6(asked)
+require R8 functional "a formula that is longer than a line, so that it has to be broken somewhere" formula always(asked implies(not rising( near )since[0s,30s]offered)and eventually [0 s,10s](released(_)or-x+1<3))
 assume at most 4 leg_request within 300s
 assume at most
   4

@@ -200,6 +200,8 @@ require R15 safety whenever x < 1 for at least 2 s
 require R16 safety rising(x < 1) forbids b until falling(x < 1)
 require R17 safety always x < 1 after c
 require R18 safety exactly causes always
+require R19 safety formula always (a implies eventually[0 s, 10 s] (b(_) or -(x + 1) < 3))
+require R20 safety formula not p since[0 s, 2 s] a and historically q implies once[1 s, 2 s] (x) > 2
 assume at most 4 leg_request within 300 s
 assume at most LEGS (a or b(1))
 assume at most 2 reach or c within 1 s

@@ -4,7 +4,10 @@
 //! Of each instant the recorder knows whether a monitor that reacts to samples would see anything new in it: another truth of a
 //! condition, or a margin less than all before. An instant at which a truth changes is written at once. One with a new least
 //! margin is *kept in mind*, for the next one may be worse; it is written, with its own time, when the next point of the grid, or
-//! an event, ends the interval, unless by then there is a worse one.
+//! an event, ends the interval, unless by then there is a worse one. Of what a formula compares each change is written: its windows begin and end at any
+//! moment.
+
+use std::borrow::Cow;
 
 use hrdsl_ir::{
     Nanos, Program, Value,
@@ -39,7 +42,7 @@ struct SampleWatch<'p> {
     /// Where its signals stand among the watched ones.
     places: Vec<Option<usize>>,
     /// The conditions on which it may move, with their values when it last looked.
-    guards: Vec<(&'p Expr, Option<Value>)>,
+    guards: Vec<(Cow<'p, Expr>, Option<Value>)>,
     margin: Option<&'p Expr>,
     /// The least of the margins so far.
     worst: f64,
@@ -145,9 +148,13 @@ impl<'p> SignalRecorder<'p> {
 
 impl<'p> SampleWatch<'p> {
     fn new(monitor: &'p Monitor, watched: &[SignalId]) -> Self {
-        let mut guards: Vec<(&Expr, Option<Value>)> = Vec::new();
+        let mut guards: Vec<(Cow<'p, Expr>, Option<Value>)> = Vec::new();
         let edges = monitor.edges.iter().filter(|edge| edge.on == MonitorTrigger::Sample);
-        for guard in monitor.conditions.iter().chain(edges.filter_map(|edge| edge.guard.as_ref())) {
+        let conditions = monitor.conditions.iter().chain(edges.filter_map(|edge| edge.guard.as_ref()));
+        // Windows begin and end at any moment: of a formula each new value counts, and not its sign alone.
+        let atoms = monitor.formula.iter().flat_map(|formula| &formula.atoms);
+        let readings = atoms.filter_map(|atom| atom.what.reading());
+        for guard in conditions.map(Cow::Borrowed).chain(readings.map(Cow::Owned)) {
             if guards.iter().all(|(known, _)| *known != guard) {
                 guards.push((guard, None));
             }
@@ -186,7 +193,8 @@ impl<'p> SampleWatch<'p> {
 
 /// Whether a monitor reacts to samples, or takes its margin at each.
 fn judges_samples(monitor: &Monitor) -> bool {
-    !monitor.conditions.is_empty()
+    monitor.formula.is_some()
+        || !monitor.conditions.is_empty()
         || monitor.edges.iter().any(|edge| edge.on == MonitorTrigger::Sample)
         || monitor.margin.as_ref().is_some_and(|margin| margin.at.is_empty())
 }

@@ -9,10 +9,11 @@ use hrdsl_ir::{
     value::{nanos, seconds},
     world::SignalId,
 };
+use hrdsl_metric::{CheckedFormula, MetricRunner};
 use hrdsl_results::{FirstFailure, SubformulaReading, SubformulaValue, SubformulaValues, TraceJudgement};
 use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind, print};
 
-use crate::{JudgeError, NamedFormula, recording::observe};
+use crate::{JudgeError, NamedFormula, formula_parts::formulas_over_time, recording::observe};
 
 /// Reads a recording once more, and puts the values of the parts of each violated requirement and formula into its first violation, from so
 /// long before it to so long after it. The judgement is that on the recording, with the formulas' verdicts behind the requirements'.
@@ -29,21 +30,29 @@ pub fn tell_values_around(
     let mut watches = Vec::new();
     for (place, verdict) in judgement.verdicts.iter().enumerate() {
         let Some(failure) = &verdict.failure else { continue };
-        let parts = match program.monitors.get(place) {
-            Some(monitor) => parts_of(program, monitor),
-            None => formulas.get(place - program.monitors.len()).map_or_else(Vec::new, |f| named(program, f)),
+        let monitor = program.monitors.get(place);
+        let formula = match monitor {
+            Some(monitor) => CheckedFormula::of_monitor(monitor),
+            None => formulas.get(place - program.monitors.len()).map(|named| named.formula.clone()),
+        };
+        let parts = match (&formula, monitor) {
+            (Some(formula), _) => named(program, formula),
+            (None, Some(monitor)) => parts_of(program, monitor),
+            (None, None) => Vec::new(),
         };
         let at = nanos(failure.time);
         let window = (at.saturating_sub(around).max(0), at.saturating_add(around));
-        watches.push((place, PartsWatch::new(program, parts, window)));
+        let formula = formula.map(|formula| (MetricRunner::new(&formula).taping(), formula));
+        let parts = PartsWatch::new(program, parts, window);
+        watches.push(FailureWatch { place, parts, formula });
     }
     if watches.is_empty() {
         return Ok(());
     }
     let mut watches = WatchedFailures(watches);
     observe(program, source, changed, &mut watches)?;
-    for (place, watch) in watches.0 {
-        let failure = judgement.verdicts.get_mut(place).and_then(|verdict| verdict.failure.as_mut());
+    for watch in watches.0 {
+        let failure = judgement.verdicts.get_mut(watch.place).and_then(|verdict| verdict.failure.as_mut());
         if let Some(FirstFailure { around, .. }) = failure {
             *around = watch.told();
         }
@@ -99,13 +108,13 @@ fn parts_of(program: &Program, monitor: &Monitor) -> Vec<RequirementPart> {
 }
 
 /// The events and signals that a formula names.
-fn named(program: &Program, formula: &NamedFormula) -> Vec<RequirementPart> {
-    let events = formula.formula.events().map(|pattern| RequirementPart {
+fn named(program: &Program, formula: &CheckedFormula) -> Vec<RequirementPart> {
+    let events = formula.events().map(|pattern| RequirementPart {
         text: program.pattern_text(pattern),
         unit: Unit::None,
         what: WatchedPart::Event(pattern.clone()),
     });
-    let signals = formula.formula.signals().iter().map(|signal| RequirementPart {
+    let signals = formula.signals().iter().map(|signal| RequirementPart {
         text: program.signal(*signal).name.clone(),
         unit: print::unit_of(program.signal(*signal).ty),
         what: WatchedPart::Value(Expr::Var(signal.0)),
@@ -329,15 +338,45 @@ impl TraceObserver for PartsWatch {
     }
 }
 
-/// Those of several requirements, each with its place among the verdicts.
-struct WatchedFailures(Vec<(usize, PartsWatch)>);
+/// What is watched of one violated requirement: its parts and, of a formula, the formulas in it.
+struct FailureWatch {
+    /// Its place among the verdicts.
+    place: usize,
+    parts: PartsWatch,
+    formula: Option<(MetricRunner, CheckedFormula)>,
+}
+
+impl FailureWatch {
+    fn told(self) -> Vec<SubformulaValues> {
+        let window = self.parts.window;
+        let mut told = self.parts.told();
+        if let Some((runner, formula)) = self.formula
+            && let Some(tape) = runner.tape()
+        {
+            told.extend(formulas_over_time(&formula, &tape, window));
+        }
+        told
+    }
+}
+
+struct WatchedFailures(Vec<FailureWatch>);
 
 impl TraceObserver for WatchedFailures {
     fn step(&mut self, index: usize, step: &TraceStep) {
-        self.0.iter_mut().for_each(|(_, watch)| watch.step(index, step));
+        for watch in &mut self.0 {
+            watch.parts.step(index, step);
+            if let Some((runner, _)) = &mut watch.formula {
+                runner.step(index, step);
+            }
+        }
     }
 
     fn end(&mut self, time: Nanos) {
-        self.0.iter_mut().for_each(|(_, watch)| watch.end(time));
+        for watch in &mut self.0 {
+            watch.parts.end(time);
+            if let Some((runner, _)) = &mut watch.formula {
+                runner.end(time);
+            }
+        }
     }
 }

@@ -1,8 +1,7 @@
 //! Metric formulas beside the requirements: each has a name, and is judged, told and tallied as a requirement is.
 
 use hrdsl_ir::{Nanos, Program, value::seconds, world::SignalId};
-use hrdsl_metric::{CheckedFormula, FormulaError, FormulaWitness, MetricRunner, read_formula};
-use hrdsl_monitor::SeenStep;
+use hrdsl_metric::{CheckedFormula, FormulaError, FormulaJudgement, FormulaMonitor, read_formula};
 use hrdsl_results::{FirstFailure, VerdictResult};
 use hrdsl_trace::{TraceObserver, TraceStep};
 
@@ -22,43 +21,37 @@ impl NamedFormula {
     pub fn read(program: &Program, name: String, text: &str) -> Result<Self, FormulaError> {
         Ok(Self { name, text: text.to_owned(), formula: read_formula(program, text)? })
     }
-
-    pub(crate) fn witness(&self, time: Nanos) -> FormulaWitness {
-        FormulaWitness::new(&self.formula, time)
-    }
 }
 
 /// A formula over one trace.
 #[derive(Debug)]
 pub(crate) struct FormulaJudge<'p> {
     named: &'p NamedFormula,
-    runner: MetricRunner,
+    monitor: FormulaMonitor,
 }
 
 /// What it comes to, and what is told besides.
 pub(crate) struct JudgedFormula {
     pub verdict: VerdictResult,
-    pub first_failure: Option<Nanos>,
     /// Signals without any value.
     pub unseen: Vec<SignalId>,
 }
 
 impl<'p> FormulaJudge<'p> {
     pub fn new(named: &'p NamedFormula) -> Self {
-        Self { named, runner: MetricRunner::new(&named.formula) }
+        Self { named, monitor: FormulaMonitor::new(&named.formula) }
     }
 
     pub fn step(&mut self, index: usize, step: &TraceStep) {
-        self.runner.step(index, step);
+        self.monitor.step(index, step);
     }
 
     pub fn end(&mut self, time: Nanos) {
-        self.runner.end(time);
+        self.monitor.end(time);
     }
 
-    pub fn finish(self) -> JudgedFormula {
-        let unseen = self.runner.unseen().collect();
-        let outcome = self.runner.outcome();
+    pub fn finish(self, program: &Program) -> JudgedFormula {
+        let FormulaJudgement { outcome, steps, unseen } = self.monitor.finish();
         let unit = self.named.formula.unit.map(|unit| unit.symbol().to_owned());
         let verdict = VerdictResult {
             requirement: self.named.name.as_str().into(),
@@ -69,18 +62,11 @@ impl<'p> FormulaJudge<'p> {
                 time: seconds(time),
                 triggered_at: seconds(time),
                 deadline: false,
-                counterexample: Vec::new(),
+                counterexample: counterexample(program, &steps),
                 around: Vec::new(),
             }),
             worst_margin: outcome.margin().zip(unit),
         };
-        JudgedFormula { verdict, first_failure: outcome.first_failure, unseen }
-    }
-}
-
-/// The steps that bear a violation out are looked for once its time is known.
-pub(crate) fn bear_out(program: &Program, verdict: &mut VerdictResult, steps: &[SeenStep]) {
-    if let Some(failure) = &mut verdict.failure {
-        failure.counterexample = counterexample(program, steps);
+        JudgedFormula { verdict, unseen }
     }
 }

@@ -13,13 +13,14 @@
 
 mod around;
 mod formula;
+mod formula_parts;
 mod machines;
 mod recording;
 mod tally;
 
 use hrdsl_conformance::{ConformanceChecker, ConformanceOptions};
 use hrdsl_coverage::{CoverageCollector, MachineCollector, MachineHits};
-use hrdsl_ir::{Nanos, Program, value::seconds};
+use hrdsl_ir::{Nanos, Program, monitor::Monitor, value::seconds};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict, SeenStep};
 use hrdsl_results::{
     CounterexampleStep, FirstFailure, MachineCoverage, TraceJudgement, VerdictOutcome, VerdictResult,
@@ -107,23 +108,24 @@ fn machine_coverage(hits: MachineHits) -> (MachineCoverage, MachineDeclaration) 
 #[expect(clippy::indexing_slicing, reason = "the verdicts are of this program's monitors")]
 fn verdict_result(program: &Program, verdict: &MonitorVerdict) -> VerdictResult {
     let monitor = &program.monitors[verdict.monitor];
-    let unit = monitor.margin.as_ref().map_or("", |m| m.unit.symbol());
+    let unit = monitor.margin_unit().map_or("", |unit| unit.symbol());
     VerdictResult {
         requirement: monitor.name.as_str().into(),
         outcome: outcome_of(verdict.outcome),
         triggered: verdict.triggered,
         failures: verdict.failures,
-        failure: failure(program, verdict),
+        failure: failure(program, monitor, verdict),
         worst_margin: verdict.worst_margin.map(|(value, _)| (value, unit.to_owned())),
     }
 }
 
-fn failure(program: &Program, verdict: &MonitorVerdict) -> Option<FirstFailure> {
+fn failure(program: &Program, monitor: &Monitor, verdict: &MonitorVerdict) -> Option<FirstFailure> {
     let violation = verdict.first_failure.as_ref()?;
     Some(FirstFailure {
         time: seconds(violation.time),
         triggered_at: seconds(violation.trigger_time),
-        deadline: violation.step.is_none(),
+        // Of a formula the moment is told that failed, whatever showed it.
+        deadline: violation.step.is_none() && monitor.formula.is_none(),
         counterexample: counterexample(program, &violation.counterexample),
         around: Vec::new(),
     })

@@ -15,7 +15,7 @@ use thiserror::Error;
 
 use crate::{
     TraceJudge,
-    formula::{FormulaJudge, JudgedFormula, NamedFormula, bear_out},
+    formula::{FormulaJudge, JudgedFormula, NamedFormula},
 };
 
 /// A recording with the judgement on it.
@@ -78,33 +78,26 @@ pub struct UnseenSignal {
     pub signal: String,
 }
 
-/// The same, by formulas, too, whose verdicts come behind those of the requirements. `source` gives the recording again each time that it is asked:
-/// only when a violation is known, the steps that bear it out can be looked for.
+/// The same, by formulas, too, whose verdicts come behind those of the requirements.
 ///
 /// # Errors
 /// A recording of another scenario, and the first line that is wrong.
-pub fn judge_by_formulas<R: BufRead>(
+pub fn judge_by_formulas(
     (program, formulas): (&Program, &[NamedFormula]),
-    source: &dyn Fn() -> std::io::Result<R>,
+    source: impl BufRead,
     changed: bool,
     options: &ConformanceOptions,
 ) -> Result<(JudgedRecording, Vec<UnseenSignal>), JudgeError> {
-    let reopened = || source().map_err(ReadError::Io);
     let mut judges = JudgesBesides {
         judge: TraceJudge::new(program, options),
         formulas: formulas.iter().map(FormulaJudge::new).collect(),
     };
-    let recorded = observe(program, reopened()?, changed, &mut judges)?;
+    let recorded = observe(program, source, changed, &mut judges)?;
     let ended = recorded.ending.kind;
     let (mut judgement, machines) = judges.judge.finish(ended);
     let (mut verdicts, mut unseen) = (Vec::new(), Vec::new());
     for (named, judge) in formulas.iter().zip(judges.formulas) {
-        let JudgedFormula { mut verdict, first_failure, unseen: signals } = judge.finish();
-        if let Some(time) = first_failure {
-            let mut witness = named.witness(time);
-            observe(program, reopened()?, changed, &mut witness)?;
-            bear_out(program, &mut verdict, &witness.steps());
-        }
+        let JudgedFormula { verdict, unseen: signals } = judge.finish(program);
         verdicts.push(verdict);
         let named_signals = signals.iter().filter_map(|s| program.signals.get(usize::from(s.0)));
         unseen.extend(

@@ -1,6 +1,6 @@
 //! Atoms: what a formula reads of signals and events, as robustness.
 
-use hrdsl_ir::{EventPattern, Value};
+use hrdsl_ir::{EventPattern, Expr, Value, formula::FormulaAtomKind};
 
 use crate::robustness::Robustness;
 
@@ -8,6 +8,8 @@ use crate::robustness::Robustness;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum NumberTerm {
     Constant(f64),
+    /// `Expr::Var(i)` is the signal `i`.
+    Expression(Expr),
     Signal(usize),
     Negative(Box<NumberTerm>),
     Absolute(Box<NumberTerm>),
@@ -29,6 +31,7 @@ impl NumberTerm {
     fn value(&self, signals: &[Option<Value>]) -> Option<f64> {
         Some(match self {
             Self::Constant(number) => *number,
+            Self::Expression(expr) => value_of(expr, signals)?.as_f64()?,
             Self::Signal(signal) => signals.get(*signal).copied().flatten()?.as_f64()?,
             Self::Negative(a) => -a.value(signals)?,
             Self::Absolute(a) => a.value(signals)?.abs(),
@@ -51,6 +54,7 @@ impl NumberTerm {
     fn each_signal(&self, f: &mut dyn FnMut(usize)) {
         match self {
             Self::Constant(_) => {}
+            Self::Expression(expr) => expr.each_var(&mut |signal| f(usize::from(signal))),
             Self::Signal(signal) => f(*signal),
             Self::Negative(a) | Self::Absolute(a) => a.each_signal(f),
             Self::Binary(_, a, b) => {
@@ -59,6 +63,11 @@ impl NumberTerm {
             }
         }
     }
+}
+
+/// `None`: it reads a signal without a value, or has none for another reason.
+fn value_of(expr: &Expr, signals: &[Option<Value>]) -> Option<Value> {
+    expr.eval(&|signal| signals.get(usize::from(signal)).copied().flatten()).ok()
 }
 
 /// What an atom is.
@@ -77,6 +86,8 @@ pub(crate) enum AtomSource {
     },
     /// A signal is true.
     Truth(usize),
+    /// A condition over signals is true.
+    Holds(Expr),
     /// A signal has this value.
     Is {
         signal: usize,
@@ -88,6 +99,21 @@ pub(crate) enum AtomSource {
 }
 
 impl AtomSource {
+    /// That of a requirement.
+    pub fn of(atom: &FormulaAtomKind) -> Self {
+        let number = |expr: &Expr| NumberTerm::Expression(expr.clone());
+        match atom {
+            FormulaAtomKind::Happens(pattern) => Self::Happens(pattern.clone()),
+            FormulaAtomKind::Less { least, most, strict } => {
+                Self::Less { least: number(least), most: number(most), strict: *strict }
+            }
+            FormulaAtomKind::Equal { left, right, negated } => {
+                Self::Equal { left: number(left), right: number(right), negated: *negated }
+            }
+            FormulaAtomKind::Holds(condition) => Self::Holds(condition.clone()),
+        }
+    }
+
     /// `None`: it has no value, or none yet. An event does not happen.
     pub fn robustness(&self, signals: &[Option<Value>]) -> Option<Robustness> {
         match self {
@@ -101,6 +127,7 @@ impl AtomSource {
             Self::Truth(signal) => {
                 signals.get(*signal).copied().flatten()?.as_bool().map(Robustness::of_truth)
             }
+            Self::Holds(condition) => value_of(condition, signals)?.as_bool().map(Robustness::of_truth),
             Self::Is { signal, value, negated } => {
                 let is = signals.get(*signal).copied().flatten()?.key() == value.key();
                 Some(Robustness::of_truth(is != *negated))
@@ -117,6 +144,7 @@ impl AtomSource {
                 b.each_signal(f);
             }
             Self::Truth(signal) | Self::Is { signal, .. } => f(*signal),
+            Self::Holds(condition) => condition.each_var(&mut |signal| f(usize::from(signal))),
             Self::Happens(_) => {}
         }
     }

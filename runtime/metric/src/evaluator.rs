@@ -1,7 +1,10 @@
 //! A goal over one run: what comes of it, carried along while the atoms become known.
 
-use hrdsl_ir::Nanos;
-use hrdsl_monitor::MonitorOutcome;
+use hrdsl_ir::{
+    Nanos,
+    formula::{MetricFormula, MetricGoal},
+    monitor::MonitorOutcome,
+};
 
 use crate::{
     engine::{
@@ -9,7 +12,6 @@ use crate::{
         piece::SignalPiece,
     },
     fold::GoalProgress,
-    formula::{MetricFormula, MetricGoal},
     robustness::Robustness,
 };
 
@@ -102,6 +104,11 @@ impl MetricEvaluator {
         self.goal.advance(AtomNews { pieces: &self.news, known, beyond: None }, known);
         self.news.iter_mut().for_each(Vec::clear);
         self.waiting = 0;
+    }
+
+    /// When it became violated first, as far as that is certain of what was taken.
+    pub(crate) fn first_failure(&self) -> Option<Nanos> {
+        self.goal.told().first_failure
     }
 
     /// The run has ended; its last moment is `end`.

@@ -1,6 +1,9 @@
 //! What becomes of a goal along a run: each part that looks at every moment keeps one number, or two.
 
-use hrdsl_ir::Nanos;
+use hrdsl_ir::{
+    Nanos,
+    formula::{MetricFormula, MetricGoal},
+};
 
 use crate::{
     engine::{
@@ -8,7 +11,6 @@ use crate::{
         piece::{one_by_one, side_by_side},
         reach::ReachMap,
     },
-    formula::{MetricFormula, MetricGoal},
     robustness::Robustness,
 };
 

@@ -1,12 +1,12 @@
 //! A formula over a trace: samples and events to atoms, moment by moment.
 
-use hrdsl_ir::{EventId, Nanos, Value, world::SignalId};
+use hrdsl_ir::{EventId, Nanos, Value, formula::MetricGoal, world::SignalId};
 use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
 
 use crate::{
     atom::AtomSource,
+    engine::piece::SignalPiece,
     evaluator::{MetricEvaluator, MetricOutcome},
-    formula::MetricGoal,
     robustness::Robustness,
     text::CheckedFormula,
 };
@@ -31,7 +31,19 @@ pub struct MetricRunner {
     /// Events that happened at the instant before, and when they are over.
     passing: (Nanos, Vec<usize>),
     evaluator: Option<MetricEvaluator>,
+    /// What the atoms were over time, if somebody asks for it.
+    tape: Option<Vec<Vec<SignalPiece>>>,
+    start: Nanos,
     end: Option<Nanos>,
+}
+
+/// What the atoms of a formula were in a run, from its first moment to its last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtomsOverTime {
+    pub start: Nanos,
+    pub end: Nanos,
+    /// For each atom a piece at the start, and one for each change.
+    pub atoms: Vec<Vec<SignalPiece>>,
 }
 
 impl MetricRunner {
@@ -62,8 +74,25 @@ impl MetricRunner {
             now: 0,
             passing: (0, Vec::new()),
             evaluator: None,
+            tape: None,
+            start: 0,
             end: None,
         }
+    }
+
+    /// The same, which keeps what the atoms are, in memory that grows with the trace.
+    #[must_use]
+    pub fn taping(mut self) -> Self {
+        self.tape = Some(vec![Vec::new(); self.atoms.len()]);
+        self
+    }
+
+    /// What the atoms were, if it was [taping](Self::taping) and the formula has a first moment.
+    #[must_use]
+    pub fn tape(mut self) -> Option<AtomsOverTime> {
+        let end = self.close();
+        self.evaluator.as_ref()?;
+        Some(AtomsOverTime { start: self.start, end, atoms: self.tape? })
     }
 
     /// The signals of the formula that have had no sample.
@@ -72,9 +101,25 @@ impl MetricRunner {
         places.filter(|(_, value)| value.is_none()).map(|(signal, _)| *signal)
     }
 
+    /// Moments before this are known, if all that happened before the latest step was shown; and when the formula became violated first, as far
+    /// as that is certain by them.
+    pub(crate) fn settle(&mut self) -> (Nanos, Option<Nanos>) {
+        // What happened at the instant before is over so much later, which is not yet taken.
+        let known = if self.passing.1.is_empty() { self.now } else { self.now.min(self.passing.0) };
+        let Some(evaluator) = &mut self.evaluator else { return (known, None) };
+        evaluator.advance_now(known);
+        (known, evaluator.first_failure())
+    }
+
     /// What the run comes to, once it has ended; up to then, what it would come to if it ended with its latest step.
     #[must_use]
     pub fn outcome(mut self) -> MetricOutcome {
+        let end = self.close();
+        self.evaluator.map_or(MetricOutcome::UNSEEN, |evaluator| evaluator.finish(end))
+    }
+
+    /// All that was shown is known now; its end.
+    fn close(&mut self) -> Nanos {
         let end = self.end.unwrap_or(self.now);
         if self.end.is_none() {
             self.close_instant();
@@ -84,7 +129,7 @@ impl MetricRunner {
             self.passing.1.clear();
         }
         self.close_instant();
-        self.evaluator.map_or(MetricOutcome::UNSEEN, |evaluator| evaluator.finish(end))
+        end
     }
 
     fn event(&mut self, event: EventId, args: &[Value]) {
@@ -94,6 +139,7 @@ impl MetricRunner {
                 AtomSource::Less { .. }
                 | AtomSource::Equal { .. }
                 | AtomSource::Truth(_)
+                | AtomSource::Holds(_)
                 | AtomSource::Is { .. } => false,
             };
             if self.atoms.get(index).is_some_and(matches) && !self.happening.contains(&index) {
@@ -118,21 +164,29 @@ impl MetricRunner {
         if self.evaluator.is_none() {
             self.begin();
         }
-        let Self { evaluator, touched, happening, passing, now, .. } = self;
+        let Self { evaluator, tape, touched, happening, passing, now, .. } = self;
         if let Some(evaluator) = evaluator {
+            let mut change = |index: usize, start: Nanos, value: Robustness| {
+                evaluator.change(index, start, value);
+                if let Some(pieces) = tape.as_mut().and_then(|tape| tape.get_mut(index))
+                    && pieces.last().is_none_or(|last| last.value != value)
+                {
+                    pieces.push(SignalPiece { start, value });
+                }
+            };
             for index in passing.1.drain(..) {
                 // An event that happens in the next nanosecond, too, goes on.
                 if passing.0 < *now || !happening.contains(&index) {
-                    evaluator.change(index, passing.0, Robustness::FALSE);
+                    change(index, passing.0, Robustness::FALSE);
                 }
             }
             for index in touched.drain(..) {
                 // What has no value stays as it was.
                 if let Some(value) = self.atoms.get(index).and_then(|a| a.robustness(&self.values)) {
-                    evaluator.change(index, *now, value);
+                    change(index, *now, value);
                 }
             }
-            happening.iter().for_each(|index| evaluator.change(*index, *now, Robustness::TRUE));
+            happening.iter().for_each(|index| change(*index, *now, Robustness::TRUE));
             evaluator.advance(now.saturating_add(1));
             *passing = (now.saturating_add(1), std::mem::take(happening));
         }
@@ -149,6 +203,10 @@ impl MetricRunner {
         });
         if let Some(values) = values.collect::<Option<Vec<_>>>() {
             self.evaluator = Some(MetricEvaluator::new(&self.goal, start, &values));
+            self.start = start;
+            for (pieces, value) in self.tape.iter_mut().flatten().zip(values) {
+                pieces.push(SignalPiece { start, value });
+            }
         }
     }
 }

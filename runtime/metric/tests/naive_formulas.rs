@@ -9,12 +9,11 @@ mod dice;
 
 use definition::{at, goal_bounds};
 use dice::Dice;
-use hrdsl_ir::Nanos;
+use hrdsl_ir::{Nanos, monitor::MonitorOutcome};
 use hrdsl_metric::{
     FutureWindow, MetricEvaluator, MetricFormula, MetricGoal, PastWindow, Robustness, SignalPiece,
     robustness_over_time,
 };
-use hrdsl_monitor::MonitorOutcome;
 
 const ATOMS: usize = 3;
 

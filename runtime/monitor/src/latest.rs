@@ -1,9 +1,7 @@
 //! The latest samples of the signals.
 
 use hrdsl_ir::{Nanos, Value, world::SignalId};
-use hrdsl_trace::{TraceStep, TraceStepKind};
-
-use crate::verdict::SeenStep;
+use hrdsl_trace::{SeenStep, TraceStep, TraceStepKind};
 
 /// The latest sample of each signal of the program.
 #[derive(Clone, Debug)]

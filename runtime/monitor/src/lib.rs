@@ -2,7 +2,7 @@
 //!
 //! The [`MonitorRunner`] is an [`TraceObserver`]: it is shown the steps of a run, live or recorded, one by one, and keeps nothing but
 //! each automaton's state, counters, first failure, and the latest sample of each signal. Its memory does not grow with
-//! the trace.
+//! the trace. A requirement that is a formula is judged by a [`FormulaMonitor`](hrdsl_metric::FormulaMonitor), in memory for what its windows hold.
 //!
 //! # Steps
 //! 1. [`MonitorRunner::new`] readies all monitors of a program and indexes them by the events and signals they read.
@@ -13,6 +13,7 @@
 //! 4. [`MonitorRunner::verdicts`] judges.
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
+mod formula;
 mod latest;
 mod machine;
 mod verdict;
@@ -20,9 +21,12 @@ mod verdict;
 use hrdsl_ir::{EventPattern, Nanos, Program, monitor::MonitorTrigger};
 use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
 
+use formula::RequiredFormulas;
+pub use hrdsl_ir::monitor::MonitorOutcome;
+pub use hrdsl_trace::SeenStep;
 use latest::{LatestSamples, SampleReading};
 use machine::{MonitorMachine, TraceMoment};
-pub use verdict::{MonitorHappening, MonitorOutcome, MonitorVerdict, SeenStep, Violation};
+pub use verdict::{MonitorHappening, MonitorVerdict, Violation};
 
 /// Runs all monitors of a program over one trace.
 #[derive(Clone, Debug)]
@@ -32,6 +36,7 @@ pub struct MonitorRunner {
     by_event: Vec<Vec<usize>>,
     /// For each signal of the program, the monitors that read it.
     by_signal: Vec<Vec<usize>>,
+    formulas: RequiredFormulas,
     signals: LatestSamples,
     /// For each monitor the last of the samples of this instant that it has not yet reacted to.
     sampled: Vec<Option<TraceMoment>>,
@@ -58,23 +63,25 @@ impl MonitorRunner {
             for pattern in on_edges.chain(at_margin) {
                 enter(&mut by_event, pattern_key(pattern), index);
             }
-            for signal in &monitor.signals {
+            // A formula has no machine that would take samples.
+            let signals = if monitor.formula.is_some() { &[][..] } else { &monitor.signals };
+            for signal in signals {
                 enter(&mut by_signal, usize::from(signal.0), index);
             }
         }
         let next_due = earliest(&machines);
         let signals = LatestSamples::new(program.signals.len());
         let sampled = vec![None; machines.len()];
-        Self { machines, by_event, by_signal, signals, sampled, now: 0, next_due, ended: false }
+        let formulas = RequiredFormulas::new(program);
+        Self { machines, by_event, by_signal, formulas, signals, sampled, now: 0, next_due, ended: false }
     }
 
     /// The verdicts, in the order of the program's monitors.
     ///
     /// Without a call of [`TraceObserver::end`] they are those of the trace so far: no time has passed since its last step.
     #[must_use]
-    pub fn verdicts(mut self) -> Vec<MonitorVerdict> {
-        self.take_all_samples();
-        self.machines.into_iter().enumerate().map(|(index, machine)| machine.verdict(index)).collect()
+    pub fn verdicts(self) -> Vec<MonitorVerdict> {
+        self.recounted().into_iter().map(|(verdict, _)| verdict).collect()
     }
 
     /// The same, which keeps all that the monitors do, in memory that grows with the trace.
@@ -92,7 +99,13 @@ impl MonitorRunner {
             let history = machine.take_history();
             (machine.verdict(index), history)
         };
-        self.machines.into_iter().enumerate().map(told).collect()
+        let mut told: Vec<_> = self.machines.into_iter().enumerate().map(told).collect();
+        for (verdict, history) in self.formulas.finish(self.now) {
+            if let Some(place) = told.get_mut(verdict.monitor) {
+                *place = (verdict, history);
+            }
+        }
+        told
     }
 
     /// Lets a monitor react to the samples of this instant, as to one: a condition over several signals never sees some of
@@ -133,6 +146,7 @@ impl TraceObserver for MonitorRunner {
         self.now = self.now.max(step.time);
         self.fire_before(self.now);
         let at = TraceMoment { time: self.now, step: Some(index) };
+        self.formulas.step(index, step);
         match &step.what {
             TraceStepKind::Event { event, args } => {
                 let event_index = usize::from(event.0);

@@ -2,14 +2,14 @@
 
 use hrdsl_ir::{
     EventId, Expr, Nanos, Value,
-    monitor::{Monitor, MonitorEdge, MonitorEffect, MonitorTrigger, StateId},
+    monitor::{Monitor, MonitorEdge, MonitorEffect, MonitorOutcome, MonitorTrigger, StateId},
 };
 
-use hrdsl_trace::{TraceStep, TraceStepKind};
+use hrdsl_trace::{SeenStep, TraceStep, TraceStepKind};
 
 use crate::{
     latest::LatestSamples,
-    verdict::{MonitorHappening, MonitorOutcome, MonitorVerdict, SeenStep, Violation},
+    verdict::{MonitorHappening, MonitorVerdict, Violation},
 };
 
 /// When something happened, and by which step of the trace; a deadline has none.

@@ -58,6 +58,7 @@ fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<MonitorEdge>) -> Monitor
         conditions: Vec::new(),
         edges,
         margin: None,
+        formula: None,
         origin: Span::default(),
     }
 }

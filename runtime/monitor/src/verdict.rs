@@ -1,33 +1,11 @@
 //! Verdicts: what a monitor has to say about a trace.
 
-use std::fmt;
-
-use hrdsl_ir::{Nanos, Value, monitor::MonitorEffect, world::SignalId};
-use hrdsl_trace::TraceStep;
-
-/// The judgement on one requirement in one trace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum MonitorOutcome {
-    /// It was triggered, and held.
-    Pass,
-    /// It was violated at least once.
-    Fail,
-    /// It was never triggered: the trace says nothing about it.
-    Vacuous,
-    /// It was not violated, but the trace ended while an obligation was pending.
-    Inconclusive,
-}
-
-impl fmt::Display for MonitorOutcome {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            MonitorOutcome::Pass => "pass",
-            MonitorOutcome::Fail => "fail",
-            MonitorOutcome::Vacuous => "vacuous",
-            MonitorOutcome::Inconclusive => "inconclusive",
-        })
-    }
-}
+use hrdsl_ir::{
+    Nanos, Value,
+    monitor::{MonitorEffect, MonitorOutcome},
+    world::SignalId,
+};
+use hrdsl_trace::SeenStep;
 
 /// One monitor's outcome with the figures and steps that support it.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,12 +50,4 @@ pub struct MonitorHappening {
     pub due: Option<Nanos>,
     /// The values of the monitor's signals, so far as they have any; only of what fails.
     pub values: Vec<(SignalId, Value)>,
-}
-
-/// A step of the trace, which need not be kept for it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SeenStep {
-    /// Its place in the trace, from 0.
-    pub index: usize,
-    pub step: TraceStep,
 }

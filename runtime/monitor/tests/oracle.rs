@@ -59,6 +59,7 @@ fn monitor(
         conditions: Vec::new(),
         edges,
         margin: None,
+        formula: None,
         origin: Span::default(),
     }
 }

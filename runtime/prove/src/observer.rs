@@ -111,6 +111,11 @@ struct ObserverPlan<'m> {
 
 impl<'m> ObserverPlan<'m> {
     fn of(monitor: &'m Monitor) -> Result<Self, String> {
+        if monitor.formula.is_some() {
+            return Err(
+                "it is a formula, whose windows are more than the one clock of an observer".to_owned()
+            );
+        }
         let samples = monitor.edges.iter().any(|e| e.guard.is_some() || e.on == MonitorTrigger::Sample);
         if samples || !monitor.conditions.is_empty() || !monitor.signals.is_empty() {
             return Err("it reads signals of the world, which a network does not have".to_owned());

@@ -201,6 +201,7 @@ fn monitor(dice: &mut Dice) -> Monitor {
         conditions: Vec::new(),
         edges,
         margin: None,
+        formula: None,
         origin: Span::default(),
     }
 }

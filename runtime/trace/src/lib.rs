@@ -46,6 +46,14 @@ pub enum TraceStepKind {
     Machine(Box<MachineStep>),
 }
 
+/// A step of a trace that need not be kept for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeenStep {
+    /// Its place in the trace, from 0.
+    pub index: usize,
+    pub step: TraceStep,
+}
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

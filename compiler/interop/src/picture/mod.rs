@@ -1,5 +1,6 @@
 //! A network as a picture: each automaton's locations and edges, in DOT (Graphviz) or as a Mermaid state diagram; monitors in DOT.
 
+mod formulas;
 mod monitors;
 mod show;
 

@@ -8,10 +8,10 @@ use hrdsl_ir::{
     ta::{Automaton, AutomatonVar, LocationId},
 };
 
-use super::{lines, quoted, show::AutomatonPrinter};
+use super::{formulas::formula_dot, lines, quoted, show::AutomatonPrinter};
 use crate::exchange::time::seconds;
 
-/// All monitors in DOT: a cluster for each. States in which something is pending have a second border.
+/// All monitors in DOT: a cluster for each. States in which something is pending have a second border; so has what a formula asks of the run.
 #[must_use]
 pub fn monitors_dot(program: &Program) -> String {
     // What its expressions read are the signals, by their places, and no variables.
@@ -22,6 +22,11 @@ pub fn monitors_dot(program: &Program) -> String {
     for (i, monitor) in program.monitors.iter().enumerate() {
         let label = quoted(&format!("{}: {}", monitor.name, monitor.text));
         let _ = writeln!(out, "  subgraph cluster_{i} {{\n    label = {label}");
+        if let Some(formula) = &monitor.formula {
+            out.push_str(&formula_dot(&program, i, formula));
+            out.push_str("  }\n");
+            continue;
+        }
         let automaton = with_signals(&program, monitor);
         let show = AutomatonPrinter::of(&program, &automaton);
         let _ = writeln!(out, "    n{i}_start [shape = point]");

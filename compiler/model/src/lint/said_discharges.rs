@@ -58,6 +58,7 @@ fn in_pattern<'a>(scenario: &Scenario, sentence: &'a TypedPattern) -> Option<Wea
         RequirementPattern::Counts { events, bound: CountBound::AtLeast | CountBound::Exactly, .. } => {
             asked(scenario, "counts", events)
         }
+        RequirementPattern::Formula(formula) => asked(scenario, "is met by", formula.met_by()),
         // Its scope alone triggers it: who keeps silent passes.
         RequirementPattern::NeverWhile { events, condition: None }
         | RequirementPattern::Counts { events, bound: CountBound::AtMost, .. }

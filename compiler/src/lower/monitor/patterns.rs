@@ -14,6 +14,7 @@ use super::{
     parts::{MonitorParts, PatternPart, events},
     scopes::ScopeSort,
 };
+use crate::lower::expr::ruled_out;
 use MonitorEffect::{Discharge, Fail, ResetClock, Trigger};
 
 type TypedPlainPattern = RequirementPattern<TypedOccurrence, model::TypedExpr, f64, u32>;
@@ -46,6 +47,7 @@ impl MonitorParts<'_, '_> {
                     CountBound::Exactly => self.at_least(events, count, true),
                 }
             }
+            RequirementPattern::Formula(_) => ruled_out("formula as an automaton"),
             RequirementPattern::Lasts { condition, bound, time } => {
                 let time = time.unwrap_or(0.0);
                 match bound {

@@ -71,7 +71,7 @@ pub(super) fn weakness(toks: &[PrintToken<'_>], at: usize, first: usize) -> Opti
 
 fn operator(n: &PrintToken<'_>) -> Option<BindingStrength> {
     Some(match n.kind {
-        TokenKind::Else | TokenKind::Or | TokenKind::OrOr | TokenKind::Pipe => 3,
+        TokenKind::Else | TokenKind::Or | TokenKind::OrOr | TokenKind::Pipe | TokenKind::Implies => 3,
         TokenKind::And | TokenKind::AndAnd => 4,
         TokenKind::Eq | TokenKind::Ne | TokenKind::Lt | TokenKind::Le | TokenKind::Gt | TokenKind::Ge => 5,
         TokenKind::Plus | TokenKind::Minus if !n.mark.prefix => 6,

@@ -1,16 +1,16 @@
 //! Operators at work: each reads the pieces of its operands and writes its own, as far as they are certain.
 
-use hrdsl_ir::Nanos;
+use hrdsl_ir::{
+    Nanos,
+    formula::{MetricFormula, PastWindow},
+};
 
 use super::{
     extremum::SlidingExtremum,
     piece::{PieceFeed, SignalPiece, side_by_side},
     reach::{ReachMap, SlidingReach},
 };
-use crate::{
-    formula::{MetricFormula, PastWindow},
-    robustness::Robustness,
-};
+use crate::robustness::Robustness;
 
 /// What is new of the atoms' signals.
 #[derive(Clone, Copy, Debug)]

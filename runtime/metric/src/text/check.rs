@@ -1,6 +1,9 @@
 //! The tree with the names, types and units of a scenario.
 
-use hrdsl_ir::{Nanos, Program, Unit};
+use hrdsl_ir::{
+    Nanos, Program, Unit,
+    formula::{FutureWindow, MetricFormula, MetricGoal, PastWindow},
+};
 
 use super::{
     checked::CheckedFormula,
@@ -8,7 +11,6 @@ use super::{
     terms::{Checked, FormulaChecker},
     tree::{FormulaTree, InfixWord, JunctionWord, PrefixWord, TreeKind, WindowTree},
 };
-use crate::formula::{FutureWindow, MetricFormula, MetricGoal, PastWindow};
 
 /// The reach of a whole formula, some thirty years: what is longer is a slip, and times stay far from their end.
 const FARTHEST: Nanos = 1_000_000_000_000_000_000;
@@ -18,15 +20,21 @@ pub(crate) fn check(
     text: &str,
     tree: &FormulaTree,
 ) -> Result<CheckedFormula, FormulaError> {
-    let mut checker =
-        FormulaChecker { program, text, signals: Vec::new(), atoms: Vec::new(), units: Vec::new() };
+    let mut checker = FormulaChecker {
+        program,
+        text,
+        signals: Vec::new(),
+        atoms: Vec::new(),
+        texts: Vec::new(),
+        units: Vec::new(),
+    };
     let goal = checker.goal(tree)?;
     checker.units.dedup();
     let unit = match checker.units.as_slice() {
         [unit] => Some(*unit),
         _ => None,
     };
-    Ok(CheckedFormula { goal, atoms: checker.atoms, signals: checker.signals, unit })
+    Ok(CheckedFormula { goal, atoms: checker.atoms, texts: checker.texts, signals: checker.signals, unit })
 }
 
 /// Whether an operator without a window that looks into the future is in it.

@@ -1,6 +1,6 @@
 //! What formulas are made of: atoms and numbers, with the names, types and units of a scenario.
 
-use hrdsl_ir::{Program, Type, Unit, Value, world::SignalId};
+use hrdsl_ir::{Program, Type, Unit, Value, formula::MetricFormula, world::SignalId};
 use hrdsl_source::Enumeration;
 
 use super::{
@@ -8,10 +8,7 @@ use super::{
     names::{Named, resolve},
     tree::{Comparator, FormulaTree, TermFunction, TermOperator, TreeKind},
 };
-use crate::{
-    atom::{AtomSource, NumberOperator, NumberTerm},
-    formula::MetricFormula,
-};
+use crate::atom::{AtomSource, NumberOperator, NumberTerm};
 
 pub(super) type Checked<T> = Result<T, FormulaError>;
 
@@ -21,6 +18,8 @@ pub(super) struct FormulaChecker<'a> {
     pub text: &'a str,
     pub signals: Vec<SignalId>,
     pub atoms: Vec<AtomSource>,
+    /// As they are written.
+    pub texts: Vec<String>,
     /// Those of the comparisons so far.
     pub units: Vec<Unit>,
 }
@@ -44,10 +43,11 @@ impl FormulaChecker<'_> {
         self.text.get(range.clone()).unwrap_or_default()
     }
 
-    fn atom(&mut self, atom: AtomSource) -> MetricFormula {
+    fn atom(&mut self, atom: AtomSource, tree: &FormulaTree) -> MetricFormula {
         let known = self.atoms.iter().position(|a| *a == atom);
         MetricFormula::Atom(known.unwrap_or_else(|| {
             self.atoms.push(atom);
+            self.texts.push(self.shown(&tree.range).split_whitespace().collect::<Vec<_>>().join(" "));
             self.atoms.len() - 1
         }))
     }
@@ -68,10 +68,10 @@ impl FormulaChecker<'_> {
             _ => {}
         }
         match resolve(self.program, self.text, tree)? {
-            Named::Event(pattern) => Ok(self.atom(AtomSource::Happens(pattern))),
+            Named::Event(pattern) => Ok(self.atom(AtomSource::Happens(pattern), tree)),
             Named::Signal(signal, Type::Bool) => {
                 let slot = self.slot(signal);
-                Ok(self.atom(AtomSource::Truth(slot)))
+                Ok(self.atom(AtomSource::Truth(slot), tree))
             }
             Named::Signal(_, ty) => {
                 let shown = self.shown(&tree.range);
@@ -104,7 +104,7 @@ impl FormulaChecker<'_> {
                 let (right, right_unit) = self.number(b)?;
                 let unit = self.same_unit(tree, (a, left_unit), (b, right_unit))?;
                 self.units.push(unit);
-                Ok(self.atom(compared(comparator, left, right)))
+                Ok(self.atom(compared(comparator, left, right), tree))
             }
             (Operand::Choice(signal, of), Some(negated)) => {
                 let name = self.shown(&b.range);
@@ -114,7 +114,7 @@ impl FormulaChecker<'_> {
                         FormulaError::new(&b.range, message).help(format!("its values are {}", of.listed()))
                     );
                 };
-                Ok(self.atom(AtomSource::Is { signal, value, negated }))
+                Ok(self.atom(AtomSource::Is { signal, value, negated }, tree))
             }
             (Operand::Choice(..), None) => {
                 let message = format!("`{}` has no order", self.shown(&a.range));

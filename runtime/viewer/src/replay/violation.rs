@@ -39,7 +39,7 @@ fn requirement(
 ) -> ViewRequirement {
     let triggers = history.iter().filter(|h| h.effects.contains(&MonitorEffect::Trigger));
     let told = told(run, history);
-    let unit = monitor.margin.as_ref().map(|margin| margin.unit.symbol().to_owned());
+    let unit = monitor.margin_unit().map(|unit| unit.symbol().to_owned());
     let looked_at = verdict.first_failure.as_ref().map(|failure| failure.time);
     let looked_at = looked_at.or(verdict.worst_margin.map(|(_, time)| time)).unwrap_or_default();
     ViewRequirement {

@@ -1,7 +1,7 @@
 //! What a requirement says: its pattern and its scope, with names resolved and bounds that can be kept.
 
 use hrdsl_syntax::{
-    CountBound, RequirementPattern, SentenceMapping,
+    CountBound, RequirementPattern, SentenceMapping, TemporalFormula, TemporalKind,
     ast::{BinaryOp, CallSyntax, ExprSyntax, ExprSyntaxKind, ParsedPattern},
 };
 
@@ -23,10 +23,17 @@ impl TestingPhase<'_, '_> {
             events: |c: &mut Self, events: &[CallSyntax]| c.occurrences(events),
             condition: Self::condition,
             time: |c: &mut Self, e: &ExprSyntax| c.time(e, "the time", true),
+            bound: |c: &mut Self, e: &ExprSyntax| c.time(e, "the bound of a window", false),
             count: |c: &mut Self, e: &ExprSyntax, bound| c.times_of(e, bound),
         };
         let sentence = parsed.map(self, &to);
         self.can_be_kept(&parsed, &sentence);
+        if let (RequirementPattern::Formula(written), RequirementPattern::Formula(formula)) =
+            (&parsed.pattern, &sentence.pattern)
+        {
+            self.can_be_decided(written, true);
+            self.has_windows(formula);
+        }
         sentence
     }
 
@@ -38,7 +45,26 @@ impl TestingPhase<'_, '_> {
         {
             (*events, *condition) = (calls, None);
         }
+        if let RequirementPattern::Formula(formula) = &mut parsed.pattern {
+            self.name_events(formula);
+        }
         parsed
+    }
+
+    /// The atoms of a formula that are events.
+    fn name_events(&self, formula: &mut TemporalFormula<CallSyntax, ExprSyntax, ExprSyntax>) {
+        match &mut formula.kind {
+            TemporalKind::Condition(e) => {
+                if let Some(calls) = self.as_events(e) {
+                    formula.kind = TemporalKind::Events(calls);
+                }
+            }
+            TemporalKind::Not(of) | TemporalKind::Look { of, .. } => self.name_events(of),
+            TemporalKind::Junction(_, of) | TemporalKind::Reach { of, .. } => {
+                of.iter_mut().for_each(|part| self.name_events(part));
+            }
+            TemporalKind::Constant(_) | TemporalKind::Events(_) => {}
+        }
     }
 
     /// The events that an expression names, if it is nothing but events joined by `or`.

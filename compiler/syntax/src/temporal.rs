@@ -1,0 +1,279 @@
+//! Formulas in metric temporal logic as requirements: their operators, once for the tree and for all after it.
+//!
+//! A formula is over events `E`, conditions `C` and times `T`, as a [`RequirementPattern`](crate::RequirementPattern) is. In the tree all its atoms
+//! are conditions, whatever their names stand for.
+
+use hrdsl_source::Span;
+use serde::Serialize;
+
+use crate::{
+    ast::{CallSyntax, ExprSyntax},
+    pattern::SentenceMapping,
+};
+
+/// A formula where it was written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TemporalFormula<E, C, T> {
+    pub kind: TemporalKind<E, C, T>,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TemporalKind<E, C, T> {
+    Constant(bool),
+    /// One of these happens.
+    Events(Vec<E>),
+    Condition(C),
+    Not(Box<TemporalFormula<E, C, T>>),
+    Junction(TemporalJunction, Box<[TemporalFormula<E, C, T>; 2]>),
+    Look {
+        look: TemporalLook,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        window: Option<TemporalWindow<T>>,
+        of: Box<TemporalFormula<E, C, T>>,
+    },
+    Reach {
+        reach: TemporalReach,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        window: Option<TemporalWindow<T>>,
+        /// What holds all the while, and what is reached.
+        of: Box<[TemporalFormula<E, C, T>; 2]>,
+    },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TemporalJunction {
+    And,
+    Or,
+    Implies,
+}
+
+impl TemporalJunction {
+    /// As it is written.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::And => "and",
+            Self::Or => "or",
+            Self::Implies => "implies",
+        }
+    }
+}
+
+/// At some moment of a window, or at every one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TemporalLook {
+    Always,
+    Eventually,
+    Historically,
+    Once,
+}
+
+impl TemporalLook {
+    /// As it is written.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Always => "always",
+            Self::Eventually => "eventually",
+            Self::Historically => "historically",
+            Self::Once => "once",
+        }
+    }
+
+    /// Whether it speaks of what is still to come.
+    #[must_use]
+    pub fn is_ahead(self) -> bool {
+        match self {
+            Self::Always | Self::Eventually => true,
+            Self::Historically | Self::Once => false,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TemporalReach {
+    Until,
+    Since,
+}
+
+impl TemporalReach {
+    /// As it is written.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Until => "until",
+            Self::Since => "since",
+        }
+    }
+}
+
+/// `[a, b]`: how far from now the operand is looked at, both bounds included.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TemporalWindow<T> {
+    pub from: T,
+    pub to: T,
+    pub span: Span,
+}
+
+/// As it is written.
+pub(crate) type PlainFormula = TemporalFormula<CallSyntax, ExprSyntax, ExprSyntax>;
+
+impl<E, C, T> TemporalFormula<E, C, T> {
+    pub(crate) fn joined(junction: TemporalJunction, left: Box<Self>, right: Box<Self>) -> Self {
+        let span = left.span.to(right.span);
+        Self { kind: TemporalKind::Junction(junction, Box::new([*left, *right])), span }
+    }
+
+    pub(crate) fn reached(
+        reach: TemporalReach,
+        window: Option<Box<TemporalWindow<T>>>,
+        left: Box<Self>,
+        right: Box<Self>,
+    ) -> Self {
+        let span = left.span.to(right.span);
+        let (window, of) = (window.map(|window| *window), Box::new([*left, *right]));
+        Self { kind: TemporalKind::Reach { reach, window, of }, span }
+    }
+
+    /// What it is made of, in the order of the text.
+    #[must_use]
+    pub fn parts(&self) -> &[Self] {
+        match &self.kind {
+            TemporalKind::Constant(_) | TemporalKind::Events(_) | TemporalKind::Condition(_) => &[],
+            TemporalKind::Not(of) | TemporalKind::Look { of, .. } => std::slice::from_ref(of),
+            TemporalKind::Junction(_, of) | TemporalKind::Reach { of, .. } => of.as_slice(),
+        }
+    }
+
+    /// The window of its outermost operator.
+    #[must_use]
+    pub fn window(&self) -> Option<&TemporalWindow<T>> {
+        match &self.kind {
+            TemporalKind::Look { window, .. } | TemporalKind::Reach { window, .. } => window.as_ref(),
+            TemporalKind::Constant(_)
+            | TemporalKind::Events(_)
+            | TemporalKind::Condition(_)
+            | TemporalKind::Not(_)
+            | TemporalKind::Junction(..) => None,
+        }
+    }
+
+    /// It and all that it is made of, outermost first.
+    #[must_use]
+    pub fn all(&self) -> Vec<&Self> {
+        let mut all = vec![self];
+        let mut next = 0;
+        while let Some(formula) = all.get(next) {
+            all.extend(formula.parts());
+            next += 1;
+        }
+        all
+    }
+
+    /// Whether its outermost operator looks ahead as far as the run goes.
+    #[must_use]
+    pub fn looks_without_end(&self) -> bool {
+        match &self.kind {
+            TemporalKind::Look { look, window: None, .. } => look.is_ahead(),
+            TemporalKind::Reach { reach: TemporalReach::Until, window: None, .. } => true,
+            TemporalKind::Look { .. }
+            | TemporalKind::Reach { .. }
+            | TemporalKind::Constant(_)
+            | TemporalKind::Events(_)
+            | TemporalKind::Condition(_)
+            | TemporalKind::Not(_)
+            | TemporalKind::Junction(..) => false,
+        }
+    }
+
+    /// The events that alone meet it each time that it is asked: those of Q, in `always (P implies eventually[a, b] Q)` and with `once`.
+    #[must_use]
+    pub fn met_by(&self) -> &[E] {
+        let TemporalKind::Look { look: TemporalLook::Always, window: None, of } = &self.kind else {
+            return &[];
+        };
+        let TemporalKind::Junction(TemporalJunction::Implies, parts) = &of.kind else { return &[] };
+        let [_, met] = parts.as_ref();
+        match &met.kind {
+            TemporalKind::Look { look: TemporalLook::Eventually | TemporalLook::Once, of, .. } => {
+                match &of.kind {
+                    TemporalKind::Events(events) => events,
+                    TemporalKind::Constant(_)
+                    | TemporalKind::Condition(_)
+                    | TemporalKind::Not(_)
+                    | TemporalKind::Junction(..)
+                    | TemporalKind::Look { .. }
+                    | TemporalKind::Reach { .. } => &[],
+                }
+            }
+            TemporalKind::Events(events) => events,
+            TemporalKind::Constant(_)
+            | TemporalKind::Condition(_)
+            | TemporalKind::Not(_)
+            | TemporalKind::Junction(..)
+            | TemporalKind::Look { .. }
+            | TemporalKind::Reach { .. } => &[],
+        }
+    }
+
+    /// The events without any of which it is never asked: those of P, in `always (P implies Q)`.
+    pub(crate) fn triggers(&self) -> &[E] {
+        let TemporalKind::Look { look: TemporalLook::Always, window: None, of } = &self.kind else {
+            return &[];
+        };
+        let TemporalKind::Junction(TemporalJunction::Implies, parts) = &of.kind else { return &[] };
+        let [asked, _] = parts.as_ref();
+        if let TemporalKind::Events(events) = &asked.kind { events } else { &[] }
+    }
+
+    pub(crate) fn map<X, N, F, D, U, M>(
+        &self,
+        cx: &mut X,
+        to: &SentenceMapping<X, E, C, T, N, F, D, U, M>,
+    ) -> TemporalFormula<F, D, U> {
+        let kind = match &self.kind {
+            TemporalKind::Constant(truth) => TemporalKind::Constant(*truth),
+            TemporalKind::Events(events) => TemporalKind::Events((to.events)(cx, events)),
+            TemporalKind::Condition(condition) => TemporalKind::Condition((to.condition)(cx, condition)),
+            TemporalKind::Not(of) => TemporalKind::Not(Box::new(of.map(cx, to))),
+            TemporalKind::Junction(junction, of) => TemporalKind::Junction(*junction, pair(of, cx, to)),
+            TemporalKind::Look { look, window, of } => TemporalKind::Look {
+                look: *look,
+                window: window.as_ref().and_then(|w| w.map(cx, to)),
+                of: Box::new(of.map(cx, to)),
+            },
+            TemporalKind::Reach { reach, window, of } => TemporalKind::Reach {
+                reach: *reach,
+                window: window.as_ref().and_then(|w| w.map(cx, to)),
+                of: pair(of, cx, to),
+            },
+        };
+        TemporalFormula { kind, span: self.span }
+    }
+}
+
+impl<T> TemporalWindow<T> {
+    fn map<X, E, C, N, F, D, U, M>(
+        &self,
+        cx: &mut X,
+        to: &SentenceMapping<X, E, C, T, N, F, D, U, M>,
+    ) -> Option<TemporalWindow<U>> {
+        let (from, until) = ((to.bound)(cx, &self.from), (to.bound)(cx, &self.to));
+        Some(TemporalWindow { from: from?, to: until?, span: self.span })
+    }
+}
+
+fn pair<X, E, C, T, N, F, D, U, M>(
+    of: &[TemporalFormula<E, C, T>; 2],
+    cx: &mut X,
+    to: &SentenceMapping<X, E, C, T, N, F, D, U, M>,
+) -> Box<[TemporalFormula<F, D, U>; 2]> {
+    let [left, right] = of;
+    let left = left.map(cx, to);
+    Box::new([left, right.map(cx, to)])
+}
