@@ -13,6 +13,7 @@ import { Tabs } from "./panes/tabs.js";
 import { VerdictsPane } from "./panes/verdicts.js";
 import { advance, beginning, otherSpeed } from "./player/clock.js";
 import { FrameMeter } from "./player/frames.js";
+import { drawnMeasure } from "./scene/measures.js";
 import { Stage } from "./scene/stage.js";
 import { endOf, openingWindow, SPEEDS, Store, type Changed, type Part, type Span, type State } from "./state.js";
 import { panned, showing, zoomed } from "./timeline/scale.js";
@@ -154,10 +155,8 @@ export class App implements Part {
     const time = Math.min(at.t ?? openingTime(first, focus?.id), end);
     const before = this.store.state;
     const isSame = before.runs[0] === first;
-    const measured = focus?.measures.find((m) => m.series)?.of.name;
-    const fallback = first.series.find((s) => s.type === "float" && !s.joint)?.name;
-    const plots = isSame ? before.plots : [measured ?? fallback].filter((name) => name !== undefined);
-    const drawn = focus?.measures.some((m) => m.of.kind !== "signal" && (m.of.bodies?.length ?? 0) > 0) ?? false;
+    const plots = isSame ? before.plots : [];
+    const drawn = drawnMeasure(focus) !== null;
     this.stops = stopsOf(runs);
     this.store.set({
       runs,

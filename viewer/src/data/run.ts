@@ -2,6 +2,7 @@
 
 import { lastAt, summed } from "./columns.js";
 import type { CodeTrack, MessageRole, SharedAssets, ViewBody, ViewDocument, ViewEvent, ViewLaser, ViewMeasure, ViewMesh, ViewRequirement } from "./document.js";
+import { lookedAt } from "./looked.js";
 import { numberAt, seriesOf, type Series } from "./series.js";
 import { contactOf, pairsOf, poseAt, trackOf, type Contact, type Pairs, type Pose, type Track } from "./tracks.js";
 
@@ -177,8 +178,21 @@ export function runOf(id: string, label: string, document: ViewDocument, shared:
     missing: decoder.missing,
   };
   nameWhatIsMissing(run, decoder.missing);
-  run.notes = [...(document.notes ?? []), ...decoder.notes, ...meshNotes(run), ...measureNotes(run)];
+  run.notes = [...(document.notes ?? []), ...decoder.notes, ...meshNotes(run), ...measureNotes(run), ...lookAtMeasures(run)];
   return run;
+}
+
+/** Gives measures that nobody recorded the values that the picture has of them; a sentence about each. */
+function lookAtMeasures(run: Run): string[] {
+  const found = new Set<string>();
+  for (const measure of run.requirements.flatMap((r) => r.measures)) {
+    if (measure.series) continue;
+    measure.series = run.series.find((s) => s.name === measure.of.name) ?? lookedAt(measure.of, run.bodies, run.tracks, run.end);
+    if (!measure.series || run.series.includes(measure.series)) continue;
+    run.series.push(measure.series);
+    found.add(measure.of.name);
+  }
+  return [...found].map((name) => `${name} was not recorded: what is shown of it is worked out from the picture of the world, to about a millimetre and a quarter of a degree.`);
 }
 
 function threadOf(track: CodeTrack, second: number): CodeThread {

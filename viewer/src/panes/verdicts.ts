@@ -3,7 +3,7 @@
 import { isKept, measureAt, type Requirement, type Run } from "../data/run.js";
 import type { Changed, State, Store } from "../state.js";
 import { button, h, say } from "../ui/dom.js";
-import { limitText, MEANINGS, plural, quantity, RELATIONS, seconds, SIGNS, WORDS } from "../ui/text.js";
+import { boundText, MEANINGS, measureText, plural, quantity, seconds, SIGNS, WORDS } from "../ui/text.js";
 import { nothing, which, type Pane } from "./pane.js";
 
 const OUTCOMES = { met: "met", violated: "violated", pending: "pending", dropped: "dropped" } as const;
@@ -74,17 +74,11 @@ export class VerdictsPane implements Pane {
       update: (t) => {
         const now = measureAt(measure, t);
         const kept = Number.isNaN(now) || isKept(of, now);
-        say(value, `${quantity(now, of.unit)}${Number.isNaN(now) ? "" : kept ? " ✓" : " ✗"}`);
+        say(value, `${measureText(of, now)}${Number.isNaN(now) ? "" : kept ? " ✓" : " ✗"}`);
         value.className = kept ? "kept" : "broken";
       },
     });
-    const plotted = measure.series ? button("plot", "Plot it on the time line", () => this.plot(of.name), { class: "small" }) : null;
-    return h("div", { class: "measure" }, h("code", {}, of.name), h("div", {}, value, h("span", {}, ` must be ${RELATIONS[of.relation]} ${limitText(of.limit, of.unit)} `), plotted));
-  }
-
-  private plot(name: string): void {
-    const { plots } = this.store.state;
-    if (!plots.includes(name)) this.store.set({ plots: [name, ...plots] });
+    return h("div", { class: "measure" }, h("code", {}, of.name), h("div", {}, value, h("span", {}, ` must be ${boundText(of)}${of.tells ? `, or ${of.tells} is told` : ""}`)));
   }
 
   private jump(text: string, t: number): HTMLElement {

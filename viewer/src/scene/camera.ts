@@ -5,6 +5,7 @@ import type { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { bodyAt, type Run } from "../data/run.js";
 import { pairAt } from "../data/tracks.js";
 import type { CameraName } from "../state.js";
+import { drawnMeasure } from "./measures.js";
 import { isFloor } from "./geometry.js";
 import { inTheWay, obstaclesOf } from "./rays.js";
 
@@ -79,16 +80,18 @@ function freest(run: Run, t: number, points: readonly Vector3[], middle: Vector3
 
 /** What is measured: two points, or one body. */
 function measured(run: Run, t: number, focus: string | null): Vector3[] {
-  const requirement = run.requirements.find((r) => r.id === focus);
-  for (const measure of requirement?.measures ?? []) {
-    const pair = measure.pairs && pairAt(measure.pairs, t);
-    if (pair) return [new Vector3(...pair.a), new Vector3(...pair.b)];
-    const body = measure.of.bodies?.[0];
-    if (body === undefined || !run.bodies[body]) continue;
-    const pose = bodyAt(run, body, t, new Float64Array(7));
-    return [new Vector3(pose[0], pose[1], pose[2])];
-  }
-  return [];
+  const measure = drawnMeasure(run.requirements.find((r) => r.id === focus));
+  const pair = measure?.pairs && pairAt(measure.pairs, t);
+  if (pair) return [new Vector3(...pair.a), new Vector3(...pair.b)];
+  const place = (body: number, at: number) => {
+    const pose = bodyAt(run, body, at, new Float64Array(7));
+    return new Vector3(pose[0], pose[1], pose[2]);
+  };
+  const [body, other] = measure?.of.bodies ?? [];
+  if (!measure || body === undefined || !run.bodies[body]) return [];
+  const { kind, within } = measure.of;
+  if (kind === "distance" && other !== undefined && run.bodies[other]) return [place(body, t), place(other, t)];
+  return kind === "way" || kind === "speed" ? [place(body, t), place(body, Math.max(t - (within ?? 1), 0))] : [place(body, t)];
 }
 
 export function shotOf(name: CameraName, run: Run, t: number, focus: string | null, camera: PerspectiveCamera): Shot {

@@ -1,6 +1,6 @@
 // Lines that are as thick as on paper, however far away: thin tubes, made wider with the distance to the camera.
 
-import { BufferGeometry, Camera, Color, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, Line, LineBasicMaterial, LineLoop, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3 } from "three";
+import { BufferGeometry, Camera, Color, ConeGeometry, CylinderGeometry, DoubleSide, Float32BufferAttribute, Group, Line, LineBasicMaterial, LineLoop, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3 } from "three";
 
 const UP = new Vector3(0, 1, 0);
 const tube = new CylinderGeometry(1, 1, 1, 8, 1, true);
@@ -36,6 +36,11 @@ export class Stroke {
     this.from.set(from[0] ?? 0, from[1] ?? 0, from[2] ?? 0);
     this.to.set(to[0] ?? 0, to[1] ?? 0, to[2] ?? 0);
     if (color) this.material.color.set(color);
+  }
+
+  /** From 1, which hides what is behind, to 0. */
+  set opacity(opacity: number) {
+    this.material.opacity = opacity;
   }
 
   /** Lays it out for the camera, just before it is drawn. */
@@ -87,9 +92,10 @@ export class Dot {
   }
 }
 
-/** A circle that faces the camera: a distance from a point, to all sides. */
+/** A circle that faces the camera, or lies flat: a distance from a point, to all sides. */
 export class Ring {
   readonly line: LineLoop;
+  private flat = false;
   private readonly material: LineBasicMaterial;
 
   constructor(color: string) {
@@ -99,18 +105,66 @@ export class Ring {
     this.line.renderOrder = 19;
   }
 
-  set(at: readonly number[], radius: number, color?: string): void {
+  set(at: readonly number[], radius: number, color: string, flat: boolean): void {
+    this.flat = flat;
     this.line.position.set(at[0] ?? 0, at[1] ?? 0, at[2] ?? 0);
     this.line.scale.setScalar(radius);
-    if (color) this.material.color.set(color);
+    this.material.color.set(color);
   }
 
   face(camera: Camera): void {
-    this.line.quaternion.copy(camera.quaternion);
+    if (this.flat) this.line.quaternion.identity();
+    else this.line.quaternion.copy(camera.quaternion);
   }
 
   dispose(): void {
     this.line.geometry.dispose();
+    this.material.dispose();
+  }
+}
+
+/** A path through many points, as wide on the screen wherever it is. */
+export class Ribbon {
+  readonly mesh: Mesh;
+  private readonly material: MeshBasicMaterial;
+  private points: Float64Array = new Float64Array();
+
+  constructor(color: string, private readonly width: number) {
+    this.material = new MeshBasicMaterial({ color: new Color(color), depthTest: false, transparent: true, opacity: 0.75, side: DoubleSide });
+    this.mesh = new Mesh(new BufferGeometry(), this.material);
+    this.mesh.renderOrder = 18;
+    this.mesh.frustumCulled = false;
+  }
+
+  /** Three numbers a point. */
+  set(points: Float64Array, color: string): void {
+    if (points.length !== this.points.length) this.reserve(points.length / 3);
+    this.points = points;
+    this.material.color.set(color);
+  }
+
+  private reserve(count: number): void {
+    const { geometry } = this.mesh;
+    geometry.setAttribute("position", new Float32BufferAttribute(new Float32Array(count * 6), 3));
+    geometry.setIndex(Array.from({ length: Math.max(count - 1, 0) }, (_, i) => [2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 1, 2 * i + 3, 2 * i + 2]).flat());
+  }
+
+  layOut(camera: Camera, pixel: PixelSize): void {
+    const position = this.mesh.geometry.getAttribute("position");
+    const count = this.points.length / 3;
+    const at = (i: number) => new Vector3().fromArray(this.points, Math.min(Math.max(i, 0), count - 1) * 3);
+    for (let i = 0; i < count; i += 1) {
+      const place = at(i);
+      const side = at(i + 1).sub(at(i - 1)).cross(place.clone().sub(camera.position));
+      side.setLength(side.lengthSq() > 0 ? 0.5 * this.width * pixel(place) : 0);
+      position.setXYZ(2 * i, place.x + side.x, place.y + side.y, place.z + side.z);
+      position.setXYZ(2 * i + 1, place.x - side.x, place.y - side.y, place.z - side.z);
+    }
+    position.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose();
     this.material.dispose();
   }
 }

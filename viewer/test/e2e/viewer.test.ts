@@ -49,6 +49,31 @@ describe("the viewer in Chromium", { skip }, () => {
     await page.close();
   });
 
+  test("draws a blow for as long as it takes to see it", async () => {
+    const { page, faults } = await open(browser, "homecare", "#run=bdi_tests.t011&t=100.05&focus=R6");
+    const told = () => page.$$eval(".label.force:not([hidden])", (labels) => labels.map((label) => label.textContent ?? ""));
+    assert.match((await told()).join(), /4200 N {2}robot.chassis · dog.head, 0.040 s ago/);
+    await settle(page, 300);
+    await page.evaluate(() => (location.hash = "#run=bdi_tests.t011&t=100.6&focus=R6"));
+    await settle(page, 300);
+    assert.deepEqual(await told(), []);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("draws the way of the last second and a tilt with their limits", async () => {
+    const { page, faults } = await open(browser, "homecare", "#run=bdi_tests.t011&t=62&focus=R6");
+    assert.match(await text(page, ".label.kept"), /^\d[\d.]* cm {2}\(< 50 cm\) ✓ in 1.00 s$/);
+    await settle(page, 300);
+    await page.evaluate(() => (location.hash = "#run=bdi_tests.t011&t=420&focus=R7"));
+    await settle(page, 300);
+    await press(page, "7");
+    assert.match(await text(page, ".label"), /^\d[\d.]*° {2}\(≤ 51.57°\)/);
+    assert.match(await text(page, ".requirement[open] .measure"), /must be ≤ 51.57°, or fell is told/);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
   test("draws the scene", async () => {
     const { page, faults } = await open(browser, "homecare");
     assert.ok((await colours(page)) > 40);
