@@ -2,7 +2,7 @@
 
 import { firstDifference } from "./data/difference.js";
 import { DataError, type PageData } from "./data/page.js";
-import { openingTime, requirementInFocus, runOf, type Run } from "./data/run.js";
+import { atTick, openingTime, requirementInFocus, runOf, type Run } from "./data/run.js";
 import { nextStop, previousStop, stopsOf, violationsOf } from "./data/stops.js";
 import { AboutPane } from "./panes/about.js";
 import { CodePane } from "./panes/code.js";
@@ -82,7 +82,7 @@ export class App implements Part {
       play: () => this.play(),
       step: (by) => this.step(by),
       violation: (by) => this.violation(by),
-      goTo: (text) => this.goTo(Number.parseFloat(text.replace("−", "-"))),
+      goTo: (text) => this.goTo(atTick(this.first, Number.parseFloat(text.replace("−", "-")))),
       camera: (camera) => store.set({ camera }),
     });
     this.header = new Header(store, data.index, {
@@ -152,7 +152,7 @@ export class App implements Part {
     const indexed = this.data.index.runs.find((run) => run.id === first.id);
     const focus = requirementInFocus(first, at.focus ?? indexed?.requirement);
     const end = endOf(runs);
-    const time = Math.min(at.t ?? openingTime(first, focus?.id), end);
+    const time = Math.min(at.t === undefined ? openingTime(first, focus?.id) : atTick(first, at.t), end);
     const before = this.store.state;
     const isSame = before.runs[0] === first;
     const plots = isSame ? before.plots : [];
@@ -164,7 +164,7 @@ export class App implements Part {
       playing: false,
       focus: isSame ? (before.focus ?? focus?.id ?? null) : (focus?.id ?? null),
       range: at.range ?? null,
-      window: isSame ? showing(before.window, time, end) : openingWindow(end, time),
+      window: isSame ? showing(before.window, time, end) : openingWindow(end, time, focus?.violations.find((v) => v.t === time)?.since),
       plots,
       lane: isSame ? before.lane : null,
       body: isSame ? before.body : null,
@@ -443,6 +443,6 @@ export class App implements Part {
       return;
     }
     this.store.set({ range, ...(address.focus ? { focus: address.focus } : {}) });
-    if (address.t !== undefined) this.goTo(address.t);
+    if (address.t !== undefined) this.goTo(atTick(this.first, address.t));
   }
 }

@@ -135,8 +135,11 @@ class Decoder {
   }
 }
 
+/** The length of a tick. */
+const secondOf = (document: ViewDocument): number => (document.tick > 0 ? document.tick : 1_000_000) / 1e9;
+
 export function runOf(id: string, label: string, document: ViewDocument, shared: SharedAssets): Run {
-  const second = (document.tick > 0 ? document.tick : 1_000_000) / 1e9;
+  const second = secondOf(document);
   const end = Math.max(document.end || 0, 0) * second;
   const decoder = new Decoder();
   const bodies = (document.scene?.bodies ?? []).map(sound);
@@ -294,6 +297,12 @@ export function requirementInFocus(run: Run, id: string | undefined): Requiremen
 export function openingTime(run: Run, id: string | undefined): number {
   const violations = requirementInFocus(run, id)?.violations ?? [];
   return violations[0]?.t ?? run.requirements.flatMap((r) => r.violations)[0]?.t ?? 0;
+}
+
+/** A time that somebody wrote, as the run has it: a sample that was then is not missed by the last bit of a number. */
+export function atTick(run: Run, t: number): number {
+  const second = secondOf(run.document);
+  return Math.round(t / second) * second;
 }
 
 /** Whether a value is as the measure asks. */

@@ -1,6 +1,7 @@
 // What is drawn over a scene: contact forces and blows, and what a requirement judges, with its limit.
 
 import { Group, type Camera } from "three";
+import type { BodyKind, ViewBody } from "../data/document.js";
 import type { Run } from "../data/run.js";
 import { blowBefore, contactAt, ECHO, type Press } from "../data/tracks.js";
 import { quantity } from "../ui/text.js";
@@ -26,16 +27,23 @@ const TOLD = 3;
 /** Who touches a floor within so many seconds of the start stands on it. */
 const STANDING = 1;
 
+/** Of two bodies that press on each other, whose force is told: somebody's first, then the robot's. */
+const RANKS: Record<BodyKind, number> = { person: 3, robot: 2, thing: 1, room: 0 };
+const rank = (body: ViewBody | undefined): number => (body ? (RANKS[body.kind] ?? 0) : 0);
+
 export class Annotations {
   readonly group = new Group();
   labels: Label[] = [];
   private readonly forces: Stroke[];
   private readonly blows: Stroke[];
+  /** −1 where the force on the second of two bodies is drawn. */
+  private readonly signs: number[];
   private readonly measure: DrawnMeasure;
 
   constructor(private readonly run: Run, palette: Palette) {
     const strokes = () => run.contacts.map(() => new Stroke(palette.force, 4, true));
     [this.forces, this.blows] = [strokes(), strokes()];
+    this.signs = run.contacts.map(({ bodies: [a, b] }) => (rank(run.bodies[b]) > rank(run.bodies[a]) ? -1 : 1));
     this.measure = new DrawnMeasure(run, palette);
     this.group.add(...[...this.forces, ...this.blows].map((f) => f.group), ...this.measure.objects);
   }
@@ -45,10 +53,10 @@ export class Annotations {
     const blows: (Label & { force: number })[] = [];
     this.run.contacts.forEach((contact, i) => {
       const now = contactAt(contact, t);
-      const [tip, force] = this.draw(this.forces[i], now, 1);
+      const [tip, force] = this.draw(i, this.forces[i], now, 1);
       if (tip && this.isTold(i)) forces.push({ at: tip, text: this.text(i, force), kind: "force" });
       const blow = blowBefore(contact, t);
-      const [end, was] = this.draw(this.blows[i], blow, blow ? 1 - blow.ago / ECHO : 0);
+      const [end, was] = this.draw(i, this.blows[i], blow, blow ? 1 - blow.ago / ECHO : 0);
       if (blow && end && this.isTold(i)) blows.push({ at: end, text: `${this.text(i, was)}, ${quantity(blow.ago, "s")} ago`, kind: "force", force: was });
     });
     blows.sort((a, b) => b.force - a.force);
@@ -57,14 +65,15 @@ export class Annotations {
     this.labels = [...(this.measure.label ? [this.measure.label] : []), ...blows.slice(0, TOLD), ...forces];
   }
 
-  /** Where the arrow of a force ends, and how hard it is. */
-  private draw(stroke: Stroke | undefined, press: Press | null, strength: number): [Place | null, number] {
+  /** The arrow of a force, on whoever of the two is more than furniture: where it ends, and how hard the force is. */
+  private draw(i: number, stroke: Stroke | undefined, press: Press | null, strength: number): [Place | null, number] {
     if (!stroke) return [null, 0];
     stroke.group.visible = press !== null;
     if (!press) return [null, 0];
     const force = Math.hypot(...press.force);
     const length = Math.min(HUNDRED_NEWTONS * Math.sqrt(force / 100), LONGEST);
-    const tip = press.point.map((x, k) => x + ((press.force[k] ?? 0) / force) * length) as Place;
+    const sign = this.signs[i] ?? 1;
+    const tip = press.point.map((x, k) => x + ((sign * (press.force[k] ?? 0)) / force) * length) as Place;
     stroke.set(press.point, tip);
     stroke.opacity = strength;
     return [tip, force];

@@ -126,7 +126,9 @@ export function shotOf(name: CameraName, run: Run, t: number, focus: string | nu
       if (points.length === 0) return shotOf("overview", run, t, focus, camera);
       const middle = points.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(points.length);
       const span = Math.max(...points.map((p) => p.distanceTo(middle)));
-      const distance = points.length > 1 ? Math.min(1.25 + 5 * span, 6) : 3;
+      // Of a body that goes somewhere, or leans, one wants to see what it is part of.
+      const near = points.length > 1 && drawnMeasure(run.requirements.find((r) => r.id === focus))?.of.kind === "distance" ? 1.25 : 2.7;
+      const distance = Math.min(near + 5 * span, 6);
       return shot(freest(run, t, points, middle, distance), distance, middle);
     }
   }

@@ -10,7 +10,7 @@ import { firstDifference } from "../../src/data/difference.js";
 import type { ViewDocument } from "../../src/data/document.js";
 import { documentOf, unpack } from "../../src/data/page.js";
 import { upright } from "../../src/data/looked.js";
-import { isKept, lineAt, threadName, openingTime, requirementInFocus, runOf, stateAt } from "../../src/data/run.js";
+import { atTick, isKept, lineAt, threadName, openingTime, requirementInFocus, runOf, stateAt } from "../../src/data/run.js";
 import { typesOf, type Schema } from "../../src/data/schema-types.js";
 import { extentIn, numberAt, seriesOf, spansOf } from "../../src/data/series.js";
 import { nextStop, previousStop, stopsOf, violationsOf } from "../../src/data/stops.js";
@@ -203,4 +203,9 @@ test("ways and tilts that nobody recorded are worked out from the poses", () => 
   near(numberAt(tilt, 1), Math.PI / 3, 1e-3);
   // Whoever lies at the start is not tilted by lying.
   near(upright([0, 0, 0, Math.SQRT1_2, 0, 0, Math.SQRT1_2], [0, 0, 0, Math.SQRT1_2, 0, 0, Math.SQRT1_2])[2], 1);
+});
+
+test("a time that somebody writes is that of the run", () => {
+  assert.ok(16.08 < 16080 * 0.001, "they differ in the last bit");
+  assert.equal(atTick(run(), 16.08), 16080 * 0.001);
 });
