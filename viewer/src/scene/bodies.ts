@@ -4,7 +4,7 @@ import { AlwaysStencilFunc, BufferGeometry, Color, DoubleSide, EdgesGeometry, Eq
 import type { BodyKind, ViewBody } from "../data/document.js";
 import { bodyAt, type Run } from "../data/run.js";
 import type { Palette } from "../ui/theme.js";
-import { bodyGeometry, isFloor } from "./geometry.js";
+import { bodyGeometry, COARSELY, FINELY, isFloor } from "./geometry.js";
 import { LIGHT, LitMaterial } from "./shading.js";
 
 const ONE = new Vector3(1, 1, 1);
@@ -15,6 +15,9 @@ interface Drawn {
   meshes: Mesh[];
   edges: LineSegments | null;
   shadow: Mesh | null;
+  /** Of its solid, as it is drawn at rest, and as it is drawn where triangles cost time. */
+  fine: BufferGeometry | null;
+  coarse: BufferGeometry | null;
 }
 
 /** Flattens what is above a level floor onto it, away from the light. */
@@ -33,6 +36,7 @@ export class Bodies {
   private readonly shade = new MeshBasicMaterial({ color: 0x000000, transparent: true, depthWrite: false, stencilWrite: true, stencilFunc: EqualStencilFunc, stencilRef: 1, stencilZPass: IncrementStencilOp, polygonOffset: true, polygonOffsetFactor: -1 });
   private readonly materials: Material[] = [this.shade];
   private lit: string | null = null;
+  private rough = false;
 
   constructor(private readonly run: Run, private palette: Palette, private low: boolean) {
     this.poses = run.bodies.map((body) => Float64Array.from(body.pose));
@@ -52,13 +56,14 @@ export class Bodies {
     this.shade.opacity = this.palette.dark ? 0.34 : 0.16;
     this.drawn = this.run.bodies.map((body, place) => this.draw(body, place));
     this.lit = null;
+    if (this.rough) this.takeGeometry();
     // Where everything is, and that it is drawn, is told by `update`.
     this.group.matrixAutoUpdate = false;
   }
 
   private draw(body: ViewBody, place: number): Drawn {
-    const { solid, placeholder } = bodyGeometry(body, this.run.meshes, this.low);
-    const drawn: Drawn = { body, place, meshes: [], edges: null, shadow: null };
+    const { solid, placeholder } = bodyGeometry(body, this.run.meshes, this.low, FINELY);
+    const drawn: Drawn = { body, place, meshes: [], edges: null, shadow: null, fine: solid, coarse: null };
     const add = (geometry: BufferGeometry, material: Material) => {
       const mesh = new Mesh(geometry, material);
       mesh.matrixAutoUpdate = false;
@@ -107,14 +112,34 @@ export class Bodies {
   }
 
   private clear(): void {
-    for (const { meshes, edges } of this.drawn) {
+    for (const { meshes, edges, fine, coarse } of this.drawn) {
       for (const mesh of meshes) mesh.geometry.dispose();
+      fine?.dispose();
+      coarse?.dispose();
       edges?.geometry.dispose();
     }
     for (const material of this.materials) if (material !== this.shade) material.dispose();
     this.materials.length = 0;
     this.materials.push(this.shade);
     this.group.clear();
+  }
+
+  /** Draws with fewer triangles from now on, or with all of them. */
+  roughen(rough: boolean): void {
+    if (rough === this.rough) return;
+    this.rough = rough;
+    this.takeGeometry();
+  }
+
+  private takeGeometry(): void {
+    for (const drawn of this.drawn) {
+      if (!drawn.fine) continue;
+      if (this.rough) drawn.coarse ??= bodyGeometry(drawn.body, this.run.meshes, this.low, COARSELY).solid;
+      const geometry = (this.rough ? drawn.coarse : drawn.fine) ?? drawn.fine;
+      // The first mesh is the solid; a placeholder stays.
+      if (drawn.meshes[0]) drawn.meshes[0].geometry = geometry;
+      if (drawn.shadow) drawn.shadow.geometry = geometry;
+    }
   }
 
   restyle(palette: Palette, low: boolean): void {
