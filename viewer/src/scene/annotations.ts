@@ -7,7 +7,7 @@ import { blowBefore, contactAt, ECHO, type Press } from "../data/tracks.js";
 import { quantity } from "../ui/text.js";
 import type { Palette } from "../ui/theme.js";
 import { DrawnMeasure } from "./measures.js";
-import { Stroke, type PixelSize } from "./strokes.js";
+import { Arrows, type PixelSize } from "./strokes.js";
 
 /** A label in the scene: where, what it says, and whether what it says is as it should be. */
 export interface Label {
@@ -34,30 +34,34 @@ const rank = (body: ViewBody | undefined): number => (body ? (RANKS[body.kind] ?
 export class Annotations {
   readonly group = new Group();
   labels: Label[] = [];
-  private readonly forces: Stroke[];
-  private readonly blows: Stroke[];
+  private readonly arrows: Arrows;
   /** −1 where the force on the second of two bodies is drawn. */
   private readonly signs: number[];
   private readonly measure: DrawnMeasure;
 
   constructor(private readonly run: Run, palette: Palette) {
-    const strokes = () => run.contacts.map(() => new Stroke(palette.force, 4, true));
-    [this.forces, this.blows] = [strokes(), strokes()];
+    // Each contact may have a force now, and a blow before.
+    this.arrows = new Arrows(2 * run.contacts.length, palette.force, 4);
     this.signs = run.contacts.map(({ bodies: [a, b] }) => (rank(run.bodies[b]) > rank(run.bodies[a]) ? -1 : 1));
     this.measure = new DrawnMeasure(run, palette);
-    this.group.add(...[...this.forces, ...this.blows].map((f) => f.group), ...this.measure.objects);
+    this.group.add(this.arrows.group, ...this.measure.objects);
   }
 
   update(t: number, poses: readonly Float64Array[], focus: string | null): void {
     const forces: Label[] = [];
     const blows: (Label & { force: number })[] = [];
+    this.arrows.begin();
     this.run.contacts.forEach((contact, i) => {
       const now = contactAt(contact, t);
-      const [tip, force] = this.draw(i, this.forces[i], now, 1);
-      if (tip && this.isTold(i)) forces.push({ at: tip, text: this.text(i, force), kind: "force" });
+      if (now) {
+        const { tip, force } = this.draw(i, now, 1);
+        if (this.isTold(i)) forces.push({ at: tip, text: this.text(i, force), kind: "force" });
+      }
       const blow = blowBefore(contact, t);
-      const [end, was] = this.draw(i, this.blows[i], blow, blow ? 1 - blow.ago / ECHO : 0);
-      if (blow && end && this.isTold(i)) blows.push({ at: end, text: `${this.text(i, was)}, ${quantity(blow.ago, "s")} ago`, kind: "force", force: was });
+      if (blow) {
+        const { tip, force } = this.draw(i, blow, 1 - blow.ago / ECHO);
+        if (this.isTold(i)) blows.push({ at: tip, text: `${this.text(i, force)}, ${quantity(blow.ago, "s")} ago`, kind: "force", force });
+      }
     });
     blows.sort((a, b) => b.force - a.force);
     this.measure.update(t, poses, this.run.requirements.find((r) => r.id === focus));
@@ -66,17 +70,13 @@ export class Annotations {
   }
 
   /** The arrow of a force, on whoever of the two is more than furniture: where it ends, and how hard the force is. */
-  private draw(i: number, stroke: Stroke | undefined, press: Press | null, strength: number): [Place | null, number] {
-    if (!stroke) return [null, 0];
-    stroke.group.visible = press !== null;
-    if (!press) return [null, 0];
+  private draw(i: number, press: Press, strength: number): { tip: Place; force: number } {
     const force = Math.hypot(...press.force);
     const length = Math.min(HUNDRED_NEWTONS * Math.sqrt(force / 100), LONGEST);
     const sign = this.signs[i] ?? 1;
     const tip = press.point.map((x, k) => x + ((sign * (press.force[k] ?? 0)) / force) * length) as Place;
-    stroke.set(press.point, tip);
-    stroke.opacity = strength;
-    return [tip, force];
+    this.arrows.add(press.point, tip, strength);
+    return { tip, force };
   }
 
   /** What merely lies or stands on something has an arrow, and no words: they would hide what happens. */
@@ -94,13 +94,12 @@ export class Annotations {
 
   /** Lines are as thick as they are to be for this camera. */
   layOut(camera: Camera, pixel: PixelSize): void {
-    for (const stroke of this.forces) if (stroke.group.visible) stroke.layOut(pixel);
-    for (const stroke of this.blows) if (stroke.group.visible) stroke.layOut(pixel);
+    this.arrows.layOut(pixel);
     this.measure.layOut(camera, pixel);
   }
 
   dispose(): void {
-    for (const stroke of [...this.forces, ...this.blows]) stroke.dispose();
+    this.arrows.dispose();
     this.measure.dispose();
   }
 }

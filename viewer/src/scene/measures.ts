@@ -35,14 +35,14 @@ export class DrawnMeasure {
   private readonly path: Ribbon;
 
   constructor(private readonly run: Run, private readonly palette: Palette) {
-    this.line = new Stroke(palette.pass, 3, false);
-    this.aim = new Stroke(palette.dim, 2, false);
-    this.limit = new Stroke(palette.dim, 2, false);
+    this.line = new Stroke(palette.pass, 3);
+    this.aim = new Stroke(palette.dim, 2);
+    this.limit = new Stroke(palette.dim, 2);
     this.ends = [new Dot(palette.pass, 8), new Dot(palette.pass, 8)];
     this.ring = new Ring(palette.dim);
     this.arc = new Arc(palette.pass);
     this.path = new Ribbon(palette.dim, 3);
-    this.objects = [this.path.mesh, this.line.group, this.aim.group, this.limit.group, ...this.ends.map((e) => e.mesh), this.ring.line, this.arc.line];
+    this.objects = [this.path.mesh, this.line.mesh, this.aim.mesh, this.limit.mesh, ...this.ends.map((e) => e.mesh), this.ring.line, this.arc.line];
   }
 
   update(t: number, poses: readonly Float64Array[], requirement: Requirement | null | undefined): void {
@@ -93,8 +93,8 @@ export class DrawnMeasure {
     return lookedAtWay(measure.of, of ? poseOf(of, this.run.tracks[body] ?? null) : (_, out) => out, t);
   }
 
-  private show(...shown: { group?: Object3D; mesh?: Object3D; line?: Object3D }[]): void {
-    for (const one of shown) for (const object of [one.group, one.mesh, one.line]) if (object) object.visible = true;
+  private show(...shown: { mesh?: Object3D; line?: Object3D }[]): void {
+    for (const one of shown) for (const object of [one.mesh, one.line]) if (object) object.visible = true;
   }
 
   private color(measure: Measure, value: number): string {
@@ -196,7 +196,7 @@ export class DrawnMeasure {
 
   /** Lines are as thick as they are to be for this camera. */
   layOut(camera: Camera, pixel: PixelSize): void {
-    for (const stroke of [this.line, this.aim, this.limit]) if (stroke.group.visible) stroke.layOut(pixel);
+    for (const stroke of [this.line, this.aim, this.limit]) if (stroke.mesh.visible) stroke.layOut(pixel);
     for (const dot of this.ends) if (dot.mesh.visible) dot.layOut(pixel);
     if (this.ring.line.visible) this.ring.face(camera);
     if (this.path.mesh.visible) this.path.layOut(camera, pixel);
