@@ -106,6 +106,8 @@ pub struct ViewViolation {
 pub enum MeasureKind {
     /// Between the surfaces of two bodies.
     Distance,
+    /// Between the centres of two bodies.
+    Range,
     /// Between the x axis of the first body and the way from it to the second.
     Angle,
     /// Of a body: between the vertical and where its direction points that was vertical at the start.
@@ -169,7 +171,7 @@ pub struct ViewMeasure {
     /// The requirement is about this event, which the world tells when the value is no longer as it should be.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tells: Option<String>,
-    /// The two nearest points. Without them the line goes from origin to origin, and the page says so.
+    /// The two nearest points. Without them the page works them out from the shapes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<PointPairs>,
 }

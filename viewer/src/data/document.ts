@@ -102,7 +102,7 @@ export interface MachineTrack {
 export type MeasureAxis = "x" | "y" | "z";
 
 /** What a measure is. */
-export type MeasureKind = "distance" | "angle" | "tilt" | "height" | "way" | "speed" | "force" | "signal";
+export type MeasureKind = "distance" | "range" | "angle" | "tilt" | "height" | "way" | "speed" | "force" | "signal";
 
 /** What messages are to a name of the middleware. */
 export type MessageRole = "message" | "request" | "answer" | "feedback";
@@ -259,7 +259,7 @@ export interface ViewMeasure {
   limit: number;
   /** As the scenario has it: `distance(person.hand, robot.palm)`. If a signal has this name, its values are those of the measure. */
   name: string;
-  /** The two nearest points. Without them the line goes from origin to origin, and the page says so. */
+  /** The two nearest points. Without them the page works them out from the shapes. */
   points?: PointPairs | null;
   relation: LimitRelation;
   /** The requirement is about this event, which the world tells when the value is no longer as it should be. */

@@ -237,8 +237,9 @@ function meshNotes(run: Run): string[] {
 }
 
 function measureNotes(run: Run): string[] {
-  const rough = run.requirements.flatMap((r) => r.measures.filter((m) => m.of.kind === "distance" && (m.of.bodies?.length ?? 0) > 1 && !m.pairs).map((m) => m.of.name));
-  return [...new Set(rough)].map((name) => `The nearest points of ${name} are not in the data; the line in the scene joins the bodies’ origins.`);
+  const isUnknown = (body: number) => (run.bodies[body]?.shapes ?? []).every((shape) => shape.kind === "mesh" && !run.meshes[shape.mesh]);
+  const rough = run.requirements.flatMap((r) => r.measures.filter((m) => m.of.kind === "distance" && !m.pairs && (m.of.bodies?.some(isUnknown) ?? false)).map((m) => m.of.name));
+  return [...new Set(rough)].map((name) => `The shapes between which ${name} lies are not in the data; the line in the scene joins the bodies’ origins.`);
 }
 
 function scannerOf(laser: ViewLaser, second: number, bodies: ViewBody[]): Scanner {

@@ -6,6 +6,7 @@ import { bodyAt, type Run } from "../data/run.js";
 import { pairAt } from "../data/tracks.js";
 import type { CameraName } from "../state.js";
 import { drawnMeasure } from "./measures.js";
+import { nearestPoints } from "./nearest.js";
 import { isFloor } from "./geometry.js";
 import { inTheWay, obstaclesOf } from "./rays.js";
 
@@ -90,7 +91,12 @@ function measured(run: Run, t: number, focus: string | null): Vector3[] {
   const [body, other] = measure?.of.bodies ?? [];
   if (!measure || body === undefined || !run.bodies[body]) return [];
   const { kind, within } = measure.of;
-  if (kind === "distance" && other !== undefined && run.bodies[other]) return [place(body, t), place(other, t)];
+  if (kind === "distance" && other !== undefined) {
+    const poses = run.bodies.map((_, i) => ([body, other].includes(i) ? bodyAt(run, i, t, new Float64Array(7)) : []));
+    const near = nearestPoints(run.bodies, run.meshes, poses, [body, other]);
+    if (near) return [new Vector3(...near.a), new Vector3(...near.b)];
+  }
+  if ((kind === "distance" || kind === "range") && other !== undefined && run.bodies[other]) return [place(body, t), place(other, t)];
   return kind === "way" || kind === "speed" ? [place(body, t), place(body, Math.max(t - (within ?? 1), 0))] : [place(body, t)];
 }
 
@@ -127,7 +133,7 @@ export function shotOf(name: CameraName, run: Run, t: number, focus: string | nu
       const middle = points.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(points.length);
       const span = Math.max(...points.map((p) => p.distanceTo(middle)));
       // Of a body that goes somewhere, or leans, one wants to see what it is part of.
-      const near = points.length > 1 && drawnMeasure(run.requirements.find((r) => r.id === focus))?.of.kind === "distance" ? 1.25 : 2.7;
+      const near = points.length > 1 && drawnMeasure(run.requirements.find((r) => r.id === focus))?.of.kind.match(/distance|range/) ? 1.25 : 2.7;
       const distance = Math.min(near + 5 * span, 6);
       return shot(freest(run, t, points, middle, distance), distance, middle);
     }

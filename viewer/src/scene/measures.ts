@@ -8,6 +8,7 @@ import { pairAt } from "../data/tracks.js";
 import { boundText, measureText, quantity } from "../ui/text.js";
 import type { Palette } from "../ui/theme.js";
 import type { Label } from "./annotations.js";
+import { nearestPoints } from "./nearest.js";
 import { Arc, Dot, Ribbon, Ring, Stroke, type PixelSize } from "./strokes.js";
 
 type Place = [number, number, number];
@@ -63,10 +64,13 @@ export class DrawnMeasure {
     const value = measureAt(measure, t);
     switch (measure.of.kind) {
       case "distance": {
-        const pair = (measure.pairs && pairAt(measure.pairs, t)) ?? (b ? { a, b } : null);
+        const pair = this.pair(measure, t, poses) ?? (b ? { a, b } : null);
         if (pair) this.drawDistance(measure, value, pair.a, pair.b);
         return;
       }
+      case "range":
+        if (b) this.drawDistance(measure, value, a, b);
+        return;
       case "angle":
         this.drawAngle(measure, value, a, direction(poses[body], [1, 0, 0]), b ? new Vector3(b[0] - a[0], b[1] - a[1], b[2] - a[2]).normalize() : new Vector3(0, 0, 1));
         return;
@@ -86,6 +90,14 @@ export class DrawnMeasure {
       case "signal":
         this.tell(measure, value, [a[0], a[1], a[2] + ABOVE]);
     }
+  }
+
+  /** The nearest points: as the data have them, or as the shapes are. */
+  private pair(measure: Measure, t: number, poses: readonly Float64Array[]): { a: Place; b: Place } | null {
+    const known = measure.pairs && pairAt(measure.pairs, t);
+    const [a, b] = measure.of.bodies ?? [];
+    if (known || a === undefined || b === undefined) return known;
+    return nearestPoints(this.run.bodies, this.run.meshes, poses, [a, b]);
   }
 
   private way(measure: Measure, body: number, t: number): Way {

@@ -56,6 +56,7 @@ pub(super) fn subject(
     let bodies = match kind {
         MeasureKind::Signal => all_bodies(run, &terms),
         MeasureKind::Distance
+        | MeasureKind::Range
         | MeasureKind::Angle
         | MeasureKind::Tilt
         | MeasureKind::Height
@@ -200,7 +201,8 @@ fn all_bodies(run: &ReplayedRun<'_>, terms: &[MeasuredTerm]) -> Vec<usize> {
 
 fn kind(term: &SignalTerm) -> MeasureKind {
     match term {
-        SignalTerm::Distance(..) | SignalTerm::Range(..) => MeasureKind::Distance,
+        SignalTerm::Distance(..) => MeasureKind::Distance,
+        SignalTerm::Range(..) => MeasureKind::Range,
         SignalTerm::Angle(..) => MeasureKind::Angle,
         SignalTerm::Tilt(_) => MeasureKind::Tilt,
         SignalTerm::Height(_) | SignalTerm::Coordinate(_, Axis::Z) => MeasureKind::Height,
