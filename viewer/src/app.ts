@@ -2,7 +2,7 @@
 
 import { firstDifference } from "./data/difference.js";
 import { DataError, type PageData } from "./data/page.js";
-import { openingTime, requirementInFocus, runOf, type Run } from "./data/run.js";
+import { atTick, openingTime, requirementInFocus, runOf, type Run } from "./data/run.js";
 import { nextStop, previousStop, stopsOf, violationsOf } from "./data/stops.js";
 import { AboutPane } from "./panes/about.js";
 import { CodePane } from "./panes/code.js";
@@ -13,6 +13,7 @@ import { Tabs } from "./panes/tabs.js";
 import { VerdictsPane } from "./panes/verdicts.js";
 import { advance, beginning, otherSpeed } from "./player/clock.js";
 import { FrameMeter } from "./player/frames.js";
+import { drawnMeasure } from "./scene/measures.js";
 import { Stage } from "./scene/stage.js";
 import { endOf, openingWindow, SPEEDS, Store, type Changed, type Part, type Span, type State } from "./state.js";
 import { panned, showing, zoomed } from "./timeline/scale.js";
@@ -81,7 +82,7 @@ export class App implements Part {
       play: () => this.play(),
       step: (by) => this.step(by),
       violation: (by) => this.violation(by),
-      goTo: (text) => this.goTo(Number.parseFloat(text.replace("−", "-"))),
+      goTo: (text) => this.goTo(atTick(this.first, Number.parseFloat(text.replace("−", "-")))),
       camera: (camera) => store.set({ camera }),
     });
     this.header = new Header(store, data.index, {
@@ -151,13 +152,11 @@ export class App implements Part {
     const indexed = this.data.index.runs.find((run) => run.id === first.id);
     const focus = requirementInFocus(first, at.focus ?? indexed?.requirement);
     const end = endOf(runs);
-    const time = Math.min(at.t ?? openingTime(first, focus?.id), end);
+    const time = Math.min(at.t === undefined ? openingTime(first, focus?.id) : atTick(first, at.t), end);
     const before = this.store.state;
     const isSame = before.runs[0] === first;
-    const measured = focus?.measures.find((m) => m.series)?.of.name;
-    const fallback = first.series.find((s) => s.type === "float" && !s.joint)?.name;
-    const plots = isSame ? before.plots : [measured ?? fallback].filter((name) => name !== undefined);
-    const drawn = focus?.measures.some((m) => m.of.kind !== "signal" && (m.of.bodies?.length ?? 0) > 0) ?? false;
+    const plots = isSame ? before.plots : [];
+    const drawn = drawnMeasure(focus) !== null;
     this.stops = stopsOf(runs);
     this.store.set({
       runs,
@@ -165,7 +164,7 @@ export class App implements Part {
       playing: false,
       focus: isSame ? (before.focus ?? focus?.id ?? null) : (focus?.id ?? null),
       range: at.range ?? null,
-      window: isSame ? showing(before.window, time, end) : openingWindow(end, time),
+      window: isSame ? showing(before.window, time, end) : openingWindow(end, time, focus?.violations.find((v) => v.t === time)?.since),
       plots,
       lane: isSame ? before.lane : null,
       body: isSame ? before.body : null,
@@ -444,6 +443,6 @@ export class App implements Part {
       return;
     }
     this.store.set({ range, ...(address.focus ? { focus: address.focus } : {}) });
-    if (address.t !== undefined) this.goTo(address.t);
+    if (address.t !== undefined) this.goTo(atTick(this.first, address.t));
   }
 }

@@ -53,11 +53,16 @@ export function endOf(runs: readonly Run[]): number {
   return Math.max(0.001, ...runs.map((run) => run.end));
 }
 
-/** The part of the time line that is seen first: all of a short run, the surroundings of a time of a long one. */
-export function openingWindow(end: number, t: number): Span {
+/**
+ * The part of the time line that is seen first: all of a short run, the surroundings of a time of a long one; back to when an obligation was made
+ * that is violated then.
+ */
+export function openingWindow(end: number, t: number, since: number | null = null): Span {
   if (end <= 2 * (BEFORE + AFTER) || t === 0) return [0, end];
-  const from = Math.max(0, Math.min(t - BEFORE, end - BEFORE - AFTER));
-  return [from, Math.min(end, from + BEFORE + AFTER)];
+  const before = since === null ? BEFORE : Math.max(BEFORE, (t - since) * 1.1);
+  const after = Math.max(AFTER, before / 4);
+  const from = Math.max(0, Math.min(t - before, end - before - after));
+  return [from, Math.min(end, from + before + after)];
 }
 
 export class Store {

@@ -45,6 +45,12 @@ pub struct ViewRequirement {
     /// All violations, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub violations: Vec<ViewViolation>,
+    /// The signals that it reads, by name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub signals: Vec<String>,
+    /// The events that it reads, by name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<String>,
     /// What it judges, as far as it can be drawn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<ViewMeasure>,
@@ -100,15 +106,32 @@ pub struct ViewViolation {
 pub enum MeasureKind {
     /// Between the surfaces of two bodies.
     Distance,
+    /// Between the centres of two bodies.
+    Range,
     /// Between the x axis of the first body and the way from it to the second.
     Angle,
+    /// Of a body: between the vertical and where its direction points that was vertical at the start.
+    Tilt,
+    /// Of a body above z = 0.
+    Height,
+    /// How far a body has come within a time.
+    Way,
     /// Of a body.
     Speed,
     /// Between two bodies, or on one.
     Force,
-    /// Anything else: it is plotted, and not drawn in the scene.
+    /// Anything else: it is plotted, and told beside the first of its bodies.
     #[default]
     Signal,
+}
+
+/// An axis of the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MeasureAxis {
+    X,
+    Y,
+    Z,
 }
 
 /// How values lie to the limit where the requirement is content.
@@ -134,12 +157,21 @@ pub struct ViewMeasure {
     /// The places of the bodies that it is about among the bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<usize>,
+    /// Of a way, and of a speed: the way of how many seconds is drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<f64>,
+    /// Of a way: along which axes; all of them, if there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<MeasureAxis>,
     pub relation: LimitRelation,
     /// In the signal's unit.
     pub limit: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// The two nearest points. Without them the line goes from origin to origin, and the page says so.
+    /// The requirement is about this event, which the world tells when the value is no longer as it should be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tells: Option<String>,
+    /// The two nearest points. Without them the page works them out from the shapes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<PointPairs>,
 }

@@ -98,8 +98,11 @@ export interface MachineTrack {
   t: number[];
 }
 
+/** An axis of the world. */
+export type MeasureAxis = "x" | "y" | "z";
+
 /** What a measure is. */
-export type MeasureKind = "distance" | "angle" | "speed" | "force" | "signal";
+export type MeasureKind = "distance" | "range" | "angle" | "tilt" | "height" | "way" | "speed" | "force" | "signal";
 
 /** What messages are to a name of the middleware. */
 export type MessageRole = "message" | "request" | "answer" | "feedback";
@@ -247,6 +250,8 @@ export interface ViewLogLine {
 
 /** A value that a requirement compares with a limit. It is as it should be where value, relation and limit make a true sentence. */
 export interface ViewMeasure {
+  /** Of a way: along which axes; all of them, if there are none. */
+  axes?: MeasureAxis[];
   /** The places of the bodies that it is about among the bodies. */
   bodies?: number[];
   kind: MeasureKind;
@@ -254,10 +259,14 @@ export interface ViewMeasure {
   limit: number;
   /** As the scenario has it: `distance(person.hand, robot.palm)`. If a signal has this name, its values are those of the measure. */
   name: string;
-  /** The two nearest points. Without them the line goes from origin to origin, and the page says so. */
+  /** The two nearest points. Without them the page works them out from the shapes. */
   points?: PointPairs | null;
   relation: LimitRelation;
+  /** The requirement is about this event, which the world tells when the value is no longer as it should be. */
+  tells?: string | null;
   unit?: string | null;
+  /** Of a way, and of a speed: the way of how many seconds is drawn. */
+  within?: number | null;
 }
 
 /** A triangle mesh. */
@@ -283,6 +292,8 @@ export interface ViewObligation {
 
 /** A requirement, and how this run fared by it. */
 export interface ViewRequirement {
+  /** The events that it reads, by name. */
+  events?: string[];
   /** Such as `R5`. */
   id: string;
   /** `safety` or `functional`. */
@@ -292,6 +303,8 @@ export interface ViewRequirement {
   /** What it judges, as far as it can be drawn. */
   measures?: ViewMeasure[];
   obligations?: ViewObligation[];
+  /** The signals that it reads, by name. */
+  signals?: string[];
   /** As the scenario has it. */
   text?: string | null;
   title?: string | null;

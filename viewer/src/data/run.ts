@@ -2,6 +2,7 @@
 
 import { lastAt, summed } from "./columns.js";
 import type { CodeTrack, MessageRole, SharedAssets, ViewBody, ViewDocument, ViewEvent, ViewLaser, ViewMeasure, ViewMesh, ViewRequirement } from "./document.js";
+import { lookedAt } from "./looked.js";
 import { numberAt, seriesOf, type Series } from "./series.js";
 import { contactOf, pairsOf, poseAt, trackOf, type Contact, type Pairs, type Pose, type Track } from "./tracks.js";
 
@@ -134,8 +135,11 @@ class Decoder {
   }
 }
 
+/** The length of a tick. */
+const secondOf = (document: ViewDocument): number => (document.tick > 0 ? document.tick : 1_000_000) / 1e9;
+
 export function runOf(id: string, label: string, document: ViewDocument, shared: SharedAssets): Run {
-  const second = (document.tick > 0 ? document.tick : 1_000_000) / 1e9;
+  const second = secondOf(document);
   const end = Math.max(document.end || 0, 0) * second;
   const decoder = new Decoder();
   const bodies = (document.scene?.bodies ?? []).map(sound);
@@ -177,8 +181,21 @@ export function runOf(id: string, label: string, document: ViewDocument, shared:
     missing: decoder.missing,
   };
   nameWhatIsMissing(run, decoder.missing);
-  run.notes = [...(document.notes ?? []), ...decoder.notes, ...meshNotes(run), ...measureNotes(run)];
+  run.notes = [...(document.notes ?? []), ...decoder.notes, ...meshNotes(run), ...measureNotes(run), ...lookAtMeasures(run)];
   return run;
+}
+
+/** Gives measures that nobody recorded the values that the picture has of them; a sentence about each. */
+function lookAtMeasures(run: Run): string[] {
+  const found = new Set<string>();
+  for (const measure of run.requirements.flatMap((r) => r.measures)) {
+    if (measure.series) continue;
+    measure.series = run.series.find((s) => s.name === measure.of.name) ?? lookedAt(measure.of, run.bodies, run.tracks, run.end);
+    if (!measure.series || run.series.includes(measure.series)) continue;
+    run.series.push(measure.series);
+    found.add(measure.of.name);
+  }
+  return [...found].map((name) => `${name} was not recorded: what is shown of it is worked out from the picture of the world, to about a millimetre and a quarter of a degree.`);
 }
 
 function threadOf(track: CodeTrack, second: number): CodeThread {
@@ -220,8 +237,9 @@ function meshNotes(run: Run): string[] {
 }
 
 function measureNotes(run: Run): string[] {
-  const rough = run.requirements.flatMap((r) => r.measures.filter((m) => m.of.kind === "distance" && (m.of.bodies?.length ?? 0) > 1 && !m.pairs).map((m) => m.of.name));
-  return [...new Set(rough)].map((name) => `The nearest points of ${name} are not in the data; the line in the scene joins the bodies’ origins.`);
+  const isUnknown = (body: number) => (run.bodies[body]?.shapes ?? []).every((shape) => shape.kind === "mesh" && !run.meshes[shape.mesh]);
+  const rough = run.requirements.flatMap((r) => r.measures.filter((m) => m.of.kind === "distance" && !m.pairs && (m.of.bodies?.some(isUnknown) ?? false)).map((m) => m.of.name));
+  return [...new Set(rough)].map((name) => `The shapes between which ${name} lies are not in the data; the line in the scene joins the bodies’ origins.`);
 }
 
 function scannerOf(laser: ViewLaser, second: number, bodies: ViewBody[]): Scanner {
@@ -280,6 +298,12 @@ export function requirementInFocus(run: Run, id: string | undefined): Requiremen
 export function openingTime(run: Run, id: string | undefined): number {
   const violations = requirementInFocus(run, id)?.violations ?? [];
   return violations[0]?.t ?? run.requirements.flatMap((r) => r.violations)[0]?.t ?? 0;
+}
+
+/** A time that somebody wrote, as the run has it: a sample that was then is not missed by the last bit of a number. */
+export function atTick(run: Run, t: number): number {
+  const second = secondOf(run.document);
+  return Math.round(t / second) * second;
 }
 
 /** Whether a value is as the measure asks. */

@@ -113,12 +113,41 @@ export function contactOf(track: ContactTrack, second: number): Contact {
   return { bodies: track.bodies, times: summed(track.t, 1, second), points: summed(track.p, 3, FINE), forces, peak };
 }
 
-/** The point and the force at a time; none while the bodies do not touch. */
-export function contactAt(contact: Contact, t: number): { point: [number, number, number]; force: [number, number, number] } | null {
-  const at = lastAt(contact.times, t);
-  if (at < 0) return null;
-  const [x = 0, y = 0, z = 0] = contact.forces.subarray(at * 3, at * 3 + 3);
-  if (x === 0 && y === 0 && z === 0) return null;
-  const [px = 0, py = 0, pz = 0] = contact.points.subarray(at * 3, at * 3 + 3);
-  return { point: [px, py, pz], force: [x, y, z] };
+/** A point of a contact, and the force there. */
+export interface Press {
+  point: [number, number, number];
+  force: [number, number, number];
 }
+
+function pressAt(contact: Contact, at: number): Press | null {
+  const [x, y, z] = [contact.forces[at * 3] ?? 0, contact.forces[at * 3 + 1] ?? 0, contact.forces[at * 3 + 2] ?? 0];
+  if (x === 0 && y === 0 && z === 0) return null;
+  return { point: [contact.points[at * 3] ?? 0, contact.points[at * 3 + 1] ?? 0, contact.points[at * 3 + 2] ?? 0], force: [x, y, z] };
+}
+
+/** The point and the force at a time; none while the bodies do not touch. */
+export function contactAt(contact: Contact, t: number): Press | null {
+  const at = lastAt(contact.times, t);
+  return at < 0 ? null : pressAt(contact, at);
+}
+
+/** A blow is over before anybody sees it: it stays in the picture for so long, in seconds. */
+export const ECHO = 0.5;
+/** What is so many times as great as the force now was a blow. */
+const BLOW = 2;
+
+/** The hardest blow of the last moment, if the force is much less now, and how long it has been over. */
+export function blowBefore(contact: Contact, t: number): (Press & { ago: number }) | null {
+  const now = lastAt(contact.times, t);
+  let best: { at: number; force: number } | null = null;
+  // Each force lasts until the next is told.
+  for (let at = now - 1; at >= 0 && (contact.times[at + 1] ?? 0) > t - ECHO; at -= 1) {
+    const force = sizeAt(contact, at);
+    if (force > (best?.force ?? 0)) best = { at, force };
+  }
+  if (!best || best.force <= BLOW * sizeAt(contact, now)) return null;
+  const press = pressAt(contact, best.at);
+  return press && { ...press, ago: t - (contact.times[best.at + 1] ?? t) };
+}
+
+const sizeAt = (contact: Contact, at: number): number => Math.hypot(contact.forces[at * 3] ?? 0, contact.forces[at * 3 + 1] ?? 0, contact.forces[at * 3 + 2] ?? 0);

@@ -2,7 +2,7 @@
 
 import { lastAt } from "../data/columns.js";
 import { lineAt, threadName, type CodeThread, type Run } from "../data/run.js";
-import type { Changed, State, Store } from "../state.js";
+import type { Changed, Span, State, Store } from "../state.js";
 import { h } from "../ui/dom.js";
 import { seconds } from "../ui/text.js";
 import { nothing, which, type Pane } from "./pane.js";
@@ -36,6 +36,7 @@ class CodeView {
   private opened: CodeThread | null = null;
   private marked: Element[] = [];
   private place = -2;
+  private range: Span | null = null;
 
   constructor(private readonly run: Run, private readonly at: number, private readonly count: number, private readonly store: Store) {
     this.chosen = busiest(run.code);
@@ -72,14 +73,29 @@ class CodeView {
     this.file = file;
     this.opened = this.chosen;
     const source = this.run.sources[file];
-    const ran = new Set<number>();
-    this.chosen?.line.forEach((line, i) => this.chosen?.file[i] === file && ran.add(line));
     if (!source?.lines) this.body.replaceChildren(nothing(`The text of ${source?.name ?? "this file"} is not in the data.`));
     else
       this.body.replaceChildren(
-        ...source.lines.map((text, i) => h("div", { class: ran.has(i + 1) ? "line ran" : "line", "data-line": String(i + 1) }, h("span", { class: "number" }, String(i + 1)), h("code", {}, text || " "))),
+        ...source.lines.map((text, i) => h("div", { class: "line", "data-line": String(i + 1) }, h("span", { class: "number" }, String(i + 1)), h("code", {}, text || " "))),
       );
     this.marked = [];
+    this.markRan();
+  }
+
+  /** Only what ran in a selected range counts as having run. */
+  restrict(range: Span | null): void {
+    this.range = range;
+    this.markRan();
+  }
+
+  private markRan(): void {
+    const { chosen, range } = this;
+    const ran = new Set<number>();
+    chosen?.line.forEach((line, i) => {
+      const isIn = !range || ((chosen.times[i] ?? 0) <= range[1] && (chosen.times[i + 1] ?? Math.min(chosen.until, this.run.end)) > range[0]);
+      if (chosen.file[i] === this.file && isIn) ran.add(line);
+    });
+    for (const [i, line] of [...this.body.children].entries()) line.classList.toggle("ran", ran.has(i + 1));
   }
 
   update(t: number): void {
@@ -146,6 +162,7 @@ export class CodePane implements Pane {
       this.views = state.runs.map((run, i) => new CodeView(run, i, state.runs.length, this.store));
       this.element.replaceChildren(...this.views.map((view) => view.element));
     }
+    if (changed.has("runs") || changed.has("range")) for (const view of this.views) view.restrict(state.range);
     for (const view of this.views) view.update(state.time);
   }
 }

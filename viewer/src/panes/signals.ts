@@ -1,7 +1,8 @@
 // The values of all signals now, and over the selected range; what is ticked is plotted.
 
 import { extentIn, numberAt, type Series } from "../data/series.js";
-import type { Changed, State, Store } from "../state.js";
+import type { Changed, Key, State, Store } from "../state.js";
+import { readBy } from "../timeline/lanes.js";
 import { h, say } from "../ui/dom.js";
 import { valueText } from "../ui/text.js";
 import { nothing, type Pane } from "./pane.js";
@@ -17,6 +18,8 @@ export class SignalsPane implements Pane {
   readonly title = "Signals";
   readonly element = h("div", { class: "pane signals" });
   private readouts: Readout[] = [];
+  /** What the requirement in focus reads, which is plotted anyway. */
+  private read: string[] = [];
   private readonly search: HTMLInputElement;
 
   constructor(private readonly store: Store) {
@@ -24,9 +27,9 @@ export class SignalsPane implements Pane {
   }
 
   update(state: State, changed: Changed): void {
-    if (changed.has("runs") || changed.has("plots")) this.fill(state);
+    if (changed.has("runs") || changed.has("plots") || changed.has("focus")) this.fill(state);
     for (const { series, now } of this.readouts) say(now, valueText(series, numberAt(series, state.time)));
-    if (changed.has("runs") || changed.has("range") || changed.has("plots")) this.overRange(state);
+    if (["runs", "range", "plots", "focus"].some((key) => changed.has(key as Key))) this.overRange(state);
   }
 
   private overRange(state: State): void {
@@ -46,6 +49,7 @@ export class SignalsPane implements Pane {
       ["Joints", shown.filter((s) => s.joint)],
       ["States and sensors", shown.filter((s) => !s.joint && s.type !== "float")],
     ];
+    this.read = readBy(state.runs, state.focus);
     const body = groups.filter(([, list]) => list.length > 0).map(([title, list]) => h("section", {}, h("h4", {}, title), ...list.map((s) => this.row(s, state))));
     if (all.length === 0) this.element.replaceChildren(nothing("This recording has no signals."));
     else this.element.replaceChildren(h("div", { class: "bar" }, this.search, h("span", {}, "Ticked ones are plotted")), ...body);
@@ -59,7 +63,7 @@ export class SignalsPane implements Pane {
       if (own) this.readouts.push({ series: own, ...readout });
       return h("span", { class: "values" }, readout.now, readout.over);
     });
-    const tick = h("input", { type: "checkbox", checked: state.plots.includes(series.name), disabled: series.type !== "float", onchange: () => this.toggle(series.name) });
+    const tick = h("input", { type: "checkbox", checked: state.plots.includes(series.name) || this.read.includes(series.name), disabled: series.type !== "float" || this.read.includes(series.name), onchange: () => this.toggle(series.name) });
     return h("label", { class: "signal" }, tick, h("span", { class: "name", title: series.name }, series.name), ...values);
   }
 

@@ -3,7 +3,7 @@
 import { isKept, measureAt, type Requirement, type Run } from "../data/run.js";
 import type { Changed, State, Store } from "../state.js";
 import { button, h, say } from "../ui/dom.js";
-import { limitText, MEANINGS, plural, quantity, RELATIONS, seconds, SIGNS, WORDS } from "../ui/text.js";
+import { boundText, MEANINGS, measureText, plural, quantity, seconds, SIGNS, WORDS } from "../ui/text.js";
 import { nothing, which, type Pane } from "./pane.js";
 
 const OUTCOMES = { met: "met", violated: "violated", pending: "pending", dropped: "dropped" } as const;
@@ -20,7 +20,7 @@ export class VerdictsPane implements Pane {
   constructor(private readonly store: Store) {}
 
   update(state: State, changed: Changed): void {
-    if (changed.has("runs") || changed.has("focus")) this.fill(state, changed.has("runs"));
+    if (changed.has("runs") || changed.has("focus") || changed.has("range")) this.fill(state, changed.has("runs"));
     for (const readout of this.readouts) readout.update(state.time);
   }
 
@@ -53,16 +53,21 @@ export class VerdictsPane implements Pane {
 
   private outcome(requirement: Requirement, run: Run, at: number, count: number): HTMLElement {
     const { of } = requirement;
+    const { range } = this.store.state;
+    const isIn = (from: number, until: number) => !range || (from <= range[1] && until >= range[0]);
+    const obligations = requirement.obligations.filter((o) => isIn(o.from, o.until));
+    const left = requirement.obligations.length - obligations.length;
     const facts = [typeof of.margin === "number" ? `least margin ${quantity(of.margin, of.unit)}` : "", requirement.triggers.length > 0 ? `triggered ${plural(requirement.triggers.length, "time")}` : "", of.kind ?? ""].filter(Boolean);
     return h(
       "div",
       { class: "outcome" },
       count > 1 ? h("h4", {}, which(count, at), run.label) : null,
-      ...requirement.violations.map((v) => h("div", { class: "violation" }, this.jump(`✗ ${seconds(v.t)}`, v.t), h("span", {}, v.text), v.since === null ? null : this.jump(`made at ${seconds(v.since)}`, v.since))),
+      ...requirement.violations.map((v) => h("div", { class: isIn(v.t, v.t) ? "violation" : "violation outside" }, this.jump(`✗ ${seconds(v.t)}`, v.t), h("span", {}, v.text), v.since === null ? null : this.jump(`made at ${seconds(v.since)}`, v.since))),
       ...requirement.measures.map((m) => this.measure(m)),
       h("p", { class: "facts" }, facts.join(" · ")),
-      ...requirement.obligations.slice(0, MANY).map((o) => h("div", { class: `obligation ${o.outcome}` }, this.jump(seconds(o.from), o.from), h("span", {}, o.trigger ?? "obligation"), h("span", { class: "how" }, OUTCOMES[o.outcome]), o.outcome === "pending" ? null : this.jump(`+${seconds(o.until - o.from, 2)}`, o.until))),
-      requirement.obligations.length > MANY ? h("p", { class: "facts" }, `and ${requirement.obligations.length - MANY} more`) : null,
+      ...obligations.slice(0, MANY).map((o) => h("div", { class: `obligation ${o.outcome}` }, this.jump(seconds(o.from), o.from), h("span", {}, o.trigger ?? "obligation"), h("span", { class: "how" }, OUTCOMES[o.outcome]), o.outcome === "pending" ? null : this.jump(`+${seconds(o.until - o.from, 2)}`, o.until))),
+      obligations.length > MANY ? h("p", { class: "facts" }, `and ${obligations.length - MANY} more`) : null,
+      left > 0 ? h("p", { class: "facts" }, `${plural(left, "obligation")} outside of the selected range`) : null,
     );
   }
 
@@ -74,17 +79,11 @@ export class VerdictsPane implements Pane {
       update: (t) => {
         const now = measureAt(measure, t);
         const kept = Number.isNaN(now) || isKept(of, now);
-        say(value, `${quantity(now, of.unit)}${Number.isNaN(now) ? "" : kept ? " ✓" : " ✗"}`);
+        say(value, `${measureText(of, now)}${Number.isNaN(now) ? "" : kept ? " ✓" : " ✗"}`);
         value.className = kept ? "kept" : "broken";
       },
     });
-    const plotted = measure.series ? button("plot", "Plot it on the time line", () => this.plot(of.name), { class: "small" }) : null;
-    return h("div", { class: "measure" }, h("code", {}, of.name), h("div", {}, value, h("span", {}, ` must be ${RELATIONS[of.relation]} ${limitText(of.limit, of.unit)} `), plotted));
-  }
-
-  private plot(name: string): void {
-    const { plots } = this.store.state;
-    if (!plots.includes(name)) this.store.set({ plots: [name, ...plots] });
+    return h("div", { class: "measure" }, h("code", {}, of.name), h("div", {}, value, h("span", {}, ` must be ${boundText(of)}${of.tells ? `, or ${of.tells} is told` : ""}`)));
   }
 
   private jump(text: string, t: number): HTMLElement {

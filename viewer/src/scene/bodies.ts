@@ -4,7 +4,8 @@ import { AlwaysStencilFunc, BufferGeometry, Color, DoubleSide, EdgesGeometry, Eq
 import type { BodyKind, ViewBody } from "../data/document.js";
 import { bodyAt, type Run } from "../data/run.js";
 import type { Palette } from "../ui/theme.js";
-import { bodyGeometry, isFloor } from "./geometry.js";
+import { Batch, type BatchPart } from "./batch.js";
+import { bodyGeometry, COARSELY, FINELY, isFloor } from "./geometry.js";
 import { LIGHT, LitMaterial } from "./shading.js";
 
 const ONE = new Vector3(1, 1, 1);
@@ -15,6 +16,8 @@ interface Drawn {
   meshes: Mesh[];
   edges: LineSegments | null;
   shadow: Mesh | null;
+  /** Whether it may be drawn together with others: the first of its meshes, its edges and its shadow. */
+  batched: boolean;
 }
 
 /** Flattens what is above a level floor onto it, away from the light. */
@@ -22,6 +25,10 @@ function flattening(z: number): Matrix4 {
   const [x, y] = [LIGHT.x / LIGHT.z, LIGHT.y / LIGHT.z];
   return new Matrix4().set(1, 0, -x, x * z, 0, 1, -y, y * z, 0, 0, 0, z, 0, 0, 0, 1);
 }
+
+const edgeOpacity = (palette: Palette): number => (palette.dark ? 0.3 : 0.22);
+/** Of the body that is chosen. */
+const GLOW = 0x24344e;
 
 export class Bodies {
   readonly group = new Group();
@@ -33,6 +40,8 @@ export class Bodies {
   private readonly shade = new MeshBasicMaterial({ color: 0x000000, transparent: true, depthWrite: false, stencilWrite: true, stencilFunc: EqualStencilFunc, stencilRef: 1, stencilZPass: IncrementStencilOp, polygonOffset: true, polygonOffsetFactor: -1 });
   private readonly materials: Material[] = [this.shade];
   private lit: string | null = null;
+  private rough = false;
+  private batch: Batch | null = null;
 
   constructor(private readonly run: Run, private palette: Palette, private low: boolean) {
     this.poses = run.bodies.map((body) => Float64Array.from(body.pose));
@@ -52,13 +61,14 @@ export class Bodies {
     this.shade.opacity = this.palette.dark ? 0.34 : 0.16;
     this.drawn = this.run.bodies.map((body, place) => this.draw(body, place));
     this.lit = null;
+    if (this.rough) this.choose();
     // Where everything is, and that it is drawn, is told by `update`.
     this.group.matrixAutoUpdate = false;
   }
 
   private draw(body: ViewBody, place: number): Drawn {
-    const { solid, placeholder } = bodyGeometry(body, this.run.meshes, this.low);
-    const drawn: Drawn = { body, place, meshes: [], edges: null, shadow: null };
+    const { solid, placeholder } = bodyGeometry(body, this.run.meshes, this.low, FINELY);
+    const drawn: Drawn = { body, place, meshes: [], edges: null, shadow: null, batched: false };
     const add = (geometry: BufferGeometry, material: Material) => {
       const mesh = new Mesh(geometry, material);
       mesh.matrixAutoUpdate = false;
@@ -80,6 +90,7 @@ export class Bodies {
       if (floor) drawn.meshes[0]!.renderOrder = -3;
       if (body.kind === "thing" || (body.kind === "room" && !floor)) drawn.edges = this.edgesOf(solid, place);
       if (body.kind !== "room" && !seeThrough) drawn.shadow = this.shadowOf(solid);
+      drawn.batched = !floor && !seeThrough && !wall && !placeholder;
     }
     if (placeholder) {
       add(placeholder, new MeshBasicMaterial({ color: new Color(this.palette.faint), wireframe: true, side: DoubleSide }));
@@ -89,7 +100,7 @@ export class Bodies {
   }
 
   private edgesOf(geometry: BufferGeometry, place: number): LineSegments {
-    const material = new LineBasicMaterial({ color: new Color(this.palette.ink), transparent: true, opacity: this.palette.dark ? 0.3 : 0.22 });
+    const material = new LineBasicMaterial({ color: new Color(this.palette.ink), transparent: true, opacity: edgeOpacity(this.palette) });
     this.materials.push(material);
     const edges = new LineSegments(new EdgesGeometry(geometry, 40), material);
     edges.matrixAutoUpdate = false;
@@ -107,6 +118,8 @@ export class Bodies {
   }
 
   private clear(): void {
+    this.batch?.dispose();
+    this.batch = null;
     for (const { meshes, edges } of this.drawn) {
       for (const mesh of meshes) mesh.geometry.dispose();
       edges?.geometry.dispose();
@@ -115,6 +128,37 @@ export class Bodies {
     this.materials.length = 0;
     this.materials.push(this.shade);
     this.group.clear();
+  }
+
+  /** Draws with fewer triangles and as few things from now on, or with all of them. */
+  roughen(rough: boolean): void {
+    if (rough === this.rough) return;
+    this.rough = rough;
+    this.choose();
+  }
+
+  /** Shows the batch, or each body for itself. */
+  private choose(): void {
+    if (this.rough) this.batch ??= this.batchOf();
+    if (this.batch) this.batch.group.visible = this.rough;
+    for (const drawn of this.drawn) {
+      if (!drawn.batched) continue;
+      for (const one of [drawn.meshes[0], drawn.edges, drawn.shadow]) if (one) one.visible = !this.rough;
+    }
+  }
+
+  private batchOf(): Batch {
+    const parts = this.drawn.filter((drawn) => drawn.batched).flatMap((drawn): BatchPart[] => {
+      const { solid } = bodyGeometry(drawn.body, this.run.meshes, this.low, COARSELY);
+      return solid ? [{ place: drawn.place, solid, color: this.colorOf(drawn.body), edges: drawn.edges?.geometry ?? null, casts: drawn.shadow !== null }] : [];
+    });
+    const { palette, shade } = this;
+    const { depthWrite, stencilWrite, stencilFunc, stencilRef, stencilZPass, polygonOffset, polygonOffsetFactor, opacity } = shade;
+    const batch = new Batch(parts, { edge: new Color(palette.ink), edgeOpacity: edgeOpacity(palette), flat: this.flat, shade: { depthWrite, stencilWrite, stencilFunc, stencilRef, stencilZPass, polygonOffset, polygonOffsetFactor, opacity } });
+    for (const { place, meshes } of this.drawn) if (meshes[0]) batch.set(place, meshes[0].matrix);
+    this.group.add(batch.group);
+    this.lit = null;
+    return batch;
   }
 
   restyle(palette: Palette, low: boolean): void {
@@ -133,6 +177,7 @@ export class Bodies {
       matrix.compose(place, turn, ONE);
       for (const mesh of drawn.meshes) moveTo(mesh, matrix);
       if (drawn.edges) moveTo(drawn.edges, matrix);
+      this.batch?.set(drawn.place, matrix);
       if (drawn.shadow) {
         drawn.shadow.matrix.multiplyMatrices(this.flat, matrix);
         drawn.shadow.matrixWorldNeedsUpdate = true;
@@ -144,7 +189,8 @@ export class Bodies {
   private light(lit: string | null): void {
     this.lit = lit;
     for (const { body, meshes } of this.drawn)
-      for (const mesh of meshes) if (mesh.material instanceof LitMaterial) mesh.material.glow = body.name === lit ? 0x24344e : 0;
+      for (const mesh of meshes) if (mesh.material instanceof LitMaterial) mesh.material.glow = body.name === lit ? GLOW : 0;
+    this.batch?.light(this.drawn.find(({ body }) => body.name === lit)?.place ?? -1, GLOW);
   }
 
   dispose(): void {

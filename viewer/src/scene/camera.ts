@@ -5,6 +5,8 @@ import type { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { bodyAt, type Run } from "../data/run.js";
 import { pairAt } from "../data/tracks.js";
 import type { CameraName } from "../state.js";
+import { drawnMeasure } from "./measures.js";
+import { nearestPoints } from "./nearest.js";
 import { isFloor } from "./geometry.js";
 import { inTheWay, obstaclesOf } from "./rays.js";
 
@@ -79,16 +81,23 @@ function freest(run: Run, t: number, points: readonly Vector3[], middle: Vector3
 
 /** What is measured: two points, or one body. */
 function measured(run: Run, t: number, focus: string | null): Vector3[] {
-  const requirement = run.requirements.find((r) => r.id === focus);
-  for (const measure of requirement?.measures ?? []) {
-    const pair = measure.pairs && pairAt(measure.pairs, t);
-    if (pair) return [new Vector3(...pair.a), new Vector3(...pair.b)];
-    const body = measure.of.bodies?.[0];
-    if (body === undefined || !run.bodies[body]) continue;
-    const pose = bodyAt(run, body, t, new Float64Array(7));
-    return [new Vector3(pose[0], pose[1], pose[2])];
+  const measure = drawnMeasure(run.requirements.find((r) => r.id === focus));
+  const pair = measure?.pairs && pairAt(measure.pairs, t);
+  if (pair) return [new Vector3(...pair.a), new Vector3(...pair.b)];
+  const place = (body: number, at: number) => {
+    const pose = bodyAt(run, body, at, new Float64Array(7));
+    return new Vector3(pose[0], pose[1], pose[2]);
+  };
+  const [body, other] = measure?.of.bodies ?? [];
+  if (!measure || body === undefined || !run.bodies[body]) return [];
+  const { kind, within } = measure.of;
+  if (kind === "distance" && other !== undefined) {
+    const poses = run.bodies.map((_, i) => ([body, other].includes(i) ? bodyAt(run, i, t, new Float64Array(7)) : []));
+    const near = nearestPoints(run.bodies, run.meshes, poses, [body, other]);
+    if (near) return [new Vector3(...near.a), new Vector3(...near.b)];
   }
-  return [];
+  if ((kind === "distance" || kind === "range") && other !== undefined && run.bodies[other]) return [place(body, t), place(other, t)];
+  return kind === "way" || kind === "speed" ? [place(body, t), place(body, Math.max(t - (within ?? 1), 0))] : [place(body, t)];
 }
 
 export function shotOf(name: CameraName, run: Run, t: number, focus: string | null, camera: PerspectiveCamera): Shot {
@@ -123,7 +132,9 @@ export function shotOf(name: CameraName, run: Run, t: number, focus: string | nu
       if (points.length === 0) return shotOf("overview", run, t, focus, camera);
       const middle = points.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(points.length);
       const span = Math.max(...points.map((p) => p.distanceTo(middle)));
-      const distance = points.length > 1 ? Math.min(1.25 + 5 * span, 6) : 3;
+      // Of a body that goes somewhere, or leans, one wants to see what it is part of.
+      const near = points.length > 1 && drawnMeasure(run.requirements.find((r) => r.id === focus))?.of.kind.match(/distance|range/) ? 1.25 : 2.7;
+      const distance = Math.min(near + 5 * span, 6);
       return shot(freest(run, t, points, middle, distance), distance, middle);
     }
   }

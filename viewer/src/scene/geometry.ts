@@ -10,6 +10,17 @@ import type { ViewBody, ViewMesh, ViewShape } from "../data/document.js";
 export const LOW_WALL = 0.35;
 const HALF_TURN = Math.PI / 2;
 
+/** How round things are: fine for still pictures and graphics cards, coarse for machines that draw in software while a run plays. */
+export interface Roundness {
+  bevel: boolean;
+  sphere: readonly [number, number];
+  cylinder: number;
+  capsule: readonly [number, number];
+}
+export const FINELY: Roundness = { bevel: true, sphere: [20, 14], cylinder: 24, capsule: [5, 16] };
+/** There, most of the time goes by the number of triangles. */
+export const COARSELY: Roundness = { bevel: false, sphere: [10, 7], cylinder: 12, capsule: [2, 9] };
+
 export interface BodyGeometry {
   solid: BufferGeometry | null;
   /** Of shapes whose mesh is not there. */
@@ -28,17 +39,17 @@ function meshGeometry(mesh: ViewMesh, scale: readonly number[]): BufferGeometry 
   return flat;
 }
 
-function shapeGeometry(shape: ViewShape, meshes: Record<string, ViewMesh>, alive: boolean): BufferGeometry | null {
+function shapeGeometry(shape: ViewShape, meshes: Record<string, ViewMesh>, alive: boolean, round: Roundness): BufferGeometry | null {
   switch (shape.kind) {
     case "box":
       // A bevel, by which edges can be seen; too small to mislead about distances.
-      return alive ? new RoundedBoxGeometry(...shape.size, 2, Math.min(...shape.size) * 0.12) : new BoxGeometry(...shape.size);
+      return alive && round.bevel ? new RoundedBoxGeometry(...shape.size, 2, Math.min(...shape.size) * 0.12) : new BoxGeometry(...shape.size);
     case "sphere":
-      return new SphereGeometry(shape.radius, 20, 14);
+      return new SphereGeometry(shape.radius, ...round.sphere);
     case "cylinder":
-      return new CylinderGeometry(shape.radius, shape.radius, shape.length, 24).rotateX(HALF_TURN);
+      return new CylinderGeometry(shape.radius, shape.radius, shape.length, round.cylinder).rotateX(HALF_TURN);
     case "capsule":
-      return new CapsuleGeometry(shape.radius, shape.length, 5, 16).rotateX(HALF_TURN);
+      return new CapsuleGeometry(shape.radius, shape.length, ...round.capsule).rotateX(HALF_TURN);
     case "mesh": {
       const mesh = meshes[shape.mesh];
       return mesh ? meshGeometry(mesh, shape.scale ?? [1, 1, 1]) : null;
@@ -67,12 +78,12 @@ function lowered(shape: ViewShape, body: ViewBody): ViewShape {
 
 const merged = (all: BufferGeometry[]): BufferGeometry | null => (all.length === 0 ? null : all.length === 1 ? (all[0] ?? null) : mergeGeometries(all));
 
-export function bodyGeometry(body: ViewBody, meshes: Record<string, ViewMesh>, low: boolean): BodyGeometry {
+export function bodyGeometry(body: ViewBody, meshes: Record<string, ViewMesh>, low: boolean, round: Roundness): BodyGeometry {
   const solid: BufferGeometry[] = [];
   const placeholders: BufferGeometry[] = [];
   for (const given of body.shapes) {
     const shape = low && body.kind === "room" ? lowered(given, body) : given;
-    const geometry = shapeGeometry(shape, meshes, body.kind === "person" || body.kind === "robot");
+    const geometry = shapeGeometry(shape, meshes, body.kind === "person" || body.kind === "robot", round);
     if (geometry) solid.push(placed(geometry, shape.pose));
     else if (shape.kind === "mesh") placeholders.push(placed(new BoxGeometry(...(shape.extent ?? [0.2, 0.2, 0.2])), shape.pose));
   }

@@ -6,15 +6,20 @@ import { Color, ShaderMaterial, Vector3, type ShaderMaterialParameters } from "t
 /** Where the light comes from that makes the shadows, too. */
 export const LIGHT = new Vector3(0.35, 0.5, 1.6).normalize();
 
+/** How light a surface is. */
+export const SHADE = /* glsl */ `
+float shade(vec3 n, vec3 light) {
+  return 0.63 + 0.15 * n.z + 0.06 * n.x + 0.28 * max(dot(n, light), 0.0);
+}`;
+
 const vertex = /* glsl */ `
 uniform vec3 color;
 uniform vec3 glow;
 uniform vec3 light;
 varying vec3 lit;
+${SHADE}
 void main() {
-  vec3 n = normalize(mat3(modelMatrix) * normal);
-  float shade = 0.63 + 0.15 * n.z + 0.06 * n.x + 0.28 * max(dot(n, light), 0.0);
-  lit = min(color * shade + glow, vec3(1.0));
+  lit = min(color * shade(normalize(mat3(modelMatrix) * normal), light) + glow, vec3(1.0));
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
 

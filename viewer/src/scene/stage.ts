@@ -63,7 +63,11 @@ export class Stage implements Part {
       this.fail("This browser shows no 3D: it has no WebGL, or it is switched off. Everything else on this page works without it.");
     }
     this.element.append(this.labels.element, ...this.captions, this.message);
-    new ResizeObserver(() => store.touch("camera")).observe(this.element);
+    // Asked for in each frame, the size would cost a layout each time.
+    new ResizeObserver(() => {
+      this.resize();
+      store.touch("camera");
+    }).observe(this.element);
   }
 
   private fail(text: string): void {
@@ -150,6 +154,7 @@ export class Stage implements Part {
     if (!this.software || state.playing) return;
     this.resting = window.setTimeout(() => {
       this.still = true;
+      for (const scene of this.scenes) scene.bodies.roughen(false);
       this.refine();
       this.render(this.store.state);
     }, RESTED);
@@ -163,7 +168,7 @@ export class Stage implements Part {
   }
 
   update(state: State, changed: Changed): void {
-    this.resize();
+    if (changed.has("runs")) this.resize();
     if (changed.has("runs")) this.replace(state);
     if (changed.has("theme")) this.colors = palette();
     for (const scene of this.scenes) scene.restyle(this.colors, state.lowWalls && hasWalls(scene.run));
@@ -172,7 +177,10 @@ export class Stage implements Part {
     this.camera.updateProjectionMatrix();
     if (changed.has("runs")) this.fly(state.camera, state, true);
     else if (changed.has("camera")) this.fly(state.camera, state, false);
-    for (const scene of this.scenes) scene.update(state);
+    for (const scene of this.scenes) {
+      scene.bodies.roughen(this.software && state.playing);
+      scene.update(state);
+    }
     this.goAlong(state, changed.has("follow") || changed.has("body"));
     if (this.flight && !this.flight.step(performance.now())) this.flight = null;
     if (this.flight) this.store.schedule();

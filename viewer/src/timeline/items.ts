@@ -2,7 +2,7 @@
 
 import { lastAt } from "../data/columns.js";
 import { numberAt } from "../data/series.js";
-import { limitText, RELATIONS, seconds, valueText } from "../ui/text.js";
+import { boundText, seconds, valueText } from "../ui/text.js";
 import type { Lane } from "./lanes.js";
 
 export interface Item {
@@ -68,7 +68,7 @@ export function itemAt(lane: Lane, track: number, t: number, slack: number): Ite
     }
     case "plot": {
       const lines = lane.tracks.flatMap((series, i) => (series ? [`${lane.tracks.length > 1 ? `${"AB"[i] ?? ""}: ` : ""}${valueText(series, numberAt(series, t))}`] : []));
-      const limits = lane.measures.map((m) => `limit: ${RELATIONS[m.of.relation]} ${limitText(m.of.limit, m.of.unit)}`);
+      const limits = lane.measures.map((m) => `limit: ${boundText(m.of)}`);
       return { t, lines: [lane.label, `${lines.join("   ")} at ${seconds(t)}`, ...new Set(limits)] };
     }
   }

@@ -52,10 +52,34 @@ function requirementLanes(runs: readonly Run[]): Lane[] {
   });
 }
 
-function plotLanes(runs: readonly Run[], plots: readonly string[]): Lane[] {
-  return plots.flatMap((name): Lane[] => {
+/** The curves that a requirement is about: what it measures, and what else it reads that is a number. */
+export function readBy(runs: readonly Run[], focus: string | null): string[] {
+  const all = runs.flatMap((run) => run.requirements.filter((r) => r.id === focus));
+  const measured = all.flatMap((r) => r.measures.map((m) => m.of.name));
+  const read = all.flatMap((r) => r.of.signals ?? []);
+  // What goes into something that is measured is not drawn once more.
+  const into = read.filter((name) => !measured.some((m) => m !== name && m.includes(name)));
+  const numbers = new Set(runs.flatMap((run) => run.series.filter((s) => s.type === "float").map((s) => s.name)));
+  return [...new Set([...measured, ...into])].filter((name) => numbers.has(name));
+}
+
+/** What a requirement reads that is no number: its events, and signals that have words or truths. */
+function statesReadBy(runs: readonly Run[], focus: string | null): Lane[] {
+  const all = runs.flatMap((run) => run.requirements.filter((r) => r.id === focus));
+  const events = new Set(all.flatMap((r) => r.of.events ?? []));
+  const signals = new Set(all.flatMap((r) => r.of.signals ?? []));
+  const tracks = runs.map((run) => run.events.filter((e) => events.has(e.name)));
+  const told: Lane[] = events.size > 0 ? [{ id: `focus events ${focus}`, section: FOCUS, label: [...events].join(", "), note: "", kind: "events", tracks }] : [];
+  return [...told, ...barLanes(runs, (s) => signals.has(s.name), FOCUS).map((lane) => ({ ...lane, id: `focus ${lane.id}` }))];
+}
+
+function plotLanes(runs: readonly Run[], plots: readonly string[], focus: string | null): Lane[] {
+  return [...new Set([...readBy(runs, focus), ...plots])].flatMap((name): Lane[] => {
     const tracks = runs.map((run) => run.series.find((s) => s.name === name) ?? null);
-    const measures = runs[0]?.requirements.flatMap((r) => r.measures.filter((m) => m.of.name === name)) ?? [];
+    const of = (id: string | null) => runs[0]?.requirements.filter((r) => id === null || r.id === id).flatMap((r) => r.measures.filter((m) => m.of.name === name)) ?? [];
+    // The limit of the requirement in focus, if it has one; else those of all.
+    const own = of(focus);
+    const measures = own.length > 0 ? own : of(null);
     const unit = tracks.find((s) => s?.unit)?.unit ?? "";
     return tracks.some((t) => t) ? [{ id: `plot ${name}`, section: FOCUS, label: name, note: unit, kind: "plot", tracks, measures }] : [];
   });
@@ -159,7 +183,8 @@ export function lanesOf(runs: readonly Run[], plots: readonly string[], focus: s
   const log: Lane[] = runs.some((r) => r.log.length > 0) ? [{ id: "log", section: "Log", label: "log", note: "", kind: "log", tracks: runs.map((r) => r.log) }] : [];
   return [
     ...focused,
-    ...plotLanes(runs, plots),
+    ...statesReadBy(runs, focus),
+    ...plotLanes(runs, plots, focus),
     ...actors.flatMap(of),
     ...alone,
     ...barLanes(runs, (s) => s.sensor, "Sensor values"),

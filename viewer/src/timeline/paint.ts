@@ -234,8 +234,7 @@ function drawPlot(paint: Paint, lane: Extract<Lane, { kind: "plot" }>, y: number
   context.beginPath();
   context.rect(scale.left, y, scale.width, height);
   context.clip();
-  context.fillStyle = colors.paper;
-  context.fillRect(scale.left, y, scale.width, height);
+  // The ground stays as it is: a selected range is seen through the curves.
   for (const v of valueTicks(...extent)) {
     context.fillStyle = colors.rule;
     context.fillRect(scale.left, Math.round(yOf(v)), scale.width, 1);

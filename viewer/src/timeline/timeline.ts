@@ -14,7 +14,7 @@ const LABELS = 204;
 const RULER = 20;
 const TOP = OVERVIEW + RULER;
 const RIGHT = 14;
-/** What plots say is written so many times a second while a run plays. */
+/** What plots say, and the time, is written so many times a second while a run plays: words cost a layout. */
 const READOUTS = 12;
 /** A press that moves less than this is a click. */
 const CLICK = 4;
@@ -30,12 +30,13 @@ class Mark {
     this.element = h("div", { class: `mark ${name}` }, this.badge);
   }
 
-  at(x: number, t: number | null, left: number, right: number): void {
+  /** Without a time, the badge stays as it is. */
+  at(x: number, t: number | null | undefined, left: number, right: number): void {
     const seen = x >= left - 1 && x <= right + 1;
     if (this.element.hidden === seen) this.element.hidden = !seen;
     if (!seen) return;
     this.element.style.transform = `translateX(${x.toFixed(1)}px)`;
-    say(this.badge, t === null ? "" : `${t.toFixed(3)} s`);
+    if (t !== undefined) say(this.badge, t === null ? "" : `${t.toFixed(3)} s`);
     const edge = x - left < 34 ? "begin" : right - x < 34 ? "end" : "";
     if (this.badge.className !== edge) this.badge.className = edge;
   }
@@ -273,13 +274,13 @@ export class Timeline implements Part {
       this.rows = rows;
       this.spacer.style.height = `${height + TOP + 8}px`;
     }
-    const { clientWidth: width, clientHeight: height } = this.scroller;
-    if (width !== this.size.width || height !== this.size.height) {
-      this.size = { width, height };
-      this.stale = true;
-    }
     for (const key of ["runs", "plots", "closed", "window", "range", "lane", "focus", "theme"] as const) this.stale ||= changed.has(key);
-    if (this.stale) this.drawLanes(state);
+    if (this.stale) {
+      // Asked for in each frame, the size would cost a layout each time.
+      const { clientWidth: width, clientHeight: height } = this.scroller;
+      this.size = { width, height };
+      this.drawLanes(state);
+    }
     this.stale = false;
     this.drawMarks(state, performance.now());
   }
@@ -348,11 +349,12 @@ export class Timeline implements Part {
   private drawMarks(state: State, now: number): void {
     const { scale } = this;
     const right = scale.left + scale.width;
-    this.head.at(xOf(scale, state.time), state.time, scale.left, right);
+    const waits = state.playing && now - this.told < 1000 / READOUTS;
+    this.head.at(xOf(scale, state.time), waits ? undefined : state.time, scale.left, right);
     this.strip.at(xOf(this.whole, state.time), null, scale.left, right);
     const hover = this.drag ? null : this.hover;
     this.pointer.at(hover ?? -1, hover === null ? null : tOf(scale, hover), scale.left, right);
-    if (state.playing && now - this.told < 1000 / READOUTS) return;
+    if (waits) return;
     this.told = now;
     const paint = this.canvas(this.overlay, LABELS, Math.max(this.size.height - TOP, 1));
     if (!paint) return;

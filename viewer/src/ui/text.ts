@@ -1,6 +1,6 @@
 // Numbers, times and verdicts as people read them.
 
-import type { LimitRelation, ViewEnd, ViewVerdict } from "../data/document.js";
+import type { LimitRelation, MeasureKind, ViewEnd, ViewMeasure, ViewVerdict } from "../data/document.js";
 import type { Series } from "../data/series.js";
 
 const MINUS = "−";
@@ -24,6 +24,19 @@ export function round(value: number): string {
 export function limitText(value: number, unit: string | null | undefined): string {
   if (unit === "m" && Math.abs(value) < 1) return `${round(value * 100)} cm`;
   return unit ? `${round(value)} ${unit}` : round(value);
+}
+
+/** An angle that somebody looks at: in degrees. */
+const degrees = (kind: MeasureKind, unit: string | null | undefined): boolean => unit === "rad" && (kind === "tilt" || kind === "angle");
+
+/** A value of a measure, with its unit. */
+export function measureText(of: ViewMeasure, value: number): string {
+  return degrees(of.kind, of.unit) ? `${number((value * 180) / Math.PI)}°` : quantity(value, of.unit);
+}
+
+/** How a value has to lie to the limit of a measure: `≤ 5 cm`. */
+export function boundText(of: ViewMeasure): string {
+  return `${RELATIONS[of.relation]} ${degrees(of.kind, of.unit) ? `${round((of.limit * 180) / Math.PI)}°` : limitText(of.limit, of.unit)}`;
 }
 
 export const RELATIONS: Record<LimitRelation, string> = { "<": "<", "<=": "≤", ">": ">", ">=": "≥" };

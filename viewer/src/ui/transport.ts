@@ -23,7 +23,11 @@ export const CAMERAS: [CameraName, string][] = [
   ["measure", "Measure"],
 ];
 
+/** The time is written so many times a second while a run plays: words cost a layout. */
+const READOUTS = 12;
+
 export class Transport implements Part {
+  private told = 0;
   readonly element: HTMLElement;
   readonly time: HTMLInputElement;
   private readonly end = h("span", { class: "end" });
@@ -72,7 +76,9 @@ export class Transport implements Part {
   }
 
   update(state: State, changed: Changed): void {
-    if (document.activeElement !== this.time) {
+    const now = performance.now();
+    if (document.activeElement !== this.time && (!state.playing || now - this.told > 1000 / READOUTS)) {
+      this.told = now;
       const text = seconds(state.time);
       if (this.time.value !== text) this.time.value = text;
     }

@@ -39,12 +39,56 @@ describe("the viewer in Chromium", { skip }, () => {
     }, png);
   };
 
+  /** The share of the scene's dots that are clearly of another colour in a second picture. */
+  const differing = async (page: Page, one: string, other: string) =>
+    page.evaluate(
+      async (pictures) => {
+        const dots = async (data: string) => {
+          const image = await createImageBitmap(new Blob([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))]));
+          // Smoothed: how jagged edges are is not the question.
+          const context = new OffscreenCanvas(300, 120).getContext("2d")!;
+          context.drawImage(image, 0, 0, 300, 120);
+          return context.getImageData(0, 0, 300, 120).data;
+        };
+        const [a, b] = [await dots(pictures[0]!), await dots(pictures[1]!)];
+        let count = 0;
+        for (let i = 0; i < a.length; i += 4) if (Math.max(...[0, 1, 2].map((k) => Math.abs((a[i + k] ?? 0) - (b[i + k] ?? 0)))) > 40) count += 1;
+        return count / (a.length / 4);
+      },
+      [one, other],
+    );
+
   test("opens at the violation", async () => {
     const { page, faults } = await open(browser, "handover");
     assert.equal(await time(page), 13.57);
     assert.match(await text(page, ".requirement[open]"), /R5.*the hand was 4.6 cm from robot.finger_right/s);
     assert.match(await text(page, ".label.broken"), /4.52 cm +\(≥ 5 cm\) ✗/);
     assert.equal(await text(page, ".caption"), "MOVE");
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("draws a blow for as long as it takes to see it", async () => {
+    const { page, faults } = await open(browser, "homecare", "#run=bdi_tests.t011&t=100.05&focus=R6");
+    const told = () => page.$$eval(".label.force:not([hidden])", (labels) => labels.map((label) => label.textContent ?? ""));
+    assert.match((await told()).join(), /4200 N {2}robot.chassis · dog.head, 0.040 s ago/);
+    await settle(page, 300);
+    await page.evaluate(() => (location.hash = "#run=bdi_tests.t011&t=100.6&focus=R6"));
+    await settle(page, 300);
+    assert.deepEqual(await told(), []);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("draws the way of the last second and a tilt with their limits", async () => {
+    const { page, faults } = await open(browser, "homecare", "#run=bdi_tests.t011&t=62&focus=R6");
+    assert.match(await text(page, ".label.kept"), /^\d[\d.]* cm {2}\(< 50 cm\) ✓ in 1.00 s$/);
+    await settle(page, 300);
+    await page.evaluate(() => (location.hash = "#run=bdi_tests.t011&t=420&focus=R7"));
+    await settle(page, 300);
+    await press(page, "7");
+    assert.match(await text(page, ".label"), /^\d[\d.]*° {2}\(≤ 51.57°\)/);
+    assert.match(await text(page, ".requirement[open] .measure"), /must be ≤ 51.57°, or fell is told/);
     assert.deepEqual(faults, []);
     await page.close();
   });
@@ -110,7 +154,17 @@ describe("the viewer in Chromium", { skip }, () => {
     await page.click("#tab-signals");
     await settle(page);
     assert.match(await text(page, "#pane-signals .over"), /…/);
+    await page.click("#tab-verdicts");
+    await settle(page);
+    const out = () => page.$$eval("#pane-verdicts .violation.outside", (all) => all.length);
+    const [from = 0, until = 0] = (await text(page, ".transport .range")).match(/\d+\.\d\d/g)?.map(Number) ?? [];
+    assert.equal(await out(), from <= 13.57 && 13.57 <= until ? 0 : 1);
+    await page.click("#tab-code");
+    await settle(page);
+    const ran = () => page.$$eval("#pane-code .source .ran", (all) => all.length);
+    const inside = await ran();
     await press(page, "Escape");
+    assert.ok(inside > 0 && inside < (await ran()), `${inside} lines ran in the range`);
     assert.equal(await text(page, ".transport .range"), "");
     await page.close();
   });
@@ -124,6 +178,26 @@ describe("the viewer in Chromium", { skip }, () => {
     assert.ok(played > 20.1 && played < 30, String(played));
     await settle(page, 300);
     assert.equal(await time(page), played);
+    await page.close();
+  });
+
+  test("draws the same while it plays as when it stands still, if more coarsely", async () => {
+    const { page, faults } = await open(browser, "homecare", "#run=bdi_tests.t011&t=62");
+    await press(page, "1", "l");
+    const picture = async () => (await (await page.$(".stage canvas"))!.screenshot({ encoding: "base64" })) as string;
+    await settle(page, 500);
+    const still = await picture();
+    // As slowly as it goes: next to nothing moves meanwhile.
+    await press(page, "j", "j", "j", "Space");
+    await settle(page, 400);
+    const playing = await picture();
+    await press(page, "Space", "End");
+    await settle(page, 500);
+    const later = await picture();
+    const [same, other] = [await differing(page, still, playing), await differing(page, still, later)];
+    assert.ok(same < 0.01, `${same} of the dots differ while it plays`);
+    assert.ok(other > 2 * same && other > 0.004, `${other} of the dots differ at another time`);
+    assert.deepEqual(faults, []);
     await page.close();
   });
 

@@ -10,6 +10,8 @@ const END = 700;
 const STEP = 0.05;
 const HEIGHT = 1.66;
 const FALL = 412;
+/** The dog runs into the robot. */
+const BLOW = 100;
 const times = Array.from({ length: END / STEP + 1 }, (_, i) => i * STEP);
 
 type Point = [number, number];
@@ -346,6 +348,12 @@ export function homecareSample(): ViewDocument {
     const p = person[Math.round((FALL + 0.7 + d) / STEP)]?.["pelvis"]?.p as V;
     return { t: FALL + 0.7 + d, p: [p[0], p[1], 0.01] as V, f: [0, 0, [900, 2400, 1300, 700, 640, 640][[0, 0.05, 0.1, 0.2, 0.4, 0.8].indexOf(d)] ?? 0] as V };
   });
+  // As long as a step of the physics.
+  const struck = robot[Math.round(BLOW / STEP)]?.["chassis"]?.p as V;
+  const blow = [
+    { t: BLOW, p: [struck[0], struck[1] - 0.27, 0.2] as V, f: [0, 4200, 0] as V },
+    { t: BLOW + 0.01, p: [struck[0], struck[1] - 0.27, 0.2] as V, f: [0, 0, 0] as V },
+  ];
   const asked = orders.map(([t, what, which]) => ({ from: ticks(t), until: ticks((arrivals[which.at(-1) ?? 0] ?? END) + 0.2), deadline: ticks(t + 180), outcome: "met" as const, trigger: `ordered(what: ${what})` }));
   const every = (seconds: number) => differences(Array.from({ length: Math.floor(END / seconds) }, (_, i) => Math.round(i * seconds * 1000)));
   const commands = times.filter((t, i) => i % 2 === 0 && driveAt(t).leg !== null);
@@ -376,7 +384,7 @@ export function homecareSample(): ViewDocument {
       signal({ name: "near", actor: "sensors", type: "bool", sensor: true }, times, times.map((t) => (halts.some(([h, d]) => t >= h && t < h + d) ? 1 : 0))),
       signal({ name: "goal", actor: "robot", type: "enum", values: ["recharge", "fridge", "sink", "table"] }, times, times.map((t) => ["recharge", "fridge", "sink", "table"].indexOf(legs.findLast((l) => l.from <= t)?.goal ?? "recharge"))),
     ],
-    contacts: [contact([place("person.pelvis"), place("floor")], impact)],
+    contacts: [contact([place("person.pelvis"), place("floor")], impact), contact([place("robot.chassis"), place("dog.head")], blow)],
     events,
     machines: [{ name: "server", actor: "robot", states: ["IDLE", "DRIVE", "HALT", "SERVE"], t: differences(states.map(([t]) => ticks(t))), state: states.map(([, s]) => ["IDLE", "DRIVE", "HALT", "SERVE"].indexOf(s)) }],
     topics: [
@@ -396,12 +404,15 @@ export function homecareSample(): ViewDocument {
       },
       { id: "R3", kind: "safety", title: "the base is slow", text: "globally speed(robot.chassis) < 0.5 m/s", verdict: "pass", margin: 0.2, unit: "m/s", triggers: [0], measures: [{ kind: "speed", name: "speed(robot.chassis)", bodies: [place("robot.chassis")], relation: "<", limit: 0.5, unit: "m/s" }] },
       {
-        id: "R4", kind: "safety", title: "who has fallen is asked within half a minute", text: "fell causes asked_how_it_is within 30 s", verdict: "fail", triggers: differences([ticks(FALL + 0.75)]),
+        id: "R4", kind: "safety", title: "who has fallen is asked within half a minute", text: "fell causes asked_how_it_is within 30 s", verdict: "fail", events: ["fell", "asked_how_it_is"], triggers: differences([ticks(FALL + 0.75)]),
         obligations: [{ from: ticks(FALL + 0.75), until: ticks(FALL + 30.75), deadline: ticks(FALL + 30.75), outcome: "violated", trigger: "fell" }],
         violations: [{ t: ticks(FALL + 30.75), since: ticks(FALL + 0.75), text: "fell was not followed by asked_how_it_is within 30 s.", steps: [142] }],
-        measures: [{ kind: "angle", name: "tilt(person.trunk)", bodies: [place("person.trunk"), place("person.head")], relation: "<", limit: 60, unit: "deg" }],
+        measures: [{ kind: "tilt", name: "tilt(person.trunk)", bodies: [place("person.trunk")], relation: "<", limit: 60, unit: "deg" }],
       },
-      { id: "R5", kind: "functional", title: "the robot goes home after each order", text: "completed causes idle within 60 s", verdict: "inconclusive", obligations: [{ from: ticks(655), outcome: "pending", trigger: "completed(what: sink)" }], triggers: differences([ticks(655)]) },
+      { id: "R5", kind: "functional", title: "the robot goes home after each order", text: "completed causes idle within 60 s", verdict: "inconclusive", obligations: [{ from: ticks(655), outcome: "pending", trigger: "completed(what: sink)" }], triggers: differences([ticks(655)]), events: ["completed", "idle"] },
+      // Nobody recorded what these are about.
+      { id: "R6", kind: "safety", title: "the base does not come far in a second", text: "globally norm((dx, dy)) < 50 cm", verdict: "pass", triggers: [0], measures: [{ kind: "way", name: "norm((dx, dy))", bodies: [place("robot.chassis")], within: 1, axes: ["x", "y"], relation: "<", limit: 0.5, unit: "m" }] },
+      { id: "R7", kind: "safety", title: "the head stays up", text: "never fell", verdict: "fail", triggers: differences([ticks(FALL + 0.75)]), events: ["fell"], violations: [{ t: ticks(FALL + 0.75), text: "`fell` happened.", steps: [140] }], measures: [{ kind: "tilt", name: "tilt(person.head)", bodies: [place("person.head")], relation: "<=", limit: 0.9, unit: "rad", tells: "fell" }] },
     ],
   };
 }

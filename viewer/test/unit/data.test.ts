@@ -9,11 +9,12 @@ import { firstAfter, lastAt, summed, summedWithGaps } from "../../src/data/colum
 import { firstDifference } from "../../src/data/difference.js";
 import type { ViewDocument } from "../../src/data/document.js";
 import { documentOf, unpack } from "../../src/data/page.js";
-import { isKept, lineAt, threadName, openingTime, requirementInFocus, runOf, stateAt } from "../../src/data/run.js";
+import { upright } from "../../src/data/looked.js";
+import { atTick, isKept, lineAt, threadName, openingTime, requirementInFocus, runOf, stateAt } from "../../src/data/run.js";
 import { typesOf, type Schema } from "../../src/data/schema-types.js";
 import { extentIn, numberAt, seriesOf, spansOf } from "../../src/data/series.js";
 import { nextStop, previousStop, stopsOf, violationsOf } from "../../src/data/stops.js";
-import { contactAt, pairAt, pairsOf, poseAt, slerp, trackOf } from "../../src/data/tracks.js";
+import { blowBefore, contactAt, pairAt, pairsOf, poseAt, slerp, trackOf } from "../../src/data/tracks.js";
 import { handoverSample } from "../samples/handover.js";
 import { homecareSample } from "../samples/homecare.js";
 import { packed } from "../samples/pack.js";
@@ -175,4 +176,36 @@ test("the first difference of two runs is found in events, states and places", (
   const moved = runOf("b", "b", { ...other, poses: [] }, {});
   const difference = firstDifference(a, moved);
   assert.match(difference?.what[0] ?? "", /^guest.hand at/);
+});
+
+test("a blow is seen for half a second after it, unless the force goes on", () => {
+  const contact = run().contacts[0];
+  assert.ok(contact);
+  assert.equal(blowBefore(contact, 4.15), null, "it goes on, and has grown");
+  const blow = blowBefore(contact, 4.3);
+  assert.deepEqual([blow?.force, blow?.point], [[20, 0, 0], [0.05, 0, 0.5]]);
+  near(blow?.ago ?? 0, 0.1);
+  assert.ok(blowBefore(contact, 4.69));
+  assert.equal(blowBefore(contact, 4.71), null);
+  assert.equal(blowBefore(contact, 3), null);
+});
+
+test("ways and tilts that nobody recorded are worked out from the poses", () => {
+  const { requirements, series, notes } = run();
+  const way = requirements[0]?.measures.find((m) => m.of.kind === "way")?.series;
+  assert.ok(way && series.includes(way));
+  for (const [t, length] of [[0.5, 0.25], [1, 0.25], [1.5, 0.05], [2, 0.05], [2.25, 0.025], [3, 0]] as const) near(numberAt(way, t), length);
+  assert.match(notes.join(), /norm\(\(guest.dx, guest.dy\)\) was not recorded/);
+  const turned = { ...every(), poses: [{ body: 1, t: [0, 1000], p: [0, 0, 5000, 0, 0, 0], q: [0, 0, 0, 10000, 5000, 0, 0, -1340] }] };
+  const tilt = runOf("a", "a", turned, {}).requirements[0]?.measures.find((m) => m.of.kind === "tilt")?.series;
+  assert.ok(tilt);
+  near(numberAt(tilt, 0.5), Math.PI / 6, 1e-3);
+  near(numberAt(tilt, 1), Math.PI / 3, 1e-3);
+  // Whoever lies at the start is not tilted by lying.
+  near(upright([0, 0, 0, Math.SQRT1_2, 0, 0, Math.SQRT1_2], [0, 0, 0, Math.SQRT1_2, 0, 0, Math.SQRT1_2])[2], 1);
+});
+
+test("a time that somebody writes is that of the run", () => {
+  assert.ok(16.08 < 16080 * 0.001, "they differ in the last bit");
+  assert.equal(atTick(run(), 16.08), 16080 * 0.001);
 });

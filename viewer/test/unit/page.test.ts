@@ -14,7 +14,7 @@ import { lanesOf, layOut, rowAt, stopsOfLane, trackAt } from "../../src/timeline
 import { panned, showing, ticksOf, tOf, valueTicks, xOf, zoomed } from "../../src/timeline/scale.js";
 import { readAddress, writeAddress } from "../../src/ui/hash.js";
 import { actionOf } from "../../src/ui/keys.js";
-import { limitText, number, quantity } from "../../src/ui/text.js";
+import { boundText, limitText, measureText, number, quantity } from "../../src/ui/text.js";
 
 const every = JSON.parse(readFileSync("test/every-field.json", "utf8")) as ViewDocument;
 const run = runOf("a", "a", every, {});
@@ -23,7 +23,8 @@ const lanes = lanesOf([run], ["distance(guest.hand, robot.palm)"], "R1");
 test("what is in focus comes first, then who acts, the robot last of them", () => {
   const sections = [...new Set(lanes.map((l) => l.section))];
   assert.deepEqual(sections, ["In focus", "guest", "world", "robot", "Sensor values", "Requirements", "Signals", "Topics", "Code", "Log"]);
-  assert.deepEqual(lanes.filter((l) => l.section === "In focus").map((l) => l.label), ["R1", "distance(guest.hand, robot.palm)"]);
+  // The requirement, the events that it reads, its curves.
+  assert.deepEqual(lanes.filter((l) => l.section === "In focus").map((l) => l.label), ["R1", "called", "distance(guest.hand, robot.palm)", "norm((guest.dx, guest.dy))"]);
   assert.deepEqual(lanes.filter((l) => l.section === "robot").map((l) => l.label), ["state", "commands"]);
   assert.deepEqual(lanes.filter((l) => l.section === "Topics").map((l) => l.label), ["→ /scan", "← /scan", "→ /cmd_vel", "→ /grip", "← /grip", "← /grip"]);
   assert.deepEqual(lanes.filter((l) => l.section === "Code").map((l) => l.label), ["robot, MainThread", "robot, Thread-1"]);
@@ -165,4 +166,24 @@ test("numbers are as people write them", () => {
   assert.equal(quantity(0.0456, "m"), "4.56 cm");
   assert.equal(quantity(2, "m"), "2.00 m");
   assert.deepEqual([limitText(0.05, "m"), limitText(0.25, "rad/s"), limitText(60, "deg")], ["5 cm", "0.25 rad/s", "60 deg"]);
+});
+
+test("what a requirement reads is in focus with it, and nothing else", () => {
+  const of = (requirement: object, plots: string[] = []) => {
+    const document = { ...every, requirements: [{ id: "R9", verdict: "fail", ...requirement }] } as ViewDocument;
+    return lanesOf([runOf("a", "a", document, {})], plots, "R9").filter((l) => l.section === "In focus").map((l) => `${l.kind} ${l.label}`);
+  };
+  assert.deepEqual(of({ events: ["call", "called"] }), ["requirement R9", "events call, called"]);
+  assert.deepEqual(of({ signals: ["near", "mood"] }), ["requirement R9", "bars near", "bars mood"]);
+  const gap = "distance(guest.hand, robot.palm)";
+  assert.deepEqual(of({ signals: [gap] }, ["robot.arm.wrist"]), ["requirement R9", `plot ${gap}`, "plot robot.arm.wrist"]);
+  // What goes into what is measured is not drawn once more.
+  const measured = of({ signals: [gap], measures: [{ kind: "way", name: `norm((${gap}, x))`, bodies: [2], within: 1, relation: "<", limit: 1 }] });
+  assert.deepEqual(measured, ["requirement R9", `plot norm((${gap}, x))`]);
+});
+
+test("limits of angles are told in degrees", () => {
+  const tilt = { kind: "tilt", name: "tilt(a)", relation: "<=", limit: Math.PI / 4, unit: "rad" } as const;
+  assert.deepEqual([measureText(tilt, 1), boundText(tilt)], ["57.3°", "≤ 45°"]);
+  assert.equal(boundText({ ...tilt, kind: "signal" }), "≤ 0.7854 rad");
 });

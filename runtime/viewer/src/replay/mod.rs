@@ -1,7 +1,10 @@
 //! A recording as a document: what can be shown of it is, and the rest is named in the document's notes.
 
+mod about;
 mod changed;
 mod code;
+mod compared;
+mod derived;
 mod measure;
 mod run;
 mod scene;
@@ -57,7 +60,10 @@ pub fn replay(program: &Program, file: &RecordingFile) -> Result<ViewDocument, S
     let scene = shown_scene(program, file, &mut notes);
     let (files, code) = code::tracks(file, &mut notes);
     let run = ReplayedRun { program, scene, file, is_whole: ended != RunEnd::Error, trace, ended };
-    Ok(ViewDocument { files, code, ..document(&run, header, error, notes) })
+    let (requirements, values) = violation::requirements(&run);
+    let mut document = ViewDocument { files, code, requirements, ..document(&run, header, error, notes) };
+    document.signals.extend(values);
+    Ok(document)
 }
 
 fn document(
@@ -90,7 +96,6 @@ fn document(
         machines: story::machines(run),
         topics: story::topics(run),
         log: log(run),
-        requirements: violation::requirements(run),
         notes,
         ..ViewDocument::new()
     }

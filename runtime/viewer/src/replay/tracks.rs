@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use hrdsl_ir::{
     Nanos, Type, Value,
-    world::{BodyId, BodyRef, Signal, SignalId, SignalTerm},
+    world::{BodyId, BodyRef, JointId, Signal, SignalId, SignalTerm},
 };
 use hrdsl_recording::scene::{RecordedPose, composed, relative};
 use hrdsl_trace::{
@@ -169,6 +169,19 @@ fn signal_track(run: &ReplayedRun<'_>, signal: &Signal, values: &[(Nanos, Value)
     }
 }
 
+/// Numbers that were worked out from signals.
+pub(super) fn number_track(name: &str, unit: &str, values: &[(Nanos, f64)]) -> SignalTrack {
+    SignalTrack {
+        name: name.to_owned(),
+        kind: SignalKind::Float,
+        unit: (!unit.is_empty()).then(|| unit.to_owned()),
+        scale: Some(SCALE),
+        t: times(values.iter().map(|(time, _)| time)),
+        v: samples(values.iter().map(|(_, value)| *value), SCALE),
+        ..SignalTrack::default()
+    }
+}
+
 /// The different values, in the order in which they come.
 fn words(values: &[(Nanos, Value)]) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
@@ -194,6 +207,11 @@ pub(super) fn bodies_of(run: &ReplayedRun<'_>, term: &SignalTerm) -> Vec<usize> 
         let name = &run.program.world.as_ref()?.bodies.get(usize::from(id.0))?.name;
         run.scene.bodies.iter().position(|body| body.name == *name)
     };
+    let world = run.program.world.as_ref();
+    let joint = |id: &JointId| {
+        let child = world?.joints.get(usize::from(id.0))?.child;
+        of(&BodyRef::Body(child))
+    };
     let bodies: Vec<&BodyRef> = match term {
         SignalTerm::Distance(a, b)
         | SignalTerm::Range(a, b)
@@ -213,14 +231,22 @@ pub(super) fn bodies_of(run: &ReplayedRun<'_>, term: &SignalTerm) -> Vec<usize> 
         SignalTerm::Pressed { body, by, .. } | SignalTerm::Pressure { body, by, .. } => {
             std::iter::once(body).chain(by).collect()
         }
-        SignalTerm::HoldsAny(_)
-        | SignalTerm::JointSpeed(_)
-        | SignalTerm::JointRate(_)
-        | SignalTerm::JointPosition(_)
-        | SignalTerm::JointEffort(_)
-        | SignalTerm::Nearest { .. }
-        | SignalTerm::Delta(..)
-        | SignalTerm::Reading(_) => Vec::new(),
+        SignalTerm::JointRate(id) | SignalTerm::JointPosition(id) | SignalTerm::JointEffort(id) => {
+            return joint(id).into_iter().collect();
+        }
+        SignalTerm::JointSpeed(id) => {
+            let arm = world.and_then(|world| world.arms.get(usize::from(id.0)));
+            return arm.and_then(|arm| of(&BodyRef::Body(arm.tip))).into_iter().collect();
+        }
+        SignalTerm::HoldsAny(id) => {
+            let hand = world.and_then(|world| world.grippers.get(usize::from(id.0)));
+            return hand.and_then(|hand| of(&BodyRef::Body(hand.palm))).into_iter().collect();
+        }
+        SignalTerm::Nearest { laser, .. } => {
+            let laser = world.and_then(|world| world.lasers.get(usize::from(laser.0)));
+            return laser.and_then(|laser| of(&BodyRef::Body(laser.body))).into_iter().collect();
+        }
+        SignalTerm::Delta(..) | SignalTerm::Reading(_) => Vec::new(),
     };
     bodies.into_iter().filter_map(of).collect()
 }

@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Type, Unit, Value,
-    monitor::{Monitor, MonitorEffect, RequirementKind},
+    monitor::{Monitor, MonitorEffect, MonitorTrigger, RequirementKind},
     value::seconds,
     world::SignalId,
 };
@@ -15,10 +15,12 @@ use super::{
 };
 use crate::{
     columns::differences,
+    document::SignalTrack,
     requirement::{ObligationOutcome, ViewObligation, ViewRequirement, ViewVerdict, ViewViolation},
 };
 
-pub(super) fn requirements(run: &ReplayedRun<'_>) -> Vec<ViewRequirement> {
+/// The requirements, and the values of what they measure that no signal says.
+pub(super) fn requirements(run: &ReplayedRun<'_>) -> (Vec<ViewRequirement>, Vec<SignalTrack>) {
     let mut runner = MonitorRunner::new(run.program).recounting();
     for (at, step) in run.trace.steps.iter().enumerate() {
         runner.step(at, step);
@@ -28,7 +30,37 @@ pub(super) fn requirements(run: &ReplayedRun<'_>) -> Vec<ViewRequirement> {
         runner.end(run.trace.end);
     }
     let monitors = run.program.monitors.iter().zip(runner.recounted());
-    monitors.map(|(monitor, (verdict, history))| requirement(run, monitor, &verdict, &history)).collect()
+    let mut values: Vec<SignalTrack> = Vec::new();
+    let mut all = Vec::new();
+    for (monitor, (verdict, history)) in monitors {
+        let looked_at = verdict.first_failure.as_ref().map(|failure| failure.time);
+        let looked_at = looked_at.or(verdict.worst_margin.map(|(_, time)| time)).unwrap_or_default();
+        let found = measure::measures(run, monitor, looked_at);
+        for track in found.values {
+            if values.iter().all(|known| known.name != track.name) {
+                values.push(track);
+            }
+        }
+        let judged = requirement(run, monitor, &verdict, &history);
+        all.push(ViewRequirement { measures: found.measures, ..judged });
+    }
+    (all, values)
+}
+
+/// The names of what a monitor reads: signals, and events.
+fn read(run: &ReplayedRun<'_>, monitor: &Monitor) -> (Vec<String>, Vec<String>) {
+    let signals = monitor.signals.iter().map(|id| run.program.signal(*id).name.clone()).collect();
+    let mut events = Vec::new();
+    for edge in &monitor.edges {
+        let MonitorTrigger::Event(patterns) = &edge.on else { continue };
+        for pattern in patterns {
+            let name = &run.program.event(pattern.event).name;
+            if !events.contains(name) {
+                events.push(name.clone());
+            }
+        }
+    }
+    (signals, events)
 }
 
 fn requirement(
@@ -40,8 +72,7 @@ fn requirement(
     let triggers = history.iter().filter(|h| h.effects.contains(&MonitorEffect::Trigger));
     let told = told(run, history);
     let unit = monitor.margin_unit().map(|unit| unit.symbol().to_owned());
-    let looked_at = verdict.first_failure.as_ref().map(|failure| failure.time);
-    let looked_at = looked_at.or(verdict.worst_margin.map(|(_, time)| time)).unwrap_or_default();
+    let (signals, events) = read(run, monitor);
     ViewRequirement {
         id: monitor.name.clone(),
         title: (!monitor.title.is_empty()).then(|| monitor.title.clone()),
@@ -69,7 +100,9 @@ fn requirement(
         triggers: differences(triggers.map(|h| tick(h.time) as i64)),
         obligations: told.obligations,
         violations: told.violations,
-        measures: measure::measures(run, monitor, looked_at),
+        signals,
+        events,
+        measures: Vec::new(),
     }
 }
 
