@@ -141,6 +141,9 @@ pub struct Location<E = Expr> {
     /// The part of the invariant over variables.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<E>,
+    /// The clocks that stand still here, ascending.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stopped: Vec<ClockId>,
     pub origin: Span,
 }
 
