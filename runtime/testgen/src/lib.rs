@@ -48,6 +48,8 @@ use hrdsl_results::{
 
 use hrdsl_trace::decimal;
 
+pub use bounds::{BoundFinding, BoundFindings, BoundSide, boundary_step, decided as bound_findings};
+
 pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
 pub use write::{step_lines, write};
@@ -267,6 +269,7 @@ mod tests {
                 goals: vec![],
                 witness: hrdsl_ir::suite::WitnessKind::default(),
                 delays: hrdsl_ir::suite::DelayChoice::default(),
+                diverse: None,
             },
             settings: hrdsl_ir::suite::SuiteSettings {
                 tests: 1,

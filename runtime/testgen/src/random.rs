@@ -94,7 +94,7 @@ impl RandomPauses {
 
     fn draw(&self, rng: &mut ChaCha8Rng) -> Nanos {
         if let Some((share, times)) = &self.beside
-            && rng.random_bool(*share)
+            && rng.random_range(0.0..1.0) < *share
         {
             return times[rng.random_range(0..times.len())];
         }

@@ -2,38 +2,19 @@
 
 use hrdsl_ir::Nanos;
 use hrdsl_prove::{ObservedNetwork, WalkOption, WalkSession, WitnessTrace};
-use hrdsl_results::{GoalStatus, SuiteGoalId};
 use hrdsl_ta::{MomentRange, WitnessRun};
 
-use super::{BoundFinding, StimulusEdge};
+use super::StimulusEdge;
 use crate::named::is_generated;
 
 /// More transitions are not what one stimulus sends.
 const MOST_SENT: usize = 64;
 
-/// A run with its stimulus, or why there is none.
-pub struct ClosedRun(Result<WitnessRun, String>);
-
-impl ClosedRun {
-    pub fn into_finding(self, id: SuiteGoalId) -> BoundFinding {
-        match self.0 {
-            Ok(run) => BoundFinding {
-                id,
-                status: GoalStatus::Reached,
-                reason: format!("in {} steps", run.steps.len()),
-                run: Some(run),
-            },
-            Err(reason) => BoundFinding { id, status: GoalStatus::Inconclusive, reason, run: None },
-        }
-    }
-}
-
 /// Walks along the witness, and does the first of these stimuli that can be done at its end.
-pub fn closed(observed: &ObservedNetwork, witness: &WitnessRun, stimuli: &[StimulusEdge]) -> ClosedRun {
-    ClosedRun(walked(observed, witness, stimuli))
-}
-
-fn walked(
+///
+/// # Errors
+/// Why none can be done.
+pub fn closed(
     observed: &ObservedNetwork,
     witness: &WitnessRun,
     stimuli: &[StimulusEdge],

@@ -4,7 +4,7 @@
 //! 1. [`sites`] lists the comparisons of clocks with times, each with the location in which it matters, and which stimuli the
 //!    environment may do there;
 //! 2. for each of them and each of the three times one question is asked: can the automaton be in that location, the clock be
-//!    that much, and one of these stimuli be done? All are decided in one exploration;
+//!    that much, and one of these stimuli be done? Those of a location are decided in one exploration;
 //! 3. where the location cannot be kept beyond the bound, the time just after it is that after the edge by which it is left at
 //!    the bound: [`after`];
 //! 4. the deadlines of requirements are bounds of their [observers](ObservedNetwork), one exploration for each;
@@ -20,7 +20,7 @@ mod sites;
 use hrdsl_ir::{
     Nanos, Program,
     suite::BoundaryStep,
-    ta::{ClockConstraint, ClockOp, Network, QueryFormula},
+    ta::{ClockConstraint, ClockOp, LocationId, Network, QueryFormula},
     value::SECOND,
 };
 use hrdsl_prove::{GoalFate, ObservedNetwork, ProofOptions, SearchWatch, decide, of_formula};
@@ -67,6 +67,10 @@ impl BoundSide {
 
 /// What became of one side of a bound.
 pub struct BoundFinding {
+    /// In the network.
+    pub automaton: usize,
+    pub location: LocationId,
+    pub side: BoundSide,
     pub id: SuiteGoalId,
     pub status: GoalStatus,
     pub reason: String,
@@ -116,7 +120,22 @@ pub fn decided(
 }
 
 impl BoundFindings {
+    /// One exploration for each location: the times that are asked for are told apart everywhere in the network, and many of them
+    /// at once make many zones.
     fn extend(
+        &mut self,
+        observed: &ObservedNetwork,
+        sites: &[BoundSite],
+        step: Nanos,
+        settings: &ProofOptions,
+    ) -> Result<(), SearchError> {
+        for of_location in sites.chunk_by(|a, b| (a.member, a.location) == (b.member, b.location)) {
+            self.location(observed, of_location, step, settings)?;
+        }
+        Ok(())
+    }
+
+    fn location(
         &mut self,
         observed: &ObservedNetwork,
         sites: &[BoundSite],
@@ -132,22 +151,14 @@ impl BoundFindings {
         self.states += decided.states;
         self.searches += decided.searches;
         for ((site, side), fate) in asked.into_iter().zip(decided.fates) {
-            let id = SuiteGoalId::Bound(format!("{}, {}", site.name, side.words()));
-            let states = decided.states;
             let mut finding = match fate {
                 GoalFate::Reached(run) => {
-                    closing::closed(observed, &run.witness, &site.stimuli).into_finding(id)
+                    site.finding(side, closing::closed(observed, &run.witness, &site.stimuli))
                 }
-                GoalFate::Inconclusive(why) => {
-                    BoundFinding { id, status: GoalStatus::Inconclusive, reason: why, run: None }
-                }
+                GoalFate::Inconclusive(why) => site.finding(side, Err(why)),
                 GoalFate::Unreachable => BoundFinding {
-                    id,
                     status: GoalStatus::Unreachable,
-                    reason: format!(
-                        "proved: in none of the {states} symbolic states that the model can reach may the environment do anything then"
-                    ),
-                    run: None,
+                    ..site.finding(side, Err(nothing_possible(decided.states)))
                 },
             };
             if side == BoundSide::After && finding.status == GoalStatus::Unreachable {
@@ -174,10 +185,35 @@ impl BoundFindings {
         self.states += decided.states;
         self.searches += decided.searches;
         if let Some(GoalFate::Reached(run)) = decided.fates.into_iter().next() {
-            let id = finding.id.clone();
-            *finding = closing::closed(&after.observed, &run.witness, &site.stimuli).into_finding(id);
+            let closed = closing::closed(&after.observed, &run.witness, &site.stimuli);
+            *finding = site.finding(BoundSide::After, closed);
         }
         Ok(())
+    }
+}
+
+fn nothing_possible(states: usize) -> String {
+    format!(
+        "proved: in none of the {states} symbolic states that the model can reach may the environment do anything then"
+    )
+}
+
+impl BoundSite {
+    /// With the run up to the stimulus and what that sends, or why there is none.
+    fn finding(&self, side: BoundSide, run: Result<WitnessRun, String>) -> BoundFinding {
+        let (status, reason, run) = match run {
+            Ok(run) => (GoalStatus::Reached, format!("in {} steps", run.steps.len()), Some(run)),
+            Err(why) => (GoalStatus::Inconclusive, why, None),
+        };
+        BoundFinding {
+            automaton: usize::from(self.member),
+            location: self.location,
+            side,
+            id: SuiteGoalId::Bound(format!("{}, {}", self.name, side.words())),
+            status,
+            reason,
+            run,
+        }
     }
 }
 
