@@ -675,12 +675,10 @@ fn coverage_suites_and_tests() {
         BinCondition::And(vec![BinCondition::Not(Box::new(at(0))), BinCondition::Or(vec![at(1), at(2)])]);
     assert_eq!((&x.bins[0].when, x.ignore.as_slice()), (&some, &[at(2)][..]));
 
-    let SuiteMethod::Agents { players, choose, explore, stop_after, goals, minimise } = &p.suites[0].method
-    else {
-        panic!()
-    };
-    assert_eq!((*stop_after, goals.as_slice(), *minimise), (None, &[][..], false));
-    assert_eq!((players.len(), *explore), (2, ExploreMode::Random));
+    let by_agents = &p.suites[0].method;
+    assert!(matches!(by_agents, SuiteMethod::Agents { stop_after: None, minimise: false, .. }));
+    let SuiteMethod::Agents { players, choose, explore, goals, .. } = by_agents else { panic!() };
+    assert_eq!((goals.as_slice(), players.len(), *explore), (&[][..], 2, ExploreMode::Random));
     assert_eq!((choose[0].how, choose[1].how), (ChoiceKind::OnePer(1), ChoiceKind::Any));
     let held = |holds| {
         let args = vec![AgentTerm::Var(0), AgentTerm::Expr(Expr::Const(Value::Bool(holds)))];
@@ -711,6 +709,7 @@ fn coverage_suites_and_tests() {
             length_hi: 4,
             pause_lo: SECOND,
             pause_hi: 2 * SECOND,
+            boundary: None,
         }
     );
 

@@ -873,7 +873,7 @@ module.exports = grammar({
         seq(keyword($, "explore"), field("value", $.identifier), optional(field("arguments", $.arguments))),
         seq(keyword($, "stop"), keyword($, "after"), field("value", $.expression)),
         keyword($, "minimise"),
-        ...["tests", "horizon", "patience", "warmup"].map((word) =>
+        ...["tests", "horizon", "patience", "warmup", "diverse", "boundary"].map((word) =>
           seq(keyword($, word), field("value", $.expression)),
         ),
         ...["witness", "delays"].map((word) => seq(keyword($, word), field("value", $.identifier))),
@@ -894,6 +894,13 @@ module.exports = grammar({
               keyword($, "plan"),
               keyword($, "use"),
               field("what", $.identifier),
+              seq(
+                field("what", $.identifier),
+                keyword($, "of"),
+                list(field("of", $.expression)),
+                optional(seq(keyword($, "when"), field("condition", $.expression))),
+              ),
+              seq(field("what", $.identifier), keyword($, "by"), field("by", $.expression)),
             ),
           ),
           seq(field("what", $.identifier), keyword($, "of"), list(field("of", $.identifier))),

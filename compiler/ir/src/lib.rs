@@ -31,6 +31,7 @@ pub mod sensor;
 pub mod shape;
 pub mod solid;
 pub mod suite;
+mod suite_lowering;
 mod sync_label;
 pub mod system;
 pub mod ta;

@@ -9,7 +9,6 @@ use crate::{
     },
     event::{Event, Stimulus, StimulusSample, StimulusStep},
     expr::{ArrayIndex, Lvalue},
-    suite::{BeliefChoice, BeliefCondition, Suite, SuiteMethod},
     ta::{
         ClockConstraint, Edge, EdgeAssignment, FunctionStatement, Location, QueryFormula, QueryKind,
         QueryMeasure, SyncLabel, TimeSum, TimeTerm,
@@ -311,70 +310,6 @@ impl<E> WorldAction<E> {
     }
 }
 
-// ── suites ──
-
-impl<E> Suite<E> {
-    /// The suite over the Program's expressions.
-    #[must_use]
-    pub fn lower(&self, f: LowerExpr<'_, E>) -> Suite {
-        Suite {
-            name: self.name.clone(),
-            method: self.method.lower(f),
-            settings: self.settings,
-            origin: self.origin,
-        }
-    }
-}
-
-impl<E> SuiteMethod<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> SuiteMethod {
-        match self {
-            SuiteMethod::Agents { players, choose, explore, stop_after, goals, minimise } => {
-                SuiteMethod::Agents {
-                    players: players.clone(),
-                    choose: choose.iter().map(|c| c.lower(f)).collect(),
-                    explore: *explore,
-                    stop_after: *stop_after,
-                    goals: goals.clone(),
-                    minimise: *minimise,
-                }
-            }
-            SuiteMethod::Search { network, goals, witness, delays } => SuiteMethod::Search {
-                network: *network,
-                goals: goals.clone(),
-                witness: *witness,
-                delays: *delays,
-            },
-            SuiteMethod::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi } => {
-                SuiteMethod::Random {
-                    stimuli: stimuli.clone(),
-                    awaits: awaits.clone(),
-                    length_lo: *length_lo,
-                    length_hi: *length_hi,
-                    pause_lo: *pause_lo,
-                    pause_hi: *pause_hi,
-                }
-            }
-        }
-    }
-}
-
-impl<E> BeliefChoice<E> {
-    fn lower(&self, f: LowerExpr<'_, E>) -> BeliefChoice {
-        let condition = |c: &BeliefCondition<E>| BeliefCondition {
-            context: c.context.lower(f),
-            vars: c.vars.clone(),
-            origin: c.origin,
-        };
-        BeliefChoice {
-            agent: self.agent,
-            belief: self.belief,
-            how: self.how,
-            condition: self.condition.as_ref().map(condition),
-        }
-    }
-}
-
 // ── automata ──
 
 /// Where the variables of an automaton, a function or a query lie.
@@ -531,7 +466,7 @@ impl<E> QueryKind<E> {
 }
 
 impl<E> QueryFormula<E> {
-    fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> QueryFormula {
+    pub(crate) fn lower<V>(&self, slots: &dyn VariableSlots<E, V>) -> QueryFormula {
         let each = |fs: &[QueryFormula<E>]| fs.iter().map(|f| f.lower(slots)).collect();
         match self {
             QueryFormula::At { automaton, location } => {

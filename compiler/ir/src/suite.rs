@@ -9,14 +9,14 @@ use crate::{
     event::{EventId, EventPattern},
     expr::Expr,
     monitor::RequirementId,
-    ta::{AutomatonId, NetworkId, QueryId},
-    value::{Nanos, SECOND},
+    ta::{AutomatonId, NetworkId, QueryFormula, QueryId},
+    value::{Nanos, SECOND, Value},
 };
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Suite<E = Expr> {
+pub struct Suite<E = Expr, T = String> {
     pub name: String,
-    pub method: SuiteMethod<E>,
+    pub method: SuiteMethod<E, T>,
     #[serde(flatten)]
     pub settings: SuiteSettings,
     pub origin: Span,
@@ -44,7 +44,7 @@ impl Default for SuiteSettings {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SuiteMethod<E = Expr> {
+pub enum SuiteMethod<E = Expr, T = String> {
     /// Run a multi-agent system once for each chosen set of beliefs.
     Agents {
         players: Vec<PlayerRef>,
@@ -56,15 +56,21 @@ pub enum SuiteMethod<E = Expr> {
         goals: Vec<ModelGoal>,
         /// Keep only the tests that are needed for what all of them reach.
         minimise: bool,
+        /// `reach each bound`: tests with each pause a little shorter, and a little longer, too.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        bounds: Option<BoundaryStep>,
     },
     /// Model-check the network for each goal and take the witnesses' stimuli.
     Search {
         network: NetworkId,
-        goals: Vec<SearchGoal>,
+        goals: Vec<SearchGoal<E, T>>,
         #[serde(default)]
         witness: WitnessKind,
         #[serde(default)]
         delays: DelayChoice,
+        /// Up to how many different witnesses of each goal are kept; `None`: one, and fewer where one shows several goals.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        diverse: Option<u32>,
     },
     /// Draw stimuli, waits and pauses at random.
     Random {
@@ -75,6 +81,9 @@ pub enum SuiteMethod<E = Expr> {
         length_hi: u32,
         pause_lo: Nanos,
         pause_hi: Nanos,
+        /// The share of pauses that are put at a bound, of 0 to 1.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        boundary: Option<f64>,
     },
 }
 
@@ -207,9 +216,78 @@ impl CoverItemKind {
     }
 }
 
+/// How far beside a bound "just before" and "just after" are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BoundaryStep {
+    /// As the suite says; `None`: the world's step, or a millisecond without a world.
+    pub by: Option<Nanos>,
+}
+
+/// Values of several things at once, each combination of which is a goal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ValueCombinations<E = Expr, T = String> {
+    pub how: CombinationKind,
+    pub terms: Vec<CombinedTerm<E, T>>,
+    /// They are met in states in which this holds; `None`: in any.
+    pub when: Option<CombinationCondition<E, T>>,
+}
+
+/// Of how many terms the values occur together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SearchGoal {
+pub enum CombinationKind {
+    /// `each value of`: each by itself
+    Value,
+    /// `each pair of`: any two
+    Pair,
+    /// `each combination of`: all
+    All,
+}
+
+/// Something with few values.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CombinedTerm<E = Expr, T = String> {
+    /// As written in the source; for the checker, where that stands.
+    pub text: T,
+    /// Over the network's slots, as in a [`QueryFormula`].
+    pub value: E,
+    pub values: Vec<Value>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CombinationCondition<E = Expr, T = String> {
+    /// As written in the source; for the checker, where that stands.
+    pub text: T,
+    pub formula: QueryFormula<E>,
+}
+
+impl<E, T> ValueCombinations<E, T> {
+    /// The places of the terms whose values occur together, for each choice of such terms.
+    #[must_use]
+    pub fn chosen(&self) -> Vec<Vec<usize>> {
+        let count = self.terms.len();
+        match self.how {
+            CombinationKind::Value => (0..count).map(|i| vec![i]).collect(),
+            CombinationKind::Pair => {
+                (0..count).flat_map(|i| (i + 1..count).map(move |j| vec![i, j])).collect()
+            }
+            CombinationKind::All => vec![(0..count).collect()],
+        }
+    }
+
+    /// How many goals they are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        let values = |chosen: &Vec<usize>| {
+            chosen.iter().fold(1usize, |n, i| n.saturating_mul(self.terms[*i].values.len()))
+        };
+        self.chosen().iter().map(values).fold(0, usize::saturating_add)
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SearchGoal<E = Expr, T = String> {
     /// `reach each bin of C`
     Bins(CrossId),
     /// `reach each location`
@@ -222,6 +300,10 @@ pub enum SearchGoal {
     Uses,
     /// `reach each value`: of each variable of few values
     Values,
+    /// `reach each value of a, b`, `reach each pair of …`, `reach each combination of … when F`
+    Combinations(ValueCombinations<E, T>),
+    /// `reach each bound`: a stimulus just before, at and just after each bound of a clock
+    Bounds(BoundaryStep),
     /// `reach violation of R`
     Violation(RequirementId),
     /// `reach trigger of R`

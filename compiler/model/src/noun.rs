@@ -51,6 +51,8 @@ pub(crate) enum Noun {
     Reach,
     /// What a suite by search can reach each of.
     SearchReach,
+    /// What a suite by search can reach each of, of some values.
+    Combination,
     /// What a suite by search can reach of a requirement.
     ReachOf,
     Witness,
@@ -194,6 +196,8 @@ impl Noun {
                 .plural("locations, variables and clocks of this automaton"),
             Noun::SearchReach => language("thing that a suite by search reaches")
                 .plural("things that a suite by search reaches"),
+            Noun::Combination => language("thing that a suite by search reaches of values")
+                .plural("things that a suite by search reaches of values"),
             Noun::ReachOf => language("thing of a requirement that a suite by search reaches")
                 .plural("things of a requirement that a suite by search reaches"),
             Noun::Witness => language("kind of witness").plural("kinds of witness"),

@@ -24,7 +24,10 @@ pub use hrdsl_ir::{
     },
     list::ListFunction,
     monitor::{RequirementId, RequirementKind},
-    suite::{ChoiceKind, DelayChoice, ExploreMode, ModelGoal, PlayerRef, SearchGoal, WitnessKind},
+    suite::{
+        BoundaryStep, ChoiceKind, CombinationKind, DelayChoice, ExploreMode, ModelGoal, PlayerRef,
+        WitnessKind,
+    },
     system::{SystemProgram, SystemUnderTest},
     ta::{
         AutomatonId, AutomatonVar, Channel, ChannelId, ChannelKind, ChannelParticipant, ClockId, ClockOp,
@@ -70,8 +73,12 @@ pub type TypedQuery = hrdsl_ir::ta::Query<TypedExpr, Span>;
 pub type TypedQueryKind = hrdsl_ir::ta::QueryKind<TypedExpr>;
 pub type TypedFormula = hrdsl_ir::ta::QueryFormula<TypedExpr>;
 pub type TypedMeasure = hrdsl_ir::ta::QueryMeasure<TypedExpr>;
-pub type TypedSuite = hrdsl_ir::suite::Suite<TypedExpr>;
-pub type TypedMethod = hrdsl_ir::suite::SuiteMethod<TypedExpr>;
+pub type TypedSuite = hrdsl_ir::suite::Suite<TypedExpr, Span>;
+pub type TypedMethod = hrdsl_ir::suite::SuiteMethod<TypedExpr, Span>;
+pub type SearchGoal = hrdsl_ir::suite::SearchGoal<TypedExpr, Span>;
+pub type TypedCombinations = hrdsl_ir::suite::ValueCombinations<TypedExpr, Span>;
+pub type TypedCombinedTerm = hrdsl_ir::suite::CombinedTerm<TypedExpr, Span>;
+pub type TypedCombinationCondition = hrdsl_ir::suite::CombinationCondition<TypedExpr, Span>;
 pub type TypedChoice = hrdsl_ir::suite::BeliefChoice<TypedExpr>;
 pub type TypedChoiceCondition = hrdsl_ir::suite::BeliefCondition<TypedExpr>;
 pub type TypedAssumption = hrdsl_ir::monitor::Assumption<Span>;

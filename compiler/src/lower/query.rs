@@ -1,13 +1,14 @@
-//! Queries: variables get the slots that they have in their network.
+//! Queries, and what suites by search reach: variables get the slots that they have in their network.
 
 use hrdsl_ir::{
     Expr,
     expr::BinaryOp,
     lowering,
-    ta::{Automaton, Query, location_variable},
+    suite::Suite,
+    ta::{Automaton, NetworkId, Query, location_variable},
 };
-use hrdsl_model::{self as model, Scenario, VariableRef};
-use hrdsl_source::SourceFiles;
+use hrdsl_model::{self as model, Scenario, TypedMethod, VariableRef};
+use hrdsl_source::{SourceFiles, Span};
 
 use super::{
     expr::{self, LeafSource},
@@ -21,16 +22,7 @@ pub(crate) fn query(
     automata: &[Automaton],
     files: &SourceFiles,
 ) -> Query {
-    let network = &scenario.networks[usize::from(q.network.0)];
-    let (mut own, mut next) = (Vec::new(), slot(scenario.shared.len()));
-    let mut locations = Vec::new();
-    for (place, id) in (0..).zip(&network.automata) {
-        let at = usize::from(id.0);
-        locations.extend((0..scenario.automata[at].locations.len()).map(|l| (place, l)));
-        own.extend((0..slot(scenario.automata[at].vars.len())).map(|v| next + v));
-        next += slot(automata[at].vars.len());
-    }
-    let slots = QueryVariableSlots { own, locations };
+    let slots = QueryVariableSlots::of(q.network, scenario, automata);
     Query {
         name: q.name.clone(),
         title: q.title.clone(),
@@ -41,11 +33,27 @@ pub(crate) fn query(
     }
 }
 
+/// A suite; what one by search reaches speaks of its network as queries do.
+pub(crate) fn suite(
+    s: &model::TypedSuite,
+    scenario: &Scenario,
+    automata: &[Automaton],
+    files: &SourceFiles,
+) -> Suite {
+    let slots = match &s.method {
+        TypedMethod::Search { network, .. } => QueryVariableSlots::of(*network, scenario, automata),
+        TypedMethod::Agents { .. } | TypedMethod::Random { .. } => QueryVariableSlots::default(),
+    };
+    let text = |span: &Span| one_line(files.text(*span));
+    s.lower(&expr::local, &|goal| goal.lower(&slots, &text))
+}
+
 fn slot(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)
 }
 
 /// The network's slot of each variable of the automata as they were written.
+#[derive(Default)]
 struct QueryVariableSlots {
     own: Vec<u16>,
     /// After them, each location: the automaton in the network, and its number there.
@@ -53,6 +61,19 @@ struct QueryVariableSlots {
 }
 
 impl QueryVariableSlots {
+    fn of(network: NetworkId, scenario: &Scenario, automata: &[Automaton]) -> Self {
+        let network = &scenario.networks[usize::from(network.0)];
+        let (mut own, mut next) = (Vec::new(), slot(scenario.shared.len()));
+        let mut locations = Vec::new();
+        for (place, id) in (0..).zip(&network.automata) {
+            let at = usize::from(id.0);
+            locations.extend((0..scenario.automata[at].locations.len()).map(|l| (place, l)));
+            own.extend((0..slot(scenario.automata[at].vars.len())).map(|v| next + v));
+            next += slot(automata[at].vars.len());
+        }
+        Self { own, locations }
+    }
+
     fn leaf(&self, leaf: &VariableRef) -> Expr {
         let after =
             if let VariableRef::Own(i) = leaf { usize::from(*i).checked_sub(self.own.len()) } else { None };

@@ -662,6 +662,17 @@ pub enum SuiteMemberKind {
     Minimise,
     /// `reach each plan`, `context`, `message`, `path`
     ReachEach(NameSyntax),
+    /// `reach each value of a, b`, `reach each pair of …`, `reach each combination of … when F`
+    ReachEachOf {
+        what: NameSyntax,
+        terms: Vec<ExprSyntax>,
+        when: Option<ExprSyntax>,
+    },
+    /// `reach each bound by 50 ms`
+    ReachEachBy {
+        what: NameSyntax,
+        step: ExprSyntax,
+    },
     /// `tests 160`
     Setting {
         what: SuiteSetting,
@@ -709,6 +720,10 @@ pub enum SuiteSetting {
     Patience,
     /// `warmup 2 s`: before the first step of each test
     Warmup,
+    /// `diverse 3`: how many different witnesses of each goal are kept
+    Diverse,
+    /// `boundary 0.25`: the share of pauses that are put at a bound
+    Boundary,
 }
 
 /// `test bdi_tests.t017 { … }`

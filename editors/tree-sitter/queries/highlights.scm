@@ -31,7 +31,7 @@
   "do" "emit" "within" "sample" "hold" "belief" "goal" "plan" "rule" "clock" "location" "invariant" "select" "after"
   "causes" "forbids" "precedes" "until" "never" "globally" "always" "eventually" "whenever" "before" "between" "at"
   "most" "least" "exactly" "count" "bins" "bin" "ignore" "agents" "search" "random" "of" "choose" "one" "any" "per"
-  "where" "explore" "stop" "minimise" "witness" "delays" "tests" "warmup" "horizon" "patience" "reach" "each" "edge"
+  "where" "explore" "stop" "minimise" "witness" "delays" "diverse" "boundary" "tests" "warmup" "horizon" "patience" "reach" "each" "edge"
   "stimuli" "length" "pause" "seed" "method" "because" "predicts" "meanwhile" "with" "step" "gravity" "body" "joint"
   "arm" "gripper" "base" "laser" "limb" "figure" "posture" "packages" "argument" "semantics" "start" "walls" "current"
   "signal" "rotated" "mass" "stiffness" "ghost" "graspable" "axis" "limits" "effort" "rotor" "damping" "friction"

@@ -25,6 +25,10 @@ pub enum SuiteGoalId {
     DefUsePair(String),
     /// Of a variable: `value legs = 4`
     Value(String),
+    /// Of several variables: `combination legs = 4, gaze = true`
+    Combination(String),
+    /// A stimulus beside a bound of a clock: `bound Robot.asked: x = 3 s, just before`
+    Bound(String),
     /// `violation of R5`
     Violation(RequirementName),
     /// `trigger of R5`
@@ -48,6 +52,8 @@ impl SuiteGoalId {
             Self::EdgePair(_) => ("edge pair ", ""),
             Self::DefUsePair(_) => ("def-use pair of ", ""),
             Self::Value(_) => ("value ", ""),
+            Self::Combination(_) => ("combination ", ""),
+            Self::Bound(_) => ("bound ", ""),
             Self::Violation(_) => ("violation of ", ""),
             Self::Trigger(_) => ("trigger of ", ""),
             Self::Query(_) => ("query ", ""),
@@ -64,6 +70,8 @@ impl SuiteGoalId {
             | Self::EdgePair(name)
             | Self::DefUsePair(name)
             | Self::Value(name)
+            | Self::Combination(name)
+            | Self::Bound(name)
             | Self::Query(name)
             | Self::Item(_, name) => name,
         }
@@ -86,6 +94,10 @@ impl SuiteGoalId {
             Self::DefUsePair(name)
         } else if let Some(name) = after("value ") {
             Self::Value(name)
+        } else if let Some(name) = after("combination ") {
+            Self::Combination(name)
+        } else if let Some(name) = after("bound ") {
+            Self::Bound(name)
         } else if let Some(name) = after("violation of ") {
             Self::Violation(name.into())
         } else if let Some(name) = after("trigger of ") {
@@ -164,6 +176,8 @@ mod tests {
             ),
             ("def-use pair of n: its first value", SuiteGoalId::DefUsePair("n: its first value".into())),
             ("value n = 4", SuiteGoalId::Value("n = 4".into())),
+            ("combination n = 4, b = true", SuiteGoalId::Combination("n = 4, b = true".into())),
+            ("bound A.l: x = 3 s, at it", SuiteGoalId::Bound("A.l: x = 3 s, at it".into())),
             ("violation of R5", SuiteGoalId::Violation("R5".into())),
             ("trigger of R5", SuiteGoalId::Trigger("R5".into())),
             ("query q", SuiteGoalId::Query("q".into())),

@@ -2,7 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_ir::{Program, coverage::BinName, ta::LocationId};
+use hrdsl_ir::{
+    Program, Value,
+    coverage::BinName,
+    ta::{LocationId, Network, QueryFormula, located_automaton},
+};
 use hrdsl_ta::WitnessRun;
 
 use hrdsl_prove as prove;
@@ -18,10 +22,18 @@ pub struct ReachedItems {
     bins: Vec<BinName>,
     violated: Vec<bool>,
     triggered: Vec<bool>,
+    states: Vec<RunState>,
+}
+
+/// Where a run was: the automata's locations and the values of the network's slots.
+#[derive(Clone)]
+struct RunState {
+    locations: Vec<LocationId>,
+    values: Vec<Option<Value>>,
 }
 
 /// A goal of which a run shows by itself whether it reaches it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum WitnessedGoal {
     Location(usize, LocationId),
     Edge(usize, usize),
@@ -29,14 +41,18 @@ pub enum WitnessedGoal {
     Bin(BinName),
     Violation(usize),
     Trigger(usize),
+    /// A state in which this holds. Over clocks only the search knows.
+    State(Box<QueryFormula>),
     /// Only the search knows.
     Nothing,
 }
 
 impl ReachedItems {
-    /// `initial`: where the automata start, in the network's order.
+    /// `network`: the one that was asked about. The run may be one of it with observers behind its automata.
     #[must_use]
-    pub fn of(program: &Program, initial: &[LocationId], witness: &WitnessRun, bins: Vec<BinName>) -> Self {
+    pub fn of(program: &Program, network: &Network, witness: &WitnessRun, bins: Vec<BinName>) -> Self {
+        let start = RunState::first(program, network);
+        let initial = start.locations.clone();
         let mut seen = Self {
             locations: initial.iter().copied().enumerate().collect(),
             edges: BTreeSet::new(),
@@ -44,10 +60,20 @@ impl ReachedItems {
             bins,
             violated: Vec::new(),
             triggered: Vec::new(),
+            states: vec![start.clone()],
         };
+        let mut state = start;
         let mut last: Vec<Option<usize>> = vec![None; initial.len()];
         for step in &witness.steps {
             seen.locations.extend(step.locations.iter().map(|(a, _, to)| (*a, *to)));
+            state.locations.iter_mut().enumerate().for_each(|(at, location)| {
+                let moved = step.locations.iter().find(|(a, ..)| *a == at);
+                *location = moved.map_or(*location, |(_, _, to)| *to);
+            });
+            for (slot, _, to) in &step.variables {
+                state.values.get_mut(*slot).into_iter().for_each(|value| *value = Some(*to));
+            }
+            seen.states.push(state.clone());
             for m in &step.moves {
                 seen.edges.insert((m.automaton, m.edge));
                 let Some(last) = last.get_mut(m.automaton) else { continue };
@@ -72,7 +98,53 @@ impl ReachedItems {
             WitnessedGoal::Bin(name) => self.bins.contains(name),
             WitnessedGoal::Violation(monitor) => self.violated.get(*monitor) == Some(&true),
             WitnessedGoal::Trigger(monitor) => self.triggered.get(*monitor) == Some(&true),
+            WitnessedGoal::State(formula) => {
+                self.states.iter().any(|state| state.meets(formula) == Some(true))
+            }
             WitnessedGoal::Nothing => false,
+        }
+    }
+
+    /// The edges that were taken, and those one after the other: automaton, edge; automaton, edge, edge.
+    pub fn flow(&self) -> (&BTreeSet<(usize, usize)>, &BTreeSet<(usize, usize, usize)>) {
+        (&self.edges, &self.pairs)
+    }
+}
+
+impl RunState {
+    fn first(program: &Program, network: &Network) -> Self {
+        let members = || network.automata.iter().map(|id| program.automaton(*id));
+        let vars = program.shared.iter().chain(members().flat_map(|a| &a.vars));
+        Self {
+            locations: members().map(|a| a.initial).collect(),
+            values: vars.map(|var| var.value(var.init)).collect(),
+        }
+    }
+
+    /// `None`: it depends on clocks, or has no value.
+    fn meets(&self, formula: &QueryFormula) -> Option<bool> {
+        Some(match formula {
+            QueryFormula::At { automaton, location } => {
+                self.locations.get(usize::from(*automaton))? == location
+            }
+            QueryFormula::Data(condition) => {
+                let value = condition.eval(&|variable| self.value(variable)).ok()?;
+                value == Value::Bool(true)
+            }
+            QueryFormula::Not(f) => !self.meets(f)?,
+            QueryFormula::And(fs) => fs.iter().try_fold(true, |all, f| Some(self.meets(f)? && all))?,
+            QueryFormula::Or(fs) => fs.iter().try_fold(false, |any, f| Some(self.meets(f)? || any))?,
+            QueryFormula::Clock(_) | QueryFormula::Deadlock => return None,
+        })
+    }
+
+    fn value(&self, variable: u16) -> Option<Value> {
+        match located_automaton(variable, self.locations.len()) {
+            Some(automaton) => {
+                let location = self.locations.get(usize::from(automaton))?;
+                Some(Value::Int(i64::from(location.0)))
+            }
+            None => self.values.get(usize::from(variable)).copied().flatten(),
         }
     }
 }

@@ -51,13 +51,13 @@ pub fn sets(tests: &[AbstractTest]) -> Vec<Vec<u64>> {
 }
 
 /// A number for each thing that makes a test what it is.
-type TestIdentity = Vec<(u8, u64)>;
+pub type TestIdentity = Vec<(u8, u64)>;
 
 /// Marks a part that says what kind the next ones are of, or how many they are.
 const KIND: u8 = u8::MAX;
 
 /// Equal for equal scripts alone: the kind of each step, and how many parts a list of parts has, come before the parts.
-fn identity(scripts: &[TestScript]) -> TestIdentity {
+pub fn identity(scripts: &[TestScript]) -> TestIdentity {
     let mut parts = TestIdentity::new();
     for script in scripts {
         let actor = script.actor.map_or(u64::MAX, |actor| u64::from(actor.0));

@@ -12,6 +12,7 @@ use hrdsl_results::{RequirementName, SuiteGoalId};
 use hrdsl_ta::{EventCounter, GoalKind, StateFormula};
 
 use crate::{
+    combinations::combinations,
     covers::WitnessedGoal,
     flow,
     named::{NamedGoal, declared, edge_name, is_generated},
@@ -51,6 +52,9 @@ fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<NamedGoal>
         SearchGoal::Pairs => each_automaton(program, network, flow::pairs),
         SearchGoal::Uses => flow::uses(program, network),
         SearchGoal::Values => values(program, network),
+        SearchGoal::Combinations(all) => combinations(all),
+        // Each has a question of its own: see `bounds`.
+        SearchGoal::Bounds(_) => Vec::new(),
         SearchGoal::Violation(id) => {
             requirement(program, *id, SuiteGoalId::Violation, WitnessedGoal::Violation)
         }

@@ -157,6 +157,24 @@ pub fn scripts(program: &Program, awaits: &AwaitGroups, trace: &Trace, patience:
     if done.is_empty() { TestScript::of_all(Vec::new()) } else { done.iter().map(script).collect() }
 }
 
+/// Whether the last stimulus of a trace comes later in a test than in the trace, since stimuli of its actor before it hold longer.
+#[must_use]
+pub fn is_late(program: &Program, trace: &Trace) -> bool {
+    let mut free: BTreeMap<ActorId, Nanos> = BTreeMap::new();
+    let mut late = false;
+    for step in &trace.steps {
+        let TraceStepKind::Event { event, args } = &step.what else { continue };
+        let declared = program.event(*event);
+        if !declared.is_stimulus() || program.actor(declared.from).role != Role::Environment {
+            continue;
+        }
+        let free = free.entry(declared.from).or_default();
+        late = *free > step.time;
+        *free = step.time.max(*free) + held(program, *event, args, SampleEnd::Upper);
+    }
+    late
+}
+
 /// Makes the script of one actor.
 struct ScriptExtractor<'a> {
     program: &'a Program,

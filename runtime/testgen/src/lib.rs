@@ -12,10 +12,13 @@
 
 mod agents;
 mod bins;
+mod bounds;
+mod combinations;
 mod concrete;
 mod covers;
 mod cut;
 mod distinct;
+mod diverse;
 mod expand;
 mod extract;
 mod flow;
@@ -24,8 +27,11 @@ mod minimise;
 mod model;
 pub mod model_run;
 mod named;
+mod pauses;
 mod random;
 mod search;
+mod slots;
+mod times;
 mod write;
 
 use hrdsl_ir::{
@@ -39,6 +45,10 @@ use hrdsl_results::{
     AbstractTests, AgentFindings, GeneratedSuite, GoalReport, GoalStatus, SuiteExplanation, TestName,
     UncoveredGoal,
 };
+
+use hrdsl_trace::decimal;
+
+pub use bounds::{BoundFinding, BoundFindings, BoundSide, boundary_step, decided as bound_findings};
 
 pub use agents::{belief_set, how_many_sets};
 pub use concrete::seed_of;
@@ -90,16 +100,17 @@ pub fn generate_with(
     if most > MAX_TESTS {
         return Err(format!("{most} tests are more than are generated for one suite: at most {MAX_TESTS}"));
     }
-    let mut tuples = None;
+    let (mut tuples, mut spares, mut pauses) = (None, None, None);
     let (method, harvest, minimise) = match &suite.method {
-        SuiteMethod::Agents { minimise: said, .. } => {
+        SuiteMethod::Agents { minimise: said, bounds, .. } => {
+            pauses = bounds.map(|step| bounds::boundary_step(program, step));
             let (harvest, of) = agents::harvest(program, suite, most, seed)?;
             let minimise = minimise.unwrap_or(*said);
             // Who asks for the tests that the goals need does not ask for all tuples.
             tuples = of.filter(|_| !minimise).map(|of| (of, distinct::sets(&harvest.tests)));
             (TestMethod::Agents, harvest, minimise)
         }
-        SuiteMethod::Search { network, goals, witness, delays } => {
+        SuiteMethod::Search { network, goals, witness, delays, diverse } => {
             let settings = ProofOptions {
                 witness: options.witness.unwrap_or(*witness),
                 delays: options.delays.unwrap_or(*delays),
@@ -107,7 +118,10 @@ pub fn generate_with(
                 keep_first: true,
                 ..options.search
             };
-            (TestMethod::Search, search::harvest(program, suite, *network, goals, &settings)?, true)
+            let each = diverse.unwrap_or(1);
+            let (harvest, pool) = search::harvest(program, suite, (*network, goals), &settings, each)?;
+            spares = Some((pool, each)).filter(|_| each > 1);
+            (TestMethod::Search, harvest, true)
         }
         SuiteMethod::Random { .. } => {
             (TestMethod::Random, random::harvest(program, suite, most, seed)?, false)
@@ -124,6 +138,25 @@ pub fn generate_with(
         if method != TestMethod::Search {
             number = count.unwrap_or(most.min(u32::try_from(different.len()).unwrap_or(u32::MAX)));
         }
+    }
+    if let Some((pool, each)) = spares {
+        let added = pool.add_to(&mut different, goals.len(), each);
+        notes.push(format!(
+            "{added} more of {} further witnesses, for up to {each} of each goal",
+            pool.spares.len()
+        ));
+    }
+    if let Some(step) = pauses {
+        let beside = pauses::beside(program, &different, step);
+        notes.push(format!(
+            "{} tests with a pause {} s shorter or longer",
+            beside.len(),
+            decimal::seconds(step)
+        ));
+        // They come besides what the suite asks for.
+        let more = u32::try_from(beside.len()).unwrap_or(u32::MAX);
+        number = count.unwrap_or(number.saturating_add(more).min(MAX_TESTS));
+        different.extend(beside);
     }
     let tests = make_concrete(program, suite, method, &different, number, seed)?;
     let made = &different[..different.len().min(number as usize)];
@@ -236,6 +269,7 @@ mod tests {
                 goals: vec![],
                 witness: hrdsl_ir::suite::WitnessKind::default(),
                 delays: hrdsl_ir::suite::DelayChoice::default(),
+                diverse: None,
             },
             settings: hrdsl_ir::suite::SuiteSettings {
                 tests: 1,

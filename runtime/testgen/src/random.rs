@@ -1,5 +1,7 @@
 //! The baseline: stimuli, awaits and pauses drawn at random.
 
+use std::collections::BTreeSet;
+
 use hrdsl_coverage::assume::AssumptionChecker;
 use hrdsl_ir::{
     ActorId, Event, EventId, Expr, Nanos, Program, Type, Value,
@@ -7,6 +9,7 @@ use hrdsl_ir::{
     event::StimulusStep,
     suite::{Suite, SuiteMethod},
     test::{TestScript, TestStep},
+    value::SECOND,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -15,17 +18,19 @@ use hrdsl_harness::is_perceived;
 
 use hrdsl_results::AbstractTests;
 
-use crate::extract;
+use crate::{extract, times};
 
 /// Draws `count` sequences.
 ///
 /// # Errors
 /// A suite without stimuli, or a stimulus whose arguments cannot be enumerated.
 pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Result<AbstractTests, String> {
-    let SuiteMethod::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi } = &suite.method
+    let SuiteMethod::Random { stimuli, awaits, length_lo, length_hi, pause_lo, pause_hi, boundary } =
+        &suite.method
     else {
         return Err(format!("suite `{}` is not by random", suite.name));
     };
+    let pauses = RandomPauses::of(program, (*pause_lo, *pause_hi), *boundary);
     let mut actors: Vec<ActorId> = stimuli.iter().map(|event| program.event(*event).from).collect();
     actors.sort_unstable();
     actors.dedup();
@@ -53,10 +58,8 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
         let length = rng.random_range(*length_lo..=*length_hi.max(length_lo));
         let mut draw = RandomSequences::new(program, &actors);
         for _ in 0..length {
-            let pause = if pause_lo < pause_hi { rng.random_range(*pause_lo..=*pause_hi) } else { *pause_lo };
-            let choice = &choices[rng.random_range(0..choices.len())];
-            // Tenths of a second: a person's pauses, readable in the test's text.
-            draw.add(choice, pause / 100_000_000 * 100_000_000);
+            let pause = pauses.draw(&mut rng);
+            draw.add(&choices[rng.random_range(0..choices.len())], pause);
         }
         harvest.tests.push(AbstractTest {
             scripts: draw.finish(),
@@ -65,6 +68,39 @@ pub fn harvest(program: &Program, suite: &Suite, count: u32, seed: u64) -> Resul
         });
     }
     Ok(harvest)
+}
+
+/// Pauses are tenths of a second: a person's, readable in the test's text.
+const PAUSE_GRID: Nanos = SECOND / 10;
+
+/// The pauses of a suite.
+struct RandomPauses {
+    lo: Nanos,
+    hi: Nanos,
+    /// The share that is put at a bound, and the times there.
+    beside: Option<(f64, Vec<Nanos>)>,
+}
+
+impl RandomPauses {
+    fn of(program: &Program, (lo, hi): (Nanos, Nanos), share: Option<f64>) -> Self {
+        let beside = share.map(|share| {
+            let times = [lo, hi].into_iter().chain(times::of(program));
+            let beside = times.flat_map(|time| [time - PAUSE_GRID, time, time + PAUSE_GRID]);
+            let all: BTreeSet<Nanos> = beside.filter(|time| (lo..=hi).contains(time)).collect();
+            (share, all.into_iter().collect())
+        });
+        Self { lo, hi, beside }
+    }
+
+    fn draw(&self, rng: &mut ChaCha8Rng) -> Nanos {
+        if let Some((share, times)) = &self.beside
+            && rng.random_range(0.0..1.0) < *share
+        {
+            return times[rng.random_range(0..times.len())];
+        }
+        let pause = if self.lo < self.hi { rng.random_range(self.lo..=self.hi) } else { self.lo };
+        pause / PAUSE_GRID * PAUSE_GRID
+    }
 }
 
 /// Which of the actors can wait for an event. An actor alone has the script of all, which hears what any of them hears.
@@ -222,6 +258,7 @@ mod tests {
                 length_hi: 60,
                 pause_lo: 0,
                 pause_hi: 0,
+                boundary: None,
             },
             settings: hrdsl_ir::suite::SuiteSettings {
                 tests: 1,

@@ -4,36 +4,40 @@
 //! no property is written by hand. The goals of a requirement are decided on the network with the requirement's observer.
 
 use hrdsl_ir::{
-    Program,
+    Nanos, Program,
     abstract_test::AbstractTest,
     suite::{PlayerRef, SearchGoal, Suite},
     ta::{Network, NetworkId},
 };
-use hrdsl_results::{AbstractTests, GoalReport, GoalStatus};
-use hrdsl_ta::{GoalKind, ReachabilityGoal, SearchError};
+use hrdsl_results::{AbstractTests, GoalReport, GoalStatus, SuiteGoalId};
+use hrdsl_ta::{GoalKind, ReachabilityGoal, SearchError, WitnessRun};
+use hrdsl_trace::decimal;
 
 use crate::{
+    bounds,
     covers::{ReachedItems, WitnessedGoal},
+    diverse::{self, WitnessPool},
     expand::{counters, goals},
     extract,
     named::NamedGoal,
 };
 use hrdsl_prove::{
-    GoalDecision, GoalFate, ObservedNetwork, ObservedRun, ProofOptions, SearchWatch, decide,
+    GoalDecision, GoalFate, ObservedNetwork, ProofOptions, SearchOrder, SearchWatch, decide,
     held::TimedHolds, of_formula,
 };
 
-/// Decides all goals and takes the environment's part of each witness.
+/// Decides all goals and takes the environment's part of each witness. Where up to `diverse` witnesses of each are asked for,
+/// gives further ones, too.
 ///
 /// # Errors
 /// A network that does not exist or cannot be run.
 pub fn harvest(
     program: &Program,
     suite: &Suite,
-    network: NetworkId,
-    asked: &[SearchGoal],
+    (network, asked): (NetworkId, &[SearchGoal]),
     settings: &ProofOptions,
-) -> Result<AbstractTests, String> {
+    diverse: u32,
+) -> Result<(AbstractTests, WitnessPool), String> {
     let network = program
         .networks
         .get(usize::from(network.0))
@@ -41,59 +45,111 @@ pub fn harvest(
     let named = goals(program, network, asked);
     let mut harvest = AbstractTests::default();
     let all: Vec<&NamedGoal> = named.iter().collect();
-    let (fates, states) = fates(program, network, &all, settings, &mut harvest.notes)
-        .map_err(|e| format!("network `{}`: {e}", network.name))?;
+    let (fates, states) =
+        fates(program, network, &all, settings, &mut harvest.notes).map_err(|e| of_network(network, &e))?;
     let held_back = held_back(program, network, &named, &fates, settings, states);
-    let players: Vec<PlayerRef> = network.automata.iter().map(|a| PlayerRef::Automaton(*a)).collect();
-    let awaits = extract::AwaitGroups::of(program, &players);
-    for ((named, fate), held_back) in named.iter().zip(&fates).zip(held_back) {
+    let maker = WitnessTests::new(program, suite, network, &named);
+    let mut pool = WitnessPool::default();
+    for ((goal, fate), held_back) in fates.iter().enumerate().zip(held_back) {
         let (status, mut reason) = said(fate, states);
         if let Some(why) = held_back {
             reason = format!("{reason}; {why}");
         }
         if let GoalFate::Reached(run) = fate {
-            harvest.tests.push(test(program, suite, &awaits, named, run));
+            harvest.tests.push(maker.test(goal, &named[goal].id, &run.witness, &mut pool));
         }
-        harvest.goals.push(GoalReport { goal: named.id.clone(), status, reason, test: None });
+        harvest.goals.push(GoalReport { goal: named[goal].id.clone(), status, reason, test: None });
     }
-    note_reached(program, network, &named, &fates, &mut harvest.tests);
-    Ok(harvest)
+    for goal in asked {
+        let SearchGoal::Bounds(step) = goal else { continue };
+        let step = bounds::boundary_step(program, *step);
+        maker.bounds(&mut harvest, &mut pool, (step, settings)).map_err(|e| of_network(network, &e))?;
+    }
+    for round in 1..=if diverse > 1 { u64::from(diverse) } else { 0 } {
+        let order = Some(SearchOrder::RandomBreadth);
+        let seed = settings.seed.wrapping_mul(1_000_003).wrapping_add(round);
+        let settings = ProofOptions { order, seed, ..*settings };
+        let (fates, _) = self::fates(program, network, &all, &settings, &mut Vec::new())
+            .map_err(|e| of_network(network, &e))?;
+        for (goal, fate) in fates.iter().enumerate() {
+            let GoalFate::Reached(run) = fate else { continue };
+            let spare = maker.test(goal, &named[goal].id, &run.witness, &mut pool);
+            pool.spares.push(spare);
+        }
+    }
+    Ok((harvest, pool))
 }
 
-fn test(
-    program: &Program,
-    suite: &Suite,
-    awaits: &extract::AwaitGroups,
-    named: &NamedGoal,
-    run: &ObservedRun,
-) -> AbstractTest {
-    let trace = run.witness.trace();
-    AbstractTest {
-        scripts: extract::scripts(program, awaits, &trace, suite.settings.patience),
-        because: vec![format!("witness of {}", named.id)],
-        predicts: extract::covered(program, &trace).cross_names(&program.coverage),
-        ..AbstractTest::default()
-    }
+fn of_network(network: &Network, error: &SearchError) -> String {
+    format!("network `{}`: {error}", network.name)
 }
 
-/// Which goals each test's run reaches.
-fn note_reached(
-    program: &Program,
-    network: &Network,
-    named: &[NamedGoal],
-    fates: &[GoalFate],
-    tests: &mut [AbstractTest],
-) {
-    let initial: Vec<_> =
-        network.automata.iter().map(|id| program.automata[usize::from(id.0)].initial).collect();
-    let reached = fates.iter().enumerate().filter_map(|(goal, fate)| match fate {
-        GoalFate::Reached(run) => Some((goal, run)),
-        GoalFate::Unreachable | GoalFate::Inconclusive(_) => None,
-    });
-    for ((own, run), test) in reached.zip(tests) {
-        let seen = ReachedItems::of(program, &initial, &run.witness, test.predicts.clone());
-        let shows = |goal: usize| goal == own || named[goal].shown.iter().any(|s| seen.has(s));
-        test.reaches = (0..named.len()).filter(|goal| shows(*goal)).collect();
+/// Makes tests of witnesses.
+struct WitnessTests<'a> {
+    program: &'a Program,
+    suite: &'a Suite,
+    network: &'a Network,
+    named: &'a [NamedGoal],
+    awaits: extract::AwaitGroups,
+}
+
+impl<'a> WitnessTests<'a> {
+    fn new(program: &'a Program, suite: &'a Suite, network: &'a Network, named: &'a [NamedGoal]) -> Self {
+        let players: Vec<PlayerRef> = network.automata.iter().map(|a| PlayerRef::Automaton(*a)).collect();
+        let awaits = extract::AwaitGroups::of(program, &players);
+        Self { program, suite, network, named, awaits }
+    }
+
+    /// The test of a goal's witness, with the goals that the run reaches.
+    fn test(&self, own: usize, id: &SuiteGoalId, run: &WitnessRun, pool: &mut WitnessPool) -> AbstractTest {
+        let program = self.program;
+        let trace = run.trace();
+        let mut test = AbstractTest {
+            scripts: extract::scripts(program, &self.awaits, &trace, self.suite.settings.patience),
+            because: vec![format!("witness of {id}")],
+            predicts: extract::covered(program, &trace).cross_names(&program.coverage),
+            ..AbstractTest::default()
+        };
+        let seen = ReachedItems::of(program, self.network, run, test.predicts.clone());
+        let shows = |goal: usize| goal == own || self.named[goal].shown.iter().any(|s| seen.has(s));
+        test.reaches = (0..self.named.len()).filter(|goal| shows(*goal)).chain([own]).collect();
+        pool.note(&test, diverse::features(&seen, run));
+        test
+    }
+
+    /// Adds the bounds of the network, and a test for each of their sides that is reached.
+    fn bounds(
+        &self,
+        harvest: &mut AbstractTests,
+        pool: &mut WitnessPool,
+        (step, settings): (Nanos, &ProofOptions),
+    ) -> Result<(), SearchError> {
+        let found = bounds::decided(self.program, self.network, step, settings)?;
+        harvest.notes.push(format!(
+            "network `{}`: {} symbolic states stored for {} times beside bounds, {} s beside each, in {} explorations",
+            self.network.name,
+            found.states,
+            found.findings.len(),
+            decimal::seconds(step),
+            found.searches,
+        ));
+        for bound in found.findings {
+            if harvest.goals.iter().any(|known| known.goal == bound.id) {
+                continue;
+            }
+            let (mut status, mut reason) = (bound.status, bound.reason);
+            let refused = bound.run.as_ref().and_then(|run| bounds::refused(self.program, run));
+            match (bound.run, refused) {
+                (Some(_), Some(why)) => (status, reason) = (GoalStatus::Inconclusive, why),
+                (Some(run), None) => {
+                    let test = self.test(harvest.goals.len(), &bound.id, &run, pool);
+                    harvest.tests.push(test);
+                }
+                (None, _) => {}
+            }
+            harvest.goals.push(GoalReport { goal: bound.id, status, reason, test: None });
+        }
+        Ok(())
     }
 }
 

@@ -136,7 +136,7 @@ fn value_text(ty: Type, value: Value) -> String {
     }
 }
 
-fn time_text(time: Nanos) -> String {
+pub(crate) fn time_text(time: Nanos) -> String {
     format!("{} s", decimal::seconds(time))
 }
 

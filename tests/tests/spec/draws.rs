@@ -34,7 +34,9 @@ const SCENARIO: &str = "scenario draws
       hold 1 s
     }
     suite chance by random { stimuli act length 3..9 pause 0 s .. 10 s tests 12 }
-    suite chances by random { stimuli act, run length 3..9 pause 0 s .. 10 s tests 12 }";
+    suite chances by random { stimuli act, run length 3..9 pause 0 s .. 10 s tests 12 }
+    suite beside by random { stimuli act length 3..9 pause 0 s .. 2 s boundary 0.5 tests 12 }
+    require R functional act(0) causes act(1) within 1500 ms";
 
 /// What hrdsl draws, a line for each number.
 fn drawn(seed: u64, suite: usize) -> (String, Vec<u64>) {
@@ -114,6 +116,28 @@ for own in seeds:
             print(hexed(samples.sample(0.0, 3.0)))
 ";
 
+/// The same with half of the pauses beside a bound: the ends of their range, and the time of the requirement.
+const BY_THE_PAGE_BESIDE: &str = "
+import struct, sys
+seed, seeds = int(sys.argv[1]), [int(s) for s in sys.argv[2:]]
+chance = Generator(seed)
+beside = [n * 10**8 for n in (0, 1, 14, 15, 16, 19, 20)]
+hexed = lambda x: '%016x' % struct.unpack('>Q', struct.pack('>d', x))[0]
+for own in seeds:
+    steps = []
+    for _ in range(chance.whole(3, 9, 32)):
+        if chance.real(0, 1) < 0.5: pause = beside[chance.whole(0, 6, 32)]
+        else: pause = chance.whole(0, 2 * 10**9, 64) // 10**8 * 10**8
+        steps.append((pause, chance.whole(0, 6, 32)))
+    samples = Generator(own)
+    for pause, kind in steps:
+        if pause: print(pause)
+        print(kind)
+        print(samples.sample(-3, 40))
+        print(hexed(samples.sample(-0.1, 0.2) if kind > 3 else samples.sample(0.0, 0.0)))
+        print(hexed(samples.sample(0.0, 3.0)))
+";
+
 /// The programs of the page, followed by one more; what it prints.
 fn by_the_page(more: &str, args: &[String]) -> String {
     let blocks = split(&read("spec/randomness.md")).0.into_iter().filter(|b| b.info == "python");
@@ -138,7 +162,7 @@ fn compare(what: &str, expected: &str, got: &str) {
 #[test]
 fn the_page_draws_what_the_generators_draw() {
     for seed in [0, 1, 77, 18_000_000] {
-        for (suite, page) in [BY_THE_PAGE, BY_THE_PAGE_FOR_TWO].into_iter().enumerate() {
+        for (suite, page) in [BY_THE_PAGE, BY_THE_PAGE_FOR_TWO, BY_THE_PAGE_BESIDE].into_iter().enumerate() {
             let (expected, seeds) = drawn(seed, suite);
             let args: Vec<String> = std::iter::once(seed).chain(seeds).map(|s| s.to_string()).collect();
             compare(&format!("seed {seed}, suite {suite}"), &expected, &by_the_page(page, &args));

@@ -1,7 +1,8 @@
 //! The variables and clocks that queries read: of automata, and shared ones.
 
 use crate::{
-    ClockId, Scenario, TypedExpr, TypedFormula, TypedMeasure, TypedQuery, TypedQueryKind, VariableRef,
+    ClockId, Scenario, SearchGoal, TypedExpr, TypedFormula, TypedMeasure, TypedMethod, TypedQuery,
+    TypedQueryKind, TypedSuite, VariableRef,
 };
 
 /// What is read, by index.
@@ -36,7 +37,23 @@ impl QueryReads {
         for query in &scenario.queries {
             reads.query(scenario, query);
         }
+        for suite in &scenario.suites {
+            reads.suite(scenario, suite);
+        }
         reads
+    }
+
+    /// What the goals of suites by search speak of is read, as what queries speak of is.
+    fn suite(&mut self, scenario: &Scenario, suite: &TypedSuite) {
+        let TypedMethod::Search { network, goals, .. } = &suite.method else { return };
+        let Some(network) = scenario.networks.get(usize::from(network.0)) else { return };
+        let automata: Vec<usize> = network.automata.iter().map(|a| usize::from(a.0)).collect();
+        let mut reader = QueryReader { automata: &automata, reads: self };
+        for goal in goals {
+            let SearchGoal::Combinations(all) = goal else { continue };
+            all.terms.iter().for_each(|term| reader.data(&term.value));
+            all.when.iter().for_each(|when| reader.formula(&when.formula));
+        }
     }
 
     fn query(&mut self, scenario: &Scenario, query: &TypedQuery) {

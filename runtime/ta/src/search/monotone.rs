@@ -59,7 +59,7 @@ pub(crate) fn no_worse(these: &[u32], those: &[u32]) -> bool {
 /// be left out, not what waits: a run through the better counters may be the longer one.
 pub(crate) fn may_drive_out(order: SearchOrder, these: &[u32], those: &[u32]) -> bool {
     match order {
-        SearchOrder::Breadth => these == those,
+        SearchOrder::Breadth | SearchOrder::RandomBreadth => these == those,
         SearchOrder::Depth | SearchOrder::RandomDepth | SearchOrder::Topological => no_worse(these, those),
     }
 }

@@ -7,6 +7,8 @@ use crate::{network::query::SearchBudget, zone::extrapolation::ExtrapolationAbst
 pub enum SearchOrder {
     /// The oldest first.
     Breadth,
+    /// The oldest first, those that one round has brought in an order drawn from the seed: other runs as short as any.
+    RandomBreadth,
     /// The newest first.
     Depth,
     /// The newest first, those of one state in an order drawn from the seed.

@@ -87,7 +87,7 @@ impl WaitingList {
             return heap.is_empty();
         }
         match self.order {
-            SearchOrder::Breadth => {
+            SearchOrder::Breadth | SearchOrder::RandomBreadth => {
                 while self.queue.front().is_some_and(|n| gone(*n)) {
                     self.queue.pop_front();
                 }
@@ -151,7 +151,9 @@ impl WaitingList {
         }
         match self.order {
             SearchOrder::Breadth => self.queue.push_back(node),
-            SearchOrder::Depth | SearchOrder::RandomDepth => self.fresh.push(node),
+            SearchOrder::RandomBreadth | SearchOrder::Depth | SearchOrder::RandomDepth => {
+                self.fresh.push(node)
+            }
             SearchOrder::Topological => {
                 let ahead = covers && std::mem::take(&mut self.overtaken);
                 if ahead {
@@ -178,7 +180,7 @@ impl WaitingList {
         match self.order {
             SearchOrder::Breadth | SearchOrder::Topological => {}
             SearchOrder::Depth => self.queue.extend(self.fresh.drain(..).rev()),
-            SearchOrder::RandomDepth => {
+            SearchOrder::RandomBreadth | SearchOrder::RandomDepth => {
                 let fresh = &mut self.fresh;
                 for i in (1..fresh.len()).rev() {
                     fresh.swap(i, self.rng.random_range(0..=i));
@@ -196,14 +198,14 @@ impl WaitingList {
             return self.take_earliest(nodes, most.min(FEW), out);
         }
         let most = match self.order {
-            SearchOrder::Breadth => most,
+            SearchOrder::Breadth | SearchOrder::RandomBreadth => most,
             SearchOrder::Depth | SearchOrder::RandomDepth | SearchOrder::Topological => {
                 (self.len() / 8).clamp(1, most / 4)
             }
         };
         while out.len() < most {
             let next = match self.order {
-                SearchOrder::Breadth => self.queue.pop_front(),
+                SearchOrder::Breadth | SearchOrder::RandomBreadth => self.queue.pop_front(),
                 SearchOrder::Depth | SearchOrder::RandomDepth => self.queue.pop_back(),
                 SearchOrder::Topological => self.heap.pop().map(|n| n.2).or_else(|| self.lowest_level()),
             };

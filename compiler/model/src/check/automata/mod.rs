@@ -4,6 +4,7 @@ pub(super) mod assign;
 pub(super) mod automaton;
 pub(super) mod channel;
 pub(super) mod clock;
+mod combination;
 pub(super) mod edge;
 pub(super) mod function;
 pub(super) mod phase;

@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// What the names of a network stand for.
-struct QueryNetwork {
+pub(super) struct QueryNetwork {
     name: String,
     /// In the network's order.
     automata: Vec<String>,
@@ -36,7 +36,7 @@ struct QueryNetwork {
     /// Variables: shared ones by their names, others as `Automaton.variable`.
     env: ExprEnv,
     /// The same, and each location as a bool. Their numbers follow those of the variables, in the network's order.
-    values: ExprEnv,
+    pub(super) values: ExprEnv,
 }
 
 /// One side of a comparison: clocks with their signs, and what remains.
@@ -59,6 +59,7 @@ impl AutomataPhase<'_, '_> {
                 self.s.queries.extend(resolved.filter(|_| new));
             }
         }
+        self.combinations();
         self.say_impure();
     }
 
@@ -108,7 +109,7 @@ impl AutomataPhase<'_, '_> {
 
     // ── names ──
 
-    fn net(&self, id: NetworkId) -> QueryNetwork {
+    pub(super) fn net(&self, id: NetworkId) -> QueryNetwork {
         let network = &self.s.networks[usize::from(id.0)];
         let mut net = QueryNetwork {
             name: network.name.clone(),
@@ -169,7 +170,7 @@ impl AutomataPhase<'_, '_> {
     }
 
     /// Whether all names are known, and are variables, locations, constants or functions; says what is not.
-    fn data_names(&mut self, e: &ast::ExprSyntax, net: &QueryNetwork) -> bool {
+    pub(super) fn data_names(&mut self, e: &ast::ExprSyntax, net: &QueryNetwork) -> bool {
         let mut known = true;
         each_path(e, &mut |path| known &= self.data_name(path, net));
         known
@@ -248,7 +249,7 @@ impl AutomataPhase<'_, '_> {
 
     // ── formulas ──
 
-    fn formula(&mut self, e: &ast::ExprSyntax, net: &mut QueryNetwork) -> TypedFormula {
+    pub(super) fn formula(&mut self, e: &ast::ExprSyntax, net: &mut QueryNetwork) -> TypedFormula {
         if let Syntax::Unary { op: UnaryOp::Not, operand } = &e.kind {
             return TypedFormula::Not(Box::new(self.formula(operand, net)));
         }

@@ -19,7 +19,7 @@ use super::{
     template::{DeclaredTemplate, TemplateArguments},
     world::WorldNames,
 };
-use crate::{PlayerRef, descriptions::DescriptionLibrary};
+use crate::{PlayerRef, TypedCombinations, descriptions::DescriptionLibrary};
 
 /// What is checked: the items of a scenario and of its modules, and what of them could not be read.
 pub(crate) struct CheckedSource<'a> {
@@ -237,4 +237,6 @@ impl AgentNames {
 pub(crate) struct NetworkNames {
     pub table: NameTable,
     pub queries: NameTable,
+    /// By member of a suite: the values that it reaches. What has a diagnostic is not among them.
+    pub combinations: BTreeMap<Span, TypedCombinations>,
 }

@@ -17,9 +17,9 @@ use crate::check::{
     state::{issues::too_many, scope::ExprEnv, table::MAX_NAMES},
 };
 use crate::{
-    ChoiceKind, CrossId, DelayChoice, Dimension, EventId, EventPattern, ExploreMode, InferredType, ModelGoal,
-    NetworkId, PlayerRef, Role, SearchGoal, TypedChoice, TypedChoiceCondition, TypedMethod, TypedSuite,
-    Value, WitnessKind,
+    BoundaryStep, ChoiceKind, CrossId, DelayChoice, Dimension, EventId, EventPattern, ExploreMode,
+    InferredType, ModelGoal, NetworkId, PlayerRef, Role, SearchGoal, TypedChoice, TypedChoiceCondition,
+    TypedMethod, TypedSuite, Value, WitnessKind,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
 };
@@ -35,6 +35,10 @@ pub(super) struct SuiteMembers {
     minimise: bool,
     witness: WitnessKind,
     delays: DelayChoice,
+    diverse: Option<u32>,
+    /// `reach each bound`, of agents.
+    pub(super) bounds: Option<BoundaryStep>,
+    boundary: Option<f64>,
     stimuli: Vec<EventId>,
     awaits: Vec<EventPattern>,
     length: Option<(u32, u32)>,
@@ -84,17 +88,18 @@ impl TestingPhase<'_, '_> {
         let method = match &suite.method {
             SyntaxMethod::Agents(_) => {
                 let explore = said.explore.unwrap_or(ExploreMode::Wise(2));
-                let SuiteMembers { choose, reached: goals, stop_after, minimise, .. } = said;
-                TypedMethod::Agents { players, choose, explore, stop_after, goals, minimise }
+                let SuiteMembers { choose, reached: goals, stop_after, minimise, bounds, .. } = said;
+                TypedMethod::Agents { players, choose, explore, stop_after, goals, minimise, bounds }
             }
             SyntaxMethod::Search(_) => {
                 if !suite.members.iter().any(is_goal) {
                     let message = format!("the suite `{}` has nothing to reach", suite.name.text);
                     self.report(bad_suite(suite.name.span, message, "add `reach each location`"));
                 }
-                let SuiteMembers { goals, witness, delays, .. } = said;
+                let SuiteMembers { goals, witness, delays, diverse, .. } = said;
                 let network = self.of_network(network?, &goals, suite);
-                TypedMethod::Search { network, goals, witness, delays }
+                self.bounded(network, suite);
+                TypedMethod::Search { network, goals, witness, delays, diverse }
             }
             SyntaxMethod::Random => {
                 if !suite.members.iter().any(|m| matches!(m.kind, Member::Stimuli(_) | Member::Error)) {
@@ -110,6 +115,7 @@ impl TestingPhase<'_, '_> {
                     length_hi: length.1,
                     pause_lo: nanos(pause.0),
                     pause_hi: nanos(pause.1),
+                    boundary: self.boundary_of(said.boundary, pause, suite),
                 }
             }
         };
@@ -173,6 +179,11 @@ impl TestingPhase<'_, '_> {
             | Member::Explore(_)
             | Member::Setting { what: SuiteSetting::StopAfter | SuiteSetting::Horizon, .. }
             | Member::Minimise => "agents",
+            Member::ReachEachBy { .. } if !matches!(method, SyntaxMethod::Random) => return true,
+            Member::ReachEachOf { .. }
+            | Member::ReachEachBy { .. }
+            | Member::Setting { what: SuiteSetting::Diverse, .. } => "search",
+            Member::Setting { what: SuiteSetting::Boundary, .. } => "random",
             Member::ReachEach(_) if matches!(method, SyntaxMethod::Search(_)) => return true,
             Member::ReachEach(_) => "agents",
             // Both.
@@ -218,18 +229,21 @@ impl TestingPhase<'_, '_> {
             Member::Explore(call) => said.explore = self.explore(call),
             Member::Setting { what, value } => self.setting(*what, value, said),
             Member::Minimise => said.minimise = true,
-            Member::ReachEach(word) if by_search => {
-                let goals = [SearchGoal::Pairs, SearchGoal::Uses, SearchGoal::Values];
-                let words = ["pair", "use", "value", "location", "edge", "bin of …"];
-                let found = self.choice(Noun::SearchReach, word, &words);
-                said.goals.extend(found.and_then(|i| goals.get(i)));
-            }
+            Member::ReachEach(word) if by_search => self.reach_each_of_network(word, said),
             Member::ReachEach(word) => {
                 let goals = [ModelGoal::Plans, ModelGoal::Contexts, ModelGoal::Messages, ModelGoal::Paths];
-                let words = ["plan", "context", "message", "path", "edge", "bin of …"];
+                let words = ["plan", "context", "message", "path", "bound", "edge", "bin of …"];
                 let found = self.choice(Noun::Reach, word, &words);
                 said.reached.extend(found.and_then(|i| goals.get(i)));
+                if word.text == "bound" {
+                    said.bounds = Some(BoundaryStep::default());
+                }
             }
+            Member::ReachEachOf { .. } => {
+                let found = self.networks.combinations.get(&member.span).cloned();
+                said.goals.extend(found.map(SearchGoal::Combinations));
+            }
+            Member::ReachEachBy { what, step } => self.reach_each_by(what, step, by_search, said),
             Member::ReachOf { what, names } => self.reach_of(what, names, said),
             Member::ReachQueries(names) => {
                 for name in names {
@@ -284,6 +298,8 @@ impl TestingPhase<'_, '_> {
                 let tests = whole(self.count(value, "the number of tests", 1));
                 said.settings.tests = tests.unwrap_or(said.settings.tests);
             }
+            SuiteSetting::Diverse => said.diverse = self.diverse(value),
+            SuiteSetting::Boundary => said.boundary = self.share(value),
             SuiteSetting::Horizon => said.set_time(|s| &mut s.horizon, self.time(value, "the horizon", true)),
             SuiteSetting::Warmup => said.set_time(|s| &mut s.warmup, self.time(value, "the warm-up", false)),
             SuiteSetting::Patience => {
@@ -444,6 +460,8 @@ fn is_goal(member: &SuiteMember) -> bool {
             | Member::ReachLocations
             | Member::ReachEdges
             | Member::ReachEach(_)
+            | Member::ReachEachOf { .. }
+            | Member::ReachEachBy { .. }
             | Member::ReachOf { .. }
             | Member::ReachQueries(_)
             | Member::Error

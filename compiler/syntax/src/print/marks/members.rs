@@ -259,6 +259,11 @@ impl TokenMarker<'_> {
             SuiteMemberKind::Explore(call) => self.call(call),
             SuiteMemberKind::Length(range) | SuiteMemberKind::Pause(range) => self.range(range),
             SuiteMemberKind::Choose { condition, .. } => self.maybe(condition.as_ref()),
+            SuiteMemberKind::ReachEachOf { terms, when, .. } => {
+                terms.iter().for_each(|term| self.expr(term));
+                self.maybe(when.as_ref());
+            }
+            SuiteMemberKind::ReachEachBy { step, .. } => self.expr(step),
             SuiteMemberKind::Minimise
             | SuiteMemberKind::ReachEach(_)
             | SuiteMemberKind::ReachBins(_)
