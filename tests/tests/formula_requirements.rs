@@ -187,11 +187,17 @@ fn atom(program: &Program, trace: &Trace, which: usize, time: Nanos) -> Option<R
     }
 }
 
+/// An atom is written with the parentheses around it.
+fn without_parentheses(atom: &str) -> &str {
+    atom.trim_start_matches('(').trim_end_matches(')')
+}
+
 /// The bounds that the page gives a formula, whose atoms are these; `None`: it has no first moment.
 fn bounds(program: &Program, trace: &Trace, text: &str) -> Option<[Robustness; 2]> {
     let checked = read_formula(program, text).unwrap_or_else(|e| panic!("{text}: {e}"));
-    let order: Vec<usize> =
-        (0..).map_while(|n| ATOMS.iter().position(|atom| *atom == checked.atom_text(n))).collect();
+    let order: Vec<usize> = (0..)
+        .map_while(|n| ATOMS.iter().position(|atom| *atom == without_parentheses(checked.atom_text(n))))
+        .collect();
     let is_known = |time: &Nanos| checked.signals().iter().all(|s| at(trace, *s, *time).is_some());
     let start = (0..=trace.end).find(is_known)?;
     let pieces = |which: usize| {

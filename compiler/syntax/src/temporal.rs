@@ -124,19 +124,19 @@ pub struct TemporalWindow<T> {
 pub(crate) type PlainFormula = TemporalFormula<CallSyntax, ExprSyntax, ExprSyntax>;
 
 impl<E, C, T> TemporalFormula<E, C, T> {
-    pub(crate) fn joined(junction: TemporalJunction, left: Box<Self>, right: Box<Self>) -> Self {
+    pub(crate) fn joined(junction: TemporalJunction, left: Self, right: Self) -> Self {
         let span = left.span.to(right.span);
-        Self { kind: TemporalKind::Junction(junction, Box::new([*left, *right])), span }
+        Self { kind: TemporalKind::Junction(junction, Box::new([left, right])), span }
     }
 
     pub(crate) fn reached(
         reach: TemporalReach,
         window: Option<Box<TemporalWindow<T>>>,
-        left: Box<Self>,
-        right: Box<Self>,
+        left: Self,
+        right: Self,
     ) -> Self {
         let span = left.span.to(right.span);
-        let (window, of) = (window.map(|window| *window), Box::new([*left, *right]));
+        let (window, of) = (window.map(|window| *window), Box::new([left, right]));
         Self { kind: TemporalKind::Reach { reach, window, of }, span }
     }
 

@@ -588,8 +588,7 @@ require R7=R6(asked)
 require R8 functional "a formula that is longer than a line, so that it has to be broken somewhere" formula always(asked implies(not rising( near )since[0s,30s]offered)and eventually [0 s,10s](released(_)or-x+1<3))
 assume at most 4 leg_request within 300s
 assume at most
-  4
-  (a or b)
+  4 (a or b)
 "#
     coverage r#"
 cover legs=count(leg_request)bins none=0,one=1,few=2..3,four=4..
