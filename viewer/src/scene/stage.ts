@@ -44,6 +44,7 @@ export class Stage implements Part {
   private software = false;
   private resting = 0;
   private still = false;
+  private resized = true;
   private width = 0;
   private height = 0;
 
@@ -65,7 +66,7 @@ export class Stage implements Part {
     this.element.append(this.labels.element, ...this.captions, this.message);
     // Asked for in each frame, the size would cost a layout each time.
     new ResizeObserver(() => {
-      this.resize();
+      this.resized = true;
       store.touch("camera");
     }).observe(this.element);
   }
@@ -168,7 +169,9 @@ export class Stage implements Part {
   }
 
   update(state: State, changed: Changed): void {
-    if (changed.has("runs")) this.resize();
+    // Another size empties the picture, so that it is drawn in the same frame.
+    if (this.resized || changed.has("runs")) this.resize();
+    this.resized = false;
     if (changed.has("runs")) this.replace(state);
     if (changed.has("theme")) this.colors = palette();
     for (const scene of this.scenes) scene.restyle(this.colors, state.lowWalls && hasWalls(scene.run));

@@ -32,6 +32,9 @@ function optionsOf(index: PageIndex): HTMLElement[] {
   });
 }
 
+/** More requirements than this stand closer together. */
+const MANY = 12;
+
 export class Header implements Part {
   readonly element: HTMLElement;
   private readonly title = h("h1", {});
@@ -57,6 +60,7 @@ export class Header implements Part {
     this.beside.value = second?.id ?? "";
     this.beside.classList.toggle("on", second !== undefined);
     this.theme.title = `Light or dark (t); now ${state.theme === "system" ? "as the system has it" : state.theme}`;
+    this.chips.classList.toggle("many", first.requirements.length > MANY);
     this.chips.replaceChildren(
       ...first.requirements.map((r) => {
         const text = `${r.id} ${SIGNS[r.of.verdict]}`;
@@ -65,5 +69,7 @@ export class Header implements Part {
         return button(text, title, go, { class: `chip ${r.of.verdict}`, "aria-pressed": String(state.focus === r.id) });
       }),
     );
+    // With many requirements, the one in focus may be beyond the edge.
+    if (changed.has("focus") || changed.has("runs")) this.chips.querySelector("[aria-pressed=true]")?.scrollIntoView({ block: "nearest", inline: "nearest" });
   }
 }

@@ -93,6 +93,31 @@ describe("the viewer in Chromium", { skip }, () => {
     await page.close();
   });
 
+  test("draws the scene anew in the very frame in which its size changes", async () => {
+    const { page, faults } = await open(browser, "homecare");
+    // An empty canvas would be seen until the next frame.
+    await page.evaluate(() => {
+      const canvas = document.querySelector<HTMLCanvasElement>(".stage canvas")!;
+      const seen: boolean[] = [];
+      Object.assign(window, { seen });
+      const set = Object.getOwnPropertyDescriptor(HTMLCanvasElement.prototype, "width")!.set!;
+      const clear = WebGL2RenderingContext.prototype.clear;
+      let drawn = true;
+      Object.defineProperty(canvas, "width", { configurable: true, get: () => Number(canvas.getAttribute("width")), set: (n: number) => (set.call(canvas, n), (drawn = false), queueMicrotask(() => seen.push(drawn))) });
+      WebGL2RenderingContext.prototype.clear = function (mask) {
+        drawn = true;
+        clear.call(this, mask);
+      };
+    });
+    await page.setViewport({ width: 1100, height: 700 });
+    await settle(page, 400);
+    const seen = await page.evaluate(() => (window as unknown as { seen: boolean[] }).seen);
+    assert.ok(seen.length > 0 && seen.every(Boolean), seen.join());
+    assert.ok((await colours(page)) > 40);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
   test("draws the scene", async () => {
     const { page, faults } = await open(browser, "homecare");
     assert.ok((await colours(page)) > 40);
