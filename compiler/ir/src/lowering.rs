@@ -409,6 +409,7 @@ impl<E> Location<E> {
             kind: self.kind,
             invariant: self.invariant.iter().map(|c| c.lower(slots)).collect(),
             holds: self.holds.as_ref().map(|e| slots.expr(e)),
+            stopped: self.stopped.clone(),
             origin: self.origin,
         }
     }

@@ -298,6 +298,7 @@ fn intermediate(lowered: &mut Automaton, stem: &str, origin: Span) -> LocationId
         kind: LocationKind::Committed,
         invariant: Vec::new(),
         holds: None,
+        stopped: Vec::new(),
         origin,
     });
     LocationId(count(lowered.locations.len() - 1))

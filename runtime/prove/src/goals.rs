@@ -145,6 +145,7 @@ pub(super) fn exhausted(what: SearchCutoff, report: &SearchReport, watch: &Searc
         SearchCutoff::States => "the budget of states was used up",
         SearchCutoff::Memory => "the budget of memory was used up",
         SearchCutoff::Stopped => watch.stopped(),
+        SearchCutoff::Zones => "clocks stand still, and the zones cannot tell",
     };
     report.widest.as_ref().map_or_else(|| why.to_owned(), |widest| format!("{why}; {widest}"))
 }

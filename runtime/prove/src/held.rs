@@ -176,6 +176,7 @@ fn stop_before(automaton: &mut Automaton, ends: &[usize], target: LocationId) ->
         kind: LocationKind::Normal,
         invariant: Vec::new(),
         holds: None,
+        stopped: Vec::new(),
         origin,
     });
     for end in ends {

@@ -164,6 +164,7 @@ impl<'m> ObserverPlan<'m> {
             kind: LocationKind::Normal,
             invariant: Vec::new(),
             holds: None,
+            stopped: Vec::new(),
             origin: monitor.origin,
         };
         let mut locations: Vec<Location> = monitor.states.iter().map(|s| location(&s.name)).collect();

@@ -65,6 +65,7 @@ impl AssumptionWindow {
             kind: LocationKind::Normal,
             invariant,
             holds: None,
+            stopped: Vec::new(),
             origin: self.origin,
         };
         let mut broken = location("broken", Vec::new());

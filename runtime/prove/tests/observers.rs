@@ -85,6 +85,7 @@ fn actor_of(script: &Script, end: Nanos) -> Automaton {
         kind: LocationKind::Normal,
         invariant: vec![clock(ClockOp::Le, time)],
         holds: None,
+        stopped: Vec::new(),
         origin: Span::default(),
     };
     let edge = |(n, (time, event, args)): (usize, &(Nanos, EventId, Vec<Value>))| Edge {

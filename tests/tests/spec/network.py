@@ -179,7 +179,9 @@ def after(state, moves, event, args):
 def successors(state):
     """Each with the edges taken."""
     ells, v, u, counts, limited = state
-    later = tuple(min(LAST, t + 1) for t in u)
+    places = [(i, a["locations"][l]) for i, (a, l) in enumerate(zip(network, ells))]
+    standing = {clock(i, c) for i, l in places for c in l.get("stopped", [])}
+    later = tuple(t if x in standing else min(LAST, t + 1) for x, t in enumerate(u))
     if patient(ells, v) and invariants(ells, v, later):
         yield (ells, v, later, counts, limited), []
     groups = [([move], None, []) for i in range(len(network)) for move in ways(i, ells, v, u, "internal")]

@@ -58,7 +58,8 @@ pub(super) fn stopping(automaton: &TypedAutomaton, flow: &ValueFlow) -> Vec<bool
         };
         let ends = |i: &TypedClockConstraint| {
             // What other automata may set back need not end.
-            i.minus.is_none() && flow.is_own(i) && !matches!(i.op, ClockOp::Ge | ClockOp::Gt)
+            let stands = location.stopped.contains(&i.clock);
+            i.minus.is_none() && !stands && flow.is_own(i) && !matches!(i.op, ClockOp::Ge | ClockOp::Gt)
         };
         let ends = location.kind == LocationKind::Normal && location.invariant.iter().any(ends);
         ends && !flow.out[i].iter().any(|e| leaves(&automaton.edges[*e]))

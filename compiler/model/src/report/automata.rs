@@ -57,6 +57,27 @@ pub(crate) fn clock_set(clock: &str, span: Span) -> Diagnostic {
         .help(format!("write `{clock} = 0`, `{clock} = n * 1 s`, or `{clock} = y + 2 s`"))
 }
 
+/// HR0502: `stopped` of something else than one clock.
+pub(crate) fn stopped_what(span: Span) -> Diagnostic {
+    let message = "what stands still is one clock";
+    Diagnostic::error(DiagnosticCode::BAD_CLOCK_CONSTRAINT, span, message)
+        .help("write `invariant stopped(x)` with a clock `x` that the automaton knows; for another one, `&& stopped(y)`")
+}
+
+/// HR0502: `stopped` under an operator.
+pub(crate) fn stopped_within(span: Span) -> Diagnostic {
+    let message = "that a clock stands still is a part of an invariant by itself";
+    Diagnostic::error(DiagnosticCode::BAD_CLOCK_CONSTRAINT, span, message)
+        .help("join it by `&&`; where a clock stands only sometimes, make two locations of this one")
+}
+
+/// HR0502: `stopped` in a guard.
+pub(crate) fn stopped_on_edge(span: Span) -> Diagnostic {
+    let message = "a clock stands still in a location, and an edge takes no time";
+    Diagnostic::error(DiagnosticCode::BAD_CLOCK_CONSTRAINT, span, message)
+        .help("write it in the location: `location waiting { invariant stopped(x) }`")
+}
+
 /// HR0502: a comparison of something else than a clock or a difference.
 pub(crate) fn clock_sum(span: Span) -> Diagnostic {
     let message = "a clock is compared, or the difference of two clocks, and this is neither";

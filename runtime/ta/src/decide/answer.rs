@@ -351,6 +351,7 @@ impl QueryEvaluator<'_> {
             let what = "`deadlock` can be asked for in `E<>`, `A[]`, `sup` and `inf`, not in questions about all of a run";
             return Err(ModelError::Question(what.into()).into());
         }
+        self.model.refuse_stopped("what holds along a whole run (`A<>`, `E[]`, `-->`)")?;
         let graph = ZoneGraph::new(self.model, formulas)?;
         let go = |abstraction| {
             let limits = (self.options.budget, self.company.go_on);

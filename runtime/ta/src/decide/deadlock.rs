@@ -175,6 +175,7 @@ pub(crate) fn deadlocks(
     options: &DeadlockOptions,
     company: SearchCompany<'_>,
 ) -> Result<Vec<DecidedGoal>, SearchError> {
+    model.refuse_stopped("`deadlock`")?;
     let formulas: Vec<StateFormula> = goals.iter().filter_map(|g| g.formula()).collect();
     let graph = ZoneGraph::new(model, &[])?;
     let search = DeadlockSearch { graph, goals, formulas: &formulas, options, company };

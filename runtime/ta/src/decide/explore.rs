@@ -3,6 +3,7 @@
 use hrdsl_ir::{Program, ta::Network};
 
 use crate::{
+    decide::stopwatch,
     local,
     network::{
         model::{CompiledNetwork, ObservationOptions},
@@ -50,6 +51,9 @@ pub fn explore(
     options: &SearchOptions,
     go_on: &dyn Fn(&SearchProgress) -> bool,
 ) -> Result<SearchReport, SearchError> {
+    if model.stops() {
+        return stopwatch::explore(model, goals, options, go_on);
+    }
     if !options.local_time {
         return start::explore(model, goals, options, go_on);
     }

@@ -132,6 +132,7 @@ pub(crate) fn extrema(
     let ExtremumQuestion { side, of, when } = *question;
     let formula = StateFormula::from(when);
     let plain = observed(program, network, vec![when.clone()])?;
+    plain.refuse_stopped("`sup` or `inf`")?;
     let mut tracks: Vec<MeasureTracker> =
         of.iter().map(|m| MeasureTracker::of(m, &plain)).collect::<Result<_, _>>()?;
     let mut raised = 0;

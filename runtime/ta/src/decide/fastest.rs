@@ -27,6 +27,7 @@ pub fn fastest(
     budget: SearchBudget,
     timing: ScheduleOptions,
 ) -> Result<Option<Box<WitnessRun>>, SearchError> {
+    model.refuse_stopped("the fastest run")?;
     if matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. }) {
         let what = "edge pairs and def-use pairs are not looked for by time";
         return Err(ModelError::Question(what.into()).into());

@@ -211,6 +211,7 @@ fn network(rng: &mut ChaCha8Rng) -> Program {
             holds: rng
                 .random_bool(0.15)
                 .then(|| Expr::binary(BinaryOp::Ne, q(Expr::int(1)), Expr::int(rng.random_range(1..3)))),
+            stopped: Vec::new(),
             origin: Span::default(),
         });
         let locations = locations.collect();

@@ -11,5 +11,6 @@ mod interpreter_tests;
 mod known_states;
 mod liveness;
 mod places;
+mod stopwatch;
 mod words;
 mod zeno;

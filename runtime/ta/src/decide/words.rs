@@ -28,6 +28,10 @@ pub(super) fn used_up(what: SearchCutoff) -> String {
         SearchCutoff::States => "states",
         SearchCutoff::Memory => "memory",
         SearchCutoff::Stopped => return "the search was stopped".to_owned(),
+        SearchCutoff::Zones => {
+            return "undecided: the zones cannot tell, since clocks stand still, and no run was found"
+                .to_owned();
+        }
     };
     format!("the budget of {what} was used up")
 }

@@ -134,6 +134,9 @@ fn shape(program: &Program, a: &Automaton) -> Result<(), NotApplicableError> {
     if invariants.chain(guards).any(|c| c.minus.is_some()) {
         return Err(NotApplicableError::Difference(a.name.clone()));
     }
+    if a.locations.iter().any(|l| !l.stopped.is_empty()) {
+        return Err(NotApplicableError::Stopped(a.name.clone()));
+    }
     for e in &a.edges {
         let channel = e.sync.channel().map(|c| program.channel(c));
         if let Some(urgent) = channel.filter(|c| c.urgent) {

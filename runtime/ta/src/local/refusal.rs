@@ -17,6 +17,9 @@ pub enum NotApplicableError {
         "the invariant of `{location}` of `{automaton}` depends on `{shared}`, which other automata change or share"
     )]
     Invariant { automaton: String, location: String, shared: String },
+    /// Its delays cannot be taken out of the differences of times.
+    #[error("the clocks of `{0}` stand still in a location")]
+    Stopped(String),
     /// Automata share it, and the options say that no medium may stand for it.
     #[error("automata share `{0}`")]
     Shared(String),

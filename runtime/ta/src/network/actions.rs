@@ -44,12 +44,17 @@ pub(crate) struct DelayCondition {
     pub invariant: Vec<DifferenceConstraint>,
     /// Time may pass.
     pub waits: bool,
+    /// The clocks that stand still meanwhile, ascending.
+    pub stopped: Vec<u16>,
 }
 
 impl DelayCondition {
     /// Time may pass for ever.
     pub(crate) fn for_ever(&self) -> bool {
-        self.waits && !self.invariant.iter().any(|c| c.i != 0 && c.j == 0 && !c.bound.is_infinite())
+        let ends = |c: &DifferenceConstraint| {
+            c.i != 0 && c.j == 0 && !c.bound.is_infinite() && !self.stopped.contains(&c.i)
+        };
+        self.waits && !self.invariant.iter().any(ends)
     }
 }
 
@@ -162,6 +167,6 @@ impl CompiledNetwork<'_> {
             return Ok(None);
         }
         let waits = self.may_delay(&mut own, &mut EnumerationScratch::default());
-        Ok(Some(DelayCondition { invariant, waits }))
+        Ok(Some(DelayCondition { invariant, waits, stopped: self.stopped(state) }))
     }
 }

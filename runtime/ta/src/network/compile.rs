@@ -318,6 +318,7 @@ impl<'p> NetworkCompiler<'p, '_> {
                 kind: l.kind,
                 invariant: self.clocks(automaton, &names, first, &[], &l.invariant)?,
                 holds: l.holds.as_ref().map(|e| self.library.compile(&names, e, NumberType::Bool)),
+                stopped: l.stopped.iter().map(|c| self.clock(*c, first)).collect(),
                 active: Vec::new(),
                 receiving: Vec::new(),
                 joining: Vec::new(),

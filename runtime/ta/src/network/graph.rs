@@ -142,7 +142,7 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
     /// Lets time pass, as far as it may.
     pub(crate) fn wait(&self, stay: &DelayCondition, zone: &mut Dbm) {
         if stay.waits {
-            zone.up();
+            zone.up_but(&stay.stopped);
             // Not empty: it has what was there before.
             stay.invariant.iter().for_each(|c| {
                 keep(zone, *c);

@@ -132,6 +132,39 @@ impl<'p> CompiledNetwork<'p> {
         self.last_edge_at(if self.pairs { self.members.len() } else { 0 }) + slot
     }
 
+    /// The clocks that stand still in a state, ascending.
+    pub(crate) fn stopped(&self, state: &[i64]) -> Vec<u16> {
+        let all = (0..self.members.len()).flat_map(|m| &self.place(state, m).stopped);
+        let all: std::collections::BTreeSet<u16> = all.copied().collect();
+        all.into_iter().collect()
+    }
+
+    /// Where a clock stands still: the clock's name, and the location's.
+    fn stopwatch(&self) -> Option<(String, String)> {
+        self.members.iter().find_map(|m| {
+            let (at, place) = m.locations.iter().enumerate().find(|(_, l)| !l.stopped.is_empty())?;
+            let clock = self.clock_name(usize::from(*place.stopped.first()?));
+            Some((clock, format!("{}.{}", m.automaton.name, m.automaton.locations.get(at)?.name)))
+        })
+    }
+
+    /// Clocks stand still in some location.
+    pub(crate) fn stops(&self) -> bool {
+        self.stopwatch().is_some()
+    }
+
+    /// Says that something cannot be asked where clocks stand still.
+    ///
+    /// # Errors
+    /// They do.
+    pub(crate) fn refuse_stopped(&self, what: &str) -> Result<(), ModelError> {
+        let Some((clock, location)) = self.stopwatch() else { return Ok(()) };
+        Err(ModelError::Question(format!(
+            "{what} cannot be asked where clocks stand still, as `{clock}` does in `{location}`: zones say more than can happen there. \
+             Ask `E<>` or `A[]` of locations, variables and single clocks"
+        )))
+    }
+
     pub(crate) fn any_committed(&self, state: &[i64]) -> bool {
         (0..self.members.len()).any(|m| self.place(state, m).kind == LocationKind::Committed)
     }

@@ -49,7 +49,7 @@ impl StateStay {
     /// Lets time pass, as far as it may. Returns whether any may.
     pub fn wait(&self, zone: &mut Dbm) -> bool {
         if self.0.waits {
-            zone.up();
+            zone.up_but(&self.0.stopped);
             // Not empty: it has what was there before.
             self.0.invariant.iter().for_each(|c| {
                 keep(zone, *c);
@@ -70,6 +70,7 @@ impl<'m, 'p> OpenNetwork<'m, 'p> {
     /// # Errors
     /// If the invariants do not hold at the start.
     pub fn start(&self) -> Result<(Vec<i64>, Dbm), ModelError> {
+        self.model.refuse_stopped("what a network can do step by step")?;
         let state = self.model.initial();
         let stay = self.model.stay(&state)?.ok_or(ModelError::Initial)?;
         let mut zone = Dbm::zero(self.model.dim);

@@ -92,6 +92,8 @@ pub(crate) struct CompiledLocation {
     pub kind: LocationKind,
     pub invariant: ClockConstraints,
     pub holds: Option<CompiledExpr>,
+    /// The network's clocks that stand still.
+    pub stopped: Vec<u16>,
     /// Internal, sending and offering edges, in source order.
     pub active: Vec<u16>,
     /// Receiving and accepting edges, in source order.

@@ -48,6 +48,9 @@ fn fault(program: &Program, id: AutomatonId, a: &Automaton) -> Option<String> {
     if a.locations.iter().any(|l| l.invariant.iter().any(|c| !spot.clocks_exist(c))) {
         return Some("an invariant has an unknown clock".into());
     }
+    if a.locations.iter().flat_map(|l| &l.stopped).any(|c| !spot.clock_exists(*c)) {
+        return Some("an unknown clock stands still".into());
+    }
     let of_locations = a.locations.iter().flat_map(|l| l.invariant.iter().flat_map(|c| terms(&c.bound)));
     if of_locations
         .chain(a.locations.iter().filter_map(|l| l.holds.as_ref()))

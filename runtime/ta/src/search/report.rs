@@ -22,6 +22,8 @@ pub enum SearchCutoff {
     Memory,
     /// The caller had enough: see [`explore`](crate::explore).
     Stopped,
+    /// Clocks stand still, zones reach the goal, and no run was found that does.
+    Zones,
 }
 
 /// An int of the network, and between what it was seen.

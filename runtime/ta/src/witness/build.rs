@@ -109,7 +109,7 @@ fn reach_in_time(
         let mut stops = stops.clone();
         stops.push(PathSegment::Wait(bounds_of(&part)));
         let w = walk(graph, &stops)?;
-        let Some(times) = w.schedule.solve(graph.model.unit, timing) else { continue };
+        let Some(times) = w.schedule.timed(graph.model.unit, timing)? else { continue };
         let witness = finish(graph, w, &times, RunEnding::Reached, goal)?;
         if best.as_ref().is_none_or(|b| earliness(&witness) < earliness(b)) {
             best = Some(witness);
@@ -138,9 +138,26 @@ pub(crate) fn concrete(
     let w = walk(graph, stops)?;
     let times = w
         .schedule
-        .solve(graph.model.unit, timing)
+        .timed(graph.model.unit, timing)?
         .ok_or_else(|| internal("the zones have a path that no run takes"))?;
     finish(graph, w, &times, ending, goal)
+}
+
+/// Makes a path concrete that may have no times, and replays it. `None`: it has none.
+pub(crate) fn timed(
+    graph: &ZoneGraph,
+    stops: &[PathSegment],
+    goal: &ReachabilityGoal,
+    timing: ScheduleOptions,
+) -> Result<Option<WitnessRun>, SearchError> {
+    let w = walk(graph, stops)?;
+    let Some(times) = w.schedule.timed(graph.model.unit, timing)? else { return Ok(None) };
+    finish(graph, w, &times, RunEnding::Reached, Some(goal)).map(Some)
+}
+
+/// Whether a path has times. `None`: the numbers are too large to tell.
+pub(crate) fn feasible(graph: &ZoneGraph, stops: &[PathSegment]) -> Result<Option<bool>, SearchError> {
+    Ok(walk(graph, stops)?.schedule.feasible())
 }
 
 /// Whether time can pass between a stop and the end of the path, and at what times the stops are.
@@ -149,7 +166,7 @@ pub(crate) fn times(
     stops: &[PathSegment],
     timing: ScheduleOptions,
 ) -> Result<Option<ScheduledTimes>, SearchError> {
-    Ok(walk(graph, stops)?.schedule.solve(graph.model.unit, timing))
+    walk(graph, stops)?.schedule.timed(graph.model.unit, timing)
 }
 
 fn finish(
@@ -206,7 +223,7 @@ fn led_to(graph: &ZoneGraph, stops: Vec<PathSegment>, error: &ModelError) -> Res
         let mut stops = stops.clone();
         stops.push(PathSegment::Wait(conditions));
         let w = walk(graph, &stops)?;
-        let Some(times) = w.schedule.solve(graph.model.unit, ScheduleOptions::default()) else { continue };
+        let Some(times) = w.schedule.timed(graph.model.unit, ScheduleOptions::default())? else { continue };
         let witness = finish(graph, w, &times, RunEnding::Reached, None)?;
         if replayed(graph.model, &witness)?.faults().contains(error)
             && best.as_ref().is_none_or(|b| earliness(&witness) < earliness(b))
@@ -279,12 +296,14 @@ struct UntimedPath {
 fn walk(graph: &ZoneGraph, stops: &[PathSegment]) -> Result<UntimedPath, SearchError> {
     let state = graph.initial();
     // One more clock, which is never set, is the time since the start: stops may speak of it.
-    let schedule = PathSchedule::new(graph.dim() + 1);
+    let dim = graph.dim() + 1;
+    let schedule =
+        if graph.model.stops() { PathSchedule::with_standing_clocks(dim) } else { PathSchedule::new(dim) };
     let mut w = UntimedPath { steps: Vec::new(), at: Vec::new(), schedule, state };
     let mut stay = allowed(graph, &w.state)?;
     stay.invariant.iter().for_each(|c| w.schedule.require(*c));
     for stop in stops {
-        let now = w.schedule.next(stay.waits);
+        let now = w.schedule.next_but(stay.waits, &stay.stopped);
         // An invariant is convex: it holds all the while if it holds at both ends.
         stay.invariant.iter().for_each(|c| w.schedule.require(*c));
         let (taken, after) = match stop {
@@ -355,6 +374,10 @@ pub fn retimed(
     goal: &ReachabilityGoal,
     timing: ScheduleOptions,
 ) -> Result<WitnessRun, SearchError> {
+    if model.stops() {
+        // Its times are those with the least end, which is all that there is of them.
+        return Ok(run.clone());
+    }
     let graph = ZoneGraph::new(model, &[])?;
     let mut path: Vec<PathTransition> = Vec::new();
     let mut state = graph.initial();

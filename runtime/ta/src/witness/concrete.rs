@@ -83,6 +83,23 @@ impl<'p> ConcreteInterpreter<'p> {
         }
     }
 
+    /// Lets time pass until a later instant. Where a clock stands still, the time at which it was zero comes along.
+    pub(crate) fn advance(&mut self, until: i128) {
+        let (passed, shared) = (until - self.now, self.shared_zero.len());
+        // A shared clock stands once, however many locations stop it.
+        let of = |m: usize| self.place(m).stopped.iter().map(move |c| (usize::from(c.0), m));
+        let mut stopped: Vec<(usize, usize)> = (0..self.members.len()).flat_map(of).collect();
+        stopped.sort_unstable();
+        stopped.dedup_by(|b, a| b == a || (b.0 == a.0 && a.0 < shared));
+        for (at, member) in stopped {
+            match self.shared_zero.get_mut(at) {
+                Some(zero) => *zero += passed,
+                None => self.own_zero[member][at - shared] += passed,
+            }
+        }
+        self.now = until;
+    }
+
     /// Clocks beyond a value become that value.
     #[cfg(test)]
     pub(crate) fn cap(&mut self, most: i128) {

@@ -11,4 +11,6 @@ mod replay;
 pub(crate) mod run;
 pub(crate) mod schedule;
 mod sequence;
+mod simplex;
+mod standing;
 pub(crate) mod trace;

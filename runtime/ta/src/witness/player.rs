@@ -155,7 +155,7 @@ impl<'p> VirtualTimePlayer<'p> {
         }
         let now = i128::from(now);
         if now > self.machine.now {
-            self.machine.now = now;
+            self.machine.advance(now);
             self.taken = 0;
         }
         let stays = match self.machine.kind(0) {
@@ -285,7 +285,11 @@ impl<'p> VirtualTimePlayer<'p> {
         let count = self.machine.program.clocks.len() + a.clocks.len();
         (0..count)
             .filter_map(|c| u16::try_from(c).ok())
-            .map(|c| ClockOrigin { runs: true, at: self.machine.zero_at(0, ClockId(c)) })
+            .map(|c| {
+                let zero = self.machine.zero_at(0, ClockId(c));
+                let stands = self.machine.place(0).stopped.contains(&ClockId(c));
+                ClockOrigin { runs: !stands, at: if stands { self.machine.now - zero } else { zero } }
+            })
             .collect()
     }
 

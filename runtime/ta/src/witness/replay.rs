@@ -192,7 +192,7 @@ fn wait(machine: &mut ConcreteInterpreter, until: i64) -> Result<(), String> {
             return Err("time passes although an urgent transition is possible".into());
         }
     }
-    machine.now = time;
+    machine.advance(time);
     invariants(machine)
 }
 

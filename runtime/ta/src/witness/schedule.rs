@@ -12,6 +12,10 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::{
     network::{number::gcd, semantics::ClockReset},
+    witness::{
+        error::SearchError,
+        standing::{DelayProgram, DelayTimes},
+    },
     zone::constraint::DifferenceConstraint,
 };
 
@@ -48,6 +52,8 @@ pub(crate) struct PathSchedule {
     constraints: Vec<TimeSeparation>,
     /// For each clock of the network: the time at which it was set, and to how many units.
     set: Vec<(usize, i64)>,
+    /// Where clocks stand still somewhere: instead of all this.
+    standing: Option<DelayProgram>,
 }
 
 /// Times in ticks.
@@ -71,13 +77,50 @@ impl ScheduledTimes {
 impl PathSchedule {
     /// All clocks are zero at the start. `dim` counts the reference clock.
     pub(crate) fn new(dim: usize) -> Self {
-        Self { now: 0, constraints: Vec::new(), set: vec![(0, 0); dim] }
+        Self { now: 0, constraints: Vec::new(), set: vec![(0, 0); dim], standing: None }
+    }
+
+    /// The same for a network in which clocks stand still.
+    pub(crate) fn with_standing_clocks(dim: usize) -> Self {
+        Self { standing: Some(DelayProgram::new(dim)), ..Self::new(dim) }
+    }
+
+    /// Whether there are times that keep all constraints. `None`: the numbers are too large to tell.
+    pub(crate) fn feasible(&self) -> Option<bool> {
+        match &self.standing {
+            Some(program) => program.feasible(),
+            None => Some(least(self.now + 1, &self.constraints).is_some()),
+        }
+    }
+
+    /// As [`solve`](Self::solve). Where clocks stand still, the times are those with the least end, whatever else was asked for.
+    ///
+    /// # Errors
+    /// The numbers are too large.
+    pub(crate) fn timed(
+        &self,
+        unit: Nanos,
+        timing: ScheduleOptions,
+    ) -> Result<Option<ScheduledTimes>, SearchError> {
+        let Some(program) = &self.standing else { return Ok(self.solve(unit, timing)) };
+        let times = program.solve(unit)?;
+        Ok(times.map(|DelayTimes { ticks, at }| ScheduledTimes { ticks, spans: vec![false; at.len()], at }))
     }
 
     /// The next time, later than the last one or, if time may not pass, the same. Gives its number.
+    #[cfg(test)]
     pub(crate) fn next(&mut self, may_pass: bool) -> usize {
+        self.next_but(may_pass, &[])
+    }
+
+    /// As [`next`](Self::next); meanwhile these clocks stand still.
+    pub(crate) fn next_but(&mut self, may_pass: bool, stopped: &[u16]) -> usize {
         let before = self.now;
         self.now += 1;
+        if let Some(program) = &mut self.standing {
+            program.next(may_pass, stopped);
+            return self.now;
+        }
         self.constraints.push(TimeSeparation { later: self.now, earlier: before, by: (0, 0) });
         if !may_pass {
             self.constraints.push(TimeSeparation { later: before, earlier: self.now, by: (0, 0) });
@@ -90,6 +133,9 @@ impl PathSchedule {
     /// INVARIANT: a clock is `now - t + c` if it was set to c at t, and the reference clock is `now - now + 0`; so the bound
     /// is `t_j - t_i ≺ b - c_i + c_j`.
     pub(crate) fn require(&mut self, c: DifferenceConstraint) {
+        if let Some(program) = &mut self.standing {
+            return program.require(c);
+        }
         let set = |x: u16| if x == 0 { (self.now, 0) } else { self.set[usize::from(x)] };
         if c.bound.is_infinite() {
             return;
@@ -101,6 +147,9 @@ impl PathSchedule {
 
     /// Sets clocks now, all at once.
     pub(crate) fn set(&mut self, sets: &[ClockReset]) {
+        if let Some(program) = &mut self.standing {
+            return program.set(sets);
+        }
         let before = self.set.clone();
         for s in sets {
             let (at, value) = if s.from == 0 { (self.now, 0) } else { before[usize::from(s.from)] };

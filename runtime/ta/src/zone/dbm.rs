@@ -371,6 +371,19 @@ impl<N: DbmNumber> Dbm<N> {
         }
     }
 
+    /// Lets any time pass, in which these clocks stand still: the least zone that has all that it leads to.
+    pub fn up_but(&mut self, stopped: &[u16]) {
+        if self.is_empty() {
+            return;
+        }
+        let stands = |x: usize| x == 0 || stopped.iter().any(|&s| usize::from(s) == x);
+        for i in (1..self.dim).filter(|&i| !stands(i)) {
+            for j in (0..self.dim).filter(|&j| stands(j)) {
+                self.set(i, j, N::INFINITY);
+            }
+        }
+    }
+
     /// Sets a clock to zero.
     pub fn reset(&mut self, x: usize) {
         if self.is_empty() {
@@ -548,6 +561,25 @@ mod tests {
                 z.contains(&earlier, 16)
             });
             prop_assert_eq!(later.contains(&p, 4), reached);
+            if !z.is_empty() {
+                let mut closed = later.clone();
+                closed.close();
+                prop_assert_eq!(closed, later);
+            }
+        }
+
+        #[test]
+        fn up_but_holds_what_a_delay_gives(cs in constraints(), p in point(), d in 0i64..20, stopped in 0..DIM) {
+            let z = zone(&cs);
+            let (mut later, mut all) = (z.clone(), z.clone());
+            later.up_but(&[stopped as u16]);
+            all.up();
+            if stopped == 0 {
+                prop_assert_eq!(&later, &all);
+            }
+            let there: Vec<i64> =
+                p.iter().enumerate().map(|(i, v)| if i == 0 || i == stopped { *v } else { v + d }).collect();
+            prop_assert!(!z.contains(&p, 4) || later.contains(&there, 4));
             if !z.is_empty() {
                 let mut closed = later.clone();
                 closed.close();

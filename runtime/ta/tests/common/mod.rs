@@ -99,6 +99,7 @@ pub fn location(
 ) -> LocationId {
     a.locations.push(Location {
         holds: None,
+        stopped: Vec::new(),
         name: name.into(),
         kind,
         invariant: invariant.to_vec(),

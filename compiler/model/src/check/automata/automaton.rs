@@ -199,7 +199,10 @@ impl AutomataPhase<'_, '_> {
             broken |= matches!(member.kind, Member::Error);
             let Member::Location { init, kind, name, invariant } = &member.kind else { continue };
             let mut env = scope.env.clone();
-            let (bounds, data, _) = self.conjunction(scope, invariant.as_ref(), &mut env);
+            let edge::Conjunction { bounds, data, mut stopped, .. } =
+                self.conjunction(scope, invariant.as_ref(), &mut env);
+            stopped.sort_unstable_by_key(|(clock, _)| *clock);
+            stopped.dedup_by_key(|(clock, _)| *clock);
             let Some(id) = self.issues.declare(&mut scope.locations, Noun::Location, name) else {
                 continue;
             };
@@ -214,6 +217,7 @@ impl AutomataPhase<'_, '_> {
                 kind: *kind,
                 invariant: bounds,
                 holds: data.into_iter().reduce(edge::and),
+                stopped: stopped.into_iter().map(|(clock, _)| clock).collect(),
                 origin: member.span,
             });
         }

@@ -9,7 +9,7 @@ use crate::check::{
     template::CheckerPhase,
     value::{
         linear::{LinearTime, linear},
-        operands::names_in,
+        operands::{calls, names_in},
     },
 };
 use crate::{
@@ -178,6 +178,35 @@ impl AutomataPhase<'_, '_> {
         let (op, sign) = if flipped { (mirrored(op), 1.0) } else { (op, -1.0) };
         let bound = self.time_of(sum.time, sign, e.span);
         Some(bound.map(|bound| TypedClockConstraint { clock, minus, op, bound }))
+    }
+
+    /// `stopped(x)`: the clock that stands still. `None`: it is something else; `Some(None)`: it has a diagnostic.
+    pub(in crate::check) fn stopped_clock(
+        &mut self,
+        e: &ast::ExprSyntax,
+        scope: &EdgeScope,
+        env: &mut ExprEnv,
+    ) -> Option<Option<ClockId>> {
+        // A function of this name is what it was.
+        if env.function("stopped").is_some() || !calls(e, "stopped") {
+            return None;
+        }
+        let Syntax::Call { callee, args } = &e.kind else {
+            self.report(automata::stopped_within(e.span));
+            return Some(None);
+        };
+        if callee.names.last().is_none_or(|name| name.text != "stopped") {
+            self.report(automata::stopped_within(e.span));
+            return Some(None);
+        }
+        let clock = match args.as_slice() {
+            [clock] => self.clock_of(clock, scope, env),
+            _ => None,
+        };
+        if clock.is_none() {
+            self.report(automata::stopped_what(e.span));
+        }
+        Some(clock.flatten())
     }
 
     // ── updates ──

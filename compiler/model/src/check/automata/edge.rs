@@ -16,8 +16,8 @@ use crate::check::{
     template::CheckerPhase,
 };
 use crate::{
-    ArgPattern, AutomatonVar, EventId, InferredType, LocationId, ReceiveArg, Type, TypedClockConstraint,
-    TypedEdge, TypedExpr, TypedExprKind, TypedStimulusStep, TypedSync, VariableRef,
+    ArgPattern, AutomatonVar, ClockId, EventId, InferredType, LocationId, ReceiveArg, Type,
+    TypedClockConstraint, TypedEdge, TypedExpr, TypedExprKind, TypedStimulusStep, TypedSync, VariableRef,
     noun::Noun,
     report::{automata, types},
     types::{TypeLayout, finite_var},
@@ -35,7 +35,11 @@ impl AutomataPhase<'_, '_> {
         let selects = self.selects(&edge.selects, &mut env);
         let mut equal = Vec::new();
         let receive = edge.on.as_ref().map(|call| self.receive(scope, call, &mut env, &mut equal));
-        let (clock_guard, mut data, timed) = self.conjunction(scope, edge.guard.as_ref(), &mut env);
+        let Conjunction { bounds: clock_guard, mut data, timed, stopped } =
+            self.conjunction(scope, edge.guard.as_ref(), &mut env);
+        for (_, span) in stopped {
+            self.report(automata::stopped_on_edge(span));
+        }
         data.splice(0..0, equal);
         let mut updates = Vec::new();
         let mut sent: Option<(Span, Option<TypedSync>)> = None;
@@ -74,18 +78,22 @@ impl AutomataPhase<'_, '_> {
         scope: &EdgeScope,
         condition: Option<&ast::ExprSyntax>,
         env: &mut ExprEnv,
-    ) -> (Vec<TypedClockConstraint>, Vec<TypedExpr>, Option<Span>) {
-        let (mut bounds, mut data, mut timed) = (Vec::new(), Vec::new(), None);
+    ) -> Conjunction {
+        let mut all = Conjunction::default();
         for part in condition.into_iter().flat_map(conjuncts) {
+            if let Some(clock) = self.stopped_clock(part, scope, env) {
+                all.stopped.extend(clock.map(|clock| (clock, part.span)));
+                continue;
+            }
             match self.clock_bound(part, scope, env) {
                 Some(bound) => {
-                    timed = timed.or(Some(part.span));
-                    bounds.extend(bound);
+                    all.timed = all.timed.or(Some(part.span));
+                    all.bounds.extend(bound);
                 }
-                None => data.push(self.expr_of(part, InferredType::Bool, env)),
+                None => all.data.push(self.expr_of(part, InferredType::Bool, env)),
             }
         }
-        (bounds, data, timed)
+        all
     }
 
     fn location(&mut self, scope: &EdgeScope, name: &NameSyntax) -> Option<LocationId> {
@@ -290,6 +298,17 @@ impl AutomataPhase<'_, '_> {
 }
 
 /// The parts of a conjunction, in order.
+/// The parts of a guard or an invariant.
+#[derive(Default)]
+pub(in crate::check) struct Conjunction {
+    pub bounds: Vec<TypedClockConstraint>,
+    pub data: Vec<TypedExpr>,
+    /// Where the first bound of a clock is.
+    pub timed: Option<Span>,
+    /// The clocks that stand still, and where that is said.
+    pub stopped: Vec<(ClockId, Span)>,
+}
+
 pub(in crate::check) fn conjuncts(e: &ast::ExprSyntax) -> Vec<&ast::ExprSyntax> {
     let Syntax::Binary { op: ast::BinaryOp::And, left, right } = &e.kind else { return vec![e] };
     let mut parts = conjuncts(left);

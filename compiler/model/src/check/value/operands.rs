@@ -26,6 +26,13 @@ pub(in crate::check) fn each_path<'e>(e: &'e ExprSyntax, f: &mut dyn FnMut(&'e P
     operands(e).into_iter().for_each(|operand| each_path(operand, f));
 }
 
+/// Whether a function of this name is called somewhere in an expression.
+pub(in crate::check) fn calls(e: &ExprSyntax, name: &str) -> bool {
+    let here = matches!(&e.kind, Syntax::Call { callee, .. }
+        if matches!(callee.names.as_slice(), [only] if only.text == name));
+    here || operands(e).into_iter().any(|operand| calls(operand, name))
+}
+
 /// The first names of all paths in an expression.
 pub(in crate::check) fn names_in(e: &ExprSyntax) -> Vec<&NameSyntax> {
     let mut names = Vec::new();

@@ -53,6 +53,7 @@ fn automaton(mut edges: Vec<TypedEdge>) -> TypedAutomaton {
         kind: LocationKind::Normal,
         invariant: Vec::new(),
         holds: None,
+        stopped: Vec::new(),
         origin: Span::default(),
     };
     let ty = Type::Int { lo: *RANGE.start(), hi: *RANGE.end() };
