@@ -237,12 +237,16 @@ fn clocks_stand_where_their_value_is_known() {
         ],
         ..SMALL
     };
-    // Two ways lead to `a` with different values.
-    assert!(
-        model.refused().contains("`x` is stopped at a value that depends on the run"),
-        "{}",
-        model.refused()
-    );
+    // Two ways lead to `a` with different values: x stands still there in the scenario, too.
+    model.answers(&[
+        ("E<> P.b && P.x == 0 && t == 5", YES),
+        // It comes back at 7 at the earliest, and is 3 from then on.
+        ("E<> P.a && P.x == 3 && t == 7", YES),
+        ("E<> P.a && P.x == 3 && t == 9", YES),
+        ("E<> P.a && P.x == 3 && t < 7 && t > 1", NO),
+        ("E<> P.a && P.x > 0 && P.x < 3", NO),
+        ("A[] P.a imply P.x <= 3", YES),
+    ]);
     let model = SmallModel {
         edges: &[
             ("a", "b", &[("guard", "x == 0 && t >= 5"), ("assignment", "y = 1")]),
@@ -264,7 +268,11 @@ fn clocks_stand_where_their_value_is_known() {
         edges: &[("a", "b", &[("guard", "x == 3")])],
         ..model
     };
-    assert!(preemptive.refused().contains("Count what is done in an `int`"), "{}", preemptive.refused());
+    assert!(
+        preemptive.refused().contains("a location of its own, with `x' == 0`"),
+        "{}",
+        preemptive.refused()
+    );
     let asked = SmallModel { at_a: &[("invariant", "x' == 0")], edges: &[("a", "b", &[])], ..SMALL };
     let folder = tempfile::tempdir().unwrap();
     fs::write(

@@ -70,6 +70,13 @@ fn jobs_end_as_early_as_they_can() {
     demo("job_shop.xml", &[YES, NO, YES, "11 s"]);
 }
 
+/// Three tasks by fixed priorities, each of which a more urgent one interrupts: 3, 6 and 20 are the longest responses by the recurrence
+/// R = C + Σ ⌈R / Tⱼ⌉ Cⱼ of Joseph and Pandya (1986).
+#[test]
+fn tasks_are_interrupted_and_respond_in_time() {
+    demo("interruption.xml", &[YES, NO, YES, NO, YES, NO, YES, NO, YES]);
+}
+
 /// David and others' framework, without interruption. The longest responses, 9, 13 and 13, are those of a simulation in whole units of
 /// time that tries every execution time.
 #[test]

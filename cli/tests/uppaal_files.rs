@@ -18,6 +18,35 @@ const XTA: &str = "// Who waits, and gets in\nconst int N = 2; chan c; // told\n
                 b -> f { guard x > 1; }, f -> a { assign n = 0; probability 3; }, f -> b { assign x = 0; probability 1; };\n}\n\
         // Both\nQ(const int[0,1] i) = P(i);\nsystem Q;\n";
 
+/// What only statistical model checking asks for is kept as comments, and goes out again.
+#[test]
+fn rates_are_kept_there_and_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let model = "<nta><declaration>const int N = 3;</declaration>\
+        <template><name>P</name><parameter>const int[1,2] id</parameter>\
+        <location id=\"a\"><name>a</name><label kind=\"invariant\">true</label>\
+        <label kind=\"exponentialrate\">N + id : 7</label></location>\
+        <location id=\"b\"><name>b</name><label kind=\"exponentialrate\">0.5</label></location>\
+        <location id=\"c\"><name>c</name></location><init ref=\"a\"/>\
+        <transition><source ref=\"a\"/><target ref=\"b\"/></transition>\
+        <transition><source ref=\"b\"/><target ref=\"c\"/></transition></template>\
+        <system>system P;</system></nta>";
+    fs::write(path.join("rates.xml"), model).unwrap();
+    expect_code(&hrdsl_in(path, "import uppaal rates.xml -o rates.hri"), 0);
+    expect_code(&hrdsl_in(path, "export uppaal rates.hri -o back.xml"), 0);
+    let back = fs::read_to_string(path.join("back.xml")).unwrap();
+    let rates = |text: &str| -> Vec<String> {
+        let labels = text.split("<label kind=\"exponentialrate\"").skip(1);
+        labels.map(|rest| rest.split(['>', '<']).nth(1).unwrap_or_default().to_owned()).collect()
+    };
+    assert_eq!(rates(&back), ["3 + 1 : 7", "0.5", "3 + 2 : 7", "0.5"], "{back}");
+    // Once more: what was written is read to the same.
+    expect_code(&hrdsl_in(path, "import uppaal back.xml -o again.hri"), 0);
+    expect_code(&hrdsl_in(path, "export uppaal again.hri -o again.xml"), 0);
+    assert_eq!(rates(&fs::read_to_string(path.join("again.xml")).unwrap()), rates(&back));
+}
+
 /// The textual format has the same in it: so have the scenarios.
 #[test]
 fn the_textual_format_is_read_to_the_same() {

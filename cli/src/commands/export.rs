@@ -124,7 +124,7 @@ fn to_uppaal(args: &UppaalExportArgs) -> Result<CommandExit, CommandFault> {
         return Ok(CommandExit::Errors);
     };
     let network = network(program, args.network.as_deref(), &args.file.display().to_string())?;
-    match uppaal::export(program, network) {
+    match uppaal::export_with(program, network, &compilation.files) {
         Ok(exported) => {
             said(&compilation, &exported.left_out, "left out");
             if let Some(path) = &args.queries {

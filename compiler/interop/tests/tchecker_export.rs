@@ -90,11 +90,65 @@ fn what_is_exported_can_be_read_again() {
 fn what_has_no_counterpart_is_told() {
     let wrong = [
         NETWORK.replace("take(fork: 0..2)", "take(fork: 0..2) : urgent").as_str(),
-        NETWORK,
+        &NETWORK.replace("invariant x <= 1500 ms", "invariant x <= 1500 ms && stopped(total)"),
         &NETWORK.replace("return not held[fork]", "if held[fork] { return false }; return true"),
     ]
     .map(|text| exported(text).expect_err(text));
     insta::assert_snapshot!(wrong.join("\n"));
+}
+
+/// A loop from a committed location would let others go on while it is not left: it asks that one of them comes from such a
+/// location, too, and where none can, there is no loop.
+#[test]
+fn who_stays_out_from_a_committed_location_needs_another() {
+    let text = exported(NETWORK).unwrap();
+    assert!(
+        text.contains("edge:Robot:ready:ready:alarm_in\n") && !text.contains("edge:Robot:told:told:alarm_in")
+    );
+    assert!(!text.contains("_at"), "{text}");
+    let text = exported(&NETWORK.replace("  location eating\n", "  committed location eating\n")).unwrap();
+    assert!(text.contains("int:1:0:1:0:Philosopher_at\n"), "{text}");
+    assert!(text.contains("edge:Robot:told:told:alarm_in{provided: Philosopher_at==1}\n"), "{text}");
+    assert!(
+        text.contains(
+            "edge:Philosopher:thinking:eating:take_0_in{do: Philosopher_mine=0; Philosopher_at=1}\n"
+        )
+    );
+    assert!(text.contains("edge:Philosopher:eating:eating:alarm\n"), "nothing changes: {text}");
+}
+
+/// `fridge` is the second value of one enumeration, and the first of another.
+#[test]
+fn values_of_several_enumerations_are_numbers_of_the_one_that_is_meant() {
+    let text = "scenario net
+enum Order { feed, fridge }
+enum Place { fridge, table }
+channel order(what: Order)
+channel go(to: Place)
+var order_: Order = feed
+fn place(of: Order) -> Place { return if of == fridge { fridge } else { table } }
+automaton A {
+  init location a
+  a -> a when order_ != fridge do order(fridge)
+  a -> a do go(fridge)
+}
+automaton B {
+  var at: Place = table
+  init location b
+  b -> b on order(what) do order_ = what; at = place(what)
+  b -> b when at == fridge on go(fridge) do order_ = feed
+}
+network all = A | B
+";
+    let text = exported(text).unwrap();
+    for part in [
+        "edge:A:a:a:order_1{provided: order_!=1}",
+        "edge:A:a:a:go_0\n",
+        "edge:B:b:b:order_1_in{do: order_=1; B_at=(if 1==1 then 0 else 1)}",
+        "edge:B:b:b:go_0_in{provided: B_at==0 : do: order_=0}",
+    ] {
+        assert!(text.contains(part), "{part} is missing:\n{text}");
+    }
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn grab(fork: 0..2) {
 automaton P plays person {
   clock x
   var mood: Mood = calm
-  init location a { invariant x <= 1.5 s && left < 5 }
+  init location a { invariant x <= 1.5 s && left < 5 && stopped(total) }
   committed location b
   urgent location c
   a -> b select f: 1..3 when x >= 500 ms && free(f - 1) do take(f); grab(f - 1); x = 250 ms
@@ -82,7 +82,7 @@ fn each_construct_is_exported_and_read_again() {
         "broadcast chan asked[2][2];",
         "urgent broadcast chan alarm;",
         "chan take[3];",
-        "x &lt;= 6 &amp;&amp; left &lt; 5",
+        "x &lt;= 6 &amp;&amp; total' == 0 &amp;&amp; left &lt; 5",
         "take[f - 1]!",
         "asked[mood][(left &gt; 1 ? 1 : 0)]!",
         "asked[calm][twice]?",

@@ -80,7 +80,9 @@ fn location_lines(show: &AutomatonPrinter<'_>, l: usize, automaton: &Automaton) 
     };
     let mut lines = vec![format!("{}{mark}", location.name)];
     let bounds = location.invariant.iter().map(|c| show.bound(c));
-    let invariant: Vec<String> = bounds.chain(location.holds.iter().map(|e| show.expr(e))).collect();
+    let stands = location.stopped.iter().map(|c| format!("stopped({})", show.clock(*c)));
+    let holds = location.holds.iter().map(|e| show.expr(e));
+    let invariant: Vec<String> = bounds.chain(holds).chain(stands).collect();
     if !invariant.is_empty() {
         lines.push(invariant.join(" && "));
     }

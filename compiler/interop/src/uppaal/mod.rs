@@ -2,8 +2,9 @@
 
 mod export;
 mod import;
+mod rate;
 mod trace;
 
-pub use export::{UppaalDocument, export};
+pub use export::{UppaalDocument, export, export_with};
 pub use import::{UppaalOptions, import};
 pub use trace::{UppaalMove, UppaalTrace, read_trace};

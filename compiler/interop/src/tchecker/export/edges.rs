@@ -5,7 +5,11 @@ use hrdsl_ir::{
     ta::{AutomatonVar, ChannelKind, Edge, ReceiveArg, SyncLabel},
 };
 
-use super::{TcheckerWriter, expr::TcheckerExprWriter, expr::number};
+use super::{
+    TcheckerWriter,
+    expr::TcheckerExprWriter,
+    value::{BoundTcheckerValue, GuardPart, number},
+};
 use crate::exchange::obstacle::ExportObstacle;
 
 /// The most edges that one edge may become.
@@ -17,7 +21,7 @@ pub struct EdgeInstance {
     pub from: usize,
     pub to: usize,
     pub event: String,
-    pub guard: Vec<String>,
+    pub guard: Vec<GuardPart>,
     pub body: Vec<String>,
     pub part: EdgeSyncRole,
 }
@@ -35,8 +39,8 @@ pub enum EdgeSyncRole {
     Joins(usize),
 }
 
-/// A medium's name, the values of each of its parameters, and what an edge says of them.
-type MediumUse<'e> = (String, Vec<Vec<Value>>, Vec<MediumArgument<'e>>);
+/// A medium's name, its parameters, and what an edge says of them.
+type MediumUse<'e> = (String, Vec<AutomatonVar>, Vec<MediumArgument<'e>>);
 
 /// What an edge says about one argument.
 enum MediumArgument<'e> {
@@ -50,7 +54,7 @@ impl TcheckerWriter<'_> {
         let automaton = self.automata[a];
         let mut out = Vec::new();
         for edge in &automaton.edges {
-            let mut chosen: Vec<Vec<Value>> = vec![Vec::new()];
+            let mut chosen: Vec<Vec<BoundTcheckerValue>> = vec![Vec::new()];
             for select in &edge.selects {
                 chosen = crossed(chosen, &values(select));
             }
@@ -74,20 +78,20 @@ impl TcheckerWriter<'_> {
         &mut self,
         a: usize,
         edge: &Edge,
-        binders: &[Value],
+        binders: &[BoundTcheckerValue],
         out: &mut Vec<EdgeInstance>,
     ) -> Result<(), String> {
-        let (name, domains, args) = self.medium(edge)?;
-        let mut all: Vec<Vec<Value>> = vec![Vec::new()];
-        for (domain, arg) in domains.iter().zip(&args) {
+        let (name, params, args) = self.medium(edge)?;
+        let mut all: Vec<Vec<BoundTcheckerValue>> = vec![Vec::new()];
+        for (param, arg) in params.iter().zip(&args) {
             let constant = match arg {
                 MediumArgument::Sent(e) => self.constant(a, e, binders),
                 MediumArgument::Taken(ReceiveArg::Match(ArgPattern::Is(v))) => Some(*v),
                 MediumArgument::Taken(ReceiveArg::Match(ArgPattern::Any) | ReceiveArg::Bind) => None,
             };
             all = match constant {
-                Some(v) => crossed(all, &[v]),
-                None => crossed(all, domain),
+                Some(value) => crossed(all, &[BoundTcheckerValue { value, of: param.enumeration }]),
+                None => crossed(all, &values(param)),
             };
         }
         for values in all {
@@ -113,51 +117,51 @@ impl TcheckerWriter<'_> {
     }
 
     /// The value of an expression that reads nothing but what the edge binds.
-    fn constant(&self, a: usize, e: &Expr, bound: &[Value]) -> Option<Value> {
+    fn constant(&self, a: usize, e: &Expr, bound: &[BoundTcheckerValue]) -> Option<Value> {
         let known = self.program.shared.len() + self.automata[a].vars.len();
-        e.eval(&|slot| bound.get(usize::from(slot).checked_sub(known)?).copied()).ok()
+        e.eval(&|slot| bound.get(usize::from(slot).checked_sub(known)?).map(|b| b.value)).ok()
     }
 
-    /// The medium of an edge: its name, the values of each parameter, what the edge says of them.
+    /// The medium of an edge: its name, its parameters, what the edge says of them.
     fn medium<'e>(&self, edge: &'e Edge) -> Result<MediumUse<'e>, String> {
         let event = |id: &hrdsl_ir::EventId| {
             let event = self.program.event(*id);
-            let domains = event.params.iter().map(|p| domain(&event.name, &p.name, p.ty));
-            Ok::<_, String>((event.name.clone(), domains.collect::<Result<Vec<_>, _>>()?))
+            let params = event.params.iter().map(|p| param(&event.name, &p.name, p.ty));
+            Ok::<_, String>((event.name.clone(), params.collect::<Result<Vec<_>, _>>()?))
         };
         let channel = |id: &hrdsl_ir::ta::ChannelId| {
             let channel = &self.program.channels[usize::from(id.0)];
-            (channel.name.clone(), channel.params.iter().map(values).collect())
+            (channel.name.clone(), channel.params.clone())
         };
         let sent = |args: &'e [Expr]| args.iter().map(MediumArgument::Sent).collect();
         let taken = |args: &[ReceiveArg]| args.iter().map(|a| MediumArgument::Taken(*a)).collect();
         Ok(match &edge.sync {
             SyncLabel::Internal => (String::new(), Vec::new(), Vec::new()),
             SyncLabel::Send { event: e, args } => {
-                let (name, domains) = event(e)?;
-                (name, domains, sent(args))
+                let (name, params) = event(e)?;
+                (name, params, sent(args))
             }
             SyncLabel::Receive { event: e, args } => {
-                let (name, domains) = event(e)?;
-                (name, domains, taken(args))
+                let (name, params) = event(e)?;
+                (name, params, taken(args))
             }
             SyncLabel::Offer { channel: c, args } => {
-                let (name, domains) = channel(c);
-                (name, domains, sent(args))
+                let (name, params) = channel(c);
+                (name, params, sent(args))
             }
             SyncLabel::Accept { channel: c, args } => {
-                let (name, domains) = channel(c);
-                (name, domains, taken(args))
+                let (name, params) = channel(c);
+                (name, params, taken(args))
             }
             SyncLabel::Join { channel: c } => (channel(c).0, Vec::new(), Vec::new()),
         })
     }
 
     /// `take_1_0`
-    fn flat(&self, name: &str, values: &[Value]) -> Result<String, String> {
+    fn flat(&self, name: &str, values: &[BoundTcheckerValue]) -> Result<String, String> {
         let mut flat = name.to_owned();
         for v in values {
-            let text = number(self.program, *v)?;
+            let text = number(self.program, v.value, v.of)?;
             flat += &format!("_{}", text.trim_matches(['(', ')']).replace('-', "m"));
         }
         Ok(flat)
@@ -167,20 +171,21 @@ impl TcheckerWriter<'_> {
         &mut self,
         a: usize,
         edge: &Edge,
-        bound: &[Value],
-        equal: &[(&Expr, Value)],
+        bound: &[BoundTcheckerValue],
+        equal: &[(&Expr, BoundTcheckerValue)],
         flat: String,
     ) -> Result<EdgeInstance, String> {
         let exprs = TcheckerExprWriter::new(self.program, &self.names, a, self.unit, bound);
-        let mut guard: Vec<String> =
-            edge.clock_guard.iter().map(|c| exprs.bound(c)).collect::<Result<_, _>>()?;
+        let mut guard: Vec<GuardPart> =
+            edge.clock_guard.iter().map(|c| exprs.clock_part(c)).collect::<Result<_, _>>()?;
         if let Some(e) = &edge.guard
             && self.constant(a, e, bound).is_none()
         {
-            guard.extend(exprs.conjunction(e)?);
+            guard.extend(exprs.conjunction(e)?.into_iter().map(GuardPart::of_integers));
         }
         for (e, value) in equal {
-            guard.push(format!("({})=={}", exprs.int(e, 0)?, number(self.program, *value)?));
+            let number = number(self.program, value.value, value.of)?;
+            guard.push(GuardPart::of_integers(format!("({})=={number}", exprs.int(e, value.of, 0)?)));
         }
         let mut body = Vec::new();
         let mut locals = Vec::new();
@@ -208,8 +213,10 @@ impl TcheckerWriter<'_> {
         if let Some(channel) = edge.sync.channel() {
             let channel = self.program.channel(channel);
             if channel.urgent {
-                let message =
-                    format!("the channel `{}` is urgent: TChecker has no urgent channels", channel.name);
+                let message = format!(
+                    "the channel `{}` is urgent, and TChecker has no urgent channels: make the locations from which it is offered urgent, if it is always accepted there",
+                    channel.name
+                );
                 self.obstacles.push(ExportObstacle { message, origin: channel.origin });
             }
         }
@@ -222,8 +229,8 @@ impl TcheckerWriter<'_> {
     }
 }
 
-fn crossed(all: Vec<Vec<Value>>, values: &[Value]) -> Vec<Vec<Value>> {
-    let with = |start: &Vec<Value>, v: &Value| {
+fn crossed(all: Vec<Vec<BoundTcheckerValue>>, values: &[BoundTcheckerValue]) -> Vec<Vec<BoundTcheckerValue>> {
+    let with = |start: &Vec<BoundTcheckerValue>, v: &BoundTcheckerValue| {
         let mut longer = start.clone();
         longer.push(*v);
         longer
@@ -233,16 +240,14 @@ fn crossed(all: Vec<Vec<Value>>, values: &[Value]) -> Vec<Vec<Value>> {
     pairs.take(MAX_INSTANCES + 1).map(|(start, v)| with(start, v)).collect()
 }
 
-fn values(var: &AutomatonVar) -> Vec<Value> {
+fn values(var: &AutomatonVar) -> Vec<BoundTcheckerValue> {
     let most = i64::try_from(MAX_INSTANCES).unwrap_or(i64::MAX);
-    (var.lo..=var.hi.min(var.lo.saturating_add(most))).filter_map(|n| var.value(n)).collect()
+    let all = (var.lo..=var.hi.min(var.lo.saturating_add(most))).filter_map(|n| var.value(n));
+    all.map(|value| BoundTcheckerValue { value, of: var.enumeration }).collect()
 }
 
-fn domain(event: &str, param: &str, ty: Type) -> Result<Vec<Value>, String> {
-    match ty {
-        Type::Bool | Type::Int { .. } | Type::Enum(_) => Ok(ty.domain().unwrap_or_default()),
-        Type::Float(_) | Type::Text | Type::List(_) => {
-            Err(format!("the parameter `{param}` of `{event}` is of a type that TChecker has not"))
-        }
-    }
+fn param(event: &str, name: &str, ty: Type) -> Result<AutomatonVar, String> {
+    AutomatonVar::of_type(name, ty).ok_or_else(|| {
+        format!("the parameter `{name}` of `{event}` is of a type that TChecker has not: make it a range, as `0..9`")
+    })
 }

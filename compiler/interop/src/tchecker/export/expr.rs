@@ -1,16 +1,19 @@
-//! Expressions and statements: TChecker has conjunctions and negations of comparisons, and `if` on numbers.
+//! Expressions: TChecker has conjunctions and negations of comparisons, and `if` on numbers.
 
 use hrdsl_ir::{
-    Enumeration, Expr, Nanos, Program, Type, Value,
+    Enumeration, Expr, Nanos, Program, Value,
     expr::{BinaryOp, Lvalue, NumberFunction, UnaryOp},
-    ta::{self, ClockConstraint, ClockId, ClockOp, EdgeAssignment, FunctionStatement, TimeSum},
+    ta::{self, ClockConstraint, ClockId, ClockOp, FunctionStatement, TimeSum},
 };
 
-use super::names::TcheckerNames;
+use super::{
+    names::TcheckerNames,
+    value::{BoundTcheckerValue, GuardPart, TcheckerTextResult, number},
+};
 
 /// Writes the expressions of one automaton, with constants for what an edge binds.
 pub struct TcheckerExprWriter<'a> {
-    program: &'a Program,
+    pub(super) program: &'a Program,
     names: &'a TcheckerNames,
     automaton: usize,
     unit: Nanos,
@@ -21,15 +24,19 @@ pub struct TcheckerExprWriter<'a> {
 #[derive(Clone, Copy)]
 enum SlotSubstitution<'a> {
     /// Of an edge.
-    Values(&'a [Value]),
-    /// Of a function's body: the text of each parameter and local, and how many slots come before them.
-    Texts(&'a [(String, bool)], usize),
+    Values(&'a [BoundTcheckerValue]),
+    /// Of a function's body: each parameter and local, and how many slots come before them.
+    Texts(&'a [LocalText], usize),
 }
 
-type TcheckerTextResult = Result<String, String>;
+/// A parameter or local of a function that is put in: its text, and the enumeration that it is of.
+pub struct LocalText {
+    pub text: String,
+    pub of: Option<Enumeration>,
+}
 
 /// How deep functions may be inserted into each other.
-const MAX_DEPTH: u8 = 20;
+pub const MAX_DEPTH: u8 = 20;
 
 impl<'a> TcheckerExprWriter<'a> {
     pub fn new(
@@ -37,7 +44,7 @@ impl<'a> TcheckerExprWriter<'a> {
         names: &'a TcheckerNames,
         automaton: usize,
         unit: Nanos,
-        bound: &'a [Value],
+        bound: &'a [BoundTcheckerValue],
     ) -> Self {
         Self { program, names, automaton, unit, bound: SlotSubstitution::Values(bound) }
     }
@@ -64,7 +71,7 @@ impl<'a> TcheckerExprWriter<'a> {
         }
     }
 
-    fn var(&self, slot: u16) -> TcheckerTextResult {
+    pub fn var(&self, slot: u16) -> TcheckerTextResult {
         let slot = usize::from(slot);
         if let Some(at) = self.network_slot(slot) {
             let (int, element) = self.names.slots[at];
@@ -77,23 +84,25 @@ impl<'a> TcheckerExprWriter<'a> {
         }
         match self.bound {
             SlotSubstitution::Values(values) => match values.get(slot - self.known()) {
-                Some(v) => number(self.program, *v),
+                Some(v) => number(self.program, v.value, v.of),
                 None => Err("a variable is not there".to_owned()),
             },
             SlotSubstitution::Texts(texts, known) => match texts.get(slot - known) {
-                Some((text, _)) => Ok(text.clone()),
+                Some(local) => Ok(local.text.clone()),
                 None => Err("a variable is not there".to_owned()),
             },
         }
     }
 
     /// An element by its indices: arrays of arrays are one array.
-    fn place(&self, place: &Lvalue, depth: u8) -> TcheckerTextResult {
+    pub fn place(&self, place: &Lvalue, depth: u8) -> TcheckerTextResult {
         if place.indices.is_empty() {
             return self.var(place.slot);
         }
         let Some(at) = self.network_slot(usize::from(place.slot)) else {
-            return Err("an array of a function has no counterpart in TChecker".to_owned());
+            return Err(
+                "TChecker's local arrays cannot be put in: make it a variable of the automaton".to_owned()
+            );
         };
         let (int, element) = self.names.slots[at];
         let mut index = if element == 0 { String::new() } else { format!("{element}+") };
@@ -101,7 +110,7 @@ impl<'a> TcheckerExprWriter<'a> {
             .indices
             .iter()
             .map(|i| {
-                let at = self.term(&i.at, depth)?;
+                let at = self.term(&i.at, None, depth)?;
                 Ok(if i.stride == 1 { at } else { format!("{at}*{}", i.stride) })
             })
             .collect();
@@ -109,23 +118,30 @@ impl<'a> TcheckerExprWriter<'a> {
         Ok(format!("{}[{index}]", self.names.ints[int].name))
     }
 
-    fn is_bool(&self, e: &Expr) -> bool {
+    /// The enumeration that a variable is of.
+    pub fn enumeration_of(&self, slot: u16) -> Option<Enumeration> {
+        let slot = usize::from(slot);
+        if let Some(at) = self.network_slot(slot) {
+            return self.names.ints[self.names.slots[at].0].enumeration;
+        }
+        let at = slot.checked_sub(self.known())?;
+        match self.bound {
+            SlotSubstitution::Values(values) => values.get(at).and_then(|v| v.of),
+            SlotSubstitution::Texts(texts, _) => texts.get(at).and_then(|local| local.of),
+        }
+    }
+
+    /// The enumeration that an expression's value is of, if the expression alone tells.
+    fn enumeration(&self, e: &Expr) -> Option<Enumeration> {
         match e {
-            Expr::Const(Value::Bool(_)) | Expr::Unary(UnaryOp::Not, _) => true,
-            Expr::Binary(op, ..) => {
-                !matches!(op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem)
-            }
-            Expr::If(_, a, _) => self.is_bool(a),
+            Expr::Var(slot) => self.enumeration_of(*slot),
+            Expr::Element(place) => self.enumeration_of(place.slot),
+            Expr::If(_, a, b) => self.enumeration(a).or_else(|| self.enumeration(b)),
             Expr::Apply(f, _) => {
                 let function = self.program.functions.get(usize::from(f.0));
-                function.and_then(|f| f.result.as_ref()).is_some_and(|r| r.is_bool)
+                function.and_then(|f| f.result.as_ref()).and_then(|r| r.enumeration)
             }
-            Expr::Const(_)
-            | Expr::Var(_)
-            | Expr::Unary(UnaryOp::Neg, _)
-            | Expr::Call(..)
-            | Expr::List(..) => false,
-            Expr::Element(_) => false,
+            Expr::Const(_) | Expr::Unary(..) | Expr::Binary(..) | Expr::Call(..) | Expr::List(..) => None,
         }
     }
 
@@ -141,7 +157,7 @@ impl<'a> TcheckerExprWriter<'a> {
         Ok(out)
     }
 
-    fn conjuncts(&self, e: &Expr, depth: u8, out: &mut Vec<String>) -> Result<(), String> {
+    pub fn conjuncts(&self, e: &Expr, depth: u8, out: &mut Vec<String>) -> Result<(), String> {
         match e {
             Expr::Binary(BinaryOp::And, a, b) => {
                 self.conjuncts(a, depth, out)?;
@@ -160,11 +176,14 @@ impl<'a> TcheckerExprWriter<'a> {
         match e {
             Expr::Unary(UnaryOp::Not, a) => self.atom(a, !wanted, depth),
             Expr::Binary(op, a, b) => match comparison(*op, wanted) {
-                Some(sign) => Ok(format!("{}{sign}{}", self.term(a, depth)?, self.term(b, depth)?)),
+                Some(sign) => {
+                    let of = self.enumeration(a).or_else(|| self.enumeration(b));
+                    Ok(format!("{}{sign}{}", self.term(a, of, depth)?, self.term(b, of, depth)?))
+                }
                 None => Ok(format!("{}=={}", self.truth(e, depth)?, i32::from(wanted))),
             },
             Expr::Const(Value::Bool(b)) => Ok(if *b == wanted { "1==1" } else { "1==0" }.to_owned()),
-            _ => Ok(format!("{}=={}", self.term(e, depth)?, i32::from(wanted))),
+            _ => Ok(format!("{}=={}", self.term(e, None, depth)?, i32::from(wanted))),
         }
     }
 
@@ -195,31 +214,33 @@ impl<'a> TcheckerExprWriter<'a> {
 
     // ── Numbers ──
 
-    /// The number that a value is kept as.
-    pub fn int(&self, e: &Expr, depth: u8) -> TcheckerTextResult {
+    /// The number that a value is kept as; `of` is the enumeration that it is of, where the place tells.
+    pub fn int(&self, e: &Expr, of: Option<Enumeration>, depth: u8) -> TcheckerTextResult {
         if depth > MAX_DEPTH {
             return Err("functions are nested too deep to be inserted".to_owned());
         }
         match e {
-            Expr::Const(v) => number(self.program, *v),
+            Expr::Const(v) => number(self.program, *v, of),
             Expr::Var(slot) => self.var(*slot),
             Expr::Element(place) => self.place(place, depth),
-            Expr::Unary(UnaryOp::Neg, a) => Ok(format!("-{}", self.term(a, depth)?)),
+            Expr::Unary(UnaryOp::Neg, a) => Ok(format!("-{}", self.term(a, None, depth)?)),
             Expr::Binary(op, a, b) => match arithmetic(*op) {
-                Some(sign) => Ok(format!("{}{sign}{}", self.term(a, depth)?, self.term(b, depth)?)),
+                Some(sign) => {
+                    Ok(format!("{}{sign}{}", self.term(a, None, depth)?, self.term(b, None, depth)?))
+                }
                 None => self.truth(e, depth),
             },
             Expr::Unary(UnaryOp::Not, _) => self.truth(e, depth),
-            Expr::If(c, a, b) => self.choice(c, &self.int(a, depth)?, &self.int(b, depth)?, depth),
+            Expr::If(c, a, b) => self.choice(c, &self.int(a, of, depth)?, &self.int(b, of, depth)?, depth),
             Expr::Call(function, args) => self.call(*function, args, depth),
-            Expr::List(..) => Err("lists have no counterpart in TChecker".to_owned()),
+            Expr::List(..) => Err("TChecker has no lists: keep what is in it in an array".to_owned()),
             Expr::Apply(function, args) => self.applied(usize::from(function.0), args, depth),
         }
     }
 
     /// In parentheses, unless it is a number or a name.
-    fn term(&self, e: &Expr, depth: u8) -> TcheckerTextResult {
-        let text = self.int(e, depth)?;
+    pub fn term(&self, e: &Expr, of: Option<Enumeration>, depth: u8) -> TcheckerTextResult {
+        let text = self.int(e, of, depth)?;
         let simple = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         Ok(if simple || text.starts_with("(if ") { text } else { format!("({text})") })
     }
@@ -235,7 +256,7 @@ impl<'a> TcheckerExprWriter<'a> {
     }
 
     fn call(&self, function: NumberFunction, args: &[Expr], depth: u8) -> TcheckerTextResult {
-        let args: Vec<String> = args.iter().map(|a| self.term(a, depth)).collect::<Result<_, _>>()?;
+        let args: Vec<String> = args.iter().map(|a| self.term(a, None, depth)).collect::<Result<_, _>>()?;
         let choose = |sign: &str| {
             let fold =
                 |best: String, next: &String| format!("(if {best}{sign}{next} then {best} else {next})");
@@ -246,7 +267,8 @@ impl<'a> TcheckerExprWriter<'a> {
             (NumberFunction::Min, [_, ..]) => Ok(choose("<=")),
             (NumberFunction::Max, [_, ..]) => Ok(choose(">=")),
             (NumberFunction::Abs | NumberFunction::Min | NumberFunction::Max | NumberFunction::Norm, _) => {
-                Err("this function has no counterpart in TChecker".to_owned())
+                Err("TChecker has integers only, and `norm` is none: compare the sum of the squares"
+                    .to_owned())
             }
         }
     }
@@ -258,23 +280,20 @@ impl<'a> TcheckerExprWriter<'a> {
         };
         let [FunctionStatement::Return(Some(value))] = f.body.as_slice() else {
             return Err(format!(
-                "the function `{}` is more than one expression: TChecker has no functions",
+                "the function `{}` is more than one expression where a value is needed, and TChecker has no functions: \
+                 write it as one expression, or let an update keep its value in a variable",
                 f.name
             ));
         };
-        let texts: Vec<(String, bool)> = args
-            .iter()
-            .map(|a| Ok((self.term(a, depth)?, self.is_bool(a))))
-            .collect::<Result<_, String>>()?;
-        let inner = self.inside(f, &texts);
-        inner.int(value, depth + 1)
+        let one = |(a, param): (&Expr, &ta::AutomatonVar)| {
+            Ok(LocalText { text: self.term(a, param.enumeration, depth)?, of: param.enumeration })
+        };
+        let texts: Vec<LocalText> = args.iter().zip(&f.params).map(one).collect::<Result<_, String>>()?;
+        let of = f.result.as_ref().and_then(|r| r.enumeration);
+        self.inside(f, &texts).int(value, of, depth + 1)
     }
 
-    fn inside<'b>(
-        &'b self,
-        f: &ta::AutomatonFunction,
-        texts: &'b [(String, bool)],
-    ) -> TcheckerExprWriter<'b> {
+    pub fn inside<'b>(&'b self, f: &ta::AutomatonFunction, texts: &'b [LocalText]) -> TcheckerExprWriter<'b> {
         let known = if f.owner.is_some() { self.own_slots() } else { self.names.shared_slots };
         let bound = SlotSubstitution::Texts(texts, known);
         TcheckerExprWriter {
@@ -288,17 +307,17 @@ impl<'a> TcheckerExprWriter<'a> {
 
     // ── Clocks ──
 
-    fn clock(&self, clock: ClockId) -> &str {
+    pub fn clock(&self, clock: ClockId) -> &str {
         let at = usize::from(clock.0);
         let shared = self.names.shared_clocks;
         let at = if at < shared { at } else { self.names.first_clock[self.automaton] + at - shared };
         &self.names.clocks[at]
     }
 
-    fn time(&self, time: &TimeSum) -> TcheckerTextResult {
+    pub fn time(&self, time: &TimeSum) -> TcheckerTextResult {
         let mut parts = Vec::new();
         for term in &time.terms {
-            parts.push(format!("{}*{}", self.term(&term.value, 0)?, term.factor / self.unit));
+            parts.push(format!("{}*{}", self.term(&term.value, None, 0)?, term.factor / self.unit));
         }
         if time.nanos != 0 || parts.is_empty() {
             parts.push((time.nanos / self.unit).to_string());
@@ -307,168 +326,23 @@ impl<'a> TcheckerExprWriter<'a> {
     }
 
     pub fn bound(&self, c: &ClockConstraint) -> TcheckerTextResult {
+        Ok(self.clock_part(c)?.text)
+    }
+
+    /// A bound on a clock, and the ways in which it does not hold.
+    pub fn clock_part(&self, c: &ClockConstraint) -> Result<GuardPart, String> {
         let minus = c.minus.map_or(String::new(), |m| format!("-{}", self.clock(m)));
-        let sign = match c.op {
-            ClockOp::Lt => "<",
-            ClockOp::Le => "<=",
-            ClockOp::Eq => "==",
-            ClockOp::Ge => ">=",
-            ClockOp::Gt => ">",
+        let (sign, opposite): (_, &[&str]) = match c.op {
+            ClockOp::Lt => ("<", &[">="]),
+            ClockOp::Le => ("<=", &[">"]),
+            ClockOp::Eq => ("==", &["<", ">"]),
+            ClockOp::Ge => (">=", &["<"]),
+            ClockOp::Gt => (">", &["<="]),
         };
-        Ok(format!("{}{minus}{sign}{}", self.clock(c.clock), self.time(&c.bound)?))
+        let (clock, time) = (self.clock(c.clock), self.time(&c.bound)?);
+        let text = |sign: &str| format!("{clock}{minus}{sign}{time}");
+        Ok(GuardPart { text: text(sign), closed: opposite.iter().map(|sign| text(sign)).collect() })
     }
-
-    // ── Statements ──
-
-    /// The statements of an update.
-    ///
-    /// # Errors
-    /// What TChecker cannot say.
-    pub fn update(
-        &self,
-        update: &EdgeAssignment,
-        fresh: &mut dyn FnMut(&str) -> String,
-    ) -> Result<Vec<String>, String> {
-        match update {
-            EdgeAssignment::Assign { place, value } => {
-                Ok(vec![format!("{}={}", self.place(place, 0)?, self.int(value, 0)?)])
-            }
-            EdgeAssignment::Reset { clock, from, to } => {
-                let from = from.map_or(String::new(), |f| format!("{}+", self.clock(f)));
-                Ok(vec![format!("{}={from}{}", self.clock(*clock), self.time(to)?)])
-            }
-            EdgeAssignment::Call { function, args } => self.called(usize::from(function.0), args, 0, fresh),
-        }
-    }
-
-    /// An update function, put in where it is called: its parameters and locals become local variables.
-    fn called(
-        &self,
-        function: usize,
-        args: &[Expr],
-        depth: u8,
-        fresh: &mut dyn FnMut(&str) -> String,
-    ) -> Result<Vec<String>, String> {
-        let Some(f) = self.program.functions.get(function) else {
-            return Err("a function is not there".to_owned());
-        };
-        if depth > MAX_DEPTH {
-            return Err("functions are nested too deep to be inserted".to_owned());
-        }
-        if f.locals.iter().any(|l| l.name.contains('[')) {
-            return Err(format!("the function `{}` has an array of its own", f.name));
-        }
-        let mut out = Vec::new();
-        let mut texts = Vec::new();
-        for (i, var) in f.params.iter().chain(&f.locals).enumerate() {
-            let name = fresh(&var.name);
-            let init = match args.get(i).filter(|_| i < f.params.len()) {
-                Some(arg) => self.int(arg, depth)?,
-                None => var.init.to_string(),
-            };
-            out.push(format!("local {name}={init}"));
-            texts.push((name, var.is_bool));
-        }
-        let inner = self.inside(f, &texts);
-        let body = match f.body.split_last() {
-            Some((FunctionStatement::Return(None), rest)) => rest,
-            Some(_) | None => &f.body,
-        };
-        inner.statements(body, depth + 1, fresh, &mut out)?;
-        Ok(out)
-    }
-
-    fn statements(
-        &self,
-        body: &[FunctionStatement],
-        depth: u8,
-        fresh: &mut dyn FnMut(&str) -> String,
-        out: &mut Vec<String>,
-    ) -> Result<(), String> {
-        for statement in body {
-            match statement {
-                FunctionStatement::Assign { place, value } => {
-                    out.push(format!("{}={}", self.place(place, depth)?, self.int(value, depth)?));
-                }
-                FunctionStatement::Call { function, args } => {
-                    out.extend(self.called(usize::from(function.0), args, depth, fresh)?);
-                }
-                FunctionStatement::If { condition, then, otherwise } => {
-                    let (mut a, mut b) = (Vec::new(), Vec::new());
-                    self.statements(then, depth, fresh, &mut a)?;
-                    self.statements(otherwise, depth, fresh, &mut b)?;
-                    let tail = if b.is_empty() { String::new() } else { format!(" else {}", b.join("; ")) };
-                    let then = if a.is_empty() { "nop".to_owned() } else { a.join("; ") };
-                    out.push(format!("if {} then {then}{tail} end", self.all(condition, depth)?));
-                }
-                FunctionStatement::While { condition, body } => {
-                    let mut inner = Vec::new();
-                    self.statements(body, depth, fresh, &mut inner)?;
-                    out.push(format!("while {} do {} end", self.all(condition, depth)?, inner.join("; ")));
-                }
-                FunctionStatement::For { slot, lo, hi, body } => {
-                    let (at, last) = (self.var(*slot)?, fresh("last"));
-                    out.push(format!("local {last}={}", self.int(hi, depth)?));
-                    out.push(format!("{at}={}", self.int(lo, depth)?));
-                    let mut inner = Vec::new();
-                    self.statements(body, depth, fresh, &mut inner)?;
-                    inner.push(format!("{at}={at}+1"));
-                    out.push(format!("while {at}<={last} do {} end", inner.join("; ")));
-                }
-                FunctionStatement::Return(_) => {
-                    return Err("a function returns before its end: TChecker has no `return`".to_owned());
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn all(&self, condition: &Expr, depth: u8) -> TcheckerTextResult {
-        let mut parts = Vec::new();
-        self.conjuncts(condition, depth, &mut parts)?;
-        Ok(if parts.is_empty() { "1==1".to_owned() } else { parts.join(" && ") })
-    }
-}
-
-/// The number that a value is kept as.
-pub fn number(program: &Program, v: Value) -> TcheckerTextResult {
-    match v {
-        Value::Bool(b) => Ok(i32::from(b).to_string()),
-        Value::Int(n) if n < 0 => Ok(format!("({n})")),
-        Value::Int(n) => Ok(n.to_string()),
-        Value::Symbol(symbol) => {
-            let mut found: Vec<usize> =
-                enumerations(program).into_iter().filter_map(|e| e.index_of(symbol)).collect();
-            found.dedup();
-            match found.as_slice() {
-                [index] => Ok(index.to_string()),
-                [] | [_, _, ..] => Err(format!("`{v}` is a value of several enumerations")),
-            }
-        }
-        Value::Float(_) | Value::Text(_) | Value::List(_) => {
-            Err(format!("`{v}` is no number: TChecker has integers only"))
-        }
-    }
-}
-
-/// All enumerations that variables and parameters are of, without repetition.
-fn enumerations(program: &Program) -> Vec<Enumeration> {
-    let automata = program.automata.iter();
-    let own = automata.flat_map(|a| a.vars.iter().chain(a.edges.iter().flat_map(|e| &e.selects)));
-    let functions = program.functions.iter().flat_map(|f| f.params.iter().chain(&f.locals));
-    let channels = program.channels.iter().flat_map(|c| &c.params);
-    let vars = program.shared.iter().chain(own).chain(functions).chain(channels);
-    let events = program.events.iter().flat_map(|e| &e.params).filter_map(|p| match p.ty {
-        Type::Enum(e) => Some(e),
-        Type::Bool | Type::Int { .. } | Type::Float(_) | Type::Text | Type::List(_) => None,
-    });
-    let mut all: Vec<Enumeration> = Vec::new();
-    for e in vars.filter_map(|v| v.enumeration).chain(events) {
-        if !all.contains(&e) {
-            all.push(e);
-        }
-    }
-    all
 }
 
 /// How an operator is written.

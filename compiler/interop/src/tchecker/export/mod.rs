@@ -3,18 +3,21 @@
 //! # Steps
 //! 1. `names`: all of TChecker's names are global; processes, clocks and integers get theirs
 //! 2. `edges`: each edge, select and argument of a channel becomes edges with constant arguments
-//! 3. `vectors`: binary synchronisations, broadcasts and multi-way channels become `sync` vectors
-//! 4. `expr`: expressions and statements, without `||` and functions, which TChecker has not
+//! 3. `vectors`, `loops`: binary synchronisations, broadcasts and multi-way channels become `sync` vectors
+//! 4. `expr`, `statement`, `value`: without `||`, functions and enumerations, which TChecker has not
 //!
 //! [`export`] does them all. A unit of time in the file is the greatest in which all constants are whole; a comment at its
 //! head says which. Each location has the label `AUTOMATON_LOCATION`, to ask for it.
 
 mod edges;
 mod expr;
+mod loops;
 mod names;
+mod statement;
+mod value;
 mod vectors;
 
-use std::fmt::Write;
+use std::{collections::BTreeMap, fmt::Write};
 
 use hrdsl_ir::{
     Nanos, Program,
@@ -40,6 +43,7 @@ pub fn export(program: &Program, network: &Network) -> Result<String, Vec<Export
         names: TcheckerNames::new(program, network, &automata),
         unit: time::unit(program, &automata),
         automata,
+        tracked: BTreeMap::new(),
         obstacles: Vec::new(),
         out: String::new(),
     };
@@ -59,6 +63,8 @@ struct TcheckerWriter<'p> {
     automata: Vec<&'p Automaton>,
     names: TcheckerNames,
     unit: Nanos,
+    /// Of processes whose place guards ask for, the variable that says it.
+    tracked: BTreeMap<usize, String>,
     obstacles: Vec<ExportObstacle>,
     out: String,
 }
@@ -67,9 +73,10 @@ impl TcheckerWriter<'_> {
     fn write(&mut self) {
         let _ = writeln!(self.out, "# {}: one unit of time is {}", self.network.name, seconds(self.unit));
         let _ = writeln!(self.out, "system:{}", self.names.system);
-        self.variables();
         let instances: Vec<Vec<EdgeInstance>> = (0..self.automata.len()).map(|a| self.instances(a)).collect();
-        let joined = self.vectors(&instances);
+        let mut joined = self.vectors(&instances);
+        self.track(&mut joined);
+        self.variables();
         let mut events: Vec<&str> = joined.edges.iter().flatten().map(|e| e.event.as_str()).collect();
         events.sort_unstable();
         events.dedup();
@@ -92,10 +99,22 @@ impl TcheckerWriter<'_> {
             let (size, lo, hi) = (int.inits.len(), int.lo, int.hi);
             let init = int.inits[0];
             if int.inits.iter().any(|i| *i != init) {
-                let message = format!("the elements of `{}` start with different values", int.name);
+                let message = format!(
+                    "the elements of `{}` start with different values, and TChecker's arrays with one: set them on the first edge, from a committed location",
+                    int.name
+                );
                 self.obstacles.push(ExportObstacle { message, origin: self.network.origin });
             }
             let _ = writeln!(self.out, "int:{size}:{lo}:{hi}:{init}:{}", int.name);
+        }
+        for (p, name) in &self.tracked {
+            let automaton = self.automata[*p];
+            let _ = writeln!(
+                self.out,
+                "int:1:0:{}:{}:{name}",
+                automaton.locations.len() - 1,
+                automaton.initial.0
+            );
         }
     }
 
@@ -122,6 +141,14 @@ impl TcheckerWriter<'_> {
                     Err(message) => self.obstacles.push(ExportObstacle { message, origin: location.origin }),
                 }
             }
+            if let Some(clock) = location.stopped.first() {
+                let message = format!(
+                    "`{}` stands still in `{}`, and TChecker's clocks always run: export to UPPAAL, which has `x' == 0`",
+                    exprs.clock(*clock),
+                    location.name
+                );
+                self.obstacles.push(ExportObstacle { message, origin: location.origin });
+            }
             if let Some(e) = &location.holds {
                 match exprs.conjunction(e) {
                     Ok(all) => parts.extend(all),
@@ -138,7 +165,8 @@ impl TcheckerWriter<'_> {
             let name = |l: usize| &self.names.locations[a][l];
             let mut attributes = Vec::new();
             if !e.guard.is_empty() {
-                attributes.push(format!("provided: {}", e.guard.join(" && ")));
+                let parts: Vec<&str> = e.guard.iter().map(|part| part.text.as_str()).collect();
+                attributes.push(format!("provided: {}", parts.join(" && ")));
             }
             if !e.body.is_empty() {
                 attributes.push(format!("do: {}", e.body.join("; ")));

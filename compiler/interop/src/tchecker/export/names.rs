@@ -1,7 +1,7 @@
 //! TChecker's names: one scope for all variables, letters, digits and `_`.
 
 use hrdsl_ir::{
-    Program,
+    Enumeration, Program,
     ta::{Automaton, AutomatonVar, Network},
 };
 
@@ -17,6 +17,8 @@ pub struct BoundedIntArray {
     pub lo: i64,
     pub hi: i64,
     pub inits: Vec<i64>,
+    /// Of which its elements are, if they are of one.
+    pub enumeration: Option<Enumeration>,
 }
 
 pub struct TcheckerNames {
@@ -84,19 +86,20 @@ impl TcheckerNames {
 
     /// Variables whose names differ in an index only are one array.
     fn variables(&mut self, vars: &[AutomatonVar], prefix: &str) {
-        let mut last: Option<(String, i64, i64)> = None;
+        let mut last: Option<(String, i64, i64, Option<Enumeration>)> = None;
         for v in vars {
             let array = v.name.contains('[').then(|| {
                 let base = v.name.split('[').next().unwrap_or_default();
                 let tail = v.name.rsplit(']').next().unwrap_or_default();
-                (format!("{base}{tail}"), v.lo, v.hi)
+                (format!("{base}{tail}"), v.lo, v.hi, v.enumeration)
             });
             match (&array, self.ints.last_mut()) {
                 (Some(_), Some(int)) if array == last => int.inits.push(v.init),
                 (Some(_) | None, _) => {
                     let wanted = array.as_ref().map_or(v.name.as_str(), |(base, ..)| base);
                     let name = self.fresh(&format!("{prefix}{wanted}"));
-                    self.ints.push(BoundedIntArray { name, lo: v.lo, hi: v.hi, inits: vec![v.init] });
+                    let (lo, hi, enumeration) = (v.lo, v.hi, v.enumeration);
+                    self.ints.push(BoundedIntArray { name, lo, hi, inits: vec![v.init], enumeration });
                 }
             }
             let int = self.ints.len() - 1;

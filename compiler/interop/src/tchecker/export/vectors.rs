@@ -1,19 +1,15 @@
 //! Synchronisation: binary synchronisations, broadcasts and multi-way channels as `sync` vectors.
 //!
 //! A broadcast's receivers are weak, so that it never waits for them. TChecker allows no guards on weak edges: a process
-//! with guarded ones is strong, and gets a loop wherever it would not take part. The loop changes nothing, unless the
-//! process is in a committed location, which is refused.
+//! with guarded ones is strong, and gets a loop wherever it would not take part (`loops`).
 
-use hrdsl_ir::ta::{ChannelKind, LocationKind};
+use hrdsl_ir::ta::ChannelKind;
 
 use super::{
     TcheckerWriter,
     edges::{EdgeInstance, EdgeSyncRole},
+    loops::LoopedVector,
 };
-use crate::exchange::obstacle::ExportObstacle;
-
-/// The most loops that stand in for one location's edges that are closed.
-const MAX_LOOPS: usize = 256;
 
 /// What is to be written.
 pub struct SynchronizedEdges {
@@ -76,23 +72,32 @@ impl TcheckerWriter<'_> {
         let (sends, hears) = (EdgeSyncRole::Announces(name.to_owned()), EdgeSyncRole::Hears(name.to_owned()));
         let (senders, receivers) = (with(instances, &sends), with(instances, &hears));
         let (out, taken) = (self.names.fresh(name), self.names.fresh(&format!("{name}_in")));
-        for s in &senders {
+        // Who loops in a committed location has to know who sends: each sender has a vector with events of its own.
+        let committed = |r: &usize| guarded(*r, instances, &hears) && self.commits(*r);
+        let apart = senders.len() > 1 && receivers.iter().any(committed);
+        for (n, s) in senders.iter().enumerate() {
             keep(*s, instances, &sends, &out, joined);
             let others: Vec<usize> = receivers.iter().copied().filter(|r| r != s).collect();
+            let event = if apart && n > 0 { self.names.fresh(&format!("{name}_in")) } else { taken.clone() };
             let mut vector = format!("{}@{out}", self.names.processes[*s]);
             for r in &others {
                 let weak = if guarded(*r, instances, &hears) { "" } else { "?" };
-                vector += &format!(":{}@{taken}{weak}", self.names.processes[*r]);
+                vector += &format!(":{}@{event}{weak}", self.names.processes[*r]);
             }
             if !others.is_empty() {
                 joined.syncs.push(vector);
             }
-        }
-        for r in receivers {
-            if senders.iter().any(|s| *s != r) {
-                keep(r, instances, &hears, &taken, joined);
-                if guarded(r, instances, &hears) {
-                    self.loops(r, instances, &hears, &taken, joined);
+            for r in others {
+                // Vectors with the same event have the same edges.
+                if apart || n == 0 || (n == 1 && r == senders[0]) {
+                    keep(r, instances, &hears, &event, joined);
+                    if guarded(r, instances, &hears) {
+                        let parts = receivers.iter().filter(|q| **q != r && *q != s).map(|q| (*q, &hears));
+                        let parts = std::iter::once((*s, &sends)).chain(parts).collect();
+                        let vector =
+                            LoopedVector { event: &event, part: &hears, others: parts, alone: false };
+                        self.loops(r, &vector, instances, joined);
+                    }
                 }
             }
         }
@@ -116,16 +121,15 @@ impl TcheckerWriter<'_> {
         let taking: Vec<(usize, bool)> = present.into_iter().filter(|(p, _)| has(*p)).collect();
         let event = self.names.fresh(&channel_name);
         let mut vector = Vec::new();
+        // Where nobody must take part, loops alone would be a transition of nobody.
+        let nobody_must = taking.iter().all(|(_, optional)| *optional);
         for (p, optional) in &taking {
             keep(*p, instances, &part, &event, joined);
             let mut mark = "";
             if *optional && guarded(*p, instances, &part) {
-                if taking.iter().all(|(_, optional)| *optional) {
-                    let message = format!("all parts of `{channel_name}` are optional, and some have guards");
-                    let origin = self.program.channels[channel].origin;
-                    self.obstacles.push(ExportObstacle { message, origin });
-                }
-                self.loops(*p, instances, &part, &event, joined);
+                let others = taking.iter().filter(|(q, _)| q != p).map(|(q, _)| (*q, &part)).collect();
+                let vector = LoopedVector { event: &event, part: &part, others, alone: nobody_must };
+                self.loops(*p, &vector, instances, joined);
             } else if *optional {
                 mark = "?";
             }
@@ -135,58 +139,6 @@ impl TcheckerWriter<'_> {
             joined.syncs.push(vector.join(":"));
         }
     }
-
-    /// Loops for a process that must take part, where its own edges are closed.
-    fn loops(
-        &mut self,
-        p: usize,
-        instances: &[Vec<EdgeInstance>],
-        part: &EdgeSyncRole,
-        event: &str,
-        joined: &mut SynchronizedEdges,
-    ) {
-        let automaton = self.automata[p];
-        for (l, location) in automaton.locations.iter().enumerate() {
-            if location.kind == LocationKind::Committed {
-                let message = format!(
-                    "`{}` hears `{event}` under a guard, and its location `{}` is committed: TChecker's weak edges have no guards",
-                    automaton.name, location.name
-                );
-                self.obstacles.push(ExportObstacle { message, origin: location.origin });
-                return;
-            }
-            let mine = instances[p].iter().filter(|i| i.part == *part && i.from == l);
-            let mut ways: Vec<Vec<String>> = vec![Vec::new()];
-            for edge in mine {
-                ways = ways.iter().flat_map(|way| closed(way, &edge.guard)).take(MAX_LOOPS + 1).collect();
-            }
-            if ways.len() > MAX_LOOPS {
-                let message = format!("`{event}` has too many guards in `{}`", location.name);
-                self.obstacles.push(ExportObstacle { message, origin: location.origin });
-                return;
-            }
-            let loops = ways.into_iter().map(|guard| EdgeInstance {
-                from: l,
-                to: l,
-                event: event.to_owned(),
-                guard,
-                body: Vec::new(),
-                part: part.clone(),
-            });
-            joined.edges[p].extend(loops);
-        }
-    }
-}
-
-/// The ways in which a guard is false: the first part that is, all before it true. No guard is never false.
-fn closed(way: &[String], guard: &[String]) -> Vec<Vec<String>> {
-    let one = |i: usize| {
-        let mut all = way.to_vec();
-        all.extend_from_slice(&guard[..i]);
-        all.push(format!("!({})", guard[i]));
-        all
-    };
-    (0..guard.len()).map(one).collect()
 }
 
 fn with(instances: &[Vec<EdgeInstance>], part: &EdgeSyncRole) -> Vec<usize> {

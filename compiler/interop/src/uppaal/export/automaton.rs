@@ -15,6 +15,7 @@ use super::{
     function,
     slots::{UppaalNames, UppaalSlot, UppaalSlotTable, slot},
 };
+use crate::uppaal::rate::rate_before;
 
 /// How far apart locations are drawn.
 const COLUMN: i32 = 250;
@@ -98,6 +99,8 @@ impl UppaalExporter<'_> {
         let invariant = invariant(location, context);
         let invariant = self.said(invariant, location.origin, &place);
         text += &label("invariant", &invariant, x - 10, y + 15);
+        let rate = rate_before(self.files, location.origin);
+        text += &label("exponentialrate", &rate.unwrap_or_default(), x - 10, y + 32);
         text += match location.kind {
             LocationKind::Normal => "",
             LocationKind::Urgent => "      <urgent/>\n",
@@ -257,6 +260,10 @@ fn invariant(location: &Location, context: &UppaalExprContext) -> UppaalTextResu
                 return Err("an invariant with a lower bound of a clock".to_owned());
             }
         }
+    }
+    for clock in &location.stopped {
+        let name = context.clocks.get(usize::from(clock.0)).ok_or("a clock that is not known here")?;
+        parts.push(format!("{name}' == 0"));
     }
     if let Some(holds) = &location.holds {
         parts.push(context.expr(holds, None)?.at(UppaalPrecedence::And));

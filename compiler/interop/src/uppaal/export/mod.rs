@@ -23,6 +23,7 @@ use hrdsl_ir::{
         FunctionStatement, Network, Query, QueryFormula, QueryKind, QueryMeasure, SyncLabel,
     },
 };
+use hrdsl_source::SourceFiles;
 use indexmap::{IndexMap, IndexSet};
 
 use self::{
@@ -63,6 +64,7 @@ enum MultiWayRole {
 /// All that is known while a network is exported.
 struct UppaalExporter<'p> {
     program: &'p Program,
+    files: &'p SourceFiles,
     network: &'p Network,
     faults: Vec<ExportObstacle>,
     names: UppaalNames,
@@ -83,13 +85,25 @@ struct UppaalExporter<'p> {
 /// # Errors
 /// Everything that UPPAAL's language cannot say.
 pub fn export(program: &Program, network: usize) -> Result<UppaalDocument, Vec<ExportObstacle>> {
+    export_with(program, network, &SourceFiles::default())
+}
+
+/// As [`export`], with what comments of the scenario's files keep of a model: the rates of locations (`// exponentialrate 2`).
+///
+/// # Errors
+/// As [`export`].
+pub fn export_with(
+    program: &Program,
+    network: usize,
+    files: &SourceFiles,
+) -> Result<UppaalDocument, Vec<ExportObstacle>> {
     let Some(chosen) = program.networks.get(network) else {
         let message = "there is no such network".to_owned();
         return Err(vec![ExportObstacle { origin: Span::default(), message }]);
     };
     let queries: Vec<&Query> =
         program.queries.iter().filter(|q| usize::from(q.network.0) == network).collect();
-    let mut exporter = UppaalExporter::new(program, chosen);
+    let mut exporter = UppaalExporter::new(program, chosen, files);
     exporter.global.unit = time::unit(program, &exporter.automata().collect::<Vec<_>>());
     let declarations = exporter.declarations();
     let mut functions = exporter.shared_functions(&queries);
@@ -132,7 +146,7 @@ fn escaped(text: &str) -> String {
 }
 
 impl<'p> UppaalExporter<'p> {
-    fn new(program: &'p Program, network: &'p Network) -> Self {
+    fn new(program: &'p Program, network: &'p Network, files: &'p SourceFiles) -> Self {
         let mut names = UppaalNames::default();
         let automata = network.automata.iter().map(|id| &program.automata[usize::from(id.0)]);
         // Processes keep their names before all others: reports speak of them.
@@ -147,6 +161,7 @@ impl<'p> UppaalExporter<'p> {
         };
         Self {
             program,
+            files,
             network,
             faults: Vec::new(),
             names,

@@ -28,6 +28,7 @@ mod fault;
 mod inline;
 mod known;
 mod lex;
+mod location;
 mod order;
 mod parse;
 mod place;

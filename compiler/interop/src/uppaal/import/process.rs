@@ -15,7 +15,7 @@ use super::{
     template::ParsedEdge,
     translation::{UppaalProcess, UppaalTranslation},
     write::one_line,
-    xml::{UppaalLocation, UppaalLocationKind, UppaalTemplate, UppaalTransition},
+    xml::{UppaalTemplate, UppaalTransition},
 };
 use crate::exchange::note::NoteSeverity;
 
@@ -189,8 +189,7 @@ impl UppaalTranslation<'_> {
         let (mut locations, mut texts) = (Vec::new(), Vec::new());
         for (i, (location, stopped)) in template.locations.iter().zip(&stopped).enumerate() {
             self.standing.clone_from(&stopped.values);
-            let made =
-                self.location(location, &written[i], i == template.initial, stopped.invariant.as_ref());
+            let made = self.location(location, &written[i], i == template.initial, stopped);
             locations.extend(self.kept(made));
         }
         for (transition, edge) in template.transitions.iter().zip(&parsed.edges) {
@@ -251,57 +250,6 @@ impl UppaalTranslation<'_> {
             let sym = VarSym { name, ty: scalar, dims, at, values, own: true, local: false, readonly: false };
             self.bind(&param.name, UppaalSymbol::Var(sym), true);
         }
-    }
-
-    fn location_names(&mut self, template: &UppaalTemplate) -> Vec<String> {
-        let mut names = IndexMap::new();
-        // Names of the model first: a nameless location gives way.
-        for (i, location) in template.locations.iter().enumerate() {
-            if let Some(name) = &location.name {
-                names.insert(i, self.names.fresh(name, location.span, NameOwner::Process));
-            }
-        }
-        let mut all = Vec::new();
-        for i in 0..template.locations.len() {
-            let name = names.get(&i).cloned();
-            all.push(name.unwrap_or_else(|| self.names.unused(&format!("l{i}"), NameOwner::Process)));
-        }
-        all
-    }
-
-    fn location(
-        &mut self,
-        location: &UppaalLocation,
-        name: &str,
-        is_initial: bool,
-        invariant: Option<&UppaalExpr>,
-    ) -> Result<String, UppaalFault> {
-        let mut text = doc(&location.comment);
-        if !location.rate.trim().is_empty() {
-            text += &format!("// exponentialrate {}\n", one_line(&location.rate));
-            let message = "`exponentialrate` is kept as a comment: only statistical model checking asks how fast a location is left";
-            self.notes.push((location.span, NoteSeverity::Info, message.to_owned()));
-        }
-        if is_initial {
-            text += "init ";
-        }
-        text += match location.kind {
-            UppaalLocationKind::Normal => "",
-            UppaalLocationKind::Urgent => "urgent ",
-            UppaalLocationKind::Committed => "committed ",
-        };
-        text += &format!("location {name}");
-        let Some(invariant) = invariant else { return Ok(text) };
-        let alternatives = self.alternatives(invariant)?;
-        let [only] = alternatives.as_slice() else {
-            return fault(invariant.span, "an invariant over clocks cannot have `or`, `not ==` or `!=`");
-        };
-        match only.text() {
-            None => text += " { invariant false }",
-            Some(condition) if condition.is_empty() => {}
-            Some(condition) => text += &format!(" {{ invariant {condition} }}"),
-        }
-        Ok(text)
     }
 
     fn edge(

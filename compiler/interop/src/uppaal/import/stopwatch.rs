@@ -1,8 +1,9 @@
-//! Stopwatches: clocks that an invariant stops (`x' == 0`), where that can be said without stopping them.
+//! Stopwatches: clocks that an invariant stops (`x' == 0`), where that can be said without stopping them, and where it cannot.
 //!
-//! Sets of clocks that are not all equally fast are no zones: what is computed of them is more than can happen. So a clock is
-//! stopped only where its value is known all the same. Either nothing asks for it before it is set again: it may as well run.
+//! Sets of clocks that are not all equally fast are no zones, and cost a search of their own (`spec/search.md`). So a clock is
+//! not stopped where its value is known all the same. Either nothing asks for it before it is set again: it may as well run.
 //! Or it stands at a number, the same on every way there: then what asks for it asks for that number, and it is set to it on the way out.
+//! All others stand still in the scenario, too.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,6 +24,8 @@ use crate::exchange::note::NoteSeverity;
 #[derive(Clone, Debug, Default)]
 pub struct StoppedClocks {
     pub values: BTreeMap<String, i64>,
+    /// The clocks that stand at a value that depends on the run.
+    pub stands: Vec<String>,
     pub invariant: Option<UppaalExpr>,
 }
 
@@ -65,7 +68,7 @@ impl UppaalTranslation<'_> {
                 Some(e) => self.without_rates(e, &mut found)?,
                 None => None,
             };
-            all.push(StoppedClocks { values: BTreeMap::new(), invariant });
+            all.push(StoppedClocks { values: BTreeMap::new(), stands: Vec::new(), invariant });
             rates.push(found);
         }
         let clocks: BTreeSet<String> = rates.iter().flatten().map(|rate| rate.clock.clone()).collect();
@@ -111,10 +114,18 @@ impl UppaalTranslation<'_> {
             }
             stopped.push(rate);
         }
+        let values = values(initial, steps, &stopped);
+        let stands = |rate: &ClockRate| rate.rate.value == Some(0);
+        let runs_on = |at: usize, rate: &ClockRate| alive[at] && values[at].is_none() && stands(rate);
+        let real = stopped.iter().enumerate().any(|(at, rate)| rate.is_some_and(|rate| runs_on(at, rate)));
+        if real && stopped.iter().flatten().all(|rate| stands(rate)) {
+            let locations = all.iter_mut().zip(&stopped).filter(|(_, rate)| rate.is_some());
+            locations.for_each(|(location, _)| location.stands.push(clock.to_owned()));
+            return Ok(());
+        }
         if let Some(first) = stopped.iter().flatten().next() {
             self.stopwatches.push((clock.to_owned(), first.span));
         }
-        let values = values(initial, steps, &stopped);
         for (at, rate) in stopped.iter().enumerate() {
             let Some(rate) = rate else { continue };
             match values[at] {
@@ -123,16 +134,16 @@ impl UppaalTranslation<'_> {
                         format!("`{clock}` may run on here: nothing asks for it before it is set again");
                     self.notes.push((rate.span, NoteSeverity::Info, message));
                 }
-                Some(n) if rate.rate.value == Some(0) => {
+                Some(n) if stands(rate) && !real => {
                     all[at].values.insert(clock.to_owned(), n);
                 }
+                _ if stands(rate) => all[at].stands.push(clock.to_owned()),
                 Some(_) | None => {
                     return fault(
                         rate.span,
                         format!(
-                            "`{clock}` is stopped at a value that depends on the run, and is asked for later: \
-                             no search by zones is exact then. Count what is done in an `int` that grows once in each unit of time, \
-                             or let what has begun end before the next begins"
+                            "the rate of `{clock}` is an expression here, and it is asked for later: give the state in which it stands \
+                             a location of its own, with `{clock}' == 0`, and let an urgent channel lead there and back"
                         ),
                     );
                 }
