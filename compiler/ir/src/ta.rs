@@ -56,8 +56,7 @@ pub struct AutomatonVar {
     pub init: i64,
     /// Declared as bool: it evaluates to `Value::Bool`.
     pub is_bool: bool,
-    /// Declared as an enumeration: it evaluates to `Value::Symbol`. Then `is_bool` is false and the range is that of the
-    /// enumeration's indices.
+    /// Declared as an enumeration: it evaluates to `Value::Symbol`, `is_bool` is false, the range is that of its indices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub enumeration: Option<Enumeration>,
 }
@@ -225,8 +224,7 @@ pub struct Edge<E = Expr, V = u16> {
     pub origin: Span,
 }
 
-/// How an edge takes part in a transition. Events are broadcast: the sender never waits, each automaton with an enabled
-/// receiving edge takes part.
+/// How an edge takes part in a transition. Events are broadcast: the sender never waits, and whoever can take part does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SyncLabel<E = Expr> {

@@ -67,7 +67,7 @@ struct StopwatchNode {
 }
 
 /// What is known of a goal.
-enum GoalProgress {
+enum StoppedGoalProgress {
     /// Zones have reached it so many times, and no run was found.
     Open(usize),
     Ended(GoalOutcome),
@@ -77,7 +77,7 @@ struct StopwatchSearch<'g, 'm, 'p> {
     graph: &'g ZoneGraph<'m, 'p>,
     goals: &'g [ReachabilityGoal],
     formulas: Vec<Option<StateFormula>>,
-    progress: Vec<GoalProgress>,
+    progress: Vec<StoppedGoalProgress>,
     places: Vec<KnownPlace>,
     numbers: FxHashMap<Vec<i64>, usize>,
     nodes: Vec<StopwatchNode>,
@@ -116,7 +116,7 @@ pub(crate) fn explore(
     if graph.splits() {
         model.refuse_stopped("a comparison of two clocks with each other")?;
     }
-    let progress = goals.iter().map(|_| GoalProgress::Open(0)).collect();
+    let progress = goals.iter().map(|_| StoppedGoalProgress::Open(0)).collect();
     let mut search = StopwatchSearch {
         graph: &graph,
         goals,
@@ -148,14 +148,14 @@ pub(crate) fn explore(
 
 impl StopwatchSearch<'_, '_, '_> {
     fn open(&self) -> usize {
-        self.progress.iter().filter(|p| matches!(p, GoalProgress::Open(_))).count()
+        self.progress.iter().filter(|p| matches!(p, StoppedGoalProgress::Open(_))).count()
     }
 
     /// What the end of a search says of the goals that are open.
     fn settle(&mut self, cutoff: Option<SearchCutoff>) {
         let (second, doubt) = (self.second, self.doubt);
         for progress in &mut self.progress {
-            let GoalProgress::Open(seen) = progress else { continue };
+            let StoppedGoalProgress::Open(seen) = progress else { continue };
             let outcome = match cutoff {
                 None if second || (*seen == 0 && !doubt) => GoalOutcome::Unreachable,
                 None => continue,
@@ -163,7 +163,7 @@ impl StopwatchSearch<'_, '_, '_> {
                 Some(_) if second => GoalOutcome::Inconclusive(SearchCutoff::Zones),
                 Some(what) => GoalOutcome::Inconclusive(what),
             };
-            *progress = GoalProgress::Ended(outcome);
+            *progress = StoppedGoalProgress::Ended(outcome);
         }
     }
 
@@ -177,9 +177,9 @@ impl StopwatchSearch<'_, '_, '_> {
     }
 
     fn report(self, cutoff: Option<SearchCutoff>) -> SearchReport {
-        let ended = |p: GoalProgress| match p {
-            GoalProgress::Ended(outcome) => outcome,
-            GoalProgress::Open(_) => GoalOutcome::Inconclusive(SearchCutoff::Zones),
+        let ended = |p: StoppedGoalProgress| match p {
+            StoppedGoalProgress::Ended(outcome) => outcome,
+            StoppedGoalProgress::Open(_) => GoalOutcome::Inconclusive(SearchCutoff::Zones),
         };
         SearchReport {
             states_stored: self.stored + self.nodes.len(),
@@ -225,7 +225,8 @@ impl StopwatchSearch<'_, '_, '_> {
     }
 
     fn goes_on(&self, next: usize, go_on: &dyn Fn(&SearchProgress) -> bool) -> bool {
-        let unmet: Vec<bool> = self.progress.iter().map(|p| matches!(p, GoalProgress::Open(_))).collect();
+        let unmet: Vec<bool> =
+            self.progress.iter().map(|p| matches!(p, StoppedGoalProgress::Open(_))).collect();
         go_on(&SearchProgress {
             stored: self.stored + self.nodes.len(),
             visited: self.visited,
@@ -293,7 +294,7 @@ impl StopwatchSearch<'_, '_, '_> {
     fn taken(&mut self, at: usize, taken: &Rc<PathTransition>) -> Result<(), SearchError> {
         for goal in 0..self.goals.len() {
             if self.formulas[goal].is_none()
-                && matches!(self.progress[goal], GoalProgress::Open(_))
+                && matches!(self.progress[goal], StoppedGoalProgress::Open(_))
                 && self.meets_edge(&self.goals[goal].what, &self.places[self.nodes[at].place].state, taken)
             {
                 let path = self.path(Some((at, Rc::clone(taken))));
@@ -372,7 +373,7 @@ impl StopwatchSearch<'_, '_, '_> {
         from: Option<&(usize, Rc<PathTransition>)>,
     ) -> Result<(), SearchError> {
         for goal in 0..self.goals.len() {
-            let (Some(f), GoalProgress::Open(_)) = (&self.formulas[goal], &self.progress[goal]) else {
+            let (Some(f), StoppedGoalProgress::Open(_)) = (&self.formulas[goal], &self.progress[goal]) else {
                 continue;
             };
             let known = &self.places[place];
@@ -389,7 +390,7 @@ impl StopwatchSearch<'_, '_, '_> {
 
     /// Looks for times of a path along which zones reach a goal.
     fn tried(&mut self, goal: usize, path: Vec<PathSegment>) -> Result<(), SearchError> {
-        let GoalProgress::Open(seen) = &mut self.progress[goal] else { return Ok(()) };
+        let StoppedGoalProgress::Open(seen) = &mut self.progress[goal] else { return Ok(()) };
         *seen += 1;
         if *seen > TRIES && !self.second {
             return Ok(());
@@ -400,7 +401,7 @@ impl StopwatchSearch<'_, '_, '_> {
             None => build::timed(self.graph, &path, asked, timing)?,
         };
         if let Some(run) = run {
-            self.progress[goal] = GoalProgress::Ended(GoalOutcome::Reached(Box::new(run)));
+            self.progress[goal] = StoppedGoalProgress::Ended(GoalOutcome::Reached(Box::new(run)));
         }
         Ok(())
     }

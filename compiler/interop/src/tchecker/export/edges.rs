@@ -8,7 +8,7 @@ use hrdsl_ir::{
 use super::{
     TcheckerWriter,
     expr::TcheckerExprWriter,
-    value::{BoundTcheckerValue, number},
+    value::{BoundTcheckerValue, GuardPart, number},
 };
 use crate::exchange::obstacle::ExportObstacle;
 
@@ -24,22 +24,6 @@ pub struct EdgeInstance {
     pub guard: Vec<GuardPart>,
     pub body: Vec<String>,
     pub part: EdgeSyncRole,
-}
-
-/// One part of a guard's conjunction.
-#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct GuardPart {
-    pub text: String,
-    /// The ways in which it is false: TChecker has no negation of what is asked of clocks.
-    pub closed: Vec<String>,
-}
-
-impl GuardPart {
-    /// A part that asks for integers alone.
-    pub fn of_integers(text: String) -> Self {
-        let closed = vec![format!("!({text})")];
-        Self { text, closed }
-    }
 }
 
 /// What an edge has to do with others.

@@ -7,9 +7,8 @@ use hrdsl_ir::{
 };
 
 use super::{
-    edges::GuardPart,
     names::TcheckerNames,
-    value::{BoundTcheckerValue, number},
+    value::{BoundTcheckerValue, GuardPart, TcheckerTextResult, number},
 };
 
 /// Writes the expressions of one automaton, with constants for what an edge binds.
@@ -35,8 +34,6 @@ pub struct LocalText {
     pub text: String,
     pub of: Option<Enumeration>,
 }
-
-pub type TcheckerTextResult = Result<String, String>;
 
 /// How deep functions may be inserted into each other.
 pub const MAX_DEPTH: u8 = 20;

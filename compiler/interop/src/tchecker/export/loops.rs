@@ -10,7 +10,8 @@ use hrdsl_ir::ta::LocationKind;
 
 use super::{
     TcheckerWriter,
-    edges::{EdgeInstance, EdgeSyncRole, GuardPart},
+    edges::{EdgeInstance, EdgeSyncRole},
+    value::GuardPart,
     vectors::SynchronizedEdges,
 };
 use crate::exchange::obstacle::ExportObstacle;

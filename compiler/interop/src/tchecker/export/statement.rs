@@ -5,7 +5,10 @@ use hrdsl_ir::{
     ta::{EdgeAssignment, FunctionStatement},
 };
 
-use super::expr::{LocalText, MAX_DEPTH, TcheckerExprWriter, TcheckerTextResult};
+use super::{
+    expr::{LocalText, MAX_DEPTH, TcheckerExprWriter},
+    value::TcheckerTextResult,
+};
 
 impl TcheckerExprWriter<'_> {
     /// The statements of an update.

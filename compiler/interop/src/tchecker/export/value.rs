@@ -1,8 +1,24 @@
-//! Values as TChecker's integers: a value of an enumeration is its number there, so that it must be known which one is meant.
+//! Values as TChecker's integers, and parts of guards. A value of an enumeration is its number there, so that it must be known which one is meant.
 
 use hrdsl_ir::{Enumeration, Program, Type, Value};
 
-use super::expr::TcheckerTextResult;
+pub type TcheckerTextResult = Result<String, String>;
+
+/// One part of a guard's conjunction.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct GuardPart {
+    pub text: String,
+    /// The ways in which it is false: TChecker has no negation of what is asked of clocks.
+    pub closed: Vec<String>,
+}
+
+impl GuardPart {
+    /// A part that asks for integers alone.
+    pub fn of_integers(text: String) -> Self {
+        let closed = vec![format!("!({text})")];
+        Self { text, closed }
+    }
+}
 
 /// A value that an edge binds, and the enumeration that it is of, if it is of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
