@@ -189,9 +189,13 @@ impl Grid<'_> {
             |e: &Edge| e.sync.as_send().is_some_and(|(event, _)| program.event(event).is_stimulus());
         let all: Vec<usize> = (0..person.len()).filter(|e| stimulus(&person[*e])).collect();
         let own = &self.automata[automaton].edges;
-        let waits = |event| {
-            own.iter()
-                .any(|e| e.from.0 == location && e.sync.as_receive().is_some_and(|r| Some(r.0) == event))
+        // `s0` makes `f0`.
+        let made = |event: Option<EventId>| event.map(|e| program.event(e).name.replace('s', "f"));
+        let waits = |event: Option<EventId>| {
+            own.iter().filter(|e| e.from.0 == location).any(|e| {
+                let heard = e.sync.as_receive().map(|r| program.event(r.0).name.clone());
+                heard.is_some() && heard == made(event)
+            })
         };
         let heard =
             |e: &usize| automaton == 0 && person[*e].from.0 == location || waits(person[*e].sync.event());

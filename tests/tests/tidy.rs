@@ -13,10 +13,9 @@ const LONGEST: usize = 500;
 const LONG: &[(&str, usize)] = &[
     ("cli/tests/robust.rs", 572),
     ("compiler/interop/src/tchecker/export/expr.rs", 509),
-    ("compiler/ir/src/lowering.rs", 561),
     ("compiler/model/src/check/value/expr.rs", 581),
     ("compiler/model/src/lint/applicable.rs", 505),
-    ("compiler/syntax/src/ast.rs", 760),
+    ("compiler/syntax/src/ast.rs", 672),
     ("compiler/syntax/tests/format.rs", 764),
     ("compiler/tests/lower.rs", 1035),
     ("runtime/harness/tests/programs.rs", 557),

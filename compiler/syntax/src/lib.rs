@@ -29,6 +29,7 @@ mod recover;
 mod report;
 mod run;
 mod scope;
+mod suites;
 mod system;
 pub mod token;
 mod words;
