@@ -166,6 +166,9 @@ fn what_cannot_be_asked_is_said_where_it_stands() {
     let out = hrdsl_in(folder.path(), "gen scenario.hri");
     expect_code(&out, 1);
     let said = stderr(&out);
-    assert!(said.contains("HR0101") && said.contains("lesg") && said.contains("Robot.legs"), "{said}");
+    assert!(
+        said.contains("HR0101") && said.contains("lesg") && said.contains("did you mean `legs`?"),
+        "{said}"
+    );
     assert!(!folder.path().join("hrdsl-tests").exists());
 }

@@ -12,7 +12,7 @@ use hrdsl_compiler::{InputFile, compile};
 use hrdsl_ir::{
     EventId, Program,
     suite::BoundaryStep,
-    ta::{Automaton, ClockConstraint, ClockOp, Edge, EdgeAssignment, SyncLabel},
+    ta::{Automaton, ClockConstraint, ClockOp, Edge, EdgeAssignment, LocationKind, SyncLabel},
     value::SECOND,
 };
 use hrdsl_runtime::{
@@ -31,10 +31,11 @@ const MOST: i64 = 10;
 /// A person who does two stimuli, and a robot that makes an event.
 fn scenario(rng: &mut ChaCha8Rng) -> String {
     let mut text = "scenario random\nactor person : environment\nactor robot : system\n\
-        stimulus s0 by person { hold 1 s }\nstimulus s1 by person { hold 1 s }\nevent e0 from robot\n"
+        event f0, f1 from person to robot\nevent e0 from robot to person\n\
+        stimulus s0 by person { emit f0 }\nstimulus s1 by person { emit f1 }\n"
         .to_owned();
     for (name, actor, does, hears) in
-        [("P", "person", ["s0", "s1"], ["e0", "e0"]), ("R", "robot", ["e0", "e0"], ["s0", "s1"])]
+        [("P", "person", ["s0", "s1"], ["e0", "e0"]), ("R", "robot", ["e0", "e0"], ["f0", "f1"])]
     {
         let _ = writeln!(text, "automaton {name} plays {actor} {{\n  clock x");
         for (at, location) in ["a", "b", "c"].into_iter().enumerate() {
@@ -100,6 +101,18 @@ fn holds(c: &ClockConstraint, x: i64) -> bool {
 }
 
 impl Grid<'_> {
+    fn is_committed(&self, s: &GridState, m: usize) -> bool {
+        self.automata[m].locations[usize::from(s.at[m])].kind == LocationKind::Committed
+    }
+
+    /// A step of time; `None`: it may not pass.
+    fn later(&self, s: &GridState) -> Option<GridState> {
+        let x = s.x.map(|x| (x + 1).min(MOST));
+        let later = GridState { at: s.at, x, left: s.left.map(|n| (n + 1).min(2)) };
+        let waits = (0..2).all(|m| !self.is_committed(s, m));
+        (waits && self.stays(&later)).then_some(later)
+    }
+
     fn stays(&self, s: &GridState) -> bool {
         (0..2).all(|m| {
             let location = &self.automata[m].locations[usize::from(s.at[m])];
@@ -138,10 +151,12 @@ impl Grid<'_> {
                     _ => continue,
                 };
                 let other = 1 - m;
+                let hurries = self.is_committed(s, m) || !self.is_committed(s, other);
                 let hears = |e: &Edge| event.is_some() && e.sync.as_receive().map(|r| r.0) == event;
                 let receivers: Vec<usize> =
                     self.open(s, other).filter(|(_, e)| hears(e)).map(|(at, _)| at).collect();
                 let targets = match receivers.as_slice() {
+                    _ if !hurries && receivers.is_empty() => continue,
                     [] => vec![next],
                     some => some.iter().map(|r| self.moved(&next, other, *r)).collect(),
                 };
@@ -157,11 +172,7 @@ impl Grid<'_> {
         let mut seen: BTreeSet<GridState> = [start.clone()].into();
         let mut open = VecDeque::from([start]);
         while let Some(s) = open.pop_front() {
-            let mut later = s.clone();
-            later.x = s.x.map(|x| (x + 1).min(MOST));
-            later.left = s.left.map(|n| (n + 1).min(2));
-            let after = self.stays(&later).then_some(later);
-            for next in self.transitions(&s).into_iter().map(|t| t.3).chain(after) {
+            for next in self.transitions(&s).into_iter().map(|t| t.3).chain(self.later(&s)) {
                 if seen.insert(next.clone()) {
                     open.push_back(next);
                 }
@@ -178,9 +189,13 @@ impl Grid<'_> {
             |e: &Edge| e.sync.as_send().is_some_and(|(event, _)| program.event(event).is_stimulus());
         let all: Vec<usize> = (0..person.len()).filter(|e| stimulus(&person[*e])).collect();
         let own = &self.automata[automaton].edges;
-        let waits = |event| {
-            own.iter()
-                .any(|e| e.from.0 == location && e.sync.as_receive().is_some_and(|r| Some(r.0) == event))
+        // `s0` makes `f0`.
+        let made = |event: Option<EventId>| event.map(|e| program.event(e).name.replace('s', "f"));
+        let waits = |event: Option<EventId>| {
+            own.iter().filter(|e| e.from.0 == location).any(|e| {
+                let heard = e.sync.as_receive().map(|r| program.event(r.0).name.clone());
+                heard.is_some() && heard == made(event)
+            })
         };
         let heard =
             |e: &usize| automaton == 0 && person[*e].from.0 == location || waits(person[*e].sync.event());
@@ -228,9 +243,7 @@ fn replayed(grid: &Grid<'_>, program: &Program, finding: &BoundFinding) -> GridS
     for step in &run.steps {
         assert_eq!(step.time % (STEP * run.ticks), 0, "off the grid: {}", finding.id);
         for _ in 0..(step.time / (STEP * run.ticks) - now) {
-            state.x = state.x.map(|x| (x + 1).min(MOST));
-            state.left = state.left.map(|n| n + 1);
-            assert!(grid.stays(&state), "time may not pass: {}", finding.id);
+            state = grid.later(&state).unwrap_or_else(|| panic!("time may not pass: {}", finding.id));
         }
         now = step.time / (STEP * run.ticks);
         if step.event.as_ref().is_some_and(|(event, _)| program.event(*event).is_stimulus()) {

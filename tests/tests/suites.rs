@@ -1,12 +1,17 @@
 //! Suites: those of the case studies against the published ones (the same bins with fewer tests), and what suites may ask for and set.
 
 use std::{
+    collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
 };
 
 use hrdsl_compiler::{InputFile, ModuleLoader, ModuleText, compile, compile_with};
-use hrdsl_ir::{Program, suite::SuiteMethod, test::TestStep};
+use hrdsl_ir::{
+    Program,
+    suite::SuiteMethod,
+    test::{Test, TestStep},
+};
 use hrdsl_runtime::testgen::{GenerateOptions, generate_with};
 
 /// The modules of an example, but for that of its system: suites are made from the models alone.
@@ -24,8 +29,13 @@ impl ModuleLoader for ExampleModules {
 }
 
 fn program(example: &str) -> Program {
+    program_with(example, "")
+}
+
+/// With more suites behind the example's.
+fn program_with(example: &str, suites: &str) -> Program {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(example);
-    let text = fs::read_to_string(folder.join("scenario.hri")).unwrap();
+    let text = fs::read_to_string(folder.join("scenario.hri")).unwrap() + suites;
     let modules = ExampleModules(folder);
     compile_with(InputFile { name: "scenario.hri", text: &text }, &[], &modules).program.unwrap()
 }
@@ -101,7 +111,7 @@ fn tests_that_are_too_few_for_all_pairs_are_warned_of() {
         .iter()
         .map(|o| o.beliefs.facts.iter().filter_map(|(_, fact)| fact.args[0].as_int()).collect())
         .collect();
-    let mut pairs = std::collections::BTreeSet::new();
+    let mut pairs = BTreeSet::new();
     for set in &sets {
         pairs.extend((0..13).flat_map(|f| (0..f).map(move |g| (f, g, set[f], set[g]))));
     }
@@ -168,4 +178,61 @@ fn a_search_reaches_each_value_after_the_warm_up() {
         let steps = &test.scripts[0].steps;
         assert_eq!(steps[0], TestStep::Wait { time: 2_500_000_000 }, "{steps:?}");
     }
+}
+
+/// What the tests show a robot of each leg: whether the person looks at it, reaches for it and holds it when they say that they are
+/// ready.
+fn outcomes(tests: &[Test]) -> BTreeSet<(usize, [bool; 3])> {
+    let mut seen = BTreeSet::new();
+    let program = program("handover");
+    for test in tests {
+        let (mut leg, mut done) = (0, [None; 3]);
+        for step in test.scripts.iter().flat_map(|script| &script.steps) {
+            let TestStep::Do { event, args, .. } = step else { continue };
+            let ok = args.first().and_then(|arg| arg.as_bool());
+            match program.event(*event).name.as_str() {
+                "ask_leg" => (leg, done) = (leg + 1, [None; 3]),
+                "look" => done = [ok, None, None],
+                "reach" if done[0].is_some() => done[1] = ok,
+                "grip" if done[1].is_some() => done[2] = ok,
+                "say_ready" => {
+                    if let [Some(looks), Some(reaches), Some(grips)] = done {
+                        seen.insert((leg, [looks, reaches, grips]));
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    seen
+}
+
+/// The shortest witnesses choose that nobody looks, reaches and holds; four legs have 32 outcomes.
+#[test]
+fn a_search_shows_the_outcomes_that_it_is_asked_for() {
+    let usual = "reach each bin of human_robot; reach each location; reach each edge; tests 200";
+    let suites = format!(
+        "\nsuite usual by search of table {{ {usual} }}
+        suite several by search of table {{ {usual}; diverse 3 }}
+        suite pairs by search of table {{
+          {usual}; reach each pair of gaze_, pressure_, location_ when Robot.decide
+        }}
+        suite all by search of table {{
+          {usual}; reach each combination of Robot.legs, gaze_, pressure_, location_ when Robot.decide
+        }}"
+    );
+    let program = program_with("handover", &suites);
+    let shown = |name: &str| {
+        let suite = program.suites.iter().find(|s| s.name == name).unwrap();
+        let made = generate_with(&program, suite, GenerateOptions::default()).unwrap();
+        let outcomes = outcomes(&made.tests);
+        let of_sensors: BTreeSet<[bool; 3]> = outcomes.iter().map(|o| o.1).collect();
+        (outcomes.len(), of_sensors.len(), made.abstract_tests)
+    };
+    assert_eq!(shown("usual"), shown("ta_tests"));
+    assert_eq!(shown("usual"), (6, 2, 17));
+    assert_eq!(shown("all"), (32, 8, 42));
+    let (few, pairs) = (shown("several"), shown("pairs"));
+    assert!(few.0 > 6 && few.1 > 2 && few.2 <= 17 * 3, "{few:?}");
+    assert!(pairs.1 >= 4 && pairs.2 < 42, "{pairs:?}");
 }

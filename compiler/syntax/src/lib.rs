@@ -30,6 +30,7 @@ mod recover;
 mod report;
 mod run;
 mod scope;
+mod suites;
 mod system;
 mod temporal;
 pub mod token;

@@ -609,8 +609,8 @@ suite s by agents Human,Robot{
   explore pairwise;tests 160;horizon 300s
   patience 60s
 }
-suite t by search of table{reach each bin of c;reach each location reach each edge}
-suite r by random{stimuli ask,look;await offered|gone;length 5 .. 20;pause 0s..10s;tests 3}
+suite t by search of table{reach each bin of c;reach each edge reach each pair of a,b&&c when R.x&&c reach each bound by 10ms;diverse 3}
+suite r by random{stimuli ask,look;await offered|gone;length 5 .. 20;pause 0s..10s;boundary 0.5;tests 3}
 "#
     tests r#"
 test bdi_tests.t017{seed 17 method agents;because "wants(2)";predicts "a, b\n\\"}

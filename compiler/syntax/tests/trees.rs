@@ -220,6 +220,8 @@ suite s by agents Human, Robot {
   explore pairwise tests 160 horizon 300 s; patience 60 s
 }
 suite t by search of table { reach each bin of c; reach each location reach each edge }
+suite v by search of table { reach each combination of Robot.legs, gaze && not away when Robot.decide; reach each pair of a, b[1] reach each bound by 10 ms diverse 3 }
+suite q by random { stimuli ask boundary 0.25 }
 suite w by agents Human {
   explore wise(3) stop after 30 minimise reach each plan; reach each context reach each message reach each path
   explore learn

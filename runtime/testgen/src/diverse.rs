@@ -18,6 +18,12 @@ use crate::{
     distinct::{TestIdentity, identity},
 };
 
+/// A further witness has at most so many transitions, if the first has so many: what wanders about would show most, and take
+/// hours.
+pub fn longest(first: usize) -> usize {
+    2 * first + 8
+}
+
 /// Something that a run shows.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RunFeature {
@@ -58,9 +64,15 @@ impl WitnessPool {
         self.shows.entry(identity(&test.scripts)).or_default().extend(features);
     }
 
+    /// As [`add_to`](Self::add_to), and says how many there were.
+    pub fn added_to(&self, kept: &mut Vec<AbstractTest>, goals: usize, each: u32) -> String {
+        let added = self.add_to(kept, goals, each);
+        format!("{added} more of {} further witnesses, for up to {each} of each goal", self.spares.len())
+    }
+
     /// Adds spares until each goal that the kept tests reach is reached by so many, as far as there are different ones. A round
     /// gives every goal one more, so that what is cut off by a number of tests is the last round's.
-    pub fn add_to(&self, kept: &mut Vec<AbstractTest>, goals: usize, each: u32) -> usize {
+    fn add_to(&self, kept: &mut Vec<AbstractTest>, goals: usize, each: u32) -> usize {
         let before = kept.len();
         let mut known: BTreeSet<TestIdentity> = kept.iter().map(|t| identity(&t.scripts)).collect();
         let mut shown: BTreeSet<&RunFeature> =

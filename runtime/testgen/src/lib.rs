@@ -35,7 +35,7 @@ mod times;
 mod write;
 
 use hrdsl_ir::{
-    Program,
+    Nanos, Program,
     abstract_test::AbstractTest,
     suite::{DelayChoice, Suite, SuiteMethod, WitnessKind},
     test::{Test, TestMethod, TestProvenance, TestScript, TestStep},
@@ -46,7 +46,7 @@ use hrdsl_results::{
     UncoveredGoal,
 };
 
-use hrdsl_trace::decimal;
+use diverse::WitnessPool;
 
 pub use bounds::{BoundFinding, BoundFindings, BoundSide, boundary_step, decided as bound_findings};
 
@@ -86,22 +86,29 @@ pub fn generate(
 /// The most tests of one suite: all of them are held in memory, and written to one file.
 pub const MAX_TESTS: u32 = 20_000;
 
-/// Makes the tests of a suite.
-///
-/// # Errors
-/// A model that cannot be run, with the place.
-pub fn generate_with(
+/// The abstract tests of a suite, before any of them goes.
+struct SuiteHarvest {
+    method: TestMethod,
+    abstract_tests: AbstractTests,
+    /// Whether only those are kept that are needed.
+    minimise: bool,
+    /// The tuples that the sets of agents are to have, and the sets that lead to each of the different tests.
+    tuples: Option<(hrdsl_bdi::choose::SetTuples, Vec<Vec<u64>>)>,
+    /// Of a search: further witnesses, and how many of each goal are kept.
+    spares: Option<(WitnessPool, u32)>,
+    /// Of agents: how much shorter and longer pauses are made, too.
+    pauses: Option<Nanos>,
+}
+
+fn harvested(
     program: &Program,
     suite: &Suite,
     options: GenerateOptions,
-) -> Result<GeneratedSuite, String> {
-    let GenerateOptions { count, seed, minimise, .. } = options;
-    let most = count.unwrap_or(suite.settings.tests);
-    if most > MAX_TESTS {
-        return Err(format!("{most} tests are more than are generated for one suite: at most {MAX_TESTS}"));
-    }
+    most: u32,
+) -> Result<SuiteHarvest, String> {
+    let GenerateOptions { seed, minimise, .. } = options;
     let (mut tuples, mut spares, mut pauses) = (None, None, None);
-    let (method, harvest, minimise) = match &suite.method {
+    let (method, abstract_tests, minimise) = match &suite.method {
         SuiteMethod::Agents { minimise: said, bounds, .. } => {
             pauses = bounds.map(|step| bounds::boundary_step(program, step));
             let (harvest, of) = agents::harvest(program, suite, most, seed)?;
@@ -127,7 +134,26 @@ pub fn generate_with(
             (TestMethod::Random, random::harvest(program, suite, most, seed)?, false)
         }
     };
-    let AbstractTests { tests, mut goals, mut notes, found } = harvest;
+    Ok(SuiteHarvest { method, abstract_tests, minimise, tuples, spares, pauses })
+}
+
+/// Makes the tests of a suite.
+///
+/// # Errors
+/// A model that cannot be run, with the place.
+pub fn generate_with(
+    program: &Program,
+    suite: &Suite,
+    options: GenerateOptions,
+) -> Result<GeneratedSuite, String> {
+    let GenerateOptions { count, seed, .. } = options;
+    let most = count.unwrap_or(suite.settings.tests);
+    if most > MAX_TESTS {
+        return Err(format!("{most} tests are more than are generated for one suite: at most {MAX_TESTS}"));
+    }
+    let SuiteHarvest { method, abstract_tests, minimise, tuples, spares, pauses } =
+        harvested(program, suite, options, most)?;
+    let AbstractTests { tests, mut goals, mut notes, found } = abstract_tests;
     let mut different = distinct::distinct(tests);
     let mut number = most;
     if minimise {
@@ -139,31 +165,21 @@ pub fn generate_with(
             number = count.unwrap_or(most.min(u32::try_from(different.len()).unwrap_or(u32::MAX)));
         }
     }
-    if let Some((pool, each)) = spares {
-        let added = pool.add_to(&mut different, goals.len(), each);
-        notes.push(format!(
-            "{added} more of {} further witnesses, for up to {each} of each goal",
-            pool.spares.len()
-        ));
-    }
+    notes.extend(spares.map(|(pool, each)| pool.added_to(&mut different, goals.len(), each)));
+    let usual = different.len();
     if let Some(step) = pauses {
-        let beside = pauses::beside(program, &different, step);
-        notes.push(format!(
-            "{} tests with a pause {} s shorter or longer",
-            beside.len(),
-            decimal::seconds(step)
-        ));
+        notes.push(pauses::added_to(program, &mut different, step));
         // They come besides what the suite asks for.
-        let more = u32::try_from(beside.len()).unwrap_or(u32::MAX);
+        let more = u32::try_from(different.len() - usual).unwrap_or(u32::MAX);
         number = count.unwrap_or(number.saturating_add(more).min(MAX_TESTS));
-        different.extend(beside);
     }
     let tests = make_concrete(program, suite, method, &different, number, seed)?;
     let made = &different[..different.len().min(number as usize)];
     let origins = different.iter().cycle().take(tests.len()).filter_map(|t| t.origin.clone()).collect();
     name_tests(suite, made, &mut goals);
-    let lost_tuples = tuples.and_then(|(of, sets)| cut::lost(&of, &sets, made.len()));
-    notes.extend(lost_tuples.map(|lost| cut::warning(lost, made.len())));
+    let with_sets = made.len().min(usual);
+    let lost_tuples = tuples.and_then(|(of, sets)| cut::lost(&of, &sets, with_sets));
+    notes.extend(lost_tuples.map(|lost| cut::warning(lost, with_sets)));
     let explanation = found.as_ref().map(|found| explain(found, made, suite));
     Ok(GeneratedSuite {
         suite: suite.name.clone(),

@@ -17,8 +17,16 @@ use crate::{
     write,
 };
 
+/// Adds the tests beside the pauses of these, and says how many they are.
+pub fn added_to(program: &Program, tests: &mut Vec<AbstractTest>, step: Nanos) -> String {
+    let beside = beside(program, tests, step);
+    let said = format!("{} tests with a pause {} shorter or longer", beside.len(), write::time_text(step));
+    tests.extend(beside);
+    said
+}
+
 /// The tests beside the pauses of these, two of each pause that is longer than the step.
-pub fn beside(program: &Program, tests: &[AbstractTest], step: Nanos) -> Vec<AbstractTest> {
+fn beside(program: &Program, tests: &[AbstractTest], step: Nanos) -> Vec<AbstractTest> {
     let mut known: BTreeSet<TestIdentity> = tests.iter().map(|t| identity(&t.scripts)).collect();
     let mut pauses: BTreeSet<TestIdentity> = BTreeSet::new();
     let mut made = Vec::new();

@@ -65,17 +65,10 @@ pub fn harvest(
         let step = bounds::boundary_step(program, *step);
         maker.bounds(&mut harvest, &mut pool, (step, settings)).map_err(|e| of_network(network, &e))?;
     }
-    for round in 1..=if diverse > 1 { u64::from(diverse) } else { 0 } {
-        let order = Some(SearchOrder::RandomBreadth);
-        let seed = settings.seed.wrapping_mul(1_000_003).wrapping_add(round);
-        let settings = ProofOptions { order, seed, ..*settings };
-        let (fates, _) = self::fates(program, network, &all, &settings, &mut Vec::new())
-            .map_err(|e| of_network(network, &e))?;
-        for (goal, fate) in fates.iter().enumerate() {
-            let GoalFate::Reached(run) = fate else { continue };
-            let spare = maker.test(goal, &named[goal].id, &run.witness, &mut pool);
-            pool.spares.push(spare);
-        }
+    if diverse > 1 {
+        // Those that are not needed may be wanted as second ones.
+        pool.spares.clone_from(&harvest.tests);
+        maker.spares(&mut pool, &fates, settings, diverse).map_err(|e| of_network(network, &e))?;
     }
     Ok((harvest, pool))
 }
@@ -115,6 +108,31 @@ impl<'a> WitnessTests<'a> {
         test.reaches = (0..self.named.len()).filter(|goal| shows(*goal)).chain([own]).collect();
         pool.note(&test, diverse::features(&seen, run));
         test
+    }
+
+    /// Searches again, so many times in each of two random orders, and keeps what is not much longer than what was found first.
+    fn spares(
+        &self,
+        pool: &mut WitnessPool,
+        first: &[GoalFate],
+        settings: &ProofOptions,
+        diverse: u32,
+    ) -> Result<(), SearchError> {
+        let all: Vec<&NamedGoal> = self.named.iter().collect();
+        let orders = [SearchOrder::RandomBreadth, SearchOrder::RandomDepth];
+        for (round, order) in (1..=u64::from(diverse)).flat_map(|round| orders.map(|order| (round, order))) {
+            let seed = settings.seed.wrapping_mul(1_000_003).wrapping_add(round);
+            let settings = ProofOptions { order: Some(order), seed, ..*settings };
+            let (fates, _) = fates(self.program, self.network, &all, &settings, &mut Vec::new())?;
+            for (goal, (fate, first)) in fates.iter().zip(first).enumerate() {
+                let (GoalFate::Reached(run), GoalFate::Reached(first)) = (fate, first) else { continue };
+                if run.witness.steps.len() <= diverse::longest(first.witness.steps.len()) {
+                    let spare = self.test(goal, &self.named[goal].id, &run.witness, pool);
+                    pool.spares.push(spare);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Adds the bounds of the network, and a test for each of their sides that is reached.
@@ -242,16 +260,20 @@ fn fates(
         }
     }
     let alone = named.iter().filter(|n| n.monitor.is_none()).count();
-    notes.push(format!(
-        "network `{}`: {} symbolic states stored, {} visited, for {alone} goals in {}",
-        network.name,
-        decided.states,
-        decided.visited,
-        match decided.searches {
-            0 | 1 => "one exploration".to_owned(),
-            n => format!("{n} explorations"),
-        }
-    ));
+    // Who asks for bounds alone has no goals here.
+    let told = (!named.is_empty()).then(|| {
+        format!(
+            "network `{}`: {} symbolic states stored, {} visited, for {alone} goals in {}",
+            network.name,
+            decided.states,
+            decided.visited,
+            match decided.searches {
+                0 | 1 => "one exploration".to_owned(),
+                n => format!("{n} explorations"),
+            }
+        )
+    });
+    notes.extend(told);
     let (states, mut outcomes) = (decided.states, outcomes.into_iter());
     let mut fates = Vec::new();
     for goal in named {

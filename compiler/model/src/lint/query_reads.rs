@@ -1,8 +1,8 @@
 //! The variables and clocks that queries read: of automata, and shared ones.
 
 use crate::{
-    ClockId, Scenario, SearchGoal, TypedExpr, TypedFormula, TypedMeasure, TypedMethod, TypedQuery,
-    TypedQueryKind, TypedSuite, VariableRef,
+    ClockId, Scenario, TypedExpr, TypedFormula, TypedMeasure, TypedMethod, TypedQuery, TypedQueryKind,
+    TypedSearchGoal, TypedSuite, VariableRef,
 };
 
 /// What is read, by index.
@@ -50,7 +50,7 @@ impl QueryReads {
         let automata: Vec<usize> = network.automata.iter().map(|a| usize::from(a.0)).collect();
         let mut reader = QueryReader { automata: &automata, reads: self };
         for goal in goals {
-            let SearchGoal::Combinations(all) = goal else { continue };
+            let TypedSearchGoal::Combinations(all) = goal else { continue };
             all.terms.iter().for_each(|term| reader.data(&term.value));
             all.when.iter().for_each(|when| reader.formula(&when.formula));
         }

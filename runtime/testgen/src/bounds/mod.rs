@@ -184,9 +184,13 @@ impl BoundFindings {
         let decided = decide(&after.observed.program, &after.observed, &question, &[], settings, &watch)?;
         self.states += decided.states;
         self.searches += decided.searches;
-        if let Some(GoalFate::Reached(run)) = decided.fates.into_iter().next() {
-            let closed = closing::closed(&after.observed, &run.witness, &site.stimuli);
-            *finding = site.finding(BoundSide::After, closed);
+        match decided.fates.into_iter().next() {
+            Some(GoalFate::Reached(run)) => {
+                let closed = closing::closed(&after.observed, &run.witness, &site.stimuli);
+                *finding = site.finding(BoundSide::After, closed);
+            }
+            Some(GoalFate::Inconclusive(why)) => *finding = site.finding(BoundSide::After, Err(why)),
+            Some(GoalFate::Unreachable) | None => {}
         }
         Ok(())
     }

@@ -174,7 +174,7 @@ pub fn of_members(
         for (location, declared) in (0u16..).map(LocationId).zip(&automaton.locations) {
             // Where no time passes, nothing is just before or after.
             if declared.kind == LocationKind::Normal && !is_generated(&declared.name) {
-                let place = BoundPlace { program, numbers: &numbers, automaton, member, location };
+                let place = BoundedLocation { program, numbers: &numbers, automaton, member, location };
                 all.extend(place.sites(stimuli));
             }
         }
@@ -183,7 +183,7 @@ pub fn of_members(
 }
 
 /// A location of a member.
-struct BoundPlace<'a> {
+struct BoundedLocation<'a> {
     program: &'a Program,
     numbers: &'a NetworkNumbers,
     automaton: &'a Automaton,
@@ -191,7 +191,7 @@ struct BoundPlace<'a> {
     location: LocationId,
 }
 
-impl BoundPlace<'_> {
+impl BoundedLocation<'_> {
     fn edges(&self) -> impl Iterator<Item = (usize, &Edge)> {
         self.automaton.edges.iter().enumerate().filter(|(_, e)| e.from == self.location)
     }

@@ -18,8 +18,8 @@ use crate::check::{
 };
 use crate::{
     BoundaryStep, ChoiceKind, CrossId, DelayChoice, Dimension, EventId, EventPattern, ExploreMode,
-    InferredType, ModelGoal, NetworkId, PlayerRef, Role, SearchGoal, TypedChoice, TypedChoiceCondition,
-    TypedMethod, TypedSuite, Value, WitnessKind,
+    InferredType, ModelGoal, NetworkId, PlayerRef, Role, TypedChoice, TypedChoiceCondition, TypedMethod,
+    TypedSearchGoal, TypedSuite, Value, WitnessKind,
     noun::Noun,
     report::{coverage::bad_suite, names, roles, types},
 };
@@ -29,7 +29,7 @@ use crate::{
 pub(super) struct SuiteMembers {
     choose: Vec<TypedChoice>,
     explore: Option<ExploreMode>,
-    pub(super) goals: Vec<SearchGoal>,
+    pub(super) goals: Vec<TypedSearchGoal>,
     reached: Vec<ModelGoal>,
     stop_after: Option<u32>,
     minimise: bool,
@@ -241,7 +241,7 @@ impl TestingPhase<'_, '_> {
             }
             Member::ReachEachOf { .. } => {
                 let found = self.networks.combinations.get(&member.span).cloned();
-                said.goals.extend(found.map(SearchGoal::Combinations));
+                said.goals.extend(found.map(TypedSearchGoal::Combinations));
             }
             Member::ReachEachBy { what, step } => self.reach_each_by(what, step, by_search, said),
             Member::ReachOf { what, names } => self.reach_of(what, names, said),
@@ -263,7 +263,7 @@ impl TestingPhase<'_, '_> {
             Member::ReachBins(name) => match self.crosses.get(&name.text) {
                 Some(id) => {
                     self.refer(name, self.crosses.span(id));
-                    said.goals.push(SearchGoal::Bins(CrossId(id)));
+                    said.goals.push(TypedSearchGoal::Bins(CrossId(id)));
                     said.reached.push(ModelGoal::Bins(CrossId(id)));
                 }
                 None => {
@@ -271,9 +271,9 @@ impl TestingPhase<'_, '_> {
                     self.unknown(Noun::Cross, name, &all, None);
                 }
             },
-            Member::ReachLocations => said.goals.push(SearchGoal::Locations),
+            Member::ReachLocations => said.goals.push(TypedSearchGoal::Locations),
             Member::ReachEdges => {
-                said.goals.push(SearchGoal::Edges);
+                said.goals.push(TypedSearchGoal::Edges);
                 said.reached.push(ModelGoal::Edges);
             }
             Member::Stimuli(names) => {

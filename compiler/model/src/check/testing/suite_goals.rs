@@ -6,7 +6,7 @@ use hrdsl_syntax::ast::{self, NameSyntax, SuiteMember, SuiteMemberKind, SuiteSet
 use super::{phase::TestingPhase, suite::SuiteMembers};
 use crate::check::template::CheckerPhase;
 use crate::{
-    AutomatonId, BoundaryStep, Dimension, NetworkId, QueryId, RequirementId, SearchGoal, TypedQueryKind,
+    AutomatonId, BoundaryStep, Dimension, NetworkId, QueryId, RequirementId, TypedQueryKind, TypedSearchGoal,
     noun::Noun,
     report::{coverage::bad_suite, types},
 };
@@ -18,10 +18,10 @@ impl TestingPhase<'_, '_> {
     /// `pair`, `use`, `value`, `bound`
     pub(super) fn reach_each_of_network(&mut self, word: &NameSyntax, said: &mut SuiteMembers) {
         let goals = [
-            SearchGoal::Pairs,
-            SearchGoal::Uses,
-            SearchGoal::Values,
-            SearchGoal::Bounds(BoundaryStep::default()),
+            TypedSearchGoal::Pairs,
+            TypedSearchGoal::Uses,
+            TypedSearchGoal::Values,
+            TypedSearchGoal::Bounds(BoundaryStep::default()),
         ];
         let words = ["pair", "use", "value", "bound", "location", "edge", "bin of …", "combination of …"];
         let found = self.choice(Noun::SearchReach, word, &words);
@@ -44,7 +44,7 @@ impl TestingPhase<'_, '_> {
         } else if known {
             let step = BoundaryStep { by: Some(by) };
             if by_search {
-                said.goals.push(SearchGoal::Bounds(step));
+                said.goals.push(TypedSearchGoal::Bounds(step));
             } else {
                 said.bounds = Some(step);
             }
@@ -135,14 +135,14 @@ impl TestingPhase<'_, '_> {
             }
             let id = RequirementId(u16::try_from(at).unwrap_or(u16::MAX));
             match what {
-                Some(0) => said.goals.push(SearchGoal::Violation(id)),
-                Some(_) => said.goals.push(SearchGoal::Trigger(id)),
+                Some(0) => said.goals.push(TypedSearchGoal::Violation(id)),
+                Some(_) => said.goals.push(TypedSearchGoal::Trigger(id)),
                 None => {}
             }
         }
     }
 
-    pub(super) fn reach_query(&mut self, name: &NameSyntax) -> Option<SearchGoal> {
+    pub(super) fn reach_query(&mut self, name: &NameSyntax) -> Option<TypedSearchGoal> {
         if self.networks.queries.get(&name.text).is_none() {
             let all = self.near_of(&[Noun::Query]);
             self.unknown(Noun::Query, name, &all, None);
@@ -157,7 +157,7 @@ impl TestingPhase<'_, '_> {
                 None
             }
             TypedQueryKind::Possibly(_) => {
-                Some(SearchGoal::Query(QueryId(u16::try_from(at).unwrap_or(u16::MAX))))
+                Some(TypedSearchGoal::Query(QueryId(u16::try_from(at).unwrap_or(u16::MAX))))
             }
             TypedQueryKind::Invariantly(_)
             | TypedQueryKind::PotentiallyAlways(_)
@@ -176,11 +176,11 @@ impl TestingPhase<'_, '_> {
     pub(super) fn of_network(
         &mut self,
         network: NetworkId,
-        goals: &[SearchGoal],
+        goals: &[TypedSearchGoal],
         suite: &ast::SuiteSyntax,
     ) -> NetworkId {
         for goal in goals {
-            let SearchGoal::Query(id) = goal else { continue };
+            let TypedSearchGoal::Query(id) = goal else { continue };
             let query = &self.s.queries[usize::from(id.0)];
             if query.network == network {
                 continue;
