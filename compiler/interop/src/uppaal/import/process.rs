@@ -1,7 +1,6 @@
 //! The processes of the system: templates with their arguments, their locations and edges.
 
 use hrdsl_source::Span;
-use indexmap::IndexMap;
 
 use super::{
     ast::{UppaalExpr, UppaalExprKind, UppaalInstance, UppaalParameter, UppaalSync},
@@ -15,7 +14,7 @@ use super::{
     template::ParsedEdge,
     translation::{UppaalProcess, UppaalTranslation},
     write::one_line,
-    xml::{UppaalTemplate, UppaalTransition},
+    xml::UppaalTransition,
 };
 use crate::exchange::note::NoteSeverity;
 
