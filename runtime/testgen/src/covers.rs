@@ -105,10 +105,18 @@ impl ReachedItems {
         }
     }
 
-    /// The edges that were taken, and those one after the other: automaton, edge; automaton, edge, edge.
-    pub fn flow(&self) -> (&BTreeSet<(usize, usize)>, &BTreeSet<(usize, usize, usize)>) {
-        (&self.edges, &self.pairs)
+    /// Along which edges the run went.
+    pub fn flow(&self) -> RunFlow<'_> {
+        RunFlow { edges: &self.edges, pairs: &self.pairs }
     }
+}
+
+/// The edges that a run took.
+pub struct RunFlow<'a> {
+    /// Automaton, edge.
+    pub edges: &'a BTreeSet<(usize, usize)>,
+    /// Those one after the other: automaton, edge, edge.
+    pub pairs: &'a BTreeSet<(usize, usize, usize)>,
 }
 
 impl RunState {

@@ -14,7 +14,7 @@ use hrdsl_ir::{
 use hrdsl_ta::WitnessRun;
 
 use crate::{
-    covers::ReachedItems,
+    covers::{ReachedItems, RunFlow},
     distinct::{TestIdentity, identity},
 };
 
@@ -37,7 +37,7 @@ pub enum RunFeature {
 
 /// What a run shows.
 pub fn features(seen: &ReachedItems, run: &WitnessRun) -> BTreeSet<RunFeature> {
-    let (edges, pairs) = seen.flow();
+    let RunFlow { edges, pairs } = seen.flow();
     let outcomes = run.steps.iter().filter_map(|step| step.event.as_ref());
     let outcomes = outcomes
         .map(|(event, args)| RunFeature::Outcome(event.0, args.iter().map(|arg| arg.key()).collect()));

@@ -104,8 +104,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     };
     let stepped = args.physics_step.map(|step| physics_steps::with_step(program, step)).transpose()?;
     let program = stepped.as_ref().unwrap_or(program);
-    let finer = args.physics_steps.iter().map(|step| Ok((*step, physics_steps::with_step(program, *step)?)));
-    let finer = finer.collect::<Result<Vec<_>, CommandFault>>()?;
+    let finer = physics_steps::with_steps(program, &args.physics_steps)?;
     let system = chosen_system(program, args.campaign.system.as_deref())?;
     let system = &covered_files::named(system, &files::folder(&args.campaign.file));
     let out = args.out.clone().unwrap_or_else(|| Path::new("hrdsl-out").join(&program.name));

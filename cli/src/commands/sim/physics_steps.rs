@@ -30,6 +30,14 @@ pub fn with_step(program: &Program, step: Duration) -> Result<Program, CommandFa
     Ok(program)
 }
 
+/// The program with each of these steps.
+///
+/// # Errors
+/// As [`with_step`].
+pub fn with_steps(program: &Program, steps: &[Duration]) -> Result<Vec<(Duration, Program)>, CommandFault> {
+    steps.iter().map(|step| Ok((*step, with_step(program, *step)?))).collect()
+}
+
 /// The campaign with each of these programs, which were made with these steps.
 pub fn others<'p>(campaign: &CampaignSetup<'p>, programs: &'p [(Duration, Program)]) -> Vec<OtherWay<'p>> {
     let other = |(step, program): &'p (Duration, Program)| OtherWay {

@@ -32,8 +32,17 @@ pub(crate) struct DelayProgram {
     /// By the number of a time: how many delays are before it.
     before: Vec<usize>,
     clocks: Vec<RunDelays>,
-    /// Each once: the signs of delays, the bound, and whether it is strict.
-    bounds: Vec<(Vec<(usize, i8)>, i64, bool)>,
+    /// Each once.
+    bounds: Vec<DelayBound>,
+}
+
+/// A bound on delays.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct DelayBound {
+    /// The delays by number, ascending, and with which sign each counts.
+    signs: Vec<(usize, i8)>,
+    most: i64,
+    is_strict: bool,
 }
 
 /// Times as whole parts of a nanosecond.
@@ -74,7 +83,8 @@ impl DelayProgram {
                 Err(at) => signs.insert(at, (*k, -1)),
             }
         }
-        let bound = (signs, c.bound.value() - i.plus + j.plus, c.bound.is_strict());
+        let most = c.bound.value() - i.plus + j.plus;
+        let bound = DelayBound { signs, most, is_strict: c.bound.is_strict() };
         if !self.bounds.contains(&bound) {
             self.bounds.push(bound);
         }
@@ -128,9 +138,9 @@ impl DelayProgram {
             factors
         };
         let mut bounds: Vec<LinearBound> = Vec::with_capacity(self.bounds.len() + 1);
-        for (signs, most, strict) in &self.bounds {
+        for DelayBound { signs, most, is_strict } in &self.bounds {
             let mut factors = row(signs, 1);
-            factors[room] = i128::from(*strict);
+            factors[room] = i128::from(*is_strict);
             bounds.push(LinearBound { factors, most: i128::from(*most) });
         }
         let mut most = row(&[], 1);
@@ -147,8 +157,8 @@ impl DelayProgram {
         let shared = gcd(width, over.checked_mul(ROOM).ok_or(LinearOverflow)?);
         let (part, of) = (width / shared, over.checked_mul(ROOM).ok_or(LinearOverflow)? / shared);
         let mut kept = Vec::with_capacity(self.bounds.len());
-        for (signs, most, strict) in &self.bounds {
-            let (factor, less) = if *strict { (of, part) } else { (1, 0) };
+        for DelayBound { signs, most, is_strict } in &self.bounds {
+            let (factor, less) = if *is_strict { (of, part) } else { (1, 0) };
             let most = i128::from(*most).checked_mul(factor).and_then(|m| m.checked_sub(less));
             kept.push(LinearBound { factors: row(signs, factor), most: most.ok_or(LinearOverflow)? });
         }

@@ -267,10 +267,9 @@ impl BoundedLocation<'_> {
             self.program.shared.iter().chain(&self.automaton.vars).map(|v| v.name.as_str()).collect();
         let mut text = write::time_text(time.nanos);
         for term in &time.terms {
-            let value = match &term.value {
-                hrdsl_ir::Expr::Var(slot) => names.get(usize::from(*slot)).copied().unwrap_or("…"),
-                _ => "…",
-            };
+            let slot =
+                if let hrdsl_ir::Expr::Var(slot) = &term.value { Some(usize::from(*slot)) } else { None };
+            let value = slot.and_then(|slot| names.get(slot).copied()).unwrap_or("…");
             let sign = if term.factor < 0 { '-' } else { '+' };
             text = format!("{text} {sign} {value} * {}", write::time_text(term.factor.abs()));
         }

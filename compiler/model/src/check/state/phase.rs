@@ -59,16 +59,14 @@ impl CheckPhase {
     pub fn speaks_of(self, other: CheckPhase) -> bool {
         match other {
             CheckPhase::Vocabulary | CheckPhase::World => true,
-            CheckPhase::Queries | CheckPhase::Requirements => self == CheckPhase::Suites,
+            CheckPhase::Automata | CheckPhase::Queries | CheckPhase::Requirements => {
+                self == CheckPhase::Suites
+            }
             CheckPhase::Coverage => {
                 matches!(self, CheckPhase::Coverage | CheckPhase::Suites | CheckPhase::Tests)
             }
             CheckPhase::Stimuli => matches!(self, CheckPhase::Automata | CheckPhase::Tests),
-            CheckPhase::Agents
-            | CheckPhase::Automata
-            | CheckPhase::Suites
-            | CheckPhase::Systems
-            | CheckPhase::Tests => false,
+            CheckPhase::Agents | CheckPhase::Suites | CheckPhase::Systems | CheckPhase::Tests => false,
         }
     }
 }

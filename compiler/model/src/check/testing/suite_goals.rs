@@ -94,11 +94,12 @@ impl TestingPhase<'_, '_> {
 
     /// Who asks for bounds has a network in which a clock is compared with a time.
     pub(super) fn bounded(&mut self, network: NetworkId, suite: &ast::SuiteSyntax) {
-        let asks = |m: &&SuiteMember| match &m.kind {
-            SuiteMemberKind::ReachEach(what) | SuiteMemberKind::ReachEachBy { what, .. } => {
-                what.text == "bound"
-            }
-            _ => false,
+        let asks = |m: &&SuiteMember| {
+            let (SuiteMemberKind::ReachEach(what) | SuiteMemberKind::ReachEachBy { what, .. }) = &m.kind
+            else {
+                return false;
+            };
+            what.text == "bound"
         };
         let Some(at) = suite.members.iter().find(asks).map(|m| m.span) else { return };
         let network = &self.s.networks[usize::from(network.0)];
