@@ -20,6 +20,13 @@ const FINER: usize = 4;
 /// By how much more than it went beyond it a joint is told to end earlier.
 const EARLIER: f64 = 1.25;
 
+/// A joint that went beyond an end: by number, and where it was and is from its start, rad or m.
+struct JointBeyond {
+    at: usize,
+    was: f64,
+    is: f64,
+}
+
 impl DrivenJoint {
     /// How far a joint that is so far from its start is beyond an end, rad or m; less than 0 within its ends.
     pub(super) fn beyond(&self, way: f64) -> f64 {
@@ -48,8 +55,8 @@ impl PhysicsAdapter {
                 break;
             }
             self.put_back();
-            for (at, way, by) in gone {
-                self.end_earlier(at, way, by);
+            for joint in gone {
+                self.end_earlier(&joint);
             }
             if retry == 0 {
                 self.divide(self.part.0, FINER * self.part.1);
@@ -84,12 +91,13 @@ impl PhysicsAdapter {
         self.before = before;
     }
 
-    /// The joints that are beyond an end, and farther than before: each by number, where it was from its start, and by how much.
-    fn gone_beyond(&self) -> Vec<(usize, f64, f64)> {
+    /// The joints that are beyond an end, and farther than before.
+    fn gone_beyond(&self) -> Vec<JointBeyond> {
         let gone = |(at, way): &(usize, f64)| {
             let driven = self.joints[*at].as_ref()?;
-            let (was, is) = (driven.beyond(*way), driven.beyond(self.way(driven)));
-            (is > was.max(0.0) + UNNOTICED).then_some((*at, *way, is))
+            let (was, is) = (driven.beyond(*way), self.way(driven));
+            let found = JointBeyond { at: *at, was: *way, is };
+            (driven.beyond(is) > was.max(0.0) + UNNOTICED).then_some(found)
         };
         self.before.joints.iter().filter_map(gone).collect()
     }
@@ -112,16 +120,16 @@ impl PhysicsAdapter {
         self.place_joints();
     }
 
-    /// Tells the engine that a joint ends earlier than it last did, as it went so far beyond its end from where it is: no farther back than
-    /// that, since it would be thrown back.
-    fn end_earlier(&mut self, at: usize, way: f64, by: f64) {
+    /// Tells the engine that a joint ends earlier than it last did, by as much as it went beyond that end: no farther back than where it
+    /// is, since it would be thrown back.
+    fn end_earlier(&mut self, &JointBeyond { at, was, is }: &JointBeyond) {
         let Some(driven) = &self.joints[at] else { return };
         let (lo, hi) = driven.ends.between;
-        let is_low = way - driven.true_ends().0 < driven.true_ends().1 - way;
-        let told = if is_low {
-            ((lo + EARLIER * by).min((way - ROUNDING).max(lo)), hi)
+        let by = EARLIER * driven.beyond(is);
+        let told = if is < driven.true_ends().0 {
+            ((lo + by).min((was - ROUNDING).max(lo)), hi)
         } else {
-            (lo, (hi - EARLIER * by).max((way + ROUNDING).min(hi)))
+            (lo, (hi - by).max((was + ROUNDING).min(hi)))
         };
         if let Some(joint) = self.world.impulse_joints.get_mut(driven.handle, false) {
             driven.tell(&mut joint.data, told);
