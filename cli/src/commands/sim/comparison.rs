@@ -13,18 +13,11 @@ use hrdsl_runtime::{
     results::{TestResult, VerdictOutcome},
 };
 
+use super::determinism::RunDifferences;
 use crate::{commands::campaign::progress_bar, fault::CommandFault};
 
 /// Findings that are listed, at most.
 const LISTED: usize = 20;
-
-/// What other ways made different.
-pub struct VerdictDifferences {
-    /// How many tests come to another verdict or end in some way.
-    pub tests: usize,
-    /// For people.
-    pub text: String,
-}
 
 /// How a way differs from the usual one, in words.
 pub struct OtherWay<'p> {
@@ -81,7 +74,7 @@ pub fn compare<'p>(
     (tests, first): (&[Test], &CampaignOutcome),
     ways: Vec<OtherWay<'p>>,
     words: &WayWords,
-) -> Result<VerdictDifferences, CommandFault> {
+) -> Result<RunDifferences, CommandFault> {
     let known: BTreeMap<String, TestVerdicts> =
         first.tests.iter().map(|t| (t.result.name.to_string(), TestVerdicts::of(&t.result))).collect();
     let bar = progress_bar(tests.len() * ways.len(), "tests");
@@ -112,7 +105,7 @@ pub fn compare<'p>(
     }
     bar.finish_and_clear();
     let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
-    Ok(VerdictDifferences { tests: found.len(), text: words.text(&found, tests.len(), &counts) })
+    Ok(RunDifferences { tests: found.len(), text: words.text(&found, tests.len(), &counts) })
 }
 
 fn word(outcome: VerdictOutcome) -> &'static str {

@@ -26,7 +26,7 @@ use hrdsl_runtime::{
 use serde::Serialize;
 
 use choices::ReplaysArg;
-use comparison::VerdictDifferences;
+use determinism::RunDifferences;
 
 use super::{
     campaign::{CampaignArgs, chosen_system, generate_suites, selected, stop_flag, system_file},
@@ -121,13 +121,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     let run::ExecutedTests { run, unreplayed } =
         run::execute(&campaign, &tests, &folder.staging(), args.debug)?;
     let CampaignRun { outcome, times } = run;
-    let differences = match args.repeat.or(args.check_determinism.then_some(2)) {
-        Some(runs) if !outcome.interrupted => {
-            Some(determinism::compare(&campaign, &tests, &outcome, &folder.staging(), runs)?)
-        }
-        Some(_) | None => None,
-    };
-    let changes = compared(args, &campaign, (&tests, &outcome), &finer)?;
+    let differences = compared(args, &campaign, (&tests, &outcome, &folder.staging()), &finer)?;
     let interrupted = outcome.interrupted;
     let dir = campaign.dir.clone();
     let sources =
@@ -142,35 +136,41 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
     if let Some(times) = &times {
         terminal::print(&timings::table(times))?;
     }
-    let repeatable = differences.as_ref().is_none_or(|d| d.tests == 0);
-    if let Some(differences) = differences {
-        terminal::print(&differences.text)?;
+    for found in &differences {
+        terminal::print(&found.text)?;
     }
-    let is_other = changes.iter().any(|change| change.tests > 0);
-    for change in changes {
-        terminal::print(&change.text)?;
-    }
+    let is_same = differences.iter().all(|found| found.tests == 0);
     Ok(if interrupted {
         CommandExit::Interrupted
-    } else if is_other || !repeatable || !(results.is_clean() || args.exit_zero) {
+    } else if !is_same || !(results.is_clean() || args.exit_zero) {
         CommandExit::Findings
     } else {
         CommandExit::Ok
     })
 }
 
-/// What becomes of the tests in other orders of threads, and in other steps of the physics: in these programs.
+/// What becomes of the tests, whose files are below a folder, once more, in other orders of threads, and in other steps of the physics:
+/// in these programs.
 fn compared(
     args: &SimArgs,
     campaign: &CampaignSetup<'_>,
-    (tests, outcome): (&[Test], &CampaignOutcome),
+    (tests, outcome, files): (&[Test], &CampaignOutcome, &Path),
     stepped: &[(Duration, Program)],
-) -> Result<Vec<VerdictDifferences>, CommandFault> {
+) -> Result<Vec<RunDifferences>, CommandFault> {
+    let mut found = Vec::new();
+    if outcome.interrupted {
+        return Ok(found);
+    }
+    if let Some(runs) = args.repeat.or(args.check_determinism.then_some(2)) {
+        found.push(determinism::compare(campaign, tests, outcome, files, runs)?);
+    }
     let orders = args.schedules.map(|count| (schedules::others(campaign, count), schedules::words()));
     let steps = (!stepped.is_empty())
         .then(|| (physics_steps::others(campaign, stepped), physics_steps::words(campaign.program)));
-    let ways = orders.into_iter().chain(steps).filter(|_| !outcome.interrupted);
-    ways.map(|(ways, words)| comparison::compare((tests, outcome), ways, &words)).collect()
+    for (ways, words) in orders.into_iter().chain(steps) {
+        found.push(comparison::compare((tests, outcome), ways, &words)?);
+    }
+    Ok(found)
 }
 
 /// Writes the tests of a suite, and says what they are.
