@@ -18,13 +18,26 @@ pub(crate) struct EdgeWatch<'p> {
     since: Option<Nanos>,
     /// Whether it counts as true.
     truth: bool,
+    /// What the rule's signals are at the instant that is looked at.
+    values: Vec<Value>,
+    /// [`WorldBackend::changes`] when it last was.
+    seen: Option<u64>,
 }
 
 impl<'p> EdgeWatch<'p> {
     /// The watch of a rule that waits for a condition, at time 0: what is true then is so from the start, and no edge.
     pub fn new(rule: &'p WorldRule, world: &mut dyn WorldBackend) -> Option<Self> {
         let RuleTrigger::Edge { rising, condition, held } = &rule.on else { return None };
-        let mut watch = Self { rule, condition, rising: *rising, held: *held, since: None, truth: false };
+        let mut watch = Self {
+            rule,
+            condition,
+            rising: *rising,
+            held: *held,
+            since: None,
+            truth: false,
+            values: Vec::new(),
+            seen: None,
+        };
         watch.look(0, world);
         Some(watch)
     }
@@ -36,15 +49,24 @@ impl<'p> EdgeWatch<'p> {
 
     /// Whether this instant has the edge that the rule waits for. A condition without a value is as it was.
     pub fn look(&mut self, now: Nanos, world: &mut dyn WorldBackend) -> bool {
-        let values: Vec<Value> = self.rule.signals.iter().map(|s| world.read(*s)).collect();
-        match self.condition.eval(&|i| values.get(usize::from(i)).copied()) {
-            Ok(Value::Bool(true)) => _ = self.since.get_or_insert(now),
-            Ok(_) => self.since = None,
-            Err(_) => {}
+        let state = world.changes();
+        if state.is_none() || state != self.seen {
+            self.seen = state;
+            self.evaluate(now, world);
         }
         let truth = self.since.is_some_and(|since| now - since >= self.held);
         let is_edge = truth != self.truth && truth == self.rising;
         self.truth = truth;
         is_edge
+    }
+
+    fn evaluate(&mut self, now: Nanos, world: &mut dyn WorldBackend) {
+        self.values.clear();
+        self.values.extend(self.rule.signals.iter().map(|s| world.read(*s)));
+        match self.condition.eval(&|i| self.values.get(usize::from(i)).copied()) {
+            Ok(Value::Bool(true)) => _ = self.since.get_or_insert(now),
+            Ok(_) => self.since = None,
+            Err(_) => {}
+        }
     }
 }

@@ -16,7 +16,7 @@ use hrdsl_trace::picture::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{number::decimal, scene::RecordedScene};
+use crate::{number::write_decimal, scene::RecordedScene};
 
 /// How much of a run a message of columns has.
 pub(crate) const BLOCK: Nanos = 60_000_000_000;
@@ -225,28 +225,48 @@ pub(crate) fn picture(scene: &RecordedScene, messages: &[TracksMessage]) -> (Wor
 /// The samples of a block, gathered.
 #[derive(Default)]
 pub(crate) struct SampleTable {
-    signals: BTreeMap<String, Vec<[i64; 3]>>,
+    /// By the signals' names as a line has them, in quotes.
+    signals: BTreeMap<String, SignalSamples>,
+    /// The line that is compared.
+    line: String,
+}
+
+/// The samples of a signal in a block: of each its line's number, its time (ns) and its value in millionths.
+struct SignalSamples {
+    signal: String,
+    samples: Vec<[i64; 3]>,
 }
 
 impl SampleTable {
     /// Whether a line is one of a sample that a column gives back byte for byte; then it is in the table.
     pub fn takes(&mut self, number: usize, line: &str) -> bool {
-        let Some((signal, time, value)) = sample(line) else { return false };
-        if sample_line(&signal, time, value) != line {
+        let Some((quoted, time, value)) = sample(line) else { return false };
+        self.line.clear();
+        write_sample(&mut self.line, quoted, time, value);
+        if self.line != line {
             return false;
         }
-        let number = i64::try_from(number).unwrap_or(i64::MAX);
-        self.signals.entry(signal).or_default().push([number, time, value]);
-        true
+        let sample = [i64::try_from(number).unwrap_or(i64::MAX), time, value];
+        if let Some(known) = self.signals.get_mut(quoted) {
+            known.samples.push(sample);
+            return true;
+        }
+        let Some(signal) = serde_json::from_str::<String>(quoted).ok() else { return false };
+        let is_same = in_quotes(&signal) == quoted;
+        if is_same {
+            self.signals.insert(quoted.to_owned(), SignalSamples { signal, samples: vec![sample] });
+        }
+        is_same
     }
 
     /// The message of the samples; `None` if there are none.
     pub fn message(self) -> Option<SamplesMessage> {
-        let columns = |(signal, samples): (String, Vec<[i64; 3]>)| {
+        let columns = |SignalSamples { signal, samples }| {
             let [line, t, v] = turned(samples.into_iter());
             SampleColumns { signal, line, t, v }
         };
-        let signals: Vec<SampleColumns> = self.signals.into_iter().map(columns).collect();
+        let mut signals: Vec<SampleColumns> = self.signals.into_values().map(columns).collect();
+        signals.sort_by(|a, b| a.signal.cmp(&b.signal));
         (!signals.is_empty()).then_some(SamplesMessage { signals })
     }
 }
@@ -258,29 +278,40 @@ pub(crate) fn lines(message: &SamplesMessage) -> Option<Vec<(u32, String)>> {
         if line.len() != t.len() || line.len() != v.len() {
             return None;
         }
+        let quoted = in_quotes(signal);
         for ((number, time), value) in sums(line).into_iter().zip(sums(t)).zip(sums(v)) {
-            lines.push((u32::try_from(number).ok()?, sample_line(signal, time, value)));
+            let mut text = String::with_capacity(quoted.len() + 48);
+            write_sample(&mut text, &quoted, time, value);
+            lines.push((u32::try_from(number).ok()?, text));
         }
     }
     Some(lines)
 }
 
-/// A line of a sample: its signal, its time (ns) and its value in millionths.
-fn sample(line: &str) -> Option<(String, i64, i64)> {
+/// A line of a sample: its signal in quotes, its time (ns) and its value in millionths.
+fn sample(line: &str) -> Option<(&str, i64, i64)> {
     let (time, rest) = line.strip_prefix("{\"t\":")?.split_once(",\"signal\":")?;
-    let (signal, value) = rest.strip_suffix('}')?.rsplit_once(",\"value\":")?;
-    Some((serde_json::from_str(signal).ok()?, whole(time, BILLION)?, whole(value, MILLION)?))
+    let (quoted, value) = rest.strip_suffix('}')?.rsplit_once(",\"value\":")?;
+    Some((quoted, whole(time, BILLION)?, whole(value, MILLION)?))
 }
 
-/// The line that the text form has for a sample.
-fn sample_line(signal: &str, time: i64, value: i64) -> String {
-    let name = serde_json::Value::from(signal);
-    let point = if value.unsigned_abs().is_multiple_of(MILLION) { ".0" } else { "" };
-    format!(
-        "{{\"t\":{},\"signal\":{name},\"value\":{}{point}}}",
-        decimal(time, BILLION),
-        decimal(value, MILLION)
-    )
+/// A name as the text form has it.
+fn in_quotes(signal: &str) -> String {
+    serde_json::Value::from(signal).to_string()
+}
+
+/// Writes the line that the text form has for a sample.
+fn write_sample(line: &mut String, quoted: &str, time: i64, value: i64) {
+    line.push_str("{\"t\":");
+    write_decimal(line, time, BILLION);
+    line.push_str(",\"signal\":");
+    line.push_str(quoted);
+    line.push_str(",\"value\":");
+    write_decimal(line, value, MILLION);
+    if value.unsigned_abs().is_multiple_of(MILLION) {
+        line.push_str(".0");
+    }
+    line.push('}');
 }
 
 /// A decimal as a whole number of `1/scale`; `None` if it has more digits, or is none.
@@ -292,7 +323,8 @@ fn whole(text: &str, scale: u64) -> Option<i64> {
     if whole.is_empty() || !is_number(whole) || !is_number(rest) || rest.len() > width {
         return None;
     }
-    let fraction: i64 = format!("{rest:0<width$}").parse().ok()?;
+    let missing = u32::try_from(width - rest.len()).ok()?;
+    let fraction = if rest.is_empty() { 0 } else { rest.parse::<i64>().ok()? * 10_i64.pow(missing) };
     let whole: i64 = whole.parse().ok()?;
     Some(sign * whole.checked_mul(i64::try_from(scale).ok()?)?.checked_add(fraction)?)
 }

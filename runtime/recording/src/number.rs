@@ -1,15 +1,30 @@
 //! Whole numbers of a fine unit as decimal text, and back.
 
+use std::fmt::Write;
+
 /// `n` of `1/scale`, where `scale` is a power of ten: as many digits as it needs.
 pub(crate) fn decimal(n: i64, scale: u64) -> String {
-    let (whole, rest) = (n.unsigned_abs() / scale, n.unsigned_abs() % scale);
-    let sign = if n < 0 { "-" } else { "" };
-    if rest == 0 {
-        return format!("{sign}{whole}");
+    let mut text = String::new();
+    write_decimal(&mut text, n, scale);
+    text
+}
+
+/// The same, behind what a text already has.
+pub(crate) fn write_decimal(text: &mut String, n: i64, scale: u64) {
+    if n < 0 {
+        text.push('-');
     }
-    let width = scale.ilog10() as usize;
-    let digits = format!("{rest:0width$}");
-    format!("{sign}{whole}.{}", digits.trim_end_matches('0'))
+    // Into a string this cannot fail.
+    _ = write!(text, "{}", n.unsigned_abs() / scale);
+    let (mut rest, mut unit) = (n.unsigned_abs() % scale, scale / 10);
+    if rest > 0 {
+        text.push('.');
+    }
+    while rest > 0 {
+        text.push(char::from(b'0' + (rest / unit) as u8));
+        rest %= unit;
+        unit /= 10;
+    }
 }
 
 /// The same number with at most so many digits behind the point, and never a negative zero.

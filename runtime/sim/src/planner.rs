@@ -97,7 +97,7 @@ impl RoutePlanner<'_> {
     /// The straight path, if it is free.
     fn straight(&mut self, from: &[f64], to: &[f64]) -> Option<JointRoute> {
         let before = self.clearance.allow_goal(to);
-        let free = self.blocked(from, to).is_none();
+        let free = self.is_free(from, to);
         self.clearance.forget(before);
         free.then(|| self.route(vec![from.to_vec(), to.to_vec()]))
     }
@@ -106,12 +106,20 @@ impl RoutePlanner<'_> {
         JointRoute::new(points, self.speeds)
     }
 
-    /// What is in the way on the straight line.
+    /// What is first in the way on the straight line.
     fn blocked(&self, from: &[f64], to: &[f64]) -> Option<(BodyId, BodyId)> {
-        let ones = vec![1.0; from.len()];
-        let steps = (span(from, to, &ones) / GRAIN).ceil().max(1.0) as usize;
-        let order = (1..=steps).map(|i| i as f64 / steps as f64);
-        order.map(|part| between(from, to, part)).find_map(|q| self.clearance.conflict(&q))
+        let steps = grains(from, to);
+        (1..=steps).find_map(|step| self.conflict_at(from, to, step, steps))
+    }
+
+    /// Whether nothing is in the way on the straight line. What is there is found soonest at its end, and then by halves.
+    fn is_free(&self, from: &[f64], to: &[f64]) -> bool {
+        let steps = grains(from, to);
+        by_halves(steps).all(|step| self.conflict_at(from, to, step, steps).is_none())
+    }
+
+    fn conflict_at(&self, from: &[f64], to: &[f64], step: usize, steps: usize) -> Option<(BodyId, BodyId)> {
+        self.clearance.conflict(&between(from, to, step as f64 / steps as f64))
     }
 
     fn around(&mut self, from: &[f64], to: &[f64]) -> Result<JointRoute, NoRoute> {
@@ -147,9 +155,9 @@ impl RoutePlanner<'_> {
         for n in 0..GROWTHS {
             let (grows, other) = (n % 2, 1 - n % 2);
             let wanted = self.chain.links.iter().map(|link| drawn(link, &mut random)).collect::<Vec<_>>();
-            let Some(new) = trees[grows].grow(&wanted, |a, b| self.blocked(a, b).is_none()) else { continue };
+            let Some(new) = trees[grows].grow(&wanted, |a, b| self.is_free(a, b)) else { continue };
             let there = trees[grows].nodes[new].0.clone();
-            while let Some(next) = trees[other].grow(&there, |a, b| self.blocked(a, b).is_none()) {
+            while let Some(next) = trees[other].grow(&there, |a, b| self.is_free(a, b)) {
                 if trees[other].nodes[next].0 == there {
                     let mut first = trees[grows].back(new);
                     let mut second = trees[other].back(next);
@@ -175,7 +183,7 @@ impl RoutePlanner<'_> {
             let (a, b) = (part(&mut random) * route.length(), part(&mut random) * route.length());
             let (a, b) = (a.min(b), a.max(b));
             let (start, end) = (route.at(a), route.at(b));
-            if span(&start, &end, self.speeds) + 1e-9 < b - a && self.blocked(&start, &end).is_none() {
+            if span(&start, &end, self.speeds) + 1e-9 < b - a && self.is_free(&start, &end) {
                 let before = route.points_where(|along| along < a);
                 let after = route.points_where(|along| along > b);
                 points = before.chain([start, end]).chain(after).collect();
@@ -183,6 +191,19 @@ impl RoutePlanner<'_> {
         }
         points
     }
+}
+
+/// At how many points a line between two postures is looked at.
+fn grains(from: &[f64], to: &[f64]) -> usize {
+    let ones = vec![1.0; from.len()];
+    (span(from, to, &ones) / GRAIN).ceil().max(1.0) as usize
+}
+
+/// The numbers from 1 to the last: that one first, then the middle, the middles of the halves, and so on.
+fn by_halves(last: usize) -> impl Iterator<Item = usize> {
+    let widest = last.next_power_of_two() / 2;
+    let strides = std::iter::successors((widest > 0).then_some(widest), |s| (*s > 1).then_some(s / 2));
+    std::iter::once(last).chain(strides.flat_map(move |stride| (stride..last).step_by(2 * stride)))
 }
 
 /// Postures that can be reached from the first, each from the one that it names.
@@ -233,4 +254,19 @@ fn part(random: &mut ChaCha8Rng) -> f64 {
 
 fn drawn(link: &KinematicLink, random: &mut ChaCha8Rng) -> f64 {
     link.lo + part(random) * (link.hi - link.lo)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::by_halves;
+
+    #[test]
+    fn halves_leave_nothing_out_and_take_nothing_twice() {
+        assert_eq!(by_halves(8).collect::<Vec<_>>(), [8, 4, 2, 6, 1, 3, 5, 7]);
+        for last in 1..200 {
+            let mut all: Vec<usize> = by_halves(last).collect();
+            all.sort_unstable();
+            assert_eq!(all, (1..=last).collect::<Vec<_>>());
+        }
+    }
 }
