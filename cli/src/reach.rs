@@ -180,6 +180,10 @@ impl RobotReader for DiskRobots<'_> {
         Ok(entries.filter_map(Result::ok).map(entry).collect())
     }
 
+    fn working_folder(&self) -> String {
+        std::env::current_dir().map_or_else(|_| String::new(), |folder| folder.to_string_lossy().into_owned())
+    }
+
     fn is_file(&self, file: &str) -> bool {
         self.reach.whole(&tidy(Path::new(file))).is_ok_and(|whole| whole.is_file())
     }

@@ -2,8 +2,8 @@
 
 use super::{
     package::PackageTable,
-    path::{folder_of, joined},
-    reader::RobotReader,
+    path::joined,
+    reader::{RobotReader, path_beside},
 };
 use crate::fault::{RobotFault, RobotFaultKind, RobotPlace};
 
@@ -20,7 +20,7 @@ pub(crate) fn resolve_address(
         if address.trim().is_empty() {
             return Err(bad("write `package://PACKAGE/meshes/FILE.stl`, or a path from this file"));
         }
-        return Ok(joined(folder_of(file), address));
+        return Ok(path_beside(reader, file, address));
     };
     match scheme {
         "package" | "model" => {
@@ -30,8 +30,7 @@ pub(crate) fn resolve_address(
                 None => Err(packages.unknown(name, place)),
             }
         }
-        "file" if rest.starts_with('/') => Ok(joined("/", rest)),
-        "file" => Ok(joined(folder_of(file), rest)),
+        "file" => Ok(path_beside(reader, file, rest)),
         _ => Err(bad("write `package://PACKAGE/FILE`, `file:///FILE` or a path from this file")),
     }
 }

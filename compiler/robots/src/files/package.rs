@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use hrdsl_source::{SourceFiles, nearest};
+use hrdsl_source::{FileId, SourceFiles, nearest};
 
 use super::{
     path::{folder_of, joined},
-    reader::{RobotEntry, RobotReader, read_text},
+    reader::{RobotEntry, RobotReader, path_beside, read_text, whole_path},
 };
 use crate::{
     fault::{RobotFault, RobotFaultKind, RobotPlace, say},
@@ -67,8 +67,8 @@ impl PackageTable {
         self.folders.iter().map(|(name, folder)| (name.as_str(), folder.as_str()))
     }
 
-    /// The folder of a package that a file names: that of the table; or else a folder above the file that is called so, or
-    /// that has one of that name in it: descriptions are often handed on without their workspace.
+    /// The folder of a package that a file names: that of the table; or else a folder above the file that is called so, by its
+    /// `package.xml` or its own name, or that has one of that name in it: descriptions are often handed on without their workspace.
     pub(crate) fn found_from(&self, name: &str, file: &str, reader: &dyn RobotReader) -> Option<String> {
         if let Some(folder) = self.folder(name) {
             return Some(folder.to_owned());
@@ -76,20 +76,22 @@ impl PackageTable {
         if name.is_empty() || name == ".." {
             return None;
         }
-        let mut above = folder_of(file);
-        loop {
-            if above.rsplit('/').next() == Some(name) {
-                return Some(above.to_owned());
+        let whole = whole_path(reader, folder_of(file));
+        let mut above = whole.as_str();
+        let found = loop {
+            if above.rsplit('/').next() == Some(name) || is_package(name, above, reader) {
+                break above.to_owned();
             }
             let inside = joined(above, name);
             if reader.entries(&inside).is_ok() {
-                return Some(inside);
+                break inside;
             }
             if above.is_empty() || above == "/" {
                 return None;
             }
             above = folder_of(above);
-        }
+        };
+        Some(path_beside(reader, "", &found))
     }
 
     /// That there is no such package, with the nearest name.
@@ -170,6 +172,14 @@ impl PackageSearch<'_> {
             RobotFaultKind::MalformedManifest.at(root.place, help)
         })
     }
+}
+
+/// Whether a folder's manifest gives it this name. One that cannot be read gives it none.
+fn is_package(name: &str, folder: &str, reader: &dyn RobotReader) -> bool {
+    let manifest = joined(folder, MANIFEST);
+    let text = reader.bytes(&manifest).ok().and_then(|bytes| String::from_utf8(bytes).ok());
+    let root = text.and_then(|text| read_xml(FileId::default(), &text).ok());
+    root.is_some_and(|root| root.elements().any(|child| child.name == "name" && child.text().trim() == name))
 }
 
 fn has_file(entries: &[RobotEntry], name: &str) -> bool {

@@ -2,6 +2,7 @@
 
 use hrdsl_source::{FileId, SourceFiles};
 
+use super::path::{folder_of, joined};
 use crate::{
     fault::{RobotFault, RobotFaultKind, RobotPlace},
     limits::MOST_TEXT_BYTES,
@@ -21,6 +22,12 @@ pub trait RobotReader {
     /// The same.
     fn entries(&self, folder: &str) -> Result<Vec<RobotEntry>, String>;
 
+    /// The folder that paths start from which do not begin at the root, whole. A description that asks for a folder is told it from
+    /// there, since it may name a file by it anywhere. Empty where paths are names and nothing else.
+    fn working_folder(&self) -> String {
+        String::new()
+    }
+
     /// Whether there is a file of this path.
     fn is_file(&self, file: &str) -> bool {
         self.bytes(file).is_ok()
@@ -32,6 +39,20 @@ pub trait RobotReader {
 pub struct RobotEntry {
     pub name: String,
     pub is_folder: bool,
+}
+
+/// The path of a file that another names by `written`: from that one's folder, or from the root. What lies in the working folder is
+/// named from there, as it was on the way here, so that nothing depends on where that is.
+pub(crate) fn path_beside(reader: &dyn RobotReader, file: &str, written: &str) -> String {
+    let path = joined(folder_of(file), written);
+    let here = reader.working_folder();
+    let inside = path.strip_prefix(&here).filter(|_| !here.is_empty());
+    inside.and_then(|rest| rest.strip_prefix('/')).map_or(path.clone(), str::to_owned)
+}
+
+/// A folder as a description is told it: from the root.
+pub(crate) fn whole_path(reader: &dyn RobotReader, folder: &str) -> String {
+    joined(&reader.working_folder(), folder)
 }
 
 /// The text of a file, as one of the files that faults can name.

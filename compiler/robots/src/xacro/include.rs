@@ -10,10 +10,7 @@ use super::{
 };
 use crate::{
     fault::{RobotFaultKind, RobotPlace},
-    files::{
-        path::{folder_of, joined},
-        reader::read_text,
-    },
+    files::reader::{path_beside, read_text},
     xml::{XmlElement, XmlNode, read_xml},
     yaml::read_yaml,
 };
@@ -27,7 +24,7 @@ impl XacroExpander<'_> {
             let kind = RobotFaultKind::NotDone("pattern for files".to_owned());
             return Err(kind.at(place, "include each file by its name"));
         }
-        let path = joined(folder_of(self.file()), &written);
+        let path = path_beside(self.request.reader, self.file(), &written);
         let optional = element.attribute("optional").is_some_and(|optional| optional.value == "true");
         if optional && !self.request.reader.is_file(&path) {
             return Ok(Vec::new());
@@ -53,7 +50,7 @@ impl XacroExpander<'_> {
 
     /// `xacro.load_yaml(path)`
     pub(super) fn load_yaml(&mut self, written: &str) -> EvalResult<XacroValue> {
-        let path = joined(folder_of(self.file()), written);
+        let path = path_beside(self.request.reader, self.file(), written);
         // Whoever evaluates the expression knows its place.
         let nowhere = RobotPlace::default();
         let read = read_text(self.request.reader, self.files, &path, nowhere);

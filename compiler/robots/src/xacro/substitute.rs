@@ -12,7 +12,10 @@ use super::{
 };
 use crate::{
     fault::{RobotFaultKind, RobotPlace},
-    files::path::{folder_of, joined},
+    files::{
+        path::{folder_of, joined},
+        reader::whole_path,
+    },
 };
 
 const COMMANDS: [&str; 6] = ["arg", "find", "env", "optenv", "dirname", "eval"];
@@ -37,7 +40,9 @@ impl XacroExpander<'_> {
                 let (name, otherwise) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
                 XacroValue::text(self.environment(name).unwrap_or_else(|| otherwise.trim().to_owned()))
             }
-            ("dirname", "") => XacroValue::text(folder_of(self.request.path)),
+            ("dirname", "") => {
+                XacroValue::text(whole_path(self.request.reader, folder_of(self.request.path)))
+            }
             ("eval", source) if !source.is_empty() => {
                 let value = evaluate(&parse_expression(source)?, &mut ArgumentNames { expander: self })?;
                 XacroValue::text(written(&value))
@@ -73,7 +78,7 @@ impl XacroExpander<'_> {
 
     fn package_folder(&self, name: &str) -> EvalResult<XacroValue> {
         match self.request.packages.found_from(name, self.file(), self.request.reader) {
-            Some(folder) => XacroValue::text(folder),
+            Some(folder) => XacroValue::text(whole_path(self.request.reader, &folder)),
             None => {
                 let fault = self.request.packages.unknown(name, RobotPlace::default());
                 Err(EvalFault { place: None, ..EvalFault::from(fault) })
@@ -86,7 +91,8 @@ impl XacroExpander<'_> {
         match (name, arguments) {
             ("load_yaml", [XacroValue::Text(path)]) => self.load_yaml(path),
             ("abs_filename", [XacroValue::Text(path)]) => {
-                XacroValue::text(joined(folder_of(self.file()), path))
+                let path = joined(folder_of(self.file()), path);
+                XacroValue::text(whole_path(self.request.reader, &path))
             }
             ("arg", [XacroValue::Text(name)]) => self.argument_value(name).and_then(XacroValue::text),
             ("fatal", parts) => {
