@@ -18,6 +18,8 @@ pub const MOST_VALUE_SIZE: usize = 1 << 20;
 pub const MOST_COMPUTED_BYTES: usize = 128 << 20;
 /// How deep parentheses lie in an expression, and lists in a YAML file.
 pub const MOST_NESTING: usize = 48;
+/// Values of a YAML file, with those that aliases repeat.
+pub const MOST_YAML_VALUES: usize = 1_000_000;
 /// Links of a robot; joints are one fewer.
 pub const MOST_LINKS: usize = 20_000;
 /// What is said of one description.

@@ -1,9 +1,7 @@
-//! YAML, as much as descriptions use: mappings, sequences, scalars, in blocks and in brackets.
+//! YAML, which maps and xacro's `load_yaml` read.
 
-mod block;
-mod flow;
-mod line;
+mod read;
 mod scalar;
 pub(crate) mod value;
 
-pub(crate) use block::read_yaml;
+pub(crate) use read::read_yaml;

@@ -1,9 +1,6 @@
-//! Scalars: what a word without quotes means, and what stands in quotes.
+//! Scalars: what a word without quotes means.
 
-use super::{
-    line::{YamlFault, fault},
-    value::YamlValue,
-};
+use super::value::YamlValue;
 
 /// A word without quotes, as YAML 1.1 takes it: `yes` and `on` are booleans, `0x1F` a number, `~` nothing.
 pub(super) fn plain(text: &str) -> YamlValue {
@@ -58,34 +55,4 @@ fn whole(text: &str) -> Option<i64> {
         digits.chars().all(|c| c.is_ascii_digit()).then(|| digits.parse().ok()).flatten()
     };
     number.map(|number: i64| if negative { -number } else { number })
-}
-
-/// A text in quotes at the start of `text`, and how many bytes it takes.
-pub(super) fn quoted(text: &str, at: usize) -> Result<(String, usize), YamlFault> {
-    let mut chars = text.char_indices();
-    let Some((_, open)) = chars.next() else { return fault(at, "a text in quotes is missing") };
-    let mut said = String::new();
-    while let Some((here, c)) = chars.next() {
-        if c == open {
-            let rest = text.get(here + 1..).unwrap_or_default();
-            if open == '\'' && rest.starts_with('\'') {
-                chars.next();
-                said.push('\'');
-                continue;
-            }
-            return Ok((said, here + 1));
-        }
-        if open == '"' && c == '\\' {
-            match chars.next().map(|(_, c)| c) {
-                Some('n') => said.push('\n'),
-                Some('t') => said.push('\t'),
-                Some('0') => said.push('\0'),
-                Some(c @ ('"' | '\\' | '/' | ' ')) => said.push(c),
-                _ => return fault(at + here, "this escape is not read"),
-            }
-        } else {
-            said.push(c);
-        }
-    }
-    fault(at, "a text in quotes must end on its line")
 }
