@@ -195,12 +195,13 @@ impl GripperHand {
         self.direction = direction;
     }
 
-    /// A finger does not run ahead of those that follow it: one motor moves them all.
+    /// A finger does not run ahead of those that follow it, nor into its end: one motor moves them all.
     fn keep_together(&self, physics: &mut PhysicsAdapter) {
         for finger in &self.fingers {
             let Some(play) = finger.lag else { continue };
             let rate = (2.0 - 2.0 * physics.gear_lag(finger.joint) / play).clamp(0.0, 1.0);
-            physics.run_at(finger.joint, finger.speed * self.direction * rate, finger.force);
+            let speed = physics.slower_near_ends(finger.joint, finger.speed * self.direction * rate);
+            physics.run_at(finger.joint, speed, finger.force);
         }
     }
 

@@ -1,7 +1,10 @@
 //! Whether bodies could exist: what moves has a mass, and an inertia that a body can have.
 
-use super::model::{UrdfJointKind, UrdfLinkId, UrdfRobot};
-use crate::fault::{RobotFault, RobotFaultKind, say};
+use super::model::{UrdfJointId, UrdfJointKind, UrdfLink, UrdfLinkId, UrdfRobot};
+use crate::{
+    fault::{RobotFault, RobotFaultKind, say},
+    space::transform::RigidTransform,
+};
 
 /// Masses below this, in kilograms, are of frames that somebody had to give one.
 const NEARLY_NOTHING: f64 = 1e-9;
@@ -70,6 +73,42 @@ fn masses_below(robot: &UrdfRobot, masses: &[f64], rigid: &[UrdfLinkId]) -> Vec<
 }
 
 impl UrdfRobot {
+    /// The inertia of all that hangs on a joint, about its axis, with all joints at 0, kg·m²; of a joint that slides as if it turned. Of a
+    /// link's own inertia its greatest moment counts.
+    #[must_use]
+    pub fn inertia_beyond(&self, id: UrdfJointId) -> f64 {
+        let Some(joint) = self.joint(id) else { return 0.0 };
+        let poses = self.link_poses(&[]);
+        let Some(frame) = poses.get(joint.child.0) else { return 0.0 };
+        let (inward, axis) = (frame.inverse(), joint.axis);
+        let about = |(link, pose): (&UrdfLink, &RigidTransform)| {
+            let Some(inertial) = &link.inertial else { return 0.0 };
+            let middle = inward.place(pose.place(inertial.origin.xyz));
+            let along: f64 = middle.iter().zip(axis).map(|(m, a)| m * a).sum();
+            let away = middle.iter().map(|m| m * m).sum::<f64>() - along * along;
+            let own = inertial.inertia.principal_moments().into_iter().fold(0.0, f64::max);
+            inertial.mass.max(0.0) * away.max(0.0) + own
+        };
+        let mut hangs = vec![false; self.links.len()];
+        if let Some(first) = hangs.get_mut(joint.child.0) {
+            *first = true;
+        }
+        for below in self.order.iter().filter_map(|id| self.joint(*id)) {
+            if hangs.get(below.parent.0) == Some(&true)
+                && let Some(child) = hangs.get_mut(below.child.0)
+            {
+                *child = true;
+            }
+        }
+        self.links
+            .iter()
+            .zip(&poses)
+            .zip(hangs)
+            .filter(|(_, hangs)| *hangs)
+            .map(|(link, _)| about(link))
+            .sum()
+    }
+
     /// Of each link the first link of the rigid body that it belongs to: links joined by fixed joints are one.
     #[must_use]
     pub fn rigid_groups(&self) -> Vec<UrdfLinkId> {

@@ -9,9 +9,11 @@ impl PhysicsAdapter {
     /// Tells the engine what followers are to do in the next step, and how hard joints are braked in it.
     pub(super) fn keep_gears(&mut self) {
         let dt = f64::from(self.world.integration_parameters.dt);
-        let losses = std::mem::take(&mut self.losses);
-        for gear in &losses.gears {
-            let (at, speed) = (self.joint_position(gear.leader), self.joint_speed(gear.leader));
+        let mut losses = std::mem::take(&mut self.losses);
+        for gear in &mut losses.gears {
+            let at = self.joint_position(gear.leader);
+            // By how far it came. The speed that the solver left it with has what pushes it at its end, which would shake all that follow.
+            let speed = (at - gear.before.replace(at).unwrap_or(at)) / self.step;
             let behind = gear.factor * at + gear.offset - self.joint_position(gear.follower);
             self.run_at(gear.follower, gear.factor * speed + behind * CATCH_UP / dt, gear.force);
         }
@@ -24,6 +26,13 @@ impl PhysicsAdapter {
             }
         }
         self.losses = losses;
+    }
+
+    /// A speed at which a joint comes to rest at its ends, and is not driven against them.
+    pub fn slower_near_ends(&self, joint: usize, speed: f64) -> f64 {
+        let Some(driven) = &self.joints[joint] else { return speed };
+        let (at, rate) = (self.joint_position(joint), CATCH_UP / self.step);
+        speed.clamp(rate * (driven.lo - at).min(0.0), rate * (driven.hi - at).max(0.0))
     }
 
     /// How far a joint is from where those are that follow it, at most, as they count it, rad or m.

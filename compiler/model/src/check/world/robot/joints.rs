@@ -1,7 +1,7 @@
 //! The joints of a description as joints of the world.
 
 use hrdsl_ir::world::{ENDLESS, JointDrive, JointMimic, JointMotion};
-use hrdsl_robots::{RigidTransform, UrdfJoint, UrdfJointKind, UrdfRobot};
+use hrdsl_robots::{RigidTransform, UrdfJoint, UrdfJointId, UrdfJointKind, UrdfRobot};
 use hrdsl_syntax::ast::WorldMemberKind as Member;
 
 use crate::check::world::parts::PlacedMember;
@@ -12,6 +12,8 @@ use crate::{BodyId, JointId, noun::Noun, world::TypedJoint};
 const ROTOR_RATE: f64 = 800.0;
 /// The least and the most of it, kg·m².
 const ROTORS: (f64, f64) = (1e-3, 0.2);
+/// In gears that link joints, where an effort is often there to be large and nothing else, it is at most so many times what hangs on the joint.
+const ROTOR_OF_LOAD: f64 = 10.0;
 
 impl<'a> WorldPhase<'_, 'a> {
     pub(in crate::check::world) fn described_joints(&mut self, p: &PlacedMember<'a>) {
@@ -37,6 +39,11 @@ impl<'a> WorldPhase<'_, 'a> {
             let pose = placed.poses.get(joint.child.0).copied().unwrap_or(RigidTransform::IDENTITY);
             let value = placed.values.get(ids.len() - 1).copied().unwrap_or_default();
             let (lo, hi) = limits(joint);
+            let mut drive = JointDrive { start: value, ..drive(joint) };
+            if is_geared(robot, ids.len() - 1) {
+                let most = ROTOR_OF_LOAD * robot.inertia_beyond(UrdfJointId(ids.len() - 1));
+                drive.rotor = drive.rotor.min(most.max(ROTORS.0));
+            }
             let typed = TypedJoint {
                 name: full,
                 parent: parent.copied().unwrap_or(BodyId(0)),
@@ -47,7 +54,7 @@ impl<'a> WorldPhase<'_, 'a> {
                 motion: motion(joint),
                 lo,
                 hi,
-                drive: JointDrive { start: value, ..drive(joint) },
+                drive,
                 own_name: (*name != joint.name).then(|| joint.name.clone()),
             };
             self.world_mut().joints.push(typed);
@@ -73,6 +80,12 @@ impl<'a> WorldPhase<'_, 'a> {
             }
         }
     }
+}
+
+/// Whether a joint follows another, or is followed.
+fn is_geared(robot: &UrdfRobot, at: usize) -> bool {
+    let follows = |joint: &UrdfJoint| joint.mimic.as_ref().is_some_and(|mimic| mimic.joint.0 == at);
+    robot.joints.get(at).is_some_and(|joint| joint.mimic.is_some()) || robot.joints.iter().any(follows)
 }
 
 fn motion(joint: &UrdfJoint) -> JointMotion {
