@@ -6,7 +6,10 @@ use hrdsl_compiler::{InputFile, ModuleLoader, ModuleText, RobotEntry, RobotReade
 use hrdsl_ir::{
     Expr, Value,
     value::SECOND,
-    world::{ArmId, BaseId, BodyId, BodyRef, FigureId, SignalTerm, World, WorldAction, WorldPoint},
+    world::{
+        ArmId, BaseId, BodyId, BodyRef, FigureId, GripperId, JointId, SignalTerm, World, WorldAction,
+        WorldPoint,
+    },
 };
 use hrdsl_sim::{MotorCommand, WorldSimulation};
 
@@ -176,5 +179,85 @@ fn an_arm_of_seven_light_links_comes_to_postures_and_rests_in_them() {
         assert_eq!(sim.finished(), [(id, Ok(()))], "posture {number}");
         let fastest = sim.joint_speeds(ArmId(0)).iter().map(|v| v.abs()).fold(0.0, f64::max);
         assert!(fastest < 1e-3, "in posture {number} it still moves at {fastest} rad/s");
+    }
+}
+
+/// A hand on the light arm, all of whose light fingers follow one joint, as linkages are described. Its efforts are large, so that they
+/// limit nothing.
+fn light_arm_with_hand() -> String {
+    let mut urdf = light_arm().replace("</robot>\n", "");
+    for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+        for (name, parent, y, z, factor) in [
+            ("knuckle", "l7", 0.03, 0.05, 1),
+            ("inner", "l7", 0.013, 0.06, 1),
+            ("finger", "knuckle", 0.037, 0.043, -1),
+        ] {
+            let parent = if parent == "l7" { parent.to_owned() } else { format!("{side}_{parent}") };
+            let is_leader = (side, name) == ("left", "knuckle");
+            let mimic = format!("<mimic joint=\"left_knuckle_joint\" multiplier=\"{factor}\"/>");
+            let (mimic, y) = (if is_leader { "" } else { &mimic }, sign * y);
+            let _ = writeln!(
+                urdf,
+                "  <link name=\"{side}_{name}\"><inertial><mass value=\"0.02\"/><origin xyz=\"0 0 0.02\"/><inertia ixx=\"1e-5\" \
+                 ixy=\"0\" ixz=\"0\" iyy=\"1e-5\" iyz=\"0\" izz=\"5e-6\"/></inertial></link>\n  <joint name=\"{side}_{name}_joint\" \
+                 type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{side}_{name}\"/><origin xyz=\"0 {y} {z}\"/>\
+                 <axis xyz=\"{sign} 0 0\"/><limit lower=\"-0.8\" upper=\"0.8\" effort=\"1000\" velocity=\"2\"/>{mimic}</joint>"
+            );
+        }
+    }
+    urdf + "</robot>\n"
+}
+
+const WITH_HAND: &str = r#"scenario with_hand
+actor robot : system
+part light from "robot.urdf" {
+  start j2 = 30 deg, j4 = -90 deg, j6 = 80 deg
+  arm arm: j1, j2, j3, j4, j5, j6, j7 tip l7 tool (0 m, 0 m, 10 cm) speed 1 rad/s
+  gripper hand: l7 fingers left_knuckle_joint tool (0 m, 0 m, 15 cm) reach 4 cm delay 500 ms force 40 N
+}
+world { part robot = light at (0 m, 0 m, 0 m) }
+"#;
+
+/// Followers were led by the speed that the solver left their leader with, which at its end is that of a motor pushed back; and each of
+/// them had the rotor of a motor of 1000 N·m. The arm shook at 0.3 rad/s with them, and came to rest nowhere.
+#[test]
+fn a_hand_of_linked_fingers_shakes_no_arm() {
+    let world = world_of(&light_arm_with_hand(), WITH_HAND);
+    let joint = |name: &str| {
+        let at = world.joints.iter().position(|joint| joint.name == format!("robot.{name}")).unwrap();
+        JointId(u16::try_from(at).unwrap())
+    };
+    let leader = joint("left_knuckle_joint");
+    let followers = [
+        (joint("left_inner_joint"), 1.0),
+        (joint("left_finger_joint"), -1.0),
+        (joint("right_knuckle_joint"), 1.0),
+        (joint("right_inner_joint"), 1.0),
+        (joint("right_finger_joint"), -1.0),
+    ];
+    let angle =
+        |sim: &WorldSimulation, of: JointId| sim.measure(&SignalTerm::JointPosition(of)).as_f64().unwrap();
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
+    for (closed, end) in [(true, 0.8), (false, -0.8), (true, 0.8)] {
+        let gripper = GripperId(0);
+        sim.command(if closed {
+            MotorCommand::CloseFingers { gripper }
+        } else {
+            MotorCommand::OpenFingers { gripper }
+        })
+        .unwrap();
+        sim.advance(sim.now() + 2 * SECOND);
+        let mut fastest: f64 = 0.0;
+        for _ in 0..100 {
+            sim.advance(sim.now() + SECOND / 100);
+            fastest = sim.joint_speeds(ArmId(0)).iter().map(|v| v.abs()).fold(fastest, f64::max);
+            let at = angle(&sim, leader);
+            assert!((at - end).abs() < 1e-3, "the hand is at {at} rad");
+            for (follower, factor) in followers {
+                let behind = angle(&sim, follower) - factor * at;
+                assert!(behind.abs() < 1e-3, "a finger is {behind} rad off");
+            }
+        }
+        assert!(fastest < 1e-3, "the arm moves at {fastest} rad/s while the hand is at its end");
     }
 }
