@@ -387,7 +387,7 @@ impl ArmControl {
         if !motion.is_over() {
             return None;
         }
-        let settled = self.speed(physics) < SETTLED;
+        let speed = self.speed(physics);
         let end = motion.end();
         let (there, distance) = match motion.goal {
             ArmGoal::Place(place) => {
@@ -400,12 +400,11 @@ impl ArmControl {
                 (off <= ARRIVED_JOINT, (self.chain.tool_at(&angles) - self.chain.tool_at(&end)).norm())
             }
         };
-        let result = if there && settled {
-            Ok(())
-        } else if motion.overdue() >= PATIENCE {
-            Err(CommandError::Missed { distance })
-        } else {
-            return None;
+        let result = match (there, speed < SETTLED) {
+            (true, true) => Ok(()),
+            _ if motion.overdue() < PATIENCE => return None,
+            (true, false) => Err(CommandError::Unsettled { speed }),
+            (false, _) => Err(CommandError::Missed { distance }),
         };
         let id = motion.id;
         if result.is_ok() {

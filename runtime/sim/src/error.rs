@@ -74,6 +74,9 @@ pub enum CommandError {
     /// Metres from the place when the controller gave up.
     #[error("the arm did not arrive: it stopped {distance:.3} m from the place")]
     Missed { distance: f64 },
+    /// How fast a joint still was there when the controller gave up, rad/s or m/s.
+    #[error("the arm is at the place, but does not come to rest: a joint moves at {speed:.3} rad/s")]
+    Unsettled { speed: f64 },
     /// A later command to the same device took its place.
     #[error("the command was replaced by a later one")]
     Replaced,
