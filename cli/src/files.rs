@@ -11,7 +11,38 @@ use crate::{fault::CommandFault, terminal};
 /// What is longer is none of hrdsl's own files, in bytes.
 const LONGEST: u64 = 4 << 30;
 
-/// Reads a text file that may be a scenario.
+/// Reads a scenario, or tests.
+///
+/// # Errors
+/// The file's name and what is wrong with it: that it cannot be read, or is of another kind, by the ending of its name; then also what to do with it.
+pub fn read_scenario(path: &Path) -> Result<String, CommandFault> {
+    if !path.exists() {
+        return read(path);
+    }
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let (kind, instead) = match ending.to_ascii_lowercase().as_str() {
+        "urdf" | "xacro" => {
+            ("describes a robot", "a scenario's world takes it in: `part NAME from \"FILE\" { … }`")
+        }
+        "srdf" => (
+            "says what a robot's groups are",
+            "it goes with the description: `semantics \"FILE\"` in the part that is made from it",
+        ),
+        "asl" | "mas2j" => {
+            ("is of Jason", "`hrdsl import agentspeak FILE` makes a scenario of it, `hrdsl run FILE` runs it")
+        }
+        "xml" | "xta" => ("is no scenario", "`hrdsl import uppaal FILE` makes one of a model of UPPAAL"),
+        "mcap" | "jsonl" => {
+            ("is a recording", "`hrdsl judge SCENARIO FILE` judges it, `hrdsl view SCENARIO FILE` shows it")
+        }
+        "py" => ("is a program", "a scenario names it: `system ROBOT { run \"python3 FILE\" }`"),
+        _ => return read(path),
+    };
+    let file = terminal::shown(path);
+    Err(format!("{file} {kind}; {}", instead.replace("FILE", &file)))
+}
+
+/// Reads a text file of which a compiler takes no more than a scenario may have.
 ///
 /// # Errors
 /// The file's name and what is wrong with it.

@@ -10,7 +10,7 @@ use hrdsl_compiler::{CompilationResult, InputFile, compile_beside};
 use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_source::{Diagnostic, FileId, SourceFiles, printable_line};
 
-use crate::{fault::CommandFault, files::read, reach::DiskModules, render, terminal};
+use crate::{fault::CommandFault, files::read_scenario, reach::DiskModules, render, terminal};
 
 /// The table of interfaces that the programs of a system can use, as JSON; empty without a middleware.
 ///
@@ -55,12 +55,12 @@ pub fn load_with(
     beside: &[&str],
     more: &str,
 ) -> Result<CompilationResult, CommandFault> {
-    let text = read(scenario)? + more;
+    let text = read_scenario(scenario)? + more;
     let name = scenario.display().to_string();
     let mut files = Vec::new();
     for path in tests {
         for file in expand(path)? {
-            files.push((file.display().to_string(), read(&file)?));
+            files.push((file.display().to_string(), read_scenario(&file)?));
         }
     }
     let tests: Vec<InputFile<'_>> = files.iter().map(|(name, text)| InputFile { name, text }).collect();
@@ -74,7 +74,7 @@ pub fn load_with(
 /// # Errors
 /// A file that cannot be read.
 pub fn load_to_look(scenario: &Path) -> Result<(CompilationResult, Vec<String>), CommandFault> {
-    let text = read(scenario)?;
+    let text = read_scenario(scenario)?;
     let name = scenario.display().to_string();
     let (input, modules) = (InputFile { name: &name, text: &text }, DiskModules::to_look(Some(scenario)));
     let compilation = compile_beside(input, &[], &[], &modules);

@@ -117,7 +117,7 @@ impl CheckedProject {
                 return Err(format!("no .hri file in {} or the folders in it", terminal::shown(path)));
             }
             for file in files {
-                let text = files::read(&file)?;
+                let text = files::read_scenario(&file)?;
                 let place = file.canonicalize().unwrap_or_else(|_| file.clone());
                 match seen.iter().position(|s| *s == place) {
                     Some(_) if folder => {}

@@ -44,6 +44,33 @@ fn folders_are_searched_and_tests_go_to_the_nearest_scenario() {
 }
 
 #[test]
+fn files_of_other_kinds_are_named_with_what_to_do_with_them() {
+    let others = [
+        ("r.urdf.xacro", "part NAME from \"r.urdf.xacro\""),
+        ("house.mas2j", "hrdsl import agentspeak house.mas2j"),
+        ("gate.xml", "hrdsl import uppaal gate.xml"),
+        ("run.mcap", "hrdsl view SCENARIO run.mcap"),
+        ("robot.py", "run \"python3 robot.py\""),
+    ];
+    let scenario = scenario("a", "ask");
+    let files: Vec<(&str, &str)> = others.iter().map(|(name, _)| (*name, "<robot/>")).collect();
+    let folder = folder(&[&files[..], &[("a.hri", &scenario)]].concat());
+    for (name, advice) in others {
+        for command in ["check", "fmt", "gen", "prove", "sim", "check a.hri", "sim a.hri"] {
+            let out = hrdsl_in(folder.path(), &format!("{command} {name}"));
+            expect_code(&out, 2);
+            let said = stderr(&out);
+            assert!(
+                said.starts_with(&format!("error: {name} ")) && said.contains(advice),
+                "{command}: {said}"
+            );
+        }
+    }
+    // What is not there is not looked at.
+    assert_eq!(stderr(&hrdsl_in(folder.path(), "check gone.urdf")), "error: no such file: gone.urdf\n");
+}
+
+#[test]
 fn systems_are_checked_with_their_scenario() {
     let folder = folder(&[
         ("a/scenario.hri", &scenario("a", "ask")),

@@ -106,7 +106,7 @@ fn stdin(args: &FmtArgs, tally: &mut FormatTally) -> Result<(), CommandFault> {
 }
 
 fn file(args: &FmtArgs, path: &Path, tally: &mut FormatTally) -> Result<(), CommandFault> {
-    let text = files::read(path)?;
+    let text = files::read_scenario(path)?;
     let name = path.display().to_string();
     let Some(formatted) = formatted(&name, &text, tally) else { return Ok(()) };
     if formatted == text {

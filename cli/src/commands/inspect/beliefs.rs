@@ -122,7 +122,7 @@ fn fact(
     let disk = DiskModules::of(Some(scenario));
     let changed = FileOverlay { disk, name: &file.name, text: &text };
     let name = scenario.display().to_string();
-    let own = files::read(scenario)?;
+    let own = files::read_scenario(scenario)?;
     let head = if file.name == name { &text } else { &own };
     let compiled = compile_with(InputFile { name: &name, text: head }, &[], &changed);
     let Some(changed) = &compiled.program else {

@@ -23,7 +23,7 @@ impl QueriedScenario {
     /// # Errors
     /// A file that cannot be read, or no network to ask.
     pub fn load(args: &ProveArgs) -> Result<Self, CommandFault> {
-        let mut text = files::read(&args.file)?;
+        let mut text = files::read_scenario(&args.file)?;
         let name = args.file.display().to_string();
         let plain =
             compile_with(InputFile { name: &name, text: &text }, &[], &DiskModules::of(Some(&args.file)));
