@@ -218,8 +218,8 @@ part light from "robot.urdf" {
 world { part robot = light at (0 m, 0 m, 0 m) }
 "#;
 
-/// Followers were led by the speed that the solver left their leader with, which at its end is that of a motor pushed back; and each of
-/// them had the rotor of a motor of 1000 N·m. The arm shook at 0.3 rad/s with them, and came to rest nowhere.
+/// A hand's leading joint was driven against its end, and pushed back from there, which all that follow it followed; and each of them had
+/// the rotor of a motor of 1000 N·m. The arm shook at 0.3 rad/s with them, and came to rest nowhere.
 #[test]
 fn a_hand_of_linked_fingers_shakes_no_arm() {
     let world = world_of(&light_arm_with_hand(), WITH_HAND);

@@ -9,11 +9,9 @@ impl PhysicsAdapter {
     /// Tells the engine what followers are to do in the next step, and how hard joints are braked in it.
     pub(super) fn keep_gears(&mut self) {
         let dt = f64::from(self.world.integration_parameters.dt);
-        let mut losses = std::mem::take(&mut self.losses);
-        for gear in &mut losses.gears {
-            let at = self.joint_position(gear.leader);
-            // By how far it came. The speed that the solver left it with has what pushes it at its end, which would shake all that follow.
-            let speed = (at - gear.before.replace(at).unwrap_or(at)) / self.step;
+        let losses = std::mem::take(&mut self.losses);
+        for gear in &losses.gears {
+            let (at, speed) = (self.joint_position(gear.leader), self.joint_speed(gear.leader));
             let behind = gear.factor * at + gear.offset - self.joint_position(gear.follower);
             self.run_at(gear.follower, gear.factor * speed + behind * CATCH_UP / dt, gear.force);
         }

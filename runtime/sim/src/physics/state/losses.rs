@@ -16,8 +16,6 @@ pub struct JointGear {
     pub offset: f64,
     /// The most that it bears, N·m or N.
     pub force: f64,
-    /// Where the leader was a step ago, once there was one.
-    pub before: Option<f64>,
 }
 
 pub struct JointBrake {
@@ -36,7 +34,7 @@ impl JointLosses {
             if let Some(JointMimic { joint: leader, factor, offset }) = joint.drive.mimic {
                 let force = joint.drive.effort.filter(|effort| *effort > 0.0).unwrap_or(STRONGEST);
                 let leader = usize::from(leader.0);
-                losses.gears.push(JointGear { follower: at, leader, factor, offset, force, before: None });
+                losses.gears.push(JointGear { follower: at, leader, factor, offset, force });
             } else if joint.drive.damping > 0.0 || joint.drive.friction > 0.0 {
                 let (damping, friction) = (joint.drive.damping, joint.drive.friction);
                 losses.brakes.push(JointBrake { joint: at, damping, friction });
