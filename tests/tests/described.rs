@@ -261,3 +261,52 @@ fn a_hand_of_linked_fingers_shakes_no_arm() {
         assert!(fastest < 1e-3, "the arm moves at {fastest} rad/s while the hand is at its end");
     }
 }
+
+/// Two wheels and a caster on joints without end, which touch the ground, as the descriptions of robots that drive have them; and what
+/// spins on top of it.
+const ROVER: &str = r#"<robot name="rover">
+  <link name="base"><inertial><mass value="0.8"/><inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/></inertial>
+    <collision><origin xyz="0 0 0.06"/><geometry><box size="0.14 0.14 0.1"/></geometry></collision></link>
+  <link name="left"><inertial><mass value="0.03"/><inertia ixx="1e-5" ixy="0" ixz="0" iyy="1e-5" iyz="0" izz="2e-5"/></inertial>
+    <collision><geometry><cylinder radius="0.033" length="0.018"/></geometry></collision></link>
+  <link name="right"><inertial><mass value="0.03"/><inertia ixx="1e-5" ixy="0" ixz="0" iyy="1e-5" iyz="0" izz="2e-5"/></inertial>
+    <collision><geometry><cylinder radius="0.033" length="0.018"/></geometry></collision></link>
+  <link name="swivel"><inertial><mass value="0.01"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial></link>
+  <link name="ball"><inertial><mass value="0.005"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>
+    <collision><geometry><sphere radius="0.01"/></geometry></collision></link>
+  <link name="scanner"><inertial><mass value="0.1"/><inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial></link>
+  <joint name="left_joint" type="continuous"><parent link="base"/><child link="left"/><origin xyz="0 0.08 0.033" rpy="-1.57 0 0"/><axis xyz="0 0 1"/></joint>
+  <joint name="right_joint" type="continuous"><parent link="base"/><child link="right"/><origin xyz="0 -0.08 0.033" rpy="-1.57 0 0"/><axis xyz="0 0 1"/></joint>
+  <joint name="swivel_joint" type="continuous"><parent link="base"/><child link="swivel"/><origin xyz="-0.08 0 0.02"/><axis xyz="0 0 1"/></joint>
+  <joint name="ball_joint" type="continuous"><parent link="swivel"/><child link="ball"/><origin xyz="-0.01 0 -0.01"/><axis xyz="0 1 0"/></joint>
+  <joint name="scan_joint" type="continuous"><parent link="base"/><child link="scanner"/><origin xyz="0 0 0.15"/><axis xyz="0 0 1"/></joint>
+</robot>
+"#;
+
+const DRIVING: &str = r#"scenario driving
+actor robot : system
+part rover from "robot.urdf" { base wheels: base speed 0.3 m/s turn 3 rad/s acceleration 1 m/s^2 }
+world {
+  body floor: fixed box(10 m, 10 m, 10 cm) at (0 m, 0 m, -5 cm)
+  part robot = rover at (0 m, 0 m, 0 m)
+}
+"#;
+
+/// Wheels that hung loose on a base that is led were rubbed by the ground until the run was at fault.
+#[test]
+fn wheels_that_touch_the_ground_are_one_with_their_base() {
+    let world = world_of(ROVER, DRIVING);
+    let held: Vec<(&str, bool)> =
+        world.joints.iter().map(|joint| (joint.name.as_str(), joint.drive.held)).collect();
+    let wheels =
+        ["left_joint", "right_joint", "swivel_joint", "ball_joint"].map(|name| format!("robot.{name}"));
+    for (name, held) in held {
+        assert_eq!(held, wheels.iter().any(|wheel| wheel == name), "{name}");
+    }
+    let mut sim = WorldSimulation::new(&world, &[]).unwrap();
+    for (forward, turn) in [(0.2, 0.0), (0.0, 0.2), (0.2, 1.0), (-0.2, -2.5)] {
+        sim.command(MotorCommand::DriveWheels { base: BaseId(0), forward, sideways: 0.0, turn }).unwrap();
+        sim.advance(sim.now() + 10 * SECOND);
+        assert_eq!(sim.fault(), None, "at {forward} m/s and {turn} rad/s");
+    }
+}

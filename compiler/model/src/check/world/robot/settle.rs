@@ -12,6 +12,8 @@ use crate::{BodyId, JointId};
 
 /// Between the joints of what counts as short, m.
 const SHORT: f64 = 0.15;
+/// The sine of how far the axis of a wheel may be from level.
+const LEVEL: f64 = 0.2;
 
 impl<'a> WorldPhase<'_, 'a> {
     pub(in crate::check::world) fn settle(&mut self, p: &PlacedMember<'a>) {
@@ -22,7 +24,11 @@ impl<'a> WorldPhase<'_, 'a> {
         let arms = world.arms.iter().flat_map(|arm| &arm.joints);
         let moved: BTreeSet<JointId> =
             arms.chain(world.grippers.iter().flat_map(|g| &g.fingers)).copied().collect();
-        let held = held_joints(placed, &moved);
+        let drives = world.bases.iter().any(|base| placed.link_of(base.body).is_some());
+        let mut held = held_joints(placed, &moved);
+        if drives {
+            held.extend(wheel_joints(placed, &moved));
+        }
         let apart = apart(placed);
         let world = self.world_mut();
         for id in held {
@@ -70,6 +76,34 @@ fn held_joints(placed: &PlacedRobot, moved: &BTreeSet<JointId>) -> Vec<JointId> 
         is(*at) && (first == *at || is(first))
     };
     (0..robot.joints.len()).filter(held).filter_map(|at| placed.joints.get(at).copied()).collect()
+}
+
+/// The joints of a base's wheels, which are one with it, since the base drives as if it had them: joints without end that no device moves,
+/// about an axis that is level, and those that swivel such wheels.
+fn wheel_joints(placed: &PlacedRobot, moved: &BTreeSet<JointId>) -> Vec<JointId> {
+    let Some(robot) = placed.robot() else { return Vec::new() };
+    let groups = robot.rigid_groups();
+    let moves = |joint: &UrdfJoint| joint.kind.has_one_value();
+    let mut wheels = BTreeSet::new();
+    for at in robot.order.iter().rev() {
+        let (Some(joint), Some(id)) = (robot.joint(*at), placed.joints.get(at.0)) else { continue };
+        if joint.kind != UrdfJointKind::Continuous || moved.contains(id) {
+            continue;
+        }
+        let hangs =
+            |other: &UrdfJoint| moves(other) && groups.get(other.parent.0) == groups.get(joint.child.0);
+        let mut beyond = robot.joints.iter().zip(&placed.joints).filter(|(other, _)| hangs(other)).peekable();
+        let upward = placed.poses.get(joint.child.0).map_or(1.0, |pose| pose.turned(joint.axis)[2]);
+        let is_wheel = if beyond.peek().is_none() {
+            upward.abs() < LEVEL
+        } else {
+            beyond.all(|(_, other)| wheels.contains(other))
+        };
+        if is_wheel {
+            wheels.insert(*id);
+        }
+    }
+    wheels.into_iter().collect()
 }
 
 /// The links on both sides of a body whose joints are near each other, as at a shoulder or a wrist: they are drawn so that they
