@@ -13,7 +13,7 @@ mod common;
 #[path = "families/peer.rs"]
 mod peer;
 
-use std::process::{Command, ExitCode, Stdio};
+use std::process::ExitCode;
 
 use common::families;
 use hrdsl_ir::{Program, ta::LocationId};
@@ -157,8 +157,8 @@ struct RowFigures {
 /// Runs the row in a process of its own.
 fn measured(args: &BenchArgs, row: Row) -> Result<RowFigures, String> {
     let me = std::env::current_exe().map_err(|e| e.to_string())?;
-    let mut command = Command::new(me);
-    command.args(["--one", row.0, "--of", &row.1.to_string()]).args(&args.0).stdin(Stdio::null());
+    let mut command = peer::command(&me);
+    command.args(["--one", row.0, "--of", &row.1.to_string()]).args(&args.0);
     let before = children_seconds();
     let out = command.output().map_err(|e| e.to_string())?;
     let seconds = children_seconds() - before;

@@ -50,6 +50,14 @@ const ALGORITHMS: [&str; 3] = ["concur19", "covreach", "aLU-covreach"];
 /// Seconds that the first algorithm may take; the next may take three times as many as the best, and one more.
 const LIMIT: f64 = 600.0;
 
+/// A process without input.
+#[allow(clippy::disallowed_methods, reason = "a bench measures whole processes")]
+pub fn command(program: &Path) -> Command {
+    let mut command = Command::new(program);
+    command.stdin(Stdio::null());
+    command
+}
+
 /// Processor seconds of the processes that were waited for.
 pub fn children_seconds() -> f64 {
     let Ok(usage) = getrusage(UsageWho::RUSAGE_CHILDREN) else { return 0.0 };
@@ -133,14 +141,14 @@ impl Peer {
 fn model(generator: &Path, size: i64) -> Option<tempfile::NamedTempFile> {
     let file = tempfile::NamedTempFile::new().ok()?;
     let out = file.reopen().ok()?;
-    let made = Command::new("bash").arg(generator).arg(size.to_string()).stdout(out).status().ok()?;
+    let made = command(Path::new("bash")).arg(generator).arg(size.to_string()).stdout(out).status().ok()?;
     made.success().then_some(file)
 }
 
 /// `None`: the algorithm does not serve the model, or takes too long.
 fn measured(program: &Path, algorithm: &str, model: &Path, limit: f64) -> Option<PeerFigures> {
     let before = children_seconds();
-    let mut command = Command::new("timeout");
+    let mut command = command(Path::new("timeout"));
     command
         .arg(limit.to_string())
         .arg(program)
