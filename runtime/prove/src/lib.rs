@@ -36,7 +36,7 @@ pub use goals::{GoalDecision, GoalFate, decide, of_formula};
 pub use observer::{ObservedNetwork, ObserverFormulas};
 pub use query::{QueryFinding, QueryResult, answer, answers, is_decided_with_others};
 pub use run::ObservedRun;
-pub use settings::{ProofOptions, SearchOrder, SearchStatistics, SearchWatch};
+pub use settings::{ProofOptions, SearchOrder, SearchStatistics, SearchWatch, TimeFrame};
 
 /// What became of a requirement.
 #[derive(Clone, Debug)]

@@ -174,6 +174,7 @@ fn by_search(
     if let Some(reason) = &report.global_because {
         notes.push(format!("searched without local time: {reason}"));
     }
+    notes.extend(settings.explanation(&report));
     let answered = asked.iter().zip(&report.goals).map(|((query, sought), outcome)| {
         let (found, run) = match outcome {
             GoalOutcome::Reached(witness) => (

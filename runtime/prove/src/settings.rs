@@ -13,7 +13,7 @@ use hrdsl_ta::{
     CompiledNetwork, EventCounter, EventLimit, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal,
     ScheduleOptions, SearchBudget, SearchError, SearchOptions, SearchReport, WitnessRun,
 };
-pub use hrdsl_ta::{SearchOrder, SearchStatistics};
+pub use hrdsl_ta::{SearchOrder, SearchStatistics, TimeFrame};
 
 use super::observer::ObservedNetwork;
 
@@ -24,8 +24,11 @@ pub struct ProofOptions {
     /// In which order states are looked at; `None`: as the witness needs it. Another order than breadth first finds witnesses
     /// that are not the shortest.
     pub order: Option<SearchOrder>,
-    /// Each automaton has a time of its own, where that serves.
-    pub local_time: bool,
+    /// Whether each automaton has a time of its own; `Chosen`: where that serves, and as few states show. With an order, with committed
+    /// states left out, and with exact counters all have one time, unless `Local` is asked for.
+    pub time: TimeFrame,
+    /// Answers say in a note how they were searched.
+    pub explain: bool,
     /// States with a committed location are not stored: often less memory, and less time.
     pub skip_committed: bool,
     /// States that differ in one-way counters alone are kept apart.
@@ -133,13 +136,49 @@ impl ProofOptions {
         SearchOptions {
             order: self.order.unwrap_or(usual.order),
             threads: self.threads.max(1),
-            local_time: self.local_time,
+            time: match self.time {
+                TimeFrame::Chosen if self.is_particular() => TimeFrame::Common,
+                TimeFrame::Chosen => TimeFrame::Chosen,
+                TimeFrame::Common => TimeFrame::Common,
+                TimeFrame::Local => TimeFrame::Local,
+            },
             keep_committed: !self.skip_committed,
             counters: !self.exact_counters,
             budget: self.budget,
             seed: self.seed,
             ..usual
         }
+    }
+
+    /// The search is one that was asked for.
+    fn is_particular(&self) -> bool {
+        self.order.is_some() || self.skip_committed || self.exact_counters
+    }
+
+    /// How a search was done, and why so.
+    pub(crate) fn explanation(&self, report: &SearchReport) -> Option<String> {
+        if !self.explain {
+            return None;
+        }
+        let options = self.options();
+        let time = match (&report.chosen, options.time) {
+            (Some(chosen), _) => chosen.clone(),
+            (None, TimeFrame::Local) if report.global_because.is_none() => "local time: asked for".to_owned(),
+            (None, TimeFrame::Local | TimeFrame::Common | TimeFrame::Chosen) => {
+                "one time for all automata".to_owned()
+            }
+        };
+        let order = match options.order {
+            SearchOrder::Breadth if options.keep_shorter => "breadth first, for the shortest runs",
+            SearchOrder::Breadth => "breadth first",
+            SearchOrder::RandomBreadth => "breadth first, drawn",
+            SearchOrder::Depth => "depth first",
+            SearchOrder::RandomDepth => "depth first, drawn",
+            SearchOrder::Topological => "in the order of the locations, for few states",
+        };
+        let committed = if options.keep_committed { "stored" } else { "not stored" };
+        let threads = options.threads;
+        Some(format!("searched with {time}; {order}; committed states {committed}; threads: {threads}"))
     }
 
     pub(super) fn timing(&self) -> ScheduleOptions {

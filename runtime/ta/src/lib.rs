@@ -59,7 +59,7 @@ pub use network::query::{
     self, EventCounter, EventLimit, GoalKind, ReachabilityGoal, SearchBudget, StateFormula, clock_names,
 };
 pub use network::{selects::BinderValues, semantics::AutomatonMove};
-pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation};
+pub use search::options::{SearchOptions, SearchOrder, SubsumptionRelation, TimeFrame};
 pub use search::report::{
     GoalOutcome, SearchCutoff, SearchProgress, SearchReport, SearchStatistics, WidestVariable,
 };

@@ -9,8 +9,8 @@ use hrdsl_ir::{
     ta::{AutomatonId, ChannelKind, ChannelParticipant, ClockOp, LocationId, QueryFormula},
 };
 use hrdsl_ta::{
-    CompiledNetwork, GoalKind, GoalOutcome, ModelError, ObservationOptions, ReachabilityGoal, SearchError,
-    SearchReport, StateFormula, explore,
+    CompiledNetwork, GoalKind, GoalOutcome, ModelError, ObservationOptions, ReachabilityGoal, SearchBudget,
+    SearchCutoff, SearchError, SearchReport, StateFormula, TimeFrame, explore,
     local::{self, LocalSearchError, LocalSearchOptions, NotApplicableError},
 };
 use local_nets::{Draft, Member};
@@ -110,6 +110,64 @@ fn families_have_the_same_answers() {
     agree(&families::fischer(4));
     agree(&families::csma_cd(3));
     agree(&families::critical_region(2));
+}
+
+/// That an automaton is in the first two of its locations at once, which no state meets, and, if wanted, each location of the
+/// last one.
+fn never_and(p: &Program, more: bool) -> Vec<ReachabilityGoal> {
+    let at = |automaton, l| StateFormula::At { automaton, location: LocationId(l) };
+    let goal = |f| ReachabilityGoal { what: GoalKind::Condition(f), settled: false };
+    let last = p.automata.len() - 1;
+    let never = goal(StateFormula::And(vec![at(last, 0), at(last, 1)]));
+    let places = (0..p.automata[last].locations.len() as u16).filter(|_| more);
+    std::iter::once(never).chain(places.map(|l| goal(at(last, l)))).collect()
+}
+
+/// Where local time takes fewer zones it is chosen; verdicts and runs are those of common time.
+#[test]
+fn time_is_chosen_and_nothing_else_changes() {
+    for (p, local) in [
+        (families::philosophers(6), true),
+        (families::corsso(3), true),
+        (families::fischer(7), false),
+        (families::csma_cd(8), false),
+    ] {
+        let model = model(&p);
+        for (more, shortest) in [(false, false), (true, true)] {
+            let goals = never_and(&p, more);
+            let usual = if shortest {
+                hrdsl_ta::SearchOptions::shortest()
+            } else {
+                hrdsl_ta::SearchOptions::default()
+            };
+            let search = |time| {
+                let options = hrdsl_ta::SearchOptions { time, ..usual };
+                explore(&model, &goals, &options, &|_| true).unwrap()
+            };
+            let (chosen, common) = (search(TimeFrame::Chosen), search(TimeFrame::Common));
+            assert_eq!(chosen.goals, common.goals);
+            let why = chosen.chosen.unwrap();
+            assert_eq!(why.starts_with("local time: "), local, "{why}");
+            assert_eq!(common.chosen, None);
+            if local && !more {
+                assert!(chosen.states_stored < common.states_stored);
+            }
+        }
+    }
+}
+
+/// A budget that ends common time does not end what local time has decided.
+#[test]
+fn what_local_time_decides_is_decided() {
+    let p = families::philosophers(7);
+    let (model, goals) = (model(&p), never_and(&p, false));
+    let budget = SearchBudget { states: 20_000, ..SearchBudget::default() };
+    let search = |time| {
+        let options = hrdsl_ta::SearchOptions { time, budget, ..hrdsl_ta::SearchOptions::default() };
+        explore(&model, &goals, &options, &|_| true).unwrap().goals
+    };
+    assert_eq!(search(TimeFrame::Common), [GoalOutcome::Inconclusive(SearchCutoff::States)]);
+    assert_eq!(search(TimeFrame::Chosen), [GoalOutcome::Unreachable]);
 }
 
 /// A goal that only a run whose time goes back would meet.

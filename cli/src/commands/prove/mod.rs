@@ -9,7 +9,7 @@ mod table;
 
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
-use hrdsl_runtime::prove::ProofOptions;
+use hrdsl_runtime::prove::{ProofOptions, TimeFrame};
 use hrdsl_source::printable;
 
 use super::search_options::{DelayArg, SearchOrderArg, WitnessArg};
@@ -88,9 +88,16 @@ pub struct ProveSearchArgs {
     /// In which order states are looked at [default: what the witness needs].
     #[arg(long, value_enum)]
     order: Option<SearchOrderArg>,
-    /// Give each automaton a time of its own, where that serves: often fewer states if automata share little.
+    /// Give each automaton a time of its own, where that serves: often fewer states if automata share little [default: if
+    /// the beginning of the search shows that it does].
     #[arg(long)]
     local_time: bool,
+    /// Have one time for all automata throughout.
+    #[arg(long, conflicts_with = "local_time")]
+    common_time: bool,
+    /// Say with the answers of queries how they were searched, and why so.
+    #[arg(long)]
+    explain: bool,
     /// Do not store states with a committed location: often less memory, and less time. Runs may not be the shortest.
     #[arg(long)]
     skip_committed: bool,
@@ -118,7 +125,12 @@ impl ProveSearchArgs {
             witness: self.witness.unwrap_or(usual).into(),
             delays: self.delays.into(),
             order: self.order.map(Into::into),
-            local_time: self.local_time,
+            time: match (self.local_time, self.common_time) {
+                (true, _) => TimeFrame::Local,
+                (false, true) => TimeFrame::Common,
+                (false, false) => TimeFrame::Chosen,
+            },
+            explain: self.explain,
             skip_committed: self.skip_committed,
             exact_counters: self.exact_counters,
             threads: usize::from(self.threads),

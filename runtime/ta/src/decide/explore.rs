@@ -1,16 +1,16 @@
-//! The search for goals, with one time for all or, where it is asked for and serves, with local time.
+//! The search for goals, with one time for all or with local time: as it is asked for, or as it serves.
 
 use hrdsl_ir::{Program, ta::Network};
 
 use crate::{
-    decide::stopwatch,
+    decide::{chosen, stopwatch},
     local,
     network::{
         model::{CompiledNetwork, ObservationOptions},
         query::{EventCounter, EventLimit, ReachabilityGoal, SearchBudget},
     },
     search::{
-        options::SearchOptions,
+        options::{SearchOptions, TimeFrame},
         report::{SearchProgress, SearchReport},
         start,
     },
@@ -54,8 +54,11 @@ pub fn explore(
     if model.stops() {
         return stopwatch::explore(model, goals, options, go_on);
     }
-    if !options.local_time {
-        return start::explore(model, goals, options, go_on);
+    match options.time {
+        TimeFrame::Common => return start::explore(model, goals, options, go_on),
+        TimeFrame::Chosen if goals.is_empty() => return start::explore(model, goals, options, go_on),
+        TimeFrame::Chosen => return chosen::explore(model, goals, options, go_on),
+        TimeFrame::Local => {}
     }
     let SearchOptions { order, seed, budget, .. } = *options;
     let alone = local::LocalSearchOptions { order, seed, budget, ..local::LocalSearchOptions::default() };

@@ -2,6 +2,7 @@
 
 pub(crate) mod answer;
 mod cells;
+mod chosen;
 pub(crate) mod deadlock;
 pub(crate) mod explore;
 pub(crate) mod extremum;

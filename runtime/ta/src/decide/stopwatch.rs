@@ -25,7 +25,7 @@ use crate::{
         query::{GoalKind, ReachabilityGoal, SearchBudget, StateFormula},
     },
     search::{
-        options::SearchOptions,
+        options::{SearchOptions, TimeFrame},
         report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport},
     },
     witness::{
@@ -128,7 +128,7 @@ pub(crate) fn explore(
         known: Vec::new(),
         second: false,
         doubt: false,
-        local_time: options.local_time,
+        local_time: options.time == TimeFrame::Local,
         stored: 0,
         visited: 0,
         transitions: 0,
@@ -189,6 +189,7 @@ impl StopwatchSearch<'_, '_, '_> {
             peak_bytes: self.peak,
             complete: cutoff.is_none(),
             global_because: self.local_time.then(|| "clocks stand still".to_owned()),
+            chosen: None,
             widest: None,
             goals: self.progress.into_iter().map(ended).collect(),
         }

@@ -54,4 +54,5 @@ mod space;
 mod zone;
 
 pub use refusal::{LocalSearchError, NotApplicableError};
+pub(crate) use search::{LocalPause, LocalSearch};
 pub use search::{LocalSearchOptions, explore};

@@ -18,7 +18,7 @@ use crate::{
     search::{
         goals::CompiledGoals,
         options::SearchOrder,
-        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, SearchStatistics, WidestVariable},
         slice,
         store::{NIL, PassedList, StateLayout, hash_words},
         waiting::{WaitingList, level, levels},
@@ -51,7 +51,8 @@ struct LocalGoalPath {
     last: Option<u32>,
 }
 
-struct LocalSearch<'m, 'p> {
+/// A search with local time, under way.
+pub(crate) struct LocalSearch<'m, 'p> {
     space: LocalStateSpace<'m, 'p>,
     goals: &'m [ReachabilityGoal],
     compiled: CompiledGoals,
@@ -74,6 +75,30 @@ struct LocalSearch<'m, 'p> {
     peak: usize,
     visited: usize,
     transitions: usize,
+    budget: SearchBudget,
+    memory: LocalWorkMemory,
+    started: bool,
+    /// After so many states the caller is asked whether to go on.
+    ask: usize,
+}
+
+/// Memory that the search uses again and again.
+#[derive(Default)]
+struct LocalWorkMemory {
+    work: LocalWorkspace,
+    scratch: EnumerationScratch,
+    state: Vec<i64>,
+    round: Vec<u32>,
+}
+
+/// Why [`LocalSearch::go`] has come back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LocalPause {
+    /// All is decided, or explored.
+    Ended,
+    Cut(SearchCutoff),
+    /// So many transitions were computed.
+    Paused,
 }
 
 /// Searches a network with local time. The report is that of [`crate::explore`] with fewer states. `go_on` is asked now
@@ -87,27 +112,12 @@ pub fn explore(
     options: &LocalSearchOptions,
     go_on: &dyn Fn(&SearchProgress) -> bool,
 ) -> Result<SearchReport, LocalSearchError> {
-    let mut search = LocalSearch::new(LocalStateSpace::new(model, options.media)?, goals, options)?;
-    let exhausted = search.run(options, go_on)?;
-    let mut outcomes = Vec::new();
-    for (goal, hit) in goals.iter().zip(&search.hits) {
-        outcomes.push(match (hit, exhausted) {
-            (Some(path), _) => GoalOutcome::Reached(Box::new(search.witness(path, Some(goal))?)),
-            (None, Some(what)) => GoalOutcome::Inconclusive(what),
-            (None, None) => GoalOutcome::Unreachable,
-        });
-    }
-    Ok(SearchReport {
-        goals: outcomes,
-        states_stored: search.store.stored,
-        states_visited: search.visited,
-        discrete_states: search.store.discrete_states(),
-        transitions: search.transitions,
-        peak_bytes: search.peak,
-        complete: exhausted.is_none() && search.waiting.is_empty(&search.store.nodes, None),
-        global_because: None,
-        widest: exhausted.and_then(|_| WidestVariable::of(search.space.model, &search.store.extremes())),
-    })
+    let mut search = LocalSearch::begin(model, goals, options)?;
+    let exhausted = match search.go(usize::MAX, go_on)? {
+        LocalPause::Cut(what) => Some(what),
+        LocalPause::Ended | LocalPause::Paused => None,
+    };
+    Ok(search.report(exhausted)?)
 }
 
 impl<'m, 'p> LocalSearch<'m, 'p> {
@@ -141,49 +151,123 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             peak: 0,
             visited: 0,
             transitions: 0,
+            budget: options.budget,
+            memory: LocalWorkMemory::default(),
+            started: false,
+            ask: 0,
         })
+    }
+
+    /// # Errors
+    /// If local time does not serve the network or the goals.
+    pub(crate) fn begin(
+        model: &'m CompiledNetwork<'p>,
+        goals: &'m [ReachabilityGoal],
+        options: &LocalSearchOptions,
+    ) -> Result<Self, LocalSearchError> {
+        Self::new(LocalStateSpace::new(model, options.media)?, goals, options)
+    }
+
+    /// Goes on until so many transitions were computed, in all. `go_on` is asked now and then whether to.
+    ///
+    /// # Errors
+    /// As [`explore`]; then the search is of no more use.
+    pub(crate) fn go(
+        &mut self,
+        until: usize,
+        go_on: &dyn Fn(&SearchProgress) -> bool,
+    ) -> Result<LocalPause, LocalSearchError> {
+        let mut memory = std::mem::take(&mut self.memory);
+        let pause = self.run(&mut memory, until, go_on);
+        self.memory = memory;
+        pause
     }
 
     fn run(
         &mut self,
-        options: &LocalSearchOptions,
+        memory: &mut LocalWorkMemory,
+        until: usize,
         go_on: &dyn Fn(&SearchProgress) -> bool,
-    ) -> Result<Option<SearchCutoff>, LocalSearchError> {
-        let (mut w, mut scratch) = (LocalWorkspace::default(), EnumerationScratch::default());
-        self.space.start(&mut w)?;
-        self.insert(&mut w, NIL, 0)?;
-        let (mut state, mut round, mut ask) = (Vec::new(), Vec::new(), 0);
+    ) -> Result<LocalPause, LocalSearchError> {
+        let LocalWorkMemory { work: w, scratch, state, round } = memory;
+        if !std::mem::replace(&mut self.started, true) {
+            self.space.start(w)?;
+            self.insert(w, NIL, 0)?;
+        }
         loop {
             self.waiting.settle(&self.store.nodes);
             if (!self.goals.is_empty() && self.left == 0) || self.waiting.is_empty(&self.store.nodes, None) {
-                return Ok(None);
+                return Ok(LocalPause::Ended);
+            }
+            if self.transitions >= until {
+                return Ok(LocalPause::Paused);
             }
             let bytes = self.store.bytes() + self.waiting.bytes() + self.bytes;
             self.peak = self.peak.max(bytes);
-            if self.store.nodes.len() >= options.budget.states || !self.store.has_room(self.space.room()) {
-                return Ok(Some(SearchCutoff::States));
+            if self.store.nodes.len() >= self.budget.states || !self.store.has_room(self.space.room()) {
+                return Ok(LocalPause::Cut(SearchCutoff::States));
             }
-            if bytes >= options.budget.bytes {
-                return Ok(Some(SearchCutoff::Memory));
+            if bytes >= self.budget.bytes {
+                return Ok(LocalPause::Cut(SearchCutoff::Memory));
             }
-            if self.visited >= ask {
-                ask = self.visited + ROUND;
+            if self.visited >= self.ask {
+                self.ask = self.visited + ROUND;
                 if !go_on(&self.progress(bytes)) {
-                    return Ok(Some(SearchCutoff::Stopped));
+                    return Ok(LocalPause::Cut(SearchCutoff::Stopped));
                 }
             }
-            self.waiting.take(&self.store.nodes, FEW, &mut round);
-            for &id in &round {
+            self.waiting.take(&self.store.nodes, FEW, round);
+            for &id in &*round {
                 // Another of the round may have driven it out.
                 let Some(zone) = self.zones[id as usize].take() else { continue };
                 let node = self.store.nodes[id as usize];
-                self.store.layout.unpack(self.store.packed(node.discrete), &mut state);
+                self.store.layout.unpack(self.store.packed(node.discrete), state);
                 self.bytes -= zone.heap_bytes();
                 self.visited += 1;
-                self.expand(id, &mut state, &zone, &mut w, &mut scratch)?;
+                self.expand(id, state, &zone, w, scratch)?;
                 self.pool.push(zone);
             }
         }
+    }
+
+    /// Which goals no run meets, after the end.
+    pub(crate) fn unmet(&self) -> Vec<usize> {
+        (0..self.goals.len()).filter(|&goal| self.open[goal]).collect()
+    }
+
+    pub(crate) fn statistics(&self) -> SearchStatistics {
+        SearchStatistics {
+            stored: self.store.stored,
+            visited: self.visited,
+            transitions: self.transitions,
+            discrete_states: self.store.discrete_states(),
+            bytes: self.peak,
+        }
+    }
+
+    /// # Errors
+    /// If the engine contradicts itself.
+    pub(crate) fn report(mut self, exhausted: Option<SearchCutoff>) -> Result<SearchReport, SearchError> {
+        let mut outcomes = Vec::new();
+        for (goal, hit) in self.goals.iter().zip(&self.hits) {
+            outcomes.push(match (hit, exhausted) {
+                (Some(path), _) => GoalOutcome::Reached(Box::new(self.witness(path, Some(goal))?)),
+                (None, Some(what)) => GoalOutcome::Inconclusive(what),
+                (None, None) => GoalOutcome::Unreachable,
+            });
+        }
+        Ok(SearchReport {
+            goals: outcomes,
+            states_stored: self.store.stored,
+            states_visited: self.visited,
+            discrete_states: self.store.discrete_states(),
+            transitions: self.transitions,
+            peak_bytes: self.peak,
+            complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes, None),
+            global_because: None,
+            chosen: None,
+            widest: exhausted.and_then(|_| WidestVariable::of(self.space.model, &self.store.extremes())),
+        })
     }
 
     fn progress(&self, bytes: usize) -> SearchProgress<'_> {

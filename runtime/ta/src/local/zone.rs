@@ -203,9 +203,16 @@ impl LocalZone {
         out.clear();
         out.push(ZERO);
         out.extend(clocks.iter().map(|&x| meeting.row[p + usize::from(x)].min(INF)));
+        let whole = clocks.len() == self.n - p;
         for (&x, &c) in clocks.iter().zip(&meeting.col) {
             out.push(c);
             let row = self.row(p + usize::from(x));
+            if whole && c < INF {
+                let sums = row[p..].iter().zip(&meeting.row[p..]);
+                // No bound of the meeting is one that no sum comes near: see `finish`.
+                out.extend(sums.map(|(&old, &r)| old.min(c + r - ((c | r) & 1))));
+                continue;
+            }
             // INVARIANT: if `c` is no bound, the sum is none, either.
             out.extend(clocks.iter().map(|&y| {
                 let (old, r) = (row[p + usize::from(y)], meeting.row[p + usize::from(y)]);

@@ -181,7 +181,10 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
             && simple
             && let Some(discrete) = known
         {
-            // What is covered before extrapolation is so after it: most of the work is saved.
+            // What is covered before extrapolation is so after it: most of the work is saved. Mostly the newest has it all.
+            if self.is_within_newest(discrete, zone, &m.ranks) {
+                return Ok(());
+            }
             thresholds(frame, zone, &mut m.bounds);
             if self.is_covered(discrete, frame.dim(), &m.bounds, &m.ranks) {
                 return Ok(());
@@ -216,6 +219,15 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         }
         m.pieces = pieces;
         Ok(())
+    }
+
+    /// Whether the newest node of the discrete state includes the zone.
+    fn is_within_newest(&self, discrete: u32, zone: &Dbm<N>, ranks: &[u32]) -> bool {
+        let store = self.c.store;
+        let newest = store.head(discrete);
+        newest != NIL
+            && no_worse(store.ranks(newest), ranks)
+            && zone.is_within(store.zone(&store.nodes[newest as usize], zone.dim()))
     }
 
     fn is_covered(&self, discrete: u32, dim: usize, demands: &[N], ranks: &[u32]) -> bool {

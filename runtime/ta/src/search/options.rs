@@ -32,6 +32,19 @@ pub enum SubsumptionRelation {
     Simulation,
 }
 
+/// Whose time zones tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TimeFrame {
+    /// What takes fewer zones, as far as the beginning of the search tells: see `decide/chosen.rs`.
+    #[default]
+    Chosen,
+    /// One time for all automata.
+    Common,
+    /// Each automaton has a time of its own, where that serves the network and the goals: see [`local`](crate::local). Then
+    /// `subsumption`, `abstraction`, `threads`, `keep_committed`, `reduce`, `counters` and `keep_shorter` have no meaning.
+    Local,
+}
+
 /// How to search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchOptions {
@@ -50,9 +63,7 @@ pub struct SearchOptions {
     /// No state is driven out by one that came by more transitions: breadth first, with committed states kept, witnesses are the
     /// shortest then.
     pub keep_shorter: bool,
-    /// Each automaton has a time of its own, where that serves the network and the goals: see [`local`](crate::local). Then
-    /// `subsumption`, `abstraction`, `threads`, `keep_committed`, `reduce`, `counters` and `keep_shorter` have no meaning.
-    pub local_time: bool,
+    pub time: TimeFrame,
     pub budget: SearchBudget,
     pub seed: u64,
 }
@@ -68,7 +79,7 @@ impl Default for SearchOptions {
             reduce: true,
             counters: true,
             keep_shorter: false,
-            local_time: false,
+            time: TimeFrame::default(),
             budget: SearchBudget::default(),
             seed: 0,
         }
@@ -84,6 +95,7 @@ impl SearchOptions {
             subsumption: SubsumptionRelation::Inclusion,
             reduce: false,
             counters: false,
+            time: TimeFrame::Common,
             ..Self::default()
         }
     }

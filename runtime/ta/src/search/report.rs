@@ -70,6 +70,8 @@ pub struct SearchReport {
     pub complete: bool,
     /// Why local time, which was asked for, does not serve this network or these goals.
     pub global_because: Option<String>,
+    /// Where it was left to the search whose time zones tell: what it chose, and why.
+    pub chosen: Option<String>,
     /// Of a search that ended before its end: the int with the most values so far, if there is one with more than two.
     pub widest: Option<WidestVariable>,
 }

@@ -6,7 +6,7 @@ use crate::{
     network::actions::PathTransition,
     search::{
         probe::{ProbeFinding, StateProbe},
-        report::{SearchCutoff, SearchProgress, SearchStatistics},
+        report::{SearchCutoff, SearchProgress, SearchReport, SearchStatistics},
     },
     witness::error::SearchError,
 };
@@ -64,6 +64,15 @@ pub(crate) trait RoundSearch {
     /// # Errors
     /// If the engine contradicts itself.
     fn path_to_goal(&mut self, goal: usize) -> Result<Option<Vec<PathTransition>>, SearchError>;
+
+    /// No run meets these goals, as is known from elsewhere.
+    fn exclude(&mut self, goals: &[usize]);
+
+    /// What was found, when `round` has broken off with this end.
+    ///
+    /// # Errors
+    /// If the engine contradicts itself.
+    fn report(&mut self, exhausted: Option<SearchCutoff>) -> Result<SearchReport, SearchError>;
 
     /// Symbolic states kept.
     fn stored(&self) -> usize;

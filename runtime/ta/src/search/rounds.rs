@@ -135,12 +135,16 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         go_on: &dyn Fn(&SearchProgress) -> bool,
     ) -> Result<SearchReport, SearchError> {
         let exhausted = self.run(go_on)?;
+        self.told(exhausted)
+    }
+
+    fn told(&mut self, exhausted: Option<SearchCutoff>) -> Result<SearchReport, SearchError> {
         let mut outcomes = Vec::new();
         for i in 0..self.goals.len() {
             outcomes.push(match (self.hits[i], exhausted) {
                 (Some(path), _) => GoalOutcome::Reached(Box::new(self.witness(path, i)?)),
-                (None, Some(what)) => GoalOutcome::Inconclusive(what),
-                (None, None) => GoalOutcome::Unreachable,
+                (None, Some(what)) if self.open[i] => GoalOutcome::Inconclusive(what),
+                (None, _) => GoalOutcome::Unreachable,
             });
         }
         Ok(SearchReport {
@@ -152,6 +156,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             peak_bytes: self.peak,
             complete: exhausted.is_none() && self.waiting.is_empty(&self.store.nodes, self.latest),
             global_because: None,
+            chosen: None,
             widest: exhausted.and_then(|_| WidestVariable::of(self.model, &self.extremes())),
         })
     }
@@ -452,6 +457,18 @@ impl<N: DbmNumber> RoundSearch for ZoneGraphSearch<'_, '_, N> {
 
     fn path_to_goal(&mut self, goal: usize) -> Result<Option<Vec<PathTransition>>, SearchError> {
         self.hits[goal].map(|path| self.path(path)).transpose()
+    }
+
+    fn exclude(&mut self, goals: &[usize]) {
+        for &goal in goals {
+            if std::mem::replace(&mut self.open[goal], false) {
+                self.left -= 1;
+            }
+        }
+    }
+
+    fn report(&mut self, exhausted: Option<SearchCutoff>) -> Result<SearchReport, SearchError> {
+        self.told(exhausted)
     }
 
     fn stored(&self) -> usize {

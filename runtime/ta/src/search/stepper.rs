@@ -306,9 +306,8 @@ impl<N: DbmNumber> StepperWorkspace<N> {
             return Ok(false);
         }
         if model.may_delay(&mut self.effect.target, &mut self.scratch) {
-            self.zone.up();
             // Not empty: it has what was there before the delay.
-            self.zone.constrain_above(&self.above);
+            self.zone.up_within(&self.above);
             if others {
                 self.rest();
             }

@@ -106,6 +106,9 @@ pub trait DbmNumber:
     /// `row[l] = min(row[l], to + through[l])`; `to` must be a bound.
     fn relax(row: &mut [Self], to: Self, through: &[Self]);
 
+    /// Pushes the least of `row[l]`, `column[l] + more` and `most[l]` for each `l`: none of the sums overflows.
+    fn least_of(row: &[Self], column: &[Self], most: &[Self], more: Self, out: &mut Vec<Self>);
+
     /// As a word of a hash.
     fn word(self) -> u64 {
         let n: i64 = self.into();
@@ -138,6 +141,12 @@ macro_rules! number {
             #[inline]
             fn shifted(self, units: i64) -> Self {
                 self.wrapping_add((2 * units) as $t)
+            }
+
+            #[inline]
+            fn least_of(row: &[Self], column: &[Self], most: &[Self], more: Self, out: &mut Vec<Self>) {
+                let lines = row.iter().zip(column).zip(most);
+                out.extend(lines.map(|((&b, &c), &m)| b.min(c.wrapping_add(more)).min(m)));
             }
 
             #[inline]
@@ -361,6 +370,19 @@ impl<N: DbmNumber> Dbm<N> {
         true
     }
 
+    /// Lets time pass as far as upper bounds of clocks let it, which hold already.
+    ///
+    /// INVARIANT: the bounds that new upper bounds of clocks would tighten are those of before, and these were as tight.
+    pub(crate) fn up_within(&mut self, bounds: &[(usize, N)]) {
+        if self.is_empty() {
+            return;
+        }
+        let stride = self.stride.max(1);
+        for row in self.m.chunks_exact_mut(stride).skip(1) {
+            row[0] = bounds.iter().map(|&(j, b)| row[j].plus(b)).min().unwrap_or(N::INFINITY);
+        }
+    }
+
     /// Lets any time pass.
     pub fn up(&mut self) {
         if self.is_empty() {
@@ -411,6 +433,12 @@ impl<N: DbmNumber> Dbm<N> {
                 *to = if shifted && n != N::INFINITY { n.shifted(a - b) } else { n };
             }
         }
+    }
+
+    /// Whether each valuation is one of a zone as [`store`](Self::store) gives it.
+    #[must_use]
+    pub(crate) fn is_within(&self, flat: &[N]) -> bool {
+        (0..self.dim).zip(flat.chunks_exact(self.dim.max(1))).all(|(i, row)| dominates(row, self.row(i)))
     }
 
     /// Whether each valuation of `other` is one of this.
@@ -645,6 +673,12 @@ mod tests {
             let empty = a.is_empty();
             prop_assert_eq!(a.constrain_above(&wides), each && !empty);
             prop_assert_eq!(b.constrain_above(&narrows), each && !empty);
+            // And so is time that passes within them.
+            let (mut free, mut within) = (a.clone(), a.clone());
+            free.up();
+            free.constrain_above(&wides);
+            within.up_within(&wides);
+            prop_assert!(a.is_empty() || free == within);
             prop_assert_eq!(a.is_empty(), b.is_empty());
             if !a.is_empty() {
                 prop_assert_eq!(&one, &a);

@@ -8,6 +8,8 @@
 //!
 //! A clock without any bound in a location does not matter there: zones leave it out (Daws and Yovine 1996).
 
+use smallvec::SmallVec;
+
 use crate::zone::dbm::{Dbm, DbmBound, DbmNumber};
 
 /// No bound: the clock is never compared that way before it is reset.
@@ -127,28 +129,25 @@ pub(crate) fn extra_lu<N: DbmNumber>(frame: &ActiveClocks, zone: &mut Dbm<N>, be
 pub(crate) fn thresholds<N: DbmNumber>(frame: &ActiveClocks, zone: &Dbm<N>, out: &mut Vec<N>) {
     out.clear();
     let dim = zone.dim();
+    // By clock x: Z₀ₓ as a strict bound, rounded up; and what takes a column out that asks for nothing.
+    let (mut strict, mut most) = (ThresholdRow::<N>::new(), ThresholdRow::<N>::new());
+    for (&least, lu) in zone.row(0).iter().zip(&frame.bounds) {
+        let packed: i64 = least.into();
+        strict.push(N::of(DbmBound::lt((packed + 1).div_euclid(2))));
+        let free = lu.upper == NONE || least < N::of(DbmBound::le(-lu.upper));
+        most.push(if free { N::LEAST } else { N::INFINITY });
+    }
     for y in 0..dim {
         let lower = frame.bounds[y].lower;
         if lower == NONE {
             out.resize(out.len() + dim, N::LEAST);
-            continue;
-        }
-        for x in 0..dim {
-            out.push(threshold(frame, zone, y, x, lower));
+        } else {
+            N::least_of(zone.row(y), &strict, &most, N::of(DbmBound::lt(lower)), out);
         }
     }
 }
 
-#[inline]
-fn threshold<N: DbmNumber>(frame: &ActiveClocks, zone: &Dbm<N>, y: usize, x: usize, lower: i64) -> N {
-    let (upper, least) = (frame.bounds[x].upper, zone.entry(0, x));
-    if upper == NONE || least < N::of(DbmBound::le(-upper)) {
-        return N::LEAST;
-    }
-    let packed: i64 = least.into();
-    let strict = DbmBound::lt(lower + (packed + 1).div_euclid(2));
-    zone.entry(y, x).min(N::of(strict))
-}
+type ThresholdRow<N> = SmallVec<[N; 32]>;
 
 /// A zone that has all that the zone simulates: a convex hull of aLU(Z), not always the least.
 ///

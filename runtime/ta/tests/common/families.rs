@@ -151,7 +151,7 @@ pub fn critical_region(count: i64) -> Program {
         let testing2 = location(&mut c, "testing2", Normal, &[clock(0, Le, T)]);
         let (error, safe) = (normal(&mut c, "error"), normal(&mut c, "safe"));
         edge(not_ready, testing).clock(0, Le, 2 * T).reset(0).to(&mut c);
-        edge(testing, not_ready).clock(0, Ge, T).to(&mut c);
+        edge(testing, not_ready).clock(0, Ge, T).reset(0).to(&mut c);
         edge(testing, requesting).clock(0, Le, T - 1).to(&mut c);
         edge(requesting, critical).offer(enter, &[n(i)]).reset(0).to(&mut c);
         edge(critical, error).clock(0, Ge, 2 * T).to(&mut c);
@@ -249,6 +249,91 @@ pub fn parallel(count: i64) -> Program {
         let (start, wait, done) = (normal(&mut a, "A"), normal(&mut a, "B"), normal(&mut a, "C"));
         edge(start, wait).reset(0).to(&mut a);
         edge(wait, done).join(go).clock(0, Le, 1).to(&mut a);
+        add(&mut p, a);
+    }
+    p
+}
+
+/// Sensors that tell a central each in a window of its own, and wait for its answer: windows of 10, cycles of 50 N (Muñiz,
+/// Westphal and Podelski, "Timed Automata with Disjoint Activity", FORMATS 2012).
+pub fn fire_alarm(count: i64) -> Program {
+    const WINDOW: i64 = 10;
+    let mut p = program();
+    let [alive, ack] = ["alive", "ack"].map(|name| channel(&mut p, name, Binary, &[]));
+    for i in 1..=count {
+        let (begin, end) = (2 * i * WINDOW - WINDOW, 2 * i * WINDOW);
+        let mut s = automaton(&format!("Sensor{i}"), &["x"]);
+        let until = [("ini", begin), ("wait", begin + 5), ("sent", end), ("fin", 50 * count)];
+        let [ini, wait, sent, fin] =
+            until.map(|(name, k)| location(&mut s, name, Normal, &[clock(0, Le, k)]));
+        edge(ini, wait).clock(0, Ge, begin).to(&mut s);
+        edge(wait, sent).offer(alive, &[]).to(&mut s);
+        edge(sent, fin).offer(ack, &[]).to(&mut s);
+        edge(sent, fin).clock(0, Ge, end).to(&mut s);
+        edge(fin, ini).clock(0, Ge, 50 * count).reset(0).to(&mut s);
+        add(&mut p, s);
+    }
+    let mut c = automaton("C", &[]);
+    let hears = normal(&mut c, "I");
+    edge(hears, hears).accept(ack, &[]).to(&mut c);
+    edge(hears, hears).accept(alive, &[]).to(&mut c);
+    add(&mut p, c);
+    p
+}
+
+/// Fischer's mutual exclusion, K = 10, with the variable in an automaton of its own.
+pub fn fischer_async(count: i64) -> Program {
+    const K: i64 = 10;
+    let mut p = program();
+    let [is, becomes] = ["is", "becomes"].map(|name| channel(&mut p, name, Binary, &[(0, count)]));
+    for i in 1..=count {
+        let mut a = automaton(&format!("P{i}"), &["x"]);
+        let start = normal(&mut a, "A");
+        let req = location(&mut a, "req", Normal, &[clock(0, Le, K)]);
+        let wait = normal(&mut a, "wait");
+        let cs = normal(&mut a, "cs");
+        edge(start, req).offer(is, &[n(0)]).reset(0).to(&mut a);
+        edge(req, wait).offer(becomes, &[n(i)]).clock(0, Le, K).reset(0).to(&mut a);
+        edge(wait, req).offer(is, &[n(0)]).reset(0).to(&mut a);
+        edge(wait, cs).offer(is, &[n(i)]).clock(0, After, K).to(&mut a);
+        edge(cs, start).offer(becomes, &[n(0)]).to(&mut a);
+        add(&mut p, a);
+    }
+    let mut holder = automaton("ID", &[]);
+    holder.vars.push(super::var("id", 0, count, 0));
+    let here = normal(&mut holder, "l");
+    for i in 0..=count {
+        edge(here, here).accept(is, &[i]).when(eq(v(0), n(i))).to(&mut holder);
+        edge(here, here).accept(becomes, &[i]).set(0, n(i)).to(&mut holder);
+    }
+    add(&mut p, holder);
+    p
+}
+
+/// Single sign-on: processes that need a certificate or two, each at least 2 after the last and all within 10 (Yu and Wang,
+/// "SAT-based model-checking for region automata", 2006).
+pub fn corsso(count: i64) -> Program {
+    const BETWEEN: i64 = 2;
+    const WITHIN: i64 = 10;
+    const MOST: i64 = 2;
+    let mut p = program();
+    for i in 1..=count {
+        let mut a = automaton(&format!("P{i}"), &["x", "y"]);
+        let (x, y) = (0, 1);
+        // Certificates, and the policy that was chosen: it needs as many as its number.
+        a.vars.push(super::var("got", 0, MOST + 1, 0));
+        a.vars.push(super::var("policy", 0, MOST + 1, 0));
+        let (got, policy) = (0, 1);
+        let (auth, access) = (normal(&mut a, "auth"), normal(&mut a, "access"));
+        let more = edge(auth, auth).clock(x, After, BETWEEN).when(bin(Gt, v(policy), n(0)));
+        more.when(bin(Lt, v(got), n(MOST))).set(got, bin(Add, v(got), n(1))).reset(x).to(&mut a);
+        for k in 1..=MOST {
+            let chosen = edge(auth, auth).when(eq(v(policy), n(0))).set(policy, n(k)).set(got, n(0));
+            chosen.reset(x).reset(y).to(&mut a);
+            let enough = edge(auth, access).clock(y, Before, WITHIN).when(eq(v(policy), n(k)));
+            enough.when(bin(AtMost, n(k), v(got))).to(&mut a);
+        }
+        edge(access, auth).set(policy, n(0)).to(&mut a);
         add(&mut p, a);
     }
     p
