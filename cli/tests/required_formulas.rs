@@ -186,15 +186,30 @@ fn formulas_are_explained_drawn_and_not_proved() {
 
     let monitors = hrdsl_in(at, "emit monitors scenario.hri");
     expect_code(&monitors, 0);
-    let first = &json(&stdout(&monitors))["monitors"][0];
+    let emitted = json(&stdout(&monitors));
+    let first = &emitted["monitors"][0];
     assert_eq!(first["formula"]["atoms"][0]["text"], "near", "{first}");
     assert_eq!(first["states"], serde_json::json!([]));
+    let automata = emitted["formula_automata"].as_array().unwrap();
+    let soon = &automata[0]["automaton"];
+    let outcomes: Vec<&str> =
+        soon["states"].as_array().unwrap().iter().map(|s| s["outcome"].as_str().unwrap()).collect();
+    assert_eq!(outcomes, ["vacuous", "pass", "inconclusive", "fail"], "{soon:#}");
+    let late = soon["edges"].as_array().unwrap().iter().find(|edge| edge["to"] == 3).unwrap();
+    assert_eq!(late["text"], "not braked and x >= 1 s", "{soon:#}");
+    let away = &automata[6];
+    assert!(away["automaton"].is_null(), "{away:#}");
+    assert!(away["obstacle"].as_str().unwrap().starts_with("`historically[2 s, 3 s] "), "{away:#}");
     let drawn = hrdsl_in(at, "emit monitors scenario.hri --dot");
     expect_code(&drawn, 0);
     let dot = stdout(&drawn);
-    for part in
-        ["eventually[0 s, 1 s]", "known 1 s later", "No automaton with one clock", "historically[2 s, 3 s]"]
-    {
+    for part in [
+        "waiting for braked\\n(inconclusive)",
+        "rising(near) and not braked\\nx = 0",
+        "not braked and x >= 1 s",
+        "No automaton. `historically[2 s, 3 s]",
+        "historically[2 s, 3 s]\"",
+    ] {
         assert!(dot.contains(part), "{part}: {dot}");
     }
     assert!(stderr(&drawn).is_empty(), "{}", stderr(&drawn));
