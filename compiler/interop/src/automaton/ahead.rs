@@ -6,8 +6,8 @@ use hrdsl_ir::{
 };
 
 use super::{
-    AutomatonObstacle,
     condition::{MomentCondition, TRUE, all, any, not},
+    data::AutomatonObstacle,
     parts::AutomatonParts,
 };
 

@@ -1,6 +1,6 @@
 //! Conditions of a moment: over what holds at it, what the automaton remembers, and its clocks.
 
-use super::GuardQuestion;
+use super::data::GuardQuestion;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum MomentCondition {

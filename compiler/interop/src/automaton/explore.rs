@@ -5,8 +5,12 @@ use std::collections::BTreeMap;
 use hrdsl_ir::{formula::MetricFormula, monitor::MonitorOutcome};
 
 use super::{
-    AutomatonObstacle, FormulaAutomaton, FormulaEdge, FormulaState, GuardQuestion, GuardTest, LetterKind,
-    condition::MomentCondition, guard::shortened, network::FormulaNetwork,
+    condition::MomentCondition,
+    data::{
+        AutomatonObstacle, FormulaAutomaton, FormulaEdge, FormulaState, GuardQuestion, GuardTest, LetterKind,
+    },
+    guard::shortened,
+    network::FormulaNetwork,
 };
 
 /// Nobody would look at more.

@@ -1,6 +1,6 @@
 //! Guards as few and short alternatives.
 
-use super::GuardTest;
+use super::data::GuardTest;
 
 /// The same alternatives with fewer tests: two that differ in one answer only are one without it.
 pub(super) fn shortened(mut guard: Vec<Vec<GuardTest>>) -> Vec<Vec<GuardTest>> {

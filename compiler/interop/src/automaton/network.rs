@@ -3,9 +3,9 @@
 use hrdsl_ir::formula::{MetricFormula, MetricGoal, MonitorFormula};
 
 use super::{
-    AutomatonObstacle,
     ahead::{clauses, looks_ahead},
     condition::{FALSE, MomentCondition, TRUE, all, any, not},
+    data::AutomatonObstacle,
     parts::{AutomatonParts, GoalLeaf, GoalTree},
 };
 

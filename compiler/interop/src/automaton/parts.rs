@@ -3,8 +3,8 @@
 use hrdsl_ir::formula::{FormulaAtom, MetricFormula, PastWindow};
 
 use super::{
-    AutomatonObstacle, FormulaLetter, LetterKind,
     condition::{FALSE, MomentCondition, TRUE, all, any, not},
+    data::{AutomatonObstacle, FormulaLetter, LetterKind},
 };
 
 /// One bit that is remembered from moment to moment.
