@@ -89,8 +89,14 @@ fn a_run_and_its_recording_have_the_same_verdicts() {
     assert!(time > 0.2 && time < 0.7 && away["failure"]["deadline"] == false, "{away}");
     let late = &verdicts(&results)[0][1];
     assert!(late["failure"]["counterexample"].as_array().unwrap().len() == 1, "{late}");
-    let two = hrdsl_in(at, "sim scenario.hri a.tests.hri -o two --exit-zero -j 2");
+    let two = hrdsl_in(at, "sim scenario.hri a.tests.hri -o two --exit-zero -j 2 --triggers");
     expect_code(&two, 0);
+    let triggers = stdout(&two);
+    let told = triggers.split("Triggers  of each requirement").nth(1).unwrap();
+    let of = |name: &str| told.lines().find(|line| line.contains(name)).unwrap().to_owned();
+    assert!(of("M1").contains("once  in 1 of 2 tests"), "{told}");
+    assert!(of("M4").contains("least margin \u{2212}0.") && of("M4").ends_with("m in a"), "{told}");
+    assert!(of("M6").contains("0 times  in 0 of 2 tests"), "{told}");
     assert_eq!(support::tree(&at.join("out/traces")), support::tree(&at.join("two/traces")));
 }
 
@@ -186,16 +192,54 @@ fn formulas_are_explained_drawn_and_not_proved() {
 
     let monitors = hrdsl_in(at, "emit monitors scenario.hri");
     expect_code(&monitors, 0);
-    let first = &json(&stdout(&monitors))["monitors"][0];
+    let emitted = json(&stdout(&monitors));
+    let first = &emitted["monitors"][0];
     assert_eq!(first["formula"]["atoms"][0]["text"], "near", "{first}");
     assert_eq!(first["states"], serde_json::json!([]));
+    let automata = emitted["formula_automata"].as_array().unwrap();
+    let soon = &automata[0]["automaton"];
+    let outcomes: Vec<&str> =
+        soon["states"].as_array().unwrap().iter().map(|s| s["outcome"].as_str().unwrap()).collect();
+    assert_eq!(outcomes, ["vacuous", "pass", "inconclusive", "fail"], "{soon:#}");
+    let late = soon["edges"].as_array().unwrap().iter().find(|edge| edge["to"] == 3).unwrap();
+    assert_eq!(late["text"], "not braked and x >= 1 s", "{soon:#}");
+    let away = &automata[6];
+    assert!(away["automaton"].is_null(), "{away:#}");
+    assert!(away["obstacle"].as_str().unwrap().starts_with("`historically[2 s, 3 s] "), "{away:#}");
     let drawn = hrdsl_in(at, "emit monitors scenario.hri --dot");
     expect_code(&drawn, 0);
     let dot = stdout(&drawn);
-    for part in
-        ["eventually[0 s, 1 s]", "known 1 s later", "No automaton with one clock", "historically[2 s, 3 s]"]
-    {
+    for part in [
+        "waiting for braked\\n(inconclusive)",
+        "rising(near) and not braked\\nx = 0",
+        "not braked and x >= 1 s",
+        "No automaton. `historically[2 s, 3 s]",
+        "historically[2 s, 3 s]\"",
+    ] {
         assert!(dot.contains(part), "{part}: {dot}");
     }
     assert!(stderr(&drawn).is_empty(), "{}", stderr(&drawn));
+}
+
+/// A formula keeps each change of what it compares, a pattern the changes of the truth and the least margin.
+#[test]
+fn how_much_a_formula_adds_to_a_recording() {
+    let lines = |requirement: &str| {
+        let kept = SCENARIO.lines().filter(|line| !line.starts_with("require"));
+        let mut text: String = kept.map(|line| format!("{line}\n")).collect();
+        text += &format!("require R1 safety {requirement}\n");
+        let folder = folder(&[("scenario.hri", &text), ("watcher.py", WATCHER), ("a.tests.hri", TESTS)]);
+        let out =
+            hrdsl_in(folder.path(), "sim scenario.hri a.tests.hri -o out --exit-zero --test watchful.a");
+        expect_code(&out, 0);
+        let recordings = support::tree(&folder.path().join("out/traces"));
+        recordings.iter().map(|(_, text)| String::from_utf8_lossy(text).lines().count()).sum::<usize>()
+    };
+    let pattern = lines("globally distance(child, post) > 90 cm");
+    let formula = lines("formula always distance(child, post) > 90 cm");
+    assert_eq!((pattern, formula), (16, 55));
+    // Of events and truths nothing more is kept.
+    let pattern = lines("rising(near) causes braked within 1 s");
+    let formula = lines("formula always (rising(near) implies eventually[0 s, 1 s] braked)");
+    assert_eq!(pattern, formula);
 }

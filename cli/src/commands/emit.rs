@@ -4,7 +4,11 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use hrdsl_compiler::{CompilationResult, ast};
-use hrdsl_interop::picture;
+use hrdsl_interop::{
+    automaton::{FormulaAutomaton, automaton_of},
+    picture,
+};
+use hrdsl_ir::monitor::Monitor;
 use serde::Serialize;
 
 use crate::{exit::CommandExit, fault::CommandFault, input, terminal};
@@ -60,6 +64,27 @@ pub fn run(args: &EmitArgs) -> Result<CommandExit, CommandFault> {
     Ok(if has_errors { CommandExit::Errors } else { CommandExit::Ok })
 }
 
+/// What a formula is as an automaton, or why it is none.
+#[derive(Serialize)]
+struct FormulaEmission {
+    requirement: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    automaton: Option<FormulaAutomaton>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    obstacle: Option<String>,
+}
+
+impl FormulaEmission {
+    fn of(monitor: &Monitor) -> Option<Self> {
+        let found = automaton_of(monitor.formula.as_ref()?);
+        let requirement = monitor.name.clone();
+        Some(match found {
+            Ok(automaton) => Self { requirement, automaton: Some(automaton), obstacle: None },
+            Err(obstacle) => Self { requirement, automaton: None, obstacle: Some(obstacle) },
+        })
+    }
+}
+
 /// `None` if the scenario's errors keep it from getting that far.
 fn emit(stage: EmitStage, compilation: &CompilationResult) -> Option<Result<String, CommandFault>> {
     #[derive(Serialize)]
@@ -70,7 +95,9 @@ fn emit(stage: EmitStage, compilation: &CompilationResult) -> Option<Result<Stri
     }
     #[derive(Serialize)]
     struct EmittedMonitors<'a> {
-        monitors: &'a [hrdsl_ir::monitor::Monitor],
+        monitors: &'a [Monitor],
+        /// Those of requirements that are formulas.
+        formula_automata: Vec<FormulaEmission>,
         assumptions: &'a [hrdsl_ir::monitor::Assumption],
     }
     #[derive(Serialize)]
@@ -92,7 +119,12 @@ fn emit(stage: EmitStage, compilation: &CompilationResult) -> Option<Result<Stri
         }
         EmitStage::Monitors => {
             let p = program?;
-            Some(json(&EmittedMonitors { monitors: &p.monitors, assumptions: &p.assumptions }))
+            let formula_automata = p.monitors.iter().filter_map(FormulaEmission::of).collect();
+            Some(json(&EmittedMonitors {
+                monitors: &p.monitors,
+                formula_automata,
+                assumptions: &p.assumptions,
+            }))
         }
         EmitStage::Coverage => Some(json(&program?.coverage)),
         EmitStage::World => {

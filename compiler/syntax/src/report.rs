@@ -30,6 +30,16 @@ pub(crate) fn report(cx: &mut ParseContext<'_>, fault: &ParseFault, tokens: &[Le
     if let Some((token, near)) = token.and_then(|t| Some((t, keyword_near(cx, fault, t)?))) {
         let title = format!("replace `{}` by `{near}`", cx.text_of(token));
         diagnostic = diagnostic.help(format!("did you mean `{near}`?")).fix(title, span, near, false);
+    } else if let Some((word, near)) =
+        before.and_then(|word| Some((word, requirement_near(cx, fault, word, tokens)?)))
+    {
+        let title = format!("replace `{}` by `{near}`", cx.text_of(word));
+        diagnostic = diagnostic.help(format!("did you mean `{near}` before it?")).fix(
+            title,
+            cx.span_of(word),
+            near,
+            false,
+        );
     } else if let Some(help) = agentspeak(fault, tokens).or_else(|| help(cx, fault, [before, after], token?))
     {
         diagnostic = diagnostic.help(help);
@@ -82,6 +92,33 @@ fn keyword_near<'f>(cx: &ParseContext<'_>, fault: &'f ParseFault, token: Lexeme)
         && !matches!(token.kind.class(), Some(KeywordClass::Hard | KeywordClass::Reserved));
     // Where a name fits, every keyword is one.
     (meant && !fault.has("IDENT")).then(|| nearest(cx.text_of(token), keywords))?
+}
+
+/// What a requirement can begin with, and what stands before an operand in a formula.
+const PATTERN_WORDS: [&str; 6] = ["never", "globally", "always", "eventually", "whenever", "formula"];
+const FORMULA_WORDS: [&str; 5] = ["always", "eventually", "once", "historically", "not"];
+
+/// The keyword that the word before the fault was meant to be, where a requirement has to have one: a word that is none was read as a name.
+fn requirement_near(
+    cx: &ParseContext<'_>,
+    fault: &ParseFault,
+    word: Lexeme,
+    tokens: &[Lexeme],
+) -> Option<&'static str> {
+    let before = tokens.get(..fault.at.checked_sub(1)?)?;
+    let is_required = before.first().is_some_and(|t| t.kind == TokenKind::Require);
+    if !is_required || !word.kind.is_name() || word.kind.class().is_some() {
+        return None;
+    }
+    // An operand of a formula stands anywhere, a pattern behind name, kind and title.
+    let is_first = before.len() <= 4;
+    if before.iter().any(|t| t.kind == TokenKind::Formula) {
+        nearest(cx.text_of(word), FORMULA_WORDS.into_iter())
+    } else if is_first {
+        nearest(cx.text_of(word), PATTERN_WORDS.into_iter())
+    } else {
+        None
+    }
 }
 
 /// The keyword, if no name can be like it.

@@ -2,7 +2,10 @@
 
 use serde::Serialize;
 
-use crate::pattern::{CountBound, RequirementPattern, SentenceMapping};
+use crate::{
+    pattern::{CountBound, RequirementPattern, SentenceMapping},
+    temporal::TemporalLook,
+};
 
 /// When a requirement's pattern is to hold.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -157,6 +160,7 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
     pub fn always(&self) -> Option<&C> {
         match &self.pattern {
             RequirementPattern::Globally(condition) if self.scope.is_whole() => Some(condition),
+            RequirementPattern::Formula(formula) => formula.of_the_run(TemporalLook::Always)?.as_condition(),
             RequirementPattern::Globally(_)
             | RequirementPattern::Causes { .. }
             | RequirementPattern::Forbids { .. }
@@ -164,27 +168,45 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
             | RequirementPattern::NeverWhile { .. }
             | RequirementPattern::Eventually { .. }
             | RequirementPattern::Counts { .. }
-            | RequirementPattern::Lasts { .. }
-            | RequirementPattern::Formula(_) => None,
+            | RequirementPattern::Lasts { .. } => None,
         }
     }
 
     /// The condition that holds at least once in its scope, whatever is decided later.
     #[must_use]
     pub fn sometime(&self) -> Option<&C> {
-        if let RequirementPattern::Eventually { condition, .. } = &self.pattern {
-            condition.as_ref()
-        } else {
-            None
+        match &self.pattern {
+            RequirementPattern::Eventually { condition, .. } => condition.as_ref(),
+            RequirementPattern::Formula(formula) => {
+                formula.of_the_run(TemporalLook::Eventually)?.as_condition()
+            }
+            RequirementPattern::Causes { .. }
+            | RequirementPattern::Forbids { .. }
+            | RequirementPattern::Precedes { .. }
+            | RequirementPattern::NeverWhile { .. }
+            | RequirementPattern::Globally(_)
+            | RequirementPattern::Counts { .. }
+            | RequirementPattern::Lasts { .. } => None,
         }
     }
 
     #[must_use]
     pub fn demands(&self) -> Option<DemandedEvents<'_, E>> {
-        if let RequirementPattern::Causes { trigger, response, .. } = &self.pattern {
-            Some(DemandedEvents { trigger, response })
-        } else {
-            None
+        match &self.pattern {
+            RequirementPattern::Causes { trigger, response, .. } => {
+                Some(DemandedEvents { trigger, response })
+            }
+            RequirementPattern::Formula(formula) => {
+                let [trigger, response] = formula.demanded()?;
+                Some(DemandedEvents { trigger, response })
+            }
+            RequirementPattern::Forbids { .. }
+            | RequirementPattern::Precedes { .. }
+            | RequirementPattern::NeverWhile { .. }
+            | RequirementPattern::Globally(_)
+            | RequirementPattern::Eventually { .. }
+            | RequirementPattern::Counts { .. }
+            | RequirementPattern::Lasts { .. } => None,
         }
     }
 
@@ -192,6 +214,9 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
     #[must_use]
     pub fn bans(&self) -> Option<BannedEvents<'_, E>> {
         match &self.pattern {
+            RequirementPattern::Formula(formula) => {
+                Some(BannedEvents { events: formula.banned()?, from: None, until: &[] })
+            }
             RequirementPattern::Forbids { trigger, forbidden, until } => {
                 Some(BannedEvents { events: forbidden, from: Some(trigger), until })
             }
@@ -206,8 +231,7 @@ impl<E, C, T, N> RequirementSentence<E, C, T, N> {
             | RequirementPattern::Globally(_)
             | RequirementPattern::Eventually { .. }
             | RequirementPattern::Counts { .. }
-            | RequirementPattern::Lasts { .. }
-            | RequirementPattern::Formula(_) => None,
+            | RequirementPattern::Lasts { .. } => None,
         }
     }
 

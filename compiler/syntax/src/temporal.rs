@@ -191,34 +191,75 @@ impl<E, C, T> TemporalFormula<E, C, T> {
         }
     }
 
-    /// The events that alone meet it each time that it is asked: those of Q, in `always (P implies eventually[a, b] Q)` and with `once`.
+    /// The events that alone meet it each time that it is asked: those of Q, in `always (P implies eventually[a, b] Q)`, with `once`, and as what `until` and
+    /// `since` reach; the same without the `always`.
     #[must_use]
     pub fn met_by(&self) -> &[E] {
-        let TemporalKind::Look { look: TemporalLook::Always, window: None, of } = &self.kind else {
-            return &[];
-        };
-        let TemporalKind::Junction(TemporalJunction::Implies, parts) = &of.kind else { return &[] };
-        let [_, met] = parts.as_ref();
-        match &met.kind {
-            TemporalKind::Look { look: TemporalLook::Eventually | TemporalLook::Once, of, .. } => {
-                match &of.kind {
-                    TemporalKind::Events(events) => events,
-                    TemporalKind::Constant(_)
-                    | TemporalKind::Condition(_)
-                    | TemporalKind::Not(_)
-                    | TemporalKind::Junction(..)
-                    | TemporalKind::Look { .. }
-                    | TemporalKind::Reach { .. } => &[],
-                }
-            }
-            TemporalKind::Events(events) => events,
+        let met = match &self.kind {
+            TemporalKind::Look { look: TemporalLook::Always, window: None, of } => match &of.kind {
+                TemporalKind::Junction(TemporalJunction::Implies, parts) => &parts[1],
+                TemporalKind::Constant(_)
+                | TemporalKind::Events(_)
+                | TemporalKind::Condition(_)
+                | TemporalKind::Not(_)
+                | TemporalKind::Junction(..)
+                | TemporalKind::Look { .. }
+                | TemporalKind::Reach { .. } => return &[],
+            },
             TemporalKind::Constant(_)
+            | TemporalKind::Events(_)
             | TemporalKind::Condition(_)
             | TemporalKind::Not(_)
             | TemporalKind::Junction(..)
             | TemporalKind::Look { .. }
-            | TemporalKind::Reach { .. } => &[],
+            | TemporalKind::Reach { .. } => self,
+        };
+        let reached = match &met.kind {
+            TemporalKind::Look { look: TemporalLook::Eventually | TemporalLook::Once, of, .. } => of,
+            TemporalKind::Reach { of, .. } => &of[1],
+            TemporalKind::Constant(_)
+            | TemporalKind::Events(_)
+            | TemporalKind::Condition(_)
+            | TemporalKind::Not(_)
+            | TemporalKind::Junction(..)
+            | TemporalKind::Look { .. } => met,
+        };
+        if let TemporalKind::Events(events) = &reached.kind { events } else { &[] }
+    }
+
+    /// What is asked of the run as a whole, and without an end: of every moment, or of some moment.
+    pub(crate) fn of_the_run(&self, look: TemporalLook) -> Option<&Self> {
+        match &self.kind {
+            TemporalKind::Look { look: is, window: None, of } if *is == look => Some(of),
+            TemporalKind::Look { .. }
+            | TemporalKind::Constant(_)
+            | TemporalKind::Events(_)
+            | TemporalKind::Condition(_)
+            | TemporalKind::Not(_)
+            | TemporalKind::Junction(..)
+            | TemporalKind::Reach { .. } => None,
         }
+    }
+
+    pub(crate) fn as_condition(&self) -> Option<&C> {
+        if let TemporalKind::Condition(condition) = &self.kind { Some(condition) } else { None }
+    }
+
+    /// The events that never happen: those of `always not E`.
+    pub(crate) fn banned(&self) -> Option<&[E]> {
+        let TemporalKind::Not(of) = &self.of_the_run(TemporalLook::Always)?.kind else { return None };
+        if let TemporalKind::Events(events) = &of.kind { Some(events) } else { None }
+    }
+
+    /// The events that ask, and those that have to come in time: those of `always (P implies eventually[a, b] Q)`.
+    pub(crate) fn demanded(&self) -> Option<[&[E]; 2]> {
+        let body = self.of_the_run(TemporalLook::Always)?;
+        let TemporalKind::Junction(TemporalJunction::Implies, parts) = &body.kind else { return None };
+        let TemporalKind::Look { look: TemporalLook::Eventually, of, .. } = &parts[1].kind else {
+            return None;
+        };
+        let events = |of: &'_ Self| matches!(of.kind, TemporalKind::Events(_));
+        (events(&parts[0]) && events(of)).then(|| [self.triggers(), self.met_by()])
     }
 
     /// The events without any of which it is never asked: those of P, in `always (P implies Q)`.

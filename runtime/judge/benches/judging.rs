@@ -40,8 +40,32 @@ world {
 }
 ";
 
-fn program() -> Program {
-    let compilation = compile(InputFile { name: "watched.hri", text: SCENARIO }, &[]);
+/// Formulas over the same, in place of those requirements.
+const FORMULAS: [&str; 10] = [
+    "always (a implies eventually[0 s, 10 s] b)",
+    "always (c implies not a since[0 s, 30 s] b)",
+    "always (d implies once a)",
+    "always not (d and p)",
+    "always gap < 3 m",
+    "always (rising(p) implies eventually[0 s, 100 s] a)",
+    "always (d implies once[0 s, 50 s] c)",
+    "always (rising(p) implies always[0 s, 2 s] p)",
+    "always (c implies historically[0 s, 5 s] gap < 3.9 m)",
+    "always (a implies not d until[0 s, 20 s] b)",
+];
+
+/// The scenario with the formulas for requirements.
+fn of_formulas() -> Program {
+    let others = SCENARIO.lines().filter(|line| !line.starts_with("require"));
+    let mut text: String = others.map(|line| format!("{line}\n")).collect();
+    for (number, formula) in FORMULAS.iter().enumerate() {
+        text += &format!("require R{number} functional formula {formula}\n");
+    }
+    program(&text)
+}
+
+fn program(text: &str) -> Program {
+    let compilation = compile(InputFile { name: "watched.hri", text }, &[]);
     let errors: Vec<_> = compilation.diagnostics.iter().filter(|d| d.is_error()).collect();
     assert!(errors.is_empty(), "{errors:#?}");
     compilation.program.expect("a program without errors")
@@ -92,12 +116,30 @@ fn main() {
     let args: Vec<String> = std::env::args().collect();
     let after = args.iter().position(|a| a == "--steps").and_then(|i| args.get(i + 1));
     let count = after.and_then(|n| n.parse().ok()).unwrap_or(1_000_000);
-    let (program, trace) = (program(), trace(count));
+    let (program, trace) = (program(SCENARIO), trace(count));
     measure("ten requirements, steps in memory", count, || {
         let mut runner = MonitorRunner::new(&program);
         trace.replay(&mut runner);
         runner.verdicts()
     });
+    let formulas = of_formulas();
+    for (name, few) in [
+        (
+            "a response as a pattern, steps in memory",
+            Program { monitors: program.monitors[..1].to_vec(), ..program.clone() },
+        ),
+        (
+            "the same as a formula, steps in memory",
+            Program { monitors: formulas.monitors[..1].to_vec(), ..formulas.clone() },
+        ),
+        ("ten formulas, steps in memory", formulas.clone()),
+    ] {
+        measure(name, count, || {
+            let mut runner = MonitorRunner::new(&few);
+            trace.replay(&mut runner);
+            runner.verdicts()
+        });
+    }
     let header = RecordingHeader { scenario: program.name.clone(), ..RecordingHeader::default() };
     let text = write(&program, &header, &trace, &RecordingEnd::default());
     let options = ConformanceOptions::default();

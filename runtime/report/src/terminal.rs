@@ -3,6 +3,7 @@
 mod agreement;
 mod page;
 mod system;
+mod triggers;
 
 use hrdsl_results::{
     BinResult, CampaignResults, CoverItemKind, CoverageRatios, RequirementResult, RunMark, SuiteInfo,
@@ -16,6 +17,7 @@ use crate::{
 use agreement::{conformance, predictions};
 use page::{LABEL, StyledSpan, TerminalPage, TerminalStyle, left, right};
 use system::{interfaces, machines};
+pub use triggers::trigger_totals;
 
 /// Bins and errors that are listed, at most.
 const BINS: usize = 16;

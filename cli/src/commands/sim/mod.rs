@@ -81,6 +81,9 @@ pub struct SimArgs {
     /// Say where processor time goes, on the console and in run.json.
     #[arg(long, conflicts_with = "debug")]
     timings: bool,
+    /// Say of each requirement how often it was triggered, and its least margin.
+    #[arg(long)]
+    triggers: bool,
     /// Keep the files that the program writes in each test, in `files/`.
     #[arg(long)]
     keep_files: bool,
@@ -298,6 +301,12 @@ fn summarise(
     wall: Duration,
 ) -> Result<(), CommandFault> {
     let summary = report::summary(results, super::report::WIDTH, color::stdout_has());
+    let width = super::report::WIDTH;
+    let triggers = if args.triggers {
+        report::trigger_totals(results, width, color::stdout_has())
+    } else {
+        String::new()
+    };
     let how = match campaign.cells.isolation {
         CellIsolation::Namespaces => "in namespaces",
         CellIsolation::Copies => "in copies of the folder",
@@ -316,5 +325,5 @@ fn summarise(
         String::new()
     };
     let page = out.join("report.html");
-    terminal::print(&format!("{summary}{ran}{again}report: {}\n", terminal::shown(&page)))
+    terminal::print(&format!("{summary}{triggers}{ran}{again}report: {}\n", terminal::shown(&page)))
 }

@@ -1,22 +1,50 @@
-//! Requirements that are formulas as pictures: the operators that execute them, each with its window, from the atoms up to what is asked of the run.
+//! Requirements that are formulas as pictures: automata, where they are; else the operators that execute them, each with its window, from the atoms up to what is
+//! asked of the run, and what keeps them from being one.
 
 use std::fmt::Write;
 
 use hrdsl_ir::{
     Nanos, Program,
     formula::{FormulaAtomKind, MetricFormula, MetricGoal, MonitorFormula},
+    monitor::MonitorOutcome,
 };
 
 use super::{lines, quoted};
-use crate::exchange::time::seconds;
+use crate::{
+    automaton::{FormulaAutomaton, automaton_of},
+    exchange::time::seconds,
+};
 
-/// The inside of a formula's cluster: a node for each operator and atom, and arrows from what it reads.
+/// The inside of a formula's cluster: its automaton, or a node for each operator and atom, and arrows from what it reads.
 pub(super) fn formula_dot(program: &Program, cluster: usize, formula: &MonitorFormula) -> String {
-    let mut picture =
-        FormulaPicture { program, cluster, formula, out: String::new(), nodes: 0, has_windows: false };
+    let obstacle = match automaton_of(formula) {
+        Ok(automaton) => return automaton_dot(cluster, &automaton),
+        Err(obstacle) => obstacle,
+    };
+    let mut picture = FormulaPicture { program, cluster, formula, out: String::new(), nodes: 0 };
     picture.goal(&formula.goal);
-    picture.note();
+    picture.note(obstacle);
     picture.out
+}
+
+/// States with what a run comes to that ends in them; those that leave the run open have a second border.
+fn automaton_dot(cluster: usize, automaton: &FormulaAutomaton) -> String {
+    let mut out = format!("    n{cluster}_start [shape = point]\n");
+    for (number, state) in automaton.states.iter().enumerate() {
+        let label = lines(vec![state.name.clone(), format!("({})", state.outcome)]);
+        let is_open = state.outcome == MonitorOutcome::Inconclusive;
+        let double = if is_open { ", peripheries = 2" } else { "" };
+        let _ = writeln!(out, "    n{cluster}_{number} [label = {label}{double}]");
+    }
+    let _ = writeln!(out, "    n{cluster}_start -> n{cluster}_0");
+    for edge in &automaton.edges {
+        let clock = |clock: &usize| automaton.clocks.get(*clock).map(|name| format!("{name} = 0"));
+        let resets: Vec<String> = edge.resets.iter().filter_map(clock).collect();
+        let resets = (!resets.is_empty()).then(|| resets.join("; "));
+        let label = lines(std::iter::once(edge.text.clone()).chain(resets).collect());
+        let _ = writeln!(out, "    n{cluster}_{} -> n{cluster}_{} [label = {label}]", edge.from, edge.to);
+    }
+    out
 }
 
 struct FormulaPicture<'a> {
@@ -25,7 +53,6 @@ struct FormulaPicture<'a> {
     formula: &'a MonitorFormula,
     out: String,
     nodes: usize,
-    has_windows: bool,
 }
 
 impl FormulaPicture<'_> {
@@ -61,15 +88,6 @@ impl FormulaPicture<'_> {
             MetricFormula::Always(w, _) => format!("always{}", w.text()),
             MetricFormula::Until(w, ..) => format!("until{}", w.text()),
         };
-        self.has_windows |= matches!(
-            formula,
-            MetricFormula::Once(..)
-                | MetricFormula::Historically(..)
-                | MetricFormula::Since(..)
-                | MetricFormula::Eventually(..)
-                | MetricFormula::Always(..)
-                | MetricFormula::Until(..)
-        );
         let parts: Vec<usize> = formula.operands().into_iter().map(|f| self.formula(f)).collect();
         let later = formula.horizon();
         let known = (later > 0).then(|| format!("known {} later", seconds(later)));
@@ -86,19 +104,15 @@ impl FormulaPicture<'_> {
     }
 
     /// What there is to say of how it is executed, and why it is no automaton as the others are.
-    fn note(&mut self) {
+    fn note(&mut self, obstacle: String) {
         let horizon: Nanos = self.formula.goal.horizon();
         let delay = if horizon > 0 {
             format!("What it says of a moment is known {} later.", seconds(horizon))
         } else {
             "What it says of a moment is known at that moment.".to_owned()
         };
-        let why = if self.has_windows {
-            "No automaton with one clock: each window keeps the changes inside it."
-        } else {
-            "Its operators are what executes it, and not an automaton."
-        };
-        let label = lines(vec![why.to_owned(), delay]);
+        let why = format!("No automaton. {obstacle}");
+        let label = lines(vec![why, delay]);
         let _ = writeln!(self.out, "    n{}_note [shape = note, label = {label}]", self.cluster);
     }
 

@@ -2,9 +2,9 @@
 //! the cell's own.
 //!
 //! A new root is put together from overlays, whose lower layers are the machine's folders and whose upper layers lie in
-//! one file system in memory. An overlay takes no other mounts along, and the kernel does not allow one over a folder that
-//! has mounts below it when these came from a more privileged namespace; such folders are made anew and their entries
-//! mounted one by one.
+//! one file system in memory. An overlay takes no other mounts along: what is mounted below its folder is mounted in it, too. The
+//! kernel does not allow one over a folder that has mounts below it when these came from a more privileged namespace; such folders
+//! are made anew and their entries mounted one by one.
 
 use std::{
     ffi::CString,
@@ -76,6 +76,8 @@ pub(super) struct PrivateView {
     overlays: Vec<(PathBuf, PathBuf)>,
     /// Folders over which no overlay could be made.
     pub read_only: Vec<PathBuf>,
+    /// The machine's mounts are of this process's own namespace of users.
+    is_privileged: bool,
 }
 
 impl PrivateView {
@@ -96,8 +98,15 @@ impl PrivateView {
         };
         memory(format!("size={size},mode=700"), Path::new(SCRATCH))?;
         let layers = open(SCRATCH, OFlags::PATH | OFlags::CLOEXEC, Mode::empty()).map_err(at(SCRATCH))?;
-        let mut view =
-            Self { mounts, covered, layers, own: own.to_vec(), overlays: Vec::new(), read_only: Vec::new() };
+        let mut view = Self {
+            mounts,
+            covered,
+            layers,
+            own: own.to_vec(),
+            overlays: Vec::new(),
+            read_only: Vec::new(),
+            is_privileged: has_all_users(),
+        };
         let root = root();
         fs::create_dir(&root).map_err(|e| (SCRATCH.to_owned(), e))?;
         // Files of folders that are made anew are copied into it.
@@ -140,7 +149,45 @@ impl PrivateView {
             Some(kind) if KERNEL.contains(&kind) => return self.window(path),
             Some(_) | None => {}
         }
-        if self.has_mounts_below(path) { self.entries(path) } else { self.layer(path) }
+        if !self.has_mounts_below(path) {
+            return self.layer(path);
+        }
+        if self.is_privileged && self.layer_around(path)? { Ok(()) } else { self.entries(path) }
+    }
+
+    /// One overlay for a folder with mounts below, each of which is then mounted in it: far fewer mounts than one for each entry. The kernel
+    /// allows that to who owns those mounts. False: it does not here.
+    fn layer_around(&mut self, path: &Path) -> Result<bool, ViewError> {
+        let fail = |e: io::Error| (path.display().to_string(), e);
+        let (host, target) = (self.host(path), inside(path));
+        if !target.exists() {
+            make_like(&host, &target).map_err(fail)?;
+        }
+        if self.overlay(path, &host).is_err() {
+            return Ok(false);
+        }
+        let mut below: Vec<PathBuf> = self
+            .mounts
+            .iter()
+            .map(|(at, _)| at.clone())
+            .filter(|at| at != path && at.starts_with(path))
+            .collect();
+        below.sort();
+        // What is mounted below one of them comes with that.
+        below.dedup_by(|next, first| next.starts_with(first));
+        for at in below {
+            let host = self.host(&at);
+            match fs::symlink_metadata(&host) {
+                Ok(is) if is.is_dir() => self.folder(&at)?,
+                Ok(_) => {
+                    let place = inside(&at);
+                    bind_read_only(&host, &place).map_err(|e| (at.display().to_string(), e.into()))?;
+                }
+                // Covered by another mount, or removed meanwhile.
+                Err(_) => {}
+            }
+        }
+        Ok(true)
     }
 
     fn has_mounts_below(&self, path: &Path) -> bool {
@@ -195,7 +242,10 @@ impl PrivateView {
     fn layer(&mut self, path: &Path) -> Result<(), ViewError> {
         let fail = |e: io::Error| (path.display().to_string(), e);
         let (host, target) = (self.host(path), inside(path));
-        make_like(&host, &target).map_err(fail)?;
+        // In an overlay it is there, and like the machine's already.
+        if !target.exists() {
+            make_like(&host, &target).map_err(fail)?;
+        }
         match self.overlay(path, &host) {
             Ok(()) => Ok(()),
             Err(_) => {
@@ -220,8 +270,9 @@ impl PrivateView {
     fn overlay(&mut self, path: &Path, host: &Path) -> io::Result<()> {
         let upper = Path::new(SCRATCH).join(format!("upper{}", self.overlays.len()));
         let work = Path::new(SCRATCH).join(format!("work{}", self.overlays.len()));
-        if !upper.exists() {
-            make_like(host, &upper)?;
+        // One that could not be mounted may have left its own there.
+        make_like(host, &upper)?;
+        if !work.exists() {
             fs::create_dir(&work)?;
         }
         // Named by its descriptor: a path would have to be escaped, and might be covered.
@@ -367,6 +418,12 @@ fn make_like(model: &Path, folder: &Path) -> io::Result<()> {
     let _ = chown(folder, Some(is.uid()), Some(is.gid()));
     // Whoever may not give files away becomes their owner; the machine's own permissions still hold below.
     fs::set_permissions(folder, Permissions::from_mode(is.mode() & 0o7777))
+}
+
+/// Whether this is the machine's own namespace of users, as user_namespaces(7) has it.
+fn has_all_users() -> bool {
+    let map = fs::read_to_string("/proc/self/uid_map").unwrap_or_default();
+    map.split_whitespace().eq(["0", "0", "4294967295"])
 }
 
 /// The mount points of this namespace.

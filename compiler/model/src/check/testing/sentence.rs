@@ -85,7 +85,10 @@ impl TestingPhase<'_, '_> {
         let call = CallSyntax { name: name.clone(), args, span: e.span };
         let given =
             matches!(self.given(&name.text), Some(TemplateArgument::Events(_) | TemplateArgument::Unknown));
-        let is_event = given || self.events.table.get(&name.text).is_some() || self.is_edge(&call);
+        let is_event = given
+            || self.events.table.get(&name.text).is_some()
+            || self.is_edge(&call)
+            || self.is_misspelt_edge(&call);
         is_event.then(|| vec![call])
     }
 
@@ -94,7 +97,7 @@ impl TestingPhase<'_, '_> {
         for call in calls {
             if self.is_edge(call) {
                 all.extend(self.edge(call));
-            } else {
+            } else if !self.says_misspelt_edge(call) {
                 let patterns = self.patterns(std::slice::from_ref(call));
                 all.extend(patterns.into_iter().map(TypedOccurrence::Event));
             }

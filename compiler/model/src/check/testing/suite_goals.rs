@@ -14,6 +14,10 @@ use crate::{
 /// More different witnesses of one goal are not looked for.
 const MOST_DIVERSE: i64 = 16;
 
+/// What else a suite can reach each of.
+const OTHERS: [&str; 10] =
+    ["value", "pair", "use", "combination", "location", "edge", "plan", "context", "message", "path"];
+
 impl TestingPhase<'_, '_> {
     /// `pair`, `use`, `value`, `bound`
     pub(super) fn reach_each_of_network(&mut self, word: &NameSyntax, said: &mut SuiteMembers) {
@@ -37,6 +41,15 @@ impl TestingPhase<'_, '_> {
         said: &mut SuiteMembers,
     ) {
         let noun = if by_search { Noun::SearchReach } else { Noun::Reach };
+        if OTHERS.contains(&what.text.as_str()) {
+            let message = format!("only bounds have a step: `reach each {}` has none", what.text);
+            self.report(bad_suite(
+                what.span.to(step.span),
+                message,
+                format!("write `reach each {}`, or `reach each bound by …`", what.text),
+            ));
+            return;
+        }
         let known = self.choice(noun, what, &["bound"]).is_some();
         let Some(by) = self.time(step, "the step beside a bound", true).map(nanos) else { return };
         if by == 0 {

@@ -27,22 +27,27 @@ impl Checker<'_> {
             && self.events.table.get(name).is_none()
             && self.given(name).is_none()
     }
-}
 
-impl WorldPhase<'_, '_> {
-    /// Whether a word that names nothing, and stands before a condition, was meant for one of these; says so.
-    pub(super) fn is_misspelt_edge(&mut self, call: &ast::CallSyntax) -> bool {
-        let name = &call.name;
-        let is_known = self.s.names.kind_of(&name.text).is_some() || self.given(&name.text).is_some();
-        if is_known || call.args.is_none() || nearest(&name.text, [RISING, FALLING]).is_none() {
+    /// Whether a word that names nothing, and stands before a condition, was meant for one of these.
+    pub(in crate::check) fn is_misspelt_edge(&self, call: &ast::CallSyntax) -> bool {
+        let text = &call.name.text;
+        let is_known = self.s.names.kind_of(text).is_some() || self.given(text).is_some();
+        !is_known && call.args.is_some() && nearest(text, [RISING, FALLING]).is_some()
+    }
+
+    /// The same; says so.
+    pub(in crate::check) fn says_misspelt_edge(&mut self, call: &ast::CallSyntax) -> bool {
+        if !self.is_misspelt_edge(call) {
             return false;
         }
         let mut words = self.near_of(&EVENTS);
         words.extend([RISING, FALLING].map(str::to_owned));
-        self.unknown(Noun::EventOrStimulus, name, &words, None);
+        self.unknown(Noun::EventOrStimulus, &call.name, &words, None);
         true
     }
+}
 
+impl WorldPhase<'_, '_> {
     pub(super) fn edge_of(&mut self, call: &ast::CallSyntax, prefix: &str) -> Option<RuleTrigger<TypedExpr>> {
         let name = &call.name.text;
         let args = call.args.as_deref().unwrap_or_default();

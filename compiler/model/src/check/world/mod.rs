@@ -330,7 +330,7 @@ impl<'c, 'a> WorldPhase<'c, 'a> {
         let Member::Rule(rule) = &p.member.kind else { return };
         let on = match &rule.on {
             SyntaxRuleOn::Event(call) if self.is_edge(call) => self.edge_of(call, &p.prefix),
-            SyntaxRuleOn::Event(call) if self.is_misspelt_edge(call) => None,
+            SyntaxRuleOn::Event(call) if self.says_misspelt_edge(call) => None,
             SyntaxRuleOn::Event(call) => {
                 let mut patterns = self.patterns(std::slice::from_ref(call)).into_iter();
                 let first = patterns.next();
