@@ -104,7 +104,12 @@ impl AskedCondition {
             let inner = match part {
                 Self::All(parts) if all => parts,
                 Self::Any(parts) if !all => parts,
-                other => vec![other],
+                other @ (Self::All(_)
+                | Self::Any(_)
+                | Self::Compared(_)
+                | Self::Truth(..)
+                | Self::Happens(..)
+                | Self::Window { .. }) => vec![other],
             };
             for one in inner {
                 if !flat.contains(&one) {
