@@ -200,7 +200,10 @@ function lookAtMeasures(run: Run): string[] {
     run.series.push(measure.series);
     found.add(measure.of.name);
   }
-  return [...found].map((name) => `${name} was not recorded: what is shown of it is worked out from the picture of the world, to about a millimetre and a quarter of a degree.`);
+  const unknown = new Set(run.requirements.flatMap((r) => r.measures.filter((m) => !m.series).map((m) => m.of.name)));
+  const missing = [...unknown].map((name) => `There are no values of ${name} in this recording: there is no curve of it.`);
+  const seen = [...found].map((name) => `${name} was not recorded: what is shown of it is worked out from the picture of the world, to about a millimetre and a quarter of a degree.`);
+  return [...seen, ...missing];
 }
 
 function threadOf(track: CodeTrack, second: number): CodeThread {
