@@ -10,11 +10,11 @@ use hrdsl_runtime::{
     recording,
     viewer::{
         ViewDocument,
-        document::{SignalKind, SignalTrack},
+        document::{SignalKind, SignalTrack, ViewEnd},
         replay::{WrittenUnits, replay},
         requirement::{
             LimitRelation, MeasureAxis, MeasureKind, ObligationOutcome, ViewCondition, ViewMeasure,
-            ViewRequirement,
+            ViewRequirement, ViewVerdict,
         },
     },
 };
@@ -148,6 +148,8 @@ fn what_a_requirement_judges_is_found_in_its_expression() {
     );
     the_values_are_those_of_the_signals(&document);
     a_blow_of_one_step_is_recorded(&file, body("box"), body("cat"));
+    what_is_cut_is_shown_as_far_as_it_goes(folder.path(), &document);
+    a_requirement_of_today_asks_an_older_recording(&file);
 }
 
 fn the_values_are_those_of_the_signals(document: &ViewDocument) {
@@ -213,6 +215,7 @@ fn several_comparisons_are_told_of_one_by_one(document: &ViewDocument, tossed: u
         places.collect::<Vec<_>>(),
         [(&[tossed][..], &x[..], &[1.0][..]), (&[tossed][..], &z[..], &[0.3][..])]
     );
+    assert_eq!((&tidy.at[..], requirement(document, "Way").at.len()), (&["begun".to_owned()][..], 0));
     assert!(matches!(&tidy.condition, Some(ViewCondition::All { of }) if of.len() == 2));
     let settles = requirement(document, "Settles");
     assert!(settles.meets && !tidy.meets);
@@ -247,4 +250,66 @@ fn what_became_of_formulas_is_told(document: &ViewDocument) {
         (&asked.triggers[..], &asked.events[..]),
         (&[0][..], &["begun", "tipped"].map(str::to_owned)[..])
     );
+}
+
+/// Wherever a recording is cut, of either form, what is there is shown, nothing is said to be kept, and what is missing is named.
+fn what_is_cut_is_shown_as_far_as_it_goes(folder: &Path, whole: &ViewDocument) {
+    let packed = fs::read(folder.join("out/replays/shove.once.t001.mcap")).unwrap();
+    let text = fs::read_to_string(folder.join("out/traces/shove.once.t001.jsonl")).unwrap();
+    let program = compile(InputFile { name: "shove.hri", text: SHOVE }, &[]).program.unwrap();
+    let open = |part: usize, is_text: bool| {
+        let file = if is_text {
+            let text = text[..text.len() * part / 40].to_owned();
+            recording::RecordingFile { text, ..recording::RecordingFile::default() }
+        } else {
+            recording::read(&packed[..packed.len() * part / 40]).map_err(|error| error.to_string())?
+        };
+        replay(&program, &file, &WrittenUnits::of([SHOVE]))
+    };
+    let (mut shown, mut broken) = (0, 0);
+    for (part, is_text) in (1..40).flat_map(|part| [(part, false), (part, true)]) {
+        let document = match open(part, is_text) {
+            Ok(document) => document,
+            Err(why) => {
+                assert!(!why.is_empty());
+                continue;
+            }
+        };
+        shown += 1;
+        // Behind the last of the data there is a list of them only.
+        if document.notes.is_empty() {
+            assert!(document == *whole, "{part}: nothing is said to be missing");
+            continue;
+        }
+        assert!(document.end <= whole.end && document.events.len() <= whole.events.len());
+        // What is cut behind the last step lacks a part of the picture only, and is judged as it was.
+        if document.ended != ViewEnd::Error {
+            assert_eq!(document.end, whole.end, "{part}");
+            continue;
+        }
+        broken += 1;
+        for requirement in &document.requirements {
+            let told = (&requirement.id, requirement.verdict);
+            let is_judged = matches!(requirement.verdict, ViewVerdict::Pass | ViewVerdict::Vacuous);
+            assert!(!is_judged, "{part}: {told:?}");
+            let is_known = requirement.violations.iter().all(|violation| violation.t <= document.end);
+            assert!(is_known, "{part}: {told:?}");
+        }
+    }
+    assert!(broken > 10 && broken < shown, "{shown} of 78 could be shown, {broken} of them in part");
+}
+
+/// Of bodies and signals that a recording does not have nothing is drawn, and the rest is as it was.
+fn a_requirement_of_today_asks_an_older_recording(file: &recording::RecordingFile) {
+    let text = SHOVE
+        .replace("  body mark:", "  body later: fixed sphere(2 cm) at (2 m, 0 m, 0 m) ghost\n  body mark:");
+    let text =
+        text.replace("min(range(box, mark), distance(box, mark)) > 50 cm", "range(box, later) > 50 cm");
+    let program = compile(InputFile { name: "shove.hri", text: &text }, &[]).program.expect("it compiles");
+    let document = replay(&program, file, &WrittenUnits::default()).unwrap();
+    assert!(document.notes.iter().any(|note| note.contains("changed since")), "{:?}", document.notes);
+    let near = only(&document, "Near");
+    assert!(near.bodies.len() < 2, "there was no such body: {near:?}");
+    assert!(document.signals.iter().all(|signal| signal.name != near.name));
+    assert_eq!(only(&document, "Tilt").bodies.len(), 1);
 }

@@ -60,6 +60,9 @@ pub struct ViewRequirement {
     /// The condition is what meets an obligation: that it is not so, is no violation.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub meets: bool,
+    /// The condition is asked only when one of these events happens; at any time, if there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<String>,
 }
 
 /// How an obligation ended.

@@ -1,7 +1,7 @@
 // What has to be so for a requirement, and whether it is, at a time.
 
 import type { ViewCondition, ViewMeasure, ViewRequirement } from "./document.js";
-import type { Measure } from "./run.js";
+import type { Measure, Requirement } from "./run.js";
 import { numberAt, type Series } from "./series.js";
 
 /** A condition with the measures and signals that it names. */
@@ -104,12 +104,21 @@ export function lastedAt(condition: Condition, t: number, longest: number): numb
   return longest;
 }
 
-/** How a part of a requirement's condition stands. */
-export function standingOf(part: Condition, whole: Condition | null, meets: boolean, t: number): Standing {
+/** Of what is asked only at events, it is seen for so long around one that it violated, s. */
+const AROUND = 0.5;
+
+/** Whether that its condition is not so is no violation now: it is what meets an obligation, or it is asked at events only. */
+export function isSpared(requirement: Pick<Requirement, "of" | "violations">, t: number): boolean {
+  const { meets, at = [] } = requirement.of;
+  return meets === true || (at.length > 0 && !requirement.violations.some((v) => Math.abs(v.t - t) <= AROUND));
+}
+
+/** How a part of a requirement's condition stands; `spared`: that it is not so is no violation. */
+export function standingOf(part: Condition, whole: Condition | null, spared: boolean, t: number): Standing {
   const own = truthAt(part, t);
   if (own === null) return "unknown";
   if (own) return "kept";
-  return !meets && (whole === null || truthAt(whole, t) === false) ? "broken" : "open";
+  return !spared && (whole === null || truthAt(whole, t) === false) ? "broken" : "open";
 }
 
 /** Whether it is a violation that this measure is not kept, whatever else is so. */

@@ -339,6 +339,8 @@ export interface ViewObligation {
 
 /** A requirement, and how this run fared by it. */
 export interface ViewRequirement {
+  /** The condition is asked only when one of these events happens; at any time, if there are none. */
+  at?: string[];
   /** How the measures, and what else is asked for, make it up; left out if it asks for its one measure, or nothing is known. */
   condition?: ViewCondition | null;
   /** The events that it reads, by name. */

@@ -1,6 +1,6 @@
 // What a requirement asks for, as a list within lists, with what of it is so at the time that is shown.
 
-import { lastedAt, measureAt, standingOf, truthAt, type Condition, type Standing } from "../data/condition.js";
+import { isSpared, lastedAt, measureAt, standingOf, truthAt, type Condition, type Standing } from "../data/condition.js";
 import type { Requirement } from "../data/run.js";
 import { h, say } from "../ui/dom.js";
 import { boundText, measureText, quantity } from "../ui/text.js";
@@ -17,13 +17,19 @@ export class ConditionList {
   private readonly whole: Condition | null;
   private readonly meets: boolean;
 
-  constructor(requirement: Requirement) {
+  constructor(private readonly requirement: Requirement) {
     this.whole = requirement.condition;
     this.meets = requirement.of.meets ?? false;
   }
 
   element(): HTMLElement | null {
-    return this.whole && h("div", { class: "condition" }, this.meets ? h("p", { class: "facts" }, "What meets it:") : null, this.part(this.whole));
+    return this.whole && h("div", { class: "condition" }, this.when(), this.part(this.whole));
+  }
+
+  private when(): HTMLElement | null {
+    const { at = [] } = this.requirement.of;
+    const words = this.meets ? "What meets it:" : at.length > 0 ? `Asked when ${at.join(" or ")} happens:` : "";
+    return words ? h("p", { class: "facts" }, words) : null;
   }
 
   private part(condition: Condition): HTMLElement {
@@ -66,7 +72,7 @@ export class ConditionList {
     const value = h("b", {}, "–");
     this.readouts.push({
       update: (t) => {
-        const standing = standingOf(condition, this.whole, this.meets, t);
+        const standing = standingOf(condition, this.whole, isSpared(this.requirement, t), t);
         say(value, `${measureText(measure.of, measureAt(measure, t))}${standing === "unknown" ? "" : ` ${SIGNS[standing]}`}`);
         value.className = standing;
       },
@@ -80,7 +86,7 @@ export class ConditionList {
     const element = h("b", { class: "sign" }, "–");
     this.readouts.push({
       update: (t) => {
-        const standing = truthAt(condition, t) === null ? "unknown" : standingOf(condition, this.whole, this.meets, t);
+        const standing = truthAt(condition, t) === null ? "unknown" : standingOf(condition, this.whole, isSpared(this.requirement, t), t);
         say(element, SIGNS[standing]);
         element.className = `sign ${standing}`;
       },

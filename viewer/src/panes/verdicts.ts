@@ -14,6 +14,11 @@ const MANY = 60;
 /** Of more requirements than this, the list has a head for each verdict. */
 const FEW = 12;
 
+/** A sentence, with what is in backquotes as code. */
+function worded(text: string): (Node | string)[] {
+  return text.split("`").map((part, i) => (i % 2 ? h("code", {}, part) : part));
+}
+
 export class VerdictsPane implements Pane {
   readonly id = "verdicts";
   readonly title = "Verdicts";
@@ -88,7 +93,7 @@ export class VerdictsPane implements Pane {
       "div",
       { class: "outcome" },
       count > 1 ? h("h4", {}, which(count, at), run.label) : null,
-      ...requirement.violations.slice(0, MANY).map((v) => h("div", { class: isIn(v.t, v.until ?? v.t) ? "violation" : "violation outside" }, this.jump(`✗ ${seconds(v.t)}`, v.t), h("span", {}, v.text), v.since === null ? null : this.jump(`made at ${seconds(v.since)}`, v.since))),
+      ...requirement.violations.slice(0, MANY).map((v) => h("div", { class: isIn(v.t, v.until ?? v.t) ? "violation" : "violation outside" }, this.jump(`✗ ${seconds(v.t)}`, v.t), h("span", {}, ...worded(v.text)), v.since === null ? null : this.jump(`made at ${seconds(v.since)}`, v.since))),
       requirement.violations.length > MANY ? h("p", { class: "facts" }, `and ${requirement.violations.length - MANY} more violations`) : null,
       asked,
       h("p", { class: "facts" }, facts.join(" · ")),

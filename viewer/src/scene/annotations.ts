@@ -13,7 +13,7 @@ import { Arrows, type PixelSize } from "./strokes.js";
 export interface Label {
   at: [number, number, number];
   text: string;
-  kind: "kept" | "broken" | "open" | "force" | "name";
+  kind: "kept" | "broken" | "open" | "unknown" | "force" | "name";
 }
 
 type Place = [number, number, number];

@@ -2,7 +2,7 @@
 
 import { Vector3, type Camera, type Object3D } from "three";
 import { lookedAtWay, type Way } from "./ways.js";
-import { isKept, measureAt, standingOf, type Standing } from "../data/condition.js";
+import { isKept, isSpared, measureAt, standingOf, type Standing } from "../data/condition.js";
 import { axisOf, offsetOf, poseOf, upright } from "../data/looked.js";
 import type { Measure, Requirement, Run } from "../data/run.js";
 import { pairAt } from "../data/tracks.js";
@@ -50,7 +50,7 @@ export class DrawnMeasures {
     const measures = drawnMeasures(requirement);
     this.all.forEach((one, i) => {
       const measure = measures[i];
-      const standing = measure ? standingOf({ is: "measure", measure }, requirement?.condition ?? null, requirement?.of.meets ?? false, t) : "unknown";
+      const standing = measure ? standingOf({ is: "measure", measure }, requirement?.condition ?? null, requirement ? isSpared(requirement, t) : false, t) : "unknown";
       one.update(t, poses, measure, standing, (requirement?.measures.length ?? 0) > 1);
     });
     this.labels = this.all.flatMap((one) => one.label ?? []);
@@ -172,11 +172,17 @@ class DrawnMeasure {
     return { kept: palette.pass, broken: palette.fail, open: palette.inconclusive, unknown: palette.dim }[this.standingOf(measure, value)];
   }
 
+  /** Between bodies, it is called by these. */
+  private nameOf(measure: Measure): string {
+    const { kind, name, bodies = [] } = measure.of;
+    return kind === "distance" || kind === "range" ? bodies.map((body) => this.run.bodies[body]?.name ?? "?").join(" · ") : name;
+  }
+
   private tell(measure: Measure, value: number, at: Place, more = ""): void {
     const standing = this.standingOf(measure, value);
     const sign = { kept: "✓", broken: "✗", open: "✗", unknown: "" }[standing];
-    const name = this.named ? `  ${measure.of.name}` : "";
-    this.label = { at, text: `${measureText(measure.of, value)}  (${boundText(measure.of)}) ${sign}${more}${name}`, kind: standing === "unknown" ? "kept" : standing };
+    const name = this.named ? `  ${this.nameOf(measure)}` : "";
+    this.label = { at, text: `${measureText(measure.of, value)}  (${boundText(measure.of)}) ${sign}${more}${name}`, kind: standing };
   }
 
   /** The line between the two nearest points, and around one of them a circle as wide as the limit. */

@@ -1,10 +1,10 @@
 // What lies on the time line: sections and lanes, each with a track for each of the runs.
 
-import { isDecisive, isKept, standingOf, truthsIn, type Standing } from "../data/condition.js";
+import { isDecisive, isKept, isSpared, standingOf, truthsIn, type Standing } from "../data/condition.js";
 import type { ShownUnit } from "../data/document.js";
 import { threadName, type CodeThread, type LogEntry, type Machine, type Measure, type Requirement, type Run, type RunEvent, type Topic } from "../data/run.js";
 import { numberAt, spansOf, type Series } from "../data/series.js";
-import { unitOf } from "../ui/text.js";
+import { plottedUnit } from "../ui/text.js";
 
 export interface Bar {
   from: number;
@@ -96,7 +96,7 @@ export function standingIn(lane: Extract<Lane, { kind: "plot" }>, track: number,
   if (Number.isNaN(value) || lane.limits.length === 0) return "unknown";
   const broken = lane.limits.filter((l) => !isKept(l.measure.of, value));
   if (broken.length === 0) return "kept";
-  const violates = (l: Limit) => l.decisive || (track === 0 && standingOf({ is: "measure", measure: l.measure }, l.requirement.condition, l.requirement.of.meets ?? false, t) === "broken");
+  const violates = (l: Limit) => !isSpared(l.requirement, t) && (l.decisive || (track === 0 && standingOf({ is: "measure", measure: l.measure }, l.requirement.condition, false, t) === "broken"));
   return broken.some(violates) ? "broken" : "open";
 }
 
@@ -107,7 +107,7 @@ function plotLanes(runs: readonly Run[], plots: readonly string[], focus: string
     // The limit of the requirement in focus, if it has one; else those of all.
     const own = of(focus);
     const limits = own.length > 0 ? own : of(null);
-    const shown = limits.flatMap((l) => unitOf(l.measure.of) ?? [])[0];
+    const shown = limits.flatMap((l) => plottedUnit(l.measure.of) ?? [])[0];
     const unit = shown ?? { symbol: tracks.find((s) => s?.unit)?.unit ?? "", size: 1 };
     return tracks.some((t) => t) ? [{ id: `plot ${name}`, section: FOCUS, label: name, note: unit.symbol, kind: "plot", tracks, limits, unit }] : [];
   });

@@ -272,19 +272,19 @@ function drawPlot(paint: Paint, lane: Extract<Lane, { kind: "plot" }>, y: number
     context.fillStyle = colors.dim;
     context.fillText(round(v), scale.left + 3, within(yOf(v * size)));
   }
-  drawBounds(paint, lane, (v) => within(yOf(v)));
+  drawBounds(paint, lane, (v, by) => within(yOf(v) + by));
   context.restore();
 }
 
 /** At the right, what each limit is: on the side on which the value has to be. */
-function drawBounds(paint: Paint, lane: Extract<Lane, { kind: "plot" }>, yOf: (v: number) => number): void {
+function drawBounds(paint: Paint, lane: Extract<Lane, { kind: "plot" }>, yOf: (v: number, by: number) => number): void {
   const { context, colors, scale } = paint;
   font(paint, 10, 600);
   context.textAlign = "right";
   for (const { measure, decisive } of lane.limits) {
     const text = boundText(measure.of);
     const [x, wide] = [scale.left + scale.width - 4, context.measureText(text).width];
-    const y = yOf(measure.of.limit) + (measure.of.relation.startsWith("<") ? 8 : -8);
+    const y = yOf(measure.of.limit, measure.of.relation.startsWith("<") ? 8 : -8);
     context.fillStyle = tint(colors.paper, 80);
     context.fillRect(x - wide - 2, y - 6, wide + 4, 12);
     context.fillStyle = decisive ? colors.fail : colors.inconclusive;
@@ -423,14 +423,29 @@ export function drawLabel(paint: Paint, row: Row, width: number, chosen: boolean
   }
   font(paint, 11.5, lane.kind === "requirement" ? 600 : 400);
   context.fillStyle = colors.ink;
-  const label = fitted(context, lane.label, width - x - 6);
+  const room = width - x - 6;
+  if (lane.kind === "plot") {
+    // Names of measures are long, and differ at their ends: they have two lines, and the unit is with the value.
+    const first = brokenAt(context, lane.label, room);
+    context.fillText(lane.label.slice(0, first), x, middle);
+    context.fillText(fitted(context, lane.label.slice(first).trimStart(), room), x, middle + 15);
+    return;
+  }
+  const label = fitted(context, lane.label, room);
   context.fillText(label, x, middle);
   x += context.measureText(label).width + 8;
   font(paint, 10.5);
   context.fillStyle = colors.dim;
-  const below = lane.kind === "plot";
-  const note = fitted(context, lane.note, width - (below ? 18 : x) - (lane.tracks.length > 1 ? 18 : 6));
-  context.fillText(note, below ? 18 : x, below ? middle + 15 : middle);
+  context.fillText(fitted(context, lane.note, width - x - (lane.tracks.length > 1 ? 18 : 6)), x, middle);
+}
+
+/** Where a text is broken that does not fit: behind a blank or a sign, if there is one. */
+export function brokenAt(context: Pick<CanvasRenderingContext2D, "measureText">, text: string, width: number): number {
+  let most = text.length;
+  while (most > 1 && context.measureText(text.slice(0, most)).width > width) most -= 1;
+  if (most === text.length) return most;
+  const behind = text.slice(0, most).search(/[ (,.·-][^ (,.·-]*$/);
+  return behind > most / 3 ? behind + 1 : most;
 }
 
 /** What a plot says at a time, beside its label: in the colours of its curves. */
@@ -447,7 +462,8 @@ export function drawReadout(paint: Paint, row: Row, t: number, width: number): v
     font(paint, 13, 600);
     context.textBaseline = "middle";
     context.fillStyle = standing === "broken" ? colors.fail : standing === "open" ? colors.inconclusive : ([colors.s0, colors.s1][i] ?? colors.ink);
-    const text = `${tracks.length > 1 ? `${"AB"[i] ?? ""} ` : ""}${number(value)}${isOff ? " ✗" : ""}`;
+    const symbol = unit.symbol === "" || unit.symbol.startsWith("°") ? unit.symbol : ` ${unit.symbol}`;
+    const text = `${tracks.length > 1 ? `${"AB"[i] ?? ""} ` : ""}${number(value)}${Number.isNaN(value) ? "" : symbol}${isOff ? " ✗" : ""}`;
     context.fillText(fitted(context, text, width - 24), 18 + i * ((width - 20) / 2), row.y + 42);
   });
 }

@@ -34,6 +34,11 @@ export function unitOf(of: ViewMeasure): ShownUnit | null {
   return of.unit === "rad" && (of.kind === "tilt" || of.kind === "angle") ? { symbol: "°", size: DEGREE } : null;
 }
 
+/** The unit of the curve of a measure: short lengths have their limit in centimetres, and so has the curve. */
+export function plottedUnit(of: ViewMeasure): ShownUnit | null {
+  return unitOf(of) ?? (of.unit === "m" && Math.abs(of.limit) < 1 ? { symbol: "cm", size: 0.01 } : null);
+}
+
 const withUnit = (text: string, symbol: string): string => `${text}${symbol.startsWith("°") ? "" : " "}${symbol}`;
 
 /** A value of a measure, with its unit. */

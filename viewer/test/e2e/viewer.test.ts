@@ -126,7 +126,7 @@ describe("the viewer in Chromium", { skip }, () => {
     assert.match(await told(), /✓at least one of these \| ✗all of these \| ✗not near \| ✗not historically\[0 s, 2 s\] \| ✓fell is told once this has not been so for 2.00 s/);
     const labels = () => page.$$eval(".label:not([hidden])", (all) => all.map((label) => `${label.className}: ${label.textContent}`));
     const all = (await labels()).join("\n");
-    assert.match(all, /label kept: 41.0 cm {2}\(> 5 cm\) ✓ {2}distance\(guest.hand, robot.palm\)/);
+    assert.match(all, /label kept: 41.0 cm {2}\(> 5 cm\) ✓ {2}guest.hand · robot.palm/);
     assert.match(all, /0° {2}\(≤ 45.84°\) ✓ {2}tilt\(robot.palm\)/);
     await page.evaluate(() => (location.hash = "#run=every field&t=0.5&focus=R1"));
     await settle(page, 200);

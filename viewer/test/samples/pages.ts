@@ -22,7 +22,7 @@ function broken(): PackedRun[] {
 /** As many requirements as the largest example has. */
 function withMany(document: ViewDocument): ViewDocument {
   const verdicts = ["pass", "vacuous", "pass", "inconclusive", "pass", "error", "pass"] as const;
-  const more = Array.from({ length: 22 - (document.requirements?.length ?? 0) }, (_, i) => ({ id: `S${i + 1}`, title: `one of many that say what has to be so, the ${i + 1}th`, verdict: verdicts[i % verdicts.length] ?? "pass" }));
+  const more = Array.from({ length: 22 - (document.requirements?.length ?? 0) }, (_, i) => ({ id: `S${i + 1}`, title: `number ${i + 1} of many that say what has to be so, and at length`, verdict: verdicts[i % verdicts.length] ?? "pass" }));
   return { ...document, requirements: [...more, ...(document.requirements ?? [])] };
 }
 

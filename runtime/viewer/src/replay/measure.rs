@@ -27,6 +27,8 @@ pub(super) struct FoundMeasures {
     pub condition: Option<ViewCondition>,
     /// It is what meets an obligation.
     pub meets: bool,
+    /// It is asked when one of these events happens.
+    pub at: Vec<String>,
     pub values: Vec<SignalTrack>,
 }
 
@@ -45,14 +47,14 @@ pub(super) fn measures(
         .or_else(|| monitor.margin.as_ref().and_then(|margin| AskedCondition::of_margin(&margin.value)));
     let first = kept.as_ref().map(|asked| reader().read(asked)).unwrap_or_default();
     if !first.measures.is_empty() {
-        return first;
+        return FoundMeasures { at: asked_at(run, monitor), ..first };
     }
     let told = told_by_events(run, monitor, at);
     if !told.measures.is_empty() {
         return told;
     }
     if first.condition.is_some() {
-        return first;
+        return FoundMeasures { at: asked_at(run, monitor), ..first };
     }
     let meeting = meeting(monitor).map(|asked| reader().read(&asked)).unwrap_or_default();
     FoundMeasures { meets: true, ..meeting }
@@ -75,6 +77,20 @@ fn kept(monitor: &Monitor) -> Option<AskedCondition> {
         }
     }
     (!parts.is_empty()).then(|| AskedCondition::joined(true, parts))
+}
+
+/// The events at which a monitor asks for what must be so, if it asks at no other time.
+fn asked_at(run: &ReplayedRun<'_>, monitor: &Monitor) -> Vec<String> {
+    let mut events: Vec<String> = Vec::new();
+    for edge in monitor.edges.iter().filter(|edge| edge.effects.contains(&MonitorEffect::Fail)) {
+        let MonitorTrigger::Event(patterns) = &edge.on else { return Vec::new() };
+        for name in patterns.iter().map(|pattern| &run.program.event(pattern.event).name) {
+            if !events.contains(name) {
+                events.push(name.clone());
+            }
+        }
+    }
+    events
 }
 
 /// What meets an obligation, besides events.

@@ -44,8 +44,8 @@ pub(super) fn requirements(run: &ReplayedRun<'_>) -> (Vec<ViewRequirement>, Vec<
             }
         }
         let judged = requirement(run, monitor, taped.as_ref(), &verdict, &history);
-        let FoundMeasures { measures, condition, meets, .. } = found;
-        all.push(ViewRequirement { measures, condition, meets, ..judged });
+        let FoundMeasures { measures, condition, meets, at, .. } = found;
+        all.push(ViewRequirement { measures, condition, meets, at, ..judged });
     }
     (all, values)
 }
