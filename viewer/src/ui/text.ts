@@ -44,6 +44,7 @@ const withUnit = (text: string, symbol: string): string => `${text}${symbol.star
 /** A value of a measure, with its unit. */
 export function measureText(of: ViewMeasure, value: number): string {
   const unit = unitOf(of);
+  if (Number.isNaN(value)) return number(value);
   return unit ? withUnit(number(value / unit.size), unit.symbol) : quantity(value, of.unit);
 }
 

@@ -29,9 +29,9 @@ impl LimitComparison {
 
 /// What has to be so.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum AskedCondition {
-    All(Vec<AskedCondition>),
-    Any(Vec<AskedCondition>),
+pub(super) enum KeptCondition {
+    All(Vec<KeptCondition>),
+    Any(Vec<KeptCondition>),
     Compared(LimitComparison),
     /// An expression has this truth.
     Truth(Expr, bool),
@@ -42,11 +42,11 @@ pub(super) enum AskedCondition {
         text: String,
         truth: bool,
         formula: Option<Box<MetricFormula>>,
-        of: Vec<AskedCondition>,
+        of: Vec<KeptCondition>,
     },
 }
 
-impl AskedCondition {
+impl KeptCondition {
     /// That an expression has this truth.
     pub fn of(expr: &Expr, truth: bool) -> Self {
         match expr {
@@ -130,7 +130,7 @@ pub(super) fn constant(expr: &Expr) -> Option<f64> {
 }
 
 /// `small` is less than `large`, or as great. Without a limit between them, it is their difference that is held to 0.
-fn ordered(small: &Expr, large: &Expr, strict: bool) -> AskedCondition {
+fn ordered(small: &Expr, large: &Expr, strict: bool) -> KeptCondition {
     let (below, above) = if strict {
         (LimitRelation::Below, LimitRelation::Above)
     } else {
@@ -139,25 +139,25 @@ fn ordered(small: &Expr, large: &Expr, strict: bool) -> AskedCondition {
     match (constant(small), constant(large)) {
         (Some(a), Some(b)) => {
             let truth = if strict { a < b } else { a <= b };
-            AskedCondition::Truth(Expr::bool(truth), true)
+            KeptCondition::Truth(Expr::bool(truth), true)
         }
         (Some(limit), None) => split(large, above, limit),
         (None, Some(limit)) => split(small, below, limit),
         (None, None) => {
             let measured = Expr::binary(BinaryOp::Sub, small.clone(), large.clone());
-            AskedCondition::Compared(LimitComparison { measured, relation: below, limit: 0.0 })
+            KeptCondition::Compared(LimitComparison { measured, relation: below, limit: 0.0 })
         }
     }
 }
 
 /// The least of several is at least something where all of them are, and at most something where one of them is: each is told of by itself.
-fn split(measured: &Expr, relation: LimitRelation, limit: f64) -> AskedCondition {
+fn split(measured: &Expr, relation: LimitRelation, limit: f64) -> KeptCondition {
     let is_floor = matches!(relation, LimitRelation::Above | LimitRelation::AtLeast);
     match measured {
         Expr::Call(function @ (NumberFunction::Min | NumberFunction::Max), parts) => {
             let all = is_floor == (*function == NumberFunction::Min);
             let parts = parts.iter().filter(|part| constant(part).is_none());
-            AskedCondition::joined(all, parts.map(|part| split(part, relation, limit)))
+            KeptCondition::joined(all, parts.map(|part| split(part, relation, limit)))
         }
         Expr::Call(..)
         | Expr::Const(_)
@@ -168,7 +168,7 @@ fn split(measured: &Expr, relation: LimitRelation, limit: f64) -> AskedCondition
         | Expr::List(..)
         | Expr::Element(_)
         | Expr::Apply(..) => {
-            AskedCondition::Compared(LimitComparison { measured: measured.clone(), relation, limit })
+            KeptCondition::Compared(LimitComparison { measured: measured.clone(), relation, limit })
         }
     }
 }
@@ -180,11 +180,11 @@ mod tests {
         expr::{BinaryOp, NumberFunction, UnaryOp},
     };
 
-    use super::{AskedCondition, LimitComparison};
+    use super::{KeptCondition, LimitComparison};
     use crate::requirement::LimitRelation;
 
-    fn compared(measured: Expr, relation: LimitRelation, limit: f64) -> AskedCondition {
-        AskedCondition::Compared(LimitComparison { measured, relation, limit })
+    fn compared(measured: Expr, relation: LimitRelation, limit: f64) -> KeptCondition {
+        KeptCondition::Compared(LimitComparison { measured, relation, limit })
     }
 
     fn less(a: Expr, b: Expr) -> Expr {
@@ -195,11 +195,11 @@ mod tests {
     fn what_is_compared_may_be_any_number_over_signals() {
         let norm = Expr::Call(NumberFunction::Norm, vec![Expr::Var(0), Expr::Var(1)]);
         let limit = Expr::binary(BinaryOp::Add, Expr::float(0.25), Expr::float(0.005));
-        let asked = AskedCondition::of(&less(norm.clone(), limit.clone()), true);
+        let asked = KeptCondition::of(&less(norm.clone(), limit.clone()), true);
         assert_eq!(asked, compared(norm.clone(), LimitRelation::Below, 0.255));
         let margin = Expr::binary(BinaryOp::Sub, limit, norm.clone());
-        assert_eq!(AskedCondition::of_margin(&margin), Some(compared(norm, LimitRelation::AtMost, 0.255)));
-        let two = AskedCondition::of(&less(Expr::Var(0), Expr::Var(1)), true);
+        assert_eq!(KeptCondition::of_margin(&margin), Some(compared(norm, LimitRelation::AtMost, 0.255)));
+        let two = KeptCondition::of(&less(Expr::Var(0), Expr::Var(1)), true);
         let difference = Expr::binary(BinaryOp::Sub, Expr::Var(0), Expr::Var(1));
         assert_eq!(two, compared(difference, LimitRelation::Below, 0.0));
     }
@@ -209,21 +209,21 @@ mod tests {
         let least = Expr::Call(NumberFunction::Min, vec![Expr::Var(0), Expr::Var(1)]);
         let near = less(least, Expr::float(0.05));
         let parts = |relation| [Expr::Var(0), Expr::Var(1)].map(|of| compared(of, relation, 0.05)).to_vec();
-        assert_eq!(AskedCondition::of(&near, true), AskedCondition::Any(parts(LimitRelation::Below)));
-        assert_eq!(AskedCondition::of(&near, false), AskedCondition::All(parts(LimitRelation::AtLeast)));
+        assert_eq!(KeptCondition::of(&near, true), KeptCondition::Any(parts(LimitRelation::Below)));
+        assert_eq!(KeptCondition::of(&near, false), KeptCondition::All(parts(LimitRelation::AtLeast)));
     }
 
     #[test]
     fn what_must_not_be_is_kept_by_the_opposite_of_each_part() {
         let tilted = Expr::binary(BinaryOp::Gt, Expr::Var(0), Expr::float(0.9));
-        let kept = AskedCondition::of(&tilted, false);
+        let kept = KeptCondition::of(&tilted, false);
         assert_eq!(kept, compared(Expr::Var(0), LimitRelation::AtMost, 0.9));
         let not = Expr::Unary(UnaryOp::Not, Box::new(tilted.clone()));
-        assert_eq!(AskedCondition::of(&not, true), kept);
+        assert_eq!(KeptCondition::of(&not, true), kept);
         let both = Expr::binary(BinaryOp::And, tilted.clone(), Expr::Var(1));
-        let truth = AskedCondition::Truth(Expr::Var(1), false);
-        assert_eq!(AskedCondition::of(&both, false), AskedCondition::Any(vec![kept.clone(), truth]));
+        let truth = KeptCondition::Truth(Expr::Var(1), false);
+        assert_eq!(KeptCondition::of(&both, false), KeptCondition::Any(vec![kept.clone(), truth]));
         let twice = Expr::binary(BinaryOp::And, tilted.clone(), tilted);
-        assert_eq!(AskedCondition::of(&twice, false), kept, "nothing is said twice");
+        assert_eq!(KeptCondition::of(&twice, false), kept, "nothing is said twice");
     }
 }

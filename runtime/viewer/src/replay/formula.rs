@@ -15,7 +15,7 @@ use hrdsl_metric::{
 use hrdsl_trace::TraceStepKind;
 
 use super::{
-    asked::AskedCondition,
+    asked::KeptCondition,
     run::{ReplayedRun, tick},
     tracks::truth_track,
     violation::{ToldRequirement, signal_text},
@@ -84,23 +84,15 @@ impl TapedFormula {
         let read = read_at(run, &self.checked, &moments);
         let violation = |(span, (values, step)): (&FormulaSpan, ReadValues)| {
             let (from, until) = (tick(span.from), tick(span.until.min(run.trace.end)));
-            let lasts = if until > from {
-                format!(
-                    "It does not hold from {} s to {} s",
-                    seconds(span.from),
-                    seconds(span.until.min(run.trace.end))
-                )
-            } else {
-                format!("It does not hold at {} s", seconds(span.from))
-            };
             let values: Vec<String> =
                 values.iter().map(|(signal, value)| signal_text(run, *signal, *value)).collect();
             let read = if values.is_empty() { String::new() } else { format!(": {}", values.join(", ")) };
             let is_in = |asked: &&AskedSpan| asked.span.from <= span.from && span.from < asked.span.until;
+            let asked = story.asked.iter().find(is_in);
             ViewViolation {
                 t: from,
-                text: format!("{lasts}{read}."),
-                since: story.asked.iter().find(is_in).map(|asked| tick(asked.span.from)),
+                text: format!("{}{read}.", lasts(span, asked, run.trace.end)),
+                since: asked.map(|asked| tick(asked.span.from)),
                 until: (until > from).then_some(until),
                 steps: step.into_iter().map(|step| step as u64).collect(),
             }
@@ -118,6 +110,20 @@ impl TapedFormula {
     fn premise(&self) -> Option<String> {
         let MetricGoal::Always(MetricFormula::Implies(premise, _)) = &self.checked.goal else { return None };
         Some(self.text(premise))
+    }
+}
+
+/// For how long it does not hold, and since when that is certain, if a window looks ahead.
+fn lasts(span: &FormulaSpan, asked: Option<&AskedSpan>, end: Nanos) -> String {
+    let until = span.until.min(end);
+    let lasts = if tick(until) > tick(span.from) {
+        format!("It does not hold from {} s to {} s", seconds(span.from), seconds(until))
+    } else {
+        format!("It does not hold at {} s", seconds(span.from))
+    };
+    match asked.map(|asked| asked.known.min(end)).filter(|known| tick(*known) > tick(span.from)) {
+        Some(known) => format!("{lasts}, which is certain at {} s", seconds(known)),
+        None => lasts,
     }
 }
 
@@ -165,21 +171,21 @@ pub(super) fn events(monitor: &Monitor) -> impl Iterator<Item = &EventPattern> {
 }
 
 /// What a formula asks for.
-pub(super) fn asked(monitor: &Monitor) -> Option<AskedCondition> {
+pub(super) fn asked(monitor: &Monitor) -> Option<KeptCondition> {
     monitor.formula.as_ref().map(|formula| of_goal(monitor, &formula.goal))
 }
 
-fn of_goal(monitor: &Monitor, goal: &MetricGoal) -> AskedCondition {
+fn of_goal(monitor: &Monitor, goal: &MetricGoal) -> KeptCondition {
     let of = |formula: &MetricFormula| of_formula(monitor, formula, true);
-    let window = |text: &str, of: Vec<AskedCondition>| AskedCondition::Window {
+    let window = |text: &str, of: Vec<KeptCondition>| KeptCondition::Window {
         text: text.to_owned(),
         truth: true,
         formula: None,
         of,
     };
     match goal {
-        MetricGoal::And(a, b) => AskedCondition::joined(true, [of_goal(monitor, a), of_goal(monitor, b)]),
-        MetricGoal::Or(a, b) => AskedCondition::joined(false, [of_goal(monitor, a), of_goal(monitor, b)]),
+        MetricGoal::And(a, b) => KeptCondition::joined(true, [of_goal(monitor, a), of_goal(monitor, b)]),
+        MetricGoal::Or(a, b) => KeptCondition::joined(false, [of_goal(monitor, a), of_goal(monitor, b)]),
         MetricGoal::Always(formula) => of(formula),
         MetricGoal::Now(formula) => window("at the first moment", vec![of(formula)]),
         MetricGoal::Eventually(formula) => window("eventually", vec![of(formula)]),
@@ -188,24 +194,24 @@ fn of_goal(monitor: &Monitor, goal: &MetricGoal) -> AskedCondition {
     }
 }
 
-fn of_formula(monitor: &Monitor, formula: &MetricFormula, truth: bool) -> AskedCondition {
+fn of_formula(monitor: &Monitor, formula: &MetricFormula, truth: bool) -> KeptCondition {
     let of = |formula: &MetricFormula, truth| of_formula(monitor, formula, truth);
-    let window = |text: String, truth: bool, operands: Vec<AskedCondition>| AskedCondition::Window {
+    let window = |text: String, truth: bool, operands: Vec<KeptCondition>| KeptCondition::Window {
         text,
         truth,
         formula: Some(Box::new(formula.clone())),
         of: operands,
     };
     match formula {
-        MetricFormula::Constant(is) => AskedCondition::Truth(Expr::bool(*is), truth),
+        MetricFormula::Constant(is) => KeptCondition::Truth(Expr::bool(*is), truth),
         MetricFormula::Atom(at) => of_atom(monitor, *at, truth),
         MetricFormula::Not(a) => of(a, !truth),
         MetricFormula::And(a, b) => match edge(a, b) {
             Some(word) => window(word.to_owned(), truth, vec![of(a, true)]),
-            None => AskedCondition::joined(truth, [of(a, truth), of(b, truth)]),
+            None => KeptCondition::joined(truth, [of(a, truth), of(b, truth)]),
         },
-        MetricFormula::Or(a, b) => AskedCondition::joined(!truth, [of(a, truth), of(b, truth)]),
-        MetricFormula::Implies(a, b) => AskedCondition::joined(!truth, [of(a, !truth), of(b, truth)]),
+        MetricFormula::Or(a, b) => KeptCondition::joined(!truth, [of(a, truth), of(b, truth)]),
+        MetricFormula::Implies(a, b) => KeptCondition::joined(!truth, [of(a, !truth), of(b, truth)]),
         MetricFormula::Once(w, a) => window(format!("once{}", w.text()), truth, vec![of(a, true)]),
         MetricFormula::Historically(w, a) => {
             window(format!("historically{}", w.text()), truth, vec![of(a, true)])
@@ -230,13 +236,13 @@ fn edge(a: &MetricFormula, b: &MetricFormula) -> Option<&'static str> {
     (window.bounds() == (1, Some(1)) && **was == *a).then_some("rising")
 }
 
-fn of_atom(monitor: &Monitor, at: usize, truth: bool) -> AskedCondition {
+fn of_atom(monitor: &Monitor, at: usize, truth: bool) -> KeptCondition {
     let atom = monitor.formula.as_ref().and_then(|formula| formula.atoms.get(at));
-    let Some(atom) = atom else { return AskedCondition::Happens("?".to_owned(), truth) };
+    let Some(atom) = atom else { return KeptCondition::Happens("?".to_owned(), truth) };
     match &atom.what {
-        FormulaAtomKind::Happens(_) => AskedCondition::Happens(atom.text.clone(), truth),
-        FormulaAtomKind::Less { least, most, strict } => AskedCondition::less(least, most, *strict, truth),
-        FormulaAtomKind::Equal { .. } => AskedCondition::Happens(atom.text.clone(), truth),
-        FormulaAtomKind::Holds(condition) => AskedCondition::of(condition, truth),
+        FormulaAtomKind::Happens(_) => KeptCondition::Happens(atom.text.clone(), truth),
+        FormulaAtomKind::Less { least, most, strict } => KeptCondition::less(least, most, *strict, truth),
+        FormulaAtomKind::Equal { .. } => KeptCondition::Happens(atom.text.clone(), truth),
+        FormulaAtomKind::Holds(condition) => KeptCondition::of(condition, truth),
     }
 }

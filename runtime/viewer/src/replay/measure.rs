@@ -9,7 +9,7 @@ use hrdsl_ir::{
 
 use super::{
     about,
-    asked::{AskedCondition, LimitComparison},
+    asked::{KeptCondition, LimitComparison},
     derived,
     formula::{self, TapedFormula},
     run::ReplayedRun,
@@ -44,7 +44,7 @@ pub(super) fn measures(
         || MeasureReader { run, signals: &monitor.signals, text: &monitor.text, at, tells: None, taped };
     let kept = formula::asked(monitor)
         .or_else(|| kept(monitor))
-        .or_else(|| monitor.margin.as_ref().and_then(|margin| AskedCondition::of_margin(&margin.value)));
+        .or_else(|| monitor.margin.as_ref().and_then(|margin| KeptCondition::of_margin(&margin.value)));
     let first = kept.as_ref().map(|asked| reader().read(asked)).unwrap_or_default();
     if !first.measures.is_empty() {
         return FoundMeasures { at: asked_at(run, monitor), ..first };
@@ -61,22 +61,22 @@ pub(super) fn measures(
 }
 
 /// What must be so, or the requirement is violated.
-fn kept(monitor: &Monitor) -> Option<AskedCondition> {
+fn kept(monitor: &Monitor) -> Option<KeptCondition> {
     let mut parts = Vec::new();
     for edge in monitor.edges.iter().filter(|edge| edge.effects.contains(&MonitorEffect::Fail)) {
         let condition = match &edge.on {
             MonitorTrigger::Becomes { condition, truth, .. } => {
-                monitor.conditions.get(usize::from(*condition)).map(|of| AskedCondition::of(of, !truth))
+                monitor.conditions.get(usize::from(*condition)).map(|of| KeptCondition::of(of, !truth))
             }
             MonitorTrigger::Event(_) | MonitorTrigger::Sample | MonitorTrigger::Deadline => None,
         };
-        let guard = edge.guard.as_ref().map(|guard| AskedCondition::of(guard, false));
-        let both: Vec<AskedCondition> = condition.into_iter().chain(guard).collect();
+        let guard = edge.guard.as_ref().map(|guard| KeptCondition::of(guard, false));
+        let both: Vec<KeptCondition> = condition.into_iter().chain(guard).collect();
         if !both.is_empty() {
-            parts.push(AskedCondition::joined(false, both));
+            parts.push(KeptCondition::joined(false, both));
         }
     }
-    (!parts.is_empty()).then(|| AskedCondition::joined(true, parts))
+    (!parts.is_empty()).then(|| KeptCondition::joined(true, parts))
 }
 
 /// The events at which a monitor asks for what must be so, if it asks at no other time.
@@ -94,22 +94,22 @@ fn asked_at(run: &ReplayedRun<'_>, monitor: &Monitor) -> Vec<String> {
 }
 
 /// What meets an obligation, besides events.
-fn meeting(monitor: &Monitor) -> Option<AskedCondition> {
+fn meeting(monitor: &Monitor) -> Option<KeptCondition> {
     let mut parts = Vec::new();
     for edge in monitor.edges.iter().filter(|edge| edge.effects.contains(&MonitorEffect::Discharge)) {
         match &edge.on {
             MonitorTrigger::Becomes { condition, truth, .. } => {
                 parts.extend(
-                    monitor.conditions.get(usize::from(*condition)).map(|of| AskedCondition::of(of, *truth)),
+                    monitor.conditions.get(usize::from(*condition)).map(|of| KeptCondition::of(of, *truth)),
                 );
             }
             MonitorTrigger::Sample => {
-                parts.extend(edge.guard.iter().map(|guard| AskedCondition::of(guard, true)))
+                parts.extend(edge.guard.iter().map(|guard| KeptCondition::of(guard, true)))
             }
             MonitorTrigger::Event(_) | MonitorTrigger::Deadline => {}
         }
     }
-    (!parts.is_empty()).then(|| AskedCondition::joined(false, parts))
+    (!parts.is_empty()).then(|| KeptCondition::joined(false, parts))
 }
 
 /// Reads what is asked for over one list of signals.
@@ -126,7 +126,7 @@ struct MeasureReader<'r, 'p> {
 }
 
 impl MeasureReader<'_, '_> {
-    fn read(self, asked: &AskedCondition) -> FoundMeasures {
+    fn read(self, asked: &KeptCondition) -> FoundMeasures {
         let mut found = FoundMeasures::default();
         let mut margins = Vec::new();
         found.condition = self.condition(asked, &mut found, &mut margins);
@@ -145,32 +145,32 @@ impl MeasureReader<'_, '_> {
 
     fn condition(
         self,
-        asked: &AskedCondition,
+        asked: &KeptCondition,
         found: &mut FoundMeasures,
         margins: &mut Vec<f64>,
     ) -> Option<ViewCondition> {
-        let mut all = |parts: &[AskedCondition]| -> Vec<ViewCondition> {
+        let mut all = |parts: &[KeptCondition]| -> Vec<ViewCondition> {
             parts.iter().filter_map(|part| self.condition(part, found, margins)).collect()
         };
         match asked {
-            AskedCondition::All(parts) => {
+            KeptCondition::All(parts) => {
                 let of = all(parts);
                 (!of.is_empty()).then_some(ViewCondition::All { of })
             }
-            AskedCondition::Any(parts) => {
+            KeptCondition::Any(parts) => {
                 let of = all(parts);
                 (!of.is_empty()).then_some(ViewCondition::Any { of })
             }
-            AskedCondition::Compared(one) => self.compared(one, found, margins),
-            AskedCondition::Truth(expr, truth) => {
+            KeptCondition::Compared(one) => self.compared(one, found, margins),
+            KeptCondition::Truth(expr, truth) => {
                 let text = derived::text(self.run, self.signals, expr)?;
                 let signal = Some(text.clone()).filter(|name| is_recorded(self.run, name));
                 Some(ViewCondition::Fact { text, negated: !truth, signal })
             }
-            AskedCondition::Happens(text, truth) => {
+            KeptCondition::Happens(text, truth) => {
                 Some(ViewCondition::Fact { text: text.clone(), negated: !truth, signal: None })
             }
-            AskedCondition::Window { text, truth, formula, of } => {
+            KeptCondition::Window { text, truth, formula, of } => {
                 let of = all(of);
                 let track = self.taped.zip(formula.as_ref()).map(|(taped, formula)| {
                     let name = taped.text(formula);
@@ -314,7 +314,7 @@ fn told_by(run: &ReplayedRun<'_>, rule: &WorldRule, at: Nanos) -> FoundMeasures 
     let event = &run.program.event(rule.event).name;
     let (signals, tells) = (&rule.signals[..], Some(event.as_str()));
     let reader = MeasureReader { run, signals, text: "", at, tells, taped: None };
-    let found = reader.read(&AskedCondition::of(condition, !rising));
+    let found = reader.read(&KeptCondition::of(condition, !rising));
     if found.measures.is_empty() {
         return FoundMeasures::default();
     }

@@ -12,7 +12,7 @@ const SAME: f64 = 1e-9;
 
 /// A number with a unit, as it stands in a text.
 #[derive(Clone, Copy, Debug)]
-struct WrittenNumber {
+struct NumberWithUnit {
     /// In the SI unit.
     value: f64,
     unit: &'static LiteralUnit,
@@ -21,8 +21,8 @@ struct WrittenNumber {
 /// The numbers with units of a scenario's texts, and its constants that are one.
 #[derive(Clone, Debug, Default)]
 pub struct WrittenUnits {
-    numbers: Vec<WrittenNumber>,
-    constants: BTreeMap<String, WrittenNumber>,
+    numbers: Vec<NumberWithUnit>,
+    constants: BTreeMap<String, NumberWithUnit>,
 }
 
 impl WrittenUnits {
@@ -46,12 +46,12 @@ impl WrittenUnits {
 
     /// The unit in which a limit is written: in the text that it is from, somewhere in the scenario, or as what the text names.
     pub(super) fn shown(&self, unit: Unit, limit: f64, text: &str) -> Option<ShownUnit> {
-        let fits = |number: &&WrittenNumber| number.unit.si == unit && unit != Unit::None;
-        let is_it = |number: &&WrittenNumber| {
+        let fits = |number: &&NumberWithUnit| number.unit.si == unit && unit != Unit::None;
+        let is_it = |number: &&NumberWithUnit| {
             fits(number) && (number.value - limit.abs()).abs() <= SAME * limit.abs().max(SAME)
         };
         let own = numbers(text);
-        let named: Vec<WrittenNumber> =
+        let named: Vec<NumberWithUnit> =
             words(text).filter_map(|word| self.constants.get(word)).copied().collect();
         let number = own
             .iter()
@@ -73,7 +73,7 @@ fn is_of_name(c: char) -> bool {
 }
 
 /// The numbers with units in a line.
-fn numbers(line: &str) -> Vec<WrittenNumber> {
+fn numbers(line: &str) -> Vec<NumberWithUnit> {
     let mut found = Vec::new();
     let mut rest = line;
     let mut before = ' ';
@@ -89,7 +89,7 @@ fn numbers(line: &str) -> Vec<WrittenNumber> {
         // In `2..5 cm` the second number has the unit.
         let behind_blanks = behind.trim_start();
         if let (Ok(number), Some(unit)) = (number.parse::<f64>(), unit_at(behind_blanks)) {
-            found.push(WrittenNumber { value: unit.to_si(number), unit });
+            found.push(NumberWithUnit { value: unit.to_si(number), unit });
         }
         before = '0';
         rest = behind;
