@@ -281,6 +281,9 @@ fn what_is_cut_is_shown_as_far_as_it_goes(folder: &Path, whole: &ViewDocument) {
             assert!(document == *whole, "{part}: nothing is said to be missing");
             continue;
         }
+        let is_advised =
+            document.notes.iter().any(|note| note.contains("`hrdsl sim --replays all` records one"));
+        assert_eq!(is_advised, is_text, "{part}: a picture that is cut off was recorded");
         assert!(document.end <= whole.end && document.events.len() <= whole.events.len());
         // What is cut behind the last step lacks a part of the picture only, and is judged as it was.
         if document.ended != ViewEnd::Error {

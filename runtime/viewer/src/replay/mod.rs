@@ -128,11 +128,13 @@ fn shown_scene(program: &Program, file: &RecordingFile, notes: &mut Vec<String>)
     let now = program.world.as_ref().map(scene_of).unwrap_or_default();
     let Some(then) = &file.scene else {
         if !now.bodies.is_empty() {
-            notes.push(
+            let why = if file.faults.is_empty() {
                 "This recording has no picture of the world: bodies stand where they start. `hrdsl sim --replays \
                  all` records one."
-                    .to_owned(),
-            );
+            } else {
+                "The picture of the world is in what cannot be read: bodies stand where they start."
+            };
+            notes.push(why.to_owned());
         }
         return now;
     };
