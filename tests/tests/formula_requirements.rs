@@ -25,8 +25,14 @@ use hrdsl_compiler::{
     InputFile, compile,
     reading::{RequirementReading, readings},
 };
-use hrdsl_ir::{EventId, Nanos, Program, Value, world::SignalId};
-use hrdsl_metric::{MetricRunner, Robustness, SignalPiece, read_formula};
+use hrdsl_ir::{
+    EventId, Nanos, Program, Value,
+    formula::{MetricFormula, MetricGoal},
+    world::SignalId,
+};
+use hrdsl_metric::{
+    CheckedFormula, FormulaSpan, FormulaStory, MetricRunner, Robustness, SignalPiece, read_formula,
+};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict};
 use hrdsl_runtime::{conformance::ConformanceOptions, judge::judge_recording, results::VerdictOutcome};
 use hrdsl_trace::{
@@ -302,6 +308,61 @@ fn a_requirement_is_judged_as_its_formula_is_defined() {
         }
     }
     assert!(met.iter().all(|n| *n > 100), "{met:?}");
+}
+
+/// Whether a goal has an alternative, of which only the first violation is told.
+fn has_alternatives(goal: &MetricGoal) -> bool {
+    match goal {
+        MetricGoal::And(a, b) => has_alternatives(a) || has_alternatives(b),
+        other => matches!(other, MetricGoal::Or(..)),
+    }
+}
+
+fn story(formula: &CheckedFormula, trace: &Trace) -> FormulaStory {
+    let mut runner = MetricRunner::new(formula).taping();
+    trace.replay(&mut runner);
+    runner.tape().map(|atoms| FormulaStory::of(&formula.goal, &atoms)).unwrap_or_default()
+}
+
+/// All violations of a formula are told, and of each time that it was asked what came of it, and no later than when that is certain.
+#[test]
+fn the_story_of_a_formula_has_all_its_violations() {
+    let mut dice = Dice(23);
+    let program = program(&[]);
+    let mut met = [0_usize; 4];
+    for round in 0..1_500 {
+        let text = match round % 3 {
+            0 => goal(&mut dice, 1),
+            _ => format!("always ({} implies {})", formula(&mut dice, 1), formula(&mut dice, 2)),
+        };
+        let trace = trace(&mut dice, &program);
+        let formula = read_formula(&program, &text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let mut runner = MetricRunner::new(&formula);
+        trace.replay(&mut runner);
+        let (outcome, told) = (runner.outcome(), story(&formula, &trace));
+        let shown = || format!("{text}\n{told:?}\n{trace:?}");
+        if !has_alternatives(&formula.goal) {
+            assert_eq!(told.violated.len(), usize::try_from(outcome.failures).unwrap(), "{}", shown());
+        }
+        assert_eq!(told.violated.first().map(|span| span.from), outcome.first_failure, "{}", shown());
+        assert!(told.violated.iter().all(|span| span.from < span.until), "{}", shown());
+        let MetricGoal::Always(MetricFormula::Implies(..)) = formula.goal else { continue };
+        assert_eq!(told.asked.len(), usize::try_from(outcome.triggered).unwrap(), "{}", shown());
+        for asked in &told.asked {
+            let is_in = |span: &FormulaSpan| span.from < asked.span.until && asked.span.from < span.until;
+            assert_eq!(asked.kept == Some(false), told.violated.iter().any(is_in), "{}", shown());
+            met[asked.kept.map_or(0, |kept| 1 + usize::from(kept))] += 1;
+            if asked.kept.is_none() || asked.known > trace.end {
+                continue;
+            }
+            let steps = trace.steps.iter().filter(|step| step.time <= asked.known).cloned().collect();
+            let earlier = story(&formula, &Trace { steps, end: asked.known });
+            let same = earlier.asked.iter().find(|other| other.span.from == asked.span.from);
+            assert_eq!(same.and_then(|same| same.kept), asked.kept, "{}", shown());
+            met[3] += usize::from(asked.due.is_some_and(|due| asked.known < due));
+        }
+    }
+    assert!(met.iter().all(|n| *n > 50), "{met:?}");
 }
 
 /// Long traces: what is kept of them for the counterexample is dropped in between, and the first failure is that of all.

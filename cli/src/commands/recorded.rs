@@ -38,7 +38,7 @@ pub fn document(
     bytes: Vec<u8>,
     sources: &mut CodeSources,
 ) -> Result<ViewDocument, CommandFault> {
-    let mut document = replay(program, &opened(bytes)?)?;
+    let mut document = replay(program, &opened(bytes)?, sources.units())?;
     sources.take(&mut document);
     Ok(document)
 }

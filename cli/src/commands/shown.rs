@@ -57,12 +57,12 @@ pub fn keep_failing(results: &CampaignResults, folder: &Path) -> Result<(), Comm
     Ok(())
 }
 
-/// Makes the replays of a campaign's report from the recordings below its folder, with the code in the folder of the scenario, and writes them there; `None` if there is nothing to replay, or
+/// Makes the replays of a campaign's report from the recordings below its folder, with the code among the sources, and writes them there; `None` if there is nothing to replay, or
 /// if they cannot be written, which is said: a report must be the same when it is made again.
 #[must_use]
 pub fn make(
     program: &Program,
-    scenario: &Path,
+    sources: CodeSources,
     results: &CampaignResults,
     folder: &Path,
 ) -> Option<ShownReplays> {
@@ -70,7 +70,6 @@ pub fn make(
     if results.view.is_empty() || pairs.is_empty() {
         return None;
     }
-    let sources = CodeSources::within(scenario);
     let mut table = ReplayTable { program, folder, sources, runs: BTreeMap::new() };
     let mut shown = ShownReplays::default();
     let mut room = LARGEST_PAGE.saturating_sub(report::html(results).len() + packed_page().len());

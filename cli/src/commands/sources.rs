@@ -7,8 +7,9 @@ use std::{
 
 use hrdsl_runtime::{
     recording::checksum,
-    viewer::{SharedAssets, ViewDocument, document::ViewSourceFile},
+    viewer::{SharedAssets, ViewDocument, document::ViewSourceFile, replay::WrittenUnits},
 };
+use hrdsl_source::SourceFiles;
 
 use crate::files;
 
@@ -20,6 +21,8 @@ pub struct CodeSources {
     folder: PathBuf,
     /// The text of each with its checksum, or why there is none.
     texts: BTreeMap<String, Result<(String, u32), String>>,
+    /// In which units the scenario writes its limits.
+    units: WrittenUnits,
 }
 
 impl CodeSources {
@@ -31,7 +34,19 @@ impl CodeSources {
 
     /// Those in a folder.
     pub fn within(folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), texts: BTreeMap::new() }
+        Self { folder: folder.to_owned(), texts: BTreeMap::new(), units: WrittenUnits::default() }
+    }
+
+    /// The same, with the units in which the texts of the scenario are written.
+    #[must_use]
+    pub fn written_as(mut self, texts: &SourceFiles) -> Self {
+        self.units = WrittenUnits::of(texts.iter().map(|(_, file)| &*file.text));
+        self
+    }
+
+    /// In which units the scenario writes its limits.
+    pub fn units(&self) -> &WrittenUnits {
+        &self.units
     }
 
     /// Reads the files that a run names, and notes in its document which are not there, or are others by now.

@@ -66,7 +66,7 @@ pub fn run(args: &ViewArgs) -> Result<CommandExit, CommandFault> {
             "note: {left_out} meshes are too large for the page; boxes stand for them"
         ));
     }
-    let mut sources = CodeSources::beside(&args.file);
+    let mut sources = CodeSources::beside(&args.file).written_as(&compilation.files);
     let html = match &args.what {
         Some(what) => chosen(args, program, &results, what, &mut sources, &mut assets)?,
         None => all(program, &results, &mut sources, &mut assets)?,

@@ -19,6 +19,7 @@ mod evaluator;
 mod fold;
 mod robustness;
 mod run;
+mod story;
 mod text;
 mod witness;
 
@@ -27,6 +28,7 @@ pub use evaluator::{MetricEvaluator, MetricOutcome, RobustnessOverTime, robustne
 pub use hrdsl_ir::formula::{FutureWindow, MetricFormula, MetricGoal, PastWindow};
 pub use robustness::Robustness;
 pub use run::{AtomsOverTime, MetricRunner};
+pub use story::{AskedSpan, FormulaSpan, FormulaStory};
 pub use text::{
     CheckedFormula, FormulaError, TextRange, read_formula,
     units::{LITERAL_UNITS, LiteralUnit},

@@ -54,6 +54,15 @@ pub struct ViewRequirement {
     /// What it judges, as far as it can be drawn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<ViewMeasure>,
+    /// How the measures, and what else is asked for, make it up; left out if it asks for its one measure, or nothing is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub condition: Option<ViewCondition>,
+    /// The condition is what meets an obligation: that it is not so, is no violation.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub meets: bool,
+    /// The condition is asked only when one of these events happens; at any time, if there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<String>,
 }
 
 /// How an obligation ended.
@@ -95,6 +104,9 @@ pub struct ViewViolation {
     /// When the violated obligation was made.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub since: Option<u64>,
+    /// Of a formula: when it holds again.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<u64>,
     /// The steps of the recording that bear it out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<u64>,
@@ -114,6 +126,10 @@ pub enum MeasureKind {
     Tilt,
     /// Of a body above z = 0.
     Height,
+    /// Where a body is along an axis of the world.
+    Coordinate,
+    /// How far a body is from a place, or from a second body, along some axes.
+    Offset,
     /// How far a body has come within a time.
     Way,
     /// Of a body.
@@ -160,20 +176,78 @@ pub struct ViewMeasure {
     /// Of a way, and of a speed: the way of how many seconds is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub within: Option<f64>,
-    /// Of a way: along which axes; all of them, if there are none.
+    /// Of a way, a coordinate and an offset: along which axes; all of them, if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<MeasureAxis>,
+    /// Of an offset: where the place is along each of the axes, in metres; from a second body, where it is beside that.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub place: Vec<f64>,
     pub relation: LimitRelation,
     /// In the signal's unit.
     pub limit: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// The unit in which the scenario writes the limit: values are read in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shown: Option<ShownUnit>,
     /// The requirement is about this event, which the world tells when the value is no longer as it should be.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tells: Option<String>,
     /// The two nearest points. Without them the page works them out from the shapes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<PointPairs>,
+}
+
+/// A unit in which numbers are shown.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ShownUnit {
+    /// Such as `cm`.
+    pub symbol: String,
+    /// How large it is, in the unit in which the value is.
+    pub size: f64,
+}
+
+/// What has to be so, as far as it is told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "is", rename_all = "lowercase")]
+pub enum ViewCondition {
+    /// All of these.
+    All { of: Vec<ViewCondition> },
+    /// At least one of these.
+    Any { of: Vec<ViewCondition> },
+    /// The measure in this place among the requirement's is as it should be.
+    Measure { measure: usize },
+    /// Something else: a truth, or an event that happens.
+    Fact {
+        /// As the scenario has it.
+        text: String,
+        /// It must not be so.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        negated: bool,
+        /// The signal that is true while it is so.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        signal: Option<String>,
+    },
+    /// An operator of a formula that looks at other moments than now.
+    Window {
+        /// As the scenario has it: `historically[0 s, 2 s]`.
+        text: String,
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        negated: bool,
+        /// The signal that is true while it holds.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        signal: Option<String>,
+        /// Its operands.
+        of: Vec<ViewCondition>,
+    },
+    /// The world tells this event, which must not be, when what it is of is no longer so.
+    Told {
+        event: String,
+        /// It tells it once that has lasted for so many seconds.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        held: Option<f64>,
+        of: Vec<ViewCondition>,
+    },
 }
 
 /// Two points over time, interpolated like poses.

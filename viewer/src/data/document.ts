@@ -102,7 +102,7 @@ export interface MachineTrack {
 export type MeasureAxis = "x" | "y" | "z";
 
 /** What a measure is. */
-export type MeasureKind = "distance" | "range" | "angle" | "tilt" | "height" | "way" | "speed" | "force" | "signal";
+export type MeasureKind = "distance" | "range" | "angle" | "tilt" | "height" | "coordinate" | "offset" | "way" | "speed" | "force" | "signal";
 
 /** What messages are to a name of the middleware. */
 export type MessageRole = "message" | "request" | "answer" | "feedback";
@@ -144,6 +144,14 @@ export interface SharedAssets {
   /** The text of files of the robot's code, by their names. */
   files?: Record<string, string>;
   meshes?: Record<string, ViewMesh>;
+}
+
+/** A unit in which numbers are shown. */
+export interface ShownUnit {
+  /** How large it is, in the unit in which the value is. */
+  size: number;
+  /** Such as `cm`. */
+  symbol: string;
 }
 
 /** What kind of values a signal has. */
@@ -206,6 +214,41 @@ export interface ViewBody {
   shapes: ViewShape[];
 }
 
+/** What has to be so, as far as it is told. */
+export type ViewCondition = {
+  is: "all";
+  of: ViewCondition[];
+} | {
+  is: "any";
+  of: ViewCondition[];
+} | {
+  is: "measure";
+  measure: number;
+} | {
+  is: "fact";
+  /** It must not be so. */
+  negated?: boolean;
+  /** The signal that is true while it is so. */
+  signal?: string | null;
+  /** As the scenario has it. */
+  text: string;
+} | {
+  is: "window";
+  negated?: boolean;
+  /** Its operands. */
+  of: ViewCondition[];
+  /** The signal that is true while it holds. */
+  signal?: string | null;
+  /** As the scenario has it: `historically[0 s, 2 s]`. */
+  text: string;
+} | {
+  event: string;
+  /** It tells it once that has lasted for so many seconds. */
+  held?: number | null;
+  is: "told";
+  of: ViewCondition[];
+};
+
 /** How a run ended. */
 export type ViewEnd = "quiescent" | "limit" | "error";
 
@@ -250,7 +293,7 @@ export interface ViewLogLine {
 
 /** A value that a requirement compares with a limit. It is as it should be where value, relation and limit make a true sentence. */
 export interface ViewMeasure {
-  /** Of a way: along which axes; all of them, if there are none. */
+  /** Of a way, a coordinate and an offset: along which axes; all of them, if there are none. */
   axes?: MeasureAxis[];
   /** The places of the bodies that it is about among the bodies. */
   bodies?: number[];
@@ -259,9 +302,13 @@ export interface ViewMeasure {
   limit: number;
   /** As the scenario has it: `distance(person.hand, robot.palm)`. If a signal has this name, its values are those of the measure. */
   name: string;
+  /** Of an offset: where the place is along each of the axes, in metres; from a second body, where it is beside that. */
+  place?: number[];
   /** The two nearest points. Without them the page works them out from the shapes. */
   points?: PointPairs | null;
   relation: LimitRelation;
+  /** The unit in which the scenario writes the limit: values are read in it. */
+  shown?: ShownUnit | null;
   /** The requirement is about this event, which the world tells when the value is no longer as it should be. */
   tells?: string | null;
   unit?: string | null;
@@ -292,6 +339,10 @@ export interface ViewObligation {
 
 /** A requirement, and how this run fared by it. */
 export interface ViewRequirement {
+  /** The condition is asked only when one of these events happens; at any time, if there are none. */
+  at?: string[];
+  /** How the measures, and what else is asked for, make it up; left out if it asks for its one measure, or nothing is known. */
+  condition?: ViewCondition | null;
   /** The events that it reads, by name. */
   events?: string[];
   /** Such as `R5`. */
@@ -302,6 +353,8 @@ export interface ViewRequirement {
   margin?: number | null;
   /** What it judges, as far as it can be drawn. */
   measures?: ViewMeasure[];
+  /** The condition is what meets an obligation: that it is not so, is no violation. */
+  meets?: boolean;
   obligations?: ViewObligation[];
   /** The signals that it reads, by name. */
   signals?: string[];
@@ -374,4 +427,6 @@ export interface ViewViolation {
   t: number;
   /** In a sentence. */
   text: string;
+  /** Of a formula: when it holds again. */
+  until?: number | null;
 }

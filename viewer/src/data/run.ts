@@ -1,9 +1,10 @@
 // A run as the page works with it: columns added up, times in seconds, and a sentence for each thing that is not there.
 
 import { lastAt, summed } from "./columns.js";
-import type { CodeTrack, MessageRole, SharedAssets, ViewBody, ViewDocument, ViewEvent, ViewLaser, ViewMeasure, ViewMesh, ViewRequirement } from "./document.js";
+import type { CodeTrack, MessageRole, SharedAssets, ViewBody, ViewDocument, ViewEvent, ViewLaser, ViewMeasure, ViewMesh, ViewRequirement, ViewVerdict } from "./document.js";
+import { conditionOf, type Condition } from "./condition.js";
 import { lookedAt } from "./looked.js";
-import { numberAt, seriesOf, type Series } from "./series.js";
+import { seriesOf, type Series } from "./series.js";
 import { contactOf, pairsOf, poseAt, trackOf, type Contact, type Pairs, type Pose, type Track } from "./tracks.js";
 
 /** The parts of a run that a pane shows. */
@@ -47,6 +48,8 @@ export interface Violation {
   t: number;
   text: string;
   since: number | null;
+  /** When it is over, if it lasted. */
+  until: number | null;
   steps: number[];
 }
 
@@ -57,6 +60,8 @@ export interface Requirement {
   obligations: Obligation[];
   violations: Violation[];
   measures: Measure[];
+  /** How the measures, and what else is asked for, make it up. */
+  condition: Condition | null;
 }
 
 export interface Scanner {
@@ -176,7 +181,7 @@ export function runOf(id: string, label: string, document: ViewDocument, shared:
     log: decoder.each("log", "lines of the log", document.log, (line) => ({ ...line, program: line.program ?? null, t: line.t * second })),
     sources: (document.files ?? []).map((file) => ({ name: file.name, lines: (file.text ?? shared.files?.[file.name])?.split("\n") ?? null })),
     code: decoder.each("code", "threads of the robot’s code", document.code, (track) => threadOf(track, second)),
-    requirements: decoder.each("requirements", "requirements", document.requirements, (requirement) => requirementOf(requirement, second, end, series)),
+    requirements: inOrder(decoder.each("requirements", "requirements", document.requirements, (requirement) => requirementOf(requirement, second, end, series))),
     notes: [],
     missing: decoder.missing,
   };
@@ -195,7 +200,10 @@ function lookAtMeasures(run: Run): string[] {
     run.series.push(measure.series);
     found.add(measure.of.name);
   }
-  return [...found].map((name) => `${name} was not recorded: what is shown of it is worked out from the picture of the world, to about a millimetre and a quarter of a degree.`);
+  const unknown = new Set(run.requirements.flatMap((r) => r.measures.filter((m) => !m.series).map((m) => m.of.name)));
+  const missing = [...unknown].map((name) => `There are no values of ${name} in this recording: there is no curve of it.`);
+  const seen = [...found].map((name) => `${name} was not recorded: what is shown of it is worked out from the picture of the world, to about a millimetre and a quarter of a degree.`);
+  return [...seen, ...missing];
 }
 
 function threadOf(track: CodeTrack, second: number): CodeThread {
@@ -262,7 +270,19 @@ function machineOf(machine: NonNullable<ViewDocument["machines"]>[number], secon
   return { name: machine.name, actor: machine.actor ?? null, spans };
 }
 
+/** What is violated comes first, then what is not decided; of the same kind, the order is that of the scenario. */
+const RANKS: Record<ViewVerdict, number> = { fail: 0, error: 1, inconclusive: 2, vacuous: 3, pass: 4 };
+
+function inOrder(requirements: Requirement[]): Requirement[] {
+  return requirements.sort((a, b) => (RANKS[a.of.verdict] ?? 4) - (RANKS[b.of.verdict] ?? 4));
+}
+
 function requirementOf(requirement: ViewRequirement, second: number, end: number, series: Series[]): Requirement {
+  const measures = (requirement.measures ?? []).map((of) => ({
+    of,
+    series: series.find((s) => s.name === of.name) ?? null,
+    pairs: of.points ? pairsOf(of.points, second) : null,
+  }));
   return {
     id: requirement.id,
     of: requirement,
@@ -274,12 +294,9 @@ function requirementOf(requirement: ViewRequirement, second: number, end: number
       outcome: o.outcome,
       trigger: o.trigger ?? null,
     })),
-    violations: (requirement.violations ?? []).map((v) => ({ t: v.t * second, text: v.text, since: v.since === undefined || v.since === null ? null : v.since * second, steps: v.steps ?? [] })),
-    measures: (requirement.measures ?? []).map((of) => ({
-      of,
-      series: series.find((s) => s.name === of.name) ?? null,
-      pairs: of.points ? pairsOf(of.points, second) : null,
-    })),
+    violations: (requirement.violations ?? []).map((v) => ({ t: v.t * second, text: v.text, since: v.since === undefined || v.since === null ? null : v.since * second, until: typeof v.until === "number" ? v.until * second : null, steps: v.steps ?? [] })),
+    measures,
+    condition: conditionOf(requirement, measures, series),
   };
 }
 
@@ -304,24 +321,6 @@ export function openingTime(run: Run, id: string | undefined): number {
 export function atTick(run: Run, t: number): number {
   const second = secondOf(run.document);
   return Math.round(t / second) * second;
-}
-
-/** Whether a value is as the measure asks. */
-export function isKept(measure: ViewMeasure, value: number): boolean {
-  switch (measure.relation) {
-    case "<":
-      return value < measure.limit;
-    case "<=":
-      return value <= measure.limit;
-    case ">":
-      return value > measure.limit;
-    case ">=":
-      return value >= measure.limit;
-  }
-}
-
-export function measureAt(measure: Measure, t: number): number {
-  return measure.series ? numberAt(measure.series, t) : Number.NaN;
 }
 
 /** Where in the code a thread is at a time; null before its first line, and when nobody knows any more. */

@@ -1,21 +1,33 @@
 // The requirements: what each says, what became of it, and the way to where it was decided.
 
-import { isKept, measureAt, type Requirement, type Run } from "../data/run.js";
+import type { ViewVerdict } from "../data/document.js";
+import type { Requirement, Run } from "../data/run.js";
 import type { Changed, State, Store } from "../state.js";
-import { button, h, say } from "../ui/dom.js";
-import { boundText, MEANINGS, measureText, plural, quantity, seconds, SIGNS, WORDS } from "../ui/text.js";
+import { button, h } from "../ui/dom.js";
+import { MEANINGS, plural, quantity, seconds, SIGNS, WORDS } from "../ui/text.js";
+import { ConditionList, type Readout } from "./condition.js";
 import { nothing, which, type Pane } from "./pane.js";
 
 const OUTCOMES = { met: "met", violated: "violated", pending: "pending", dropped: "dropped" } as const;
 /** So many obligations are listed; a run may have thousands. */
 const MANY = 60;
+/** Of more requirements than this, the list has a head for each verdict. */
+const FEW = 12;
+
+/** A sentence, with what is in backquotes as code. */
+function worded(text: string): (Node | string)[] {
+  return text.split("`").map((part, i) => (i % 2 ? h("code", {}, part) : part));
+}
 
 export class VerdictsPane implements Pane {
   readonly id = "verdicts";
   readonly title = "Verdicts";
   readonly element = h("div", { class: "pane verdicts" });
   /** What is measured now, beside each measure. */
-  private readouts: { element: HTMLElement; update: (t: number) => void }[] = [];
+  private readouts: Readout[] = [];
+
+  /** The verdicts whose requirements are not listed. */
+  private readonly closed = new Set<ViewVerdict>();
 
   constructor(private readonly store: Store) {}
 
@@ -28,9 +40,25 @@ export class VerdictsPane implements Pane {
     this.readouts = [];
     const ids = [...new Set(state.runs.flatMap((run) => run.requirements.map((r) => r.id)))];
     const top = this.element.scrollTop;
-    this.element.replaceChildren(...(ids.length > 0 ? ids.map((id) => this.requirement(id, state)) : [nothing("No requirement was judged in this run.")]));
+    this.element.replaceChildren(...(ids.length > FEW ? this.groups(ids, state) : ids.length > 0 ? ids.map((id) => this.requirement(id, state)) : [nothing("No requirement was judged in this run.")]));
     this.element.scrollTop = top;
     if (anew) this.element.querySelector("details[open]")?.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Many requirements lie below heads, one for each verdict of the first run, which can be closed. */
+  private groups(ids: string[], state: State): HTMLElement[] {
+    const verdictOf = (id: string) => state.runs.flatMap((run) => run.requirements.find((r) => r.id === id) ?? [])[0]?.of.verdict ?? "pass";
+    return [...new Set(ids.map(verdictOf))].flatMap((verdict) => {
+      const own = ids.filter((id) => verdictOf(id) === verdict);
+      const isClosed = this.closed.has(verdict) && !own.includes(state.focus ?? "");
+      const toggle = () => {
+        if (isClosed) this.closed.delete(verdict);
+        else this.closed.add(verdict);
+        this.fill(this.store.state, false);
+      };
+      const head = button(`${isClosed ? "▸" : "▾"} ${SIGNS[verdict]} ${WORDS[verdict]}  ${own.length}`, MEANINGS[verdict], toggle, { class: `verdict ${verdict}`, "aria-expanded": String(!isClosed) });
+      return [head, ...(isClosed ? [] : own.map((id) => this.requirement(id, state)))];
+    });
   }
 
   private requirement(id: string, state: State): HTMLElement {
@@ -57,33 +85,22 @@ export class VerdictsPane implements Pane {
     const isIn = (from: number, until: number) => !range || (from <= range[1] && until >= range[0]);
     const obligations = requirement.obligations.filter((o) => isIn(o.from, o.until));
     const left = requirement.obligations.length - obligations.length;
+    const condition = new ConditionList(requirement);
+    const asked = condition.element();
+    this.readouts.push(...condition.readouts);
     const facts = [typeof of.margin === "number" ? `least margin ${quantity(of.margin, of.unit)}` : "", requirement.triggers.length > 0 ? `triggered ${plural(requirement.triggers.length, "time")}` : "", of.kind ?? ""].filter(Boolean);
     return h(
       "div",
       { class: "outcome" },
       count > 1 ? h("h4", {}, which(count, at), run.label) : null,
-      ...requirement.violations.map((v) => h("div", { class: isIn(v.t, v.t) ? "violation" : "violation outside" }, this.jump(`✗ ${seconds(v.t)}`, v.t), h("span", {}, v.text), v.since === null ? null : this.jump(`made at ${seconds(v.since)}`, v.since))),
-      ...requirement.measures.map((m) => this.measure(m)),
+      ...requirement.violations.slice(0, MANY).map((v) => h("div", { class: isIn(v.t, v.until ?? v.t) ? "violation" : "violation outside" }, this.jump(`✗ ${seconds(v.t)}`, v.t), h("span", {}, ...worded(v.text)), v.since === null ? null : this.jump(`made at ${seconds(v.since)}`, v.since))),
+      requirement.violations.length > MANY ? h("p", { class: "facts" }, `and ${requirement.violations.length - MANY} more violations`) : null,
+      asked,
       h("p", { class: "facts" }, facts.join(" · ")),
       ...obligations.slice(0, MANY).map((o) => h("div", { class: `obligation ${o.outcome}` }, this.jump(seconds(o.from), o.from), h("span", {}, o.trigger ?? "obligation"), h("span", { class: "how" }, OUTCOMES[o.outcome]), o.outcome === "pending" ? null : this.jump(`+${seconds(o.until - o.from, 2)}`, o.until))),
       obligations.length > MANY ? h("p", { class: "facts" }, `and ${obligations.length - MANY} more`) : null,
       left > 0 ? h("p", { class: "facts" }, `${plural(left, "obligation")} outside of the selected range`) : null,
     );
-  }
-
-  private measure(measure: Requirement["measures"][number]): HTMLElement {
-    const value = h("b", {}, "–");
-    const { of } = measure;
-    this.readouts.push({
-      element: value,
-      update: (t) => {
-        const now = measureAt(measure, t);
-        const kept = Number.isNaN(now) || isKept(of, now);
-        say(value, `${measureText(of, now)}${Number.isNaN(now) ? "" : kept ? " ✓" : " ✗"}`);
-        value.className = kept ? "kept" : "broken";
-      },
-    });
-    return h("div", { class: "measure" }, h("code", {}, of.name), h("div", {}, value, h("span", {}, ` must be ${boundText(of)}${of.tells ? `, or ${of.tells} is told` : ""}`)));
   }
 
   private jump(text: string, t: number): HTMLElement {

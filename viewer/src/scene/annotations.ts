@@ -6,14 +6,14 @@ import type { Run } from "../data/run.js";
 import { blowBefore, contactAt, ECHO, type Press } from "../data/tracks.js";
 import { quantity } from "../ui/text.js";
 import type { Palette } from "../ui/theme.js";
-import { DrawnMeasure } from "./measures.js";
+import { DrawnMeasures } from "./measures.js";
 import { Arrows, type PixelSize } from "./strokes.js";
 
 /** A label in the scene: where, what it says, and whether what it says is as it should be. */
 export interface Label {
   at: [number, number, number];
   text: string;
-  kind: "kept" | "broken" | "force" | "name";
+  kind: "kept" | "broken" | "open" | "unknown" | "force" | "name";
 }
 
 type Place = [number, number, number];
@@ -37,14 +37,14 @@ export class Annotations {
   private readonly arrows: Arrows;
   /** −1 where the force on the second of two bodies is drawn. */
   private readonly signs: number[];
-  private readonly measure: DrawnMeasure;
+  private readonly measures: DrawnMeasures;
 
   constructor(private readonly run: Run, palette: Palette) {
     // Each contact may have a force now, and a blow before.
     this.arrows = new Arrows(2 * run.contacts.length, palette.force, 4);
     this.signs = run.contacts.map(({ bodies: [a, b] }) => (rank(run.bodies[b]) > rank(run.bodies[a]) ? -1 : 1));
-    this.measure = new DrawnMeasure(run, palette);
-    this.group.add(this.arrows.group, ...this.measure.objects);
+    this.measures = new DrawnMeasures(run, palette);
+    this.group.add(this.arrows.group, ...this.measures.objects);
   }
 
   update(t: number, poses: readonly Float64Array[], focus: string | null): void {
@@ -64,9 +64,9 @@ export class Annotations {
       }
     });
     blows.sort((a, b) => b.force - a.force);
-    this.measure.update(t, poses, this.run.requirements.find((r) => r.id === focus));
+    this.measures.update(t, poses, this.run.requirements.find((r) => r.id === focus));
     // What is judged comes first, as those behind give way; then what is over at once.
-    this.labels = [...(this.measure.label ? [this.measure.label] : []), ...blows.slice(0, TOLD), ...forces];
+    this.labels = [...this.measures.labels, ...blows.slice(0, TOLD), ...forces];
   }
 
   /** The arrow of a force, on whoever of the two is more than furniture: where it ends, and how hard the force is. */
@@ -95,11 +95,11 @@ export class Annotations {
   /** Lines are as thick as they are to be for this camera. */
   layOut(camera: Camera, pixel: PixelSize): void {
     this.arrows.layOut(pixel);
-    this.measure.layOut(camera, pixel);
+    this.measures.layOut(camera, pixel);
   }
 
   dispose(): void {
     this.arrows.dispose();
-    this.measure.dispose();
+    this.measures.dispose();
   }
 }

@@ -11,6 +11,10 @@ export interface Frame {
   height: number;
 }
 
+/** About how wide a letter is, and the widest label, in pixels: what is measured would cost a layout a frame. */
+const LETTER = 6.6;
+const WIDEST = 420;
+
 export class Labels {
   readonly element = h("div", { class: "labels" });
   private readonly all: HTMLElement[] = [];
@@ -22,15 +26,21 @@ export class Labels {
 
   /** Places labels in one part of the scene; those behind the camera or outside are left out, and none covers another. */
   place(labels: readonly Label[], camera: Camera, frame: Frame): void {
-    const taken: [number, number][] = [];
+    const taken: [number, number, number][] = [];
+    const [top, bottom] = [frame.y + 30, frame.y + frame.height - 18];
     for (const label of labels) {
       const at = new Vector3(...label.at).project(camera);
       if (at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05) continue;
       const x = frame.x + ((at.x + 1) / 2) * frame.width;
-      let y = frame.y + ((1 - at.y) / 2) * frame.height;
-      while (taken.some(([tx, ty]) => Math.abs(tx - x) < 190 && Math.abs(ty - y) < 22)) y += 23;
-      taken.push([x, y]);
-      this.show(label, Math.min(Math.max(x, frame.x + 4), frame.x + frame.width - 4), Math.min(y, frame.y + frame.height - 18));
+      const own = Math.min(Math.max(frame.y + ((1 - at.y) / 2) * frame.height, top), bottom);
+      const width = Math.min(label.text.length * LETTER + 22, WIDEST);
+      const isFree = (y: number) => y >= top && y <= bottom && !taken.some(([tx, ty, wide]) => tx < x + width && x < tx + wide && Math.abs(ty - y) < 22);
+      // Below what is there already, or else above it; where there is no room at all, it is left out.
+      const steps = Array.from({ length: 12 }, (_, i) => own + i * 23);
+      const y = [...steps, ...steps.map((step) => 2 * own - step)].find(isFree);
+      if (y === undefined) continue;
+      taken.push([x, y, width]);
+      this.show(label, Math.min(Math.max(x, frame.x + 4), frame.x + frame.width - 4), y);
     }
   }
 

@@ -2,8 +2,9 @@
 
 import { Vector3, type Camera, type Object3D } from "three";
 import { lookedAtWay, type Way } from "./ways.js";
-import { poseOf, upright } from "../data/looked.js";
-import { isKept, measureAt, type Measure, type Requirement, type Run } from "../data/run.js";
+import { isKept, isSpared, measureAt, standingOf, type Standing } from "../data/condition.js";
+import { axisOf, offsetOf, poseOf, upright } from "../data/looked.js";
+import type { Measure, Requirement, Run } from "../data/run.js";
 import { pairAt } from "../data/tracks.js";
 import { boundText, measureText, quantity } from "../ui/text.js";
 import type { Palette } from "../ui/theme.js";
@@ -18,13 +19,54 @@ const ABOVE = 0.25;
 /** How long the arms of an angle are, m. */
 const RADIUS = 0.55;
 
-/** The measure of a requirement that is drawn: the first that has a place in the scene, those first that have a shape. */
-export function drawnMeasure(requirement: Requirement | null | undefined): Measure | null {
+/** So many measures of a requirement are drawn: of more, one would see none. */
+const MOST = 6;
+/** Half the length of a mark at a limit, m. */
+const MARK = 0.08;
+
+/** The measures of a requirement that are drawn: those that have a place in the scene, those first that have a shape; what has none only alone. */
+export function drawnMeasures(requirement: Requirement | null | undefined): Measure[] {
   const placed = (requirement?.measures ?? []).filter((m) => (m.of.bodies?.length ?? 0) > 0);
-  return placed.find((m) => m.of.kind !== "signal") ?? placed[0] ?? null;
+  const shaped = placed.filter((m) => m.of.kind !== "signal");
+  return shaped.length > 0 ? shaped.slice(0, MOST) : placed.slice(0, 1);
 }
 
-export class DrawnMeasure {
+/** The one that one looks at. */
+export const drawnMeasure = (requirement: Requirement | null | undefined): Measure | null => drawnMeasures(requirement)[0] ?? null;
+
+/** Everything that a requirement judges, as far as it can be drawn. */
+export class DrawnMeasures {
+  readonly objects: Object3D[];
+  labels: Label[] = [];
+  private readonly all: DrawnMeasure[];
+
+  constructor(run: Run, palette: Palette) {
+    const most = Math.max(0, ...run.requirements.map((requirement) => drawnMeasures(requirement).length));
+    this.all = Array.from({ length: most }, () => new DrawnMeasure(run, palette));
+    this.objects = this.all.flatMap((one) => one.objects);
+  }
+
+  update(t: number, poses: readonly Float64Array[], requirement: Requirement | null | undefined): void {
+    const measures = drawnMeasures(requirement);
+    this.all.forEach((one, i) => {
+      const measure = measures[i];
+      const standing = measure ? standingOf({ is: "measure", measure }, requirement?.condition ?? null, requirement ? isSpared(requirement, t) : false, t) : "unknown";
+      one.update(t, poses, measure, standing, (requirement?.measures.length ?? 0) > 1);
+    });
+    this.labels = this.all.flatMap((one) => one.label ?? []);
+  }
+
+  /** Lines are as thick as they are to be for this camera. */
+  layOut(camera: Camera, pixel: PixelSize): void {
+    for (const one of this.all) one.layOut(camera, pixel);
+  }
+
+  dispose(): void {
+    for (const one of this.all) one.dispose();
+  }
+}
+
+class DrawnMeasure {
   readonly objects: Object3D[];
   label: Label | null = null;
   private readonly line: Stroke;
@@ -34,6 +76,9 @@ export class DrawnMeasure {
   private readonly ring: Ring;
   private readonly arc: Arc;
   private readonly path: Ribbon;
+  private standing: Standing = "unknown";
+  /** There are others, so that each says what it is. */
+  private named = false;
 
   constructor(private readonly run: Run, private readonly palette: Palette) {
     this.line = new Stroke(palette.pass, 3);
@@ -46,10 +91,11 @@ export class DrawnMeasure {
     this.objects = [this.path.mesh, this.line.mesh, this.aim.mesh, this.limit.mesh, ...this.ends.map((e) => e.mesh), this.ring.line, this.arc.line];
   }
 
-  update(t: number, poses: readonly Float64Array[], requirement: Requirement | null | undefined): void {
+  update(t: number, poses: readonly Float64Array[], measure: Measure | undefined, standing: Standing, named: boolean): void {
     this.label = null;
+    this.standing = standing;
+    this.named = named;
     for (const object of this.objects) object.visible = false;
-    const measure = drawnMeasure(requirement);
     if (measure) this.draw(measure, t, poses);
   }
 
@@ -80,6 +126,12 @@ export class DrawnMeasure {
       case "height":
         this.drawHeight(measure, value, a);
         return;
+      case "coordinate":
+        this.drawCoordinate(measure, value, a);
+        return;
+      case "offset":
+        this.drawOffset(measure, value, a, b);
+        return;
       case "way":
         this.drawWay(measure, value, this.way(measure, body, t));
         return;
@@ -109,15 +161,28 @@ export class DrawnMeasure {
     for (const one of shown) for (const object of [one.mesh, one.line]) if (object) object.visible = true;
   }
 
+  /** A value that is only seen in the scene stands as if nothing else were asked for. */
+  private standingOf(measure: Measure, value: number): Standing {
+    if (Number.isNaN(value)) return "unknown";
+    return this.standing !== "unknown" ? this.standing : isKept(measure.of, value) ? "kept" : this.named ? "open" : "broken";
+  }
+
   private color(measure: Measure, value: number): string {
-    if (Number.isNaN(value)) return this.palette.dim;
-    return isKept(measure.of, value) ? this.palette.pass : this.palette.fail;
+    const { palette } = this;
+    return { kept: palette.pass, broken: palette.fail, open: palette.inconclusive, unknown: palette.dim }[this.standingOf(measure, value)];
+  }
+
+  /** Between bodies, it is called by these. */
+  private nameOf(measure: Measure): string {
+    const { kind, name, bodies = [] } = measure.of;
+    return kind === "distance" || kind === "range" ? bodies.map((body) => this.run.bodies[body]?.name ?? "?").join(" · ") : name;
   }
 
   private tell(measure: Measure, value: number, at: Place, more = ""): void {
-    const kept = Number.isNaN(value) || isKept(measure.of, value);
-    const sign = Number.isNaN(value) ? "" : kept ? "✓" : "✗";
-    this.label = { at, text: `${measureText(measure.of, value)}  (${boundText(measure.of)}) ${sign}${more}`, kind: kept ? "kept" : "broken" };
+    const standing = this.standingOf(measure, value);
+    const sign = { kept: "✓", broken: "✗", open: "✗", unknown: "" }[standing];
+    const name = this.named ? `  ${this.nameOf(measure)}` : "";
+    this.label = { at, text: `${measureText(measure.of, value)}  (${boundText(measure.of)}) ${sign}${more}${name}`, kind: standing };
   }
 
   /** The line between the two nearest points, and around one of them a circle as wide as the limit. */
@@ -149,6 +214,49 @@ export class DrawnMeasure {
     }
     const middle = points.clone().add(towards);
     this.tell(measure, value, tip(middle.lengthSq() > 1e-6 ? middle.normalize() : points, RADIUS));
+  }
+
+  /** From where it is to where the limit is, along the axis. */
+  private drawCoordinate(measure: Measure, known: number, a: Place): void {
+    const axis = axisOf(measure.of);
+    const value = Number.isNaN(known) ? (a[axis] ?? 0) : known;
+    const color = this.color(measure, value);
+    const bound = a.map((x, i) => (i === axis ? measure.of.limit : x)) as Place;
+    this.line.set(a, bound, color);
+    this.ends[0].set(a, color);
+    this.markAt(bound, axis, this.limit);
+    this.show(this.line, this.ends[0], this.limit);
+    this.tell(measure, value, a);
+  }
+
+  /** From the place to where the body is; along one axis marks at the limit on either side, along several a circle. */
+  private drawOffset(measure: Measure, known: number, a: Place, other: Place | null): void {
+    const { from, length } = offsetOf(measure.of, a, other);
+    const value = Number.isNaN(known) ? length : known;
+    const color = this.color(measure, value);
+    this.line.set(from, a, color);
+    this.ends[0].set(from, color);
+    this.ends[1].set(a, color);
+    this.show(this.line, ...this.ends);
+    const { axes = [] } = measure.of;
+    if (axes.length === 1) {
+      const axis = axisOf(measure.of);
+      const bound = (sign: number) => from.map((x, i) => (i === axis ? x + sign * measure.of.limit : x)) as Place;
+      this.markAt(bound(1), axis, this.limit);
+      this.markAt(bound(-1), axis, this.aim);
+      this.show(this.limit, this.aim);
+    } else {
+      this.ring.set(from, measure.of.limit, color, !axes.includes("z"));
+      this.show(this.ring);
+    }
+    this.tell(measure, value, [(a[0] + from[0]) / 2, (a[1] + from[1]) / 2, (a[2] + from[2]) / 2]);
+  }
+
+  /** A mark across an axis. */
+  private markAt(at: Place, axis: number, mark: Stroke): void {
+    const [x, y, z] = at;
+    if (axis === 2) mark.set([x - MARK, y, z], [x + MARK, y, z], this.palette.ink);
+    else mark.set([x, y, z - MARK], [x, y, z + MARK], this.palette.ink);
   }
 
   /** From z = 0 up to the value, with a mark at the limit. */
@@ -185,7 +293,7 @@ export class DrawnMeasure {
   private markAlong(measure: Measure, from: Place, way: Way): void {
     const part = way.length > 1e-6 ? measure.of.limit / way.length : 0;
     const bound = from.map((x, i) => x + (way.along[i] ?? 0) * part) as Place;
-    this.limit.set([bound[0], bound[1], bound[2] - 0.08], [bound[0], bound[1], bound[2] + 0.08], this.palette.ink);
+    this.markAt(bound, axisOf(measure.of), this.limit);
     this.show(this.limit);
   }
 

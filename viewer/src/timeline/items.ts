@@ -1,8 +1,8 @@
 // What lies under the pointer on a lane, in words.
 
 import { lastAt } from "../data/columns.js";
-import { numberAt } from "../data/series.js";
-import { boundText, seconds, valueText } from "../ui/text.js";
+import { numberAt, type Series } from "../data/series.js";
+import { boundText, measureText, seconds, valueText } from "../ui/text.js";
 import type { Lane } from "./lanes.js";
 
 export interface Item {
@@ -27,7 +27,8 @@ function inRequirement(lane: Extract<Lane, { kind: "requirement" }>, track: numb
   if (!requirement) return null;
   const title = `${requirement.id}  ${requirement.of.title ?? ""}`;
   const violation = under(requirement.violations, t, slack, (v) => v.t, (v) => v.t);
-  if (violation) return { t: violation.t, lines: [title, `✗ violated at ${seconds(violation.t)}`, violation.text] };
+  const lasting = violation ?? requirement.violations.findLast((v) => v.until !== null && v.t <= t && t <= v.until);
+  if (lasting) return { t: lasting.t, lines: [title, `✗ violated ${lasting.until === null ? `at ${seconds(lasting.t)}` : span(lasting.t, lasting.until)}`, lasting.text] };
   const trigger = [...requirement.triggers].find((at) => Math.abs(at - t) <= slack);
   const obligation = under(requirement.obligations, t, 0, (o) => o.from, (o) => o.until);
   if (obligation) {
@@ -67,8 +68,10 @@ export function itemAt(lane: Lane, track: number, t: number, slack: number): Ite
       return line ? { t: line.t, lines: [line.text, `${line.level}, ${seconds(line.t)}`] } : null;
     }
     case "plot": {
-      const lines = lane.tracks.flatMap((series, i) => (series ? [`${lane.tracks.length > 1 ? `${"AB"[i] ?? ""}: ` : ""}${valueText(series, numberAt(series, t))}`] : []));
-      const limits = lane.measures.map((m) => `limit: ${boundText(m.of)}`);
+      const measure = lane.limits[0]?.measure.of;
+      const told = (series: Series) => (measure ? measureText(measure, numberAt(series, t)) : valueText(series, numberAt(series, t)));
+      const lines = lane.tracks.flatMap((series, i) => (series ? [`${lane.tracks.length > 1 ? `${"AB"[i] ?? ""}: ` : ""}${told(series)}`] : []));
+      const limits = lane.limits.map((l) => `limit: ${boundText(l.measure.of)}${l.decisive ? "" : ", or something else"}`);
       return { t, lines: [lane.label, `${lines.join("   ")} at ${seconds(t)}`, ...new Set(limits)] };
     }
   }

@@ -1,7 +1,10 @@
 // What lies on the time line: sections and lanes, each with a track for each of the runs.
 
+import { isDecisive, isKept, isSpared, standingOf, truthsIn, type Standing } from "../data/condition.js";
+import type { ShownUnit } from "../data/document.js";
 import { threadName, type CodeThread, type LogEntry, type Machine, type Measure, type Requirement, type Run, type RunEvent, type Topic } from "../data/run.js";
-import { spansOf, type Series } from "../data/series.js";
+import { numberAt, spansOf, type Series } from "../data/series.js";
+import { plottedUnit } from "../ui/text.js";
 
 export interface Bar {
   from: number;
@@ -16,8 +19,16 @@ export type Lane = { id: string; section: string; label: string; note: string } 
   | { kind: "bars"; tracks: Bar[][]; bool: boolean }
   | { kind: "topic"; tracks: (Topic | null)[] }
   | { kind: "log"; tracks: LogEntry[][] }
-  | { kind: "plot"; tracks: (Series | null)[]; measures: Measure[] }
+  | { kind: "plot"; tracks: (Series | null)[]; limits: Limit[]; unit: ShownUnit }
 );
+
+/** A limit of what is plotted. */
+export interface Limit {
+  measure: Measure;
+  requirement: Requirement;
+  /** Whether the requirement is violated where it is not kept, whatever else is so. */
+  decisive: boolean;
+}
 
 export interface Row {
   y: number;
@@ -67,21 +78,38 @@ export function readBy(runs: readonly Run[], focus: string | null): string[] {
 function statesReadBy(runs: readonly Run[], focus: string | null): Lane[] {
   const all = runs.flatMap((run) => run.requirements.filter((r) => r.id === focus));
   const events = new Set(all.flatMap((r) => r.of.events ?? []));
-  const signals = new Set(all.flatMap((r) => r.of.signals ?? []));
+  const signals = new Set(all.flatMap((r) => [...(r.of.signals ?? []), ...truthsIn(r.condition).map((s) => s.name)]));
   const tracks = runs.map((run) => run.events.filter((e) => events.has(e.name)));
   const told: Lane[] = events.size > 0 ? [{ id: `focus events ${focus}`, section: FOCUS, label: [...events].join(", "), note: "", kind: "events", tracks }] : [];
   return [...told, ...barLanes(runs, (s) => signals.has(s.name), FOCUS).map((lane) => ({ ...lane, id: `focus ${lane.id}` }))];
 }
 
+function limitsOf(requirement: Requirement, name: string): Limit[] {
+  const measures = requirement.measures.filter((m) => m.of.name === name);
+  return measures.map((measure) => ({ measure, requirement, decisive: !requirement.of.meets && isDecisive(requirement.condition, measure) }));
+}
+
+/** How what is plotted stands at a time to the limits of the first run, whose track is the first. */
+export function standingIn(lane: Extract<Lane, { kind: "plot" }>, track: number, t: number): Standing {
+  const series = lane.tracks[track];
+  const value = series ? numberAt(series, t) : Number.NaN;
+  if (Number.isNaN(value) || lane.limits.length === 0) return "unknown";
+  const broken = lane.limits.filter((l) => !isKept(l.measure.of, value));
+  if (broken.length === 0) return "kept";
+  const violates = (l: Limit) => !isSpared(l.requirement, t) && (l.decisive || (track === 0 && standingOf({ is: "measure", measure: l.measure }, l.requirement.condition, false, t) === "broken"));
+  return broken.some(violates) ? "broken" : "open";
+}
+
 function plotLanes(runs: readonly Run[], plots: readonly string[], focus: string | null): Lane[] {
   return [...new Set([...readBy(runs, focus), ...plots])].flatMap((name): Lane[] => {
     const tracks = runs.map((run) => run.series.find((s) => s.name === name) ?? null);
-    const of = (id: string | null) => runs[0]?.requirements.filter((r) => id === null || r.id === id).flatMap((r) => r.measures.filter((m) => m.of.name === name)) ?? [];
+    const of = (id: string | null) => runs[0]?.requirements.filter((r) => id === null || r.id === id).flatMap((r) => limitsOf(r, name)) ?? [];
     // The limit of the requirement in focus, if it has one; else those of all.
     const own = of(focus);
-    const measures = own.length > 0 ? own : of(null);
-    const unit = tracks.find((s) => s?.unit)?.unit ?? "";
-    return tracks.some((t) => t) ? [{ id: `plot ${name}`, section: FOCUS, label: name, note: unit, kind: "plot", tracks, measures }] : [];
+    const limits = own.length > 0 ? own : of(null);
+    const shown = limits.flatMap((l) => plottedUnit(l.measure.of) ?? [])[0];
+    const unit = shown ?? { symbol: tracks.find((s) => s?.unit)?.unit ?? "", size: 1 };
+    return tracks.some((t) => t) ? [{ id: `plot ${name}`, section: FOCUS, label: name, note: unit.symbol, kind: "plot", tracks, limits, unit }] : [];
   });
 }
 

@@ -1,11 +1,11 @@
 // Draws lanes on a canvas.
 
 import { lastAt } from "../data/columns.js";
-import { isKept, type Requirement } from "../data/run.js";
+import type { Requirement } from "../data/run.js";
 import { extentIn, numberAt, type Series } from "../data/series.js";
-import { number, round, SIGNS } from "../ui/text.js";
+import { boundText, number, round, SIGNS } from "../ui/text.js";
 import type { Palette } from "../ui/theme.js";
-import type { Lane, Row } from "./lanes.js";
+import { standingIn, type Lane, type Row } from "./lanes.js";
 import { valueTicks, xOf, type Scale } from "./scale.js";
 
 export interface Paint {
@@ -89,6 +89,12 @@ function drawRequirement(paint: Paint, requirement: Requirement, y: number, heig
     context.lineTo(x, y + 6);
     context.fill();
     context.fillRect(x - 0.5, y + 1, 1, height - 2);
+  }
+  for (const { t, until } of requirement.violations) {
+    if (until === null || !visible(scale, t, until)) continue;
+    bar(paint, t, until, y + height / 2 - 2.5, 5);
+    context.fillStyle = colors.fail;
+    context.fill();
   }
   for (const violation of requirement.violations) if (visible(scale, violation.t, violation.t)) cross(paint, xOf(scale, violation.t), y + height / 2, Math.min(height / 2, 7.5));
 }
@@ -216,12 +222,12 @@ const NEAR = 8;
 export function plotExtent(lane: Extract<Lane, { kind: "plot" }>, from: number, to: number): [number, number] | null {
   const extents = lane.tracks.flatMap((s) => (s ? [extentIn(s, from, to) ?? s.extent] : [])).filter((e) => e !== null);
   if (extents.length === 0) return null;
-  const low = Math.min(...extents.map((e) => e[0]), ...lane.measures.map((m) => m.of.limit));
-  const high = Math.max(...extents.map((e) => e[1]), ...lane.measures.map((m) => m.of.limit));
+  const low = Math.min(...extents.map((e) => e[0]), ...lane.limits.map((l) => l.measure.of.limit));
+  const high = Math.max(...extents.map((e) => e[1]), ...lane.limits.map((l) => l.measure.of.limit));
   const room = (high - low) * 0.08 || Math.abs(high) * 0.1 || 1;
   const whole: [number, number] = [low >= 0 && low - room < 0 ? 0 : low - room, high + room];
   // Where a limit is near zero and values are far above, what matters is near the limit: the curve leaves the picture at its top.
-  const limit = Math.max(0, ...lane.measures.map((m) => m.of.limit));
+  const limit = Math.max(0, ...lane.limits.map((l) => l.measure.of.limit));
   return limit > 0 && whole[0] === 0 && whole[1] > FAR * limit ? [0, NEAR * limit] : whole;
 }
 
@@ -235,18 +241,21 @@ function drawPlot(paint: Paint, lane: Extract<Lane, { kind: "plot" }>, y: number
   context.rect(scale.left, y, scale.width, height);
   context.clip();
   // The ground stays as it is: a selected range is seen through the curves.
-  for (const v of valueTicks(...extent)) {
+  const { size } = lane.unit;
+  const ticks = valueTicks(extent[0] / size, extent[1] / size);
+  for (const v of ticks) {
     context.fillStyle = colors.rule;
-    context.fillRect(scale.left, Math.round(yOf(v)), scale.width, 1);
+    context.fillRect(scale.left, Math.round(yOf(v * size)), scale.width, 1);
   }
-  for (const measure of lane.measures) {
-    // Where the value must not be is tinted; the limit has its number.
+  for (const { measure, decisive } of lane.limits) {
+    // Where the value must not be is tinted; in another colour, if something else may make up for it.
+    const color = decisive ? colors.fail : colors.inconclusive;
     const limit = yOf(measure.of.limit);
     const isBelow = measure.of.relation.startsWith("<");
-    context.fillStyle = tint(colors.fail, 9);
+    context.fillStyle = tint(color, 9);
     if (isBelow) context.fillRect(scale.left, y, scale.width, limit - y);
     else context.fillRect(scale.left, limit, scale.width, y + height - limit);
-    context.strokeStyle = colors.fail;
+    context.strokeStyle = color;
     context.lineWidth = 1;
     context.setLineDash([5, 3]);
     context.beginPath();
@@ -258,11 +267,30 @@ function drawPlot(paint: Paint, lane: Extract<Lane, { kind: "plot" }>, y: number
   lane.tracks.forEach((series, i) => series && drawCurve(paint, series, yOf, i));
   font(paint, 9.5);
   context.textBaseline = "middle";
-  for (const v of valueTicks(...extent)) {
+  const within = (at: number) => Math.min(Math.max(at, y + 6), y + height - 5);
+  for (const v of ticks) {
     context.fillStyle = colors.dim;
-    context.fillText(round(v), scale.left + 3, Math.min(Math.max(yOf(v), y + 6), y + height - 5));
+    context.fillText(round(v), scale.left + 3, within(yOf(v * size)));
   }
+  drawBounds(paint, lane, (v, by) => within(yOf(v) + by));
   context.restore();
+}
+
+/** At the right, what each limit is: on the side on which the value has to be. */
+function drawBounds(paint: Paint, lane: Extract<Lane, { kind: "plot" }>, yOf: (v: number, by: number) => number): void {
+  const { context, colors, scale } = paint;
+  font(paint, 10, 600);
+  context.textAlign = "right";
+  for (const { measure, decisive } of lane.limits) {
+    const text = boundText(measure.of);
+    const [x, wide] = [scale.left + scale.width - 4, context.measureText(text).width];
+    const y = yOf(measure.of.limit, measure.of.relation.startsWith("<") ? 8 : -8);
+    context.fillStyle = tint(colors.paper, 80);
+    context.fillRect(x - wide - 2, y - 6, wide + 4, 12);
+    context.fillStyle = decisive ? colors.fail : colors.inconclusive;
+    context.fillText(text, x, y);
+  }
+  context.textAlign = "left";
 }
 
 /** A pixel has at most the least and the greatest of its values: what is short is not lost. */
@@ -395,29 +423,47 @@ export function drawLabel(paint: Paint, row: Row, width: number, chosen: boolean
   }
   font(paint, 11.5, lane.kind === "requirement" ? 600 : 400);
   context.fillStyle = colors.ink;
-  const label = fitted(context, lane.label, width - x - 6);
+  const room = width - x - 6;
+  if (lane.kind === "plot") {
+    // Names of measures are long, and differ at their ends: they have two lines, and the unit is with the value.
+    const first = brokenAt(context, lane.label, room);
+    context.fillText(lane.label.slice(0, first), x, middle);
+    context.fillText(fitted(context, lane.label.slice(first).trimStart(), room), x, middle + 15);
+    return;
+  }
+  const label = fitted(context, lane.label, room);
   context.fillText(label, x, middle);
   x += context.measureText(label).width + 8;
   font(paint, 10.5);
   context.fillStyle = colors.dim;
-  const below = lane.kind === "plot";
-  const note = fitted(context, lane.note, width - (below ? 18 : x) - (lane.tracks.length > 1 ? 18 : 6));
-  context.fillText(note, below ? 18 : x, below ? middle + 15 : middle);
+  context.fillText(fitted(context, lane.note, width - x - (lane.tracks.length > 1 ? 18 : 6)), x, middle);
+}
+
+/** Where a text is broken that does not fit: behind a blank or a sign, if there is one. */
+export function brokenAt(context: Pick<CanvasRenderingContext2D, "measureText">, text: string, width: number): number {
+  let most = text.length;
+  while (most > 1 && context.measureText(text.slice(0, most)).width > width) most -= 1;
+  if (most === text.length) return most;
+  const behind = text.slice(0, most).search(/[ (,.·-][^ (,.·-]*$/);
+  return behind > most / 3 ? behind + 1 : most;
 }
 
 /** What a plot says at a time, beside its label: in the colours of its curves. */
 export function drawReadout(paint: Paint, row: Row, t: number, width: number): void {
   const { context, colors } = paint;
-  if (row.lane?.kind !== "plot") return;
-  const { tracks, measures } = row.lane;
+  const { lane } = row;
+  if (lane?.kind !== "plot") return;
+  const { tracks, unit } = lane;
   tracks.forEach((series, i) => {
     if (!series) return;
-    const value = numberAt(series, t);
-    const isBroken = measures.some((m) => !Number.isNaN(value) && !isKept(m.of, value));
+    const value = numberAt(series, t) / unit.size;
+    const standing = standingIn(lane, i, t);
+    const isOff = standing === "broken" || standing === "open";
     font(paint, 13, 600);
     context.textBaseline = "middle";
-    context.fillStyle = isBroken ? colors.fail : ([colors.s0, colors.s1][i] ?? colors.ink);
-    const text = `${tracks.length > 1 ? `${"AB"[i] ?? ""} ` : ""}${number(value)}${isBroken ? " ✗" : ""}`;
+    context.fillStyle = standing === "broken" ? colors.fail : standing === "open" ? colors.inconclusive : ([colors.s0, colors.s1][i] ?? colors.ink);
+    const symbol = unit.symbol === "" || unit.symbol.startsWith("°") ? unit.symbol : ` ${unit.symbol}`;
+    const text = `${tracks.length > 1 ? `${"AB"[i] ?? ""} ` : ""}${number(value)}${Number.isNaN(value) ? "" : symbol}${isOff ? " ✗" : ""}`;
     context.fillText(fitted(context, text, width - 24), 18 + i * ((width - 20) / 2), row.y + 42);
   });
 }

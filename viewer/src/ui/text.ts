@@ -1,6 +1,6 @@
 // Numbers, times and verdicts as people read them.
 
-import type { LimitRelation, MeasureKind, ViewEnd, ViewMeasure, ViewVerdict } from "../data/document.js";
+import type { LimitRelation, ShownUnit, ViewEnd, ViewMeasure, ViewVerdict } from "../data/document.js";
 import type { Series } from "../data/series.js";
 
 const MINUS = "−";
@@ -26,17 +26,32 @@ export function limitText(value: number, unit: string | null | undefined): strin
   return unit ? `${round(value)} ${unit}` : round(value);
 }
 
-/** An angle that somebody looks at: in degrees. */
-const degrees = (kind: MeasureKind, unit: string | null | undefined): boolean => unit === "rad" && (kind === "tilt" || kind === "angle");
+const DEGREE = Math.PI / 180;
+
+/** The unit in which people read a measure: the scenario's, or degrees for an angle that somebody looks at. None: the one that it has. */
+export function unitOf(of: ViewMeasure): ShownUnit | null {
+  if (of.shown && of.shown.size > 0) return { ...of.shown, symbol: of.shown.symbol.replace(/^deg/, "°") };
+  return of.unit === "rad" && (of.kind === "tilt" || of.kind === "angle") ? { symbol: "°", size: DEGREE } : null;
+}
+
+/** The unit of the curve of a measure: short lengths have their limit in centimetres, and so has the curve. */
+export function plottedUnit(of: ViewMeasure): ShownUnit | null {
+  return unitOf(of) ?? (of.unit === "m" && Math.abs(of.limit) < 1 ? { symbol: "cm", size: 0.01 } : null);
+}
+
+const withUnit = (text: string, symbol: string): string => `${text}${symbol.startsWith("°") ? "" : " "}${symbol}`;
 
 /** A value of a measure, with its unit. */
 export function measureText(of: ViewMeasure, value: number): string {
-  return degrees(of.kind, of.unit) ? `${number((value * 180) / Math.PI)}°` : quantity(value, of.unit);
+  const unit = unitOf(of);
+  if (Number.isNaN(value)) return number(value);
+  return unit ? withUnit(number(value / unit.size), unit.symbol) : quantity(value, of.unit);
 }
 
 /** How a value has to lie to the limit of a measure: `≤ 5 cm`. */
 export function boundText(of: ViewMeasure): string {
-  return `${RELATIONS[of.relation]} ${degrees(of.kind, of.unit) ? `${round((of.limit * 180) / Math.PI)}°` : limitText(of.limit, of.unit)}`;
+  const unit = unitOf(of);
+  return `${RELATIONS[of.relation]} ${unit ? withUnit(round(of.limit / unit.size), unit.symbol) : limitText(of.limit, of.unit)}`;
 }
 
 export const RELATIONS: Record<LimitRelation, string> = { "<": "<", "<=": "≤", ">": ">", ">=": "≥" };

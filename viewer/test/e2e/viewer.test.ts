@@ -93,6 +93,48 @@ describe("the viewer in Chromium", { skip }, () => {
     await page.close();
   });
 
+  test("lists many requirements, the violated first, and has room for them", async () => {
+    const { page, faults } = await open(browser, "many");
+    const chips = () => page.$$eval(".chip", (all) => all.map((chip) => chip.textContent));
+    assert.deepEqual(await chips(), ["R5 ✗"]);
+    const [head, width] = await page.$eval(".head", (element) => [element.scrollWidth, element.clientWidth] as const);
+    assert.ok(head <= width, `${head} of ${width} px`);
+    await page.click(".more");
+    const listed = await page.$$eval(".listed", (all) => all.map((one) => one.querySelector("b")?.textContent ?? ""));
+    assert.equal(listed.length, 22);
+    const signs = listed.map((text) => "✗!…○✓".indexOf(text.at(-1) ?? ""));
+    assert.deepEqual(signs, [...signs].sort());
+    const last = await page.$(".listed:last-child");
+    await last!.click();
+    await settle(page);
+    // It is in focus, and has a button of its own; the list is gone.
+    assert.deepEqual(await chips(), ["R5 ✗", listed.at(-1)]);
+    assert.equal(await page.$eval(".requirements", (list) => list.matches(":popover-open")), false);
+    // The pane has a head for each verdict, which can be closed.
+    const shown = () => page.$$eval("#pane-verdicts .requirement", (all) => all.length);
+    assert.equal(await shown(), 22);
+    await page.click("button.verdict.vacuous");
+    const vacuous = listed.filter((text) => text.endsWith("○")).length;
+    assert.equal(await shown(), 22 - vacuous);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
+  test("tells of several comparisons what is so, each with its limit", async () => {
+    const { page, faults } = await open(browser, "broken", "#run=every field&t=1.5&focus=R1");
+    const told = async () => (await page.$$eval("#pane-verdicts .condition .fact", (all) => all.map((one) => one.textContent))).join(" | ");
+    assert.match(await told(), /✓at least one of these \| ✗all of these \| ✗not near \| ✗not historically\[0 s, 2 s\] \| ✓fell is told once this has not been so for 2.00 s/);
+    const labels = () => page.$$eval(".label:not([hidden])", (all) => all.map((label) => `${label.className}: ${label.textContent}`));
+    const all = (await labels()).join("\n");
+    assert.match(all, /label kept: 41.0 cm {2}\(> 5 cm\) ✓ {2}guest.hand · robot.palm/);
+    assert.match(all, /0° {2}\(≤ 45.84°\) ✓ {2}tilt\(robot.palm\)/);
+    await page.evaluate(() => (location.hash = "#run=every field&t=0.5&focus=R1"));
+    await settle(page, 200);
+    assert.match(await told(), /✓all of these \| ✓not near/);
+    assert.deepEqual(faults, []);
+    await page.close();
+  });
+
   test("draws the scene anew in the very frame in which its size changes", async () => {
     const { page, faults } = await open(browser, "homecare");
     // An empty canvas would be seen until the next frame.

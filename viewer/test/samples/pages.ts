@@ -19,6 +19,13 @@ function broken(): PackedRun[] {
   ];
 }
 
+/** As many requirements as the largest example has. */
+function withMany(document: ViewDocument): ViewDocument {
+  const verdicts = ["pass", "vacuous", "pass", "inconclusive", "pass", "error", "pass"] as const;
+  const more = Array.from({ length: 22 - (document.requirements?.length ?? 0) }, (_, i) => ({ id: `S${i + 1}`, title: `number ${i + 1} of many that say what has to be so, and at length`, verdict: verdicts[i % verdicts.length] ?? "pass" }));
+  return { ...document, requirements: [...more, ...(document.requirements ?? [])] };
+}
+
 export function samplePages(): Record<string, string> {
   const fail: PackedRun = { id: "bdi_tests.t002", label: "bdi_tests.t002", group: "failure", requirement: "R5", beside: "bdi_tests.t005", document: handoverSample("fail") };
   const pass: PackedRun = { id: "bdi_tests.t005", label: "bdi_tests.t005", group: "passing", requirement: "R5", document: handoverSample("pass") };
@@ -28,6 +35,7 @@ export function samplePages(): Record<string, string> {
     homecare: pageOf("homecare", [care]),
     compare: pageOf("handover: bdi_tests.t002 and bdi_tests.t005", [fail, pass], { open: fail.id, compare: pass.id }),
     broken: pageOf("bad <input> & more", broken()),
+    many: pageOf("many", [{ ...fail, document: withMany(fail.document) }]),
     empty: readFileSync("dist/viewer.html", "utf8"),
   };
 }

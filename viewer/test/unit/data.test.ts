@@ -10,7 +10,8 @@ import { firstDifference } from "../../src/data/difference.js";
 import type { ViewDocument } from "../../src/data/document.js";
 import { documentOf, unpack } from "../../src/data/page.js";
 import { upright } from "../../src/data/looked.js";
-import { atTick, isKept, lineAt, threadName, openingTime, requirementInFocus, runOf, stateAt } from "../../src/data/run.js";
+import { conditionOf, isDecisive, isKept, standingOf, truthAt, truthsIn, type Condition } from "../../src/data/condition.js";
+import { atTick, lineAt, threadName, openingTime, requirementInFocus, runOf, stateAt } from "../../src/data/run.js";
 import { typesOf, type Schema } from "../../src/data/schema-types.js";
 import { extentIn, numberAt, seriesOf, spansOf } from "../../src/data/series.js";
 import { nextStop, previousStop, stopsOf, violationsOf } from "../../src/data/stops.js";
@@ -148,6 +149,48 @@ test("a run opens at the violation of its requirement", () => {
   assert.equal(openingTime(run(), "R2"), 4);
   assert.equal(requirementInFocus(run(), undefined)?.id, "R1");
   assert.equal(openingTime(runOf("a", "a", { ...every(), requirements: [] }, {}), undefined), 0);
+});
+
+test("of what is asked for it is known what is so, and whether that decides", () => {
+  const { requirements, series } = run();
+  const first = requirements.find((r) => r.id === "R1");
+  assert.ok(first?.condition?.is === "any");
+  const [both, before, told] = first.condition.of as [Condition, Condition, Condition];
+  // The gap is 91 cm, from 1 s on 41 cm, and not known from 2 s to 3 s; something is near from 1 s on; the hand turns by nothing.
+  assert.deepEqual([0.5, 1.5, 2.5].map((t) => truthAt(both, t)), [true, false, false]);
+  assert.deepEqual([0.5, 1.5].map((t) => truthAt(before, t)), [true, false]);
+  assert.equal(truthAt(told, 1.5), true);
+  assert.deepEqual([0.5, 1.5].map((t) => standingOf(both, first.condition, false, t)), ["kept", "open"], "the robot stands all the same");
+  assert.deepEqual(truthsIn(first.condition).map((s) => s.name), ["near", "near"]);
+  const measures = first.measures;
+  const gap = measures[0]!;
+  assert.ok(!isDecisive(first.condition, gap));
+  const alone = conditionOf({ id: "R9", verdict: "fail" }, [gap], series);
+  assert.ok(alone && isDecisive(alone, gap));
+  const all = conditionOf({ id: "R9", verdict: "fail", condition: { is: "all", of: [{ is: "measure", measure: 0 }, { is: "fact", text: "called", negated: true }] } }, measures, series);
+  assert.ok(all && isDecisive(all, gap));
+  assert.equal(truthAt(all!, 0.5), null, "nobody knows of the event");
+});
+
+test("what is told after a while is as it should be until then", () => {
+  const { requirements } = run();
+  const near = requirements.find((r) => r.id === "R1")?.condition;
+  assert.ok(near?.is === "any");
+  const fact: Condition = { is: "fact", text: "near", negated: true, series: run().series.find((s) => s.name === "near") ?? null };
+  const told: Condition = { is: "told", event: "stuck", held: 3, of: [fact] };
+  assert.deepEqual([0.5, 1.5, 3.9, 4.5, 9].map((t) => truthAt(told, t)), [true, true, true, false, false]);
+  assert.ok(!isDecisive(told, near as never));
+});
+
+test("where a body is beside a place is worked out from the picture", () => {
+  const { series, notes } = run();
+  const at = (name: string, t: number) => numberAt(series.find((s) => s.name === name)!, t);
+  // The hand goes from x = 1 m to 0.5 m within a second.
+  near(at("guest.hand.x", 0.5), 0.75, 1e-4);
+  near(at("abs(guest.hand.x - 0.5)", 0.5), 0.25, 1e-4);
+  near(at("abs(guest.hand.x - 0.5)", 5), 0, 1e-4);
+  near(at("range(guest.hand, cup)", 0), Math.hypot(0.5, 0.5, 0.45), 1e-3);
+  assert.match(notes.join(), /guest.hand.x was not recorded/);
 });
 
 test("limits are kept on the right side", () => {

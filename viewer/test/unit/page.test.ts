@@ -10,7 +10,7 @@ import { FrameMeter } from "../../src/player/frames.js";
 import { composed, inTheWay, scan } from "../../src/scene/rays.js";
 import { openingWindow } from "../../src/state.js";
 import { itemAt } from "../../src/timeline/items.js";
-import { lanesOf, layOut, rowAt, stopsOfLane, trackAt } from "../../src/timeline/lanes.js";
+import { lanesOf, layOut, rowAt, standingIn, stopsOfLane, trackAt } from "../../src/timeline/lanes.js";
 import { panned, showing, ticksOf, tOf, valueTicks, xOf, zoomed } from "../../src/timeline/scale.js";
 import { readAddress, writeAddress } from "../../src/ui/hash.js";
 import { actionOf } from "../../src/ui/keys.js";
@@ -24,7 +24,7 @@ test("what is in focus comes first, then who acts, the robot last of them", () =
   const sections = [...new Set(lanes.map((l) => l.section))];
   assert.deepEqual(sections, ["In focus", "guest", "world", "robot", "Sensor values", "Requirements", "Signals", "Topics", "Code", "Log"]);
   // The requirement, the events that it reads, its curves.
-  assert.deepEqual(lanes.filter((l) => l.section === "In focus").map((l) => l.label), ["R1", "called", "distance(guest.hand, robot.palm)", "norm((guest.dx, guest.dy))"]);
+  assert.deepEqual(lanes.filter((l) => l.section === "In focus").map((l) => l.label), ["R1", "called", "near", "distance(guest.hand, robot.palm)", "range(guest.hand, cup)", "angle(guest.hand, robot.palm)", "norm((guest.dx, guest.dy))", "tilt(robot.palm)", "guest.hand.x", "abs(guest.hand.x - 0.5)"]);
   assert.deepEqual(lanes.filter((l) => l.section === "robot").map((l) => l.label), ["state", "commands"]);
   assert.deepEqual(lanes.filter((l) => l.section === "Topics").map((l) => l.label), ["→ /scan", "← /scan", "→ /cmd_vel", "→ /grip", "← /grip", "← /grip"]);
   assert.deepEqual(lanes.filter((l) => l.section === "Code").map((l) => l.label), ["robot, MainThread", "robot, Thread-1"]);
@@ -65,7 +65,7 @@ test("each lane has its own steps", () => {
 
 test("what lies under the pointer is told", () => {
   const told = (label: string, t: number, slack = 0.05) => itemAt(lanes.find((l) => l.label === label)!, 0, t, slack)?.lines.join(" | ") ?? "";
-  assert.match(told("R1", 4), /violated at 4.000 s \| The hand is 4 cm/);
+  assert.match(told("R1", 4), /violated 4.000 s … 4.400 s \(0.40 s\) \| The hand is 4 cm/);
   assert.match(told("R1", 2), /obligation violated .* made by called\(loud: true\) \| deadline 6.000 s/);
   assert.match(told("does", 2), /call\(loud: true\) \| 1.000 s … 3.000 s \(2.00 s\) \| line 5 of the recording/);
   assert.match(told("state", 3), /GIVE .* came by asked/);
@@ -186,4 +186,33 @@ test("limits of angles are told in degrees", () => {
   const tilt = { kind: "tilt", name: "tilt(a)", relation: "<=", limit: Math.PI / 4, unit: "rad" } as const;
   assert.deepEqual([measureText(tilt, 1), boundText(tilt)], ["57.3°", "≤ 45°"]);
   assert.equal(boundText({ ...tilt, kind: "signal" }), "≤ 0.7854 rad");
+});
+
+test("limits and values are told in the unit in which the scenario writes them", () => {
+  const gap = { kind: "distance", name: "gap", relation: ">=", limit: 0.004, unit: "m" } as const;
+  assert.deepEqual([measureText({ ...gap, shown: { symbol: "mm", size: 0.001 } }, 0.0032), boundText({ ...gap, shown: { symbol: "mm", size: 0.001 } })], ["3.20 mm", "≥ 4 mm"]);
+  assert.equal(boundText({ ...gap, limit: 0.5, shown: { symbol: "m", size: 1 } }), "≥ 0.5 m");
+  const turn = { kind: "signal", name: "turn", relation: "<", limit: Math.PI / 6, unit: "rad/s", shown: { symbol: "deg/s", size: Math.PI / 180 } } as const;
+  assert.deepEqual([measureText(turn, Math.PI), boundText(turn)], ["180°/s", "< 30°/s"]);
+  const plot = lanes.find((lane) => lane.label === "tilt(robot.palm)");
+  assert.ok(plot?.kind === "plot" && plot.note === "°" && Math.abs(plot.unit.size - Math.PI / 180) < 1e-12);
+});
+
+test("what is plotted is violated where its limit decides, and open where something else may be so", () => {
+  const plot = (name: string) => {
+    const lane = lanes.find((l) => l.label === name);
+    assert.ok(lane?.kind === "plot", name);
+    return lane;
+  };
+  // One of several ways in which R1 is kept.
+  const gap = plot("distance(guest.hand, robot.palm)");
+  assert.deepEqual(gap.limits.map((l) => l.decisive), [false]);
+  const alone = { ...every, requirements: [{ id: "R9", verdict: "fail", measures: [{ kind: "signal", name: gap.label, relation: ">", limit: 0.5 }] }] } as ViewDocument;
+  const own = lanesOf([runOf("a", "a", alone, {})], [], "R9").find((l) => l.kind === "plot");
+  assert.ok(own?.kind === "plot");
+  assert.deepEqual([0.5, 1.5, 2.5].map((t) => standingIn(own, 0, t)), ["kept", "broken", "unknown"]);
+});
+
+test("requirements that are violated come first, then those that are not decided", () => {
+  assert.deepEqual(run.requirements.map((r) => r.id), ["R1", "R5", "R4", "R3", "R2"]);
 });

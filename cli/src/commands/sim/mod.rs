@@ -23,6 +23,7 @@ use hrdsl_runtime::{
     report,
     results::{CampaignResults, GeneratedSuite},
 };
+use hrdsl_source::SourceFiles;
 use serde::Serialize;
 
 use choices::ReplaysArg;
@@ -32,6 +33,7 @@ use super::{
     campaign::{CampaignArgs, chosen_system, generate_suites, selected, stop_flag, system_file},
     generate::{describe, save},
     shown,
+    sources::CodeSources,
 };
 use crate::{
     color, covered_files, exit::CommandExit, fault::CommandFault, files, input, observation::locate,
@@ -134,7 +136,7 @@ pub fn run(args: &SimArgs) -> Result<CommandExit, CommandFault> {
         tally(program, args.campaign.seed, &generated, outcome, &sources, rerun::words(args, &out));
     locate(&mut results, &compilation);
     (results.view, results.unreplayed) = (rerun::view_of_results(args, &out), unreplayed);
-    publish(&results, &campaign, (args, times.as_ref()), folder)?;
+    publish(&results, &campaign, (args, times.as_ref()), &compilation.files, folder)?;
     summarise(&results, &campaign, (args, &out), begun.elapsed())?;
     if let Some(times) = &times {
         terminal::print(&timings::table(times))?;
@@ -269,6 +271,7 @@ fn publish(
     results: &CampaignResults,
     campaign: &CampaignSetup<'_>,
     (args, timings): (&SimArgs, Option<&CampaignTimes>),
+    texts: &SourceFiles,
     folder: ResultsFolder,
 ) -> Result<(), CommandFault> {
     let to = folder.staging();
@@ -288,7 +291,8 @@ fn publish(
     if args.replays == ReplaysArg::Failing {
         shown::keep_failing(results, &to)?;
     }
-    let replays = shown::make(campaign.program, &campaign.dir, results, &to);
+    let sources = CodeSources::within(&campaign.dir).written_as(texts);
+    let replays = shown::make(campaign.program, sources, results, &to);
     files::write(&to.join("report.html"), &shown::page(results, replays.as_ref(), None))?;
     folder.publish(&REPORTS)
 }

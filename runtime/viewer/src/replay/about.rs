@@ -8,6 +8,7 @@ use hrdsl_ir::{
 };
 
 use super::{
+    offset,
     run::ReplayedRun,
     tracks::{bodies_of, place_at},
 };
@@ -26,8 +27,10 @@ pub(super) struct MeasureSubject {
     pub bodies: Vec<usize>,
     /// Of a way: within how many seconds.
     pub within: Option<f64>,
-    /// Of a way: along which axes.
+    /// Of a way, a coordinate and an offset: along which axes.
     pub axes: Vec<MeasureAxis>,
+    /// Of an offset: the place along each of the axes.
+    pub place: Vec<f64>,
 }
 
 /// A measurement of the world, and how long ago the one was that it is compared with.
@@ -50,6 +53,9 @@ pub(super) fn subject(
     if is_plain && let Some(way) = way(run, &terms, measured) {
         return way;
     }
+    if let Some(offset) = offset::offset(run, signals, measured) {
+        return offset;
+    }
     let first = terms.first().map(|(term, _)| kind(term));
     let is_one = terms.iter().all(|(term, ago)| Some(kind(term)) == first && ago.is_none());
     let kind = first.filter(|_| is_one && is_plain).unwrap_or_default();
@@ -60,12 +66,14 @@ pub(super) fn subject(
         | MeasureKind::Angle
         | MeasureKind::Tilt
         | MeasureKind::Height
+        | MeasureKind::Coordinate
+        | MeasureKind::Offset
         | MeasureKind::Way
         | MeasureKind::Speed
         | MeasureKind::Force => nearest(run, &terms, at),
     };
     let within = (kind == MeasureKind::Speed).then_some(SPEED_WINDOW);
-    MeasureSubject { kind, bodies, within, axes: Vec::new() }
+    MeasureSubject { kind, bodies, within, ..MeasureSubject::default() }
 }
 
 /// The slots that an expression reads, each once, in order.
@@ -163,11 +171,7 @@ fn way(run: &ReplayedRun<'_>, terms: &[MeasuredTerm], measured: &Expr) -> Option
         if of.get_or_insert_with(|| this.clone()) != &this {
             return None;
         }
-        let axis = match axis {
-            Axis::X => MeasureAxis::X,
-            Axis::Y => MeasureAxis::Y,
-            Axis::Z => MeasureAxis::Z,
-        };
+        let axis = offset::axis_of(*axis);
         if !axes.contains(&axis) {
             axes.push(axis);
         }
@@ -175,7 +179,13 @@ fn way(run: &ReplayedRun<'_>, terms: &[MeasuredTerm], measured: &Expr) -> Option
     // Along several axes it is the straight way, and not the longest of its parts.
     let is_straight = matches!(measured, Expr::Call(NumberFunction::Norm, _));
     let (bodies, ago) = of.filter(|(bodies, _)| !bodies.is_empty() && (axes.len() == 1 || is_straight))?;
-    Some(MeasureSubject { kind: MeasureKind::Way, bodies, within: Some(seconds(ago)), axes })
+    Some(MeasureSubject {
+        kind: MeasureKind::Way,
+        bodies,
+        within: Some(seconds(ago)),
+        axes,
+        place: Vec::new(),
+    })
 }
 
 /// Of several measurements of a kind, the bodies of that whose bodies are nearest to each other then.

@@ -9,7 +9,7 @@ use hrdsl_trace::TraceStepKind;
 
 use super::run::ReplayedRun;
 
-/// An expression as the scenario would have it, with the names of its signals; `None` if it has more than numbers in it.
+/// An expression as the scenario would have it, with the names of its signals; `None` if it has more than numbers and truths in it.
 pub(super) fn text(run: &ReplayedRun<'_>, signals: &[SignalId], expr: &Expr) -> Option<String> {
     written(&|slot| Some(run.program.signal(*signals.get(usize::from(slot))?).name.clone()), expr, 0)
 }
@@ -37,9 +37,8 @@ fn written(name: &dyn Fn(u16) -> Option<String>, expr: &Expr, tightest: u8) -> O
                 }
             })
         }
-        Expr::Unary(UnaryOp::Not, _) | Expr::If(..) | Expr::List(..) | Expr::Element(_) | Expr::Apply(..) => {
-            None
-        }
+        Expr::Unary(UnaryOp::Not, a) => Some(format!("not {}", written(name, a, u8::MAX)?)),
+        Expr::If(..) | Expr::List(..) | Expr::Element(_) | Expr::Apply(..) => None,
     }
 }
 

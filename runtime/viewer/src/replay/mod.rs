@@ -1,15 +1,18 @@
 //! A recording as a document: what can be shown of it is, and the rest is named in the document's notes.
 
 mod about;
+mod asked;
 mod changed;
 mod code;
-mod compared;
 mod derived;
+mod formula;
 mod measure;
+mod offset;
 mod run;
 mod scene;
 mod story;
 mod tracks;
+mod units;
 mod violation;
 
 use hrdsl_ir::{Nanos, Program};
@@ -32,12 +35,14 @@ use crate::{
 
 use run::{ReplayedRun, TICK, tick};
 pub use scene::mesh_assets;
+pub use units::WrittenUnits;
 
-/// The document of a recording; one in text has nothing but its [text](RecordingFile::text).
+/// The document of a recording; one in text has nothing but its [text](RecordingFile::text). Limits are shown in the `units` in which the scenario
+/// writes them.
 ///
 /// # Errors
 /// A recording without a header, or of another scenario.
-pub fn replay(program: &Program, file: &RecordingFile) -> Result<ViewDocument, String> {
+pub fn replay(program: &Program, file: &RecordingFile, units: &WrittenUnits) -> Result<ViewDocument, String> {
     let recording = OpenRecording::open(file.text.as_bytes()).map_err(|e| e.to_string())?;
     let header = recording.header().clone();
     if header.scenario != program.name {
@@ -59,10 +64,14 @@ pub fn replay(program: &Program, file: &RecordingFile) -> Result<ViewDocument, S
     };
     let scene = shown_scene(program, file, &mut notes);
     let (files, code) = code::tracks(file, &mut notes);
-    let run = ReplayedRun { program, scene, file, is_whole: ended != RunEnd::Error, trace, ended };
+    let run = ReplayedRun { program, scene, file, is_whole: ended != RunEnd::Error, trace, ended, units };
     let (requirements, values) = violation::requirements(&run);
     let mut document = ViewDocument { files, code, requirements, ..document(&run, header, error, notes) };
-    document.signals.extend(values);
+    for track in values {
+        if document.signals.iter().all(|known| known.name != track.name) {
+            document.signals.push(track);
+        }
+    }
     Ok(document)
 }
 
@@ -119,11 +128,13 @@ fn shown_scene(program: &Program, file: &RecordingFile, notes: &mut Vec<String>)
     let now = program.world.as_ref().map(scene_of).unwrap_or_default();
     let Some(then) = &file.scene else {
         if !now.bodies.is_empty() {
-            notes.push(
+            let why = if file.faults.is_empty() {
                 "This recording has no picture of the world: bodies stand where they start. `hrdsl sim --replays \
                  all` records one."
-                    .to_owned(),
-            );
+            } else {
+                "The picture of the world is in what cannot be read: bodies stand where they start."
+            };
+            notes.push(why.to_owned());
         }
         return now;
     };

@@ -4,6 +4,8 @@ use hrdsl_ir::{Nanos, Program};
 use hrdsl_recording::{RecordingFile, scene::RecordedScene};
 use hrdsl_trace::{RunEnd, Trace};
 
+use super::units::WrittenUnits;
+
 /// The length of a tick, ns.
 pub(super) const TICK: Nanos = 1_000_000;
 
@@ -18,6 +20,8 @@ pub(super) struct ReplayedRun<'a> {
     pub scene: RecordedScene,
     pub file: &'a RecordingFile,
     pub trace: Trace,
+    /// In which units the scenario writes its limits.
+    pub units: &'a WrittenUnits,
     /// Whether it was read to its end, and the run did not break off.
     pub is_whole: bool,
     pub ended: RunEnd,

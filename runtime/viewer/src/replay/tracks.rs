@@ -182,6 +182,25 @@ pub(super) fn number_track(name: &str, unit: &str, values: &[(Nanos, f64)]) -> S
     }
 }
 
+/// A truth over time; `None` where nobody knows.
+pub(super) fn truth_track(name: &str, values: impl Iterator<Item = (Nanos, Option<bool>)>) -> SignalTrack {
+    let mut kept: Vec<(Nanos, Option<bool>)> = Vec::new();
+    for (time, value) in values {
+        // A tick is the least that is seen: what is true for a shorter while is true for one.
+        if kept.last().is_none_or(|(_, before)| *before != value) {
+            kept.push((time, value));
+        }
+    }
+    let number = |value: &Option<bool>| value.map_or(f64::NAN, |is| f64::from(u8::from(is)));
+    SignalTrack {
+        name: name.to_owned(),
+        kind: SignalKind::Bool,
+        t: times(kept.iter().map(|(time, _)| time)),
+        v: samples(kept.iter().map(|(_, value)| number(value)), 1.0),
+        ..SignalTrack::default()
+    }
+}
+
 /// The different values, in the order in which they come.
 fn words(values: &[(Nanos, Value)]) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();

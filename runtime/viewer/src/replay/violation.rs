@@ -10,7 +10,8 @@ use hrdsl_monitor::{MonitorHappening, MonitorOutcome, MonitorRunner, MonitorVerd
 use hrdsl_trace::{TraceObserver, TraceStepKind, print};
 
 use super::{
-    measure,
+    formula::{self, TapedFormula},
+    measure::{self, FoundMeasures},
     run::{ReplayedRun, tick},
 };
 use crate::{
@@ -35,14 +36,16 @@ pub(super) fn requirements(run: &ReplayedRun<'_>) -> (Vec<ViewRequirement>, Vec<
     for (monitor, (verdict, history)) in monitors {
         let looked_at = verdict.first_failure.as_ref().map(|failure| failure.time);
         let looked_at = looked_at.or(verdict.worst_margin.map(|(_, time)| time)).unwrap_or_default();
-        let found = measure::measures(run, monitor, looked_at);
+        let taped = TapedFormula::new(run, monitor);
+        let found = measure::measures(run, monitor, taped.as_ref(), looked_at);
         for track in found.values {
             if values.iter().all(|known| known.name != track.name) {
                 values.push(track);
             }
         }
-        let judged = requirement(run, monitor, &verdict, &history);
-        all.push(ViewRequirement { measures: found.measures, ..judged });
+        let judged = requirement(run, monitor, taped.as_ref(), &verdict, &history);
+        let FoundMeasures { measures, condition, meets, at, .. } = found;
+        all.push(ViewRequirement { measures, condition, meets, at, ..judged });
     }
     (all, values)
 }
@@ -50,14 +53,15 @@ pub(super) fn requirements(run: &ReplayedRun<'_>) -> (Vec<ViewRequirement>, Vec<
 /// The names of what a monitor reads: signals, and events.
 fn read(run: &ReplayedRun<'_>, monitor: &Monitor) -> (Vec<String>, Vec<String>) {
     let signals = monitor.signals.iter().map(|id| run.program.signal(*id).name.clone()).collect();
+    let on_edges = monitor.edges.iter().flat_map(|edge| match &edge.on {
+        MonitorTrigger::Event(patterns) => patterns.as_slice(),
+        MonitorTrigger::Becomes { .. } | MonitorTrigger::Sample | MonitorTrigger::Deadline => &[],
+    });
     let mut events = Vec::new();
-    for edge in &monitor.edges {
-        let MonitorTrigger::Event(patterns) = &edge.on else { continue };
-        for pattern in patterns {
-            let name = &run.program.event(pattern.event).name;
-            if !events.contains(name) {
-                events.push(name.clone());
-            }
+    for pattern in on_edges.chain(formula::events(monitor)) {
+        let name = &run.program.event(pattern.event).name;
+        if !events.contains(name) {
+            events.push(name.clone());
         }
     }
     (signals, events)
@@ -66,11 +70,17 @@ fn read(run: &ReplayedRun<'_>, monitor: &Monitor) -> (Vec<String>, Vec<String>) 
 fn requirement(
     run: &ReplayedRun<'_>,
     monitor: &Monitor,
+    taped: Option<&TapedFormula>,
     verdict: &MonitorVerdict,
     history: &[MonitorHappening],
 ) -> ViewRequirement {
-    let triggers = history.iter().filter(|h| h.effects.contains(&MonitorEffect::Trigger));
-    let told = told(run, history);
+    let (triggers, told) = match taped {
+        Some(taped) => taped.told(run),
+        None => {
+            let triggers = history.iter().filter(|h| h.effects.contains(&MonitorEffect::Trigger));
+            (triggers.map(|h| h.time).collect::<Vec<_>>(), told(run, history))
+        }
+    };
     let unit = monitor.margin_unit().map(|unit| unit.symbol().to_owned());
     let (signals, events) = read(run, monitor);
     ViewRequirement {
@@ -97,20 +107,20 @@ fn requirement(
         },
         margin: verdict.worst_margin.map(|(margin, _)| margin),
         unit: unit.filter(|unit| !unit.is_empty()),
-        triggers: differences(triggers.map(|h| tick(h.time) as i64)),
+        triggers: differences(triggers.into_iter().map(|time| tick(time) as i64)),
         obligations: told.obligations,
         violations: told.violations,
         signals,
         events,
-        measures: Vec::new(),
+        ..ViewRequirement::default()
     }
 }
 
 /// The story of one requirement.
 #[derive(Default)]
-struct ToldRequirement {
-    obligations: Vec<ViewObligation>,
-    violations: Vec<ViewViolation>,
+pub(super) struct ToldRequirement {
+    pub obligations: Vec<ViewObligation>,
+    pub violations: Vec<ViewViolation>,
 }
 
 /// What is pending, and the step that made it.
@@ -174,6 +184,7 @@ fn violation(run: &ReplayedRun<'_>, happening: &MonitorHappening, open: &OpenObl
         t: tick(happening.time),
         text,
         since: open.as_ref().map(|(obligation, _)| obligation.from),
+        until: None,
         steps: steps.map(|step| step as u64).collect(),
     }
 }
@@ -183,7 +194,7 @@ fn step_text(run: &ReplayedRun<'_>, step: usize) -> Option<String> {
     Some(print::who_did_what(run.program, &step.what).1)
 }
 
-fn signal_text(run: &ReplayedRun<'_>, signal: SignalId, value: Value) -> String {
+pub(super) fn signal_text(run: &ReplayedRun<'_>, signal: SignalId, value: Value) -> String {
     let signal = run.program.signal(signal);
     let unit = match signal.ty {
         Type::Float(unit) => unit,
