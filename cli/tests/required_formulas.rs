@@ -233,7 +233,7 @@ fn how_much_a_formula_adds_to_a_recording() {
             hrdsl_in(folder.path(), "sim scenario.hri a.tests.hri -o out --exit-zero --test watchful.a");
         expect_code(&out, 0);
         let recordings = support::tree(&folder.path().join("out/traces"));
-        recordings.iter().map(|(_, text)| String::from_utf8_lossy(text).lines().count()).sum::<usize>()
+        recordings.values().map(|text| String::from_utf8_lossy(text).lines().count()).sum::<usize>()
     };
     let pattern = lines("globally distance(child, post) > 90 cm");
     let formula = lines("formula always distance(child, post) > 90 cm");

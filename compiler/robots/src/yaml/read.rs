@@ -173,7 +173,13 @@ impl OpenMap {
             YamlValue::List(items) if items.iter().all(|item| matches!(item, YamlValue::Map(_))) => {
                 self.merged.extend(items);
             }
-            _ => return Err("`<<` merges a mapping, or a list of mappings".to_owned()),
+            YamlValue::Null
+            | YamlValue::Bool(_)
+            | YamlValue::Int(_)
+            | YamlValue::Float(_)
+            | YamlValue::Text(_)
+            | YamlValue::List(_)
+            | YamlValue::Tagged(..) => return Err("`<<` merges a mapping, or a list of mappings".to_owned()),
         }
         Ok(())
     }
