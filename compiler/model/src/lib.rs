@@ -10,6 +10,7 @@ mod descriptions;
 mod expr;
 mod interval;
 mod lint;
+mod measures;
 mod noun;
 mod provenance;
 mod report;

@@ -22,6 +22,7 @@ use super::{
 use crate::{
     ActorId, ArgPattern, CoverpointId, DefinedType, EventId, InferredType, NameDefinition, Resolutions, Role,
     Scenario,
+    measures::MEASURES,
     noun::Noun,
     report::{
         names::{unknown, wrong_kind},
@@ -246,6 +247,13 @@ impl<'a> Checker<'a> {
         };
         if helpless {
             issue.help = None;
+        } else if noun == Noun::EventOrStimulus && MEASURES.contains(&name.text.as_str()) {
+            // Somebody wrote a condition where something has to happen.
+            let help = format!(
+                "`{0}` measures the world, and nothing happens by it: write `globally !{0}(…)`, `rising({0}(…))`, or `… while {0}(…)`",
+                name.text
+            );
+            issue = issue.help(help);
         }
         self.report(issue);
     }

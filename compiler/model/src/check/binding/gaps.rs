@@ -86,7 +86,13 @@ impl<'a> BindingPhase<'_, 'a> {
         time: i64,
     ) -> Option<GapValue<TypedExpr>> {
         if !matches!(scalar, MessageScalar::Bool | MessageScalar::Int { .. }) {
-            self.report(bindings::does_not_fit("true or false", scalar, what.span));
+            let issue = bindings::does_not_fit("true or false", scalar, what.span);
+            let arguments = self.arguments_of(what);
+            self.report(if arguments.is_empty() {
+                issue
+            } else {
+                issue.help(format!("for an argument of the event write {}", arguments.join(" or ")))
+            });
             return None;
         }
         let Some(calls) = events(what) else {
@@ -100,6 +106,16 @@ impl<'a> BindingPhase<'_, 'a> {
         }
         let events: Vec<_> = found.into_iter().map(|(pattern, _)| pattern).collect();
         (!events.is_empty()).then_some(GapValue::Held { events, time })
+    }
+
+    /// How the arguments of the events in an expression are written as values.
+    fn arguments_of(&self, what: &ast::ExprSyntax) -> Vec<String> {
+        let named = |call: &CallSyntax| self.s.events.iter().find(|event| event.name == call.name.text);
+        let calls = events(what).unwrap_or_default();
+        let events = calls.iter().filter_map(named);
+        events
+            .flat_map(|event| event.params.iter().map(|param| format!("`{}.{}`", event.name, param.name)))
+            .collect()
     }
 
     /// Whether a value is written as the name of an event.

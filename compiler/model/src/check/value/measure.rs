@@ -11,35 +11,10 @@ use crate::check::{
 use crate::{
     Axis, BodyRef, Dimension, GripperId, InferredType, SignalId, SignalTerm, TypedExpr, TypedExprKind,
     VariableRef,
+    measures::MEASURES,
     noun::Noun,
     report::{names, types},
 };
-
-const MEASURES: [&str; 23] = [
-    "distance",
-    "range",
-    "angle",
-    "visible",
-    "holds",
-    "joint_speed",
-    "speed",
-    "heading",
-    "touches",
-    "force",
-    "weight",
-    "transient_force",
-    "quasistatic_force",
-    "torque",
-    "joint_angle",
-    "joint_position",
-    "joint_effort",
-    "estimated_pressure",
-    "nearest",
-    "tilt",
-    "height",
-    "delta",
-    "reading",
-];
 
 impl Checker<'_> {
     /// A declared signal.

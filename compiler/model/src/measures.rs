@@ -1,0 +1,27 @@
+//! The functions that measure the world, by their names.
+
+pub(crate) const MEASURES: [&str; 23] = [
+    "distance",
+    "range",
+    "angle",
+    "visible",
+    "holds",
+    "joint_speed",
+    "speed",
+    "heading",
+    "touches",
+    "force",
+    "weight",
+    "transient_force",
+    "quasistatic_force",
+    "torque",
+    "joint_angle",
+    "joint_position",
+    "joint_effort",
+    "estimated_pressure",
+    "nearest",
+    "tilt",
+    "height",
+    "delta",
+    "reading",
+];
