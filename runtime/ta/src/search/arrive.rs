@@ -180,18 +180,11 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         if subsumption == SubsumptionRelation::Simulation
             && simple
             && let Some(discrete) = known
+            && self.is_passed(m, discrete, frame, zone)
         {
-            // What is covered before extrapolation is so after it: most of the work is saved. Mostly the newest has it all.
-            if self.is_within_newest(discrete, zone, &m.ranks) {
-                return Ok(());
-            }
-            thresholds(frame, zone, &mut m.bounds);
-            if self.is_covered(discrete, frame.dim(), &m.bounds, &m.ranks) {
-                return Ok(());
-            }
+            return Ok(());
         }
-        let path =
-            GoalPath { node: if parent == NIL { NIL } else { parent }, via: (parent != NIL).then_some(via) };
+        let path = GoalPath { node: parent, via: (parent != NIL).then_some(via) };
         if self.c.open.iter().any(|o| *o) {
             let settled = !self.model.any_committed(state);
             m.met.clear();
@@ -219,6 +212,16 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         }
         m.pieces = pieces;
         Ok(())
+    }
+
+    /// Whether nodes of the discrete state cover the zone. What is covered before extrapolation is so after it: most of the work is saved.
+    /// Mostly the newest has it all.
+    fn is_passed(&self, m: &mut WorkerMemory<N>, discrete: u32, frame: &ActiveClocks, zone: &Dbm<N>) -> bool {
+        if self.is_within_newest(discrete, zone, &m.ranks) {
+            return true;
+        }
+        thresholds(frame, zone, &mut m.bounds);
+        self.is_covered(discrete, frame.dim(), &m.bounds, &m.ranks)
     }
 
     /// Whether the newest node of the discrete state includes the zone.

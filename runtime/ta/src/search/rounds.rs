@@ -65,6 +65,13 @@ const ROUND: usize = 4096;
 /// States that one thread expands in one go.
 const CHUNK: usize = 16;
 
+/// Threads for a search; none for a single one, which is the caller's.
+fn pool_of(threads: usize) -> Result<Option<rayon::ThreadPool>, SearchError> {
+    let build = || rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = (threads > 1).then(build).transpose();
+    pool.map_err(|e| SearchError::Internal(format!("no threads: {e}")))
+}
+
 impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
     pub(super) fn new(
         model: &'m CompiledNetwork<'p>,
@@ -92,12 +99,6 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             options.subsumption = SubsumptionRelation::Inclusion;
         }
         let clocks = ZoneClocks { abstraction: options.abstraction, time: beside.within };
-        let pool = if options.threads > 1 {
-            let built = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
-            Some(built.map_err(|e| SearchError::Internal(format!("no threads: {e}")))?)
-        } else {
-            None
-        };
         Ok(Self {
             model,
             goals,
@@ -122,7 +123,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             workers: (0..options.threads.max(1)).map(|_| ExpansionWorker::new(model, clocks)).collect(),
             batches: Vec::new(),
             round: Vec::new(),
-            pool,
+            pool: pool_of(options.threads)?,
             options,
             visited: 0,
             transitions: 0,
