@@ -2,6 +2,7 @@
 //! not.
 
 mod plan;
+mod standstill;
 
 use hrdsl_ir::Nanos;
 use hrdsl_ir::value::seconds;
@@ -25,6 +26,7 @@ use crate::{
     rigidity,
     route::{JointRoute, JointTrack},
 };
+use standstill::ArmStandstill;
 
 /// How near the tool must come to its place, m.
 const ARRIVED: f64 = 0.005;
@@ -82,6 +84,7 @@ pub(crate) struct ArmControl {
     /// Where set-points want the joints; the motors' aim follows no faster than the arm may.
     aimed: Vec<f64>,
     motion: Option<ArmMotion>,
+    standstill: ArmStandstill,
     dynamics: ArmDynamics,
     /// What the joints are wanted to have, at the end of the last step, rad/s or m/s.
     pace: Vec<f64>,
@@ -154,6 +157,7 @@ impl ArmControl {
             aimed: chain.links.iter().map(|link| link.start).collect(),
             chain,
             motion: None,
+            standstill: ArmStandstill::default(),
             dynamics: ArmDynamics::new(&numbers, physics),
             pace: vec![0.0; numbers.len()],
             lasting: vec![0.0; numbers.len()],
@@ -248,6 +252,7 @@ impl ArmControl {
             old.id
         });
         self.aimed = posture;
+        self.standstill = ArmStandstill::default();
         Ok(replaced)
     }
 
@@ -300,11 +305,7 @@ impl ArmControl {
         let (b, _) = self.aim();
         self.steer(&a, &b, (h, rate), physics);
         self.give_way(physics);
-    }
-
-    /// It sleeps: as soon as it wakes its motors are told anew.
-    pub fn rest(&mut self) {
-        self.told_until = 0;
+        self.standstill.look(&self.positions(physics), &self.rest, &self.lags, h);
     }
 
     /// Brings the motors' aims nearer to the set-points, each by itself, as fast as its joint may.
@@ -439,26 +440,14 @@ impl ArmControl {
         self.figure.has(body)
     }
 
-    /// Whether it stands still, and is left out of the next step, with what it holds. It wakes when it has something to do, while its
-    /// hand is used, since fingers would sleep with it on their way, and before anything touches it.
-    pub fn sleeps(&self, held: &[BodyId], is_used: bool, physics: &mut PhysicsAdapter) -> bool {
-        let own = self.joints.iter().map(|id| usize::from(id.0));
-        let is_left = !is_used && !self.is_busy() && !physics.is_approached(self.figure.base, held);
-        own.clone().for_each(|joint| physics.let_sleep(joint, is_left));
-        let sleeps = is_left && own.clone().all(|joint| physics.is_asleep(joint));
-        if !sleeps {
-            own.for_each(|joint| physics.wake(joint));
-        }
-        sleeps
+    /// What it hangs on.
+    pub fn base(&self) -> BodyId {
+        self.figure.base
     }
 
     /// Whether a joint is one of its own.
     pub fn has_joint(&self, joint: usize) -> bool {
         self.joints.iter().any(|id| usize::from(id.0) == joint)
-    }
-
-    pub fn is_busy(&self) -> bool {
-        self.motion.is_some() || self.aimed != self.rest
     }
 
     /// Measured, rad or m.

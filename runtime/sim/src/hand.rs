@@ -331,6 +331,12 @@ impl HandSet {
         hands.iter().filter_map(|hand| self.hands[*hand].held).collect()
     }
 
+    /// What the hands of the robot hold that a body is of.
+    pub fn held_by_robot(&self, of: BodyId, physics: &PhysicsAdapter) -> Vec<BodyId> {
+        let own = self.hands.iter().filter(|hand| physics.are_joined(of, hand.palm));
+        own.filter_map(|hand| hand.held).collect()
+    }
+
     pub fn was_taken(&self, body: BodyId) -> bool {
         self.taken[index(body)]
     }

@@ -249,7 +249,9 @@ impl WorldSimulation {
         self.before_change(next);
         let mut asleep = Vec::with_capacity(self.arms.len());
         for (arm, hands) in self.arms.iter().zip(&self.arm_hands) {
-            let (held, is_used) = (self.hands.held_by_any(hands), self.hands.is_any_busy(hands));
+            // An arm of two is not woken by what the other one holds.
+            let held = self.hands.held_by_robot(arm.base(), &self.physics);
+            let is_used = self.hands.is_any_busy(hands);
             asleep.push(arm.sleeps(&held, is_used, &mut self.physics));
         }
         let sleeps = |joint: usize| self.arms.iter().zip(&asleep).any(|(arm, a)| *a && arm.has_joint(joint));

@@ -18,6 +18,7 @@ mod surface;
 pub(crate) mod wheels;
 mod yielding;
 
+pub(crate) use joints::ArmSleep;
 pub(crate) use state::{
     accuracy::AccuracyWatch,
     adapter::PhysicsAdapter,
@@ -334,6 +335,11 @@ impl PhysicsAdapter {
         self.load(palm, 0.0);
         self.wake_robot(palm);
         self.world.remove_impulse_joint(joint);
+    }
+
+    /// Whether joints hold two bodies together, by others or not.
+    pub fn are_joined(&self, a: BodyId, b: BodyId) -> bool {
+        self.robots[index(a)] == self.robots[index(b)]
     }
 
     /// Wakes all that is joined to a body.

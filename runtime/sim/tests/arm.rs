@@ -351,6 +351,32 @@ fn an_arm_that_presses_is_freed_by_what_leads_it_away() {
     }
 }
 
+/// Set-points that it never gets to: it slips along a head that does not give way, until it gets no farther, and presses for ever; the
+/// world rests nevertheless.
+#[test]
+fn an_arm_that_something_keeps_from_its_set_points_rests_as_it_presses() {
+    let mut world = table();
+    let head = named(&world, "person.head");
+    let at = &mut world.bodies[usize::from(head.0)];
+    (at.position, at.motion) = ([0.48, 0.0, 0.75], BodyMotion::Fixed);
+    let press = number("press", SignalTerm::ForceOn(BodyRef::Body(head)));
+    let mut free = WorldSimulation::new(&table(), &[]).unwrap();
+    let id = free.command(move_to(OFFER)).unwrap();
+    let mut way = Vec::new();
+    wait(&mut free, id, |sim| way.push(sim.joint_positions(ARM).to_vec())).1.unwrap();
+    let mut sim = WorldSimulation::new(&world, &[press]).unwrap();
+    stream(&mut sim, way.iter());
+    sim.advance(sim.now() + 30 * SECOND);
+    assert_eq!(sim.next_wake(), None, "nothing moves any more");
+    let (force, stood) = (float(&sim, 0), sim.joint_positions(ARM).to_vec());
+    assert!(force > 20.0, "{force} N");
+    sim.advance(sim.now() + 60 * SECOND);
+    assert_eq!((float(&sim, 0), sim.joint_positions(ARM).to_vec()), (force, stood));
+    stream(&mut sim, way.iter().take(1));
+    settle(&mut sim);
+    assert_eq!(float(&sim, 0), 0.0, "it goes away when it is told to");
+}
+
 #[test]
 fn an_arm_that_feels_contacts_stops_at_them() {
     let mut world = table();

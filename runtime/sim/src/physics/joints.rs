@@ -9,7 +9,7 @@ use super::division::JointStrain;
 use super::dynamics::BorneLoad;
 use super::state::{
     adapter::{PhysicsAdapter, PhysicsBody},
-    bodies::index,
+    bodies::{body_id, index},
     joint::{DrivenJoint, JointHold, JointStop, ToldEnds},
     pairs::JointGraph,
     place::JointPlace,
@@ -50,9 +50,26 @@ const APPROACHED: f32 = 0.02;
 /// The effort of a motor without a limit, N·m or N.
 const UNLIMITED: f64 = 1e9;
 
-/// An arm whose every point stays slower for half a second may sleep, m/s and rad/s.
-const SLEEPS_BELOW: f32 = 1e-3;
-const SLEEPS_BELOW_ANGULAR: f32 = 1e-3;
+/// When the bodies of an arm may be left out of the steps.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ArmSleep {
+    Never,
+    /// As soon as they stand still.
+    Still,
+    /// They press on something, and get nowhere by it: also while they tremble.
+    Held,
+}
+
+impl ArmSleep {
+    /// An arm whose every point stays slower for half a second may sleep, m/s and rad/s.
+    fn below(self) -> (f32, f32) {
+        match self {
+            ArmSleep::Never => (-1.0, -1.0),
+            ArmSleep::Still => (1e-3, 1e-3),
+            ArmSleep::Held => (0.02, 0.1),
+        }
+    }
+}
 
 /// A rotor's inertia, as it is added to the body that it turns: about all axes, since the links between two axes of one shoulder
 /// or wrist would otherwise be so much lighter than their neighbours that the solver could not hold them together.
@@ -301,7 +318,7 @@ impl PhysicsAdapter {
             let Some(driven) = &self.joints[at] else { continue };
             let apart = driven.place.apart(driven.motion);
             self.accuracy.look_at_gap(at, apart);
-            let falls = driven.loose.is_some_and(|loose| self.leans(loose));
+            let falls = driven.loose.is_some_and(|loose| self.leans(loose)) && !self.is_asleep(at);
             if falls {
                 strain.falls = true;
                 strain.apart = strain.apart.max(apart);
@@ -339,28 +356,31 @@ impl PhysicsAdapter {
         strain
     }
 
-    /// Whether the bodies that a joint moves may be left out of the steps while they stand still; if not, they wake. What their motors
-    /// do then goes on.
-    pub fn let_sleep(&mut self, joint: usize, may: bool) {
+    /// When the bodies that a joint moves may be left out of the steps; if never, they wake. What their motors do then goes on.
+    pub fn let_sleep(&mut self, joint: usize, sleep: ArmSleep) {
         let Some(driven) = &self.joints[joint] else { return };
-        let lets = |body: &RigidBody| body.activation().normalized_linear_threshold >= 0.0;
-        if self.world.bodies.get(driven.child).is_none_or(|body| lets(body) == may) {
+        let (linear, angular) = sleep.below();
+        let is_told = |body: &RigidBody| body.activation().normalized_linear_threshold == linear;
+        if self.world.bodies.get(driven.child).is_none_or(is_told) {
             return;
         }
         let Some(body) = self.world.bodies.get_mut(driven.child) else { return };
         let activation = body.activation_mut();
-        (activation.normalized_linear_threshold, activation.angular_threshold) =
-            if may { (SLEEPS_BELOW, SLEEPS_BELOW_ANGULAR) } else { (-1.0, -1.0) };
-        if !may {
+        (activation.normalized_linear_threshold, activation.angular_threshold) = (linear, angular);
+        if sleep == ArmSleep::Never {
             body.wake_up(true);
         }
     }
 
     /// Whether something that moves, and is not of the robot that a body is of, could touch that robot, or what it holds, in the next
-    /// step. The engine would wake what is touched, and solve its joints a step too late.
-    pub fn is_approached(&self, of: BodyId, held: &[BodyId]) -> bool {
-        let robot = self.robots[index(of)];
-        let is_own = |at: usize| self.robots[at] == robot || held.iter().any(|body| index(*body) == at);
+    /// step. The engine would wake what is touched, and solve its joints a step too late. What loosely trembles beside one that is held
+    /// does so because that does, and is as still as it.
+    pub fn is_approached(&self, of: BodyId, held: &[BodyId], sleep: ArmSleep) -> bool {
+        let is_own = |at: usize| {
+            self.are_joined(of, body_id(at))
+                || held.iter().any(|body| index(*body) == at)
+                || sleep == ArmSleep::Held && self.is_loose_and_slow(at)
+        };
         let solid = || (0..self.parts.len()).filter(|at| !self.parts[*at].ghost);
         let own = || solid().filter(|at| is_own(*at)).filter_map(|at| self.box_now(at));
         let Some(all) = own().reduce(|a, b| a.merged(&b)) else { return false };
@@ -368,6 +388,12 @@ impl PhysicsAdapter {
             let swept = self.box_in_step(at, self.step).loosened(APPROACHED);
             all.intersects(&swept) && own().any(|own| own.intersects(&swept))
         })
+    }
+
+    fn is_loose_and_slow(&self, part: usize) -> bool {
+        let body = &self.world.bodies[self.parts[part].handle];
+        let slow = f64::from(ArmSleep::Held.below().0);
+        body.is_dynamic() && self.guides[index(self.parts[part].root)].is_none() && self.speed_of(part) < slow
     }
 
     fn moves(&self, part: usize) -> bool {
