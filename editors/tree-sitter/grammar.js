@@ -1111,6 +1111,7 @@ module.exports = grammar({
         keyword($, "base"),
         field("name", $.identifier),
         ":",
+        optional(field("motion", $.identifier)),
         field("body", $.identifier),
         keyword($, "speed"),
         field("speed", $.expression),

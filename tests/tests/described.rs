@@ -310,3 +310,57 @@ fn wheels_that_touch_the_ground_are_one_with_their_base() {
         assert_eq!(sim.fault(), None, "at {forward} m/s and {turn} rad/s");
     }
 }
+
+/// A base on wheels of its own goes where one goes that is led, is pushed by what drives into it, and falls for good when that strikes it
+/// high up.
+#[test]
+fn a_dynamic_base_of_a_description_drives_is_pushed_and_topples() {
+    let rolling = DRIVING.replace("wheels: base", "wheels: dynamic base");
+    let mut ends = Vec::new();
+    for scenario in [DRIVING, &rolling] {
+        let mut sim = WorldSimulation::new(&world_of(ROVER, scenario), &[]).unwrap();
+        for (forward, turn) in [(0.2, 0.0), (0.2, 0.5), (0.1, -0.5), (0.0, 0.0)] {
+            sim.command(MotorCommand::DriveWheels { base: BaseId(0), forward, sideways: 0.0, turn }).unwrap();
+            sim.advance(sim.now() + 3 * SECOND);
+        }
+        assert_eq!(sim.fault(), None);
+        ends.push(sim.base_pose(BaseId(0)).unwrap());
+    }
+    let off = (0..3).map(|i| (ends[0][i] - ends[1][i]).abs()).fold(0.0, f64::max);
+    println!("it ends at {ends:?}");
+    assert!(off < 0.01, "{ends:?}");
+    // With a heavy head that is easily pushed over.
+    let tall = ROVER
+        .replace("<link name=\"scanner\"><inertial><mass value=\"0.1\"/>", "<link name=\"scanner\"><inertial><mass value=\"1\"/>")
+        .replace("izz=\"1e-4\"/></inertial></link>", "izz=\"1e-4\"/></inertial>\n    <collision><geometry><box size=\"0.05 0.05 0.05\"/></geometry></collision></link>")
+        .replace("<origin xyz=\"0 0 0.15\"/>", "<origin xyz=\"0 0 0.4\"/>");
+    let mut came = Vec::new();
+    for (rover, height) in [(ROVER, 0.02), (&tall, 0.4)] {
+        let ram = format!("  body ram: kinematic box(10 cm, 20 cm, 1 cm) at (-40 cm, 0 m, {height} m)\n}}\n");
+        let scenario = rolling.trim_end().trim_end_matches('}').to_owned() + &ram;
+        let mut sim = WorldSimulation::new(&world_of(rover, &scenario), &[]).unwrap();
+        sim.advance(SECOND);
+        let body = sim.body_named("ram").unwrap();
+        let to = WorldPoint::free(None, [0.1, 0.0, height].map(Expr::float));
+        sim.act(&WorldAction::Move { body, to, over: Expr::float(0.3) }, &|_| None).unwrap();
+        sim.advance(4 * SECOND);
+        assert_eq!(sim.fault(), None);
+        let [x, ..] = sim.base_pose(BaseId(0)).unwrap();
+        sim.command(MotorCommand::DriveWheels { base: BaseId(0), forward: 0.2, sideways: 0.0, turn: 0.0 })
+            .unwrap();
+        sim.advance(6 * SECOND);
+        came.push((x, sim.base_pose(BaseId(0)).unwrap()[0] - x));
+    }
+    println!("it was pushed to, and then drove by, m: {came:?}");
+    assert!(came[0].0 > 0.1 && came[0].1 > 0.3, "it is pushed, and drives on: {came:?}");
+    assert!(came[1].1 < 0.01, "it lies: {came:?}");
+}
+
+#[test]
+fn only_a_base_of_a_description_says_how_it_moves() {
+    let text = DRIVING.replace("wheels: base", "wheels: guided base");
+    let compiled =
+        compile_with(InputFile { name: "scene.hri", text: &text }, &[], &OneRobot(ROVER.to_owned()));
+    let said: Vec<String> = compiled.diagnostics.iter().map(|d| format!("{d:?}")).collect();
+    assert!(said.iter().any(|text| text.contains("guided")), "{said:?}");
+}

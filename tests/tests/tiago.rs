@@ -271,6 +271,34 @@ const LINKS: [(&str, &[&str]); 9] = [
     ("arm_6_link", &["arm_6_link"]),
 ];
 
+/// Pushed at 75 cm, both fall, and at as great a force: that of the greatest moment of each.
+fn compare_pushes(part: &str) {
+    let ram = "  body ram: kinematic box(10 cm, 30 cm, 2 cm) at (-35 cm, 0 m, 75 cm)";
+    let members = |base: &str| {
+        format!(
+            "{ram}\n  signal push: force to robot = force(ram)\n  signal tipped: angle to robot = tilt(robot.{base})"
+        )
+    };
+    let mut took = Vec::new();
+    let here = Scene::new("", &format!("  part robot = tiago at (0 m, 0 m, 0 m)\n{}", members("chassis")));
+    let there = format!("  part robot = described at (0 m, 0 m, 0 m)\n{}", members("base_link"));
+    for mut scene in [here, Scene::new(part, &there)] {
+        scene.go_on(1.0, |_| {});
+        scene.send("ram", [0.5, 0.0, 0.75], 40.0);
+        let (mut sum, mut steps) = (0.0, 0.0);
+        scene.go_on(42.0, |scene| {
+            if (0.005..0.03).contains(&scene.read("tipped")) {
+                sum += scene.read("push");
+                steps += 1.0;
+            }
+        });
+        assert!(scene.read("tipped") > 1.0, "it stands, after {} N", sum / steps);
+        took.push(sum / steps);
+    }
+    println!("toppled by {:.0} N, and {:.0} N", took[0], took[1]);
+    assert!((took[0] / took[1] - 1.0).abs() < 0.15, "{took:?}");
+}
+
 #[test]
 #[expect(clippy::too_many_lines, reason = "one comparison after the other")]
 fn the_description_is_the_same_robot() {
@@ -283,13 +311,14 @@ fn the_description_is_the_same_robot() {
         .map(|(name, at)| format!("{name} = {at} {}", if name.starts_with("torso") { "m" } else { "rad" }))
         .collect();
     let part = format!(
-        "part described from {urdf:?} {{\n  packages {folder:?}\n  start {}\n  base wheels: base_link speed 1 m/s turn 120 deg/s acceleration \
+        "part described from {urdf:?} {{\n  packages {folder:?}\n  start {}\n  base wheels: dynamic base_link speed 1 m/s turn 120 deg/s acceleration \
          1 m/s^2 timeout 250 ms\n  arm arm: {} tip wrist_ft_tool_link tool (12 cm, 0 m, 0 m) speed 1 rad/s\n}}",
         start.join(", "),
         names.join(", ")
     );
     let mut described = Scene::new(&part, "  part robot = described at (0 m, 0 m, 0 m)");
     let mut own = tiago("");
+    compare_pushes(&part);
     let mass = |scene: &Scene, name: &str| {
         scene.world().bodies.iter().find(|b| b.name == format!("robot.{name}")).map(|b| b.mass)
     };

@@ -245,6 +245,9 @@ pub struct GripperSyntax {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BaseSyntax {
     pub name: NameSyntax,
+    /// `dynamic`, before a link of a description
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<NameSyntax>,
     pub body: NameSyntax,
     pub speed: ExprSyntax,
     /// `sideways 0.3 m/s`: without turning, after `speed`

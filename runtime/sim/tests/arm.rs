@@ -321,10 +321,7 @@ fn stream<'a>(sim: &mut WorldSimulation, postures: impl Iterator<Item = &'a Vec<
 /// Set-points that lead it into a head and back again: it presses, and comes free, and so it does by a motion of its own.
 #[test]
 fn an_arm_that_presses_is_freed_by_what_leads_it_away() {
-    let mut free = WorldSimulation::new(&table(), &[]).unwrap();
-    let id = free.command(move_to(OFFER)).unwrap();
-    let mut way = Vec::new();
-    wait(&mut free, id, |sim| way.push(sim.joint_positions(ARM).to_vec())).1.unwrap();
+    let way = way_to_the_offer();
     let mut world = table();
     let head = named(&world, "person.head");
     world.bodies[usize::from(head.0)].position = [0.48, 0.0, 0.75];
@@ -360,10 +357,7 @@ fn an_arm_that_something_keeps_from_its_set_points_rests_as_it_presses() {
     let at = &mut world.bodies[usize::from(head.0)];
     (at.position, at.motion) = ([0.48, 0.0, 0.75], BodyMotion::Fixed);
     let press = number("press", SignalTerm::ForceOn(BodyRef::Body(head)));
-    let mut free = WorldSimulation::new(&table(), &[]).unwrap();
-    let id = free.command(move_to(OFFER)).unwrap();
-    let mut way = Vec::new();
-    wait(&mut free, id, |sim| way.push(sim.joint_positions(ARM).to_vec())).1.unwrap();
+    let way = way_to_the_offer();
     let mut sim = WorldSimulation::new(&world, &[press]).unwrap();
     stream(&mut sim, way.iter());
     sim.advance(sim.now() + 30 * SECOND);

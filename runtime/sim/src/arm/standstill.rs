@@ -25,15 +25,15 @@ pub(super) struct ArmStandstill {
 impl ArmStandstill {
     /// Looks where joints and aims are, which may be so far apart, some time after it last did, s.
     pub(super) fn look(&mut self, positions: &[f64], aims: &[f64], lags: &[f64], after: f64) {
-        let now = || positions.iter().copied().zip(aims.iter().copied());
-        let is_near = |((was, is), lag): ((&(f64, f64), (f64, f64)), &f64)| {
-            (was.0 - is.0).abs().max((was.1 - is.1).abs()) < WITHIN * lag
+        let is_near = |(joint, was): (usize, &(f64, f64))| {
+            let way = (was.0 - positions[joint]).abs().max((was.1 - aims[joint]).abs());
+            way < WITHIN * lags[joint]
         };
-        let mut known = self.began.iter().zip(now()).zip(lags);
-        if self.began.len() == positions.len() && known.all(is_near) {
+        if self.began.len() == positions.len() && self.began.iter().enumerate().all(is_near) {
             self.lasts += after;
         } else {
-            *self = ArmStandstill { began: now().collect(), lasts: 0.0 };
+            let began = positions.iter().copied().zip(aims.iter().copied()).collect();
+            *self = ArmStandstill { began, lasts: 0.0 };
         }
     }
 

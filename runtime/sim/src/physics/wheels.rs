@@ -45,6 +45,7 @@ impl PhysicsAdapter {
         let own: Vec<BodyId> = self.one_with(self.root(body)).filter(|b| !self.is_ghost(*b)).collect();
         let lowest = own.iter().map(|b| self.lowest(*b)).fold(f64::INFINITY, f64::min);
         let wheels: Vec<BodyId> = own.into_iter().filter(|b| self.lowest(*b) <= lowest + WHEEL).collect();
+        self.weigh();
         let middle = self.pose(body).at;
         let reach = |b: &BodyId| {
             let (centre, radius) = self.sphere_around(*b);
@@ -62,6 +63,13 @@ impl PhysicsAdapter {
         };
         self.set_friction(&rolling.wheels, 0.0, CoefficientCombineRule::Min);
         rolling
+    }
+
+    /// Sums up what each body weighs: the engine does so for those of descriptions only as it begins its first step.
+    fn weigh(&mut self) {
+        for (_, body) in self.world.bodies.iter_mut() {
+            body.recompute_mass_properties_from_colliders(&self.world.colliders);
+        }
     }
 
     /// The base rolls.

@@ -317,3 +317,12 @@ pub fn two_masses_pushed_late(
     let phase = late * (stiffness / reduced).sqrt();
     push + (speed * (stiffness * reduced).sqrt() - push * libm::sin(phase)).hypot(push * libm::cos(phase))
 }
+
+/// The postures of a free arm on its way there, one for each step.
+pub fn way_to_the_offer() -> Vec<Vec<f64>> {
+    let mut free = WorldSimulation::new(&table(), &[]).unwrap();
+    let id = free.command(move_to(OFFER)).unwrap();
+    let mut way = Vec::new();
+    wait(&mut free, id, |sim| way.push(sim.joint_positions(ARM).to_vec())).1.unwrap();
+    way
+}

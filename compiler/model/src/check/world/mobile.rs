@@ -34,6 +34,9 @@ impl<'a> WorldPhase<'_, 'a> {
         if let Some(body) = body {
             self.drivable(&base.body, body);
         }
+        if let Some(motion) = &base.motion {
+            self.motion_of_described(motion, &base.body, body);
+        }
         let speed = self.more_than_zero(&base.speed, Dimension::SPEED, "the speed");
         let sideways =
             base.sideways.as_ref().map(|e| self.more_than_zero(e, Dimension::SPEED, "the speed sideways"));
@@ -59,8 +62,21 @@ impl<'a> WorldPhase<'_, 'a> {
     }
 
     fn driven_root(&self, body: BodyId) -> BodyId {
-        let described = self.robots.iter().any(|robot| robot.link_of(body).is_some());
-        if described { self.rigid_root(body) } else { body }
+        if self.is_of_description(body) { self.rigid_root(body) } else { body }
+    }
+
+    fn is_of_description(&self, body: BodyId) -> bool {
+        self.robots.iter().any(|robot| robot.link_of(body).is_some())
+    }
+
+    /// How a base of a description moves; other bodies say so themselves.
+    fn motion_of_described(&mut self, motion: &NameSyntax, name: &NameSyntax, body: Option<BodyId>) {
+        self.choice(Noun::Motion, motion, &["dynamic", "kinematic"]);
+        if body.is_some_and(|body| !self.is_of_description(body)) {
+            let message = format!("how `{}` moves is said where it is declared", name.text);
+            let help = format!("leave `{}` out here; write it before the shape of the body", motion.text);
+            self.report(bad_world(motion.span, message, help));
+        }
     }
 
     /// `laser eye: base_scan_link`: what the description says of the sensor on this link

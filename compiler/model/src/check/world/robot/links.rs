@@ -32,7 +32,7 @@ impl<'a> WorldPhase<'_, 'a> {
             return;
         };
         let Some(robot) = reading.robot.as_ref() else { return };
-        let drives = part.members.iter().any(|m| matches!(m.kind, Member::Base(_)));
+        let root_motion = motion_of_root(part);
         let start = StartValues::of(self, part, &reading);
         let poses = robot.link_poses(&start.values);
         let link = |of: &hrdsl_robots::UrdfLink| (of.name.clone(), of.place);
@@ -44,11 +44,7 @@ impl<'a> WorldPhase<'_, 'a> {
         let mut bodies = Vec::new();
         for ((at, link), (name, pose)) in robot.links.iter().enumerate().zip(names.iter().zip(&poses)) {
             let is_root = robot.root.0 == at;
-            let motion = match (is_root, drives) {
-                (true, true) => BodyMotion::Kinematic,
-                (true, false) => BodyMotion::Fixed,
-                (false, _) => BodyMotion::Dynamic,
-            };
+            let motion = if is_root { root_motion } else { BodyMotion::Dynamic };
             let full = format!("{}{name}", p.prefix);
             let span = link.place.span;
             self.world.names.members += 1;
@@ -133,6 +129,17 @@ impl<'a> WorldPhase<'_, 'a> {
             let help = "write it in a part that is: `part NAME from \"robot.urdf\" { … }`";
             self.report(bad_world(p.member.span, message, help));
         }
+    }
+}
+
+/// Without a base, a robot stands fixed.
+fn motion_of_root(part: &PartSyntax) -> BodyMotion {
+    let base =
+        part.members.iter().find_map(|m| if let Member::Base(base) = &m.kind { Some(base) } else { None });
+    match base.map(|base| base.motion.as_ref()) {
+        Some(Some(motion)) if motion.text == "dynamic" => BodyMotion::Dynamic,
+        Some(_) => BodyMotion::Kinematic,
+        None => BodyMotion::Fixed,
     }
 }
 
