@@ -45,7 +45,7 @@ impl PhysicsAdapter {
         let own: Vec<BodyId> = self.one_with(self.root(body)).filter(|b| !self.is_ghost(*b)).collect();
         let lowest = own.iter().map(|b| self.lowest(*b)).fold(f64::INFINITY, f64::min);
         let wheels: Vec<BodyId> = own.into_iter().filter(|b| self.lowest(*b) <= lowest + WHEEL).collect();
-        self.weigh();
+        self.weigh_described(world);
         let middle = self.pose(body).at;
         let reach = |b: &BodyId| {
             let (centre, radius) = self.sphere_around(*b);
@@ -65,9 +65,10 @@ impl PhysicsAdapter {
         rolling
     }
 
-    /// Sums up what each body weighs: the engine does so for those of descriptions only as it begins its first step.
-    fn weigh(&mut self) {
-        for (_, body) in self.world.bodies.iter_mut() {
+    /// Sums up what the bodies of descriptions weigh, which the engine does only as it begins its first step. Of others it knows.
+    fn weigh_described(&mut self, world: &World) {
+        for (part, _) in self.parts.iter().zip(&world.bodies).filter(|(_, body)| body.solid.is_some()) {
+            let body = &mut self.world.bodies[part.handle];
             body.recompute_mass_properties_from_colliders(&self.world.colliders);
         }
     }
