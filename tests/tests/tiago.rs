@@ -93,6 +93,21 @@ impl Scene {
         self.sim.act(&WorldAction::Move { body, to, over: Expr::float(over) }, &|_| None).unwrap();
     }
 
+    /// Lets the ram push slowly, until what it pushes lies, or the ram is past; gives the force as that begins to tip, N.
+    fn push_over(&mut self) -> f64 {
+        self.go_on(1.0, |_| {});
+        self.send("ram", [0.5, 0.0, 0.75], 40.0);
+        // On the mean: the force of a single step tells of the solver, too.
+        let (mut sum, mut steps) = (0.0, 0.0);
+        self.go_on(42.0, |scene| {
+            if (0.005..0.03).contains(&scene.read("tipped")) {
+                sum += scene.read("push");
+                steps += 1.0;
+            }
+        });
+        sum / steps
+    }
+
     /// The mass of the robot, and its centre.
     fn weight(&self) -> (f64, [f64; 3]) {
         let own = self.world().bodies.iter().filter(|b| b.name.starts_with("robot."));
@@ -146,17 +161,7 @@ fn the_push_that_topples_it_is_that_of_its_masses() {
     let lever = 0.1535 - centre[0];
     let behind = 0.1535 + 0.062 + 0.115;
     let needed = mass * G * lever / (0.75 - 0.8 * behind);
-    scene.go_on(1.0, |_| {});
-    scene.send("ram", [0.5, 0.0, 0.75], 40.0);
-    // On the mean: the force of a single step tells of the solver, too.
-    let (mut sum, mut steps) = (0.0, 0.0);
-    scene.go_on(42.0, |scene| {
-        if (0.005..0.03).contains(&scene.read("tipped")) {
-            sum += scene.read("push");
-            steps += 1.0;
-        }
-    });
-    let took = sum / steps;
+    let took = scene.push_over();
     println!(
         "{mass:.1} kg, {:.3} m high, lever {lever:.3} m: {needed:.0} N at 75 cm; it took {took:.0} N",
         centre[2]
@@ -283,17 +288,8 @@ fn compare_pushes(part: &str) {
     let here = Scene::new("", &format!("  part robot = tiago at (0 m, 0 m, 0 m)\n{}", members("chassis")));
     let there = format!("  part robot = described at (0 m, 0 m, 0 m)\n{}", members("base_link"));
     for mut scene in [here, Scene::new(part, &there)] {
-        scene.go_on(1.0, |_| {});
-        scene.send("ram", [0.5, 0.0, 0.75], 40.0);
-        let (mut sum, mut steps) = (0.0, 0.0);
-        scene.go_on(42.0, |scene| {
-            if (0.005..0.03).contains(&scene.read("tipped")) {
-                sum += scene.read("push");
-                steps += 1.0;
-            }
-        });
-        assert!(scene.read("tipped") > 1.0, "it stands, after {} N", sum / steps);
-        took.push(sum / steps);
+        took.push(scene.push_over());
+        assert!(scene.read("tipped") > 1.0, "it stands: {took:?} N");
     }
     println!("toppled by {:.0} N, and {:.0} N", took[0], took[1]);
     assert!((took[0] / took[1] - 1.0).abs() < 0.15, "{took:?}");
