@@ -292,7 +292,7 @@ fn the_readme_shows_a_test_that_fails() {
     let recording = fs::read_to_string(out.join("traces/handover.bdi_tests.t002.jsonl")).unwrap();
     assert!(
         recording
-            .contains(r#"{"t":13.12,"signal":"distance(person.hand, robot.finger_right)","value":0.0496"#)
+            .contains(r#"{"t":13.17,"signal":"distance(person.hand, robot.finger_right)","value":0.0495"#)
     );
 }
 

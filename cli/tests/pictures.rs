@@ -113,7 +113,7 @@ const PICTURES: [DocumentPicture; 7] = [
     picture("examples/homecare/pictures/fall-dark.png", "examples/homecare", FALL, "focus=Upright", true),
     picture("examples/homecare/pictures/speed.png", "examples/homecare", FALL, "focus=R3", false),
     picture("examples/homecare/pictures/late-food.png", "examples/homecare", LATE, "focus=R1", false),
-    picture("examples/homecare/pictures/long-stay.png", "examples/homecare", FALL, "focus=R4", false),
+    picture("examples/homecare/pictures/long-stay.png", "examples/homecare", LATE, "focus=R4", false),
 ];
 
 /// So large a picture may be, in bytes.

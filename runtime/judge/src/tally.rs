@@ -10,7 +10,7 @@ use hrdsl_ir::{
 use hrdsl_results::{
     BinResult, CampaignResults, CodeFile, CoverageRatios, FORMAT, FileCoverage, GeneratedSuite, GoalStatus,
     InterfaceWarning, RequirementResult, SmallestMargin, SuiteGoalId, SuiteInfo, SuiteName, TestMethod,
-    TestResult, VERSION, VerdictOutcome, VerdictTally,
+    TestResult, TriggerTotal, VERSION, VerdictOutcome, VerdictTally,
 };
 
 use hrdsl_trace::MachineDeclaration;
@@ -89,6 +89,7 @@ fn requirements(
         text: m.text.clone(),
         tally: vec![VerdictTally::default(); place.len()],
         failing: Vec::new(),
+        triggered: TriggerTotal::default(),
         worst_margin: None,
     };
     let besides = |formula: &NamedFormula| RequirementResult {
@@ -99,6 +100,7 @@ fn requirements(
         text: formula.text.clone(),
         tally: vec![VerdictTally::default(); place.len()],
         failing: Vec::new(),
+        triggered: TriggerTotal::default(),
         worst_margin: None,
     };
     let mut requirements: Vec<RequirementResult> =
@@ -119,6 +121,9 @@ fn requirements(
                 requirement.worst_margin = Some(SmallestMargin { value: *value, unit, test });
             }
         }
+    }
+    for requirement in &mut requirements {
+        requirement.triggered = TriggerTotal::of(&requirement.name, tests.iter().map(|test| &test.result));
     }
     requirements
 }

@@ -92,12 +92,6 @@ pub fn total(requirement: &RequirementResult) -> VerdictTally {
     })
 }
 
-/// How often a requirement was triggered, in all tests.
-pub fn triggered(results: &CampaignResults, requirement: &RequirementResult) -> u64 {
-    let verdicts = results.tests.iter().flat_map(|test| &test.judgement.verdicts);
-    verdicts.filter(|v| v.requirement == requirement.name).map(|v| u64::from(v.triggered)).sum()
-}
-
 /// Where a requirement stands after all tests: the worst thing that is known about it.
 pub fn standing(requirement: &RequirementResult) -> Outcome {
     let tally = total(requirement);

@@ -8,7 +8,7 @@ mod system;
 use hrdsl_results::{
     BinName, BinResult, CampaignResults, CodeFile, CounterexampleStep, CoverageRatios, FORMAT, FirstFailure,
     GoalReport, GoalStatus, OutputSummary, RequirementKind, RequirementResult, RunEnd, RunMark,
-    SmallestMargin, SuiteGoalId, SuiteInfo, TestMethod, TestResult, TraceJudgement, VERSION,
+    SmallestMargin, SuiteGoalId, SuiteInfo, TestMethod, TestResult, TraceJudgement, TriggerTotal, VERSION,
     VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
@@ -404,6 +404,7 @@ fn requirement(r: usize, tests: &[TestFixture]) -> RequirementResult {
         text: text.into(),
         tally,
         failing,
+        triggered: TriggerTotal::of(&name.into(), tests.iter().map(|test| &test.result)),
         worst_margin,
     }
 }

@@ -16,7 +16,7 @@ mod violations;
 
 use hrdsl_results::{
     BinResult, CampaignResults, GoalReport, GoalStatus, MutationReport, RequirementResult, SuiteInfo,
-    TestName, VerdictOutcome as Outcome, VerdictTally,
+    TestName, TriggerTotal, VerdictOutcome as Outcome, VerdictTally,
 };
 use minijinja::{AutoEscape, Environment, Output, State, Value, escape_formatter};
 use serde::Serialize;
@@ -384,7 +384,7 @@ fn rows(
             noticed: faults.map_or_else(String::new, |found| faults::noticed_by(&requirement.name, found)),
             section: if is_violated { section } else { 0 },
             tally: tally.collect(),
-            triggered: facts::triggered(results, requirement),
+            triggered: TriggerTotal::of(&requirement.name, &results.tests).times,
             margin: requirement.worst_margin.as_ref().map(|m| WorstMargin {
                 value: text::margin(m.value, &m.unit),
                 is_negative: m.value < 0.0,

@@ -67,7 +67,7 @@ pub use suite::{
     AgentCoverage, GoalReport, GoalStatus, KindCoverage, ModelCoverage, SuiteExplanation, SuiteInfo,
     TestExplanation, UncoveredGoal, UnreachedItem,
 };
-pub use tally::{BinResult, RequirementResult, SmallestMargin, VerdictTally};
+pub use tally::{BinResult, RequirementResult, SmallestMargin, TriggerTotal, VerdictTally};
 pub use test::{BodyPenetration, JointGap, LimitExcess, OutputSummary, PhysicsAccuracy, RunMark, TestResult};
 
 /// What kind of file `results.json` is: its `format`.

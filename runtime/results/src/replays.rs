@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use crate::{
         CoverageRatios, FORMAT, RequirementKind, RequirementResult, SuiteInfo, TestMethod, TraceJudgement,
-        VERSION, VerdictResult, VerdictTally,
+        TriggerTotal, VERSION, VerdictResult, VerdictTally,
     };
 
     fn test(name: &str, outcomes: [VerdictOutcome; 2], steps: &[&str]) -> TestResult {
@@ -146,6 +146,7 @@ mod tests {
             text: String::new(),
             tally: vec![VerdictTally::default(); 2],
             failing: Vec::new(),
+            triggered: TriggerTotal::default(),
             worst_margin: None,
         };
         let suite = |name: &str| SuiteInfo {

@@ -8,6 +8,7 @@ use crate::{
     judgement::VerdictOutcome,
     names::{RequirementName, TestName},
     schema,
+    test::TestResult,
 };
 
 /// A requirement with its tally in each suite.
@@ -22,8 +23,36 @@ pub struct RequirementResult {
     pub tally: Vec<VerdictTally>,
     /// The tests with a violation, in order.
     pub failing: Vec<TestName>,
+    /// How often it was triggered, and in how many tests.
+    #[serde(default)]
+    pub triggered: TriggerTotal,
     /// The least margin over all tests, with its test.
     pub worst_margin: Option<SmallestMargin>,
+}
+
+/// How often a requirement was triggered in all tests, and how many tests triggered it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct TriggerTotal {
+    pub times: u64,
+    pub tests: u32,
+}
+
+impl TriggerTotal {
+    /// Of a requirement in these tests.
+    #[must_use]
+    pub fn of<'a>(
+        requirement: &RequirementName,
+        tests: impl IntoIterator<Item = &'a TestResult>,
+    ) -> TriggerTotal {
+        let verdicts = tests.into_iter().flat_map(|test| &test.judgement.verdicts);
+        verdicts.filter(|verdict| verdict.requirement == *requirement && verdict.triggered > 0).fold(
+            TriggerTotal::default(),
+            |total, verdict| TriggerTotal {
+                times: total.times + u64::from(verdict.triggered),
+                tests: total.tests + 1,
+            },
+        )
+    }
 }
 
 /// How many tests had each verdict.

@@ -390,7 +390,8 @@ impl PhysicsAdapter {
         for joint in 0..self.joints.len() {
             if self.joints[joint].is_some() && !self.is_asleep(joint) {
                 let (at, limits) = (self.joint_position(joint), self.joint_limits(joint));
-                let beyond = (limits.0 - at).max(at - limits.1);
+                let beyond =
+                    self.joints[joint].as_ref().map_or(0.0, |driven| driven.beyond(at - driven.start));
                 if beyond > UNNOTICED {
                     self.notice_press();
                 }

@@ -1,6 +1,6 @@
 //! How often each requirement was triggered, and how near it was to being violated.
 
-use hrdsl_results::{CampaignResults, RequirementResult, VerdictResult};
+use hrdsl_results::{CampaignResults, RequirementResult, TestResult, TriggerTotal};
 
 use super::page::{StyledSpan, TerminalPage, TerminalStyle, left, right};
 use crate::{
@@ -29,19 +29,21 @@ pub fn trigger_totals(results: &CampaignResults, width: usize, color: bool) -> S
 }
 
 fn line(page: &mut TerminalPage, results: &CampaignResults, requirement: &RequirementResult, names: usize) {
-    let verdicts = results.tests.iter().flat_map(|test| &test.judgement.verdicts);
-    let own: Vec<&VerdictResult> = verdicts.filter(|v| v.requirement == requirement.name).collect();
-    let total: u64 = own.iter().map(|v| u64::from(v.triggered)).sum();
-    let tests = own.iter().filter(|v| v.triggered > 0).count();
+    // Results of earlier versions do not have the total.
+    let total = TriggerTotal::of(&requirement.name, &results.tests);
+    let judged = |test: &&TestResult| {
+        test.judgement.verdicts.iter().any(|verdict| verdict.requirement == requirement.name)
+    };
+    let all = results.tests.iter().filter(judged).count();
     let standing = facts::standing(requirement);
     let name = format!("{} {:<names$}", standing.symbol(), text::line(&requirement.name));
-    let times = if total == 1 { "once".to_owned() } else { format!("{total} times") };
-    let of = format!("  in {tests} of {}", text::count(own.len(), "test"));
+    let times = if total.times == 1 { "once".to_owned() } else { format!("{} times", total.times) };
+    let of = format!("  in {} of {}", total.tests, text::count(all, "test"));
     let margin = requirement.worst_margin.as_ref().map_or_else(String::new, |least| {
         let test = text::line(facts::short(results, &least.test));
         format!("  least margin {} in {test}", text::margin(least.value, &least.unit))
     });
-    let style = if total == 0 { TerminalStyle::Warn } else { TerminalStyle::Plain };
+    let style = if total.times == 0 { TerminalStyle::Warn } else { TerminalStyle::Plain };
     page.line(&[
         StyledSpan(name, TerminalStyle::of(standing)),
         right(&times, 16, style),

@@ -24,7 +24,7 @@ pub(super) struct ArmStandstill {
 
 impl ArmStandstill {
     /// Looks where joints and aims are, which may be so far apart, some time after it last did, s.
-    pub(super) fn look(&mut self, positions: &[f64], aims: &[f64], lags: &[f64], after: f64) {
+    fn look(&mut self, positions: &[f64], aims: &[f64], lags: &[f64], after: f64) {
         let is_near = |(joint, was): (usize, &(f64, f64))| {
             let way = (was.0 - positions[joint]).abs().max((was.1 - aims[joint]).abs());
             way < WITHIN * lags[joint]
@@ -44,6 +44,15 @@ impl ArmStandstill {
 }
 
 impl ArmControl {
+    /// Looks at joints and aims some time after it last did, s. An arm that is where it was to be rests without that.
+    pub(super) fn look_whether_it_stands(&mut self, after: f64, physics: &PhysicsAdapter) {
+        if self.aimed == self.rest {
+            self.standstill = ArmStandstill::default();
+        } else {
+            self.standstill.look(&self.positions(physics), &self.rest, &self.lags, after);
+        }
+    }
+
     /// Whether it stands still, and is left out of the next step, with what it holds. It wakes when it has something to do, while its
     /// hand is used, since fingers would sleep with it on their way, and before anything touches it.
     pub fn sleeps(&self, held: &[BodyId], is_used: bool, physics: &mut PhysicsAdapter) -> bool {

@@ -14,6 +14,7 @@ use super::state::{
     pairs::JointGraph,
     place::JointPlace,
 };
+use super::stops::first_kept;
 use crate::math::{
     BodyFrame, RotationQuat, SpaceVector, about, angle_between, from_vector, to_pose, to_vector, v3, wrap,
 };
@@ -90,13 +91,14 @@ impl PhysicsAdapter {
         }
         let start = joint.drive.start;
         let (least, most) = (joint.lo - start, joint.hi - start);
+        let kept = first_kept(joint);
         let is_wide = joint.motion == JointMotion::Hinge && !JointStop::is_plain(least, most);
         // The engine knows an angle within half a turn of its zero, which is where the joint is at the start, if that will do.
         let first_frame = data.local_frame1;
         if is_wide {
-            JointStop::about(0.0, least, most).set(&mut data, &first_frame, (least, most));
+            JointStop::about(0.0, least, most).set(&mut data, &first_frame, kept);
         } else {
-            data.set_limits(moving, [least as f32, most as f32]);
+            data.set_limits(moving, [kept.0 as f32, kept.1 as f32]);
         }
         let bearer = self.parts[index(self.bearer_of(parent, world))].handle;
         let handle = self.world.insert_impulse_joint(p.handle, c.handle, data);
@@ -129,7 +131,7 @@ impl PhysicsAdapter {
             wound: is_wide.then_some(0.0),
             first_frame,
             stop: JointStop::about(0.0, least, most),
-            ends: ToldEnds::at_start((least, most), self.step),
+            ends: ToldEnds::at_start(kept, self.step),
             softness: data.softness,
             keeps_rate: world.bodies[index(child)].solid.is_none(),
             loose: self.loose_root(child, world),

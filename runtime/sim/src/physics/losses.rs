@@ -12,7 +12,7 @@ impl PhysicsAdapter {
         let losses = std::mem::take(&mut self.losses);
         for gear in &losses.gears {
             let (at, speed) = (self.joint_position(gear.leader), self.joint_speed(gear.leader));
-            let behind = gear.factor * at + gear.offset - self.joint_position(gear.follower);
+            let behind = self.wanted_by_gear(gear, at) - self.joint_position(gear.follower);
             self.run_at(gear.follower, gear.factor * speed + behind * CATCH_UP / dt, gear.force);
         }
         for brake in &losses.brakes {
@@ -26,17 +26,23 @@ impl PhysicsAdapter {
         self.losses = losses;
     }
 
+    /// Where a follower is to be when its leader is there, as far as it may, rad or m.
+    fn wanted_by_gear(&self, gear: &JointGear, leader: f64) -> f64 {
+        let (lo, hi) = self.kept_limits(gear.follower);
+        (gear.factor * leader + gear.offset).clamp(lo, hi)
+    }
+
     /// A speed at which a joint comes to rest at its ends, and is not driven against them.
     pub fn slower_near_ends(&self, joint: usize, speed: f64) -> f64 {
         let Some(driven) = &self.joints[joint] else { return speed };
-        let (at, rate) = (self.joint_position(joint), CATCH_UP / self.step);
-        speed.clamp(rate * (driven.lo - at).min(0.0), rate * (driven.hi - at).max(0.0))
+        let (at, rate, (lo, hi)) = (self.joint_position(joint), CATCH_UP / self.step, driven.kept_limits());
+        speed.clamp(rate * (lo - at).min(0.0), rate * (hi - at).max(0.0))
     }
 
     /// How far a joint is from where those are that follow it, at most, as they count it, rad or m.
     pub fn gear_lag(&self, leader: usize) -> f64 {
         let lag = |gear: &JointGear| {
-            let wanted = gear.factor * self.joint_position(gear.leader) + gear.offset;
+            let wanted = self.wanted_by_gear(gear, self.joint_position(gear.leader));
             (wanted - self.joint_position(gear.follower)).abs()
         };
         self.losses.gears.iter().filter(|gear| gear.leader == leader).map(lag).fold(0.0, f64::max)

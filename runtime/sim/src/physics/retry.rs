@@ -28,9 +28,9 @@ struct JointBeyond {
 }
 
 impl DrivenJoint {
-    /// How far a joint that is so far from its start is beyond an end, rad or m; less than 0 within its ends.
+    /// How far a joint that is so far from its start is beyond an end at which it is kept, rad or m; less than 0 within them.
     pub(super) fn beyond(&self, way: f64) -> f64 {
-        let (lo, hi) = self.true_ends();
+        let (lo, hi) = self.kept_ends();
         (lo - way).max(way - hi)
     }
 
@@ -126,7 +126,7 @@ impl PhysicsAdapter {
         let Some(driven) = &self.joints[at] else { return };
         let (lo, hi) = driven.ends.between;
         let by = EARLIER * driven.beyond(is);
-        let told = if is < driven.true_ends().0 {
+        let told = if is < driven.kept_ends().0 {
             ((lo + by).min((was - ROUNDING).max(lo)), hi)
         } else {
             (lo, (hi - by).max((was + ROUNDING).min(hi)))

@@ -2,9 +2,11 @@
 //!
 //! The engine stops a joint once it is beyond its end, and looks once in each of its own steps: a wrist that whirls about, or is struck
 //! at its end, would be beyond it by as much as it goes in one of them. So it is told of an end that lies before the true one by just
-//! that, as long as the joint comes to it; what goes very fast, besides, asks for shorter steps.
+//! that, as long as the joint comes to it; what goes very fast, besides, asks for shorter steps. What a motor presses against its end, or
+//! what a blow throws there, goes a little beyond it all the same, by fractions of a milliradian: so no joint is kept at its true end
+//! either, but at one just so far before it, and none is ever where the scenario says that it cannot be.
 
-use hrdsl_ir::world::JointMotion;
+use hrdsl_ir::world::{Joint, JointMotion};
 use rapier3d::prelude::*;
 
 use super::state::{
@@ -16,6 +18,11 @@ use super::state::{
 pub(super) const UNNOTICED: f64 = 3e-4;
 /// For so long after that, s: what pressed it has hardly gone.
 const PRESSED_FOR: f64 = 0.5;
+/// So far before its true end a joint is kept, rad or m, or by this part of its way, if that is less.
+const MARGIN: f64 = 5e-4;
+const MARGIN_PART: f64 = 0.02;
+/// How fast a joint that starts at its true end is brought to where it is kept, rad/s or m/s.
+const DRAWN_IN: f64 = 0.02;
 /// So exactly the engine knows where a joint is, rad or m: it must not miss that one is where it ends.
 pub(super) const ROUNDING: f64 = 1e-5;
 /// How far before its end a joint is stopped at most because it is fast, rad and m.
@@ -44,10 +51,34 @@ impl StopApproach {
     }
 }
 
+/// Where a joint is kept that is to be within `lo` and `hi`.
+fn within(lo: f64, hi: f64) -> (f64, f64) {
+    let margin = MARGIN.min(MARGIN_PART * (hi - lo));
+    (lo + margin, hi - margin)
+}
+
+/// Between which ends a joint is kept at first, from its start: one that starts at its true end is not thrown back from it.
+pub(super) fn first_kept(joint: &Joint) -> (f64, f64) {
+    let ((lo, hi), start) = (within(joint.lo, joint.hi), joint.drive.start);
+    ((lo - start).min(0.0), (hi - start).max(0.0))
+}
+
 impl DrivenJoint {
-    /// Its ends, from its start.
-    pub(super) fn true_ends(&self) -> (f64, f64) {
-        (self.lo - self.start, self.hi - self.start)
+    /// Between which angles or ways it is kept, rad or m.
+    pub(super) fn kept_limits(&self) -> (f64, f64) {
+        within(self.lo, self.hi)
+    }
+
+    /// The ends at which it is kept, from its start.
+    pub(super) fn kept_ends(&self) -> (f64, f64) {
+        self.ends.kept
+    }
+
+    /// A joint that started at its true end is brought nearer to where it is to be kept, for so long, s.
+    fn draw_in(&mut self, time: f64) {
+        let ((lo, hi), way) = (self.kept_limits(), DRAWN_IN * time);
+        let kept = &mut self.ends.kept;
+        *kept = ((kept.0 + way).min(lo - self.start), (kept.1 - way).max(hi - self.start));
     }
 
     /// What a joint goes through as a surface is moved so far, rad or m. At the very end a motor that pushes on does not get it farther:
@@ -87,6 +118,11 @@ impl PhysicsAdapter {
         self.joints[joint].as_ref().map_or((0.0, 0.0), |driven| (driven.lo, driven.hi))
     }
 
+    /// Between which angles or ways the engine keeps a joint, rad or m.
+    pub fn kept_limits(&self, joint: usize) -> (f64, f64) {
+        self.joints[joint].as_ref().map_or((0.0, 0.0), DrivenJoint::kept_limits)
+    }
+
     /// A joint is pressed against its end.
     pub(super) fn notice_press(&mut self) {
         self.pressed = (PRESSED_FOR / self.step).ceil() as usize;
@@ -101,7 +137,7 @@ impl PhysicsAdapter {
             if parts <= 1.0 || parts <= self.substeps() as f64 || self.is_asleep(at) {
                 return None;
             }
-            let (now, (lo, hi)) = (self.way(driven), driven.true_ends());
+            let (now, (lo, hi)) = (self.way(driven), driven.kept_ends());
             let left = if way > 0.0 { hi - now } else { now - lo };
             (left < FASTER * way.abs()).then_some(parts)
         };
@@ -112,11 +148,13 @@ impl PhysicsAdapter {
     pub(super) fn tell_stops(&mut self, moved: f64) {
         let (time, times) = self.part;
         for at in 0..self.joints.len() {
-            let Some(driven) = &self.joints[at] else { continue };
             if self.is_asleep(at) {
                 continue;
             }
-            let (speed, thrown, ends) = (self.joint_speed(at), driven.thrown(moved), driven.true_ends());
+            let Some(driven) = &mut self.joints[at] else { continue };
+            driven.draw_in(time / times as f64);
+            let Some(driven) = &self.joints[at] else { continue };
+            let (speed, thrown, ends) = (self.joint_speed(at), driven.thrown(moved), driven.kept_ends());
             // A motor that pushes goes on pushing.
             let gain = (speed - driven.ends.last.0) / driven.ends.last.1 * time;
             let comes = |speed: f64, gain: f64| {
@@ -147,7 +185,7 @@ impl PhysicsAdapter {
             let Some(driven) = self.joints[at].as_ref().filter(|driven| driven.wound.is_some()) else {
                 continue;
             };
-            let (way, ends) = (self.way(driven), driven.true_ends());
+            let (way, ends) = (self.way(driven), driven.kept_ends());
             let stop = JointStop::about(way, ends.0, ends.1);
             let moves = stop != driven.stop;
             if moves && let Some(joint) = self.world.impulse_joints.get_mut(driven.handle, false) {

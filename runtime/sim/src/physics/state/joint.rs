@@ -88,18 +88,19 @@ pub(crate) struct DrivenJoint {
 
 /// Between which ends the engine keeps a joint, and what that rests on.
 pub(crate) struct ToldEnds {
-    /// From its start, rad or m.
+    /// From its start, rad or m: where it is to be kept, and what the engine was told last, which may be earlier.
+    pub kept: (f64, f64),
     pub between: (f64, f64),
     /// How fast it was as the last part of a step began, rad/s or m/s, and how long that part took, s.
     pub last: (f64, f64),
-    /// How far it was beyond one of its ends as the last step ended, rad or m; less than 0 within them.
+    /// How far it was beyond one of those where it is to be kept as the last step ended, rad or m; less than 0 within them.
     pub beyond: f64,
 }
 
 impl ToldEnds {
     /// Of a joint that stands still before the first step, which takes so long, s.
-    pub fn at_start(between: (f64, f64), step: f64) -> ToldEnds {
-        ToldEnds { between, last: (0.0, step), beyond: 0.0 }
+    pub fn at_start(kept: (f64, f64), step: f64) -> ToldEnds {
+        ToldEnds { kept, between: kept, last: (0.0, step), beyond: 0.0 }
     }
 
     /// Whether it was near one of its ends, or beyond it, as the last step ended.
