@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use hrdsl_results::{
-    BinResult, CampaignResults, ConformanceOutcome, CoverageRatios, FirstFailure, GoalStatus,
-    InterfaceWarning, MachineResult, RequirementKind, RequirementResult, TestName, TestResult, UnservedWait,
-    VerdictOutcome as Outcome, VerdictResult, VerdictTally,
+    BinResult, CampaignResults, ConformanceOutcome, CounterexampleStep, CoverageRatios, FirstFailure,
+    GoalStatus, InterfaceWarning, MachineResult, RequirementKind, RequirementResult, TestName, TestResult,
+    UnservedWait, VerdictOutcome as Outcome, VerdictResult, VerdictTally,
 };
 
 use crate::text;
@@ -197,19 +197,47 @@ pub fn how(failure: &FirstFailure) -> String {
 
 /// A violation in a few words: the step that violates, with the margin if it has one, or what was not done.
 pub fn in_short(verdict: &VerdictResult, failure: &FirstFailure) -> String {
-    let step = failure.counterexample.last().map(|s| text::line(&s.text)).unwrap_or_default();
+    let steps = failure.counterexample.as_slice();
+    let step = steps.last().map(|s| text::line(&s.text)).unwrap_or_default();
     let passed = text::moment(failure.time - failure.triggered_at);
-    match (failure.deadline, failure.counterexample.as_slice()) {
-        (true, []) => format!("nothing within {passed}"),
-        (true, _) => format!("nothing within {passed} of {step}"),
-        (false, [first, .., _]) if failure.triggered_at < failure.time => {
+    if failure.deadline {
+        return if steps.is_empty() {
+            format!("nothing within {passed}")
+        } else {
+            format!("nothing within {passed} of {step}")
+        };
+    }
+    let step =
+        if steps.last().is_some_and(|last| sample(last).is_some()) { latest_samples(steps) } else { step };
+    match steps {
+        // What has to hold from the start on is not triggered by the first sample, though a monitor begins with that.
+        [first, .., _] if failure.triggered_at < failure.time && sample(first).is_some() => step,
+        [first, .., _] if failure.triggered_at < failure.time => {
             format!("{step}, {passed} after {}", text::line(&first.text))
         }
-        (false, _) => match &verdict.worst_margin {
+        _ => match &verdict.worst_margin {
             Some((value, unit)) => format!("{step}, margin {}", text::margin(*value, unit)),
             None => step,
         },
     }
+}
+
+/// The signal of which a step shows a sample, and what it shows, as `speed = 1 m/s`.
+fn sample(step: &CounterexampleStep) -> Option<(&str, &str)> {
+    let shown = step.text.strip_prefix("signal ")?;
+    shown.split_once(" = ").map(|(signal, _)| (signal, shown))
+}
+
+/// The last sample of each signal: which of them violates a requirement that compares several, its steps do not say.
+fn latest_samples(steps: &[CounterexampleStep]) -> String {
+    let mut latest: Vec<(&str, &str)> = Vec::new();
+    for (signal, shown) in steps.iter().rev().filter_map(sample) {
+        if latest.iter().all(|(known, _)| *known != signal) {
+            latest.push((signal, shown));
+        }
+    }
+    let shown: Vec<_> = latest.iter().rev().map(|(_, shown)| text::line(shown)).collect();
+    format!("signal {}", shown.join(", "))
 }
 
 /// A test's name within its scenario.
@@ -393,5 +421,51 @@ fn missed_bins(results: &CampaignResults, gaps: &mut Vec<String>) {
             "The model cannot reach {}, yet tests did: the model does not match what was tested.",
             text::enumeration(&refuted)
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of a violation whose counterexample has these steps, in short.
+    fn short_of(steps: &[(f64, &str)]) -> String {
+        let step = |(at, (time, text)): (usize, &(f64, &str))| CounterexampleStep {
+            step: at,
+            time: *time,
+            text: (*text).to_owned(),
+        };
+        let counterexample: Vec<CounterexampleStep> = steps.iter().enumerate().map(step).collect();
+        let times: Vec<f64> = steps.iter().map(|(time, _)| *time).collect();
+        let failure = FirstFailure {
+            time: *times.last().unwrap(),
+            triggered_at: times[0],
+            deadline: false,
+            counterexample,
+            around: Vec::new(),
+        };
+        let verdict = VerdictResult {
+            requirement: "R".into(),
+            outcome: Outcome::Fail,
+            triggered: 1,
+            failures: 1,
+            failure: None,
+            worst_margin: Some((-0.5, "m".to_owned())),
+        };
+        in_short(&verdict, &failure)
+    }
+
+    #[test]
+    fn a_violated_comparison_of_several_signals_tells_the_last_sample_of_each() {
+        let steps = [(0.0, "signal y = 0 m"), (3.0, "signal x = -1 m"), (3.0, "signal y = 2 m")];
+        assert_eq!(short_of(&steps), "signal x = -1 m, y = 2 m");
+        assert_eq!(short_of(&[(0.0, "signal y = 0 m"), (3.0, "signal y = 2 m")]), "signal y = 2 m");
+    }
+
+    #[test]
+    fn what_was_triggered_by_an_event_tells_it() {
+        let steps = [(1.0, "robot offered"), (3.0, "signal y = 2 m")];
+        assert_eq!(short_of(&steps), "signal y = 2 m, 2.00 s after robot offered");
+        assert_eq!(short_of(&[(1.0, "robot closing")]), "robot closing, margin −0.500 m");
     }
 }
