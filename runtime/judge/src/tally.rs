@@ -111,6 +111,7 @@ fn requirements(
             if let Some(tally) = requirement.tally.get_mut(suite) {
                 tally.add(verdict.outcome);
             }
+            requirement.triggered.add(verdict.triggered);
             if verdict.outcome == VerdictOutcome::Fail {
                 requirement.failing.push(test.name.clone());
             }
@@ -121,9 +122,6 @@ fn requirements(
                 requirement.worst_margin = Some(SmallestMargin { value: *value, unit, test });
             }
         }
-    }
-    for requirement in &mut requirements {
-        requirement.triggered = TriggerTotal::of(&requirement.name, tests.iter().map(|test| &test.result));
     }
     requirements
 }

@@ -311,27 +311,7 @@ pub fn gaps(results: &CampaignResults) -> Vec<String> {
     errors(results, &mut gaps);
     never_decided(results, &mut gaps);
     missed_bins(results, &mut gaps);
-    for suite in &results.suites {
-        let inconclusive = suite.goals.iter().filter(|g| g.status == GoalStatus::Inconclusive).count();
-        if inconclusive > 0 {
-            gaps.push(format!(
-                "{} of {} stayed inconclusive: the search ended before it had an answer.",
-                text::count(inconclusive, "goal"),
-                suite.name
-            ));
-        }
-    }
-    for suite in &results.suites {
-        let missed = suite.explanation.as_ref().map_or(0, |e| e.uncovered.len());
-        if missed > 0 {
-            let goals = suite.model.as_ref().map_or(missed, |m| m.goals);
-            gaps.push(format!(
-                "{missed} of {} of {} are reached by none of its tests in the model.",
-                text::count(goals, "goal"),
-                suite.name
-            ));
-        }
-    }
+    unreached_goals(results, &mut gaps);
     for machine in results.machines.iter().filter(|m| !is_whole(m)) {
         let ((states, all_states), (taken, all)) = (machine.states_reached(), machine.transitions_reached());
         gaps.push(format!(
@@ -367,6 +347,30 @@ pub fn gaps(results: &CampaignResults) -> Vec<String> {
         ));
     }
     gaps
+}
+
+fn unreached_goals(results: &CampaignResults, gaps: &mut Vec<String>) {
+    for suite in &results.suites {
+        let inconclusive = suite.goals.iter().filter(|g| g.status == GoalStatus::Inconclusive).count();
+        if inconclusive > 0 {
+            gaps.push(format!(
+                "{} of {} stayed inconclusive: the search ended before it had an answer.",
+                text::count(inconclusive, "goal"),
+                suite.name
+            ));
+        }
+    }
+    for suite in &results.suites {
+        let missed = suite.explanation.as_ref().map_or(0, |e| e.uncovered.len());
+        if missed > 0 {
+            let goals = suite.model.as_ref().map_or(missed, |m| m.goals);
+            gaps.push(format!(
+                "{missed} of {} of {} are reached by none of its tests in the model.",
+                text::count(goals, "goal"),
+                suite.name
+            ));
+        }
+    }
 }
 
 fn errors(results: &CampaignResults, gaps: &mut Vec<String>) {

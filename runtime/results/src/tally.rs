@@ -38,6 +38,12 @@ pub struct TriggerTotal {
 }
 
 impl TriggerTotal {
+    /// Counts one more test, which triggered it so often.
+    pub fn add(&mut self, times: u32) {
+        self.times += u64::from(times);
+        self.tests += u32::from(times > 0);
+    }
+
     /// Of a requirement in these tests.
     #[must_use]
     pub fn of<'a>(
@@ -45,13 +51,9 @@ impl TriggerTotal {
         tests: impl IntoIterator<Item = &'a TestResult>,
     ) -> TriggerTotal {
         let verdicts = tests.into_iter().flat_map(|test| &test.judgement.verdicts);
-        verdicts.filter(|verdict| verdict.requirement == *requirement && verdict.triggered > 0).fold(
-            TriggerTotal::default(),
-            |total, verdict| TriggerTotal {
-                times: total.times + u64::from(verdict.triggered),
-                tests: total.tests + 1,
-            },
-        )
+        let mut total = TriggerTotal::default();
+        verdicts.filter(|v| v.requirement == *requirement).for_each(|v| total.add(v.triggered));
+        total
     }
 }
 

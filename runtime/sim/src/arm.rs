@@ -79,8 +79,6 @@ pub(crate) struct ArmControl {
     losses: Vec<(f64, f64)>,
     contact_limit: Option<f64>,
     chain: KinematicChain,
-    /// Between which angles or ways the motors may bring the joints: their limits, but for what the physics keeps them from those.
-    kept: Vec<(f64, f64)>,
     /// The motors' aim while no motion is under way.
     rest: Vec<f64>,
     /// Where set-points want the joints; the motors' aim follows no faster than the arm may.
@@ -158,7 +156,6 @@ impl ArmControl {
             rest: chain.links.iter().map(|link| link.start).collect(),
             aimed: chain.links.iter().map(|link| link.start).collect(),
             chain,
-            kept: numbers.iter().map(|joint| physics.kept_limits(*joint)).collect(),
             motion: None,
             standstill: ArmStandstill::default(),
             dynamics: ArmDynamics::new(&numbers, physics),
@@ -306,15 +303,18 @@ impl ArmControl {
             self.approach_set_points(h);
         }
         let (b, _) = self.aim();
-        let (a, b) = (self.within_ends(a), self.within_ends(b));
+        let (a, b) = (self.within_ends(a, physics), self.within_ends(b, physics));
         self.steer(&a, &b, (h, rate), physics);
         self.give_way(physics);
         self.look_whether_it_stands(h, physics);
     }
 
     /// What the motors aim at if a posture is wanted: they do not press joints against their ends.
-    fn within_ends(&self, mut aim: Vec<f64>) -> Vec<f64> {
-        aim.iter_mut().zip(&self.kept).for_each(|(q, (lo, hi))| *q = q.clamp(*lo, *hi));
+    fn within_ends(&self, mut aim: Vec<f64>, physics: &PhysicsAdapter) -> Vec<f64> {
+        for (q, id) in aim.iter_mut().zip(&self.joints) {
+            let (lo, hi) = physics.kept_limits(usize::from(id.0));
+            *q = q.clamp(lo, hi);
+        }
         aim
     }
 
