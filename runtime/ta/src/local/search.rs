@@ -61,17 +61,12 @@ pub(crate) struct LocalSearch<'m, 'p> {
     left: usize,
     /// Its zones are the stored ones as far as all processes have one time, of the clocks that matter.
     store: PassedList<LocalZoneBound>,
-    /// By node: its zone, until its successors are computed.
-    zones: Vec<Option<LocalZone>>,
+    zones: WaitingZones,
     waiting: WaitingList,
     levels: Vec<Vec<u32>>,
     packed: Vec<u64>,
     met: Vec<usize>,
     driven_out: Vec<u32>,
-    /// Zones to use again.
-    pool: Vec<LocalZone>,
-    /// Of the zones that wait.
-    bytes: usize,
     peak: usize,
     visited: usize,
     transitions: usize,
@@ -80,6 +75,53 @@ pub(crate) struct LocalSearch<'m, 'p> {
     started: bool,
     /// After so many states the caller is asked whether to go on.
     ask: usize,
+}
+
+/// The zones of nodes whose successors are not computed yet. Few of all nodes wait: the rest has a number only.
+#[derive(Default)]
+struct WaitingZones {
+    /// By node: where its zone is, or [`NIL`].
+    places: Vec<u32>,
+    zones: Vec<LocalZone>,
+    /// Where zones are that nobody waits with; their memory is used again.
+    free: Vec<u32>,
+    bytes: usize,
+}
+
+impl WaitingZones {
+    /// The next node has this zone; what becomes of the zone has memory for the next one.
+    fn push(&mut self, zone: &mut LocalZone) {
+        self.bytes += zone.heap_bytes();
+        let place = self.free.pop().unwrap_or_else(|| {
+            self.zones.push(LocalZone::default());
+            self.zones.len() as u32 - 1
+        });
+        std::mem::swap(&mut self.zones[place as usize], zone);
+        self.places.push(place);
+    }
+
+    /// Takes the node's zone, unless it was taken.
+    fn take(&mut self, node: u32) -> Option<LocalZone> {
+        let place = std::mem::replace(&mut self.places[node as usize], NIL);
+        if place == NIL {
+            return None;
+        }
+        let zone = std::mem::take(&mut self.zones[place as usize]);
+        self.bytes -= zone.heap_bytes();
+        self.free.push(place);
+        Some(zone)
+    }
+
+    /// Gives back the memory of a zone that was taken.
+    fn recycle(&mut self, zone: LocalZone) {
+        if let Some(&place) = self.free.last() {
+            self.zones[place as usize] = zone;
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        self.bytes + self.places.len() * size_of::<u32>()
+    }
 }
 
 /// Memory that the search uses again and again.
@@ -140,14 +182,12 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             open: vec![true; goals.len()],
             left: goals.len(),
             store: PassedList::new(layout, 0, false),
-            zones: Vec::new(),
+            zones: WaitingZones::default(),
             waiting: WaitingList::new(options.order, options.seed),
             levels: levels(model),
             packed: Vec::new(),
             met: Vec::new(),
             driven_out: Vec::new(),
-            pool: Vec::new(),
-            bytes: 0,
             peak: 0,
             visited: 0,
             transitions: 0,
@@ -202,7 +242,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             if self.transitions >= until {
                 return Ok(LocalPause::Paused);
             }
-            let bytes = self.store.bytes() + self.waiting.bytes() + self.bytes;
+            let bytes = self.store.bytes() + self.waiting.bytes() + self.zones.bytes();
             self.peak = self.peak.max(bytes);
             if self.store.nodes.len() >= self.budget.states || !self.store.has_room(self.space.room()) {
                 return Ok(LocalPause::Cut(SearchCutoff::States));
@@ -219,13 +259,12 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             self.waiting.take(&self.store.nodes, FEW, round);
             for &id in &*round {
                 // Another of the round may have driven it out.
-                let Some(zone) = self.zones[id as usize].take() else { continue };
+                let Some(zone) = self.zones.take(id) else { continue };
                 let node = self.store.nodes[id as usize];
                 self.store.layout.unpack(self.store.packed(node.discrete), state);
-                self.bytes -= zone.heap_bytes();
                 self.visited += 1;
                 self.expand(id, state, &zone, w, scratch)?;
-                self.pool.push(zone);
+                self.zones.recycle(zone);
             }
         }
     }
@@ -355,9 +394,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         };
         let id = self.store.add(parent, number, discrete, &w.together, &[]);
         self.look(w, known.is_none(), id)?;
-        let zone = std::mem::replace(&mut w.zone, self.pool.pop().unwrap_or_default());
-        self.bytes += zone.heap_bytes();
-        self.zones.push(Some(zone));
+        self.zones.push(&mut w.zone);
         self.waiting.push(id, lost, level(&self.levels, &w.effect.target, &[]), 0);
         Ok(())
     }
@@ -385,9 +422,8 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         for &n in &self.driven_out {
             self.waiting.covered(n);
             self.store.cover(n);
-            if let Some(zone) = self.zones[n as usize].take() {
-                self.bytes -= zone.heap_bytes();
-                self.pool.push(zone);
+            if let Some(zone) = self.zones.take(n) {
+                self.zones.recycle(zone);
             }
         }
         if !self.driven_out.is_empty() {

@@ -17,8 +17,12 @@ const FAR: i64 = 1 << 50;
 
 /// What the static analysis found.
 pub(crate) struct ExtrapolationBounds {
-    /// By member and location: own clocks that matter there.
-    own: Vec<Vec<Vec<(u16, LuBounds)>>>,
+    /// Own clocks that matter, location by location.
+    own: Vec<(u16, LuBounds)>,
+    /// By member and location: where its own clocks lie in `own`.
+    places: Vec<Vec<(u32, u32)>>,
+    /// How many own clocks matter at most in a state.
+    most_own: usize,
     /// By member and location: the bounds of the shared clocks.
     shared: Vec<Vec<Vec<LuBounds>>>,
     shared_clocks: usize,
@@ -48,17 +52,24 @@ impl ExtrapolationBounds {
         }
         let all_clocks = all_clocks || diagonals.is_some();
         let keep = |lu: &LuBounds| all_clocks || *lu != NEVER;
-        let own = |(m, rows): (&CompiledAutomaton, &Vec<Vec<LuBounds>>)| {
+        let (mut own, mut places): (Vec<_>, Vec<Vec<(u32, u32)>>) = (Vec::new(), Vec::new());
+        for (m, rows) in members.iter().zip(&analysis.bounds) {
             let first = m.first_clock as u16;
-            let row = |row: &Vec<LuBounds>| {
-                let own = (first..).zip(row[shared_clocks..].iter().copied());
-                own.filter(|(_, lu)| keep(lu)).collect::<Vec<_>>()
+            let place = |row: &Vec<LuBounds>| {
+                let begin = own.len() as u32;
+                let clocks = (first..).zip(row[shared_clocks..].iter().copied());
+                own.extend(clocks.filter(|(_, lu)| keep(lu)));
+                (begin, own.len() as u32)
             };
-            rows.iter().map(row).collect::<Vec<_>>()
-        };
+            places.push(rows.iter().map(place).collect());
+        }
+        let most = |places: &Vec<(u32, u32)>| places.iter().map(|(begin, end)| end - begin).max();
+        let most_own = places.iter().filter_map(most).sum::<u32>() as usize;
         let shared = |rows: &Vec<Vec<LuBounds>>| rows.iter().map(|r| r[..shared_clocks].to_vec()).collect();
         Ok(Self {
-            own: members.iter().zip(&analysis.bounds).map(own).collect(),
+            own,
+            places,
+            most_own,
             shared: analysis.bounds.iter().map(shared).collect(),
             shared_clocks,
             all_clocks,
@@ -77,7 +88,7 @@ impl ExtrapolationBounds {
             return d.greatest.clone();
         }
         let mut all = vec![0; dim];
-        for &(clock, lu) in self.own.iter().flatten().flatten() {
+        for &(clock, lu) in &self.own {
             let most = &mut all[usize::from(clock)];
             *most = lu.lower.max(lu.upper).max(*most);
         }
@@ -91,24 +102,29 @@ impl ExtrapolationBounds {
 
     /// The clocks that matter in a state, with their bounds.
     pub(crate) fn frame(&self, state: &[i64], abstraction: ExtrapolationAbstraction, out: &mut ActiveClocks) {
-        out.clocks.clear();
-        out.bounds.clear();
-        out.clocks.push(0);
-        out.bounds.push(LuBounds { lower: 0, upper: 0 });
+        // Written by index: to push asks for room each time.
+        let most = 1 + self.shared_clocks + self.most_own;
+        out.clocks.resize(most, 0);
+        out.bounds.resize(most, NEVER);
+        (out.clocks[0], out.bounds[0]) = (0, LuBounds { lower: 0, upper: 0 });
+        let mut count = 1;
         for x in 0..self.shared_clocks {
             let rows = self.shared.iter().zip(state);
             let lu = rows.map(|(by_location, &at)| by_location[at as usize][x]).fold(NEVER, LuBounds::join);
             if self.all_clocks || lu != NEVER {
-                out.clocks.push(x as u16 + 1);
-                out.bounds.push(lu);
+                (out.clocks[count], out.bounds[count]) = (x as u16 + 1, lu);
+                count += 1;
             }
         }
-        for (by_location, &at) in self.own.iter().zip(state) {
-            for &(clock, lu) in &by_location[at as usize] {
-                out.clocks.push(clock);
-                out.bounds.push(lu);
+        for (by_location, &at) in self.places.iter().zip(state) {
+            let (begin, end) = by_location[at as usize];
+            for &own in &self.own[begin as usize..end as usize] {
+                (out.clocks[count], out.bounds[count]) = own;
+                count += 1;
             }
         }
+        out.clocks.truncate(count);
+        out.bounds.truncate(count);
         if abstraction == ExtrapolationAbstraction::Greatest {
             for lu in &mut out.bounds {
                 let most = lu.lower.max(lu.upper);

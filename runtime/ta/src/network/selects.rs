@@ -40,8 +40,13 @@ pub(crate) fn bind(pattern: &[ReceiveArg], args: &[Value], binders: &mut BinderV
 }
 
 /// The least of all combinations of selects; `false`: there is none.
+#[inline]
 pub(crate) fn first(selects: &[(i64, i64)], out: &mut SmallVec<[i64; 4]>) -> bool {
     out.clear();
+    // Most edges have none.
+    if selects.is_empty() {
+        return true;
+    }
     out.extend(selects.iter().map(|s| s.0));
     selects.iter().all(|s| s.0 <= s.1)
 }

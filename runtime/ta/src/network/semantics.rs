@@ -502,7 +502,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>
         ControlFlow::Continue(())
     }
 
-    fn begin(&mut self, member: usize, edge: usize, binders: &SmallVec<[i64; 4]>) -> EnumerationFlow {
+    fn begin(&mut self, member: usize, edge: usize, binders: &[i64]) -> EnumerationFlow {
         let model = self.model;
         self.s.guard.clear();
         match self.opens(member, edge, binders) {
@@ -515,7 +515,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>
         self.s.parts.push(CompiledMove {
             member: member as u16,
             edge: edge as u16,
-            binders: binders.clone(),
+            binders: SmallVec::from_slice(binders),
         });
         match &model.members[member].edges[edge].sync {
             EdgeSync::Internal => self.fire(None),
@@ -574,7 +574,7 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>
         let mut chosen = SmallVec::new();
         let mut more = first(&arrow.selects, &mut chosen);
         while more {
-            let mut binders = chosen.clone();
+            let mut binders: SmallVec<[i64; 4]> = SmallVec::from_slice(&chosen);
             binders.extend(pattern.binds.iter().map(|&i| self.s.args[usize::from(i)]));
             match self.opens(member, edge, &binders) {
                 Ok(true) => {

@@ -14,7 +14,7 @@ use crate::{
         waiting,
     },
     zone::{
-        dbm::{Dbm, DbmNumber},
+        dbm::{Dbm, DbmNumber, dominates},
         diagonals::split,
         extrapolation::{ActiveClocks, extra_lu, thresholds},
     },
@@ -106,7 +106,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
         Ok(())
     }
 
-    /// The extrapolated pieces of a zone, into `m.pieces`.
+    /// The extrapolated pieces of a zone, into `m.pieces`; what is left of the zone is of no use.
     fn split(&self, m: &mut WorkerMemory<N>, frame: &ActiveClocks, zone: &mut Dbm<N>) {
         match &self.model.extrapolation.diagonals {
             Some(d) => {
@@ -122,10 +122,10 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
             None => {
                 extra_lu(frame, zone, &mut m.beyond);
                 m.pieces.truncate(1);
-                match m.pieces.first_mut() {
-                    Some(piece) => piece.copy_from(zone),
-                    None => m.pieces.push(zone.clone()),
+                if m.pieces.is_empty() {
+                    m.pieces.push(Dbm::zero(1));
                 }
+                std::mem::swap(&mut m.pieces[0], zone);
             }
         }
     }
@@ -217,7 +217,9 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
     /// Whether nodes of the discrete state cover the zone. What is covered before extrapolation is so after it: most of the work is saved.
     /// Mostly the newest has it all.
     fn is_passed(&self, m: &mut WorkerMemory<N>, discrete: u32, frame: &ActiveClocks, zone: &Dbm<N>) -> bool {
-        if self.is_within_newest(discrete, zone, &m.ranks) {
+        m.flat.clear();
+        zone.store(&mut m.flat);
+        if self.is_within_newest(discrete, zone.dim(), &m.flat, &m.ranks) {
             return true;
         }
         thresholds(frame, zone, &mut m.bounds);
@@ -225,12 +227,12 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
     }
 
     /// Whether the newest node of the discrete state includes the zone.
-    fn is_within_newest(&self, discrete: u32, zone: &Dbm<N>, ranks: &[u32]) -> bool {
+    fn is_within_newest(&self, discrete: u32, dim: usize, flat: &[N], ranks: &[u32]) -> bool {
         let store = self.c.store;
         let newest = store.head(discrete);
         newest != NIL
             && no_worse(store.ranks(newest), ranks)
-            && zone.is_within(store.zone(&store.nodes[newest as usize], zone.dim()))
+            && dominates(store.zone(&store.nodes[newest as usize], dim), flat)
     }
 
     fn is_covered(&self, discrete: u32, dim: usize, demands: &[N], ranks: &[u32]) -> bool {

@@ -17,7 +17,7 @@ use crate::{
     },
     zone::{
         constraint::DifferenceConstraint,
-        dbm::{Dbm, DbmBound, DbmNumber},
+        dbm::{ClockUpperBounds, Dbm, DbmBound, DbmNumber},
         extrapolation::{ActiveClocks, ExtrapolationAbstraction, LuBounds, NONE},
     },
 };
@@ -70,7 +70,7 @@ struct StepperWorkspace<N> {
     zone: Dbm<N>,
     frame: ActiveClocks,
     invariant: Vec<DifferenceConstraint>,
-    above: Vec<(usize, N)>,
+    above: ClockUpperBounds<N>,
     from: Vec<(u16, i64)>,
     /// The index in the zone before the transition, by clock of the network.
     index: Vec<u16>,
@@ -117,7 +117,7 @@ impl<'m, 'p, N: DbmNumber> SymbolicStepper<'m, 'p, N> {
             zone: Dbm::zero(1),
             frame: ActiveClocks::default(),
             invariant: Vec::new(),
-            above: Vec::new(),
+            above: ClockUpperBounds::new(),
             from: Vec::new(),
             index: Vec::new(),
         };
@@ -288,17 +288,16 @@ impl<N: DbmNumber> StepperWorkspace<N> {
 
     /// Enters the target and delays there; `false`: its invariants forbid it.
     fn enter(&mut self, model: &CompiledNetwork) -> Result<bool, ModelError> {
-        self.above.clear();
-        let mut others = false;
-        for &c in &self.invariant {
-            if c.j == 0
-                && let Some(x) = self.frame.index(c.i)
-            {
-                self.above.push((x, N::of(c.bound)));
-            } else {
-                others = true;
-            }
-        }
+        let (frame, mut others) = (&self.frame, false);
+        // Clocks are in order in both, mostly: the next is looked for behind the last.
+        let mut behind = 0;
+        let above = self.invariant.iter().filter_map(|c| {
+            let x = if c.j == 0 { frame.index_from(behind, c.i) } else { None };
+            behind = x.unwrap_or(behind);
+            others |= x.is_none();
+            Some((x?, N::of(c.bound)))
+        });
+        self.above.set(frame.dim(), above);
         if !self.zone.constrain_above(&self.above) {
             return Ok(false);
         }

@@ -103,8 +103,14 @@ pub trait DbmNumber:
     /// The bound with a number of units more; not for no bound.
     fn shifted(self, units: i64) -> Self;
 
-    /// `row[l] = min(row[l], to + through[l])`; `to` must be a bound.
+    /// `row[l] = min(row[l], to + through[l])`; `to` must be a bound, and both whole lanes.
     fn relax(row: &mut [Self], to: Self, through: &[Self]);
+
+    /// What is added to a bound, and which of that one's bits count, in the sum with this bound.
+    fn addend(self) -> (Self, Self);
+
+    /// The least sum of `row[l]` and the bound whose addend is `base[l]`, `mask[l]`; without any, no bound. All are whole lanes.
+    fn least_sum(row: &[Self], base: &[Self], mask: &[Self]) -> Self;
 
     /// Pushes the least of `row[l]`, `column[l] + more` and `most[l]` for each `l`: none of the sums overflows.
     fn least_of(row: &[Self], column: &[Self], most: &[Self], more: Self, out: &mut Vec<Self>);
@@ -144,6 +150,31 @@ macro_rules! number {
             }
 
             #[inline]
+            fn addend(self) -> (Self, Self) {
+                // The sum is strict if one of the two is; with no bound it is none.
+                match (self == Self::INFINITY, self & 1) {
+                    (true, _) => (self, 0),
+                    (false, 0) => (self, !1),
+                    (false, _) => (self & !1, !0),
+                }
+            }
+
+            #[inline]
+            fn least_sum(row: &[Self], base: &[Self], mask: &[Self]) -> Self {
+                // Rows are whole lanes: loops of a length that is known become instructions on vectors, without a rest.
+                let (row, base, mask) =
+                    (row.as_chunks::<$lanes>().0, base.as_chunks::<$lanes>().0, mask.as_chunks::<$lanes>().0);
+                let mut least = [Self::INFINITY; $lanes];
+                for ((row, base), mask) in row.iter().zip(base).zip(mask) {
+                    let sum: [Self; $lanes] = std::array::from_fn(|l| base[l].wrapping_add(row[l] & mask[l]));
+                    least = std::array::from_fn(|l| {
+                        least[l].min(if row[l] == Self::INFINITY { row[l] } else { sum[l] })
+                    });
+                }
+                least.into_iter().fold(Self::INFINITY, Self::min)
+            }
+
+            #[inline]
             fn least_of(row: &[Self], column: &[Self], most: &[Self], more: Self, out: &mut Vec<Self>) {
                 let lines = row.iter().zip(column).zip(most);
                 out.extend(lines.map(|((&b, &c), &m)| b.min(c.wrapping_add(more)).min(m)));
@@ -151,12 +182,14 @@ macro_rules! number {
 
             #[inline]
             fn relax(row: &mut [Self], to: Self, through: &[Self]) {
-                // The sum is strict if one of the two is.
-                let (base, mask) = (to & !1, if to & 1 == 1 { !0 } else { !1 });
-                for (old, &rest) in row.iter_mut().zip(through) {
-                    let sum = base.wrapping_add(rest & mask);
-                    let sum = if rest == Self::INFINITY { rest } else { sum };
-                    *old = if sum < *old { sum } else { *old };
+                let (base, mask) = to.addend();
+                for (row, through) in
+                    row.as_chunks_mut::<$lanes>().0.iter_mut().zip(through.as_chunks::<$lanes>().0)
+                {
+                    let sum: [Self; $lanes] = std::array::from_fn(|l| base.wrapping_add(through[l] & mask));
+                    *row = std::array::from_fn(|l| {
+                        row[l].min(if through[l] == Self::INFINITY { through[l] } else { sum[l] })
+                    });
                 }
             }
         }
@@ -178,6 +211,57 @@ pub struct Dbm<N = i64> {
     dim: usize,
     stride: usize,
     m: Vec<N>,
+}
+
+/// Upper bounds of clocks, which a zone takes all at once.
+#[derive(Clone, Debug)]
+pub(crate) struct ClockUpperBounds<N> {
+    each: Vec<(usize, N)>,
+    /// By clock, padded as rows are: the addends of the bounds, if there are so many that going through whole rows is quicker.
+    base: Vec<N>,
+    mask: Vec<N>,
+}
+
+impl<N: DbmNumber> ClockUpperBounds<N> {
+    pub(crate) fn new() -> Self {
+        Self { each: Vec::new(), base: Vec::new(), mask: Vec::new() }
+    }
+
+    /// Becomes these bounds of clocks of a zone with `dim` clocks.
+    pub(crate) fn set(&mut self, dim: usize, bounds: impl Iterator<Item = (usize, N)>) {
+        self.each.clear();
+        self.each.extend(bounds);
+        let stride = padded::<N>(dim);
+        self.base.clear();
+        self.mask.clear();
+        if self.each.len() * N::LANES <= 2 * stride {
+            return;
+        }
+        self.base.resize(stride, N::INFINITY);
+        for &(clock, bound) in &self.each {
+            self.base[clock] = bound.min(self.base[clock]);
+        }
+        self.mask.extend(self.base.iter_mut().map(|base| {
+            let (addend, mask) = base.addend();
+            *base = addend;
+            mask
+        }));
+    }
+
+    /// The bound of the clock of this row that follows from those of others; no bound if none does.
+    #[inline]
+    fn through(&self, row: &[N]) -> N {
+        if self.base.is_empty() {
+            self.each.iter().map(|&(j, b)| row[j].plus(b)).min().unwrap_or(N::INFINITY)
+        } else {
+            N::least_sum(row, &self.base, &self.mask)
+        }
+    }
+}
+
+/// The length of a row with its padding.
+fn padded<N: DbmNumber>(dim: usize) -> usize {
+    dim.div_ceil(N::LANES) * N::LANES
 }
 
 /// A row, copied.
@@ -211,7 +295,7 @@ impl<N: DbmNumber> Dbm<N> {
     /// Makes room for so many clocks; the entries are without bounds afterwards.
     pub(crate) fn resize(&mut self, dim: usize) {
         self.dim = dim;
-        self.stride = dim.div_ceil(N::LANES) * N::LANES;
+        self.stride = padded::<N>(dim);
         self.m.clear();
         self.m.resize(self.stride * dim, N::INFINITY);
     }
@@ -298,14 +382,21 @@ impl<N: DbmNumber> Dbm<N> {
     pub fn close(&mut self) -> bool {
         let stride = self.stride.max(1);
         for k in 0..self.dim {
+            // No path leads on from a clock whose row has its own entry only; one that is less than zero makes the set empty.
+            let row = self.row(k);
+            if row[k] >= N::LE_ZERO && row.iter().filter(|&&b| b != N::INFINITY).count() <= 1 {
+                continue;
+            }
             let through = self.copied(k);
-            for row in self.m.chunks_exact_mut(stride) {
+            let mut negative = false;
+            for (i, row) in self.m.chunks_exact_mut(stride).enumerate() {
                 let to = row[k];
                 if to != N::INFINITY {
                     N::relax(row, to, &through);
+                    negative |= row[i] < N::LE_ZERO;
                 }
             }
-            if (0..self.dim).any(|i| self.entry(i, i) < N::LE_ZERO) {
+            if negative {
                 self.make_empty();
                 return false;
             }
@@ -347,23 +438,22 @@ impl<N: DbmNumber> Dbm<N> {
     /// Adds upper bounds of several clocks at once, and closes again. Returns whether it is not empty.
     ///
     /// INVARIANT: a shortest path uses one bound `x_j ≺ b` at most, since all of them end at the reference clock.
-    pub(crate) fn constrain_above(&mut self, bounds: &[(usize, N)]) -> bool {
+    pub(crate) fn constrain_above(&mut self, bounds: &ClockUpperBounds<N>) -> bool {
         if self.is_empty() {
             return false;
         }
-        if bounds.iter().all(|&(j, b)| self.entry(j, 0) <= b) {
+        if bounds.each.iter().all(|&(j, b)| self.entry(j, 0) <= b) {
             return true;
         }
-        if bounds.iter().any(|&(j, b)| b.plus(self.entry(0, j)) < N::LE_ZERO) {
+        if bounds.each.iter().any(|&(j, b)| b.plus(self.entry(0, j)) < N::LE_ZERO) {
             self.make_empty();
             return false;
         }
         let through = self.copied(0);
         let stride = self.stride.max(1);
         for row in self.m.chunks_exact_mut(stride) {
-            let old = row[0];
-            let new = bounds.iter().map(|&(j, b)| row[j].plus(b)).min().unwrap_or(old);
-            if new < old {
+            let new = bounds.through(row);
+            if new < row[0] {
                 N::relax(row, new, &through);
             }
         }
@@ -373,13 +463,13 @@ impl<N: DbmNumber> Dbm<N> {
     /// Lets time pass as far as upper bounds of clocks let it, which hold already.
     ///
     /// INVARIANT: the bounds that new upper bounds of clocks would tighten are those of before, and these were as tight.
-    pub(crate) fn up_within(&mut self, bounds: &[(usize, N)]) {
+    pub(crate) fn up_within(&mut self, bounds: &ClockUpperBounds<N>) {
         if self.is_empty() {
             return;
         }
         let stride = self.stride.max(1);
         for row in self.m.chunks_exact_mut(stride).skip(1) {
-            row[0] = bounds.iter().map(|&(j, b)| row[j].plus(b)).min().unwrap_or(N::INFINITY);
+            row[0] = bounds.through(row);
         }
     }
 
@@ -423,6 +513,9 @@ impl<N: DbmNumber> Dbm<N> {
     ///
     /// Clock 0 of `old` stands for zero; `from[0]` must be `(0, 0)`.
     pub fn gather(&mut self, old: &Self, from: &[(u16, i64)]) {
+        if old.dim == from.len() && self.gather_few(old, from) {
+            return;
+        }
         self.resize(from.len());
         let shifted = from.iter().any(|f| f.1 != 0);
         for (i, &(x, a)) in from.iter().enumerate() {
@@ -435,10 +528,21 @@ impl<N: DbmNumber> Dbm<N> {
         }
     }
 
-    /// Whether each valuation is one of a zone as [`store`](Self::store) gives it.
-    #[must_use]
-    pub(crate) fn is_within(&self, flat: &[N]) -> bool {
-        (0..self.dim).zip(flat.chunks_exact(self.dim.max(1))).all(|(i, row)| dominates(row, self.row(i)))
+    /// As [`gather`](Self::gather) into as many clocks, where most are what they were; `false`: too few are.
+    fn gather_few(&mut self, old: &Self, from: &[(u16, i64)]) -> bool {
+        let others = || from.iter().enumerate().filter(|&(k, f)| *f != (k as u16, 0));
+        if others().count() * 4 > from.len() {
+            return false;
+        }
+        self.copy_from(old);
+        let shifted = |n: N, by: i64| if by != 0 && n != N::INFINITY { n.shifted(by) } else { n };
+        for (c, &(x, a)) in others() {
+            for (k, &(y, b)) in from.iter().enumerate() {
+                self.set(c, k, shifted(old.entry(usize::from(x), usize::from(y)), a - b));
+                self.set(k, c, shifted(old.entry(usize::from(y), usize::from(x)), b - a));
+            }
+        }
+        true
     }
 
     /// Whether each valuation of `other` is one of this.
@@ -477,8 +581,12 @@ impl<N: DbmNumber> Dbm<N> {
 /// Whether no entry of the one is less than that of the other: inclusion of zones without padding.
 #[must_use]
 pub(crate) fn dominates<N: DbmNumber>(greater: &[N], less: &[N]) -> bool {
-    let (a, b) = (greater.chunks(32), less.chunks(32));
-    a.zip(b).all(|(a, b)| !a.iter().zip(b).fold(false, |bad, (a, b)| bad | (a < b)))
+    // Blocks of a length that is known become instructions on vectors.
+    const BLOCK: usize = 32;
+    let (a, b) = (greater.chunks_exact(BLOCK), less.chunks_exact(BLOCK));
+    let rest = a.remainder().iter().zip(b.remainder());
+    let less_somewhere = |bad: bool, (a, b): (&N, &N)| bad | (a < b);
+    a.zip(b).all(|(a, b)| !a.iter().zip(b).fold(false, less_somewhere)) && !rest.fold(false, less_somewhere)
 }
 
 #[cfg(test)]
@@ -654,7 +762,7 @@ mod tests {
         }
 
         #[test]
-        fn narrow_entries_do_as_wide_ones(cs in constraints(), x in 1..DIM, above in prop::collection::vec((1..DIM, -2i64..9), 0..4)) {
+        fn narrow_entries_do_as_wide_ones(cs in constraints(), x in 1..DIM, above in prop::collection::vec((1..DIM, -2i64..9), 0..8)) {
             let wide = |z: &Dbm<i64>| (0..DIM).map(|i| (0..DIM).map(|j| z.at(i, j)).collect::<Vec<_>>()).collect::<Vec<_>>();
             let narrow = |z: &Dbm<i16>| (0..DIM).map(|i| (0..DIM).map(|j| z.at(i, j)).collect::<Vec<_>>()).collect::<Vec<_>>();
             let (mut a, mut b) = (Dbm::<i64>::universe(DIM), Dbm::<i16>::universe(DIM));
@@ -668,8 +776,9 @@ mod tests {
             // All at once is as one after the other.
             let mut one = a.clone();
             let each = above.iter().all(|&(j, c)| one.constrain(j, 0, DbmBound::le(c)));
-            let wides: Vec<(usize, i64)> = above.iter().map(|&(j, c)| (j, i64::of(DbmBound::le(c)))).collect();
-            let narrows: Vec<(usize, i16)> = above.iter().map(|&(j, c)| (j, i16::of(DbmBound::le(c)))).collect();
+            let (mut wides, mut narrows) = (ClockUpperBounds::<i64>::new(), ClockUpperBounds::<i16>::new());
+            wides.set(DIM, above.iter().map(|&(j, c)| (j, i64::of(DbmBound::le(c)))));
+            narrows.set(DIM, above.iter().map(|&(j, c)| (j, i16::of(DbmBound::le(c)))));
             let empty = a.is_empty();
             prop_assert_eq!(a.constrain_above(&wides), each && !empty);
             prop_assert_eq!(b.constrain_above(&narrows), each && !empty);

@@ -64,6 +64,12 @@ impl ActiveClocks {
         self.clocks.iter().position(|c| *c == clock)
     }
 
+    /// As [`index`](Self::index), but looks from this index on first.
+    pub(crate) fn index_from(&self, first: usize, clock: u16) -> Option<usize> {
+        let behind = self.clocks[first..].iter().position(|c| *c == clock);
+        behind.map_or_else(|| self.index(clock), |i| Some(first + i))
+    }
+
     pub(crate) fn dim(&self) -> usize {
         self.clocks.len()
     }
