@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use hrdsl_compiler::CompilationResult;
-use hrdsl_ir::{Nanos, Program, Span};
+use hrdsl_ir::{Nanos, Program, Role, Span};
 use hrdsl_runtime::{conformance::ConformanceOptions, results::CampaignResults};
 use hrdsl_source::nearest;
 
@@ -26,11 +26,19 @@ impl ObservationArgs {
     pub fn options(&self, program: &Program) -> Result<ConformanceOptions, CommandFault> {
         let latency = self.latency.map_or(Ok(0), |t| Nanos::try_from(t.as_nanos()));
         let event = |name: &String| {
-            program.event_named(name).ok_or_else(|| {
+            let id = program.event_named(name).ok_or_else(|| {
                 let near = nearest(name, program.events.iter().map(|e| e.name.as_str()));
                 let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
                 format!("--unobserved: the scenario has no event `{name}`{near}")
-            })
+            })?;
+            let from = program.actor(program.event(id).from);
+            match from.role {
+                Role::System => Ok(id),
+                Role::Environment => Err(format!(
+                    "--unobserved: `{name}` comes from `{}`, which no code plays: name an event that the code makes",
+                    from.name
+                )),
+            }
         };
         Ok(ConformanceOptions {
             latency: latency.map_err(|e| format!("--latency: {e}"))?,

@@ -6,7 +6,7 @@ use std::fs;
 
 use hrdsl_source::REGISTRY;
 use serde_json::Value;
-use support::{command, expect_code, hrdsl, hrdsl_in, root, stderr, stdout, tree};
+use support::{command, expect_code, folder, hrdsl, hrdsl_in, root, stderr, stdout, tree};
 
 #[test]
 fn every_code_is_explained() {
@@ -20,6 +20,25 @@ fn every_code_is_explained() {
             "{text}"
         );
     }
+}
+
+#[test]
+fn where_a_requirement_comes_from_is_told() {
+    let folder = folder(&[(
+        "lamp.hri",
+        "scenario lamp\nactor robot : system\nevent asked, lit from robot\n\
+         /// ISO 13482:2014, 5.10.8\nrequire R1 functional asked causes lit\n",
+    )]);
+    let read = hrdsl_in(folder.path(), "explain lamp.hri R1");
+    expect_code(&read, 0);
+    assert!(
+        stdout(&read).starts_with("R1\n  ISO 13482:2014, 5.10.8\n  asked causes lit\n"),
+        "{}",
+        stdout(&read)
+    );
+    let read: Value =
+        serde_json::from_slice(&hrdsl_in(folder.path(), "explain lamp.hri --json").stdout).unwrap();
+    assert_eq!(read[0]["doc"], "ISO 13482:2014, 5.10.8");
 }
 
 #[test]

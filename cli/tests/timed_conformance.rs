@@ -153,4 +153,7 @@ fn what_cannot_be_calibrated_is_said_with_the_next_step() {
     let unknown = hrdsl_in(project.path(), "judge scenario.hri log.jsonl --unobserved sayd");
     expect_code(&unknown, 2);
     assert!(stderr(&unknown).contains("no event `sayd`; did you mean `said`?"), "{}", stderr(&unknown));
+    let of_the_test = hrdsl_in(project.path(), "judge scenario.hri log.jsonl --unobserved asked");
+    expect_code(&of_the_test, 2);
+    assert!(stderr(&of_the_test).contains("`asked` comes from `person`"), "{}", stderr(&of_the_test));
 }

@@ -16,6 +16,8 @@ use crate::{
 pub struct RequirementReading {
     pub requirement: String,
     pub title: String,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub doc: String,
     pub text: String,
     pub says: String,
     pub pass: Option<String>,
@@ -98,6 +100,7 @@ impl RequirementReader<'_> {
         RequirementReading {
             requirement: self.requirement.name.clone(),
             title: self.requirement.title.clone(),
+            doc: self.requirement.doc.clone(),
             text: one_line(self.files.text(self.requirement.text)),
             says: format!("{part}, {}.", pattern.says),
             pass: (!never_passes).then(|| none_of_these.to_owned()),
@@ -113,6 +116,7 @@ impl RequirementReader<'_> {
         RequirementReading {
             requirement: self.requirement.name.clone(),
             title: self.requirement.title.clone(),
+            doc: self.requirement.doc.clone(),
             text: one_line(self.files.text(self.requirement.text)),
             says,
             pass: Some(pass),

@@ -32,7 +32,7 @@ pub struct ExplainArgs {
     /// Of a scenario, the requirements to explain; all without one.
     requirements: Vec<String>,
     /// Print JSON: the page's `code`, `title`, `group`, `page` and `text`, or a list of all but the texts; of requirements a list
-    /// of `requirement`, `title`, `text`, `says` and what each verdict means.
+    /// of `requirement`, `title`, `doc` (its doc comment, if it has one), `text`, `says` and what each verdict means.
     #[arg(long)]
     json: bool,
 }
@@ -117,6 +117,9 @@ fn of_scenario(file: &Path, args: &ExplainArgs) -> Result<CommandExit, CommandFa
 fn read_out(reading: &RequirementReading, colour: bool) -> String {
     let title = if reading.title.is_empty() { String::new() } else { format!(" \"{}\"", reading.title) };
     let mut out = format!("{}{title}\n", paint(colour, TextStyle::Bold, &reading.requirement));
+    for line in reading.doc.lines() {
+        out += &format!("  {line}\n");
+    }
     out += &format!("  {}\n\n  {}\n\n", reading.text, reading.says);
     let verdicts = [
         ("pass", &reading.pass),

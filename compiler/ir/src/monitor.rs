@@ -25,6 +25,9 @@ pub struct Monitor {
     pub kind: RequirementKind,
     /// The requirement's own words, if it has a title.
     pub title: String,
+    /// Its doc comment: where it comes from, such as a standard's clause.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub doc: String,
     /// The formal part as written in the source.
     pub text: String,
     /// Signals that guards and margins read: `Expr::Var(i)` is `signals[i]`.

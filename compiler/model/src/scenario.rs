@@ -216,6 +216,8 @@ pub struct TypedRequirement {
     pub name: String,
     pub kind: RequirementKind,
     pub title: String,
+    /// Its doc comment: where it comes from, such as a standard's clause.
+    pub doc: String,
     pub pattern: TypedPattern,
     /// The formal part.
     pub text: Span,

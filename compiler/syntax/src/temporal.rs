@@ -191,40 +191,42 @@ impl<E, C, T> TemporalFormula<E, C, T> {
         }
     }
 
-    /// The events that alone meet it each time that it is asked: those of Q, in `always (P implies eventually[a, b] Q)`, with `once`, and as what `until` and
-    /// `since` reach; the same without the `always`.
+    /// The events each of which alone meets it each time that it is asked: those of Q, in `always (P implies eventually[a, b] Q)`, with `once`, as what
+    /// `until` and `since` reach, and on either side of `or`; the same without the `always`.
     #[must_use]
-    pub fn met_by(&self) -> &[E] {
-        let met = match &self.kind {
-            TemporalKind::Look { look: TemporalLook::Always, window: None, of } => match &of.kind {
-                TemporalKind::Junction(TemporalJunction::Implies, parts) => &parts[1],
-                TemporalKind::Constant(_)
-                | TemporalKind::Events(_)
-                | TemporalKind::Condition(_)
-                | TemporalKind::Not(_)
-                | TemporalKind::Junction(..)
-                | TemporalKind::Look { .. }
-                | TemporalKind::Reach { .. } => return &[],
-            },
-            TemporalKind::Constant(_)
-            | TemporalKind::Events(_)
-            | TemporalKind::Condition(_)
-            | TemporalKind::Not(_)
-            | TemporalKind::Junction(..)
-            | TemporalKind::Look { .. }
-            | TemporalKind::Reach { .. } => self,
-        };
-        let reached = match &met.kind {
-            TemporalKind::Look { look: TemporalLook::Eventually | TemporalLook::Once, of, .. } => of,
-            TemporalKind::Reach { of, .. } => &of[1],
-            TemporalKind::Constant(_)
-            | TemporalKind::Events(_)
-            | TemporalKind::Condition(_)
-            | TemporalKind::Not(_)
-            | TemporalKind::Junction(..)
-            | TemporalKind::Look { .. } => met,
-        };
-        if let TemporalKind::Events(events) = &reached.kind { events } else { &[] }
+    pub fn met_by(&self) -> Vec<&E> {
+        let mut events = Vec::new();
+        self.of_the_run(TemporalLook::Always).unwrap_or(self).add_met_by(true, &mut events);
+        events
+    }
+
+    /// Adds the events that alone make it true, or false.
+    fn add_met_by<'a>(&'a self, truth: bool, out: &mut Vec<&'a E>) {
+        match &self.kind {
+            TemporalKind::Events(events) if truth => out.extend(events),
+            TemporalKind::Events(_) | TemporalKind::Constant(_) | TemporalKind::Condition(_) => {}
+            TemporalKind::Not(of) => of.add_met_by(!truth, out),
+            TemporalKind::Junction(junction, parts) => {
+                let [a, b] = parts.as_ref();
+                let (either, first) = match junction {
+                    TemporalJunction::And => (!truth, truth),
+                    TemporalJunction::Or => (truth, truth),
+                    TemporalJunction::Implies => (truth, !truth),
+                };
+                if either {
+                    a.add_met_by(first, out);
+                    b.add_met_by(truth, out);
+                }
+            }
+            TemporalKind::Look { look, of, .. } => {
+                let some_moment = matches!(look, TemporalLook::Eventually | TemporalLook::Once);
+                if some_moment == truth {
+                    of.add_met_by(truth, out);
+                }
+            }
+            TemporalKind::Reach { of, .. } if truth => of[1].add_met_by(truth, out),
+            TemporalKind::Reach { .. } => {}
+        }
     }
 
     /// What is asked of the run as a whole, and without an end: of every moment, or of some moment.
@@ -258,8 +260,10 @@ impl<E, C, T> TemporalFormula<E, C, T> {
         let TemporalKind::Look { look: TemporalLook::Eventually, of, .. } = &parts[1].kind else {
             return None;
         };
-        let events = |of: &'_ Self| matches!(of.kind, TemporalKind::Events(_));
-        (events(&parts[0]) && events(of)).then(|| [self.triggers(), self.met_by()])
+        let (TemporalKind::Events(asked), TemporalKind::Events(wanted)) = (&parts[0].kind, &of.kind) else {
+            return None;
+        };
+        Some([asked, wanted])
     }
 
     /// The events without any of which it is never asked: those of P, in `always (P implies Q)`.

@@ -4,7 +4,7 @@ use std::io::BufRead;
 
 use hrdsl_ir::{
     EventPattern, Expr, Nanos, Program, Unit, Value,
-    expr::{UnaryOp, sign},
+    expr::{BinaryOp, UnaryOp, sign},
     monitor::{Monitor, MonitorTrigger},
     value::{nanos, seconds},
     world::SignalId,
@@ -216,6 +216,12 @@ impl PartPrinter<'_> {
                 self.signal(expr).map(|signal| print::unit_of(signal.ty)).filter(|u| *u != Unit::None)
             }
             Expr::Unary(UnaryOp::Neg, a) => self.unit(a),
+            Expr::Binary(BinaryOp::Mul, a, b) => match (self.unit(a), self.unit(b)) {
+                (Some(unit), None) | (None, Some(unit)) => Some(unit),
+                // A product of two has another one, which is not told.
+                (Some(_), Some(_)) | (None, None) => None,
+            },
+            Expr::Binary(BinaryOp::Div, a, b) => self.unit(a).filter(|_| self.unit(b).is_none()),
             Expr::Binary(op, a, b) if sign(*op).1 > 4 => self.unit(a).or(self.unit(b)),
             Expr::If(_, a, b) => self.unit(a).or(self.unit(b)),
             Expr::Call(_, items) => items.iter().find_map(|item| self.unit(item)),

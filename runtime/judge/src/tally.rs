@@ -86,6 +86,7 @@ fn requirements(
         name: m.name.as_str().into(),
         kind: m.kind,
         title: m.title.clone(),
+        doc: m.doc.clone(),
         text: m.text.clone(),
         tally: vec![VerdictTally::default(); place.len()],
         failing: Vec::new(),
@@ -97,6 +98,7 @@ fn requirements(
         kind: RequirementKind::Functional,
         // It has no other words.
         title: formula.text.clone(),
+        doc: String::new(),
         text: formula.text.clone(),
         tally: vec![VerdictTally::default(); place.len()],
         failing: Vec::new(),

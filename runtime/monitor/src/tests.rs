@@ -50,6 +50,7 @@ fn monitor(states: &[(bool, Option<Nanos>)], edges: Vec<MonitorEdge>) -> Monitor
         name: "R".to_owned(),
         kind: RequirementKind::Functional,
         title: String::new(),
+        doc: String::new(),
         text: String::new(),
         signals: vec![SignalId(0), SignalId(1)],
         states: states.iter().map(state).collect(),

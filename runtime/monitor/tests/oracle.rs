@@ -51,6 +51,7 @@ fn monitor(
         name: "R".to_owned(),
         kind: RequirementKind::Safety,
         title: String::new(),
+        doc: String::new(),
         text: String::new(),
         signals,
         states,

@@ -194,6 +194,7 @@ fn monitor(dice: &mut Dice) -> Monitor {
         name: "R".into(),
         kind: RequirementKind::Functional,
         title: String::new(),
+        doc: String::new(),
         text: String::new(),
         signals: vec![],
         states,

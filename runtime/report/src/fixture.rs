@@ -401,6 +401,7 @@ fn requirement(r: usize, tests: &[TestFixture]) -> RequirementResult {
         name: name.into(),
         kind,
         title: title.into(),
+        doc: String::new(),
         text: text.into(),
         tally,
         failing,

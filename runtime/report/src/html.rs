@@ -165,6 +165,7 @@ struct RequirementRow {
     name: String,
     kind: &'static str,
     title: String,
+    doc: String,
     text: String,
     standing: String,
     /// How many faults in the code it noticed; empty if that is not known.
@@ -379,6 +380,7 @@ fn rows(
             name: requirement.name.to_string(),
             kind: facts::kind(requirement),
             title: requirement.title.clone(),
+            doc: requirement.doc.clone(),
             text: requirement.text.clone(),
             standing: in_words(standing, &total),
             noticed: faults.map_or_else(String::new, |found| faults::noticed_by(&requirement.name, found)),

@@ -143,6 +143,7 @@ mod tests {
             name: name.into(),
             kind: RequirementKind::Safety,
             title: String::new(),
+            doc: String::new(),
             text: String::new(),
             tally: vec![VerdictTally::default(); 2],
             failing: Vec::new(),

@@ -18,6 +18,9 @@ pub struct RequirementResult {
     #[schemars(schema_with = "schema::requirement_kind")]
     pub kind: RequirementKind,
     pub title: String,
+    /// Its doc comment: where it comes from, such as a standard's clause.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub doc: String,
     pub text: String,
     /// One for each suite, in their order.
     pub tally: Vec<VerdictTally>,

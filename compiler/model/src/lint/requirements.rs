@@ -111,10 +111,10 @@ fn too_early(early: &TypedPattern, late: &TypedPattern) -> bool {
 /// Whether every answer that `wants` asks for is forbidden by `ban` from its trigger on, in whatever run triggers both.
 fn forbids(facts: &ScenarioFacts<'_>, wants: &TypedPattern, ban: &TypedPattern) -> bool {
     let (Some(wanted), Some(banned)) = (wants.demands(), ban.bans()) else { return false };
-    // Whatever lifts the ban may come before the answer, unless nobody makes it or it is forbidden itself.
+    // Whatever lifts the ban may come before the answer, unless nobody makes it or it is forbidden itself: of `precedes` it is allowed even then.
     let lifts = |p: &&TypedOccurrence| {
         let in_vain = p.as_event().is_some_and(|p| facts.in_vain(&[WantedFact::of(p)]));
-        !in_vain && !covers(banned.events, std::slice::from_ref(p))
+        !in_vain && (banned.from.is_none() || !covers(banned.events, std::slice::from_ref(p)))
     };
     let lifted = banned.until.iter().any(|p| lifts(&p));
     let both_begin =
@@ -123,7 +123,7 @@ fn forbids(facts: &ScenarioFacts<'_>, wants: &TypedPattern, ban: &TypedPattern) 
 }
 
 /// Whether each event that fits one of `some` fits one of `all`.
-fn covers(all: &[TypedOccurrence], some: &[TypedOccurrence]) -> bool {
+pub(super) fn covers(all: &[TypedOccurrence], some: &[TypedOccurrence]) -> bool {
     let within = |p: &TypedOccurrence, q: &TypedOccurrence| match (p, q) {
         (TypedOccurrence::Event(p), TypedOccurrence::Event(q)) => {
             p.event == q.event && p.args.iter().zip(&q.args).all(|(p, q)| *p == ArgPattern::Any || p == q)

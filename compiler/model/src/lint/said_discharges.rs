@@ -38,7 +38,9 @@ pub(crate) fn check<'a>(scenario: &'a Scenario, facts: &'a ScenarioFacts<'a>, is
 /// but the code's word would tell. Where each event that it names is a trigger, who keeps silent gets a vacuous verdict, and no pass.
 fn weak<'a>(scenario: &Scenario, sentence: &'a TypedPattern) -> Option<WeakEvidence<'a>> {
     in_pattern(scenario, sentence).or_else(|| match &sentence.scope {
-        RequirementScope::AfterUntil(_, until) => asked(scenario, "has a scope that is closed by", until),
+        RequirementScope::AfterUntil(_, until) => {
+            asked(scenario, "has a scope that is closed by", until.iter())
+        }
         // What does not begin, or is to end and does not, is not passed.
         RequirementScope::Whole
         | RequirementScope::Before(_)
@@ -50,15 +52,17 @@ fn weak<'a>(scenario: &Scenario, sentence: &'a TypedPattern) -> Option<WeakEvide
 
 fn in_pattern<'a>(scenario: &Scenario, sentence: &'a TypedPattern) -> Option<WeakEvidence<'a>> {
     match &sentence.pattern {
-        RequirementPattern::Causes { response, .. } => asked(scenario, "is answered by", response),
+        RequirementPattern::Causes { response, .. } => asked(scenario, "is answered by", response.iter()),
         RequirementPattern::Forbids { forbidden, until, .. } => forbidden_events(scenario, forbidden)
-            .or_else(|| asked(scenario, "has a ban that is lifted by", until)),
-        RequirementPattern::Precedes { first, .. } => asked(scenario, "allows what comes after", first),
-        RequirementPattern::Eventually { events, .. } => asked(scenario, "waits for", events),
-        RequirementPattern::Counts { events, bound: CountBound::AtLeast | CountBound::Exactly, .. } => {
-            asked(scenario, "counts", events)
+            .or_else(|| asked(scenario, "has a ban that is lifted by", until.iter())),
+        RequirementPattern::Precedes { first, .. } => {
+            asked(scenario, "allows what comes after", first.iter())
         }
-        RequirementPattern::Formula(formula) => asked(scenario, "is met by", formula.met_by()),
+        RequirementPattern::Eventually { events, .. } => asked(scenario, "waits for", events.iter()),
+        RequirementPattern::Counts { events, bound: CountBound::AtLeast | CountBound::Exactly, .. } => {
+            asked(scenario, "counts", events.iter())
+        }
+        RequirementPattern::Formula(formula) => asked(scenario, "is met by", formula.met_by().into_iter()),
         // Its scope alone triggers it: who keeps silent passes.
         RequirementPattern::NeverWhile { events, condition: None }
         | RequirementPattern::Counts { events, bound: CountBound::AtMost, .. }
@@ -77,9 +81,9 @@ fn in_pattern<'a>(scenario: &Scenario, sentence: &'a TypedPattern) -> Option<Wea
 fn asked<'a>(
     scenario: &Scenario,
     role: &'static str,
-    asked: &'a [TypedOccurrence],
+    asked: impl Iterator<Item = &'a TypedOccurrence>,
 ) -> Option<WeakEvidence<'a>> {
-    let patterns = asked.iter().filter_map(TypedOccurrence::as_event);
+    let patterns = asked.filter_map(TypedOccurrence::as_event);
     let events: Vec<_> = patterns.map(|p| (p, evidence(scenario, p))).collect();
     let events: Vec<_> = events.into_iter().filter(|(_, p)| *p < Provenance::Played).collect();
     (!events.is_empty()).then_some(WeakEvidence { role, events })

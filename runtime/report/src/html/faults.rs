@@ -48,8 +48,12 @@ struct MissedFault {
     proposals: Vec<String>,
 }
 
-/// How many of the faults a requirement noticed, in words.
+/// How many of the faults a requirement noticed, in words; nothing of faults in models, which recordings are held against: no requirement is
+/// asked then.
 pub fn noticed_by(requirement: &RequirementName, found: &MutationReport) -> String {
+    if found.about.models {
+        return String::new();
+    }
     let such = |score: &&OracleScore| match &score.oracle {
         MutantOracle::Requirement(name) => name == requirement,
         MutantOracle::Prediction | MutantOracle::Conformance | MutantOracle::Error => false,
@@ -98,9 +102,13 @@ fn notes(found: &MutationReport) -> Vec<String> {
     let same = found.counts.not_distinguished;
     if same > 0 {
         let runs = text::count(same, "more fault");
-        notes.push(format!(
-            "All runs are the same as the original’s in {runs}, which may be as good; they do not count."
-        ));
+        notes.push(if found.about.models {
+            format!("All recordings are runs of the model with {runs}, too; they do not count.")
+        } else {
+            format!(
+                "All runs are the same as the original’s in {runs}, which may be as good; they do not count."
+            )
+        });
     }
     notes
 }

@@ -22,14 +22,15 @@ impl TestingPhase<'_, '_> {
                 c.resolved(require);
             }
         });
-        for (item, span) in self.each_item() {
+        for ast::ItemSyntax { doc, kind: item, span } in self.source.items.clone() {
+            let span = *span;
             if template(item).is_some() {
                 continue;
             }
             let looked_at = self.source.looks_at(CheckPhase::Requirements, span);
             if let ItemSyntaxKind::Require(require) = item {
                 let resolved = if looked_at { self.resolved(require) } else { None };
-                self.requirement(&require.name, resolved, require.pattern.span, span);
+                self.requirement((&require.name, doc), resolved, require.pattern.span, span);
             } else if let ItemSyntaxKind::Instance(instance) = item
                 && instance.sort == TemplateSyntaxKind::Require
                 && let Some((template, given)) = self.instance(instance, &ExprEnv::measured(""))
@@ -37,7 +38,7 @@ impl TestingPhase<'_, '_> {
             {
                 let place = Some((&instance.name, instance.span));
                 let resolved = self.as_instance(Some(given), place, |c| c.resolved(require));
-                self.requirement(&instance.name, resolved, instance.span, span);
+                self.requirement((&instance.name, doc), resolved, instance.span, span);
             } else if let ItemSyntaxKind::Assume(assume) = item
                 && looked_at
             {
@@ -59,7 +60,7 @@ impl TestingPhase<'_, '_> {
 
     fn requirement(
         &mut self,
-        name: &NameSyntax,
+        (name, doc): (&NameSyntax, &str),
         resolved: Option<(RequirementKind, String, TypedPattern)>,
         text: Span,
         span: Span,
@@ -67,8 +68,8 @@ impl TestingPhase<'_, '_> {
         self.not_a_template(TemplateSyntaxKind::Require, name);
         let new = self.checker.issues.declare(&mut self.requirements, Noun::Requirement, name).is_some();
         if let Some((kind, title, pattern)) = resolved.filter(|_| new) {
-            let name = name.text.clone();
-            self.s.requirements.push(TypedRequirement { name, kind, title, pattern, text, span });
+            let (name, doc) = (name.text.clone(), doc.to_owned());
+            self.s.requirements.push(TypedRequirement { name, kind, title, doc, pattern, text, span });
         }
     }
 
