@@ -163,7 +163,8 @@ class ForkServer(unittest.TestCase):
 
     def test_a_server_with_given_modules_is_the_same_as_another(self):
         text = "import json, random, hrdsl\nhrdsl.Node('robot')\nprint(id(json), id(object()), random.random())\n"
-        servers = [self.serve(text, modules=["random", "hrdsl"]) for _ in range(2)]
+        # The first may compile what of the SDK was never imported before, the others find it compiled.
+        servers = [self.serve(text, modules=["random", "hrdsl"]) for _ in range(3)][1:]
         runs = [server.run(5)[0] for server in servers]
         self.assertEqual(runs[0], runs[1])
 
