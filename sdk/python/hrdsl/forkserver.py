@@ -72,6 +72,7 @@ def serve(run: PreparedRun) -> tuple[int | None, int]:
             __import__(name)
     for name in _OWN:
         __import__(name)
+    run.compile()
     gc.collect()
     gc.freeze()
     orders.send(json.dumps({"modules": found}).encode())
