@@ -143,6 +143,10 @@ impl LaunchSpec {
             [order.dir.to_string_lossy().into_owned()].into_iter().chain(workspaces).collect();
         let modules = serde_json::json!({ "own": own, "preload": preload }).to_string();
         order.env.push(("HRDSL_FORK_MODULES".into(), modules.into()));
+        // Functions of libraries are found at its start, once for all its forks.
+        if !order.env.iter().any(|(name, _)| name == "LD_BIND_NOW") {
+            order.env.extend([("LD_BIND_NOW".into(), "1".into()), ("HRDSL_FORK_BINDS".into(), "1".into())]);
+        }
         Ok(CellOrder { keep: false, ..order })
     }
 

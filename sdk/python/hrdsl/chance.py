@@ -37,6 +37,7 @@ class Chance:
     def __init__(self, seed: int) -> None:
         self.seed = seed
         self.on_draw: Callable[[], object] | None = None  # called before each
+        self.is_drawn_by_forks = True  # so that the processes differ
         self._kind: Any = None  # the generator as it is
         self._replacement: Any = None  # and in its place
         self._sources: list[Any] = []
@@ -45,6 +46,7 @@ class Chance:
         """The program begins with this seed, in a process that was forked for it: modules that were imported before find what
         they would have found now."""
         self.seed = seed
+        self.is_drawn_by_forks = True
         self._sources = []
         random: Any = sys.modules.get("random")
         if random is not None:
@@ -114,8 +116,10 @@ class Chance:
     # Processes forked one after the other differ, as they do with real entropy.
 
     def before_fork(self) -> None:
-        self._forked = self.bits(64)
+        self._forked = self.bits(64) if self.is_drawn_by_forks else None
 
     def after_fork(self) -> None:
+        if self._forked is None:
+            return
         for stream, source in enumerate(self._sources):
             source.seed((stream << 64) + (3 << 66) + self._forked)

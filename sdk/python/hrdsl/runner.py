@@ -78,10 +78,28 @@ class PreparedRun:
 
             self.lines = LineRecorder(self.files, link, self.simulation.scheduler)
         debug.install()
+        self.compiled: Any = None  # the program's file, if it was compiled beforehand
         sys.argv = list(self.words)
         if self.option == "-c":
             sys.argv[0] = self.option
         _middleware()
+
+    def compile(self) -> None:
+        """Compiles the program's file beforehand; not if that says anything (a warning, an error), which each run is to say."""
+        if self.option:
+            return
+        said, stderr = os.memfd_create("said", os.MFD_CLOEXEC), os.dup(2)
+        os.dup2(said, 2)
+        try:
+            compiled = _compiled(os.path.abspath(self.words[0]))
+        except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+            compiled = None
+        sys.stderr.flush()
+        os.dup2(stderr, 2)
+        if not os.fstat(said).st_size:
+            self.compiled = compiled
+        for descriptor in (said, stderr):
+            os.close(descriptor)
 
     def run(self, out: int | None) -> NoReturn:
         """Runs the program in this process, and ends it; coverage goes to the descriptor `out`."""
@@ -96,7 +114,7 @@ class PreparedRun:
             self.lines.start()
         status = 1
         try:
-            status, is_stopped = _status(lambda: _run(self.words, self.option, self.recorder, switch))
+            status, is_stopped = _status(lambda: _run(self, switch))
             if status == 0 and not link.greeted and link.is_ours() and not is_stopped:
                 status = _status(lambda: _check_use(self.words, self.option))[0]
             if not is_stopped and link.is_ours():
@@ -204,15 +222,13 @@ def _switch() -> Switch | None:
     return switch
 
 
-def _run(words: list[str], option: str, recorder: Recorder | None, switch: Switch | None = None) -> None:
+def _run(run: PreparedRun, switch: Switch | None) -> None:
+    words, option, recorder = run.words, run.option, run.recorder
     if option == "-c":
         _execute(compile(words[0], "<string>", "exec", dont_inherit=True), None, recorder)
     elif not option:
         path = os.path.abspath(words[0])
-        code = switch and switch.code_for(path)
-        if not code:
-            with open(path, "rb") as file:
-                code = compile(file.read(), path, "exec", dont_inherit=True)
+        code = (switch and switch.code_for(path)) or run.compiled or _compiled(path)
         _execute(code, path, recorder)
     else:
         import runpy
@@ -221,6 +237,11 @@ def _run(words: list[str], option: str, recorder: Recorder | None, switch: Switc
         if recorder is not None:
             recorder.start()
         runpy.run_module(words[0], run_name="__main__", alter_sys=True)
+
+
+def _compiled(path: str) -> Any:
+    with open(path, "rb") as file:
+        return compile(file.read(), path, "exec", dont_inherit=True)
 
 
 def _execute(code: Any, path: str | None, recorder: Recorder | None) -> None:

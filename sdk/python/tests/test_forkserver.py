@@ -163,9 +163,20 @@ class ForkServer(unittest.TestCase):
 
     def test_a_server_with_given_modules_is_the_same_as_another(self):
         text = "import json, random, hrdsl\nhrdsl.Node('robot')\nprint(id(json), id(object()), random.random())\n"
-        servers = [self.serve(text, modules=["random", "hrdsl"]) for _ in range(2)]
+        # The first may compile what of the SDK was never imported before, the others find it compiled.
+        servers = [self.serve(text, modules=["random", "hrdsl"]) for _ in range(3)][1:]
         runs = [server.run(5)[0] for server in servers]
         self.assertEqual(runs[0], runs[1])
+
+    def test_what_a_compilation_says_is_said_in_each_run(self):
+        server = self.serve("import hrdsl\nhrdsl.Node('robot')\nprint(len('a') is 1)\n", modules=[])
+        runs = [server.run(5) for _ in range(2)]
+        self.assertEqual(runs[0], runs[1])
+        self.assertIn("SyntaxWarning", runs[0][0])
+        self.assertEqual(server.close(), "")
+        broken = self.serve("import hrdsl\nthis is no Python\n", modules=[]).run(5)
+        self.assertEqual(broken[1], "256", broken)
+        self.assertIn("SyntaxError", broken[0])
 
     def test_chance_is_that_of_a_fresh_process(self):
         text = "import random\nimport hrdsl\nhrdsl.Node('robot')\nprint(random.random(), random.Random().random())\n"

@@ -66,7 +66,7 @@ class Operators(unittest.TestCase):
         source = "def f(s):\n    return s.read()\n"
         (mutant,) = mutants(source, only=["stale"])
         names = {}
-        exec(code(source, "robot.py", mutant), names)
+        exec(code(ast.parse(source), "robot.py", mutant), names)
         values = iter([1, 2, 3])
         sensor = type("Sensor", (), {"read": lambda self: next(values)})()
         self.assertEqual([names["f"](sensor) for _ in range(3)], [1, 1, 2])

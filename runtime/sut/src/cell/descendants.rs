@@ -71,6 +71,11 @@ pub(super) fn descendants() -> Vec<i32> {
     found
 }
 
+/// Whether there is any process below this one, be it one that has ended and was not yet waited for.
+pub(super) fn are_there() -> bool {
+    waitid(WaitId::All, WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT).is_ok()
+}
+
 /// What the processes of the cell have used: those that this process has waited for are in its own children's time.
 pub(super) fn usage() -> CellUsage {
     let mut ticks = stat("/proc/self/stat").map_or(0, |s| s.children);

@@ -13,6 +13,7 @@ use std::{
     },
     path::{Path, PathBuf},
     process::{Child, Command, ExitCode, Stdio},
+    time::Duration,
 };
 
 use nix::{
@@ -252,7 +253,10 @@ fn end(
     keep: impl Fn(&OwnedFd) -> KeptFiles,
     keep_to: Option<&OwnedFd>,
 ) {
-    let usage = descendants::usage();
+    // Nobody is there where the program has ended by itself, as most do: then nothing has to be looked up in `/proc`.
+    let are_there = descendants::are_there();
+    let usage = || if are_there { descendants::usage().cpu } else { Duration::ZERO };
+    let before = usage();
     if !program.is_server() {
         watch.others |= descendants::end_all(program.is_alone());
     }
@@ -261,7 +265,7 @@ fn end(
             exit: watch.main.unwrap_or(ProgramExit::Killed),
             others: watch.others,
             // What was waited for is known to the microsecond.
-            cpu: usage.cpu.max(descendants::usage().cpu).max((ProcessorClocks::SYSTEM.children)()),
+            cpu: before.max(usage()).max((ProcessorClocks::SYSTEM.children)()),
             kept: keep_to.map(keep),
         };
         watch.control.report(&CellReport::Ended(ending));

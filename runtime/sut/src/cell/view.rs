@@ -59,13 +59,33 @@ const USED_BY_NAME: [&str; 2] = ["devpts", "mqueue"];
 /// In `/proc`, what is no process: settings of the kernel, which are those of the whole machine.
 const SETTINGS: [&str; 5] = ["sys", "sysrq-trigger", "irq", "bus", "fs"];
 
+/// Where something is mounted.
+#[derive(Debug, PartialEq, Eq)]
+struct MountPoint {
+    at: PathBuf,
+    /// Of file system.
+    kind: String,
+    is_read_only: bool,
+}
+
+impl MountPoint {
+    fn is_of_kernel(&self) -> bool {
+        KERNEL.contains(&self.kind.as_str())
+    }
+
+    /// Whether what is written there by name could be seen by others.
+    fn has_settings(&self) -> bool {
+        !USED_BY_NAME.contains(&self.kind.as_str())
+    }
+}
+
 /// What went wrong, and where.
 pub(super) type ViewError = (String, io::Error);
 
 /// The view of one cell.
 pub(super) struct PrivateView {
-    /// Mount points of the machine with their kinds of file systems; a later one covers an earlier one.
-    mounts: Vec<(PathBuf, String)>,
+    /// Mount points of the machine; a later one covers an earlier one.
+    mounts: Vec<MountPoint>,
     /// The machine's folder that the layers cover.
     covered: OwnedFd,
     /// The file system in memory that has the layers.
@@ -143,7 +163,7 @@ impl PrivateView {
 
     /// A folder of the machine and all below it.
     fn folder(&mut self, path: &Path) -> Result<(), ViewError> {
-        let here = self.mounts.iter().rev().find(|(at, _)| at == path).map(|(_, kind)| kind.clone());
+        let here = self.mounts.iter().rev().find(|mount| mount.at == path).map(|mount| mount.kind.clone());
         match here.as_deref() {
             Some("proc") => return self.processes(path),
             Some(kind) if KERNEL.contains(&kind) => return self.window(path),
@@ -169,7 +189,7 @@ impl PrivateView {
         let mut below: Vec<PathBuf> = self
             .mounts
             .iter()
-            .map(|(at, _)| at.clone())
+            .map(|mount| mount.at.clone())
             .filter(|at| at != path && at.starts_with(path))
             .collect();
         below.sort();
@@ -191,7 +211,7 @@ impl PrivateView {
     }
 
     fn has_mounts_below(&self, path: &Path) -> bool {
-        self.mounts.iter().any(|(at, _)| at != path && at.starts_with(path))
+        self.mounts.iter().any(|mount| mount.at != path && mount.at.starts_with(path))
     }
 
     /// A folder made anew, each of whose entries is mounted or linked.
@@ -294,11 +314,11 @@ impl PrivateView {
         let target = inside(path);
         fs::create_dir_all(&target).map_err(fail)?;
         mount_bind_recursive(self.host(path), &target).map_err(|e| fail(e.into()))?;
-        let settings =
-            |(at, kind): &&(PathBuf, String)| at.starts_with(path) && !USED_BY_NAME.contains(&kind.as_str());
-        for (at, _) in self.mounts.iter().filter(settings) {
+        // In the cell of a fork server they are made so once, for all its forks.
+        let settings = |mount: &&MountPoint| mount.at.starts_with(path) && !mount.is_read_only;
+        for mount in self.mounts.iter().filter(settings).filter(|mount| mount.has_settings()) {
             // Refused only where all of it belongs to another user, whose files cannot be written to anyway.
-            let _ = read_only(&inside(at));
+            let _ = read_only(&inside(&mount.at));
         }
         let shared = target.join("shm");
         if path == Path::new("/dev") && shared.is_dir() {
@@ -360,14 +380,15 @@ impl PrivateView {
 pub(super) fn make_read_only() -> Result<(), ViewError> {
     mount_change("/", MountPropagationFlags::REC | MountPropagationFlags::PRIVATE)
         .map_err(|e| ("/".to_owned(), e.into()))?;
-    for (at, kind) in mounts().map_err(|e| ("/proc/self/mountinfo".to_owned(), e))? {
-        if kind == "proc" || KERNEL.contains(&kind.as_str()) {
+    for mount in mounts().map_err(|e| ("/proc/self/mountinfo".to_owned(), e))? {
+        if mount.kind == "proc" || !mount.has_settings() {
             continue;
         }
-        match read_only(&at) {
+        match read_only(&mount.at) {
             // One that another covers, or of another user, which cannot be written to anyway.
             Ok(()) | Err(Errno::NOENT | Errno::ACCESS) => {}
-            Err(e) => return Err((at.display().to_string(), e.into())),
+            Err(_) if mount.is_of_kernel() => {}
+            Err(e) => return Err((mount.at.display().to_string(), e.into())),
         }
     }
     Ok(())
@@ -427,17 +448,19 @@ fn has_all_users() -> bool {
 }
 
 /// The mount points of this namespace.
-fn mounts() -> io::Result<Vec<(PathBuf, String)>> {
+fn mounts() -> io::Result<Vec<MountPoint>> {
     let text = fs::read("/proc/self/mountinfo")?;
     Ok(text.split(|b| *b == b'\n').filter_map(mount_point).collect())
 }
 
 /// A line of `mountinfo`, as proc(5) has it: `… root mount-point options … - kind source …`.
-fn mount_point(line: &[u8]) -> Option<(PathBuf, String)> {
+fn mount_point(line: &[u8]) -> Option<MountPoint> {
     let mut fields = line.split(|b| *b == b' ');
     let path = unescaped(fields.nth(4)?);
+    let is_read_only = fields.next()?.split(|b| *b == b',').any(|option| option == b"ro");
     let kind = fields.skip_while(|f| *f != b"-").nth(1)?;
-    Some((PathBuf::from(std::ffi::OsString::from_vec(path)), String::from_utf8_lossy(kind).into_owned()))
+    let at = PathBuf::from(std::ffi::OsString::from_vec(path));
+    Some(MountPoint { at, kind: String::from_utf8_lossy(kind).into_owned(), is_read_only })
 }
 
 /// Blanks and the like are written as three octal digits after a backslash.
@@ -469,7 +492,18 @@ mod tests {
     fn mount_points_are_read_with_blanks_in_them() {
         let line =
             br"36 35 98:0 /mnt1 /mnt\040two\134 rw,noatime master:1 - ext3 /dev/root rw,errors=continue";
-        assert_eq!(mount_point(line), Some((PathBuf::from("/mnt two\\"), "ext3".to_owned())));
+        let (at, kind) = (PathBuf::from("/mnt two\\"), "ext3".to_owned());
+        assert_eq!(mount_point(line), Some(MountPoint { at, kind, is_read_only: false }));
         assert_eq!(mount_point(b""), None);
+    }
+
+    #[test]
+    fn a_mount_is_read_only_by_its_own_options_not_by_those_of_its_file_system() {
+        let is_read_only = |line: &[u8]| mount_point(line).map(|mount| mount.is_read_only);
+        assert_eq!(is_read_only(b"1 0 0:5 / /sys nosuid,ro shared:7 - sysfs sysfs rw"), Some(true));
+        assert_eq!(
+            is_read_only(b"1 0 0:5 / /sys rw,noatime - sysfs sysfs ro,errors=remount-ro"),
+            Some(false)
+        );
     }
 }

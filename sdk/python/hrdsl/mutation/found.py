@@ -53,9 +53,9 @@ def mutants(source: str, file: str = "<source>", only: Iterable[str] = (), marke
     return [mutant for mutant in found if not wanted or mutant.operator in wanted]
 
 
-def code(source: str, file: str, mutant: Mutant) -> types.CodeType:
-    """The source with the mutant, compiled as if it were the file, so that lines and tracebacks are those of the file."""
-    return compile(applied(ast.parse(source, file), mutant.edits), file, "exec", dont_inherit=True)
+def code(tree: ast.Module, file: str, mutant: Mutant) -> types.CodeType:
+    """The tree of a source with the mutant, compiled as if it were the file, so that lines and tracebacks are those of the file."""
+    return compile(applied(tree, mutant.edits), file, "exec", dont_inherit=True)
 
 
 def _changes(tree: ast.Module) -> Iterator[tuple[str, int, str, list[Edit]]]:

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
     #: The way from the root to a node: fields, with an index in those that are lists.
     Path = tuple[tuple[str, Union[int, None]], ...]
+    #: The line and column of a node, and those of its end.
+    _Place = tuple[int, int, int, int]
 
 
 class Edit:
@@ -43,24 +45,46 @@ class Mutant:
 def applied(tree: ast.Module, edits: list[Edit]) -> ast.Module:
     """The tree with the edits; it shares what they leave alone. Edits must not lie within each other."""
     for edit in edits:
-        tree = _replaced(tree, edit.path, edit)
-    return ast.fix_missing_locations(tree)
+        tree = _replaced(tree, edit.path, edit, (1, 0, 1, 0))
+    return tree
 
 
-def _replaced(node: Any, path: Path, edit: Edit) -> Any:
+def _replaced(node: Any, path: Path, edit: Edit, place: _Place) -> Any:
+    """`place` is that of the last node above that has one."""
     (field, index), rest = path[0], path[1:]
     changed = copy.copy(node)
+    place = _place(node, place)
     value = getattr(node, field)
+    if not rest:
+        for new in edit.nodes:
+            _locate(new, place)
     if index is None:
-        setattr(changed, field, _replaced(value, rest, edit) if rest else edit.nodes[0])
+        setattr(changed, field, _replaced(value, rest, edit, place) if rest else edit.nodes[0])
         return changed
     items = list(value)
     if rest:
-        items[index] = _replaced(items[index], rest, edit)
+        items[index] = _replaced(items[index], rest, edit, place)
     else:
         items[index : index + edit.count] = edit.nodes
     setattr(changed, field, items)
     return changed
+
+
+def _place(node: Any, above: _Place) -> _Place:
+    if not hasattr(node, "lineno"):
+        return above
+    return (node.lineno, node.col_offset, node.end_lineno, node.end_col_offset)
+
+
+def _locate(node: Any, place: _Place) -> None:
+    """Gives places to new nodes that have none, as `ast.fix_missing_locations` does for a whole tree, which takes longer than to compile it."""
+    if "lineno" in node._attributes:
+        for name, value in zip(("lineno", "col_offset", "end_lineno", "end_col_offset"), place):
+            if getattr(node, name, None) is None:
+                setattr(node, name, value)
+        place = _place(node, place)
+    for child in ast.iter_child_nodes(node):
+        _locate(child, place)
 
 
 def changed_lines(tree: ast.Module, edit: Edit) -> list[int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import atexit
 import marshal
 import os
@@ -29,7 +30,8 @@ def codes(file: str, numbers: Iterable[int], to: str) -> None:
     with open(file, encoding="utf-8") as source:
         text = source.read()
     found = {mutant.number: mutant for mutant in mutants(text, file, marked=False)}
-    compiled = {str(number): _compiled(text, file, number, found) for number in numbers}
+    tree = ast.parse(text, file)
+    compiled = {str(number): _compiled(tree, file, number, found) for number in numbers}
     compiled["original"] = compile(text, file, "exec", dont_inherit=True)
     for name, each in compiled.items():
         with open(os.path.join(to, name + ".code"), "wb") as out:
@@ -44,16 +46,16 @@ def switched(file: str, number: int, program: list[str]) -> Callable[[], None]:
     with open(file, encoding="utf-8") as source:
         text = source.read()
     found = {} if number == SENTINEL else {mutant.number: mutant for mutant in mutants(text, file, marked=False)}
-    compiled = _compiled(text, file, number, found)
+    compiled = _compiled(ast.parse(text, file), file, number, found)
     return lambda: _run(file, compiled, program)
 
 
-def _compiled(text: str, file: str, number: int, found: dict[int, object]) -> types.CodeType:
+def _compiled(tree: ast.Module, file: str, number: int, found: dict[int, object]) -> types.CodeType:
     if number == SENTINEL:
         return compile("raise RuntimeError('the sentinel mutant ends at once')", file, "exec")
     if number not in found:
         raise LookupError("%s has mutants 1 to %d, not %d; `list` shows them" % (file, len(found), number))
-    return code(text, file, found[number])  # type: ignore[arg-type]
+    return code(tree, file, found[number])  # type: ignore[arg-type]
 
 
 def _run(file: str, compiled: types.CodeType, program: list[str]) -> None:
