@@ -87,6 +87,7 @@ fn compiled<'p>(
         reach: reach?,
         pairs: observe.pairs,
         uses: observe.uses,
+        overflow: observe.overflow.clone(),
         members,
         library: compiler.library,
     })

@@ -378,6 +378,17 @@ pub fn retimed(
         // Its times are those with the least end, which is all that there is of them.
         return Ok(run.clone());
     }
+    match path_of(model, run)? {
+        (path, None) => witness(model, path, Some(goal), timing),
+        (_, Some(_)) => Err(internal("a run takes a transition that is a fault")),
+    }
+}
+
+/// The transitions that a run takes, which may be one of the network without some of its assignments: up to the first that is a fault.
+pub(crate) fn path_of(
+    model: &CompiledNetwork,
+    run: &WitnessRun,
+) -> Result<(Vec<PathTransition>, Option<ModelError>), SearchError> {
     let graph = ZoneGraph::new(model, &[])?;
     let mut path: Vec<PathTransition> = Vec::new();
     let mut state = graph.initial();
@@ -402,8 +413,11 @@ pub fn retimed(
             let from = if set.from == 0 { now } else { before[usize::from(set.from)] };
             zero[usize::from(set.clock)] = from - i128::from(set.by) * scale;
         }
-        state = action.target.map_err(|_| internal("a run takes a transition that is a fault"))?;
+        state = match action.target {
+            Ok(target) => target,
+            Err(fault) => return Ok((path, Some(*fault))),
+        };
         path.push((*action.taken).clone());
     }
-    witness(model, path, Some(goal), timing)
+    Ok((path, None))
 }
