@@ -221,7 +221,7 @@ fn by_search(
 fn range_result(plain: &ObservedNetwork, answer: RangeAnswer, watch: &SearchWatch) -> RangeResult {
     let (found, run) = match answer.finding {
         RangeFinding::Kept => (RangeVerdict::Kept, None),
-        RangeFinding::Left { error, run } => (RangeVerdict::Left(error.to_string()), run),
+        RangeFinding::Left { error, run } => (RangeVerdict::Left(error.to_string()), Some(run)),
         RangeFinding::Inconclusive { cutoff, widest } => {
             (RangeVerdict::Inconclusive(cut_off(cutoff, widest.as_ref(), watch)), None)
         }

@@ -321,7 +321,7 @@ fn a_goal_before_the_overflow_is_reached_and_one_beyond_it_is_the_fault() {
     let (report, ranges) = end_of(&laps(7, 7), usize::MAX).unwrap();
     assert!(reached(&report.goals[0]));
     assert_eq!(report.states_stored, 10, "the counter makes no states");
-    let RangeFinding::Left { error, run: Some(run) } = &ranges[0].finding else { panic!("{ranges:?}") };
+    let RangeFinding::Left { error, run } = &ranges[0].finding else { panic!("{ranges:?}") };
     assert_eq!(
         (error.to_string().as_str(), run.steps.len()),
         ("automaton `A`, edge l -> l: `c` becomes 8, outside 0..7", 7)
@@ -345,4 +345,22 @@ fn a_range_that_the_budget_leaves_open_is_said_to_be_so() {
         panic!("{ranges:?}")
     };
     assert_eq!(widest.name, "c");
+}
+
+/// Two that leave their ranges in one transition: the second has no fault of its own, since the first comes before it.
+#[test]
+fn what_leaves_its_range_with_another_that_does_so_before_it_stays_open() {
+    let mut p = program();
+    let (first, second) = (shared(&mut p, "first", 0, 2, 0), shared(&mut p, "second", 0, 2, 0));
+    let mut a = automaton("A", &["x"]);
+    let [l, _] = ["l", "end"].map(|name| location(&mut a, name, LocationKind::Normal, &[]));
+    let count = |slot| bin(BinaryOp::Add, v(slot), n(1));
+    edge(l, l).set(first, count(first)).set(second, count(second)).to(&mut a);
+    add(&mut p, a);
+    let (report, ranges) = end_of(&p, usize::MAX).unwrap();
+    assert!(!reached(&report.goals[0]));
+    let [one, other] = ranges.as_slice() else { panic!("{ranges:?}") };
+    assert!(matches!(&one.finding, RangeFinding::Left { .. }), "{one:?}");
+    let RangeFinding::Behind(error) = &other.finding else { panic!("{other:?}") };
+    assert!(error.to_string().contains("`first` becomes 3"), "{error}");
 }

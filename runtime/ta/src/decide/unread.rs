@@ -46,7 +46,7 @@ pub enum RangeFinding {
     /// In each run.
     Kept,
     /// Not in this one, which leads to the fault.
-    Left { error: ModelError, run: Option<Box<WitnessRun>> },
+    Left { error: ModelError, run: Box<WitnessRun> },
     /// The budget was used up first.
     Inconclusive { cutoff: SearchCutoff, widest: Option<WidestVariable> },
     /// Each run that was found to it comes to this fault before.
@@ -248,10 +248,15 @@ impl<'p> UnreadCounters<'p> {
         if !self.is_of(group, &error) {
             return Ok(RangeFinding::Behind(error));
         }
-        match self.fault(path, error) {
-            SearchError::Model { error, witness: run } => Ok(RangeFinding::Left { error, run }),
-            internal @ SearchError::Internal(_) => Err(internal),
+        let (run, others) = build::fault_among_others(&self.model, path, &error)?;
+        if let Some(run) = run {
+            return Ok(RangeFinding::Left { error, run: Box::new(run) });
         }
+        // In the same transition another of the variables that were left out leaves its range first.
+        let before = others.into_iter().find(|e| !self.is_of(group, e));
+        before.map(RangeFinding::Behind).ok_or_else(|| {
+            SearchError::Internal(format!("a fault is met without other variables alone: {error}"))
+        })
     }
 
     fn fault(&self, path: Vec<crate::network::actions::PathTransition>, error: ModelError) -> SearchError {

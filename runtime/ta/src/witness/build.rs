@@ -196,7 +196,8 @@ fn replayed<'p>(model: &CompiledNetwork<'p>, witness: &WitnessRun) -> Result<Rep
 /// not meet is one of the engine's own.
 pub(crate) fn fault(graph: &ZoneGraph, stops: Vec<PathSegment>, error: ModelError) -> SearchError {
     match led_to(graph, stops, &error) {
-        Ok(witness) => SearchError::Model { error, witness: Some(Box::new(witness)) },
+        Ok(Some(witness)) => SearchError::Model { error, witness: Some(Box::new(witness)) },
+        Ok(None) => SearchError::Internal(format!("a fault does not replay: {error}")),
         Err(internal) => internal,
     }
 }
@@ -213,9 +214,28 @@ pub(crate) fn fault_after(
     }
 }
 
-fn led_to(graph: &ZoneGraph, stops: Vec<PathSegment>, error: &ModelError) -> Result<WitnessRun, SearchError> {
+/// The run to a fault after a path, and the faults that may be met there instead. No run: none meets it.
+pub(crate) fn fault_among_others(
+    model: &CompiledNetwork,
+    path: Vec<PathTransition>,
+    error: &ModelError,
+) -> Result<(Option<WitnessRun>, Vec<ModelError>), SearchError> {
+    let graph = ZoneGraph::new(model, &[])?;
+    let stops = takes(path.into_iter().map(Rc::new));
+    let state = walk(&graph, &stops)?.state;
+    let others = graph.actions(&state).into_iter().filter_map(|a| a.target.err()).map(|e| *e);
+    let others = others.filter(|e| e != error).collect();
+    Ok((led_to(&graph, stops, error)?, others))
+}
+
+/// `None`: no run along the path meets the fault.
+fn led_to(
+    graph: &ZoneGraph,
+    stops: Vec<PathSegment>,
+    error: &ModelError,
+) -> Result<Option<WitnessRun>, SearchError> {
     if !error.is_of_a_transition() {
-        return concrete(graph, &stops, RunEnding::Reached, None, ScheduleOptions::default());
+        return concrete(graph, &stops, RunEnding::Reached, None, ScheduleOptions::default()).map(Some);
     }
     let state = walk(graph, &stops)?.state;
     let mut best: Option<WitnessRun> = None;
@@ -231,7 +251,7 @@ fn led_to(graph: &ZoneGraph, stops: Vec<PathSegment>, error: &ModelError) -> Res
             best = Some(witness);
         }
     }
-    best.ok_or_else(|| SearchError::Internal(format!("a fault does not replay: {error}")))
+    Ok(best)
 }
 
 /// When a run ends, as nanoseconds and their parts.
