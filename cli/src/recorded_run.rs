@@ -81,7 +81,7 @@ fn of_json(text: &str, program: &Program, chosen: &[String]) -> Result<Vec<Named
     let list =
         |value: &Value, key: &str| value.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
     for network in list(&document, "networks") {
-        for (rows, kind) in [("requirements", "requirement"), ("queries", "query")] {
+        for (rows, kind) in [("requirements", "requirement"), ("queries", "query"), ("ranges", "range")] {
             for mut row in list(&network, rows) {
                 let name = row.get("name").and_then(Value::as_str).unwrap_or("?").to_owned();
                 if let Some(run) = row.get_mut("run").map(Value::take) {

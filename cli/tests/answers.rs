@@ -122,9 +122,17 @@ fn all_kinds_of_questions_say_what_they_took_and_stop_when_their_time_is_over() 
 
 #[test]
 fn an_interrupt_tells_what_is_known() {
+    for threads in ["1", "2"] {
+        interrupted(threads);
+    }
+}
+
+/// While a round of the search goes on.
+fn interrupted(threads: &str) {
     let folder = folder(&[("wide.hri", &wide(9))]);
     let mut command = support::command();
-    command.args(["prove", "wide.hri", "--stream", "--budget-memory", "20GB"]).current_dir(folder.path());
+    command.args(["prove", "wide.hri", "--stream", "--budget-memory", "20GB", "--threads", threads]);
+    command.current_dir(folder.path());
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
     let mut out = BufReader::new(child.stdout.take().unwrap());
     let (mut first, mut second) = (String::new(), String::new());

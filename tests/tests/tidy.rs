@@ -20,7 +20,6 @@ const LONG: &[(&str, usize)] = &[
     ("runtime/harness/tests/programs.rs", 557),
     ("runtime/sut/tests/environment.rs", 541),
     ("runtime/ta/src/network/code.rs", 958),
-    ("runtime/ta/src/network/compile.rs", 771),
     ("runtime/ta/src/network/semantics.rs", 731),
 ];
 

@@ -3,7 +3,7 @@
 use hrdsl_ir::{Program, ta::QueryFormula};
 use hrdsl_ta::{
     EventCounter, EventLimit, GoalKind, GoalOutcome, ReachabilityGoal, SearchCutoff, SearchError,
-    SearchReport,
+    SearchReport, WidestVariable,
 };
 
 use super::{
@@ -141,13 +141,18 @@ fn settled(
 }
 
 pub(super) fn exhausted(what: SearchCutoff, report: &SearchReport, watch: &SearchWatch) -> String {
+    cut_off(what, report.widest.as_ref(), watch)
+}
+
+/// Why a search has not decided, and which variable may be the cause.
+pub(super) fn cut_off(what: SearchCutoff, widest: Option<&WidestVariable>, watch: &SearchWatch) -> String {
     let why = match what {
         SearchCutoff::States => "the budget of states was used up",
         SearchCutoff::Memory => "the budget of memory was used up",
         SearchCutoff::Stopped => watch.stopped(),
         SearchCutoff::Zones => "clocks stand still, and the zones cannot tell",
     };
-    report.widest.as_ref().map_or_else(|| why.to_owned(), |widest| format!("{why}; {widest}"))
+    widest.map_or_else(|| why.to_owned(), |widest| format!("{why}; {widest}"))
 }
 
 /// The network and the limits of one search.

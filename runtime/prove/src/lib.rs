@@ -34,7 +34,9 @@ use held::TimedHolds;
 
 pub use goals::{GoalDecision, GoalFate, decide, of_formula};
 pub use observer::{ObservedNetwork, ObserverFormulas};
-pub use query::{QueryFinding, QueryResult, answer, answers, is_decided_with_others};
+pub use query::{
+    QueryFinding, QueryResult, RangeResult, RangeVerdict, answer, answers, is_decided_with_others,
+};
 pub use run::ObservedRun;
 pub use settings::{ProofOptions, SearchOrder, SearchStatistics, SearchWatch, TimeFrame};
 

@@ -6,15 +6,15 @@ use hrdsl_ir::{
 };
 use hrdsl_ta::{
     ExtremumLimit, ExtremumValue, GoalOutcome, MeasureExtremum, QueryAnswer, QueryOptions, QueryVerdict,
-    ReachabilityGoal, SearchError,
+    RangeAnswer, RangeFinding, ReachabilityGoal, SearchError,
 };
 
 use super::{
-    goals::{exhausted, of_formula},
+    goals::{cut_off, exhausted, of_formula},
     held::TimedHolds,
     observer::ObservedNetwork,
     run::ObservedRun,
-    settings::{ProofOptions, SearchStatistics, SearchWatch, search},
+    settings::{ProofOptions, SearchStatistics, SearchWatch, search, search_queries},
 };
 
 /// What became of a query.
@@ -31,6 +31,30 @@ pub struct QueryResult {
     pub statistics: Option<SearchStatistics>,
     /// That search was one for several queries.
     pub joint: bool,
+    /// Of variables that the search left out, since nothing reads them: whether they stay in their ranges.
+    pub ranges: Vec<RangeResult>,
+}
+
+/// Whether variables that nothing reads stay in their ranges.
+#[derive(Clone, Debug)]
+pub struct RangeResult {
+    /// The first of them, by slot of the network.
+    pub slot: usize,
+    /// Their names, joined.
+    pub variables: String,
+    pub found: RangeVerdict,
+    /// To the fault.
+    pub run: Option<Box<ObservedRun>>,
+    pub statistics: Option<SearchStatistics>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RangeVerdict {
+    Kept,
+    /// Why.
+    Inconclusive(String),
+    /// The model is at fault, and where.
+    Left(String),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -75,6 +99,7 @@ pub fn answer(
             notes: Vec::new(),
             statistics: None,
             joint: false,
+            ranges: Vec::new(),
         }),
         Err(SearchError::Internal(what)) => Err(format!("query `{}`: {what}", asked.name)),
     }
@@ -165,10 +190,9 @@ fn by_search(
     watch: &SearchWatch,
 ) -> Result<Vec<QueryResult>, SearchError> {
     let goals: Vec<ReachabilityGoal> = asked.iter().map(|(_, sought)| of_formula(&sought.formula)).collect();
-    watch.listen(true);
-    let report = search(plain, &goals, &[], &[], settings, watch);
-    watch.listen(false);
-    let report = report?;
+    let (report, ranges) = search_queries(plain, &goals, settings, watch)?;
+    let ranges: Vec<RangeResult> =
+        ranges.into_iter().map(|answer| range_result(plain, answer, watch)).collect();
     let (statistics, joint) = (Some(report.statistics()), asked.len() > 1);
     let mut notes = Vec::new();
     if let Some(reason) = &report.global_because {
@@ -186,11 +210,32 @@ fn by_search(
             }
             GoalOutcome::Unreachable => (sought.not.clone(), None),
         };
-        QueryResult { query: *query, found, run, notes: notes.clone(), statistics, joint }
+        let ranges = ranges.clone();
+        QueryResult { query: *query, found, run, notes: notes.clone(), statistics, joint, ranges }
     });
     let mut answered: Vec<QueryResult> = answered.collect();
     note_holds(plain, &goals, &mut answered, settings, watch);
     Ok(answered)
+}
+
+fn range_result(plain: &ObservedNetwork, answer: RangeAnswer, watch: &SearchWatch) -> RangeResult {
+    let (found, run) = match answer.finding {
+        RangeFinding::Kept => (RangeVerdict::Kept, None),
+        RangeFinding::Left { error, run } => (RangeVerdict::Left(error.to_string()), Some(run)),
+        RangeFinding::Inconclusive { cutoff, widest } => {
+            (RangeVerdict::Inconclusive(cut_off(cutoff, widest.as_ref(), watch)), None)
+        }
+        RangeFinding::Behind(error) => {
+            (RangeVerdict::Inconclusive(format!("another fault of the model comes first: {error}")), None)
+        }
+    };
+    RangeResult {
+        slot: answer.slot,
+        variables: answer.variables.join(", "),
+        found,
+        run: run.map(|witness| Box::new(ObservedRun { observed: plain.clone(), witness: *witness })),
+        statistics: answer.statistics,
+    }
 }
 
 /// Notes of what is not possible if it is so only because holds take no time.
@@ -264,6 +309,7 @@ fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAns
         notes: if said { Vec::new() } else { vec![answer.why] },
         statistics: answer.statistics,
         joint: false,
+        ranges: Vec::new(),
     }
 }
 

@@ -10,8 +10,9 @@ use hrdsl_ir::{
     ta::QueryFormula,
 };
 use hrdsl_ta::{
-    CompiledNetwork, EventCounter, EventLimit, GoalKind, GoalOutcome, ObservationOptions, ReachabilityGoal,
-    ScheduleOptions, SearchBudget, SearchError, SearchOptions, SearchReport, WitnessRun,
+    CompiledNetwork, EventCounter, EventLimit, GoalKind, GoalOutcome, ObservationOptions, RangeAnswer,
+    ReachabilityGoal, ScheduleOptions, SearchBudget, SearchError, SearchOptions, SearchReport,
+    UnreadCounters, WitnessRun,
 };
 pub use hrdsl_ta::{SearchOrder, SearchStatistics, TimeFrame};
 
@@ -31,7 +32,7 @@ pub struct ProofOptions {
     pub explain: bool,
     /// States with a committed location are not stored: often less memory, and less time.
     pub skip_committed: bool,
-    /// States that differ in one-way counters alone are kept apart.
+    /// States that differ in one-way counters alone, or in counters that nothing reads, are kept apart.
     pub exact_counters: bool,
     /// Threads that search at once; 0 is 1.
     pub threads: usize,
@@ -190,6 +191,21 @@ fn formula(goal: &ReachabilityGoal) -> Option<QueryFormula> {
     if let GoalKind::Formula(f) = &goal.what { Some(f.clone()) } else { None }
 }
 
+fn observed_by(
+    goals: &[ReachabilityGoal],
+    counters: &[EventCounter],
+    limits: &[EventLimit],
+) -> ObservationOptions {
+    ObservationOptions {
+        counters: counters.to_vec(),
+        limits: limits.to_vec(),
+        pairs: goals.iter().any(|g| matches!(g.what, GoalKind::Pair { .. })),
+        uses: goals.iter().any(|g| matches!(g.what, GoalKind::Use { .. })),
+        formulas: goals.iter().filter_map(formula).collect(),
+        ..ObservationOptions::default()
+    }
+}
+
 pub(crate) fn search(
     observed: &ObservedNetwork,
     goals: &[ReachabilityGoal],
@@ -198,25 +214,57 @@ pub(crate) fn search(
     settings: &ProofOptions,
     watch: &SearchWatch,
 ) -> Result<SearchReport, SearchError> {
-    let observe = ObservationOptions {
-        counters: counters.to_vec(),
-        limits: limits.to_vec(),
-        pairs: goals.iter().any(|g| matches!(g.what, GoalKind::Pair { .. })),
-        uses: goals.iter().any(|g| matches!(g.what, GoalKind::Use { .. })),
-        formulas: goals.iter().filter_map(formula).collect(),
-        ..ObservationOptions::default()
-    };
+    let observe = observed_by(goals, counters, limits);
     let model = CompiledNetwork::new(&observed.program, &observed.network, &observe)?;
     let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
     let mut report = hrdsl_ta::explore(&model, goals, &settings.options(), &go_on)?;
+    choose(&model, goals, &mut report, settings)?;
+    Ok(report)
+}
+
+/// As [`search`], of queries: goals that are told as soon as they are met. Variables that nothing reads are searched apart, if they may
+/// leave their ranges and the settings allow it.
+pub(crate) fn search_queries(
+    observed: &ObservedNetwork,
+    goals: &[ReachabilityGoal],
+    settings: &ProofOptions,
+    watch: &SearchWatch,
+) -> Result<(SearchReport, Vec<RangeAnswer>), SearchError> {
+    let observe = observed_by(goals, &[], &[]);
+    let apart = !settings.exact_counters && settings.witness != WitnessKind::Fastest;
+    let unread = if apart {
+        UnreadCounters::find(&observed.program, &observed.network, &observe, goals)?
+    } else {
+        None
+    };
+    let Some(unread) = unread else {
+        watch.listen(true);
+        let report = search(observed, goals, &[], &[], settings, watch);
+        watch.listen(false);
+        return Ok((report?, Vec::new()));
+    };
+    // What is met without these variables may be met beyond a fault alone, so that nothing is told early.
+    let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
+    let (mut report, ranges) = unread.explore(goals, &settings.options(), &go_on)?;
+    choose(unread.model(), goals, &mut report, settings)?;
+    Ok((report, ranges))
+}
+
+/// The runs that the settings ask for, instead of those that were found.
+fn choose(
+    model: &CompiledNetwork<'_>,
+    goals: &[ReachabilityGoal],
+    report: &mut SearchReport,
+    settings: &ProofOptions,
+) -> Result<(), SearchError> {
     for (goal, outcome) in goals.iter().zip(&mut report.goals) {
         if let GoalOutcome::Reached(found) = outcome
-            && let Some(run) = chosen(&model, goal, found, settings)?
+            && let Some(run) = chosen(model, goal, found, settings)?
         {
             *found = run;
         }
     }
-    Ok(report)
+    Ok(())
 }
 
 /// The run that the settings ask for, instead of the one that was found; `None`: that one.

@@ -51,9 +51,10 @@ pub use decide::deadlock::SHORTEST;
 pub use decide::explore::{check, explore};
 pub use decide::extremum::{ExtremumLimit, ExtremumValue, MeasureExtremum, RAISES};
 pub use decide::fastest::fastest;
+pub use decide::unread::{RangeAnswer, RangeFinding, UnreadCounters};
 pub use network::code::SyncMedium;
 pub use network::error::{EdgeName, ModelError};
-pub use network::model::{CompiledNetwork, ObservationOptions, slot_names};
+pub use network::model::{CompiledNetwork, ObservationOptions, OverflowTreatment, OverflowWatch, slot_names};
 pub use network::open::{OpenNetwork, OpenTransition, StateStay};
 pub use network::query::{
     self, EventCounter, EventLimit, GoalKind, ReachabilityGoal, SearchBudget, StateFormula, clock_names,

@@ -35,8 +35,10 @@ pub struct ProofClock {
 
 /// How long a search is waited for that was told to stop. Not all of them listen.
 const GRACE: Duration = Duration::from_millis(500);
-/// The same after an interrupt: a second one ends at once.
-const INTERRUPTED_GRACE: Duration = Duration::from_secs(2);
+/// The same after an interrupt: whoever interrupts is waiting.
+const INTERRUPTED_GRACE: Duration = Duration::from_millis(60);
+/// How often is looked whether it is over.
+const LOOKS: Duration = Duration::from_millis(20);
 /// Whoever waits no longer than this sees the answers all at once.
 const PATIENCE: Duration = Duration::from_secs(1);
 const STACK: usize = 64 << 20;
@@ -137,7 +139,7 @@ impl ProofClock {
             }
             watch.newly_met().into_iter().try_for_each(&mut *early)?;
             // Short work ends soon; long work is looked at now and then.
-            waited = (waited * 2).min(Duration::from_millis(50));
+            waited = (waited * 2).min(LOOKS);
             if self.is_over() {
                 watch.interrupted.store(self.is_interrupted(), Ordering::Relaxed);
                 watch.stop.store(true, Ordering::Relaxed);

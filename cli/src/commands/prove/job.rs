@@ -115,6 +115,7 @@ impl ProofJob {
                 notes,
                 statistics: None,
                 joint: queries.len() > 1,
+                ranges: Vec::new(),
             }
         };
         let answers = answers.unwrap_or_else(|| queries.iter().map(late).collect());
@@ -123,7 +124,15 @@ impl ProofJob {
             row.place = (network, PropertyKind::Query, answer.query);
             row
         };
-        Ok(answers.iter().map(row).collect())
+        let mut rows: Vec<ProofRow> = answers.iter().map(row).collect();
+        // Answers of one search have the same of them.
+        for range in answers.iter().flat_map(|answer| &answer.ranges) {
+            let place = (network, PropertyKind::Range, range.slot);
+            if rows.iter().all(|row| row.place != place) {
+                rows.push(ProofRow { place, ..ProofRow::of_range(range) });
+            }
+        }
+        Ok(rows)
     }
 }
 

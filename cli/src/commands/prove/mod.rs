@@ -16,7 +16,7 @@ use super::search_options::{DelayArg, SearchOrderArg, WitnessArg};
 use crate::{edge_sources::EdgeSources, exit::CommandExit, fault::CommandFault, files, input, terminal};
 use asked::QueriedScenario;
 use clock::ProofClock;
-use table::ProofRow;
+use table::{ProofRow, PropertyKind};
 
 /// Search the networks of a scenario: can they violate a requirement, and what do the queries answer?
 ///
@@ -101,7 +101,7 @@ pub struct ProveSearchArgs {
     /// Do not store states with a committed location: often less memory, and less time. Runs may not be the shortest.
     #[arg(long)]
     skip_committed: bool,
-    /// Keep states apart that differ in one-way counters alone: the same answers from more states.
+    /// Keep states apart that differ in one-way counters alone, or in those that nobody reads: the same answers from more states.
     #[arg(long)]
     exact_counters: bool,
     /// Threads that search at once.
@@ -174,6 +174,8 @@ pub fn run(args: &ProveArgs) -> Result<CommandExit, CommandFault> {
     }
     clock.finish();
     rows.sort_by_key(|row| row.place);
+    // Several searches may have left out the same variables.
+    rows.dedup_by(|later, row| row.kind == PropertyKind::Range && later.place == row.place);
     rows.iter_mut().for_each(|row| row.locate(&sources));
     write_run(args, &rows)?;
     if args.stream {

@@ -92,6 +92,8 @@ struct NetworkRows<'r> {
     network: &'r str,
     requirements: Vec<RowJson<'r>>,
     queries: Vec<RowJson<'r>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ranges: Vec<RowJson<'r>>,
     searches: Vec<SearchJson<'r>>,
 }
 
@@ -147,6 +149,7 @@ fn document<'r>(program: &'r Program, rows: &'r [ProofRow], timings: bool) -> Pr
                 network: &row.network,
                 requirements: vec![],
                 queries: vec![],
+                ranges: vec![],
                 searches: vec![],
             });
         }
@@ -158,6 +161,7 @@ fn document<'r>(program: &'r Program, rows: &'r [ProofRow], timings: bool) -> Pr
         match row.kind {
             PropertyKind::Requirement => last.requirements.push(of(row)),
             PropertyKind::Query => last.queries.push(of(row)),
+            PropertyKind::Range => last.ranges.push(of(row)),
         }
     }
     ProofDocument { format: "hrdsl-prove", version: 3, scenario: &program.name, networks }

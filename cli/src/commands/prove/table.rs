@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use hrdsl_ir::Program;
 use hrdsl_runtime::prove::{
-    ObservedRun, ProofStatus, QueryFinding, QueryResult, RequirementProof, SearchStatistics, WitnessTrace,
+    ObservedRun, ProofStatus, QueryFinding, QueryResult, RangeResult, RangeVerdict, RequirementProof,
+    SearchStatistics, WitnessTrace,
 };
 use serde::Serialize;
 
@@ -38,6 +39,8 @@ pub struct ProofRow {
 pub enum PropertyKind {
     Requirement,
     Query,
+    /// That variables that no query reads stay in their ranges.
+    Range,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,6 +159,32 @@ impl ProofRow {
             joint: answer.joint,
             time: Duration::ZERO,
             place: (0, PropertyKind::Query, answer.query),
+        }
+    }
+
+    /// Whether variables that the search for an answer left out stay in their ranges.
+    pub fn of_range(range: &RangeResult) -> Self {
+        let (verdict, remark) = match &range.found {
+            RangeVerdict::Kept => (PropertyVerdict::Holds, None),
+            RangeVerdict::Inconclusive(why) => (PropertyVerdict::Inconclusive, Some(why.clone())),
+            RangeVerdict::Left(what) => (PropertyVerdict::Fault, Some(what.clone())),
+        };
+        let trace = range.run.as_deref().map(ObservedRun::named_trace);
+        let remarks: Vec<String> = remark.into_iter().chain(trace.as_ref().map(shape)).collect();
+        Self {
+            network: String::new(),
+            kind: PropertyKind::Range,
+            name: range.variables.clone(),
+            title: String::new(),
+            text: "read by nothing that is asked here: stays in its range".to_owned(),
+            verdict,
+            remark: (!remarks.is_empty()).then(|| remarks.join("; ")),
+            bounds: Vec::new(),
+            trace,
+            statistics: range.statistics,
+            joint: false,
+            time: Duration::ZERO,
+            place: (0, PropertyKind::Range, range.slot),
         }
     }
 }

@@ -13,5 +13,6 @@ mod known_states;
 mod liveness;
 mod places;
 mod stopwatch;
+pub(crate) mod unread;
 mod words;
 mod zeno;

@@ -1,50 +1,28 @@
 //! From a program's network to a [`CompiledNetwork`]: names become places in the state, patterns become numbers, times become units.
 
-use hrdsl_ir::expr::Lvalue;
 use hrdsl_ir::{
-    ArgPattern, EventPattern, Expr, Nanos, Program, Type,
+    Nanos, Program,
     ta::{
-        Automaton, AutomatonFunction, AutomatonId, AutomatonVar, ChannelId, ChannelKind, ClockConstraint,
-        ClockId, Edge, EdgeAssignment, FunctionStatement, Network, QueryFormula, ReceiveArg, SyncLabel,
-        TimeSum,
+        Automaton, AutomatonVar, ChannelKind, ClockConstraint, Edge, EdgeAssignment, Network, QueryFormula,
+        SyncLabel, TimeSum,
     },
     value::SECOND,
 };
 
-use crate::{
-    network::{
-        bounds::ExtrapolationBounds,
-        code::{
-            CodeLibrary, CompiledExpr, CompiledFunction, CompiledLvalue, CompiledStatement, SyncMedium,
-            VariablePlace, VariableScope,
-        },
-        error::ModelError,
-        model::{CompiledNetwork, ObservationOptions},
-        number::{NumberType, gcd},
-        parts::{
-            ClockConstraints, CompiledAutomaton, CompiledEdge, CompiledLocation, EdgeOutput, EdgeSync,
-            EdgeUpdate, EventWatch, InputPartner, InputPattern, MultiwayChannel, OutputArgument,
-            ParametricConstraint, TimeExpr,
-        },
-        well_formed,
-        width::width,
+use crate::network::{
+    bounds::ExtrapolationBounds,
+    code::{CodeLibrary, SyncMedium, VariablePlace, VariableScope},
+    compiler::{ModelResult, NetworkCompiler, malformed},
+    error::ModelError,
+    model::{CompiledNetwork, ObservationOptions},
+    number::{NumberType, gcd},
+    parts::{
+        ClockConstraints, CompiledAutomaton, CompiledEdge, CompiledLocation, EdgeSync, EdgeUpdate, TimeExpr,
     },
-    zone::constraint::constraints,
+    signals::{multiway_channels, partners},
+    well_formed,
+    width::width,
 };
-
-/// The greatest constant, in units.
-const FAR: u64 = 1 << 50;
-/// A number that no argument has.
-const NEVER: i64 = i64::MIN;
-
-struct NetworkCompiler<'p, 'n> {
-    program: &'p Program,
-    network: &'n Network,
-    unit: Nanos,
-    library: CodeLibrary,
-}
-
-type ModelResult<T> = std::result::Result<T, ModelError>;
 
 impl<'p> CompiledNetwork<'p> {
     /// Compiles a network, with what observes and restricts it.
@@ -109,6 +87,7 @@ fn compiled<'p>(
         reach: reach?,
         pairs: observe.pairs,
         uses: observe.uses,
+        overflow: observe.overflow.clone(),
         members,
         library: compiler.library,
     })
@@ -162,10 +141,6 @@ fn clock_parts(formula: &QueryFormula, f: &mut dyn FnMut(&ClockConstraint)) {
     }
 }
 
-fn malformed(automaton: &str, what: &str) -> ModelError {
-    ModelError::Malformed { automaton: automaton.to_owned(), what: what.to_owned() }
-}
-
 impl<'p> NetworkCompiler<'p, '_> {
     /// The members with their names, without locations and edges.
     fn members(
@@ -197,114 +172,6 @@ impl<'p> NetworkCompiler<'p, '_> {
             clock += automaton.clocks.len();
         }
         Ok(members)
-    }
-
-    // ── Functions ──
-
-    fn functions(&mut self, network: &Network, members: &[CompiledAutomaton]) -> ModelResult<()> {
-        // In two passes, all signatures before any body: functions may call each other in circles.
-        let shared: Vec<(VariablePlace, NumberType)> = self
-            .program
-            .shared
-            .iter()
-            .enumerate()
-            .map(|(i, v)| (VariablePlace::State((members.len() + i) as u32), NumberType::of(v)))
-            .collect();
-        let mut todo: Vec<(&AutomatonFunction, VariableScope)> = Vec::new();
-        for (f, id) in self.program.functions.iter().zip((0..).map(hrdsl_ir::ta::FunctionId)) {
-            let owner = f.owner.map(|a| CompiledNetwork::member_of(network, a));
-            let (member, vars) = match owner {
-                None => (None, shared.clone()),
-                // Of an automaton that is not in this network: nobody can call it.
-                Some(None) => continue,
-                Some(Some(m)) => (Some(m), members[usize::from(m)].names.vars.clone()),
-            };
-            self.library.numbers.push((id, member, todo.len() as u32));
-            let range = |v: &AutomatonVar| (v.lo, v.hi);
-            self.library.routines.push(CompiledFunction {
-                params: f.params.iter().map(range).collect(),
-                types: f.params.iter().map(NumberType::of).collect(),
-                frame: f.params.iter().chain(&f.locals).map(range).collect(),
-                inits: f.locals.iter().map(|v| v.init).collect(),
-                result: f.result.as_ref().map(|v| (NumberType::of(v), v.lo, v.hi)),
-                body: Box::default(),
-            });
-            let frame = f.params.iter().chain(&f.locals).enumerate();
-            let locals = frame.map(|(i, v)| (VariablePlace::Local(i as u32), NumberType::of(v)));
-            todo.push((f, VariableScope::own(vars.into_iter().chain(locals).collect(), member)));
-        }
-        for (n, (f, names)) in todo.iter().enumerate() {
-            let first = names.vars.len() - f.params.len() - f.locals.len();
-            let body = self.body(names, f, first, &f.body);
-            let fault = || malformed(&f.name, "a function uses an unknown variable or function");
-            self.library.routines[n].body = body.ok_or_else(fault)?;
-        }
-        Ok(())
-    }
-
-    fn body(
-        &self,
-        names: &VariableScope,
-        f: &AutomatonFunction,
-        first: usize,
-        body: &[FunctionStatement],
-    ) -> Option<Box<[CompiledStatement]>> {
-        body.iter().map(|s| self.statement(names, f, first, s)).collect()
-    }
-
-    fn statement(
-        &self,
-        names: &VariableScope,
-        f: &AutomatonFunction,
-        first: usize,
-        s: &FunctionStatement,
-    ) -> Option<CompiledStatement> {
-        let lib = &self.library;
-        Some(match s {
-            FunctionStatement::Assign { place, value } => {
-                let (reach, value) = self.assignment(names, place, value)?;
-                CompiledStatement::Assign(reach, value)
-            }
-            FunctionStatement::Call { function, args } => {
-                let routine = lib.routine(*function, names.member)?;
-                CompiledStatement::Call(routine, lib.arguments(names, routine, args)?)
-            }
-            FunctionStatement::If { condition, then, otherwise } => CompiledStatement::If(
-                lib.compile(names, condition, NumberType::Bool),
-                self.body(names, f, first, then)?,
-                self.body(names, f, first, otherwise)?,
-            ),
-            FunctionStatement::While { condition, body } => CompiledStatement::While(
-                lib.compile(names, condition, NumberType::Bool),
-                self.body(names, f, first, body)?,
-            ),
-            FunctionStatement::For { slot, lo, hi, body } => {
-                let local = usize::from(*slot).checked_sub(first)?;
-                names.vars.get(usize::from(*slot))?;
-                let (lo, hi) =
-                    (lib.compile(names, lo, NumberType::Int), lib.compile(names, hi, NumberType::Int));
-                CompiledStatement::For(local as u32, lo, hi, self.body(names, f, first, body)?)
-            }
-            FunctionStatement::Return(value) => {
-                let ty = f.result.as_ref().map(NumberType::of);
-                let code = |e| ty.map(|ty| lib.compile(names, e, ty));
-                CompiledStatement::Return(match value {
-                    None => None,
-                    Some(e) => Some(code(e)?),
-                })
-            }
-        })
-    }
-
-    fn assignment(
-        &self,
-        names: &VariableScope,
-        place: &Lvalue,
-        value: &Expr,
-    ) -> Option<(CompiledLvalue, CompiledExpr)> {
-        let reach = self.library.reach(names, place)?;
-        let ty = names.vars.get(usize::from(place.slot))?.1;
-        Some((reach, self.library.compile(names, value, ty)))
     }
 
     // ── Automata ──
@@ -470,214 +337,6 @@ impl<'p> NetworkCompiler<'p, '_> {
         all
     }
 
-    fn clock(&self, clock: ClockId, first: usize) -> u16 {
-        let shared = self.program.clocks.len();
-        let n = usize::from(clock.0);
-        // Clock 0 of a zone is the constant zero.
-        (if n < shared { n + 1 } else { first + n - shared }) as u16
-    }
-
-    fn times(
-        &self,
-        automaton: &Automaton,
-        names: &VariableScope,
-        locals: &[(i64, i64)],
-        time: &TimeSum,
-    ) -> ModelResult<TimeExpr> {
-        let far = || ModelError::Constants { automaton: automaton.name.clone() };
-        let mut terms = Vec::new();
-        // Without remainder: the unit divides all constants and factors, so that no bound is rounded.
-        let mut units = time.nanos / self.unit;
-        for t in &time.terms {
-            let factor = t.factor / self.unit;
-            let code = self.library.compile(names, &t.value, NumberType::Int);
-            if let CompiledExpr::Const(n) = code {
-                units = n.checked_mul(factor).and_then(|n| units.checked_add(n)).ok_or_else(far)?;
-            } else {
-                terms.push((factor, code));
-            }
-        }
-        let times = TimeExpr { units, terms };
-        let (lo, hi) = times.span(&self.library, locals);
-        if lo.unsigned_abs() > FAR || hi.unsigned_abs() > FAR { Err(far()) } else { Ok(times) }
-    }
-
-    fn clocks(
-        &self,
-        automaton: &Automaton,
-        names: &VariableScope,
-        first: usize,
-        locals: &[(i64, i64)],
-        constraints_of: &[ClockConstraint],
-    ) -> ModelResult<ClockConstraints> {
-        let mut out = ClockConstraints::default();
-        for c in constraints_of {
-            let (i, j) = (self.clock(c.clock, first), c.minus.map_or(0, |m| self.clock(m, first)));
-            let time = self.times(automaton, names, locals, &c.bound)?;
-            if time.terms.is_empty() {
-                constraints(i, j, c.op, time.units, &mut |c| out.fixed.push(c));
-            } else {
-                let span = time.span(&self.library, locals);
-                out.moving.push(ParametricConstraint { i, j, op: c.op, time, span });
-            }
-        }
-        Ok(out)
-    }
-
-    // ── Synchronisation ──
-
-    /// Types and ranges of what it carries.
-    fn params(&self, medium: SyncMedium) -> Option<Vec<(NumberType, i64, i64)>> {
-        let finite = |v: &AutomatonVar| (NumberType::of(v), v.lo, v.hi);
-        match medium {
-            SyncMedium::Channel(ChannelId(c)) => {
-                Some(self.program.channels.get(usize::from(c))?.params.iter().map(finite).collect())
-            }
-            SyncMedium::Event(e) => {
-                let event = self.program.events.get(usize::from(e.0))?;
-                let ty = |ty: Type| match ty {
-                    Type::Bool => (NumberType::Bool, 0, 1),
-                    Type::Int { lo, hi } => (NumberType::Int, lo, hi),
-                    Type::Enum(e) => (NumberType::Enum(e), 0, e.values().len() as i64 - 1),
-                    Type::Float(_) | Type::Text | Type::List(_) => (NumberType::Constant, 0, i64::MAX),
-                };
-                Some(event.params.iter().map(|p| ty(p.ty)).collect())
-            }
-        }
-    }
-
-    fn want(&mut self, ty: NumberType, pattern: &ArgPattern) -> Option<i64> {
-        match (pattern, ty) {
-            (ArgPattern::Any, _) => None,
-            (ArgPattern::Is(v), NumberType::Constant) => Some(self.library.constant(*v)),
-            (ArgPattern::Is(v), NumberType::Bool | NumberType::Int | NumberType::Enum(_)) => {
-                // A value that the parameter cannot have is a pattern that nothing matches, and no fault.
-                Some(ty.number(*v).unwrap_or(NEVER))
-            }
-        }
-    }
-
-    /// What an edge receives over a medium. `None`: there is no such medium.
-    fn received(
-        &mut self,
-        medium: SyncMedium,
-        args: &[ReceiveArg],
-        binders: &mut Vec<NumberType>,
-        locals: &mut Vec<(i64, i64)>,
-    ) -> Option<EdgeSync> {
-        let params = self.params(medium)?;
-        Some(EdgeSync::In(self.pattern(medium, args, &params, binders, locals)))
-    }
-
-    fn pattern(
-        &mut self,
-        medium: SyncMedium,
-        args: &[ReceiveArg],
-        params: &[(NumberType, i64, i64)],
-        binders: &mut Vec<NumberType>,
-        locals: &mut Vec<(i64, i64)>,
-    ) -> InputPattern {
-        let (mut wants, mut binds) = (Vec::new(), Vec::new());
-        for (i, (arg, &(ty, lo, hi))) in args.iter().zip(params).enumerate() {
-            wants.push(match arg {
-                ReceiveArg::Match(pattern) => self.want(ty, pattern),
-                ReceiveArg::Bind => {
-                    binds.push(i as u16);
-                    binders.push(ty);
-                    locals.push((lo, hi));
-                    None
-                }
-            });
-        }
-        InputPattern { medium, broadcast: self.broadcast(medium), wants, binds }
-    }
-
-    fn signal(
-        &mut self,
-        automaton: &Automaton,
-        names: &VariableScope,
-        medium: SyncMedium,
-        args: &[Expr],
-    ) -> ModelResult<EdgeSync> {
-        let unknown = || malformed(&automaton.name, "an edge sends something unknown");
-        let params = self.params(medium).ok_or_else(unknown)?;
-        let mut all = Vec::new();
-        for (arg, (ty, lo, hi)) in args.iter().zip(params) {
-            all.push(OutputArgument { code: self.argument(automaton, names, arg, ty)?, range: (lo, hi) });
-        }
-        let broadcast = self.broadcast(medium);
-        Ok(EdgeSync::Out(EdgeOutput { medium, args: all.into(), broadcast, partners: Vec::new() }))
-    }
-
-    fn broadcast(&self, medium: SyncMedium) -> bool {
-        match medium {
-            SyncMedium::Event(_) => true,
-            SyncMedium::Channel(ChannelId(c)) => {
-                self.program.channels.get(usize::from(c)).is_some_and(|c| c.kind == ChannelKind::Broadcast)
-            }
-        }
-    }
-
-    fn argument(
-        &mut self,
-        automaton: &Automaton,
-        names: &VariableScope,
-        arg: &Expr,
-        ty: NumberType,
-    ) -> ModelResult<CompiledExpr> {
-        match ty {
-            NumberType::Constant => {
-                let value = arg.eval(&|_| None);
-                let what = "an argument that is a float, a string or a list must be a constant";
-                Ok(CompiledExpr::Const(
-                    self.library.constant(value.map_err(|_| malformed(&automaton.name, what))?),
-                ))
-            }
-            NumberType::Enum(to) => Ok(match self.library.typed(names, arg, Some(to)) {
-                // A symbol that the parameter does not know is a fault of its own.
-                Some((code, NumberType::Enum(from))) if from != to => {
-                    let index = |s: &hrdsl_ir::Symbol| to.index_of(*s).map_or(-1, |n| n as i64);
-                    CompiledExpr::Convert(Box::new(code), from, from.values().iter().map(index).collect())
-                }
-                Some(_) | None => self.library.compile(names, arg, ty),
-            }),
-            NumberType::Bool | NumberType::Int => Ok(self.library.compile(names, arg, ty)),
-        }
-    }
-
-    fn watch(&mut self, observe: &ObservationOptions) -> Vec<EventWatch> {
-        let mut all: Vec<EventWatch> = self.program.events.iter().map(|_| EventWatch::default()).collect();
-        for (i, c) in observe.counters.iter().enumerate() {
-            for (event, patterns) in self.patterns(&c.patterns) {
-                all[event].counters.push((i, patterns));
-            }
-        }
-        for (i, l) in observe.limits.iter().enumerate() {
-            for (event, patterns) in self.patterns(&l.patterns) {
-                all[event].limits.push((i, patterns));
-            }
-        }
-        all
-    }
-
-    /// By event, what the patterns want of its arguments.
-    fn patterns(&mut self, patterns: &[EventPattern]) -> Vec<(usize, Vec<Vec<Option<i64>>>)> {
-        let mut all: Vec<(usize, Vec<Vec<Option<i64>>>)> = Vec::new();
-        for p in patterns {
-            let event = usize::from(p.event.0);
-            let Some(params) = self.params(SyncMedium::Event(p.event)) else { continue };
-            if params.len() != p.args.len() {
-                continue;
-            }
-            let wants = p.args.iter().zip(&params).map(|(a, param)| self.want(param.0, a)).collect();
-            match all.iter_mut().find(|a| a.0 == event) {
-                Some(known) => known.1.push(wants),
-                None => all.push((event, vec![wants])),
-            }
-        }
-        all
-    }
-
     /// The constraints on clocks of the observed formulas, over the network's clocks.
     fn formula_clocks(
         &self,
@@ -710,53 +369,4 @@ impl<'p> NetworkCompiler<'p, '_> {
         all.moving.extend(found.moving);
         Ok(all)
     }
-}
-
-fn multiway_channels(program: &Program, network: &Network) -> Vec<MultiwayChannel> {
-    let mut all = Vec::new();
-    for (i, c) in program.channels.iter().enumerate() {
-        if let ChannelKind::MultiWay(participants) = &c.kind {
-            let member = |a: AutomatonId| CompiledNetwork::member_of(network, a);
-            let there = participants.iter().filter_map(|p| member(p.automaton).map(|m| (m, p.optional)));
-            all.push(MultiwayChannel {
-                channel: ChannelId(i as u16),
-                urgent: c.urgent,
-                participants: there.collect(),
-            });
-        }
-    }
-    all
-}
-
-/// Finds for each edge that sends or offers the edges that may match.
-fn partners(members: &mut [CompiledAutomaton]) {
-    let mut found: Vec<(usize, usize, Vec<InputPartner>)> = Vec::new();
-    for (m, member) in members.iter().enumerate() {
-        for (e, arrow) in member.edges.iter().enumerate() {
-            let EdgeSync::Out(signal) = &arrow.sync else { continue };
-            let others = members.iter().enumerate().filter(|(n, _)| *n != m);
-            let all = others.filter_map(|(n, other)| partner(n, other, signal)).collect();
-            found.push((m, e, all));
-        }
-    }
-    for (m, e, all) in found {
-        if let EdgeSync::Out(signal) = &mut members[m].edges[e].sync {
-            signal.partners = all;
-        }
-    }
-}
-
-fn partner(n: usize, other: &CompiledAutomaton, signal: &EdgeOutput) -> Option<InputPartner> {
-    let may = |e: &u16| match &other.edges[usize::from(*e)].sync {
-        EdgeSync::In(p) if p.medium == signal.medium => p
-            .wants
-            .iter()
-            .zip(&signal.args)
-            // Only constants are told apart here; what else is sent is compared when it is.
-            .all(|(want, arg)| want.is_none_or(|w| arg.code.constant().is_none_or(|n| n == w))),
-        EdgeSync::In(_) | EdgeSync::Internal | EdgeSync::Out(_) | EdgeSync::Join { .. } => false,
-    };
-    let edges: Vec<Box<[u16]>> =
-        other.locations.iter().map(|l| l.receiving.iter().copied().filter(may).collect()).collect();
-    edges.iter().any(|e| !e.is_empty()).then_some(InputPartner { member: n as u16, edges })
 }

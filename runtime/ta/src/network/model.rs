@@ -35,6 +35,26 @@ pub struct ObservationOptions {
     pub all_clocks: bool,
     /// Times are counted in nanoseconds, not in the greatest unit in which all constants are whole.
     pub nanoseconds: bool,
+    /// What is made of it that some variables leave their ranges.
+    pub overflow: OverflowWatch,
+}
+
+/// Variables whose overflow is looked at in a way of its own.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OverflowWatch {
+    /// By slot.
+    pub slots: Vec<usize>,
+    pub treatment: OverflowTreatment,
+}
+
+/// What the overflow of a variable means to a search. A fault it is in each case but one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OverflowTreatment {
+    /// The search is for it, so that of two values the one nearer to it is better.
+    #[default]
+    Sought,
+    /// A transition with one does not exist, so that of two values the one farther from it is better.
+    Avoided,
 }
 
 /// How many bits the entries of matrices need.
@@ -67,6 +87,7 @@ pub struct CompiledNetwork<'p> {
     pub(crate) reach: BoundReach,
     pub(crate) pairs: bool,
     pub(crate) uses: bool,
+    pub(crate) overflow: OverflowWatch,
 }
 
 /// The network's slots by name, in the order in which [`StateFormula::Data`] numbers them: the shared variables, then
@@ -255,6 +276,12 @@ impl<'p> CompiledNetwork<'p> {
     pub(crate) fn edge_name(&self, member: usize, edge: usize) -> Box<EdgeName> {
         let a = self.members[member].automaton;
         EdgeName::of(a, &a.edges[edge])
+    }
+
+    /// How the overflow of the variable at this place of the state is treated, if that is in a way of its own.
+    pub(crate) fn overflow_at(&self, place: u32) -> Option<OverflowTreatment> {
+        let slot = (place as usize).checked_sub(self.members.len())?;
+        self.overflow.slots.contains(&slot).then_some(self.overflow.treatment)
     }
 
     /// What the model's fault is called.

@@ -4,6 +4,7 @@ mod arrive;
 mod batch;
 mod counter_steps;
 mod covering;
+mod crew;
 pub(crate) mod expand;
 pub(crate) mod goals;
 pub(crate) mod monotone;

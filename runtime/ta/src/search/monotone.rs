@@ -7,6 +7,9 @@
 //! from another only in that its counters are better simulates it: what is enabled there is enabled here, leads to the same
 //! locations, variables and clocks, and again to counters that are no worse. Where the *greater* is better, all is the other way round.
 //!
+//! Of a counter whose overflow is [sought](OverflowTreatment::Sought) or [avoided](OverflowTreatment::Avoided) the additions, too, look one
+//! way: towards the overflow, or away from it.
+//!
 //! What would see the difference the other way disqualifies a variable: a fault (an assignment must be known to stay in its range, by
 //! the edge's own guard or by how far the counter can come at all; an expression that may have no value reads nothing one way), the guard of a receiver that may
 //! stay away (there its negation counts, too), a guard over an urgent channel (where it holds, time must not pass), bounds of clocks,
@@ -15,7 +18,7 @@
 use crate::{
     network::{
         code::{CompiledExpr, CompiledLvalue, SyncMedium},
-        model::CompiledNetwork,
+        model::{CompiledNetwork, OverflowTreatment},
         number::NumberComparison,
         parts::{ClockConstraints, CompiledEdge, EdgeSync, EdgeUpdate},
     },
@@ -238,11 +241,16 @@ impl OneWayReads<'_, '_> {
             all.into_iter().for_each(|i| self.both_ways(i));
             return self.taint(value);
         };
-        match step(counter, value) {
-            Some(_) if self.stays_in_range(member, edge, counter) => {}
-            Some(_) if reach_of_counter::stays_in_range(self.model, counter) => {}
-            Some(_) => self.both_ways(counter),
-            None => self.taint(value),
+        match (step(counter, value), self.model.overflow_at(counter)) {
+            // Upwards the greater value comes to its overflow with the lesser one, and perhaps before it; downwards the lesser.
+            (Some(by), Some(treatment)) if by != 0 => {
+                self.wants(counter, (by > 0) == (treatment == OverflowTreatment::Avoided));
+            }
+            (Some(_), Some(_)) => {}
+            (Some(_), None) if self.stays_in_range(member, edge, counter) => {}
+            (Some(_), None) if reach_of_counter::stays_in_range(self.model, counter) => {}
+            (Some(_), None) => self.both_ways(counter),
+            (None, _) => self.taint(value),
         }
     }
 

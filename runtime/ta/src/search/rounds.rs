@@ -5,19 +5,14 @@
 //! is stored unless one of the same discrete part covers its zone, and it drives out those that it covers: of these only
 //! the path to them is kept, for witnesses. When nothing waits any more, a goal that was not met is proved unreachable.
 
-use std::{
-    ops::ControlFlow,
-    rc::Rc,
-    sync::{Mutex, PoisonError},
-};
-
-use rayon::prelude::*;
+use std::{ops::ControlFlow, rc::Rc};
 
 use crate::{
     network::{actions::PathTransition, error::ModelError, model::CompiledNetwork, query::ReachabilityGoal},
     search::{
         batch::{ExpansionBatch, GoalHit, GoalPath},
-        expand::{ExpansionContext, ExpansionWorker},
+        crew::ExpansionCrew,
+        expand::ExpansionContext,
         goals::CompiledGoals,
         monotone::{self, OneWayCounter},
         options::{SearchOptions, SubsumptionRelation},
@@ -50,11 +45,10 @@ pub(super) struct ZoneGraphSearch<'m, 'p, N> {
     left: usize,
     store: PassedList<N>,
     waiting: WaitingList,
-    workers: Vec<ExpansionWorker<'m, 'p, N>>,
+    crew: ExpansionCrew<'m, 'p, N>,
     batches: Vec<ExpansionBatch<N>>,
     /// The states of the round.
     round: Vec<u32>,
-    pool: Option<rayon::ThreadPool>,
     visited: usize,
     transitions: usize,
     peak: usize,
@@ -62,15 +56,6 @@ pub(super) struct ZoneGraphSearch<'m, 'p, N> {
 
 /// States of one round.
 const ROUND: usize = 4096;
-/// States that one thread expands in one go.
-const CHUNK: usize = 16;
-
-/// Threads for a search; none for a single one, which is the caller's.
-fn pool_of(threads: usize) -> Result<Option<rayon::ThreadPool>, SearchError> {
-    let build = || rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = (threads > 1).then(build).transpose();
-    pool.map_err(|e| SearchError::Internal(format!("no threads: {e}")))
-}
 
 impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
     pub(super) fn new(
@@ -120,10 +105,9 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
                 Some(_) => WaitingList::by_time(),
                 None => WaitingList::new(options.order, options.seed),
             },
-            workers: (0..options.threads.max(1)).map(|_| ExpansionWorker::new(model, clocks)).collect(),
+            crew: ExpansionCrew::new(model, clocks, options.threads)?,
             batches: Vec::new(),
             round: Vec::new(),
-            pool: pool_of(options.threads)?,
             options,
             visited: 0,
             transitions: 0,
@@ -217,10 +201,21 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         }
         let mut round = std::mem::take(&mut self.round);
         self.waiting.take(&self.store.nodes, ROUND, &mut round);
-        self.expand(&round);
+        let context = ExpansionContext {
+            store: &self.store,
+            goals: &self.compiled,
+            open: &self.open,
+            options: &self.options,
+            counters: &self.counters,
+            probe: self.probe,
+            latest: self.latest,
+        };
+        let whole = self.crew.expand(&context, &round, &mut self.batches, &|| go_on(&progress));
         self.round = round;
         Ok(match self.merge()? {
             Some(what) => ControlFlow::Break(Some(what)),
+            // States that were taken and not expanded are lost: nothing may be proved by what follows.
+            None if !whole => ControlFlow::Break(Some(SearchCutoff::Stopped)),
             None => ControlFlow::Continue(()),
         })
     }
@@ -242,56 +237,10 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
             probe: self.probe,
             latest: self.latest,
         };
-        self.workers[0].begin(&context, &mut batch).map_err(SearchError::from)?;
+        self.crew.first().begin(&context, &mut batch).map_err(SearchError::from)?;
         self.batches = vec![batch];
         self.merge()?;
         Ok(())
-    }
-
-    /// Expands the states of a round, each chunk of them into a batch.
-    fn expand(&mut self, round: &[u32]) {
-        let chunks = round.len().div_ceil(CHUNK);
-        self.batches.resize_with(self.batches.len().max(chunks), ExpansionBatch::default);
-        let context = ExpansionContext {
-            store: &self.store,
-            goals: &self.compiled,
-            open: &self.open,
-            options: &self.options,
-            counters: &self.counters,
-            probe: self.probe,
-            latest: self.latest,
-        };
-        let work = |worker: &mut ExpansionWorker<'m, 'p, N>, nodes: &[u32], batch: &mut ExpansionBatch<N>| {
-            batch.clear();
-            for &node in nodes {
-                if worker.expand(&context, node, batch).is_err() {
-                    break;
-                }
-            }
-        };
-        for batch in &mut self.batches[chunks..] {
-            batch.clear();
-        }
-        match &self.pool {
-            Some(pool) if chunks > 1 => {
-                // Whoever is free takes the next chunk: which worker does it makes no difference.
-                let workers: Vec<Mutex<&mut ExpansionWorker<'m, 'p, N>>> =
-                    self.workers.iter_mut().map(Mutex::new).collect();
-                let batches = self.batches[..chunks].par_iter_mut().with_max_len(1);
-                pool.install(|| {
-                    batches.zip(round.par_chunks(CHUNK)).for_each(|(batch, nodes)| {
-                        let me = rayon::current_thread_index().unwrap_or(0) % workers.len();
-                        let mut worker = workers[me].lock().unwrap_or_else(PoisonError::into_inner);
-                        work(&mut worker, nodes, batch);
-                    });
-                });
-            }
-            Some(_) | None => {
-                for (batch, nodes) in self.batches.iter_mut().zip(round.chunks(CHUNK)) {
-                    work(&mut self.workers[0], nodes, batch);
-                }
-            }
-        }
     }
 
     /// Stores what a round led to, in order.
@@ -341,7 +290,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
 
     fn absorb(&mut self, batch: &ExpansionBatch<N>, first: u32) -> Option<SearchCutoff> {
         let simulates = self.options.subsumption == SubsumptionRelation::Simulation;
-        let worker = &mut self.workers[0];
+        let worker = self.crew.first();
         for item in &batch.items {
             if simulates && item.parent != NIL && self.store.nodes[item.parent as usize].covered {
                 continue;
@@ -430,7 +379,7 @@ impl<'m, 'p, N: DbmNumber> ZoneGraphSearch<'m, 'p, N> {
         let mut taken: Vec<PathTransition> = Vec::new();
         // A path through committed states that are not stored begins at the initial state itself.
         for (node, via) in vias {
-            self.workers[0].retrace(&context, node, via, &mut taken)?;
+            self.crew.first().retrace(&context, node, via, &mut taken)?;
         }
         Ok(taken)
     }

@@ -18,6 +18,28 @@ pub(crate) fn relevant(
     goals: &CompiledGoals,
     probe: Option<&dyn StateProbe>,
 ) -> Vec<bool> {
+    mattering(model, goals, probe, AssignmentFaults::All)
+}
+
+/// By place of the state whether it matters to what can happen and to the goals, and not only because it may leave its range.
+pub(crate) fn read(model: &CompiledNetwork, goals: &CompiledGoals) -> Vec<bool> {
+    mattering(model, goals, None, AssignmentFaults::AllButRanges)
+}
+
+/// Which faults of an assignment make what it sets matter.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum AssignmentFaults {
+    All,
+    /// Not that the value is outside the range.
+    AllButRanges,
+}
+
+fn mattering(
+    model: &CompiledNetwork,
+    goals: &CompiledGoals,
+    probe: Option<&dyn StateProbe>,
+    faults: AssignmentFaults,
+) -> Vec<bool> {
     let mut matters = vec![true; model.size()];
     let first = model.slot_at(0);
     matters[first..first + model.slots.len()].fill(false);
@@ -43,7 +65,7 @@ pub(crate) fn relevant(
     loop {
         let mut more = Vec::new();
         for arrow in model.members.iter().flat_map(|m| &m.edges) {
-            updates(lib, arrow, &matters, &mut |i| more.push(i));
+            updates(lib, arrow, &matters, faults, &mut |i| more.push(i));
         }
         let before = more.iter().filter(|i| !matters[**i as usize]).count();
         more.iter().for_each(|i| matters[*i as usize] = true);
@@ -62,7 +84,13 @@ fn clocks(lib: &CodeLibrary, clocks: &ClockConstraints, note: &mut dyn FnMut(u32
 }
 
 /// What the updates need that matter.
-fn updates(lib: &CodeLibrary, arrow: &CompiledEdge, matters: &[bool], note: &mut dyn FnMut(u32)) {
+fn updates(
+    lib: &CodeLibrary,
+    arrow: &CompiledEdge,
+    matters: &[bool],
+    faults: AssignmentFaults,
+    note: &mut dyn FnMut(u32),
+) {
     let locals = arrow.locals(lib);
     for u in &arrow.updates {
         match u {
@@ -77,7 +105,12 @@ fn updates(lib: &CodeLibrary, arrow: &CompiledEdge, matters: &[bool], note: &mut
             EdgeUpdate::Assign(place, value) => {
                 let mut calls = false;
                 value.each_call(&mut |_| calls = true);
-                let mut wanted = calls || !safe(lib, place, value.span(lib, &locals), &locals);
+                let span = value.span(lib, &locals);
+                let may_fail = match faults {
+                    AssignmentFaults::All => !safe(lib, place, span, &locals),
+                    AssignmentFaults::AllButRanges => !has_value(lib, place, span.2, &locals),
+                };
+                let mut wanted = calls || may_fail;
                 if calls {
                     value.each_call(&mut |r| lib.each_written(r, note));
                 }
@@ -93,13 +126,18 @@ fn updates(lib: &CodeLibrary, arrow: &CompiledEdge, matters: &[bool], note: &mut
 }
 
 /// Whether the assignment is never a fault.
-fn safe(
-    lib: &CodeLibrary,
-    place: &CompiledLvalue,
-    (lo, hi, sure): (i64, i64, bool),
-    locals: &[(i64, i64)],
-) -> bool {
-    let mut fits = sure && place.always_there(lib, locals) && matches!(place.base, VariablePlace::State(_));
+fn safe(lib: &CodeLibrary, place: &CompiledLvalue, span: (i64, i64, bool), locals: &[(i64, i64)]) -> bool {
+    has_value(lib, place, span.2, locals) && fits(lib, place, span)
+}
+
+/// Whether there always is a value, and something that takes it.
+fn has_value(lib: &CodeLibrary, place: &CompiledLvalue, sure: bool, locals: &[(i64, i64)]) -> bool {
+    sure && place.always_there(lib, locals) && matches!(place.base, VariablePlace::State(_))
+}
+
+/// Whether a value between these is in the range of whatever it may be assigned to.
+pub(crate) fn fits(lib: &CodeLibrary, place: &CompiledLvalue, (lo, hi, _): (i64, i64, bool)) -> bool {
+    let mut fits = true;
     place.targets(&mut |i| {
         let (least, most) = lib.ranges[i as usize];
         fits &= lo >= least && hi <= most;

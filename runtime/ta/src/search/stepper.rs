@@ -9,7 +9,7 @@ use crate::{
     network::{
         code::CodeEvalError,
         error::ModelError,
-        model::CompiledNetwork,
+        model::{CompiledNetwork, OverflowTreatment},
         semantics::{
             ClockReset, ConstraintFilter, EnumerationScratch, FiringOrError, NegativityCheck,
             TransitionEffect, TransitionFiring,
@@ -233,6 +233,11 @@ impl<N: DbmNumber> StepperWorkspace<N> {
             }
         };
         let effect = model.effect(state, firing, &mut self.stack, &mut self.effect);
+        if let Err((_, _, CodeEvalError::Range { at, .. })) = effect
+            && model.overflow_at(at) == Some(OverflowTreatment::Avoided)
+        {
+            return Ok(false);
+        }
         let named = |(m, e, f): (u16, u16, _)| model.fault(usize::from(m), usize::from(e), f);
         if !effect.map_err(named)? {
             return Ok(false);

@@ -196,7 +196,8 @@ fn replayed<'p>(model: &CompiledNetwork<'p>, witness: &WitnessRun) -> Result<Rep
 /// not meet is one of the engine's own.
 pub(crate) fn fault(graph: &ZoneGraph, stops: Vec<PathSegment>, error: ModelError) -> SearchError {
     match led_to(graph, stops, &error) {
-        Ok(witness) => SearchError::Model { error, witness: Some(Box::new(witness)) },
+        Ok(Some(witness)) => SearchError::Model { error, witness: Some(Box::new(witness)) },
+        Ok(None) => SearchError::Internal(format!("a fault does not replay: {error}")),
         Err(internal) => internal,
     }
 }
@@ -213,9 +214,28 @@ pub(crate) fn fault_after(
     }
 }
 
-fn led_to(graph: &ZoneGraph, stops: Vec<PathSegment>, error: &ModelError) -> Result<WitnessRun, SearchError> {
+/// The run to a fault after a path, and the faults that may be met there instead. No run: none meets it.
+pub(crate) fn fault_among_others(
+    model: &CompiledNetwork,
+    path: Vec<PathTransition>,
+    error: &ModelError,
+) -> Result<(Option<WitnessRun>, Vec<ModelError>), SearchError> {
+    let graph = ZoneGraph::new(model, &[])?;
+    let stops = takes(path.into_iter().map(Rc::new));
+    let state = walk(&graph, &stops)?.state;
+    let others = graph.actions(&state).into_iter().filter_map(|a| a.target.err()).map(|e| *e);
+    let others = others.filter(|e| e != error).collect();
+    Ok((led_to(&graph, stops, error)?, others))
+}
+
+/// `None`: no run along the path meets the fault.
+fn led_to(
+    graph: &ZoneGraph,
+    stops: Vec<PathSegment>,
+    error: &ModelError,
+) -> Result<Option<WitnessRun>, SearchError> {
     if !error.is_of_a_transition() {
-        return concrete(graph, &stops, RunEnding::Reached, None, ScheduleOptions::default());
+        return concrete(graph, &stops, RunEnding::Reached, None, ScheduleOptions::default()).map(Some);
     }
     let state = walk(graph, &stops)?.state;
     let mut best: Option<WitnessRun> = None;
@@ -231,7 +251,7 @@ fn led_to(graph: &ZoneGraph, stops: Vec<PathSegment>, error: &ModelError) -> Res
             best = Some(witness);
         }
     }
-    best.ok_or_else(|| SearchError::Internal(format!("a fault does not replay: {error}")))
+    Ok(best)
 }
 
 /// When a run ends, as nanoseconds and their parts.
@@ -378,6 +398,17 @@ pub fn retimed(
         // Its times are those with the least end, which is all that there is of them.
         return Ok(run.clone());
     }
+    match path_of(model, run)? {
+        (path, None) => witness(model, path, Some(goal), timing),
+        (_, Some(_)) => Err(internal("a run takes a transition that is a fault")),
+    }
+}
+
+/// The transitions that a run takes, which may be one of the network without some of its assignments: up to the first that is a fault.
+pub(crate) fn path_of(
+    model: &CompiledNetwork,
+    run: &WitnessRun,
+) -> Result<(Vec<PathTransition>, Option<ModelError>), SearchError> {
     let graph = ZoneGraph::new(model, &[])?;
     let mut path: Vec<PathTransition> = Vec::new();
     let mut state = graph.initial();
@@ -402,8 +433,11 @@ pub fn retimed(
             let from = if set.from == 0 { now } else { before[usize::from(set.from)] };
             zero[usize::from(set.clock)] = from - i128::from(set.by) * scale;
         }
-        state = action.target.map_err(|_| internal("a run takes a transition that is a fault"))?;
+        state = match action.target {
+            Ok(target) => target,
+            Err(fault) => return Ok((path, Some(*fault))),
+        };
         path.push((*action.taken).clone());
     }
-    witness(model, path, Some(goal), timing)
+    Ok((path, None))
 }
