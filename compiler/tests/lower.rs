@@ -307,6 +307,7 @@ fn messages_are_about_what_each_agent_has() {
         performative,
         content: ContentId(content),
         args: vec![arg],
+        annotations: vec![],
     };
     let one = || AgentTerm::Expr(Expr::int(1));
     assert_eq!(body[0], &send(to(), Performative::Tell, 0, one()));

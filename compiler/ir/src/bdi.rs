@@ -13,6 +13,8 @@ use crate::{
     value::Value,
 };
 
+pub use crate::plan_steps::each_step;
+
 /// Index into [`Program::agents`](crate::Program::agents).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct AgentId(pub u16);
@@ -390,7 +392,15 @@ pub enum PlanStepKind<E = Expr> {
     /// `fork { … } and { … }`: all at once, until all are done; with `or` until one is
     Fork { branches: Vec<Vec<PlanStep<E>>>, all: bool },
     /// `.send(A, tell, b(…))`, `.broadcast(tell, b(…))`
-    Send { to: Option<E>, performative: Performative, content: ContentId, args: Vec<AgentTerm<E>> },
+    Send {
+        to: Option<E>,
+        performative: Performative,
+        content: ContentId,
+        args: Vec<AgentTerm<E>>,
+        /// Of what is told, besides its source: each by the name that the receivers' belief declares.
+        #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
+        annotations: Vec<(String, E)>,
+    },
     /// `.ask(A, b(…), D)`: waits for the answer, which binds variables; fails if there is none, or after D
     Ask { to: E, content: ContentId, args: Vec<AgentTerm<E>>, within: Option<E> },
     /// `.ask_all(A, X, b(X), L, D)`: waits for the list of the template's values for all answers
@@ -485,12 +495,4 @@ pub fn source_self() -> Symbol {
 pub fn source_percept() -> Symbol {
     static PERCEPT: LazyLock<Symbol> = LazyLock::new(|| Symbol::intern("percept"));
     *PERCEPT
-}
-
-/// Calls `f` with each step, those within blocks too, in the order of the text.
-pub fn each_step<'p, E>(steps: &'p [PlanStep<E>], f: &mut dyn FnMut(&'p PlanStep<E>)) {
-    for step in steps {
-        f(step);
-        step.blocks().into_iter().for_each(|block| each_step(block, f));
-    }
 }

@@ -27,6 +27,7 @@ mod located;
 pub mod lowering;
 pub mod monitor;
 mod plan_steps;
+pub mod real;
 pub mod sensor;
 pub mod shape;
 pub mod solid;

@@ -13,7 +13,11 @@ use hrdsl_source::Symbol;
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::{eval_error::EvalError, value::Value};
+use crate::{
+    eval_error::EvalError,
+    real::{RealFunction, apply_real},
+    value::Value,
+};
 
 /// A string.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -182,7 +186,7 @@ pub fn order(a: Value, b: Value) -> Ordering {
     }
 }
 
-/// Functions of lists and strings, called as internal actions.
+/// Functions of lists, strings and numbers, called as internal actions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ListFunction {
@@ -211,6 +215,11 @@ pub enum ListFunction {
     Suffix,
     /// Whether b contains a in one piece.
     Sublist,
+    /// `(a, b)`: the places, from 0, at which b contains a.
+    Occurrences,
+    /// `(list or string, i, j)`: from the place i to the one before j; none if there are no such places.
+    Slice,
+    Real(RealFunction),
 }
 
 /// Applies a function; `None` if it has no value for these arguments.
@@ -285,6 +294,15 @@ pub fn apply(f: ListFunction, args: &[Value]) -> Result<Option<Value>, EvalError
                 (0..=b.len()).any(at)
             })))
         }
+        (F::Occurrences, [a, b]) => {
+            let (a, b) = (elements(*a)?, elements(*b)?);
+            let begins = |from: &usize| {
+                b.get(*from..from + a.len()).is_some_and(|p| p.iter().zip(&a).all(|(x, y)| same(*x, *y)))
+            };
+            list((0..b.len()).filter(begins).map(|at| Value::Int(at as i64)).collect())
+        }
+        (F::Slice, [of, Value::Int(from), Value::Int(to)]) => Ok(slice(*of, *from, *to)?),
+        (F::Real(f), args) => apply_real(f, args),
         (
             F::Length
             | F::Concat
@@ -301,10 +319,35 @@ pub fn apply(f: ListFunction, args: &[Value]) -> Result<Option<Value>, EvalError
             | F::Empty
             | F::Prefix
             | F::Suffix
-            | F::Sublist,
+            | F::Sublist
+            | F::Occurrences
+            | F::Slice,
             _,
         ) => Err(EvalError::Type),
     }
+}
+
+/// The elements of a list; the characters of a string, each as one.
+fn elements(of: Value) -> Result<Vec<Value>, EvalError> {
+    match of {
+        Value::List(list) => Ok(list.iter().collect()),
+        Value::Text(text) => {
+            let character = |c: char| Value::Text(Text::new(c.encode_utf8(&mut [0; 4])));
+            Ok(text.as_str().chars().map(character).collect())
+        }
+        Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::Symbol(_) => Err(EvalError::Type),
+    }
+}
+
+fn slice(of: Value, from: i64, to: i64) -> Result<Option<Value>, EvalError> {
+    let all = elements(of)?;
+    let (Ok(from), Ok(to)) = (usize::try_from(from), usize::try_from(to)) else { return Ok(None) };
+    let Some(part) = all.get(from..to) else { return Ok(None) };
+    if let Value::Text(_) = of {
+        let texts = part.iter().map(|v| if let Value::Text(t) = v { t.as_str() } else { "" });
+        return Ok(Some(Value::Text(Text::new(&texts.collect::<String>()))));
+    }
+    Ok(Some(Value::List(List::of(part))))
 }
 
 fn concat(args: &[Value]) -> Result<Option<Value>, EvalError> {
@@ -406,6 +449,13 @@ mod tests {
         assert_eq!(of(F::Suffix, &[ints(&[3, 1]), a]), some("false"));
         assert_eq!(of(F::Sublist, &[ints(&[1, 2]), a]), some("true"));
         assert_eq!(of(F::Sublist, &[text("bc"), text("abcd")]), some("true"));
+        assert_eq!(of(F::Occurrences, &[text("aa"), text("aaéaa")]), some("[0, 3]"));
+        assert_eq!(of(F::Occurrences, &[ints(&[1]), a]), some("[1, 3]"));
+        assert_eq!(of(F::Slice, &[text("aéb"), Value::Int(1), Value::Int(3)]), some("\"éb\""));
+        assert_eq!(of(F::Slice, &[a, Value::Int(1), Value::Int(1)]), some("[]"));
+        assert_eq!(of(F::Slice, &[a, Value::Int(2), Value::Int(5)]), None);
+        assert_eq!(of(F::Slice, &[a, Value::Int(-1), Value::Int(1)]), None);
+        assert_eq!(of(F::Slice, &[a, Value::Int(2), Value::Int(1)]), None);
         assert_eq!(apply(F::Length, &[Value::Int(1)]), Err(EvalError::Type));
         assert_eq!(apply(F::Concat, &[a, Value::Int(1)]), Err(EvalError::Type));
     }

@@ -212,11 +212,12 @@ impl<E> PlanStepKind<E> {
             PlanStepKind::Fork { branches, all } => {
                 PlanStepKind::Fork { branches: branches.iter().map(|b| steps(b, f)).collect(), all: *all }
             }
-            PlanStepKind::Send { to, performative, content, args } => PlanStepKind::Send {
+            PlanStepKind::Send { to, performative, content, args, annotations } => PlanStepKind::Send {
                 to: to.as_ref().map(f),
                 performative: *performative,
                 content: *content,
                 args: terms(args, f),
+                annotations: annotations.iter().map(|(name, e)| (name.clone(), f(e))).collect(),
             },
             PlanStepKind::Ask { to, content, args, within } => PlanStepKind::Ask {
                 to: f(to),

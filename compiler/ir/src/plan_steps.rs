@@ -5,6 +5,14 @@ use crate::{
     bdi::{Assertion, BeliefLiteral, GoalId, PlanContext, PlanStep, PlanStepKind},
 };
 
+/// Calls `f` with each step, those within blocks too, in the order of the text.
+pub fn each_step<'p, E>(steps: &'p [PlanStep<E>], f: &mut dyn FnMut(&'p PlanStep<E>)) {
+    for step in steps {
+        f(step);
+        step.blocks().into_iter().for_each(|block| each_step(block, f));
+    }
+}
+
 /// A step that has other steps in it.
 #[derive(Clone, Copy, Debug)]
 pub enum PlanBlock<'s, E> {

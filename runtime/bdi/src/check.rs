@@ -202,7 +202,12 @@ impl AgentCheck<'_> {
             | PlanStepKind::While { condition, .. }
             | PlanStepKind::For { condition, .. } => self.context(condition, vars),
             PlanStepKind::Fork { branches, .. } => !branches.is_empty(),
-            PlanStepKind::Send { to, content: c, args, .. } => content(*c) && maybe(to) && terms(args, vars),
+            PlanStepKind::Send { to, content: c, args, annotations, .. } => {
+                content(*c)
+                    && maybe(to)
+                    && terms(args, vars)
+                    && annotations.iter().all(|(_, e)| variables(e, vars))
+            }
             PlanStepKind::Ask { to, content: c, args, within } => {
                 content(*c) && variables(to, vars) && terms(args, vars) && maybe(within)
             }

@@ -255,9 +255,10 @@ pub(crate) fn each_in_step(step: &PlanStepKind, f: &mut dyn FnMut(u16)) {
         | PlanStepKind::For { condition, .. } => each_in_context(condition, f),
         PlanStepKind::Await { within, .. } => within.iter().for_each(|e| e.each_var(f)),
         PlanStepKind::Wait { seconds } => seconds.each_var(f),
-        PlanStepKind::Send { to, args, .. } => {
+        PlanStepKind::Send { to, args, annotations, .. } => {
             to.iter().for_each(|e| e.each_var(f));
             each_in_terms(args, f);
+            annotations.iter().for_each(|(_, e)| e.each_var(f));
         }
         PlanStepKind::Ask { to, args, within, .. } => {
             to.each_var(f);

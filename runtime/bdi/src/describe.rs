@@ -2,7 +2,7 @@
 
 use hrdsl_ir::{
     Program, Value,
-    bdi::{Agent, BeliefAnnotation, BeliefId, ContentId, GoalId, TriggerOn},
+    bdi::{Agent, BeliefAnnotation, BeliefId, ContentId, GoalId, MessageSubject, TriggerOn},
     expr::EvalError,
 };
 
@@ -77,8 +77,8 @@ impl LogNames<'_, '_> {
             LogItem::Perceived { event, args } => {
                 format!("perceives {}", call(&self.program.event(*event).name, args))
             }
-            LogItem::Heard { from, performative: p, content, args } => {
-                let what = call(self.content(*content), args.iter().map(slot));
+            LogItem::Heard { from, performative: p, content, args, annotations } => {
+                let what = self.said(*content, args, annotations);
                 format!("hears {} {what} from {}", performative(*p), self.peer(*from))
             }
             LogItem::Asked { from, content, args, all } => {
@@ -152,6 +152,17 @@ impl LogNames<'_, '_> {
         };
         let all: Vec<String> = all.iter().map(one).collect();
         format!("[{}]", all.join(", "))
+    }
+
+    /// What was said, with its annotations if it was told.
+    fn said(&self, content: ContentId, args: &EventArguments, annotations: &FactAnnotations) -> String {
+        let said = call(self.content(content), args.iter().map(slot));
+        match self.program.content(content).of.get(usize::from(self.mind.me.id.0)) {
+            Some(Some(MessageSubject::Belief(belief))) if !annotations.is_empty() => {
+                said + &self.annotations(*belief, annotations)
+            }
+            _ => said,
+        }
     }
 
     /// A fact with its annotations.

@@ -100,7 +100,8 @@ pub(crate) struct ReplyAddress {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum SpeechAct {
     /// Any performative that needs no answer waited for.
-    Say { performative: Performative, content: ContentId, args: EventArguments },
+    /// What is told has annotations besides its source, as the receiver declares them.
+    Say { performative: Performative, content: ContentId, args: EventArguments, annotations: FactAnnotations },
     /// `.ask`, `.ask_all`: the asker waits for the answer to its question of this number.
     Ask { question: u64, content: ContentId, args: EventArguments, all: bool },
     /// The answers to a question: one, or of `.ask_all` any number; `None` if there is no answer.

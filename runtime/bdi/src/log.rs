@@ -125,6 +125,7 @@ pub enum LogItem {
         performative: Performative,
         content: ContentId,
         args: EventArguments,
+        annotations: FactAnnotations,
     },
     /// A question of another agent that waits for the answer.
     Asked {

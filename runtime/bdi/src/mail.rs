@@ -3,8 +3,8 @@
 use hrdsl_ir::{
     Expr, List, Span, Symbol, Value,
     bdi::{
-        AgentTerm, BeliefId, BeliefLiteral, ContentId, ControlAct, GoalId, MessageSubject, Performative,
-        PlanStepKind, TriggerOn, source_self,
+        AgentTerm, BeliefAnnotation, BeliefId, BeliefLiteral, ContentId, ControlAct, GoalId, MessageSubject,
+        Performative, PlanStepKind, TriggerOn, source_self,
     },
     expr::EvalError,
     list::same,
@@ -13,7 +13,7 @@ use hrdsl_ir::{
 use smallvec::{SmallVec, smallvec};
 
 use crate::{
-    belief::{GroundArguments, from as told_by, typed},
+    belief::{FactAnnotations, GroundArguments, from as told_by, typed},
     code::PlanOp,
     cycle::AgentMachine,
     event::{EventArguments, OutgoingMail, QueuedEvent, ReplyAddress, SpeechAct},
@@ -73,8 +73,7 @@ impl<'p> AgentMachine<'p> {
         here: StepLocation,
         to: Option<&Expr>,
         performative: Performative,
-        content: ContentId,
-        args: &[AgentTerm],
+        (content, args, annotations): (ContentId, &[AgentTerm], &[(String, Expr)]),
     ) -> Result<StepFlow, FailureCause> {
         let suits = |subject: Option<MessageSubject>| match subject {
             Some(MessageSubject::Goal(_)) => is_of_goal(performative),
@@ -100,11 +99,19 @@ impl<'p> AgentMachine<'p> {
         }
         let closed = matches!(performative, Performative::Tell | Performative::Achieve);
         let args = self.content(here.place, args, closed)?;
+        let slots = self.mind.pool.see(here.place).vars();
+        let marks: Vec<(&str, Value)> = annotations
+            .iter()
+            .map(|(name, e)| Ok((name.as_str(), eval(e, slots)?)))
+            .collect::<Result<_, EvalError>>()?;
         let before = self.outbox.len();
         for to in receivers {
             let args = if closed { self.fitting(content, to, &args) } else { Ok(args.clone()) };
-            match args {
-                Ok(args) => self.say(to, SpeechAct::Say { performative, content, args }),
+            let suiting = args.and_then(|args| Ok((args, self.fitting_annotations(content, to, &marks)?)));
+            match suiting {
+                Ok((args, annotations)) => {
+                    self.say(to, SpeechAct::Say { performative, content, args, annotations });
+                }
                 Err(cause) => {
                     // Nothing is sent if it does not suit everybody.
                     self.outbox.truncate(before);
@@ -156,6 +163,28 @@ impl<'p> AgentMachine<'p> {
         Ok(typed.into_iter().map(Some).collect())
     }
 
+    /// The annotations, as the receiver declares them.
+    fn fitting_annotations(
+        &self,
+        content: ContentId,
+        to: u16,
+        marks: &[(&str, Value)],
+    ) -> Result<FactAnnotations, FailureCause> {
+        let (_, id) = self.mind.me.peers.agents[usize::from(to)];
+        let Some(MessageSubject::Belief(belief)) = self.subject(content, to) else {
+            return Ok(FactAnnotations::new());
+        };
+        let declared =
+            &self.mind.program.agents[usize::from(id.0)].beliefs[usize::from(belief.0)].annotations;
+        let fit = |(name, value): &(&str, Value)| {
+            let at = declared.iter().position(|p| p.name == *name).ok_or(FailureCause::OutOfRange)?;
+            let one = typed(&declared[at..=at], GroundArguments::from_slice(&[*value]));
+            let place = u16::try_from(at).unwrap_or(u16::MAX);
+            Ok((BeliefAnnotation::Declared(place), one.ok_or(FailureCause::OutOfRange)?[0]))
+        };
+        marks.iter().map(fit).collect()
+    }
+
     pub fn ask(
         &mut self,
         here: StepLocation,
@@ -183,12 +212,13 @@ impl<'p> AgentMachine<'p> {
 
     pub fn hear(&mut self, from: u16, speech: SpeechAct) {
         match speech {
-            SpeechAct::Say { performative, content, args } => {
+            SpeechAct::Say { performative, content, args, annotations } => {
                 if self.log.detail >= LogDetail::Steps {
-                    self.enter(0, LogItem::Heard { from, performative, content, args: args.clone() });
+                    let (args, annotations) = (args.clone(), annotations.clone());
+                    self.enter(0, LogItem::Heard { from, performative, content, args, annotations });
                 }
                 self.measure(|m| *m.received.entry((performative, content)).or_default() += 1);
-                self.obey(from, performative, content, args);
+                self.obey(from, performative, content, (args, annotations));
             }
             SpeechAct::Ask { question, content, args, all } => {
                 let asked = args.clone();
@@ -205,15 +235,22 @@ impl<'p> AgentMachine<'p> {
         }
     }
 
-    fn obey(&mut self, from: u16, performative: Performative, content: ContentId, args: EventArguments) {
+    fn obey(
+        &mut self,
+        from: u16,
+        performative: Performative,
+        content: ContentId,
+        (args, mut annotations): (EventArguments, FactAnnotations),
+    ) {
         let me = from == self.mind.me.place;
         let name = Value::Symbol(if me { source_self() } else { self.name_of(from) });
         match performative {
             Performative::Tell => {
                 let Some(belief) = self.belief(content) else { return };
                 let ground: GroundArguments = args.iter().copied().flatten().collect();
+                annotations.extend(told_by(name));
                 match self.declared(belief, ground.clone()) {
-                    Some(args) => self.believe(belief, &args, told_by(name)),
+                    Some(args) => self.believe(belief, &args, annotations),
                     None => self.enter(0, LogItem::Refused { belief, args: ground.into_vec() }),
                 }
             }
@@ -290,7 +327,8 @@ impl<'p> AgentMachine<'p> {
         if let (Some(MessageSubject::Belief(_)), Ok(args)) =
             (self.subject(content, to), self.fitting(content, to, args))
         {
-            self.say(to, SpeechAct::Say { performative: Performative::Tell, content, args });
+            let annotations = FactAnnotations::new();
+            self.say(to, SpeechAct::Say { performative: Performative::Tell, content, args, annotations });
         }
     }
 

@@ -65,15 +65,16 @@ impl<'p> PlanLibrary<'p> {
             }
         }
         let named = named_goals(program, id, agent);
-        library.leaves_early = agent.plans.iter().map(|p| library.may_leave_early(p, &named)).collect();
+        let may_leave = |p| library.may_leave_early(p, &named, agent.jason);
+        library.leaves_early = agent.plans.iter().map(may_leave).collect();
         library
     }
 
-    fn may_leave_early(&self, plan: &Plan, named: &[bool]) -> bool {
-        !plan.atomic && self.is_forgotten(plan, named)
+    fn may_leave_early(&self, plan: &Plan, named: &[bool], jason: bool) -> bool {
+        !plan.atomic && self.is_forgotten(plan, named, jason)
     }
 
-    fn is_forgotten(&self, plan: &Plan, named: &[bool]) -> bool {
+    fn is_forgotten(&self, plan: &Plan, named: &[bool], jason: bool) -> bool {
         match plan.trigger.on {
             // The failure of a later sub-goal, or whoever names the goal, would have to find it.
             TriggerOn::GoalAdded(goal) => {
@@ -82,7 +83,11 @@ impl<'p> PlanLibrary<'p> {
             TriggerOn::GoalFailed(goal) => !named[usize::from(goal.0)],
             // Its end carries the answer.
             TriggerOn::TestAdded(_) | TriggerOn::TestFailed(_) => false,
-            TriggerOn::BeliefAdded(_) | TriggerOn::BeliefRemoved(_) | TriggerOn::Perceived(_) => true,
+            // A later failure may end with it.
+            TriggerOn::BeliefAdded(belief) | TriggerOn::BeliefRemoved(belief) => {
+                !jason || self.relevant(TriggerOn::BeliefRemoved(belief)).is_empty()
+            }
+            TriggerOn::Perceived(_) => true,
         }
     }
 

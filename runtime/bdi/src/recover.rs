@@ -241,8 +241,9 @@ impl<'p> AgentMachine<'p> {
     /// applicable.
     fn unwind(&mut self, place: u32) {
         while let Some(top) = self.mind.pool.see(place).frames.last().copied() {
-            let on = failed(self.mind.library.plan(top.plan).trigger.on).filter(|_| !top.branch);
-            let is_lost = on.is_some_and(|on| self.is_lost(on));
+            let trigger = self.mind.library.plan(top.plan).trigger.on;
+            let on = failed(trigger).filter(|_| !top.branch);
+            let is_lost = !top.branch && on.or(removed(trigger)).is_some_and(|on| self.is_lost(on));
             let selected = on.filter(|on| !self.mind.library.relevant(*on).is_empty()).and_then(|on| {
                 let args = EventArguments::from_slice(self.mind.pool.see(place).args(top));
                 let event = QueuedEvent { of: Some(place), told: top.told, ..QueuedEvent::new(on, args) };
@@ -272,7 +273,7 @@ impl<'p> AgentMachine<'p> {
     }
 
     /// Whether a failure goes no further down than to this goal, whether or not a plan for it is applicable: in an agent as in
-    /// Jason.
+    /// Jason, where plans for the removal of a belief count, too, for its plans.
     fn is_lost(&self, on: TriggerOn) -> bool {
         self.mind.agent.jason && !self.mind.library.relevant(on).is_empty()
     }
@@ -339,6 +340,20 @@ fn failed(on: TriggerOn) -> Option<TriggerOn> {
         | TriggerOn::TestFailed(_)
         | TriggerOn::BeliefAdded(_)
         | TriggerOn::BeliefRemoved(_)
+        | TriggerOn::Perceived(_) => None,
+    }
+}
+
+/// The removal of the belief that an event is about.
+fn removed(on: TriggerOn) -> Option<TriggerOn> {
+    match on {
+        TriggerOn::BeliefAdded(belief) | TriggerOn::BeliefRemoved(belief) => {
+            Some(TriggerOn::BeliefRemoved(belief))
+        }
+        TriggerOn::GoalAdded(_)
+        | TriggerOn::GoalFailed(_)
+        | TriggerOn::TestAdded(_)
+        | TriggerOn::TestFailed(_)
         | TriggerOn::Perceived(_) => None,
     }
 }

@@ -120,11 +120,12 @@ impl FormulaPrinter<'_> {
             PlanStepKind::While { condition, .. } => format!("while {}", self.context(condition)),
             PlanStepKind::For { condition, .. } => format!("for {}", self.context(condition)),
             PlanStepKind::Fork { .. } => "fork".to_owned(),
-            PlanStepKind::Send { to: Some(to), performative: p, content, args } => {
-                format!(".send({}, {}, {})", self.expr(to), performative(*p), self.content(*content, args))
-            }
-            PlanStepKind::Send { to: None, performative: p, content, args } => {
-                format!(".broadcast({}, {})", performative(*p), self.content(*content, args))
+            PlanStepKind::Send { to, performative: p, content, args, annotations } => {
+                let what = self.content(*content, args) + &self.told(annotations);
+                match to {
+                    Some(to) => format!(".send({}, {}, {what})", self.expr(to), performative(*p)),
+                    None => format!(".broadcast({}, {what})", performative(*p)),
+                }
             }
             PlanStepKind::Ask { to, content, args, within } => {
                 format!(".ask({}, {}{})", self.expr(to), self.content(*content, args), comma(within))
@@ -154,6 +155,12 @@ impl FormulaPrinter<'_> {
         };
         let all: Vec<String> = of.into_iter().map(one).collect();
         format!("[{}]", all.join(", "))
+    }
+
+    /// The annotations of what is told.
+    fn told(&self, of: &[(String, Expr)]) -> String {
+        let all: Vec<String> = of.iter().map(|(name, e)| format!("{name}({})", self.expr(e))).collect();
+        if all.is_empty() { String::new() } else { format!("[{}]", all.join(", ")) }
     }
 
     fn literal(&self, l: &BeliefLiteral) -> String {
@@ -291,9 +298,11 @@ impl FormulaPrinter<'_> {
             InternalAct::Count { formula, out } => call(".count", [self.context(formula), self.term(out)]),
             InternalAct::Member { element, list } => call(".member", [self.term(element), self.expr(list)]),
             InternalAct::Apply { function, args: a, out } => {
-                call(list_function(*function), args(a, Some(out)))
+                call(&format!(".{}", list_function(*function)), args(a, Some(out)))
             }
-            InternalAct::Holds { function, args: a } => call(list_function(*function), args(a, None)),
+            InternalAct::Holds { function, args: a } => {
+                call(&format!(".{}", list_function(*function)), args(a, None))
+            }
             InternalAct::Intend { goal: g, args } => call(".intend", goal(g, args)),
             InternalAct::Desire { goal: g, args } => call(".desire", goal(g, args)),
             InternalAct::Suspended { goal: g, args } => call(".suspended", goal(g, args)),
@@ -351,23 +360,27 @@ fn operator(op: BinaryOp) -> &'static str {
     }
 }
 
+/// Without its dot.
 fn list_function(f: ListFunction) -> &'static str {
     match f {
-        ListFunction::Length => ".length",
-        ListFunction::Concat => ".concat",
-        ListFunction::Nth => ".nth",
-        ListFunction::Reverse => ".reverse",
-        ListFunction::Sort => ".sort",
-        ListFunction::Min => ".min",
-        ListFunction::Max => ".max",
-        ListFunction::Delete => ".delete",
-        ListFunction::Union => ".union",
-        ListFunction::Intersection => ".intersection",
-        ListFunction::Difference => ".difference",
-        ListFunction::ToText => ".string",
-        ListFunction::Empty => ".empty",
-        ListFunction::Prefix => ".prefix",
-        ListFunction::Suffix => ".suffix",
-        ListFunction::Sublist => ".sublist",
+        ListFunction::Length => "length",
+        ListFunction::Concat => "concat",
+        ListFunction::Nth => "nth",
+        ListFunction::Reverse => "reverse",
+        ListFunction::Sort => "sort",
+        ListFunction::Min => "min",
+        ListFunction::Max => "max",
+        ListFunction::Delete => "delete",
+        ListFunction::Union => "union",
+        ListFunction::Intersection => "intersection",
+        ListFunction::Difference => "difference",
+        ListFunction::ToText => "string",
+        ListFunction::Empty => "empty",
+        ListFunction::Prefix => "prefix",
+        ListFunction::Suffix => "suffix",
+        ListFunction::Sublist => "sublist",
+        ListFunction::Occurrences => "occurrences",
+        ListFunction::Slice => "slice",
+        ListFunction::Real(f) => f.name(),
     }
 }

@@ -168,9 +168,10 @@ fn incoming(out: &mut Vec<u64>, i: &IncomingItem) {
         IncomingItem::Heard { from, speech } => {
             out.extend([1, u64::from(*from)]);
             match speech {
-                SpeechAct::Say { performative, content, args } => {
+                SpeechAct::Say { performative, content, args, annotations: told } => {
                     out.extend([*performative as u64, u64::from(content.0)]);
                     slots(out, args);
+                    annotations(out, told);
                 }
                 SpeechAct::Ask { question, content, args, all } => {
                     out.extend([10, *question, u64::from(content.0), u64::from(*all)]);

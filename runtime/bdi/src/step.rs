@@ -187,8 +187,8 @@ impl<'p> AgentMachine<'p> {
                 self.mind.pool.at(place).state = IntentionState::Sleeping(timer);
                 Ok(StepFlow::Suspended)
             }
-            PlanStepKind::Send { to, performative, content, args } => {
-                self.send(here, to.as_ref(), *performative, *content, args)
+            PlanStepKind::Send { to, performative, content, args, annotations } => {
+                self.send(here, to.as_ref(), *performative, (*content, args, annotations))
             }
             PlanStepKind::Ask { to, content, args, within } => {
                 self.ask(here, to, *content, args, within.as_ref(), false)

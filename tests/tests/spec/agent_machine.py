@@ -161,7 +161,7 @@ class Agent:
             [rank[i] for i, _, _ in self.awaiting],
             [(t.due, t.sort, rank[t.i], t.frame and t.i.frames.index(t.frame)) for t in self.ordered_timers()],
             [rank[i] for i, _, _ in self.requests.values()],
-            [m if isinstance(m, tuple) else (m.sender.name, m.what, m.content, m.values) for m in self.inbox],
+            [m if isinstance(m, tuple) else (m.sender.name, m.what, m.content, m.values, m.annotations) for m in self.inbox],
             (len(self.given), len(self.outbox)),
         ))  # fmt: skip
 
@@ -225,13 +225,14 @@ class Agent:
         source = "self" if m.sender is self else m.sender.name
         subject = self.program["contents"][m.content]["of"][self.number]
         name = self.program["contents"][m.content]["name"]
-        self.log(f"hears {said(m, name)} from {m.sender.name}")
+        marks = self.annotated(subject["belief"], m.annotations) if m.annotations else ""
+        self.log(f"hears {said(m, name)}{marks} from {m.sender.name}")
         if m.what in ("answer", "answers"):
             self.answered(m)
             return
         ((_, number),) = subject.items()
         if m.what == "tell":
-            self.add(number, m.values, [("source", source)])
+            self.add(number, m.values, m.annotations + [("source", source)])
         elif m.what == "untell":
             told = lambda fact: [(source, None)] if source in fact.sources() else []
             self.remove(number, lambda fact: fits(m.values, fact.values), told, source)

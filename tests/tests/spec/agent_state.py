@@ -107,8 +107,9 @@ class Timer:
 
 
 class Message:
-    def __init__(self, sender, what, content=None, values=(), request=None):
+    def __init__(self, sender, what, content=None, values=(), request=None, annotations=()):
         self.sender, self.what, self.content, self.values, self.request = sender, what, content, values, request
+        self.annotations = list(annotations)
 
 
 def failed_of(on):

@@ -230,12 +230,18 @@ class Steps:
         if performative in ("ask_one", "ask_all"):
             self.subject(self.agent, content, sort)
         values = self.content_values(of, performative in ("tell", "achieve"))
+        marks = [(name, self.value(e)) for name, e in of.get("annotations", [])]
         messages = []
         for other, number in others:
             fitting = values
             if performative in ("tell", "achieve"):
                 fitting = self.typed(self.declared(other, sort, number), values)
-            messages.append((other, Message(self.agent, performative, content, fitting)))
+            told = []
+            for name, value in marks:
+                declared = other.it["beliefs"][number]["annotations"]
+                at = next(i for i, p in enumerate(declared) if p["name"] == name)
+                told.append(({"declared": at}, self.typed([declared[at]], [value])[0]))
+            messages.append((other, Message(self.agent, performative, content, fitting, None, told)))
         self.agent.outbox += messages
         return True
 

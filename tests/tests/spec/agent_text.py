@@ -162,7 +162,8 @@ class Here:
         if form == "member":
             return applied(".member", [self.term(of["element"]), self.value(of["list"])])
         if form in ("apply", "holds"):
-            name = "string" if of["function"] == "to_text" else of["function"]
+            name = of["function"]["real"] if isinstance(of["function"], dict) else of["function"]
+            name = "string" if name == "to_text" else name
             return applied("." + name, self.values(of["args"]) + out)
         if form in ("intend", "desire", "suspended"):
             return applied("." + form, [applied(self.agent["goals"][of["goal"]]["name"], self.terms(of["args"]))])
@@ -245,9 +246,11 @@ class Here:
 
     def step_send(self, of):
         performative = PERFORMATIVES.get(of["performative"], of["performative"])
+        marks = ", ".join(f"{name}({self.value(e)})" for name, e in of.get("annotations", []))
+        what = self.content(of) + (f"[{marks}]" if marks else "")
         if of["to"]:
-            return applied(".send", [self.value(of["to"]), performative, self.content(of)])
-        return applied(".broadcast", [performative, self.content(of)])
+            return applied(".send", [self.value(of["to"]), performative, what])
+        return applied(".broadcast", [performative, what])
 
     def step_ask(self, of):
         return f".ask({self.value(of['to'])}, {self.content(of)}{self.within(of, ', ')})"

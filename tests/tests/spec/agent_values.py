@@ -286,6 +286,8 @@ def sequences(values):
 def apply(function, values):
     """The value of a function of lists and strings; None if it has none."""
     first = values[0]
+    if isinstance(function, dict):
+        return of_numbers(function["real"], values)
     if function == "concat":
         return joined(values)
     if function == "to_text":
@@ -305,6 +307,17 @@ def apply(function, values):
         return len(a) <= len(b) and any(
             all(map(alike, a, b[n:])) for n in starting[function]
         )
+    if function == "occurrences":
+        a, b = sequences(values)
+        return tuple(
+            n for n in range(len(b)) if len(b) - n >= len(a) and all(map(alike, a, b[n:]))
+        )
+    if function == "slice":
+        _, start, end = values
+        all_of = first.text if isinstance(first, Text) else one_of(first, tuple)
+        if not 0 <= one_of(start, int) <= one_of(end, int) <= len(all_of):
+            return None
+        return Text(all_of[start:end]) if isinstance(first, Text) else all_of[start:end]
     if function == "delete":
         return tuple(v for v in one_of(values[1], tuple) if not alike(v, first))
     if function in ("sort", "min", "max"):
@@ -314,6 +327,67 @@ def apply(function, values):
     if function == "union":
         return distinct(a + b)
     return tuple(v for v in a if contained(v, b) == (function == "intersection"))
+
+
+# ── Numbers ──
+
+
+def of_numbers(function, values):
+    """A function of numbers, or of a list of numbers; None if it has no value."""
+    numbers = one_of(values[0], tuple) if function in ("sum", "mean", "median", "std_dev") else values
+    if any(kind(v) != 1 for v in numbers):
+        wrong()
+    if function == "sum":
+        total = 0
+        for n in numbers:
+            total = total + n
+        return whole(total) if all(isinstance(n, int) for n in numbers) else float(total)
+    if function in ("mean", "median", "std_dev"):
+        return statistic(function, [float(n) for n in numbers])
+    if function in ("floor", "ceil", "round"):
+        return rounded(function, numbers[0])
+    return real(function, [float(n) for n in numbers])
+
+
+def statistic(function, numbers):
+    count, total = len(numbers), 0.0
+    for n in numbers:
+        total += n
+    if count < (2 if function == "std_dev" else 1):
+        return None
+    if function == "mean":
+        return total / count
+    if function == "std_dev":
+        squares = 0.0
+        for n in numbers:
+            squares += (n - total / count) * (n - total / count)
+        return math.sqrt(squares / (count - 1))
+    numbers, middle = sorted(numbers), count // 2
+    return numbers[middle] if count % 2 else (numbers[middle - 1] + numbers[middle]) / 2
+
+
+def rounded(function, x):
+    if isinstance(x, int):
+        return x
+    if not math.isfinite(x):
+        raise Fault("integer overflow")
+    below = math.floor(x)
+    above = below + 1
+    return whole({"floor": below, "ceil": math.ceil(x), "round": above if x - below >= 0.5 else below}[function])
+
+
+def real(function, numbers):
+    try:
+        if function == "power":
+            return float(math.pow(*numbers))
+        return float(getattr(math, function)(*numbers))
+    except OverflowError:
+        return math.inf
+    except ValueError:
+        # Without a bound at zero; there is none elsewhere.
+        if numbers[0] != 0:
+            return math.nan
+        return {"log": -math.inf, "power": math.inf}.get(function, math.nan)
 
 
 # ── Types ──

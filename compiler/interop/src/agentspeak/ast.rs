@@ -1,5 +1,7 @@
 //! The tree of an AgentSpeak program, as Jason reads it.
 
+use std::collections::BTreeSet;
+
 use hrdsl_source::Span;
 
 /// A program: a `.asl` file with all that it includes.
@@ -320,6 +322,27 @@ impl AgentSpeakStep {
             | AgentSpeakStepKind::Formula(_) => None,
         }
     }
+}
+
+/// Whether steps, or what is within them, name one of these variables.
+pub fn names_any(steps: &[AgentSpeakStep], names: &BTreeSet<String>) -> bool {
+    let mut found = false;
+    let mut look = |term: &AgentSpeakTerm| found |= variables(term).iter().any(|v| names.contains(v));
+    each_step(steps, &mut |step| match &step.kind {
+        AgentSpeakStepKind::Achieve(of)
+        | AgentSpeakStepKind::Spawn(of)
+        | AgentSpeakStepKind::Query(of)
+        | AgentSpeakStepKind::Add(of, _)
+        | AgentSpeakStepKind::Remove(of)
+        | AgentSpeakStepKind::Replace(of)
+        | AgentSpeakStepKind::Formula(of)
+        | AgentSpeakStepKind::If { condition: of, .. }
+        | AgentSpeakStepKind::While { condition: of, .. }
+        | AgentSpeakStepKind::For { condition: of, .. } => look(of),
+        AgentSpeakStepKind::Action(of) => of.args.iter().chain(&of.annotations).for_each(&mut look),
+        AgentSpeakStepKind::Fork { .. } | AgentSpeakStepKind::Block(_) => {}
+    });
+    found
 }
 
 /// Calls `f` with each step, those within blocks too, in the order of the text.

@@ -12,7 +12,7 @@ use super::{
     },
     internal,
     system::AgentSpeakSystem,
-    term::{OmissionReason, literal, texts, valued},
+    term::{OmissionReason, atom, literal, small_power, texts, valued},
     types::{AgentSpeakType, TyId, UnificationTable},
 };
 
@@ -150,13 +150,29 @@ impl TypeInferrer {
                     return Err("an action cannot be negated".to_owned());
                 }
                 let places = self.types.action(&action.key());
-                self.args(&action.args, &places)
+                action.args.iter().zip(places).try_for_each(|(arg, place)| self.action_arg(arg, place))
             }
             AgentSpeakStepKind::If { condition, .. }
             | AgentSpeakStepKind::While { condition, .. }
             | AgentSpeakStepKind::For { condition, .. } => self.formula(condition),
             AgentSpeakStepKind::Fork { .. } | AgentSpeakStepKind::Block(_) => Ok(()),
         }
+    }
+
+    /// Strings and atoms as arguments of actions are values of one enumeration.
+    fn action_arg(&mut self, arg: &AgentSpeakTerm, place: TyId) -> Result<(), OmissionReason> {
+        let id = match (&arg.kind, self.types.get(place)) {
+            (TermKind::Literal(_), AgentSpeakType::Text) if atom(arg).is_some() => {
+                self.types.add(AgentSpeakType::Text)
+            }
+            (TermKind::Text(text), AgentSpeakType::Atoms { agent: false, .. }) if is_word(text) => {
+                let names = [text.clone()].into_iter().collect();
+                self.types.add(AgentSpeakType::Atoms { names, agent: false })
+            }
+            _ => self.term(arg)?,
+        };
+        self.types.record(arg.span, id)?;
+        self.types.unify(place, id)
     }
 
     /// `+X`: a variable that holds a structure stands for the belief of that name.
@@ -295,15 +311,7 @@ impl TypeInferrer {
                 id
             }
             TermKind::Binary { op, left, right } if op.is_arithmetic() => {
-                let number = self.types.number(*op == AgentSpeakOperator::Div);
-                for side in [left, right] {
-                    let id = self.term(side)?;
-                    // What is divided may be whole, and the result is none.
-                    let expected =
-                        if *op == AgentSpeakOperator::Div { self.types.number(false) } else { number };
-                    self.types.unify(expected, id)?;
-                }
-                number
+                self.arithmetic(*op, left, right)?
             }
             TermKind::Not(_) | TermKind::Binary { .. } => {
                 return Err("a formula stands where a value should".to_owned());
@@ -314,6 +322,26 @@ impl TypeInferrer {
         };
         self.types.record(of.span, id)?;
         Ok(id)
+    }
+
+    /// What is divided, or not taken to a small power, may be whole, and the result is none.
+    fn arithmetic(
+        &mut self,
+        op: AgentSpeakOperator,
+        left: &AgentSpeakTerm,
+        right: &AgentSpeakTerm,
+    ) -> Result<TyId, OmissionReason> {
+        let has_decimals = match op {
+            AgentSpeakOperator::Pow => small_power(right).is_none(),
+            op => op == AgentSpeakOperator::Div,
+        };
+        let number = self.types.number(has_decimals);
+        for side in [left, right] {
+            let id = self.term(side)?;
+            let expected = if has_decimals { self.types.number(false) } else { number };
+            self.types.unify(expected, id)?;
+        }
+        Ok(number)
     }
 
     fn structure(&mut self, of: &AgentSpeakLiteral) -> Result<TyId, OmissionReason> {
@@ -330,4 +358,10 @@ impl TypeInferrer {
         let args = of.args.iter().map(|a| self.term(a)).collect::<Result<Vec<_>, _>>()?;
         Ok(self.types.add(AgentSpeakType::Struct(of.functor.clone(), args)))
     }
+}
+
+/// Whether a text could be an atom.
+fn is_word(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_lowercase())
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }

@@ -1,5 +1,7 @@
 //! The internal actions: what their arguments must be. How they are written is in `write::internal`.
 
+use hrdsl_ir::real::RealFunction;
+
 use super::{
     ast::{AgentSpeakLiteral, AgentSpeakTerm, TermKind},
     infer::TypeInferrer,
@@ -61,6 +63,14 @@ pub fn infer(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result<(), Omis
             in_list(walk, element, a)?;
             lists(walk, &[a, b])
         }
+        (".substring", [part, whole, places @ ..]) if places.len() < 3 => {
+            for t in [part, whole] {
+                let text = walk.types.add(AgentSpeakType::Text);
+                same(walk, t, text)?;
+            }
+            places.iter().try_for_each(|p| number(walk, p))
+        }
+        (".number" | ".string" | ".list" | ".atom" | ".ground", [term]) => walk.term(term).map(|_| ()),
         (".empty", [list]) => walk.term(list).map(|_| ()),
         (".term2string", [value, text]) => {
             walk.term(value)?;
@@ -111,6 +121,30 @@ pub fn infer_function(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result
             of.args.iter().try_for_each(|a| same(walk, a, number))?;
             Ok(number)
         }
+        ("math.min" | "math.max", [list]) => {
+            let number = walk.types.number(false);
+            list_of(walk, list, number)?;
+            Ok(number)
+        }
+        ("math.pi" | "math.e", []) => Ok(walk.types.number(true)),
+        ("math.random", args) if args.len() < 2 => {
+            let number = walk.types.number(false);
+            of.args.iter().try_for_each(|a| same(walk, a, number))?;
+            Ok(walk.types.number(true))
+        }
+        (name, [arg]) if real_function(name).is_some_and(|f| f != RealFunction::Power) => {
+            let number = walk.types.number(false);
+            let f = real_function(name);
+            if f.is_some_and(RealFunction::is_of_list) {
+                list_of(walk, arg, number)?;
+            } else {
+                same(walk, arg, number)?;
+            }
+            Ok(match f {
+                Some(RealFunction::Sum) => number,
+                f => walk.types.number(!f.is_some_and(RealFunction::is_whole)),
+            })
+        }
         (".length" | "math.length", [list]) => {
             walk.term(list)?;
             Ok(walk.types.number(false))
@@ -121,6 +155,18 @@ pub fn infer_function(walk: &mut TypeInferrer, of: &AgentSpeakLiteral) -> Result
         }
         (name, _) => Err(format!("hrdsl has no function like `{name}`")),
     }
+}
+
+/// The function of numbers that one of Jason's is.
+pub fn real_function(name: &str) -> Option<RealFunction> {
+    let name = name.strip_prefix("math.")?;
+    let name = if name == "average" { "mean" } else { name };
+    RealFunction::ALL.into_iter().find(|f| f.name() == name)
+}
+
+fn list_of(walk: &mut TypeInferrer, list: &AgentSpeakTerm, element: TyId) -> Result<(), OmissionReason> {
+    let expected = walk.types.add(AgentSpeakType::List(element));
+    same(walk, list, expected)
 }
 
 fn same(walk: &mut TypeInferrer, of: &AgentSpeakTerm, expected: TyId) -> Result<(), OmissionReason> {

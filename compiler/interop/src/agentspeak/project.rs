@@ -28,7 +28,7 @@ pub struct JasonProjectAgent {
 }
 
 /// The most agents of one line.
-const MAX_COUNT: usize = 1000;
+const MAX_COUNT: usize = 5000;
 
 #[derive(Clone, Debug, PartialEq)]
 enum JasonProjectToken {

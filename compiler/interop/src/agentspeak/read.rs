@@ -73,7 +73,7 @@ fn push(system: &mut AgentSpeakSystem, mut entry: AgentSpeakAgent) {
 /// The most beliefs, goals, rules and plans of all programs, and the most agents: names, types and what is never used are
 /// found by comparing them with each other.
 const MAX_ITEMS: usize = 3_000;
-const MAX_AGENTS: usize = 500;
+const MAX_AGENTS: usize = 5000;
 
 /// What is wrong with the number of things to import, if anything.
 fn too_many(files: &[ForeignSource], system: &AgentSpeakSystem) -> Option<SyntaxError> {

@@ -90,3 +90,11 @@ pub fn message(of: &AgentSpeakLiteral) -> Result<AgentSpeakMessage<'_>, Omission
     }
     Ok(AgentSpeakMessage { to, performative: name, content, rest })
 }
+
+/// The exponent of a power that is written as a product.
+pub fn small_power(exponent: &AgentSpeakTerm) -> Option<usize> {
+    match exponent.kind {
+        TermKind::Int(n) => usize::try_from(n).ok().filter(|n| (1..=4).contains(n)),
+        _ => None,
+    }
+}

@@ -10,6 +10,7 @@ use super::{
     names::{AgentSpeakNames, ident, unused, variable},
     survey::{PredicateKind, PredicateSurvey},
     system::AgentSpeakSystem,
+    term::atom,
     types::{AgentSpeakType, ListLeafType, TyId, UnificationTable},
 };
 
@@ -58,10 +59,11 @@ pub fn texts(
                 }
                 let mut values = IndexMap::new();
                 for (span, id) in &types.terms {
-                    let text = system.files.text(*span);
-                    if types.root(*id) == leaf.of && text.starts_with('"') && !values.contains_key(text) {
+                    let Some(text) = constant(system.files.text(*span)) else { continue };
+                    if types.root(*id) == leaf.of && !values.contains_key(&text) {
                         let used: IndexSet<String> = values.values().cloned().collect();
-                        values.insert(text.to_owned(), unused(ident(text.trim_matches('"')), &used));
+                        let value = unused(ident(text.trim_matches('"')), &used);
+                        values.insert(text, value);
                     }
                 }
                 if values.is_empty() {
@@ -84,6 +86,13 @@ pub fn texts(
     all
 }
 
+/// The string that a term is, with its quotes; an atom among strings is one, too.
+fn constant(text: &str) -> Option<String> {
+    let is_atom = text.starts_with(|c: char| c.is_ascii_lowercase())
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if is_atom { Some(format!("\"{text}\"")) } else { text.starts_with('"').then(|| text.to_owned()) }
+}
+
 /// Whether it is a single string.
 pub fn is_text(types: &UnificationTable, leaf: ListLeafType) -> bool {
     leaf.lists == 0 && *types.get(leaf.of) == AgentSpeakType::Text
@@ -98,7 +107,8 @@ fn computed(system: &AgentSpeakSystem, types: &UnificationTable) -> IndexSet<TyI
                 for arg in &action.args {
                     each_term(arg, &mut |t| {
                         if let Some(id) = types.terms.get(&t.span)
-                            && !matches!(t.kind, TermKind::Text(_))
+                            && !matches!(&t.kind, TermKind::Text(_))
+                            && atom(t).is_none()
                         {
                             found.extend(types.leaves(*id).into_iter().map(|l| l.of));
                         }

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{
     construct::constructions,
-    cover::{next_group, tuples},
+    cover::{FactorChoice, next_group, tuples},
     sets::AlternativeRow,
 };
 
@@ -42,15 +42,60 @@ pub(super) fn fewer(
     if best.len() <= least || tuples(sizes, strength) > WORK as u128 {
         return best;
     }
-    let mut search = RowSearch::new(sizes, strength, best.clone());
-    while best.len() > least && search.work <= WORK {
-        search.leave_out();
-        if !search.cover(rng) {
-            break;
-        }
-        best.clone_from(&search.rows);
+    RowSearch::new(sizes, strength, best).reduce(least, &mut EveryRow, rng)
+}
+
+/// The same of rows that have all tuples that some row has which the rules allow; so have the rows that are found, and the
+/// rules allow these.
+pub(super) fn fewer_allowed(
+    sizes: &[u32],
+    strength: usize,
+    rows: Vec<AlternativeRow>,
+    wanted: usize,
+    rules: &mut dyn RowRules,
+    rng: &mut ChaCha8Rng,
+) -> Vec<AlternativeRow> {
+    if rows.len() <= wanted || strength > sizes.len() || tuples(sizes, strength) > WORK as u128 {
+        return rows;
     }
-    different(best)
+    let mut search = RowSearch::new(sizes, strength, rows);
+    // What no row has cannot be had.
+    search.counts.open.clear();
+    let least = wanted.max(search.counts.fewest());
+    search.reduce(least, rules, rng)
+}
+
+/// Which rows there may be.
+pub(super) trait RowRules {
+    /// Whether an allowed row may have this alternative instead of the one that it has.
+    fn permits(&mut self, row: &AlternativeRow, place: FactorChoice) -> bool;
+
+    /// What has to be changed, so that an allowed row has the tuple and is allowed; nothing if no way is known. The second
+    /// number says what was looked at.
+    fn changes(
+        &mut self,
+        row: &AlternativeRow,
+        tuple: &[FactorChoice],
+        rng: &mut ChaCha8Rng,
+    ) -> (Vec<FactorChoice>, usize);
+}
+
+/// Without conditions.
+struct EveryRow;
+
+impl RowRules for EveryRow {
+    fn permits(&mut self, _: &AlternativeRow, _: FactorChoice) -> bool {
+        true
+    }
+
+    fn changes(
+        &mut self,
+        _: &AlternativeRow,
+        tuple: &[FactorChoice],
+        _: &mut ChaCha8Rng,
+    ) -> (Vec<FactorChoice>, usize) {
+        (tuple.to_vec(), 0)
+    }
 }
 
 /// No fewer rows have all tuples: those of the largest factors.
@@ -131,6 +176,15 @@ impl TupleCounts {
         (0..self.groups.len()).filter(|group| self.counts[self.tuple(*group, row)] == 1).count()
     }
 
+    /// No fewer rows have the tuples that occur: as many as those of some factors.
+    fn fewest(&self) -> usize {
+        let ends = self.groups.iter().skip(1).map(|g| g.start).chain([self.counts.len()]);
+        let occur = |(group, end): (&FactorTuples, usize)| {
+            self.counts[group.start..end].iter().filter(|n| **n > 0).count()
+        };
+        self.groups.iter().zip(ends).map(occur).max().unwrap_or(0)
+    }
+
     /// The tuples that a row has with a factor, and those that it would have with another alternative of it.
     fn changes(
         &self,
@@ -180,6 +234,19 @@ impl RowSearch {
         Self { rows, counts, free_from, moves: 0, work: 0 }
     }
 
+    /// Leaves rows out as long as there are more than `least`, and the others come to have all tuples; the last that do.
+    fn reduce(mut self, least: usize, rules: &mut dyn RowRules, rng: &mut ChaCha8Rng) -> Vec<AlternativeRow> {
+        let mut best = self.rows.clone();
+        while best.len() > least && self.work <= WORK {
+            self.leave_out();
+            if !self.cover(rules, rng) {
+                break;
+            }
+            best.clone_from(&self.rows);
+        }
+        different(best)
+    }
+
     /// Leaves out the row, the first of several, that alone has the fewest tuples.
     fn leave_out(&mut self) {
         self.work += self.rows.len() * self.counts.groups.len();
@@ -194,7 +261,7 @@ impl RowSearch {
     }
 
     /// Changes rows until all tuples occur; `false` if that took too long.
-    fn cover(&mut self, rng: &mut ChaCha8Rng) -> bool {
+    fn cover(&mut self, rules: &mut dyn RowRules, rng: &mut ChaCha8Rng) -> bool {
         while !self.counts.open.is_empty() {
             if self.work > WORK {
                 return false;
@@ -202,10 +269,15 @@ impl RowSearch {
             let drawn = rng.random_range(0..self.counts.open.len() as u32) as usize;
             let Some(tuple) = self.counts.open.iter().nth(drawn).copied() else { return false };
             let places = self.counts.places(tuple);
-            let nearest = self.nearest(&places);
+            let nearest = self.nearest(&places, rules);
             if nearest.is_empty() {
+                if self.rows.is_empty() {
+                    return false;
+                }
                 let at = rng.random_range(0..self.rows.len() as u32) as usize;
-                places.iter().for_each(|place| self.change(at, *place));
+                let (changes, work) = rules.changes(&self.rows[at], &places, rng);
+                self.work += work;
+                changes.into_iter().for_each(|place| self.change(at, place));
             } else {
                 let (at, place) = nearest[rng.random_range(0..nearest.len() as u32) as usize];
                 self.change(at, place);
@@ -216,13 +288,13 @@ impl RowSearch {
     }
 
     /// The changes of one alternative by which a row gets the tuple, and that leave the fewest tuples open.
-    fn nearest(&mut self, places: &[(usize, u32)]) -> Vec<(usize, (usize, u32))> {
+    fn nearest(&mut self, places: &[FactorChoice], rules: &mut dyn RowRules) -> Vec<(usize, FactorChoice)> {
         let (mut best, mut least) = (Vec::new(), isize::MAX);
         self.work += self.rows.len();
         for (at, row) in self.rows.iter().enumerate() {
             let mut other = places.iter().filter(|(f, a)| row[*f] != *a);
             let (Some(place), None) = (other.next(), other.next()) else { continue };
-            if self.free_from[at][place.0] > self.moves {
+            if self.free_from[at][place.0] > self.moves || !rules.permits(row, *place) {
                 continue;
             }
             self.work += self.counts.of[place.0].len();

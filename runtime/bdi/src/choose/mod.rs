@@ -4,6 +4,7 @@
 //! the space that they span, [`BeliefExplorer`] in batches, so that [`FactorLearner`] can learn from what they bring. Where choices have
 //! conditions, [`BeliefExplorer::of`] keeps to what these allow, and [`allows`] says whether they allow a set.
 
+mod allowed_rows;
 mod construct;
 mod cover;
 mod explore;

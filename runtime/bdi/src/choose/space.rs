@@ -184,6 +184,17 @@ impl<'a> AllowedSpace<'a> {
         self.groups.iter().all(|g| g.exact)
     }
 
+    /// Whether the conditions of a group allow a row.
+    pub fn allows(&mut self, group: usize, row: &AlternativeRow) -> bool {
+        let of = &self.groups[group];
+        if of.exact {
+            let part: Vec<u16> = of.factors.iter().map(|f| row[*f] as u16).collect();
+            return !of.range(&part).is_empty();
+        }
+        let clauses: Vec<usize> = of.factors.iter().flat_map(|f| self.last[*f].clone()).collect();
+        clauses.into_iter().all(|clause| self.decide(clause, row))
+    }
+
     /// How many rows are allowed, if that is known.
     pub fn allowed(&self) -> Option<u128> {
         if self.never || self.empty().is_some_and(|g| g.exact) {

@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 
 use hrdsl_ir::suite::ExploreMode;
-use rand::RngExt;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{
     cover::{CANDIDATES, FactorChoice, UncoveredTuples, tuples},
+    fewer::fewer_allowed,
     sets::{AlternativeRow, MAX_SETS, shuffle},
     space::{AllowedSpace, NextRow},
 };
@@ -44,6 +45,7 @@ pub(super) fn within(
         ExploreMode::Wise(strength) => {
             let mut found = covering(space, usize::from(strength).max(2), rng);
             found.cut |= found.rows.len() >= MAX_SETS;
+            fit(&mut found, space, tests, rng);
             fill(&mut found, space, tests, rng);
             found
         }
@@ -52,6 +54,24 @@ pub(super) fn within(
             found.cut = !fill(&mut found, space, tests, rng);
             found
         }
+    }
+}
+
+/// Takes fewer rows with the same tuples if there are more than `tests` and as few are found; says how many rows would do.
+fn fit(found: &mut AllowedRows, space: &mut AllowedSpace<'_>, tests: usize, rng: &ChaCha8Rng) {
+    let Some((strength, needed)) = &mut found.strength else { return };
+    if found.rows.len() <= tests || found.rows.len() >= MAX_SETS {
+        return;
+    }
+    // A stream of its own: what else is drawn does not depend on whether fewer rows were looked for.
+    let mut rng = ChaCha8Rng::from_seed(rng.get_seed());
+    rng.set_stream(1);
+    let sizes = space.sizes.clone();
+    let least = fewer_allowed(&sizes, *strength, found.rows.clone(), tests, space, &mut rng);
+    *needed = least.len();
+    // If some tests will be left out in any case, the first greedy rows have more tuples than any others.
+    if least.len() <= tests {
+        found.rows = least;
     }
 }
 
@@ -230,7 +250,6 @@ impl<'s, 'a> TupleCandidates<'s, 'a> {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use rand::SeedableRng;
 
     use super::*;
     use crate::choose::{BATCH, BeliefExplorer, BeliefFactor, ChooseError, FactorAlternative, sets::row_at};
@@ -389,6 +408,97 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// The greedy rows of a space, and what is left of them.
+    fn both(
+        sizes: &[u32],
+        clauses: &[(Vec<usize>, u8)],
+        strength: usize,
+        seed: u64,
+    ) -> [Vec<AlternativeRow>; 2] {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut space = space(sizes, clauses, u128::MAX, &mut rng);
+        let greedy = covering(&mut space, strength, &mut rng);
+        let mut fewer =
+            AllowedRows { rows: greedy.rows.clone(), strength: greedy.strength, ..AllowedRows::default() };
+        // As many as are found are enough, so that they are taken.
+        fit(&mut fewer, &mut space, 0, &rng);
+        let needed = fewer.strength.map_or(0, |(_, needed)| needed);
+        fit(&mut fewer, &mut space, needed, &rng);
+        assert_eq!(fewer.rows.len(), needed.min(greedy.rows.len()));
+        [greedy.rows, fewer.rows]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+        #[test]
+        fn fewer_rows_have_every_tuple_that_conditions_allow(
+            sizes in prop::collection::vec(1u32..5, 2..7),
+            drawn in prop::collection::vec((prop::collection::btree_set(0usize..7, 1..4), 2u8..8), 1..5),
+            strength in 2usize..4,
+            seed: u64,
+        ) {
+            let clauses = clauses(&sizes, &drawn);
+            let allowed = allowed(&sizes, &clauses);
+            prop_assume!(!allowed.is_empty());
+            let [greedy, fewer] = both(&sizes, &clauses, strength, seed);
+            prop_assert!(fewer.len() <= greedy.len());
+            prop_assert!(fewer.iter().all(|row| allowed.contains(row)));
+            let distinct: BTreeSet<&AlternativeRow> = fewer.iter().collect();
+            prop_assert_eq!(distinct.len(), fewer.len());
+            let of = |rows: &[AlternativeRow]| sub_tuples(rows, sizes.len(), strength);
+            prop_assert_eq!(of(&fewer), of(&allowed));
+            let again = both(&sizes, &clauses, strength, seed);
+            prop_assert_eq!(&again[1], &fewer);
+        }
+    }
+
+    /// Which rows are allowed, by conditions with these scopes.
+    type ShapeCondition = (Vec<Vec<usize>>, fn(&[u32]) -> bool);
+
+    /// Sizes, conditions, the tuples' size, the greedy rows, and the rows that are left of them.
+    type ConditionedShape = (&'static str, Vec<u32>, ShapeCondition, usize, usize, usize);
+
+    fn shapes() -> Vec<ConditionedShape> {
+        let differ: fn(&[u32]) -> bool = |part| part.windows(2).all(|w| w[0] != w[1]);
+        let not_both: fn(&[u32]) -> bool = |part| part[0] != 0 || part[1] != 0;
+        let few: fn(&[u32]) -> bool = |part| part.iter().sum::<u32>() <= 4;
+        let upwards: fn(&[u32]) -> bool = |part| part.windows(2).all(|w| w[0] <= w[1]);
+        let neighbours = |n: usize| (0..n - 1).map(|f| vec![f, f + 1]).collect::<Vec<_>>();
+        let couples = |n: usize| (0..n / 2).map(|f| vec![2 * f, 2 * f + 1]).collect::<Vec<_>>();
+        vec![
+            ("13 of 3, of each couple not both the first", vec![3; 13], (couples(13), not_both), 2, 19, 15),
+            ("10 of 3, neighbours differ", vec![3; 10], (neighbours(10), differ), 2, 17, 15),
+            ("8 of 4, neighbours differ", vec![4; 8], (neighbours(8), differ), 2, 28, 22),
+            ("16 of 2, at most four held", vec![2; 16], (vec![(0..16).collect()], few), 2, 26, 26),
+            ("6 of 5, the first three upwards", vec![5; 6], (vec![vec![0, 1, 2]], upwards), 2, 42, 37),
+            ("8 of 3, neighbours differ", vec![3; 8], (neighbours(8), differ), 3, 49, 39),
+        ]
+    }
+
+    #[test]
+    fn no_shape_with_conditions_takes_more_rows_than_it_did() {
+        let mut wrong = Vec::new();
+        for (name, sizes, (scopes, allows), strength, most_greedy, most) in shapes() {
+            let mut rng = ChaCha8Rng::seed_from_u64(0);
+            let parts = scopes.clone();
+            let holds = move |clause: usize, row: &AlternativeRow| {
+                allows(&parts[clause].iter().map(|f| row[*f]).collect::<Vec<_>>())
+            };
+            let mut space = AllowedSpace::new(sizes.clone(), scopes, Box::new(holds), &mut rng);
+            let mut found = covering(&mut space, strength, &mut rng);
+            let tuples = sub_tuples(&found.rows, sizes.len(), strength);
+            let greedy = found.rows.len();
+            fit(&mut found, &mut space, 0, &rng);
+            let needed = found.strength.map_or(0, |(_, needed)| needed);
+            fit(&mut found, &mut space, needed, &rng);
+            assert_eq!(sub_tuples(&found.rows, sizes.len(), strength), tuples, "{name}");
+            if greedy > most_greedy || found.rows.len() > most {
+                wrong.push(format!("{name}: {greedy}, {}", found.rows.len()));
+            }
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 
     /// 40 beliefs of which at most three are held.

@@ -110,6 +110,7 @@ fn human() -> Agent {
         performative: Performative::Tell,
         content: ContentId(0),
         args: vec![AgentTerm::Var(0)],
+        annotations: vec![],
     };
     let sulk = PlanStepKind::If {
         condition: holds(2, vec![]),

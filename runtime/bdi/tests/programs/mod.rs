@@ -115,6 +115,7 @@ pub fn messages(limit: i64) -> Program {
             performative: Performative::Achieve,
             content: ContentId(0),
             args: vec![AgentTerm::Expr(plus(var(0), 1))],
+            annotations: vec![],
         };
         let on = TriggerOn::GoalAdded(GoalId(0));
         agent.plans.push(plan(on, vec![AgentTerm::Var(0)], less(var(0), Expr::int(limit)), vec![send], 1));

@@ -273,7 +273,7 @@ impl Maker {
         let content = if is_goal { BELIEFS + self.rng.random_range(0..GOALS) } else { self.belief().0 };
         let to = self.rng.random_ratio(4, 5).then(|| self.other());
         let args = vec![AgentTerm::Expr(self.expr())];
-        PlanStepKind::Send { to, performative, content: ContentId(content), args }
+        PlanStepKind::Send { to, performative, content: ContentId(content), args, annotations: vec![] }
     }
 
     fn question(&mut self, seconds: Expr) -> PlanStepKind {

@@ -138,6 +138,8 @@ pub struct ClauseTranslator<'a> {
     pub answers: IndexMap<String, Result<String, String>>,
     /// Internal actions that are values of what is written, to be asked before it.
     pub first: Vec<String>,
+    /// In how many choices with the steps that come after them the present one is.
+    pub continued: usize,
     /// In a plan for a goal: the variables that it is to give a value, each with whether that is taken.
     pub owed: IndexMap<String, bool>,
 }
@@ -154,6 +156,7 @@ impl<'a> ClauseTranslator<'a> {
             used,
             remarks: Vec::new(),
             answers: IndexMap::new(),
+            continued: 0,
             owed: IndexMap::new(),
             first: Vec::new(),
         }
@@ -254,10 +257,22 @@ impl<'a> ClauseTranslator<'a> {
             TermKind::Int(n) if float => signed(format!("{n}.0")),
             TermKind::Int(n) => signed(n.to_string()),
             TermKind::Float(x) => signed(float_text(*x)),
+            TermKind::Text(text) if matches!(self.cx.types.get(id), AgentSpeakType::Atoms { .. }) => {
+                ClauseFragment::new(self.cx.names.atom(self.cx.types, id, text), ATOM)
+            }
             TermKind::Text(text) => ClauseFragment::new(quoted(text), ATOM),
+            TermKind::Literal(l) if l.args.is_empty() && *self.cx.types.get(id) == AgentSpeakType::Text => {
+                ClauseFragment::new(quoted(&l.functor), ATOM)
+            }
             TermKind::Bool(b) => ClauseFragment::new(b.to_string(), ATOM),
             TermKind::Neg(inner) => ClauseFragment::new(format!("-{}", self.expr(inner)?.at(ATOM)), SUM),
-            TermKind::Literal(l) if matches!(l.functor.as_str(), ".length" | "math.length" | ".count") => {
+            TermKind::Literal(l) if l.functor == "math.pi" => {
+                ClauseFragment::new(float_text(std::f64::consts::PI), ATOM)
+            }
+            TermKind::Literal(l) if l.functor == "math.e" => {
+                ClauseFragment::new(float_text(std::f64::consts::E), ATOM)
+            }
+            TermKind::Literal(l) if l.is_internal() && !is_expression(l) => {
                 ClauseFragment::new(self.asked_first(l)?, ATOM)
             }
             TermKind::Literal(l) if l.is_internal() => {
@@ -281,64 +296,6 @@ impl<'a> ClauseTranslator<'a> {
             | TermKind::Trigger(_)
             | TermKind::Plan => return Err("this is no single value".into()),
         })
-    }
-
-    fn arithmetic(
-        &mut self,
-        op: AgentSpeakOperator,
-        left: &AgentSpeakTerm,
-        right: &AgentSpeakTerm,
-        float: bool,
-    ) -> ClauseResult<ClauseFragment> {
-        if op == AgentSpeakOperator::Pow {
-            return self.power(left, right);
-        }
-        let (mut l, mut r) = (self.expr(left)?, self.expr(right)?);
-        if op == AgentSpeakOperator::Div {
-            // Whole numbers would be divided without a rest.
-            for (piece, of) in [(&mut l, left), (&mut r, right)] {
-                if matches!(of.kind, TermKind::Int(_)) && !piece.text.contains('.') {
-                    piece.text += ".0";
-                }
-            }
-        }
-        let (sign, level, right_level) = match op {
-            AgentSpeakOperator::Add => ("+", SUM, PRODUCT),
-            AgentSpeakOperator::Sub => ("-", SUM, PRODUCT),
-            AgentSpeakOperator::Mul => ("*", PRODUCT, ATOM),
-            AgentSpeakOperator::Mod => ("%", PRODUCT, ATOM),
-            AgentSpeakOperator::IntDiv if float => {
-                return Err("`div` of numbers that may have decimals".into());
-            }
-            AgentSpeakOperator::Div if [left, right].iter().all(|t| !is_number(t)) => {
-                let text = format!("1.0 * {} / {}", l.at(ATOM), r.at(ATOM));
-                return Ok(ClauseFragment::new(text, PRODUCT));
-            }
-            AgentSpeakOperator::IntDiv | AgentSpeakOperator::Div => ("/", PRODUCT, ATOM),
-            AgentSpeakOperator::Pow
-            | AgentSpeakOperator::Or
-            | AgentSpeakOperator::And
-            | AgentSpeakOperator::Less
-            | AgentSpeakOperator::LessEqual
-            | AgentSpeakOperator::Greater
-            | AgentSpeakOperator::GreaterEqual
-            | AgentSpeakOperator::Equal
-            | AgentSpeakOperator::Different
-            | AgentSpeakOperator::Unify
-            | AgentSpeakOperator::NotUnify
-            | AgentSpeakOperator::Univ => return Err("a formula stands where a value should".into()),
-        };
-        Ok(ClauseFragment::new(format!("{} {sign} {}", l.at(level), r.at(right_level)), level))
-    }
-
-    fn power(&mut self, base: &AgentSpeakTerm, exponent: &AgentSpeakTerm) -> ClauseResult<ClauseFragment> {
-        match exponent.kind {
-            TermKind::Int(n @ 1..=4) => {
-                let base = self.expr(base)?.at(ATOM);
-                Ok(ClauseFragment::new(vec![base; n as usize].join(" * "), PRODUCT))
-            }
-            _ => Err("hrdsl has no `**`, except with a small number as its exponent".into()),
-        }
     }
 
     // ── Formulas ──
@@ -490,6 +447,11 @@ fn float_text(x: f64) -> String {
     }
 }
 
-fn is_number(of: &AgentSpeakTerm) -> bool {
+pub(super) fn is_number(of: &AgentSpeakTerm) -> bool {
     matches!(of.kind, TermKind::Int(_) | TermKind::Float(_))
+}
+
+/// Whether an internal function is one of expressions, too.
+fn is_expression(of: &AgentSpeakLiteral) -> bool {
+    matches!((of.functor.as_str(), of.args.len()), ("math.abs", 1) | ("math.min" | "math.max", 2))
 }

@@ -71,6 +71,10 @@ impl ClauseTranslator<'_> {
                     .collect::<ClauseResult<Vec<_>>>()?;
                 format!("{name}({}, {})", args.join(", "), self.value(result, BindingMode::Pattern)?)
             }
+            (".substring", [part, whole, places @ ..]) => return self.substring(part, whole, places),
+            (".number" | ".string" | ".list" | ".atom" | ".ground", [term]) => {
+                self.is_of(name, term)?.to_string()
+            }
             (".prefix" | ".suffix" | ".sublist", [a, b]) => {
                 format!(
                     "{name}({}, {})",
@@ -301,12 +305,8 @@ impl ClauseTranslator<'_> {
 
     fn content(&mut self, message: &AgentSpeakMessage<'_>, to: Option<String>) -> ClauseResult<String> {
         let mut of = literal(message.content)?;
-        let plain = AgentSpeakLiteral { annotations: Vec::new(), ..of.clone() };
-        if let Some(annotation) = of.annotations.first() {
-            let message = "what is sent has no annotations in hrdsl: these are dropped";
-            self.remarks.push((annotation.span, message.to_owned()));
-            of = &plain;
-        }
+        let plain = AgentSpeakLiteral { annotations: self.told_annotations(message, of), ..of.clone() };
+        of = &plain;
         let goal = performative(message.performative) == Some(true);
         self.used.sent.insert((to, goal, of.key()));
         let want = if matches!(message.performative, "tell" | "achieve") {

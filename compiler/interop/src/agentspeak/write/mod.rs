@@ -7,6 +7,7 @@
 //! 4. the text: vocabulary, agents, a suite that runs them together
 
 mod agent;
+mod arithmetic;
 mod clause;
 mod compare;
 mod first;
@@ -14,6 +15,8 @@ mod internal;
 mod modes;
 mod print;
 mod steps;
+mod strings;
+mod told;
 mod wanted;
 mod writer;
 

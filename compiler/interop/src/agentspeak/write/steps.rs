@@ -1,13 +1,18 @@
 //! The steps of a plan.
 
+use std::collections::BTreeSet;
+
 use super::{
     super::{
-        ast::{AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm, TermKind},
+        ast::{AgentSpeakStep, AgentSpeakStepKind, AgentSpeakTerm, TermKind, names_any},
         term::{literal, valued},
         types::AgentSpeakType,
     },
     clause::{BindingMode, ClauseFailure, ClauseResult, ClauseTranslator, call},
 };
+
+/// So many choices within each other have what comes after them in both branches: each doubles it.
+const MOST_CONTINUED: usize = 5;
 
 /// A line of a body.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,7 +52,7 @@ impl ClauseTranslator<'_> {
         out: &mut Vec<(hrdsl_source::Span, String)>,
     ) -> Vec<PlanBodyLine> {
         let mut lines = Vec::new();
-        for step in steps {
+        for (at, step) in steps.iter().enumerate() {
             if let AgentSpeakStepKind::Block(inner) = &step.kind {
                 lines.extend(self.steps(inner, out));
                 continue;
@@ -55,13 +60,16 @@ impl ClauseTranslator<'_> {
             let before = (self.bound.clone(), self.used.clone(), self.remarks.len(), out.len());
             let written = match self.cx.left_out.get(&step.span) {
                 Some(reason) => Err(ClauseFailure::Other(reason.clone())),
-                None => self.step(step, out),
+                None => self.before(step, &steps[at + 1..], out),
             };
             let first = std::mem::take(&mut self.first);
             match written {
-                Ok(texts) => {
+                Ok((texts, is_end)) => {
                     lines.extend(first.into_iter().map(PlanBodyLine::Step));
                     lines.extend(texts.into_iter().map(PlanBodyLine::Step));
+                    if is_end {
+                        break;
+                    }
                 }
                 Err(stop) => {
                     self.remarks.truncate(before.2);
@@ -73,6 +81,32 @@ impl ClauseTranslator<'_> {
             }
         }
         lines
+    }
+
+    /// A step before others; `true`: they are in it. What one branch of a choice gives a value has it after the choice, if
+    /// this branch was taken: then what comes after stands in both.
+    fn before(
+        &mut self,
+        step: &AgentSpeakStep,
+        rest: &[AgentSpeakStep],
+        out: &mut Vec<(hrdsl_source::Span, String)>,
+    ) -> ClauseResult<(Vec<String>, bool)> {
+        let AgentSpeakStepKind::If { condition, then, otherwise } = &step.kind else {
+            return Ok((self.step(step, out)?, false));
+        };
+        let before = (self.bound.clone(), self.used.clone(), self.remarks.len(), out.len());
+        let (text, given) = self.choice(condition, then, otherwise, out)?;
+        if self.continued >= MOST_CONTINUED || !names_any(rest, &given) {
+            return Ok((vec![text], false));
+        }
+        self.remarks.truncate(before.2);
+        out.truncate(before.3);
+        (self.bound, self.used) = (before.0, before.1);
+        self.first.clear();
+        self.continued += 1;
+        let both = self.choice(condition, &[then, rest].concat(), &[otherwise, rest].concat(), out);
+        self.continued -= 1;
+        Ok((vec![both?.0], true))
     }
 
     #[expect(clippy::too_many_lines, reason = "a flat match")]
@@ -140,7 +174,7 @@ impl ClauseTranslator<'_> {
                 one(call(&name.ok_or_else(|| ClauseFailure::from("the action has no name"))?, &args))
             }
             AgentSpeakStepKind::If { condition, then, otherwise } => {
-                one(self.choice(condition, then, otherwise, out)?)
+                one(self.choice(condition, then, otherwise, out)?.0)
             }
             AgentSpeakStepKind::While { condition, body } | AgentSpeakStepKind::For { condition, body } => {
                 let word =
@@ -184,13 +218,14 @@ impl ClauseTranslator<'_> {
         Ok(args)
     }
 
+    /// A choice, and which variables only one of its branches gives a value.
     fn choice(
         &mut self,
         condition: &AgentSpeakTerm,
         then: &[AgentSpeakStep],
         otherwise: &[AgentSpeakStep],
         out: &mut Vec<(hrdsl_source::Span, String)>,
-    ) -> ClauseResult<String> {
+    ) -> ClauseResult<(String, BTreeSet<String>)> {
         let before = self.bound.clone();
         let condition = match self.formula(condition) {
             Ok(piece) => piece.text,
@@ -201,15 +236,19 @@ impl ClauseTranslator<'_> {
         };
         let then = block(&self.steps(then, out));
         let after = std::mem::replace(&mut self.bound, before);
+        let mut inner = BTreeSet::new();
         let otherwise = match otherwise {
             [] => String::new(),
             [AgentSpeakStep { kind: AgentSpeakStepKind::If { condition, then, otherwise }, .. }] => {
-                format!(" else {}", self.choice(condition, then, otherwise, out)?)
+                let (text, given) = self.choice(condition, then, otherwise, out)?;
+                inner = given;
+                format!(" else {text}")
             }
             steps => format!(" else {}", block(&self.steps(steps, out))),
         };
+        let one: BTreeSet<String> = self.bound.symmetric_difference(&after).cloned().chain(inner).collect();
         self.bound = self.bound.intersection(&after).cloned().collect();
-        Ok(format!("if {condition} {then}{otherwise}"))
+        Ok((format!("if {condition} {then}{otherwise}"), &one - &self.bound))
     }
 
     pub fn fork<'s>(

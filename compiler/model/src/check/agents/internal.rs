@@ -1,5 +1,6 @@
 //! Internal actions: their arguments, by the table.
 
+use hrdsl_ir::real::RealFunction;
 use hrdsl_syntax::ast::{self, CallSyntax, ExprSyntaxKind as Syntax};
 
 use crate::check::{
@@ -211,6 +212,8 @@ impl AgentsPhase<'_, '_> {
                 let b = self.list_or_text(b, a.ty, env);
                 (vec![a, b], InferredType::Bool)
             }
+            (F::Occurrences | F::Slice, args) => self.of_places(args, env)?,
+            (F::Real(f), args) => self.of_numbers(f, args, env),
             (F::ToText, [arg]) => (vec![self.expr(arg, env)], InferredType::Text),
             (F::Concat, args) => self.concat(args, env),
             (_, _) => return None,
@@ -235,6 +238,65 @@ impl AgentsPhase<'_, '_> {
             fitted.push(arg);
         }
         (fitted, ty)
+    }
+
+    /// Places of one list or string in another, or the part between two places.
+    fn of_places(
+        &mut self,
+        args: &[ast::ExprSyntax],
+        env: &mut ExprEnv,
+    ) -> Option<(Vec<TypedExpr>, InferredType)> {
+        match args {
+            [a, b] => {
+                let a = self.list_or_text(a, InferredType::Unknown, env);
+                let b = self.list_or_text(b, a.ty, env);
+                Some((vec![a, b], InferredType::list(InferredType::Int)))
+            }
+            [of, from, to] => {
+                let of = self.list_or_text(of, InferredType::Unknown, env);
+                let (from, to) =
+                    (self.expr_of(from, InferredType::Int, env), self.expr_of(to, InferredType::Int, env));
+                let ty = of.ty;
+                Some((vec![of, from, to], ty))
+            }
+            _ => None,
+        }
+    }
+
+    fn of_numbers(
+        &mut self,
+        f: RealFunction,
+        args: &[ast::ExprSyntax],
+        env: &mut ExprEnv,
+    ) -> (Vec<TypedExpr>, InferredType) {
+        let number = InferredType::Float(Dimension::NUMBER);
+        let args: Vec<TypedExpr> = if f.is_of_list() {
+            args.iter().map(|a| self.list_of_numbers(a, env)).collect()
+        } else {
+            args.iter().map(|a| self.number_of(a, env)).collect()
+        };
+        let sum = args.first().and_then(|a| a.ty.element()).filter(|_| f == RealFunction::Sum);
+        let result = if f.is_whole() { InferredType::Int } else { sum.unwrap_or(number) };
+        (args, result)
+    }
+
+    /// A number without a dimension, whole or not.
+    fn number_of(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> TypedExpr {
+        let e = self.single(e, InferredType::Unknown, env);
+        if is_number(e.ty) {
+            return e;
+        }
+        self.report(types::other_shape("a number", &e.ty.to_string(), e.span));
+        TypedExpr::error(e.span)
+    }
+
+    fn list_of_numbers(&mut self, e: &ast::ExprSyntax, env: &mut ExprEnv) -> TypedExpr {
+        let list = self.expr_of(e, InferredType::list(InferredType::Unknown), env);
+        if list.ty.element().is_none_or(is_number) {
+            return list;
+        }
+        self.report(types::other_shape("a list of numbers", &list.ty.to_string(), list.span));
+        TypedExpr::error(list.span)
     }
 
     fn list_or_text(&mut self, e: &ast::ExprSyntax, like: InferredType, env: &mut ExprEnv) -> TypedExpr {
@@ -353,5 +415,14 @@ impl AgentsPhase<'_, '_> {
             literal.call.args = Some(fields.iter().map(any).collect());
         }
         Some(TypedStepKind::Abolish(self.literal(scope, &literal, env, (false, false))?))
+    }
+}
+
+/// Whether it is a number without a dimension, or may be one.
+fn is_number(ty: InferredType) -> bool {
+    match ty {
+        InferredType::Int | InferredType::Unknown => true,
+        InferredType::Float(dimension) => dimension == Dimension::NUMBER,
+        InferredType::Bool | InferredType::Enum(_) | InferredType::Text | InferredType::List(_) => false,
     }
 }

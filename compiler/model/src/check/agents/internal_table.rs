@@ -1,5 +1,7 @@
 //! The internal actions: one table of what they are called, take and do.
 
+use hrdsl_ir::real::RealFunction;
+
 use crate::{ControlAct, ListFunction};
 
 /// What an argument of an internal action is.
@@ -113,9 +115,17 @@ const fn row(
     InternalAction { name, usage, help, slots, arity, op }
 }
 
+/// A function of numbers.
+const fn real(of: RealFunction, usage: &'static str, help: &'static str) -> InternalAction {
+    let (slots, arity): (&'static [ArgumentSlot], _) =
+        if matches!(of, RealFunction::Power) { (&[In, In, Out], (3, 3)) } else { (&[In, Out], (2, 2)) };
+    row((of.name(), usage, help), slots, arity, Apply(F::Real(of)))
+}
+
 use ArgumentSlot::{Agent, Belief, Content, Formula, Goal, In, Out, Performative, Template, Time};
 use InternalOp::{Apply, Holds};
 use ListFunction as F;
+use RealFunction as R;
 
 /// All internal actions, those that ask first.
 pub const INTERNAL_ACTIONS: &[InternalAction] = &[
@@ -198,6 +208,38 @@ pub const INTERNAL_ACTIONS: &[InternalAction] = &[
         (2, 2),
         Holds(F::Sublist),
     ),
+    row(
+        ("occurrences", ".occurrences(A, B, L)", "the list of the places, from 0, at which B contains A"),
+        &[In, In, Out],
+        (3, 3),
+        Apply(F::Occurrences),
+    ),
+    row(
+        ("slice", ".slice(L, I, J, M)", "the part of a list or string from place I to before J, from 0"),
+        &[In, In, In, Out],
+        (4, 4),
+        Apply(F::Slice),
+    ),
+    real(R::Power, ".power(X, Y, Z)", "X to the power of Y"),
+    real(R::Sqrt, ".sqrt(X, Y)", "the square root"),
+    real(R::Floor, ".floor(X, N)", "the greatest whole number that is not above X"),
+    real(R::Ceil, ".ceil(X, N)", "the least whole number that is not below X"),
+    real(R::Round, ".round(X, N)", "the nearest whole number, of two the greater"),
+    real(R::Log, ".log(X, Y)", "the natural logarithm"),
+    real(R::Sin, ".sin(X, Y)", "the sine of an angle in radians"),
+    real(R::Cos, ".cos(X, Y)", "the cosine of an angle in radians"),
+    real(R::Tan, ".tan(X, Y)", "the tangent of an angle in radians"),
+    real(R::Asin, ".asin(X, Y)", "the angle of this sine, in radians"),
+    real(R::Acos, ".acos(X, Y)", "the angle of this cosine, in radians"),
+    real(R::Atan, ".atan(X, Y)", "the angle of this tangent, in radians"),
+    real(R::Sum, ".sum(L, X)", "the sum of a list of numbers"),
+    real(R::Mean, ".mean(L, X)", "their mean; fails for `[]`"),
+    real(
+        R::Median,
+        ".median(L, X)",
+        "the middle one in order, or the mean of the middle two; fails for `[]`",
+    ),
+    real(R::StdDev, ".std_dev(L, X)", "their standard deviation, as of a sample; fails for less than two"),
     row(
         ("intend", ".intend(g(…))", "whether an intention has the goal"),
         &[Goal],

@@ -18,8 +18,8 @@ use crate::check::{
     unread,
 };
 use crate::{
-    AgentId, AgentSpeech, BeliefId, ContentId, GoalId, InferredType, MessageContent, Parameter, Performative,
-    PlayerRef, TypedExpr, TypedExprKind, TypedStepKind, TypedTerm, Value,
+    AgentId, AgentSpeech, BeliefAnnotation, BeliefId, ContentId, GoalId, InferredType, MessageContent,
+    Parameter, Performative, PlayerRef, Type, TypedExpr, TypedExprKind, TypedStepKind, TypedTerm, Value,
     noun::Noun,
     report::{
         agents::{self, bad_message},
@@ -55,6 +55,9 @@ struct MessageTopic {
     call: CallSyntax,
     /// The belief of the one receiver, if it is one.
     belief: Option<(AgentId, BeliefId)>,
+    /// As they are written, and what the receivers' belief declares.
+    annotations: Vec<ast::ExprSyntax>,
+    declared: Vec<Parameter>,
 }
 
 impl AgentsPhase<'_, '_> {
@@ -72,6 +75,9 @@ impl AgentsPhase<'_, '_> {
         let receiver = to.as_ref().map_or(&MessageReceiver::Some, |(_, receiver)| receiver);
         let goal = matches!(performative, Performative::Achieve | Performative::Unachieve);
         let about = self.about(scope, receiver, what, goal, to.is_none())?;
+        if performative != Performative::Tell {
+            self.has_no_annotations(&about);
+        }
         self.used(scope, &about, Some(performative));
         let args = match performative {
             Performative::Tell | Performative::Achieve => {
@@ -86,7 +92,35 @@ impl AgentsPhase<'_, '_> {
                 args
             }
         };
-        Some(TypedStepKind::Send { to: to.map(|(e, _)| e), performative, content: about.id, args })
+        let annotations =
+            if performative == Performative::Tell { self.told_annotations(&about, env) } else { Vec::new() };
+        let to = to.map(|(e, _)| e);
+        Some(TypedStepKind::Send { to, performative, content: about.id, args, annotations })
+    }
+
+    /// The values of the annotations of what is told.
+    fn told_annotations(&mut self, about: &MessageTopic, env: &mut ExprEnv) -> Vec<(String, TypedExpr)> {
+        let mut told = Vec::new();
+        for e in &about.annotations {
+            let Some((annotation, value, ty)) = self.annotation(e, Some(&about.declared)) else { continue };
+            let value = self.expr_for(value, ty, env);
+            match annotation {
+                BeliefAnnotation::Source => {
+                    self.report(agents::not_annotated("a sender, who is the source,", e.span));
+                }
+                BeliefAnnotation::Declared(at) => {
+                    told.push((about.declared[usize::from(at)].name.clone(), value));
+                }
+            }
+        }
+        told
+    }
+
+    /// Only what is told has annotations.
+    fn has_no_annotations(&mut self, about: &MessageTopic) {
+        if let Some(first) = about.annotations.first() {
+            self.report(agents::not_annotated("what is not told", first.span));
+        }
     }
 
     /// `.ask(A, b(X), 5 s)`
@@ -105,6 +139,7 @@ impl AgentsPhase<'_, '_> {
             self.bind_names(what, env, &variable);
             return None;
         };
+        self.has_no_annotations(&about);
         self.used(scope, &about, None);
         let args = self.asked_for(&about, false, env, true);
         Some(TypedStepKind::Ask { to, content: about.id, args, within })
@@ -214,9 +249,6 @@ impl AgentsPhase<'_, '_> {
                 }
             }
         };
-        if let Some(first) = literal.annotations.first() {
-            self.report(agents::not_annotated("what is sent", first.span));
-        }
         let receivers: Vec<AgentId> = match receiver {
             MessageReceiver::Unknown => return None,
             MessageReceiver::One(agent) => vec![*agent],
@@ -237,8 +269,12 @@ impl AgentsPhase<'_, '_> {
         self.agree(noun, &having, &literal, params.as_ref(), goal);
         let arity = params.as_ref().map_or(literal.call.args.as_ref().map_or(0, Vec::len), Vec::len);
         let id = self.content(&literal, goal, arity)?;
+        let declared = belief.map_or_else(Vec::new, |b| {
+            self.s.agents[usize::from(first.0)].beliefs[usize::from(b.0)].annotations.clone()
+        });
         let belief = belief.filter(|_| having.len() == 1).map(|b| (first, b));
-        Some(MessageTopic { id, fields, arity, call: literal.call, belief })
+        let ast::LiteralSyntax { call, annotations, .. } = literal;
+        Some(MessageTopic { id, fields, arity, call, belief, annotations, declared })
     }
 
     /// How an agent declares a belief or goal; goals may be without types.
@@ -262,6 +298,27 @@ impl AgentsPhase<'_, '_> {
         Some((Some(params), Some(self.belief_fields(agent, belief)), Some(belief)))
     }
 
+    /// The types of the annotations that are written, as an agent declares them.
+    fn annotation_types(
+        &mut self,
+        agent: AgentId,
+        literal: &ast::LiteralSyntax,
+        goal: bool,
+    ) -> Option<Vec<Option<Type>>> {
+        let (_, _, belief) = self.declared_in(agent, &literal.call.name, literal.negated, goal)?;
+        Some(self.types_of(agent, belief?, literal))
+    }
+
+    fn types_of(&self, agent: AgentId, belief: BeliefId, literal: &ast::LiteralSyntax) -> Vec<Option<Type>> {
+        let declared = &self.s.agents[usize::from(agent.0)].beliefs[usize::from(belief.0)].annotations;
+        let name = |e: &ast::ExprSyntax| {
+            let Syntax::Call { callee, .. } = &e.kind else { return None };
+            callee.names.first().map(|n| n.text.clone())
+        };
+        let ty = |name: &str| declared.iter().find(|p| p.name == name).map(|p| p.ty);
+        literal.annotations.iter().map(|e| name(e).and_then(|n| ty(&n))).collect()
+    }
+
     /// All that can take a message must take it alike.
     fn agree(
         &mut self,
@@ -275,7 +332,13 @@ impl AgentsPhase<'_, '_> {
             |params: Option<&Vec<Parameter>>| params.map(|p| p.iter().map(|p| p.ty).collect::<Vec<_>>());
         let name = &literal.call.name;
         for other in having.iter().skip(1) {
-            let Some((theirs, ..)) = self.declared_in(*other, name, literal.negated, goal) else { continue };
+            let Some((theirs, _, belief)) = self.declared_in(*other, name, literal.negated, goal) else {
+                continue;
+            };
+            let (marks, their_marks) = (
+                self.annotation_types(having[0], literal, goal),
+                belief.map(|b| self.types_of(*other, b, literal)),
+            );
             let arity = |c: &Self, agent: AgentId| {
                 c.names.goals[usize::from(agent.0)].get(&name.text).map(|g| g.arity)
             };
@@ -283,10 +346,10 @@ impl AgentsPhase<'_, '_> {
                 (Some(ours), Some(theirs)) => ours == theirs,
                 (None, _) | (_, None) => arity(self, having[0]) == arity(self, *other),
             };
-            if !alike {
+            if !alike || their_marks.is_some_and(|theirs| marks.is_some_and(|ours| ours != theirs)) {
                 let who = |a: AgentId| self.s.agents[usize::from(a.0)].name.clone();
                 let message = format!(
-                    "the {noun} `{}` has other parameters in `{}` than in `{}`",
+                    "the {noun} `{}` has other parameters or annotations in `{}` than in `{}`",
                     name.text,
                     who(having[0]),
                     who(*other)
