@@ -134,6 +134,38 @@ fn calibration_finds_the_bound_and_what_would_fit() {
     assert_eq!(document["models"][0]["bounds"][1]["fits"][0], "x >= 0.5 s");
 }
 
+/// The recording asks once more while the waiter still fetches: only when it holds what it fetched is hidden.
+#[test]
+fn what_calibration_proposes_is_what_judge_finds_to_conform() {
+    let events = "scenario counter\nactor guest : environment\nactor waiter : system\nevent ask from guest to waiter\n\
+        event give from waiter\n";
+    let model = |most: &str| {
+        format!(
+            "{events}automaton Waiter plays waiter {{\n clock x\n init location idle\n\
+             location fetching {{ invariant x <= {most} s }}\n location holding {{ invariant x <= 2 s }}\n\
+             idle -> fetching on ask do x = 0\n fetching -> holding when x >= 2 s do x = 0\n holding -> idle do give\n}}\n"
+        )
+    };
+    let log = "{\"hrdsl\":\"trace\",\"version\":2,\"scenario\":\"counter\"}\n{\"t\":1,\"event\":\"ask\"}\n\
+        {\"t\":11,\"event\":\"ask\"}\n{\"t\":13,\"event\":\"give\"}\n{\"end\":30,\"ended\":\"quiescent\"}\n";
+    let project = folder(&[
+        ("scenario.hri", &model("5")),
+        ("tight.hri", &model("10")),
+        ("tighter.hri", &model("9.99")),
+        ("log.jsonl", log),
+    ]);
+    let calibrated = stdout(&hrdsl_in(project.path(), "calibrate scenario.hri log.jsonl"));
+    assert!(
+        calibrated.contains("no edge was taken that shows its times; x <= 10 s would fit\n"),
+        "{calibrated}"
+    );
+    assert!(calibrated.contains("with these bounds 1 of 1 conform\n"), "{calibrated}");
+    for (file, outcome) in [("tight.hri", "conforms"), ("tighter.hri", "departs")] {
+        let judged = json(&stdout(&hrdsl_in(project.path(), &format!("judge {file} log.jsonl --json"))));
+        assert_eq!(judged["tests"][0]["conformance"][0]["outcome"], outcome, "{file}: {judged}");
+    }
+}
+
 #[test]
 fn what_cannot_be_calibrated_is_said_with_the_next_step() {
     let plain = SCENARIO

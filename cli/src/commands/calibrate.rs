@@ -76,6 +76,7 @@ struct CalibratedBound {
     bound: String,
     recordings: usize,
     count: usize,
+    known: usize,
     least: Option<f64>,
     greatest: Option<f64>,
     fits: Vec<String>,
@@ -130,6 +131,37 @@ fn fits_text(bound: &ContradictedBound) -> Vec<String> {
     bound.fits.iter().map(|fit| bound_text(&bound.clock, *fit)).collect()
 }
 
+fn times(count: usize) -> String {
+    if count == 1 { "once".to_owned() } else { format!("{count} times") }
+}
+
+/// What is known of the values of a bound's clock.
+fn observed_text(bound: &ContradictedBound) -> String {
+    let hidden = bound.count - bound.known;
+    match bound.observed {
+        Some((least, most)) => {
+            let known = times(bound.known);
+            let (least, most) = (seconds(least), seconds(most));
+            let seen = if least == most {
+                format!("observed {least:.3} s, {known}")
+            } else {
+                format!("observed {least:.3} s to {most:.3} s, {known}")
+            };
+            let more = format!(", and {} behind a silent edge", times(hidden));
+            seen + if hidden > 0 { &more } else { "" }
+        }
+        None if hidden > 0 => format!("a silent edge hides its times, {}", times(hidden)),
+        None => "no edge was taken that shows its times".to_owned(),
+    }
+}
+
+fn fitting_text(bound: &ContradictedBound) -> String {
+    match fits_text(bound).as_slice() {
+        [] => "no time would fit: it would have to go".to_owned(),
+        fits => format!("{} would fit", fits.join(" && ")),
+    }
+}
+
 /// A model's page.
 fn told(compilation: &CompilationResult, paths: &[PathBuf], found: &ModelCalibration) -> String {
     let all = found.before.len();
@@ -145,27 +177,19 @@ fn told(compilation: &CompilationResult, paths: &[PathBuf], found: &ModelCalibra
         let stands = bound_text(&bound.clock, bound.bound);
         // Writing to a string cannot fail.
         let _ = writeln!(page, "  {place}{at}: {stands} is contradicted by {} of them", bound.recordings);
-        let _ = match bound.observed {
-            Some((least, most)) => writeln!(
-                page,
-                "    observed {:.3} s to {:.3} s, {} times; {} would fit",
-                seconds(least),
-                seconds(most),
-                bound.count,
-                fits_text(bound).join(" && ")
-            ),
-            None => {
-                writeln!(page, "    never observed with a time of its own; without it, the recordings go on")
-            }
-        };
+        let _ = writeln!(page, "    {}; {}", observed_text(bound), fitting_text(bound));
     }
     if !found.contradicted.is_empty() {
         let _ = writeln!(page, "  with these bounds {} of {all} conform", conforming(&found.after));
     }
-    let unexplained: Vec<_> =
-        paths.iter().zip(&found.after).filter_map(|(path, v)| Some((path, v.sentence()?))).collect();
-    for (path, why) in unexplained.iter().take(UNEXPLAINED) {
-        let _ = writeln!(page, "  no bound explains {}: {}", terminal::shown(path), printable_line(why));
+    let unexplained: Vec<_> = paths
+        .iter()
+        .zip(found.after.iter().zip(&found.explicable))
+        .filter_map(|(path, (verdict, explicable))| Some((path, verdict.sentence()?, *explicable)))
+        .collect();
+    for (path, why, explicable) in unexplained.iter().take(UNEXPLAINED) {
+        let who = if *explicable { "these bounds do not explain" } else { "no bound explains" };
+        let _ = writeln!(page, "  {who} {}: {}", terminal::shown(path), printable_line(why));
     }
     if unexplained.len() > UNEXPLAINED {
         let _ = writeln!(page, "  and {} more", unexplained.len() - UNEXPLAINED);
@@ -184,6 +208,7 @@ fn json(
         bound: bound_text(&bound.clock, bound.bound),
         recordings: bound.recordings,
         count: bound.count,
+        known: bound.known,
         least: bound.observed.map(|(least, _)| seconds(least)),
         greatest: bound.observed.map(|(_, most)| seconds(most)),
         fits: fits_text(bound),

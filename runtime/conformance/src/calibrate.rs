@@ -1,8 +1,7 @@
 //! Which bounds of a model recordings contradict, and which would fit them.
 //!
-//! A recording that departs is asked which bound, or two, would have to go for it to get farthest. Without those of them that it needs to be
-//! without, each recording is followed once more, and the clocks of the bounds are looked at where edges are taken: a bound that fits is the
-//! tightest that none of these values contradicts.
+//! A recording that departs is asked which bound, or two, would have to go for it to get farthest. Of those that it needs to be without, times
+//! are tried until the tightest with which it conforms are found. Without these bounds it is followed once more, and the clocks are looked at.
 
 use hrdsl_ir::{Nanos, Program, ta::ClockOp};
 use hrdsl_results::{ConformanceOutcome, ConformanceVerdict, ModelPlace};
@@ -12,6 +11,7 @@ use crate::{
     ConformanceOptions,
     bounds::{ModelBound, bounds, replaced},
     checker::FollowedModel,
+    fitting::{BoundFitting, Loosening},
     model::{SystemModel, system_models},
 };
 
@@ -29,6 +29,8 @@ pub struct ModelCalibration {
     pub contradicted: Vec<ContradictedBound>,
     /// By recording, what the model with the bounds that fit says.
     pub after: Vec<ConformanceVerdict>,
+    /// By recording, whether it would conform to the model without any of its bounds.
+    pub explicable: Vec<bool>,
 }
 
 /// A bound that recordings contradict.
@@ -43,14 +45,14 @@ pub struct ContradictedBound {
     pub recordings: usize,
     /// How often its clock was looked at.
     pub count: usize,
-    /// The least and the greatest value of its clock, as far as the recordings tell; none: it never came to that.
+    /// How often of these its value is known: a silent edge may leave open when it was taken.
+    pub known: usize,
+    /// The least and the greatest of the known values.
     pub observed: Option<(Nanos, Nanos)>,
     /// What would fit, one comparison or two; none: it would have to go.
     pub fits: Vec<(ClockOp, Nanos)>,
 }
 
-/// Times of bounds that are proposed are whole multiples of this.
-const STEP: Nanos = 10_000_000;
 /// A bound is contradicted if one in so many of the recordings that depart contradict it.
 const RARE: usize = 10;
 
@@ -112,10 +114,10 @@ impl ModelRelaxation<'_> {
                 witnesses.retain(|w| !w.without.iter().any(|bound| rare.contains(&bound)));
                 continue;
             }
-            let contradicted = self.measured(&found, &witnesses);
-            let fits = contradicted.iter().map(|found| found.fits.clone());
-            let fitted: Vec<_> = found.iter().map(|(bound, _)| bound.clone()).zip(fits).collect();
-            let after = self.verdicts(&replaced(self.program, &fitted));
+            let bounds: Vec<ModelBound> = found.iter().map(|(bound, _)| bound.clone()).collect();
+            let fitting = BoundFitting::new(self.program, &all, &bounds, self.end());
+            let loosened = self.fitted(&fitting, &witnesses);
+            let after = self.verdicts(&fitting.applied(&loosened));
             // Nor is one that departs even so a witness of times, unless there is no better one.
             let conforms = |w: &RunWitness| {
                 let verdict = self.runs.iter().zip(&after).find(|(run, _)| std::ptr::eq(*run, w.run));
@@ -123,10 +125,46 @@ impl ModelRelaxation<'_> {
             };
             let better = witnesses.iter().filter(|w| conforms(w)).count();
             if better == 0 || better == count {
-                return ModelCalibration { model: self.model.name.clone(), before, contradicted, after };
+                let contradicted = self.measured(&found, (&fitting, &loosened), &witnesses);
+                let explicable = self.runs.iter().map(|run| self.progress(&all, run).is_none()).collect();
+                let model = self.model.name.clone();
+                return ModelCalibration { model, before, contradicted, after, explicable };
             }
             witnesses.retain(conforms);
         }
+    }
+
+    /// When the last of the recordings ends.
+    fn end(&self) -> Nanos {
+        self.runs.iter().map(|(trace, _)| trace.end).max().unwrap_or(0)
+    }
+
+    /// The tightest bounds with which all of these recordings conform that conform without the bounds they need to be without.
+    fn fitted(&self, fitting: &BoundFitting, witnesses: &[RunWitness]) -> Vec<Loosening> {
+        let mut joint = fitting.without(&[]);
+        let fits = |program: &Program, run: &RecordedRun| self.followed(program, run).is_none();
+        for RunWitness { run, without } in witnesses {
+            if without.is_empty() || fits(&fitting.applied(&joint), run) {
+                continue;
+            }
+            let gone = fitting.without(without);
+            let own = if fits(&fitting.applied(&gone), run) {
+                fitting.tightened(gone, &|program| fits(program, run))
+            } else {
+                // It gets farther without them, and departs later by something else.
+                let farthest = self.followed(&fitting.applied(&gone), run);
+                fitting.tightened(gone, &|program| !is_farther(farthest, self.followed(program, run)))
+            };
+            joint = BoundFitting::looser(&joint, &own);
+        }
+        // One recording may have needed what another one has loosened in another way.
+        let whole = fitting.applied(&joint);
+        let explained: Vec<&RecordedRun> =
+            witnesses.iter().map(|w| w.run).filter(|run| fits(&whole, run)).collect();
+        if explained.len() < witnesses.len() {
+            return joint;
+        }
+        fitting.tightened(joint, &|program| explained.iter().all(|run| fits(program, run)))
     }
 
     /// The recording with those of these bounds without which it gets as far as without all of them.
@@ -157,9 +195,12 @@ impl ModelRelaxation<'_> {
         replaced(self.program, &all)
     }
 
-    fn progress(&self, gone: &[ModelBound], (trace, ended): &RecordedRun) -> RunProgress {
-        let program = self.without(gone);
-        let mut follow = FollowedModel::new(&program, self.model.clone(), self.options);
+    fn progress(&self, gone: &[ModelBound], run: &RecordedRun) -> RunProgress {
+        self.followed(&self.without(gone), run)
+    }
+
+    fn followed(&self, program: &Program, (trace, ended): &RecordedRun) -> RunProgress {
+        let mut follow = FollowedModel::new(program, self.model.clone(), self.options);
         shown(trace, &mut follow);
         let observed = follow.observed;
         let verdict = follow.finish(trace.end, *ended);
@@ -193,7 +234,13 @@ impl ModelRelaxation<'_> {
                 });
                 self.best(run, gone, reached, pairs)
             });
-            let Some(chosen) = chosen else { return };
+            let Some(chosen) = chosen else {
+                // Several that are needed at once and help none alone.
+                if !left.is_empty() && self.progress(all, run).is_none() {
+                    gone.extend(left.into_iter().cloned());
+                }
+                return;
+            };
             gone.extend(chosen);
         }
     }
@@ -219,8 +266,14 @@ impl ModelRelaxation<'_> {
         chosen
     }
 
-    /// The values of the clocks, where they were looked at, each recording without the bounds that it needs to be without.
-    fn measured(&self, found: &[(ModelBound, usize)], witnesses: &[RunWitness]) -> Vec<ContradictedBound> {
+    /// The bounds that are loosened, with the values of their clocks where they were looked at. Each recording is followed without the
+    /// bounds that it needs to be without: what fits would tell times that nobody saw.
+    fn measured(
+        &self,
+        found: &[(ModelBound, usize)],
+        (fitting, loosened): (&BoundFitting, &[Loosening]),
+        witnesses: &[RunWitness],
+    ) -> Vec<ContradictedBound> {
         let watched = || found.iter().map(|(bound, _)| bound.watched(self.program, &self.model)).collect();
         let mut samples: Vec<Vec<(Nanos, Option<Nanos>)>> = vec![Vec::new(); found.len()];
         for witness in witnesses {
@@ -233,40 +286,32 @@ impl ModelRelaxation<'_> {
                 }
             }
         }
-        found.iter().zip(&samples).map(|(bound, samples)| self.contradicted(bound, samples)).collect()
+        let all = found.iter().zip(&samples).enumerate();
+        let contradicted = all.filter(|(at, _)| !fitting.is_kept(*at, loosened));
+        contradicted
+            .map(|(at, (bound, samples))| {
+                self.contradicted(bound, samples, fitting.comparisons(at, loosened))
+            })
+            .collect()
     }
 
     fn contradicted(
         &self,
         (bound, recordings): &(ModelBound, usize),
         samples: &[(Nanos, Option<Nanos>)],
+        fits: Vec<(ClockOp, Nanos)>,
     ) -> ContradictedBound {
         let (name, origin) = bound.site(self.program);
-        // Of a value that is known to lie between two times only, a bound need not contradict the better one.
-        let least = samples.iter().filter_map(|(_, most)| *most).min();
-        let most = samples.iter().map(|(least, _)| *least).max();
-        let observed = least.zip(most).map(|(a, b)| (a.min(b), a.max(b)));
-        let below = |time: Nanos| time.div_euclid(STEP) * STEP;
-        let above = |time: Nanos| below(time + STEP - 1);
-        let fits = match (bound.op, observed) {
-            (_, None) => Vec::new(),
-            (ClockOp::Ge | ClockOp::Gt, Some((least, _))) => {
-                vec![(ClockOp::Ge, below(least).min(bound.time))]
-            }
-            (ClockOp::Le | ClockOp::Lt, Some((_, most))) => {
-                vec![(ClockOp::Le, above(most).max(bound.time))]
-            }
-            (ClockOp::Eq, Some((least, most))) => {
-                vec![(ClockOp::Ge, below(least)), (ClockOp::Le, above(most))]
-            }
-        };
+        let known: Vec<Nanos> =
+            samples.iter().filter(|(least, most)| *most == Some(*least)).map(|(least, _)| *least).collect();
         ContradictedBound {
             place: ModelPlace::new(name, origin),
             clock: bound.clock_name(self.program),
             bound: (bound.op, bound.time),
             recordings: *recordings,
             count: samples.len(),
-            observed,
+            known: known.len(),
+            observed: known.iter().min().copied().zip(known.iter().max().copied()),
             fits,
         }
     }

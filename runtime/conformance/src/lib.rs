@@ -18,6 +18,7 @@ mod allowed;
 mod bounds;
 mod calibrate;
 mod checker;
+mod fitting;
 mod model;
 mod sharing;
 mod states;

@@ -102,3 +102,59 @@ fn what_no_bound_explains_is_left_and_is_no_witness_of_times() {
     let outcomes: Vec<_> = found.after.iter().map(|v| v.outcome).collect();
     assert_eq!(outcomes, [ConformanceOutcome::Departs, ConformanceOutcome::Conforms]);
 }
+
+/// Fetches without a sound for 2 s to 5 s, and holds for up to 2 s.
+fn counter() -> Program {
+    scenario(
+        "automaton Waiter plays sys { clock x\n init location idle\n location fetching { invariant x <= 5 s }\n\
+         location holding { invariant x <= 2 s }\n idle -> fetching on ask do x = 0\n\
+         fetching -> holding when x >= 2 s do x = 0\n holding -> idle do give }",
+    )
+}
+
+/// The bounds that fit, and with them how many of the recordings conform.
+fn fits(program: &Program, runs: &[&[(&str, f64)]]) -> (Vec<(ClockOp, f64)>, usize) {
+    let found = of(program, runs);
+    let fits = found.contradicted.iter().flat_map(|bound| bound.fits.clone());
+    (fits.map(|(op, time)| (op, time as f64 / SECOND as f64)).collect(), conforming(&found))
+}
+
+#[test]
+fn what_a_silent_edge_hides_is_bounded_as_tightly_as_all_recordings_let_it() {
+    let late: &[(&str, f64)] = &[("ask", 1.0), ("give", 10.5)];
+    let again: &[(&str, f64)] = &[("ask", 1.0), ("ask", 11.0), ("give", 13.0)];
+    let later_again: &[(&str, f64)] = &[("ask", 1.0), ("ask", 8.5), ("give", 11.0)];
+    let latest: &[(&str, f64)] = &[("ask", 1.0), ("give", 13.0)];
+    let late_by = |time| (vec![(ClockOp::Le, time)], 1);
+    let counter = counter();
+    assert_eq!(fits(&counter, &[late]), late_by(7.5));
+    assert_eq!(fits(&counter, &[again]), late_by(10.0));
+    assert_eq!(fits(&counter, &[later_again]), late_by(8.0));
+    assert_eq!(fits(&counter, &[latest]), late_by(10.0));
+    assert_eq!(fits(&counter, &[late, again, later_again, latest]), (vec![(ClockOp::Le, 10.0)], 4));
+    let early: &[(&str, f64)] = &[("ask", 1.0), ("give", 1.0)];
+    assert_eq!(fits(&counter, &[early, late]), (vec![(ClockOp::Le, 7.5), (ClockOp::Ge, 0.0)], 2));
+    let found = of(&counter, &[late, again]);
+    let bound = &found.contradicted[0];
+    assert_eq!((bound.known, bound.observed), (0, None), "the silent edge hides when it was taken");
+}
+
+#[test]
+fn bounds_that_are_of_no_use_alone_are_loosened_together() {
+    let program = scenario(
+        "automaton Relay plays sys { clock x, y\n init location a { invariant x <= 1 s }\n\
+         location b { invariant y <= 1 s }\n location c\n a -> b when y <= 1 s\n b -> c when x <= 1 s do give }",
+    );
+    let found = of(&program, &[&[("give", 3.0)]]);
+    assert_eq!(conforming(&found), 1, "{found:?}");
+    assert_eq!(found.explicable, [true]);
+}
+
+#[test]
+fn times_that_are_finer_than_hundredths_get_bounds_as_fine() {
+    let program = scenario(
+        "automaton Quick plays sys { clock x\n init location idle\n location busy { invariant x <= 5 ms }\n\
+         idle -> busy on ask do x = 0\n busy -> idle do give }",
+    );
+    assert_eq!(fits(&program, &[&[("ask", 1.0), ("give", 1.0072)]]), (vec![(ClockOp::Le, 0.008)], 1));
+}
