@@ -15,7 +15,7 @@ pub(crate) type Loosening = Option<i64>;
 
 /// One side of a bound: an equality has two.
 #[derive(Clone, Copy, Debug)]
-struct BoundSide {
+struct LoosenedSide {
     /// Which of the bounds.
     bound: usize,
     is_upper: bool,
@@ -28,7 +28,7 @@ struct BoundSide {
 pub(crate) struct BoundFitting<'a> {
     program: &'a Program,
     bounds: &'a [ModelBound],
-    sides: Vec<BoundSide>,
+    sides: Vec<LoosenedSide>,
     step: Nanos,
 }
 
@@ -52,7 +52,7 @@ impl<'a> BoundFitting<'a> {
                 ClockOp::Eq => (true, true),
                 ClockOp::Ge | ClockOp::Gt => (true, false),
             };
-            let side = |is_upper, distance: Nanos| BoundSide {
+            let side = |is_upper, distance: Nanos| LoosenedSide {
                 bound: number,
                 is_upper,
                 time: bound.time,
@@ -69,7 +69,7 @@ impl<'a> BoundFitting<'a> {
     }
 
     /// The time of a side that is loosened by so many steps.
-    fn time(&self, side: &BoundSide, steps: i64) -> Nanos {
+    fn time(&self, side: &LoosenedSide, steps: i64) -> Nanos {
         let below = side.time.div_euclid(self.step) * self.step;
         let above = (side.time + self.step - 1).div_euclid(self.step) * self.step;
         match (steps, side.is_upper) {
@@ -92,7 +92,7 @@ impl<'a> BoundFitting<'a> {
             return own.into_iter().collect();
         }
         let of = self.sides.iter().zip(loosened).filter(|(side, _)| side.bound == bound);
-        let comparison = |(side, steps): (&BoundSide, &Loosening)| {
+        let comparison = |(side, steps): (&LoosenedSide, &Loosening)| {
             let op = if side.is_upper { ClockOp::Le } else { ClockOp::Ge };
             steps.map(|steps| (op, self.time(side, steps)))
         };
@@ -108,7 +108,7 @@ impl<'a> BoundFitting<'a> {
 
     /// These bounds gone, and all others as they stand.
     pub(crate) fn without(&self, gone: &[ModelBound]) -> Vec<Loosening> {
-        let is_gone = |side: &BoundSide| self.bounds.get(side.bound).is_some_and(|b| gone.contains(b));
+        let is_gone = |side: &LoosenedSide| self.bounds.get(side.bound).is_some_and(|b| gone.contains(b));
         self.sides.iter().map(|side| (!is_gone(side)).then_some(0)).collect()
     }
 
