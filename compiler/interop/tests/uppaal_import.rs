@@ -218,6 +218,18 @@ fn statements_become_statements() {
 }
 
 #[test]
+fn a_deadlock_along_runs_is_left_out() {
+    let asked = "A<> deadlock\nP.a --> deadlock\nE<> deadlock";
+    let imported = from_text(&model("", "", "", &[], "system P;"), asked).unwrap();
+    compiles(&imported.text);
+    assert!(imported.text.contains("E<> deadlock"), "{}", imported.text);
+    let left: Vec<u32> =
+        imported.notes.iter().filter(|n| n.message.contains("not along runs")).map(|n| n.line).collect();
+    assert_eq!(left, [1, 2], "{:?}", imported.notes);
+    assert!(imported.text.contains("//   A<> deadlock"), "{}", imported.text);
+}
+
+#[test]
 fn names_that_mean_something_else_are_changed() {
     let text = model(
         "int actor, when, P2; clock after;",
@@ -362,12 +374,12 @@ fn queries_that_cannot_be_asked_are_left_out() {
     let imported = from_text(&text, asked).unwrap();
     is_readable(&imported.text);
     let queries: Vec<&str> = imported.text.lines().filter(|l| l.starts_with("query")).collect();
-    assert_eq!(queries.len(), 6, "{}", imported.text);
+    assert_eq!(queries.len(), 5, "{}", imported.text);
     assert!(imported.text.contains("A<> not P.a && n == 0"), "{}", imported.text);
     assert!(imported.text.contains("sup { P.a }: x, n"), "{}", imported.text);
     let left_out: Vec<u32> =
         imported.notes.iter().filter(|n| n.severity == NoteSeverity::LeftOut).map(|n| n.line).collect();
-    assert_eq!(left_out, [2, 3, 9, 10]);
+    assert_eq!(left_out, [2, 3, 6, 9, 10]);
     compiles(&imported.text);
 }
 
