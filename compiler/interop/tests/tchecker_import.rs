@@ -73,6 +73,9 @@ fn faults_are_told_with_their_places() {
         "system:s\nevent:e\nprocess:P\nsync:P@e",
         "system:s\nwhat:e",
         "system:s\nevent:e\nevent:e",
+        "# a comment\nsystem:s",
+        "system:s\nclock:1:x\nprocess:P\nlocation:P:a{initial: : invariant: x<=99999999999999}",
+        "system:s\nclock:1:x\nevent:e\nprocess:P\nlocation:P:a{initial:}\nedge:P:a:a:e{do: x=-1}",
         "system:s\nclock:2:x\nprocess:P\nlocation:P:a{initial: : invariant: x[2]<1}",
     ];
     let told: Vec<String> = wrong

@@ -329,6 +329,10 @@ fn each_branch_of_a_branchpoint_may_be_taken() {
             "<transition><source ref=\"c\"/><target ref=\"{to}\"/>{labels}<label kind=\"probability\">{weight}</label></transition>"
         )
     };
+        (
+            model("", "", "clock c;", &[("guard", "c <= 2147483647")], "system P;"),
+            "the time 2147483647 is too long: one unit of time is a second",
+        ),
     let branches =
         branch("a", "1", "<label kind=\"assignment\">n = n + 1, x = 0</label>") + &branch("b", "9", "");
     let text = branching("", "").replace("</template>", &format!("{branches}</template>"));

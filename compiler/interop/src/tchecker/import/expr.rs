@@ -5,6 +5,7 @@ use super::{
     names::TcheckerScenarioNames,
     parse::TcheckerFault,
 };
+use crate::exchange::time::too_long;
 
 /// How tightly the text around an expression binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -103,7 +104,10 @@ impl ScenarioExprWriter<'_> {
     /// A number of TChecker's units of time: each is a second.
     pub fn time(&self, e: &TcheckerExpr) -> ScenarioTextResult {
         match constant(e) {
-            Some(n) => Ok(format!("{n} s")),
+            Some(n) => match too_long(n) {
+                Some(message) => fault(e, message),
+                None => Ok(format!("{n} s")),
+            },
             None => Ok(format!("{} * 1 s", self.int(e, SurroundingPrecedence::Product)?)),
         }
     }
@@ -121,7 +125,11 @@ impl ScenarioExprWriter<'_> {
                 return Ok(format!("{y} + {}", self.time(left)?));
             }
         }
-        if constant(e) == Some(0) { Ok("0".to_owned()) } else { self.time(e) }
+        match constant(e) {
+            Some(0) => Ok("0".to_owned()),
+            Some(n) if n < 0 => fault(e, format!("a clock is set to a number of at least 0, not to {n}")),
+            Some(_) | None => self.time(e),
+        }
     }
 
     pub fn integer(&self, e: &TcheckerExpr) -> ScenarioTextResult {
