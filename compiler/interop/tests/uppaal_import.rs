@@ -217,6 +217,33 @@ fn statements_become_statements() {
     compiles(&imported.text);
 }
 
+/// After flattening, the fields of a record are variables of their own.
+#[test]
+fn one_field_may_change_while_another_is_written() {
+    let global = "typedef struct { int u; int v; } pair_t; pair_t p = { 1, 2 }; pair_t q[2];";
+    let labels = [("assignment", "p.u = p.v--, q[1].u = q[0].v++")];
+    let imported = from_text(&model(global, "", "", &labels, "system P;"), "").unwrap();
+    assert!(imported.text.contains("p_u = p_v; p_v -= 1; q_u[1] = q_v[0]; q_v[0] += 1"), "{}", imported.text);
+    compiles(&imported.text);
+    for same in ["p.u = p.u--", "q[1].u = q[0].u++", "p.u = p.v-- + p.v"] {
+        let errors = from_text(&model(global, "", "", &[("assignment", same)], "system P;"), "").unwrap_err();
+        let why = "is changed within this statement and read elsewhere in it";
+        assert!(errors.iter().any(|e| e.message.contains(why)), "{same}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_sum_that_takes_its_comparison_in_is_warned_of() {
+    let warned = |asked: &str| {
+        let imported = from_text(&model("int a[3];", "", "", &[], "system P;"), asked).unwrap();
+        compiles(&imported.text);
+        imported.notes.iter().filter(|n| n.message.contains("`sum` goes as far as it can")).count()
+    };
+    assert_eq!(warned("A[] sum(i : int[0,2]) a[i] <= 1"), 1);
+    assert_eq!(warned("A[] (sum(i : int[0,2]) a[i]) <= 1"), 0);
+    assert_eq!(warned("A[] (sum(i : int[0,2]) (a[i] > 0)) <= 1"), 0);
+}
+
 #[test]
 fn a_deadlock_along_runs_is_left_out() {
     let asked = "A<> deadlock\nP.a --> deadlock\nE<> deadlock";
