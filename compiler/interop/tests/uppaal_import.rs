@@ -268,7 +268,11 @@ fn names_that_mean_something_else_are_changed() {
     let imported = from_text(&text, "").unwrap();
     is_readable(&imported.text);
     assert!(imported.text.contains("when after_ > 1 s && when_3 < actor_"), "{}", imported.text);
-    assert!(imported.notes.iter().any(|n| n.message == "`actor` is called `actor_`"), "{:?}", imported.notes);
+    assert!(
+        imported.notes.iter().any(|n| n.message == "`actor` is called `actor_`: the language has that word"),
+        "{:?}",
+        imported.notes
+    );
 }
 
 /// What is refused names what is in the way, and its place.
@@ -286,7 +290,8 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
         ("int n = 1 << 40;", "bits are shifted by 0 to 31 places"),
         ("int n = m;", "there is no `m`"),
         ("int[0,3] n = 4;", "4 is not in the range 0..3"),
-        ("int f() { return f(); }", "there is no function `f`"),
+        ("int f() { return f(); }", "the function `f` calls itself, which none may: write a loop"),
+        ("void f() { f(); }", "the function `f` calls itself"),
         ("clock x; int f() { x = 0; return 1; } int n = f();", "`f` sets clocks"),
         ("int a[1000];", "256"),
         ("void f() { int n; n = n++ + 1; }", "`n` is changed within this statement and read elsewhere in it"),
@@ -324,6 +329,10 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
             ),
             "urgent",
         ),
+        (
+            model("", "", "clock c;", &[("guard", "c <= 2147483647")], "system P;"),
+            "the time 2147483647 is too long: one unit of time is a second",
+        ),
         (model("", "", "", &[], "system P;").replace("<init ref=\"a\"/>", ""), "no initial location"),
         (branching("", ""), "no branch leads out of this branchpoint"),
         (branching("c", "<target ref=\"c\"/>"), "not to another branchpoint"),
@@ -356,10 +365,6 @@ fn each_branch_of_a_branchpoint_may_be_taken() {
             "<transition><source ref=\"c\"/><target ref=\"{to}\"/>{labels}<label kind=\"probability\">{weight}</label></transition>"
         )
     };
-        (
-            model("", "", "clock c;", &[("guard", "c <= 2147483647")], "system P;"),
-            "the time 2147483647 is too long: one unit of time is a second",
-        ),
     let branches =
         branch("a", "1", "<label kind=\"assignment\">n = n + 1, x = 0</label>") + &branch("b", "9", "");
     let text = branching("", "").replace("</template>", &format!("{branches}</template>"));
