@@ -285,6 +285,38 @@ fn a_counter_that_nobody_reads_has_an_answer_of_its_own() {
 }
 
 #[test]
+fn a_run_to_a_fault_of_the_model_ends_with_it() {
+    let counts = "scenario counts\nautomaton A {\n clock x\n var n: 0..3 = 0\n init location a { invariant x <= 9 s }\n a -> a do n += 1\n}\n\
+        network net = A\nquery q of net = E<> A.n == 4\n";
+    let folder = folder(&[("counts.hri", counts)]);
+    let out = hrdsl_in(folder.path(), "prove counts.hri --trace");
+    expect_code(&out, 1);
+    let text = String::from_utf8(out.stdout).unwrap();
+    assert!(text.contains("0 s  what would happen next is the fault"), "{text}");
+    let out = hrdsl_in(folder.path(), "prove counts.hri --json");
+    let all: Value = serde_json::from_slice(&out.stdout).unwrap();
+    let run = &row(&all, "queries", "q")["run"];
+    assert_eq!(
+        (run["steps"].as_array().unwrap().len(), &run["ending"]),
+        (3, &Value::from("fault")),
+        "{run:#}"
+    );
+
+    std::fs::write(folder.path().join("run.json"), &out.stdout).unwrap();
+    let out = hrdsl_in(folder.path(), "prove counts.hri --follow run.json");
+    expect_code(&out, 0);
+    let text = String::from_utf8(out.stdout).unwrap();
+    assert!(text.contains("a run of the network net (3 steps)\n  and then a fault of the model: "), "{text}");
+    assert!(text.contains("`n` becomes 4, outside 0..3"), "{text}");
+
+    std::fs::write(folder.path().join("counts.hri"), counts.replace("0..3 = 0", "0..4 = 0")).unwrap();
+    let out = hrdsl_in(folder.path(), "prove counts.hri --follow run.json");
+    expect_code(&out, 3);
+    let text = String::from_utf8(out.stdout).unwrap();
+    assert!(text.contains("it was recorded that a fault of the model is next, and none is"), "{text}");
+}
+
+#[test]
 fn a_search_reaches_what_it_is_asked_for_and_keeps_few_tests() {
     let folder = folder(&[("door.hri", SCENARIO)]);
     let out = hrdsl_in(folder.path(), "gen door.hri --json");

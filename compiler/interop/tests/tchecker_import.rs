@@ -73,6 +73,9 @@ fn faults_are_told_with_their_places() {
         "system:s\nevent:e\nprocess:P\nsync:P@e",
         "system:s\nwhat:e",
         "system:s\nevent:e\nevent:e",
+        "# a comment\nsystem:s",
+        "system:s\nclock:1:x\nprocess:P\nlocation:P:a{initial: : invariant: x<=99999999999999}",
+        "system:s\nclock:1:x\nevent:e\nprocess:P\nlocation:P:a{initial:}\nedge:P:a:a:e{do: x=-1}",
         "system:s\nclock:2:x\nprocess:P\nlocation:P:a{initial: : invariant: x[2]<1}",
     ];
     let told: Vec<String> = wrong
@@ -105,6 +108,22 @@ fn broken_files_are_survived() {
         "(".repeat(100_000)
     );
     assert!(of(&deep).is_err());
+}
+
+/// An edge gets no guard for what its own guard shows.
+#[test]
+fn a_guard_that_keeps_the_range_is_enough() {
+    let edge = |provided: &str, body: &str| {
+        let text = format!(
+            "system:s\nint:1:0:3:0:n\nevent:e\nprocess:P\nlocation:P:a{{initial:}}\nedge:P:a:a:e{{provided: {provided} : do: {body}}}"
+        );
+        let text = of(&text).unwrap().text;
+        text.lines().find_map(|l| l.trim().strip_prefix("a -> a when ").map(str::to_owned)).unwrap()
+    };
+    assert_eq!(edge("n<3", "n=n+1"), "n < 3 do n = n + 1 // e");
+    assert_eq!(edge("0<n", "n=n-1"), "0 < n do n = n - 1 // e");
+    assert_eq!(edge("n<=3", "n=n+1"), "n <= 3 && n + 1 <= 3 do n = n + 1 // e");
+    assert_eq!(edge("n<3", "n=n+1; n=n+1"), "n < 3 && n + 1 + 1 <= 3 do n = n + 1; n = n + 1 // e");
 }
 
 /// The order of the declarations does not matter, but that the system is the first.

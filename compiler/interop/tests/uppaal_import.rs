@@ -217,6 +217,45 @@ fn statements_become_statements() {
     compiles(&imported.text);
 }
 
+/// After flattening, the fields of a record are variables of their own.
+#[test]
+fn one_field_may_change_while_another_is_written() {
+    let global = "typedef struct { int u; int v; } pair_t; pair_t p = { 1, 2 }; pair_t q[2];";
+    let labels = [("assignment", "p.u = p.v--, q[1].u = q[0].v++")];
+    let imported = from_text(&model(global, "", "", &labels, "system P;"), "").unwrap();
+    assert!(imported.text.contains("p_u = p_v; p_v -= 1; q_u[1] = q_v[0]; q_v[0] += 1"), "{}", imported.text);
+    compiles(&imported.text);
+    for same in ["p.u = p.u--", "q[1].u = q[0].u++", "p.u = p.v-- + p.v"] {
+        let errors = from_text(&model(global, "", "", &[("assignment", same)], "system P;"), "").unwrap_err();
+        let why = "is changed within this statement and read elsewhere in it";
+        assert!(errors.iter().any(|e| e.message.contains(why)), "{same}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_sum_that_takes_its_comparison_in_is_warned_of() {
+    let warned = |asked: &str| {
+        let imported = from_text(&model("int a[3];", "", "", &[], "system P;"), asked).unwrap();
+        compiles(&imported.text);
+        imported.notes.iter().filter(|n| n.message.contains("`sum` goes as far as it can")).count()
+    };
+    assert_eq!(warned("A[] sum(i : int[0,2]) a[i] <= 1"), 1);
+    assert_eq!(warned("A[] (sum(i : int[0,2]) a[i]) <= 1"), 0);
+    assert_eq!(warned("A[] (sum(i : int[0,2]) (a[i] > 0)) <= 1"), 0);
+}
+
+#[test]
+fn a_deadlock_along_runs_is_left_out() {
+    let asked = "A<> deadlock\nP.a --> deadlock\nE<> deadlock";
+    let imported = from_text(&model("", "", "", &[], "system P;"), asked).unwrap();
+    compiles(&imported.text);
+    assert!(imported.text.contains("E<> deadlock"), "{}", imported.text);
+    let left: Vec<u32> =
+        imported.notes.iter().filter(|n| n.message.contains("not along runs")).map(|n| n.line).collect();
+    assert_eq!(left, [1, 2], "{:?}", imported.notes);
+    assert!(imported.text.contains("//   A<> deadlock"), "{}", imported.text);
+}
+
 #[test]
 fn names_that_mean_something_else_are_changed() {
     let text = model(
@@ -229,7 +268,11 @@ fn names_that_mean_something_else_are_changed() {
     let imported = from_text(&text, "").unwrap();
     is_readable(&imported.text);
     assert!(imported.text.contains("when after_ > 1 s && when_3 < actor_"), "{}", imported.text);
-    assert!(imported.notes.iter().any(|n| n.message == "`actor` is called `actor_`"), "{:?}", imported.notes);
+    assert!(
+        imported.notes.iter().any(|n| n.message == "`actor` is called `actor_`: the language has that word"),
+        "{:?}",
+        imported.notes
+    );
 }
 
 /// What is refused names what is in the way, and its place.
@@ -247,7 +290,8 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
         ("int n = 1 << 40;", "bits are shifted by 0 to 31 places"),
         ("int n = m;", "there is no `m`"),
         ("int[0,3] n = 4;", "4 is not in the range 0..3"),
-        ("int f() { return f(); }", "there is no function `f`"),
+        ("int f() { return f(); }", "the function `f` calls itself, which none may: write a loop"),
+        ("void f() { f(); }", "the function `f` calls itself"),
         ("clock x; int f() { x = 0; return 1; } int n = f();", "`f` sets clocks"),
         ("int a[1000];", "256"),
         ("void f() { int n; n = n++ + 1; }", "`n` is changed within this statement and read elsewhere in it"),
@@ -284,6 +328,10 @@ fn what_a_scenario_cannot_say_is_refused_by_name() {
                 "system P;",
             ),
             "urgent",
+        ),
+        (
+            model("", "", "clock c;", &[("guard", "c <= 2147483647")], "system P;"),
+            "the time 2147483647 is too long: one unit of time is a second",
         ),
         (model("", "", "", &[], "system P;").replace("<init ref=\"a\"/>", ""), "no initial location"),
         (branching("", ""), "no branch leads out of this branchpoint"),
@@ -362,12 +410,12 @@ fn queries_that_cannot_be_asked_are_left_out() {
     let imported = from_text(&text, asked).unwrap();
     is_readable(&imported.text);
     let queries: Vec<&str> = imported.text.lines().filter(|l| l.starts_with("query")).collect();
-    assert_eq!(queries.len(), 6, "{}", imported.text);
+    assert_eq!(queries.len(), 5, "{}", imported.text);
     assert!(imported.text.contains("A<> not P.a && n == 0"), "{}", imported.text);
     assert!(imported.text.contains("sup { P.a }: x, n"), "{}", imported.text);
     let left_out: Vec<u32> =
         imported.notes.iter().filter(|n| n.severity == NoteSeverity::LeftOut).map(|n| n.line).collect();
-    assert_eq!(left_out, [2, 3, 9, 10]);
+    assert_eq!(left_out, [2, 3, 6, 9, 10]);
     compiles(&imported.text);
 }
 

@@ -53,7 +53,7 @@ fn walked(p: &Program, seed: u64) -> Option<(usize, bool)> {
     for with_times in [true, false] {
         let record = recorded(&trace, with_times);
         match follow(&session.walk, &record).unwrap() {
-            FollowOutcome::Run => {}
+            FollowOutcome::Run | FollowOutcome::Fault(_) => {}
             FollowOutcome::Leaves(left) => {
                 panic!("seed {seed}: step {}: {}\n{}", left.step, left.why, trace.text())
             }
@@ -75,7 +75,7 @@ fn walked(p: &Program, seed: u64) -> Option<(usize, bool)> {
             Some((steps, true))
         }
         // Another transition of the same edges lasts longer, if the interpreter believes it.
-        FollowOutcome::Run => {
+        FollowOutcome::Run | FollowOutcome::Fault(_) => {
             assert!(session.replay(&record).unwrap().is_none(), "seed {seed}");
             let run = session.run().unwrap_or_else(|e| panic!("seed {seed}: {e}"));
             assert_eq!(run.steps[steps - 1].time, (late + 1) * run.ticks, "seed {seed}");

@@ -22,6 +22,9 @@ struct FollowedRun {
     network: String,
     steps: usize,
     is_run: bool,
+    /// The fault of the model that it leads to, if it was recorded to lead to one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fault: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     note: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -69,7 +72,7 @@ pub fn run(
     for recorded in recorded_run::read(trace, program, &args.network)? {
         let network = &program.networks[recorded.network];
         let followed_run = NetworkWalk::new(program, network).and_then(|walk| leaving(&walk, &recorded.run));
-        let (departure, renumbered) = match followed_run {
+        let (outcome, renumbered) = match followed_run {
             Ok(found) => found,
             Err(ModelError::Question(what)) => return Err(format!("{}: {what}", terminal::shown(trace))),
             Err(fault) => {
@@ -77,13 +80,18 @@ pub fn run(
                 return Ok(CommandExit::Errors);
             }
         };
-        let leaves = departure.map(|d| told(*d, sources));
+        let (leaves, fault) = match outcome {
+            FollowOutcome::Run => (None, None),
+            FollowOutcome::Fault(fault) => (None, Some(fault.to_string())),
+            FollowOutcome::Leaves(departure) => (Some(told(*departure, sources)), None),
+        };
         let note = recorded.note.or_else(|| renumbered.then(|| RENUMBERED.to_owned()));
         followed.push(FollowedRun {
             name: recorded.name,
             network: network.name.clone(),
             steps: recorded.run.steps.len(),
             is_run: leaves.is_none(),
+            fault,
             note,
             leaves,
         });
@@ -101,19 +109,20 @@ pub fn run(
 
 const RENUMBERED: &str = "its edges have other numbers here: only what they do is compared";
 
-/// Where a run leaves the network, if it does; and whether that is so only when the numbers of its edges are not looked at, which change
+/// Whether a run is one of the network, or where it leaves it; and whether that is so only when the numbers of its edges are not looked at, which change
 /// where an edge is added.
-fn leaving(
-    walk: &NetworkWalk<'_>,
-    run: &RecordedWalk,
-) -> Result<(Option<Box<FollowDeparture>>, bool), ModelError> {
-    let FollowOutcome::Leaves(first) = follow(walk, run)? else { return Ok((None, false)) };
+fn leaving(walk: &NetworkWalk<'_>, run: &RecordedWalk) -> Result<(FollowOutcome, bool), ModelError> {
+    let first = match follow(walk, run)? {
+        FollowOutcome::Leaves(first) => first,
+        is_run @ (FollowOutcome::Run | FollowOutcome::Fault(_)) => return Ok((is_run, false)),
+    };
     let mut plain = run.clone();
     plain.steps.iter_mut().flat_map(|s| &mut s.parts).for_each(|p| p.edge = None);
     match follow(walk, &plain)? {
-        FollowOutcome::Run => Ok((None, true)),
-        FollowOutcome::Leaves(later) if later.step > first.step => Ok((Some(later), true)),
-        FollowOutcome::Leaves(_) => Ok((Some(first), false)),
+        FollowOutcome::Leaves(later) if later.step <= first.step => Ok((FollowOutcome::Leaves(first), false)),
+        other @ (FollowOutcome::Run | FollowOutcome::Fault(_) | FollowOutcome::Leaves(_)) => {
+            Ok((other, true))
+        }
     }
 }
 
@@ -136,7 +145,10 @@ fn human(run: &FollowedRun) -> String {
     let of = if run.name.is_empty() { String::new() } else { format!("{}: ", run.name) };
     let steps = format!("{} {}", run.steps, if run.steps == 1 { "step" } else { "steps" });
     let mut out = match &run.leaves {
-        None => format!("{of}a run of the network {} ({steps})\n", run.network),
+        None => {
+            let fault = run.fault.iter().map(|f| format!("  and then a fault of the model: {f}\n"));
+            format!("{of}a run of the network {} ({steps})\n{}", run.network, fault.collect::<String>())
+        }
         Some(left) if left.step > run.steps => {
             format!("{of}leaves the network {} at its end, after {steps}: {}\n", run.network, left.why)
         }

@@ -6,6 +6,19 @@ use hrdsl_ir::{
     value::SECOND,
 };
 
+/// The longest time of a scenario, in seconds: one of their units is one in what is imported.
+const LONGEST: u64 = 1_000_000_000;
+
+/// What is wrong with an imported number of seconds, and what to do about it, if it is too long for a scenario.
+pub(crate) fn too_long(seconds: i64) -> Option<String> {
+    (seconds.unsigned_abs() > LONGEST).then(|| {
+        format!(
+            "the time {seconds} is too long: one unit of time is a second in a scenario, whose times are at most {LONGEST} s; \
+             write a smaller number, or divide all times of the model by the same one"
+        )
+    })
+}
+
 /// The greatest unit in which all time constants are whole; a second if there are none.
 pub(crate) fn unit(program: &Program, automata: &[&Automaton]) -> Nanos {
     let mut all = 0;

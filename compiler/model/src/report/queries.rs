@@ -33,6 +33,16 @@ pub(crate) fn state_value(what: &str, span: Span) -> Diagnostic {
 }
 
 /// HR0520
+pub(crate) fn deadlock_along_run(span: Span) -> Diagnostic {
+    let help = "ask `E<> deadlock` or `A[] not deadlock`; along runs, name the locations in which they end";
+    bad_query(
+        span,
+        "`deadlock` is asked for in `E<>`, `A[]`, `sup` and `inf`, not in `A<>`, `E[]` and `-->`",
+        help,
+    )
+}
+
+/// HR0520
 pub(crate) fn clock_sum(span: Span) -> Diagnostic {
     let help = "write `x - y < 3 s`, or give the model a clock that counts this";
     bad_query(span, "a comparison has one clock on each side at most", help)

@@ -392,7 +392,7 @@ impl QueryEvaluator<'_> {
                 let steps = count(run.steps.len() - from, "transition");
                 format!("a run goes round for ever through {at}, by {steps}{}", shown.pace.told())
             }
-            RunEnding::Reached => format!("a run shows it in {at}"),
+            RunEnding::Reached | RunEnding::Fault => format!("a run shows it in {at}"),
         }
     }
 

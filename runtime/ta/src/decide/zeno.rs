@@ -47,7 +47,9 @@ impl LoopPace {
 pub(crate) fn pace(graph: &ZoneGraph, run: &MaximalRun) -> Result<LoopPace, SearchError> {
     match run.ending {
         RunEnding::Again(_) => {}
-        RunEnding::Reached | RunEnding::Stuck | RunEnding::Waits => return Ok(LoopPace::Free),
+        RunEnding::Reached | RunEnding::Stuck | RunEnding::Waits | RunEnding::Fault => {
+            return Ok(LoopPace::Free);
+        }
     }
     if times(graph, &run.stops, ScheduleOptions::default())?.is_some_and(|t| !t.can_last(run.from)) {
         return Ok(LoopPace::Still);

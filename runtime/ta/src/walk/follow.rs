@@ -61,6 +61,8 @@ pub enum RecordedTime {
 pub enum FollowOutcome {
     /// It is a run of the network.
     Run,
+    /// It is a run of the network, and what is recorded of its end is so: this fault of the model is next.
+    Fault(Box<ModelError>),
     Leaves(Box<FollowDeparture>),
 }
 
@@ -292,6 +294,15 @@ fn ended(
         }
         Some(RunEnding::Again(from)) if history.get(from) != history.last() => {
             left(format!("it does not end where step {} begins", from + 1), later())
+        }
+        Some(RunEnding::Fault) => {
+            let mut options = stays.iter().flat_map(|s| walk.options(s));
+            match options.find_map(|option| option.fault) {
+                Some(fault) => FollowOutcome::Fault(Box::new(fault)),
+                None => {
+                    left("it was recorded that a fault of the model is next, and none is".to_owned(), later())
+                }
+            }
         }
         Some(RunEnding::Stuck | RunEnding::Waits | RunEnding::Again(_) | RunEnding::Reached) | None => {
             FollowOutcome::Run

@@ -244,7 +244,7 @@ fn led_to(
         stops.push(PathSegment::Wait(conditions));
         let w = walk(graph, &stops)?;
         let Some(times) = w.schedule.timed(graph.model.unit, ScheduleOptions::default())? else { continue };
-        let witness = finish(graph, w, &times, RunEnding::Reached, None)?;
+        let witness = finish(graph, w, &times, RunEnding::Fault, None)?;
         if replayed(graph.model, &witness)?.faults().contains(error)
             && best.as_ref().is_none_or(|b| earliness(&witness) < earliness(b))
         {

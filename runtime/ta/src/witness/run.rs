@@ -36,6 +36,8 @@ pub enum RunEnding {
     Stuck,
     /// Time can pass for ever, and nothing has to happen.
     Waits,
+    /// What would happen next, at this instant, is a fault of the model.
+    Fault,
 }
 
 /// One transition.

@@ -88,6 +88,7 @@ impl WitnessTrace {
             RunEnding::Reached | RunEnding::Again(_) => None,
             RunEnding::Stuck => Some("nothing more can happen"),
             RunEnding::Waits => Some("time can pass for ever"),
+            RunEnding::Fault => Some("what would happen next is a fault of the model"),
         }
     }
 

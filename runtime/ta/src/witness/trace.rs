@@ -155,6 +155,9 @@ impl WitnessTrace {
             (RunEnding::Waits, _) => {
                 let _ = writeln!(out, "{:>time$} s  time can pass for ever", self.end);
             }
+            (RunEnding::Fault, _) => {
+                let _ = writeln!(out, "{:>time$} s  what would happen next is the fault", self.end);
+            }
         }
         out
     }

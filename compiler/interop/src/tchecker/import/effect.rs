@@ -25,7 +25,7 @@ pub struct TranslatedEffect {
 /// Translates the statements of one edge; `function` gives names to new functions.
 pub fn effect(
     exprs: &ScenarioExprWriter<'_>,
-    body: &[TcheckerStatement],
+    (provided, body): (&[TcheckerExpr], &[TcheckerStatement]),
     function: &mut dyn FnMut() -> String,
 ) -> Result<TranslatedEffect, TcheckerFault> {
     let mut effect = TranslatedEffect::default();
@@ -41,7 +41,7 @@ pub fn effect(
                         effect.actions.push(format!("{clock} = {}", exprs.clock_value(value)?));
                     }
                     None if plain => {
-                        range(exprs, &mut known, statement, &mut effect)?;
+                        range(exprs, provided, &mut known, statement, &mut effect)?;
                         let target = exprs.target(name, index.as_ref(), statement.at)?;
                         effect.actions.push(format!("{target} = {}", exprs.integer(value)?));
                     }
@@ -183,6 +183,7 @@ impl SymbolicStore {
 /// Notes an assignment, with the guard that keeps it in range.
 fn range(
     exprs: &ScenarioExprWriter<'_>,
+    provided: &[TcheckerExpr],
     known: &mut SymbolicStore,
     s: &TcheckerStatement,
     effect: &mut TranslatedEffect,
@@ -192,7 +193,7 @@ fn range(
     match known.before(value) {
         None => effect.unguarded = effect.unguarded.or(Some(s.at)),
         Some(before) => {
-            let interval = exprs.interval(&before);
+            let interval = exprs.interval(&before, provided);
             let bound = |op: TcheckerOperator, n: i64| TcheckerExpr {
                 kind: TcheckerExprKind::Binary(
                     op,

@@ -5,6 +5,7 @@ use super::{
     names::TcheckerScenarioNames,
     parse::TcheckerFault,
 };
+use crate::exchange::time::too_long;
 
 /// How tightly the text around an expression binds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -103,7 +104,10 @@ impl ScenarioExprWriter<'_> {
     /// A number of TChecker's units of time: each is a second.
     pub fn time(&self, e: &TcheckerExpr) -> ScenarioTextResult {
         match constant(e) {
-            Some(n) => Ok(format!("{n} s")),
+            Some(n) => match too_long(n) {
+                Some(message) => fault(e, message),
+                None => Ok(format!("{n} s")),
+            },
             None => Ok(format!("{} * 1 s", self.int(e, SurroundingPrecedence::Product)?)),
         }
     }
@@ -121,7 +125,11 @@ impl ScenarioExprWriter<'_> {
                 return Ok(format!("{y} + {}", self.time(left)?));
             }
         }
-        if constant(e) == Some(0) { Ok("0".to_owned()) } else { self.time(e) }
+        match constant(e) {
+            Some(0) => Ok("0".to_owned()),
+            Some(n) if n < 0 => fault(e, format!("a clock is set to a number of at least 0, not to {n}")),
+            Some(_) | None => self.time(e),
+        }
     }
 
     pub fn integer(&self, e: &TcheckerExpr) -> ScenarioTextResult {
@@ -232,19 +240,26 @@ impl ScenarioExprWriter<'_> {
         self.variable(&e, name, index)
     }
 
-    /// Between which numbers the value lies, as far as the ranges of the variables tell.
-    pub fn interval(&self, e: &TcheckerExpr) -> Option<(i64, i64)> {
+    /// Between which numbers the value lies where all of these conditions hold, as far as the ranges of the variables and their comparisons
+    /// with constants tell.
+    pub fn interval(&self, e: &TcheckerExpr, given: &[TcheckerExpr]) -> Option<(i64, i64)> {
         match &e.kind {
             TcheckerExprKind::Int(n) => Some((*n, *n)),
-            TcheckerExprKind::Name(name, _) => {
-                self.model.ints.iter().find(|i| i.of.name == *name).map(|i| (i.lo, i.hi))
+            TcheckerExprKind::Name(name, index) => {
+                let int = self.model.ints.iter().find(|i| i.of.name == *name)?;
+                let range = (int.lo, int.hi);
+                Some(if index.is_none() {
+                    given.iter().fold(range, |r, c| narrowed(r, name, c))
+                } else {
+                    range
+                })
             }
             TcheckerExprKind::Neg(inner) => {
-                let (lo, hi) = self.interval(inner)?;
+                let (lo, hi) = self.interval(inner, given)?;
                 Some((hi.checked_neg()?, lo.checked_neg()?))
             }
             TcheckerExprKind::Binary(op, left, right) => {
-                let ((a, b), (c, d)) = (self.interval(left)?, self.interval(right)?);
+                let ((a, b), (c, d)) = (self.interval(left, given)?, self.interval(right, given)?);
                 match op {
                     TcheckerOperator::Add => Some((a.checked_add(c)?, b.checked_add(d)?)),
                     TcheckerOperator::Sub => Some((a.checked_sub(d)?, b.checked_sub(c)?)),
@@ -265,11 +280,38 @@ impl ScenarioExprWriter<'_> {
             }
             TcheckerExprKind::Not(_) => Some((0, 1)),
             TcheckerExprKind::If(_, a, b) => {
-                let ((a, b), (c, d)) = (self.interval(a)?, self.interval(b)?);
+                let ((a, b), (c, d)) = (self.interval(a, given)?, self.interval(b, given)?);
                 Some((a.min(c), b.max(d)))
             }
         }
     }
+}
+
+/// What is left of a variable's range where a condition holds; all of it, if nothing is.
+fn narrowed((lo, hi): (i64, i64), name: &str, condition: &TcheckerExpr) -> (i64, i64) {
+    let TcheckerExprKind::Binary(op, left, right) = &condition.kind else { return (lo, hi) };
+    let is_it = |e: &TcheckerExpr| matches!(&e.kind, TcheckerExprKind::Name(n, None) if n == name);
+    let (op, number) = match (constant(left), constant(right)) {
+        (None, Some(n)) if is_it(left) => (*op, n),
+        (Some(n), None) if is_it(right) => (op.flipped(), n),
+        (Some(_) | None, Some(_) | None) => return (lo, hi),
+    };
+    let (least, most) = match op {
+        TcheckerOperator::Eq => (number, number),
+        TcheckerOperator::Lt => (lo, number.saturating_sub(1)),
+        TcheckerOperator::Le => (lo, number),
+        TcheckerOperator::Gt => (number.saturating_add(1), hi),
+        TcheckerOperator::Ge => (number, hi),
+        TcheckerOperator::Ne
+        | TcheckerOperator::And
+        | TcheckerOperator::Add
+        | TcheckerOperator::Sub
+        | TcheckerOperator::Mul
+        | TcheckerOperator::Div
+        | TcheckerOperator::Rem => (lo, hi),
+    };
+    let (least, most) = (lo.max(least), hi.min(most));
+    if least <= most { (least, most) } else { (lo, hi) }
 }
 
 /// The number that an expression is, if it has no variables.

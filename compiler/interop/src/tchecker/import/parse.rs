@@ -67,12 +67,18 @@ pub fn parse(text: &str) -> (TcheckerModel, Vec<TcheckerFault>) {
     if let Some((_, rest)) = declarations.split_first_mut() {
         rest.sort_by_key(TcheckerDeclaration::rank);
     }
+    let first = declarations.first().and_then(|d| d.fields.first());
+    if first.is_some_and(|(word, _)| *word != "system") || first.is_none() && faults.is_empty() {
+        // What it declares is known all the same: the others are right to name it.
+        reader.seen_system = true;
+        let message = "expected `system:NAME` as the first declaration".to_owned();
+        faults.push(TcheckerFault { at: first.map_or(0, |(_, at)| *at), message });
+    }
     faults.extend(declarations.iter().filter_map(|d| reader.declare(d).err()));
-    if !reader.seen_system && faults.is_empty() {
-        faults.push(TcheckerFault {
-            at: 0,
-            message: "expected `system:NAME` as the first declaration".to_owned(),
-        });
+    if reader.model.processes.is_empty() && faults.is_empty() {
+        let at = declarations.first().and_then(|d| d.fields.first()).map_or(0, |(_, at)| *at);
+        let message = "this system has no process: write `process:NAME`, and its locations and edges";
+        faults.push(TcheckerFault { at, message: message.to_owned() });
     }
     (reader.model, faults)
 }
@@ -166,10 +172,6 @@ struct TcheckerReader {
 impl TcheckerReader {
     fn declare(&mut self, d: &TcheckerDeclaration<'_>) -> Result<(), TcheckerFault> {
         let (word, at) = d.fields[0];
-        if !self.seen_system && word != "system" {
-            self.seen_system = true;
-            return fault(at, "expected `system:NAME` as the first declaration");
-        }
         match word {
             "system" => self.system(d),
             "process" => self.process(d),

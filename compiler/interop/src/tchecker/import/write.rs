@@ -194,7 +194,7 @@ impl TcheckerTranslator<'_> {
             }
             let exprs = ScenarioExprWriter { model: self.model, names: &self.names };
             let mut left = names.into_iter();
-            let effect = effect::effect(&exprs, &body, &mut || left.next().unwrap_or_default())?;
+            let effect = effect::effect(&exprs, (&provided, &body), &mut || left.next().unwrap_or_default())?;
             let mut guard: Vec<String> = provided.iter().map(|e| exprs.part(e)).collect::<Result<_, _>>()?;
             guard.extend(effect.guards.iter().cloned());
             self.note_ranges(edge, &effect, !syncs.is_empty());

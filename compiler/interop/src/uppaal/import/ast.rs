@@ -36,6 +36,10 @@ pub enum UppaalBinaryOperator {
 }
 
 impl UppaalBinaryOperator {
+    pub fn compares(self) -> bool {
+        matches!(self, Self::Eq | Self::Ne | Self::Lt | Self::Le | Self::Gt | Self::Ge)
+    }
+
     pub fn is_on_bits(self) -> bool {
         matches!(self, Self::BitAnd | Self::BitOr | Self::BitXor | Self::ShiftLeft | Self::ShiftRight)
     }

@@ -35,6 +35,10 @@ impl UppaalTranslation<'_> {
         let UppaalExprKind::Name(name) = &of.kind else {
             return fault(span, "expected the name of a function");
         };
+        if self.declaring.as_ref() == Some(name) {
+            let message = format!("the function `{name}` calls itself, which none may: write a loop");
+            return fault(of.span, message);
+        }
         let Some(sym) = self.find(name).cloned() else {
             return fault(of.span, format!("there is no function `{name}` here"));
         };

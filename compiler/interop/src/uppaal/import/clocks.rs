@@ -10,6 +10,7 @@ use super::{
     scope::{ScenarioExprText, ScenarioPrecedence, UppaalSymbol},
     translation::UppaalTranslation,
 };
+use crate::exchange::time::too_long;
 
 /// How many edges one transition may become.
 const MAX_ALTERNATIVES: usize = 64;
@@ -149,7 +150,7 @@ impl UppaalTranslation<'_> {
             }
             _ => return fault(span, "a comparison has one clock, or the difference of two"),
         };
-        let clocks = vec![format!("{left} {} {}", op.text(), time(&sum.terms))];
+        let clocks = vec![format!("{left} {} {}", op.text(), time(&sum.terms, span)?)];
         Ok(GuardConjunction { clocks, data: Vec::new() })
     }
 
@@ -208,7 +209,7 @@ impl UppaalTranslation<'_> {
     pub fn setting(&mut self, e: &UppaalExpr) -> Result<String, UppaalFault> {
         let mut sum = UppaalClockSum::default();
         self.add(e, 1, &mut sum)?;
-        let value = time(&sum.terms);
+        let value = time(&sum.terms, e.span)?;
         let numbers = sum.terms.iter().map(|(sign, term)| term.value.map(|n| sign * n));
         if sum.clocks.is_empty() && numbers.sum::<Option<i64>>().is_some_and(|n| n < 0) {
             return fault(e.span, "a clock is set to a number of at least 0");
@@ -300,8 +301,19 @@ fn combine(
 }
 
 /// A sum of numbers as a time, one unit being a second.
-fn time(terms: &[(i64, ScenarioExprText)]) -> String {
-    if let Some(all) = terms.iter().map(|(s, t)| t.value.map(|n| s * n)).collect::<Option<Vec<_>>>() {
+fn time(terms: &[(i64, ScenarioExprText)], span: Span) -> Result<String, UppaalFault> {
+    let known = terms.iter().map(|(s, t)| t.value.map(|n| s * n)).collect::<Option<Vec<_>>>();
+    let sum = known.as_ref().map(|all| all.iter().fold(0, |sum: i64, n| sum.saturating_add(*n)));
+    let numbers = terms.iter().filter_map(|(_, t)| t.value);
+    match sum.map_or_else(|| numbers.into_iter().find_map(too_long), too_long) {
+        Some(message) => fault(span, message),
+        None => Ok(written_time(terms, sum)),
+    }
+}
+
+/// The text of a time, whose number of seconds may be known.
+fn written_time(terms: &[(i64, ScenarioExprText)], sum: Option<i64>) -> String {
+    if let Some(sum) = sum {
         // The name of a constant says more than its number.
         if let [(1, only)] = terms
             && only.level == ScenarioPrecedence::Atom
@@ -309,7 +321,7 @@ fn time(terms: &[(i64, ScenarioExprText)]) -> String {
         {
             return format!("{} * 1 s", only.text);
         }
-        return format!("{} s", all.iter().sum::<i64>());
+        return format!("{sum} s");
     }
     let mut text = String::new();
     for (sign, term) in terms {

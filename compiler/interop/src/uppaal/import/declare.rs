@@ -416,12 +416,16 @@ impl UppaalTranslation<'_> {
         let name = plain.then(|| self.names.fresh(&decl.name, decl.span, Self::owner(own)));
         let decl = decl.clone();
         let function = Rc::new(FunctionSym { decl, params, result, own, sets_clocks, name: name.clone() });
+        let mut written = Ok(());
         if let Some(name) = name {
-            self.write_function(&function, &name, Vec::new(), own)?;
+            self.declaring = Some(function.decl.name.clone());
+            written = self.write_function(&function, &name, Vec::new(), own);
+            self.declaring = None;
         }
         let name = function.decl.name.clone();
+        // Whatever is wrong with it, calls of it are not.
         self.bind(&name, UppaalSymbol::Function(function), own);
-        Ok(())
+        written
     }
 }
 

@@ -11,6 +11,7 @@ use super::{
     },
     translation::UppaalTranslation,
 };
+use crate::exchange::note::NoteSeverity;
 
 /// How many parts `forall`, `exists` and `sum` may become.
 const MAX_PARTS: i64 = 1024;
@@ -33,6 +34,14 @@ impl UppaalTranslation<'_> {
     }
 
     pub fn condition(&mut self, e: &UppaalExpr) -> Result<ScenarioExprText, UppaalFault> {
+        if let UppaalExprKind::Quantified(UppaalQuantifier::Sum, _, _, of) = &e.kind
+            && let UppaalExprKind::Binary(op, ..) = &of.kind
+            && op.compares()
+        {
+            let message = "this counts for how many values the comparison holds, and is met by one: `sum` goes as far \
+                as it can; to compare the sum itself, write it in parentheses: `(sum(…) …) <= …`";
+            self.notes.push((e.span, NoteSeverity::Warning, message.to_owned()));
+        }
         Ok(self.expr(e)?.into_bool())
     }
 

@@ -89,13 +89,14 @@ pub fn import(
         }
     }
     let mut cx = UppaalTranslation::new(&read);
-    let written =
-        cx.write(&options.name.clone().unwrap_or_else(|| stem(&model.name).to_owned()), &model.name);
+    let scenario = options.name.clone().unwrap_or_else(|| stem(&model.name).to_owned());
+    let written = cx.write(&scenario, &model.name);
     if !cx.faults.is_empty() {
         return Err(errors(&files, cx.faults));
     }
     for (span, old, new) in std::mem::take(&mut cx.names.renamed) {
-        cx.notes.push((span, NoteSeverity::Info, format!("`{old}` is called `{new}`")));
+        let why = scope::why_renamed(&old, &scenario);
+        cx.notes.push((span, NoteSeverity::Info, format!("`{old}` is called `{new}`: {why}")));
     }
     cx.notes.extend(replaced);
     let mut notes: Vec<ImportNote> =

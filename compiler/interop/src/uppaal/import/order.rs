@@ -6,7 +6,7 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind},
+    ast::{UppaalBinaryOperator, UppaalExpr, UppaalExprKind, UppaalPlace},
     fault::{UppaalFault, fault},
     scope::{ScenarioExprText, UppaalSymbol},
     translation::UppaalTranslation,
@@ -17,7 +17,8 @@ use super::{
 struct PulledEffects {
     before: Vec<UppaalExpr>,
     after: Vec<UppaalExpr>,
-    changed: Vec<(String, Span)>,
+    /// The places that are assigned to, and where.
+    changed: Vec<(UppaalExpr, Span)>,
     /// How many conditions stand before: what is evaluated only sometimes cannot be taken out.
     sometimes: usize,
 }
@@ -63,10 +64,17 @@ impl UppaalTranslation<'_> {
         pulled: PulledEffects,
         out: &mut Vec<String>,
     ) -> Result<(UppaalExpr, Vec<String>), UppaalFault> {
-        for (name, span) in &pulled.changed {
+        for (place, span) in &pulled.changed {
+            let Some(name) = place.root() else { continue };
             let (mut count, mut called) = (0, Vec::new());
             e.each(&mut |part| match &part.kind {
                 UppaalExprKind::Name(n) if n == name => count += 1,
+                // Another field of the record is another variable. Of a field of that field it has been said already.
+                UppaalExprKind::Field(of, _)
+                    if part.root() == Some(name) && apart(part, place) && !apart(of, place) =>
+                {
+                    count -= 1;
+                }
                 UppaalExprKind::Call(of, _) => called.extend(of.root().map(str::to_owned)),
                 _ => {}
             });
@@ -98,6 +106,24 @@ impl UppaalTranslation<'_> {
     }
 }
 
+/// Whether two places of one record lie in different fields of it.
+fn apart(a: &UppaalExpr, b: &UppaalExpr) -> bool {
+    fields(a).iter().zip(fields(b)).any(|(f, g)| *f != g)
+}
+
+/// The names of the fields on the way to a place. Which of them is in an array is the same for all places of a record.
+fn fields(place: &UppaalExpr) -> Vec<&str> {
+    match place.as_place() {
+        Some(UppaalPlace::Field(of, name)) => {
+            let mut all = fields(of);
+            all.push(name);
+            all
+        }
+        Some(UppaalPlace::Index(of, _)) => fields(of),
+        Some(UppaalPlace::Name(_)) | None => Vec::new(),
+    }
+}
+
 fn pull(e: &UppaalExpr, out: &mut PulledEffects) -> Result<UppaalExpr, UppaalFault> {
     let one = |e: &UppaalExpr, out: &mut PulledEffects| pull(e, out).map(Box::new);
     let sometimes = |e: &UppaalExpr, out: &mut PulledEffects| {
@@ -114,7 +140,7 @@ fn pull(e: &UppaalExpr, out: &mut PulledEffects) -> Result<UppaalExpr, UppaalFau
                     "an assignment in a part that is not always evaluated is not supported: write it as a statement of its own",
                 );
             }
-            out.changed.extend(of.root().map(|root| (root.to_owned(), e.span)));
+            out.changed.push(((**of).clone(), e.span));
             let is_after = matches!(e.kind, UppaalExprKind::Step { first: false, .. });
             if is_after {
                 out.after.push(e.clone())

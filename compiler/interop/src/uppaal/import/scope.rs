@@ -413,6 +413,17 @@ impl UppaalScenarioNames {
     }
 }
 
+/// Why a name of the model is another one in the scenario.
+pub fn why_renamed(name: &str, scenario: &str) -> &'static str {
+    if is_reserved(name) {
+        "the language has that word"
+    } else if crate::exchange::name::clean(name) == crate::exchange::name::clean(scenario) {
+        "the scenario has that name"
+    } else {
+        "that name is in use elsewhere in the scenario"
+    }
+}
+
 fn is_reserved(name: &str) -> bool {
     let keyword = KEYWORDS.iter().find(|k| k.word == name);
     keyword.is_some_and(|k| k.class != KeywordClass::Soft) || is_soft_word(name) || TAKEN.contains(&name)

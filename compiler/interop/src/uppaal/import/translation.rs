@@ -48,6 +48,8 @@ pub(crate) struct UppaalTranslation<'m> {
     pub locals: Vec<UppaalScope>,
     pub processes: Vec<UppaalProcess>,
     pub in_query: bool,
+    /// The function whose declaration is being read: it is not known yet.
+    pub declaring: Option<String>,
     /// How many functions are being written, one called by the other.
     pub writing: usize,
     /// The same of those that set clocks, and whose statements stand on the edge.
@@ -97,6 +99,7 @@ impl<'m> UppaalTranslation<'m> {
             locals: Vec::new(),
             processes: Vec::new(),
             in_query: false,
+            declaring: None,
             writing: 0,
             inlining: 0,
             channels: Vec::new(),

@@ -3,8 +3,8 @@
 use hrdsl_source::Span;
 
 use super::{
-    ast::{UppaalDeclaration, UppaalExpr, UppaalInstance, UppaalQuery},
-    fault::UppaalFault,
+    ast::{UppaalDeclaration, UppaalExpr, UppaalExprKind, UppaalInstance, UppaalQuery},
+    fault::{UppaalFault, fault},
     queries,
     scope::{ChanSym, IndexRange, NameOwner},
     template,
@@ -124,12 +124,27 @@ impl UppaalTranslation<'_> {
         Ok(match ask {
             UppaalQuery::Possibly(f) => format!("E<> {}", self.formula(f)?.text),
             UppaalQuery::Invariantly(f) => format!("A[] {}", self.formula(f)?.text),
-            UppaalQuery::PotentiallyAlways(f) => format!("E[] {}", self.formula(f)?.text),
-            UppaalQuery::Eventually(f) => format!("A<> {}", self.formula(f)?.text),
-            UppaalQuery::LeadsTo(f, g) => format!("{} --> {}", self.formula(f)?.text, self.formula(g)?.text),
+            UppaalQuery::PotentiallyAlways(f) => format!("E[] {}", self.run_formula(f)?),
+            UppaalQuery::Eventually(f) => format!("A<> {}", self.run_formula(f)?),
+            UppaalQuery::LeadsTo(f, g) => format!("{} --> {}", self.run_formula(f)?, self.run_formula(g)?),
             UppaalQuery::Sup(when, of) => self.bound_of("sup", when.as_ref(), of)?,
             UppaalQuery::Inf(when, of) => self.bound_of("inf", when.as_ref(), of)?,
         })
+    }
+
+    /// A formula about all of a run, in which a scenario does not ask for deadlocks.
+    fn run_formula(&mut self, f: &UppaalExpr) -> Result<String, UppaalFault> {
+        let mut deadlock = None;
+        f.each(&mut |part| {
+            if matches!(part.kind, UppaalExprKind::Deadlock) {
+                deadlock.get_or_insert(part.span);
+            }
+        });
+        if let Some(span) = deadlock {
+            let message = "`deadlock` is asked for in `E<>`, `A[]`, `sup` and `inf` only, not along runs";
+            return fault(span, message);
+        }
+        Ok(self.formula(f)?.text)
     }
 
     fn bound_of(

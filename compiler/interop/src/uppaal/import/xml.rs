@@ -272,7 +272,7 @@ impl UppaalReader<'_> {
     fn initial(&mut self, node: Node<'_, '_>, template: &mut UppaalTemplate) {
         let Some(init) = node.children().find(|n| n.has_tag_name("init")) else {
             let name = &template.name;
-            return self.fault(node, format!("the template `{name}` has no initial location (`<init>`)"));
+            return self.fault(node, format!("the template `{name}` has no initial location: write `<init ref=\"…\"/>` with the id of one"));
         };
         let id = init.attribute("ref").unwrap_or_default();
         match self.ids.get(id) {

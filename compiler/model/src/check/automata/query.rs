@@ -89,12 +89,12 @@ impl AutomataPhase<'_, '_> {
             ast::FormulaSyntax::Possibly(f) => TypedQueryKind::Possibly(self.formula(f, net)),
             ast::FormulaSyntax::Invariantly(f) => TypedQueryKind::Invariantly(self.formula(f, net)),
             ast::FormulaSyntax::PotentiallyAlways(f) => {
-                TypedQueryKind::PotentiallyAlways(self.formula(f, net))
+                TypedQueryKind::PotentiallyAlways(self.run_formula(f, net))
             }
-            ast::FormulaSyntax::Eventually(f) => TypedQueryKind::Eventually(self.formula(f, net)),
+            ast::FormulaSyntax::Eventually(f) => TypedQueryKind::Eventually(self.run_formula(f, net)),
             ast::FormulaSyntax::LeadsTo(f, g) => {
-                let f = self.formula(f, net);
-                TypedQueryKind::LeadsTo(f, self.formula(g, net))
+                let f = self.run_formula(f, net);
+                TypedQueryKind::LeadsTo(f, self.run_formula(g, net))
             }
             ast::FormulaSyntax::Sup { when, of } => {
                 let when = when.as_ref().map_or_else(always, |f| self.formula(f, net));
@@ -267,6 +267,22 @@ impl AutomataPhase<'_, '_> {
         };
         let left = self.formula(left, net);
         joined_by(join, left, self.formula(right, net))
+    }
+
+    /// A formula about all of a run. Zones are told apart too little there to know of deadlocks.
+    fn run_formula(&mut self, e: &ast::ExprSyntax, net: &mut QueryNetwork) -> TypedFormula {
+        let formula = self.formula(e, net);
+        if !formula.asks_deadlock() {
+            return formula;
+        }
+        let mut place = None;
+        each_path(e, &mut |path| {
+            if joined(&path.names) == "deadlock" {
+                place.get_or_insert(path.span);
+            }
+        });
+        self.report(queries::deadlock_along_run(place.unwrap_or(e.span)));
+        nothing()
     }
 
     /// `deadlock`, or `Automaton.location`.
