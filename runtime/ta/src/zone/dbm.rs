@@ -622,8 +622,11 @@ mod tests {
             for (i, &(x, a)) in few.iter().enumerate() {
                 for (j, &(y, b)) in few.iter().enumerate() {
                     let (old, by) = (z.at(usize::from(x), usize::from(y)), a - b);
-                    let moved = if old.is_strict() { DbmBound::lt(old.value() + by) } else { DbmBound::le(old.value() + by) };
-                    prop_assert_eq!(quick.at(i, j), if old.is_infinite() { old } else { moved });
+                    let moved = |old: DbmBound| {
+                        let to = old.value() + by;
+                        if old.is_strict() { DbmBound::lt(to) } else { DbmBound::le(to) }
+                    };
+                    prop_assert_eq!(quick.at(i, j), if old.is_infinite() { old } else { moved(old) });
                 }
             }
             let mut closed = after.clone();
