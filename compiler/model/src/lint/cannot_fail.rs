@@ -57,9 +57,7 @@ fn in_formula(
     };
     is_instant(of).then(|| {
         let why = "`always` reaches up to `implies` only, and no event happens at every moment";
-        let message = format!("the requirement `{}` cannot fail", requirement.name);
-        let issue = Diagnostic::warning(DiagnosticCode::CANNOT_FAIL, requirement.text, message);
-        issue.here(why).help("write `always (… implies …)`")
+        issue(requirement, why).help("write `always (… implies …)`")
     })
 }
 
@@ -135,9 +133,13 @@ fn by_form(junction: TemporalJunction, a: &TypedTemporal, b: &TypedTemporal) -> 
 }
 
 fn told(requirement: &TypedRequirement, why: impl Into<String>) -> Diagnostic {
+    issue(requirement, why).help("change the condition: no test can say anything about it")
+}
+
+/// Without a help.
+fn issue(requirement: &TypedRequirement, why: impl Into<String>) -> Diagnostic {
     let message = format!("the requirement `{}` cannot fail", requirement.name);
-    let issue = Diagnostic::warning(DiagnosticCode::CANNOT_FAIL, requirement.text, message);
-    issue.here(why).help("change the condition: no test can say anything about it")
+    Diagnostic::warning(DiagnosticCode::CANNOT_FAIL, requirement.text, message).here(why)
 }
 
 /// The truth of a formula at every moment, if it is the same at all of them in every run. Windows into the past may lie before the first moment,
