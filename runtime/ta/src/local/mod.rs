@@ -51,6 +51,7 @@ mod order;
 mod refusal;
 mod search;
 mod space;
+mod waiting;
 mod zone;
 
 pub use refusal::{LocalSearchError, NotApplicableError};

@@ -6,6 +6,7 @@ use super::{
     order,
     refusal::{LocalSearchError, NotApplicableError},
     space::{LocalStateSpace, LocalWorkspace, LocalZoneFilter},
+    waiting::WaitingZones,
     zone::{self, LocalZone, LocalZoneBound},
 };
 use crate::{
@@ -77,59 +78,13 @@ pub(crate) struct LocalSearch<'m, 'p> {
     ask: usize,
 }
 
-/// The zones of nodes whose successors are not computed yet. Few of all nodes wait: the rest has a number only.
-#[derive(Default)]
-struct WaitingZones {
-    /// By node: where its zone is, or [`NIL`].
-    places: Vec<u32>,
-    zones: Vec<LocalZone>,
-    /// Where zones are that nobody waits with; their memory is used again.
-    free: Vec<u32>,
-    bytes: usize,
-}
-
-impl WaitingZones {
-    /// The next node has this zone; what becomes of the zone has memory for the next one.
-    fn push(&mut self, zone: &mut LocalZone) {
-        self.bytes += zone.heap_bytes();
-        let place = self.free.pop().unwrap_or_else(|| {
-            self.zones.push(LocalZone::default());
-            self.zones.len() as u32 - 1
-        });
-        std::mem::swap(&mut self.zones[place as usize], zone);
-        self.places.push(place);
-    }
-
-    /// Takes the node's zone, unless it was taken.
-    fn take(&mut self, node: u32) -> Option<LocalZone> {
-        let place = std::mem::replace(&mut self.places[node as usize], NIL);
-        if place == NIL {
-            return None;
-        }
-        let zone = std::mem::take(&mut self.zones[place as usize]);
-        self.bytes -= zone.heap_bytes();
-        self.free.push(place);
-        Some(zone)
-    }
-
-    /// Gives back the memory of a zone that was taken.
-    fn recycle(&mut self, zone: LocalZone) {
-        if let Some(&place) = self.free.last() {
-            self.zones[place as usize] = zone;
-        }
-    }
-
-    fn bytes(&self) -> usize {
-        self.bytes + self.places.len() * size_of::<u32>()
-    }
-}
-
 /// Memory that the search uses again and again.
 #[derive(Default)]
 struct LocalWorkMemory {
     work: LocalWorkspace,
     scratch: EnumerationScratch,
     state: Vec<i64>,
+    zone: LocalZone,
     round: Vec<u32>,
 }
 
@@ -229,9 +184,10 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         until: usize,
         go_on: &dyn Fn(&SearchProgress) -> bool,
     ) -> Result<LocalPause, LocalSearchError> {
-        let LocalWorkMemory { work: w, scratch, state, round } = memory;
+        let LocalWorkMemory { work: w, scratch, state, zone, round } = memory;
         if !std::mem::replace(&mut self.started, true) {
             self.space.start(w)?;
+            zone.clone_from(&w.zone);
             self.insert(w, NIL, 0)?;
         }
         loop {
@@ -259,12 +215,13 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             self.waiting.take(&self.store.nodes, FEW, round);
             for &id in &*round {
                 // Another of the round may have driven it out.
-                let Some(zone) = self.zones.take(id) else { continue };
+                if !self.zones.take(id, zone) {
+                    continue;
+                }
                 let node = self.store.nodes[id as usize];
                 self.store.layout.unpack(self.store.packed(node.discrete), state);
                 self.visited += 1;
-                self.expand(id, state, &zone, w, scratch)?;
-                self.zones.recycle(zone);
+                self.expand(id, state, zone, w, scratch)?;
             }
         }
     }
@@ -394,7 +351,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         };
         let id = self.store.add(parent, number, discrete, &w.together, &[]);
         self.look(w, known.is_none(), id)?;
-        self.zones.push(&mut w.zone);
+        self.zones.push(&w.zone);
         self.waiting.push(id, lost, level(&self.levels, &w.effect.target, &[]), 0);
         Ok(())
     }
@@ -422,9 +379,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         for &n in &self.driven_out {
             self.waiting.covered(n);
             self.store.cover(n);
-            if let Some(zone) = self.zones.take(n) {
-                self.zones.recycle(zone);
-            }
+            self.zones.forget(n);
         }
         if !self.driven_out.is_empty() {
             self.store.unlink(discrete);

@@ -14,16 +14,14 @@ use super::{
 };
 use crate::{
     network::{
+        by_location::LocationTable,
         code::{CodeEvalContext, CodeEvalError},
         error::ModelError,
         model::CompiledNetwork,
         semantics::{ConstraintFilter, FiringOrError, TransitionEffect, TransitionFiring},
     },
     witness::error::SearchError,
-    zone::{
-        constraint::DifferenceConstraint,
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction, NONE},
-    },
+    zone::constraint::DifferenceConstraint,
 };
 
 /// A network made ready for local time.
@@ -32,6 +30,9 @@ pub(super) struct LocalStateSpace<'m, 'p> {
     pub processes: Rc<NetworkProcesses>,
     /// All of them.
     everybody: Vec<u16>,
+    /// The own clocks that matter, counted from 0, and the bounds of all shared clocks.
+    own: LocationTable<(u16, LocalLuBounds)>,
+    shared: LocationTable<LocalLuBounds>,
 }
 
 /// The last transition that was looked at, and where it leads; used again and again.
@@ -46,8 +47,7 @@ pub(super) struct LocalWorkspace {
     pub zone: LocalZone,
     /// The zone as far as all processes have one time, of the clocks that matter.
     pub together: Vec<LocalZoneBound>,
-    pub frame: ActiveClocks,
-    /// The clocks of the frame, counted from 0, without the reference, and their bounds.
+    /// The clocks that matter, counted from 0, and their bounds.
     pub clocks: Vec<u16>,
     pub lu: Vec<LocalLuBounds>,
     pub stack: Vec<i64>,
@@ -75,7 +75,11 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
     pub(super) fn new(model: &'m CompiledNetwork<'p>, media: bool) -> Result<Self, NotApplicableError> {
         let processes = Rc::new(NetworkProcesses::of(model, media)?);
         let everybody = (0..processes.count as u16).collect();
-        Ok(Self { model, processes, everybody })
+        let known = &model.extrapolation;
+        let own = known.own.try_map(|&(clock, lu)| Some((clock - 1, LocalLuBounds::of(lu)?)));
+        let shared = known.shared.try_map(|&lu| LocalLuBounds::of(lu));
+        let (Some(own), Some(shared)) = (own, shared) else { return Err(NotApplicableError::Constants) };
+        Ok(Self { model, processes, everybody, own, shared })
     }
 
     pub(super) fn clocks(&self) -> usize {
@@ -229,18 +233,7 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
     /// Lets time pass for those who were part of a transition to the target, with only the clocks that matter there.
     /// Whether all processes can have one time then.
     fn enter(&self, w: &mut LocalWorkspace, who: &[u16]) -> Result<bool, LocalSearchError> {
-        self.model.extrapolation.frame(&w.effect.target, ExtrapolationAbstraction::LowerUpper, &mut w.frame);
-        w.clocks.clear();
-        w.lu.clear();
-        for (&clock, lu) in w.frame.clocks.iter().zip(&w.frame.bounds).skip(1) {
-            let lower = if lu.lower == NONE { Some(zone::INF) } else { zone::lt(-lu.lower) };
-            let upper = if lu.upper == NONE { Some(zone::INF) } else { zone::le(-lu.upper) };
-            let (Some(lower), Some(upper)) = (lower, upper) else {
-                return Err(NotApplicableError::Constants.into());
-            };
-            w.clocks.push(clock - 1);
-            w.lu.push(LocalLuBounds { lower, upper });
-        }
+        self.active(w);
         w.zone.forget(&w.clocks);
         for &p in who {
             let m = usize::from(p);
@@ -260,6 +253,25 @@ impl<'m, 'p> LocalStateSpace<'m, 'p> {
         }
         let met = w.zone.synchronised(&w.clocks, &mut w.meeting, &mut w.together);
         Ok(met.map_err(NotApplicableError::from)?)
+    }
+
+    /// The clocks that matter in the target.
+    fn active(&self, w: &mut LocalWorkspace) {
+        let known = &self.model.extrapolation;
+        w.clocks.clear();
+        w.lu.clear();
+        for x in 0..known.shared_clocks {
+            let bounds = self.shared.rows(&w.effect.target).map(|row| row[x]);
+            let lu = bounds.fold(LocalLuBounds::NEVER, LocalLuBounds::join);
+            if known.all_clocks || lu != LocalLuBounds::NEVER {
+                w.clocks.push(x as u16);
+                w.lu.push(lu);
+            }
+        }
+        for &(clock, lu) in self.own.rows(&w.effect.target).flatten() {
+            w.clocks.push(clock);
+            w.lu.push(lu);
+        }
     }
 
     fn fault(&self, member: usize, state: &[i64], fault: CodeEvalError) -> ModelError {

@@ -7,6 +7,8 @@
 //! All operations keep the matrix canonical, and none closes it from scratch: what a transition adds are bounds on one new
 //! variable, the common time of those that meet, so that a row, a column and one pass over the matrix suffice.
 
+use crate::zone::extrapolation::{LuBounds, NONE};
+
 /// A bound `< c` (as `2c`) or `≤ c` (as `2c + 1`), or [`INF`].
 pub(crate) type LocalZoneBound = i32;
 
@@ -32,6 +34,11 @@ pub(crate) fn plus(a: LocalZoneBound, b: LocalZoneBound) -> LocalZoneBound {
     if a >= INF || b >= INF { INF } else { a + b - ((a | b) & 1) }
 }
 
+/// The same, of bounds that are none as twice [`INF`], and in no sum come near it.
+fn sum(a: LocalZoneBound, b: LocalZoneBound) -> LocalZoneBound {
+    a + b - ((a | b) & 1)
+}
+
 /// A bound on a clock's value: `x ≺ bound`, or from below `-x ≺ bound`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ClockBound {
@@ -55,11 +62,25 @@ pub(crate) struct ClockAssignment {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BoundOverflowError;
 
+/// Bounds that are worked on at once: rows are padded to whole ones, so that all of a row is instructions on vectors.
+const LANES: usize = 4;
+
+/// A row, by lanes.
+fn lanes(row: &[LocalZoneBound]) -> &[[LocalZoneBound; LANES]] {
+    row.as_chunks().0
+}
+
+fn lanes_mut(row: &mut [LocalZoneBound]) -> &mut [[LocalZoneBound; LANES]] {
+    row.as_chunks_mut().0
+}
+
 /// A canonical set of local valuations that is not empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct LocalZone {
     processes: usize,
     n: usize,
+    /// The length of a row, with its padding, which has no bounds.
+    stride: usize,
     /// Row by row: the bound on `row - column`.
     d: Vec<LocalZoneBound>,
 }
@@ -67,52 +88,72 @@ pub(crate) struct LocalZone {
 /// The bounds on the common time of processes that meet.
 #[derive(Default)]
 pub(crate) struct MeetingBounds {
-    /// On `time - variable`.
+    /// On `time - variable`, padded as rows of zones are.
     row: Vec<LocalZoneBound>,
     /// On `variable - time`.
     col: Vec<LocalZoneBound>,
+    /// Some valuation of the zone does not meet.
+    narrows: bool,
 }
 
 impl LocalZone {
     /// All times and time stamps are zero.
     pub(crate) fn start(processes: usize, clocks: usize) -> Self {
         let n = processes + clocks;
-        Self { processes, n, d: vec![ZERO; n * n] }
+        let stride = n.next_multiple_of(LANES);
+        let mut d = vec![INF; n * stride];
+        for row in d.chunks_exact_mut(stride.max(1)) {
+            row[..n].fill(ZERO);
+        }
+        Self { processes, n, stride, d }
     }
 
+    /// With its padding.
     fn row(&self, i: usize) -> &[LocalZoneBound] {
-        &self.d[i * self.n..(i + 1) * self.n]
+        &self.d[i * self.stride..][..self.stride]
+    }
+
+    fn row_mut(&mut self, i: usize) -> &mut [LocalZoneBound] {
+        &mut self.d[i * self.stride..][..self.stride]
+    }
+
+    fn rows(&self) -> impl Iterator<Item = &[LocalZoneBound]> {
+        self.d.chunks_exact(self.stride.max(1))
     }
 
     /// Whether the bound, on a clock of this process, holds anywhere.
     pub(crate) fn meets(&self, b: ClockBound, owner: u16) -> bool {
         let (k, p) = (self.processes + usize::from(b.clock), usize::from(owner));
-        let other = if b.upper { self.d[k * self.n + p] } else { self.d[p * self.n + k] };
+        let other = if b.upper { self.row(k)[p] } else { self.row(p)[k] };
         plus(other, b.bound) >= ZERO
     }
 
-    pub(crate) fn heap_bytes(&self) -> usize {
-        size_of_val(self.d.as_slice())
+    /// All bounds, row by row, with the padding.
+    pub(crate) fn bounds(&self) -> &[LocalZoneBound] {
+        &self.d
+    }
+
+    pub(crate) fn bounds_mut(&mut self) -> &mut [LocalZoneBound] {
+        &mut self.d
     }
 
     /// Becomes `from`, restricted to where the meeting's processes have one time and its clock bounds hold.
     ///
     /// INVARIANT: `from` is canonical, so a shortest path that is new leads through the common time once.
     pub(crate) fn restrict(&mut self, from: &LocalZone, meeting: &MeetingBounds) {
-        let n = from.n;
-        (self.processes, self.n) = (from.processes, n);
-        self.d.resize(n * n, INF);
-        let row = &meeting.row;
-        for i in 0..n {
-            let (old, new) = (&from.d[i * n..(i + 1) * n], &mut self.d[i * n..(i + 1) * n]);
-            let c = meeting.col[i];
+        (self.processes, self.n, self.stride) = (from.processes, from.n, from.stride);
+        if !meeting.narrows {
+            self.d.clone_from(&from.d);
+            return;
+        }
+        self.d.resize(from.d.len(), INF);
+        let rows = self.d.chunks_exact_mut(from.stride.max(1)).zip(from.rows());
+        for ((new, old), &c) in rows.zip(&meeting.col) {
             if c >= INF {
                 new.copy_from_slice(old);
                 continue;
             }
-            for ((new, &old), &r) in new.iter_mut().zip(old).zip(row) {
-                *new = old.min(c + r - ((c | r) & 1));
-            }
+            lesser_sums(new, old, c, &meeting.row);
         }
     }
 
@@ -121,22 +162,31 @@ impl LocalZone {
         if sets.iter().any(|s| s.from.is_some()) {
             return self.copy(sets, now);
         }
-        let n = self.n;
+        let (n, stride) = (self.n, self.stride);
         for s in sets {
             let k = self.processes + usize::from(s.clock);
             // `≤ -by`
             let back = 2 - s.by;
-            for i in 0..n {
-                self.d[k * n + i] = plus(self.d[now * n + i], back);
-                self.d[i * n + k] = plus(self.d[i * n + now], s.by);
+            self.d.copy_within(now * stride..(now + 1) * stride, k * stride);
+            if s.by == ZERO {
+                for row in self.d.chunks_exact_mut(stride) {
+                    row[k] = row[now];
+                }
+            } else {
+                for to in &mut self.row_mut(k)[..n] {
+                    *to = plus(*to, back);
+                }
+                for row in self.d.chunks_exact_mut(stride) {
+                    row[k] = plus(row[now], s.by);
+                }
             }
-            self.d[k * n + k] = ZERO;
+            self.row_mut(k)[k] = ZERO;
         }
     }
 
     /// As [`assign`](Self::assign), where clocks become others.
     fn copy(&mut self, sets: &[ClockAssignment], now: usize) {
-        let (n, p, old) = (self.n, self.processes, self.d.clone());
+        let (n, p, stride, old) = (self.n, self.processes, self.stride, self.d.clone());
         // Each variable after it is one before it, less a number.
         let mut from: Vec<(usize, LocalZoneBound)> = (0..n).map(|i| (i, ZERO)).collect();
         for s in sets {
@@ -145,7 +195,7 @@ impl LocalZone {
         }
         for (i, &(a, less)) in from.iter().enumerate() {
             for (j, &(b, more)) in from.iter().enumerate() {
-                self.d[i * n + j] = plus(plus(old[a * n + b], 2 - less), more);
+                self.d[i * stride + j] = plus(plus(old[a * stride + b], 2 - less), more);
             }
         }
     }
@@ -162,11 +212,12 @@ impl LocalZone {
             if self.row(k)[..p].iter().all(|&b| b >= INF) {
                 continue;
             }
-            self.d[k * n..(k + 1) * n].fill(INF);
-            for i in 0..n {
-                self.d[i * n + k] = INF;
+            self.row_mut(k).fill(INF);
+            let stride = self.stride;
+            for row in self.d.chunks_exact_mut(stride) {
+                row[k] = INF;
             }
-            self.d[k * n + k] = ZERO;
+            self.row_mut(k)[k] = ZERO;
         }
     }
 
@@ -174,17 +225,15 @@ impl LocalZone {
     ///
     /// INVARIANT: they hold already, so that they bound nothing but this time.
     pub(crate) fn elapse(&mut self, process: usize, invariant: &[ClockBound]) {
-        let n = self.n;
-        self.d[process * n..(process + 1) * n].fill(INF);
+        let stride = self.stride;
+        // A clock's row lies behind those of all processes.
+        let (before, clocks) = self.d.split_at_mut(self.processes * stride);
+        let time = &mut before[process * stride..][..stride];
+        time.fill(INF);
         for b in invariant.iter().filter(|b| b.upper) {
-            let k = self.processes + usize::from(b.clock);
-            for j in 0..n {
-                let via = plus(b.bound, self.d[k * n + j]);
-                let at = &mut self.d[process * n + j];
-                *at = via.min(*at);
-            }
+            relax(time, b.bound, &clocks[usize::from(b.clock) * stride..][..stride]);
         }
-        self.d[process * n + process] = ZERO;
+        time[process] = ZERO;
     }
 
     /// The valuations in which all processes have the same time, as a zone of the values of `clocks`: `x_j - x_i ≺
@@ -199,25 +248,29 @@ impl LocalZone {
             return Ok(false);
         }
         meeting.finish()?;
-        let p = self.processes;
-        out.clear();
-        out.push(ZERO);
-        out.extend(clocks.iter().map(|&x| meeting.row[p + usize::from(x)].min(INF)));
+        let (p, dim) = (self.processes, clocks.len() + 1);
         let whole = clocks.len() == self.n - p;
-        for (&x, &c) in clocks.iter().zip(&meeting.col) {
-            out.push(c);
-            let row = self.row(p + usize::from(x));
-            if whole && c < INF {
-                let sums = row[p..].iter().zip(&meeting.row[p..]);
-                // No bound of the meeting is one that no sum comes near: see `finish`.
-                out.extend(sums.map(|(&old, &r)| old.min(c + r - ((c | r) & 1))));
-                continue;
+        out.clear();
+        out.resize(dim * dim, INF);
+        let mut rows = out.chunks_exact_mut(dim);
+        let times = &meeting.row[p..self.n];
+        if let Some(zero) = rows.next() {
+            zero[0] = ZERO;
+            for (to, &x) in zero[1..].iter_mut().zip(clocks) {
+                *to = times[usize::from(x)].min(INF);
             }
-            // INVARIANT: if `c` is no bound, the sum is none, either.
-            out.extend(clocks.iter().map(|&y| {
-                let (old, r) = (row[p + usize::from(y)], meeting.row[p + usize::from(y)]);
-                old.min(plus(c, r))
-            }));
+        }
+        for ((to, &x), &c) in rows.zip(clocks).zip(&meeting.col) {
+            to[0] = c;
+            let (to, row) = (&mut to[1..], &self.row(p + usize::from(x))[p..self.n]);
+            let each = to.iter_mut().zip(clocks.iter().map(|&y| usize::from(y)));
+            match (whole, c < INF) {
+                (true, true) => lesser_sums(to, row, c, times),
+                (false, true) => each.for_each(|(to, y)| *to = row[y].min(sum(c, times[y]))),
+                // Where `c` is no bound, the sum is none, either.
+                (true, false) => to.copy_from_slice(row),
+                (false, false) => each.for_each(|(to, y)| *to = row[y]),
+            }
         }
         Ok(true)
     }
@@ -235,8 +288,9 @@ impl MeetingBounds {
         if !self.gather(zone, processes.iter().map(|&p| usize::from(p))) {
             return Ok(false);
         }
+        self.narrows = processes.len() > 1;
         for b in bounds {
-            self.bound(zone, *b);
+            self.narrows |= self.bound(zone, *b);
         }
         if bounds.iter().any(|b| self.is_cyclic(zone.processes + usize::from(b.clock))) {
             return Ok(false);
@@ -246,37 +300,30 @@ impl MeetingBounds {
     }
 
     fn gather(&mut self, zone: &LocalZone, processes: impl Iterator<Item = usize> + Clone) -> bool {
-        let n = zone.n;
+        let mut others = processes.clone();
+        let first = others.next().unwrap_or(0);
         self.row.clear();
-        self.row.resize(n, INF);
-        self.col.clear();
-        self.col.resize(n, INF);
-        for p in processes.clone() {
-            for (at, &b) in self.row.iter_mut().zip(zone.row(p)) {
-                *at = b.min(*at);
-            }
+        self.row.extend_from_slice(zone.row(first));
+        for p in others.clone() {
+            lower(&mut self.row, zone.row(p));
         }
         if processes.clone().any(|p| self.row[p] < ZERO) {
             return false;
         }
-        for (i, at) in self.col.iter_mut().enumerate() {
-            let row = zone.row(i);
-            for p in processes.clone() {
-                *at = row[p].min(*at);
-            }
-        }
+        self.col.clear();
+        self.col.extend(zone.rows().map(|row| others.clone().fold(row[first], |least, p| row[p].min(least))));
         true
     }
 
     /// As [`gather`](Self::gather) of all processes, but the columns of these clocks only.
     fn gather_all(&mut self, zone: &LocalZone, clocks: &[u16]) -> bool {
-        let (p, n) = (zone.processes, zone.n);
+        let p = zone.processes;
         self.row.clear();
-        self.row.resize(n, INF);
-        for row in zone.d[..p * n].chunks_exact(n) {
-            for (at, &b) in self.row.iter_mut().zip(row) {
-                *at = b.min(*at);
-            }
+        self.row.resize(zone.stride, INF);
+        let times = &zone.d[..p * zone.stride];
+        for (lane, to) in lanes_mut(&mut self.row).iter_mut().enumerate() {
+            let rows = times.chunks_exact(zone.stride).map(|row| &lanes(row)[lane]);
+            *to = rows.fold(*to, |to, row| std::array::from_fn(|l| to[l].min(row[l])));
         }
         if self.row[..p].iter().any(|&b| b < ZERO) {
             return false;
@@ -287,17 +334,18 @@ impl MeetingBounds {
         true
     }
 
-    fn bound(&mut self, zone: &LocalZone, b: ClockBound) {
+    /// Whether the bound is tighter than what was known.
+    fn bound(&mut self, zone: &LocalZone, b: ClockBound) -> bool {
         let k = zone.processes + usize::from(b.clock);
-        if b.upper && b.bound < self.row[k] {
-            for (at, &more) in self.row.iter_mut().zip(zone.row(k)) {
-                *at = plus(b.bound, more).min(*at);
-            }
-        } else if !b.upper && b.bound < self.col[k] {
-            for (i, at) in self.col.iter_mut().enumerate() {
-                *at = plus(zone.d[i * zone.n + k], b.bound).min(*at);
+        let tighter = b.bound < if b.upper { self.row[k] } else { self.col[k] };
+        if tighter && b.upper {
+            relax(&mut self.row, b.bound, zone.row(k));
+        } else if tighter {
+            for (at, row) in self.col.iter_mut().zip(zone.rows()) {
+                *at = plus(row[k], b.bound).min(*at);
             }
         }
+        tighter
     }
 
     /// Whether the bounds on the time and one variable contradict each other. A bound that is new is part of any new
@@ -308,16 +356,45 @@ impl MeetingBounds {
 
     /// Makes the bounds ready to be added without looking for [`INF`] in rows.
     fn finish(&mut self) -> Result<(), BoundOverflowError> {
-        let mut most = 0;
-        for at in &mut self.row {
-            let there = *at < INF;
-            most = most.max(if there { at.abs() } else { 0 });
-            *at = if there { *at } else { 2 * INF };
+        // Whether it is out of bounds: as long as it is below both ends, as a number without a sign.
+        let far = |at: LocalZoneBound| (at < INF) & ((at + MOST) as u32 > 2 * MOST as u32);
+        let mut any = self.col.iter().fold(false, |any, &at| any | far(at));
+        for row in lanes_mut(&mut self.row) {
+            any |= row.iter().fold(false, |any, &at| any | far(at));
+            *row = row.map(|at| if at < INF { at } else { 2 * INF });
         }
-        for &at in &self.col {
-            most = most.max(if at < INF { at.abs() } else { 0 });
-        }
-        if most > MOST { Err(BoundOverflowError) } else { Ok(()) }
+        if any { Err(BoundOverflowError) } else { Ok(()) }
+    }
+}
+
+/// Each bound becomes the lesser of the two.
+fn lower(row: &mut [LocalZoneBound], other: &[LocalZoneBound]) {
+    for (to, other) in lanes_mut(row).iter_mut().zip(lanes(other)) {
+        *to = std::array::from_fn(|l| to[l].min(other[l]));
+    }
+}
+
+/// Each bound becomes the lesser of the old one and the [`sum`] of `bound` and that of `through`.
+fn lesser_sums(
+    to: &mut [LocalZoneBound],
+    old: &[LocalZoneBound],
+    bound: LocalZoneBound,
+    through: &[LocalZoneBound],
+) {
+    let rest = to.len() / LANES * LANES;
+    let others = lanes(old).iter().zip(lanes(through));
+    for (to, (old, through)) in lanes_mut(to).iter_mut().zip(others) {
+        *to = std::array::from_fn(|l| old[l].min(sum(bound, through[l])));
+    }
+    for ((to, &old), &through) in to[rest..].iter_mut().zip(&old[rest..]).zip(&through[rest..]) {
+        *to = old.min(sum(bound, through));
+    }
+}
+
+/// Each bound becomes the lesser of it and the sum of `bound` and that of `through`.
+fn relax(row: &mut [LocalZoneBound], bound: LocalZoneBound, through: &[LocalZoneBound]) {
+    for (to, through) in lanes_mut(row).iter_mut().zip(lanes(through)) {
+        *to = std::array::from_fn(|l| to[l].min(plus(bound, through[l])));
     }
 }
 
@@ -328,6 +405,23 @@ pub(crate) struct LocalLuBounds {
     pub lower: LocalZoneBound,
     /// `≤ -U`; without an upper bound, [`INF`].
     pub upper: LocalZoneBound,
+}
+
+impl LocalLuBounds {
+    /// The clock is never compared before it is set.
+    pub(crate) const NEVER: Self = Self { lower: INF, upper: INF };
+
+    /// `None`: a number is too large.
+    pub(crate) fn of(lu: LuBounds) -> Option<Self> {
+        let lower = if lu.lower == NONE { Some(INF) } else { lt(-lu.lower) };
+        let upper = if lu.upper == NONE { Some(INF) } else { le(-lu.upper) };
+        Some(Self { lower: lower?, upper: upper? })
+    }
+
+    /// Of a clock that both are known of: the greater numbers are the lesser bounds.
+    pub(crate) fn join(self, other: Self) -> Self {
+        Self { lower: self.lower.min(other.lower), upper: self.upper.min(other.upper) }
+    }
 }
 
 /// Whether each valuation of the synchronised zone `a` is simulated by one of `b`: `a ⊆ aLU(b)`.

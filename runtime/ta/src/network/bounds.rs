@@ -2,6 +2,7 @@
 
 use crate::{
     network::{
+        by_location::LocationTable,
         code::CodeLibrary,
         error::ModelError,
         parts::{ClockConstraints, CompiledAutomaton, CompiledEdge, EdgeSync, EdgeUpdate},
@@ -17,16 +18,15 @@ const FAR: i64 = 1 << 50;
 
 /// What the static analysis found.
 pub(crate) struct ExtrapolationBounds {
-    /// Own clocks that matter, location by location.
-    own: Vec<(u16, LuBounds)>,
-    /// By member and location: where its own clocks lie in `own`.
-    places: Vec<Vec<(u32, u32)>>,
+    /// Own clocks that matter.
+    pub(crate) own: LocationTable<(u16, LuBounds)>,
     /// How many own clocks matter at most in a state.
     most_own: usize,
-    /// By member and location: the bounds of the shared clocks.
-    shared: Vec<Vec<Vec<LuBounds>>>,
-    shared_clocks: usize,
-    all_clocks: bool,
+    /// The bounds of all shared clocks.
+    pub(crate) shared: LocationTable<LuBounds>,
+    pub(crate) shared_clocks: usize,
+    /// Clocks are kept even where they do not matter.
+    pub(crate) all_clocks: bool,
     pub(crate) diagonals: Option<DiagonalConstraints>,
 }
 
@@ -52,25 +52,18 @@ impl ExtrapolationBounds {
         }
         let all_clocks = all_clocks || diagonals.is_some();
         let keep = |lu: &LuBounds| all_clocks || *lu != NEVER;
-        let (mut own, mut places): (Vec<_>, Vec<Vec<(u32, u32)>>) = (Vec::new(), Vec::new());
-        for (m, rows) in members.iter().zip(&analysis.bounds) {
+        let own = LocationTable::new(members.iter().zip(&analysis.bounds).map(|(m, rows)| {
             let first = m.first_clock as u16;
-            let place = |row: &Vec<LuBounds>| {
-                let begin = own.len() as u32;
-                let clocks = (first..).zip(row[shared_clocks..].iter().copied());
-                own.extend(clocks.filter(|(_, lu)| keep(lu)));
-                (begin, own.len() as u32)
-            };
-            places.push(rows.iter().map(place).collect());
-        }
-        let most = |places: &Vec<(u32, u32)>| places.iter().map(|(begin, end)| end - begin).max();
-        let most_own = places.iter().filter_map(most).sum::<u32>() as usize;
-        let shared = |rows: &Vec<Vec<LuBounds>>| rows.iter().map(|r| r[..shared_clocks].to_vec()).collect();
+            let clocks = move |row: &'_ Vec<LuBounds>| (first..).zip(row[shared_clocks..].to_vec());
+            rows.iter().map(move |row| clocks(row).filter(move |(_, lu)| keep(lu)))
+        }));
+        let shared = |rows: &'_ Vec<Vec<LuBounds>>| {
+            rows.iter().map(|r| r[..shared_clocks].to_vec()).collect::<Vec<_>>()
+        };
         Ok(Self {
+            most_own: own.most(),
             own,
-            places,
-            most_own,
-            shared: analysis.bounds.iter().map(shared).collect(),
+            shared: LocationTable::new(analysis.bounds.iter().map(shared)),
             shared_clocks,
             all_clocks,
             diagonals,
@@ -88,11 +81,11 @@ impl ExtrapolationBounds {
             return d.greatest.clone();
         }
         let mut all = vec![0; dim];
-        for &(clock, lu) in &self.own {
+        for &(clock, lu) in self.own.items() {
             let most = &mut all[usize::from(clock)];
             *most = lu.lower.max(lu.upper).max(*most);
         }
-        for row in self.shared.iter().flatten() {
+        for row in self.shared.items().chunks_exact(self.shared_clocks.max(1)) {
             for (most, lu) in all.iter_mut().skip(1).zip(row) {
                 *most = lu.lower.max(lu.upper).max(*most);
             }
@@ -109,19 +102,15 @@ impl ExtrapolationBounds {
         (out.clocks[0], out.bounds[0]) = (0, LuBounds { lower: 0, upper: 0 });
         let mut count = 1;
         for x in 0..self.shared_clocks {
-            let rows = self.shared.iter().zip(state);
-            let lu = rows.map(|(by_location, &at)| by_location[at as usize][x]).fold(NEVER, LuBounds::join);
+            let lu = self.shared.rows(state).map(|row| row[x]).fold(NEVER, LuBounds::join);
             if self.all_clocks || lu != NEVER {
                 (out.clocks[count], out.bounds[count]) = (x as u16 + 1, lu);
                 count += 1;
             }
         }
-        for (by_location, &at) in self.places.iter().zip(state) {
-            let (begin, end) = by_location[at as usize];
-            for &own in &self.own[begin as usize..end as usize] {
-                (out.clocks[count], out.bounds[count]) = own;
-                count += 1;
-            }
+        for &own in self.own.rows(state).flatten() {
+            (out.clocks[count], out.bounds[count]) = own;
+            count += 1;
         }
         out.clocks.truncate(count);
         out.bounds.truncate(count);

@@ -11,10 +11,11 @@ use hrdsl_ir::{
 
 use crate::network::{
     bounds::ExtrapolationBounds,
+    by_location::LocationTable,
     code::{CodeLibrary, SyncMedium, VariablePlace, VariableScope},
     compiler::{ModelResult, NetworkCompiler, malformed},
     error::ModelError,
-    model::{CompiledNetwork, ObservationOptions},
+    model::{CompiledNetwork, MembersByTrait, ObservationOptions},
     number::{NumberType, gcd},
     parts::{
         ClockConstraints, CompiledAutomaton, CompiledEdge, CompiledLocation, EdgeSync, EdgeUpdate, TimeExpr,
@@ -84,6 +85,8 @@ fn compiled<'p>(
         multiway: multiway_channels(program, network),
         watch,
         extrapolation,
+        invariants: LocationTable::of(&members, |l| l.invariant.fixed.clone()),
+        with: MembersByTrait::of(&members),
         reach: reach?,
         pairs: observe.pairs,
         uses: observe.uses,

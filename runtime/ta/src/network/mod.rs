@@ -2,6 +2,7 @@
 
 pub(crate) mod actions;
 pub(crate) mod bounds;
+pub(crate) mod by_location;
 pub(crate) mod code;
 mod compile;
 mod compiler;

@@ -12,13 +12,15 @@ use hrdsl_ir::{
 
 use crate::network::{
     bounds::ExtrapolationBounds,
+    by_location::LocationTable,
     code::{CodeEvalError, CodeLibrary, SyncMedium, VariablePlace, VariableScope},
     error::{EdgeName, ModelError, range_fault},
     number::NumberType,
-    parts::{CompiledAutomaton, CompiledLocation, EventWatch, MultiwayChannel},
+    parts::{CompiledAutomaton, CompiledLocation, EventWatch, MultiwayChannel, stops_time},
     query::{EventCounter, EventLimit, GoalKind, ReachabilityGoal, StateFormula},
     width::BoundReach,
 };
+use crate::zone::constraint::DifferenceConstraint;
 
 /// What a model keeps beside the state of its automata, and what it will be asked.
 #[derive(Clone, Debug, Default)]
@@ -65,6 +67,33 @@ pub(crate) enum BoundWidth {
     Bits64,
 }
 
+/// The members with a location of each kind: in no other need it be looked for.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MembersByTrait {
+    pub committed: Vec<u16>,
+    /// Urgent or committed.
+    pub stop_time: Vec<u16>,
+    /// With an edge that offers on an urgent channel.
+    pub urgent_edges: Vec<u16>,
+    /// With an invariant that has a part over variables.
+    pub data_invariants: Vec<u16>,
+}
+
+impl MembersByTrait {
+    pub(crate) fn of(members: &[CompiledAutomaton]) -> Self {
+        let with = |is: fn(&CompiledLocation) -> bool| {
+            let has = |m: &u16| members[usize::from(*m)].locations.iter().any(is);
+            (0..members.len() as u16).filter(has).collect()
+        };
+        Self {
+            committed: with(|l| l.kind == LocationKind::Committed),
+            stop_time: with(|l| stops_time(l.kind)),
+            urgent_edges: with(|l| !l.urgent.is_empty()),
+            data_invariants: with(|l| l.holds.is_some() || !l.invariant.moving.is_empty()),
+        }
+    }
+}
+
 /// A network made ready to explore.
 pub struct CompiledNetwork<'p> {
     pub(crate) program: &'p Program,
@@ -84,6 +113,9 @@ pub struct CompiledNetwork<'p> {
     /// By event.
     pub(crate) watch: Vec<EventWatch>,
     pub(crate) extrapolation: ExtrapolationBounds,
+    /// The clock part of the invariants, as far as it does not depend on variables.
+    pub(crate) invariants: LocationTable<DifferenceConstraint>,
+    pub(crate) with: MembersByTrait,
     pub(crate) reach: BoundReach,
     pub(crate) pairs: bool,
     pub(crate) uses: bool,
@@ -187,7 +219,7 @@ impl<'p> CompiledNetwork<'p> {
     }
 
     pub(crate) fn any_committed(&self, state: &[i64]) -> bool {
-        (0..self.members.len()).any(|m| self.place(state, m).kind == LocationKind::Committed)
+        self.with.committed.iter().any(|&m| self.is_committed(state, usize::from(m)))
     }
 
     /// The range of each number of a discrete state.

@@ -154,6 +154,8 @@ pub(crate) enum EdgeSync {
 pub(crate) struct EdgeOutput {
     pub medium: SyncMedium,
     pub args: Box<[OutputArgument]>,
+    /// What it always sends, if all of it is constant and within its ranges.
+    pub fixed: Option<Box<[i64]>>,
     /// The others take part if they can; otherwise exactly one takes part.
     pub broadcast: bool,
     pub partners: Vec<InputPartner>,
@@ -163,6 +165,13 @@ pub(crate) struct OutputArgument {
     pub code: CompiledExpr,
     /// The range that its parameter allows.
     pub range: (i64, i64),
+}
+
+impl OutputArgument {
+    /// What it always is, if that is within its range.
+    pub(crate) fn fixed(&self) -> Option<i64> {
+        self.code.constant().filter(|n| (self.range.0..=self.range.1).contains(n))
+    }
 }
 
 /// An automaton that may take what an edge sends.

@@ -192,7 +192,7 @@ impl<'p> CompiledNetwork<'p> {
         e.combine(&options, Some(medium))
     }
 
-    fn is_committed(&self, state: &[i64], member: usize) -> bool {
+    pub(crate) fn is_committed(&self, state: &[i64], member: usize) -> bool {
         self.place(state, member).kind == LocationKind::Committed
     }
 
@@ -307,9 +307,11 @@ impl<'p> CompiledNetwork<'p> {
         out: &mut Vec<DifferenceConstraint>,
     ) -> Result<bool, ModelError> {
         out.clear();
-        for m in 0..self.members.len() {
+        for row in self.invariants.rows(state) {
+            out.extend(row.iter().copied());
+        }
+        for m in self.with.data_invariants.iter().map(|&m| usize::from(m)) {
             let spot = self.place(state, m);
-            out.extend_from_slice(&spot.invariant.fixed);
             if spot.invariant.moving.is_empty() && spot.holds.is_none() {
                 continue;
             }
@@ -349,15 +351,16 @@ impl<'p> CompiledNetwork<'p> {
 
     /// Whether time may pass: no location is urgent or committed, and nothing is possible over an urgent channel.
     pub(crate) fn may_delay(&self, state: &mut [i64], scratch: &mut EnumerationScratch) -> bool {
-        (0..self.members.len()).all(|m| !stops_time(self.place(state, m).kind))
-            && !self.hurries(state, scratch)
+        let stands = |&m: &u16| stops_time(self.place(state, usize::from(m)).kind);
+        !self.with.stop_time.iter().any(stands) && !self.hurries(state, scratch)
     }
 
     /// Whether a transition over an urgent channel is possible, as far as variables tell.
     fn hurries(&self, state: &mut [i64], scratch: &mut EnumerationScratch) -> bool {
         let mut hurry = |_: FiringOrError| ControlFlow::Break(());
         let any_multiway = self.multiway.iter().any(|j| j.urgent);
-        let offers = (0..self.members.len()).any(|m| !self.place(state, m).urgent.is_empty());
+        let urgent = &self.with.urgent_edges;
+        let offers = urgent.iter().any(|&m| !self.place(state, usize::from(m)).urgent.is_empty());
         if !any_multiway && !offers {
             return false;
         }
@@ -372,7 +375,7 @@ impl<'p> CompiledNetwork<'p> {
             found: &mut hurry,
             s: scratch,
         };
-        for m in 0..self.members.len() {
+        for m in urgent.iter().map(|&m| usize::from(m)) {
             for &edge in &self.place(e.state, m).urgent {
                 if e.active(m, usize::from(edge)).is_break() {
                     return true;
@@ -406,6 +409,9 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>
         let before = self.s.guard.len();
         let mut bounds = Ok(());
         if arrow.guard.moving.is_empty() {
+            if arrow.guard.fixed.is_empty() {
+                return Ok(true);
+            }
             self.s.guard.extend_from_slice(&arrow.guard.fixed);
         } else {
             self.s.stack.clear();
@@ -532,6 +538,10 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>
 
     fn arguments(&mut self, signal: &EdgeOutput, binders: &[i64]) -> Result<(), CodeEvalError> {
         let model = self.model;
+        if let Some(fixed) = &signal.fixed {
+            self.s.args.extend_from_slice(fixed);
+            return Ok(());
+        }
         for (i, arg) in signal.args.iter().enumerate() {
             self.s.stack.clear();
             self.s.stack.extend_from_slice(binders);
@@ -574,8 +584,14 @@ impl<M: ConstraintFilter, F: FnMut(FiringOrError) -> EnumerationFlow + ?Sized>
         let mut chosen = SmallVec::new();
         let mut more = first(&arrow.selects, &mut chosen);
         while more {
-            let mut binders: SmallVec<[i64; 4]> = SmallVec::from_slice(&chosen);
-            binders.extend(pattern.binds.iter().map(|&i| self.s.args[usize::from(i)]));
+            let mut binders: SmallVec<[i64; 4]> = SmallVec::new();
+            // Most edges have none of both: to copy nothing takes as long.
+            if !chosen.is_empty() {
+                binders.extend_from_slice(&chosen);
+            }
+            if !pattern.binds.is_empty() {
+                binders.extend(pattern.binds.iter().map(|&i| self.s.args[usize::from(i)]));
+            }
             match self.opens(member, edge, &binders) {
                 Ok(true) => {
                     self.s.parts.push(CompiledMove { member: member as u16, edge: edge as u16, binders });

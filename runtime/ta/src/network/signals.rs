@@ -100,7 +100,8 @@ impl NetworkCompiler<'_, '_> {
             all.push(OutputArgument { code: self.argument(automaton, names, arg, ty)?, range: (lo, hi) });
         }
         let broadcast = self.broadcast(medium);
-        Ok(EdgeSync::Out(EdgeOutput { medium, args: all.into(), broadcast, partners: Vec::new() }))
+        let fixed = all.iter().map(OutputArgument::fixed).collect();
+        Ok(EdgeSync::Out(EdgeOutput { medium, args: all.into(), fixed, broadcast, partners: Vec::new() }))
     }
 
     pub(super) fn broadcast(&self, medium: SyncMedium) -> bool {

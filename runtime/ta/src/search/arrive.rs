@@ -120,7 +120,7 @@ impl<N: DbmNumber> NodeExpansion<'_, '_, '_, N> {
                 split(zone, &d.constraints, &m.greatest, &mut |piece| m.pieces.push(piece));
             }
             None => {
-                extra_lu(frame, zone, &mut m.beyond);
+                extra_lu(frame, zone, &mut m.most);
                 m.pieces.truncate(1);
                 if m.pieces.is_empty() {
                     m.pieces.push(Dbm::zero(1));

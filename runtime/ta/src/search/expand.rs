@@ -81,7 +81,8 @@ pub(super) struct WorkerMemory<N> {
     pub(super) zone: Dbm<N>,
     pub(super) pieces: Vec<Dbm<N>>,
     pub(super) covers: Vec<u32>,
-    pub(super) beyond: Vec<bool>,
+    /// What the columns of a zone let stay.
+    pub(super) most: Vec<N>,
     /// What a search by the topological order knows of locations.
     pub(super) levels: Vec<Vec<u32>>,
     /// The lower bound of the time at which a goal over clocks is met.
@@ -111,7 +112,7 @@ impl<'m, 'p, N: DbmNumber> ExpansionWorker<'m, 'p, N> {
             zone: Dbm::zero(1),
             pieces: Vec::new(),
             covers: Vec::new(),
-            beyond: Vec::new(),
+            most: Vec::new(),
             levels: waiting::levels(model),
             earliest: None,
             greatest: greatest.into_iter().chain(clocks.time).collect(),

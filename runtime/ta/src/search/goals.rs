@@ -122,6 +122,10 @@ pub(crate) struct CompiledGoals {
     tests_anywhere: Vec<u32>,
     pub symbolic: Vec<(usize, bool, SymbolicFormula)>,
     any_locations: bool,
+    /// The members that have tests at some location.
+    tested: Vec<usize>,
+    /// No goal is about edges.
+    no_edges: bool,
 }
 
 impl CompiledGoals {
@@ -148,6 +152,11 @@ impl CompiledGoals {
                 None => all.tests_anywhere.push(number),
             }
         }
+        all.tested =
+            (0..all.tests_at.len()).filter(|&m| all.tests_at[m].iter().any(|t| !t.is_empty())).collect();
+        all.no_edges = all.edges.iter().all(Vec::is_empty)
+            && all.pairs.iter().all(Vec::is_empty)
+            && all.uses.iter().all(Vec::is_empty);
         Ok(all)
     }
 
@@ -186,6 +195,9 @@ impl CompiledGoals {
 
     /// The goals that taking these edges meets.
     pub(crate) fn taken(&self, number: u32, before: &[i64], last: Option<usize>, met: &mut dyn FnMut(usize)) {
+        if self.no_edges {
+            return;
+        }
         let n = number as usize;
         self.edges[n].iter().for_each(|g| met(*g));
         if let Some(last) = last {
@@ -223,7 +235,7 @@ impl CompiledGoals {
             let differs = before.iter().zip(&*state).enumerate().filter(|(_, (a, b))| a != b);
             differs.fold(0, |bits, (place, _)| bits | place_bit(place))
         });
-        for member in 0..self.tests_at.len() {
+        for &member in &self.tested {
             let at = state[member] as usize;
             self.some_tests(&self.tests_at[member][at], changed, (state, stack), model, settled, open, met)?;
         }

@@ -110,6 +110,9 @@ pub trait DbmNumber:
     /// Pushes the least of `row[l]`, `column[l] + more` and `most[l]` for each `l`: none of the sums overflows.
     fn least_of(row: &[Self], column: &[Self], most: &[Self], more: Self, out: &mut Vec<Self>);
 
+    /// Bounds above `most`, or above that of their column, are none afterwards. Returns whether any was lost. All are whole lanes.
+    fn drop_above(row: &mut [Self], most: Self, columns: &[Self]) -> bool;
+
     /// As a word of a hash.
     fn word(self) -> u64 {
         let n: i64 = self.into();
@@ -152,6 +155,20 @@ macro_rules! number {
                     (false, 0) => (self, !1),
                     (false, _) => (self & !1, !0),
                 }
+            }
+
+            #[inline]
+            fn drop_above(row: &mut [Self], most: Self, columns: &[Self]) -> bool {
+                let mut lost = [false; $lanes];
+                for (row, columns) in
+                    row.as_chunks_mut::<$lanes>().0.iter_mut().zip(columns.as_chunks::<$lanes>().0)
+                {
+                    let gone: [bool; $lanes] =
+                        std::array::from_fn(|l| (row[l] > most.min(columns[l])) & (row[l] != Self::INFINITY));
+                    *row = std::array::from_fn(|l| if gone[l] { Self::INFINITY } else { row[l] });
+                    lost = std::array::from_fn(|l| lost[l] | gone[l]);
+                }
+                lost.contains(&true)
             }
 
             #[inline]

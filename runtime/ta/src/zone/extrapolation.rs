@@ -76,51 +76,30 @@ impl ActiveClocks {
 }
 
 /// Extrapolates by lower and upper bounds, and closes again if anything changed.
-pub(crate) fn extra_lu<N: DbmNumber>(frame: &ActiveClocks, zone: &mut Dbm<N>, beyond: &mut Vec<bool>) {
+pub(crate) fn extra_lu<N: DbmNumber>(frame: &ActiveClocks, zone: &mut Dbm<N>, most: &mut Vec<N>) {
     let dim = zone.dim();
     let least = |zone: &Dbm<N>, i: usize| -zone.at(0, i).value();
-    // Clocks whose least value is above what they are compared with from above.
-    beyond.clear();
-    beyond.extend((0..dim).map(|j| least(zone, j) > frame.bounds[j].upper));
-    let any = beyond.iter().any(|b| *b);
+    // By column: what a bound must not exceed. Of clocks whose least value is above what they are compared with from above, none stays.
+    most.clear();
+    most.extend(
+        (0..dim).map(|j| if least(zone, j) > frame.bounds[j].upper { N::LEAST } else { N::INFINITY }),
+    );
+    most.resize(zone.row(0).len().next_multiple_of(N::LANES), N::INFINITY);
     let mut changed = false;
     for i in 1..dim {
         let lower = frame.bounds[i].lower;
         let all = lower == NONE || least(zone, i) > lower;
-        let row = &mut zone.row_mut(i)[..dim];
+        let row = zone.row_mut(i);
         row[i] = N::INFINITY;
-        if all {
-            changed |= row.iter().any(|b| *b != N::INFINITY);
-            row.fill(N::INFINITY);
-        } else {
-            let most = N::of(DbmBound::le(lower));
-            let mut lost = false;
-            for b in row.iter_mut() {
-                let gone = *b > most && *b != N::INFINITY;
-                lost |= gone;
-                *b = if gone { N::INFINITY } else { *b };
-            }
-            if any {
-                for (b, far) in row.iter_mut().zip(beyond.iter()) {
-                    let gone = *far && *b != N::INFINITY;
-                    lost |= gone;
-                    *b = if gone { N::INFINITY } else { *b };
-                }
-            }
-            changed |= lost;
-        }
+        changed |= N::drop_above(row, if all { N::LEAST } else { N::of(DbmBound::le(lower)) }, most);
         row[i] = N::LE_ZERO;
     }
-    if any {
-        let row = zone.row_mut(0);
-        for j in 1..dim {
-            if beyond[j] {
-                let upper = frame.bounds[j].upper;
-                let new = if upper == NONE { N::LE_ZERO } else { N::of(DbmBound::lt(-upper)) };
-                changed |= row[j] != new;
-                row[j] = new;
-            }
-        }
+    let row = zone.row_mut(0);
+    for j in (1..dim).filter(|&j| most[j] == N::LEAST) {
+        let upper = frame.bounds[j].upper;
+        let new = if upper == NONE { N::LE_ZERO } else { N::of(DbmBound::lt(-upper)) };
+        changed |= row[j] != new;
+        row[j] = new;
     }
     if changed {
         zone.close();

@@ -70,13 +70,26 @@ fn fire(zone: &LocalZone, shot: &Shot) -> Option<LocalZone> {
     if !meeting.of(zone, &shot.who, &shot.bounds).unwrap() {
         return None;
     }
-    let mut next = LocalZone { processes: 0, n: 0, d: Vec::new() };
+    let mut next = LocalZone::default();
     next.restrict(zone, &meeting);
     next.assign(&shot.sets, usize::from(shot.who[0]));
     for &p in &shot.elapse {
         next.elapse(usize::from(p), &own(&shot.invariant, p));
     }
     Some(next)
+}
+
+/// The bounds of a zone, without the padding of its rows.
+fn unpadded(zone: &LocalZone) -> Vec<LocalZoneBound> {
+    zone.rows().flat_map(|row| row[..zone.n].to_vec()).collect()
+}
+
+fn padded(d: &[LocalZoneBound], n: usize) -> LocalZone {
+    let mut zone = LocalZone::start(PROCESSES, n - PROCESSES);
+    for (i, row) in d.chunks_exact(n).enumerate() {
+        zone.row_mut(i)[..n].copy_from_slice(row);
+    }
+    zone
 }
 
 /// The same operations, each with a closure from scratch.
@@ -93,7 +106,7 @@ fn close(d: &mut [LocalZoneBound], n: usize) -> bool {
 
 fn fire_slowly(zone: &LocalZone, shot: &Shot) -> Option<LocalZone> {
     let (n, now) = (zone.n, usize::from(shot.who[0]));
-    let mut d = zone.d.clone();
+    let mut d = unpadded(zone);
     for &p in &shot.who {
         for &q in &shot.who {
             let at = usize::from(p) * n + usize::from(q);
@@ -132,12 +145,12 @@ fn fire_slowly(zone: &LocalZone, shot: &Shot) -> Option<LocalZone> {
             d[at] = d[at].min(b.bound);
         }
     }
-    close(&mut d, n).then_some(LocalZone { processes: PROCESSES, n, d })
+    close(&mut d, n).then_some(padded(&d, n))
 }
 
 fn synchronise_slowly(zone: &LocalZone) -> Option<Vec<LocalZoneBound>> {
     let n = zone.n;
-    let mut d = zone.d.clone();
+    let mut d = unpadded(zone);
     for p in 0..PROCESSES {
         for q in 0..PROCESSES {
             d[p * n + q] = d[p * n + q].min(ZERO);
@@ -197,7 +210,7 @@ fn fire_points(points: &Points, shot: &Shot) -> Points {
 
 fn contains(zone: &LocalZone, p: &[i8; 7]) -> bool {
     let all = (0..7).flat_map(|i| (0..7).map(move |j| (i, j)));
-    all.into_iter().all(|(i, j)| 2 * (i32::from(p[i]) - i32::from(p[j])) < zone.d[i * 7 + j])
+    all.into_iter().all(|(i, j)| 2 * (i32::from(p[i]) - i32::from(p[j])) < zone.row(i)[j])
 }
 
 proptest! {
@@ -221,8 +234,8 @@ proptest! {
             prop_assert_eq!(less.synchronised(&[0, 2], &mut MeetingBounds::default(), &mut two).unwrap(), any);
             let all = [0, 1, 3].into_iter().flat_map(|i| [0, 1, 3].map(|j| i * 5 + j));
             prop_assert!(!any || all.zip(&two).all(|(at, b)| out[at] == *b));
-            let closed = { let mut d = less.d.clone(); close(&mut d, 7); d };
-            prop_assert_eq!(closed, less.d);
+            let closed = { let mut d = unpadded(&less); close(&mut d, 7); padded(&d, 7) };
+            prop_assert_eq!(closed, less);
         }
     }
 
