@@ -10,7 +10,7 @@ use hrdsl_ir::{
 };
 use hrdsl_ta::{
     CompiledNetwork, GoalKind, GoalOutcome, ModelError, ObservationOptions, ReachabilityGoal, SearchBudget,
-    SearchCutoff, SearchError, SearchReport, StateFormula, TimeFrame, explore,
+    SearchCutoff, SearchError, SearchOrder, SearchReport, StateFormula, TimeFrame, explore,
     local::{self, LocalSearchError, LocalSearchOptions, NotApplicableError},
 };
 use local_nets::{Draft, Member};
@@ -75,6 +75,12 @@ fn goals(p: &Program) -> Vec<ReachabilityGoal> {
     goals
 }
 
+/// What a report says of the search itself.
+fn figures(r: &SearchReport) -> [usize; 6] {
+    let complete = usize::from(r.complete);
+    [r.states_stored, r.states_visited, r.discrete_states, r.transitions, r.peak_bytes, complete]
+}
+
 /// Both searches answer all goals alike. Witnesses were replayed before they are here.
 fn agree(p: &Program) {
     let goals = goals(p);
@@ -87,6 +93,14 @@ fn agree(p: &Program) {
         (Err(LocalSearchError::Search(SearchError::Model { .. })), Err(SearchError::Model { .. })) => return,
         (local, global) => panic!("{local:?} with local time, {global:?} with global time"),
     };
+    let breadth = |threads| {
+        let options =
+            LocalSearchOptions { threads, order: SearchOrder::Breadth, ..LocalSearchOptions::default() };
+        local::explore(&model, &goals, &options, &|_| true).ok()
+    };
+    let (one, three) = (breadth(1), breadth(3));
+    assert_eq!(one.as_ref().map(figures), three.as_ref().map(figures));
+    assert!(one == three, "runs differ");
     for ((goal, a), b) in goals.iter().zip(&local.goals).zip(&global.goals) {
         let same = matches!(
             (a, b),
@@ -110,6 +124,33 @@ fn families_have_the_same_answers() {
     agree(&families::fischer(4));
     agree(&families::csma_cd(3));
     agree(&families::critical_region(2));
+}
+
+/// All that is reported, work and memory included, however many threads compute successors: of whole searches, of those that end
+/// with their last goal, and of those that the budget ends.
+#[test]
+fn threads_change_nothing() {
+    let models = [families::corsso(3), families::philosophers(5), families::fddi(4), families::csma_cd(5)];
+    for p in models {
+        let model = model(&p);
+        for goals in [Vec::new(), goals(&p), goals(&p)[..4].to_vec()] {
+            for states in [usize::MAX, 700] {
+                let budget = SearchBudget { states, ..SearchBudget::default() };
+                let one = LocalSearchOptions {
+                    budget,
+                    order: SearchOrder::Breadth,
+                    ..LocalSearchOptions::default()
+                };
+                let report = |options| local::explore(&model, &goals, &options, &|_| true).unwrap();
+                let expected = report(one);
+                for threads in [2, 3, 4] {
+                    let report = report(LocalSearchOptions { threads, ..one });
+                    assert_eq!(figures(&report), figures(&expected), "{threads} threads");
+                    assert!(report == expected, "other runs with {threads} threads");
+                }
+            }
+        }
+    }
 }
 
 /// That an automaton is in the first two of its locations at once, which no state meets, and, if wanted, each location of the

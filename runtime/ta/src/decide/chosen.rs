@@ -116,7 +116,12 @@ fn trial<'m, 'p>(
     let mut budget = options.budget;
     budget.bytes = budget.bytes.saturating_sub(seen.bytes);
     // Its runs are not shown, so that any order will do: breadth first needs the least memory.
-    let alone = LocalSearchOptions { order: SearchOrder::Breadth, budget, ..LocalSearchOptions::default() };
+    let alone = LocalSearchOptions {
+        order: SearchOrder::Breadth,
+        budget,
+        threads: options.threads,
+        ..LocalSearchOptions::default()
+    };
     let begun = LocalSearch::begin(model, goals, &alone).map_err(left);
     let mut search = match begun {
         Ok(search) => search,

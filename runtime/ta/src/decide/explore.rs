@@ -61,7 +61,13 @@ pub fn explore(
         TimeFrame::Local => {}
     }
     let SearchOptions { order, seed, budget, .. } = *options;
-    let alone = local::LocalSearchOptions { order, seed, budget, ..local::LocalSearchOptions::default() };
+    let alone = local::LocalSearchOptions {
+        order,
+        seed,
+        budget,
+        threads: options.threads,
+        ..local::LocalSearchOptions::default()
+    };
     match local::explore(model, goals, &alone, go_on) {
         Ok(report) => Ok(report),
         Err(local::LocalSearchError::Search(error)) => Err(error),

@@ -47,6 +47,8 @@
 //! - *Faults* of a transition are met if all others can reach its time, then by a run of the network up to that time.
 
 mod access;
+mod at_once;
+mod crew;
 mod order;
 mod refusal;
 mod search;

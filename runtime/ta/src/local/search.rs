@@ -1,20 +1,20 @@
 //! Search of the local zone graph, with subsumption on the synchronised part of zones.
 
-use std::{ops::ControlFlow, rc::Rc};
+use std::{rc::Rc, sync::Arc};
 
 use super::{
+    crew::{LocalBatch, LocalCrew, LocalWorker, met_by_edges},
     order,
     refusal::{LocalSearchError, NotApplicableError},
-    space::{LocalStateSpace, LocalWorkspace, LocalZoneFilter},
+    space::{LocalStateSpace, LocalWorkspace},
     waiting::WaitingZones,
-    zone::{self, LocalZone, LocalZoneBound},
+    zone::{self, LocalZoneBound},
 };
 use crate::{
     network::{
         actions::PathTransition,
         model::CompiledNetwork,
         query::{ReachabilityGoal, SearchBudget},
-        semantics::{EnumerationScratch, FiringOrError, TransitionFiring},
     },
     search::{
         goals::CompiledGoals,
@@ -37,41 +37,51 @@ pub struct LocalSearchOptions {
     /// Shared variables and clocks become processes of their own, so that transitions that use the same do not commute.
     /// Otherwise networks that share any are refused.
     pub media: bool,
+    /// Breadth first, so many compute successors. What is found does not depend on it.
+    pub threads: usize,
 }
 
 impl Default for LocalSearchOptions {
     fn default() -> Self {
-        Self { order: SearchOrder::default(), seed: 0, budget: SearchBudget::default(), media: true }
+        Self {
+            order: SearchOrder::default(),
+            seed: 0,
+            budget: SearchBudget::default(),
+            media: true,
+            threads: 1,
+        }
     }
 }
 
 /// A path to a goal: a node, then perhaps one successor more.
 #[derive(Clone, Copy)]
-struct LocalGoalPath {
-    node: u32,
-    last: Option<u32>,
+pub(super) struct LocalGoalPath {
+    pub node: u32,
+    pub last: Option<u32>,
 }
 
 /// A search with local time, under way.
 pub(crate) struct LocalSearch<'m, 'p> {
-    space: LocalStateSpace<'m, 'p>,
+    pub(super) space: Arc<LocalStateSpace<'m, 'p>>,
     goals: &'m [ReachabilityGoal],
-    compiled: CompiledGoals,
+    pub(super) compiled: CompiledGoals,
     hits: Vec<Option<LocalGoalPath>>,
-    open: Vec<bool>,
+    pub(super) open: Vec<bool>,
     left: usize,
     /// Its zones are the stored ones as far as all processes have one time, of the clocks that matter.
-    store: PassedList<LocalZoneBound>,
-    zones: WaitingZones,
-    waiting: WaitingList,
+    pub(super) store: PassedList<LocalZoneBound>,
+    pub(super) zones: WaitingZones,
+    pub(super) waiting: WaitingList,
     levels: Vec<Vec<u32>>,
     packed: Vec<u64>,
-    met: Vec<usize>,
+    pub(super) met: Vec<usize>,
     driven_out: Vec<u32>,
     peak: usize,
-    visited: usize,
-    transitions: usize,
+    pub(super) visited: usize,
+    pub(super) transitions: usize,
     budget: SearchBudget,
+    order: SearchOrder,
+    threads: usize,
     memory: LocalWorkMemory,
     started: bool,
     /// After so many states the caller is asked whether to go on.
@@ -80,12 +90,11 @@ pub(crate) struct LocalSearch<'m, 'p> {
 
 /// Memory that the search uses again and again.
 #[derive(Default)]
-struct LocalWorkMemory {
-    work: LocalWorkspace,
-    scratch: EnumerationScratch,
-    state: Vec<i64>,
-    zone: LocalZone,
-    round: Vec<u32>,
+pub(super) struct LocalWorkMemory {
+    pub worker: LocalWorker,
+    pub crew: Option<LocalCrew>,
+    pub batches: Vec<LocalBatch>,
+    pub round: Vec<u32>,
 }
 
 /// Why [`LocalSearch::go`] has come back.
@@ -130,7 +139,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         }
         let layout = StateLayout::new(model.ranges(), &slice::relevant(model, &compiled, None));
         Ok(Self {
-            space,
+            space: Arc::new(space),
             goals,
             compiled,
             hits: vec![None; goals.len()],
@@ -147,6 +156,8 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
             visited: 0,
             transitions: 0,
             budget: options.budget,
+            order: options.order,
+            threads: options.threads,
             memory: LocalWorkMemory::default(),
             started: false,
             ask: 0,
@@ -184,46 +195,75 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         until: usize,
         go_on: &dyn Fn(&SearchProgress) -> bool,
     ) -> Result<LocalPause, LocalSearchError> {
-        let LocalWorkMemory { work: w, scratch, state, zone, round } = memory;
         if !std::mem::replace(&mut self.started, true) {
-            self.space.start(w)?;
-            zone.clone_from(&w.zone);
-            self.insert(w, NIL, 0)?;
+            let LocalWorker { work, zone, .. } = &mut memory.worker;
+            self.space.start(work)?;
+            zone.clone_from(&work.zone);
+            if self.threads > 1 {
+                memory.crew = Some(LocalCrew::new(self.threads, zone)?);
+            }
+            self.insert(work, NIL, 0)?;
         }
         loop {
             self.waiting.settle(&self.store.nodes);
-            if (!self.goals.is_empty() && self.left == 0) || self.waiting.is_empty(&self.store.nodes, None) {
-                return Ok(LocalPause::Ended);
+            if let Some(pause) = self.pause(until, false, go_on) {
+                return Ok(pause);
             }
-            if self.transitions >= until {
-                return Ok(LocalPause::Paused);
-            }
-            let bytes = self.store.bytes() + self.waiting.bytes() + self.zones.bytes();
-            self.peak = self.peak.max(bytes);
-            if self.store.nodes.len() >= self.budget.states || !self.store.has_room(self.space.room()) {
-                return Ok(LocalPause::Cut(SearchCutoff::States));
-            }
-            if bytes >= self.budget.bytes {
-                return Ok(LocalPause::Cut(SearchCutoff::Memory));
-            }
-            if self.visited >= self.ask {
-                self.ask = self.visited + ROUND;
-                if !go_on(&self.progress(bytes)) {
-                    return Ok(LocalPause::Cut(SearchCutoff::Stopped));
+            // One transition more than asked for could decide which search goes on: so only what has no end to keep is done at once.
+            if until == usize::MAX
+                && self.order == SearchOrder::Breadth
+                && self.waiting.len() > FEW
+                && memory.crew.is_some()
+            {
+                if let Some(pause) = self.go_at_once(memory, go_on)? {
+                    return Ok(pause);
                 }
+                continue;
             }
+            let LocalWorkMemory { worker, round, .. } = memory;
             self.waiting.take(&self.store.nodes, FEW, round);
             for &id in &*round {
                 // Another of the round may have driven it out.
-                if !self.zones.take(id, zone) {
+                if !self.zones.take(id, &mut worker.zone) {
                     continue;
                 }
                 let node = self.store.nodes[id as usize];
-                self.store.layout.unpack(self.store.packed(node.discrete), state);
+                self.store.layout.unpack(self.store.packed(node.discrete), &mut worker.state);
                 self.visited += 1;
-                self.expand(id, state, zone, w, scratch)?;
+                self.expand(id, worker)?;
             }
         }
+    }
+
+    /// Whether the search ends here, or for now. `more`: states were taken that were not looked at.
+    pub(super) fn pause(
+        &mut self,
+        until: usize,
+        more: bool,
+        go_on: &dyn Fn(&SearchProgress) -> bool,
+    ) -> Option<LocalPause> {
+        let empty = !more && self.waiting.is_empty(&self.store.nodes, None);
+        if (!self.goals.is_empty() && self.left == 0) || empty {
+            return Some(LocalPause::Ended);
+        }
+        if self.transitions >= until {
+            return Some(LocalPause::Paused);
+        }
+        let bytes = self.store.bytes() + self.zones.bytes();
+        self.peak = self.peak.max(bytes);
+        if self.store.nodes.len() >= self.budget.states || !self.store.has_room(self.space.room()) {
+            return Some(LocalPause::Cut(SearchCutoff::States));
+        }
+        if bytes >= self.budget.bytes {
+            return Some(LocalPause::Cut(SearchCutoff::Memory));
+        }
+        if self.visited >= self.ask {
+            self.ask = self.visited + ROUND;
+            if !go_on(&self.progress(bytes)) {
+                return Some(LocalPause::Cut(SearchCutoff::Stopped));
+            }
+        }
+        None
     }
 
     /// Which goals no run meets, after the end.
@@ -277,54 +317,23 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
         }
     }
 
-    fn expand(
-        &mut self,
-        id: u32,
-        state: &mut [i64],
-        zone: &LocalZone,
-        w: &mut LocalWorkspace,
-        scratch: &mut EnumerationScratch,
-    ) -> Result<(), LocalSearchError> {
-        let (before, model) = (state.to_vec(), self.space.model);
-        let processes = Rc::clone(&self.space.processes);
-        let may = LocalZoneFilter { zone, processes: &processes };
-        let (mut number, mut end) = (0, Ok(()));
-        let _ = model.enumerate(state, &may, scratch, &mut |found| {
-            let next = self.space.found(w, &before, zone, &found);
-            let done = match (next, &found) {
-                (Ok(true), FiringOrError::Firing(firing)) => {
-                    number += 1;
-                    self.transitions += 1;
-                    self.taken(&before, firing, (id, number - 1));
-                    self.insert(w, id, number - 1)
-                }
-                (Ok(_), _) => Ok(()),
-                (Err(failure), _) => Err(self.led_to(id, failure)),
-            };
-            end = done;
-            if end.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    fn expand(&mut self, id: u32, worker: &mut LocalWorker) -> Result<(), LocalSearchError> {
+        // INVARIANT: the space is not changed by what is stored.
+        let space = Arc::clone(&self.space);
+        let end = worker.successors(&space, |w, before, firing, number| {
+            self.transitions += 1;
+            if self.left > 0 {
+                self.met.clear();
+                met_by_edges(&space, &self.compiled, before, firing, &mut |goal| self.met.push(goal));
+                self.hit(LocalGoalPath { node: id, last: Some(number) });
+            }
+            self.insert(w, id, number)
         });
-        end
-    }
-
-    /// Looks at the goals that a transition meets.
-    fn taken(&mut self, before: &[i64], firing: &TransitionFiring, (node, number): (u32, u32)) {
-        if self.left == 0 {
-            return;
-        }
-        let model = self.space.model;
-        self.met.clear();
-        for part in firing.parts {
-            let m = usize::from(part.member);
-            let edge = model.members[m].edges[usize::from(part.edge)].number;
-            let last = model.pairs.then(|| model.last_edge_at(m));
-            self.compiled.taken(edge, before, last, &mut |goal| self.met.push(goal));
-        }
-        self.hit(LocalGoalPath { node, last: Some(number) });
+        end.map_err(|failure| self.led_to(id, failure))
     }
 
     /// The goals that were met are so by this path, unless they were met before.
-    fn hit(&mut self, path: LocalGoalPath) {
+    pub(super) fn hit(&mut self, path: LocalGoalPath) {
         for &goal in &self.met {
             if std::mem::replace(&mut self.open[goal], false) {
                 self.hits[goal] = Some(path);
@@ -334,7 +343,12 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
     }
 
     /// Stores the symbolic state in `w`, unless a stored one simulates it.
-    fn insert(&mut self, w: &mut LocalWorkspace, parent: u32, number: u32) -> Result<(), LocalSearchError> {
+    pub(super) fn insert(
+        &mut self,
+        w: &mut LocalWorkspace,
+        parent: u32,
+        number: u32,
+    ) -> Result<(), LocalSearchError> {
         self.store.layout.pack(&w.effect.target, &mut self.packed);
         let hash = hash_words(&self.packed);
         let known = self.store.find(hash, &self.packed);
@@ -406,7 +420,7 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
     }
 
     /// A fault of the model with the path to it.
-    fn led_to(&self, id: u32, failure: LocalSearchError) -> LocalSearchError {
+    pub(super) fn led_to(&self, id: u32, failure: LocalSearchError) -> LocalSearchError {
         if let LocalSearchError::Search(SearchError::Model { error, witness: None }) = failure {
             match self.path(&LocalGoalPath { node: id, last: None }) {
                 Ok(taken) => {
@@ -442,4 +456,4 @@ impl<'m, 'p> LocalSearch<'m, 'p> {
 /// After how many states the caller is asked whether to go on.
 const ROUND: usize = 1024;
 /// States that are taken at once: orders other than breadth first take a quarter of it.
-const FEW: usize = 4;
+pub(super) const FEW: usize = 4;

@@ -1,6 +1,6 @@
 //! A network's transitions as local zones see them.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use hrdsl_ir::ta::LocationKind;
 
@@ -27,7 +27,7 @@ use crate::{
 /// A network made ready for local time.
 pub(super) struct LocalStateSpace<'m, 'p> {
     pub model: &'m CompiledNetwork<'p>,
-    pub processes: Rc<NetworkProcesses>,
+    pub processes: Arc<NetworkProcesses>,
     /// All of them.
     everybody: Vec<u16>,
     /// The own clocks that matter, counted from 0, and the bounds of all shared clocks.
@@ -73,7 +73,7 @@ impl ConstraintFilter for LocalZoneFilter<'_> {
 
 impl<'m, 'p> LocalStateSpace<'m, 'p> {
     pub(super) fn new(model: &'m CompiledNetwork<'p>, media: bool) -> Result<Self, NotApplicableError> {
-        let processes = Rc::new(NetworkProcesses::of(model, media)?);
+        let processes = Arc::new(NetworkProcesses::of(model, media)?);
         let everybody = (0..processes.count as u16).collect();
         let known = &model.extrapolation;
         let own = known.own.try_map(|&(clock, lu)| Some((clock - 1, LocalLuBounds::of(lu)?)));

@@ -11,6 +11,8 @@ use crate::search::store::NIL;
 pub(super) struct WaitingZones {
     /// By node: its zone's place, as [`ZonePlace`] packs it, or [`NIL`].
     places: Vec<u32>,
+    /// How many wait.
+    count: usize,
     narrow: ZoneSlab<i16>,
     wide: ZoneSlab<LocalZoneBound>,
 }
@@ -78,10 +80,18 @@ impl WaitingZones {
             ZonePlace::Wide(number)
         };
         self.places.push(place.pack());
+        self.count += 1;
     }
 
     /// Makes `zone`, which is one of the same network, that of the node, which waits no longer; `false`: it did not wait.
     pub(super) fn take(&mut self, node: u32, zone: &mut LocalZone) -> bool {
+        let waits = self.read(node, zone);
+        self.forget(node);
+        waits
+    }
+
+    /// Makes `zone`, which is one of the same network, that of the node; `false`: it does not wait.
+    pub(super) fn read(&self, node: u32, zone: &mut LocalZone) -> bool {
         let place = self.places[node as usize];
         if place == NIL {
             return false;
@@ -91,24 +101,26 @@ impl WaitingZones {
             ZonePlace::Narrow(number) => widen(self.narrow.zone(number, bounds.len()), bounds),
             ZonePlace::Wide(number) => bounds.copy_from_slice(self.wide.zone(number, bounds.len())),
         }
-        self.forget(node);
         true
     }
 
-    /// The node waits no longer, if it did.
-    pub(super) fn forget(&mut self, node: u32) {
+    /// The node waits no longer; whether it did.
+    pub(super) fn forget(&mut self, node: u32) -> bool {
         let place = std::mem::replace(&mut self.places[node as usize], NIL);
         if place == NIL {
-            return;
+            return false;
         }
+        self.count -= 1;
         match ZonePlace::unpack(place) {
             ZonePlace::Narrow(number) => self.narrow.free.push(number),
             ZonePlace::Wide(number) => self.wide.free.push(number),
         }
+        true
     }
 
+    /// With a place in a list for each that waits.
     pub(super) fn bytes(&self) -> usize {
-        self.narrow.bytes() + self.wide.bytes() + self.places.len() * size_of::<u32>()
+        self.narrow.bytes() + self.wide.bytes() + (self.places.len() + self.count) * size_of::<u32>()
     }
 }
 

@@ -190,6 +190,11 @@ impl WaitingList {
         }
     }
 
+    /// Gives back states that were taken from the front, breadth first.
+    pub(crate) fn give_back(&mut self, nodes: &[u32]) {
+        nodes.iter().rev().for_each(|&n| self.queue.push_front(n));
+    }
+
     /// Takes up to `most` states; orders other than breadth first take a part of those that wait, so that the newest still
     /// come first where few wait.
     pub(crate) fn take(&mut self, nodes: &[SymbolicNode], most: usize, out: &mut Vec<u32>) {
