@@ -87,7 +87,7 @@ fn each_fate_is_told_and_what_would_notice_a_survivor() {
     let written = fs::read_to_string(folder.path().join("out/mutation.json")).unwrap();
     assert_eq!(written, stdout(&out));
     let text = fs::read_to_string(folder.path().join("out/mutation.txt")).unwrap();
-    assert!(text.contains("would notice at 0.600 s: asked causes lit within 0.6 s"), "{text}");
+    assert!(text.contains("would notice in lamp.once at 0.600 s: asked causes lit within 0.6 s"), "{text}");
     assert_eq!(fs::read(folder.path().join("robot.py")).unwrap(), before, "no file is written");
 }
 
@@ -133,18 +133,92 @@ fn the_report_of_a_campaign_says_which_faults_each_requirement_noticed() {
     refused("{}", "this is `` of version 0");
 }
 
+/// Survivors with what is proposed first for each, as requirements of the scenario.
+fn proposed(found: &Value) -> Vec<(&Value, String)> {
+    let mutants = found["mutants"].as_array().unwrap();
+    let first = |mutant: &Value| Some(mutant["proposals"][0]["pattern"].as_str()?.to_owned());
+    mutants.iter().filter_map(|mutant| Some((mutant, first(mutant)?))).collect()
+}
+
+/// Every requirement that is proposed first is one that `check` accepts, keeps the tests of the original as they are, and notices its mutant.
+fn expect_deaths(folder: &Path, found: &Value) {
+    let path = folder.join("scenario.hri");
+    let mut text = fs::read_to_string(&path).unwrap();
+    let all = proposed(found);
+    for (at, (_, pattern)) in all.iter().enumerate() {
+        text += &format!("\nrequire Proposed{at} functional {pattern}\n");
+    }
+    fs::write(&path, text).unwrap();
+    let check = command().args(["check", "scenario.hri"]).current_dir(folder).output().unwrap();
+    expect_code(&check, 0);
+    let again = report(&mutate(folder, "tests.hri --json --matrix"));
+    assert_eq!(again["failing"], found["failing"], "the original keeps what is proposed");
+    for (at, (survivor, pattern)) in all.iter().enumerate() {
+        let now = mutant(&again, survivor["line"].as_u64().unwrap(), survivor["what"].as_str().unwrap());
+        let oracle = json!(format!("requirement Proposed{at}"));
+        let in_test = |noticed: &Value| {
+            noticed["test"] == survivor["proposals"][0]["test"]
+                && noticed["oracles"].as_array().unwrap().contains(&oracle)
+        };
+        assert_eq!(now["fate"], "killed", "{pattern}: {now}");
+        assert!(now["noticed"].as_array().unwrap().iter().any(in_test), "{pattern}: {now}");
+    }
+}
+
 #[test]
 fn what_is_proposed_notices() {
     let folder = project();
-    let path = folder.path().join("scenario.hri");
-    let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text + "\nrequire R3 functional asked causes lit within 0.6 s\n").unwrap();
-    let found = report(&mutate(folder.path(), "tests.hri --json --operator time --operator delayed"));
-    let late = mutant(&found, 5, "the time is doubled");
-    assert_eq!(late["noticed"][0]["oracles"], json!(["requirement R3"]));
-    let score =
-        found["oracles"].as_array().unwrap().iter().find(|o| o["oracle"] == "requirement R3").unwrap();
-    assert_eq!((&score["alone"], &score["methods"]), (&score["killed"], &json!({ "hand": score["killed"] })));
+    let found = report(&mutate(folder.path(), "tests.hri --json"));
+    assert_eq!(proposed(&found).len(), 12, "all survivors but the three that only end at another time");
+    expect_deaths(folder.path(), &found);
+}
+
+/// What the lamp does depends on the colour that it is asked for. In the shorter test a mutant shows nothing that a requirement can speak of.
+#[test]
+fn what_is_proposed_speaks_of_arguments_and_is_tried_in_several_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = "
+scenario lamp
+actor person : environment
+actor robot  : system
+enum Colour { red, green }
+event asked(colour: Colour) from person to robot
+event lit from robot
+event refused(after: float) from robot
+stimulus ask(colour: Colour) by person { emit asked(colour); hold 3 s }
+require R1 safety asked(_) precedes lit
+system robot { run \"python3 robot.py\"; limit 20 s }
+";
+    let robot = "
+import hrdsl
+
+WARM_UP_TIME = 0.5  # seconds
+node = hrdsl.Node(\"robot\")
+while True:
+    event = node.wait_for(\"asked\", timeout=10.0)
+    if event is None:
+        break
+    if event.args[\"colour\"] == \"red\":
+        node.sleep(WARM_UP_TIME)
+        node.emit(\"lit\")
+    else:
+        node.emit(\"refused\", after=WARM_UP_TIME)
+";
+    let tests = "scenario lamp\ntest green { ask(green) }\ntest red { ask(green); ask(red) }\n";
+    for (name, text) in [("scenario.hri", scenario), ("robot.py", robot), ("tests.hri", tests)] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let found = report(&mutate(folder.path(), "tests.hri --json"));
+    let late = mutant(&found, 4, "the time is doubled");
+    assert_eq!((&late["fate"], &late["difference"]["test"]), (&json!("survived"), &json!("lamp.green")));
+    let proposals = late["proposals"].as_array().unwrap();
+    let first = json!({ "pattern": "asked(red) causes lit within 0.6 s", "time": 3.6, "test": "lamp.red" });
+    assert_eq!(proposals[0], first);
+    let other = mutant(&found, 10, "the condition is negated");
+    let patterns: Vec<&str> =
+        other["proposals"].as_array().unwrap().iter().map(|p| p["pattern"].as_str().unwrap()).collect();
+    assert!(patterns.contains(&"asked(green) causes refused(_) within 0.1 s"), "{patterns:?}");
+    expect_deaths(folder.path(), &found);
 }
 
 #[test]

@@ -86,7 +86,7 @@ pub struct MutantReport {
     pub noticed: Vec<NoticedTest>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub difference: Option<RunDifference>,
-    /// The first that notice, in order of the times at which they do.
+    /// The first that notice, in order of the times at which they do; what is about the same as another comes after those.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub proposals: Vec<ProposedRequirement>,
 }
@@ -157,6 +157,9 @@ pub struct ProposedRequirement {
     pub pattern: String,
     /// When it first fails in the mutant's run, in seconds.
     pub time: f64,
+    /// The test of that run.
+    #[serde(default)]
+    pub test: TestName,
 }
 
 /// The first step in which two runs of a test differ.

@@ -169,7 +169,8 @@ fn survivors(report: &MutationReport, text: &mut String) {
             text.push_str("      no requirement that was tried would notice\n");
         }
         for proposal in &mutant.proposals {
-            let _ = writeln!(text, "      would notice at {:.3} s: {}", proposal.time, proposal.pattern);
+            let (test, time) = (proposal.test.as_str(), proposal.time);
+            let _ = writeln!(text, "      would notice in {test} at {time:.3} s: {}", proposal.pattern);
         }
     }
 }
