@@ -40,6 +40,8 @@ pub struct MutantCounts {
     pub killed: usize,
     pub survived: usize,
     pub not_distinguished: usize,
+    #[serde(default)]
+    pub permissive: usize,
     pub not_reached: usize,
     pub equivalent: usize,
     pub duplicate: usize,
@@ -121,11 +123,14 @@ pub struct MutationReport {
 pub enum MutantFate {
     /// A test noticed it.
     Killed,
-    /// Some run went another way, and no oracle minded.
+    /// Some run went another way, and no oracle minded. Of a model: it allows less than before somewhere in a run, which the run does not show.
     Survived,
-    /// All runs went as the original's. It may do the same as the original always, or only in these tests.
+    /// All runs went as the original's. It may do the same as the original always, or only in these tests. Of a model: it allows the same in all
+    /// runs.
     NotDistinguished,
-    /// No test executes what it changes.
+    /// Of a model: it allows more than before somewhere in a run, and less nowhere. No run that the model allows can contradict it there.
+    Permissive,
+    /// No test executes what it changes. Of a model: no run can be where it is changed.
     NotReached,
     /// Its bytecode is the original's.
     Equivalent,
@@ -239,6 +244,7 @@ impl MutationReport {
             MutantFate::Killed | MutantFate::NotRun => false,
             MutantFate::Survived
             | MutantFate::NotDistinguished
+            | MutantFate::Permissive
             | MutantFate::NotReached
             | MutantFate::Equivalent
             | MutantFate::Duplicate
