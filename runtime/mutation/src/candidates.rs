@@ -1,27 +1,22 @@
 //! Requirements that hold in all runs of the original, as far as can be told without a monitor, and that another run breaks.
 
+use std::{cmp::Reverse, collections::BTreeMap};
+
 use hrdsl_ir::{Nanos, Program, Type, value::seconds, world::SignalId};
 
 use crate::{
+    bounds::{LEEWAY, NO_LEEWAY, between, earliest, time_bound},
     common::{CommonFacts, FormedRun},
     facts::RunMoment,
-    forms::narrower,
+    forms::{EventForm, narrower},
 };
 
 /// Requirements of a kind that are tried for one run.
 const MOST_OF_A_KIND: usize = 8;
 /// Of these, about the same.
 const MOST_OF_A_TOPIC: usize = 2;
-/// Bounds on times are so much longer than the longest that was seen: the next test may take a little longer.
-const LEEWAY: f64 = 1.05;
-/// Where only that tells a mutant from the original, they have none.
-const NO_LEEWAY: f64 = 1.0;
-/// The step of bounds on times, in seconds.
-const TIME_STEP: f64 = 0.1;
 /// The language counts no further in `at most N E`.
 const MOST_COUNTED: usize = 1000;
-/// Digits of a bound on a signal: so many if that tells a mutant from the original, and more only if not.
-const DIGITS: std::ops::RangeInclusive<i32> = 3..=4;
 
 /// A requirement that would notice something, and is yet to be tried.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,6 +29,8 @@ pub(crate) struct Candidate {
 
 /// Candidates of a kind, with what the narrower and the better readable have less of.
 type Ranked<R> = Vec<(R, Candidate)>;
+/// How many arguments are asked for, whether only a test tells when, and how shortly before.
+type NoveltyRank = (usize, bool, Reverse<RunMoment>);
 
 /// What a run breaks of what the runs of the original have in common.
 pub(crate) struct BrokenFacts<'a> {
@@ -132,38 +129,30 @@ impl BrokenFacts<'_> {
     }
 
     /// `never E after C`, where no run of the original has an E: in the whole run, nothing would show that it says anything of them.
-    fn novelties(&self) -> Ranked<(usize, bool, std::cmp::Reverse<RunMoment>)> {
-        let known = self.common.known();
-        let mut found = Vec::new();
-        for (at, form) in self.common.forms.iter().enumerate() {
-            let first = self.run.moments(at).first();
-            let (Some(first), false) = (first, form.is_played || known.contains(form.text.as_str())) else {
-                continue;
-            };
-            self.never(&form.text, 0, *first, &mut found);
-        }
-        for seen in &self.run.facts.events {
-            for form in narrower(self.program, seen) {
-                if !form.is_played && !known.contains(form.text.as_str()) {
-                    self.never(&form.text, form.narrowness(), seen.moment, &mut found);
+    fn novelties(&self) -> Ranked<NoveltyRank> {
+        let mut new: BTreeMap<String, (usize, RunMoment)> = BTreeMap::new();
+        for event in &self.run.facts.events {
+            let forms = std::iter::once(EventForm::any(self.program, event.event));
+            for form in forms.chain(narrower(self.program, event)) {
+                if !form.is_played && !self.common.known.contains(&form.text) {
+                    let narrowness = form.narrowness();
+                    new.entry(form.text).or_insert((narrowness, event.moment));
                 }
             }
+        }
+        let mut found = Vec::new();
+        for (text, (narrowness, first)) in new {
+            self.never(&text, narrowness, first, &mut found);
         }
         found
     }
 
-    fn never(
-        &self,
-        text: &str,
-        narrowness: usize,
-        first: RunMoment,
-        found: &mut Ranked<(usize, bool, std::cmp::Reverse<RunMoment>)>,
-    ) {
+    fn never(&self, text: &str, narrowness: usize, first: RunMoment, found: &mut Ranked<NoveltyRank>) {
         for (at, opening) in self.common.forms.iter().enumerate() {
             let before = self.run.moments(at).first().filter(|moment| **moment < first);
             let (Some(before), true) = (before, self.common.count(at).1 > 0) else { continue };
             let pattern = format!("never {text} after {}", opening.text);
-            let rank = (narrowness + opening.narrowness(), opening.is_stimulus, std::cmp::Reverse(*before));
+            let rank = (narrowness + opening.narrowness(), opening.is_stimulus, Reverse(*before));
             found.push((rank, Candidate { pattern, topic: format!("new {text}") }));
         }
     }
@@ -203,25 +192,30 @@ impl BrokenFacts<'_> {
             found.push(format!("always {}", self.condition(signal, ">=", least)));
         }
         // All runs of the original come so far, and in time.
-        let least_digits = *DIGITS.start();
         let high = between(common.least_of_most, own.1).filter(|high| *high > own.1);
-        let high = high.unwrap_or_else(|| beyond(common.least_of_most, -1.0, least_digits));
-        found.extend(self.reached(signal, after, (">=", high), |value| value >= high));
+        let high = self.reached(signal, after, (">=", common.high, high), |value, high| value >= high);
         let low = between(common.most_of_least, own.0).filter(|low| *low < own.0);
-        let low = low.unwrap_or_else(|| beyond(common.most_of_least, 1.0, least_digits));
-        found.extend(self.reached(signal, after, ("<=", low), |value| value <= low));
+        let low = self.reached(signal, after, ("<=", common.low, low), |value, low| value <= low);
+        found.extend(high.into_iter().chain(low));
         found
     }
 
+    /// `known` is a bound that all runs of the original meet, with the latest time at which they do; `closer` another one, if the run does not come so
+    /// far.
     fn reached(
         &self,
         signal: SignalId,
         after: Option<usize>,
-        (comparison, bound): (&str, f64),
-        is_met: impl Fn(f64) -> bool + Copy,
+        (comparison, known, closer): (&str, (f64, Nanos), Option<f64>),
+        is_met: impl Fn(f64, f64) -> bool + Copy,
     ) -> Option<String> {
-        let latest = time_bound(self.common.longest_until(signal, after, is_met)?, LEEWAY);
-        let own = self.run.time_until(signal, after, is_met);
+        let other = closer.filter(|bound| *bound != known.0);
+        let (bound, latest) = match other {
+            Some(bound) => (bound, self.common.longest_until(signal, after, |value| is_met(value, bound))?),
+            None => known,
+        };
+        let latest = time_bound(latest, LEEWAY);
+        let own = self.run.time_until(signal, after, |value| is_met(value, bound));
         let is_late = own.is_none_or(|own| seconds(own) > latest);
         is_late.then(|| format!("eventually {} within {latest} s", self.condition(signal, comparison, bound)))
     }
@@ -271,64 +265,4 @@ fn best<R: Ord>(mut found: Ranked<R>) -> Vec<Candidate> {
         }
     }
     kept
-}
-
-/// A bound in seconds that the longest time keeps, with some leeway.
-fn time_bound(longest: Nanos, leeway: f64) -> f64 {
-    let steps = (seconds(longest) * leeway / TIME_STEP).ceil().max(1.0);
-    (steps * TIME_STEP * 10.0).round() / 10.0
-}
-
-/// A bound in seconds that the shortest time keeps, with some leeway; 0 if there is no room for one.
-fn earliest(shortest: Nanos, leeway: f64) -> f64 {
-    let steps = (seconds(shortest) / leeway / TIME_STEP).floor();
-    (steps * TIME_STEP * 10.0).round() / 10.0
-}
-
-/// A number between what all runs of the original keep and what another run has, at no distance from the former that can be helped.
-fn between(kept: f64, other: f64) -> Option<f64> {
-    let direction = other - kept;
-    let mut bounds = DIGITS.map(|digits| beyond(kept, direction, digits));
-    bounds.find(|bound| (other - bound) * direction > 0.0)
-}
-
-/// The next number in a direction with so many digits: a bound that is kept by what was seen, and can be read.
-fn beyond(value: f64, direction: f64, digits: i32) -> f64 {
-    if value == 0.0 {
-        return 0.0;
-    }
-    let scale = 10_f64.powi(digits - 1 - value.abs().log10().floor() as i32);
-    let scaled = if direction > 0.0 { (value * scale).ceil() } else { (value * scale).floor() };
-    // Through its decimal text, so that it is written with these digits.
-    format!("{:.6e}", scaled / scale).parse().unwrap_or(value)
-}
-
-#[cfg(test)]
-mod tests {
-    use hrdsl_ir::value::SECOND;
-
-    use super::*;
-
-    #[test]
-    fn bounds_are_kept_by_what_was_seen_and_can_be_read() {
-        assert_eq!(time_bound(0, LEEWAY), 0.1);
-        let three = 3 * SECOND;
-        assert_eq!(
-            (time_bound(three, LEEWAY), earliest(three, LEEWAY), earliest(SECOND / 20, LEEWAY)),
-            (3.2, 2.8, 0.0)
-        );
-        assert_eq!((time_bound(three, NO_LEEWAY), earliest(three, NO_LEEWAY)), (3.0, 3.0));
-        assert_eq!((beyond(0.123_41, 1.0, 3), beyond(0.123_41, -1.0, 3)), (0.124, 0.123));
-        assert_eq!((beyond(-7.001, 1.0, 3), beyond(-7.001, -1.0, 3)), (-7.0, -7.01));
-        assert_eq!((beyond(1234.5, 1.0, 3), beyond(0.0, 1.0, 3)), (1240.0, 0.0));
-    }
-
-    #[test]
-    fn a_bound_has_as_many_digits_as_it_needs() {
-        assert_eq!(between(0.7051, 0.9), Some(0.706));
-        assert_eq!(between(0.705_12, 0.7055), Some(0.7052), "0.706 would be kept, too");
-        assert_eq!(between(0.705_12, 0.705_13), None, "nobody would ask for that");
-        assert_eq!(between(0.7051, 0.2), Some(0.705));
-        assert_eq!((between(1.0, 0.0), between(0.0, 1.0), between(1.0, 1.0)), (Some(1.0), Some(0.0), None));
-    }
 }

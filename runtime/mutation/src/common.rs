@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use hrdsl_ir::{Nanos, Program, world::SignalId};
 
 use crate::{
+    bounds::readable,
     facts::{EventPair, RunFacts, RunMoment},
-    forms::{EventForm, forms_of},
+    forms::{EventForm, forms_of, narrower},
 };
 
 /// A run with the moments of the events of each form, in the order of the forms.
@@ -64,6 +65,10 @@ pub(crate) struct CommonRange {
     pub most_of_least: f64,
     /// What all runs come up to.
     pub least_of_most: f64,
+    /// A bound that all runs come up to, and the latest time at which they do.
+    pub high: (f64, Nanos),
+    /// A bound that all runs come down to.
+    pub low: (f64, Nanos),
 }
 
 /// What holds in all runs of the original.
@@ -73,6 +78,11 @@ pub(crate) struct CommonFacts {
     runs: Vec<FormedRun>,
     /// Of forms that exclude each other, and of which both happen; the second is not played.
     pub pairs: BTreeMap<(usize, usize), EventPair>,
+    /// All events that happen, as they are written with any arguments and with theirs.
+    pub known: BTreeSet<String>,
+    /// How often each form happens in a run, at least and at most.
+    counts: Vec<(usize, usize)>,
+    ranges: BTreeMap<(Option<usize>, SignalId), CommonRange>,
 }
 
 impl CommonFacts {
@@ -92,7 +102,27 @@ impl CommonFacts {
                 pairs.insert((first, second), pair);
             }
         }
-        Self { forms, runs, pairs }
+        let count = |form: usize| {
+            let counts = || runs.iter().map(|run| run.moments(form).len());
+            (counts().min().unwrap_or(0), counts().max().unwrap_or(0))
+        };
+        let counts = (0..forms.len()).map(count).collect();
+        let events = runs.iter().flat_map(|run| &run.facts.events);
+        let known = events.flat_map(|event| {
+            let any = std::iter::once(EventForm::any(program, event.event));
+            any.chain(narrower(program, event)).map(|form| form.text)
+        });
+        let known = known.collect();
+        let mut common = Self { forms, runs, pairs, known, counts, ranges: BTreeMap::new() };
+        common.ranges = common.find_ranges(&seen);
+        common
+    }
+
+    fn find_ranges(&self, seen: &[usize]) -> BTreeMap<(Option<usize>, SignalId), CommonRange> {
+        let signals: BTreeSet<SignalId> = self.runs.iter().flat_map(|run| run.facts.signals()).collect();
+        let openings = std::iter::once(None).chain(seen.iter().copied().map(Some));
+        let all = openings.flat_map(|after| signals.iter().map(move |signal| (after, *signal)));
+        all.filter_map(|(after, signal)| Some(((after, signal), self.find_range(signal, after)?))).collect()
     }
 
     /// Another run, to be held against these.
@@ -102,8 +132,7 @@ impl CommonFacts {
 
     /// Of a form, how often it happens in a run: at least, and at most.
     pub(crate) fn count(&self, form: usize) -> (usize, usize) {
-        let counts = || self.runs.iter().map(|run| run.moments(form).len());
-        (counts().min().unwrap_or(0), counts().max().unwrap_or(0))
+        self.counts.get(form).copied().unwrap_or_default()
     }
 
     /// The latest time at which a form first happens; `None` if a run has none.
@@ -114,16 +143,24 @@ impl CommonFacts {
 
     /// What a signal has in common in the runs that have such an event, from it on; in all runs if none is asked for. `None` if there is no
     /// such run, or one of them has no value of it.
-    pub(crate) fn range(&self, signal: SignalId, after: Option<usize>) -> Option<CommonRange> {
+    pub(crate) fn range(&self, signal: SignalId, after: Option<usize>) -> Option<&CommonRange> {
+        self.ranges.get(&(after, signal))
+    }
+
+    fn find_range(&self, signal: SignalId, after: Option<usize>) -> Option<CommonRange> {
         let opened = self.runs.iter().filter(|run| run.opening(after).is_some());
         let ranges = opened.map(|run| run.range(signal, after)).collect::<Option<Vec<(f64, f64)>>>()?;
-        let all =
-            |(low, high)| CommonRange { least: low, most: high, most_of_least: low, least_of_most: high };
-        ranges.into_iter().map(all).reduce(|a, b| CommonRange {
-            least: a.least.min(b.least),
-            most: a.most.max(b.most),
-            most_of_least: a.most_of_least.max(b.most_of_least),
-            least_of_most: a.least_of_most.min(b.least_of_most),
+        let common = ranges.into_iter().map(|(low, high)| [low, high, low, high]);
+        let [least, most, most_of_least, least_of_most] =
+            common.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1]), a[2].max(b[2]), a[3].min(b[3])])?;
+        let (high, low) = (readable(least_of_most, -1.0), readable(most_of_least, 1.0));
+        Some(CommonRange {
+            least,
+            most,
+            most_of_least,
+            least_of_most,
+            high: (high, self.longest_until(signal, after, |value| value >= high)?),
+            low: (low, self.longest_until(signal, after, |value| value <= low)?),
         })
     }
 
@@ -137,15 +174,5 @@ impl CommonFacts {
         let opened = self.runs.iter().filter(|run| run.opening(after).is_some());
         let times = opened.map(|run| run.time_until(signal, after, is_met));
         times.collect::<Option<Vec<Nanos>>>()?.into_iter().max()
-    }
-
-    /// What events with arguments were seen, as they are written.
-    pub(crate) fn known(&self) -> BTreeSet<&str> {
-        self.forms
-            .iter()
-            .enumerate()
-            .filter(|(at, _)| self.count(*at).1 > 0)
-            .map(|(_, form)| form.text.as_str())
-            .collect()
     }
 }

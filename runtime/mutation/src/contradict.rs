@@ -16,13 +16,15 @@ use crate::{
     plan::{MutationPlan, PlannedMutant},
 };
 
+type FollowedRecording = ((Trace, RunEnd), Vec<ModelTrail>);
+
 /// What mutants of models are held against.
 pub struct RecordedRuns<'a> {
     program: &'a Program,
     options: &'a ConformanceOptions,
     originals: &'a [SingleRun],
     /// What each recording has and how it ended, and what it shows of the models as they are; `None` of one that cannot be read.
-    traces: Vec<Option<((Trace, RunEnd), Vec<ModelTrail>)>>,
+    traces: Vec<Option<FollowedRecording>>,
 }
 
 impl<'a> RecordedRuns<'a> {

@@ -38,7 +38,7 @@ impl EventForm {
         Self { pattern, text, is_stimulus, is_played }
     }
 
-    fn any(program: &Program, event: EventId) -> Self {
+    pub(crate) fn any(program: &Program, event: EventId) -> Self {
         let args = vec![ArgPattern::Any; program.event(event).params.len()];
         Self::new(program, EventPattern { event, args })
     }

@@ -15,6 +15,7 @@
 //! A mutant is run by one worker from its first test to its last, so that the number of workers changes nothing.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
+mod bounds;
 mod candidates;
 mod common;
 mod contradict;
