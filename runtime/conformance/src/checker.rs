@@ -11,6 +11,7 @@ use crate::{
     allowed::{allowed, farthest, locations},
     model::{SystemModel, limit, system_models},
     states::{PossibleState, common_samples},
+    trail::ModelTrail,
     walk::{ModelWalk, ObservationEffect, WalkFault, WatchedBound},
 };
 
@@ -26,6 +27,24 @@ impl<'p> ConformanceChecker<'p> {
     pub fn new(program: &'p Program, options: &ConformanceOptions) -> Self {
         let models = system_models(program).into_iter();
         Self { models: models.map(|model| FollowedModel::new(program, model, options)).collect(), end: 0 }
+    }
+
+    /// One that keeps the trail of each model, looking as far ahead as the model speaks of in `of`: the same program, but for changes of its
+    /// automata.
+    #[must_use]
+    pub fn trailing(program: &'p Program, options: &ConformanceOptions, of: &Program) -> Self {
+        let mut checker = Self::new(program, options);
+        for followed in &mut checker.models {
+            followed.keep_trail(farthest(of, &followed.model));
+        }
+        checker
+    }
+
+    /// As [`finish`](Self::finish), with the trail of each model, if they are kept.
+    #[must_use]
+    pub fn finish_trails(self, ended: RunEnd) -> Vec<(ConformanceVerdict, ModelTrail)> {
+        let Self { models, end } = self;
+        models.into_iter().map(|model| model.finish_trail(end, ended)).collect()
     }
 
     /// A verdict by each model, on a run that ended like this.
@@ -70,6 +89,8 @@ pub(crate) struct FollowedModel<'p> {
     pub(crate) observed: usize,
     /// Of each bound that is watched, what its clock was whenever an edge was taken: at least, at most.
     pub(crate) samples: Vec<(usize, Nanos, Option<Nanos>)>,
+    /// If it is kept, with how far ahead is looked for it.
+    trail: Option<(ModelTrail, i64)>,
 }
 
 impl fmt::Debug for FollowedModel<'_> {
@@ -101,7 +122,23 @@ impl<'p> FollowedModel<'p> {
             Err(why) => (None, FollowState::Lost(why)),
         };
         let hidden = options.unobserved.clone();
-        Self { program, model, hidden, walk, state, observed: 0, samples: Vec::new() }
+        Self { program, model, hidden, walk, state, observed: 0, samples: Vec::new(), trail: None }
+    }
+
+    fn keep_trail(&mut self, ahead: i64) {
+        self.trail = Some((ModelTrail::default(), ahead));
+        if let Some(walk) = &mut self.walk {
+            walk.keep_visited();
+        }
+        self.look_ahead();
+    }
+
+    /// What the model allows now belongs to its trail.
+    fn look_ahead(&mut self) {
+        let (Some((trail, ahead)), Some(walk)) = (&mut self.trail, &mut self.walk) else { return };
+        if let FollowState::Possible(states, _) = &self.state {
+            trail.look_ahead(walk, states, *ahead);
+        }
     }
 
     fn is_output(&self, event: EventId) -> bool {
@@ -155,6 +192,7 @@ impl<'p> FollowedModel<'p> {
             Err(fault) => Err(fault),
         };
         self.state = state.unwrap_or_else(|fault| FollowState::Lost(fault.sentence()));
+        self.look_ahead();
     }
 
     /// The model cannot be silent so long.
@@ -203,6 +241,17 @@ impl<'p> FollowedModel<'p> {
 
     pub(crate) fn finish(mut self, end: Nanos, ended: RunEnd) -> ConformanceVerdict {
         self.rest(end, ended);
+        self.verdict(ended)
+    }
+
+    fn finish_trail(mut self, end: Nanos, ended: RunEnd) -> (ConformanceVerdict, ModelTrail) {
+        self.rest(end, ended);
+        let (mut trail, _) = self.trail.take().unwrap_or_default();
+        trail.visit(self.walk.take().map(ModelWalk::visited).unwrap_or_default());
+        (self.verdict(ended), trail)
+    }
+
+    fn verdict(self, ended: RunEnd) -> ConformanceVerdict {
         let name = self.model.name;
         let verdict =
             |outcome, departure| ConformanceVerdict { model: name.clone(), outcome, departure, why: None };

@@ -11,7 +11,8 @@
 //! 3. [`ConformanceChecker::finish`] gives a verdict for each model: an observation that leaves no state is a departure (`checker`), and
 //!    what would have left some is what the model allowed (`allowed`).
 //!
-//! Besides, [`calibrate()`] says which bounds of a model recordings contradict, and which would fit.
+//! Besides, [`calibrate()`] says which bounds of a model recordings contradict, and which would fit; and a [`ModelTrail`] has the parts of a model that a
+//! recording visits, and what it allows after each observation.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
 mod allowed;
@@ -22,11 +23,13 @@ mod fitting;
 mod model;
 mod sharing;
 mod states;
+mod trail;
 mod walk;
 
 pub use calibrate::{ContradictedBound, ModelCalibration, RecordedRun, calibrate};
 pub use checker::ConformanceChecker;
 pub use model::{SystemModel, system_models};
+pub use trail::{AllowanceDifference, ModelPart, ModelTrail};
 
 use hrdsl_ir::{EventId, Nanos};
 

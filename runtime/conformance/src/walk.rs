@@ -1,8 +1,8 @@
 //! The steps of a model between two observations and at one: all that it can do, with all times at which it can.
 
-use std::{rc::Rc, sync::Arc};
+use std::{cell::RefCell, collections::BTreeSet, rc::Rc, sync::Arc};
 
-use hrdsl_ir::{EventId, Program, Value};
+use hrdsl_ir::{EventId, Program, Value, ta::AutomatonId};
 use hrdsl_ta::{
     CompiledNetwork, ModelError, ObservationOptions, OpenNetwork, OpenTransition,
     dbm::{Dbm, DbmBound},
@@ -13,6 +13,7 @@ use crate::{
     ConformanceOptions,
     model::SystemModel,
     states::{ExtraClock, PossibleState, SentOutput, StateKey, range},
+    trail::ModelPart,
 };
 
 /// More sets of states than this between two observations are not gone through.
@@ -90,6 +91,9 @@ pub(crate) struct ModelWalk<'p> {
     simplifies: bool,
     watched: Vec<WatchedBound>,
     known: FxHashMap<Vec<i64>, Rc<Vec<OpenTransition>>>,
+    members: Vec<AutomatonId>,
+    /// The parts of the model in which it was or could be, if somebody asks for them.
+    visited: Option<RefCell<BTreeSet<ModelPart>>>,
 }
 
 impl<'p> ModelWalk<'p> {
@@ -108,7 +112,41 @@ impl<'p> ModelWalk<'p> {
             simplifies: watched.is_empty(),
             watched,
             known: FxHashMap::default(),
+            members: model.network.automata.clone(),
+            visited: None,
         })
+    }
+
+    /// Keeps from now on which parts of the model are visited.
+    pub(crate) fn keep_visited(&mut self) {
+        self.visited.get_or_insert_default();
+    }
+
+    pub(crate) fn visited(self) -> BTreeSet<ModelPart> {
+        self.visited.map(RefCell::into_inner).unwrap_or_default()
+    }
+
+    fn visit(
+        &self,
+        part: impl Fn(AutomatonId, usize) -> ModelPart,
+        places: impl Iterator<Item = (usize, usize)>,
+    ) {
+        let Some(visited) = &self.visited else { return };
+        let parts = places.filter_map(|(member, at)| Some(part(*self.members.get(member)?, at)));
+        visited.borrow_mut().extend(parts);
+    }
+
+    /// As [`Self::silently`], of what is only looked ahead to: no part of the model is visited.
+    pub(crate) fn foreseen(
+        &mut self,
+        from: &[PossibleState],
+        until: i64,
+        seen: &mut dyn FnMut(VisibleOutput),
+    ) -> Result<Vec<PossibleState>, WalkFault> {
+        let visited = self.visited.take();
+        let reached = self.silently(from, until, seen);
+        self.visited = visited;
+        reached
     }
 
     fn open(&self) -> OpenNetwork<'_, 'p> {
@@ -193,6 +231,7 @@ impl<'p> ModelWalk<'p> {
         transition: &OpenTransition,
     ) -> Result<Option<PossibleState>, WalkFault> {
         let Some((discrete, zone)) = self.open().follow(transition, &from.zone)? else { return Ok(None) };
+        self.visit(ModelPart::Edge, transition.parts.iter().map(|part| (part.automaton, part.edge)));
         let there = PossibleState { discrete, zone, extras: from.extras.clone() };
         Ok(Some(self.marked(from, there, transition)))
     }
@@ -233,6 +272,9 @@ impl<'p> ModelWalk<'p> {
     ) -> Result<(), WalkFault> {
         if state.extras.len() > MOST_EXTRAS {
             return Err(WalkFault::Outputs);
+        }
+        if self.visited.is_some() {
+            self.visit(ModelPart::Location, self.locations(&state).into_iter().enumerate());
         }
         let Some(stay) = self.open().stay(&state.discrete)? else { return Ok(()) };
         if stay.wait(&mut state.zone) {

@@ -6,7 +6,7 @@
 //! 3. [`run_controls`] puts each file in its own place, which must change nothing, and [`run_sentinels`] lets each raise at once, which tests that
 //!    measure anything notice;
 //! 4. [`run_plan`] runs each mutant against the tests that reach it, until the first that notices it, or against all;
-//! 5. [`propose`] looks for requirements that hold in all runs of the original and fail in the run of a mutant that survived, and
+//! 5. [`propose`] looks for requirements that hold in all runs of the original and fail in a run of a mutant that survived, and
 //!    tries each before it is proposed;
 //! 6. [`add_up`] makes a [`MutationReport`](hrdsl_results::MutationReport) of it.
 //!
@@ -15,9 +15,13 @@
 //! A mutant is run by one worker from its first test to its last, so that the number of workers changes nothing.
 #![cfg_attr(not(test), deny(clippy::indexing_slicing, clippy::wildcard_enum_match_arm))]
 
+mod bounds;
+mod candidates;
+mod common;
 mod contradict;
 mod difference;
 mod facts;
+mod forms;
 mod models;
 mod oracle;
 mod outcome;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use hrdsl_campaign::ListedMutant;
-use hrdsl_conformance::system_models;
+use hrdsl_conformance::{ModelPart, system_models};
 use hrdsl_ir::{
     Nanos, Program, Span, Value,
     expr::{Expr, UnaryOp},
@@ -116,6 +116,17 @@ impl ModelMutant {
     pub fn sentinel(file: &str) -> Self {
         let what = "no edge of the model is ever taken".to_owned();
         Self { mutant: ListedMutant { what, ..ListedMutant::sentinel(file) }, edit: ModelEdit::Nothing }
+    }
+
+    /// What it changes of an automaton; `None` of one that changes all.
+    pub(crate) fn part(&self) -> Option<ModelPart> {
+        match &self.edit {
+            ModelEdit::Invariant(id, location, _, _) => Some(ModelPart::Location(*id, *location)),
+            ModelEdit::Guard(id, edge, _, _)
+            | ModelEdit::Condition(id, edge)
+            | ModelEdit::Dropped(id, edge) => Some(ModelPart::Edge(*id, *edge)),
+            ModelEdit::Nothing => None,
+        }
     }
 
     /// The program with the mutant.

@@ -20,8 +20,8 @@ pub struct MutantOutcome {
     pub simulated: BTreeMap<TestMethod, f64>,
     /// Of one that survived: where its first other run goes another way.
     pub difference: Option<RunDifference>,
-    /// Of one that survived: the place of that run's test among the tests, and its recording.
-    pub other_run: Option<(usize, String)>,
+    /// Of one that survived: its first runs that are not the original's, each with the place of its test among the tests, and its recording.
+    pub other_runs: Vec<(usize, String)>,
     /// Of one that survived: requirements that would notice it, each tried.
     pub proposals: Vec<ProposedRequirement>,
 }
@@ -38,7 +38,7 @@ impl MutantOutcome {
             noticed: Vec::new(),
             simulated: BTreeMap::new(),
             difference: None,
-            other_run: None,
+            other_runs: Vec::new(),
             proposals: Vec::new(),
         }
     }

@@ -1,15 +1,17 @@
 //! Requirements that would notice what survived: each is tried before it is proposed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use hrdsl_campaign::SingleRun;
 use hrdsl_conformance::ConformanceOptions;
 use hrdsl_ir::Program;
 use hrdsl_judge::{judge_recording, recorded_run};
-use hrdsl_results::{ProposedRequirement, VerdictOutcome, VerdictResult};
+use hrdsl_results::{ProposedRequirement, TestName, VerdictOutcome, VerdictResult};
 
 use crate::{
-    facts::{CommonFacts, RunFacts},
+    candidates::{BrokenFacts, Candidate},
+    common::CommonFacts,
+    facts::RunFacts,
     outcome::MutantOutcome,
 };
 
@@ -17,11 +19,13 @@ use crate::{
 const PREFIX: &str = "Proposed_";
 /// Patterns that are tried at once.
 const AT_ONCE: usize = 64;
+/// Patterns that are tried for one mutant, of all its runs.
+const MOST_TRIED: usize = 64;
 /// Proposals for one mutant.
 const MOST: usize = 3;
 
 /// Gives each mutant that survived the patterns of requirements that would notice it: they hold in all runs of the original, hold not only
-/// because nothing triggers them, and fail in the mutant's first other run. `compile` is the scenario with more text at its end, `None` if that
+/// because nothing triggers them, and fail in one of the mutant's other runs. `compile` is the scenario with more text at its end, `None` if that
 /// has errors.
 pub fn propose(
     program: &Program,
@@ -30,11 +34,12 @@ pub fn propose(
     outcomes: &mut [MutantOutcome],
     compile: &dyn Fn(&str) -> Option<Program>,
 ) {
+    let names: Vec<&TestName> = originals.iter().map(|run| &run.result.name).collect();
     let originals: Vec<&str> =
         originals.iter().filter(|run| run.result.error.is_none()).map(|run| run.recording.as_str()).collect();
-    let candidates = candidates(program, &originals, outcomes);
-    let mut all: Vec<String> = candidates.values().flatten().cloned().collect();
-    all.sort();
+    let candidates = candidates_of(program, &originals, outcomes);
+    let mut all: Vec<&str> = candidates.values().flatten().map(|one| one.pattern.as_str()).collect();
+    all.sort_unstable();
     all.dedup();
     let mut trials = Vec::new();
     for patterns in all.chunks(AT_ONCE) {
@@ -43,44 +48,66 @@ pub fn propose(
     for trial in &mut trials {
         trial.keep_what_holds(&originals, options);
     }
-    for (at, wanted) in candidates {
-        let Some(outcome) = outcomes.get_mut(at) else { continue };
-        let Some((_, recording)) = &outcome.other_run else { continue };
-        let broken: BTreeMap<&str, f64> =
-            trials.iter().flat_map(|trial| trial.failing(recording, options)).collect();
-        let found = wanted.into_iter().filter_map(|pattern| {
-            let time = *broken.get(pattern.as_str())?;
-            Some(ProposedRequirement { pattern, time })
-        });
-        let mut found: Vec<ProposedRequirement> = found.collect();
-        // What notices first is nearest to the fault; of those at once the narrowest.
-        found.sort_by(|a, b| a.time.total_cmp(&b.time));
-        found.truncate(MOST);
-        outcome.proposals = found;
+    for (at, wanted) in &candidates {
+        let Some(outcome) = outcomes.get_mut(*at) else { continue };
+        let mut found: Vec<(ProposedRequirement, &str)> = Vec::new();
+        for (test, recording) in &outcome.other_runs {
+            let Some(test) = names.get(*test) else { continue };
+            let left: Vec<&Candidate> = wanted
+                .iter()
+                .filter(|one| found.iter().all(|(proposal, _)| proposal.pattern != one.pattern))
+                .collect();
+            let asked = trials.iter().filter(|trial| trial.has_one_of(&left));
+            let broken: BTreeMap<&str, f64> =
+                asked.flat_map(|trial| trial.failing(recording, options)).collect();
+            found.extend(left.into_iter().filter_map(|one| {
+                let (pattern, time) = (one.pattern.clone(), *broken.get(one.pattern.as_str())?);
+                Some((ProposedRequirement { pattern, time, test: (*test).clone() }, one.topic.as_str()))
+            }));
+        }
+        outcome.proposals = chosen(found);
     }
 }
 
-/// What may be broken in each run of a mutant that survived, by the place of the mutant.
-fn candidates(
+/// What notices first is nearest to the fault; of those at once the narrowest. What says about the same as another comes after it.
+fn chosen(mut found: Vec<(ProposedRequirement, &str)>) -> Vec<ProposedRequirement> {
+    found.sort_by(|(a, _), (b, _)| a.time.total_cmp(&b.time));
+    let mut topics: BTreeSet<&str> = BTreeSet::new();
+    let (mut first, further): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|(_, topic)| topics.insert(topic));
+    first.extend(further);
+    first.truncate(MOST);
+    first.into_iter().map(|(proposal, _)| proposal).collect()
+}
+
+/// What may be broken in the runs of each mutant that survived, by the place of the mutant.
+fn candidates_of(
     program: &Program,
     originals: &[&str],
     outcomes: &[MutantOutcome],
-) -> BTreeMap<usize, Vec<String>> {
-    let survivors: Vec<(usize, &str)> = outcomes
-        .iter()
-        .enumerate()
-        .filter_map(|(at, outcome)| Some((at, outcome.other_run.as_ref()?.1.as_str())))
-        .collect();
-    if survivors.is_empty() {
+) -> BTreeMap<usize, Vec<Candidate>> {
+    let survivors = || outcomes.iter().enumerate().filter(|(_, outcome)| !outcome.other_runs.is_empty());
+    if survivors().next().is_none() {
         return BTreeMap::new();
     }
     let facts = |text: &str| {
         recorded_run(program, text.as_bytes(), false).ok().map(|(trace, _)| RunFacts::of(&trace))
     };
-    let runs: Vec<RunFacts> = originals.iter().filter_map(|text| facts(text)).collect();
-    let common = CommonFacts::of(program, &runs);
-    let broken = |text: &str| facts(text).map_or_else(Vec::new, |run| common.broken_by(program, &run));
-    survivors.into_iter().map(|(at, text)| (at, broken(text))).collect()
+    let common = CommonFacts::of(program, originals.iter().filter_map(|text| facts(text)).collect());
+    let broken = |text: &str| {
+        let run = facts(text).map(|facts| common.formed(facts));
+        run.map_or_else(Vec::new, |run| BrokenFacts { program, common: &common, run: &run }.candidates())
+    };
+    let of_all = |(at, outcome): (usize, &MutantOutcome)| {
+        let mut all: Vec<Candidate> = Vec::new();
+        for candidate in outcome.other_runs.iter().flat_map(|(_, text)| broken(text)) {
+            if all.len() < MOST_TRIED && !all.contains(&candidate) {
+                all.push(candidate);
+            }
+        }
+        (at, all)
+    };
+    survivors().map(of_all).collect()
 }
 
 /// A scenario whose requirements are patterns to try.
@@ -92,7 +119,7 @@ struct RequirementTrial {
 
 /// Compiles patterns, and leaves out those that are errors.
 fn compiled(
-    patterns: &[String],
+    patterns: &[&str],
     compile: &dyn Fn(&str) -> Option<Program>,
     trials: &mut Vec<RequirementTrial>,
 ) {
@@ -101,8 +128,13 @@ fn compiled(
         lines.map(|(at, pattern)| format!("\nrequire {PREFIX}{at} safety {pattern}")).collect();
     if let Some(mut program) = compile(&(text + "\n")) {
         program.monitors.retain(|monitor| monitor.name.starts_with(PREFIX));
+        // Nothing else is asked: no automaton plays the system.
+        program.automata.iter_mut().for_each(|automaton| automaton.actor = None);
         if program.monitors.len() == patterns.len() {
-            trials.push(RequirementTrial { program, patterns: patterns.iter().cloned().map(Some).collect() });
+            trials.push(RequirementTrial {
+                program,
+                patterns: patterns.iter().map(|pattern| Some((*pattern).to_owned())).collect(),
+            });
         }
         return;
     }
@@ -124,8 +156,10 @@ impl RequirementTrial {
             for ((pattern, passed), verdict) in self.patterns.iter_mut().zip(&mut passed).zip(verdicts) {
                 match verdict.outcome {
                     VerdictOutcome::Pass => *passed = true,
-                    VerdictOutcome::Vacuous | VerdictOutcome::Inconclusive => {}
-                    VerdictOutcome::Fail | VerdictOutcome::Error => *pattern = None,
+                    VerdictOutcome::Vacuous => {}
+                    VerdictOutcome::Inconclusive | VerdictOutcome::Fail | VerdictOutcome::Error => {
+                        *pattern = None;
+                    }
                 }
             }
         }
@@ -134,6 +168,11 @@ impl RequirementTrial {
                 *pattern = None;
             }
         }
+    }
+
+    /// Whether one of these is a pattern of this, and holds on the original.
+    fn has_one_of(&self, candidates: &[&Candidate]) -> bool {
+        self.patterns.iter().flatten().any(|pattern| candidates.iter().any(|one| one.pattern == *pattern))
     }
 
     /// The patterns that hold on the original and fail here, with the time of the first failure in seconds.

@@ -67,6 +67,7 @@ fn counts(outcomes: &[MutantOutcome]) -> MutantCounts {
             MutantFate::Killed => &mut counts.killed,
             MutantFate::Survived => &mut counts.survived,
             MutantFate::NotDistinguished => &mut counts.not_distinguished,
+            MutantFate::Permissive => &mut counts.permissive,
             MutantFate::NotReached => &mut counts.not_reached,
             MutantFate::Equivalent => &mut counts.equivalent,
             MutantFate::Duplicate => &mut counts.duplicate,
@@ -185,6 +186,7 @@ mod tests {
             MutantFate::Survived,
             MutantFate::Killed,
             MutantFate::NotDistinguished,
+            MutantFate::Permissive,
             MutantFate::Equivalent,
         ]);
         assert_eq!((some.score, some.interrupted), (Some(0.5), false));

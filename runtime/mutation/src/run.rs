@@ -25,6 +25,11 @@ const TIMES_SLOWER: u32 = 10;
 /// No mutant is given less between two requests.
 const LEAST_BUDGET: Duration = Duration::from_secs(1);
 
+/// Runs of a mutant that survived, in which requirements are tried.
+const MOST_OTHER_RUNS: usize = 8;
+/// Bytes of their recordings; the first is kept, whatever its length.
+const MOST_KEPT: usize = 4 << 20;
+
 /// What mutants are run with.
 pub struct MutationCampaign<'a> {
     /// That of the original; no coverage need be measured.
@@ -176,22 +181,31 @@ fn run_one(
             if !all {
                 break;
             }
-        } else if outcome.fate == MutantFate::NotDistinguished && run.recording != original.recording {
+        } else if outcome.fate != MutantFate::Killed && run.recording != original.recording {
             outcome.fate = MutantFate::Survived;
-            outcome.other_run = Some((at, run.recording));
+            keep(&mut outcome.other_runs, (at, run.recording));
         }
     }
-    let program = setup.campaign.program;
-    match (outcome.fate, &outcome.other_run) {
-        (MutantFate::Survived, Some((at, recording))) => {
-            let original = setup.originals.get(*at);
-            outcome.difference = original
-                .and_then(|run| first_difference(program, &run.result.name, (&run.recording, recording)));
-        }
+    if outcome.fate != MutantFate::Survived {
         // What another test saw matters no more, once one has noticed it.
-        _ => outcome.other_run = None,
+        outcome.other_runs.clear();
+    }
+    if let Some((at, recording)) = outcome.other_runs.first() {
+        let program = setup.campaign.program;
+        outcome.difference = setup
+            .originals
+            .get(*at)
+            .and_then(|run| first_difference(program, &run.result.name, (&run.recording, recording)));
     }
     Some(outcome)
+}
+
+/// Keeps a run of a mutant, for requirements to be tried on it, unless there are enough.
+fn keep(runs: &mut Vec<(usize, String)>, run: (usize, String)) {
+    let size: usize = runs.iter().map(|(_, recording)| recording.len()).sum();
+    if runs.is_empty() || runs.len() < MOST_OTHER_RUNS && size + run.1.len() <= MOST_KEPT {
+        runs.push(run);
+    }
 }
 
 /// The first line of an error, and the last, which says what was raised.

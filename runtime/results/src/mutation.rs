@@ -40,6 +40,8 @@ pub struct MutantCounts {
     pub killed: usize,
     pub survived: usize,
     pub not_distinguished: usize,
+    #[serde(default)]
+    pub permissive: usize,
     pub not_reached: usize,
     pub equivalent: usize,
     pub duplicate: usize,
@@ -86,7 +88,7 @@ pub struct MutantReport {
     pub noticed: Vec<NoticedTest>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub difference: Option<RunDifference>,
-    /// The first that notice, in order of the times at which they do.
+    /// The first that notice, in order of the times at which they do; what is about the same as another comes after those.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub proposals: Vec<ProposedRequirement>,
 }
@@ -121,11 +123,14 @@ pub struct MutationReport {
 pub enum MutantFate {
     /// A test noticed it.
     Killed,
-    /// Some run went another way, and no oracle minded.
+    /// Some run went another way, and no oracle minded. Of a model: it allows less than before somewhere in a run, which the run does not show.
     Survived,
-    /// All runs went as the original's. It may do the same as the original always, or only in these tests.
+    /// All runs went as the original's. It may do the same as the original always, or only in these tests. Of a model: it allows the same in all
+    /// runs.
     NotDistinguished,
-    /// No test executes what it changes.
+    /// Of a model: it allows more than before somewhere in a run, and less nowhere. No run that the model allows can contradict it there.
+    Permissive,
+    /// No test executes what it changes. Of a model: no run can be where it is changed.
     NotReached,
     /// Its bytecode is the original's.
     Equivalent,
@@ -157,6 +162,9 @@ pub struct ProposedRequirement {
     pub pattern: String,
     /// When it first fails in the mutant's run, in seconds.
     pub time: f64,
+    /// The test of that run.
+    #[serde(default)]
+    pub test: TestName,
 }
 
 /// The first step in which two runs of a test differ.
@@ -236,6 +244,7 @@ impl MutationReport {
             MutantFate::Killed | MutantFate::NotRun => false,
             MutantFate::Survived
             | MutantFate::NotDistinguished
+            | MutantFate::Permissive
             | MutantFate::NotReached
             | MutantFate::Equivalent
             | MutantFate::Duplicate

@@ -11,14 +11,24 @@ pub fn text(report: &MutationReport) -> String {
     oracles(report, &mut text);
     methods(report, &mut text);
     survivors(report, &mut text);
-    let same = if report.about.models {
-        "not distinguished: all runs are judged as by the model as it is"
+    let (same, unreached) = if report.about.models {
+        (
+            "not distinguished: after every observation they allow the same",
+            "not reached: no run can be where they are",
+        )
     } else {
-        "not distinguished: all tests that reach them record the same, which proves nothing"
+        (
+            "not distinguished: all tests that reach them record the same, which proves nothing",
+            "not reached: no test executes them",
+        )
     };
-    for (fate, title) in
-        [(MutantFate::NotDistinguished, same), (MutantFate::NotReached, "not reached: no test executes them")]
-    {
+    let more = "permissive: they allow more, and less nowhere, so that no run of the model contradicts them";
+    let titles = [
+        (MutantFate::NotDistinguished, same),
+        (MutantFate::Permissive, more),
+        (MutantFate::NotReached, unreached),
+    ];
+    for (fate, title) in titles {
         let all: Vec<&MutantReport> = report.mutants.iter().filter(|m| m.fate == fate).collect();
         if !all.is_empty() {
             let _ = writeln!(text, "\n{title}");
@@ -67,6 +77,7 @@ fn counts(report: &MutationReport, text: &mut String) {
         ("survived", counts.survived),
         ("not reached", counts.not_reached),
         ("not distinguished", counts.not_distinguished),
+        ("permissive", counts.permissive),
         ("equivalent", counts.equivalent),
         ("duplicate", counts.duplicate),
         ("invalid", counts.invalid),
@@ -142,7 +153,7 @@ fn survivors(report: &MutationReport, text: &mut String) {
     }
     let is_of_model = report.about.models;
     let how = if is_of_model {
-        "judged otherwise, and no worse"
+        "they allow less somewhere, and no run shows that"
     } else {
         "recorded differently, and no oracle minds"
     };
@@ -169,7 +180,8 @@ fn survivors(report: &MutationReport, text: &mut String) {
             text.push_str("      no requirement that was tried would notice\n");
         }
         for proposal in &mutant.proposals {
-            let _ = writeln!(text, "      would notice at {:.3} s: {}", proposal.time, proposal.pattern);
+            let (test, time) = (proposal.test.as_str(), proposal.time);
+            let _ = writeln!(text, "      would notice in {test} at {time:.3} s: {}", proposal.pattern);
         }
     }
 }

@@ -77,7 +77,7 @@ pub fn section(found: &MutationReport) -> FaultSection {
         notes: notes(found),
         methods: methods.iter().map(|method| method.word()).collect(),
         oracles: found.oracles.iter().map(|score| oracle_row(found, score, &methods)).collect(),
-        missed: found.mutants.iter().filter_map(missed).collect(),
+        missed: found.mutants.iter().filter_map(|mutant| missed(mutant, found.about.models)).collect(),
     }
 }
 
@@ -99,11 +99,11 @@ fn notes(found: &MutationReport) -> Vec<String> {
     if found.interrupted {
         notes.push("This was interrupted: some faults were not tried.".to_owned());
     }
-    let same = found.counts.not_distinguished;
-    if same > 0 {
-        let runs = text::count(same, "more fault");
+    let (same, more) = (found.counts.not_distinguished, found.counts.permissive);
+    if same + more > 0 {
+        let runs = text::count(same + more, "more fault");
         notes.push(if found.about.models {
-            format!("All recordings are runs of the model with {runs}, too; they do not count.")
+            format!("The models allow the same with {runs}, or more, wherever a run came; they do not count.")
         } else {
             format!(
                 "All runs are the same as the original’s in {runs}, which may be as good; they do not count."
@@ -137,9 +137,11 @@ fn oracle_row(found: &MutationReport, score: &OracleScore, methods: &[TestMethod
     }
 }
 
-fn missed(mutant: &MutantReport) -> Option<MissedFault> {
+fn missed(mutant: &MutantReport, is_of_model: bool) -> Option<MissedFault> {
     let how = match mutant.fate {
+        MutantFate::NotReached if is_of_model => "no run can be there".to_owned(),
         MutantFate::NotReached => "no test executes it".to_owned(),
+        MutantFate::Survived if is_of_model => "it allows less somewhere, and no run shows that".to_owned(),
         MutantFate::Survived => mutant.difference.as_ref().map_or_else(String::new, |difference| {
             format!(
                 "in {}: {} instead of {}",
@@ -150,6 +152,7 @@ fn missed(mutant: &MutantReport) -> Option<MissedFault> {
         }),
         MutantFate::Killed
         | MutantFate::NotDistinguished
+        | MutantFate::Permissive
         | MutantFate::Equivalent
         | MutantFate::Duplicate
         | MutantFate::Invalid
