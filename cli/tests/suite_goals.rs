@@ -215,6 +215,29 @@ fn further_witnesses_go_other_ways_before_they_have_other_values() {
 }
 
 #[test]
+fn what_holds_from_the_start_has_no_test_of_its_own() {
+    let asked =
+        "suite start by search of scene { reach each value of Cook.waiting; reach each location; tests 9 }
+suite still by search of scene { reach each value of Cook.free when Cook.free && Robot.ready; tests 1 }
+";
+    let folder = folder(&[("scenario.hri", &format!("{TWO_WAYS}{asked}"))]);
+    let tests = generated(folder.path(), "start", "0");
+    assert!(tests.split("\ntest ").skip(1).all(|test| test.contains("\n  call(")), "{tests}");
+    let out = hrdsl_in(folder.path(), "gen scenario.hri --suite start -o tests");
+    let said = "  from the start, so in every test: value Cook.waiting = false, location Cook.free, location Robot.ready\n";
+    assert!(stdout(&out).contains(said), "{}", stdout(&out));
+    let out = hrdsl_in(folder.path(), "gen scenario.hri --suite start -o tests --json");
+    let json: Value = serde_json::from_str(&stdout(&out)).unwrap();
+    let goals = json["suites"][0]["goals"].as_array().unwrap();
+    let initial = goals.iter().filter(|goal| goal["reason"] == "from the start, so in every test");
+    let tests: Vec<&Value> = initial.map(|goal| &goal["test"]).collect();
+    assert_eq!(tests, ["start.t001"; 3]);
+    // Without any other test, one lets the robot alone.
+    let still = generated(folder.path(), "still", "0");
+    assert_eq!(still.matches("\ntest ").count(), 1, "{still}");
+}
+
+#[test]
 fn what_cannot_be_asked_is_said_where_it_stands() {
     let asks =
         SCENARIO.replace("reach each combination of Robot.legs", "reach each combination of Robot.lesg");

@@ -53,13 +53,20 @@ pub fn harvest(
     let held_back = held_back(program, network, &named, &fates, settings, states);
     let maker = WitnessTests::new(program, suite, network, &named);
     let mut pool = WitnessPool::default();
+    let mut at_start = InitialGoals::default();
     for ((goal, fate), held_back) in fates.iter().enumerate().zip(held_back) {
         let (status, mut reason) = said(fate, states);
         if let Some(why) = held_back {
             reason = format!("{reason}; {why}");
         }
         if let GoalFate::Reached(run) = fate {
-            harvest.tests.push(maker.test(Some(goal), &named[goal].id, &run.witness, &mut pool));
+            let test = maker.test(Some(goal), &named[goal].id, &run.witness, &mut pool);
+            if run.witness.steps.is_empty() && named[goal].is_of_states() {
+                reason = "from the start, so in every test".to_owned();
+                at_start.add(goal, test);
+            } else {
+                harvest.tests.push(test);
+            }
         }
         harvest.goals.push(GoalReport { goal: named[goal].id.clone(), status, reason, test: None });
     }
@@ -68,6 +75,7 @@ pub fn harvest(
         let step = bounds::boundary_step(program, *step);
         maker.bounds(&mut harvest, &mut pool, (step, settings)).map_err(|e| of_network(network, &e))?;
     }
+    at_start.put_into(&mut harvest);
     if diverse > 1 {
         // Those that are not needed may be wanted as second ones.
         pool.spares.clone_from(&harvest.tests);
@@ -75,6 +83,41 @@ pub fn harvest(
         finder.spares(&mut pool, diverse).map_err(|e| of_network(network, &e))?;
     }
     Ok((harvest, pool))
+}
+
+/// Goals that the first state meets, each with a test in which nobody does anything.
+#[derive(Default)]
+struct InitialGoals {
+    goals: Vec<usize>,
+    tests: Vec<AbstractTest>,
+}
+
+impl InitialGoals {
+    fn add(&mut self, goal: usize, test: AbstractTest) {
+        self.goals.push(goal);
+        self.tests.push(test);
+    }
+
+    /// Every test reaches them, so they have none of their own, unless there is no other.
+    fn put_into(self, harvest: &mut AbstractTests) {
+        /// So many are told by name.
+        const TOLD: usize = 3;
+        if self.goals.is_empty() {
+            return;
+        }
+        if harvest.tests.is_empty() {
+            harvest.tests = self.tests;
+        }
+        harvest.tests.iter_mut().for_each(|test| test.reaches.extend(&self.goals));
+        let named = self.goals.iter().filter_map(|goal| harvest.goals.get(*goal));
+        let mut told: Vec<String> = named.map(|report| report.goal.to_string()).collect();
+        let more = told.len().saturating_sub(TOLD);
+        if more > 0 {
+            told.truncate(TOLD);
+            told.push(format!("and {more} more"));
+        }
+        harvest.notes.push(format!("from the start, so in every test: {}", told.join(", ")));
+    }
 }
 
 fn of_network(network: &Network, error: &SearchError) -> String {
