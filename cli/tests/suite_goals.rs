@@ -158,6 +158,85 @@ fn further_witnesses_are_different_ones_and_the_same_every_time() {
     }
 }
 
+/// A tray is cleared by the robot in its own time, or when the cook calls it off; what is washed up then is one step further.
+const TWO_WAYS: &str = "\
+scenario kitchen
+actor cook  : environment
+actor robot : system
+event order(plates: 1..3) from cook to robot
+event enough              from cook to robot
+event cleared             from robot to cook
+event washed              from robot
+stimulus call(plates: 1..3) by cook { emit order(plates) }
+stimulus call_off by cook { emit enough }
+automaton Cook plays cook {
+  clock t
+  init location free
+  location waiting
+  location content
+  free    -> waiting select n: 1..3 do call(n); t = 0
+  waiting -> content when t >= 2 s do call_off
+  waiting -> content on cleared
+}
+automaton Robot plays robot {
+  clock x
+  init location ready
+  location clearing { invariant x <= 9 s }
+  location at_sink  { invariant x <= 9 s }
+  location over
+  ready    -> clearing on order do x = 0
+  clearing -> at_sink  when x >= 5 s do cleared; x = 0
+  clearing -> at_sink  on enough do x = 0
+  at_sink  -> over     when x >= 1 s do washed
+}
+network scene = Cook | Robot
+suite ways by search of scene { reach each location; diverse 4; tests 40 }
+suite two by search of scene { reach each location; diverse 2; tests 40 }
+";
+
+#[test]
+fn further_witnesses_go_other_ways_before_they_have_other_values() {
+    let folder = folder(&[("scenario.hri", TWO_WAYS)]);
+    for seed in ["0", "1", "2", "3"] {
+        for suite in ["two", "ways"] {
+            let tests = generated(folder.path(), suite, seed);
+            let bodies: Vec<&str> = tests.split("\ntest ").skip(1).collect();
+            assert!(bodies.iter().all(|test| test.contains("\n  call(")), "an empty test\n{tests}");
+            let called_off = bodies.iter().position(|test| test.contains("\n  call_off"));
+            assert_eq!(called_off, Some(1), "the other way comes first\n{tests}");
+        }
+        let ways = generated(folder.path(), "ways", seed);
+        let args = ["call(1)", "call(2)", "call(3)"];
+        assert!(
+            args.iter().filter(|call| ways.contains(**call)).count() >= 2,
+            "other values come later\n{ways}"
+        );
+    }
+}
+
+#[test]
+fn what_holds_from_the_start_has_no_test_of_its_own() {
+    let asked =
+        "suite start by search of scene { reach each value of Cook.waiting; reach each location; tests 9 }
+suite still by search of scene { reach each value of Cook.free when Cook.free && Robot.ready; tests 1 }
+";
+    let folder = folder(&[("scenario.hri", &format!("{TWO_WAYS}{asked}"))]);
+    let tests = generated(folder.path(), "start", "0");
+    assert!(tests.split("\ntest ").skip(1).all(|test| test.contains("\n  call(")), "{tests}");
+    let out = hrdsl_in(folder.path(), "gen scenario.hri --suite start -o tests");
+    let said = "  from the start, so in every test: value Cook.waiting = false, location Cook.free, location Robot.ready\n";
+    assert!(stdout(&out).contains(said), "{}", stdout(&out));
+    let out = hrdsl_in(folder.path(), "gen scenario.hri --suite start -o tests --json");
+    let json: Value = serde_json::from_str(&stdout(&out)).unwrap();
+    let goals = json["suites"][0]["goals"].as_array().unwrap();
+    let initial = goals.iter().filter(|goal| goal["reason"] == "from the start, so in every test");
+    let tests: Vec<&Value> = initial.map(|goal| &goal["test"]).collect();
+    assert_eq!(tests, ["start.t001"; 3]);
+    // Without any other test, one lets the robot alone.
+    let still = generated(folder.path(), "still", "0");
+    assert_eq!(still.matches("\ntest ").count(), 1, "{still}");
+}
+
 #[test]
 fn what_cannot_be_asked_is_said_where_it_stands() {
     let asks =

@@ -14,7 +14,7 @@ mod verdicts;
 use std::collections::BTreeMap;
 
 use hrdsl_compiler::{InputFile, compile};
-use hrdsl_ir::{EventId, Nanos, Program, Value, value::SECOND, world::SignalId};
+use hrdsl_ir::{EventId, Nanos, Program, Value, monitor::Monitor, value::SECOND, world::SignalId};
 use hrdsl_monitor::{MonitorOutcome, MonitorRunner, MonitorVerdict};
 use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
@@ -34,7 +34,8 @@ pub(crate) fn scenario(requirements: &str) -> String {
         "scenario watched\nactor guest : environment\nactor robot : system\nevent a, b, c, d from robot\n{requirements}\n\
          world {{\n  body cup: dynamic cylinder(3 cm, 10 cm) at (0 m, 0 m, 1 m) mass 200 g\n  \
          body hand: kinematic sphere(5 cm) at (1 m, 0 m, 1 m)\n  \
-         signal p: bool to robot = distance(cup, hand) < 1 m\n  signal q: bool to robot = speed(cup) < 1 m/s\n}}\n"
+         signal p: bool to robot = distance(cup, hand) < 1 m\n  signal q: bool to robot = speed(cup) < 1 m/s\n  \
+         signal far: length to robot = distance(cup, hand)\n  signal wide: length to robot = distance(cup, hand)\n}}\n"
     )
 }
 
@@ -125,6 +126,108 @@ fn monitors_say_what_the_pages_say() {
         }
     }
     every_verdict_is_met(&met);
+}
+
+/// A sentence over numbers: `p` and `q` are comparisons of two measurements.
+fn over_numbers(sentence: &Sentence) -> String {
+    let text = format!(" {sentence} ");
+    let compared = |text: &str, truth: &str, number: &str| {
+        let (before, after) = ([' ', '('], [' ', ')', ',']);
+        before.iter().fold(text.to_owned(), |text, b| {
+            let one = |text: String, a: &char| {
+                text.replace(&format!("{b}{truth}{a}"), &format!("{b}({number} < 1 m){a}"))
+            };
+            after.iter().fold(text, one)
+        })
+    };
+    compared(&compared(&text, "p", "far"), "q", "wide").trim().to_owned()
+}
+
+/// The same run, in which some samples are NaN, and as comparisons of its numbers with 1 m say it: one with a NaN is false.
+fn measured(dice: &mut Dice, trace: &Trace, numbers: [SignalId; 2]) -> (Trace, Trace) {
+    let (mut measured, mut compared) = (trace.clone(), trace.clone());
+    for (number, truth) in measured.steps.iter_mut().zip(&mut compared.steps) {
+        if let (TraceStepKind::Sample { signal, value }, TraceStepKind::Sample { value: truth, .. }) =
+            (&mut number.what, &mut truth.what)
+        {
+            let less = value.as_bool() == Some(true);
+            let metres = match dice.below(4) {
+                0 => f64::NAN,
+                _ if less => 0.5,
+                _ => 1.5,
+            };
+            (*value, *truth) = (Value::Float(metres), Value::Bool(metres < 1.0));
+            *signal = numbers[usize::from(signal.0)];
+        }
+    }
+    (measured, compared)
+}
+
+/// Whether a comparison of the sentence is without a value when it is asked: when an instant is over, or before an event at it.
+fn lacks_value(sentence: &Sentence, trace: &Trace, numbers: [SignalId; 2]) -> bool {
+    let (mut values, mut unseen) = ([0.0_f64; 2], None);
+    for step in &trace.steps {
+        let event = match &step.what {
+            TraceStepKind::Event { event, .. } => Some(event.0).filter(|event| sentence.names(*event)),
+            TraceStepKind::Sample { .. } | TraceStepKind::Machine(_) => None,
+        };
+        let lacks = |place: usize| -> bool { values[place].is_nan() };
+        if unseen.take_if(|time| step.time > *time || event.is_some()).is_some()
+            && (0..2).any(|place| sentence.asks_at_samples(place) && lacks(place))
+        {
+            return true;
+        }
+        if event.and_then(|event| sentence.asks_at(event)).is_some_and(lacks) {
+            return true;
+        }
+        if let TraceStepKind::Sample { signal, value: Value::Float(metres) } = &step.what
+            && let Some(place) = numbers.iter().position(|number| number == signal)
+            && sentence.reads(place)
+        {
+            (values[place], unseen) = (*metres, Some(step.time));
+        }
+    }
+    unseen.is_some() && (0..2).any(|place| sentence.asks_at_samples(place) && values[place].is_nan())
+}
+
+#[test]
+fn what_was_not_measured_is_no_pass() {
+    let mut dice = Dice(7);
+    let (all, each) = (traces() / 4, 2_000);
+    let mut lacking = BTreeMap::new();
+    for _ in 0..all.div_ceil(each) {
+        let sentences: Vec<Sentence> = (0..TOGETHER).map(|n| Sentence::random(&mut dice, n)).collect();
+        let texts: Vec<String> = sentences
+            .iter()
+            .enumerate()
+            .map(|(n, s)| format!("require R{n} safety {}", over_numbers(s)))
+            .collect();
+        let program = program(&texts.join("\n"));
+        let named = |name: &str| {
+            let at = program.signals.iter().position(|s| s.name == name).unwrap();
+            SignalId(at as u16)
+        };
+        let numbers = [named("far"), named("wide")];
+        let empty = Program { monitors: Vec::new(), ..program.clone() };
+        let one = |monitor: &Monitor| Program { monitors: vec![monitor.clone()], ..empty.clone() };
+        let alone: Vec<Program> = program.monitors.iter().map(one).collect();
+        for _ in 0..each {
+            let (plain, n) = (trace(&mut dice), dice.below(TOGETHER));
+            let (measured, compared) = measured(&mut dice, &plain, numbers);
+            let one = &alone[n];
+            let (found, expected) = (&verdicts_of(one, &measured)[0], judge(&sentences[n], &compared));
+            let unvalued = lacks_value(&sentences[n], &measured, numbers);
+            let wanted = match expected.outcome() {
+                MonitorOutcome::Pass | MonitorOutcome::Vacuous if unvalued => MonitorOutcome::Inconclusive,
+                outcome => outcome,
+            };
+            let context = format!("{}\n{}\n{measured:?}", texts[n], shown(&compared));
+            assert_eq!((found.outcome, found.unvalued.is_some()), (wanted, unvalued), "{context}");
+            assert_eq!(found.failures as usize, expected.failures, "{context}");
+            *lacking.entry((unvalued, expected.outcome())).or_insert(0_usize) += 1;
+        }
+    }
+    assert_eq!(lacking.len(), 8, "{lacking:?}");
 }
 
 /// Each form of sentence has had each verdict that it can have.

@@ -50,6 +50,7 @@ fn said(v: &MonitorVerdict) -> impl PartialEq + std::fmt::Debug + use<> {
         values,
         v.worst_margin,
         v.pending_since,
+        v.unvalued,
     )
 }
 
@@ -87,13 +88,14 @@ system robot { run "python3 robot.py" }
 fn told(rng: &mut ChaCha8Rng) -> ToldWorld {
     let mut signals = Vec::new();
     let mut last = [0.3, 0.4];
+    let unmeasured = rng.random();
     for step in 0..rng.random_range(20..200i64) {
         let time = step * 10 * MILLISECOND;
         for (at, value) in last.iter_mut().enumerate() {
             match rng.random_range(0..8) {
                 0 => *value = rng.random_range(0.0..1.0),
                 1..=4 => *value = f64::clamp(*value + rng.random_range(-0.05..0.05), 0.0, 1.0),
-                5 => *value = 0.0,
+                5 => *value = if unmeasured && rng.random_range(0..9) == 0 { f64::NAN } else { 0.0 },
                 _ => {}
             }
             signals.push((time, SignalId(at as u16), Value::Float(*value)));

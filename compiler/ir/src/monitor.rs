@@ -68,7 +68,7 @@ pub enum MonitorOutcome {
     Fail,
     /// It was never triggered: the trace says nothing about it.
     Vacuous,
-    /// It was not violated, but the trace ended while an obligation was pending.
+    /// It was not violated, but the trace ended while an obligation was pending, or a comparison had no value.
     Inconclusive,
 }
 

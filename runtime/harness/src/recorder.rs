@@ -43,6 +43,8 @@ struct SampleWatch<'p> {
     places: Vec<Option<usize>>,
     /// The conditions on which it may move, with their values when it last looked.
     guards: Vec<(Cow<'p, Expr>, Option<Value>)>,
+    /// For each of its signals, whether it had no finite number then.
+    without_number: Vec<bool>,
     margin: Option<&'p Expr>,
     /// The least of the margins so far.
     worst: f64,
@@ -162,6 +164,7 @@ impl<'p> SampleWatch<'p> {
         let margin = monitor.margin.as_ref().filter(|margin| margin.at.is_empty());
         Self {
             places: monitor.signals.iter().map(|s| watched.binary_search(s).ok()).collect(),
+            without_number: vec![false; monitor.signals.len()],
             guards,
             margin: margin.map(|margin| &margin.value),
             worst: f64::INFINITY,
@@ -169,7 +172,7 @@ impl<'p> SampleWatch<'p> {
         }
     }
 
-    /// Whether a truth has changed.
+    /// Whether a truth has changed, or whether some signal has a number: a truth that rests on none is another one for a monitor.
     fn look(&mut self, now: Nanos, values: &[Value]) -> bool {
         let places = &self.places;
         let value = |expr: &Expr| {
@@ -181,6 +184,12 @@ impl<'p> SampleWatch<'p> {
             let truth = value(guard);
             found |= *known != truth;
             *known = truth;
+        }
+        for (place, known) in places.iter().zip(&mut self.without_number) {
+            let read = place.and_then(|at| values.get(at));
+            let without = matches!(read, Some(Value::Float(number)) if !number.is_finite());
+            found |= *known != without;
+            *known = without;
         }
         let measured = self.margin.and_then(value).and_then(Value::as_f64);
         if let Some(margin) = measured.filter(|m| m.is_finite() && *m < self.worst) {

@@ -2,7 +2,10 @@
 
 use hrdsl_ir::{EventPattern, Expr, Value, formula::FormulaAtomKind};
 
-use crate::robustness::Robustness;
+use crate::{
+    measured::{MeasuredTruth, measured_number},
+    robustness::Robustness,
+};
 
 /// A number made of signals, in SI units. A signal is a place among those that the formula reads.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +34,7 @@ impl NumberTerm {
     fn value(&self, signals: &[Option<Value>]) -> Option<f64> {
         Some(match self {
             Self::Constant(number) => *number,
-            Self::Expression(expr) => value_of(expr, signals)?.as_f64()?,
+            Self::Expression(expr) => measured_number(expr, &|signal| sampled(signal, signals))?,
             Self::Signal(signal) => signals.get(*signal).copied().flatten()?.as_f64()?,
             Self::Negative(a) => -a.value(signals)?,
             Self::Absolute(a) => a.value(signals)?.abs(),
@@ -65,9 +68,29 @@ impl NumberTerm {
     }
 }
 
-/// `None`: it reads a signal without a value, or has none for another reason.
-fn value_of(expr: &Expr, signals: &[Option<Value>]) -> Option<Value> {
-    expr.eval(&|signal| signals.get(usize::from(signal)).copied().flatten()).ok()
+/// The latest sample of a signal.
+fn sampled(signal: u16, signals: &[Option<Value>]) -> Option<Value> {
+    signals.get(usize::from(signal)).copied().flatten()
+}
+
+/// What an atom comes to at a moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct AtomReading {
+    pub value: Robustness,
+    /// It compares what has no value.
+    pub unvalued: bool,
+}
+
+impl AtomReading {
+    /// `known`: how far a comparison holds; if there is no such number, only `negated` ones do, and by no distance.
+    fn compared(known: Option<Robustness>, negated: bool) -> Self {
+        let nothing = Self { value: Robustness::of_truth(negated), unvalued: true };
+        known.map_or(nothing, |value| Self { value, unvalued: false })
+    }
+
+    fn of_truth(truth: bool) -> Self {
+        Self { value: Robustness::of_truth(truth), unvalued: false }
+    }
 }
 
 /// What an atom is.
@@ -114,25 +137,30 @@ impl AtomSource {
         }
     }
 
-    /// `None`: it has no value, or none yet. An event does not happen.
-    pub fn robustness(&self, signals: &[Option<Value>]) -> Option<Robustness> {
+    /// `None`: a signal has no sample yet. An event does not happen.
+    pub fn reading(&self, signals: &[Option<Value>]) -> Option<AtomReading> {
         match self {
             Self::Less { least, most, strict } => {
-                Robustness::of(most.value(signals)? - least.value(signals)?, *strict)
+                let apart = most.value(signals)? - least.value(signals)?;
+                Some(AtomReading::compared(Robustness::of(apart, *strict), false))
             }
             Self::Equal { left, right, negated } => {
-                let apart = Robustness::of((left.value(signals)? - right.value(signals)?).abs(), true)?;
-                Some(if *negated { apart } else { !apart })
+                let apart = Robustness::of((left.value(signals)? - right.value(signals)?).abs(), true);
+                Some(AtomReading::compared(apart.map(|a| if *negated { a } else { !a }), *negated))
             }
             Self::Truth(signal) => {
-                signals.get(*signal).copied().flatten()?.as_bool().map(Robustness::of_truth)
+                signals.get(*signal).copied().flatten()?.as_bool().map(AtomReading::of_truth)
             }
-            Self::Holds(condition) => value_of(condition, signals)?.as_bool().map(Robustness::of_truth),
+            Self::Holds(condition) => {
+                let MeasuredTruth { truth, unvalued } =
+                    MeasuredTruth::of(condition, &|signal| sampled(signal, signals))?;
+                Some(AtomReading { value: Robustness::of_truth(truth), unvalued })
+            }
             Self::Is { signal, value, negated } => {
                 let is = signals.get(*signal).copied().flatten()?.key() == value.key();
-                Some(Robustness::of_truth(is != *negated))
+                Some(AtomReading::of_truth(is != *negated))
             }
-            Self::Happens(_) => Some(Robustness::FALSE),
+            Self::Happens(_) => Some(AtomReading::of_truth(false)),
         }
     }
 

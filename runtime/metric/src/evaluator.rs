@@ -12,6 +12,7 @@ use crate::{
         piece::SignalPiece,
     },
     fold::GoalProgress,
+    measured::outcome_of_measured,
     robustness::Robustness,
 };
 
@@ -31,6 +32,8 @@ pub struct MetricOutcome {
     /// How often it became violated.
     pub failures: u32,
     pub first_failure: Option<Nanos>,
+    /// When a comparison first had no value: what has not failed is inconclusive then.
+    pub unvalued: Option<Nanos>,
 }
 
 impl MetricOutcome {
@@ -42,7 +45,14 @@ impl MetricOutcome {
         triggered: 0,
         failures: 0,
         first_failure: None,
+        unvalued: None,
     };
+
+    /// The same of a run in which a comparison had no value from this moment on.
+    pub(crate) fn given(self, unvalued: Option<Nanos>) -> Self {
+        let outcome = outcome_of_measured(self.outcome, unvalued);
+        Self { outcome, unvalued, ..self }
+    }
 
     /// By how much it holds at the least, or fails at the least; `None`: that is open, or infinite.
     #[must_use]
@@ -144,6 +154,7 @@ impl MetricEvaluator {
             triggered: told.triggered,
             failures: if failed { told.failures.max(1) } else { 0 },
             first_failure: told.first_failure.filter(|_| failed),
+            unvalued: None,
         }
     }
 }

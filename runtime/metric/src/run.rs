@@ -4,7 +4,7 @@ use hrdsl_ir::{EventId, Nanos, Value, formula::MetricGoal, world::SignalId};
 use hrdsl_trace::{TraceObserver, TraceStep, TraceStepKind};
 
 use crate::{
-    atom::AtomSource,
+    atom::{AtomReading, AtomSource},
     engine::piece::SignalPiece,
     evaluator::{MetricEvaluator, MetricOutcome},
     robustness::Robustness,
@@ -35,6 +35,8 @@ pub struct MetricRunner {
     tape: Option<Vec<Vec<SignalPiece>>>,
     start: Nanos,
     end: Option<Nanos>,
+    /// When an atom first compared what has no value.
+    unvalued: Option<Nanos>,
 }
 
 /// What the atoms of a formula were in a run, from its first moment to its last.
@@ -77,6 +79,7 @@ impl MetricRunner {
             tape: None,
             start: 0,
             end: None,
+            unvalued: None,
         }
     }
 
@@ -115,7 +118,8 @@ impl MetricRunner {
     #[must_use]
     pub fn outcome(mut self) -> MetricOutcome {
         let end = self.close();
-        self.evaluator.map_or(MetricOutcome::UNSEEN, |evaluator| evaluator.finish(end))
+        let unvalued = self.unvalued;
+        self.evaluator.map_or(MetricOutcome::UNSEEN, |evaluator| evaluator.finish(end).given(unvalued))
     }
 
     /// All that was shown is known now; its end.
@@ -164,7 +168,7 @@ impl MetricRunner {
         if self.evaluator.is_none() {
             self.begin();
         }
-        let Self { evaluator, tape, touched, happening, passing, now, .. } = self;
+        let Self { evaluator, tape, touched, happening, passing, now, unvalued, .. } = self;
         if let Some(evaluator) = evaluator {
             let mut change = |index: usize, start: Nanos, value: Robustness| {
                 evaluator.change(index, start, value);
@@ -181,9 +185,11 @@ impl MetricRunner {
                 }
             }
             for index in touched.drain(..) {
-                // What has no value stays as it was.
-                if let Some(value) = self.atoms.get(index).and_then(|a| a.robustness(&self.values)) {
-                    change(index, *now, value);
+                if let Some(reading) = self.atoms.get(index).and_then(|a| a.reading(&self.values)) {
+                    change(index, *now, reading.value);
+                    if reading.unvalued {
+                        unvalued.get_or_insert(*now);
+                    }
                 }
             }
             happening.iter().for_each(|index| change(*index, *now, Robustness::TRUE));
@@ -199,9 +205,12 @@ impl MetricRunner {
         let start = if self.signals.is_empty() { 0 } else { self.now };
         let happens = |index: usize| start == self.now && self.happening.contains(&index);
         let values = self.atoms.iter().enumerate().map(|(index, atom)| {
-            if happens(index) { Some(Robustness::TRUE) } else { atom.robustness(&self.values) }
+            let happening = AtomReading { value: Robustness::TRUE, unvalued: false };
+            if happens(index) { Some(happening) } else { atom.reading(&self.values) }
         });
-        if let Some(values) = values.collect::<Option<Vec<_>>>() {
+        if let Some(readings) = values.collect::<Option<Vec<_>>>() {
+            let values: Vec<Robustness> = readings.iter().map(|reading| reading.value).collect();
+            self.unvalued = readings.iter().any(|reading| reading.unvalued).then_some(self.now);
             self.evaluator = Some(MetricEvaluator::new(&self.goal, start, &values));
             self.start = start;
             for (pieces, value) in self.tape.iter_mut().flatten().zip(values) {

@@ -6,14 +6,17 @@
 
 mod definition;
 mod dice;
+#[allow(dead_code, reason = "runs as the pages write them are those of other tests")]
+mod watched;
 
 use definition::{at, goal_bounds};
 use dice::Dice;
-use hrdsl_ir::{Nanos, monitor::MonitorOutcome};
+use hrdsl_ir::{Nanos, Value, monitor::MonitorOutcome, value::SECOND, world::SignalId};
 use hrdsl_metric::{
-    FutureWindow, MetricEvaluator, MetricFormula, MetricGoal, PastWindow, Robustness, SignalPiece,
-    robustness_over_time,
+    CheckedFormula, FutureWindow, MetricEvaluator, MetricFormula, MetricGoal, MetricOutcome, MetricRunner,
+    PastWindow, Robustness, SignalPiece, read_formula, robustness_over_time,
 };
+use hrdsl_trace::{Trace, TraceStep, TraceStepKind};
 
 const ATOMS: usize = 3;
 
@@ -193,4 +196,86 @@ fn first_failures_are_the_first_moments_that_do_not_hold() {
         let falls = (start..=end).filter(|t| !holds(*t) && (*t == start || holds(*t - 1))).count();
         assert_eq!(outcome.failures as usize, falls, "{body:?}\n{signals:?}");
     }
+}
+
+const COMPARISONS: [&str; 6] = ["x < 1", "x >= 1", "x == y", "x != y", "x + y > 1", "x / y < 1"];
+
+/// What a comparison says of x and y: without a value it holds by no distance if it is `!=`, and else fails so; and whether it has one.
+fn compared(text: &str, [x, y]: [f64; 2]) -> (Robustness, bool) {
+    let (value, strict, negated, opposite) = match text.trim_matches(['(', ')']) {
+        "x < 1" => (1.0 - x, true, false, false),
+        "x >= 1" => (x - 1.0, false, false, false),
+        "x == y" => ((x - y).abs(), true, false, true),
+        "x != y" => ((x - y).abs(), true, true, false),
+        "x + y > 1" => (x + y - 1.0, true, false, false),
+        "x / y < 1" => (if y == 0.0 { f64::NAN } else { 1.0 - x / y }, true, false, false),
+        _ => panic!("{text}"),
+    };
+    match Robustness::of(value, strict) {
+        None => (Robustness::of_truth(negated), false),
+        Some(known) => (if opposite { !known } else { known }, true),
+    }
+}
+
+/// What the formula comes to, of its atoms at the end of each instant.
+fn by_atoms(formula: &CheckedFormula, trace: &Trace) -> (MetricOutcome, bool) {
+    let atoms: Vec<&str> = (0..).map(|n| formula.atom_text(n)).take_while(|text| *text != "?").collect();
+    let reads = |place: u16| formula.signals().contains(&SignalId(place));
+    let (mut values, mut evaluator, mut unvalued) = ([None; 2], None, false);
+    for (at, step) in trace.steps.iter().enumerate() {
+        if let TraceStepKind::Sample { signal: SignalId(place), value: Value::Float(value) } = step.what {
+            values[usize::from(place) - 2] = Some(value);
+        }
+        let is_last = trace.steps.get(at + 1).is_none_or(|next| next.time > step.time);
+        let missing = (0..2).any(|n: u16| reads(n + 2) && values[usize::from(n)].is_none());
+        if !is_last || missing {
+            continue;
+        }
+        let now = values.map(|value| value.unwrap_or(0.0));
+        let readings: Vec<(Robustness, bool)> = atoms.iter().map(|text| compared(text, now)).collect();
+        unvalued |= readings.iter().any(|(_, has_value)| !has_value);
+        let known: Vec<Robustness> = readings.iter().map(|reading| reading.0).collect();
+        let goal = evaluator.get_or_insert_with(|| MetricEvaluator::new(&formula.goal, step.time, &known));
+        for (atom, value) in known.iter().enumerate() {
+            goal.change(atom, step.time, *value);
+        }
+    }
+    (evaluator.map_or(MetricOutcome::UNSEEN, |goal| goal.finish(trace.end)), unvalued)
+}
+
+#[test]
+fn what_was_not_measured_is_false_and_no_pass() {
+    let (mut dice, program) = (Dice(4), watched::program());
+    let mut met = [[0_usize; 4]; 2];
+    for _ in 0..traces() / 10 {
+        let [a, b] = [(); 2].map(|()| COMPARISONS[dice.below(COMPARISONS.len())]);
+        let text = match dice.below(6) {
+            0 => format!("always {a}"),
+            1 => format!("always not {a}"),
+            2 => format!("always ({a} implies eventually[0 s, 2 s] {b})"),
+            3 => format!("eventually ({a} and historically[0 s, 1 s] {b})"),
+            4 => format!("always ({a} or once[0 s, 3 s] {b})"),
+            _ => format!("always (({a}) since[0 s, 2 s] ({b}))"),
+        };
+        let formula = read_formula(&program, &text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let (mut steps, mut time) = (Vec::new(), 0);
+        for _ in 0..dice.below(10) {
+            let value = Value::Float([0.0, 0.5, 1.0, 2.0, 2.0, f64::NAN][dice.below(6)]);
+            let what = TraceStepKind::Sample { signal: SignalId(2 + dice.below(2) as u16), value };
+            steps.push(TraceStep { time, what });
+            time += [0, 1, SECOND, 2 * SECOND][dice.below(4)];
+        }
+        let trace = Trace { steps, end: time };
+        let mut runner = MetricRunner::new(&formula);
+        trace.replay(&mut runner);
+        let (found, (expected, unvalued)) = (runner.outcome(), by_atoms(&formula, &trace));
+        let outcome = match expected.outcome {
+            MonitorOutcome::Pass | MonitorOutcome::Vacuous if unvalued => MonitorOutcome::Inconclusive,
+            outcome => outcome,
+        };
+        let wanted = MetricOutcome { outcome, unvalued: found.unvalued, ..expected };
+        assert_eq!((found, found.unvalued.is_some()), (wanted, unvalued), "{text}\n{trace:?}");
+        met[usize::from(unvalued)][expected.outcome as usize] += 1;
+    }
+    assert!(met.iter().flatten().all(|n| *n > 0), "{met:?}");
 }

@@ -102,6 +102,7 @@ fn told(
             .map(|margin| (margin, outcome.first_failure.unwrap_or_default())),
         first_failure,
         pending_since: None,
+        unvalued: outcome.unvalued,
     };
     (verdict, happenings)
 }

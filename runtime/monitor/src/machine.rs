@@ -2,9 +2,11 @@
 
 use hrdsl_ir::{
     EventId, Expr, Nanos, Value,
+    expr::{BinaryOp, EvalError},
     monitor::{Monitor, MonitorEdge, MonitorEffect, MonitorOutcome, MonitorTrigger, StateId},
 };
 
+use hrdsl_metric::{MeasuredTruth, outcome_of_measured};
 use hrdsl_trace::{SeenStep, TraceStep, TraceStepKind};
 
 use crate::{
@@ -54,6 +56,10 @@ pub(crate) struct MonitorMachine {
     /// What is a violation if the requirement fails next.
     suspect: Option<Violation>,
     worst_margin: Option<(f64, Nanos)>,
+    /// One of its comparisons divides, so that it may have no value where all signals have.
+    divides: bool,
+    /// When a comparison first had no value.
+    unvalued: Option<Nanos>,
     /// All that it did; `None`: nobody asks for it.
     history: Option<Vec<MonitorHappening>>,
 }
@@ -73,6 +79,17 @@ enum EdgeCause<'a> {
 }
 
 impl EdgeCause<'_> {
+    /// Whether the guard of such an edge is asked then, in whatever state: at its event, or at samples.
+    fn asks(self, on: &MonitorTrigger) -> bool {
+        match self {
+            EdgeCause::Event(..) => self.starts(on),
+            EdgeCause::Becomes { .. } | EdgeCause::Sample | EdgeCause::Deadline => match on {
+                MonitorTrigger::Event(_) => false,
+                MonitorTrigger::Becomes { .. } | MonitorTrigger::Sample | MonitorTrigger::Deadline => true,
+            },
+        }
+    }
+
     fn starts(self, on: &MonitorTrigger) -> bool {
         match (self, on) {
             (EdgeCause::Event(event, args), MonitorTrigger::Event(patterns)) => {
@@ -105,6 +122,7 @@ impl MonitorMachine {
             }
         }
         let triggers = monitor.edges.iter().any(|e| e.effects.contains(&MonitorEffect::Trigger));
+        let divides = asked(&monitor).any(divides);
         let mut machine = Self {
             leaving,
             truths: vec![None; monitor.conditions.len()],
@@ -121,6 +139,8 @@ impl MonitorMachine {
             first_failure: None,
             suspect: None,
             worst_margin: None,
+            divides,
+            unvalued: None,
             history: None,
             monitor,
         };
@@ -173,6 +193,7 @@ impl MonitorMachine {
         let measured = |m: &Monitor| {
             m.margin.as_ref().is_some_and(|margin| margin.at.iter().any(|p| p.matches(event, args)))
         };
+        self.note_unvalued(EdgeCause::Event(event, args), at, signals);
         let inside = self.measures_here();
         if !measured(&self.monitor) {
             return self.react(EdgeCause::Event(event, args), at, signals);
@@ -189,6 +210,7 @@ impl MonitorMachine {
         for condition in 0..self.truths.len() {
             self.look(condition, at, signals);
         }
+        self.note_unvalued(EdgeCause::Sample, at, signals);
         if self.measures_samples() && self.measures_here() {
             self.measure(at.time, signals);
         }
@@ -205,10 +227,9 @@ impl MonitorMachine {
         self.react(EdgeCause::Sample, at, signals);
     }
 
-    /// Looks at a condition again. One without a value is as it was before.
+    /// Looks at a condition again. One that reads a signal without a sample has no truth yet.
     fn look(&mut self, condition: usize, at: TraceMoment, signals: &LatestSamples) {
-        let value = self.value(&self.monitor.conditions[condition], signals);
-        let Some(Value::Bool(truth)) = value else { return };
+        let Some(truth) = self.truth(&self.monitor.conditions[condition], signals) else { return };
         let before = self.truths[condition].replace(truth);
         if before != Some(truth) {
             let condition = u16::try_from(condition).unwrap_or(u16::MAX);
@@ -221,7 +242,7 @@ impl MonitorMachine {
         let enabled = |edge: &MonitorEdge| {
             cause.starts(&edge.on)
                 && edge.clock.is_none_or(|clock| clock.allows(at.time.saturating_sub(self.zero)))
-                && edge.guard.as_ref().is_none_or(|g| self.value(g, signals) == Some(Value::Bool(true)))
+                && edge.guard.as_ref().is_none_or(|g| self.truth(g, signals) == Some(true))
         };
         let edges = self.leaving.get(self.state).map_or(&[][..], Vec::as_slice);
         if let Some(&edge) = edges.iter().find(|&&edge| enabled(&self.monitor.edges[edge])) {
@@ -350,18 +371,47 @@ impl MonitorMachine {
         }
     }
 
+    /// The latest sample of one of its signals.
+    fn sampled(&self, place: u16, signals: &LatestSamples) -> Option<Value> {
+        let signal = self.monitor.signals.get(usize::from(place))?;
+        signals.get(*signal).map(|reading| reading.value)
+    }
+
     /// The expression's value; none if it reads a signal without a sample, or has no value for another reason.
     fn value(&self, expr: &Expr, signals: &LatestSamples) -> Option<Value> {
-        let var = |i: u16| {
-            let signal = self.monitor.signals.get(usize::from(i))?;
-            signals.get(*signal).map(|reading| reading.value)
-        };
-        expr.eval(&var).ok()
+        expr.eval(&|place| self.sampled(place, signals)).ok()
+    }
+
+    /// What a condition comes to, of what was measured and what was not; none if it reads a signal without a sample.
+    fn truth(&self, condition: &Expr, signals: &LatestSamples) -> Option<bool> {
+        let sampled = |place| self.sampled(place, signals);
+        match condition.eval(&sampled) {
+            Ok(value) => value.as_bool(),
+            Err(EvalError::Unbound(_)) => None,
+            Err(_) => MeasuredTruth::of(condition, &sampled).map(|measured| measured.truth),
+        }
+    }
+
+    /// Notes the time if a condition that is asked for this cause now compares what has no value. Most samples are numbers, and say at once
+    /// that none does.
+    fn note_unvalued(&mut self, cause: EdgeCause<'_>, at: TraceMoment, signals: &LatestSamples) {
+        let is_finite = |value: Value| !matches!(value, Value::Float(number) if !number.is_finite());
+        let mut read = self.monitor.signals.iter().filter_map(|signal| signals.get(*signal));
+        if self.unvalued.is_some() || (!self.divides && read.all(|reading| is_finite(reading.value))) {
+            return;
+        }
+        let (conditions, edges) = (self.monitor.conditions.iter(), &self.monitor.edges);
+        let watched = conditions.filter(|_| !matches!(cause, EdgeCause::Event(..)));
+        let guards = edges.iter().filter(|edge| cause.asks(&edge.on)).filter_map(|edge| edge.guard.as_ref());
+        let measured = |condition| MeasuredTruth::of(condition, &|place| self.sampled(place, signals));
+        if watched.chain(guards).filter_map(measured).any(|measured| measured.unvalued) {
+            self.unvalued = Some(at.time);
+        }
     }
 
     pub fn verdict(self, index: usize) -> MonitorVerdict {
         let pending = self.is_pending();
-        let outcome = if self.failures > 0 {
+        let judged = if self.failures > 0 {
             MonitorOutcome::Fail
         } else if pending {
             MonitorOutcome::Inconclusive
@@ -370,6 +420,7 @@ impl MonitorMachine {
         } else {
             MonitorOutcome::Pass
         };
+        let outcome = outcome_of_measured(judged, self.unvalued);
         let since = self.obligation.as_ref().map_or(self.entered, |trigger| trigger.time);
         MonitorVerdict {
             monitor: index,
@@ -380,7 +431,26 @@ impl MonitorMachine {
             first_failure: self.first_failure,
             worst_margin: self.worst_margin,
             pending_since: pending.then_some(since),
+            unvalued: self.unvalued,
         }
+    }
+}
+
+/// All conditions that a monitor may ask: those that it watches, and the guards of its edges.
+fn asked(monitor: &Monitor) -> impl Iterator<Item = &Expr> {
+    monitor.conditions.iter().chain(monitor.edges.iter().filter_map(|edge| edge.guard.as_ref()))
+}
+
+/// Whether something in it is divided.
+fn divides(expr: &Expr) -> bool {
+    match expr {
+        Expr::Const(_) | Expr::Var(_) => false,
+        Expr::Unary(_, a) => divides(a),
+        Expr::Binary(op, a, b) => matches!(op, BinaryOp::Div | BinaryOp::Rem) || divides(a) || divides(b),
+        Expr::If(c, a, b) => divides(c) || divides(a) || divides(b),
+        Expr::Call(_, args) => args.iter().any(divides),
+        // What no requirement has: to look again at each sample is never wrong.
+        Expr::List(..) | Expr::Element(_) | Expr::Apply(..) => true,
     }
 }
 

@@ -234,16 +234,18 @@ fn margins_count_only_where_they_are_asked_for() {
 fn a_guard_without_samples_does_not_hold() {
     let verdict = check(never_close(), vec![happens(0, 0)], 10);
     assert_eq!((verdict.outcome, verdict.worst_margin), (MonitorOutcome::Pass, None));
-    // Neither a condition nor its negation holds on what was not measured, nor on what has no value.
+    // Neither a condition nor its negation holds on what was not measured. A comparison of what has no value is false, and never a pass.
     let reciprocal = Expr::binary(BinaryOp::Div, Expr::float(1.0), Expr::Var(0));
     let positive = Expr::binary(BinaryOp::Gt, reciprocal, Expr::float(0.0));
     let negative = Expr::Unary(hrdsl_ir::expr::UnaryOp::Not, Box::new(positive.clone()));
-    for guard in [positive, negative] {
+    for (guard, judged) in [(positive, MonitorOutcome::Inconclusive), (negative, MonitorOutcome::Fail)] {
         let mut fails = edge(0, 0, MonitorTrigger::Sample, &[MonitorEffect::Trigger, MonitorEffect::Fail]);
         fails.guard = Some(guard);
-        let verdict =
-            check(monitor(&[(false, None)], vec![fails]), vec![reads(0, 1, 1.0), reads(1, 0, 0.0)], 10);
-        assert_eq!(verdict.outcome, MonitorOutcome::Vacuous);
+        let watch = monitor(&[(false, None)], vec![fails]);
+        let verdict = check(watch.clone(), vec![reads(0, 1, 1.0)], 10);
+        assert_eq!((verdict.outcome, verdict.unvalued), (MonitorOutcome::Vacuous, None));
+        let verdict = check(watch, vec![reads(0, 1, 1.0), reads(1, 0, 0.0)], 10);
+        assert_eq!((verdict.outcome, verdict.unvalued), (judged, Some(1)));
     }
 }
 

@@ -22,6 +22,8 @@ pub struct MonitorVerdict {
     pub worst_margin: Option<(f64, Nanos)>,
     /// The obligation that was pending at the end was made at this time. A failed requirement can have one, too.
     pub pending_since: Option<Nanos>,
+    /// When one of its comparisons first had no value: what has not failed is inconclusive then.
+    pub unvalued: Option<Nanos>,
 }
 
 /// The first violation of a requirement.

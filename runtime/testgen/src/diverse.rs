@@ -1,9 +1,10 @@
 //! `diverse N`: further witnesses of each goal, chosen greedily by what they add.
 //!
 //! A witness **shows** edges that automata take, pairs of edges that an automaton takes one after the other, and events with their
-//! arguments: outcomes. The next test is, of those that reach the goal, the one that shows most of what no test before it does;
-//! of several, the one whose script is the farthest from all that reach the goal already, in steps to be changed, left out or
-//! put in (Levenshtein 1966); of several, the first.
+//! arguments: outcomes. The next test is, of those that reach the goal and do something, the one that shows most edges that no
+//! test shows that reaches the goal already; of several, most pairs; of several, most of what no test of the suite does; of several, the one whose
+//! script is the farthest from all that reach the goal already, in steps to be changed, left out or put in (Levenshtein 1966); of
+//! several, the first.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,6 +34,22 @@ pub enum RunFeature {
     Pair(usize, usize, usize),
     /// Event and arguments.
     Outcome(u16, Vec<(u8, u64)>),
+}
+
+impl RunFeature {
+    fn is_edge(&self) -> bool {
+        match self {
+            Self::Edge(..) => true,
+            Self::Pair(..) | Self::Outcome(..) => false,
+        }
+    }
+
+    fn is_pair(&self) -> bool {
+        match self {
+            Self::Pair(..) => true,
+            Self::Edge(..) | Self::Outcome(..) => false,
+        }
+    }
 }
 
 /// What a run shows.
@@ -70,8 +87,9 @@ impl WitnessPool {
         format!("{added} more of {} further witnesses, for up to {each} of each goal", self.spares.len())
     }
 
-    /// Adds spares until each goal that the kept tests reach is reached by so many, as far as there are different ones. A round
-    /// gives every goal one more, so that what is cut off by a number of tests is the last round's.
+    /// Adds spares until each goal that the kept tests reach is reached by so many, and along so many different sets of edges, as far as
+    /// there are different ones. A round gives every goal one more, so that what is cut off by a number of tests is the last
+    /// round's.
     fn add_to(&self, kept: &mut Vec<AbstractTest>, goals: usize, each: u32) -> usize {
         let before = kept.len();
         let mut known: BTreeSet<TestIdentity> = kept.iter().map(|t| identity(&t.scripts)).collect();
@@ -80,17 +98,34 @@ impl WitnessPool {
         for round in 2..=each {
             for goal in 0..goals {
                 let have: Vec<&AbstractTest> = kept.iter().filter(|t| t.reaches.contains(&goal)).collect();
-                if have.is_empty() || have.len() >= round as usize {
+                let ways = self.ways(&have);
+                if have.is_empty() || ways >= round as usize {
                     continue;
                 }
-                let Some(next) = self.next(goal, &have, &known, &shown) else { continue };
+                let Some((adds, next)) = self.next(goal, &have, &known, &shown) else { continue };
+                if have.len() >= round as usize && adds.edges == 0 {
+                    continue;
+                }
                 let id = identity(&next.scripts);
-                shown.extend(self.shows.get(&id).into_iter().flatten());
+                shown.extend(self.features_of(&id));
                 known.insert(id);
                 kept.push(next.clone());
             }
         }
         kept.len() - before
+    }
+
+    /// What the run of a test shows.
+    fn features_of<'a>(&'a self, id: &TestIdentity) -> impl Iterator<Item = &'a RunFeature> + use<'a> {
+        self.shows.get(id).into_iter().flatten()
+    }
+
+    /// Along how many different sets of edges these tests go.
+    fn ways(&self, tests: &[&AbstractTest]) -> usize {
+        let edges = |test: &&AbstractTest| -> Vec<&RunFeature> {
+            self.features_of(&identity(&test.scripts)).filter(|f| f.is_edge()).collect()
+        };
+        tests.iter().map(edges).collect::<BTreeSet<_>>().len()
     }
 
     fn next(
@@ -99,21 +134,48 @@ impl WitnessPool {
         have: &[&AbstractTest],
         known: &BTreeSet<TestIdentity>,
         shown: &BTreeSet<&RunFeature>,
-    ) -> Option<&AbstractTest> {
-        let mut best: Option<((usize, usize), &AbstractTest)> = None;
-        for spare in self.spares.iter().filter(|t| t.reaches.contains(&goal)) {
+    ) -> Option<(AddedFeatures, &AbstractTest)> {
+        let of_goal: BTreeSet<&RunFeature> =
+            have.iter().flat_map(|t| self.features_of(&identity(&t.scripts))).collect();
+        let mut best: Option<(AddedFeatures, &AbstractTest)> = None;
+        for spare in self.spares.iter().filter(|t| t.reaches.contains(&goal) && does_something(t)) {
             let id = identity(&spare.scripts);
             if known.contains(&id) {
                 continue;
             }
-            let adds = self.shows.get(&id).map_or(0, |f| f.iter().filter(|f| !shown.contains(f)).count());
-            let far = have.iter().map(|t| distance(&t.scripts, &spare.scripts)).min().unwrap_or(0);
-            if best.is_none_or(|(most, _)| (adds, far) > most) {
-                best = Some(((adds, far), spare));
+            let new = |of: fn(&RunFeature) -> bool| {
+                self.features_of(&id).filter(|f| of(f) && !of_goal.contains(f)).count()
+            };
+            let adds = AddedFeatures {
+                edges: new(RunFeature::is_edge),
+                pairs: new(RunFeature::is_pair),
+                of_suite: self.features_of(&id).filter(|f| !shown.contains(f)).count(),
+                far: have.iter().map(|t| distance(&t.scripts, &spare.scripts)).min().unwrap_or(0),
+            };
+            if best.as_ref().is_none_or(|(most, _)| adds > *most) {
+                best = Some((adds, spare));
             }
         }
-        best.map(|(_, spare)| spare)
+        best
     }
+}
+
+/// What a further test of a goal adds; what is declared first counts first.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct AddedFeatures {
+    /// Edges that no test of the goal takes.
+    edges: usize,
+    /// Pairs of edges that none of them takes one after the other.
+    pairs: usize,
+    /// Whatever no test of the suite shows.
+    of_suite: usize,
+    /// Steps to the nearest test of the goal.
+    far: usize,
+}
+
+/// Whether anybody does anything in it: an empty test shows what the system does when it is left alone, and drives nothing.
+fn does_something(test: &AbstractTest) -> bool {
+    test.scripts.iter().any(|script| !script.steps.is_empty())
 }
 
 /// How many steps have to be changed, left out or put in.
@@ -177,5 +239,28 @@ mod tests {
         pool.spares = vec![tests.remove(1), far.clone()];
         assert_eq!(pool.add_to(&mut tests, 1, 2), 1);
         assert_eq!(tests[1], far);
+    }
+
+    #[test]
+    fn other_edges_come_before_whatever_else_is_new_and_empty_tests_never() {
+        let (mut pool, mut tests) = pool(&[(1, &[0], &[1]), (2, &[0], &[1]), (3, &[0], &[2])]);
+        let outcomes = (0..9).map(|n| RunFeature::Outcome(n, Vec::new()));
+        pool.note(&tests[1], outcomes.collect());
+        let mut empty = test(1, "w", &[0]);
+        empty.scripts.iter_mut().for_each(|script| script.steps.clear());
+        pool.note(&empty, [RunFeature::Edge(0, 3)].into());
+        pool.spares = [vec![empty], tests.split_off(1)].concat();
+        assert_eq!(pool.add_to(&mut tests, 1, 9), 2);
+        let wait = |time| TestStep::Wait { time };
+        assert_eq!(waits(&tests), [&wait(1), &wait(3), &wait(2)]);
+    }
+
+    #[test]
+    fn a_goal_of_many_tests_on_one_way_gets_another_way_and_no_other_values() {
+        let (mut pool, mut tests) =
+            pool(&[(1, &[0], &[1]), (2, &[0], &[1]), (3, &[0], &[1]), (4, &[0], &[2])]);
+        pool.spares = tests.split_off(2);
+        assert_eq!(pool.add_to(&mut tests, 1, 2), 1);
+        assert_eq!(waits(&tests)[2], &TestStep::Wait { time: 4 });
     }
 }

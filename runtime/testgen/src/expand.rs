@@ -6,7 +6,7 @@ use hrdsl_ir::{
     expr::BinaryOp,
     monitor::RequirementId,
     suite::SearchGoal,
-    ta::{Automaton, AutomatonId, AutomatonVar, LocationId, Network, QueryKind},
+    ta::{Automaton, AutomatonId, AutomatonVar, LocationId, Network, QueryFormula, QueryKind},
 };
 use hrdsl_results::{RequirementName, SuiteGoalId};
 use hrdsl_ta::{EventCounter, GoalKind, StateFormula};
@@ -64,7 +64,7 @@ fn of(program: &Program, network: &Network, goal: &SearchGoal) -> Vec<NamedGoal>
             let QueryKind::Possibly(formula) = &query.ask else { return Vec::new() };
             let goal = prove::of_formula(formula);
             let id = SuiteGoalId::Query(query.name.clone());
-            vec![NamedGoal::one(id, goal.what, false, WitnessedGoal::Nothing)]
+            vec![NamedGoal::one(id, goal.what, false, WitnessedGoal::State(Box::new(formula.clone())))]
         }
     }
 }
@@ -122,9 +122,10 @@ fn values(program: &Program, network: &Network) -> Vec<NamedGoal> {
     let of = |(slot, (var, name)): (u16, (&AutomatonVar, String))| {
         let each = (var.lo..=var.hi).filter_map(|n| var.value(n)).map(move |value| {
             let is = Expr::binary(BinaryOp::Eq, Expr::Var(slot), Expr::Const(value));
+            let shown = WitnessedGoal::State(Box::new(QueryFormula::Data(is.clone())));
             let what = GoalKind::Condition(StateFormula::Data(is));
             let id = SuiteGoalId::Value(format!("{name} = {value}"));
-            NamedGoal::one(id, what, false, WitnessedGoal::Nothing)
+            NamedGoal::one(id, what, false, shown)
         });
         each.collect::<Vec<_>>()
     };

@@ -32,6 +32,7 @@ mod random;
 mod search;
 mod slots;
 mod times;
+mod ways;
 mod write;
 
 use hrdsl_ir::{

@@ -20,6 +20,19 @@ impl NamedGoal {
     pub(super) fn one(id: SuiteGoalId, what: GoalKind, settled: bool, shown: WitnessedGoal) -> Self {
         Self { id, alternatives: vec![ReachabilityGoal { what, settled }], shown: vec![shown], monitor: None }
     }
+
+    /// Whether one state of a run meets it, whatever comes before and after; a bin is met by the whole run.
+    pub(super) fn is_of_states(&self) -> bool {
+        self.shown.iter().all(|shown| match shown {
+            WitnessedGoal::Location(..) | WitnessedGoal::State(_) => true,
+            WitnessedGoal::Edge(..)
+            | WitnessedGoal::Pair(..)
+            | WitnessedGoal::Bin(_)
+            | WitnessedGoal::Violation(_)
+            | WitnessedGoal::Trigger(_)
+            | WitnessedGoal::Nothing => false,
+        })
+    }
 }
 
 /// Edges that were written, with their numbers in the source from 1.

@@ -3,13 +3,15 @@
 //! The coverpoints are counted by the search itself, so that a bin of a cross product is a condition on states, and
 //! no property is written by hand. The goals of a requirement are decided on the network with the requirement's observer.
 
+use std::fmt::Display;
+
 use hrdsl_ir::{
     Nanos, Program,
     abstract_test::AbstractTest,
     suite::{PlayerRef, SearchGoal, Suite},
     ta::{Network, NetworkId},
 };
-use hrdsl_results::{AbstractTests, GoalReport, GoalStatus, SuiteGoalId};
+use hrdsl_results::{AbstractTests, GoalReport, GoalStatus};
 use hrdsl_ta::{GoalKind, ReachabilityGoal, SearchError, WitnessRun};
 use hrdsl_trace::decimal;
 
@@ -20,6 +22,7 @@ use crate::{
     expand::{counters, goals},
     extract,
     named::NamedGoal,
+    ways::{self, EventWays},
 };
 use hrdsl_prove::{
     GoalDecision, GoalFate, ObservedNetwork, ProofOptions, SearchOrder, SearchWatch, decide,
@@ -50,13 +53,20 @@ pub fn harvest(
     let held_back = held_back(program, network, &named, &fates, settings, states);
     let maker = WitnessTests::new(program, suite, network, &named);
     let mut pool = WitnessPool::default();
+    let mut at_start = InitialGoals::default();
     for ((goal, fate), held_back) in fates.iter().enumerate().zip(held_back) {
         let (status, mut reason) = said(fate, states);
         if let Some(why) = held_back {
             reason = format!("{reason}; {why}");
         }
         if let GoalFate::Reached(run) = fate {
-            harvest.tests.push(maker.test(goal, &named[goal].id, &run.witness, &mut pool));
+            let test = maker.test(Some(goal), &named[goal].id, &run.witness, &mut pool);
+            if run.witness.steps.is_empty() && named[goal].is_of_states() {
+                reason = "from the start, so in every test".to_owned();
+                at_start.add(goal, test);
+            } else {
+                harvest.tests.push(test);
+            }
         }
         harvest.goals.push(GoalReport { goal: named[goal].id.clone(), status, reason, test: None });
     }
@@ -65,12 +75,49 @@ pub fn harvest(
         let step = bounds::boundary_step(program, *step);
         maker.bounds(&mut harvest, &mut pool, (step, settings)).map_err(|e| of_network(network, &e))?;
     }
+    at_start.put_into(&mut harvest);
     if diverse > 1 {
         // Those that are not needed may be wanted as second ones.
         pool.spares.clone_from(&harvest.tests);
-        maker.spares(&mut pool, &fates, settings, diverse).map_err(|e| of_network(network, &e))?;
+        let finder = WayFinder { maker: &maker, first: &fates, states, settings };
+        finder.spares(&mut pool, diverse).map_err(|e| of_network(network, &e))?;
     }
     Ok((harvest, pool))
+}
+
+/// Goals that the first state meets, each with a test in which nobody does anything.
+#[derive(Default)]
+struct InitialGoals {
+    goals: Vec<usize>,
+    tests: Vec<AbstractTest>,
+}
+
+impl InitialGoals {
+    fn add(&mut self, goal: usize, test: AbstractTest) {
+        self.goals.push(goal);
+        self.tests.push(test);
+    }
+
+    /// Every test reaches them, so they have none of their own, unless there is no other.
+    fn put_into(self, harvest: &mut AbstractTests) {
+        /// So many are told by name.
+        const TOLD: usize = 3;
+        if self.goals.is_empty() {
+            return;
+        }
+        if harvest.tests.is_empty() {
+            harvest.tests = self.tests;
+        }
+        harvest.tests.iter_mut().for_each(|test| test.reaches.extend(&self.goals));
+        let named = self.goals.iter().filter_map(|goal| harvest.goals.get(*goal));
+        let mut told: Vec<String> = named.map(|report| report.goal.to_string()).collect();
+        let more = told.len().saturating_sub(TOLD);
+        if more > 0 {
+            told.truncate(TOLD);
+            told.push(format!("and {more} more"));
+        }
+        harvest.notes.push(format!("from the start, so in every test: {}", told.join(", ")));
+    }
 }
 
 fn of_network(network: &Network, error: &SearchError) -> String {
@@ -93,46 +140,27 @@ impl<'a> WitnessTests<'a> {
         Self { program, suite, network, named, awaits }
     }
 
-    /// The test of a goal's witness, with the goals that the run reaches.
-    fn test(&self, own: usize, id: &SuiteGoalId, run: &WitnessRun, pool: &mut WitnessPool) -> AbstractTest {
+    /// The test of a witness, with the goals that the run reaches: `own`, if it is one of the suite, and others that it shows.
+    fn test(
+        &self,
+        own: Option<usize>,
+        name: &dyn Display,
+        run: &WitnessRun,
+        pool: &mut WitnessPool,
+    ) -> AbstractTest {
         let program = self.program;
         let trace = run.trace();
         let mut test = AbstractTest {
             scripts: extract::scripts(program, &self.awaits, &trace, self.suite.settings.patience),
-            because: vec![format!("witness of {id}")],
+            because: vec![format!("witness of {name}")],
             predicts: extract::covered(program, &trace).cross_names(&program.coverage),
             ..AbstractTest::default()
         };
         let seen = ReachedItems::of(program, self.network, run, test.predicts.clone());
-        let shows = |goal: usize| goal == own || self.named[goal].shown.iter().any(|s| seen.has(s));
-        test.reaches = (0..self.named.len()).filter(|goal| shows(*goal)).chain([own]).collect();
+        let shows = |goal: usize| self.named[goal].shown.iter().any(|s| seen.has(s));
+        test.reaches = (0..self.named.len()).filter(|goal| shows(*goal)).chain(own).collect();
         pool.note(&test, diverse::features(&seen, run));
         test
-    }
-
-    /// Searches again, so many times in each of two random orders, and keeps what is not much longer than what was found first.
-    fn spares(
-        &self,
-        pool: &mut WitnessPool,
-        first: &[GoalFate],
-        settings: &ProofOptions,
-        diverse: u32,
-    ) -> Result<(), SearchError> {
-        let all: Vec<&NamedGoal> = self.named.iter().collect();
-        let orders = [SearchOrder::RandomBreadth, SearchOrder::RandomDepth];
-        for (round, order) in (1..=u64::from(diverse)).flat_map(|round| orders.map(|order| (round, order))) {
-            let seed = settings.seed.wrapping_mul(1_000_003).wrapping_add(round);
-            let settings = ProofOptions { order: Some(order), seed, ..*settings };
-            let (fates, _) = fates(self.program, self.network, &all, &settings, &mut Vec::new())?;
-            for (goal, (fate, first)) in fates.iter().zip(first).enumerate() {
-                let (GoalFate::Reached(run), GoalFate::Reached(first)) = (fate, first) else { continue };
-                if run.witness.steps.len() <= diverse::longest(first.witness.steps.len()) {
-                    let spare = self.test(goal, &self.named[goal].id, &run.witness, pool);
-                    pool.spares.push(spare);
-                }
-            }
-        }
-        Ok(())
     }
 
     /// Adds the bounds of the network, and a test for each of their sides that is reached.
@@ -160,7 +188,7 @@ impl<'a> WitnessTests<'a> {
             match (bound.run, refused) {
                 (Some(_), Some(why)) => (status, reason) = (GoalStatus::Inconclusive, why),
                 (Some(run), None) => {
-                    let test = self.test(harvest.goals.len(), &bound.id, &run, pool);
+                    let test = self.test(Some(harvest.goals.len()), &bound.id, &run, pool);
                     harvest.tests.push(test);
                 }
                 (None, _) => {}
@@ -168,6 +196,64 @@ impl<'a> WitnessTests<'a> {
             harvest.goals.push(GoalReport { goal: bound.id, status, reason, test: None });
         }
         Ok(())
+    }
+}
+
+/// Looks for further witnesses.
+struct WayFinder<'a> {
+    maker: &'a WitnessTests<'a>,
+    /// What became of the suite's goals.
+    first: &'a [GoalFate],
+    /// How many states that took.
+    states: usize,
+    settings: &'a ProofOptions,
+}
+
+impl WayFinder<'_> {
+    /// Searches again: so many times in each of two random orders, for the goals and for every edge, and once for each event, for
+    /// the goals with it and without it. Keeps what is not much longer than what was found first.
+    fn spares(&self, pool: &mut WitnessPool, diverse: u32) -> Result<(), SearchError> {
+        let WitnessTests { program, network, named, .. } = *self.maker;
+        let edges = ways::edges(program, network);
+        let all: Vec<&NamedGoal> = named.iter().chain(&edges).collect();
+        let orders = [SearchOrder::RandomBreadth, SearchOrder::RandomDepth];
+        for (round, order) in (1..=u64::from(diverse)).flat_map(|round| orders.map(|order| (round, order))) {
+            let seed = self.settings.seed.wrapping_mul(1_000_003).wrapping_add(round);
+            let settings = ProofOptions { order: Some(order), seed, ..*self.settings };
+            let (fates, _) = fates(program, network, &all, &settings, &mut Vec::new())?;
+            for (goal, (fate, asked)) in fates.iter().zip(&all).enumerate() {
+                self.keep(pool, Some(goal).filter(|goal| *goal < named.len()), &asked.id, fate);
+            }
+        }
+        let plain = ObservedNetwork::new(program, network);
+        let settings = EventWays::settings(self.settings, self.states);
+        for EventWays { counters, asked } in EventWays::of(program, network, named) {
+            let questions: Vec<ReachabilityGoal> = asked.iter().map(|way| way.2.clone()).collect();
+            let found = decide(program, &plain, &questions, &counters, &settings, &SearchWatch::default())?;
+            for ((goal, name, _), fate) in asked.iter().zip(&found.fates) {
+                self.keep(pool, Some(*goal), name, fate);
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps a further witness, if it is not much longer than the first one of some goal that it reaches.
+    fn keep(&self, pool: &mut WitnessPool, own: Option<usize>, name: &dyn Display, fate: &GoalFate) {
+        let GoalFate::Reached(run) = fate else { return };
+        let longest = |goal: usize| match &self.first[goal] {
+            GoalFate::Reached(first) => diverse::longest(first.witness.steps.len()),
+            GoalFate::Unreachable | GoalFate::Inconclusive(_) => 0,
+        };
+        let is_short = |goal: usize| run.witness.steps.len() <= longest(goal);
+        if own.is_some_and(|goal| !is_short(goal)) {
+            return;
+        }
+        let mut spare = self.maker.test(own, name, &run.witness, pool);
+        // Goals without a first witness here are those of bounds, and none of them is asked again.
+        spare.reaches.retain(|goal| is_short(*goal));
+        if !spare.reaches.is_empty() {
+            pool.spares.push(spare);
+        }
     }
 }
 

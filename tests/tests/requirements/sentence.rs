@@ -204,6 +204,25 @@ impl Sentence {
         own || self.watched().iter().any(|c| c.signal == signal)
     }
 
+    /// The signal whose comparison is asked at this event: that of `never E while P`.
+    pub fn asks_at(&self, event: u16) -> Option<usize> {
+        match &self.pattern {
+            Pattern::Never(of, Some(c)) => of.contains(&Atom::Event(event)).then_some(c.signal),
+            _ => None,
+        }
+    }
+
+    /// Whether a comparison of this signal is asked when an instant is over.
+    pub fn asks_at_samples(&self, signal: usize) -> bool {
+        let only_at_events =
+            |c: &Cond, of: &Atoms| c.signal == signal && of.iter().all(|a| matches!(a, Atom::Event(_)));
+        let is_watched = self.watched().iter().any(|c| c.signal == signal);
+        match &self.pattern {
+            Pattern::Never(of, Some(c)) if only_at_events(c, of) => is_watched,
+            _ => self.reads(signal),
+        }
+    }
+
     pub fn names(&self, event: u16) -> bool {
         self.lists().into_iter().flatten().any(|a| *a == Atom::Event(event))
     }

@@ -8,6 +8,52 @@ from agent_machine import fits_one
 from agent_values import Fault, evaluate
 
 NEVER = math.inf
+COMPARISONS = ("eq", "ne", "lt", "le", "gt", "ge")
+
+
+def measured(e, names):
+    """The truth of a condition, and whether it rests on a comparison of what has no value; None: a signal has no sample."""
+    ((form, of),) = e.items()
+    if form == "unary" and of[0] == "not":
+        known = measured(of[1], names)
+        return known and (not known[0], known[1])
+    if form == "binary" and of[0] in ("and", "or"):
+        settles = of[0] == "or"
+        parts = []
+        for part in of[1:]:
+            known = measured(part, names)
+            if known is None or known == (settles, False):
+                return known
+            parts.append(known)
+        (a, first), (b, second) = parts
+        return (a or b if settles else a and b), first or second
+    if form == "binary" and of[0] in COMPARISONS:
+        sides = [side(of[1], names), side(of[2], names)]
+        if NEVER in sides:
+            return None
+        if None in sides:
+            return of[0] == "ne", True
+    try:
+        return evaluate(e, names), False
+    except Fault:
+        return None
+
+
+def side(e, names):
+    """None: it has no value; NEVER: it reads a signal without a sample."""
+    if any(n not in names for n in read(e)):
+        return NEVER
+    try:
+        value = evaluate(e, names)
+    except Fault:
+        return None
+    return None if isinstance(value, float) and math.isnan(value) else 0
+
+
+def read(e):
+    if isinstance(e, dict):
+        return [e["var"]] if "var" in e else [n for part in e.values() for n in read(part)]
+    return [n for part in e for n in read(part)] if isinstance(e, list) else []
 
 
 class Monitor:
@@ -16,6 +62,7 @@ class Monitor:
         self.q, self.z, self.f = given["initial"], 0, 0
         self.o = self.s = self.V = self.w = self.margin = None
         self.n = self.k = self.g = 0
+        self.unvalued = None
         self.truths = [None for _ in given.get("conditions", [])]
         if "trigger" in given.get("at_start", []):
             self.n, self.o = 1, (0, None)
@@ -27,17 +74,23 @@ class Monitor:
         bound = self.it["states"][self.q]["deadline"]
         return NEVER if bound is None else max(t, self.z + bound)
 
+    def names(self):
+        return {i: self.sigma[s][0] for i, s in enumerate(self.it["signals"]) if s in self.sigma}
+
+    def truth(self, e):
+        known = measured(e, self.names())
+        return known and known[0]
+
     def value(self, e):
-        names = {i: self.sigma[s][0] for i, s in enumerate(self.it["signals"]) if s in self.sigma}
         try:
-            return evaluate(e, names)
+            return evaluate(e, self.names())
         except Fault:
             return None
 
     def react(self, cause, t, i):
         for e in self.it["edges"]:
             fits = self.clock_allows(e.get("clock"), t)
-            if e["from"] == self.q and cause(e["on"]) and fits and (e["guard"] is None or self.value(e["guard"]) is True):
+            if e["from"] == self.q and cause(e["on"]) and fits and (e["guard"] is None or self.truth(e["guard"]) is True):
                 break
         else:
             return
@@ -105,6 +158,7 @@ class Monitor:
             (t, i), self.s = self.s, None
             for number, condition in enumerate(self.it.get("conditions", [])):
                 self.look(number, condition, t, i)
+            self.note_unvalued(t, self.it.get("conditions", []), lambda on: not (isinstance(on, dict) and "event" in on))
             if self.measures_samples() and self.measures_here():
                 self.take_margin(t)
             watches = any(e["on"] == "sample" for e in self.it["edges"]) and not self.triggers
@@ -112,8 +166,14 @@ class Monitor:
                 self.n, self.o = 1, (t, i)
             self.react(lambda on: on == "sample", t, i)
 
+    def note_unvalued(self, t, conditions, asks):
+        guards = [e["guard"] for e in self.it["edges"] if e["guard"] is not None and asks(e["on"])]
+        asked = [measured(c, self.names()) for c in [*conditions, *guards]]
+        if self.unvalued is None and any(known and known[1] for known in asked):
+            self.unvalued = t
+
     def look(self, number, condition, t, i):
-        now, before = self.value(condition), self.truths[number]
+        now, before = self.truth(condition), self.truths[number]
         if now in (True, False) and now != before:
             self.truths[number] = now
             fits = lambda c: c["condition"] == number and c["truth"] == now and (before is not None or c["first"])
@@ -134,6 +194,7 @@ class Monitor:
         named = lambda patterns: any(p["event"] == what for p in patterns)
         if named(at) or any(is_event(e["on"]) and named(e["on"]["event"]) for e in self.it["edges"]):
             self.sampled()
+        self.note_unvalued(t, [], is_it)
         inside = self.measures_here()
         self.react(is_it, t, i)
         if fits_one(at, what, value) and inside and self.measures_here():
@@ -144,10 +205,13 @@ class Monitor:
         self.pass_time(end + 1)
         pending = self.it["states"][self.q]["pending"]
         outcome = "fail" if self.g else "inconclusive" if pending else "pass" if self.n else "vacuous"
+        if outcome in ("pass", "vacuous") and self.unvalued is not None:
+            outcome = "inconclusive"
         return {
             "monitor": self.number, "outcome": outcome, "triggered": self.n, "discharged": self.k, "failures": self.g,
             "first_failure": self.V, "worst_margin": self.margin and list(self.margin),
             "pending_since": (self.o[0] if self.o else self.f) if pending else None,
+            "unvalued": self.unvalued,
         }
 
 

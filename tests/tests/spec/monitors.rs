@@ -86,6 +86,7 @@ fn in_words(verdict: &MonitorVerdict) -> Json {
         "first_failure": verdict.first_failure.as_ref().map(violation),
         "worst_margin": verdict.worst_margin,
         "pending_since": verdict.pending_since,
+        "unvalued": verdict.unvalued,
     })
 }
 
