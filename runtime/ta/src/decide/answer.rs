@@ -16,6 +16,7 @@ use crate::{
         extremum::{ExtremumOptions, ExtremumQuestion, ExtremumSide, MeasureExtremum, extrema},
         fastest::fastest,
         liveness::{LivenessSearch, MaximalRun, MaximalRunSearchResult},
+        standing_bounds, standing_runs,
         words::{count, length, limit_text, used_up},
         zeno::{self, LoopPace},
     },
@@ -351,8 +352,11 @@ impl QueryEvaluator<'_> {
             let what = "`deadlock` can be asked for in `E<>`, `A[]`, `sup` and `inf`, not in questions about all of a run";
             return Err(ModelError::Question(what.into()).into());
         }
-        self.model.refuse_stopped("what holds along a whole run (`A<>`, `E[]`, `-->`)")?;
         let graph = ZoneGraph::new(self.model, formulas)?;
+        let stands = self.model.stops();
+        if stands && graph.splits() {
+            self.model.refuse_stopped("a comparison of two clocks with each other")?;
+        }
         let go = |abstraction| {
             let limits = (self.options.budget, self.company.go_on);
             let mut hunt = LivenessSearch::new(&graph, formulas, limits, abstraction);
@@ -365,6 +369,9 @@ impl QueryEvaluator<'_> {
             found = go(ExtrapolationAbstraction::Greatest)?;
         }
         Ok(match found {
+            MaximalRunSearchResult::Doubtful if stands => {
+                LivenessSearchResult::Inconclusive(SearchCutoff::Zones)
+            }
             MaximalRunSearchResult::Doubtful => {
                 return Err(SearchError::Internal("an exact search is in doubt".into()));
             }
@@ -372,6 +379,15 @@ impl QueryEvaluator<'_> {
             MaximalRunSearchResult::Inconclusive(what) => LivenessSearchResult::Inconclusive(what),
             MaximalRunSearchResult::Found(trap) => {
                 let timing = self.options.timing();
+                if stands {
+                    let confirmed = standing_runs::confirm(&graph, &trap, timing)?;
+                    return Ok(match confirmed {
+                        None => LivenessSearchResult::Inconclusive(SearchCutoff::Zones),
+                        Some((run, pace)) => {
+                            LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, pace })
+                        }
+                    });
+                }
                 let run = build::concrete(&graph, &trap.stops, trap.ending, None, timing)?;
                 let pace = zeno::pace(&graph, &trap)?;
                 LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, pace })
@@ -425,8 +441,9 @@ impl QueryEvaluator<'_> {
             threads: self.options.threads,
             timing: self.options.timing(),
         };
-        let all =
-            extrema(self.program, self.network, &ExtremumQuestion { side, of, when }, options, self.company)?;
+        let question = ExtremumQuestion { side, of, when };
+        let find = if self.model.stops() { standing_bounds::extrema } else { extrema };
+        let all = find(self.program, self.network, &question, options, self.company)?;
         let inconclusive = all.iter().any(|e| matches!(e.limit, ExtremumLimit::Inconclusive { .. }));
         let verdict = if inconclusive { QueryVerdict::Inconclusive } else { QueryVerdict::Holds };
         let texts: Vec<String> = all.iter().map(|e| limit_text(e, side)).collect();

@@ -19,7 +19,7 @@ use crate::{
         constraint::keep,
         dbm::Dbm,
         extrapolation::{ActiveClocks, ExtrapolationAbstraction},
-        federation::{Federation, past},
+        federation::Federation,
     },
 };
 
@@ -149,8 +149,8 @@ impl<'g, 'm, 'p> KnownStates<'g, 'm, 'p> {
         let actions = known.moves.iter().map(|m| &m.action);
         let mut left = self.graph.deadlocked_by(actions, &known.stay, &all);
         if !left.is_empty() && known.stay.waits {
-            for there in known.cuts.next(cell).iter().filter_map(whole) {
-                left = left.minus(&past(&there));
+            for there in known.cuts.next(cell, &known.stay.stopped).iter().filter_map(whole) {
+                left = left.minus(&self.graph.past(&known.stay, &there));
             }
         }
         left

@@ -12,5 +12,5 @@ pub(crate) mod run;
 pub(crate) mod schedule;
 mod sequence;
 mod simplex;
-mod standing;
+pub(crate) mod standing;
 pub(crate) mod trace;

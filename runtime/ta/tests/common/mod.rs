@@ -4,6 +4,7 @@
 pub mod asked;
 pub mod deadlines;
 pub mod families;
+pub mod grid;
 pub mod processor;
 
 use hrdsl_ir::{
