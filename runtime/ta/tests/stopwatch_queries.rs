@@ -1,5 +1,7 @@
 //! Where clocks stand still: deadlocks, bounds, fastest runs and what holds along whole runs, by hand and against a judge that tries all
 //! times of a grid.
+//!
+//! `HRDSL_CASES` sets the number of networks, `HRDSL_SEED` the first seed.
 
 mod common;
 
@@ -190,10 +192,14 @@ fn a_loop_is_one_if_its_clocks_come_round() {
 
 // ── At random, against a grid ──
 
-fn cases() -> u64 {
+fn number(name: &str, default: u64) -> u64 {
     #[allow(clippy::disallowed_methods, reason = "how long to look is asked from outside")]
-    let given = std::env::var("HRDSL_CASES").ok();
-    given.and_then(|n| n.parse().ok()).unwrap_or(150)
+    let given = std::env::var(name).ok();
+    given.and_then(|n| n.parse().ok()).unwrap_or(default)
+}
+
+fn cases() -> u64 {
+    number("HRDSL_CASES", 150)
 }
 
 /// All times of a run are on the judge's grid.
@@ -239,7 +245,8 @@ fn shown(answer: &QueryAnswer, by: QueryVerdict) -> Option<(bool, Option<&Witnes
 
 /// A network of which the start is allowed, with its judge's states.
 fn each(mut f: impl FnMut(u64, &Program, &GridJudge, &[(GridState, i64)])) {
-    for seed in 0..cases() {
+    let first = number("HRDSL_SEED", 0);
+    for seed in first..first + cases() {
         let p = random(&mut ChaCha8Rng::seed_from_u64(seed));
         let judge = GridJudge { p: &p, grid: GRID };
         let states: Vec<(GridState, i64)> = judge.states().into_iter().collect();
@@ -312,7 +319,11 @@ fn bounds_agree_with_a_grid() {
                     let (of, when) = (vec![measure.clone()], when.clone());
                     let kind =
                         if greatest { QueryKind::Sup { of, when } } else { QueryKind::Inf { of, when } };
-                    let found = ask(p, kind).extrema.remove(0);
+                    let t1 = std::time::Instant::now();
+                    let found = ask(p, kind.clone()).extrema.remove(0);
+                    if t1.elapsed().as_secs() > 1 {
+                        eprintln!("SLOWQ {seed} {kind:?} {found:?} {:?}", t1.elapsed());
+                    }
                     let values = here.iter().map(value);
                     let want = if greatest { values.max() } else { values.min() };
                     let what = format!("{seed}: l{l} {which} {greatest}");

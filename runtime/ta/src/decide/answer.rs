@@ -55,7 +55,7 @@ pub struct QueryOptions {
 }
 
 impl QueryOptions {
-    fn timing(&self) -> ScheduleOptions {
+    pub(super) fn timing(&self) -> ScheduleOptions {
         ScheduleOptions { delays: self.delays, seed: self.seed, prompt: false }
     }
 }
@@ -139,7 +139,8 @@ fn answers_watched(
     let observe = ObservationOptions { formulas, ..ObservationOptions::default() };
     let model = CompiledNetwork::new(program, network, &observe)?;
     let took = Cell::new(None);
-    let company = SearchCompany { go_on, took: &took };
+    let widest = Cell::new(None);
+    let company = SearchCompany { go_on, took: &took, widest: &widest };
     let asker = QueryEvaluator { program, network, model: &model, options, company };
     let mut outcomes = asker.decide(&goals)?;
     let together = took.take();
@@ -216,6 +217,7 @@ impl QueryEvaluator<'_> {
             };
             let report = explore(self.model, &asked, &options, self.company.go_on)?;
             self.company.add(report.statistics());
+            self.company.widest.set(report.widest);
             for ((i, _), outcome) in easy.iter().zip(report.goals) {
                 all[*i] = Some((outcome, report.states_stored));
             }
@@ -263,8 +265,18 @@ impl QueryEvaluator<'_> {
                     none(QueryVerdict::Fails, format!("no run reaches it: {seen}"))
                 }
             }
-            GoalOutcome::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
+            GoalOutcome::Inconclusive(what) => none(QueryVerdict::Inconclusive, self.used_up(what)),
         })
+    }
+
+    /// Why a search has not decided, and which variable may be the cause.
+    fn used_up(&self, what: SearchCutoff) -> String {
+        let why = used_up(what);
+        let Some(widest) = self.company.widest.take() else { return why };
+        let told = format!("{why}; {widest}");
+        // Several goals of one search ask for it.
+        self.company.widest.set(Some(widest));
+        told
     }
 
     /// The witness that the options ask for, instead of the one that was found.
@@ -310,7 +322,7 @@ impl QueryEvaluator<'_> {
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Fails, "every run leaves it: no maximal run stays in it".to_owned())
             }
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, self.used_up(what)),
         })
     }
 
@@ -324,7 +336,7 @@ impl QueryEvaluator<'_> {
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Holds, "every maximal run reaches it".to_owned())
             }
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, self.used_up(what)),
         })
     }
 
@@ -339,7 +351,7 @@ impl QueryEvaluator<'_> {
                 QueryVerdict::Holds,
                 "from each state of the first, every maximal run reaches the second".to_owned(),
             ),
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, self.used_up(what)),
         })
     }
 
@@ -362,6 +374,9 @@ impl QueryEvaluator<'_> {
             let mut hunt = LivenessSearch::new(&graph, formulas, limits, abstraction);
             let found = search(&mut hunt)?;
             self.company.add(hunt.statistics());
+            if matches!(found, MaximalRunSearchResult::Inconclusive(_)) {
+                self.company.widest.set(hunt.widest());
+            }
             Ok::<_, SearchError>(found)
         };
         let mut found = go(ExtrapolationAbstraction::LowerUpper)?;
@@ -447,7 +462,11 @@ impl QueryEvaluator<'_> {
         let inconclusive = all.iter().any(|e| matches!(e.limit, ExtremumLimit::Inconclusive { .. }));
         let verdict = if inconclusive { QueryVerdict::Inconclusive } else { QueryVerdict::Holds };
         let texts: Vec<String> = all.iter().map(|e| limit_text(e, side)).collect();
-        Ok(QueryAnswer { verdict, why: texts.join("; "), run: None, extrema: all, statistics: None })
+        let mut why = texts.join("; ");
+        if let (true, Some(widest)) = (inconclusive, self.company.widest.take()) {
+            why = format!("{why}; {widest}");
+        }
+        Ok(QueryAnswer { verdict, why, run: None, extrema: all, statistics: None })
     }
 }
 

@@ -180,6 +180,7 @@ pub(crate) fn deadlocks(
         let options = SearchOptions { budget: options.budget, ..SearchOptions::default() };
         let report = stopwatch::explore(model, &asked, &options, company.go_on)?;
         company.add(report.statistics());
+        company.widest.set(report.widest);
         let stored = report.states_stored;
         return Ok(report.goals.into_iter().map(|outcome| (outcome, stored)).collect());
     }
@@ -260,6 +261,9 @@ impl DeadlockSearch<'_, '_, '_> {
             let end = if probe.any_open() { flow } else { ControlFlow::Break(None) };
             if let ControlFlow::Break(end) = end {
                 self.close(&probe, end, search.stored(), all);
+                if end.is_some() {
+                    self.company.widest.set(search.widest());
+                }
                 self.company.add(search.statistics());
                 return Ok(());
             }

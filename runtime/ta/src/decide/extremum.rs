@@ -159,6 +159,9 @@ pub(crate) fn extrema(
         let mut search = start::begin(&model, &[], &search, beside)?;
         let cutoff = look_everywhere(&mut *search, &mut tracks, side)?;
         company.add(search.statistics());
+        if cutoff.is_some() {
+            company.widest.set(search.widest());
+        }
         let again = cutoff.is_none() && raised < RAISES && tracks.iter().any(|t| t.is_beyond(side));
         if !again {
             let mut end =

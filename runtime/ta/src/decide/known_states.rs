@@ -15,6 +15,7 @@ use crate::{
         graph::ZoneGraph,
         query::StateFormula,
     },
+    search::report::WidestVariable,
     zone::{
         constraint::keep,
         dbm::Dbm,
@@ -68,11 +69,17 @@ impl<'g, 'm, 'p> KnownStates<'g, 'm, 'p> {
         }
     }
 
-    /// The bytes in use, about.
+    /// The int with the most values so far.
+    pub(super) fn widest(&self) -> Option<WidestVariable> {
+        WidestVariable::among(self.graph.model, self.all.borrow().iter().map(|known| known.state.as_slice()))
+    }
+
+    /// How many there are.
     pub(super) fn count(&self) -> usize {
         self.all.borrow().len()
     }
 
+    /// The bytes in use, about.
     pub(super) fn bytes(&self) -> usize {
         let of = |s: &KnownState| {
             size_of::<KnownState>()

@@ -38,7 +38,7 @@ use crate::{
         query::{SearchBudget, StateFormula},
     },
     search::{
-        report::{SearchCutoff, SearchProgress, SearchStatistics},
+        report::{SearchCutoff, SearchProgress, SearchStatistics, WidestVariable},
         round_search::GoOn,
     },
     witness::{
@@ -227,6 +227,11 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         let waiting = stored.saturating_sub(visited);
         let progress = SearchProgress { stored, visited, waiting, bytes, open: 1, unmet: &[] };
         (!(self.go_on)(&progress)).then_some(SearchCutoff::Stopped)
+    }
+
+    /// The int with the most values so far.
+    pub(crate) fn widest(&self) -> Option<WidestVariable> {
+        self.states.widest()
     }
 
     /// What it took so far.

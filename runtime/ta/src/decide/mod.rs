@@ -18,5 +18,6 @@ mod standing_fastest;
 mod standing_runs;
 mod stopwatch;
 pub(crate) mod unread;
+mod unread_queries;
 mod words;
 mod zeno;

@@ -202,6 +202,7 @@ impl StandingBound<'_> {
         let options = SearchOptions { budget: self.options.budget, ..SearchOptions::default() };
         let mut report = stopwatch::explore(&model, &[goal], &options, self.company.go_on)?;
         self.company.add(report.statistics());
+        self.company.widest.set(report.widest.take());
         match report.goals.pop() {
             Some(GoalOutcome::Reached(run)) => self.measured(&model, *run),
             Some(GoalOutcome::Unreachable) => Ok(Seen::Nowhere),

@@ -30,7 +30,7 @@ use crate::{
     },
     search::{
         options::{SearchOptions, TimeFrame},
-        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport},
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
     },
     witness::{
         build::{self, PathSegment, takes},
@@ -51,6 +51,10 @@ const LOOKS: usize = 256;
 const TRIES: usize = 64;
 /// The most nodes of the second search.
 const EXACT_NODES: usize = 100_000;
+/// The most that its paths may cost: a linear program takes about the cube of its path's length.
+const EXACT_EFFORT: u64 = 300_000_000;
+/// In the second search, whoever watches is told more often, since paths are timed.
+const EXACT_LOOKS: usize = 8;
 
 /// A discrete state.
 struct KnownPlace {
@@ -95,6 +99,8 @@ struct StopwatchSearch<'g, 'm, 'p> {
     second: bool,
     /// Zones met a fault to which no run was found.
     doubt: bool,
+    /// What the paths that were timed cost.
+    effort: u64,
     /// Local time was asked for.
     local_time: bool,
     stored: usize,
@@ -133,6 +139,7 @@ pub(crate) fn explore(
         known: Vec::new(),
         second: false,
         doubt: false,
+        effort: 0,
         local_time: options.time == TimeFrame::Local,
         stored: 0,
         visited: 0,
@@ -183,7 +190,7 @@ impl StopwatchSearch<'_, '_, '_> {
 
     /// Before the second search.
     fn again(&mut self) {
-        self.second = true;
+        (self.second, self.effort) = (true, 0);
         let (graph, abstraction) = (self.graph, self.abstraction());
         self.places.iter_mut().for_each(|place| place.frame = graph.frame(&place.state, abstraction));
         self.stored += self.nodes.len();
@@ -206,7 +213,9 @@ impl StopwatchSearch<'_, '_, '_> {
             complete: cutoff.is_none(),
             global_because: self.local_time.then(|| "clocks stand still".to_owned()),
             chosen: None,
-            widest: None,
+            widest: cutoff.and_then(|_| {
+                WidestVariable::among(self.graph.model, self.places.iter().map(|p| p.state.as_slice()))
+            }),
             goals: self.progress.into_iter().map(ended).collect(),
         }
     }
@@ -231,7 +240,11 @@ impl StopwatchSearch<'_, '_, '_> {
             if self.bytes >= budget.bytes {
                 return Ok(Some(SearchCutoff::Memory));
             }
-            if next.is_multiple_of(LOOKS) && !self.goes_on(next, go_on) {
+            if self.second && self.effort >= EXACT_EFFORT {
+                return Ok(Some(SearchCutoff::Zones));
+            }
+            let looks = if self.second { EXACT_LOOKS } else { LOOKS };
+            if next.is_multiple_of(looks) && !self.goes_on(next, go_on) {
                 return Ok(Some(SearchCutoff::Stopped));
             }
             self.visited += 1;
@@ -356,6 +369,7 @@ impl StopwatchSearch<'_, '_, '_> {
         self.graph.wait(stay, &mut zone);
         if self.second && !exact {
             let path = self.path(from.clone());
+            self.note_effort(&path);
             if build::feasible(self.graph, &path)? == Some(false) {
                 return Ok(());
             }
@@ -430,6 +444,10 @@ impl StopwatchSearch<'_, '_, '_> {
         Ok(met.zones().iter().any(|part| part.clone().intersect(&hull)))
     }
 
+    fn note_effort(&mut self, path: &[PathSegment]) {
+        self.effort = self.effort.saturating_add((path.len() as u64).saturating_pow(3));
+    }
+
     /// Looks for times of a path along which zones reach a goal.
     fn tried(&mut self, goal: usize, path: Vec<PathSegment>) -> Result<(), SearchError> {
         let StoppedGoalProgress::Open(seen) = &mut self.progress[goal] else { return Ok(()) };
@@ -437,6 +455,7 @@ impl StopwatchSearch<'_, '_, '_> {
         if *seen > TRIES && !self.second {
             return Ok(());
         }
+        self.note_effort(&path);
         let (asked, timing) = (&self.goals[goal], ScheduleOptions::default());
         let run = match &self.formulas[goal] {
             Some(f) => build::reach_goal(self.graph, path, f, asked, timing)?,

@@ -213,7 +213,10 @@ pub(crate) fn finish(
     Ok(witness)
 }
 
-fn replayed<'p>(model: &CompiledNetwork<'p>, witness: &WitnessRun) -> Result<ReplayedState<'p>, SearchError> {
+pub(crate) fn replayed<'p>(
+    model: &CompiledNetwork<'p>,
+    witness: &WitnessRun,
+) -> Result<ReplayedState<'p>, SearchError> {
     let ids: Vec<_> = model.members.iter().map(|m| m.automaton).collect();
     replay::replay(model.program, &ids, &model.counters, &model.limits, witness)
         .map_err(|m| SearchError::Internal(format!("a witness does not replay: {m}")))

@@ -8,6 +8,7 @@ mod memory;
 mod outcomes;
 pub(crate) mod player;
 mod replay;
+pub(crate) mod retell;
 pub(crate) mod run;
 pub(crate) mod schedule;
 mod sequence;

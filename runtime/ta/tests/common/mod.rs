@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 pub mod asked;
+pub mod counted;
 pub mod deadlines;
 pub mod families;
 pub mod grid;
