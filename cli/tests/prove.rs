@@ -285,6 +285,24 @@ fn a_counter_that_nobody_reads_has_an_answer_of_its_own() {
 }
 
 #[test]
+fn queries_of_all_kinds_leave_out_what_nobody_reads() {
+    let more = "query stuck of net = E<> deadlock\nquery fastest of net = sup: Robot.speed\n\
+        query slow of net = Robot.going --> Robot.done\n";
+    let text = format!("{}{more}", LAPS.replace("laps: 0..7", "laps: 0..100000"));
+    let folder = folder(&[("laps.hri", text.as_str())]);
+    let out = hrdsl_in(folder.path(), "prove laps.hri --json --budget-states 30");
+    expect_code(&out, 4);
+    let all: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert_eq!(row(&all, "queries", "stuck")["verdict"], "satisfied");
+    assert_eq!(row(&all, "queries", "fastest")["bounds"], serde_json::json!(["3"]));
+    // The loop that shows it raises the count with each round, and more rounds than are looked at lead to its end.
+    let slow = row(&all, "queries", "slow");
+    assert_eq!(slow["verdict"], "inconclusive");
+    assert!(slow["remark"].as_str().unwrap().contains("`Robot.laps` has the most values so far"), "{slow:#}");
+    assert_eq!(all["networks"][0]["ranges"].as_array().unwrap().len(), 1);
+}
+
+#[test]
 fn a_run_to_a_fault_of_the_model_ends_with_it() {
     let counts = "scenario counts\nautomaton A {\n clock x\n var n: 0..3 = 0\n init location a { invariant x <= 9 s }\n a -> a do n += 1\n}\n\
         network net = A\nquery q of net = E<> A.n == 4\n";

@@ -90,3 +90,49 @@ fn deep_and_long_texts_are_errors() {
     assert!(with("int n = 1;").is_ok());
     assert!([nested, long, indexed, blocks].iter().all(|global| with(global).is_err()));
 }
+
+fn faults(name: &str, text: &str) -> Vec<String> {
+    let model = ForeignSource { name: name.to_owned(), text: text.to_owned() };
+    let errors = import(&model, None, &UppaalOptions::default()).unwrap_err();
+    errors.into_iter().map(|e| format!("{}:{}: {}", e.line, e.column, e.message)).collect()
+}
+
+#[test]
+fn what_is_wrong_in_several_places_is_told_at_once() {
+    let xml = "<nta><declaration>int[0,5] a = 7;\nint n;\nclock c;</declaration>\n\
+        <template><name>T</name><location id=\"a\"/><location id=\"b\"/><init ref=\"a\"/>\n\
+        <transition><source ref=\"a\"/><target ref=\"b\"/><label kind=\"guard\">foo == 1</label>\n\
+        <label kind=\"assignment\">a = 1, n = c</label></transition>\n\
+        <transition><source ref=\"b\"/><target ref=\"zz\"/></transition></template>\n\
+        <system>system T;</system></nta>";
+    let all = faults("m.xml", xml);
+    // `a`, whose declaration is at fault, is not missed where it is used.
+    let expected = ["1:", "5:", "6:", "7:"];
+    assert!(all.len() >= 3, "{all:?}");
+    assert!(all.iter().all(|fault| expected.iter().any(|line| fault.starts_with(line))), "{all:?}");
+    assert!(all.iter().any(|fault| fault.contains("there is no location with the id `zz`")), "{all:?}");
+    assert!(all.iter().any(|fault| fault.contains("there is no `foo` here")), "{all:?}");
+    assert!(!all.iter().any(|fault| fault.contains("there is no `a` here")), "{all:?}");
+
+    let xta = "clock c;\n\
+        process T() { state A { c <= zz }, B; init A;\ntrans A -> B { guard foo > 1; },\nB -> C { guard c > 1; }; }\n\
+        process U() { state D; init E; trans D -> D { guard bar == 1; }; }\n\
+        process V() { state F; init F; trans F -> F { guard; effect x; }; }\nsystem T, U;\n";
+    let all = faults("m.xta", xta);
+    let said: Vec<&str> = all.iter().map(String::as_str).collect();
+    for (fault, line) in
+        [("`zz`", "2:"), ("`foo`", "3:"), ("`C`", "4:"), ("`E`", "5:"), ("`bar`", "5:"), ("`effect`", "6:")]
+    {
+        assert!(said.iter().any(|s| s.starts_with(line) && s.contains(fault)), "{fault}: {all:?}");
+    }
+}
+
+#[test]
+fn a_process_that_cannot_be_read_ends_at_its_bracket() {
+    let all = faults(
+        "m.xta",
+        "process T() { state A, ; init A; { } }\nprocess U() { state B; init C; }\nsystem T, U;\n",
+    );
+    let lines: Vec<&str> = all.iter().map(|fault| &fault[..1]).collect();
+    assert_eq!(lines, ["1", "2"], "{all:?}");
+}

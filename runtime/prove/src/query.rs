@@ -2,11 +2,11 @@
 
 use hrdsl_ir::{
     Program,
-    ta::{Network, Query, QueryFormula, QueryKind},
+    ta::{Query, QueryFormula, QueryKind},
 };
 use hrdsl_ta::{
     ExtremumLimit, ExtremumValue, GoalOutcome, MeasureExtremum, QueryAnswer, QueryOptions, QueryVerdict,
-    RangeAnswer, RangeFinding, ReachabilityGoal, SearchError,
+    RangeAnswer, RangeFinding, ReachabilityGoal, SearchError, UnreadCounters,
 };
 
 use super::{
@@ -69,7 +69,8 @@ pub enum QueryFinding {
     Fault(String),
 }
 
-/// Answers a query. It is about the network alone: assumptions do not restrict it.
+/// Answers a query. It is about the network alone: assumptions do not restrict it. `ranges`: the variables of its network, by slot, of which it is
+/// known whether they stay in their ranges.
 ///
 /// # Errors
 /// If the engine contradicts itself, or there is no such query.
@@ -78,6 +79,7 @@ pub fn answer(
     query: usize,
     settings: &ProofOptions,
     watch: &SearchWatch,
+    ranges: &[usize],
 ) -> Result<QueryResult, String> {
     let asked = program.queries.get(query).ok_or_else(|| format!("there is no query {query}"))?;
     let network = program
@@ -87,8 +89,8 @@ pub fn answer(
     let plain = ObservedNetwork::new(program, network);
     let result = match reachability(&asked.ask) {
         Some(goal) => by_search(&plain, &[(query, goal)], settings, watch).map(|mut all| all.remove(0)),
-        None => in_general(program, network, asked, settings, watch)
-            .map(|answer| told(&plain, query, &asked.ask, answer)),
+        None => in_general(&plain, asked, settings, watch, ranges)
+            .map(|(answer, ranges)| QueryResult { ranges, ..told(&plain, query, &asked.ask, answer) }),
     };
     match result {
         Ok(answered) => Ok(answered),
@@ -114,6 +116,7 @@ pub fn answers(
     queries: &[usize],
     settings: &ProofOptions,
     watch: &SearchWatch,
+    ranges: &[usize],
 ) -> Result<Vec<QueryResult>, String> {
     let sought = |q: &usize| Some((*q, reachability(&program.queries.get(*q)?.ask)?));
     let together: Vec<(usize, SoughtFormula)> = queries.iter().filter_map(sought).collect();
@@ -132,7 +135,7 @@ pub fn answers(
     }
     let one = |query: &usize| match found.iter().position(|a| a.query == *query) {
         Some(at) => Ok(found[at].clone()),
-        None => answer(program, *query, settings, watch),
+        None => answer(program, *query, settings, watch, ranges),
     };
     queries.iter().map(one).collect()
 }
@@ -268,13 +271,14 @@ fn note_holds(
     }
 }
 
+/// For what reachability alone does not decide: the answer, and whether variables that the search left out stay in their ranges.
 fn in_general(
-    program: &Program,
-    network: &Network,
+    plain: &ObservedNetwork,
     query: &Query,
     settings: &ProofOptions,
     watch: &SearchWatch,
-) -> Result<QueryAnswer, SearchError> {
+    known: &[usize],
+) -> Result<(QueryAnswer, Vec<RangeResult>), SearchError> {
     let options = QueryOptions {
         budget: settings.budget,
         witness: settings.witness,
@@ -283,11 +287,25 @@ fn in_general(
         threads: settings.threads,
     };
     let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
-    let mut answer = hrdsl_ta::answer_watched(program, network, query, &options, &go_on)?;
+    let (program, network) = (&plain.program, &plain.network);
+    let unread = if settings.exact_counters {
+        None
+    } else {
+        UnreadCounters::find_for_query(program, network, &query.ask)?
+    };
+    let (mut answer, ranges) = match unread {
+        None => (hrdsl_ta::answer_watched(program, network, query, &options, &go_on)?, Vec::new()),
+        Some(unread) => {
+            let (answer, apart) = unread.answer(query, &options, &go_on)?;
+            let ranges = if apart { unread.ranges(&settings.options(), known, &go_on)? } else { Vec::new() };
+            (answer, ranges)
+        }
+    };
     if answer.verdict == QueryVerdict::Inconclusive && watch.is_stopped() {
         watch.stopped().clone_into(&mut answer.why);
     }
-    Ok(answer)
+    let ranges = ranges.into_iter().map(|answer| range_result(plain, answer, watch)).collect();
+    Ok((answer, ranges))
 }
 
 fn told(plain: &ObservedNetwork, query: usize, ask: &QueryKind, answer: QueryAnswer) -> QueryResult {

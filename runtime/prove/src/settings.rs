@@ -218,7 +218,7 @@ pub(crate) fn search(
     let model = CompiledNetwork::new(&observed.program, &observed.network, &observe)?;
     let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
     let mut report = hrdsl_ta::explore(&model, goals, &settings.options(), &go_on)?;
-    choose(&model, goals, &mut report, settings)?;
+    choose(goals, &mut report, &|goal, found| chosen(&model, goal, found, settings))?;
     Ok(report)
 }
 
@@ -231,11 +231,10 @@ pub(crate) fn search_queries(
     watch: &SearchWatch,
 ) -> Result<(SearchReport, Vec<RangeAnswer>), SearchError> {
     let observe = observed_by(goals, &[], &[]);
-    let apart = !settings.exact_counters && settings.witness != WitnessKind::Fastest;
-    let unread = if apart {
-        UnreadCounters::find(&observed.program, &observed.network, &observe, goals)?
-    } else {
+    let unread = if settings.exact_counters {
         None
+    } else {
+        UnreadCounters::find(&observed.program, &observed.network, &observe, goals)?
     };
     let Some(unread) = unread else {
         watch.listen(true);
@@ -246,20 +245,26 @@ pub(crate) fn search_queries(
     // What is met without these variables may be met beyond a fault alone, so that nothing is told early.
     let go_on = |p: &hrdsl_ta::SearchProgress<'_>| watch.goes_on(p);
     let (mut report, ranges) = unread.explore(goals, &settings.options(), &go_on)?;
-    choose(unread.model(), goals, &mut report, settings)?;
+    choose(goals, &mut report, &|goal, found| match settings.witness {
+        WitnessKind::Fastest => unread.fastest(goal, found, settings.budget, settings.timing()),
+        WitnessKind::Any | WitnessKind::Shortest => chosen(unread.model(), goal, found, settings),
+    })?;
     Ok((report, ranges))
 }
 
+/// A run to a goal that the settings ask for, instead of one that was found; `None`: that one.
+type ChosenRun<'a> =
+    dyn Fn(&ReachabilityGoal, &WitnessRun) -> Result<Option<Box<WitnessRun>>, SearchError> + 'a;
+
 /// The runs that the settings ask for, instead of those that were found.
 fn choose(
-    model: &CompiledNetwork<'_>,
     goals: &[ReachabilityGoal],
     report: &mut SearchReport,
-    settings: &ProofOptions,
+    chosen: &ChosenRun<'_>,
 ) -> Result<(), SearchError> {
     for (goal, outcome) in goals.iter().zip(&mut report.goals) {
         if let GoalOutcome::Reached(found) = outcome
-            && let Some(run) = chosen(model, goal, found, settings)?
+            && let Some(run) = chosen(goal, found)?
         {
             *found = run;
         }

@@ -2,23 +2,19 @@
 
 mod common;
 
-use std::collections::BTreeSet;
-
 use common::asked::query;
-use common::{E, add, and, automaton, channel, clock, edge, eq, location, n, normal, or, program, shared, v};
+use common::grid::{GRID, GridJudge, random};
+use common::{add, and, automaton, channel, clock, edge, eq, location, n, normal, or, program, shared, v};
 use hrdsl_ir::{
     Program,
-    ta::{
-        ChannelKind, ClockConstraint, ClockId, ClockOp, EdgeAssignment, LocationId, LocationKind,
-        QueryFormula, QueryKind,
-    },
+    ta::{ChannelKind, ClockConstraint, ClockId, ClockOp, LocationId, LocationKind, QueryFormula, QueryKind},
     value::SECOND,
 };
 use hrdsl_ta::{
     CompiledNetwork, GoalKind, GoalOutcome, ObservationOptions, QueryOptions, QueryVerdict, ReachabilityGoal,
     SearchBudget, SearchCutoff, SearchOptions, SearchReport, answer, check, explore,
 };
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// The last location is left only at the end: goals are the locations of both automata.
@@ -109,14 +105,16 @@ fn what_zones_alone_reach_is_not_reached() {
 }
 
 #[test]
-fn other_questions_are_refused_by_name() {
+fn differences_of_clocks_are_refused_by_name() {
     let p = one(&[]);
     let at = |location| QueryFormula::At { automaton: 0, location: LocationId(location) };
+    let late =
+        || QueryFormula::Clock(ClockConstraint { minus: Some(ClockId(1)), ..clock(0, ClockOp::Ge, 3) });
     let asked = [
-        QueryKind::Eventually(at(3)),
-        QueryKind::PotentiallyAlways(at(0)),
-        QueryKind::LeadsTo(at(0), at(3)),
-        QueryKind::Invariantly(QueryFormula::Not(Box::new(QueryFormula::Deadlock))),
+        QueryKind::Eventually(late()),
+        QueryKind::PotentiallyAlways(late()),
+        QueryKind::LeadsTo(at(0), late()),
+        QueryKind::Possibly(late()),
     ];
     for ask in asked {
         let query = query(ask);
@@ -132,140 +130,6 @@ fn other_questions_are_refused_by_name() {
 }
 
 // ── At random, against a grid ──
-
-const MOST: i64 = 4;
-/// Parts of a second in the judge's grid.
-const GRID: i64 = 6;
-
-fn bound(rng: &mut ChaCha8Rng, ops: &[ClockOp], clocks: u16) -> ClockConstraint {
-    clock(rng.random_range(0..clocks), ops[rng.random_range(0..ops.len())], rng.random_range(0..=MOST))
-}
-
-/// A shared clock, two automata with a clock each, and an int; closed bounds of whole seconds.
-fn random(rng: &mut ChaCha8Rng) -> Program {
-    let mut p = program();
-    p.clocks.push("s".into());
-    shared(&mut p, "k", 0, 2, 0);
-    for name in ["P", "Q"] {
-        let mut a = automaton(name, &["x"]);
-        for l in 0..3 {
-            let ends = rng.random_bool(0.4).then(|| bound(rng, &[ClockOp::Le], 2));
-            let at = location(&mut a, &format!("l{l}"), LocationKind::Normal, ends.as_slice());
-            for c in 0..2 {
-                if rng.random_bool(0.35) {
-                    a.locations[usize::from(at.0)].stopped.push(ClockId(c));
-                }
-            }
-        }
-        for _ in 0..rng.random_range(3..6) {
-            random_edge(rng).to(&mut a);
-        }
-        add(&mut p, a);
-    }
-    p
-}
-
-fn random_edge(rng: &mut ChaCha8Rng) -> E {
-    let mut place = || LocationId(rng.random_range(0..3));
-    let mut e = edge(place(), place());
-    for _ in 0..rng.random_range(0..3) {
-        e.0.clock_guard.push(bound(rng, &[ClockOp::Le, ClockOp::Ge, ClockOp::Eq], 2));
-    }
-    if rng.random_bool(0.3) {
-        e = e.when(eq(v(0), n(rng.random_range(0..3))));
-    }
-    if rng.random_bool(0.4) {
-        e = e.set(0, n(rng.random_range(0..3)));
-    }
-    if rng.random_bool(0.4) {
-        e = e.reset(rng.random_range(0..2));
-    }
-    e
-}
-
-/// A state of the judge: locations, the int, the clocks in parts of a second (the shared one, then each automaton's).
-type GridState = ([usize; 2], i64, [i64; 3]);
-
-/// All locations that are reached at times of a grid, by trying everything: a reading of the language's page of its own.
-struct GridJudge<'p> {
-    p: &'p Program,
-    grid: i64,
-}
-
-impl GridJudge<'_> {
-    fn clock_of(automaton: usize, c: ClockId) -> usize {
-        if c.0 == 0 { 0 } else { 1 + automaton }
-    }
-
-    fn holds(&self, automaton: usize, c: &ClockConstraint, clocks: &[i64; 3]) -> bool {
-        let bound = c.bound.nanos / SECOND * self.grid;
-        let value = clocks[Self::clock_of(automaton, c.clock)];
-        match c.op {
-            ClockOp::Le => value <= bound,
-            ClockOp::Ge => value >= bound,
-            ClockOp::Eq => value == bound,
-            ClockOp::Lt | ClockOp::Gt => unreachable!("bounds are closed"),
-        }
-    }
-
-    fn allowed(&self, (at, _, clocks): &GridState) -> bool {
-        (0..2).all(|a| self.p.automata[a].locations[at[a]].invariant.iter().all(|c| self.holds(a, c, clocks)))
-    }
-
-    fn next(&self, state: &GridState) -> Vec<GridState> {
-        let (at, k, clocks) = state;
-        let mut all = Vec::new();
-        for a in 0..2 {
-            for e in self.p.automata[a].edges.iter().filter(|e| usize::from(e.from.0) == at[a]) {
-                let data = e.guard.as_ref().is_none_or(|g| {
-                    let value = g.eval(&|_| Some(hrdsl_ir::Value::Int(*k))).unwrap();
-                    value.as_bool().unwrap()
-                });
-                if !data || !e.clock_guard.iter().all(|c| self.holds(a, c, clocks)) {
-                    continue;
-                }
-                let mut then = (*at, *k, *clocks);
-                then.0[a] = usize::from(e.to.0);
-                for u in &e.updates {
-                    match u {
-                        EdgeAssignment::Assign { value, .. } => {
-                            then.1 = value.eval(&|_| None).unwrap().as_int().unwrap();
-                        }
-                        EdgeAssignment::Reset { clock, .. } => then.2[Self::clock_of(a, *clock)] = 0,
-                        EdgeAssignment::Call { .. } => unreachable!("there are no functions"),
-                    }
-                }
-                all.push(then);
-            }
-        }
-        let mut later = *state;
-        for (x, clock) in clocks.iter().enumerate() {
-            let stands = (0..2).any(|a| {
-                let stopped = &self.p.automata[a].locations[at[a]].stopped;
-                stopped.iter().any(|c| Self::clock_of(a, *c) == x)
-            });
-            // Beyond all constants, values are alike.
-            later.2[x] = (clock + i64::from(!stands)).min((MOST + 1) * self.grid);
-        }
-        all.push(later);
-        all.retain(|s| self.allowed(s));
-        all
-    }
-
-    fn reached(&self) -> BTreeSet<(usize, usize)> {
-        let start = ([0, 0], 0, [0; 3]);
-        let (mut seen, mut out) = (BTreeSet::new(), BTreeSet::new());
-        if self.allowed(&start) {
-            seen.insert(start);
-        }
-        let mut waiting: Vec<GridState> = seen.iter().copied().collect();
-        while let Some(state) = waiting.pop() {
-            out.extend([(0, state.0[0]), (1, state.0[1])]);
-            waiting.extend(self.next(&state).into_iter().filter(|s| seen.insert(*s)));
-        }
-        out
-    }
-}
 
 /// No wrong yes and no wrong no. Where a run's times are not on the judge's grid, the judge has one of the run's own.
 #[test]

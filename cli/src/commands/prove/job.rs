@@ -28,7 +28,7 @@ pub enum ProofTarget {
 }
 
 impl ProofJob {
-    /// Decides it, and tells the clock what is known as soon as it is.
+    /// Decides it, and tells the clock what is known as soon as it is. `known`: what was decided before.
     ///
     /// # Errors
     /// An engine that contradicts itself, or nobody to print to.
@@ -37,12 +37,15 @@ impl ProofJob {
         program: &Arc<Program>,
         settings: &ProofOptions,
         clock: &ProofClock,
+        known: &[ProofRow],
     ) -> Result<Vec<ProofRow>, CommandFault> {
         let started = now();
         let mut told = Vec::new();
         let mut rows = match &self.what {
             ProofTarget::Requirement(monitor) => vec![self.proof(program, *monitor, settings, clock)?],
-            ProofTarget::Queries(queries) => self.answers(program, queries, settings, clock, &mut told)?,
+            ProofTarget::Queries(queries) => {
+                self.answers(program, queries, settings, clock, (known, &mut told))?
+            }
         };
         for row in &mut rows {
             row.network.clone_from(&program.networks[self.network].name);
@@ -82,10 +85,13 @@ impl ProofJob {
         queries: &[usize],
         settings: &ProofOptions,
         clock: &ProofClock,
-        told: &mut Vec<(usize, PropertyKind, usize)>,
+        (known, told): (&[ProofRow], &mut Vec<(usize, PropertyKind, usize)>),
     ) -> Result<Vec<ProofRow>, CommandFault> {
         let (of, asked, settings, network) = (Arc::clone(program), queries.to_vec(), *settings, self.network);
-        let work = move |watch: &SearchWatch| prove::answers(&of, &asked, &settings, watch);
+        let ranges = known.iter().map(|row| row.place);
+        let ranges: Vec<usize> =
+            ranges.filter(|p| p.0 == network && p.1 == PropertyKind::Range).map(|p| p.2).collect();
+        let work = move |watch: &SearchWatch| prove::answers(&of, &asked, &settings, watch, &ranges);
         let label = match queries {
             [query] => program.queries[*query].name.clone(),
             several => format!("{} queries", several.len()),

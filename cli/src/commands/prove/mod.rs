@@ -170,7 +170,8 @@ pub fn run(args: &ProveArgs) -> Result<CommandExit, CommandFault> {
     let shared = Arc::new(program.clone());
     let mut rows = Vec::new();
     for job in &jobs {
-        rows.extend(job.rows(&shared, &settings, &clock)?);
+        let more = job.rows(&shared, &settings, &clock, &rows)?;
+        rows.extend(more);
     }
     clock.finish();
     rows.sort_by_key(|row| row.place);

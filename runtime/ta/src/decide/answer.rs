@@ -16,6 +16,7 @@ use crate::{
         extremum::{ExtremumOptions, ExtremumQuestion, ExtremumSide, MeasureExtremum, extrema},
         fastest::fastest,
         liveness::{LivenessSearch, MaximalRun, MaximalRunSearchResult},
+        standing_bounds, standing_runs,
         words::{count, length, limit_text, used_up},
         zeno::{self, LoopPace},
     },
@@ -54,7 +55,7 @@ pub struct QueryOptions {
 }
 
 impl QueryOptions {
-    fn timing(&self) -> ScheduleOptions {
+    pub(super) fn timing(&self) -> ScheduleOptions {
         ScheduleOptions { delays: self.delays, seed: self.seed, prompt: false }
     }
 }
@@ -138,7 +139,8 @@ fn answers_watched(
     let observe = ObservationOptions { formulas, ..ObservationOptions::default() };
     let model = CompiledNetwork::new(program, network, &observe)?;
     let took = Cell::new(None);
-    let company = SearchCompany { go_on, took: &took };
+    let widest = Cell::new(None);
+    let company = SearchCompany { go_on, took: &took, widest: &widest };
     let asker = QueryEvaluator { program, network, model: &model, options, company };
     let mut outcomes = asker.decide(&goals)?;
     let together = took.take();
@@ -215,6 +217,7 @@ impl QueryEvaluator<'_> {
             };
             let report = explore(self.model, &asked, &options, self.company.go_on)?;
             self.company.add(report.statistics());
+            self.company.widest.set(report.widest);
             for ((i, _), outcome) in easy.iter().zip(report.goals) {
                 all[*i] = Some((outcome, report.states_stored));
             }
@@ -262,8 +265,18 @@ impl QueryEvaluator<'_> {
                     none(QueryVerdict::Fails, format!("no run reaches it: {seen}"))
                 }
             }
-            GoalOutcome::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
+            GoalOutcome::Inconclusive(what) => none(QueryVerdict::Inconclusive, self.used_up(what)),
         })
+    }
+
+    /// Why a search has not decided, and which variable may be the cause.
+    fn used_up(&self, what: SearchCutoff) -> String {
+        let why = used_up(what);
+        let Some(widest) = self.company.widest.take() else { return why };
+        let told = format!("{why}; {widest}");
+        // Several goals of one search ask for it.
+        self.company.widest.set(Some(widest));
+        told
     }
 
     /// The witness that the options ask for, instead of the one that was found.
@@ -309,7 +322,7 @@ impl QueryEvaluator<'_> {
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Fails, "every run leaves it: no maximal run stays in it".to_owned())
             }
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, self.used_up(what)),
         })
     }
 
@@ -323,7 +336,7 @@ impl QueryEvaluator<'_> {
             LivenessSearchResult::Nothing => {
                 none(QueryVerdict::Holds, "every maximal run reaches it".to_owned())
             }
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, self.used_up(what)),
         })
     }
 
@@ -338,7 +351,7 @@ impl QueryEvaluator<'_> {
                 QueryVerdict::Holds,
                 "from each state of the first, every maximal run reaches the second".to_owned(),
             ),
-            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, used_up(what)),
+            LivenessSearchResult::Inconclusive(what) => none(QueryVerdict::Inconclusive, self.used_up(what)),
         })
     }
 
@@ -351,13 +364,19 @@ impl QueryEvaluator<'_> {
             let what = "`deadlock` can be asked for in `E<>`, `A[]`, `sup` and `inf`, not in questions about all of a run";
             return Err(ModelError::Question(what.into()).into());
         }
-        self.model.refuse_stopped("what holds along a whole run (`A<>`, `E[]`, `-->`)")?;
         let graph = ZoneGraph::new(self.model, formulas)?;
+        let stands = self.model.stops();
+        if stands && graph.splits() {
+            self.model.refuse_stopped("a comparison of two clocks with each other")?;
+        }
         let go = |abstraction| {
             let limits = (self.options.budget, self.company.go_on);
             let mut hunt = LivenessSearch::new(&graph, formulas, limits, abstraction);
             let found = search(&mut hunt)?;
             self.company.add(hunt.statistics());
+            if matches!(found, MaximalRunSearchResult::Inconclusive(_)) {
+                self.company.widest.set(hunt.widest());
+            }
             Ok::<_, SearchError>(found)
         };
         let mut found = go(ExtrapolationAbstraction::LowerUpper)?;
@@ -365,6 +384,9 @@ impl QueryEvaluator<'_> {
             found = go(ExtrapolationAbstraction::Greatest)?;
         }
         Ok(match found {
+            MaximalRunSearchResult::Doubtful if stands => {
+                LivenessSearchResult::Inconclusive(SearchCutoff::Zones)
+            }
             MaximalRunSearchResult::Doubtful => {
                 return Err(SearchError::Internal("an exact search is in doubt".into()));
             }
@@ -372,6 +394,15 @@ impl QueryEvaluator<'_> {
             MaximalRunSearchResult::Inconclusive(what) => LivenessSearchResult::Inconclusive(what),
             MaximalRunSearchResult::Found(trap) => {
                 let timing = self.options.timing();
+                if stands {
+                    let confirmed = standing_runs::confirm(&graph, &trap, timing)?;
+                    return Ok(match confirmed {
+                        None => LivenessSearchResult::Inconclusive(SearchCutoff::Zones),
+                        Some((run, pace)) => {
+                            LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, pace })
+                        }
+                    });
+                }
                 let run = build::concrete(&graph, &trap.stops, trap.ending, None, timing)?;
                 let pace = zeno::pace(&graph, &trap)?;
                 LivenessSearchResult::Run(Box::new(run), LivenessCounterexample { trap, pace })
@@ -425,12 +456,17 @@ impl QueryEvaluator<'_> {
             threads: self.options.threads,
             timing: self.options.timing(),
         };
-        let all =
-            extrema(self.program, self.network, &ExtremumQuestion { side, of, when }, options, self.company)?;
+        let question = ExtremumQuestion { side, of, when };
+        let find = if self.model.stops() { standing_bounds::extrema } else { extrema };
+        let all = find(self.program, self.network, &question, options, self.company)?;
         let inconclusive = all.iter().any(|e| matches!(e.limit, ExtremumLimit::Inconclusive { .. }));
         let verdict = if inconclusive { QueryVerdict::Inconclusive } else { QueryVerdict::Holds };
         let texts: Vec<String> = all.iter().map(|e| limit_text(e, side)).collect();
-        Ok(QueryAnswer { verdict, why: texts.join("; "), run: None, extrema: all, statistics: None })
+        let mut why = texts.join("; ");
+        if let (true, Some(widest)) = (inconclusive, self.company.widest.take()) {
+            why = format!("{why}; {widest}");
+        }
+        Ok(QueryAnswer { verdict, why, run: None, extrema: all, statistics: None })
     }
 }
 

@@ -121,16 +121,19 @@ impl CellCuts {
         parts
     }
 
-    /// The cells into which time can lead at once from a cell.
-    pub(crate) fn next(&self, cell: &ClockCell) -> Vec<ClockCell> {
-        if cell.singles.iter().any(|k| k % 2 == 1) {
-            let singles = cell.singles.iter().map(|k| k + k % 2).collect();
-            return vec![ClockCell { singles, doubles: cell.doubles.clone() }];
+    /// The cells into which time can lead at once from a cell, while these clocks stand still.
+    pub(crate) fn next(&self, cell: &ClockCell, stopped: &[u16]) -> Vec<ClockCell> {
+        let stands = |x: &u16| stopped.contains(x);
+        let leaves = |x: &u16, k: u16| k % 2 == 1 && !stands(x);
+        if self.singles.iter().zip(&cell.singles).any(|((x, _), k)| leaves(x, *k)) {
+            let singles =
+                self.singles.iter().zip(&cell.singles).map(|((x, _), k)| k + u16::from(leaves(x, *k)));
+            return vec![ClockCell { singles: singles.collect(), doubles: cell.doubles.clone() }];
         }
         // Some of the clocks come to the end of their intervals, at the same time.
         let mut all = vec![Vec::new()];
-        for ((_, at), &k) in self.singles.iter().zip(&cell.singles) {
-            let ends = usize::from(k) < 2 * at.len();
+        for ((x, at), &k) in self.singles.iter().zip(&cell.singles) {
+            let ends = usize::from(k) < 2 * at.len() && !stands(x);
             let with = |list: &Vec<u16>, k: u16| list.iter().copied().chain([k]).collect::<Vec<u16>>();
             all = all
                 .iter()
@@ -141,9 +144,10 @@ impl CellCuts {
         all.into_iter().map(|singles| ClockCell { singles, doubles: cell.doubles.clone() }).collect()
     }
 
-    /// Whether a cell goes on for ever.
-    pub(crate) fn is_last(&self, cell: &ClockCell) -> bool {
-        self.singles.iter().zip(&cell.singles).all(|((_, at), &k)| usize::from(k) == 2 * at.len())
+    /// Whether a cell goes on for ever, while these clocks stand still.
+    pub(crate) fn is_last(&self, cell: &ClockCell, stopped: &[u16]) -> bool {
+        let last = |x: &u16, at: &[i64], k: u16| stopped.contains(x) || usize::from(k) == 2 * at.len();
+        self.singles.iter().zip(&cell.singles).all(|((x, at), &k)| last(x, at, k))
     }
 }
 
@@ -193,13 +197,22 @@ mod tests {
     }
 
     #[test]
+    fn a_clock_that_stands_stays_in_its_interval() {
+        let cell = |a, b| ClockCell { singles: vec![a, b], doubles: Vec::new() };
+        assert_eq!(cuts().next(&cell(1, 0), &[1]), [cell(1, 1)]);
+        assert_eq!(cuts().next(&cell(1, 1), &[1]), [cell(1, 2)]);
+        assert_eq!(cuts().next(&cell(0, 0), &[2]), [cell(1, 0)]);
+        assert!(cuts().is_last(&cell(1, 2), &[1]) && !cuts().is_last(&cell(1, 2), &[2]));
+    }
+
+    #[test]
     fn time_skips_no_cell() {
         let cell = |a, b| ClockCell { singles: vec![a, b], doubles: Vec::new() };
-        assert_eq!(cuts().next(&cell(0, 0)), [cell(0, 1), cell(1, 0), cell(1, 1)]);
-        assert_eq!(cuts().next(&cell(1, 0)), [cell(2, 0)]);
-        assert_eq!(cuts().next(&cell(1, 1)), [cell(2, 2)]);
-        assert_eq!(cuts().next(&cell(4, 0)), [cell(4, 1)]);
-        assert_eq!(cuts().next(&cell(4, 2)), []);
-        assert!(cuts().is_last(&cell(4, 2)) && !cuts().is_last(&cell(4, 1)));
+        assert_eq!(cuts().next(&cell(0, 0), &[]), [cell(0, 1), cell(1, 0), cell(1, 1)]);
+        assert_eq!(cuts().next(&cell(1, 0), &[]), [cell(2, 0)]);
+        assert_eq!(cuts().next(&cell(1, 1), &[]), [cell(2, 2)]);
+        assert_eq!(cuts().next(&cell(4, 0), &[]), [cell(4, 1)]);
+        assert_eq!(cuts().next(&cell(4, 2), &[]), []);
+        assert!(cuts().is_last(&cell(4, 2), &[]) && !cuts().is_last(&cell(4, 1), &[]));
     }
 }

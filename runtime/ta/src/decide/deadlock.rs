@@ -21,7 +21,7 @@ use std::{
 use rustc_hash::FxHashMap;
 
 use crate::{
-    decide::places::each_place,
+    decide::{places::each_place, stopwatch},
     network::{
         actions::PathTransition,
         error::ModelError,
@@ -175,7 +175,15 @@ pub(crate) fn deadlocks(
     options: &DeadlockOptions,
     company: SearchCompany<'_>,
 ) -> Result<Vec<DecidedGoal>, SearchError> {
-    model.refuse_stopped("`deadlock`")?;
+    if model.stops() {
+        let asked: Vec<ReachabilityGoal> = goals.iter().map(|goal| (*goal).clone()).collect();
+        let options = SearchOptions { budget: options.budget, ..SearchOptions::default() };
+        let report = stopwatch::explore(model, &asked, &options, company.go_on)?;
+        company.add(report.statistics());
+        company.widest.set(report.widest);
+        let stored = report.states_stored;
+        return Ok(report.goals.into_iter().map(|outcome| (outcome, stored)).collect());
+    }
     let formulas: Vec<StateFormula> = goals.iter().filter_map(|g| g.formula()).collect();
     let graph = ZoneGraph::new(model, &[])?;
     let search = DeadlockSearch { graph, goals, formulas: &formulas, options, company };
@@ -253,6 +261,9 @@ impl DeadlockSearch<'_, '_, '_> {
             let end = if probe.any_open() { flow } else { ControlFlow::Break(None) };
             if let ControlFlow::Break(end) = end {
                 self.close(&probe, end, search.stored(), all);
+                if end.is_some() {
+                    self.company.widest.set(search.widest());
+                }
                 self.company.add(search.statistics());
                 return Ok(());
             }

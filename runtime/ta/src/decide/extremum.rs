@@ -118,7 +118,7 @@ pub(crate) struct ExtremumOptions {
     pub timing: ScheduleOptions,
 }
 
-/// The bounds of each measure.
+/// The bounds of each measure, where no clock stands still.
 ///
 /// # Errors
 /// If the model is at fault, or a measure has no value where the formula holds.
@@ -132,7 +132,6 @@ pub(crate) fn extrema(
     let ExtremumQuestion { side, of, when } = *question;
     let formula = StateFormula::from(when);
     let plain = observed(program, network, vec![when.clone()])?;
-    plain.refuse_stopped("`sup` or `inf`")?;
     let mut tracks: Vec<MeasureTracker> =
         of.iter().map(|m| MeasureTracker::of(m, &plain)).collect::<Result<_, _>>()?;
     let mut raised = 0;
@@ -160,6 +159,9 @@ pub(crate) fn extrema(
         let mut search = start::begin(&model, &[], &search, beside)?;
         let cutoff = look_everywhere(&mut *search, &mut tracks, side)?;
         company.add(search.statistics());
+        if cutoff.is_some() {
+            company.widest.set(search.widest());
+        }
         let again = cutoff.is_none() && raised < RAISES && tracks.iter().any(|t| t.is_beyond(side));
         if !again {
             let mut end =
@@ -172,7 +174,7 @@ pub(crate) fn extrema(
 }
 
 /// The network with bounds of zones for these formulas.
-fn observed<'p>(
+pub(super) fn observed<'p>(
     program: &'p Program,
     network: &Network,
     formulas: Vec<QueryFormula>,

@@ -5,7 +5,7 @@
 //! is met, so that what comes later is left out.
 
 use crate::{
-    decide::deadlock,
+    decide::{deadlock, standing_fastest},
     network::{
         error::ModelError,
         model::CompiledNetwork,
@@ -27,10 +27,12 @@ pub fn fastest(
     budget: SearchBudget,
     timing: ScheduleOptions,
 ) -> Result<Option<Box<WitnessRun>>, SearchError> {
-    model.refuse_stopped("the fastest run")?;
     if matches!(goal.what, GoalKind::Pair { .. } | GoalKind::Use { .. }) {
         let what = "edge pairs and def-use pairs are not looked for by time";
         return Err(ModelError::Question(what.into()).into());
+    }
+    if model.stops() {
+        return standing_fastest::fastest(model, goal, known, budget);
     }
     let unit = i128::from(model.unit) * i128::from(known.ticks);
     let within = (i128::from(known.end) + unit - 1) / unit;

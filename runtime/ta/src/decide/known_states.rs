@@ -15,11 +15,12 @@ use crate::{
         graph::ZoneGraph,
         query::StateFormula,
     },
+    search::report::WidestVariable,
     zone::{
         constraint::keep,
         dbm::Dbm,
         extrapolation::{ActiveClocks, ExtrapolationAbstraction},
-        federation::{Federation, past},
+        federation::Federation,
     },
 };
 
@@ -68,11 +69,17 @@ impl<'g, 'm, 'p> KnownStates<'g, 'm, 'p> {
         }
     }
 
-    /// The bytes in use, about.
+    /// The int with the most values so far.
+    pub(super) fn widest(&self) -> Option<WidestVariable> {
+        WidestVariable::among(self.graph.model, self.all.borrow().iter().map(|known| known.state.as_slice()))
+    }
+
+    /// How many there are.
     pub(super) fn count(&self) -> usize {
         self.all.borrow().len()
     }
 
+    /// The bytes in use, about.
     pub(super) fn bytes(&self) -> usize {
         let of = |s: &KnownState| {
             size_of::<KnownState>()
@@ -149,8 +156,8 @@ impl<'g, 'm, 'p> KnownStates<'g, 'm, 'p> {
         let actions = known.moves.iter().map(|m| &m.action);
         let mut left = self.graph.deadlocked_by(actions, &known.stay, &all);
         if !left.is_empty() && known.stay.waits {
-            for there in known.cuts.next(cell).iter().filter_map(whole) {
-                left = left.minus(&past(&there));
+            for there in known.cuts.next(cell, &known.stay.stopped).iter().filter_map(whole) {
+                left = left.minus(&self.graph.past(&known.stay, &there));
             }
         }
         left

@@ -16,6 +16,9 @@
 //! first, and looks for ends in all that a zone simulates. If there may be one to which no run along the path comes, it gives up,
 //! and [begins again](MaximalRunSearchResult::Doubtful) with greatest constants (ExtraM+, aM), a bisimulation.
 //!
+//! Where clocks stand still, zones are more than can happen: that no run was found is a proof as before, and what was found has to be
+//! [confirmed](crate::decide::standing_runs).
+//!
 //! A loop in which time does not pass beyond some bound (a Zeno run) counts as an infinite run, as it does in UPPAAL.
 //!
 //! Formulas with clocks: zones are split into [cells](crate::decide::cells), and time passes from cell to cell.
@@ -35,7 +38,7 @@ use crate::{
         query::{SearchBudget, StateFormula},
     },
     search::{
-        report::{SearchCutoff, SearchProgress, SearchStatistics},
+        report::{SearchCutoff, SearchProgress, SearchStatistics, WidestVariable},
         round_search::GoOn,
     },
     witness::{
@@ -133,7 +136,8 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         Self {
             graph,
             states: KnownStates::new(graph, formulas, abstraction),
-            exact: abstraction == ExtrapolationAbstraction::Greatest || graph.splits(),
+            exact: !graph.model.stops()
+                && (abstraction == ExtrapolationAbstraction::Greatest || graph.splits()),
             budget,
             go_on,
             visited: Cell::new(0),
@@ -225,6 +229,11 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         (!(self.go_on)(&progress)).then_some(SearchCutoff::Stopped)
     }
 
+    /// The int with the most values so far.
+    pub(crate) fn widest(&self) -> Option<WidestVariable> {
+        self.states.widest()
+    }
+
     /// What it took so far.
     pub(crate) fn statistics(&self) -> SearchStatistics {
         SearchStatistics {
@@ -290,7 +299,7 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         let known = &node.known;
         let mut out = Vec::new();
         if known.stay.waits {
-            for cell in known.cuts.next(&node.cell) {
+            for cell in known.cuts.next(&node.cell, &known.stay.stopped) {
                 let mut later = node.zone.clone();
                 self.graph.wait(&known.stay, &mut later);
                 let bounds = known.cuts.bounds(&cell);
@@ -424,7 +433,8 @@ impl<'g, 'm, 'p> LivenessSearch<'g, 'm, 'p> {
         on_stack: &mut FxHashMap<ClockCellKey, Vec<usize>>,
     ) -> Result<Option<MaximalRunSearchResult>, SearchError> {
         let node = &self.entered[at].node;
-        if node.known.stay.for_ever() && node.known.cuts.is_last(&node.cell) {
+        let stay = &node.known.stay;
+        if stay.for_ever() && node.known.cuts.is_last(&node.cell, &stay.stopped) {
             let trap = self.trap(at, self.path(at), RunEnding::Waits);
             return Ok(Some(MaximalRunSearchResult::Found(Box::new(trap))));
         }

@@ -10,6 +10,9 @@
 //!    A zone is exact until a delay says too much; from then on each path is kept only if it can be timed. What this
 //!    second search comes to the end of, it has decided; otherwise the zones cannot tell.
 //!
+//! A deadlock is a state that can do less than those that simulate it. So the first search looks for it in all that a zone simulates, and the
+//! second leaves a zone out only for one in which the same can happen (aM: clocks have the same values, or are both beyond all bounds).
+//!
 //! All the rest of what makes the usual search fast is left out: `spec/search.md` says why.
 
 use std::rc::Rc;
@@ -17,6 +20,7 @@ use std::rc::Rc;
 use rustc_hash::FxHashMap;
 
 use crate::{
+    decide::standing_delays::{delays_exactly, forget},
     network::{
         actions::{DelayCondition, EnabledTransition, PathTransition},
         error::ModelError,
@@ -26,7 +30,7 @@ use crate::{
     },
     search::{
         options::{SearchOptions, TimeFrame},
-        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport},
+        report::{GoalOutcome, SearchCutoff, SearchProgress, SearchReport, WidestVariable},
     },
     witness::{
         build::{self, PathSegment, takes},
@@ -34,8 +38,10 @@ use crate::{
         schedule::ScheduleOptions,
     },
     zone::{
-        dbm::{Dbm, DbmBound, dominates},
-        extrapolation::{ActiveClocks, ExtrapolationAbstraction, NONE, thresholds},
+        constraint::keep,
+        dbm::{Dbm, dominates},
+        extrapolation::{ActiveClocks, ExtrapolationAbstraction, simulated_hull, thresholds},
+        federation::Federation,
     },
 };
 
@@ -45,6 +51,10 @@ const LOOKS: usize = 256;
 const TRIES: usize = 64;
 /// The most nodes of the second search.
 const EXACT_NODES: usize = 100_000;
+/// The most that its paths may cost: a linear program takes about the cube of its path's length.
+const EXACT_EFFORT: u64 = 300_000_000;
+/// In the second search, whoever watches is told more often, since paths are timed.
+const EXACT_LOOKS: usize = 8;
 
 /// A discrete state.
 struct KnownPlace {
@@ -54,6 +64,8 @@ struct KnownPlace {
     /// No automaton is in a committed location.
     settled: bool,
     actions: Rc<[EnabledTransition]>,
+    /// By goal: the clocks that meet a formula with `deadlock`, once they were asked for.
+    met: FxHashMap<usize, Rc<Federation>>,
 }
 
 /// A symbolic state, with how it was come to.
@@ -87,6 +99,8 @@ struct StopwatchSearch<'g, 'm, 'p> {
     second: bool,
     /// Zones met a fault to which no run was found.
     doubt: bool,
+    /// What the paths that were timed cost.
+    effort: u64,
     /// Local time was asked for.
     local_time: bool,
     stored: usize,
@@ -108,9 +122,6 @@ pub(crate) fn explore(
 ) -> Result<SearchReport, SearchError> {
     let formulas: Vec<Option<StateFormula>> = goals.iter().map(ReachabilityGoal::formula).collect();
     let asked: Vec<&StateFormula> = formulas.iter().flatten().collect();
-    if asked.iter().any(|f| f.asks_deadlock()) {
-        model.refuse_stopped("`deadlock`")?;
-    }
     goals.iter().try_for_each(|goal| model.check_goal(goal))?;
     let graph = ZoneGraph::new(model, &asked)?;
     if graph.splits() {
@@ -128,6 +139,7 @@ pub(crate) fn explore(
         known: Vec::new(),
         second: false,
         doubt: false,
+        effort: 0,
         local_time: options.time == TimeFrame::Local,
         stored: 0,
         visited: 0,
@@ -167,9 +179,20 @@ impl StopwatchSearch<'_, '_, '_> {
         }
     }
 
+    /// What a zone may be left out for must be able to do.
+    fn abstraction(&self) -> ExtrapolationAbstraction {
+        if self.second && self.formulas.iter().flatten().any(StateFormula::asks_deadlock) {
+            ExtrapolationAbstraction::Greatest
+        } else {
+            ExtrapolationAbstraction::LowerUpper
+        }
+    }
+
     /// Before the second search.
     fn again(&mut self) {
-        self.second = true;
+        (self.second, self.effort) = (true, 0);
+        let (graph, abstraction) = (self.graph, self.abstraction());
+        self.places.iter_mut().for_each(|place| place.frame = graph.frame(&place.state, abstraction));
         self.stored += self.nodes.len();
         self.nodes.clear();
         self.known.iter_mut().for_each(Vec::clear);
@@ -190,7 +213,9 @@ impl StopwatchSearch<'_, '_, '_> {
             complete: cutoff.is_none(),
             global_because: self.local_time.then(|| "clocks stand still".to_owned()),
             chosen: None,
-            widest: None,
+            widest: cutoff.and_then(|_| {
+                WidestVariable::among(self.graph.model, self.places.iter().map(|p| p.state.as_slice()))
+            }),
             goals: self.progress.into_iter().map(ended).collect(),
         }
     }
@@ -215,7 +240,11 @@ impl StopwatchSearch<'_, '_, '_> {
             if self.bytes >= budget.bytes {
                 return Ok(Some(SearchCutoff::Memory));
             }
-            if next.is_multiple_of(LOOKS) && !self.goes_on(next, go_on) {
+            if self.second && self.effort >= EXACT_EFFORT {
+                return Ok(Some(SearchCutoff::Zones));
+            }
+            let looks = if self.second { EXACT_LOOKS } else { LOOKS };
+            if next.is_multiple_of(looks) && !self.goes_on(next, go_on) {
                 return Ok(Some(SearchCutoff::Stopped));
             }
             self.visited += 1;
@@ -246,9 +275,10 @@ impl StopwatchSearch<'_, '_, '_> {
         let model = self.graph.model;
         let place = KnownPlace {
             stay,
-            frame: self.graph.frame(&state, ExtrapolationAbstraction::LowerUpper),
+            frame: self.graph.frame(&state, self.abstraction()),
             settled: !model.any_committed(&state),
             actions: self.graph.actions(&state).into(),
+            met: FxHashMap::default(),
             state: state.clone(),
         };
         self.bytes += 2 * size_of_val(state.as_slice()) + size_of::<KnownPlace>();
@@ -339,6 +369,7 @@ impl StopwatchSearch<'_, '_, '_> {
         self.graph.wait(stay, &mut zone);
         if self.second && !exact {
             let path = self.path(from.clone());
+            self.note_effort(&path);
             if build::feasible(self.graph, &path)? == Some(false) {
                 return Ok(());
             }
@@ -377,16 +408,44 @@ impl StopwatchSearch<'_, '_, '_> {
             let (Some(f), StoppedGoalProgress::Open(_)) = (&self.formulas[goal], &self.progress[goal]) else {
                 continue;
             };
-            let known = &self.places[place];
-            if self.goals[goal].settled && !known.settled {
+            if self.goals[goal].settled && !self.places[place].settled {
                 continue;
             }
-            if !f.part(&self.graph.here(&known.state), zone)?.is_empty() {
+            let meets = if f.asks_deadlock() {
+                self.may_be_met(goal, place, zone)?
+            } else {
+                !f.part(&self.graph.here(&self.places[place].state), zone)?.is_empty()
+            };
+            if meets {
                 let path = self.path(from.cloned());
                 self.tried(goal, path)?;
             }
         }
         Ok(())
+    }
+
+    /// Whether a formula with `deadlock` may hold in a state that a zone stands for.
+    fn may_be_met(&mut self, goal: usize, place: usize, zone: &Dbm) -> Result<bool, ModelError> {
+        let known = &mut self.places[place];
+        let met = match (known.met.get(&goal), &self.formulas[goal]) {
+            (Some(met), _) => Rc::clone(met),
+            (None, None) => return Ok(false),
+            (None, Some(formula)) => {
+                let mut all = Dbm::universe(self.graph.dim());
+                known.stay.invariant.iter().for_each(|c| {
+                    keep(&mut all, *c);
+                });
+                let met = Rc::new(formula.part(&self.graph.here(&known.state), &all)?);
+                known.met.insert(goal, Rc::clone(&met));
+                met
+            }
+        };
+        let hull = if self.second { zone.clone() } else { simulated_hull(&known.frame, zone) };
+        Ok(met.zones().iter().any(|part| part.clone().intersect(&hull)))
+    }
+
+    fn note_effort(&mut self, path: &[PathSegment]) {
+        self.effort = self.effort.saturating_add((path.len() as u64).saturating_pow(3));
     }
 
     /// Looks for times of a path along which zones reach a goal.
@@ -396,6 +455,7 @@ impl StopwatchSearch<'_, '_, '_> {
         if *seen > TRIES && !self.second {
             return Ok(());
         }
+        self.note_effort(&path);
         let (asked, timing) = (&self.goals[goal], ScheduleOptions::default());
         let run = match &self.formulas[goal] {
             Some(f) => build::reach_goal(self.graph, path, f, asked, timing)?,
@@ -428,102 +488,5 @@ impl StopwatchSearch<'_, '_, '_> {
         }
         all.reverse();
         takes(all)
-    }
-}
-
-/// Forgets the clocks that nothing asks for before they are set: all other bounds stay exact.
-fn forget(zone: &mut Dbm, frame: &ActiveClocks) {
-    for (x, lu) in frame.bounds.iter().enumerate().skip(1) {
-        if lu.lower != NONE || lu.upper != NONE {
-            continue;
-        }
-        for k in (0..zone.dim()).filter(|k| *k != x) {
-            let above = zone.at(k, 0);
-            zone.put(x, k, DbmBound::INFINITY);
-            zone.put(k, x, above);
-        }
-    }
-}
-
-/// Whether the bounds of the zone after a delay say no more than the delays of its valuations.
-///
-/// INVARIANT: v' comes from some v by a delay d if d ≥ v'ᵣ - v'ₛ - Zᵣₛ and d ≤ Zₛ'ᵣ' + v'ᵣ' - v'ₛ' for all running r, r' and standing s, s' (0
-/// among these). There is such a d exactly if no lower bound is above an upper one, which the bounds that are kept, Zᵣᵣ' and Zₛ'ₛ, say
-/// themselves where Zᵣₛ + Zₛ'ᵣ' ≥ Zᵣᵣ' + Zₛ'ₛ.
-fn delays_exactly(zone: &Dbm, frame: &ActiveClocks, stopped: &[u16]) -> bool {
-    let matters = |x: &usize| frame.bounds[*x].lower != NONE || frame.bounds[*x].upper != NONE;
-    let (mut stands, mut runs) = (vec![0], Vec::new());
-    for x in (1..zone.dim()).filter(matters) {
-        if stopped.iter().any(|&s| usize::from(s) == x) { stands.push(x) } else { runs.push(x) }
-    }
-    if stands.len() == 1 {
-        return true;
-    }
-    let sum = |a: DbmBound, b: DbmBound| a.plus(b);
-    runs.iter().all(|&r| {
-        runs.iter().filter(|&&r2| r2 != r).all(|&r2| {
-            stands.iter().all(|&s| {
-                stands
-                    .iter()
-                    .filter(|&&s2| s2 != s)
-                    .all(|&s2| sum(zone.at(r, s), zone.at(s2, r2)) >= sum(zone.at(r, r2), zone.at(s2, s)))
-            })
-        })
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::zone::extrapolation::LuBounds;
-
-    const DIM: usize = 5;
-
-    fn matters() -> ActiveClocks {
-        ActiveClocks { clocks: (0..DIM as u16).collect(), bounds: vec![LuBounds { lower: 9, upper: 9 }; DIM] }
-    }
-
-    fn zone(bounds: &[(usize, usize, i64)]) -> Dbm {
-        let mut zone = Dbm::universe(DIM);
-        for &(i, j, n) in bounds.iter().filter(|(i, j, _)| i != j) {
-            zone.constrain(i, j, DbmBound::le(n));
-        }
-        zone
-    }
-
-    /// x stood at up to 2, y at up to 2, while z and w ran to 2 together: the sum of x and z is not known, and zones say more.
-    #[test]
-    fn a_delay_of_two_that_run_and_two_that_stand_may_say_too_much() {
-        let z = zone(&[(1, 0, 2), (2, 0, 2), (3, 0, 2), (4, 0, 2), (1, 3, 0), (4, 2, 0)]);
-        assert!(!delays_exactly(&z, &matters(), &[1, 2]));
-        assert!(delays_exactly(&z, &matters(), &[]) && delays_exactly(&z, &matters(), &[1, 2, 3]));
-        assert!(delays_exactly(&Dbm::zero(DIM), &matters(), &[1, 2]), "a single state");
-    }
-
-    proptest! {
-        /// What is said to be exact is: each state of the zone after the delay comes from one before it.
-        #[test]
-        fn exact_delays_are(
-            bounds in prop::collection::vec((0..DIM, 0..DIM, -3i64..6), 0..10),
-            stopped in prop::collection::vec(1..DIM as u16, 1..3),
-            p in prop::collection::vec(0i64..24, DIM - 1),
-        ) {
-            let before = zone(&bounds);
-            prop_assume!(!before.is_empty() && delays_exactly(&before, &matters(), &stopped));
-            let mut after = before.clone();
-            after.up_but(&stopped);
-            let point: Vec<i64> = std::iter::once(0).chain(p).collect();
-            prop_assume!(after.contains(&point, 4));
-            let runs = |i: usize| i != 0 && !stopped.contains(&(i as u16));
-            let most = (1..DIM).filter(|&i| runs(i)).map(|i| point[i]).min().unwrap_or(0);
-            // All bounds are whole, and the point's parts are quarters: so is some delay.
-            let from = (0..=most).any(|d| {
-                let earlier: Vec<i64> = (0..DIM).map(|i| point[i] - if runs(i) { d } else { 0 }).collect();
-                before.contains(&earlier, 4)
-            });
-            prop_assert!(from, "{point:?} of {after:?} from {before:?}");
-        }
     }
 }

@@ -9,15 +9,22 @@
 
 use std::collections::BTreeSet;
 
-use hrdsl_ir::{Program, ta::Network};
+use hrdsl_ir::{
+    Program,
+    ta::{Network, QueryFormula, QueryKind, QueryMeasure},
+};
 
 use crate::{
-    decide::explore::explore,
+    decide::{
+        explore::explore,
+        fastest::fastest,
+        places::{each_place, of_expression},
+    },
     network::{
         error::ModelError,
         model::{CompiledNetwork, ObservationOptions, OverflowTreatment, OverflowWatch},
         parts::EdgeUpdate,
-        query::{GoalKind, ReachabilityGoal, StateFormula},
+        query::{GoalKind, ReachabilityGoal, SearchBudget, StateFormula},
     },
     search::{
         goals::CompiledGoals,
@@ -100,12 +107,51 @@ impl<'p> UnreadCounters<'p> {
             return Ok(None);
         }
         let compiled = CompiledGoals::new(&model, goals)?;
-        let read = slice::read(&model, &compiled);
-        let assignments = assignments(&model, &read);
+        let read = slice::read(&model, &compiled, &[]);
+        let found = Self::beside(program, network, observe.clone(), model, &read);
+        Ok(Some(found).filter(|found| !found.groups.is_empty()))
+    }
+
+    /// As [`find`](Self::find), for a query of any kind. A query about whole runs is searched without variables that never leave their
+    /// ranges, too, if nothing reads them: its search does not leave them out by itself.
+    ///
+    /// # Errors
+    /// If the program is malformed.
+    pub fn find_for_query(
+        program: &'p Program,
+        network: &'p Network,
+        ask: &QueryKind,
+    ) -> Result<Option<Self>, ModelError> {
+        let (formulas, measures, about_runs) = parts(ask);
+        let observe = ObservationOptions { formulas: formulas.clone(), ..ObservationOptions::default() };
+        let model = CompiledNetwork::new(program, network, &observe)?;
+        if model.stops() {
+            return Ok(None);
+        }
+        let mut asked = Vec::new();
+        formulas.iter().for_each(|f| each_place(&model, &StateFormula::from(f), &mut |i| asked.push(i)));
+        for measure in measures {
+            if let QueryMeasure::Data(e) = measure {
+                of_expression(&model, e, &mut |i| asked.push(i));
+            }
+        }
+        let read = slice::read(&model, &CompiledGoals::new(&model, &[])?, &asked);
+        let found = Self::beside(program, network, observe, model, &read);
+        let some = |found: &Self| !found.groups.is_empty() || (about_runs && !found.assignments.is_empty());
+        Ok(Some(found).filter(some))
+    }
+
+    /// What is not read.
+    fn beside(
+        program: &'p Program,
+        network: &'p Network,
+        observe: ObservationOptions,
+        model: CompiledNetwork<'p>,
+        read: &[bool],
+    ) -> Self {
+        let assignments = assignments(&model, read);
         let groups = groups(&model, &assignments);
-        let observe = observe.clone();
-        let found = !groups.is_empty();
-        Ok(found.then_some(Self { program, network, observe, model, groups, assignments }))
+        Self { program, network, observe, model, groups, assignments }
     }
 
     /// The network with all its variables, of which the witnesses are runs.
@@ -128,11 +174,65 @@ impl<'p> UnreadCounters<'p> {
             // A fault that is another's: with all variables it is met as it would be without this.
             return Ok((explore(&self.model, goals, options, go_on)?, Vec::new()));
         };
-        let mut ranges = Vec::new();
-        for group in &self.groups {
-            ranges.push(self.range(group, options, go_on)?);
+        Ok((report, self.ranges(options, &[], go_on)?))
+    }
+
+    /// Decides of each of the variables whether it stays in its range, but for those that are known already, by their slots.
+    ///
+    /// # Errors
+    /// If the engine contradicts itself.
+    pub fn ranges(
+        &self,
+        options: &SearchOptions,
+        known: &[usize],
+        go_on: &dyn Fn(&SearchProgress<'_>) -> bool,
+    ) -> Result<Vec<RangeAnswer>, SearchError> {
+        let open = |group: &&UnreadGroup| group.slots.first().is_none_or(|slot| !known.contains(slot));
+        self.groups.iter().filter(open).map(|group| self.range(group, options, go_on)).collect()
+    }
+
+    /// A run that meets a goal as early as any, given one that meets it; `None`: it is not known to be found.
+    ///
+    /// # Errors
+    /// As [`fastest`].
+    pub fn fastest(
+        &self,
+        goal: &ReachabilityGoal,
+        known: &WitnessRun,
+        budget: SearchBudget,
+        timing: ScheduleOptions,
+    ) -> Result<Option<Box<WitnessRun>>, SearchError> {
+        let program = self.bare();
+        let bare = CompiledNetwork::new(&program, self.network, &self.observe)?;
+        match fastest(&bare, goal, known, budget, timing) {
+            Ok(None) => return Ok(None),
+            Ok(Some(run)) => {
+                if let (path, None) = build::path_of(&self.model, &run)? {
+                    let timing = ScheduleOptions { prompt: true, ..timing };
+                    return build::witness(&self.model, path, Some(goal), timing)
+                        .map(|run| Some(Box::new(run)));
+                }
+            }
+            // It may lie beyond an overflow.
+            Err(SearchError::Model { .. }) => {}
+            Err(error @ SearchError::Internal(_)) => return Err(error),
         }
-        Ok((report, ranges))
+        fastest(&self.careful()?, goal, known, budget, timing)
+    }
+
+    /// The network in which a transition that leaves a range does not exist.
+    fn careful(&self) -> Result<CompiledNetwork<'p>, ModelError> {
+        let slots = self.groups.iter().flat_map(|g| &g.slots).copied().collect();
+        CompiledNetwork::new(self.program, self.network, &self.watched(slots, OverflowTreatment::Avoided))
+    }
+
+    /// The program without the assignments to variables that nothing reads.
+    pub(super) fn bare(&self) -> Program {
+        self.without(|_| true)
+    }
+
+    pub(super) fn scenario(&self) -> (&'p Program, &'p Network) {
+        (self.program, self.network)
     }
 
     /// `None`: the network has a fault that is another's.
@@ -142,7 +242,7 @@ impl<'p> UnreadCounters<'p> {
         options: &SearchOptions,
         go_on: &dyn Fn(&SearchProgress<'_>) -> bool,
     ) -> Result<Option<SearchReport>, SearchError> {
-        let program = self.without(|_| true);
+        let program = self.bare();
         let bare = CompiledNetwork::new(&program, self.network, &self.observe)?;
         let mut report = match explore(&bare, goals, options, go_on) {
             Ok(report) => report,
@@ -175,9 +275,7 @@ impl<'p> UnreadCounters<'p> {
         options: &SearchOptions,
         go_on: &dyn Fn(&SearchProgress<'_>) -> bool,
     ) -> Result<(), SearchError> {
-        let slots = self.groups.iter().flat_map(|g| &g.slots).copied().collect();
-        let observe = self.watched(slots, OverflowTreatment::Avoided);
-        let careful = CompiledNetwork::new(self.program, self.network, &observe)?;
+        let careful = self.careful()?;
         let asked: Vec<ReachabilityGoal> = doubtful.iter().map(|(i, _)| goals[*i].clone()).collect();
         let options = SearchOptions { time: TimeFrame::Common, ..*options };
         let again = explore(&careful, &asked, &options, go_on)?;
@@ -287,6 +385,16 @@ impl<'p> UnreadCounters<'p> {
 
     fn watched(&self, slots: Vec<usize>, treatment: OverflowTreatment) -> ObservationOptions {
         ObservationOptions { overflow: OverflowWatch { slots, treatment }, ..self.observe.clone() }
+    }
+}
+
+/// The formulas of a query, its measures, and whether it is about whole runs.
+fn parts(ask: &QueryKind) -> (Vec<QueryFormula>, &[QueryMeasure], bool) {
+    match ask {
+        QueryKind::Possibly(f) | QueryKind::Invariantly(f) => (vec![f.clone()], &[], false),
+        QueryKind::PotentiallyAlways(f) | QueryKind::Eventually(f) => (vec![f.clone()], &[], true),
+        QueryKind::LeadsTo(f, g) => (vec![f.clone(), g.clone()], &[], true),
+        QueryKind::Sup { of, when } | QueryKind::Inf { of, when } => (vec![when.clone()], of, false),
     }
 }
 

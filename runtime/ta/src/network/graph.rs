@@ -318,7 +318,26 @@ impl<'m, 'p> ZoneGraph<'m, 'p> {
         if !action.taken.guard.iter().chain(&stay.invariant).all(|c| keep(&mut zone, *c)) {
             return None;
         }
-        Some(if stay.waits { past(&zone) } else { zone })
+        Some(if stay.waits { self.past(stay, &zone) } else { zone })
+    }
+
+    /// From where a delay leads into a zone, which is given by bounds of single clocks where some stand still.
+    ///
+    /// INVARIANT: for some d ≥ 0, lᵣ ≤ vᵣ + d ≤ uᵣ for all clocks that run, and lₛ ≤ vₛ ≤ uₛ for all that stand: without d, that is
+    /// vᵣ ≤ uᵣ and vᵣ - vᵣ' ≤ uᵣ - lᵣ', which are bounds of a zone, and the zone's own.
+    pub(crate) fn past(&self, stay: &DelayCondition, zone: &Dbm) -> Dbm {
+        if stay.stopped.is_empty() {
+            return past(zone);
+        }
+        let mut before = Dbm::universe(zone.dim());
+        let stands = |x: usize| x == 0 || stay.stopped.iter().any(|&s| usize::from(s) == x);
+        for (i, j) in (0..zone.dim()).flat_map(|i| (0..zone.dim()).map(move |j| (i, j))) {
+            let stays = stands(i) == stands(j) || j == 0;
+            if i != j && stays && !zone.at(i, j).is_infinite() {
+                before.constrain(i, j, zone.at(i, j));
+            }
+        }
+        before
     }
 }
 

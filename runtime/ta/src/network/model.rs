@@ -214,7 +214,7 @@ impl<'p> CompiledNetwork<'p> {
         let Some((clock, location)) = self.stopwatch() else { return Ok(()) };
         Err(ModelError::Question(format!(
             "{what} cannot be asked where clocks stand still, as `{clock}` does in `{location}`: zones say more than can happen there. \
-             Ask `E<>` or `A[]` of locations, variables and single clocks"
+             Ask of locations, variables and single clocks"
         )))
     }
 

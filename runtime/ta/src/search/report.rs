@@ -35,6 +35,20 @@ pub struct WidestVariable {
 }
 
 impl WidestVariable {
+    /// Of these states.
+    pub(crate) fn among<'s>(
+        model: &CompiledNetwork,
+        states: impl Iterator<Item = &'s [i64]>,
+    ) -> Option<Self> {
+        let mut extremes = vec![(i64::MAX, i64::MIN); model.size()];
+        for state in states {
+            for (seen, &n) in extremes.iter_mut().zip(state) {
+                *seen = (seen.0.min(n), seen.1.max(n));
+            }
+        }
+        Self::of(model, &extremes)
+    }
+
     /// Of the least and greatest of each number of the state.
     pub(crate) fn of(model: &CompiledNetwork, extremes: &[(i64, i64)]) -> Option<Self> {
         let is_int = |slot: &usize| !model.slots[*slot].is_bool && model.slots[*slot].enumeration.is_none();

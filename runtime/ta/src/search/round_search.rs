@@ -6,7 +6,7 @@ use crate::{
     network::actions::PathTransition,
     search::{
         probe::{ProbeFinding, StateProbe},
-        report::{SearchCutoff, SearchProgress, SearchReport, SearchStatistics},
+        report::{SearchCutoff, SearchProgress, SearchReport, SearchStatistics, WidestVariable},
     },
     witness::error::SearchError,
 };
@@ -30,6 +30,8 @@ pub(crate) type GoOn<'a> = &'a dyn Fn(&SearchProgress<'_>) -> bool;
 pub(crate) struct SearchCompany<'a> {
     pub go_on: GoOn<'a>,
     pub took: &'a Cell<Option<SearchStatistics>>,
+    /// Of the last one that ended before its end.
+    pub widest: &'a Cell<Option<WidestVariable>>,
 }
 
 impl SearchCompany<'_> {
@@ -76,6 +78,9 @@ pub(crate) trait RoundSearch {
 
     /// Symbolic states kept.
     fn stored(&self) -> usize;
+
+    /// The int with the most values so far.
+    fn widest(&self) -> Option<WidestVariable>;
 
     /// What it took so far.
     fn statistics(&self) -> SearchStatistics;

@@ -425,6 +425,10 @@ impl<N: DbmNumber> RoundSearch for ZoneGraphSearch<'_, '_, N> {
         self.store.stored
     }
 
+    fn widest(&self) -> Option<WidestVariable> {
+        WidestVariable::of(self.model, &self.extremes())
+    }
+
     fn statistics(&self) -> SearchStatistics {
         SearchStatistics {
             stored: self.store.stored,

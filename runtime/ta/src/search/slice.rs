@@ -18,12 +18,18 @@ pub(crate) fn relevant(
     goals: &CompiledGoals,
     probe: Option<&dyn StateProbe>,
 ) -> Vec<bool> {
-    mattering(model, goals, probe, AssignmentFaults::All)
+    mattering(
+        model,
+        goals,
+        &mut |note| probe.into_iter().for_each(|p| p.each_place(model, note)),
+        AssignmentFaults::All,
+    )
 }
 
-/// By place of the state whether it matters to what can happen and to the goals, and not only because it may leave its range.
-pub(crate) fn read(model: &CompiledNetwork, goals: &CompiledGoals) -> Vec<bool> {
-    mattering(model, goals, None, AssignmentFaults::AllButRanges)
+/// By place of the state whether it matters to what can happen, to the goals and to whoever asks for these places, and not only because
+/// it may leave its range.
+pub(crate) fn read(model: &CompiledNetwork, goals: &CompiledGoals, asked: &[u32]) -> Vec<bool> {
+    mattering(model, goals, &mut |note| asked.iter().for_each(|i| note(*i)), AssignmentFaults::AllButRanges)
 }
 
 /// Which faults of an assignment make what it sets matter.
@@ -37,7 +43,7 @@ enum AssignmentFaults {
 fn mattering(
     model: &CompiledNetwork,
     goals: &CompiledGoals,
-    probe: Option<&dyn StateProbe>,
+    others: &mut dyn FnMut(&mut dyn FnMut(u32)),
     faults: AssignmentFaults,
 ) -> Vec<bool> {
     let mut matters = vec![true; model.size()];
@@ -46,9 +52,7 @@ fn mattering(
     let lib = &model.library;
     let mut note = |i: u32| matters[i as usize] = true;
     goals.each_place(model, &mut note);
-    if let Some(probe) = probe {
-        probe.each_place(model, &mut note);
-    }
+    others(&mut note);
     for member in &model.members {
         for spot in &member.locations {
             clocks(lib, &spot.invariant, &mut note);

@@ -20,6 +20,7 @@ use crate::{
         replay::{self, ReplayedState},
         run::{RunEnding, WitnessRun, WitnessRunStep},
         schedule::{PathSchedule, ScheduleOptions, ScheduledTimes},
+        standing::{ClocksThen, DelayProgram},
     },
     zone::{
         constraint::{DifferenceConstraint, keep},
@@ -97,17 +98,8 @@ fn reach_in_time(
     goal: Option<&ReachabilityGoal>,
     timing: ScheduleOptions,
 ) -> Result<Option<WitnessRun>, SearchError> {
-    let state = walk(graph, &stops)?.state;
-    let mut all = Dbm::universe(graph.dim());
-    let stay = graph.stay(&state)?.ok_or_else(|| internal("a path ends in a forbidden state"))?;
-    stay.invariant.iter().chain(besides).for_each(|c| {
-        keep(&mut all, *c);
-    });
-    let parts = f.part(&graph.here(&state), &all)?.into_zones();
     let mut best: Option<WitnessRun> = None;
-    for part in parts {
-        let mut stops = stops.clone();
-        stops.push(PathSegment::Wait(bounds_of(&part)));
+    for stops in ends(graph, stops, f, besides)? {
         let w = walk(graph, &stops)?;
         let Some(times) = w.schedule.timed(graph.model.unit, timing)? else { continue };
         let witness = finish(graph, w, &times, RunEnding::Reached, goal)?;
@@ -116,6 +108,24 @@ fn reach_in_time(
         }
     }
     Ok(best)
+}
+
+/// The path, and then the time until a formula holds with what must hold besides: once for each zone in which it does.
+fn ends(
+    graph: &ZoneGraph,
+    stops: Vec<PathSegment>,
+    f: &StateFormula,
+    besides: &[DifferenceConstraint],
+) -> Result<Vec<Vec<PathSegment>>, SearchError> {
+    let state = walk(graph, &stops)?.state;
+    let mut all = Dbm::universe(graph.dim());
+    let stay = graph.stay(&state)?.ok_or_else(|| internal("a path ends in a forbidden state"))?;
+    stay.invariant.iter().chain(besides).for_each(|c| {
+        keep(&mut all, *c);
+    });
+    let parts = f.part(&graph.here(&state), &all)?.into_zones();
+    let end = |part: &Dbm| stops.iter().cloned().chain([PathSegment::Wait(bounds_of(part))]).collect();
+    Ok(parts.iter().map(end).collect())
 }
 
 /// The error of [`reach_in_time`] where its path is known to meet the formula.
@@ -160,6 +170,23 @@ pub(crate) fn feasible(graph: &ZoneGraph, stops: &[PathSegment]) -> Result<Optio
     Ok(walk(graph, stops)?.schedule.feasible())
 }
 
+/// Each way along a path on which clocks stand still, to where a formula holds at its end, or to its end at once if there is none.
+pub(crate) fn ways(
+    graph: &ZoneGraph,
+    stops: Vec<PathSegment>,
+    f: Option<&StateFormula>,
+) -> Result<Vec<DelayProgram>, SearchError> {
+    let all = match f {
+        Some(f) => ends(graph, stops, f, &[])?,
+        None => vec![stops],
+    };
+    let mut ways = Vec::new();
+    for stops in all {
+        ways.extend(walk(graph, &stops)?.schedule.standing().cloned());
+    }
+    Ok(ways)
+}
+
 /// Whether time can pass between a stop and the end of the path, and at what times the stops are.
 pub(crate) fn times(
     graph: &ZoneGraph,
@@ -169,7 +196,7 @@ pub(crate) fn times(
     walk(graph, stops)?.schedule.timed(graph.model.unit, timing)
 }
 
-fn finish(
+pub(crate) fn finish(
     graph: &ZoneGraph,
     w: UntimedPath,
     times: &ScheduledTimes,
@@ -186,7 +213,10 @@ fn finish(
     Ok(witness)
 }
 
-fn replayed<'p>(model: &CompiledNetwork<'p>, witness: &WitnessRun) -> Result<ReplayedState<'p>, SearchError> {
+pub(crate) fn replayed<'p>(
+    model: &CompiledNetwork<'p>,
+    witness: &WitnessRun,
+) -> Result<ReplayedState<'p>, SearchError> {
     let ids: Vec<_> = model.members.iter().map(|m| m.automaton).collect();
     replay::replay(model.program, &ids, &model.counters, &model.limits, witness)
         .map_err(|m| SearchError::Internal(format!("a witness does not replay: {m}")))
@@ -304,25 +334,39 @@ fn meets(
 }
 
 /// A path without times.
-struct UntimedPath {
+pub(crate) struct UntimedPath {
     steps: Vec<WitnessRunStep>,
     /// The number of each step's time.
     at: Vec<usize>,
-    schedule: PathSchedule,
+    pub(crate) schedule: PathSchedule,
     /// The last discrete state.
-    state: Vec<i64>,
+    pub(crate) state: Vec<i64>,
+    /// Where clocks stand still: those after as many stops as were asked for.
+    pub(crate) then: Option<ClocksThen>,
 }
 
 fn walk(graph: &ZoneGraph, stops: &[PathSegment]) -> Result<UntimedPath, SearchError> {
+    walk_noting(graph, stops, stops.len())
+}
+
+/// Goes along a path without times, and notes the clocks after so many of its stops.
+pub(crate) fn walk_noting(
+    graph: &ZoneGraph,
+    stops: &[PathSegment],
+    noted: usize,
+) -> Result<UntimedPath, SearchError> {
     let state = graph.initial();
     // One more clock, which is never set, is the time since the start: stops may speak of it.
     let dim = graph.dim() + 1;
     let schedule =
         if graph.model.stops() { PathSchedule::with_standing_clocks(dim) } else { PathSchedule::new(dim) };
-    let mut w = UntimedPath { steps: Vec::new(), at: Vec::new(), schedule, state };
+    let mut w = UntimedPath { steps: Vec::new(), at: Vec::new(), schedule, state, then: None };
     let mut stay = allowed(graph, &w.state)?;
     stay.invariant.iter().for_each(|c| w.schedule.require(*c));
-    for stop in stops {
+    for (number, stop) in stops.iter().enumerate() {
+        if number == noted {
+            w.then = w.schedule.standing().map(DelayProgram::clocks_now);
+        }
         let now = w.schedule.next_but(stay.waits, &stay.stopped);
         // An invariant is convex: it holds all the while if it holds at both ends.
         stay.invariant.iter().for_each(|c| w.schedule.require(*c));
@@ -415,8 +459,14 @@ pub(crate) fn path_of(
     // Each clock is zero at a time, in ticks.
     let scale = i128::from(model.unit) * i128::from(run.ticks);
     let mut zero = vec![0i128; model.dim];
+    let mut last = 0i128;
     for s in &run.steps {
         let now = i128::from(s.time);
+        // The time at which a clock that stands still was zero comes along.
+        for clock in model.stopped(&state) {
+            zero[usize::from(clock)] += now - last;
+        }
+        last = now;
         let same = |t: &PathTransition, s: &WitnessRunStep| {
             t.parts.len() == s.moves.len() && t.parts.iter().zip(&s.moves).all(|(t, m)| model.moved(t) == *m)
         };

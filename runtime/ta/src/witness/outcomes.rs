@@ -243,7 +243,7 @@ impl<'p> ConcreteInterpreter<'p> {
         let finer = self.in_half_ticks();
         for later in finer.turns() {
             let mut then = finer.clone();
-            then.now = later;
+            then.advance(later);
             if then.broken_invariant()?.is_none() && then.can_move()? {
                 return Ok(true);
             }

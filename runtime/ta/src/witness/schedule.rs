@@ -93,6 +93,16 @@ impl PathSchedule {
         }
     }
 
+    /// The delays, where clocks stand still.
+    pub(crate) fn standing(&self) -> Option<&DelayProgram> {
+        self.standing.as_ref()
+    }
+
+    /// As [`standing`](Self::standing), to be bounded further.
+    pub(crate) fn standing_mut(&mut self) -> Option<&mut DelayProgram> {
+        self.standing.as_mut()
+    }
+
     /// As [`solve`](Self::solve). Where clocks stand still, the times are those with the least end, whatever else was asked for.
     ///
     /// # Errors

@@ -45,10 +45,50 @@ struct DelayBound {
     is_strict: bool,
 }
 
+/// How far a clock can go along a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ClockExtremum {
+    Unbounded,
+    /// So many units, as a fraction with a denominator of at least 1; `attained`: some run comes to it, not only as near as one likes.
+    At {
+        units: i128,
+        over: i128,
+        attained: bool,
+    },
+}
+
+/// The clocks at a time of the path.
+#[derive(Clone, Debug)]
+pub(crate) struct ClocksThen {
+    clocks: Vec<RunDelays>,
+    delays: usize,
+}
+
 /// Times as whole parts of a nanosecond.
 pub(crate) struct DelayTimes {
     pub ticks: i64,
     pub at: Vec<i64>,
+}
+
+impl DelayBound {
+    /// `i - j ≺ most`.
+    fn of_difference(i: &RunDelays, j: &RunDelays, most: i64, is_strict: bool) -> Self {
+        let mut signs: Vec<(usize, i8)> = i.ran.iter().map(|&k| (k, 1)).collect();
+        for k in &j.ran {
+            match signs.binary_search_by_key(k, |s| s.0) {
+                Ok(at) => drop(signs.remove(at)),
+                Err(at) => signs.insert(at, (*k, -1)),
+            }
+        }
+        Self { signs, most: most - i.plus + j.plus, is_strict }
+    }
+
+    /// The factors of so many delays, and 0 for the room.
+    fn factors(&self, delays: usize, factor: i128) -> Vec<i128> {
+        let mut factors = vec![0; delays + 1];
+        self.signs.iter().for_each(|&(k, sign)| factors[k] = i128::from(sign) * factor);
+        factors
+    }
 }
 
 impl DelayProgram {
@@ -76,18 +116,80 @@ impl DelayProgram {
             return;
         }
         let (i, j) = (&self.clocks[usize::from(c.i)], &self.clocks[usize::from(c.j)]);
-        let mut signs: Vec<(usize, i8)> = i.ran.iter().map(|&k| (k, 1)).collect();
-        for k in &j.ran {
-            match signs.binary_search_by_key(k, |s| s.0) {
-                Ok(at) => drop(signs.remove(at)),
-                Err(at) => signs.insert(at, (*k, -1)),
-            }
-        }
-        let most = c.bound.value() - i.plus + j.plus;
-        let bound = DelayBound { signs, most, is_strict: c.bound.is_strict() };
+        let bound = DelayBound::of_difference(i, j, c.bound.value(), c.bound.is_strict());
+        self.keep(bound);
+    }
+
+    fn keep(&mut self, bound: DelayBound) {
         if !self.bounds.contains(&bound) {
             self.bounds.push(bound);
         }
+    }
+
+    /// The clocks now, to be compared with later.
+    pub(crate) fn clocks_now(&self) -> ClocksThen {
+        ClocksThen { clocks: self.clocks.clone(), delays: self.delays }
+    }
+
+    /// The clock has the value that it had then.
+    pub(crate) fn require_as_then(&mut self, then: &ClocksThen, clock: usize) {
+        let (now, then) = (&self.clocks[clock], &then.clocks[clock]);
+        let both =
+            [DelayBound::of_difference(now, then, 0, false), DelayBound::of_difference(then, now, 0, false)];
+        both.into_iter().for_each(|bound| self.keep(bound));
+    }
+
+    /// The clock had more than so many units then.
+    pub(crate) fn require_beyond_then(&mut self, then: &ClocksThen, clock: usize, units: i64) {
+        self.keep(DelayBound::of_difference(&RunDelays::default(), &then.clocks[clock], -units, true));
+    }
+
+    /// Whether time can pass between then and now. `None`: the numbers are too large to tell.
+    pub(crate) fn can_pass_since(&self, then: &ClocksThen) -> Option<bool> {
+        let signs: Vec<(usize, i8)> = (then.delays..self.delays).map(|k| (k, -1)).collect();
+        let some = DelayBound { signs, most: 0, is_strict: true };
+        let mut program = self.clone();
+        program.keep(some);
+        program.feasible()
+    }
+
+    /// The greatest or least value of a clock now, of those that keep all bounds; `None`: there are none.
+    ///
+    /// # Errors
+    /// The numbers are too large.
+    pub(crate) fn extremum(
+        &self,
+        clock: usize,
+        is_greatest: bool,
+    ) -> Result<Option<ClockExtremum>, SearchError> {
+        self.found_extremum(clock, is_greatest).map_err(|LinearOverflow| large())
+    }
+
+    fn found_extremum(
+        &self,
+        clock: usize,
+        is_greatest: bool,
+    ) -> Result<Option<ClockExtremum>, LinearOverflow> {
+        if self.room(None)?.is_none() {
+            return Ok(None);
+        }
+        let (of, sign) = (&self.clocks[clock], if is_greatest { 1 } else { -1 });
+        let mut goal = vec![0; self.delays + 1];
+        of.ran.iter().for_each(|&k| goal[k] = sign);
+        // What strict bounds leave out makes no difference to how near one comes.
+        let closed: Vec<LinearBound> = self.bounds.iter().map(|b| self.row(b, 0)).collect();
+        let (values, over) = match greatest(&closed, &goal)? {
+            LinearSolution::Infeasible => return Ok(None),
+            LinearSolution::Unbounded => return Ok(Some(ClockExtremum::Unbounded)),
+            LinearSolution::Vertex { values, over } => (values, over),
+        };
+        let ran: i128 = of.ran.iter().map(|&k| values[k]).sum();
+        let there = goal.iter().map(|&sign| -sign * over).collect();
+        let attained = self.room(Some(LinearBound { factors: there, most: -sign * ran }))?.is_some();
+        let units = i128::from(of.plus).checked_mul(over).and_then(|plus| plus.checked_add(ran));
+        let units = units.ok_or(LinearOverflow)?;
+        let shared = gcd(units, over);
+        Ok(Some(ClockExtremum::At { units: units / shared, over: over / shared, attained }))
     }
 
     /// Sets clocks now, all at once.
@@ -111,8 +213,6 @@ impl DelayProgram {
     /// # Errors
     /// The numbers are too large.
     pub(crate) fn solve(&self, unit: Nanos) -> Result<Option<DelayTimes>, SearchError> {
-        let large =
-            || SearchError::Internal("the times of a run need numbers of more than 128 bits".to_owned());
         let Some((values, over)) = self.vertex(true).map_err(|LinearOverflow| large())? else {
             return Ok(None);
         };
@@ -129,45 +229,56 @@ impl DelayProgram {
         Ok(Some(DelayTimes { ticks: narrow(over)?, at: at.collect::<Result<_, _>>()? }))
     }
 
+    /// A bound's row, with the room that it must leave as its last variable.
+    fn row(&self, bound: &DelayBound, room: i128) -> LinearBound {
+        let mut factors = bound.factors(self.delays, 1);
+        factors[self.delays] = room;
+        LinearBound { factors, most: i128::from(bound.most) }
+    }
+
+    /// Delays that keep all bounds, those and another one, with as much room as can be; the room is the last. `None`: there is none.
+    fn room(&self, besides: Option<LinearBound>) -> Result<Option<(Vec<i128>, i128)>, LinearOverflow> {
+        let mut bounds: Vec<LinearBound> =
+            self.bounds.iter().map(|b| self.row(b, i128::from(b.is_strict))).collect();
+        let mut most = vec![0; self.delays + 1];
+        most[self.delays] = 1;
+        bounds.push(LinearBound { factors: most.clone(), most: 1 });
+        bounds.extend(besides);
+        match greatest(&bounds, &most)? {
+            LinearSolution::Vertex { values, over } => {
+                let some = values.last().is_some_and(|room| *room != 0);
+                Ok(some.then_some((values, over)))
+            }
+            LinearSolution::Infeasible | LinearSolution::Unbounded => Ok(None),
+        }
+    }
+
     /// The delays, in units, as numerators over one denominator.
     fn vertex(&self, earliest: bool) -> Result<Option<(Vec<i128>, i128)>, LinearOverflow> {
-        let room = self.delays;
-        let row = |signs: &[(usize, i8)], factor: i128| {
-            let mut factors = vec![0; self.delays + 1];
-            signs.iter().for_each(|&(k, sign)| factors[k] = i128::from(sign) * factor);
-            factors
-        };
-        let mut bounds: Vec<LinearBound> = Vec::with_capacity(self.bounds.len() + 1);
-        for DelayBound { signs, most, is_strict } in &self.bounds {
-            let mut factors = row(signs, 1);
-            factors[room] = i128::from(*is_strict);
-            bounds.push(LinearBound { factors, most: i128::from(*most) });
-        }
-        let mut most = row(&[], 1);
-        most[room] = 1;
-        bounds.push(LinearBound { factors: most.clone(), most: 1 });
-        let LinearSolution::Vertex { mut values, over } = greatest(&bounds, &most)? else { return Ok(None) };
+        let Some((mut values, over)) = self.room(None)? else { return Ok(None) };
         let width = values.pop().unwrap_or(0);
-        if width == 0 {
-            return Ok(None);
-        }
         if !earliest {
             return Ok(Some((values, over)));
         }
         let shared = gcd(width, over.checked_mul(ROOM).ok_or(LinearOverflow)?);
         let (part, of) = (width / shared, over.checked_mul(ROOM).ok_or(LinearOverflow)? / shared);
         let mut kept = Vec::with_capacity(self.bounds.len());
-        for DelayBound { signs, most, is_strict } in &self.bounds {
-            let (factor, less) = if *is_strict { (of, part) } else { (1, 0) };
-            let most = i128::from(*most).checked_mul(factor).and_then(|m| m.checked_sub(less));
-            kept.push(LinearBound { factors: row(signs, factor), most: most.ok_or(LinearOverflow)? });
+        for bound in &self.bounds {
+            let (factor, less) = if bound.is_strict { (of, part) } else { (1, 0) };
+            let most = i128::from(bound.most).checked_mul(factor).and_then(|m| m.checked_sub(less));
+            let factors = bound.factors(self.delays, factor);
+            kept.push(LinearBound { factors, most: most.ok_or(LinearOverflow)? });
         }
         let mut sum = vec![-1; self.delays + 1];
-        sum[room] = 0;
+        sum[self.delays] = 0;
         let LinearSolution::Vertex { mut values, over } = greatest(&kept, &sum)? else { return Ok(None) };
         values.pop();
         Ok(Some((values, over)))
     }
+}
+
+fn large() -> SearchError {
+    SearchError::Internal("the times of a run need numbers of more than 128 bits".to_owned())
 }
 
 fn gcd(mut a: i128, mut b: i128) -> i128 {
@@ -220,6 +331,41 @@ mod tests {
         p.require(at_most(1, 9));
         p.require(at_least(2, 10));
         assert!(p.solve(10).unwrap().is_none());
+        assert_eq!(p.feasible(), Some(false));
+    }
+
+    #[test]
+    fn how_far_a_clock_goes_is_a_fraction_and_attained_or_not() {
+        // x runs in the first and second of three delays, y in the second and third, z in the first and third; t in all.
+        let mut p = DelayProgram::new(5);
+        for stands in [2, 3, 1] {
+            p.next(true, &[stands]);
+        }
+        let at = |units, over, attained| Ok(Some(ClockExtremum::At { units, over, attained }));
+        assert_eq!(p.found_extremum(4, true), Ok(Some(ClockExtremum::Unbounded)));
+        [1, 2, 3].into_iter().for_each(|clock| p.require(at_most(clock, 1)));
+        assert_eq!(p.found_extremum(4, true), at(3, 2, true));
+        assert_eq!(p.found_extremum(4, false), at(0, 1, true));
+        p.require(DifferenceConstraint { i: 1, j: 0, bound: DbmBound::lt(1) });
+        assert_eq!(p.found_extremum(4, true), at(3, 2, false));
+        assert_eq!(p.found_extremum(2, true), at(1, 1, true));
+        p.require(at_least(1, 1));
+        assert_eq!(p.found_extremum(2, true), Ok(None));
+    }
+
+    #[test]
+    fn clocks_come_round_only_if_they_were_set_or_stood() {
+        let mut p = DelayProgram::new(3);
+        p.next(true, &[]);
+        let then = p.clocks_now();
+        p.next(true, &[2]);
+        let mut again = p.clone();
+        again.require_as_then(&then, 2);
+        assert_eq!((again.feasible(), again.can_pass_since(&then)), (Some(true), Some(true)));
+        again.require_as_then(&then, 1);
+        assert_eq!((again.feasible(), again.can_pass_since(&then)), (Some(true), Some(false)));
+        p.require_beyond_then(&then, 1, 4);
+        p.require(at_most(2, 4));
         assert_eq!(p.feasible(), Some(false));
     }
 

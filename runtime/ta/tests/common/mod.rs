@@ -2,8 +2,10 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
 pub mod asked;
+pub mod counted;
 pub mod deadlines;
 pub mod families;
+pub mod grid;
 pub mod processor;
 
 use hrdsl_ir::{

@@ -137,6 +137,7 @@ impl UppaalTranslation<'_> {
             UppaalDeclaration::Vars(ty, declarators) => {
                 for declarator in declarators {
                     if let Err(fault) = self.variable(ty, declarator, own) {
+                        self.undeclared.insert(declarator.name.clone());
                         self.faults.push(fault);
                     }
                 }
@@ -158,6 +159,15 @@ impl UppaalTranslation<'_> {
             }
         };
         if let Err(fault) = declared {
+            self.undeclared.extend(match decl {
+                UppaalDeclaration::Typedef(_, declarator) => Some(declarator.name.clone()),
+                UppaalDeclaration::Function(function) => Some(function.name.clone()),
+                UppaalDeclaration::Vars(..)
+                | UppaalDeclaration::Instance(_)
+                | UppaalDeclaration::System(_)
+                | UppaalDeclaration::Comment(_)
+                | UppaalDeclaration::Idle(..) => None,
+            });
             self.faults.push(fault);
         }
     }

@@ -78,7 +78,7 @@ pub fn import(
     let mut replaced = None;
     let is_textual = [".xta", ".ta"].iter().any(|ending| model.name.ends_with(ending));
     let reader = if is_textual { xta::read } else { xml::read };
-    let mut read = reader(file, &model.text).map_err(|faults| errors(&files, faults))?;
+    let (mut read, unread) = reader(file, &model.text).map_err(|faults| errors(&files, faults))?;
     if let Some(source) = questions {
         let file: FileId = files.add(&source.name, &source.text);
         let before = std::mem::replace(&mut read.queries, queries::read(file, &source.text));
@@ -91,7 +91,11 @@ pub fn import(
     let mut cx = UppaalTranslation::new(&read);
     let scenario = options.name.clone().unwrap_or_else(|| stem(&model.name).to_owned());
     let written = cx.write(&scenario, &model.name);
+    cx.faults.extend(unread);
     if !cx.faults.is_empty() {
+        // What could not be declared is missing everywhere.
+        let undeclared = std::mem::take(&mut cx.undeclared);
+        cx.faults.retain(|fault| !undeclared.iter().any(|name| fault.misses(name)));
         return Err(errors(&files, cx.faults));
     }
     for (span, old, new) in std::mem::take(&mut cx.names.renamed) {

@@ -41,6 +41,8 @@ pub(crate) struct UppaalTranslation<'m> {
     pub model: &'m UppaalModel,
     pub templates: Vec<ParsedTemplate>,
     pub faults: Vec<UppaalFault>,
+    /// The names of declarations that are at fault.
+    pub undeclared: BTreeSet<String>,
     pub notes: Vec<(Span, NoteSeverity, String)>,
     pub names: UppaalScenarioNames,
     pub global: UppaalScope,
@@ -92,6 +94,7 @@ impl<'m> UppaalTranslation<'m> {
             model,
             templates: Vec::new(),
             faults: Vec::new(),
+            undeclared: BTreeSet::new(),
             notes: Vec::new(),
             names: UppaalScenarioNames::default(),
             global: super::scope::built_in(),

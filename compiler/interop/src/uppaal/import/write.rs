@@ -25,7 +25,7 @@ impl UppaalTranslation<'_> {
             let parsed = template::template(template, &mut self.faults);
             self.templates.push(parsed);
         }
-        if !self.faults.is_empty() {
+        if !self.faults.is_empty() || !model.begins() {
             return String::new();
         }
         let scenario = self.names.unused(name, NameOwner::All);
@@ -57,7 +57,7 @@ impl UppaalTranslation<'_> {
         }
         let Some(listed) = listed else {
             let span = self.model.system.last().map_or_else(Span::default, super::lex::UppaalFragment::span);
-            let message = "there is no line `system …;` that says what the system is made of".to_owned();
+            let message = "there is no line `system …;` that says what the system is made of: write it, with the names of templates or processes".to_owned();
             return self.faults.push(UppaalFault { span, message });
         };
         let mut plans = Vec::new();

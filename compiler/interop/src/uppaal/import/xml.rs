@@ -73,8 +73,11 @@ pub struct QueryText {
     pub comment: String,
 }
 
-/// Reads a model.
-pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
+/// Reads a model, and what is wrong with it.
+///
+/// # Errors
+/// It is no model at all.
+pub fn read(file: FileId, text: &str) -> Result<(UppaalModel, Vec<UppaalFault>), Vec<UppaalFault>> {
     if let Some((at, message)) = refused(text) {
         return Err(vec![UppaalFault { span: Span::new(file, at, at), message }]);
     }
@@ -99,11 +102,19 @@ pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
     } else {
         let message = format!("expected the element `nta` of a model, found `{}`", root.tag_name().name());
         reader.fault(root, message);
+        return Err(reader.faults);
     }
     if let Some((span, count)) = reader.uncontrollable {
         reader.model.skipped.push((span, NoteSeverity::Info, uncontrollable(count)));
     }
-    if reader.faults.is_empty() { Ok(reader.model) } else { Err(reader.faults) }
+    Ok((reader.model, reader.faults))
+}
+
+impl UppaalModel {
+    /// Whether each template has a location to begin in, so that what is wrong beside can be told, too.
+    pub fn begins(&self) -> bool {
+        self.templates.iter().all(|template| template.initial < template.locations.len())
+    }
 }
 
 /// What is said of transitions that are not controllable.
@@ -259,11 +270,14 @@ impl UppaalReader<'_> {
             }
         }
         self.initial(node, &mut template);
+        let before = self.faults.len();
         for part in node.children().filter(|n| n.has_tag_name("transition")) {
             self.transition(part, &mut template);
         }
         match std::mem::take(&mut self.branching).joined() {
             Ok(joined) => template.transitions.extend(joined),
+            // A branch that is missing may be one of the transitions that could not be read.
+            Err(_) if self.faults.len() > before => {}
             Err(faults) => self.faults.extend(faults),
         }
         self.model.templates.push(template);
@@ -333,16 +347,17 @@ impl UppaalReader<'_> {
         let end = |reader: &mut Self, name: &str| {
             let Some(part) = node.children().find(|n| n.has_tag_name(name)) else {
                 reader.fault(node, format!("this transition has no `{name}`"));
-                return TransitionEnd::Location(0);
+                return None;
             };
             let id = part.attribute("ref").unwrap_or_default();
             if reader.branching.points.contains(id) {
-                return TransitionEnd::Branchpoint(id.to_owned());
+                return Some(TransitionEnd::Branchpoint(id.to_owned()));
             }
-            TransitionEnd::Location(reader.ids.get(id).copied().unwrap_or_else(|| {
+            let known = reader.ids.get(id).copied();
+            if known.is_none() {
                 reader.fault(part, format!("there is no location with the id `{id}`"));
-                0
-            }))
+            }
+            known.map(TransitionEnd::Location)
         };
         let ends = (end(self, "source"), end(self, "target"));
         let uncontrollable = node.attribute("controllable") == Some("false");
@@ -359,7 +374,8 @@ impl UppaalReader<'_> {
                 name => self.unknown(part, name),
             }
         }
-        match self.branching.keep(ends, self.span(node), transition) {
+        let (Some(from), Some(to)) = ends else { return };
+        match self.branching.keep((from, to), self.span(node), transition) {
             Ok(transition) => template.transitions.extend(transition),
             Err(fault) => self.faults.push(fault),
         }

@@ -12,19 +12,27 @@ use super::{
 };
 use crate::exchange::note::NoteSeverity;
 
-/// Reads a model.
-pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
+/// Reads a model, and what is wrong with it.
+///
+/// # Errors
+/// It is no model at all.
+pub fn read(file: FileId, text: &str) -> Result<(UppaalModel, Vec<UppaalFault>), Vec<UppaalFault>> {
     let text = UppaalFragment::of_file(file, text);
     let tokens = lex(&text).map_err(|fault| vec![fault])?;
-    let mut reader = XtaReader { text, tokens, at: 0, uncontrollable: Vec::new() };
+    let mut reader = XtaReader { text, tokens, at: 0, uncontrollable: Vec::new(), faults: Vec::new() };
     let mut model = UppaalModel::default();
     let mut system = UppaalFragment { file, chars: Vec::new(), end: 0 };
     let mut from = 0;
     while !reader.at_end() {
         if reader.is_word("process") {
             system.chars.extend(reader.between(from, reader.at, false).chars);
-            let template = reader.process().map_err(|fault| vec![fault])?;
-            model.templates.push(template);
+            match reader.process() {
+                Ok(template) => model.templates.push(template),
+                Err(fault) => {
+                    reader.faults.push(fault);
+                    return Err(reader.faults);
+                }
+            }
             from = reader.at;
         } else {
             reader.at += 1;
@@ -37,7 +45,7 @@ pub fn read(file: FileId, text: &str) -> Result<UppaalModel, Vec<UppaalFault>> {
         let count = reader.uncontrollable.len();
         model.skipped.push((*first, NoteSeverity::Info, super::xml::uncontrollable(count)));
     }
-    Ok(model)
+    Ok((model, reader.faults))
 }
 
 struct XtaReader {
@@ -45,6 +53,7 @@ struct XtaReader {
     tokens: Vec<UppaalToken>,
     at: usize,
     uncontrollable: Vec<Span>,
+    faults: Vec<UppaalFault>,
 }
 
 type XtaResult<T> = Result<T, UppaalFault>;
@@ -162,6 +171,7 @@ impl XtaReader {
         }
         self.expect("{")?;
         let start = self.at;
+        let close = self.closing(start);
         let mut open = 0;
         while open > 0 || !self.is_word("state") {
             match self.token(self.at) {
@@ -184,9 +194,38 @@ impl XtaReader {
             initial: 0,
             transitions: Vec::new(),
         };
-        self.body(&mut template)?;
-        self.expect("}")?;
+        if let Err(fault) = self.body(&mut template).and_then(|()| self.expect("}")) {
+            // What is wrong behind it is told, too.
+            self.faults.push(fault);
+            self.at = close;
+        }
         Ok(template)
+    }
+
+    /// Behind the bracket that closes what was opened before a token.
+    fn closing(&self, from: usize) -> usize {
+        let mut open = 1;
+        for (at, token) in self.tokens.iter().enumerate().skip(from) {
+            match token.tok {
+                UppaalTokenKind::Mark("{") => open += 1,
+                UppaalTokenKind::Mark("}") => open -= 1,
+                UppaalTokenKind::End => return at,
+                UppaalTokenKind::Mark(_) | UppaalTokenKind::Word(_) | UppaalTokenKind::Int(_) => {}
+            }
+            if open == 0 {
+                return at + 1;
+            }
+        }
+        self.tokens.len()
+    }
+
+    /// A state that is named; a fault if there is none.
+    fn known_state(&mut self, ids: &BTreeMap<String, usize>, (name, span): &(String, Span)) -> Option<usize> {
+        let known = ids.get(name).copied();
+        if known.is_none() {
+            self.faults.push(UppaalFault { span: *span, message: format!("there is no state `{name}`") });
+        }
+        known
     }
 
     fn body(&mut self, template: &mut UppaalTemplate) -> XtaResult<()> {
@@ -201,14 +240,15 @@ impl XtaReader {
             }
         }
         self.expect(";")?;
+        let before = self.faults.len();
         let mut branching = BranchingTransitions::default();
         let mut initial = None;
         loop {
             let kind = [("commit", UppaalLocationKind::Committed), ("urgent", UppaalLocationKind::Urgent)];
             if let Some((_, kind)) = kind.into_iter().find(|(word, _)| self.is_word(word)) {
                 self.at += 1;
-                for (name, span) in self.names("a state")? {
-                    let at = state(&ids, &name, span)?;
+                for named in self.names("a state")? {
+                    let Some(at) = self.known_state(&ids, &named) else { continue };
                     if template.locations[at].kind != UppaalLocationKind::Committed {
                         template.locations[at].kind = kind;
                     }
@@ -216,9 +256,10 @@ impl XtaReader {
             } else if self.take_word("branchpoint") {
                 branching.points.extend(self.names("a branchpoint")?.into_iter().map(|(name, _)| name));
             } else if self.take_word("init") {
-                let (name, span) = self.name("the initial state")?;
+                let named = self.name("the initial state")?;
                 self.expect(";")?;
-                initial = Some(state(&ids, &name, span)?);
+                // One that is not there was told.
+                initial = Some(self.known_state(&ids, &named).unwrap_or(0));
             } else if self.take_word("trans") {
                 self.transitions(&ids, &mut branching, template)?;
             } else {
@@ -229,10 +270,12 @@ impl XtaReader {
             Some(initial) => template.initial = initial,
             None => return self.fault("the initial state (`init`)"),
         }
-        let joined = branching.joined().map_err(|faults| {
-            faults.into_iter().next().unwrap_or(UppaalFault { span: self.span(), message: String::new() })
-        })?;
-        template.transitions.extend(joined);
+        match branching.joined() {
+            Ok(joined) => template.transitions.extend(joined),
+            // A branch that is missing may be one of the transitions that could not be read.
+            Err(_) if self.faults.len() > before => {}
+            Err(faults) => self.faults.extend(faults),
+        }
         Ok(())
     }
 
@@ -282,14 +325,18 @@ impl XtaReader {
                 self.uncontrollable.push(span);
             }
             let Some(from) = &from else { return self.fault("the state where a transition begins") };
-            let end = |(name, span): &(String, Span)| {
-                if branching.points.contains(name) {
-                    return Ok(TransitionEnd::Branchpoint(name.clone()));
+            let mut end = |named: &(String, Span)| {
+                if branching.points.contains(&named.0) {
+                    return Some(TransitionEnd::Branchpoint(named.0.clone()));
                 }
-                state(ids, name, *span).map(TransitionEnd::Location)
+                self.known_state(ids, named).map(TransitionEnd::Location)
             };
-            let ends = (end(from)?, end(&to)?);
-            template.transitions.extend(branching.keep(ends, span, transition)?);
+            if let (Some(from), Some(to)) = (end(from), end(&to)) {
+                match branching.keep((from, to), span, transition) {
+                    Ok(transition) => template.transitions.extend(transition),
+                    Err(fault) => self.faults.push(fault),
+                }
+            }
             if !self.take(",") {
                 break;
             }
@@ -312,17 +359,10 @@ impl XtaReader {
                 "probability" => transition.probability = text.text(),
                 _ => {
                     let message = format!("a label `{word}` of a transition is not known");
-                    return Err(UppaalFault { span, message });
+                    self.faults.push(UppaalFault { span, message });
                 }
             }
         }
         Ok(transition)
-    }
-}
-
-fn state(ids: &BTreeMap<String, usize>, name: &str, span: Span) -> XtaResult<usize> {
-    match ids.get(name) {
-        Some(at) => Ok(*at),
-        None => Err(UppaalFault { span, message: format!("there is no state `{name}`") }),
     }
 }
