@@ -140,3 +140,40 @@ fn only(conformance: &[ConformanceVerdict]) -> TestResult {
     let judgement = TraceJudgement { conformance: conformance.to_vec(), ..TraceJudgement::default() };
     TestResult { judgement, ..TestResult::default() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn less_counts_against_the_tests_and_more_alone_does_not() {
+        let seen = |less, more| AllowanceDifference { less, more };
+        let fates = [seen(true, false), seen(true, true), seen(false, true), seen(false, false)];
+        assert_eq!(
+            fates.map(|seen| fate_of(1, seen)),
+            [
+                MutantFate::Survived,
+                MutantFate::Survived,
+                MutantFate::Permissive,
+                MutantFate::NotDistinguished
+            ]
+        );
+        assert_eq!(fate_of(0, seen(true, true)), MutantFate::NotReached);
+    }
+
+    #[test]
+    fn a_verdict_that_becomes_another_says_what_is_allowed() {
+        let verdict = |outcome| ConformanceVerdict {
+            outcome,
+            ..ConformanceVerdict::inconclusive("Lamp".into(), String::new())
+        };
+        let [conforms, departs, unknown] =
+            [ConformanceOutcome::Conforms, ConformanceOutcome::Departs, ConformanceOutcome::Inconclusive]
+                .map(verdict);
+        let less = AllowanceDifference { less: true, more: false };
+        let more = AllowanceDifference { less: false, more: true };
+        assert_eq!(judged_otherwise((&departs, &departs)), AllowanceDifference::default());
+        assert_eq!(judged_otherwise((&unknown, &conforms)), less);
+        assert_eq!(judged_otherwise((&conforms, &departs)), more);
+    }
+}
