@@ -10,7 +10,13 @@ use hrdsl_compiler::{CompilationResult, InputFile, compile_beside};
 use hrdsl_ir::{Program, system::SystemUnderTest};
 use hrdsl_source::{Diagnostic, FileId, SourceFiles, printable_line};
 
-use crate::{fault::CommandFault, files::read_scenario, reach::DiskModules, render, terminal};
+use crate::{
+    fault::CommandFault,
+    files::read_scenario,
+    project::{SourceKind, kind_of},
+    reach::DiskModules,
+    render, terminal,
+};
 
 /// The table of interfaces that the programs of a system can use, as JSON; empty without a middleware.
 ///
@@ -137,12 +143,26 @@ pub fn report(compilation: &CompilationResult) -> Option<&Program> {
     compilation.program.as_ref()
 }
 
+/// What a file holds that is no scenario of its own.
+fn part(compilation: &CompilationResult) -> Option<&'static str> {
+    match kind_of(compilation.ast.first()?) {
+        SourceKind::Scenario => None,
+        SourceKind::Tests => Some("tests, and no scenario that they are of"),
+        SourceKind::System => Some("systems, and no scenario that they are of"),
+        SourceKind::Module => Some("declarations that are a part of a scenario"),
+    }
+}
+
 /// Shows the errors on stderr, and how many warnings there are: who runs tests has seen them, or can.
 pub fn report_errors<'c>(scenario: &Path, compilation: &'c CompilationResult) -> Option<&'c Program> {
     let (errors, warnings): (Vec<_>, Vec<_>) = compilation.diagnostics.iter().partition(|d| d.is_error());
     show(&compilation.files, &errors, render::SHOWN);
     if !errors.is_empty() {
         terminal::say_line(render::totals(errors.len(), 0));
+        if let Some(what) = part(compilation) {
+            let file = terminal::shown(scenario);
+            terminal::say_line(format_args!("note: {file} holds {what}: give the file in which it begins"));
+        }
     }
     if !warnings.is_empty() {
         let (count, them) =

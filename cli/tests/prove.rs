@@ -303,6 +303,30 @@ fn queries_of_all_kinds_leave_out_what_nobody_reads() {
 }
 
 #[test]
+fn a_file_that_is_no_scenario_of_its_own_is_said_to_be_so() {
+    let folder = folder(&[
+        ("tests.hri", "scenario door\ntest one {\n  seed 1\n  knock\n}\n"),
+        ("more.hri", "event knocked from person\n"),
+    ]);
+    for (file, what) in [
+        (
+            "tests.hri",
+            "note: tests.hri holds tests, and no scenario that they are of: give the file in which it begins",
+        ),
+        (
+            "more.hri",
+            "note: more.hri holds declarations that are a part of a scenario: give the file in which it begins",
+        ),
+    ] {
+        for command in ["prove", "export uppaal"] {
+            let out = hrdsl_in(folder.path(), &format!("{command} {file}"));
+            expect_code(&out, 1);
+            assert!(stderr(&out).contains(what), "{}", stderr(&out));
+        }
+    }
+}
+
+#[test]
 fn a_run_to_a_fault_of_the_model_ends_with_it() {
     let counts = "scenario counts\nautomaton A {\n clock x\n var n: 0..3 = 0\n init location a { invariant x <= 9 s }\n a -> a do n += 1\n}\n\
         network net = A\nquery q of net = E<> A.n == 4\n";

@@ -18,18 +18,17 @@ pub(crate) fn relevant(
     goals: &CompiledGoals,
     probe: Option<&dyn StateProbe>,
 ) -> Vec<bool> {
-    mattering(
-        model,
-        goals,
-        &mut |note| probe.into_iter().for_each(|p| p.each_place(model, note)),
-        AssignmentFaults::All,
-    )
+    let mut others = Vec::new();
+    if let Some(probe) = probe {
+        probe.each_place(model, &mut |i| others.push(i));
+    }
+    mattering(model, goals, &others, AssignmentFaults::All)
 }
 
 /// By place of the state whether it matters to what can happen, to the goals and to whoever asks for these places, and not only because
 /// it may leave its range.
 pub(crate) fn read(model: &CompiledNetwork, goals: &CompiledGoals, asked: &[u32]) -> Vec<bool> {
-    mattering(model, goals, &mut |note| asked.iter().for_each(|i| note(*i)), AssignmentFaults::AllButRanges)
+    mattering(model, goals, asked, AssignmentFaults::AllButRanges)
 }
 
 /// Which faults of an assignment make what it sets matter.
@@ -43,7 +42,7 @@ enum AssignmentFaults {
 fn mattering(
     model: &CompiledNetwork,
     goals: &CompiledGoals,
-    others: &mut dyn FnMut(&mut dyn FnMut(u32)),
+    others: &[u32],
     faults: AssignmentFaults,
 ) -> Vec<bool> {
     let mut matters = vec![true; model.size()];
@@ -52,7 +51,7 @@ fn mattering(
     let lib = &model.library;
     let mut note = |i: u32| matters[i as usize] = true;
     goals.each_place(model, &mut note);
-    others(&mut note);
+    others.iter().for_each(|i| note(*i));
     for member in &model.members {
         for spot in &member.locations {
             clocks(lib, &spot.invariant, &mut note);
